@@ -1,0 +1,186 @@
+//! The channels that held products tie together.
+
+use crate::dataset::Pair;
+
+/// Where a channel sits in its component.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placement {
+    /// Index of the component.
+    pub(crate) component: usize,
+    /// Logarithm of the gain (or the delay) where the component's scale is 0.
+    pub(crate) offset: f64,
+}
+
+/// The connected components of the bipartite graph of the held entries, one free scale each (M8, structure).
+///
+/// With the scale `s` of its component an input has the logarithm `offset + s` and an output `offset - s`, so that the sum over
+/// a held entry does not depend on `s`. Delays are the same with seconds for logarithms. A channel in no held entry is a
+/// component of its own.
+#[derive(Clone, Debug)]
+pub(crate) struct Components {
+    pub(crate) inputs: Vec<Placement>,
+    pub(crate) outputs: Vec<Placement>,
+    /// Least scale of each component that keeps its channels inside the box.
+    pub(crate) lower: Vec<f64>,
+    /// Greatest scale of each component that keeps its channels inside the box.
+    pub(crate) upper: Vec<f64>,
+    /// How far each component is from being possible: the worst disagreement of a loop, or what the box lacks.
+    pub(crate) strain: Vec<f64>,
+}
+
+impl Components {
+    /// The components of `outputs` x `inputs` channels in `[low, high]` with these sums held.
+    pub(crate) fn new(outputs: usize, inputs: usize, held: &[(Pair, f64)], (low, high): (f64, f64)) -> Self {
+        let mut placed = Placed {
+            inputs: vec![None; inputs],
+            outputs: vec![None; outputs],
+            count: 0,
+        };
+        for input in 0..inputs {
+            if placed.inputs[input].is_none() {
+                placed.spread(input, held);
+            }
+        }
+        let (inputs, outputs) = placed.finish();
+        let count = inputs
+            .iter()
+            .chain(&outputs)
+            .map(|channel| channel.component + 1)
+            .max()
+            .unwrap_or(0);
+        let mut components = Self {
+            inputs,
+            outputs,
+            lower: vec![f64::NEG_INFINITY; count],
+            upper: vec![f64::INFINITY; count],
+            strain: vec![0.0; count],
+        };
+        components.close_box(low, high);
+        components.centre();
+        components.close_box(low, high);
+        for (pair, sum) in held {
+            let strain = &mut components.strain[components.inputs[pair.input].component];
+            let reached = components.inputs[pair.input].offset + components.outputs[pair.output].offset;
+            *strain = strain.max((reached - sum).abs());
+        }
+        components
+    }
+
+    /// Number of components.
+    pub(crate) fn count(&self) -> usize {
+        self.lower.len()
+    }
+
+    /// Logarithm (or delay) of each input and of each output at these scales.
+    pub(crate) fn channels(&self, scales: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let inputs = self
+            .inputs
+            .iter()
+            .map(|channel| channel.offset + scales[channel.component])
+            .collect();
+        let outputs = self
+            .outputs
+            .iter()
+            .map(|channel| channel.offset - scales[channel.component])
+            .collect();
+        (inputs, outputs)
+    }
+
+    /// Moves every scale's zero to the middle of its interval: no channel is then far outside the box at scale 0.
+    fn centre(&mut self) {
+        let middle = |component: usize| 0.5 * (self.lower[component] + self.upper[component]);
+        for channel in &mut self.inputs {
+            channel.offset += middle(channel.component);
+        }
+        for channel in &mut self.outputs {
+            channel.offset -= middle(channel.component);
+        }
+    }
+
+    /// The interval of each scale; where the box leaves none, the middle of what is lacking.
+    fn close_box(&mut self, low: f64, high: f64) {
+        self.lower.fill(f64::NEG_INFINITY);
+        self.upper.fill(f64::INFINITY);
+        let inputs = self
+            .inputs
+            .iter()
+            .map(|channel| (channel.component, low - channel.offset, high - channel.offset));
+        let outputs = self
+            .outputs
+            .iter()
+            .map(|channel| (channel.component, channel.offset - high, channel.offset - low));
+        for (component, least, most) in inputs.chain(outputs) {
+            self.lower[component] = self.lower[component].max(least);
+            self.upper[component] = self.upper[component].min(most);
+        }
+        for component in 0..self.count() {
+            let lacking = self.lower[component] - self.upper[component];
+            if lacking > 0.0 {
+                self.strain[component] = lacking;
+                let middle = 0.5 * (self.lower[component] + self.upper[component]);
+                (self.lower[component], self.upper[component]) = (middle, middle);
+            }
+        }
+    }
+}
+
+struct Placed {
+    inputs: Vec<Option<Placement>>,
+    outputs: Vec<Option<Placement>>,
+    count: usize,
+}
+
+impl Placed {
+    /// Places everything that held entries tie to `input`, along a spanning tree.
+    fn spread(&mut self, input: usize, held: &[(Pair, f64)]) {
+        let component = self.count;
+        self.count += 1;
+        self.inputs[input] = Some(Placement { component, offset: 0.0 });
+        let mut grown = true;
+        while grown {
+            grown = false;
+            for (pair, sum) in held {
+                match (self.inputs[pair.input], self.outputs[pair.output]) {
+                    (Some(known), None) => {
+                        self.outputs[pair.output] = Some(Placement {
+                            component: known.component,
+                            offset: sum - known.offset,
+                        });
+                        grown = true;
+                    }
+                    (None, Some(known)) => {
+                        self.inputs[pair.input] = Some(Placement {
+                            component: known.component,
+                            offset: sum - known.offset,
+                        });
+                        grown = true;
+                    }
+                    _ => {}
+                }
+            }
+        }
+    }
+
+    /// Every output that is still alone becomes a component of its own.
+    fn finish(self) -> (Vec<Placement>, Vec<Placement>) {
+        let mut count = self.count;
+        let mut alone = || {
+            count += 1;
+            Placement {
+                component: count - 1,
+                offset: 0.0,
+            }
+        };
+        let outputs = self
+            .outputs
+            .into_iter()
+            .map(|placement| placement.unwrap_or_else(&mut alone))
+            .collect();
+        let inputs = self
+            .inputs
+            .into_iter()
+            .map(|placement| placement.unwrap_or_else(&mut alone))
+            .collect();
+        (inputs, outputs)
+    }
+}

@@ -1,0 +1,12 @@
+//! The channel gains of the correction, equation (7), with their proof and their explanation (M8).
+
+mod conflict;
+mod landscape;
+mod problem;
+mod solution;
+mod solve;
+
+pub use conflict::GainConflict;
+pub use problem::{GainBounds, GainError, GainObjective, GainProblem};
+pub use solution::{GainSolution, LocalMinimum, Outcome, ProofBudget, UnmatchedGain};
+pub use solve::{solve_gains, solve_gains_until};

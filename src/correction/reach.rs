@@ -1,0 +1,89 @@
+//! Stage 1: what the held entries can be held at.
+
+use super::components::Components;
+use super::scales::{Landscape, Link, Shape};
+use crate::dataset::Pair;
+
+/// What is asked of the channels: sums of logarithms (or delays) over the held entries, in a box.
+#[derive(Clone, Debug)]
+pub(crate) struct Held {
+    /// Number of output channels.
+    pub(crate) outputs: usize,
+    /// Number of input channels.
+    pub(crate) inputs: usize,
+    /// Each held entry with the sum that is wanted.
+    pub(crate) entries: Vec<(Pair, f64)>,
+    /// Least and greatest value of every channel.
+    pub(crate) range: (f64, f64),
+}
+
+/// The sums nearest to the wanted ones that the box and the loops allow.
+#[derive(Clone, Debug)]
+pub(crate) struct Reached {
+    /// Each held entry with its target, in the order asked.
+    pub(crate) targets: Vec<(Pair, f64)>,
+    /// Components of the held entries at their targets.
+    pub(crate) components: Components,
+    /// A point of the box that reaches the targets: inputs, then minus the outputs. Only where something is out of reach.
+    pub(crate) point: Option<Vec<f64>>,
+}
+
+/// Strain below which a component counts as possible as asked: well below the 1e-8 of M8, and its product's error stays
+/// below 1e-9.
+const STRAIN: f64 = 1e-9;
+
+/// Finds the targets: `min sum (x_o + y_i - wanted)^2` over the held entries, in the box (M8, reachability; M9).
+///
+/// Components that are possible as asked keep what is asked, exactly. `minimise` returns the minimum of a sum of parabolas over
+/// a box; it is only called where something is out of reach.
+pub(crate) fn reach<E>(held: &Held, minimise: impl FnOnce(&Landscape) -> Result<Vec<f64>, E>) -> Result<Reached, E> {
+    let asked = Components::new(held.outputs, held.inputs, &held.entries, held.range);
+    if asked.strain.iter().all(|strain| *strain <= STRAIN) {
+        return Ok(Reached {
+            targets: held.entries.clone(),
+            components: asked,
+            point: None,
+        });
+    }
+    let strained = |pair: &Pair| asked.strain[asked.inputs[pair.input].component] > STRAIN;
+    let landscape = nearest(held, strained);
+    let point = minimise(&landscape)?;
+    let target = |(pair, wanted): &(Pair, f64)| {
+        let reached = point[pair.input] - point[held.inputs + pair.output];
+        (*pair, if strained(pair) { reached } else { *wanted })
+    };
+    let targets: Vec<(Pair, f64)> = held.entries.iter().map(target).collect();
+    let components = Components::new(held.outputs, held.inputs, &targets, held.range);
+    Ok(Reached {
+        targets,
+        components,
+        point: Some(point),
+    })
+}
+
+/// The least squares problem of stage 1: one node for each input and (with its sign turned) each output.
+fn nearest(held: &Held, strained: impl Fn(&Pair) -> bool) -> Landscape {
+    let (low, high) = held.range;
+    let mut lower = vec![low; held.inputs];
+    let mut upper = vec![high; held.inputs];
+    lower.extend(std::iter::repeat_n(-high, held.outputs).chain([0.0]));
+    upper.extend(std::iter::repeat_n(-low, held.outputs).chain([0.0]));
+    let links = held
+        .entries
+        .iter()
+        .filter(|(pair, _)| strained(pair))
+        .map(|(pair, wanted)| Link {
+            from: held.inputs + pair.output,
+            to: pair.input,
+            shape: Shape::Parabola {
+                weight: 1.0,
+                centre: *wanted,
+            },
+        });
+    Landscape {
+        lower,
+        upper,
+        links: links.collect(),
+        constant: 0.0,
+    }
+}

@@ -1,0 +1,35 @@
+//! Figures rounded so that they still suffice.
+
+/// The least number of three significant digits that is not below `value`.
+pub(crate) fn three_digits_up(value: f64) -> f64 {
+    three_digits(value, f64::ceil)
+}
+
+/// The greatest number of three significant digits that is not above `value`.
+pub(crate) fn three_digits_down(value: f64) -> f64 {
+    three_digits(value, f64::floor)
+}
+
+fn three_digits(value: f64, round: impl Fn(f64) -> f64) -> f64 {
+    if value == 0.0 || !value.is_finite() {
+        return value;
+    }
+    let exponent = value.abs().log10().floor() as i32 - 2;
+    // A value that is three digits up to rounding stays as it is. Negative powers are divided by: 1.87 is 187 / 100 exactly.
+    let digits = if exponent < 0 {
+        value * 10f64.powi(-exponent)
+    } else {
+        value / 10f64.powi(exponent)
+    };
+    let nearest = digits.round();
+    let digits = if (digits - nearest).abs() <= 1e-9 * nearest.abs() {
+        nearest
+    } else {
+        round(digits)
+    };
+    if exponent < 0 {
+        digits / 10f64.powi(-exponent)
+    } else {
+        digits * 10f64.powi(exponent)
+    }
+}

@@ -1,0 +1,181 @@
+//! One flight condition with its two bundles of models.
+
+use super::model::Model;
+
+/// Which of a condition's two bundles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum BundleKind {
+    /// The physics models: one nominal, the others at perturbed trims.
+    Physics,
+    /// The models identified from flight.
+    Identified,
+}
+
+/// One model of a dataset, by index.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ModelId {
+    /// Index of the condition in the dataset.
+    pub condition: usize,
+    /// Which bundle of that condition.
+    pub bundle: BundleKind,
+    /// Index of the model in the bundle, in file order.
+    pub model: usize,
+}
+
+/// What describes a flight condition, besides its models.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlightState {
+    /// Identity in the dataset ("condition 10").
+    pub id: i64,
+    /// Name for people.
+    pub name: String,
+    /// True airspeed \[kt\].
+    pub airspeed_kt: f64,
+    /// Altitude class ("low", "high").
+    pub altitude: Option<String>,
+    /// Altitude \[ft\].
+    pub altitude_ft: Option<f64>,
+    /// Weight class ("low", "high").
+    pub weight: Option<String>,
+    /// Mass \[kg\].
+    pub mass_kg: Option<f64>,
+}
+
+/// One flight condition: a bundle of physics models, exactly one of them nominal, and a bundle of identified models.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Condition {
+    flight_state: FlightState,
+    physics: Vec<Model>,
+    identified: Vec<Model>,
+    nominal: usize,
+}
+
+/// Why two bundles are not a condition.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ConditionError {
+    /// A figure of the flight state is not finite, or an airspeed is negative.
+    #[error("{field}: expected a finite number{bound}, found {value}")]
+    FlightState {
+        /// The field's name in the file.
+        field: &'static str,
+        /// " not below zero" where that is required.
+        bound: &'static str,
+        /// What stands there.
+        value: f64,
+    },
+    /// A bundle holds no model.
+    #[error("{list}: expected at least one model, found none")]
+    EmptyBundle {
+        /// `physics_models` or `identified_models`.
+        list: &'static str,
+    },
+    /// Two models of a bundle share a name.
+    #[error("{list}: the name \"{name}\" stands twice (models {first} and {second}); names must differ")]
+    DuplicateName {
+        /// `physics_models` or `identified_models`.
+        list: &'static str,
+        /// The name.
+        name: String,
+        /// First model, counted from 1.
+        first: usize,
+        /// Second model, counted from 1.
+        second: usize,
+    },
+    /// A bundle of physics models has no nominal model, or several.
+    #[error("physics_models: expected exactly one model of role \"nominal\", found {found}{names}")]
+    Nominal {
+        /// How many there are.
+        found: usize,
+        /// Their names, in parentheses, where there are several.
+        names: String,
+    },
+}
+
+impl Condition {
+    /// The condition with these models, in file order.
+    pub fn new(flight_state: FlightState, physics: Vec<Model>, identified: Vec<Model>) -> Result<Self, ConditionError> {
+        check_flight_state(&flight_state)?;
+        check_bundle("physics_models", &physics)?;
+        check_bundle("identified_models", &identified)?;
+        let nominal: Vec<usize> = (0..physics.len())
+            .filter(|&index| physics[index].is_nominal())
+            .collect();
+        match nominal[..] {
+            [nominal] => Ok(Self {
+                flight_state,
+                physics,
+                identified,
+                nominal,
+            }),
+            _ => Err(ConditionError::Nominal {
+                found: nominal.len(),
+                names: names_of(&physics, &nominal),
+            }),
+        }
+    }
+
+    /// What describes the condition, besides its models.
+    pub fn flight_state(&self) -> &FlightState {
+        &self.flight_state
+    }
+
+    /// Identity in the dataset.
+    pub fn id(&self) -> i64 {
+        self.flight_state.id
+    }
+
+    /// The models of one bundle, in file order.
+    pub fn bundle(&self, kind: BundleKind) -> &[Model] {
+        match kind {
+            BundleKind::Physics => &self.physics,
+            BundleKind::Identified => &self.identified,
+        }
+    }
+
+    /// Index of the nominal model in the physics bundle.
+    pub fn nominal(&self) -> usize {
+        self.nominal
+    }
+}
+
+fn check_flight_state(state: &FlightState) -> Result<(), ConditionError> {
+    let figures = [
+        ("airspeed_kt", Some(state.airspeed_kt), true),
+        ("altitude_ft", state.altitude_ft, false),
+        ("mass_kg", state.mass_kg, true),
+    ];
+    for (field, value, not_negative) in figures {
+        let Some(value) = value else { continue };
+        if !value.is_finite() || (not_negative && value < 0.0) {
+            let bound = if not_negative { " not below zero" } else { "" };
+            return Err(ConditionError::FlightState { field, bound, value });
+        }
+    }
+    Ok(())
+}
+
+fn check_bundle(list: &'static str, models: &[Model]) -> Result<(), ConditionError> {
+    if models.is_empty() {
+        return Err(ConditionError::EmptyBundle { list });
+    }
+    for (second, model) in models.iter().enumerate() {
+        if let Some(first) = models[..second].iter().position(|earlier| earlier.name == model.name) {
+            let name = model.name.clone();
+            return Err(ConditionError::DuplicateName {
+                list,
+                name,
+                first: first + 1,
+                second: second + 1,
+            });
+        }
+    }
+    Ok(())
+}
+
+fn names_of(models: &[Model], indices: &[usize]) -> String {
+    if indices.is_empty() {
+        return String::new();
+    }
+    let names: Vec<&str> = indices.iter().map(|&index| models[index].name.as_str()).collect();
+    format!(" ({})", names.join(", "))
+}

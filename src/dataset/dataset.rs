@@ -1,0 +1,246 @@
+//! The whole of what the engineer loads.
+
+use std::sync::Arc;
+
+use super::band::Band;
+use super::channel::Channel;
+use super::condition::{BundleKind, Condition, ModelId};
+use super::model::Model;
+use super::pair::{Pair, PairTable};
+
+/// Channels, on-axis responses, the default band, and the flight conditions with their models (M1).
+///
+/// Checked once, here: every model of every condition has `p` outputs and `m` inputs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dataset {
+    name: String,
+    description: String,
+    inputs: Vec<Channel>,
+    outputs: Vec<Channel>,
+    on_axis: PairTable<bool>,
+    band: Band,
+    conditions: Vec<Arc<Condition>>,
+}
+
+/// Why channels and conditions are not a dataset.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DatasetError {
+    /// There are no inputs, no outputs or no conditions.
+    #[error("{list}: expected at least one entry, found none")]
+    Empty {
+        /// `inputs`, `outputs` or `conditions`.
+        list: &'static str,
+    },
+    /// Two channels of a list share a name.
+    #[error("{list}: the name \"{name}\" stands twice; names must differ")]
+    DuplicateChannel {
+        /// `inputs` or `outputs`.
+        list: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// Two conditions share an id.
+    #[error("conditions: the id {id} stands twice (conditions number {first} and {second}); ids must differ")]
+    DuplicateId {
+        /// The id.
+        id: i64,
+        /// First condition, counted from 1.
+        first: usize,
+        /// Second condition, counted from 1.
+        second: usize,
+    },
+    /// The on-axis table has another shape than the channels.
+    #[error("on_axis: expected a {outputs} x {inputs} table, found {rows} x {columns}")]
+    OnAxisShape {
+        /// Number of output channels.
+        outputs: usize,
+        /// Number of input channels.
+        inputs: usize,
+        /// Rows found.
+        rows: usize,
+        /// Columns found.
+        columns: usize,
+    },
+    /// A model has another number of outputs or inputs than there are channels.
+    #[error(
+        "condition {condition}, model \"{model}\": expected {outputs} outputs x {inputs} inputs, found {rows} x {columns}"
+    )]
+    ModelShape {
+        /// The condition's id.
+        condition: i64,
+        /// The model's name.
+        model: String,
+        /// Number of output channels.
+        outputs: usize,
+        /// Number of input channels.
+        inputs: usize,
+        /// Outputs of the model.
+        rows: usize,
+        /// Inputs of the model.
+        columns: usize,
+    },
+}
+
+/// What describes a dataset, besides its conditions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DatasetHeader {
+    /// Name for people.
+    pub name: String,
+    /// What the data are and where they come from.
+    pub description: String,
+    /// Input channels, in order.
+    pub inputs: Vec<Channel>,
+    /// Output channels, in order.
+    pub outputs: Vec<Channel>,
+    /// Which responses matter (the paper's Table 2).
+    pub on_axis: PairTable<bool>,
+    /// Default band of comparison.
+    pub band: Band,
+}
+
+impl Dataset {
+    /// The dataset of these conditions, in file order.
+    pub fn new(header: DatasetHeader, conditions: Vec<Condition>) -> Result<Self, DatasetError> {
+        check_channels("inputs", &header.inputs)?;
+        check_channels("outputs", &header.outputs)?;
+        let (outputs, inputs) = (header.outputs.len(), header.inputs.len());
+        let (rows, columns) = (header.on_axis.outputs(), header.on_axis.inputs());
+        if (rows, columns) != (outputs, inputs) {
+            return Err(DatasetError::OnAxisShape {
+                outputs,
+                inputs,
+                rows,
+                columns,
+            });
+        }
+        check_conditions(&conditions, outputs, inputs)?;
+        let DatasetHeader {
+            name,
+            description,
+            inputs,
+            outputs,
+            on_axis,
+            band,
+        } = header;
+        let conditions = conditions.into_iter().map(Arc::new).collect();
+        Ok(Self {
+            name,
+            description,
+            inputs,
+            outputs,
+            on_axis,
+            band,
+            conditions,
+        })
+    }
+
+    /// Name for people.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What the data are and where they come from.
+    pub fn description(&self) -> &str {
+        &self.description
+    }
+
+    /// Input channels, in order.
+    pub fn inputs(&self) -> &[Channel] {
+        &self.inputs
+    }
+
+    /// Output channels, in order.
+    pub fn outputs(&self) -> &[Channel] {
+        &self.outputs
+    }
+
+    /// Which responses matter (the paper's Table 2).
+    pub fn on_axis(&self) -> &PairTable<bool> {
+        &self.on_axis
+    }
+
+    /// Default band of comparison.
+    pub fn band(&self) -> Band {
+        self.band
+    }
+
+    /// Conditions, in file order.
+    pub fn conditions(&self) -> &[Arc<Condition>] {
+        &self.conditions
+    }
+
+    /// One model by index.
+    pub fn model(&self, id: ModelId) -> &Model {
+        &self.conditions[id.condition].bundle(id.bundle)[id.model]
+    }
+
+    /// A response in words, input first: "LON → Q".
+    pub fn pair_name(&self, pair: Pair) -> String {
+        format!("{} → {}", self.inputs[pair.input].name, self.outputs[pair.output].name)
+    }
+
+    /// The response of the named output to the named input.
+    pub fn find_pair(&self, output: &str, input: &str) -> Option<Pair> {
+        let output = self.outputs.iter().position(|channel| channel.name == output)?;
+        let input = self.inputs.iter().position(|channel| channel.name == input)?;
+        Some(Pair { output, input })
+    }
+
+    /// The pairs that measure a model: the on-axis ones, or all where none is (M5, M7).
+    pub fn measuring_pairs(&self) -> PairTable<bool> {
+        if self.on_axis.marked().next().is_some() {
+            self.on_axis.clone()
+        } else {
+            PairTable::filled(self.outputs.len(), self.inputs.len(), true)
+        }
+    }
+}
+
+fn check_channels(list: &'static str, channels: &[Channel]) -> Result<(), DatasetError> {
+    if channels.is_empty() {
+        return Err(DatasetError::Empty { list });
+    }
+    for (index, channel) in channels.iter().enumerate() {
+        if channels[..index].iter().any(|earlier| earlier.name == channel.name) {
+            return Err(DatasetError::DuplicateChannel {
+                list,
+                name: channel.name.clone(),
+            });
+        }
+    }
+    Ok(())
+}
+
+fn check_conditions(conditions: &[Condition], outputs: usize, inputs: usize) -> Result<(), DatasetError> {
+    if conditions.is_empty() {
+        return Err(DatasetError::Empty { list: "conditions" });
+    }
+    for (second, condition) in conditions.iter().enumerate() {
+        let id = condition.id();
+        if let Some(first) = conditions[..second].iter().position(|earlier| earlier.id() == id) {
+            return Err(DatasetError::DuplicateId {
+                id,
+                first: first + 1,
+                second: second + 1,
+            });
+        }
+        for model in [BundleKind::Physics, BundleKind::Identified]
+            .into_iter()
+            .flat_map(|kind| condition.bundle(kind))
+        {
+            let (rows, columns) = model.dynamics.shape();
+            if (rows, columns) != (outputs, inputs) {
+                let (condition, model) = (id, model.name.clone());
+                return Err(DatasetError::ModelShape {
+                    condition,
+                    model,
+                    outputs,
+                    inputs,
+                    rows,
+                    columns,
+                });
+            }
+        }
+    }
+    Ok(())
+}

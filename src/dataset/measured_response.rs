@@ -1,0 +1,199 @@
+//! A frequency response given as measured data.
+
+use nalgebra::Complex;
+
+use super::pair::PairTable;
+
+/// A frequency response measured (or exported) at `N` frequencies, in place of a state-space model.
+///
+/// `omega` \[rad/s\] rises strictly from a positive value, `N >= 2`; every response has `N` finite values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredResponse {
+    omega: Vec<f64>,
+    values: PairTable<Vec<Complex<f64>>>,
+    coherence: Option<PairTable<Vec<f64>>>,
+}
+
+/// Why frequency data is not a response.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeasuredResponseError {
+    /// Fewer than two frequencies.
+    #[error("omega_rad_s: expected at least 2 frequencies, found {found}")]
+    TooFewFrequencies {
+        /// How many there are.
+        found: usize,
+    },
+    /// A frequency is not finite, not positive, or not above the one before.
+    #[error("omega_rad_s, entry {entry}: expected finite, positive and rising frequencies, found {value}")]
+    Frequency {
+        /// Entry, counted from 1.
+        entry: usize,
+        /// What stands there.
+        value: f64,
+    },
+    /// A response has another number of values than there are frequencies.
+    #[error("{array}, output {output}, input {input}: expected {expected} values, found {found}")]
+    Length {
+        /// `re`, `im` or `coherence`.
+        array: &'static str,
+        /// Output, counted from 1.
+        output: usize,
+        /// Input, counted from 1.
+        input: usize,
+        /// Number of frequencies.
+        expected: usize,
+        /// Number of values.
+        found: usize,
+    },
+    /// A value is NaN or infinite, or a coherence lies outside 0 to 1.
+    #[error("{array}, output {output}, input {input}, entry {entry}: expected {expected}, found {value}")]
+    Value {
+        /// `re`, `im` or `coherence`.
+        array: &'static str,
+        /// Output, counted from 1.
+        output: usize,
+        /// Input, counted from 1.
+        input: usize,
+        /// Entry, counted from 1.
+        entry: usize,
+        /// What may stand there.
+        expected: &'static str,
+        /// What stands there.
+        value: f64,
+    },
+}
+
+impl MeasuredResponse {
+    /// The response with real parts `re` and imaginary parts `im` at `omega` \[rad/s\], both p x m tables of `N` values.
+    pub fn new(
+        omega: Vec<f64>,
+        re: &PairTable<Vec<f64>>,
+        im: &PairTable<Vec<f64>>,
+        coherence: Option<PairTable<Vec<f64>>>,
+    ) -> Result<Self, MeasuredResponseError> {
+        check_frequencies(&omega)?;
+        check_values("re", re, omega.len(), "a finite number", f64::is_finite)?;
+        check_values("im", im, omega.len(), "a finite number", f64::is_finite)?;
+        if let Some(coherence) = &coherence {
+            check_values("coherence", coherence, omega.len(), "a number from 0 to 1", |value| {
+                (0.0..=1.0).contains(&value)
+            })?;
+        }
+        let values = re.map(|pair, re| {
+            re.iter()
+                .zip(&im[pair])
+                .map(|(&re, &im)| Complex::new(re, im))
+                .collect()
+        });
+        Ok(Self {
+            omega,
+            values,
+            coherence,
+        })
+    }
+
+    /// Frequencies \[rad/s\], strictly rising.
+    pub fn omega(&self) -> &[f64] {
+        &self.omega
+    }
+
+    /// Values of each response, one for each frequency.
+    pub fn values(&self) -> &PairTable<Vec<Complex<f64>>> {
+        &self.values
+    }
+
+    /// Coherence of each response, one value from 0 to 1 for each frequency, where the file gives it.
+    pub fn coherence(&self) -> Option<&PairTable<Vec<f64>>> {
+        self.coherence.as_ref()
+    }
+}
+
+fn check_frequencies(omega: &[f64]) -> Result<(), MeasuredResponseError> {
+    if omega.len() < 2 {
+        return Err(MeasuredResponseError::TooFewFrequencies { found: omega.len() });
+    }
+    let mut before = 0.0;
+    for (index, &value) in omega.iter().enumerate() {
+        if !value.is_finite() || value <= before {
+            return Err(MeasuredResponseError::Frequency {
+                entry: index + 1,
+                value,
+            });
+        }
+        before = value;
+    }
+    Ok(())
+}
+
+fn check_values(
+    array: &'static str,
+    table: &PairTable<Vec<f64>>,
+    length: usize,
+    expected: &'static str,
+    accepts: impl Fn(f64) -> bool,
+) -> Result<(), MeasuredResponseError> {
+    for (pair, values) in table.iter() {
+        let (output, input) = (pair.output + 1, pair.input + 1);
+        if values.len() != length {
+            let found = values.len();
+            return Err(MeasuredResponseError::Length {
+                array,
+                output,
+                input,
+                expected: length,
+                found,
+            });
+        }
+        if let Some(index) = values.iter().position(|&value| !accepts(value)) {
+            let (entry, value) = (index + 1, values[index]);
+            return Err(MeasuredResponseError::Value {
+                array,
+                output,
+                input,
+                entry,
+                expected,
+                value,
+            });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(values: &[f64]) -> PairTable<Vec<f64>> {
+        PairTable::filled(1, 1, values.to_vec())
+    }
+
+    #[test]
+    fn frequencies_that_do_not_rise_are_refused_with_their_place() {
+        let error = MeasuredResponse::new(vec![1.0, 1.0], &table(&[0.0; 2]), &table(&[0.0; 2]), None).unwrap_err();
+        assert_eq!(error, MeasuredResponseError::Frequency { entry: 2, value: 1.0 });
+    }
+
+    #[test]
+    fn a_response_of_another_length_is_refused_with_its_place() {
+        let error = MeasuredResponse::new(vec![1.0, 2.0], &table(&[0.0; 2]), &table(&[0.0; 3]), None).unwrap_err();
+        assert_eq!(error.to_string(), "im, output 1, input 1: expected 2 values, found 3");
+    }
+
+    #[test]
+    fn a_coherence_above_one_is_refused() {
+        let result = MeasuredResponse::new(
+            vec![1.0, 2.0],
+            &table(&[0.0; 2]),
+            &table(&[0.0; 2]),
+            Some(table(&[0.5, 1.5])),
+        );
+        assert!(matches!(
+            result,
+            Err(MeasuredResponseError::Value {
+                array: "coherence",
+                entry: 2,
+                ..
+            })
+        ));
+    }
+}

@@ -1,0 +1,82 @@
+//! One model of a bundle: where it comes from and how its response is known.
+
+use std::collections::BTreeMap;
+
+use super::measured_response::MeasuredResponse;
+use super::state_space::StateSpace;
+
+/// How the response of a model is known.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Dynamics {
+    /// By its matrices.
+    StateSpace(StateSpace),
+    /// By measured frequency data, interpolated (identified models only).
+    Measured(MeasuredResponse),
+}
+
+impl Dynamics {
+    /// `(p, m)`: the number of outputs and of inputs.
+    pub fn shape(&self) -> (usize, usize) {
+        match self {
+            Dynamics::StateSpace(model) => (model.outputs(), model.inputs()),
+            Dynamics::Measured(response) => (response.values().outputs(), response.values().inputs()),
+        }
+    }
+}
+
+/// Where a model comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Origin {
+    /// The physics model linearised at the trim of the condition itself.
+    Nominal {
+        /// Offsets of the trim from the condition's, by coordinate name (all zero, where given).
+        perturbation: Option<BTreeMap<String, f64>>,
+    },
+    /// The physics model linearised at a perturbed trim.
+    Perturbed {
+        /// Offsets of the trim from the condition's, by coordinate name ("airspeed_kt", "roll_deg").
+        perturbation: Option<BTreeMap<String, f64>>,
+    },
+    /// Identified from flight.
+    Identified {
+        /// Identification method ("CT-PBSID").
+        method: Option<String>,
+        /// Order the identification reports.
+        order: Option<usize>,
+    },
+}
+
+/// One model of a bundle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Model {
+    /// Name, unique in its bundle.
+    pub name: String,
+    /// Where it comes from.
+    pub origin: Origin,
+    /// How its response is known.
+    pub dynamics: Dynamics,
+}
+
+impl Model {
+    /// Whether this is the physics model at the condition's own trim.
+    pub fn is_nominal(&self) -> bool {
+        matches!(self.origin, Origin::Nominal { .. })
+    }
+
+    /// Offsets of the trim from the condition's, where the file gives them.
+    pub fn perturbation(&self) -> Option<&BTreeMap<String, f64>> {
+        match &self.origin {
+            Origin::Nominal { perturbation } | Origin::Perturbed { perturbation } => perturbation.as_ref(),
+            Origin::Identified { .. } => None,
+        }
+    }
+
+    /// Number of states, or the order the identification reports; none for measured data without one.
+    pub fn order(&self) -> Option<usize> {
+        match (&self.dynamics, &self.origin) {
+            (Dynamics::StateSpace(model), _) => Some(model.order()),
+            (Dynamics::Measured(_), Origin::Identified { order, .. }) => *order,
+            (Dynamics::Measured(_), _) => None,
+        }
+    }
+}

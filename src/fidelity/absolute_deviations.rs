@@ -1,0 +1,142 @@
+//! Linear fits of least absolute deviations, with weights that are not negative.
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
+
+use super::corner::{Corner, Rows};
+
+/// The linear program did not end at its optimum.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("the fit of least absolute deviations ended with {status}")]
+pub struct FitError {
+    /// The solver's own word.
+    pub status: String,
+}
+
+/// `argmin sum_i |x_i w - y_i|` over `w >= 0`; of equally good corners the one of least `sum_i (sqrt(x_i w) - sqrt(y_i))^2`.
+///
+/// Solved as the linear program `min sum t` subject to `x w - t <= y`, `-x w - t <= -y`, `w >= 0`. Its optimum is a corner,
+/// where as many deviations or weights are zero as there are unknowns, or, where offsets repeat, a whole edge or face between
+/// corners that are equally good. The solver's answer is moved to a corner and from there along edges, so that the fit is
+/// exact, and the same on every machine. `x` and `y` must not be negative.
+pub fn least_absolute_deviations(x: &[Vec<f64>], y: &[f64]) -> Result<Vec<f64>, FitError> {
+    let unknowns = x.first().map_or(0, Vec::len);
+    let scale = y.iter().copied().fold(0.0, f64::max);
+    if scale == 0.0 {
+        return Ok(vec![0.0; unknowns]);
+    }
+    let scaled: Vec<f64> = y.iter().map(|y| y / scale).collect();
+    let weights = solve_linear_program(x, &scaled, unknowns)?;
+    let rows = Rows::new(x, &scaled);
+    let fitted = match Corner::nearest(&rows, &weights) {
+        Some(corner) => best_corner(&rows, corner).weights,
+        None => weights,
+    };
+    Ok(fitted.iter().map(|weight| weight.max(0.0) * scale).collect())
+}
+
+/// Goes along descending edges to the optimum, then over all equally good corners.
+fn best_corner(rows: &Rows<'_>, start: Corner) -> Corner {
+    /// Far more than the corners of a face in a few unknowns; only a bound on time.
+    const MOST_CORNERS: usize = 300;
+    let mut equal = vec![start];
+    let mut next = 0;
+    while next < equal.len() && equal.len() < MOST_CORNERS {
+        let neighbours = equal[next].neighbours(rows);
+        if let Some(better) = neighbours.better {
+            equal = vec![better];
+            next = 0;
+            continue;
+        }
+        for corner in neighbours.equal {
+            if !equal.iter().any(|known| known.is_at(&corner)) {
+                equal.push(corner);
+            }
+        }
+        next += 1;
+    }
+    let misfit = |corner: &Corner| rows.squared_root_deviations(&corner.weights);
+    equal
+        .into_iter()
+        .min_by(|a, b| misfit(a).total_cmp(&misfit(b)))
+        .unwrap_or_else(|| unreachable!("never emptied"))
+}
+
+fn solve_linear_program(x: &[Vec<f64>], y: &[f64], unknowns: usize) -> Result<Vec<f64>, FitError> {
+    let rows = x.len();
+    let (mut i, mut j, mut v) = (Vec::new(), Vec::new(), Vec::new());
+    let mut entry = |row: usize, column: usize, value: f64| {
+        i.push(row);
+        j.push(column);
+        v.push(value);
+    };
+    for (row, x) in x.iter().enumerate() {
+        for (column, &value) in x.iter().enumerate().filter(|(_, value)| **value != 0.0) {
+            entry(row, column, value);
+            entry(rows + row, column, -value);
+        }
+        entry(row, unknowns + row, -1.0);
+        entry(rows + row, unknowns + row, -1.0);
+    }
+    for column in 0..unknowns {
+        entry(2 * rows + column, column, -1.0);
+    }
+    let a = CscMatrix::new_from_triplets(2 * rows + unknowns, unknowns + rows, i, j, v);
+    let b: Vec<f64> = y
+        .iter()
+        .copied()
+        .chain(y.iter().map(|y| -y))
+        .chain(vec![0.0; unknowns])
+        .collect();
+    let q: Vec<f64> = vec![0.0; unknowns].into_iter().chain(vec![1.0; rows]).collect();
+    let failed = |status: String| FitError { status };
+    // Close enough that the nearest corner is an optimal one, or one edge from it.
+    let settings = DefaultSettingsBuilder::default()
+        .verbose(false)
+        .tol_gap_abs(1e-11)
+        .tol_gap_rel(1e-11)
+        .tol_feas(1e-11)
+        .max_iter(500)
+        .build()
+        .map_err(|error| failed(error.to_string()))?;
+    let p = CscMatrix::zeros((q.len(), q.len()));
+    let cones = [NonnegativeConeT(b.len())];
+    let mut solver = DefaultSolver::new(&p, &q, &a, &b, &cones, settings).map_err(|error| failed(error.to_string()))?;
+    solver.solve();
+    match solver.solution.status {
+        SolverStatus::Solved => Ok(solver.solution.x[..unknowns].to_vec()),
+        status => Err(failed(format!("{status:?}"))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn least_absolute_deviations_ignore_an_outlying_row() {
+        // y = 2 x1 + 3 x2, one row far off: the exact weights come back.
+        let x: Vec<Vec<f64>> = (0..9).map(|k| vec![f64::from(k % 3), f64::from(k / 3)]).collect();
+        let mut y: Vec<f64> = x.iter().map(|x| 2.0 * x[0] + 3.0 * x[1]).collect();
+        y[8] = 100.0;
+        let weights = least_absolute_deviations(&x, &y).unwrap();
+        // A corner is solved for, not iterated to: a few roundings of numbers up to 100.
+        assert!((weights[0] - 2.0).abs() < 1e-12 && (weights[1] - 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn weights_do_not_go_below_zero() {
+        let x = vec![vec![1.0, 1.0], vec![1.0, 2.0], vec![1.0, 3.0]];
+        let weights = least_absolute_deviations(&x, &[3.0, 2.0, 1.0]).unwrap();
+        assert!(weights.iter().all(|&weight| weight >= 0.0));
+    }
+
+    #[test]
+    fn of_equally_good_corners_the_one_nearest_in_square_roots_is_taken() {
+        // Every w from 4 to 9 is a median of these. Square roots 0, 2, 3, 4: from 2 the squares add to 9, from 3 to 11;
+        // square roots 1, 2, 3, 5: from 2 they add to 11, from 3 to 9. (A corner is solved for: a few roundings.)
+        let fit = |y: &[f64]| least_absolute_deviations(&[vec![1.0], vec![1.0], vec![1.0], vec![1.0]], y).unwrap()[0];
+        assert!((fit(&[0.0, 4.0, 9.0, 16.0]) - 4.0).abs() < 1e-13);
+        assert!((fit(&[1.0, 4.0, 9.0, 25.0]) - 9.0).abs() < 1e-13);
+    }
+}

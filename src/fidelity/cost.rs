@@ -1,0 +1,98 @@
+//! The cost J of a mismatch between two responses, eq. (14)-(19).
+
+use crate::response::{mean, median};
+
+/// Weight of the squared magnitude error \[dB^2\], `W_g`.
+pub const MAGNITUDE_WEIGHT: f64 = 1.0;
+/// Weight of the squared phase error \[deg^2\], `W_p`.
+pub const PHASE_WEIGHT: f64 = 0.0175;
+/// J up to which a model is acceptable.
+pub const ACCEPTABLE: f64 = 100.0;
+/// J up to which two responses are next to indistinguishable.
+pub const INDISTINGUISHABLE: f64 = 50.0;
+
+const SCALE: f64 = 20.0;
+
+/// How squared errors are averaged over frequency.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CostAverage {
+    /// The median (the paper).
+    Median,
+    /// The mean (Tischler's original).
+    Mean,
+}
+
+impl CostAverage {
+    fn of(self, squares: &mut [f64]) -> f64 {
+        match self {
+            CostAverage::Median => median(squares),
+            CostAverage::Mean => mean(squares),
+        }
+    }
+}
+
+/// The two parts of J; `J = J_mag + J_phase` (M4).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// `J_mag = 20 W_g average(e_dB^2)`.
+    pub magnitude: f64,
+    /// `J_phase = 20 W_p average(e_deg^2)`.
+    pub phase: f64,
+}
+
+impl Cost {
+    /// J of the magnitude errors \[dB\] and the phase errors \[rad\], one of each for each frequency.
+    ///
+    /// `scratch` is overwritten.
+    pub fn of(
+        magnitude_error_db: impl Iterator<Item = f64>,
+        phase_error: impl Iterator<Item = f64>,
+        average: CostAverage,
+        scratch: &mut Vec<f64>,
+    ) -> Self {
+        scratch.clear();
+        scratch.extend(magnitude_error_db.map(|error| error * error));
+        let magnitude = SCALE * MAGNITUDE_WEIGHT * average.of(scratch);
+        scratch.clear();
+        scratch.extend(phase_error.map(f64::to_degrees).map(|error| error * error));
+        let phase = SCALE * PHASE_WEIGHT * average.of(scratch);
+        Self { magnitude, phase }
+    }
+
+    /// `J = J_mag + J_phase`.
+    pub fn total(self) -> f64 {
+        self.magnitude + self.phase
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_constant_error_has_the_cost_of_the_definition() {
+        let cost = Cost::of(
+            [2.0; 5].into_iter(),
+            [0.1; 5].into_iter(),
+            CostAverage::Median,
+            &mut Vec::new(),
+        );
+        assert_eq!(cost.magnitude, 80.0);
+        // 20 * 0.0175 * (18 / pi)^2, by hand: 11.48966...; a few roundings.
+        assert!((cost.phase - 0.35 * (18.0 / std::f64::consts::PI).powi(2)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_median_ignores_one_bad_frequency_and_the_mean_does_not() {
+        let error = || [1.0, 1.0, 10.0].into_iter();
+        let none = || [0.0; 3].into_iter();
+        assert_eq!(
+            Cost::of(error(), none(), CostAverage::Median, &mut Vec::new()).total(),
+            20.0
+        );
+        assert_eq!(
+            Cost::of(error(), none(), CostAverage::Mean, &mut Vec::new()).total(),
+            680.0
+        );
+    }
+}

@@ -1,0 +1,160 @@
+//! Models on the far side of a discontinuity near the trim (M5).
+
+use std::collections::BTreeMap;
+
+use crate::response::median;
+
+use super::absolute_deviations::{FitError, least_absolute_deviations};
+use super::distance::BundleDistance;
+
+/// Discontinuity ratio above which a model is suggested as an outlier.
+pub const SUGGESTION_RATIO: f64 = 2.5;
+/// Fewest models of a bundle in which outliers are looked for.
+const LEAST_MODELS: usize = 5;
+
+/// How much faster than the perturbation explains each model of a physics bundle differs from the others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Discontinuity {
+    /// `r_a`, one for each model: near 1 in a smooth bundle. `None` where no pair has a fitted distance.
+    pub ratios: Vec<Option<f64>>,
+}
+
+/// Why no discontinuity ratio could be had.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DiscontinuityError {
+    /// The bundle is too small for a fit.
+    #[error("outliers are suggested from {LEAST_MODELS} physics models on, this bundle has {found}")]
+    TooFewModels {
+        /// Number of models.
+        found: usize,
+    },
+    /// A model does not say at which trim it was linearised.
+    #[error("outliers cannot be suggested: model \"{model}\" gives no perturbation")]
+    NoPerturbation {
+        /// The model's name.
+        model: String,
+    },
+    /// All models were linearised at the same trim.
+    #[error("outliers cannot be suggested: every perturbation is zero")]
+    AllZero,
+    /// The linear program did not end at its optimum.
+    #[error("outliers cannot be suggested: {0}")]
+    Fit(#[from] FitError),
+}
+
+impl Discontinuity {
+    /// Ratios of a whole bundle, whatever is rejected; `perturbations` are the models' names and trim offsets in bundle order.
+    ///
+    /// Each coordinate is divided by its largest magnitude. The fit `d(a,b)^2 ~ sum_k w_k (p_ak - p_bk)^2`, `w >= 0`, is the
+    /// least in absolute deviations over all pairs (of equally good ones, the one whose fitted distances come nearest to the
+    /// distances in least squares); `r_ab = d(a,b) / sqrt(fitted)`, `r_a = median over b of r_ab`, pairs of zero fitted
+    /// distance skipped. A coordinate that a model does not name counts as zero.
+    pub fn of(
+        distance: &BundleDistance,
+        perturbations: &[(&str, Option<&BTreeMap<String, f64>>)],
+    ) -> Result<Self, DiscontinuityError> {
+        if perturbations.len() < LEAST_MODELS {
+            return Err(DiscontinuityError::TooFewModels {
+                found: perturbations.len(),
+            });
+        }
+        let coordinates = scaled_coordinates(perturbations)?;
+        let pairs = model_pairs(perturbations.len());
+        let squares: Vec<f64> = pairs.iter().map(|&(a, b)| distance.between(a, b).powi(2)).collect();
+        let rows: Vec<Vec<f64>> = pairs
+            .iter()
+            .map(|&(a, b)| squared_offsets(&coordinates[a], &coordinates[b]))
+            .collect();
+        let weights = least_absolute_deviations(&rows, &squares)?;
+        let fitted = |a: usize, b: usize| -> f64 {
+            let offsets = squared_offsets(&coordinates[a], &coordinates[b]);
+            offsets
+                .iter()
+                .zip(&weights)
+                .map(|(offset, weight)| offset * weight)
+                .sum()
+        };
+        let ratios = (0..perturbations.len())
+            .map(|a| ratio_of(a, distance, fitted))
+            .collect();
+        Ok(Self { ratios })
+    }
+
+    /// Models whose ratio exceeds [`SUGGESTION_RATIO`], in bundle order.
+    pub fn suggested(&self) -> Vec<usize> {
+        let above = |model: &usize| self.ratios[*model].is_some_and(|ratio| ratio > SUGGESTION_RATIO);
+        (0..self.ratios.len()).filter(above).collect()
+    }
+}
+
+fn model_pairs(models: usize) -> Vec<(usize, usize)> {
+    (0..models).flat_map(|a| (a + 1..models).map(move |b| (a, b))).collect()
+}
+
+fn scaled_coordinates(
+    perturbations: &[(&str, Option<&BTreeMap<String, f64>>)],
+) -> Result<Vec<Vec<f64>>, DiscontinuityError> {
+    let mut largest: BTreeMap<&str, f64> = BTreeMap::new();
+    for (model, perturbation) in perturbations {
+        let Some(perturbation) = perturbation else {
+            return Err(DiscontinuityError::NoPerturbation {
+                model: (*model).to_owned(),
+            });
+        };
+        for (name, value) in *perturbation {
+            let entry = largest.entry(name).or_default();
+            *entry = entry.max(value.abs());
+        }
+    }
+    largest.retain(|_, magnitude| *magnitude > 0.0);
+    if largest.is_empty() {
+        return Err(DiscontinuityError::AllZero);
+    }
+    let scaled = |perturbation: &BTreeMap<String, f64>| {
+        largest
+            .iter()
+            .map(|(name, magnitude)| perturbation.get(*name).map_or(0.0, |value| value / magnitude))
+            .collect()
+    };
+    Ok(perturbations
+        .iter()
+        .filter_map(|(_, perturbation)| perturbation.map(scaled))
+        .collect())
+}
+
+fn squared_offsets(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).collect()
+}
+
+fn ratio_of(a: usize, distance: &BundleDistance, fitted: impl Fn(usize, usize) -> f64) -> Option<f64> {
+    let others = (0..distance.models()).filter(|&b| b != a);
+    let mut ratios: Vec<f64> = others
+        .map(|b| (distance.between(a, b), fitted(a, b)))
+        .filter(|(_, fitted)| *fitted > 0.0)
+        .map(|(distance, fitted)| distance / fitted.sqrt())
+        .collect();
+    (!ratios.is_empty()).then(|| median(&mut ratios))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_coordinate_no_model_is_perturbed_in_does_not_count() {
+        let still = BTreeMap::from([("roll_deg".to_owned(), 0.0)]);
+        let error = scaled_coordinates(&[("nominal", Some(&still))]).unwrap_err();
+        assert_eq!(error, DiscontinuityError::AllZero);
+    }
+
+    #[test]
+    fn a_model_without_perturbation_is_named() {
+        let error = scaled_coordinates(&[("V+5kt", None)]).unwrap_err();
+        assert_eq!(
+            error,
+            DiscontinuityError::NoPerturbation {
+                model: "V+5kt".to_owned()
+            }
+        );
+    }
+}

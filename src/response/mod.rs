@@ -1,0 +1,15 @@
+//! Frequency responses: the grid, the evaluation of a model on it, magnitude and phase (M2, M3).
+
+mod frequency_grid;
+mod frequency_response;
+mod interpolation;
+mod phase;
+mod polar;
+mod state_space_response;
+mod statistics;
+
+pub use frequency_grid::FrequencyGrid;
+pub use frequency_response::FrequencyResponse;
+pub use phase::{centred_unwrap, nearest_turn_offset, unwrap, wrap};
+pub use polar::{PolarCurve, PolarResponse};
+pub use statistics::{mean, median, quantile};

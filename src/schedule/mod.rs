@@ -1,0 +1,13 @@
+//! One correction for all airspeeds, and what it is worth (M11, M12).
+
+mod assessment;
+mod regression;
+#[expect(
+    clippy::module_inception,
+    reason = "the folder is named for its noun, and so is the file that holds it"
+)]
+mod schedule;
+
+pub use assessment::{CostChange, assess};
+pub use regression::{Airspeeds, Regression};
+pub use schedule::{Schedule, ScheduleError, ScheduleKind, ScheduleSettings, ScheduledPoint, ScheduledQuantity};

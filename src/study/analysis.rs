@@ -1,0 +1,43 @@
+//! The result of a whole study.
+
+use std::sync::Arc;
+
+use crate::dataset::PairTable;
+use crate::schedule::{CostChange, Schedule, ScheduleError};
+
+use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
+use super::document::Study;
+
+/// The nominal model of a condition under the scheduled correction (M12).
+#[derive(Clone, Debug, PartialEq)]
+pub enum Assessed {
+    /// J of every response before and after.
+    Nominal(PairTable<Option<CostChange>>),
+    /// The condition is left out, and why.
+    LeftOut {
+        /// The reason in words.
+        why: String,
+    },
+}
+
+/// Everything the analysis says of a study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Analysis {
+    /// The study that was analysed.
+    pub study: Study,
+    /// Frequencies of comparison \[rad/s\].
+    pub omega: Arc<[f64]>,
+    /// Result of each condition, in the dataset's order.
+    pub conditions: Vec<Result<ConditionAnalysis, ConditionFailure>>,
+    /// The schedule of the chosen conditions.
+    pub schedule: Result<Schedule, ScheduleError>,
+    /// Assessment of each condition, in the dataset's order.
+    pub assessment: Vec<Assessed>,
+}
+
+impl Analysis {
+    /// Result of one condition, where there is one.
+    pub fn condition(&self, index: usize) -> Option<&ConditionAnalysis> {
+        self.conditions.get(index)?.as_ref().ok()
+    }
+}

@@ -1,0 +1,144 @@
+//! The stages of a condition's analysis that do not depend on constraints, alpha or bounds.
+
+use std::collections::BTreeMap;
+
+use crate::correction::{Delta, mismatch_table};
+use crate::dataset::{BundleKind, Condition, Dynamics, Model, PairTable};
+use crate::fidelity::{BundleDistance, Cost, CostAverage, Discontinuity, DiscontinuityError, Mismatch, Representative};
+use crate::response::{FrequencyGrid, FrequencyResponse, PolarResponse};
+
+use super::document::ConditionChoice;
+
+/// Responses of every model of a condition on the grid of comparison.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConditionResponses {
+    /// Responses of the physics models, in file order.
+    pub physics: Vec<PolarResponse>,
+    /// Responses of the identified models, in file order.
+    pub identified: Vec<PolarResponse>,
+}
+
+impl ConditionResponses {
+    /// Evaluates every model.
+    pub fn of(condition: &Condition, grid: &FrequencyGrid) -> Self {
+        let bundle = |kind| {
+            condition
+                .bundle(kind)
+                .iter()
+                .map(|model: &Model| respond(&model.dynamics, grid))
+                .collect()
+        };
+        Self {
+            physics: bundle(BundleKind::Physics),
+            identified: bundle(BundleKind::Identified),
+        }
+    }
+}
+
+fn respond(dynamics: &Dynamics, grid: &FrequencyGrid) -> PolarResponse {
+    PolarResponse::of(&FrequencyResponse::of(dynamics, grid))
+}
+
+/// Distances within each bundle and discontinuity ratios of the physics bundle; they do not depend on what is rejected.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BundleFigures {
+    /// Distances of the physics models.
+    pub physics: BundleDistance,
+    /// Distances of the identified models.
+    pub identified: BundleDistance,
+    /// Discontinuity ratios of the physics models, or why there are none.
+    pub discontinuity: Result<Discontinuity, DiscontinuityError>,
+}
+
+impl BundleFigures {
+    /// Distances over the responses marked in `measuring`.
+    pub fn of(
+        condition: &Condition,
+        responses: &ConditionResponses,
+        grid: &FrequencyGrid,
+        measuring: &PairTable<bool>,
+    ) -> Self {
+        let distance = |responses: &[PolarResponse]| {
+            BundleDistance::of(&responses.iter().collect::<Vec<_>>(), grid.omega(), measuring)
+        };
+        let physics = distance(&responses.physics);
+        let models = condition.bundle(BundleKind::Physics);
+        let perturbations: Vec<(&str, Option<&BTreeMap<String, f64>>)> = models
+            .iter()
+            .map(|model| (model.name.as_str(), model.perturbation()))
+            .collect();
+        let discontinuity = Discontinuity::of(&physics, &perturbations);
+        Self {
+            physics,
+            identified: distance(&responses.identified),
+            discontinuity,
+        }
+    }
+}
+
+/// Mismatch of a physics model and the identified representative, with the J it amounts to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelMismatch {
+    /// Difference of every response that both models have.
+    pub mismatch: PairTable<Option<Mismatch>>,
+    /// J of the physics model as it is.
+    pub cost: PairTable<Option<Cost>>,
+}
+
+impl ModelMismatch {
+    fn of(simulated: &PolarResponse, reference: &PolarResponse, omega: &[f64], average: CostAverage) -> Self {
+        let mismatch = mismatch_table(simulated, reference);
+        let cost = mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.cost(omega, 0.0, 0.0, average)));
+        Self { mismatch, cost }
+    }
+}
+
+/// The two representatives and how they differ.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// Representative of the physics bundle, with scores.
+    pub physics: Representative,
+    /// Representative of the identified bundle, with scores.
+    pub identified: Representative,
+    /// The physics representative against the identified one.
+    pub representative: ModelMismatch,
+    /// The nominal physics model against the identified representative.
+    pub nominal: ModelMismatch,
+    /// G and D of the representatives.
+    pub delta: Delta,
+}
+
+impl Comparison {
+    /// Picks the representatives among the models kept and compares them.
+    pub fn of(
+        condition: &Condition,
+        responses: &ConditionResponses,
+        figures: &BundleFigures,
+        grid: &FrequencyGrid,
+        choice: &ConditionChoice,
+        average: CostAverage,
+    ) -> Self {
+        let physics = Representative::of(&figures.physics, &choice.physics.rejected, choice.physics.pinned);
+        let identified = Representative::of(
+            &figures.identified,
+            &choice.identified.rejected,
+            choice.identified.pinned,
+        );
+        let reference = &responses.identified[identified.model];
+        let against = |model: usize| ModelMismatch::of(&responses.physics[model], reference, grid.omega(), average);
+        let representative = against(physics.model);
+        let nominal = if physics.model == condition.nominal() {
+            representative.clone()
+        } else {
+            against(condition.nominal())
+        };
+        let delta = Delta::of(&representative.mismatch, grid.omega());
+        Self {
+            physics,
+            identified,
+            representative,
+            nominal,
+            delta,
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! What the engineer does: settings, rejections, pins; and the analysis of it all, in cached stages.
+
+mod analysis;
+mod caution;
+mod comparison;
+mod condition_analysis;
+mod curves;
+mod document;
+mod edit;
+mod engine;
+mod history;
+mod memo;
+mod setting;
+mod settings;
+mod watch;
+
+pub use analysis::{Analysis, Assessed};
+pub use caution::Caution;
+pub use comparison::{BundleFigures, Comparison, ConditionResponses};
+pub use condition_analysis::{ConditionAnalysis, ConditionFailure};
+pub use curves::{ConditionCurves, display_band};
+pub use document::{BundleChoice, ConditionChoice, Study};
+pub use edit::{Edit, EditRefusal};
+pub use engine::Engine;
+pub use history::History;
+pub use setting::Setting;
+pub use settings::{GREATEST_GAIN, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings};
+pub use watch::{Stopped, Unwatched, Watch};

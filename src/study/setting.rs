@@ -1,0 +1,137 @@
+//! One change of a setting, its range, and its name.
+
+use crate::correction::{GainBounds, GainObjective};
+use crate::dataset::{Band, Dataset, Pair, PairTable};
+use crate::fidelity::CostAverage;
+use crate::schedule::ScheduleSettings;
+
+use super::edit::EditRefusal;
+use super::settings::{GREATEST_GAIN, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings};
+
+/// The new value of one setting.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Setting {
+    /// Hold a response exactly, or free it.
+    Constrained(Pair, bool),
+    /// Fit a response, or ignore it.
+    Fitted(Pair, bool),
+    /// Weight of the regularisation of the output gains.
+    AlphaGain(f64),
+    /// Weight of the regularisation of the output delays.
+    AlphaDelay(f64),
+    /// Band of comparison.
+    Band(Band),
+    /// Number of frequencies in the band.
+    Points(usize),
+    /// Median or mean in J.
+    CostAverage(CostAverage),
+    /// What the gains minimise.
+    GainObjective(GainObjective),
+    /// Quantile that sets the bounds.
+    Quantile(f64),
+    /// Bounds of the gains by hand; `None` goes back to the quantiles.
+    GainBounds(Option<GainBounds>),
+    /// Upper bound of the delays by hand \[s\]; `None` goes back to the quantile.
+    DelayUpper(Option<f64>),
+    /// How gains are scheduled.
+    Schedule(ScheduleSettings),
+}
+
+impl Setting {
+    /// The change in a few words, for the undo list: "free LON → Q".
+    pub fn label(&self, dataset: &Dataset) -> String {
+        let (verb, pair) = match self {
+            Setting::Constrained(pair, true) => ("hold", pair),
+            Setting::Constrained(pair, false) => ("free", pair),
+            Setting::Fitted(pair, true) => ("fit", pair),
+            Setting::Fitted(pair, false) => ("ignore", pair),
+            _ => return self.name().to_owned(),
+        };
+        format!("{verb} {}", dataset.pair_name(*pair))
+    }
+
+    fn name(&self) -> &'static str {
+        match self {
+            Setting::Constrained(..) => "held responses",
+            Setting::Fitted(..) => "fitted responses",
+            Setting::AlphaGain(_) => "α of the gains",
+            Setting::AlphaDelay(_) => "α of the delays",
+            Setting::Band(_) => "frequency band",
+            Setting::Points(_) => "number of frequencies",
+            Setting::CostAverage(_) => "average in J",
+            Setting::GainObjective(_) => "objective of the gains",
+            Setting::Quantile(_) => "quantile of the bounds",
+            Setting::GainBounds(_) => "gain bounds",
+            Setting::DelayUpper(_) => "upper delay bound",
+            Setting::Schedule(_) => "schedule",
+        }
+    }
+
+    /// Whether two changes in a row are one to the engineer: two positions of the same slider.
+    pub fn continues(&self, earlier: &Setting) -> bool {
+        let slides = !matches!(self, Setting::Constrained(..) | Setting::Fitted(..));
+        slides && std::mem::discriminant(self) == std::mem::discriminant(earlier)
+    }
+
+    fn refuse(&self, expected: impl Into<String>, found: f64) -> EditRefusal {
+        EditRefusal::OutOfRange {
+            setting: self.name(),
+            expected: expected.into(),
+            found,
+        }
+    }
+
+    fn check_range(&self, value: f64, least: f64, most: f64) -> Result<(), EditRefusal> {
+        if (least..=most).contains(&value) {
+            Ok(())
+        } else {
+            Err(self.refuse(format!("a number from {least} to {most}"), value))
+        }
+    }
+
+    fn check(&self) -> Result<(), EditRefusal> {
+        match self {
+            Setting::AlphaGain(alpha) | Setting::AlphaDelay(alpha) => self.check_range(*alpha, 0.0, LARGEST_ALPHA),
+            Setting::Points(points) => self.check_range(*points as f64, LEAST_POINTS as f64, MOST_POINTS as f64),
+            Setting::Quantile(quantile) => self.check_range(*quantile, 0.0, 0.5),
+            Setting::GainBounds(Some(GainBounds { lower, upper })) => {
+                self.check_range(*lower, LEAST_GAIN, GREATEST_GAIN)?;
+                self.check_range(*upper, *lower, GREATEST_GAIN)
+            }
+            Setting::DelayUpper(Some(upper)) if !(upper.is_finite() && *upper >= 0.0) => {
+                Err(self.refuse("a number of seconds not below 0", *upper))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Settings {
+    /// Changes one setting, or refuses a value outside its range and leaves the settings as they were.
+    pub fn apply(&mut self, setting: &Setting) -> Result<(), EditRefusal> {
+        setting.check()?;
+        match setting {
+            Setting::Constrained(pair, held) => mark(&mut self.constrained, *pair, *held)?,
+            Setting::Fitted(pair, fitted) => mark(&mut self.fitted, *pair, *fitted)?,
+            Setting::AlphaGain(alpha) => self.alpha_gain = *alpha,
+            Setting::AlphaDelay(alpha) => self.alpha_delay = *alpha,
+            Setting::Band(band) => self.band = *band,
+            Setting::Points(points) => self.points = *points,
+            Setting::CostAverage(average) => self.cost_average = *average,
+            Setting::GainObjective(objective) => self.gain_objective = *objective,
+            Setting::Quantile(quantile) => self.quantile = *quantile,
+            Setting::GainBounds(bounds) => self.gain_bounds = *bounds,
+            Setting::DelayUpper(upper) => self.delay_upper_s = *upper,
+            Setting::Schedule(schedule) => self.schedule = *schedule,
+        }
+        Ok(())
+    }
+}
+
+fn mark(table: &mut PairTable<bool>, pair: Pair, value: bool) -> Result<(), EditRefusal> {
+    if pair.output >= table.outputs() || pair.input >= table.inputs() {
+        return Err(EditRefusal::NoSuch { what: "response" });
+    }
+    table[pair] = value;
+    Ok(())
+}

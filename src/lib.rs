@@ -1,9 +1,103 @@
-//! gdcm
+//! The Gain-Delay Correction Method: one gain and one delay for each channel of a physics-based helicopter model, so that it
+//! matches flight.
+//!
+//! # The problem
+//!
+//! A flight condition has a bundle of physics models, linearised at the trim and at perturbed trims, and a bundle of models
+//! identified from flight. Each is a p x m frequency response
+//!
+//! ```text
+//! H(j omega) = C (j omega I - A)^-1 B + D.                                                        (M2)
+//! ```
+//!
+//! The corrected physics model puts a gain and a delay on every input and every output channel,
+//!
+//! ```text
+//! H^ = M_O H M_I,   M_O = diag(k_o e^(-tau_o s)),   M_I = diag(k_i e^(-tau_i s)),                 (eq. 12, M10)
+//! ```
+//!
+//! which multiplies the response of output `o` to input `i` by the net gain `k_o k_i` and delays it by `tau_o + tau_i`. Of the
+//! representative models of the two bundles (the medoids among those that the engineer keeps, M5), each response would want
+//!
+//! ```text
+//! G_oi = median |H_ref| / |H_sim|,     D_oi = median Delta phi(H_sim, H_ref) / omega.             (eq. 5, 9, M6)
+//! ```
+//!
+//! There are fewer channels than responses, so the gains and the delays are the optimum of
+//!
+//! ```text
+//! min  sum w_oi (G_oi - k_o k_i)^2 + alpha sum (k_o - 1)^2      s.t.  k_o k_i = G_oi (held),  LB <= k <= UB,     (eq. 7, M8)
+//! min  sum w_oi (D_oi - tau_o - tau_i)^2 + alpha sum tau_o^2    s.t.  tau_o + tau_i = D_oi (held),  0 <= tau <= UB.  (eq. 11, M9)
+//! ```
+//!
+//! The first is not convex; its global minimum is found and proven. Where the held values cannot be reached, the nearest that
+//! can be are held instead, and the result says which, by how much and why. How well a model matches is its cost
+//!
+//! ```text
+//! J = 20 median(e_dB^2) + 20 * 0.0175 median(e_deg^2),                                            (eq. 14-19, M4)
+//! ```
+//!
+//! and the gains of many conditions become one correction by regressing `ln k` on airspeed (M11). The numbers M1 to M12 are
+//! the sections of the method's description in the README.
+//!
+//! # Notation
+//!
+//! | symbol | in code | meaning, unit |
+//! |---|---|---|
+//! | `p`, `m`, `n`, `N` | `outputs`, `inputs`, `order`, `points` | numbers of outputs, inputs, states, frequencies |
+//! | `omega` | `omega` | angular frequency, rad/s, always |
+//! | `H_oi(j omega)` | `values[Pair { output, input }][k]` | response, always `[output, input]` |
+//! | `G`, `D` | `Delta::gain`, `Delta::delay_s` | delta gain \[-\], delta delay \[s\] |
+//! | `k_o`, `k_i` | `output_gains`, `input_gains` | channel gains \[-\] |
+//! | `tau_o`, `tau_i` | `output_delays_s`, `input_delays_s` | channel delays \[s\] |
+//! | `LB`, `UB` | `GainBounds`, `delay_upper_s` | bounds of the channels |
+//! | `alpha` | `alpha_gain`, `alpha_delay` | weight of the regularisation |
+//! | `J`, `Delta J` | `Cost`, `CostChange` | cost, its change; negative is better |
+//! | `d(a, b)`, `s_a`, `r_a` | `BundleDistance`, `Representative::scores`, `Discontinuity::ratios` | distance, score, discontinuity ratio |
+//! | `V`, `v` | `airspeed_kt`, `Airspeeds::scaled` | true airspeed \[kt\], scaled airspeed \[-\] |
+//!
+//! # Modules
+//!
+//! Each imports only what stands above it; a test reads the sources and asserts that. Down to [`study`] nothing knows of
+//! windows, files or threads.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`units`] | every conversion of units |
+//! | [`dataset`] | what the engineer loads: channels, models, flight conditions; checked once |
+//! | [`response`] | frequency responses, phase, order statistics |
+//! | [`fidelity`] | cost J, distances in a bundle, representative, discontinuity |
+//! | [`correction`] | G, D, bounds, gains, delays, and what they do to a response |
+//! | [`schedule`] | regression over airspeed, assessment |
+//! | [`study`] | what the engineer does: settings, rejections, pins, undo; the staged analysis |
+//! | [`io`] | files: datasets, studies, corrections |
+//! | [`view`] | drawing: panels and plots that show a state and push commands |
+//! | [`cli`] | the headless commands |
+//! | [`app`] | the window: threads, dialogs, and the one place that changes what is shown |
+//!
+//! # Example
+//!
+//! ```
+//! use gdcm::io::embedded_example;
+//! use gdcm::study::{Engine, Study, Unwatched};
+//!
+//! let example = embedded_example()?;
+//! let study = Study::new(example.dataset);
+//! let analysis = Engine::default().analyze(&study, &Unwatched)?;
+//! let pair = study.dataset.find_pair("Q", "LON").ok_or("the example has this response")?;
+//! let condition = analysis.condition(0).ok_or("the first condition has a result")?;
+//! assert!((condition.correction.net_gain(pair) - 1.15).abs() < 0.005);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
+pub mod app;
+pub mod cli;
 pub mod correction;
 pub mod dataset;
 pub mod fidelity;
+pub mod io;
 pub mod response;
 pub mod schedule;
 pub mod study;
 pub mod units;
+pub mod view;

@@ -5,7 +5,7 @@ use std::ops::{Index, IndexMut};
 /// One response: from an input channel to an output channel.
 ///
 /// The index order is `[output, input]` everywhere (M1).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Pair {
     /// Index of the output channel, in the dataset's order.
     pub output: usize,

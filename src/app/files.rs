@@ -1,0 +1,172 @@
+//! Opening, saving and exporting.
+
+use std::path::{Path, PathBuf};
+
+use egui::Context;
+
+use crate::io::{
+    Corrections, DatasetOrigin, FileError, LoadedDataset, Opened, STUDY_EXTENSION, embedded_example, load_any,
+    make_directory, save_study, write_assessment_csv, write_corrections, write_corrections_csv,
+};
+use crate::study::{Analysis, Study};
+use crate::view::command::FormKind;
+use crate::view::state::State;
+
+use super::dialogs::{DialogAnswer, DialogPurpose};
+use super::window::GdcmApp;
+
+/// The study as it was saved last.
+#[derive(Clone, Debug)]
+pub(super) struct SavedStudy {
+    /// Where; nowhere yet for a new study.
+    pub(super) path: Option<PathBuf>,
+    /// What was saved, or what a new study starts from.
+    pub(super) study: Study,
+}
+
+impl GdcmApp {
+    /// What the window starts with when `opened` is shown.
+    pub(super) fn parts_of(opened: Opened) -> (State, LoadedDataset, SavedStudy) {
+        let (study, loaded, path) = match opened {
+            Opened::Dataset(loaded) => (Study::new(loaded.dataset.clone()), loaded, None),
+            Opened::Study { study, loaded, path } => (study, loaded, Some(path)),
+        };
+        let state = State::new(study.clone(), study_name(path.as_deref()), loaded.cautions.clone());
+        (state, loaded, SavedStudy { path, study })
+    }
+
+    /// Shows what was opened in place of what is open.
+    fn show(&mut self, opened: Opened) {
+        let (state, loaded, saved) = Self::parts_of(opened);
+        let requested = self.state.results.requested;
+        let name = loaded.origin.to_string();
+        self.state = state;
+        // Request numbers go on, so that late answers about the old dataset are told apart.
+        self.state.results.requested = requested;
+        self.state.results.received = requested;
+        self.loaded = loaded;
+        self.saved = saved;
+        self.done(format!("opened {name}"));
+    }
+
+    /// Reads a file in a thread of its own; what is open stays until it is read.
+    pub(super) fn open(&mut self, path: PathBuf, ctx: &Context) {
+        self.state.forms.shown = None;
+        self.state.opening = Some(path.display().to_string());
+        let (sender, wake) = (self.opened.0.clone(), ctx.clone());
+        let read = move || {
+            // The window may be gone by now.
+            let _ = sender.send(load_any(&path));
+            wake.request_repaint();
+        };
+        if let Err(error) = std::thread::Builder::new().name("reading".to_owned()).spawn(read) {
+            self.state.opening = None;
+            self.trouble(format!("the file cannot be read: {error}"));
+        }
+    }
+
+    pub(super) fn open_example(&mut self) {
+        self.answer_opened(embedded_example().map(Opened::Dataset));
+    }
+
+    fn answer_opened(&mut self, opened: Result<Opened, FileError>) {
+        self.state.opening = None;
+        match opened {
+            Ok(opened) => self.show(opened),
+            Err(error) => self.trouble(error.to_string()),
+        }
+    }
+
+    /// Takes what files and dialogs have answered since the last frame.
+    pub(super) fn receive_files(&mut self, ctx: &Context) {
+        while let Ok(opened) = self.opened.1.try_recv() {
+            self.answer_opened(opened);
+        }
+        while let Some(answer) = self.dialogs.answer() {
+            match answer {
+                DialogAnswer::Chosen(DialogPurpose::Open, path) => self.open(path, ctx),
+                DialogAnswer::Chosen(DialogPurpose::SaveStudy, path) => self.save_as(path),
+                DialogAnswer::Chosen(DialogPurpose::ExportFolder, path) => {
+                    self.state.forms.export.folder = path.display().to_string();
+                }
+                // A desktop without dialogs answers like a cancelled one: offer the path as text.
+                DialogAnswer::Nothing(DialogPurpose::Open) => self.state.forms.shown = Some(FormKind::Open),
+                DialogAnswer::Nothing(DialogPurpose::SaveStudy) => {
+                    self.state.forms.save_path = self.proposed_name();
+                    self.state.forms.shown = Some(FormKind::Save);
+                }
+                DialogAnswer::Nothing(DialogPurpose::ExportFolder) => {}
+            }
+        }
+    }
+
+    /// Saves the study where it was saved last, or asks where.
+    pub(super) fn save(&mut self, ctx: &Context) {
+        match self.saved.path.clone() {
+            Some(path) => self.save_as(path),
+            None => self.dialogs.ask(DialogPurpose::SaveStudy, self.proposed_name(), ctx),
+        }
+    }
+
+    pub(super) fn save_as(&mut self, path: PathBuf) {
+        let path = with_study_extension(path);
+        match save_study(&self.state.study, &self.loaded, &path) {
+            Ok(()) => {
+                self.state.forms.shown = None;
+                self.state.study_name = study_name(Some(&path));
+                self.state.unsaved = false;
+                self.done(format!("saved {}", path.display()));
+                self.saved = SavedStudy { path: Some(path), study: self.state.study.clone() };
+            }
+            Err(error) => self.trouble(error.to_string()),
+        }
+    }
+
+    /// A name for the study's file.
+    pub(super) fn proposed_name(&self) -> String {
+        if let Some(path) = &self.saved.path {
+            return path.display().to_string();
+        }
+        let stem = match &self.loaded.origin {
+            DatasetOrigin::File(path) => path.file_stem().map(|stem| stem.to_string_lossy().into_owned()),
+            DatasetOrigin::EmbeddedExample => None,
+        };
+        let stem = stem.unwrap_or_else(|| "example".to_owned());
+        format!("{}.{STUDY_EXTENSION}", stem.trim_end_matches(".json"))
+    }
+
+    /// Writes the corrections of the conditions chosen in the form.
+    pub(super) fn export(&mut self) {
+        if self.state.results.is_waiting() {
+            return self.trouble("the newest results are still being computed; export again in a moment".to_owned());
+        }
+        let Some(analysis) = self.state.results.analysis.clone() else { return };
+        let form = &self.state.forms.export;
+        let chosen: Vec<usize> = (0..form.chosen.len()).filter(|&index| form.chosen[index]).collect();
+        let folder = PathBuf::from(form.folder.trim());
+        match write_results(&analysis, &self.loaded.sha256, &chosen, &folder) {
+            Ok(()) => {
+                self.state.forms.shown = None;
+                self.done(format!("exported {} conditions to {}", chosen.len(), folder.display()));
+            }
+            Err(error) => self.trouble(error.to_string()),
+        }
+    }
+}
+
+fn write_results(analysis: &Analysis, sha256: &str, chosen: &[usize], folder: &Path) -> Result<(), FileError> {
+    make_directory(folder)?;
+    write_corrections(&Corrections::of(analysis, sha256, chosen), &folder.join("corrections.json"))?;
+    write_corrections_csv(analysis, chosen, &folder.join("corrections.csv"))?;
+    write_assessment_csv(analysis, chosen, &folder.join("assessment.csv"))
+}
+
+fn study_name(path: Option<&Path>) -> String {
+    let name = path.and_then(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());
+    name.unwrap_or_else(|| "untitled study".to_owned())
+}
+
+fn with_study_extension(path: PathBuf) -> PathBuf {
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    if name.ends_with(".json") { path } else { path.with_file_name(format!("{name}.{STUDY_EXTENSION}")) }
+}

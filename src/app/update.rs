@@ -1,0 +1,145 @@
+//! Carrying out commands: the only code that changes what the window shows.
+
+use egui::{Context, ViewportCommand};
+
+use crate::study::Edit;
+use crate::view::command::{Command, FormKind};
+use crate::view::state::{Display, ExportForm, Notice, NoticeKind};
+
+use super::dialogs::DialogPurpose;
+use super::window::GdcmApp;
+
+impl GdcmApp {
+    /// Saves the study to a file, as the menu does once a path is chosen.
+    pub fn save_study_as(&mut self, path: std::path::PathBuf) {
+        self.save_as(path);
+    }
+
+    /// Carries out the commands of one frame.
+    pub(super) fn carry_out(&mut self, commands: Vec<Command>, ctx: &Context) {
+        let pointed_before = self.state.display.hovered.take();
+        for command in commands {
+            self.carry_out_one(command, ctx);
+        }
+        if self.state.display.hovered != pointed_before {
+            ctx.request_repaint();
+        }
+    }
+
+    fn carry_out_one(&mut self, command: Command, ctx: &Context) {
+        let display = &mut self.state.display;
+        match command {
+            Command::Edit(edit) => self.decide(&edit),
+            Command::EndEdit => self.state.history.seal(),
+            Command::Undo => self.go_back(),
+            Command::Redo => self.go_forward(),
+            Command::SelectCondition(condition) => select_condition(display, condition),
+            Command::FocusPair(pair) if display.pair != pair => {
+                display.pair = pair;
+                display.bode.request_fit();
+            }
+            Command::FocusPair(_) => {}
+            Command::Hover(model) => display.hovered = Some(model),
+            Command::Isolate(model) => {
+                display.isolated = if display.isolated == Some(model) { None } else { Some(model) };
+            }
+            Command::ShowTab(tab) => display.tab = tab,
+            Command::SetFrequencyUnit(unit) => display.unit = unit,
+            Command::FitPlots => display.bode.request_fit(),
+            Command::SetTheme(theme) => ctx.set_theme(theme),
+            Command::ShowForm(form) => self.show_form(form),
+            Command::DismissNotice => self.state.notice = None,
+            Command::AskOpen => self.dialogs.ask(DialogPurpose::Open, String::new(), ctx),
+            Command::AskSaveStudy => self.dialogs.ask(DialogPurpose::SaveStudy, self.proposed_name(), ctx),
+            Command::AskExportFolder => self.dialogs.ask(DialogPurpose::ExportFolder, String::new(), ctx),
+            Command::Open(_) | Command::OpenExample | Command::Quit if self.state.unsaved && !self.closing => {
+                self.postponed = Some(command);
+                self.state.forms.shown = Some(FormKind::Unsaved);
+            }
+            Command::Open(path) => self.open(path, ctx),
+            Command::OpenExample => self.open_example(),
+            Command::Quit => self.quit(ctx),
+            Command::SaveStudy => self.save(ctx),
+            Command::SaveStudyAs(path) => self.save_as(path),
+            Command::Export => self.export(),
+            Command::DiscardAndGoOn => self.discard_and_go_on(ctx),
+        }
+    }
+
+    fn decide(&mut self, edit: &Edit) {
+        let before = self.state.study.clone();
+        match self.state.study.apply(edit) {
+            Ok(()) if self.state.study == before => {}
+            Ok(()) => {
+                self.state.history.record(before, edit);
+                self.study_changed();
+            }
+            Err(refusal) => self.trouble(refusal.to_string()),
+        }
+    }
+
+    fn go_back(&mut self) {
+        if let Some(study) = self.state.history.undo(&self.state.study) {
+            self.state.study = study;
+            self.study_changed();
+        }
+    }
+
+    fn go_forward(&mut self) {
+        if let Some(study) = self.state.history.redo(&self.state.study) {
+            self.state.study = study;
+            self.study_changed();
+        }
+    }
+
+    /// Says what is true of the study now: saved or not.
+    pub(super) fn study_changed(&mut self) {
+        self.state.notice = None;
+        self.state.unsaved = self.saved.study != self.state.study;
+    }
+
+    fn show_form(&mut self, form: Option<FormKind>) {
+        if form == Some(FormKind::Export) {
+            let form = &mut self.state.forms.export;
+            let count = self.state.study.dataset.conditions().len();
+            if form.chosen.len() != count {
+                *form = ExportForm { chosen: vec![true; count], folder: form.folder.clone() };
+            }
+        }
+        if form.is_none() {
+            self.postponed = None;
+        }
+        self.state.forms.shown = form;
+    }
+
+    fn discard_and_go_on(&mut self, ctx: &Context) {
+        self.state.forms.shown = None;
+        self.state.unsaved = false;
+        if let Some(command) = self.postponed.take() {
+            self.carry_out_one(command, ctx);
+        }
+    }
+
+    fn quit(&mut self, ctx: &Context) {
+        self.closing = true;
+        ctx.send_viewport_cmd(ViewportCommand::Close);
+    }
+
+    /// Tells the engineer that something was done.
+    pub(super) fn done(&mut self, text: String) {
+        self.state.notice = Some(Notice { kind: NoticeKind::Done, text });
+    }
+
+    /// Tells the engineer that something could not be done.
+    pub(super) fn trouble(&mut self, text: String) {
+        self.state.notice = Some(Notice { kind: NoticeKind::Trouble, text });
+    }
+}
+
+fn select_condition(display: &mut Display, condition: usize) {
+    if display.condition != condition {
+        display.condition = condition;
+        display.isolated = None;
+        display.bode.request_fit();
+    }
+}

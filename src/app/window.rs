@@ -1,0 +1,178 @@
+//! The window: state, the thread that computes, the dialogs.
+
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, ViewportCommand};
+
+use crate::io::{FileError, LoadedDataset, Opened};
+use crate::study::{Study, display_band};
+use crate::view::command::{Command, FormKind};
+use crate::view::palette::{self, Palette};
+use crate::view::state::State;
+use crate::view::{centre, conditions_panel, forms, matrix_panel, menu_bar, models_panel, result_panel, settings_panel, status_bar};
+
+use super::dialogs::Dialogs;
+use super::files::SavedStudy;
+use super::shortcuts;
+use super::worker::{Reply, Request, Worker};
+
+/// The program's window.
+pub struct GdcmApp {
+    pub(super) state: State,
+    pub(super) loaded: LoadedDataset,
+    pub(super) saved: SavedStudy,
+    pub(super) worker: Worker,
+    pub(super) dialogs: Dialogs,
+    pub(super) opened: (Sender<Result<Opened, FileError>>, Receiver<Result<Opened, FileError>>),
+    /// What waits for the answer whether to lose unsaved decisions.
+    pub(super) postponed: Option<Command>,
+    pub(super) closing: bool,
+    /// What the newest request was made from.
+    requested: Option<(Study, usize)>,
+}
+
+impl GdcmApp {
+    /// The window on a dataset or a study. Starts the thread that computes.
+    pub fn new(ctx: &Context, opened: Opened) -> std::io::Result<Self> {
+        palette::apply(ctx);
+        let wake = ctx.clone();
+        let worker = Worker::start(Box::new(move || wake.request_repaint()))?;
+        let (state, loaded, saved) = Self::parts_of(opened);
+        Ok(Self {
+            state,
+            loaded,
+            saved,
+            worker,
+            dialogs: Dialogs::new(),
+            opened: channel(),
+            postponed: None,
+            closing: false,
+            requested: None,
+        })
+    }
+
+    /// What the window shows.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Asks for what the study and the condition shown need, unless it was asked for already.
+    fn request(&mut self, now: f64) {
+        let wanted = (&self.state.study, self.state.display.condition);
+        if self.requested.as_ref().is_some_and(|(study, condition)| (study, *condition) == wanted) {
+            return;
+        }
+        let (study, condition) = (self.state.study.clone(), self.state.display.condition);
+        self.requested = Some((study.clone(), condition));
+        let results = &mut self.state.results;
+        results.requested += 1;
+        results.waiting_since.get_or_insert(now);
+        self.worker.request(Request { generation: results.requested, study, condition });
+    }
+
+    fn receive(&mut self) {
+        while let Some(reply) = self.worker.reply() {
+            let results = &mut self.state.results;
+            match reply {
+                Reply::Progress { generation, done, total } if generation == results.requested => {
+                    results.progress = Some((done, total));
+                }
+                Reply::Analysis { generation, analysis, elapsed_ms } if generation == results.requested => {
+                    results.received = generation;
+                    results.analysis = Some(analysis);
+                    results.elapsed_ms = elapsed_ms;
+                    results.waiting_since = None;
+                    results.progress = None;
+                }
+                Reply::Curves { dataset, condition, curves }
+                    if std::sync::Arc::ptr_eq(&dataset, &self.state.study.dataset)
+                        && condition == self.state.display.condition =>
+                {
+                    let band = display_band(self.state.study.settings.band);
+                    let first = results.curves.is_none();
+                    results.curves = Some((condition, curves));
+                    if first || self.state.display.bode_band != Some(band) {
+                        self.state.display.bode.request_fit();
+                        self.state.display.bode_band = Some(band);
+                    }
+                }
+                // Answers to questions that no longer stand.
+                Reply::Progress { .. } | Reply::Analysis { .. } | Reply::Curves { .. } => {}
+            }
+        }
+    }
+
+    fn take_dropped_files(&mut self, ctx: &Context, commands: &mut Vec<Command>) {
+        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
+        commands.extend(dropped.iter().map(|file| Command::Open(file.path().to_path_buf())));
+    }
+
+    fn guard_closing(&mut self, ctx: &Context) {
+        if ctx.input(|input| input.viewport().close_requested()) && self.state.unsaved && !self.closing {
+            ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.postponed = Some(Command::Quit);
+            self.state.forms.shown = Some(FormKind::Unsaved);
+        }
+    }
+
+    fn panels_ui(&mut self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
+        let bar = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(10, 4));
+        let state = &mut self.state;
+        Panel::top("menu bar").frame(bar).show(ui, |ui| menu_bar::menu_bar_ui(ui, state, palette, commands));
+        Panel::bottom("status bar").frame(bar).show(ui, |ui| status_bar::status_bar_ui(ui, state, palette, commands));
+        let side = Frame::new().fill(palette.panel).inner_margin(Margin { left: 10, right: 4, top: 4, bottom: 4 });
+        let width = ui.available_width();
+        // The sides give way before the plots do.
+        let (left, right) = ((0.19 * width).clamp(215.0, 330.0), (0.24 * width).clamp(290.0, 420.0));
+        Panel::left("conditions and models").frame(side).default_size(left).size_range(190.0..=460.0).show(ui, |ui| {
+            scrolled(ui, "left", |ui| {
+                conditions_panel::conditions_ui(ui, state, palette, commands);
+                models_panel::physics_models_ui(ui, state, palette, commands);
+                models_panel::identified_models_ui(ui, state, palette, commands);
+            });
+        });
+        Panel::right("constraints and result").frame(side).default_size(right).size_range(250.0..=620.0).show(ui, |ui| {
+            scrolled(ui, "right", |ui| {
+                matrix_panel::matrix_ui(ui, state, palette, commands);
+                settings_panel::settings_ui(ui, state, palette, commands);
+                result_panel::result_ui(ui, state, palette, commands);
+            });
+        });
+        let middle = Frame::new().fill(palette.background).inner_margin(Margin::symmetric(8, 4));
+        CentralPanel::default().frame(middle).show(ui, |ui| centre::centre_ui(ui, state, palette, commands));
+    }
+}
+
+/// A column that scrolls where it is too long; its content keeps clear of the scroll bar.
+fn scrolled(ui: &mut Ui, id: &str, add: impl FnOnce(&mut Ui)) {
+    ScrollArea::vertical().id_salt(id).auto_shrink(false).show(ui, |ui| {
+        Frame::new().inner_margin(Margin { right: 8, ..Margin::ZERO }).show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            add(ui);
+        });
+    });
+}
+
+impl eframe::App for GdcmApp {
+    fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
+        self.receive();
+        self.receive_files(ctx);
+        self.guard_closing(ctx);
+    }
+
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        let ctx = ui.ctx().clone();
+        let palette = Palette::of(ui.visuals());
+        let mut commands = shortcuts::pressed(&ctx, &self.state);
+        self.take_dropped_files(&ctx, &mut commands);
+        self.panels_ui(ui, &palette, &mut commands);
+        forms::forms_ui(&ctx, &mut self.state, &palette, &mut commands);
+        self.carry_out(commands, &ctx);
+        let now = ctx.input(|input| input.time);
+        self.request(now);
+        if self.state.results.is_waiting() {
+            // The mark of stale results appears by the clock, not by an event.
+            ctx.request_repaint_after(std::time::Duration::from_millis(160));
+        }
+    }
+}

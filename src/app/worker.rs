@@ -1,0 +1,208 @@
+//! The one thread that computes, with a mailbox that keeps only the newest request.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Instant;
+
+use crate::dataset::{Band, Dataset};
+use crate::study::{Analysis, ConditionCurves, Engine, Stopped, Study, Watch, display_band};
+
+/// Frequencies of the curves that are drawn.
+const CURVE_POINTS: usize = 400;
+
+/// What is to be computed. All of it is shared, so that a request costs next to nothing.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// Its number; the newest has the greatest.
+    pub generation: u64,
+    /// The study to analyse.
+    pub study: Study,
+    /// Index of the condition shown, whose curves are wanted.
+    pub condition: usize,
+}
+
+/// What was computed.
+#[derive(Debug)]
+pub enum Reply {
+    /// How far the analysis is.
+    Progress {
+        /// Number of the request.
+        generation: u64,
+        /// Conditions done.
+        done: usize,
+        /// Of how many.
+        total: usize,
+    },
+    /// The analysis of a request.
+    Analysis {
+        /// Number of the request.
+        generation: u64,
+        /// The result.
+        analysis: Arc<Analysis>,
+        /// Time it took \[ms\].
+        elapsed_ms: f64,
+    },
+    /// Responses of one condition for drawing.
+    Curves {
+        /// Dataset they belong to.
+        dataset: Arc<Dataset>,
+        /// Index of the condition.
+        condition: usize,
+        /// The responses.
+        curves: Arc<ConditionCurves>,
+    },
+}
+
+/// Called after each reply: wakes the window.
+type Wake = Box<dyn Fn() + Send>;
+
+#[derive(Default)]
+struct Mailbox {
+    request: Option<Request>,
+    closed: bool,
+}
+
+#[derive(Default)]
+struct Shared {
+    mailbox: Mutex<Mailbox>,
+    filled: Condvar,
+    /// Number of the newest request: work for an older one is given up.
+    newest: AtomicU64,
+}
+
+impl Shared {
+    fn mailbox(&self) -> MutexGuard<'_, Mailbox> {
+        // A panic while the lock was held leaves a mailbox that is still whole.
+        self.mailbox.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits for the next request; none once the worker is dropped.
+    fn take(&self) -> Option<Request> {
+        let mut mailbox = self.mailbox();
+        loop {
+            if mailbox.closed {
+                return None;
+            }
+            if let Some(request) = mailbox.request.take() {
+                return Some(request);
+            }
+            mailbox = self.filled.wait(mailbox).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+/// The thread that computes. Dropping it ends the thread.
+pub struct Worker {
+    shared: Arc<Shared>,
+    replies: Receiver<Reply>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Worker {
+    /// Starts the thread; `wake` is called after each reply.
+    pub fn start(wake: Wake) -> std::io::Result<Self> {
+        let shared = Arc::new(Shared::default());
+        let (sender, replies) = channel();
+        let of_thread = Arc::clone(&shared);
+        let thread = std::thread::Builder::new()
+            .name("analysis".to_owned())
+            .spawn(move || Desk { shared: &of_thread, sender: &sender, wake: &wake }.work())?;
+        Ok(Self { shared, replies, thread: Some(thread) })
+    }
+
+    /// Asks for a computation in place of any that is not done yet.
+    pub fn request(&self, request: Request) {
+        self.shared.newest.store(request.generation, Ordering::Release);
+        self.shared.mailbox().request = Some(request);
+        self.shared.filled.notify_one();
+    }
+
+    /// The next reply, if one is there.
+    pub fn reply(&self) -> Option<Reply> {
+        self.replies.try_recv().ok()
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        self.shared.newest.store(u64::MAX, Ordering::Release);
+        self.shared.mailbox().closed = true;
+        self.shared.filled.notify_one();
+        if let Some(thread) = self.thread.take() {
+            // A panic of the thread has been reported by then; there is nothing left to do about it.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// What the thread works with.
+struct Desk<'a> {
+    shared: &'a Shared,
+    sender: &'a Sender<Reply>,
+    wake: &'a (dyn Fn() + Send),
+}
+
+/// What the kept curves were made from.
+type CurvesKey = (Arc<Dataset>, usize, Band);
+
+impl Desk<'_> {
+    fn work(&self) {
+        let mut engine = Engine::default();
+        let mut curves_of: Option<CurvesKey> = None;
+        while let Some(request) = self.shared.take() {
+            self.answer_curves(&request, &mut curves_of);
+            self.answer_analysis(&request, &mut engine);
+        }
+    }
+
+    fn answer_curves(&self, request: &Request, kept: &mut Option<CurvesKey>) {
+        let (dataset, band) = (&request.study.dataset, display_band(request.study.settings.band));
+        let same = |(of, condition, of_band): &CurvesKey| {
+            Arc::ptr_eq(of, dataset) && *condition == request.condition && *of_band == band
+        };
+        if kept.as_ref().is_some_and(same) {
+            return;
+        }
+        let condition = request.condition;
+        let curves = Arc::new(ConditionCurves::of(&dataset.conditions()[condition], band, CURVE_POINTS));
+        *kept = Some((Arc::clone(dataset), condition, band));
+        self.send(Reply::Curves { dataset: Arc::clone(dataset), condition, curves });
+    }
+
+    fn answer_analysis(&self, request: &Request, engine: &mut Engine) {
+        let start = Instant::now();
+        let watch = RequestWatch { desk: self, generation: request.generation };
+        match engine.analyze(&request.study, &watch) {
+            Ok(analysis) => {
+                let elapsed_ms = 1e3 * start.elapsed().as_secs_f64();
+                let (generation, analysis) = (request.generation, Arc::new(analysis));
+                self.send(Reply::Analysis { generation, analysis, elapsed_ms });
+            }
+            // A newer request waits in the mailbox.
+            Err(Stopped) => {}
+        }
+    }
+
+    fn send(&self, reply: Reply) {
+        // The window is gone when nobody listens; the thread ends with the next take.
+        let _ = self.sender.send(reply);
+        (self.wake)();
+    }
+}
+
+struct RequestWatch<'a, 'd> {
+    desk: &'a Desk<'d>,
+    generation: u64,
+}
+
+impl Watch for RequestWatch<'_, '_> {
+    fn stopped(&self) -> bool {
+        self.desk.shared.newest.load(Ordering::Acquire) != self.generation
+    }
+
+    fn progress(&self, done: usize, total: usize) {
+        self.desk.send(Reply::Progress { generation: self.generation, done, total });
+    }
+}

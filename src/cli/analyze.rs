@@ -1,0 +1,153 @@
+//! `gdcm analyze`.
+
+use crate::dataset::{BundleKind, ModelId};
+use crate::io::{
+    Corrections, LoadedDataset, embedded_example, load_any, make_directory, write_assessment_csv, write_corrections,
+    write_corrections_csv,
+};
+use crate::dataset::Band;
+use crate::schedule::{ScheduleKind, ScheduleSettings};
+use crate::study::{Analysis, Edit, Engine, Setting, Study};
+
+use super::arguments::{AnalyzeArguments, PairList, Rejection};
+use super::failure::Failure;
+use super::progress::Progress;
+use super::summary::summary;
+use super::terminal::{say, say_error};
+
+/// Analyses, writes the results, and prints a summary.
+pub(super) fn analyze(arguments: &AnalyzeArguments) -> Result<(), Failure> {
+    let (mut study, loaded) = open(arguments)?;
+    for caution in &loaded.cautions {
+        say_error(&format!("{}: {caution}", loaded.origin));
+    }
+    take_options(&mut study, arguments)?;
+    make_directory(&arguments.out)?;
+    let mut engine = Engine::default();
+    let progress = Progress::new();
+    let mut analysis = engine.analyze(&study, &progress)?;
+    if arguments.reject_suggested && reject_suggested(&mut study, &analysis)? {
+        analysis = engine.analyze(&study, &progress)?;
+    }
+    drop(progress);
+    check_result(&analysis)?;
+    write(&analysis, &loaded, arguments)?;
+    say(&summary(&analysis, &loaded, &arguments.out))
+}
+
+fn open(arguments: &AnalyzeArguments) -> Result<(Study, LoadedDataset), Failure> {
+    match &arguments.file {
+        Some(file) => Ok(load_any(file)?.into_study()),
+        None => {
+            let loaded = embedded_example()?;
+            Ok((Study::new(loaded.dataset.clone()), loaded))
+        }
+    }
+}
+
+/// Puts the options into the study, over what it says itself.
+fn take_options(study: &mut Study, arguments: &AnalyzeArguments) -> Result<(), Failure> {
+    let mut set = |option, setting| study.apply(&Edit::Set(setting)).map_err(Failure::refused(option));
+    if let Some(alpha) = arguments.alpha {
+        set("--alpha", Setting::AlphaGain(alpha))?;
+    }
+    if let Some(alpha) = arguments.alpha_delay {
+        set("--alpha-delay", Setting::AlphaDelay(alpha))?;
+    }
+    if let Some([low, high]) = arguments.band.as_deref() {
+        let band = Band::new(*low, *high)
+            .map_err(|error| Failure::Option { option: "--band", reason: error.to_string() })?;
+        set("--band", Setting::Band(band))?;
+    }
+    if let Some(points) = arguments.points {
+        set("--points", Setting::Points(points))?;
+    }
+    if let Some(degree) = arguments.degree {
+        let schedule = ScheduleSettings { kind: ScheduleKind::Polynomial { degree }, ..study.settings.schedule };
+        study.apply(&Edit::Set(Setting::Schedule(schedule))).map_err(Failure::refused("--degree"))?;
+    }
+    if let Some(list) = &arguments.on {
+        hold(study, list)?;
+    }
+    arguments.reject.iter().try_for_each(|rejection| reject(study, rejection))
+}
+
+fn hold(study: &mut Study, list: &PairList) -> Result<(), Failure> {
+    let dataset = study.dataset.clone();
+    let find = |(output, input): &(String, String)| {
+        dataset.find_pair(output, input).ok_or_else(|| {
+            let names = |channels: &[crate::dataset::Channel]| {
+                channels.iter().map(|channel| channel.name.as_str()).collect::<Vec<_>>().join(", ")
+            };
+            let reason = format!(
+                "the dataset has no response {output}/{input}; outputs are {}; inputs are {}",
+                names(dataset.outputs()),
+                names(dataset.inputs())
+            );
+            Failure::Option { option: "--on", reason }
+        })
+    };
+    let held = list.pairs.iter().map(find).collect::<Result<Vec<_>, _>>()?;
+    for pair in dataset.on_axis().pairs() {
+        let setting = Setting::Constrained(pair, held.contains(&pair));
+        study.apply(&Edit::Set(setting)).map_err(Failure::refused("--on"))?;
+    }
+    Ok(())
+}
+
+fn reject(study: &mut Study, rejection: &Rejection) -> Result<(), Failure> {
+    let Rejection { condition: id, model: name } = rejection;
+    let wrong = |reason: String| Failure::Option { option: "--reject", reason };
+    let conditions = study.dataset.conditions();
+    let condition = conditions.iter().position(|condition| condition.id() == *id);
+    let condition = condition.ok_or_else(|| wrong(format!("the dataset has no condition {id}")))?;
+    let find = |bundle| {
+        let models = conditions[condition].bundle(bundle);
+        let model = models.iter().position(|model| model.name == *name)?;
+        Some(ModelId { condition, bundle, model })
+    };
+    let model = match (find(BundleKind::Physics), find(BundleKind::Identified)) {
+        (Some(model), None) | (None, Some(model)) => model,
+        (None, None) => return Err(wrong(format!("condition {id} has no model \"{name}\""))),
+        (Some(_), Some(_)) => {
+            let reason = format!("\"{name}\" is both a physics and an identified model of condition {id}; use a study");
+            return Err(wrong(reason));
+        }
+    };
+    study.apply(&Edit::Reject(model)).map_err(Failure::refused("--reject"))
+}
+
+/// Rejects what the analysis suggests; says whether anything changed.
+fn reject_suggested(study: &mut Study, analysis: &Analysis) -> Result<bool, Failure> {
+    let before = study.clone();
+    for condition in 0..analysis.conditions.len() {
+        let models = analysis.condition(condition).map(|result| result.suggested()).unwrap_or_default();
+        study.apply(&Edit::RejectAll { condition, models }).map_err(Failure::refused("--reject-suggested"))?;
+    }
+    Ok(*study != before)
+}
+
+/// Refuses an analysis without any result; says which conditions of another have none.
+fn check_result(analysis: &Analysis) -> Result<(), Failure> {
+    let failures = analysis.study.dataset.conditions().iter().zip(&analysis.conditions).filter_map(|(condition, result)| {
+        let failure = result.as_ref().err()?;
+        Some(format!("condition {}: {failure}", condition.id()))
+    });
+    let failures: Vec<String> = failures.collect();
+    match failures.first() {
+        Some(first) if failures.len() == analysis.conditions.len() => Err(Failure::NoResult { reason: first.clone() }),
+        _ => {
+            failures.iter().for_each(|failure| say_error(failure));
+            Ok(())
+        }
+    }
+}
+
+fn write(analysis: &Analysis, loaded: &LoadedDataset, arguments: &AnalyzeArguments) -> Result<(), Failure> {
+    let out = &arguments.out;
+    let all: Vec<usize> = (0..analysis.conditions.len()).collect();
+    let corrections = Corrections::of(analysis, &loaded.sha256, &all);
+    write_corrections(&corrections, &out.join("corrections.json")).map_err(Failure::Output)?;
+    write_corrections_csv(analysis, &all, &out.join("corrections.csv")).map_err(Failure::Output)?;
+    write_assessment_csv(analysis, &all, &out.join("assessment.csv")).map_err(Failure::Output)
+}

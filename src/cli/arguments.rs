@@ -1,0 +1,137 @@
+//! The command line.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Args, Parser, Subcommand};
+
+/// Gain-Delay Correction Method: matches physics-based helicopter models to flight.
+#[derive(Debug, Parser)]
+#[command(name = "gdcm", version, args_conflicts_with_subcommands = true)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    pub(super) command: Option<Command>,
+    /// Dataset or study to open the window on; without it, the embedded example (synthetic data). A file named like a command:
+    /// ./analyze
+    pub(super) file: Option<PathBuf>,
+}
+
+/// A command that needs no window.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Analyse a dataset or a study, write corrections.json, corrections.csv and assessment.csv, and print a summary.
+    Analyze(AnalyzeArguments),
+    /// Say what a dataset or a study holds, or what is wrong with it and where.
+    Check {
+        /// Dataset or study.
+        file: PathBuf,
+    },
+    /// Write the embedded example (synthetic data) as a file to learn the format from.
+    Example {
+        /// Directory to write it into; made where there is none.
+        #[arg(value_name = "DIR")]
+        directory: PathBuf,
+    },
+}
+
+/// What is to be analysed, and how.
+#[derive(Debug, Args)]
+pub struct AnalyzeArguments {
+    /// Dataset or study; without it, the embedded example (synthetic data).
+    pub file: Option<PathBuf>,
+    /// Directory for the results; made where there is none.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Weight of the regularisation of the gains, from 0.
+    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    pub alpha: Option<f64>,
+    /// Weight of the regularisation of the delays, from 0.
+    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    pub alpha_delay: Option<f64>,
+    /// Band of comparison, in rad/s.
+    #[arg(long, num_args = 2, value_names = ["LO", "HI"], allow_negative_numbers = true)]
+    pub band: Option<Vec<f64>>,
+    /// Number of frequencies in the band.
+    #[arg(long, value_name = "N")]
+    pub points: Option<usize>,
+    /// Degree of the schedule's polynomial, 0 to 3.
+    #[arg(long, value_name = "D")]
+    pub degree: Option<usize>,
+    /// Responses to hold, OUTPUT/INPUT, separated by commas (P/LAT,Q/LON); "none" holds none. Without it, the on-axis ones.
+    #[arg(long, value_name = "PAIRS")]
+    pub on: Option<PairList>,
+    /// Reject every physics model that is suggested as an outlier.
+    #[arg(long)]
+    pub reject_suggested: bool,
+    /// Reject a model of a condition; may be repeated.
+    #[arg(long, value_name = "ID:NAME", allow_hyphen_values = true)]
+    pub reject: Vec<Rejection>,
+}
+
+/// Responses by the names of their channels.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PairList {
+    /// Output and input of each.
+    pub pairs: Vec<(String, String)>,
+}
+
+impl FromStr for PairList {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "none" {
+            return Ok(Self { pairs: Vec::new() });
+        }
+        let pair = |words: &str| match words.trim().split_once('/') {
+            Some((output, input)) if !output.is_empty() && !input.is_empty() => Ok((output.to_owned(), input.to_owned())),
+            _ => Err(format!("expected OUTPUT/INPUT, as P/LAT, found \"{words}\"")),
+        };
+        Ok(Self { pairs: text.split(',').map(pair).collect::<Result<_, _>>()? })
+    }
+}
+
+/// A model to be rejected.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Rejection {
+    /// Id of its condition.
+    pub condition: i64,
+    /// Its name.
+    pub model: String,
+}
+
+impl FromStr for Rejection {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = || format!("expected ID:NAME, as 10:nominal, found \"{text}\"");
+        let (id, model) = text.split_once(':').ok_or_else(expected)?;
+        let condition = id.trim().parse().map_err(|_| expected())?;
+        Ok(Self { condition, model: model.to_owned() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        use clap::CommandFactory;
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn a_model_name_may_hold_a_colon() {
+        let rejection: Rejection = "10:V+5kt: again".parse().unwrap();
+        assert_eq!((rejection.condition, rejection.model.as_str()), (10, "V+5kt: again"));
+        assert!("nominal".parse::<Rejection>().is_err() && "x:nominal".parse::<Rejection>().is_err());
+    }
+
+    #[test]
+    fn pairs_are_written_output_first() {
+        let list: PairList = "P/LAT, Q/LON".parse().unwrap();
+        assert_eq!(list.pairs, [("P".to_owned(), "LAT".to_owned()), ("Q".to_owned(), "LON".to_owned())]);
+        assert!("P-LAT".parse::<PairList>().is_err() && "".parse::<PairList>().is_err());
+        assert!("none".parse::<PairList>().unwrap().pairs.is_empty());
+    }
+}

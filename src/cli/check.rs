@@ -1,0 +1,123 @@
+//! `gdcm check`.
+
+use std::path::Path;
+
+use crate::dataset::{BundleKind, Channel, Condition, Dataset, Dynamics, Model};
+use crate::io::{LoadedDataset, Opened, load_any};
+use crate::study::Study;
+
+use super::failure::Failure;
+use super::summary::LABEL;
+use super::terminal::{plain, say};
+use super::text_table::{Side, TextTable, labelled};
+
+/// Says what a dataset or a study holds.
+pub(super) fn check(file: &Path) -> Result<(), Failure> {
+    let text = match load_any(file)? {
+        Opened::Dataset(loaded) => contents(&loaded),
+        Opened::Study { study, loaded, .. } => decisions(file, &study) + &contents(&loaded),
+    };
+    say(&text)
+}
+
+fn contents(loaded: &LoadedDataset) -> String {
+    let dataset = &loaded.dataset;
+    let on_axis: Vec<String> = dataset.on_axis().marked().map(|pair| plain(&dataset.pair_name(pair))).collect();
+    let on_axis = if on_axis.is_empty() { "none given: every response counts".to_owned() } else { on_axis.join(", ") };
+    let band = format!("{} to {} rad/s", dataset.band().min(), dataset.band().max());
+    let name = format!("{}, {}", plain(dataset.name()), plain(&loaded.origin.to_string()));
+    let mut text = labelled(0, "Dataset", LABEL, &name);
+    for (label, words) in [
+        ("SHA-256", loaded.sha256.clone()),
+        ("About", plain(dataset.description())),
+        ("Inputs", channel_words(dataset.inputs())),
+        ("Outputs", channel_words(dataset.outputs())),
+        ("On-axis", on_axis),
+        ("Band", band),
+    ] {
+        text.push_str(&labelled(0, label, LABEL, &words));
+    }
+    text.push_str(&labelled(0, "Conditions", LABEL, &dataset.conditions().len().to_string()));
+    text.push_str(&condition_table(dataset));
+    for caution in &loaded.cautions {
+        text.push_str(&labelled(0, "Caution", LABEL, &plain(caution)));
+    }
+    text
+}
+
+fn channel_words(channels: &[Channel]) -> String {
+    let words = channels.iter().map(|channel| format!("{} [{}]", plain(&channel.name), plain(&channel.unit)));
+    words.collect::<Vec<_>>().join(", ")
+}
+
+fn condition_table(dataset: &Dataset) -> String {
+    use Side::{Left, Right};
+    let mut table = TextTable::new([
+        ("id", Right),
+        ("airspeed", Right),
+        ("altitude", Right),
+        ("mass", Right),
+        ("physics", Right),
+        ("states", Right),
+        ("identified", Right),
+        ("states", Right),
+        ("name", Left),
+    ]);
+    for condition in dataset.conditions() {
+        table.row(condition_row(condition));
+    }
+    table.lines(2)
+}
+
+fn condition_row(condition: &Condition) -> [String; 9] {
+    let state = condition.flight_state();
+    let with_unit = |value: Option<f64>, unit: &str| value.map_or("-".to_owned(), |value| format!("{value} {unit}"));
+    let count = |kind| condition.bundle(kind).len().to_string();
+    [
+        state.id.to_string(),
+        format!("{} kt", state.airspeed_kt),
+        with_unit(state.altitude_ft, "ft"),
+        with_unit(state.mass_kg, "kg"),
+        count(BundleKind::Physics),
+        order_words(condition.bundle(BundleKind::Physics)),
+        count(BundleKind::Identified),
+        order_words(condition.bundle(BundleKind::Identified)),
+        plain(&state.name),
+    ]
+}
+
+/// The models' numbers of states: "39", "11-14", "measured", "12, measured".
+fn order_words(models: &[Model]) -> String {
+    let orders = models.iter().filter_map(|model| match &model.dynamics {
+        Dynamics::StateSpace(matrices) => Some(matrices.order()),
+        Dynamics::Measured(_) => None,
+    });
+    let orders: Vec<usize> = orders.collect();
+    let measured = (orders.len() < models.len()).then(|| "measured".to_owned());
+    let range = orders.iter().min().zip(orders.iter().max()).map(|(least, most)| {
+        if least == most { least.to_string() } else { format!("{least}-{most}") }
+    });
+    range.into_iter().chain(measured).collect::<Vec<_>>().join(", ")
+}
+
+/// What a study has decided.
+fn decisions(file: &Path, study: &Study) -> String {
+    let mut text = labelled(0, "Study", LABEL, &plain(&file.display().to_string()));
+    for (index, condition) in study.dataset.conditions().iter().enumerate() {
+        let rejected: Vec<String> = study.rejected_names(index).into_iter().map(plain).collect();
+        if !rejected.is_empty() {
+            let words = format!("condition {}: {}", condition.id(), rejected.join(", "));
+            text.push_str(&labelled(0, "Rejected", LABEL, &words));
+        }
+        for kind in [BundleKind::Physics, BundleKind::Identified] {
+            if let Some(model) = study.choices[index].bundle(kind).pinned {
+                let words = format!("condition {}: {}", condition.id(), plain(&condition.bundle(kind)[model].name));
+                text.push_str(&labelled(0, "Pinned", LABEL, &words));
+            }
+        }
+        if !study.choices[index].scheduled {
+            text.push_str(&labelled(0, "Unscheduled", LABEL, &format!("condition {}", condition.id())));
+        }
+    }
+    text
+}

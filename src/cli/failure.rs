@@ -1,0 +1,47 @@
+//! Why a command was not carried out, and the exit status that says so.
+
+use crate::io::FileError;
+use crate::study::{EditRefusal, Stopped};
+
+/// Exit status where the analysis could not be done.
+pub(super) const NOT_DONE: u8 = 1;
+/// Exit status where the command line or a file is wrong.
+pub(super) const WRONG_INPUT: u8 = 2;
+
+/// Why a command was not carried out.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum Failure {
+    /// A file cannot be read, or an output directory cannot be made.
+    #[error(transparent)]
+    Input(#[from] FileError),
+    /// An option's value is wrong for this dataset.
+    #[error("{option}: {reason}")]
+    Option { option: &'static str, reason: String },
+    /// No condition has a result.
+    #[error("the analysis has no result: {reason}")]
+    NoResult { reason: String },
+    /// The analysis was stopped.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+    /// A result cannot be written.
+    #[error(transparent)]
+    Output(FileError),
+    /// Standard output cannot be written.
+    #[error("standard output cannot be written: {reason}")]
+    StandardOutput { reason: String },
+}
+
+impl Failure {
+    /// A decision that an option asks for was refused.
+    pub(super) fn refused(option: &'static str) -> impl Fn(EditRefusal) -> Self {
+        move |refusal| Failure::Option { option, reason: refusal.to_string() }
+    }
+
+    /// The exit status.
+    pub(super) fn status(&self) -> u8 {
+        match self {
+            Failure::Input(_) | Failure::Option { .. } => WRONG_INPUT,
+            Failure::NoResult { .. } | Failure::Stopped(_) | Failure::Output(_) | Failure::StandardOutput { .. } => NOT_DONE,
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! The commands that need no window.
+//!
+//! Exit status: 0 done, 1 the analysis could not be done, 2 the command line or a file is wrong; the reason on standard error.
+
+mod analyze;
+mod arguments;
+mod check;
+mod example;
+mod failure;
+mod progress;
+mod sections;
+mod summary;
+mod terminal;
+mod text_table;
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use arguments::Arguments;
+use failure::Failure;
+use terminal::{say, say_error};
+
+pub use arguments::{AnalyzeArguments, Command, PairList, Rejection};
+
+/// What the command line asks for.
+#[derive(Debug)]
+pub enum Request {
+    /// The window, on a file or on the embedded example.
+    Window(Option<PathBuf>),
+    /// A command without a window.
+    Command(Command),
+}
+
+/// Reads a command line; help, version and errors are printed here, and leave only the exit status.
+pub fn request(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, ExitCode> {
+    match Arguments::try_parse_from(arguments) {
+        Ok(Arguments { command: Some(command), .. }) => Ok(Request::Command(command)),
+        Ok(Arguments { command: None, file }) => Ok(Request::Window(file)),
+        Err(error) if error.use_stderr() => {
+            say_error(&usage_words(&error));
+            Err(ExitCode::from(failure::WRONG_INPUT))
+        }
+        Err(help) => Err(finish(say(&help.to_string()))),
+    }
+}
+
+/// Carries out a command.
+pub fn run(command: &Command) -> ExitCode {
+    finish(match command {
+        Command::Analyze(arguments) => analyze::analyze(arguments),
+        Command::Check { file } => check::check(file),
+        Command::Example { directory } => example::example(directory),
+    })
+}
+
+fn finish(result: Result<(), Failure>) -> ExitCode {
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            say_error(&failure.to_string());
+            ExitCode::from(failure.status())
+        }
+    }
+}
+
+/// clap's complaint on one line, without the usage that it repeats below.
+fn usage_words(error: &clap::Error) -> String {
+    let words = error.to_string();
+    let complaint = words.split("\n\nUsage:").next().unwrap_or(&words);
+    let paragraphs = complaint.split("\n\n").filter(|paragraph| !paragraph.starts_with("For more information"));
+    let line = |paragraph: &str| paragraph.lines().map(str::trim).collect::<Vec<_>>().join(" ");
+    let line = paragraphs.map(line).collect::<Vec<_>>().join("; ");
+    format!("{} (gdcm --help says more)", line.strip_prefix("error: ").unwrap_or(&line).trim_end())
+}

@@ -1,0 +1,48 @@
+//! The progress of an analysis, on a terminal only.
+
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::study::Watch;
+
+/// An analysis that is done sooner needs no progress.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// A bar on standard error, where that is a terminal, once the analysis takes longer than half a second.
+pub(super) struct Progress {
+    bar: ProgressBar,
+    started: Instant,
+}
+
+impl Progress {
+    pub(super) fn new() -> Self {
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
+        // The template is a constant; without it the bar has its own looks.
+        if let Ok(style) = ProgressStyle::with_template("analysing {bar:40} {pos} of {len} conditions") {
+            bar.set_style(style);
+        }
+        Self { bar, started: Instant::now() }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Watch for Progress {
+    fn stopped(&self) -> bool {
+        false
+    }
+
+    fn progress(&self, done: usize, total: usize) {
+        if self.bar.is_hidden() && self.started.elapsed() >= PATIENCE {
+            // Draws nothing where standard error is no terminal.
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+        self.bar.set_length(total as u64);
+        self.bar.set_position(done as u64);
+    }
+}

@@ -1,0 +1,175 @@
+//! The sections of the summary.
+
+use crate::dataset::{BundleKind, Condition, Pair};
+use crate::schedule::{Schedule, ScheduleKind, ScheduledQuantity};
+use crate::study::{Analysis, ConditionAnalysis};
+use crate::units::s_to_ms;
+
+use super::summary::LABEL;
+use super::terminal::plain;
+use super::text_table::{Side, TextTable, labelled, listed};
+
+/// One condition: representatives, rejections, the on-axis and held responses, and what could not be matched.
+pub(super) fn condition_section(analysis: &Analysis, index: usize) -> String {
+    let condition = &analysis.study.dataset.conditions()[index];
+    let state = condition.flight_state();
+    let title = format!("{} ({} kt)", plain(&state.name), state.airspeed_kt);
+    let mut text = labelled(0, &format!("Condition {}", state.id), LABEL, &title);
+    match &analysis.conditions[index] {
+        Ok(result) => {
+            text.push_str(&model_lines(analysis, index, condition, result));
+            text.push_str(&response_table(analysis, result).lines(2));
+            text.push_str(&channel_lines(analysis, result));
+            text.push_str(&trouble_lines(analysis, result));
+        }
+        Err(failure) => text.push_str(&labelled(2, "no result", LABEL - 2, &plain(&failure.to_string()))),
+    }
+    text
+}
+
+fn model_lines(analysis: &Analysis, index: usize, condition: &Condition, result: &ConditionAnalysis) -> String {
+    let name = |kind, model: usize| plain(&condition.bundle(kind)[model].name);
+    let rejected: Vec<String> = analysis.study.rejected_names(index).into_iter().map(plain).collect();
+    let is_rejected = |model: &usize| analysis.study.choices[index].physics.rejected.contains(model);
+    let suggested = result.suggested().into_iter().filter(|model| !is_rejected(model));
+    let suggested: Vec<String> = suggested.map(|model| name(BundleKind::Physics, model)).collect();
+    let mut text = labelled(2, "physics", LABEL - 2, &name(BundleKind::Physics, result.comparison.physics.model));
+    let identified = name(BundleKind::Identified, result.comparison.identified.model);
+    text.push_str(&labelled(2, "identified", LABEL - 2, &identified));
+    text.push_str(&listed(2, "rejected", LABEL - 2, &or_none(rejected)));
+    if !suggested.is_empty() {
+        text.push_str(&listed(2, "outliers?", LABEL - 2, &suggested));
+    }
+    text
+}
+
+/// A list that says so where it is empty.
+fn or_none(entries: Vec<String>) -> Vec<String> {
+    if entries.is_empty() { vec!["none".to_owned()] } else { entries }
+}
+
+fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> TextTable<8> {
+    use Side::{Left, Right};
+    let mut table = TextTable::new([
+        ("response", Left),
+        ("held", Left),
+        ("G", Right),
+        ("net gain", Right),
+        ("D [ms]", Right),
+        ("net delay [ms]", Right),
+        ("J before", Right),
+        ("J after", Right),
+    ]);
+    let dataset = &analysis.study.dataset;
+    let delta = &result.comparison.delta;
+    let shown = |pair: &Pair| dataset.on_axis()[*pair] || analysis.study.settings.constrained[*pair];
+    for pair in dataset.on_axis().pairs().filter(shown) {
+        let cost = result.cost[pair];
+        table.row([
+            plain(&dataset.pair_name(pair)),
+            if result.held[pair] { "yes" } else { "no" }.to_owned(),
+            figure(delta.gain[pair], 3),
+            figure(Some(result.correction.net_gain(pair)), 3),
+            figure(delta.delay_s[pair].map(s_to_ms), 1),
+            figure(Some(s_to_ms(result.correction.net_delay_s(pair))), 1),
+            figure(cost.map(|cost| cost.uncorrected.total()), 1),
+            figure(cost.map(|cost| cost.corrected.total()), 1),
+        ]);
+    }
+    table
+}
+
+fn figure(value: Option<f64>, digits: usize) -> String {
+    // Adding zero turns a rounded minus zero into zero.
+    let rounded = |value: f64| (value * 10_f64.powi(digits as i32)).round() / 10_f64.powi(digits as i32) + 0.0;
+    value.map_or("-".to_owned(), |value| format!("{:.digits$}", rounded(value)))
+}
+
+fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
+    let (dataset, correction) = (&analysis.study.dataset, &result.correction);
+    let channels = || dataset.inputs().iter().chain(dataset.outputs()).map(|channel| plain(&channel.name));
+    let gains = correction.input_gains.iter().chain(&correction.output_gains);
+    let gains: Vec<String> = channels().zip(gains).map(|(name, gain)| format!("{name} {}", figure(Some(*gain), 3))).collect();
+    let delays = correction.input_delays_s.iter().chain(&correction.output_delays_s);
+    let delays = channels().zip(delays).filter_map(|(name, delay)| {
+        let words = figure(Some(s_to_ms(*delay)), 1);
+        (words != "0.0").then(|| format!("{name} {words} ms"))
+    });
+    let delays = or_none(delays.collect());
+    listed(2, "gains", LABEL - 2, &gains) + &listed(2, "delays", LABEL - 2, &delays)
+}
+
+/// What could not be matched, what is not proven, and other cautions.
+fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
+    let dataset = &analysis.study.dataset;
+    let names = |channels: &[crate::dataset::Channel]| -> Vec<String> {
+        channels.iter().map(|channel| plain(&channel.name)).collect()
+    };
+    let (inputs, outputs) = (names(dataset.inputs()), names(dataset.outputs()));
+    let mut text = String::new();
+    for entry in &result.gains.unmatched {
+        let words = format!(
+            "gain of {}: {:.3} in place of {:.3} ({:+.1} dB)",
+            plain(&dataset.pair_name(entry.pair)),
+            entry.target,
+            entry.wanted,
+            entry.shortfall_db
+        );
+        text.push_str(&labelled(2, "not matched", LABEL - 2, &words));
+    }
+    for conflict in &result.gains.conflicts {
+        text.push_str(&labelled(2, "why", LABEL - 2, &conflict.words(&inputs, &outputs)));
+    }
+    let top = analysis.study.settings.band.max();
+    for entry in &result.delays.unmatched {
+        text.push_str(&labelled(2, "not matched", LABEL - 2, &entry.words(top, &inputs, &outputs)));
+    }
+    if let crate::correction::Outcome::NotProven { gap } = result.gains.outcome {
+        let words = format!("better gains may exist, by at most {:.1e} of the objective", gap);
+        text.push_str(&labelled(2, "not proven", LABEL - 2, &words));
+    }
+    for caution in &result.cautions {
+        text.push_str(&labelled(2, "caution", LABEL - 2, &plain(&caution.words(|pair| dataset.pair_name(pair)))));
+    }
+    text
+}
+
+/// The scheduled net gains of the on-axis and held responses over airspeed.
+pub(super) fn schedule_section(analysis: &Analysis) -> String {
+    let schedule = match &analysis.schedule {
+        Ok(schedule) => schedule,
+        Err(error) => return labelled(0, "Schedule", LABEL, &error.to_string()),
+    };
+    let of = match schedule.settings.quantity {
+        ScheduledQuantity::LnGain => "ln k",
+        ScheduledQuantity::Gain => "k",
+    };
+    let kind = match schedule.settings.kind {
+        ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree} in airspeed, fitted to {of}"),
+        ScheduleKind::Table => format!("lookup table in airspeed, of {of}"),
+    };
+    let range = format!("{} to {} kt", schedule.airspeeds.min_kt, schedule.airspeeds.max_kt);
+    let mut text = labelled(0, "Schedule", LABEL, &format!("{kind}, {range}; net gains:"));
+    if schedule.has_non_positive_gain() {
+        text.push_str(&labelled(2, "caution", LABEL - 2, "a scheduled gain is not positive somewhere in this range"));
+    }
+    text + &schedule_table(analysis, schedule)
+}
+
+fn schedule_table(analysis: &Analysis, schedule: &Schedule) -> String {
+    /// Airspeeds shown: the ends, the middle, and the quarters.
+    const SHOWN: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+    let dataset = &analysis.study.dataset;
+    let (min, max) = (schedule.airspeeds.min_kt, schedule.airspeeds.max_kt);
+    let at = SHOWN.map(|fraction| min + fraction * (max - min));
+    let heading = at.map(|airspeed| format!("{airspeed:.0} kt"));
+    let [a, b, c, d, e] = heading.each_ref().map(|words| (words.as_str(), Side::Right));
+    let mut table = TextTable::new([("response", Side::Left), a, b, c, d, e]);
+    let corrections = at.map(|airspeed| schedule.at(airspeed));
+    let shown = |pair: &Pair| dataset.on_axis()[*pair] || analysis.study.settings.constrained[*pair];
+    for pair in dataset.on_axis().pairs().filter(shown) {
+        let [a, b, c, d, e] = corrections.each_ref().map(|correction| figure(Some(correction.net_gain(pair)), 3));
+        table.row([plain(&dataset.pair_name(pair)), a, b, c, d, e]);
+    }
+    table.lines(2)
+}

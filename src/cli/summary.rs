@@ -1,0 +1,72 @@
+//! What `gdcm analyze` prints.
+
+use std::path::Path;
+
+use crate::io::LoadedDataset;
+use crate::study::{Analysis, Assessed};
+
+use super::sections::{condition_section, schedule_section};
+use super::terminal::plain;
+use super::text_table::labelled;
+
+/// Width of the labels at the left of a section.
+pub(super) const LABEL: usize = 14;
+
+/// The results for a person to read: the settings, each condition, the schedule, the assessment, and where the files are.
+pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -> String {
+    let mut text = heading(analysis, loaded);
+    for index in 0..analysis.conditions.len() {
+        text.push('\n');
+        text.push_str(&condition_section(analysis, index));
+    }
+    text.push('\n');
+    text.push_str(&schedule_section(analysis));
+    text.push_str(&assessment_lines(analysis));
+    let files = "corrections.json, corrections.csv, assessment.csv";
+    text.push_str(&labelled(0, "Written", LABEL, &format!("{files} in {}", plain(&out.display().to_string()))));
+    text
+}
+
+fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
+    let (study, settings) = (&analysis.study, &analysis.study.settings);
+    let held: Vec<String> = settings.constrained.marked().map(|pair| plain(&study.dataset.pair_name(pair))).collect();
+    let held = if held.is_empty() { "none".to_owned() } else { held.join(", ") };
+    let band = format!(
+        "{} to {} rad/s, {} frequencies; alpha {} (gains), {} (delays)",
+        settings.band.min(),
+        settings.band.max(),
+        settings.points,
+        settings.alpha_gain,
+        settings.alpha_delay
+    );
+    let dataset = format!("{}, {}", plain(study.dataset.name()), plain(&loaded.origin.to_string()));
+    labelled(0, "Dataset", LABEL, &dataset) + &labelled(0, "Band", LABEL, &band) + &labelled(0, "Held", LABEL, &held)
+}
+
+/// How far the scheduled correction brings the nominal models, and which conditions it is not judged in.
+fn assessment_lines(analysis: &Analysis) -> String {
+    let (mut better, mut compared) = (0, 0);
+    let mut left_out = Vec::new();
+    let on_axis = analysis.study.dataset.measuring_pairs();
+    for (condition, assessed) in analysis.study.dataset.conditions().iter().zip(&analysis.assessment) {
+        match assessed {
+            Assessed::LeftOut { why } => left_out.push(format!("condition {}: {}", condition.id(), plain(why))),
+            Assessed::Nominal(changes) => {
+                let changes = on_axis.marked().filter_map(|pair| changes[pair]).map(|change| change.total());
+                for change in changes {
+                    compared += 1;
+                    better += usize::from(change < 0.0);
+                }
+            }
+        }
+    }
+    let conditions = analysis.conditions.len() - left_out.len();
+    let words = format!(
+        "under the schedule J of the nominal models falls in {better} of {compared} on-axis responses of {conditions} conditions"
+    );
+    let mut text = labelled(0, "Assessment", LABEL, &words);
+    for words in left_out {
+        text.push_str(&labelled(0, "Left out", LABEL, &words));
+    }
+    text
+}

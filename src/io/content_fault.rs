@@ -1,0 +1,146 @@
+//! What can be wrong at a place in a file.
+
+use crate::dataset::{BandError, ConditionError, DatasetError, MeasuredResponseError, StateSpaceError};
+use crate::study::EditRefusal;
+
+/// What is wrong at a place in a file: expected, found, how to mend it.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ContentFault {
+    /// Something of another type stands there.
+    #[error("expected {expected}, found {found} (line {line}, column {column})")]
+    Type {
+        /// What has to stand there.
+        expected: String,
+        /// What stands there.
+        found: String,
+        /// Line, counted from 1.
+        line: usize,
+        /// Column in bytes, counted from 1.
+        column: usize,
+    },
+    /// A number is NaN, infinite, or too large for a 64-bit number.
+    #[error("expected a finite number, found {found} (line {line}, column {column})")]
+    NotFinite {
+        /// What stands there.
+        found: String,
+        /// Line, counted from 1.
+        line: usize,
+        /// Column in bytes, counted from 1.
+        column: usize,
+    },
+    /// Lists stand inside lists, deeper than any file of this format.
+    #[error("lists or objects are nested too deeply (line {line}, column {column})")]
+    TooDeep {
+        /// Line, counted from 1.
+        line: usize,
+        /// Column in bytes, counted from 1.
+        column: usize,
+    },
+    /// A key that must be there is not.
+    #[error("the key \"{key}\" is missing; add it")]
+    MissingKey {
+        /// The key.
+        key: String,
+    },
+    /// A key stands twice.
+    #[error("the key \"{key}\" stands twice; remove one")]
+    DuplicateKey {
+        /// The key.
+        key: String,
+    },
+    /// Any other complaint about the text.
+    #[error("{reason} (line {line}, column {column})")]
+    Text {
+        /// The complaint.
+        reason: String,
+        /// Line, counted from 1.
+        line: usize,
+        /// Column in bytes, counted from 1.
+        column: usize,
+    },
+    /// A list has more entries than the program takes.
+    #[error("expected at most {most} entries, found {found}")]
+    TooMany {
+        /// The limit.
+        most: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// A text is none of those that may stand there.
+    #[error("expected {expected}, found \"{found}\"")]
+    Word {
+        /// What may stand there.
+        expected: String,
+        /// What stands there.
+        found: String,
+    },
+    /// A table has another shape than the channels or the states require.
+    #[error("expected {expected}, found {found}")]
+    Shape {
+        /// The shape required, in words.
+        expected: String,
+        /// The shape found, in words.
+        found: String,
+    },
+    /// A pair names a channel that the dataset does not have.
+    #[error("the dataset has no {kind} \"{name}\"; a pair is written [output, input]")]
+    UnknownChannel {
+        /// "output" or "input".
+        kind: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// A pair stands twice in a list.
+    #[error("the pair [\"{output}\", \"{input}\"] stands twice; remove one")]
+    DuplicatePair {
+        /// The output's name.
+        output: String,
+        /// The input's name.
+        input: String,
+    },
+    /// A model has both matrices and frequency data.
+    #[error("both matrices and a frequency_response are given; keep one of them")]
+    BothDynamics,
+    /// A model has neither matrices nor frequency data.
+    #[error("neither matrices A, B, C, D nor a frequency_response is given; add one of them")]
+    NoDynamics,
+    /// A physics model is given by frequency data.
+    #[error("a physics model needs matrices A, B, C, D; a frequency_response is for identified models")]
+    MeasuredPhysics,
+    /// The bands ends are wrong.
+    #[error(transparent)]
+    Band(#[from] BandError),
+    /// The matrices are no state-space model.
+    #[error(transparent)]
+    StateSpace(#[from] StateSpaceError),
+    /// The frequency data are no response.
+    #[error(transparent)]
+    MeasuredResponse(#[from] MeasuredResponseError),
+    /// The models are no condition.
+    #[error(transparent)]
+    Condition(#[from] ConditionError),
+    /// The conditions are no dataset.
+    #[error(transparent)]
+    Dataset(#[from] DatasetError),
+    /// A study has a condition that its dataset does not have.
+    #[error("the dataset has no condition {id}")]
+    UnknownCondition {
+        /// The id.
+        id: i64,
+    },
+    /// A study has a condition twice.
+    #[error("condition {id} stands twice; remove one")]
+    DuplicateCondition {
+        /// The id.
+        id: i64,
+    },
+    /// A study names a model that the condition does not have.
+    #[error("the dataset's condition has no such model: \"{name}\"")]
+    UnknownModel {
+        /// The name.
+        name: String,
+    },
+    /// A study holds a decision that cannot be taken.
+    #[error(transparent)]
+    Refused(#[from] EditRefusal),
+}

@@ -1,0 +1,56 @@
+//! Results by the names of their channels.
+
+use crate::dataset::{Channel, Dataset, Pair, PairTable};
+use crate::io::by_name::ByName;
+
+use super::schema::{Channels, Table};
+
+/// The names of a dataset's channels.
+pub(super) struct ChannelNames {
+    pub(super) inputs: Vec<String>,
+    pub(super) outputs: Vec<String>,
+}
+
+impl ChannelNames {
+    pub(super) fn of(dataset: &Dataset) -> Self {
+        let names = |channels: &[Channel]| channels.iter().map(|channel| channel.name.clone()).collect();
+        Self { inputs: names(dataset.inputs()), outputs: names(dataset.outputs()) }
+    }
+
+    /// The names of a pair, output first.
+    pub(super) fn pair(&self, pair: Pair) -> (String, String) {
+        (self.outputs[pair.output].clone(), self.inputs[pair.input].clone())
+    }
+
+    /// The names of the marked pairs.
+    pub(super) fn marked(&self, table: &PairTable<bool>) -> Vec<(String, String)> {
+        table.marked().map(|pair| self.pair(pair)).collect()
+    }
+
+    /// One figure for each input.
+    pub(super) fn by_input<T>(&self, figures: impl IntoIterator<Item = T>) -> ByName<T> {
+        ByName(self.inputs.iter().cloned().zip(figures).collect())
+    }
+
+    /// One figure for each output.
+    pub(super) fn by_output<T>(&self, figures: impl IntoIterator<Item = T>) -> ByName<T> {
+        ByName(self.outputs.iter().cloned().zip(figures).collect())
+    }
+
+    /// One figure for each channel.
+    pub(super) fn channels(&self, inputs: &[f64], outputs: &[f64]) -> Channels {
+        Channels {
+            inputs: self.by_input(inputs.iter().copied()),
+            outputs: self.by_output(outputs.iter().copied()),
+        }
+    }
+}
+
+/// A table as rows of outputs; what is not finite is left empty, for JSON has no such numbers.
+pub(super) fn rows<T>(table: &PairTable<Option<T>>, figure: impl Fn(&T) -> f64) -> Table {
+    let entry = |output, input| {
+        let entry = table[Pair { output, input }].as_ref().map(&figure);
+        entry.filter(|value| value.is_finite())
+    };
+    (0..table.outputs()).map(|output| (0..table.inputs()).map(|input| entry(output, input)).collect()).collect()
+}

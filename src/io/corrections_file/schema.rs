@@ -1,0 +1,296 @@
+//! A corrections file, key by key.
+
+use serde::{Deserialize, Serialize};
+
+use crate::io::by_name::ByName;
+
+/// A table `[output][input]` in the dataset's channel order; `None` (null) where a response has no such figure.
+pub type Table = Vec<Vec<Option<f64>>>;
+
+/// What an analysis found, as `corrections.json` holds it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Corrections {
+    /// `gdcm-corrections`.
+    pub format: String,
+    /// Version of the format.
+    pub version: u64,
+    /// The program that wrote the file, with its version.
+    pub software: String,
+    /// The dataset analysed.
+    pub dataset: DatasetLabel,
+    /// Every setting that changes a result.
+    pub settings: SettingsUsed,
+    /// Result of each condition that has one.
+    pub conditions: Vec<ConditionCorrections>,
+    /// Conditions without a result.
+    #[serde(default)]
+    pub failed: Vec<WithoutResult>,
+    /// The gains as functions of airspeed; `None` where there is no schedule.
+    pub schedule: Option<ScheduleUsed>,
+    /// What the schedule is worth.
+    pub assessment: Assessment,
+}
+
+/// Which dataset was analysed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DatasetLabel {
+    /// Its name.
+    pub name: String,
+    /// SHA-256 of its file, in hexadecimal.
+    pub sha256: String,
+}
+
+/// The settings of the analysis.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SettingsUsed {
+    /// Band of comparison \[rad/s\].
+    pub band_rad_s: [f64; 2],
+    /// Number of frequencies.
+    pub points: usize,
+    /// Weight of the regularisation of the gains.
+    pub alpha_gain: f64,
+    /// Weight of the regularisation of the delays.
+    pub alpha_delay: f64,
+    /// Quantile that sets the bounds.
+    pub quantile: f64,
+    /// Responses to be held, `[output, input]`.
+    pub constrained: Vec<(String, String)>,
+    /// Responses that the objective ignores, `[output, input]`.
+    pub ignored: Vec<(String, String)>,
+    /// `median` or `mean`: the average over frequency in J.
+    pub cost_average: String,
+    /// `ratio` or `dB`: what the gains minimise.
+    pub gain_objective: String,
+    /// Gain bounds set by hand.
+    pub gain_bounds: Option<[f64; 2]>,
+    /// Upper bound of the delays set by hand \[s\].
+    pub delay_upper_s: Option<f64>,
+}
+
+/// The result of one condition.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConditionCorrections {
+    /// Identity in the dataset.
+    pub id: i64,
+    /// Name for people.
+    pub name: String,
+    /// True airspeed \[kt\].
+    pub airspeed_kt: f64,
+    /// Model that represents the physics bundle.
+    pub physics_representative: String,
+    /// Model that represents the identified bundle.
+    pub identified_representative: String,
+    /// Rejected models, physics first.
+    pub rejected: Vec<String>,
+    /// Physics models suggested as outliers, whatever is rejected.
+    pub suggested_outliers: Vec<String>,
+    /// Discontinuity ratio of each physics model, where it has one.
+    pub discontinuity: ByName<Option<f64>>,
+    /// Whether the condition enters the schedule.
+    pub scheduled: bool,
+    /// Responses held in this condition, `[output, input]`: the constrained ones that are defined here.
+    pub held: Vec<(String, String)>,
+    /// Delta gain.
+    #[serde(rename = "G")]
+    pub delta_gain: Table,
+    /// Delta delay \[s\].
+    #[serde(rename = "D_s")]
+    pub delta_delay_s: Table,
+    /// Least and greatest channel gain.
+    pub gain_bounds: [f64; 2],
+    /// Greatest channel delay \[s\].
+    pub delay_upper_s: f64,
+    /// Channel gains.
+    pub gains: Channels,
+    /// Channel delays \[s\].
+    pub delays_s: Channels,
+    /// How good the gains are.
+    pub gain_solution: GainOutcome,
+    /// How good the delays are.
+    pub delay_solution: DelayOutcome,
+    /// `k_o k_i` of every response, output by output.
+    pub net_gains: Vec<NetGain>,
+    /// J of the representative physics model.
+    #[serde(rename = "J")]
+    pub cost: CostTables,
+    /// What has to be known about the result.
+    pub cautions: Vec<String>,
+}
+
+/// One figure for each channel.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Channels {
+    /// Of each input.
+    pub inputs: ByName<f64>,
+    /// Of each output.
+    pub outputs: ByName<f64>,
+}
+
+/// How good the gains are.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GainOutcome {
+    /// The objective of eq. (7).
+    pub objective: f64,
+    /// No gains inside the bounds have a lower objective.
+    pub lower_bound: Option<f64>,
+    /// Whether the objective is proven to be the least.
+    pub proven: bool,
+    /// Whether every held response is held at its G.
+    pub matched: bool,
+    /// The responses that are not.
+    pub unmatched: Vec<UnmatchedGainEntry>,
+}
+
+/// A response that could not be held at its G.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct UnmatchedGainEntry {
+    /// The output's name.
+    pub output: String,
+    /// The input's name.
+    pub input: String,
+    /// Net gain at which it is held instead.
+    pub target: f64,
+    /// Its G.
+    pub wanted: f64,
+    /// `20 log10 (target / wanted)`.
+    pub short_db: f64,
+    /// What is in the way, and what would help.
+    pub why: String,
+}
+
+/// How good the delays are.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DelayOutcome {
+    /// The objective of eq. (11) \[s²\].
+    pub objective: f64,
+    /// Whether every held response is held at its D.
+    pub matched: bool,
+    /// The responses that are not.
+    pub unmatched: Vec<UnmatchedDelayEntry>,
+}
+
+/// A response that could not be held at its D.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct UnmatchedDelayEntry {
+    /// The output's name.
+    pub output: String,
+    /// The input's name.
+    pub input: String,
+    /// Net delay at which it is held instead \[s\].
+    pub target_s: f64,
+    /// Its D \[s\].
+    pub wanted_s: f64,
+    /// What is in the way.
+    pub why: String,
+}
+
+/// The net gain of a response.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NetGain {
+    /// The output's name.
+    pub output: String,
+    /// The input's name.
+    pub input: String,
+    /// `k_o k_i`.
+    pub gain: f64,
+}
+
+/// J before and after a correction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CostTables {
+    /// Before.
+    pub uncorrected: CostTable,
+    /// After.
+    pub corrected: CostTable,
+}
+
+/// J in its two parts.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CostTable {
+    /// The magnitude's part.
+    pub mag: Table,
+    /// The phase's part.
+    pub phase: Table,
+}
+
+/// A condition without a result.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WithoutResult {
+    /// Identity in the dataset.
+    pub id: i64,
+    /// Why there is none.
+    pub why: String,
+}
+
+/// The gains as functions of airspeed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ScheduleUsed {
+    /// `polynomial` or `table`.
+    pub kind: String,
+    /// `ln k` or `k`: what the figures of `inputs` and `outputs` give.
+    pub of: String,
+    /// Degree of the polynomial; `None` for a table.
+    pub degree: Option<usize>,
+    /// Mean airspeed of the scheduled conditions \[kt\].
+    pub airspeed_mean_kt: f64,
+    /// Half the range of their airspeeds \[kt\].
+    pub airspeed_half_range_kt: f64,
+    /// Least and greatest of their airspeeds \[kt\]; outside, the end value holds.
+    pub airspeed_range_kt: [f64; 2],
+    /// Of each input: coefficients in the scaled airspeed, lowest power first; or the table's figures, one for each airspeed of
+    /// `table`.
+    pub inputs: ByName<Vec<f64>>,
+    /// Of each output, likewise.
+    pub outputs: ByName<Vec<f64>>,
+    /// The same of the delays \[s\], where they are scheduled.
+    pub delays_s: Option<ScheduledDelays>,
+    /// The scheduled gains at each distinct airspeed of the conditions.
+    pub table: Vec<ScheduledGains>,
+}
+
+/// Delays as functions of airspeed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ScheduledDelays {
+    /// Of each input.
+    pub inputs: ByName<Vec<f64>>,
+    /// Of each output.
+    pub outputs: ByName<Vec<f64>>,
+}
+
+/// The scheduled gains at one airspeed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ScheduledGains {
+    /// True airspeed \[kt\].
+    pub airspeed_kt: f64,
+    /// Of each input.
+    pub inputs: ByName<f64>,
+    /// Of each output.
+    pub outputs: ByName<f64>,
+}
+
+/// What the scheduled correction is worth.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Assessment {
+    /// Conditions assessed.
+    pub conditions: Vec<ConditionAssessment>,
+    /// Conditions left out.
+    pub left_out: Vec<WithoutResult>,
+}
+
+/// Change of J of one condition's nominal model under the scheduled correction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConditionAssessment {
+    /// Identity in the dataset.
+    pub id: i64,
+    /// The model assessed.
+    pub model: String,
+    /// Change of J.
+    #[serde(rename = "dJ")]
+    pub total: Table,
+    /// Change of its magnitude part.
+    #[serde(rename = "dJ_mag")]
+    pub magnitude: Table,
+    /// Change of its phase part.
+    #[serde(rename = "dJ_phase")]
+    pub phase: Table,
+}

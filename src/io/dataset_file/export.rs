@@ -1,0 +1,106 @@
+//! From a dataset to what its file says.
+
+use nalgebra::DMatrix;
+
+use crate::dataset::{BundleKind, Channel, Condition, Dataset, Dynamics, MeasuredResponse, Model, Origin, PairTable};
+use crate::io::nested::Nested;
+
+use super::schema::{
+    BandText, ChannelText, ConditionText, DatasetText, FORMAT, IdentifiedText, PhysicsText, ResponseText,
+};
+
+/// The text of a dataset, entry by entry. Names of states, which the program does not keep, are not in it.
+pub(super) fn text_of(dataset: &Dataset) -> DatasetText {
+    let on_axis = dataset.on_axis().marked().map(|pair| {
+        (dataset.outputs()[pair.output].name.clone(), dataset.inputs()[pair.input].name.clone())
+    });
+    DatasetText {
+        format: FORMAT.name.to_owned(),
+        version: FORMAT.version,
+        name: dataset.name().to_owned(),
+        description: written(dataset.description()),
+        inputs: dataset.inputs().iter().map(channel_text).collect(),
+        outputs: dataset.outputs().iter().map(channel_text).collect(),
+        on_axis: Some(on_axis.collect()),
+        frequency_band: BandText { min: dataset.band().min(), max: dataset.band().max(), unit: "rad/s".to_owned() },
+        conditions: dataset.conditions().iter().map(|condition| condition_text(condition)).collect(),
+    }
+}
+
+fn written(text: &str) -> Option<String> {
+    (!text.is_empty()).then(|| text.to_owned())
+}
+
+fn channel_text(channel: &Channel) -> ChannelText {
+    ChannelText { name: channel.name.clone(), unit: channel.unit.clone(), description: written(&channel.description) }
+}
+
+fn condition_text(condition: &Condition) -> ConditionText {
+    let state = condition.flight_state().clone();
+    ConditionText {
+        id: state.id,
+        name: state.name,
+        airspeed_kt: state.airspeed_kt,
+        altitude: state.altitude,
+        altitude_ft: state.altitude_ft,
+        weight: state.weight,
+        mass_kg: state.mass_kg,
+        physics_models: condition.bundle(BundleKind::Physics).iter().map(physics_text).collect(),
+        identified_models: condition.bundle(BundleKind::Identified).iter().map(identified_text).collect(),
+    }
+}
+
+fn physics_text(model: &Model) -> PhysicsText {
+    let [a, b, c, d] = matrices(&model.dynamics);
+    PhysicsText {
+        name: model.name.clone(),
+        role: if model.is_nominal() { "nominal" } else { "perturbed" }.to_owned(),
+        perturbation: model.perturbation().cloned(),
+        _states: None,
+        a,
+        b,
+        c,
+        d,
+        frequency_response: None,
+    }
+}
+
+fn identified_text(model: &Model) -> IdentifiedText {
+    let (method, order) = match &model.origin {
+        Origin::Identified { method, order } => (method.clone(), *order),
+        Origin::Nominal { .. } | Origin::Perturbed { .. } => (None, None),
+    };
+    let [a, b, c, d] = matrices(&model.dynamics);
+    let frequency_response = match &model.dynamics {
+        Dynamics::StateSpace(_) => None,
+        Dynamics::Measured(response) => Some(response_text(response)),
+    };
+    IdentifiedText { name: model.name.clone(), method, order, _states: None, a, b, c, d, frequency_response }
+}
+
+fn matrices(dynamics: &Dynamics) -> [Option<Nested<2>>; 4] {
+    match dynamics {
+        Dynamics::StateSpace(model) => [model.a(), model.b(), model.c(), model.d()].map(|matrix| Some(rows(matrix))),
+        Dynamics::Measured(_) => [const { None }; 4],
+    }
+}
+
+fn rows(matrix: &DMatrix<f64>) -> Nested<2> {
+    // nalgebra stores columns, the file has rows.
+    Nested { shape: [matrix.nrows(), matrix.ncols()], values: matrix.transpose().as_slice().to_vec() }
+}
+
+fn response_text(response: &MeasuredResponse) -> ResponseText {
+    let count = response.omega().len();
+    let values = response.values();
+    let shape = [values.outputs(), values.inputs(), count];
+    let part = |of: fn(&nalgebra::Complex<f64>) -> f64| Nested {
+        shape,
+        values: values.iter().flat_map(|(_, values)| values.iter().map(of)).collect(),
+    };
+    let coherence = response.coherence().map(|table: &PairTable<Vec<f64>>| Nested {
+        shape,
+        values: table.iter().flat_map(|(_, values)| values.iter().copied()).collect(),
+    });
+    ResponseText { omega_rad_s: response.omega().to_vec(), re: part(|value| value.re), im: part(|value| value.im), coherence }
+}

@@ -1,0 +1,119 @@
+//! Dataset files, `*.json` and `*.json.gz`.
+
+mod build;
+mod dynamics;
+mod export;
+mod schema;
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+
+use crate::dataset::Dataset;
+
+use super::file_error::FileError;
+use super::source::Source;
+use super::whole_file::write_whole;
+
+use build::dataset_of;
+use export::text_of;
+use schema::{DatasetText, FORMAT};
+
+/// The example dataset: a synthetic UH-60A-class helicopter at the paper's eleven flight conditions.
+const EXAMPLE: &[u8] = include_bytes!("../../../assets/example-dataset.json.gz");
+/// Name under which the example is written.
+const EXAMPLE_NAME: &str = "example-dataset.json";
+
+/// Where a dataset comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum DatasetOrigin {
+    /// A file.
+    File(PathBuf),
+    /// The example inside the program.
+    EmbeddedExample,
+}
+
+impl fmt::Display for DatasetOrigin {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            DatasetOrigin::File(path) => write!(formatter, "{}", path.display()),
+            DatasetOrigin::EmbeddedExample => formatter.write_str("(embedded example)"),
+        }
+    }
+}
+
+impl DatasetOrigin {
+    /// The path, or what stands for it in an error.
+    pub(super) fn path(&self) -> PathBuf {
+        match self {
+            DatasetOrigin::File(path) => path.clone(),
+            DatasetOrigin::EmbeddedExample => PathBuf::from(self.to_string()),
+        }
+    }
+}
+
+/// A dataset, with what identifies its file and what is odd about it.
+#[derive(Clone, Debug)]
+pub struct LoadedDataset {
+    /// The dataset.
+    pub dataset: Arc<Dataset>,
+    /// SHA-256 of the file's bytes as they are stored, in lower-case hexadecimal.
+    pub sha256: String,
+    /// Where it comes from.
+    pub origin: DatasetOrigin,
+    /// Keys that the program does not know, and other oddities, each with its place.
+    pub cautions: Vec<String>,
+}
+
+/// Loads a dataset from a file, packed by gzip or not; whole, or not at all.
+pub fn load_dataset(path: &Path) -> Result<LoadedDataset, FileError> {
+    dataset_from(&Source::read(path)?, DatasetOrigin::File(path.to_owned()))
+}
+
+/// Loads a dataset from bytes that are already at hand; `origin` is what errors call them.
+pub fn load_dataset_bytes(bytes: &[u8], origin: DatasetOrigin) -> Result<LoadedDataset, FileError> {
+    dataset_from(&Source::of(bytes, &origin.path())?, origin)
+}
+
+/// The example dataset inside the program.
+pub fn embedded_example() -> Result<LoadedDataset, FileError> {
+    load_dataset_bytes(EXAMPLE, DatasetOrigin::EmbeddedExample)
+}
+
+/// Writes the example dataset, unpacked, into a directory (made where there is none), and returns the file's path.
+pub fn write_example(directory: &Path) -> Result<PathBuf, FileError> {
+    let source = Source::of(EXAMPLE, &DatasetOrigin::EmbeddedExample.path())?;
+    super::directory::make_directory(directory)?;
+    let path = directory.join(EXAMPLE_NAME);
+    write_whole(&path, |file| file.write_all(source.text()))?;
+    Ok(path)
+}
+
+/// Saves a dataset; packed by gzip where the name ends in `.gz`.
+pub fn save_dataset(dataset: &Dataset, path: &Path) -> Result<(), FileError> {
+    let text = text_of(dataset);
+    let packed = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
+    write_whole(path, |file| {
+        if packed {
+            let mut encoder = GzEncoder::new(file, Compression::default());
+            serde_json::to_writer(&mut encoder, &text)?;
+            encoder.finish()?;
+            Ok(())
+        } else {
+            Ok(serde_json::to_writer(file, &text)?)
+        }
+    })
+}
+
+/// The dataset that a source holds.
+pub(super) fn dataset_from(source: &Source<'_>, origin: DatasetOrigin) -> Result<LoadedDataset, FileError> {
+    let path = origin.path();
+    let (text, mut cautions) = FORMAT.decode::<DatasetText>(source.text(), &path)?;
+    FORMAT.check_read(&text.format, text.version, &path)?;
+    let (dataset, odd) = dataset_of(text).map_err(|(place, fault)| FileError::content(&path, place, fault))?;
+    cautions.extend(odd);
+    Ok(LoadedDataset { dataset: Arc::new(dataset), sha256: source.sha256.clone(), origin, cautions })
+}

@@ -1,0 +1,137 @@
+//! A dataset file, key by key.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use serde::de::{Deserializer, IgnoredAny, SeqAccess, Visitor};
+use serde::{Deserialize, Serialize};
+
+use crate::io::json_text::Format;
+use crate::io::nested::Nested;
+
+/// What a dataset file calls itself.
+pub(super) const FORMAT: Format = Format { name: "gdcm-dataset", version: 1 };
+
+#[derive(Deserialize, Serialize)]
+pub(super) struct DatasetText {
+    pub(super) format: String,
+    pub(super) version: u64,
+    pub(super) name: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) description: Option<String>,
+    pub(super) inputs: Vec<ChannelText>,
+    pub(super) outputs: Vec<ChannelText>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) on_axis: Option<Vec<(String, String)>>,
+    pub(super) frequency_band: BandText,
+    pub(super) conditions: Vec<ConditionText>,
+}
+
+#[derive(Deserialize, Serialize)]
+pub(super) struct ChannelText {
+    pub(super) name: String,
+    pub(super) unit: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) description: Option<String>,
+}
+
+#[derive(Deserialize, Serialize)]
+pub(super) struct BandText {
+    pub(super) min: f64,
+    pub(super) max: f64,
+    pub(super) unit: String,
+}
+
+#[derive(Deserialize, Serialize)]
+pub(super) struct ConditionText {
+    pub(super) id: i64,
+    pub(super) name: String,
+    pub(super) airspeed_kt: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) altitude: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) altitude_ft: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) weight: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) mass_kg: Option<f64>,
+    pub(super) physics_models: Vec<PhysicsText>,
+    pub(super) identified_models: Vec<IdentifiedText>,
+}
+
+/// A physics model. Frequency data are read only to be refused in words.
+#[derive(Deserialize, Serialize)]
+pub(super) struct PhysicsText {
+    pub(super) name: String,
+    pub(super) role: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) perturbation: Option<BTreeMap<String, f64>>,
+    /// Names of the states, for people: known, and not used.
+    #[serde(default, skip_serializing, rename = "states")]
+    pub(super) _states: Option<Texts>,
+    #[serde(rename = "A", skip_serializing_if = "Option::is_none")]
+    pub(super) a: Option<Nested<2>>,
+    #[serde(rename = "B", skip_serializing_if = "Option::is_none")]
+    pub(super) b: Option<Nested<2>>,
+    #[serde(rename = "C", skip_serializing_if = "Option::is_none")]
+    pub(super) c: Option<Nested<2>>,
+    #[serde(rename = "D", skip_serializing_if = "Option::is_none")]
+    pub(super) d: Option<Nested<2>>,
+    #[serde(default, skip_serializing)]
+    pub(super) frequency_response: Option<IgnoredAny>,
+}
+
+/// An identified model.
+#[derive(Deserialize, Serialize)]
+pub(super) struct IdentifiedText {
+    pub(super) name: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) method: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) order: Option<usize>,
+    /// Names of the states, for people: known, and not used.
+    #[serde(default, skip_serializing, rename = "states")]
+    pub(super) _states: Option<Texts>,
+    #[serde(rename = "A", skip_serializing_if = "Option::is_none")]
+    pub(super) a: Option<Nested<2>>,
+    #[serde(rename = "B", skip_serializing_if = "Option::is_none")]
+    pub(super) b: Option<Nested<2>>,
+    #[serde(rename = "C", skip_serializing_if = "Option::is_none")]
+    pub(super) c: Option<Nested<2>>,
+    #[serde(rename = "D", skip_serializing_if = "Option::is_none")]
+    pub(super) d: Option<Nested<2>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) frequency_response: Option<ResponseText>,
+}
+
+/// A measured frequency response.
+#[derive(Deserialize, Serialize)]
+pub(super) struct ResponseText {
+    pub(super) omega_rad_s: Vec<f64>,
+    pub(super) re: Nested<3>,
+    pub(super) im: Nested<3>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) coherence: Option<Nested<3>>,
+}
+
+/// A list of texts that is checked to be one, and not kept.
+pub(super) struct Texts;
+
+impl<'de> Deserialize<'de> for Texts {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_seq(Texts)
+    }
+}
+
+impl<'de> Visitor<'de> for Texts {
+    type Value = Texts;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("a list of texts")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut texts: A) -> Result<Texts, A::Error> {
+        while texts.next_element::<String>()?.is_some() {}
+        Ok(Texts)
+    }
+}

@@ -1,0 +1,209 @@
+//! JSON text to values, with the place of what is wrong and of what is not known.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::Deserialize;
+use serde_json::error::Category;
+
+use super::content_fault::ContentFault;
+use super::file_error::FileError;
+use super::outline::Outline;
+use super::place::{Place, Step};
+
+/// A kind of file: what its "format" and "version" have to say.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Format {
+    pub(super) name: &'static str,
+    pub(super) version: u64,
+}
+
+impl Format {
+    /// The value that the text holds, and a caution for each key that is not known.
+    ///
+    /// Another format or version is told before anything else is complained of.
+    pub(super) fn decode<'t, T: Deserialize<'t>>(
+        self,
+        text: &'t [u8],
+        path: &Path,
+    ) -> Result<(T, Vec<String>), FileError> {
+        let mut unknown = UnknownKeys::default();
+        let mut json = serde_json::Deserializer::from_slice(text);
+        let mut track = serde_path_to_error::Track::new();
+        let tracked = serde_path_to_error::Deserializer::new(&mut json, &mut track);
+        let value = serde_ignored::deserialize(tracked, |key| unknown.add(&key));
+        let ended = value.and_then(|value| json.end().map(|()| value));
+        match ended {
+            Ok(value) => Ok((value, unknown.cautions(text))),
+            Err(error) => {
+                let steps = track.path().iter().filter_map(step_of).collect::<Vec<_>>();
+                let outline = Outline::of(text);
+                self.check(&outline, path)?;
+                Err(json_error(text, path, Place::of(&steps, &outline), &error))
+            }
+        }
+    }
+
+    /// Refuses a file that says it is of another format or version.
+    fn check(self, outline: &Outline, path: &Path) -> Result<(), FileError> {
+        let path = path.to_owned();
+        match (&outline.format, &outline.version) {
+            (Some(found), _) if *found != format!("\"{}\"", self.name) => {
+                Err(FileError::Format { path, expected: self.name, found: found.clone() })
+            }
+            (Some(_), Some(found)) if *found != self.version.to_string() => {
+                Err(FileError::Version { path, format: self.name, newest: self.version, found: found.clone() })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses a format or a version that was read, but is another.
+    pub(super) fn check_read(self, format: &str, version: u64, path: &Path) -> Result<(), FileError> {
+        let outline =
+            Outline { format: Some(format!("\"{format}\"")), version: Some(version.to_string()), conditions: Vec::new() };
+        self.check(&outline, path)
+    }
+}
+
+fn step_of(segment: &serde_path_to_error::Segment) -> Option<Step> {
+    match segment {
+        serde_path_to_error::Segment::Seq { index } => Some(Step::Entry(*index)),
+        serde_path_to_error::Segment::Map { key } => Some(Step::Key(key.clone())),
+        _ => None,
+    }
+}
+
+/// Puts serde_json's complaint into the engineer's words.
+fn json_error(text: &[u8], path: &Path, place: Place, error: &serde_json::Error) -> FileError {
+    let (line, column) = (error.line(), error.column());
+    let full = error.to_string();
+    let reason = full.split(" at line ").next().unwrap_or(&full).to_owned();
+    let path_owned = path.to_owned();
+    match error.classify() {
+        Category::Eof => FileError::CutOff { path: path_owned, place, line, column },
+        Category::Data => FileError::content(path, place, data_fault(reason, line, column)),
+        _ if reason.starts_with("recursion limit") => {
+            FileError::content(path, place, ContentFault::TooDeep { line, column })
+        }
+        _ => match token_at(text, line, column).filter(|token| is_number_like(token)) {
+            Some(found) => FileError::content(path, place, ContentFault::NotFinite { found, line, column }),
+            None => FileError::NotJson { path: path_owned, place, line, column, reason },
+        },
+    }
+}
+
+fn data_fault(reason: String, line: usize, column: usize) -> ContentFault {
+    let between = |start: &str| reason.strip_prefix(start)?.strip_suffix('`').map(str::to_owned);
+    if let Some(key) = between("missing field `") {
+        return ContentFault::MissingKey { key };
+    }
+    if let Some(key) = between("duplicate field `") {
+        return ContentFault::DuplicateKey { key };
+    }
+    let mismatch = ["invalid type: ", "invalid value: ", "invalid length "].iter().find_map(|start| {
+        let (found, expected) = reason.strip_prefix(start)?.split_once(", expected ")?;
+        Some((found_words(found, *start == "invalid length "), expected_words(expected)))
+    });
+    match mismatch {
+        Some((found, expected)) => ContentFault::Type { expected, found, line, column },
+        None => ContentFault::Text { reason, line, column },
+    }
+}
+
+/// serde's words for what it found, in words that JSON's own authors would use.
+fn found_words(found: &str, is_length: bool) -> String {
+    if is_length {
+        return format!("{found} entries");
+    }
+    let unquoted = found.replace('`', "");
+    let renamed = [("string ", "the text "), ("integer ", ""), ("floating point ", ""), ("boolean ", "")]
+        .iter()
+        .find_map(|(start, word)| unquoted.strip_prefix(start).map(|rest| format!("{word}{rest}")));
+    renamed.unwrap_or_else(|| match unquoted.as_str() {
+        "sequence" => "a list".to_owned(),
+        "map" => "an object".to_owned(),
+        _ => unquoted,
+    })
+}
+
+/// serde's words for what it expected, in words for the file's author.
+fn expected_words(expected: &str) -> String {
+    match expected {
+        "f64" => "a number (without quotation marks)".to_owned(),
+        "i64" | "u64" | "usize" => "a whole number".to_owned(),
+        "a string" => "a text in quotation marks".to_owned(),
+        "a sequence" => "a list".to_owned(),
+        "a map" => "an object".to_owned(),
+        "a tuple of size 2" => "a list of 2 entries".to_owned(),
+        _ if expected.starts_with("struct ") => "an object".to_owned(),
+        _ => expected.to_owned(),
+    }
+}
+
+/// The bare word around a column (counted from 1) of a line (counted from 1): `NaN`, `1e999`.
+fn token_at(text: &[u8], line: usize, column: usize) -> Option<String> {
+    /// Longer than any number that a program writes.
+    const LONGEST: usize = 60;
+    let line = text.split(|byte| *byte == b'\n').nth(line.checked_sub(1)?)?;
+    let is_word = |byte: &u8| byte.is_ascii_alphanumeric() || b"+-.".contains(byte);
+    let at = column.saturating_sub(1).min(line.len());
+    let start = line[..at].iter().rposition(|byte| !is_word(byte)).map_or(0, |before| before + 1);
+    let end = line[at..].iter().position(|byte| !is_word(byte)).map_or(line.len(), |after| at + after);
+    let token: String = line[start..end].iter().take(LONGEST).map(|&byte| char::from(byte)).collect();
+    (!token.is_empty()).then_some(token)
+}
+
+/// Whether a word is a number to other programs, but not to JSON or not a finite one.
+fn is_number_like(token: &str) -> bool {
+    // Rust reads NaN, inf and infinity in any case and with any sign, as C and Python write them; 1e999 reads as infinite.
+    token.parse::<f64>().is_ok_and(|value| !value.is_finite())
+}
+
+/// Keys that the program does not know, the same key in the same kind of place counted once.
+#[derive(Debug, Default)]
+struct UnknownKeys {
+    /// By the steps without their indices: the first such place, and how many there are.
+    found: BTreeMap<Vec<String>, (Vec<Step>, usize)>,
+}
+
+impl UnknownKeys {
+    fn add(&mut self, path: &serde_ignored::Path<'_>) {
+        let mut steps = Vec::new();
+        collect_steps(path, &mut steps);
+        let keys = steps.iter().filter_map(|step| match step {
+            Step::Key(key) => Some(key.clone()),
+            Step::Entry(_) => None,
+        });
+        self.found.entry(keys.collect()).or_insert((steps, 0)).1 += 1;
+    }
+
+    fn cautions(&self, text: &[u8]) -> Vec<String> {
+        if self.found.is_empty() {
+            return Vec::new();
+        }
+        let outline = Outline::of(text);
+        let caution = |(steps, count): &(Vec<Step>, usize)| {
+            let more = if *count > 1 { format!(", and {} more like it", count - 1) } else { String::new() };
+            match steps.split_last() {
+                Some((Step::Key(key), place)) => {
+                    format!("{}the key \"{key}\" is not known and not used{more}", Place::of(place, &outline).before())
+                }
+                _ => format!("{}this entry is not known and not used{more}", Place::of(steps, &outline).before()),
+            }
+        };
+        self.found.values().map(caution).collect()
+    }
+}
+
+fn collect_steps(path: &serde_ignored::Path<'_>, steps: &mut Vec<Step>) {
+    use serde_ignored::Path as Ignored;
+    let (parent, step) = match path {
+        Ignored::Root => return,
+        Ignored::Seq { parent, index } => (parent, Some(Step::Entry(*index))),
+        Ignored::Map { parent, key } => (parent, Some(Step::Key(key.clone()))),
+        Ignored::Some { parent } | Ignored::NewtypeStruct { parent } | Ignored::NewtypeVariant { parent } => (parent, None),
+    };
+    collect_steps(parent, steps);
+    steps.extend(step);
+}

@@ -1,0 +1,139 @@
+//! Numbers in lists in lists, as JSON writes matrices and tables.
+
+use std::fmt;
+
+use serde::de::{DeserializeSeed, Deserializer, Error, SeqAccess, Visitor};
+use serde::ser::{SerializeSeq, Serializer};
+use serde::{Deserialize, Serialize};
+
+/// A rectangular array of `DEPTH` dimensions, the last one running fastest: `[[1, 2], [3, 4]]` has the shape 2 x 2.
+///
+/// Read flat, so that a file of empty lists cannot take more memory than its own length.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Nested<const DEPTH: usize> {
+    /// Entries along each dimension; 0 where a dimension before it is empty.
+    pub(super) shape: [usize; DEPTH],
+    /// The numbers.
+    pub(super) values: Vec<f64>,
+}
+
+impl<const DEPTH: usize> Nested<DEPTH> {
+    /// The shape in words: "6 x 4".
+    pub(super) fn shape_words(&self) -> String {
+        self.shape.map(|length| length.to_string()).join(" x ")
+    }
+}
+
+impl<'de, const DEPTH: usize> Deserialize<'de> for Nested<DEPTH> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let mut filling = Filling { lengths: [None; DEPTH], values: Vec::new() };
+        List { filling: &mut filling, depth: 0 }.deserialize(deserializer)?;
+        Ok(Self { shape: filling.lengths.map(Option::unwrap_or_default), values: filling.values })
+    }
+}
+
+/// An array while it is read.
+struct Filling<const DEPTH: usize> {
+    /// Length of the lists of each depth, once the first of them has ended.
+    lengths: [Option<usize>; DEPTH],
+    values: Vec<f64>,
+}
+
+/// One list at a depth, 0 the outermost.
+struct List<'f, const DEPTH: usize> {
+    filling: &'f mut Filling<DEPTH>,
+    depth: usize,
+}
+
+impl<'de, const DEPTH: usize> DeserializeSeed<'de> for List<'_, DEPTH> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_seq(self)
+    }
+}
+
+impl<'de, const DEPTH: usize> Visitor<'de> for List<'_, DEPTH> {
+    type Value = ();
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(if self.depth + 1 == DEPTH { "a list of numbers" } else { "a list of lists of numbers" })
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> Result<(), A::Error> {
+        let mut length = 0;
+        if self.depth + 1 == DEPTH {
+            while let Some(value) = entries.next_element::<f64>()? {
+                self.filling.values.push(value);
+                length += 1;
+            }
+        } else {
+            let depth = self.depth + 1;
+            while entries.next_element_seed(List { filling: &mut *self.filling, depth })?.is_some() {
+                length += 1;
+            }
+        }
+        match *self.filling.lengths[self.depth].get_or_insert(length) {
+            expected if expected == length => Ok(()),
+            expected => {
+                Err(A::Error::custom(format!("expected {expected} entries, as in the first of these lists, found {length}")))
+            }
+        }
+    }
+}
+
+impl<const DEPTH: usize> Serialize for Nested<DEPTH> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        Part { shape: &self.shape, values: &self.values }.serialize(serializer)
+    }
+}
+
+/// A list of an array while it is written.
+struct Part<'v> {
+    shape: &'v [usize],
+    values: &'v [f64],
+}
+
+impl Serialize for Part<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.shape {
+            [] | [_] => self.values.serialize(serializer),
+            [length, shape @ ..] => {
+                let size: usize = shape.iter().product();
+                let mut list = serializer.serialize_seq(Some(*length))?;
+                for part in 0..*length {
+                    list.serialize_element(&Part { shape, values: &self.values[part * size..(part + 1) * size] })?;
+                }
+                list.end()
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read<const DEPTH: usize>(text: &str) -> Result<Nested<DEPTH>, String> {
+        serde_json::from_str(text).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn what_is_written_is_what_was_read() {
+        for text in ["[[1.0,2.0,3.0],[4.0,5.0,6.0]]", "[]", "[[],[]]"] {
+            assert_eq!(serde_json::to_string(&read::<2>(text).unwrap()).unwrap(), text);
+        }
+        let text = "[[[1.0],[2.0]],[[3.0],[4.0]]]";
+        let table = read::<3>(text).unwrap();
+        assert_eq!((table.shape, table.values.as_slice()), ([2, 2, 1], [1.0, 2.0, 3.0, 4.0].as_slice()));
+        assert_eq!(serde_json::to_string(&table).unwrap(), text);
+    }
+
+    #[test]
+    fn a_ragged_list_is_refused_at_any_depth() {
+        for text in ["[[1, 2], [3]]", "[[], [3]]", "[[1], []]"] {
+            assert!(read::<2>(text).unwrap_err().contains("as in the first"), "{text}");
+        }
+        assert!(read::<3>("[[[1], [2]], [[3]]]").unwrap_err().contains("expected 2 entries"));
+    }
+}

@@ -1,0 +1,56 @@
+//! Files of either kind that the program opens.
+
+use std::path::{Path, PathBuf};
+
+use crate::study::Study;
+
+use super::dataset_file::{DatasetOrigin, LoadedDataset, dataset_from};
+use super::file_error::FileError;
+use super::outline::Outline;
+use super::source::Source;
+use super::study_file::study_from;
+
+/// What a file turned out to be.
+#[derive(Clone, Debug)]
+pub enum Opened {
+    /// A dataset.
+    Dataset(LoadedDataset),
+    /// A study, with the dataset it is about.
+    Study {
+        /// The study.
+        study: Study,
+        /// Its dataset.
+        loaded: LoadedDataset,
+        /// The study's file.
+        path: PathBuf,
+    },
+}
+
+impl Opened {
+    /// The study: the one opened, or that of the dataset before any decision; and the dataset.
+    pub fn into_study(self) -> (Study, LoadedDataset) {
+        match self {
+            Opened::Dataset(loaded) => (Study::new(loaded.dataset.clone()), loaded),
+            Opened::Study { study, loaded, .. } => (study, loaded),
+        }
+    }
+}
+
+/// Opens a dataset or a study, whichever the file says it is.
+pub fn load_any(path: &Path) -> Result<Opened, FileError> {
+    let source = Source::read(path)?;
+    match Outline::format_of(source.text()).as_deref() {
+        Some("\"gdcm-study\"") => {
+            let (study, loaded) = study_from(&source, path)?;
+            Ok(Opened::Study { study, loaded, path: path.to_owned() })
+        }
+        Some("\"gdcm-dataset\"") | None => {
+            Ok(Opened::Dataset(dataset_from(&source, DatasetOrigin::File(path.to_owned()))?))
+        }
+        Some(found) => Err(FileError::Format {
+            path: path.to_owned(),
+            expected: "gdcm-dataset\" or \"gdcm-study",
+            found: found.to_owned(),
+        }),
+    }
+}

@@ -1,0 +1,183 @@
+//! Where in a file something stands, in the engineer's words.
+
+use std::fmt;
+
+use crate::dataset::BundleKind;
+
+use super::outline::Outline;
+
+/// One step on the way from the top of a JSON text to a value in it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Step {
+    /// Into an object, to this key.
+    Key(String),
+    /// Into a list, to this entry, counted from 0.
+    Entry(usize),
+}
+
+/// A condition of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ConditionPlace {
+    /// Its position in the file, counted from 1.
+    pub position: usize,
+    /// Its id, where that can be read.
+    pub id: Option<i64>,
+}
+
+/// A model of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ModelPlace {
+    /// Which bundle of the condition.
+    pub bundle: BundleKind,
+    /// Its position in the bundle, counted from 1.
+    pub position: usize,
+    /// Its name, where that can be read.
+    pub name: Option<String>,
+}
+
+/// Where in a file something stands: the condition, the model, and the entry (matrix, row, column), each where it applies.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    /// The condition.
+    pub condition: Option<ConditionPlace>,
+    /// The model.
+    pub model: Option<ModelPlace>,
+    /// The entry, in words; empty for the whole.
+    pub entry: String,
+}
+
+impl Place {
+    /// A place named by its keys: "settings, alpha_gain".
+    pub(super) fn entry(words: impl Into<String>) -> Self {
+        Self { entry: words.into(), ..Self::default() }
+    }
+
+    /// A condition; `position` counts from 1.
+    pub(super) fn condition(position: usize, id: i64) -> Self {
+        Self { condition: Some(ConditionPlace { position, id: Some(id) }), ..Self::default() }
+    }
+
+    /// A model of this condition; `position` counts from 1.
+    pub(super) fn model(&self, bundle: BundleKind, position: usize, name: &str) -> Self {
+        let model = Some(ModelPlace { bundle, position, name: Some(name.to_owned()) });
+        Self { condition: self.condition.clone(), model, entry: String::new() }
+    }
+
+    /// An entry of this condition or model.
+    pub(super) fn at(&self, words: impl Into<String>) -> Self {
+        Self { entry: words.into(), ..self.clone() }
+    }
+
+    /// The place that these steps lead to.
+    pub(super) fn of(steps: &[Step], outline: &Outline) -> Self {
+        let mut place = Self::default();
+        let mut rest = steps;
+        if let [Step::Key(key), Step::Entry(index), after @ ..] = rest
+            && key == "conditions"
+        {
+            let labels = outline.conditions.get(*index);
+            place.condition = Some(ConditionPlace { position: index + 1, id: labels.and_then(|labels| labels.id) });
+            rest = after;
+            if let [Step::Key(key), Step::Entry(model), after @ ..] = rest
+                && let Some(bundle) = bundle_of(key)
+            {
+                let names = labels.map(|labels| match bundle {
+                    BundleKind::Physics => &labels.physics,
+                    BundleKind::Identified => &labels.identified,
+                });
+                let name = names.and_then(|names| names.get(*model).cloned().flatten());
+                place.model = Some(ModelPlace { bundle, position: model + 1, name });
+                rest = after;
+            }
+        }
+        place.entry = entry_words(rest);
+        place
+    }
+
+    /// The place followed by a colon and a space; nothing for the file as a whole.
+    pub(super) fn before(&self) -> String {
+        let words = self.to_string();
+        if words.is_empty() { words } else { words + ": " }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let condition = self.condition.as_ref().map(|ConditionPlace { position, id }| match id {
+            Some(id) => format!("condition {id} (number {position} in the file)"),
+            None => format!("condition number {position} in the file"),
+        });
+        let model = self.model.as_ref().map(|ModelPlace { bundle, position, name }| {
+            let kind = match bundle {
+                BundleKind::Physics => "physics model",
+                BundleKind::Identified => "identified model",
+            };
+            match name {
+                Some(name) => format!("{kind} \"{name}\" (number {position})"),
+                None => format!("{kind} number {position}"),
+            }
+        });
+        let entry = Some(self.entry.clone()).filter(|entry| !entry.is_empty());
+        let words: Vec<String> = [condition, model, entry].into_iter().flatten().collect();
+        formatter.write_str(&words.join(", "))
+    }
+}
+
+fn bundle_of(key: &str) -> Option<BundleKind> {
+    match key {
+        "physics_models" => Some(BundleKind::Physics),
+        "identified_models" => Some(BundleKind::Identified),
+        _ => None,
+    }
+}
+
+/// Steps in words: `A[2][0]` is "matrix A, row 3, column 1", `re[0][1][4]` is "re, output 1, input 2, entry 5".
+fn entry_words(steps: &[Step]) -> String {
+    let mut words: Vec<String> = Vec::new();
+    let mut indices: &[&str] = &[];
+    for step in steps {
+        match step {
+            Step::Key(key) => {
+                indices = match key.as_str() {
+                    "A" | "B" | "C" | "D" => &["row", "column"],
+                    "re" | "im" | "coherence" => &["output", "input"],
+                    _ => &[],
+                };
+                let matrix = if indices == ["row", "column"] { "matrix " } else { "" };
+                words.push(format!("{matrix}{key}"));
+            }
+            Step::Entry(index) => {
+                let (name, after) = indices.split_first().map_or(("entry", indices), |(name, after)| (*name, after));
+                words.push(format!("{name} {}", index + 1));
+                indices = after;
+            }
+        }
+    }
+    words.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn steps(path: &[&str]) -> Vec<Step> {
+        path.iter().map(|step| step.parse().map_or(Step::Key((*step).to_owned()), Step::Entry)).collect()
+    }
+
+    #[test]
+    fn a_place_is_named_by_id_name_matrix_row_and_column() {
+        let outline = Outline::of(br#"{"conditions": [{"id": 10, "physics_models": [{"name": "nominal"}]}]}"#);
+        let place = Place::of(&steps(&["conditions", "0", "physics_models", "0", "A", "2", "4"]), &outline);
+        let expected = "condition 10 (number 1 in the file), physics model \"nominal\" (number 1), matrix A, row 3, column 5";
+        assert_eq!(place.to_string(), expected);
+    }
+
+    #[test]
+    fn what_cannot_be_named_is_counted() {
+        let path = steps(&["conditions", "2", "identified_models", "1", "frequency_response", "re", "0", "1", "4"]);
+        let place = Place::of(&path, &Outline::default());
+        let expected =
+            "condition number 3 in the file, identified model number 2, frequency_response, re, output 1, input 2, entry 5";
+        assert_eq!(place.to_string(), expected);
+    }
+}

@@ -1,0 +1,110 @@
+//! A file's bytes, read within limits.
+
+use std::borrow::Cow;
+use std::fs::File;
+use std::io::{ErrorKind, Read};
+use std::path::Path;
+
+use flate2::read::MultiGzDecoder;
+use sha2::{Digest, Sha256};
+
+use super::file_error::FileError;
+
+/// Most bytes of text that a file may hold, packed or not: 128 MiB, some 500 conditions of the example's size.
+///
+/// It bounds what a hostile or mistaken file can make the program allocate.
+pub const LARGEST_TEXT: u64 = 128 << 20;
+
+/// The two bytes that every gzip file starts with (RFC 1952).
+const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
+/// What some editors put in front of UTF-8.
+const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
+
+/// What a file holds: the hash of its bytes, and its text.
+#[derive(Debug)]
+pub(super) struct Source<'b> {
+    /// SHA-256 of the file's bytes as they are stored, in lower-case hexadecimal.
+    pub(super) sha256: String,
+    text: Cow<'b, [u8]>,
+}
+
+impl Source<'static> {
+    /// Reads a file, unpacking it where it is packed.
+    pub(super) fn read(path: &Path) -> Result<Self, FileError> {
+        let bytes = read_bytes(path)?;
+        let sha256 = sha256_hex(&bytes);
+        let text = if bytes.starts_with(&GZIP_MAGIC) { unpack(&bytes, path)? } else { bytes };
+        Ok(Source { sha256, text: Cow::Owned(text) })
+    }
+}
+
+impl<'b> Source<'b> {
+    /// Takes bytes that are already at hand; `path` is what an error calls them.
+    pub(super) fn of(bytes: &'b [u8], path: &Path) -> Result<Self, FileError> {
+        let text = if bytes.starts_with(&GZIP_MAGIC) {
+            Cow::Owned(unpack(bytes, path)?)
+        } else {
+            check_length(bytes.len() as u64, path)?;
+            Cow::Borrowed(bytes)
+        };
+        Ok(Source { sha256: sha256_hex(bytes), text })
+    }
+
+    /// The text, without a byte order mark.
+    pub(super) fn text(&self) -> &[u8] {
+        self.text.strip_prefix(&BYTE_ORDER_MARK).unwrap_or(&self.text)
+    }
+}
+
+fn read_bytes(path: &Path) -> Result<Vec<u8>, FileError> {
+    let failed = |error: std::io::Error| FileError::reading(path, &error);
+    let file = File::open(path).map_err(failed)?;
+    // Opening a directory succeeds on some systems; reading it gives an error that says less.
+    if file.metadata().map_err(failed)?.is_dir() {
+        return Err(FileError::Directory { path: path.to_owned() });
+    }
+    let mut bytes = Vec::new();
+    file.take(LARGEST_TEXT + 1).read_to_end(&mut bytes).map_err(failed)?;
+    check_length(bytes.len() as u64, path)?;
+    Ok(bytes)
+}
+
+/// Unpacks as it goes, and no further than the limit: a few kilobytes can unpack to gigabytes.
+fn unpack(bytes: &[u8], path: &Path) -> Result<Vec<u8>, FileError> {
+    let mut text = Vec::new();
+    let unpacked = MultiGzDecoder::new(bytes).take(LARGEST_TEXT + 1).read_to_end(&mut text);
+    check_length(text.len() as u64, path)?;
+    match unpacked {
+        Ok(_) => Ok(text),
+        Err(error) if error.kind() == ErrorKind::UnexpectedEof => Err(FileError::GzipCutOff { path: path.to_owned() }),
+        Err(error) => Err(FileError::Gzip { path: path.to_owned(), reason: error.to_string() }),
+    }
+}
+
+fn check_length(length: u64, path: &Path) -> Result<(), FileError> {
+    if length > LARGEST_TEXT {
+        return Err(FileError::TooLarge { path: path.to_owned(), most_mib: LARGEST_TEXT >> 20 });
+    }
+    Ok(())
+}
+
+fn sha256_hex(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_hash_is_that_of_the_published_example() {
+        // FIPS 180-2, appendix B.1.
+        assert_eq!(sha256_hex(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    }
+
+    #[test]
+    fn a_byte_order_mark_is_no_part_of_the_text() {
+        let source = Source::of(b"\xef\xbb\xbf{}", Path::new("x")).unwrap();
+        assert_eq!(source.text(), b"{}");
+    }
+}

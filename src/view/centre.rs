@@ -1,0 +1,216 @@
+//! The plots: the focused response above, net gain below, each one of several tabs.
+
+use egui::{Align, Button, Layout, Panel, RichText, Ui};
+
+use crate::dataset::{Band, Pair};
+use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
+use crate::study::{Edit, Setting};
+
+use super::bode_scene::{CurveSubject, bode_curves, subject_of};
+use super::assessment_scene::assessment_panels;
+use super::command::Command;
+use super::explanation::channel_names;
+use super::net_gain_scene::{channel_panels, dot_key, net_gain_panels};
+use super::palette::{Palette, SMALL_SIZE};
+use super::plot::{
+    AssessmentEvent, AssessmentScene, BodeCurve, BodeEvent, BodeScene, ChannelsScene, GainEvent, NetGainScene, OverviewCell,
+    OverviewEvent, OverviewScene, assessment_ui, bode_ui, channels_ui, net_gain_ui, overview_ui,
+};
+use super::settings_panel::choice_ui;
+use super::state::{State, Tab};
+
+const TABS: [(&str, Tab); 4] =
+    [("Bode", Tab::Bode), ("Overview", Tab::Overview), ("Channels", Tab::Channels), ("Assessment", Tab::Assessment)];
+
+/// Everything between the side panels.
+pub fn centre_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    let height = ui.available_height();
+    let lower = egui::Frame::new().inner_margin(egui::Margin { top: 4, ..egui::Margin::ZERO });
+    Panel::bottom("net gain").frame(lower).resizable(true).default_size(0.34 * height).min_size(150.0).show(ui, |ui| {
+        net_gain_header_ui(ui, state, palette, commands);
+        net_gain_tab_ui(ui, state, palette, commands);
+    });
+    header_ui(ui, state, palette, commands);
+    match state.display.tab {
+        Tab::Bode => bode_tab_ui(ui, state, palette, commands),
+        Tab::Overview => overview_tab_ui(ui, state, palette, commands),
+        Tab::Channels => channels_tab_ui(ui, state, palette, commands),
+        Tab::Assessment => assessment_tab_ui(ui, state, palette, commands),
+    }
+}
+
+fn tab_ui<T: PartialEq>(ui: &mut Ui, palette: &Palette, text: &str, tab: T, shown: &T) -> Option<T> {
+    let selected = tab == *shown;
+    let color = if selected { palette.text } else { palette.dim_text };
+    let response = ui.add(Button::selectable(selected, RichText::new(text).color(color)));
+    response.clicked().then_some(tab)
+}
+
+fn header_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        for (text, tab) in TABS {
+            commands.extend(tab_ui(ui, palette, text, tab, &state.display.tab).map(Command::ShowTab));
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if ui.add(Button::new("Fit").small()).on_hover_text("Bring every curve into view (F, or double click)").clicked() {
+                commands.push(Command::FitPlots);
+            }
+            let condition = state.condition();
+            let title = format!(
+                "{} · condition {} · {}",
+                state.dataset().pair_name(state.display.pair),
+                condition.id(),
+                condition.flight_state().name
+            );
+            ui.add(egui::Label::new(RichText::new(title).color(palette.dim_text)).truncate());
+        });
+    });
+}
+
+fn bode_tab_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    let pair = state.display.pair;
+    state.display.drawn = bode_curves(state, pair);
+    let band = state.study.settings.band;
+    let title = state.dataset().pair_name(state.display.pair);
+    let stale = state.results.is_stale(ui.input(|input| input.time));
+    let message = state.results.is_waiting().then_some("computing …");
+    let scene = BodeScene {
+        pair_title: &title,
+        curves: &state.display.drawn,
+        band: (band.min(), band.max()),
+        unit: state.display.unit,
+        stale,
+        message,
+    };
+    let events = bode_ui(ui, &scene, &mut state.display.bode, palette);
+    for event in events {
+        commands.extend(bode_command(state, event));
+    }
+    let pointed = state.display.bode.hovered().map(|id| subject_of(id, state.display.condition));
+    if let Some(CurveSubject::Model(id)) = pointed {
+        commands.push(Command::Hover(id));
+    }
+}
+
+fn bode_command(state: &State, event: BodeEvent) -> Option<Command> {
+    let subject = |id| subject_of(id, state.display.condition);
+    match event {
+        BodeEvent::Hovered(_) => None,
+        BodeEvent::Clicked(id) => match subject(id) {
+            CurveSubject::Model(id) if state.study.is_rejected(id) => Some(Edit::Restore(id).into()),
+            CurveSubject::Model(id) => Some(Edit::Reject(id).into()),
+            CurveSubject::Corrected | CurveSubject::Scheduled => None,
+        },
+        BodeEvent::Isolated(id) => match subject(id) {
+            CurveSubject::Model(id) => Some(Command::Isolate(id)),
+            CurveSubject::Corrected | CurveSubject::Scheduled => None,
+        },
+        BodeEvent::BandDragged { min, max } => Band::new(min, max).ok().map(|band| Edit::Set(Setting::Band(band)).into()),
+        BodeEvent::BandReleased => Some(Command::EndEdit),
+    }
+}
+
+fn net_gain_header_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("Net gain").strong());
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.label(RichText::new(dot_key(state)).size(SMALL_SIZE).color(palette.dim_text));
+            commands.extend(schedule_ui(ui, state.study.settings.schedule));
+            ui.label(RichText::new("schedule").size(SMALL_SIZE).color(palette.dim_text));
+        });
+    });
+}
+
+/// The form of the schedule; the edit where it was changed. Laid out from right to left.
+fn schedule_ui(ui: &mut Ui, settings: ScheduleSettings) -> Option<Command> {
+    let mut chosen = settings;
+    choice_ui(
+        ui,
+        "Scheduled quantity",
+        &mut chosen.quantity,
+        &[
+            (ScheduledQuantity::LnGain, "of ln k", "The product of regressions is the regression of the product"),
+            (ScheduledQuantity::Gain, "of k", "Regresses the gain itself"),
+        ],
+    );
+    let polynomial = |degree| ScheduleKind::Polynomial { degree };
+    choice_ui(
+        ui,
+        "Schedule",
+        &mut chosen.kind,
+        &[
+            (polynomial(0), "constant", "Polynomial of degree 0 in airspeed"),
+            (polynomial(1), "degree 1", "Polynomial of degree 1 in airspeed"),
+            (polynomial(2), "degree 2", "Polynomial of degree 2 in airspeed"),
+            (polynomial(3), "degree 3", "Polynomial of degree 3 in airspeed"),
+            (ScheduleKind::Table, "table", "Mean at each distinct airspeed, linear between"),
+        ],
+    );
+    (chosen != settings).then(|| Edit::Set(Setting::Schedule(chosen)).into())
+}
+
+fn net_gain_tab_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    let panels = net_gain_panels(state);
+    let message = if state.analysis().is_none() { "computing …" } else { "No response is held: hold one in the matrix" };
+    let scene = NetGainScene { panels: &panels, message: Some(message) };
+    let events = net_gain_ui(ui, &scene, &mut state.display.net_gain, palette);
+    commands.extend(events.into_iter().filter_map(gain_command));
+}
+
+fn channels_tab_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    let (inputs, outputs) = channel_panels(state);
+    let scene = ChannelsScene { inputs: &inputs, outputs: &outputs, message: Some("computing …") };
+    let events = channels_ui(ui, &scene, &mut state.display.channels, palette);
+    commands.extend(events.into_iter().filter_map(gain_command));
+}
+
+fn overview_tab_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    let pairs: Vec<Pair> = state.dataset().on_axis().pairs().collect();
+    let curves: Vec<Vec<BodeCurve>> = pairs.iter().map(|&pair| bode_curves(state, pair)).collect();
+    let cells: Vec<OverviewCell<'_>> = pairs
+        .iter()
+        .zip(&curves)
+        .map(|(&pair, curves)| OverviewCell {
+            pair,
+            curves,
+            constrained: state.study.settings.constrained[pair],
+            selected: pair == state.display.pair,
+            note: cost_note(state, pair),
+        })
+        .collect();
+    let (inputs, outputs) = channel_names(state);
+    let band = state.study.settings.band;
+    let scene = OverviewScene {
+        inputs: &inputs,
+        outputs: &outputs,
+        cells: &cells,
+        band: (band.min(), band.max()),
+        message: Some("computing …"),
+    };
+    for OverviewEvent::PairClicked(pair) in overview_ui(ui, &scene, &mut state.display.overview, palette) {
+        commands.push(Command::FocusPair(pair));
+        commands.push(Command::ShowTab(Tab::Bode));
+    }
+}
+
+/// "J 75→61".
+fn cost_note(state: &State, pair: Pair) -> String {
+    let cost = state.shown().and_then(|shown| shown.cost[pair]);
+    cost.map_or(String::new(), |cost| format!("J {:.0}→{:.0}", cost.uncorrected.total(), cost.corrected.total()))
+}
+
+fn assessment_tab_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    let (pairs, panels) = assessment_panels(state);
+    let scene = AssessmentScene { panels: &panels, message: Some("computing …") };
+    for AssessmentEvent::BarClicked { panel, key } in assessment_ui(ui, &scene, &mut state.display.assessment, palette) {
+        commands.push(Command::SelectCondition(key));
+        commands.extend(pairs.get(panel).map(|&pair| Command::FocusPair(pair)));
+    }
+}
+
+fn gain_command(event: GainEvent) -> Option<Command> {
+    match event {
+        GainEvent::ConditionClicked(condition) => Some(Command::SelectCondition(condition)),
+        GainEvent::ConditionHovered(_) => None,
+    }
+}

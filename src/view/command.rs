@@ -1,0 +1,87 @@
+//! What the engineer asks the window to do.
+
+use std::path::PathBuf;
+
+use egui::ThemePreference;
+
+use crate::dataset::{ModelId, Pair};
+use crate::study::Edit;
+
+use super::plot::FrequencyUnit;
+use super::state::Tab;
+
+/// One wish of the engineer: what a click, a key or a menu entry stands for. Views push them; the window carries them out.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// Take a decision about the study.
+    Edit(Edit),
+    /// The decision being taken is complete: the slider was let go.
+    EndEdit,
+    /// Take the last decision back.
+    Undo,
+    /// Bring a decision taken back again.
+    Redo,
+    /// Show a condition, by index.
+    SelectCondition(usize),
+    /// Show a response in the large plot.
+    FocusPair(Pair),
+    /// Point at a model in every view, as long as this is asked for in each frame.
+    Hover(ModelId),
+    /// Show only this model beside the representatives; the same model again shows all.
+    Isolate(ModelId),
+    /// Show another plot above.
+    ShowTab(Tab),
+    /// Read frequencies in another unit.
+    SetFrequencyUnit(FrequencyUnit),
+    /// Bring every curve back into view.
+    FitPlots,
+    /// Follow the desktop's theme, or not.
+    SetTheme(ThemePreference),
+    /// Choose a file with the desktop's dialog.
+    AskOpen,
+    /// Open a dataset or a study.
+    Open(PathBuf),
+    /// Open the embedded example.
+    OpenExample,
+    /// Save the study where it was saved last.
+    SaveStudy,
+    /// Choose a file for the study with the desktop's dialog.
+    AskSaveStudy,
+    /// Save the study to a file.
+    SaveStudyAs(PathBuf),
+    /// Show a form, or close the one shown.
+    ShowForm(Option<FormKind>),
+    /// Choose the export folder with the desktop's dialog.
+    AskExportFolder,
+    /// Write the corrections chosen in the export form.
+    Export,
+    /// Go on with what would lose unsaved decisions.
+    DiscardAndGoOn,
+    /// Put the message away.
+    DismissNotice,
+    /// Close the window.
+    Quit,
+}
+
+/// A form in front of the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FormKind {
+    /// Which file to open, by path.
+    Open,
+    /// Where to save the study, by path.
+    Save,
+    /// What to export, and where.
+    Export,
+    /// Whether to lose unsaved decisions.
+    Unsaved,
+    /// Keys and gestures.
+    Shortcuts,
+    /// What the program is.
+    About,
+}
+
+impl From<Edit> for Command {
+    fn from(edit: Edit) -> Self {
+        Command::Edit(edit)
+    }
+}

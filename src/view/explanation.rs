@@ -1,0 +1,95 @@
+//! What the result of a condition says, in the engineer's words.
+
+use crate::study::ConditionAnalysis;
+use crate::units::s_to_ms;
+
+use super::state::State;
+
+/// How a remark is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RemarkKind {
+    /// What was asked for was done.
+    Good,
+    /// It was done, but the engineer has to know something.
+    Caution,
+    /// It could not be done.
+    Trouble,
+}
+
+/// One remark on the result.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Remark {
+    /// How it is meant.
+    pub kind: RemarkKind,
+    /// One or two sentences.
+    pub text: String,
+}
+
+impl Remark {
+    fn new(kind: RemarkKind, text: String) -> Self {
+        Self { kind, text }
+    }
+}
+
+/// Which held gains and delays were matched, which were not and why, and the cautions of the condition.
+pub fn remarks(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
+    let mut remarks = gain_remarks(state, shown);
+    remarks.extend(delay_remarks(state, shown));
+    let pair_name = |pair| state.dataset().pair_name(pair);
+    let cautions = shown.cautions.iter().map(|caution| caution.words(pair_name));
+    remarks.extend(cautions.map(|text| Remark::new(RemarkKind::Caution, text)));
+    remarks
+}
+
+fn gain_remarks(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
+    let held = shown.held.marked().count();
+    if shown.gains.matched {
+        let text = match held {
+            0 => "No gain is held.".to_owned(),
+            1 => "The held gain is matched exactly.".to_owned(),
+            count => format!("All {count} held gains are matched exactly."),
+        };
+        return vec![Remark::new(RemarkKind::Good, text)];
+    }
+    let (inputs, outputs) = channel_names(state);
+    let misses = shown.gains.unmatched.iter().map(|unmatched| {
+        let name = state.dataset().pair_name(unmatched.pair);
+        format!("{name} gets {:.3} instead of {:.3} ({:+.2} dB)", unmatched.target, unmatched.wanted, unmatched.shortfall_db)
+    });
+    let mut remarks = vec![Remark::new(RemarkKind::Trouble, format!("Not matched: {}.", misses.collect::<Vec<_>>().join(", ")))];
+    let conflicts = shown.gains.conflicts.iter().map(|conflict| conflict.words(&inputs, &outputs));
+    remarks.extend(conflicts.map(|text| Remark::new(RemarkKind::Trouble, text)));
+    remarks
+}
+
+fn delay_remarks(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
+    let (held, unmatched) = (shown.held.marked().count(), &shown.delays.unmatched);
+    if unmatched.is_empty() {
+        let text = format!("All {held} held delays are matched exactly.");
+        return if held == 0 { Vec::new() } else { vec![Remark::new(RemarkKind::Good, text)] };
+    }
+    let lead: Vec<String> = unmatched
+        .iter()
+        .filter(|unmatched| unmatched.wanted_s < 0.0)
+        .map(|unmatched| format!("{} {:.0} ms", state.dataset().pair_name(unmatched.pair), -s_to_ms(unmatched.wanted_s)))
+        .collect();
+    let mut remarks = Vec::new();
+    if !lead.is_empty() {
+        let count = if lead.len() == held { "Every".to_owned() } else { format!("{} of {held}", lead.len()) };
+        let noun = if lead.len() == 1 { "held response needs" } else { "held responses need" };
+        let (count, noun) = if lead.len() == held && held > 1 { (format!("All {held}"), noun) } else { (count, noun) };
+        let text = format!("{count} {noun} lead, because the physics model lags: {}. A delay cannot give it.", lead.join(", "));
+        remarks.push(Remark::new(RemarkKind::Caution, text));
+    }
+    let (inputs, outputs) = channel_names(state);
+    let top = state.study.settings.band.max();
+    let others = unmatched.iter().filter(|unmatched| unmatched.wanted_s >= 0.0);
+    remarks.extend(others.map(|unmatched| Remark::new(RemarkKind::Caution, unmatched.words(top, &inputs, &outputs))));
+    remarks
+}
+
+/// Names of the inputs and of the outputs.
+pub fn channel_names(state: &State) -> (Vec<String>, Vec<String>) {
+    let names = |channels: &[crate::dataset::Channel]| channels.iter().map(|channel| channel.name.clone()).collect();
+    (names(state.dataset().inputs()), names(state.dataset().outputs()))
+}

@@ -1,0 +1,232 @@
+//! The constraint matrix: every response with G, D and J, held or free.
+
+use egui::{Align2, Color32, FontId, Key, Rect, Response, RichText, ScrollArea, Sense, Stroke, StrokeKind, Ui, WidgetInfo, Role, pos2, vec2};
+
+use crate::dataset::Pair;
+use crate::fidelity::{ACCEPTABLE, INDISTINGUISHABLE};
+use crate::study::{ConditionAnalysis, Edit, Setting};
+use crate::units::s_to_ms;
+
+use super::command::Command;
+use super::heading::heading_ui;
+use super::palette::{Palette, SMALL_SIZE};
+use super::state::State;
+
+const CELL_HEIGHT: f32 = 50.0;
+const LEAST_CELL_WIDTH: f32 = 58.0;
+const ROW_LABEL_WIDTH: f32 = 30.0;
+const HEADER_HEIGHT: f32 = 18.0;
+const LOCK_SIZE: f32 = 15.0;
+
+/// Every response as a cell. A click on the cell chooses the response for the large plot; a click on its box, a double click or
+/// the space bar holds or frees it; the secondary button offers more.
+pub fn matrix_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    heading_ui(ui, palette, "Constraints", "G · delay · J before→after");
+    let (outputs, inputs) = (state.dataset().outputs(), state.dataset().inputs());
+    let room = (ui.available_width() - ROW_LABEL_WIDTH) / inputs.len() as f32;
+    let width = room.max(LEAST_CELL_WIDTH);
+    let size = vec2(ROW_LABEL_WIDTH + width * inputs.len() as f32, HEADER_HEIGHT + CELL_HEIGHT * outputs.len() as f32);
+    ScrollArea::horizontal().id_salt("constraint matrix").show(ui, |ui| {
+        let (area, _) = ui.allocate_exact_size(size, Sense::hover());
+        for (input, channel) in inputs.iter().enumerate() {
+            let x = area.left() + ROW_LABEL_WIDTH + width * (input as f32 + 0.5);
+            label(ui, pos2(x, area.top() + 0.5 * HEADER_HEIGHT), Align2::CENTER_CENTER, &channel.name, palette);
+        }
+        for (output, channel) in outputs.iter().enumerate() {
+            let top = area.top() + HEADER_HEIGHT + CELL_HEIGHT * output as f32;
+            let place = pos2(area.left() + ROW_LABEL_WIDTH - 6.0, top + 0.5 * CELL_HEIGHT);
+            label(ui, place, Align2::RIGHT_CENTER, &channel.name, palette);
+            for input in 0..inputs.len() {
+                let left = area.left() + ROW_LABEL_WIDTH + width * input as f32;
+                let rect = Rect::from_min_size(pos2(left, top), vec2(width, CELL_HEIGHT));
+                Cell::of(state, Pair { output, input }).ui(ui, rect, palette, commands);
+            }
+        }
+    });
+}
+
+fn label(ui: &Ui, place: egui::Pos2, align: Align2, text: &str, palette: &Palette) {
+    ui.painter().text(place, align, text, FontId::proportional(SMALL_SIZE), palette.dim_text);
+}
+
+struct Cell<'a> {
+    pair: Pair,
+    name: String,
+    focused: bool,
+    on_axis: bool,
+    constrained: bool,
+    fitted: bool,
+    shown: Option<&'a ConditionAnalysis>,
+}
+
+impl<'a> Cell<'a> {
+    fn of(state: &'a State, pair: Pair) -> Self {
+        Self {
+            pair,
+            name: state.dataset().pair_name(pair),
+            focused: state.display.pair == pair,
+            on_axis: state.dataset().on_axis()[pair],
+            constrained: state.study.settings.constrained[pair],
+            fitted: state.study.settings.fitted[pair],
+            shown: state.shown(),
+        }
+    }
+
+    fn gain(&self) -> Option<f64> {
+        self.shown?.comparison.delta.gain[self.pair]
+    }
+
+    fn is_undefined(&self) -> bool {
+        self.shown.is_some() && self.gain().is_none()
+    }
+
+    fn is_unmatched(&self) -> bool {
+        self.shown.is_some_and(|shown| shown.gains.unmatched.iter().any(|unmatched| unmatched.pair == self.pair))
+    }
+
+    fn ui(&self, ui: &mut Ui, rect: Rect, palette: &Palette, commands: &mut Vec<Command>) {
+        let response = ui.interact(rect, ui.scope_id().with(("cell", self.pair)), Sense::click());
+        response.widget_info(|| {
+            WidgetInfo::selected(Role::Button, true, self.focused, format!("Response {}", self.name))
+        });
+        self.paint(ui, rect, &response, palette);
+        let lock = self.lock_ui(ui, rect, palette);
+        let space = response.has_focus() && ui.input(|input| input.key_pressed(Key::Space));
+        if lock.clicked() || response.double_clicked() || space {
+            if self.constrained || !self.is_undefined() {
+                commands.push(Edit::Set(Setting::Constrained(self.pair, !self.constrained)).into());
+            }
+        } else if response.clicked() {
+            commands.push(Command::FocusPair(self.pair));
+        }
+        response.context_menu(|ui| self.menu_ui(ui, commands));
+        response.on_hover_ui(|ui| self.tooltip_ui(ui));
+    }
+
+    fn lock_ui(&self, ui: &mut Ui, rect: Rect, palette: &Palette) -> Response {
+        let place = Rect::from_min_size(rect.min + vec2(3.0, 3.0), vec2(LOCK_SIZE, LOCK_SIZE));
+        let response = ui.interact(place.expand(2.0), ui.scope_id().with(("hold", self.pair)), Sense::click());
+        let name = format!("Hold {}", self.name);
+        response.widget_info(|| WidgetInfo::selected(Role::CheckBox, !self.is_undefined(), self.constrained, &name));
+        let square = place.shrink(2.5);
+        let color = if response.hovered() || response.has_focus() { palette.text } else { palette.dim_text };
+        if self.constrained {
+            ui.painter().rect_filled(square, 2.0, palette.accent);
+            let stroke = Stroke::new(1.6, palette.on_accent());
+            let tick = [square.left_center() + vec2(2.0, 0.3), square.center() + vec2(-0.7, 2.4), square.right_top() + vec2(-1.8, 2.6)];
+            ui.painter().line(tick.to_vec(), stroke);
+        } else if !self.is_undefined() {
+            ui.painter().rect_stroke(square, 2.0, Stroke::new(1.0, color), StrokeKind::Inside);
+        }
+        let hint = match (self.is_undefined(), self.constrained) {
+            (true, _) => "This response is zero or not finite somewhere in the band: it cannot be held",
+            (_, true) => "Held exactly; click to free it",
+            (_, false) => "Free; click to hold it exactly",
+        };
+        response.on_hover_text(hint)
+    }
+
+    fn paint(&self, ui: &Ui, rect: Rect, response: &Response, palette: &Palette) {
+        let painter = ui.painter();
+        let inner = rect.shrink(0.5);
+        let fill = match (self.constrained, response.hovered()) {
+            (true, _) => palette.selected,
+            (false, true) => palette.raised,
+            (false, false) => Color32::TRANSPARENT,
+        };
+        painter.rect_filled(inner, 0.0, fill);
+        painter.rect_stroke(inner, 0.0, Stroke::new(1.0, palette.line), StrokeKind::Inside);
+        if self.on_axis {
+            painter.rect_stroke(rect.shrink(2.0), 2.0, Stroke::new(1.2, palette.dim_text), StrokeKind::Inside);
+        }
+        if self.is_unmatched() {
+            painter.rect_stroke(rect.shrink(2.0), 2.0, Stroke::new(2.0, palette.warning), StrokeKind::Inside);
+        }
+        if self.focused || response.has_focus() {
+            painter.rect_stroke(rect, 1.0, Stroke::new(2.0, palette.accent), StrokeKind::Inside);
+        }
+        self.paint_figures(ui, rect, palette);
+    }
+
+    fn paint_figures(&self, ui: &Ui, rect: Rect, palette: &Palette) {
+        let text = |y: f32, text: &str, size: f32, color: Color32| {
+            let place = pos2(rect.center().x, rect.top() + y);
+            ui.painter().text(place, Align2::CENTER_CENTER, text, FontId::proportional(size), color);
+        };
+        let Some(shown) = self.shown else { return };
+        let (Some(gain), Some(delay)) = (self.gain(), shown.comparison.delta.delay_s[self.pair]) else {
+            text(0.5 * CELL_HEIGHT, "no G", SMALL_SIZE, palette.dim_text);
+            return;
+        };
+        let strong = if self.fitted { palette.text } else { palette.rejected };
+        text(13.0, &format!("{gain:.2}"), 14.5, strong);
+        text(28.0, &format!("{:.0} ms", s_to_ms(delay)), 10.5, palette.dim_text);
+        if let Some(cost) = shown.cost[self.pair] {
+            let (before, after) = (cost.uncorrected.total(), cost.corrected.total());
+            text(40.5, &format!("{before:.0}→{after:.0}"), 10.5, change_color(before, after, palette));
+        }
+    }
+
+    fn menu_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let mut constrained = self.constrained;
+        if ui.checkbox(&mut constrained, format!("Hold {} exactly", self.name)).changed() {
+            commands.push(Edit::Set(Setting::Constrained(self.pair, constrained)).into());
+            ui.close();
+        }
+        let mut fitted = self.fitted;
+        if ui.checkbox(&mut fitted, format!("Fit {} in the objective", self.name)).changed() {
+            commands.push(Edit::Set(Setting::Fitted(self.pair, fitted)).into());
+            ui.close();
+        }
+        if ui.button("Hold exactly the on-axis responses").clicked() {
+            commands.push(Edit::ConstrainOnAxis.into());
+            ui.close();
+        }
+    }
+
+    fn tooltip_ui(&self, ui: &mut Ui) {
+        ui.label(RichText::new(&self.name).strong());
+        let mut words = vec![if self.constrained { "held exactly" } else { "free" }];
+        words.push(if self.fitted { "fitted" } else { "ignored in the objective" });
+        if self.on_axis {
+            words.push("on-axis");
+        }
+        ui.label(words.join(" · "));
+        let Some(shown) = self.shown else { return };
+        let (Some(gain), Some(delay)) = (self.gain(), shown.comparison.delta.delay_s[self.pair]) else {
+            ui.label("The response is zero or not finite somewhere in the band: it has no G, no D and no J.");
+            return;
+        };
+        ui.label(format!("G = {gain:.4}: the gain that would match the magnitude"));
+        ui.label(format!("D = {:.1} ms: the delay that would match the phase (negative: lead)", s_to_ms(delay)));
+        ui.label(format!("net gain k_o k_i = {:.4}", shown.correction.net_gain(self.pair)));
+        ui.label(format!("net delay τ_o + τ_i = {:.1} ms", s_to_ms(shown.correction.net_delay_s(self.pair))));
+        if let Some(cost) = shown.cost[self.pair] {
+            let (before, after) = (cost.uncorrected, cost.corrected);
+            ui.label(format!("J_mag {:.1} → {:.1}, J_phase {:.1} → {:.1}", before.magnitude, after.magnitude, before.phase, after.phase));
+            ui.label(format!("J {:.1} → {:.1}: {}", before.total(), after.total(), verdict(after.total())));
+        }
+        ui.label("Click: show it · box, double click or space: hold or free it · secondary click: more");
+    }
+}
+
+fn change_color(before: f64, after: f64, palette: &Palette) -> Color32 {
+    // A change that rounds away in the figures shown is none.
+    if (after - before).abs() < 0.5 {
+        palette.dim_text
+    } else if after < before {
+        palette.good
+    } else {
+        palette.warning
+    }
+}
+
+fn verdict(cost: f64) -> &'static str {
+    if cost <= INDISTINGUISHABLE {
+        "next to indistinguishable (J ≤ 50)"
+    } else if cost <= ACCEPTABLE {
+        "acceptable (J ≤ 100)"
+    } else {
+        "above the guide of 100"
+    }
+}

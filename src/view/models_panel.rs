@@ -1,0 +1,230 @@
+//! The bundles of the condition shown: which models are kept, which represents, which are suspect.
+
+use egui::{Checkbox, Rect, RichText, Sense, Ui, WidgetInfo, Role, pos2, vec2};
+
+use crate::dataset::{BundleKind, Model, ModelId, Origin};
+use crate::fidelity::SUGGESTION_RATIO;
+use crate::study::Edit;
+
+use super::command::Command;
+use super::heading::heading_ui;
+use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
+use super::row::{ROW_HEIGHT, row_text};
+use super::state::State;
+
+/// The physics models with discontinuity ratios, and what may be done with all of them at once.
+pub fn physics_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    bundle_ui(ui, state, palette, BundleKind::Physics, commands);
+    let condition = state.display.condition;
+    let rejected = &state.study.choices[condition].physics.rejected;
+    let suggested = state.shown().map(|shown| shown.suggested()).unwrap_or_default();
+    let open: Vec<usize> = suggested.into_iter().filter(|model| !rejected.contains(model)).collect();
+    ui.horizontal_wrapped(|ui| {
+        let label = if open.is_empty() { "Reject suggested".to_owned() } else { format!("Reject {} suggested", open.len()) };
+        let button = ui.add_enabled(!open.is_empty(), egui::Button::new(label));
+        let hint = format!("Reject every model whose discontinuity ratio exceeds {SUGGESTION_RATIO} (Ctrl+R)");
+        if button.on_hover_text(&hint).on_disabled_hover_text("No kept model is suggested as an outlier").clicked() {
+            commands.push(Edit::RejectAll { condition, models: open }.into());
+        }
+        let any = !rejected.is_empty() || !state.study.choices[condition].identified.rejected.is_empty();
+        let restore = ui.add_enabled(any, egui::Button::new("Restore all"));
+        if restore.on_hover_text("Put every rejected model of this condition back").clicked() {
+            commands.push(Edit::RestoreAll { condition }.into());
+        }
+    });
+}
+
+/// The identified models with their orders.
+pub fn identified_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    bundle_ui(ui, state, palette, BundleKind::Identified, commands);
+}
+
+fn bundle_ui(ui: &mut Ui, state: &State, palette: &Palette, kind: BundleKind, commands: &mut Vec<Command>) {
+    let models = state.condition().bundle(kind);
+    let rejected = &state.study.choices[state.display.condition].bundle(kind).rejected;
+    let title = match kind {
+        BundleKind::Physics => format!("Physics models of {}", state.condition().id()),
+        BundleKind::Identified => "Identified models".to_owned(),
+    };
+    heading_ui(ui, palette, &title, &format!("{} of {}", models.len() - rejected.len(), models.len()));
+    for (index, model) in models.iter().enumerate() {
+        let row = ModelRow::of(state, kind, index, model);
+        row.ui(ui, palette, commands);
+    }
+}
+
+struct ModelRow<'a> {
+    id: ModelId,
+    model: &'a Model,
+    kept: bool,
+    pinned: bool,
+    represents: bool,
+    pointed: bool,
+    score: Option<f64>,
+    ratio: Option<f64>,
+}
+
+impl<'a> ModelRow<'a> {
+    fn of(state: &State, kind: BundleKind, index: usize, model: &'a Model) -> Self {
+        let id = state.model_id(kind, index);
+        let shown = state.shown();
+        let representative = shown.map(|shown| match kind {
+            BundleKind::Physics => &shown.comparison.physics,
+            BundleKind::Identified => &shown.comparison.identified,
+        });
+        let ratios = shown.and_then(|shown| shown.figures.discontinuity.as_ref().ok()).filter(|_| kind == BundleKind::Physics);
+        Self {
+            id,
+            model,
+            kept: !state.study.is_rejected(id),
+            pinned: state.study.choices[id.condition].bundle(kind).pinned == Some(index),
+            represents: representative.is_some_and(|representative| representative.model == index),
+            pointed: state.display.hovered == Some(id),
+            score: representative.and_then(|representative| representative.scores[index]),
+            ratio: ratios.and_then(|discontinuity| discontinuity.ratios[index]),
+        }
+    }
+
+    fn bundle_word(&self) -> &'static str {
+        match self.id.bundle {
+            BundleKind::Physics => "physics",
+            BundleKind::Identified => "identified",
+        }
+    }
+
+    fn ui(&self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
+        let width = ui.available_width();
+        let (rect, response) = ui.allocate_exact_size(vec2(width, ROW_HEIGHT), Sense::hover());
+        if self.pointed || response.contains_pointer() {
+            ui.painter().rect_filled(rect, 3.0, palette.raised);
+        }
+        self.keep_ui(ui, rect, commands);
+        self.star_ui(ui, rect, palette, commands);
+        let figure_width = self.paint_figure(ui, rect, palette);
+        self.paint_name(ui, rect, figure_width, palette);
+        if response.contains_pointer() {
+            commands.push(Command::Hover(self.id));
+        }
+        response.on_hover_ui(|ui| self.tooltip_ui(ui));
+    }
+
+    fn keep_ui(&self, ui: &mut Ui, rect: Rect, commands: &mut Vec<Command>) {
+        let mut kept = self.kept;
+        let place = Rect::from_min_size(rect.min + vec2(3.0, 0.0), vec2(18.0, rect.height()));
+        let checkbox = ui.put(place, Checkbox::without_text(&mut kept));
+        let name = format!("Keep {} model {}", self.bundle_word(), self.model.name);
+        checkbox.widget_info(|| WidgetInfo::selected(Role::CheckBox, ui.is_enabled(), self.kept, &name));
+        if checkbox.changed() {
+            commands.push(if kept { Edit::Restore(self.id) } else { Edit::Reject(self.id) }.into());
+        }
+        checkbox.on_hover_text(if self.kept { "Reject this model" } else { "Restore this model" });
+    }
+
+    /// The star of the representative: a click pins the model, or lets the medoid represent again.
+    fn star_ui(&self, ui: &mut Ui, rect: Rect, palette: &Palette, commands: &mut Vec<Command>) {
+        let place = Rect::from_min_size(pos2(rect.left() + 24.0, rect.top()), vec2(16.0, rect.height()));
+        let id = ui.scope_id().with(("star", self.id));
+        let sense = if self.kept { Sense::click() } else { Sense::hover() };
+        let response = ui.interact(place, id, sense);
+        let name = format!("Pin {} model {}", self.bundle_word(), self.model.name);
+        response.widget_info(|| WidgetInfo::selected(Role::CheckBox, self.kept, self.pinned, &name));
+        let visible = self.represents || response.hovered() || response.has_focus();
+        if visible && self.kept {
+            let color = if self.represents { palette.accent } else { palette.dim_text };
+            let symbol = if self.represents { "★" } else { "☆" };
+            row_text(ui, rect, 25.0, symbol, BODY_SIZE, color);
+        }
+        if self.pinned {
+            ui.painter().circle_filled(pos2(place.right() + 1.0, rect.top() + 5.0), 1.8, palette.warning);
+        }
+        if response.clicked() {
+            let (condition, bundle) = (self.id.condition, self.id.bundle);
+            commands.push(if self.pinned { Edit::Unpin { condition, bundle } } else { Edit::Pin(self.id) }.into());
+        }
+        let hint = match (self.pinned, self.represents) {
+            (true, _) => "Pinned by hand; click: the medoid represents again",
+            (false, true) => "Represents the bundle (medoid); click: pin it",
+            (false, false) => "Click: let this model represent the bundle",
+        };
+        response.on_hover_text(hint);
+    }
+
+    /// The ratio with its bar, or the order; returns the width taken on the right.
+    fn paint_figure(&self, ui: &Ui, rect: Rect, palette: &Palette) -> f32 {
+        let dim = if self.kept { palette.text } else { palette.rejected };
+        if let Some(ratio) = self.ratio {
+            let suspect = ratio > SUGGESTION_RATIO;
+            row_text(ui, rect, -5.0, &format!("{ratio:.2}"), BODY_SIZE, dim);
+            let full = 40.0;
+            let bar = Rect::from_min_size(pos2(rect.right() - 84.0, rect.center().y - 2.0), vec2(full, 4.0));
+            ui.painter().rect_filled(bar, 2.0, palette.line);
+            // Four times what the perturbation explains fills the bar.
+            let part = (ratio / 4.0).clamp(0.0, 1.0) as f32;
+            let color = if suspect { palette.warning } else { palette.accent };
+            ui.painter().rect_filled(Rect::from_min_size(bar.min, vec2(full * part, 4.0)), 2.0, color);
+            return 88.0;
+        }
+        match (self.id.bundle, self.model.order()) {
+            (BundleKind::Identified, Some(order)) => {
+                row_text(ui, rect, -5.0, &format!("order {order}"), SMALL_SIZE, palette.dim_text);
+                60.0
+            }
+            (BundleKind::Identified, None) => {
+                row_text(ui, rect, -5.0, "measured", SMALL_SIZE, palette.dim_text);
+                60.0
+            }
+            _ => 5.0,
+        }
+    }
+
+    fn paint_name(&self, ui: &Ui, rect: Rect, figure_width: f32, palette: &Palette) {
+        let color = if self.kept { palette.text } else { palette.rejected };
+        let left = rect.left() + 42.0;
+        let mut job = egui::text::LayoutJob::simple_singleline(
+            short_name(self.model),
+            egui::FontId::proportional(BODY_SIZE),
+            color,
+        );
+        if !self.kept {
+            job.sections[0].format.strikethrough = egui::Stroke::new(1.0, color);
+        }
+        job.wrap = egui::text::TextWrapping::truncate_at_width((rect.right() - figure_width - left).max(20.0));
+        let galley = ui.fonts_mut(|fonts| fonts.layout_job(job));
+        ui.painter().galley(pos2(left, rect.center().y - 0.5 * galley.size().y), galley, color);
+    }
+
+    fn tooltip_ui(&self, ui: &mut Ui) {
+        ui.label(RichText::new(&self.model.name).strong());
+        if let Some(perturbation) = self.model.perturbation() {
+            let offsets: Vec<String> = perturbation
+                .iter()
+                .filter(|(_, value)| **value != 0.0)
+                .map(|(name, value)| format!("{name} {value:+}"))
+                .collect();
+            ui.label(if offsets.is_empty() { "at the trim of the condition".to_owned() } else { offsets.join(", ") });
+        }
+        if let Origin::Identified { method: Some(method), .. } = &self.model.origin {
+            ui.label(format!("identified by {method}"));
+        }
+        if let Some(order) = self.model.order() {
+            ui.label(format!("{order} states"));
+        }
+        if let Some(ratio) = self.ratio {
+            let verdict = if ratio > SUGGESTION_RATIO { ": suggested as an outlier" } else { "" };
+            ui.label(format!("discontinuity ratio {ratio:.3}{verdict}"));
+        }
+        if let Some(score) = self.score {
+            ui.label(format!("mean distance to the other kept models {score:.3}"));
+        }
+    }
+}
+
+/// The name without the method that every model of an identified bundle repeats.
+fn short_name(model: &Model) -> String {
+    match &model.origin {
+        Origin::Identified { method: Some(method), .. } => {
+            model.name.strip_prefix(method.as_str()).map_or(model.name.as_str(), str::trim_start).to_owned()
+        }
+        _ => model.name.clone(),
+    }
+}

@@ -1,0 +1,242 @@
+//! The Bode plot: magnitude over phase, of every model of a condition, for one pair.
+
+use egui::{Align2, CursorIcon, Pos2, Rect, Response, Ui, UiBuilder, pos2, vec2};
+use egui_plot::PlotPoint;
+
+use super::axes::{caption_font, use_frame_colors};
+use super::band_handle::{BandChange, band_handles_ui};
+use super::bode_pane::{Emphasis, pane_ui};
+use super::bode_view::BodeView;
+use super::curve::{BodeCurve, CurveId, Pane};
+use super::legend;
+use super::log_axis::FrequencyUnit;
+use super::message::message_ui;
+use super::picking::{Hit, nearest};
+use super::readout::curve_tooltip_ui;
+use crate::view::palette::Palette;
+
+/// Part of the height that the magnitude plot gets.
+const MAGNITUDE_PART: f32 = 0.55;
+/// Space around and between the plots \[pt\]: tick labels at the ends of an axis stand out over its frame.
+const EDGE: f32 = 8.0;
+/// Below this, there is no room for two plots \[pt\].
+const LEAST_SIZE: egui::Vec2 = vec2(140.0, 130.0);
+
+/// What the Bode plot shows.
+#[derive(Clone, Copy, Debug)]
+pub struct BodeScene<'a> {
+    /// The pair, as a title: "LON → Q".
+    pub pair_title: &'a str,
+    /// The curves, in any order.
+    pub curves: &'a [BodeCurve],
+    /// The band of comparison: lower and upper end \[rad/s\].
+    pub band: (f64, f64),
+    /// The unit of the frequency axis.
+    pub unit: FrequencyUnit,
+    /// Whether the curves are older than the settings: they are dimmed until new ones arrive.
+    pub stale: bool,
+    /// What to say where there is nothing to draw.
+    pub message: Option<&'a str>,
+}
+
+/// What the engineer did in the Bode plot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BodeEvent {
+    /// The pointer came to mean another curve, or none.
+    Hovered(Option<CurveId>),
+    /// A curve was clicked.
+    Clicked(CurveId),
+    /// A curve was clicked with Alt held.
+    Isolated(CurveId),
+    /// The band is being dragged to these ends \[rad/s\].
+    BandDragged {
+        /// Lower end.
+        min: f64,
+        /// Upper end.
+        max: f64,
+    },
+    /// The band was let go after dragging.
+    BandReleased,
+}
+
+/// Draws the Bode plot into the space that is left in `ui`.
+pub fn bode_ui(ui: &mut Ui, scene: &BodeScene<'_>, view: &mut BodeView, palette: &Palette) -> Vec<BodeEvent> {
+    let rect = ui.available_rect_before_wrap();
+    let mut events = Vec::new();
+    if rect.width() < LEAST_SIZE.x || rect.height() < LEAST_SIZE.y {
+        return events;
+    }
+    if !has_data(scene.curves) {
+        message_ui(ui, rect, scene.message.unwrap_or("Nothing to draw"), palette);
+        set_hovered(view, None, &mut events);
+        return events;
+    }
+    view.fit_if_requested(scene.curves);
+    ui.scope_builder(UiBuilder::new().id_salt("bode").max_rect(rect), |ui| {
+        use_frame_colors(ui, palette);
+        panes_ui(ui, rect, scene, view, palette, &mut events);
+    });
+    ui.advance_cursor_after_rect(rect);
+    events
+}
+
+fn has_data(curves: &[BodeCurve]) -> bool {
+    let is_finite = |curve: &BodeCurve| {
+        curve
+            .points(Pane::Magnitude)
+            .any(|point| point.iter().all(|c| c.is_finite()))
+    };
+    curves.iter().any(is_finite)
+}
+
+fn panes_ui(
+    ui: &mut Ui,
+    rect: Rect,
+    scene: &BodeScene<'_>,
+    view: &mut BodeView,
+    palette: &Palette,
+    events: &mut Vec<BodeEvent>,
+) {
+    let pointing = Pointing::find(ui, scene, view);
+    let hit = pointing.and_then(|pointing| pointing.hit);
+    set_hovered(view, hit.map(|hit| hit.id), events);
+    let emphasis = Emphasis {
+        curve: view.hovered,
+        cursor: pointing.map(|pointing| pointing.log_omega),
+    };
+    for (pane, rect) in pane_rects(rect) {
+        let response = pane_ui(ui, (pane, rect), scene, view, &emphasis, palette);
+        click(pane, scene, &response, view, events);
+        drag_band(ui, pane, scene, view, palette, events);
+        if let Some(Pointing {
+            pane: pointed,
+            hit: Some(hit),
+            ..
+        }) = pointing
+            && pointed == pane
+            && let Some(curve) = scene.curves.iter().find(|curve| curve.id == hit.id)
+        {
+            curve_tooltip_ui(&response, curve, hit.omega, scene.unit, palette);
+        }
+        set_cursor_icon(response, hit);
+    }
+    captions_ui(ui, scene, view, palette);
+}
+
+/// Where the panes go: enough space around them for the tick labels at their edges.
+fn pane_rects(rect: Rect) -> [(Pane, Rect); 2] {
+    let inner = Rect::from_min_max(rect.min + vec2(0.0, EDGE), rect.max - vec2(1.5 * EDGE, 0.0));
+    let split = inner.top() + MAGNITUDE_PART * inner.height();
+    let magnitude = Rect::from_min_max(inner.min, pos2(inner.right(), split - 0.5 * EDGE));
+    let phase = Rect::from_min_max(pos2(inner.left(), split + 0.5 * EDGE), inner.max);
+    [(Pane::Magnitude, magnitude), (Pane::Phase, phase)]
+}
+
+/// Where the pointer is in the plots, as they were drawn in the last frame.
+#[derive(Clone, Copy, Debug)]
+struct Pointing {
+    pane: Pane,
+    log_omega: f64,
+    hit: Option<Hit>,
+}
+
+impl Pointing {
+    fn find(ui: &Ui, scene: &BodeScene<'_>, view: &BodeView) -> Option<Self> {
+        let pointer = ui.input(|input| input.pointer.hover_pos())?;
+        let is_inside = |rect: Rect| rect.contains(pointer) && ui.rect_contains_pointer(rect);
+        if view.legend.rect.is_some_and(is_inside) {
+            return None;
+        }
+        let is_dragging = ui.input(|input| input.pointer.is_decidedly_dragging());
+        [Pane::Magnitude, Pane::Phase].into_iter().find_map(|pane| {
+            let transform = view.transform(pane).filter(|transform| is_inside(*transform.frame()))?;
+            let log_omega = transform.value_from_position(pointer).x;
+            // While something is dragged, curves passing under the pointer are not meant.
+            let hit = if is_dragging {
+                None
+            } else {
+                nearest(scene.curves, pane, pointer, transform)
+            };
+            Some(Self { pane, log_omega, hit })
+        })
+    }
+}
+
+fn set_hovered(view: &mut BodeView, hovered: Option<CurveId>, events: &mut Vec<BodeEvent>) {
+    if view.hovered != hovered {
+        view.hovered = hovered;
+        events.push(BodeEvent::Hovered(hovered));
+    }
+}
+
+fn click(pane: Pane, scene: &BodeScene<'_>, response: &Response, view: &mut BodeView, events: &mut Vec<BodeEvent>) {
+    if response.double_clicked() {
+        view.request_fit();
+        response.ctx.request_repaint();
+        // The first click of the two was taken at once, for it to answer at once; fitting takes it back.
+        events.extend(view.last_clicked.take().map(BodeEvent::Clicked));
+    } else if response.clicked() {
+        let alt = response.ctx.input(|input| input.modifiers.alt);
+        let pointer = response.interact_pointer_pos();
+        let hit = pointer
+            .zip(view.transform(pane))
+            .and_then(|(at, transform)| nearest(scene.curves, pane, at, transform));
+        let id = hit.map(|hit| hit.id);
+        view.last_clicked = if alt { None } else { id };
+        events.extend(id.map(|id| {
+            if alt {
+                BodeEvent::Isolated(id)
+            } else {
+                BodeEvent::Clicked(id)
+            }
+        }));
+    }
+}
+
+fn drag_band(
+    ui: &Ui,
+    pane: Pane,
+    scene: &BodeScene<'_>,
+    view: &BodeView,
+    palette: &Palette,
+    events: &mut Vec<BodeEvent>,
+) {
+    let Some(transform) = view.transform(pane) else { return };
+    let place = match pane {
+        Pane::Magnitude => "magnitude plot",
+        Pane::Phase => "phase plot",
+    };
+    events.extend(
+        band_handles_ui(ui, place, scene.band, transform, scene.unit, palette).map(|change| match change {
+            BandChange::Dragged { min, max } => BodeEvent::BandDragged { min, max },
+            BandChange::Released => BodeEvent::BandReleased,
+        }),
+    );
+}
+
+fn set_cursor_icon(response: Response, hit: Option<Hit>) {
+    let icon = if hit.is_some() {
+        CursorIcon::PointingHand
+    } else {
+        CursorIcon::Crosshair
+    };
+    response.on_hover_cursor(icon);
+}
+
+/// Title, legend, and whether newer curves are on their way.
+fn captions_ui(ui: &Ui, scene: &BodeScene<'_>, view: &mut BodeView, palette: &Palette) {
+    let Some(transform) = view.magnitude_transform().copied() else {
+        return;
+    };
+    let frame = *transform.frame();
+    let entries = legend::entries(scene.curves, palette);
+    let points = || scene.curves.iter().flat_map(|curve| curve.points(Pane::Magnitude));
+    let position = |[x, y]: [f64; 2]| transform.position_from_point(&PlotPoint::new(x, y));
+    let covered = |place: Rect| points().filter(|point| place.contains(position(*point))).count();
+    legend::legend_ui(ui, frame, &entries, &mut view.legend, covered, palette);
+    let corner: Pos2 = frame.left_bottom() + vec2(8.0, -6.0);
+    let text = if scene.stale { "updating…" } else { "" };
+    ui.painter()
+        .with_clip_rect(frame)
+        .text(corner, Align2::LEFT_BOTTOM, text, caption_font(), palette.dim_text);
+}

@@ -1,0 +1,185 @@
+//! One of the two stacked plots: axes, band, curves and cursor.
+
+use egui::{Id, Rect, Response, Ui, UiBuilder, WidgetInfo};
+use egui_plot::{Axis, Line, LineStyle, PlotUi, Span, VLine};
+
+use super::axes::{LABELLED_HEIGHT, TICKS_HEIGHT, VERTICAL_TICK_GAP, axis_hints, quiet_plot};
+use super::bode::BodeScene;
+use super::bode_view::BodeView;
+use super::box_zoom::box_zoom_ui;
+use super::curve::{BodeCurve, CurveId, Pane, runs_in_view};
+use super::linear_axis::{Ladder, tick_text};
+use crate::view::palette::Palette;
+
+/// Width of the vertical axes \[pt\]: the same above and below, so that the frequencies stand under one another.
+const VALUE_AXIS_WIDTH: f32 = 52.0;
+
+impl Pane {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Magnitude => "Magnitude",
+            Self::Phase => "Phase",
+        }
+    }
+
+    fn axis_label(self) -> &'static str {
+        match self {
+            Self::Magnitude => "Magnitude [dB]",
+            Self::Phase => "Phase [deg]",
+        }
+    }
+
+    fn ladder(self) -> Ladder {
+        match self {
+            Self::Magnitude => Ladder::Decimal,
+            Self::Phase => Ladder::Degrees,
+        }
+    }
+}
+
+/// What the panes draw beside the scene's own.
+pub(super) struct Emphasis {
+    /// The curve that the pointer means.
+    pub(super) curve: Option<CurveId>,
+    /// The `log10 omega` under the pointer, in whichever pane it is.
+    pub(super) cursor: Option<f64>,
+}
+
+/// Draws a pane into `rect` and takes over what panning and zooming made of its ranges.
+pub(super) fn pane_ui(
+    ui: &mut Ui,
+    (pane, rect): (Pane, Rect),
+    scene: &BodeScene<'_>,
+    view: &mut BodeView,
+    emphasis: &Emphasis,
+    palette: &Palette,
+) -> Response {
+    let id = ui.make_persistent_id(pane.name());
+    let builder = UiBuilder::new().id_salt(pane.name()).max_rect(rect);
+    let shown = ui.scope_builder(builder, |ui| {
+        let bounds = view.bounds(pane);
+        pane_plot(id, pane, rect, scene, palette).show(ui, |plot| {
+            plot.set_plot_bounds(bounds);
+            band_shade(plot, scene.band, palette);
+            draw_curves(plot, pane, scene, view, emphasis, palette);
+            outside_shade(plot, scene.band, palette);
+            draw_cursor(plot, emphasis.cursor, palette);
+        })
+    });
+    let shown = shown.inner;
+    view.take_over(pane, shown.transform);
+    if let Some(area) = box_zoom_ui(ui, &shown.response, *shown.transform.frame(), palette) {
+        view.zoom_to(pane, area);
+        ui.ctx().request_repaint();
+    }
+    zoom_by_scrolling(ui, pane, &shown.response, view);
+    let description = format!("{} of {}, {} curves", pane.name(), scene.pair_title, scene.curves.len());
+    shown
+        .response
+        .widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, description.clone()));
+    shown.response
+}
+
+fn pane_plot<'a>(id: Id, pane: Pane, rect: Rect, scene: &BodeScene<'_>, palette: &Palette) -> egui_plot::Plot<'a> {
+    let unit = scene.unit;
+    let (frequency_label, frequency_height) = match pane {
+        Pane::Magnitude => (String::new(), TICKS_HEIGHT),
+        Pane::Phase => (unit.axis_label(), LABELLED_HEIGHT),
+    };
+    let frequency_text = move |mark| unit.tick_text(mark);
+    quiet_plot(id, palette)
+        .width(rect.width())
+        .height(rect.height())
+        .allow_drag(true)
+        .allow_zoom(true)
+        .allow_axis_zoom_drag(true)
+        .x_grid_spacer(unit.spacer())
+        .y_grid_spacer(pane.ladder().spacer(VERTICAL_TICK_GAP))
+        .custom_x_axes(vec![axis_hints(
+            Axis::X,
+            &frequency_label,
+            frequency_height,
+            palette,
+            frequency_text,
+        )])
+        .custom_y_axes(vec![axis_hints(
+            Axis::Y,
+            pane.axis_label(),
+            VALUE_AXIS_WIDTH,
+            palette,
+            tick_text,
+        )])
+}
+
+fn band_shade(plot: &mut PlotUi<'_>, (min, max): (f64, f64), palette: &Palette) {
+    let fill = palette
+        .accent
+        .gamma_multiply(if palette.is_dark { 0.055 } else { 0.075 });
+    plot.span(Span::new("", min.log10()..=max.log10()).fill(fill).border_width(0.0));
+}
+
+/// Dims what lies outside the band: it is drawn, but does not count.
+fn outside_shade(plot: &mut PlotUi<'_>, (min, max): (f64, f64), palette: &Palette) {
+    let veil = palette.background.gamma_multiply(0.4);
+    for range in [f64::NEG_INFINITY..=min.log10(), max.log10()..=f64::INFINITY] {
+        plot.span(Span::new("", range).fill(veil).border_width(0.0));
+    }
+}
+
+fn draw_curves(
+    plot: &mut PlotUi<'_>,
+    pane: Pane,
+    scene: &BodeScene<'_>,
+    view: &BodeView,
+    emphasis: &Emphasis,
+    palette: &Palette,
+) {
+    let is_emphasized = |curve: &BodeCurve| curve.highlighted || emphasis.curve == Some(curve.id);
+    let mut curves: Vec<&BodeCurve> = scene.curves.iter().collect();
+    curves.sort_by_key(|curve| (is_emphasized(curve), curve.role.layer(curve.rejected)));
+    let bounds = view.bounds(pane);
+    for curve in curves {
+        let mut look = curve.role.look(curve.rejected, palette);
+        if is_emphasized(curve) {
+            look = look.emphasized();
+        } else if scene.stale {
+            look.color = look.color.gamma_multiply(0.5);
+        }
+        for run in runs_in_view(curve.points(pane), &bounds) {
+            plot.line(
+                Line::new("", run)
+                    .color(look.color)
+                    .width(look.width)
+                    .style(look.style)
+                    .allow_hover(false),
+            );
+        }
+    }
+}
+
+fn draw_cursor(plot: &mut PlotUi<'_>, cursor: Option<f64>, palette: &Palette) {
+    if let Some(log_omega) = cursor {
+        let color = palette.text.gamma_multiply(0.55);
+        plot.vline(
+            VLine::new("", log_omega)
+                .color(color)
+                .width(0.8)
+                .style(LineStyle::Dotted { spacing: 4.0 }),
+        );
+    }
+}
+
+/// The wheel zooms about the pointer; with Shift (which makes it a sideways wheel) only along the frequency axis.
+fn zoom_by_scrolling(ui: &Ui, pane: Pane, response: &Response, view: &mut BodeView) {
+    /// Scrolled points that make a factor of e: about four clicks of a wheel.
+    const POINTS_PER_E: f32 = 200.0;
+    let Some(pointer) = response.hover_pos() else { return };
+    let scrolled = ui.input(|input| input.smooth_scroll_delta());
+    if scrolled == egui::Vec2::ZERO {
+        return;
+    }
+    let both = f64::from((scrolled.y / POINTS_PER_E).exp());
+    let sideways = f64::from((scrolled.x / POINTS_PER_E).exp());
+    view.zoom(pane, pointer, both * sideways, both);
+    ui.ctx().request_repaint();
+}

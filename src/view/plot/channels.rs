@@ -1,0 +1,88 @@
+//! Gains of the channels over airspeed: one small plot for each input and each output, with the schedule.
+
+use egui::{Align2, Rect, Ui, Vec2, pos2, vec2};
+
+use super::axes::caption_font;
+use super::gain_group::{GainEvent, GainView, gain_group_ui, group_rows};
+use super::gain_panel::{GainPanel, SharedRanges};
+use super::message::message_ui;
+use crate::view::palette::Palette;
+
+const HEADING_HEIGHT: f32 = 20.0;
+const GAP: f32 = 8.0;
+
+/// What the plots of channel gains show.
+#[derive(Clone, Copy, Debug)]
+pub struct ChannelsScene<'a> {
+    /// One panel for each input channel.
+    pub inputs: &'a [GainPanel],
+    /// One panel for each output channel.
+    pub outputs: &'a [GainPanel],
+    /// What to say where there is nothing to draw.
+    pub message: Option<&'a str>,
+}
+
+/// What the plots of channel gains remember between frames.
+#[derive(Clone, Debug, Default)]
+pub struct ChannelsView {
+    /// Of the input channels.
+    pub inputs: GainView,
+    /// Of the output channels.
+    pub outputs: GainView,
+}
+
+/// Draws the plots of channel gains into the space that is left in `ui`: inputs above, outputs below.
+pub fn channels_ui(
+    ui: &mut Ui,
+    scene: &ChannelsScene<'_>,
+    view: &mut ChannelsView,
+    palette: &Palette,
+) -> Vec<GainEvent> {
+    let rect = ui.available_rect_before_wrap();
+    let both = [SharedRanges::of(scene.inputs), SharedRanges::of(scene.outputs)];
+    let Some(ranges) = both.into_iter().flatten().reduce(SharedRanges::union) else {
+        message_ui(ui, rect, scene.message.unwrap_or("Nothing to draw"), palette);
+        return Vec::new();
+    };
+    let middle = rect.top() + rect.height() * inputs_part(scene, rect.size());
+    let upper = Rect::from_min_max(rect.min, pos2(rect.right(), middle - 0.5 * GAP));
+    let lower = Rect::from_min_max(pos2(rect.left(), middle + 0.5 * GAP), rect.max);
+    let mut events = Vec::new();
+    for (name, panels, view, rect) in [
+        ("Input channels", scene.inputs, &mut view.inputs, upper),
+        ("Output channels", scene.outputs, &mut view.outputs, lower),
+    ] {
+        if panels.is_empty() {
+            continue;
+        }
+        let heading_place = pos2(rect.left() + 2.0, rect.top() + 0.5 * HEADING_HEIGHT);
+        ui.painter().text(
+            heading_place,
+            Align2::LEFT_CENTER,
+            name,
+            caption_font(),
+            palette.dim_text,
+        );
+        let rect = Rect::from_min_max(rect.min + vec2(0.0, HEADING_HEIGHT), rect.max);
+        events.extend(gain_group_ui(
+            ui,
+            (name, rect),
+            panels,
+            (ranges, "Gain [-]"),
+            view,
+            palette,
+        ));
+    }
+    ui.advance_cursor_after_rect(rect);
+    events
+}
+
+/// Part of the height that the inputs get: as much as their rows need beside those of the outputs.
+fn inputs_part(scene: &ChannelsScene<'_>, size: Vec2) -> f32 {
+    let half = vec2(size.x, 0.5 * size.y);
+    let [inputs, outputs] = [scene.inputs, scene.outputs].map(|panels| match panels.len() {
+        0 => 0.0,
+        count => group_rows(count, half) as f32,
+    });
+    inputs / (inputs + outputs).max(1.0)
+}

@@ -1,0 +1,178 @@
+//! A frequency response as the Bode plot draws it.
+
+use std::sync::Arc;
+
+use egui_plot::PlotBounds;
+
+use super::role::Role;
+
+/// Names a curve to the caller, who chooses the number; unique within a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct CurveId(pub u64);
+
+/// Which of the two stacked plots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Pane {
+    /// Magnitude \[dB\], above.
+    Magnitude,
+    /// Phase \[deg\], below.
+    Phase,
+}
+
+/// A frequency response with its name and its role.
+#[derive(Clone, Debug)]
+pub struct BodeCurve {
+    /// How events name this curve.
+    pub id: CurveId,
+    /// The name that hovering shows.
+    pub label: String,
+    /// A second line for hovering: what the caller wants to say about it, and what a click does. May be empty.
+    pub detail: String,
+    /// What the curve stands for.
+    pub role: Role,
+    /// Whether the model is left out.
+    pub rejected: bool,
+    /// Whether another view points at it.
+    pub highlighted: bool,
+    /// Frequencies \[rad/s\], ascending.
+    pub omega: Arc<[f64]>,
+    /// Magnitude \[dB\] at each frequency; a value that is not finite leaves a gap.
+    pub magnitude_db: Arc<[f64]>,
+    /// Phase \[deg\] at each frequency; a value that is not finite leaves a gap.
+    pub phase_deg: Arc<[f64]>,
+}
+
+impl BodeCurve {
+    /// What a pane shows of this curve.
+    pub fn values(&self, pane: Pane) -> &[f64] {
+        match pane {
+            Pane::Magnitude => &self.magnitude_db,
+            Pane::Phase => &self.phase_deg,
+        }
+    }
+
+    /// The points of a pane in plot coordinates, `[log10 omega, value]`; gaps are points that are not finite.
+    pub fn points(&self, pane: Pane) -> impl Iterator<Item = [f64; 2]> + '_ {
+        self.omega
+            .iter()
+            .zip(self.values(pane))
+            .map(|(omega, value)| [omega.log10(), *value])
+    }
+
+    /// The value at `omega` \[rad/s\], linear in `log10 omega` between points; nothing outside them or beside a gap.
+    pub fn value_at(&self, pane: Pane, omega: f64) -> Option<f64> {
+        let values = self.values(pane);
+        let after = self.omega.partition_point(|at| *at < omega);
+        let value = if self.omega.get(after) == Some(&omega) {
+            *values.get(after)?
+        } else {
+            let before = after.checked_sub(1)?;
+            let (start, end) = (self.omega.get(before)?, self.omega.get(after)?);
+            let fraction = (omega / start).ln() / (end / start).ln();
+            let (from, to) = (values.get(before)?, values.get(after)?);
+            from + fraction * (to - from)
+        };
+        value.is_finite().then_some(value)
+    }
+}
+
+/// Splits points into runs that are finite throughout and come near `view`.
+///
+/// A point that is not finite makes debug builds of egui_plot panic, and dashing a curve that runs far outside the view
+/// costs time in proportion to its length on the screen.
+pub fn runs_in_view(points: impl Iterator<Item = [f64; 2]>, view: &PlotBounds) -> Vec<Vec<[f64; 2]>> {
+    let near = enlarged(view);
+    let mut runs: Vec<Vec<[f64; 2]>> = Vec::new();
+    let mut run: Vec<[f64; 2]> = Vec::new();
+    let mut previous: Option<[f64; 2]> = None;
+    for point in points {
+        let point = point.iter().all(|c| c.is_finite()).then_some(point);
+        match (previous, point) {
+            (Some(from), Some(to)) if touches(from, to, &near) => {
+                if run.is_empty() {
+                    run.push(from);
+                }
+                run.push(to);
+            }
+            _ => runs.extend(take_filled(&mut run)),
+        }
+        previous = point;
+    }
+    runs.extend(take_filled(&mut run));
+    runs
+}
+
+fn take_filled(run: &mut Vec<[f64; 2]>) -> Option<Vec<[f64; 2]>> {
+    (!run.is_empty()).then(|| std::mem::take(run))
+}
+
+/// `view` and one more of it on every side: panning a little does not change where dashes begin.
+fn enlarged(view: &PlotBounds) -> PlotBounds {
+    let (min, max) = (view.min(), view.max());
+    let (width, height) = (view.width(), view.height());
+    PlotBounds::from_min_max([min[0] - width, min[1] - height], [max[0] + width, max[1] + height])
+}
+
+/// Whether the rectangle spanned by two points meets `bounds`.
+fn touches(a: [f64; 2], b: [f64; 2], bounds: &PlotBounds) -> bool {
+    (0..2).all(|axis| a[axis].max(b[axis]) >= bounds.min()[axis] && a[axis].min(b[axis]) <= bounds.max()[axis])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const UNIT: [[f64; 2]; 2] = [[0.0, 0.0], [1.0, 1.0]];
+
+    fn unit_view() -> PlotBounds {
+        PlotBounds::from_min_max(UNIT[0], UNIT[1])
+    }
+
+    fn curve(magnitude_db: &[f64]) -> BodeCurve {
+        let omega: Vec<f64> = (0..magnitude_db.len()).map(|k| 10f64.powi(k as i32)).collect();
+        BodeCurve {
+            id: CurveId(1),
+            label: "a".into(),
+            detail: String::new(),
+            role: Role::Nominal,
+            rejected: false,
+            highlighted: false,
+            omega: omega.into(),
+            magnitude_db: magnitude_db.into(),
+            phase_deg: magnitude_db.into(),
+        }
+    }
+
+    #[test]
+    fn a_gap_splits_a_curve_into_two() {
+        let points = [0.1, 0.2, f64::NAN, 0.3, 0.4, f64::INFINITY].map(|x| [x, 0.5]);
+        let runs = runs_in_view(points.into_iter(), &unit_view());
+        assert_eq!(runs, [vec![[0.1, 0.5], [0.2, 0.5]], vec![[0.3, 0.5], [0.4, 0.5]]]);
+    }
+
+    #[test]
+    fn what_is_far_outside_the_view_is_not_drawn() {
+        let points = (-100..100).map(|k| [f64::from(k), 0.5]);
+        let runs = runs_in_view(points, &unit_view());
+        assert_eq!(runs.len(), 1);
+        assert!(runs[0].len() <= 6);
+    }
+
+    #[test]
+    fn values_between_points_follow_the_logarithm_of_the_frequency() {
+        let curve = curve(&[0.0, -20.0, -40.0]);
+        let value = |omega| curve.value_at(Pane::Magnitude, omega);
+        assert_eq!(value(10.0), Some(-20.0));
+        assert!(value(10f64.sqrt()).is_some_and(|db| (db + 10.0).abs() < 1e-12));
+        assert_eq!(value(0.5), None);
+        assert_eq!(value(101.0), None);
+    }
+
+    #[test]
+    fn there_is_no_value_beside_a_gap() {
+        let curve = curve(&[0.0, f64::NAN, 3.0]);
+        assert_eq!(curve.value_at(Pane::Phase, 10.0), None);
+        assert_eq!(curve.value_at(Pane::Phase, 30.0), None);
+        assert_eq!(curve.value_at(Pane::Phase, 100.0), Some(3.0));
+    }
+}

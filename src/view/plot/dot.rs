@@ -1,0 +1,119 @@
+//! One condition in a plot over airspeed: a dot whose shape and filling tell its class.
+
+use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
+
+use crate::view::palette::Palette;
+
+/// Radius of a dot \[pt\].
+pub(super) const DOT_RADIUS: f32 = 4.0;
+
+/// Distance of the ring around the condition in focus from its dot \[pt\].
+const RING_GAP: f32 = 3.0;
+
+/// The outline of a dot: one for each class of a first property, such as altitude.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum DotShape {
+    /// The first class.
+    #[default]
+    Circle,
+    /// The second class.
+    Diamond,
+    /// The third class.
+    Square,
+    /// Every further class.
+    Triangle,
+}
+
+impl DotShape {
+    /// The shape of the class of this index.
+    pub fn of_class(index: usize) -> Self {
+        match index {
+            0 => Self::Circle,
+            1 => Self::Diamond,
+            2 => Self::Square,
+            _ => Self::Triangle,
+        }
+    }
+
+    /// Corners about the origin for a dot of radius 1; a circle has none. All shapes cover about the same area.
+    fn corners(self) -> &'static [Vec2] {
+        const DIAMOND: [Vec2; 4] = [vec2(0.0, -1.3), vec2(1.3, 0.0), vec2(0.0, 1.3), vec2(-1.3, 0.0)];
+        const SQUARE: [Vec2; 4] = [vec2(-0.9, -0.9), vec2(0.9, -0.9), vec2(0.9, 0.9), vec2(-0.9, 0.9)];
+        const TRIANGLE: [Vec2; 3] = [vec2(0.0, -1.3), vec2(1.2, 0.9), vec2(-1.2, 0.9)];
+        match self {
+            Self::Circle => &[],
+            Self::Diamond => &DIAMOND,
+            Self::Square => &SQUARE,
+            Self::Triangle => &TRIANGLE,
+        }
+    }
+
+    fn paint(self, painter: &Painter, center: Pos2, radius: f32, fill: Color32, stroke: Stroke) {
+        match self {
+            Self::Circle => painter.circle(center, radius, fill, stroke),
+            _ => {
+                let corners = self.corners().iter().map(|corner| center + *corner * radius).collect();
+                painter.add(Shape::convex_polygon(corners, fill, stroke))
+            }
+        };
+    }
+}
+
+/// One condition in a plot over airspeed.
+#[derive(Clone, Debug)]
+pub struct Dot {
+    /// How events name the condition.
+    pub condition: usize,
+    /// The short text beside the dot: the condition's number.
+    pub label: String,
+    /// Airspeed \[kt\].
+    pub airspeed_kt: f64,
+    /// The gain, a ratio: net gain of a pair, or gain of a channel.
+    pub gain: f64,
+    /// Outline: the class of a first property.
+    pub shape: DotShape,
+    /// Filled or open: the class of a second property.
+    pub filled: bool,
+    /// Whether it is the condition in focus.
+    pub selected: bool,
+    /// Whether the schedule is fitted to it.
+    pub chosen: bool,
+    /// A further line for hovering: what the caller wants to say. May be empty.
+    pub detail: String,
+}
+
+impl Dot {
+    /// Draws the dot at `center`.
+    pub(super) fn paint(&self, painter: &Painter, center: Pos2, is_hovered: bool, palette: &Palette) {
+        let color = if self.chosen {
+            palette.perturbed
+        } else {
+            palette.rejected
+        };
+        let radius = if is_hovered { DOT_RADIUS + 1.2 } else { DOT_RADIUS };
+        if self.selected {
+            painter.circle_stroke(center, radius + RING_GAP, Stroke::new(1.6, palette.text));
+        }
+        if self.filled {
+            self.shape.paint(painter, center, radius, color, Stroke::NONE);
+        } else {
+            // An open dot hides the lines that run through it, and looks as large as a filled one.
+            self.shape.paint(
+                painter,
+                center,
+                radius - 0.75,
+                palette.background,
+                Stroke::new(1.5, color),
+            );
+        }
+    }
+
+    /// How far from its centre a label must stay \[pt\].
+    pub(super) fn clearance(&self) -> f32 {
+        if self.selected {
+            DOT_RADIUS + RING_GAP + 1.0
+        } else {
+            DOT_RADIUS
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! A group of small plots of gains over airspeed, with ranges in common: net gains of pairs, or gains of channels.
+
+use egui::{FontId, Pos2, Rect, RichText, Ui, UiBuilder, Vec2, pos2, vec2};
+use egui_plot::{PlotPoint, PlotTransform};
+
+use super::axes::use_frame_colors;
+use super::dot::Dot;
+use super::gain_panel::{GainPanel, PanelAnswer, SharedRanges, gain_panel_ui};
+use super::number::decimals;
+use super::readout::tooltip_ui;
+use super::tiles::{Tiles, tiles_ui};
+use crate::view::palette::{Palette, SMALL_SIZE};
+
+/// Width of the strip at the left with the label of the gain axes \[pt\].
+const LABEL_STRIP: f32 = 16.0;
+/// A panel is never smaller \[pt\].
+const LEAST_PANEL: Vec2 = vec2(150.0, 130.0);
+
+/// What the engineer did in the plots of gains over airspeed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GainEvent {
+    /// The pointer came to mean another condition, or none.
+    ConditionHovered(Option<usize>),
+    /// A condition's dot was clicked.
+    ConditionClicked(usize),
+}
+
+/// What the plots of gains over airspeed remember between frames.
+#[derive(Clone, Debug, Default)]
+pub struct GainView {
+    hovered: Option<usize>,
+    highlighted: Option<usize>,
+    transforms: Vec<Option<PlotTransform>>,
+    dots: Vec<Vec<(usize, [f64; 2])>>,
+}
+
+impl GainView {
+    /// The condition under the pointer.
+    pub fn hovered(&self) -> Option<usize> {
+        self.hovered
+    }
+
+    /// Emphasises a condition that another view points at.
+    pub fn highlight(&mut self, condition: Option<usize>) {
+        self.highlighted = condition;
+    }
+
+    fn emphasized(&self) -> Option<usize> {
+        self.hovered.or(self.highlighted)
+    }
+
+    /// Where a panel was drawn last: x is in knots, y is the gain.
+    pub fn transform(&self, panel: usize) -> Option<&PlotTransform> {
+        self.transforms.get(panel)?.as_ref()
+    }
+
+    /// Where the dot of a condition is on the screen.
+    pub fn screen_position(&self, panel: usize, condition: usize) -> Option<Pos2> {
+        let (_, [airspeed_kt, gain]) = self.dots.get(panel)?.iter().find(|(index, _)| *index == condition)?;
+        Some(
+            self.transform(panel)?
+                .position_from_point(&PlotPoint::new(*airspeed_kt, *gain)),
+        )
+    }
+
+    fn remember(&mut self, index: usize, panel: &GainPanel, answer: &PanelAnswer) {
+        if let Some(transform) = self.transforms.get_mut(index) {
+            *transform = Some(answer.transform);
+        }
+        if let Some(dots) = self.dots.get_mut(index) {
+            *dots = panel
+                .dots
+                .iter()
+                .map(|dot| (dot.condition, [dot.airspeed_kt, dot.gain]))
+                .collect();
+        }
+    }
+}
+
+/// How many rows `count` panels take in an area of `size`.
+pub(super) fn group_rows(count: usize, size: Vec2) -> usize {
+    Tiles::arrange(count, size - vec2(LABEL_STRIP, 0.0), LEAST_PANEL).rows
+}
+
+/// Draws `panels` into `rect` and reports what was done in them.
+pub(super) fn gain_group_ui(
+    ui: &mut Ui,
+    (name, rect): (&str, Rect),
+    panels: &[GainPanel],
+    (ranges, gain_label): (SharedRanges, &str),
+    view: &mut GainView,
+    palette: &Palette,
+) -> Vec<GainEvent> {
+    let mut events = Vec::new();
+    view.transforms.resize(panels.len(), None);
+    view.dots.resize(panels.len(), Vec::new());
+    ui.scope_builder(UiBuilder::new().id_salt(name).max_rect(rect), |ui| {
+        use_frame_colors(ui, palette);
+        gain_label_ui(ui, rect, gain_label, palette);
+        let inner = Rect::from_min_max(rect.min + vec2(LABEL_STRIP, 0.0), rect.max);
+        let mut hovered = None;
+        tiles_ui(ui, "panels", inner, panels.len(), LEAST_PANEL, |ui, index, rect| {
+            let panel = &panels[index];
+            let id = ui.make_persistent_id((name, index));
+            let answer = gain_panel_ui(ui, (id, rect), panel, ranges, view.emphasized(), palette);
+            view.remember(index, panel, &answer);
+            hovered = hovered.or(answer.hovered);
+            events.extend(panel_event(panel, answer, palette));
+        });
+        if view.hovered != hovered {
+            view.hovered = hovered;
+            events.push(GainEvent::ConditionHovered(hovered));
+            ui.ctx().request_repaint();
+        }
+    });
+    events
+}
+
+fn panel_event(panel: &GainPanel, answer: PanelAnswer, palette: &Palette) -> Option<GainEvent> {
+    if let Some(dot) = panel.dots.iter().find(|dot| answer.hovered == Some(dot.condition)) {
+        dot_tooltip_ui(&answer, panel, dot, palette);
+        answer.response.on_hover_cursor(egui::CursorIcon::PointingHand);
+    }
+    answer.clicked.map(GainEvent::ConditionClicked)
+}
+
+fn dot_tooltip_ui(answer: &PanelAnswer, panel: &GainPanel, dot: &Dot, palette: &Palette) {
+    tooltip_ui(&answer.response, |ui| {
+        let dim = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
+        ui.label(dim(format!("condition {} · {:.0} kt", dot.label, dot.airspeed_kt)));
+        let scheduled = match panel.scheduled(dot.airspeed_kt) {
+            Some(gain) => format!(" · scheduled {}", decimals(gain, 3)),
+            None => String::new(),
+        };
+        ui.label(format!("{} {}{scheduled}", panel.title, decimals(dot.gain, 3)));
+        if !dot.chosen {
+            ui.label(dim("not in the schedule".to_owned()));
+        }
+        if !dot.detail.is_empty() {
+            ui.label(dim(dot.detail.clone()));
+        }
+    });
+}
+
+/// The label of all the gain axes, upright at the left edge.
+fn gain_label_ui(ui: &Ui, rect: Rect, label: &str, palette: &Palette) {
+    let galley = ui
+        .painter()
+        .layout_no_wrap(label.to_owned(), FontId::proportional(SMALL_SIZE), palette.dim_text);
+    let place = pos2(rect.left() + 1.0, rect.center().y + 0.5 * galley.size().x);
+    let text = egui::epaint::TextShape::new(place, galley, palette.dim_text);
+    ui.painter().add(text.with_angle(-std::f32::consts::FRAC_PI_2));
+}

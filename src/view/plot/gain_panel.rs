@@ -1,0 +1,284 @@
+//! One small plot of gains over airspeed: the optimum of each condition as a dot, and the schedule as a line.
+
+use egui::{Align2, FontId, Id, Pos2, Rect, Response, Sense, Stroke, Ui, UiBuilder, WidgetInfo, pos2, vec2};
+use egui_plot::{Axis, HLine, Line, LineStyle, PlotBounds, PlotPoint, PlotTransform};
+
+use super::axes::{LABELLED_HEIGHT, axis_hints, caption_font, quiet_plot};
+use super::dot::{DOT_RADIUS, Dot};
+use super::dot_label::{LabelledDot, Surroundings, place_labels};
+use super::linear_axis::{Ladder, tick_text};
+use super::range::Range;
+use super::role::Role;
+use crate::view::palette::Palette;
+
+const TITLE_HEIGHT: f32 = 18.0;
+const GAIN_AXIS_WIDTH: f32 = 30.0;
+const RIGHT_MARGIN: f32 = 8.0;
+const AIRSPEED_TICK_GAP: f64 = 25.0;
+const GAIN_TICK_GAP: f64 = 26.0;
+/// How far from a dot the pointer may be to mean it \[pt\].
+const PICK_RADIUS: f32 = 10.0;
+const LABEL_FONT: FontId = FontId::proportional(10.5);
+/// Height that a row of label text has above and below its figures \[pt\].
+const LABEL_LEADING: f32 = 4.0;
+
+/// One small plot: dots over airspeed, with the schedule.
+#[derive(Clone, Debug, Default)]
+pub struct GainPanel {
+    /// What the gain is of: "LAT → P", "LON".
+    pub title: String,
+    /// One dot for each condition; one whose airspeed or gain is not finite is left out.
+    pub dots: Vec<Dot>,
+    /// The schedule, sampled: airspeed \[kt\] and gain. Empty where there is none.
+    pub schedule: Vec<[f64; 2]>,
+}
+
+impl GainPanel {
+    /// The scheduled gain at an airspeed, linear between samples; nothing outside them.
+    pub fn scheduled(&self, airspeed_kt: f64) -> Option<f64> {
+        let value = |pair: &[[f64; 2]]| {
+            let ([from_kt, from], [to_kt, to]) = (pair[0], pair[1]);
+            let fraction = (airspeed_kt - from_kt) / (to_kt - from_kt);
+            (0.0..=1.0).contains(&fraction).then_some(from + fraction * (to - from))
+        };
+        self.schedule.windows(2).find_map(value)
+    }
+
+    fn drawable_dots(&self) -> impl Iterator<Item = &Dot> {
+        self.dots
+            .iter()
+            .filter(|dot| dot.airspeed_kt.is_finite() && dot.gain.is_finite())
+    }
+}
+
+/// The ranges that all panels of a group share, so that they can be compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct SharedRanges {
+    pub(super) airspeed_kt: Range,
+    pub(super) gain: Range,
+}
+
+impl SharedRanges {
+    /// What holds all dots and schedules of `panels`, and the gain 1; nothing where there is no dot.
+    pub(super) fn of(panels: &[GainPanel]) -> Option<Self> {
+        let dots = || panels.iter().flat_map(GainPanel::drawable_dots);
+        let scheduled = panels
+            .iter()
+            .flat_map(|panel| panel.schedule.iter().map(|point| point[1]));
+        let airspeed_kt = Range::of(dots().map(|dot| dot.airspeed_kt))?.with_margin(0.07, 10.0);
+        let gain = Range::of(dots().map(|dot| dot.gain).chain(scheduled))?
+            .including(1.0)
+            .with_margin(0.09, 0.1);
+        Some(Self { airspeed_kt, gain })
+    }
+
+    /// The least ranges that hold both.
+    pub(super) fn union(self, other: Self) -> Self {
+        let union = |a: Range, b: Range| a.including(b.min).including(b.max);
+        Self {
+            airspeed_kt: union(self.airspeed_kt, other.airspeed_kt),
+            gain: union(self.gain, other.gain),
+        }
+    }
+}
+
+/// What a panel found out in a frame.
+pub(super) struct PanelAnswer {
+    pub(super) response: Response,
+    pub(super) transform: PlotTransform,
+    /// The condition under the pointer.
+    pub(super) hovered: Option<usize>,
+    /// The condition that was clicked.
+    pub(super) clicked: Option<usize>,
+}
+
+/// Draws a panel into `rect`; `hovered` is the condition to emphasise, whichever panel the pointer is in.
+pub(super) fn gain_panel_ui(
+    ui: &mut Ui,
+    (id, rect): (Id, Rect),
+    panel: &GainPanel,
+    ranges: SharedRanges,
+    hovered: Option<usize>,
+    palette: &Palette,
+) -> PanelAnswer {
+    let plot_rect = Rect::from_min_max(rect.min + vec2(0.0, TITLE_HEIGHT), rect.max - vec2(RIGHT_MARGIN, 0.0));
+    let (response, transform) = frame_ui(ui, (id, plot_rect), panel, ranges, palette);
+    let frame = *transform.frame();
+    let title_place = pos2(frame.center().x, rect.top() + 0.5 * TITLE_HEIGHT);
+    ui.painter().text(
+        title_place,
+        Align2::CENTER_CENTER,
+        &panel.title,
+        caption_font(),
+        palette.text,
+    );
+    let position = |dot: &Dot| transform.position_from_point(&PlotPoint::new(dot.airspeed_kt, dot.gain));
+    let placed: Vec<(&Dot, Pos2)> = panel.drawable_dots().map(|dot| (dot, position(dot))).collect();
+    paint_labels(ui, &placed, panel, &transform, palette);
+    let painter = ui.painter().with_clip_rect(frame.expand(DOT_RADIUS));
+    for (dot, center) in &placed {
+        dot.paint(&painter, *center, hovered == Some(dot.condition), palette);
+        name_dot(ui, id, panel, dot, *center);
+    }
+    let condition_at = |pointer: Pos2| Some(nearest_dot(&placed, pointer)?.condition);
+    let hovered = response.hover_pos().and_then(condition_at);
+    let clicked = response
+        .interact_pointer_pos()
+        .filter(|_| response.clicked())
+        .and_then(condition_at);
+    PanelAnswer {
+        response,
+        transform,
+        hovered,
+        clicked,
+    }
+}
+
+/// The axes, the line at 1 and the schedule.
+fn frame_ui(
+    ui: &mut Ui,
+    (id, rect): (Id, Rect),
+    panel: &GainPanel,
+    ranges: SharedRanges,
+    palette: &Palette,
+) -> (Response, PlotTransform) {
+    let (airspeed, gain) = (ranges.airspeed_kt, ranges.gain);
+    let bounds = PlotBounds::from_min_max([airspeed.min, gain.min], [airspeed.max, gain.max]);
+    let plot = quiet_plot(id, palette)
+        .sense(Sense::click())
+        .width(rect.width())
+        .height(rect.height())
+        .x_grid_spacer(Ladder::Decimal.spacer(AIRSPEED_TICK_GAP))
+        .y_grid_spacer(Ladder::Decimal.spacer(GAIN_TICK_GAP))
+        .custom_x_axes(vec![axis_hints(
+            Axis::X,
+            "Airspeed [kt]",
+            LABELLED_HEIGHT,
+            palette,
+            tick_text,
+        )])
+        .custom_y_axes(vec![axis_hints(Axis::Y, "", GAIN_AXIS_WIDTH, palette, tick_text)]);
+    let look = Role::Scheduled.look(false, palette);
+    let schedule: Vec<[f64; 2]> = panel
+        .schedule
+        .iter()
+        .copied()
+        .filter(|point| point.iter().all(|c| c.is_finite()))
+        .collect();
+    let shown = ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(rect), |ui| {
+        plot.show(ui, |plot| {
+            plot.set_plot_bounds(bounds);
+            let reference = palette.dim_text.gamma_multiply(0.8);
+            plot.hline(
+                HLine::new("", 1.0)
+                    .color(reference)
+                    .width(1.0)
+                    .style(LineStyle::Dashed { length: 3.0 }),
+            );
+            plot.line(
+                Line::new("", schedule)
+                    .color(look.color)
+                    .width(look.width)
+                    .style(look.style),
+            );
+        })
+    });
+    let description = format!("{}, {} conditions", panel.title, panel.dots.len());
+    let response = shown.inner.response;
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, description.clone()));
+    (response, shown.inner.transform)
+}
+
+fn paint_labels(ui: &Ui, placed: &[(&Dot, Pos2)], panel: &GainPanel, transform: &PlotTransform, palette: &Palette) {
+    let painter = ui.painter().with_clip_rect(*transform.frame());
+    let layout = |dot: &Dot| {
+        let color = if dot.selected { palette.text } else { palette.dim_text };
+        painter.layout_no_wrap(dot.label.clone(), LABEL_FONT, color)
+    };
+    let galleys: Vec<_> = placed.iter().map(|(dot, _)| layout(dot)).collect();
+    let dots: Vec<LabelledDot> = placed
+        .iter()
+        .zip(&galleys)
+        .map(|((dot, center), galley)| LabelledDot {
+            center: *center,
+            radius: dot.clearance(),
+            // What a row of text leaves free above and below its figures need not be kept clear.
+            label: galley.size() - vec2(0.0, LABEL_LEADING),
+        })
+        .collect();
+    let path: Vec<Pos2> = panel
+        .schedule
+        .iter()
+        .map(|[x, y]| transform.position_from_point(&PlotPoint::new(*x, *y)))
+        .collect();
+    let around = Surroundings {
+        bounds: transform.frame().shrink(1.0),
+        path: &path,
+    };
+    for ((place, galley), (_, center)) in place_labels(&dots, around).into_iter().zip(galleys).zip(placed) {
+        if let Some(end) = place.leader {
+            painter.line_segment([*center, end], Stroke::new(0.8, palette.dim_text.gamma_multiply(0.6)));
+        }
+        painter.galley(
+            place.rect.min - vec2(0.0, 0.5 * LABEL_LEADING),
+            galley,
+            palette.dim_text,
+        );
+    }
+}
+
+/// A name for screen readers and tests; pointing and clicking are the plot's, which takes the nearest dot.
+fn name_dot(ui: &Ui, id: Id, panel: &GainPanel, dot: &Dot, center: Pos2) {
+    let place = Rect::from_center_size(center, vec2(2.0, 2.0) * DOT_RADIUS);
+    let response = ui.interact(place, id.with(("dot", dot.condition)), Sense::hover());
+    let text = format!(
+        "{}, condition {}: {:.3} at {:.0} kt",
+        panel.title, dot.label, dot.gain, dot.airspeed_kt
+    );
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, text.clone()));
+}
+
+fn nearest_dot<'a>(placed: &[(&'a Dot, Pos2)], pointer: Pos2) -> Option<&'a Dot> {
+    let distances = placed.iter().map(|(dot, center)| (*dot, center.distance(pointer)));
+    let nearest = distances.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
+    (nearest.1 <= PICK_RADIUS).then_some(nearest.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_schedule_is_linear_between_its_samples() {
+        let panel = GainPanel {
+            schedule: vec![[40.0, 1.0], [60.0, 2.0], [80.0, 1.0]],
+            ..GainPanel::default()
+        };
+        assert_eq!(panel.scheduled(50.0), Some(1.5));
+        assert_eq!(panel.scheduled(80.0), Some(1.0));
+        assert_eq!(panel.scheduled(81.0), None);
+    }
+
+    #[test]
+    fn the_gain_one_is_always_in_view() {
+        let dot = Dot {
+            condition: 0,
+            label: "1".into(),
+            airspeed_kt: 60.0,
+            gain: 1.4,
+            shape: Default::default(),
+            filled: true,
+            selected: false,
+            chosen: true,
+            detail: String::new(),
+        };
+        let panel = GainPanel {
+            dots: vec![dot],
+            ..GainPanel::default()
+        };
+        assert!(
+            SharedRanges::of(&[panel]).is_some_and(|ranges| ranges.gain.contains(1.0) && ranges.gain.contains(1.4))
+        );
+        assert_eq!(SharedRanges::of(&[GainPanel::default()]), None);
+    }
+}

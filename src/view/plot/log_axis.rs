@@ -1,0 +1,261 @@
+//! The logarithmic frequency axis: everything that knows that a plot's x is `log10(omega)`.
+
+use egui_plot::{GridInput, GridMark};
+
+use super::grid_strength::{labelled_mark, minor_mark};
+use super::number::compact;
+use crate::units::rad_s_to_hz;
+
+/// Least distance between two labels \[pt\].
+const LABEL_GAP: f64 = 34.0;
+/// Least distance between two labels where all nine of a decade are shown \[pt\]: a row of many close numbers is hard to read.
+const NINE_LABELS_GAP: f64 = 44.0;
+/// Least distance between two minor lines \[pt\].
+const LINE_GAP: f64 = 5.0;
+
+/// The unit frequencies are shown in; inside they are always rad/s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FrequencyUnit {
+    /// Angular frequency.
+    #[default]
+    RadPerSecond,
+    /// Cycles per second.
+    Hertz,
+}
+
+impl FrequencyUnit {
+    /// The symbol of the unit.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::RadPerSecond => "rad/s",
+            Self::Hertz => "Hz",
+        }
+    }
+
+    /// The angular frequency `omega` \[rad/s\] in this unit.
+    pub fn of_omega(self, omega: f64) -> f64 {
+        match self {
+            Self::RadPerSecond => omega,
+            Self::Hertz => rad_s_to_hz(omega),
+        }
+    }
+
+    /// What stands beside the axis.
+    pub fn axis_label(self) -> String {
+        format!("Frequency [{}]", self.symbol())
+    }
+
+    /// An angular frequency as a reader wants it: "ω 2.05 rad/s" or "f 0.326 Hz".
+    pub fn readout(self, omega: f64) -> String {
+        let quantity = match self {
+            Self::RadPerSecond => "ω",
+            Self::Hertz => "f",
+        };
+        format!("{quantity} {} {}", three_digits(self.of_omega(omega)), self.symbol())
+    }
+
+    /// The text of the tick at `mark`, a `log10(omega)`.
+    pub fn tick_text(self, mark: GridMark) -> String {
+        compact(self.of_omega(10f64.powf(mark.value)))
+    }
+
+    /// Ticks and grid lines between `bounds`, both `log10(omega)`, on an axis of `decades_per_point`.
+    pub fn marks(self, bounds: (f64, f64), decades_per_point: f64) -> Vec<GridMark> {
+        if !(decades_per_point > 0.0 && bounds.0 < bounds.1 && bounds.0.is_finite() && bounds.1.is_finite()) {
+            return Vec::new();
+        }
+        let shift = self.of_omega(1.0).log10();
+        let marks = marks_of_unit((bounds.0 + shift, bounds.1 + shift), decades_per_point);
+        marks
+            .into_iter()
+            .map(|mark| GridMark {
+                value: mark.value - shift,
+                ..mark
+            })
+            .collect()
+    }
+
+    /// [`Self::marks`] as egui_plot asks for them, where the base step is one point.
+    pub fn spacer(self) -> impl Fn(GridInput) -> Vec<GridMark> {
+        move |input| self.marks(input.bounds, input.base_step_size)
+    }
+}
+
+/// What is labelled within a decade.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Labels {
+    /// Every so many decades.
+    Decades(i64),
+    /// 1, 2 and 5.
+    OneTwoFive,
+    /// 1 to 9.
+    Nine,
+    /// Equal steps, where less than a decade is in view.
+    Linear,
+}
+
+impl Labels {
+    fn for_density(points_per_decade: f64) -> Self {
+        let from_nine_to_ten = points_per_decade * (10.0f64 / 9.0).log10();
+        if from_nine_to_ten >= 2.0 * NINE_LABELS_GAP {
+            Self::Linear
+        } else if from_nine_to_ten >= NINE_LABELS_GAP {
+            Self::Nine
+        } else if points_per_decade * 2f64.log10() >= LABEL_GAP {
+            Self::OneTwoFive
+        } else {
+            Self::Decades((LABEL_GAP / points_per_decade).ceil().max(1.0) as i64)
+        }
+    }
+
+    fn include(self, mantissa: u8, exponent: i64) -> bool {
+        match self {
+            Self::Decades(every) => mantissa == 1 && exponent.rem_euclid(every) == 0,
+            Self::OneTwoFive => matches!(mantissa, 1 | 2 | 5),
+            Self::Nine | Self::Linear => true,
+        }
+    }
+}
+
+fn marks_of_unit(bounds: (f64, f64), decades_per_point: f64) -> Vec<GridMark> {
+    let labels = Labels::for_density(1.0 / decades_per_point);
+    if labels == Labels::Linear {
+        return linear_marks(bounds, decades_per_point);
+    }
+    // Between 9 and 10 lies the narrowest gap of a decade.
+    let has_minor_lines = (10.0f64 / 9.0).log10() / decades_per_point >= LINE_GAP;
+    let decades = bounds.0.floor() as i64..=bounds.1.floor() as i64;
+    let candidates = decades.flat_map(|exponent| (1..=9u8).map(move |mantissa| (mantissa, exponent)));
+    candidates
+        .filter_map(|(mantissa, exponent)| {
+            let value = f64::from(mantissa).log10() + exponent as f64;
+            let is_labelled = labels.include(mantissa, exponent);
+            if !within(value, bounds) || !(is_labelled || has_minor_lines || mantissa == 1) {
+                None
+            } else if is_labelled {
+                Some(labelled_mark(value, decades_per_point))
+            } else {
+                Some(minor_mark(value, decades_per_point))
+            }
+        })
+        .collect()
+}
+
+/// Equal steps in the unit itself: so close that the axis is nearly linear.
+fn linear_marks(bounds: (f64, f64), decades_per_point: f64) -> Vec<GridMark> {
+    let (low, high) = (10f64.powf(bounds.0), 10f64.powf(bounds.1));
+    // The upper end is where equal steps are closest.
+    let units_per_point = high * decades_per_point * std::f64::consts::LN_10;
+    let step = super::linear_axis::step_above(LABEL_GAP * 1.5 * units_per_point);
+    let indices = (low / step).ceil() as i64..=(high / step).floor() as i64;
+    indices
+        .map(|k| labelled_mark((k as f64 * step).log10(), decades_per_point))
+        .collect()
+}
+
+/// Whether `value` lies in `bounds`, whose ends may miss a round number by rounding.
+fn within(value: f64, bounds: (f64, f64)) -> bool {
+    let slack = 1e-9 * (1.0 + (bounds.1 - bounds.0));
+    (bounds.0 - slack..=bounds.1 + slack).contains(&value)
+}
+
+/// Three significant digits.
+fn three_digits(value: f64) -> String {
+    let decimals = if value.abs() >= 100.0 {
+        0
+    } else if value.abs() >= 10.0 {
+        1
+    } else if value.abs() >= 1.0 {
+        2
+    } else {
+        3
+    };
+    format!("{value:.decimals$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(unit: FrequencyUnit, omega: (f64, f64), points: f64) -> Vec<String> {
+        let bounds = (omega.0.log10(), omega.1.log10());
+        let decades_per_point = (bounds.1 - bounds.0) / points;
+        let labelled = |mark: &GridMark| mark.step_size / decades_per_point > 50.0;
+        let marks = unit.marks(bounds, decades_per_point);
+        marks
+            .into_iter()
+            .filter(labelled)
+            .map(|mark| unit.tick_text(mark))
+            .collect()
+    }
+
+    #[test]
+    fn a_usual_plot_is_labelled_at_one_two_five() {
+        assert_eq!(
+            labels(FrequencyUnit::RadPerSecond, (0.3, 20.0), 800.0),
+            ["0.5", "1", "2", "5", "10", "20"]
+        );
+    }
+
+    #[test]
+    fn a_narrow_plot_is_labelled_at_decades_only() {
+        assert_eq!(
+            labels(FrequencyUnit::RadPerSecond, (0.05, 200.0), 300.0),
+            ["0.1", "1", "10", "100"]
+        );
+        assert_eq!(labels(FrequencyUnit::RadPerSecond, (1e-6, 1e6), 200.0).len(), 5);
+    }
+
+    #[test]
+    fn a_close_view_is_labelled_in_equal_steps() {
+        assert_eq!(
+            labels(FrequencyUnit::RadPerSecond, (1.98, 2.32), 800.0)
+                .first()
+                .map(String::as_str),
+            Some("2")
+        );
+        assert!(labels(FrequencyUnit::RadPerSecond, (2.0001, 2.0009), 800.0).len() > 3);
+    }
+
+    #[test]
+    fn ticks_in_hertz_are_round_in_hertz() {
+        assert_eq!(
+            labels(FrequencyUnit::Hertz, (0.3, 20.0), 800.0),
+            ["0.05", "0.1", "0.2", "0.5", "1", "2"]
+        );
+    }
+
+    #[test]
+    fn no_two_labels_are_closer_than_the_gap_at_any_zoom() {
+        for width in [1e-4, 0.01, 0.1, 0.4, 0.8, 1.3, 1.8, 3.0, 7.0, 12.0] {
+            for points in [150.0, 400.0, 900.0, 2500.0] {
+                let per_point = width / points;
+                let marks = FrequencyUnit::RadPerSecond.marks((-0.52, -0.52 + width), per_point);
+                let labelled: Vec<_> = marks.iter().filter(|m| m.step_size / per_point > 50.0).collect();
+                assert!(labelled.len() < 80, "{width} {points}: {}", labelled.len());
+                for pair in labelled.windows(2) {
+                    let gap = (pair[1].value - pair[0].value) / per_point;
+                    assert!(gap > 0.99 * LABEL_GAP, "{width} {points}: {gap}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_decade_has_nine_lines_where_there_is_room() {
+        let marks = FrequencyUnit::RadPerSecond.marks((0.0, 1.0 - 1e-6), 1.0 / 400.0);
+        assert_eq!(marks.len(), 9);
+    }
+
+    #[test]
+    fn bounds_that_are_no_range_give_no_marks() {
+        assert!(FrequencyUnit::RadPerSecond.marks((1.0, 1.0), 0.1).is_empty());
+        assert!(FrequencyUnit::RadPerSecond.marks((f64::NAN, 1.0), 0.1).is_empty());
+    }
+
+    #[test]
+    fn a_frequency_reads_in_its_unit() {
+        assert_eq!(FrequencyUnit::RadPerSecond.readout(2.0494), "ω 2.05 rad/s");
+        assert_eq!(FrequencyUnit::Hertz.readout(2.0494), "f 0.326 Hz");
+    }
+}

@@ -1,0 +1,263 @@
+//! Every response at once: a table of small Bode plots, outputs down, inputs across.
+
+use egui::{
+    Align2, Button, FontId, Pos2, Rect, RichText, Sense, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+};
+
+use super::axes::caption_font;
+use super::curve::{BodeCurve, Pane};
+use super::message::message_ui;
+use super::number::compact;
+use super::range::Range;
+use super::sparkline::Sparkline;
+use crate::dataset::Pair;
+use crate::view::palette::{Palette, SMALL_SIZE};
+
+const HEADER: egui::Vec2 = vec2(52.0, 22.0);
+const GAP: f32 = 4.0;
+/// Part of a cell's height that the magnitude gets where the phase is shown too.
+const MAGNITUDE_PART: f32 = 0.58;
+/// Cells smaller than this have no texts \[pt\].
+const LEAST_WITH_TEXT: egui::Vec2 = vec2(96.0, 54.0);
+const CELL_FONT: FontId = FontId::proportional(10.0);
+
+/// One response in the overview.
+#[derive(Clone, Debug)]
+pub struct OverviewCell<'a> {
+    /// Which response.
+    pub pair: Pair,
+    /// Its curves; may be empty.
+    pub curves: &'a [BodeCurve],
+    /// Whether its gain is constrained.
+    pub constrained: bool,
+    /// Whether it is the pair in focus.
+    pub selected: bool,
+    /// A short text in its corner, such as J. May be empty.
+    pub note: String,
+}
+
+/// What the overview shows.
+#[derive(Clone, Copy, Debug)]
+pub struct OverviewScene<'a> {
+    /// Names of the inputs: the columns.
+    pub inputs: &'a [String],
+    /// Names of the outputs: the rows.
+    pub outputs: &'a [String],
+    /// The responses, in any order.
+    pub cells: &'a [OverviewCell<'a>],
+    /// The band of comparison: lower and upper end \[rad/s\].
+    pub band: (f64, f64),
+    /// What to say where there is nothing to draw.
+    pub message: Option<&'a str>,
+}
+
+/// What the engineer did in the overview.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OverviewEvent {
+    /// A response was clicked.
+    PairClicked(Pair),
+}
+
+/// What the overview remembers between frames.
+#[derive(Clone, Debug, Default)]
+pub struct OverviewView {
+    /// Whether phases are shown below magnitudes.
+    pub show_phase: bool,
+    places: Vec<(Pair, Rect)>,
+}
+
+impl OverviewView {
+    /// The middle of a response's cell on the screen.
+    pub fn screen_position(&self, pair: Pair) -> Option<Pos2> {
+        self.places
+            .iter()
+            .find(|(placed, _)| *placed == pair)
+            .map(|(_, rect)| rect.center())
+    }
+}
+
+/// Draws the overview into the space that is left in `ui`.
+pub fn overview_ui(
+    ui: &mut Ui,
+    scene: &OverviewScene<'_>,
+    view: &mut OverviewView,
+    palette: &Palette,
+) -> Vec<OverviewEvent> {
+    let rect = ui.available_rect_before_wrap();
+    let curves = scene.cells.iter().flat_map(|cell| cell.curves);
+    let log_omega = Range::of(curves.flat_map(|curve| curve.omega.iter().map(|omega| omega.log10())));
+    view.places.clear();
+    let (Some(log_omega), false, false) = (log_omega, scene.inputs.is_empty(), scene.outputs.is_empty()) else {
+        message_ui(ui, rect, scene.message.unwrap_or("Nothing to draw"), palette);
+        return Vec::new();
+    };
+    let table = Table {
+        rect,
+        columns: scene.inputs.len(),
+        rows: scene.outputs.len(),
+    };
+    let mut events = Vec::new();
+    ui.scope_builder(UiBuilder::new().id_salt("overview").max_rect(rect), |ui| {
+        headers_ui(ui, scene, view, &table, palette);
+        for cell in scene.cells {
+            let place = table.cell(cell.pair);
+            view.places.push((cell.pair, place));
+            if cell_ui(ui, scene, (cell, place), view.show_phase, log_omega, palette) {
+                events.push(OverviewEvent::PairClicked(cell.pair));
+            }
+        }
+    });
+    ui.advance_cursor_after_rect(rect);
+    events
+}
+
+/// Where the cells are.
+struct Table {
+    rect: Rect,
+    columns: usize,
+    rows: usize,
+}
+
+impl Table {
+    fn cell(&self, pair: Pair) -> Rect {
+        let area = Rect::from_min_max(self.rect.min + HEADER, self.rect.max);
+        let size = vec2(area.width() / self.columns as f32, area.height() / self.rows as f32);
+        let offset = vec2(pair.input as f32 * size.x, pair.output as f32 * size.y);
+        Rect::from_min_size(area.min + offset, (size - vec2(GAP, GAP)).max(vec2(1.0, 1.0)))
+    }
+}
+
+fn headers_ui(ui: &mut Ui, scene: &OverviewScene<'_>, view: &mut OverviewView, table: &Table, palette: &Palette) {
+    let toggle_place = Rect::from_min_size(table.rect.min, HEADER - vec2(4.0, 4.0));
+    let toggle = Button::selectable(view.show_phase, RichText::new("phase").size(SMALL_SIZE))
+        .wrap_mode(egui::TextWrapMode::Extend);
+    if ui
+        .put(toggle_place, toggle)
+        .on_hover_text("Show phases below magnitudes")
+        .clicked()
+    {
+        view.show_phase = !view.show_phase;
+    }
+    let painter = ui.painter();
+    for (input, name) in scene.inputs.iter().enumerate() {
+        let place = pos2(
+            table.cell(Pair::new(0, input)).center().x,
+            table.rect.top() + 0.5 * HEADER.y - 1.0,
+        );
+        painter.text(place, Align2::CENTER_CENTER, name, caption_font(), palette.dim_text);
+    }
+    for (output, name) in scene.outputs.iter().enumerate() {
+        let place = pos2(
+            table.rect.left() + 0.5 * HEADER.x - 2.0,
+            table.cell(Pair::new(output, 0)).center().y,
+        );
+        painter.text(place, Align2::CENTER_CENTER, name, caption_font(), palette.dim_text);
+    }
+}
+
+/// Draws one response; gives whether it was clicked.
+fn cell_ui(
+    ui: &Ui,
+    scene: &OverviewScene<'_>,
+    (cell, place): (&OverviewCell<'_>, Rect),
+    show_phase: bool,
+    log_omega: Range,
+    palette: &Palette,
+) -> bool {
+    let response = ui.interact(place, ui.scope_id().with(cell.pair), Sense::click());
+    let title = title(scene, cell.pair);
+    let name = if cell.note.is_empty() {
+        title.clone()
+    } else {
+        format!("{title}: {}", cell.note)
+    };
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, name.clone()));
+    if !ui.is_rect_visible(place) {
+        return response.clicked();
+    }
+    let fill = if cell.constrained {
+        palette.background.lerp_to_gamma(palette.selected, 0.55)
+    } else {
+        palette.background
+    };
+    let outline = if cell.selected {
+        Stroke::new(2.0, palette.accent)
+    } else if response.hovered() || response.has_focus() {
+        Stroke::new(1.0, palette.accent)
+    } else {
+        Stroke::new(1.0, palette.line)
+    };
+    ui.painter().rect(place, 2.0, fill, outline, StrokeKind::Inside);
+    let painter = ui.painter().with_clip_rect(place.shrink(1.5).intersect(ui.clip_rect()));
+    for (pane, rect) in pane_rects(place.shrink(2.0), show_phase) {
+        let sparkline = Sparkline {
+            curves: cell.curves,
+            pane,
+            log_omega,
+            rect,
+        };
+        paint_band(&painter, rect, scene.band, log_omega, palette);
+        sparkline.paint(&painter, palette);
+        if place.size().min(LEAST_WITH_TEXT) == LEAST_WITH_TEXT {
+            paint_values(&painter, &sparkline, palette);
+        }
+    }
+    let has_text = place.size().min(LEAST_WITH_TEXT) == LEAST_WITH_TEXT && !cell.note.is_empty();
+    if has_text {
+        painter.text(
+            place.right_top() + vec2(-5.0, 3.0),
+            Align2::RIGHT_TOP,
+            &cell.note,
+            CELL_FONT,
+            palette.text,
+        );
+    }
+    response
+        .on_hover_cursor(egui::CursorIcon::PointingHand)
+        .on_hover_text(name)
+        .clicked()
+}
+
+fn title(scene: &OverviewScene<'_>, pair: Pair) -> String {
+    let name = |names: &[String], index: usize| names.get(index).cloned().unwrap_or_default();
+    format!(
+        "{} → {}",
+        name(scene.inputs, pair.input),
+        name(scene.outputs, pair.output)
+    )
+}
+
+fn pane_rects(rect: Rect, show_phase: bool) -> Vec<(Pane, Rect)> {
+    if !show_phase {
+        return vec![(Pane::Magnitude, rect)];
+    }
+    let split = rect.top() + MAGNITUDE_PART * rect.height();
+    let (upper, lower) = rect.split_top_bottom_at_y(split);
+    vec![(Pane::Magnitude, upper), (Pane::Phase, lower)]
+}
+
+fn paint_band(painter: &egui::Painter, rect: Rect, (min, max): (f64, f64), log_omega: Range, palette: &Palette) {
+    let x = |omega: f64| {
+        let fraction = (omega.log10() - log_omega.min) / log_omega.width();
+        rect.left() + fraction.clamp(0.0, 1.0) as f32 * rect.width()
+    };
+    let band = Rect::from_x_y_ranges(x(min)..=x(max), rect.y_range());
+    painter.rect_filled(band, 0.0, palette.accent.gamma_multiply(0.06));
+    painter.hline(rect.x_range(), rect.bottom(), Stroke::new(1.0, palette.grid));
+}
+
+/// The range of the values, for want of an axis.
+fn paint_values(painter: &egui::Painter, sparkline: &Sparkline<'_>, palette: &Palette) {
+    let Some(values) = sparkline.values() else { return };
+    let unit = match sparkline.pane {
+        Pane::Magnitude => " dB",
+        Pane::Phase => "°",
+    };
+    let text = format!(
+        "{} … {}{unit}",
+        compact(values.min.round()),
+        compact(values.max.round())
+    );
+    let corner = sparkline.rect.left_bottom() + vec2(3.0, -2.0);
+    painter.text(corner, Align2::LEFT_BOTTOM, text, CELL_FONT, palette.dim_text);
+}

@@ -1,0 +1,140 @@
+//! Which curve the pointer means: the nearest one, not the topmost.
+
+use egui::Pos2;
+use egui_plot::{PlotPoint, PlotTransform};
+
+use super::curve::{BodeCurve, CurveId, Pane};
+
+/// How far from a curve the pointer may be to mean it \[pt\].
+pub const PICK_RADIUS: f32 = 8.0;
+
+/// The curve that the pointer means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// The curve.
+    pub id: CurveId,
+    /// The frequency of its point nearest to the pointer \[rad/s\].
+    pub omega: f64,
+    /// Distance from the pointer \[pt\].
+    pub distance: f32,
+}
+
+/// The curve nearest to `pointer`, if one is within [`PICK_RADIUS`]. Of equally near ones, the one drawn on top.
+pub fn nearest(curves: &[BodeCurve], pane: Pane, pointer: Pos2, transform: &PlotTransform) -> Option<Hit> {
+    let mut best: Option<(Hit, usize)> = None;
+    for curve in curves {
+        let Some((distance, at)) = distance_to(curve, pane, pointer, transform) else {
+            continue;
+        };
+        let layer = curve.role.layer(curve.rejected);
+        let is_better =
+            best.is_none_or(|(hit, top)| distance < hit.distance || (distance == hit.distance && layer > top));
+        if distance <= PICK_RADIUS && is_better {
+            let omega = 10f64.powf(transform.value_from_position(at).x);
+            best = Some((
+                Hit {
+                    id: curve.id,
+                    omega,
+                    distance,
+                },
+                layer,
+            ));
+        }
+    }
+    best.map(|(hit, _)| hit)
+}
+
+/// Distance from `pointer` to a curve and the point of the curve that has it; nothing where no part comes near.
+fn distance_to(curve: &BodeCurve, pane: Pane, pointer: Pos2, transform: &PlotTransform) -> Option<(f32, Pos2)> {
+    let near = pointer.x - PICK_RADIUS..=pointer.x + PICK_RADIUS;
+    let positions = curve
+        .points(pane)
+        .map(|[x, y]| (x.is_finite() && y.is_finite()).then(|| transform.position_from_point(&PlotPoint::new(x, y))));
+    let mut previous: Option<Pos2> = None;
+    let mut best: Option<(f32, Pos2)> = None;
+    for position in positions {
+        if let (Some(from), Some(to)) = (previous, position)
+            && from.x <= *near.end()
+            && to.x >= *near.start()
+        {
+            let candidate = closest_on_segment(pointer, from, to);
+            let distance = candidate.distance(pointer);
+            if best.is_none_or(|(least, _)| distance < least) {
+                best = Some((distance, candidate));
+            }
+        }
+        previous = position;
+    }
+    best
+}
+
+fn closest_on_segment(pointer: Pos2, from: Pos2, to: Pos2) -> Pos2 {
+    let along = to - from;
+    let length_sq = along.length_sq();
+    if length_sq == 0.0 {
+        return from;
+    }
+    from + along * ((pointer - from).dot(along) / length_sq).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::plot::role::Role;
+    use egui::{Rect, pos2};
+    use egui_plot::PlotBounds;
+
+    fn flat(id: u64, level_db: f64, role: Role) -> BodeCurve {
+        BodeCurve {
+            id: CurveId(id),
+            label: format!("curve {id}"),
+            detail: String::new(),
+            role,
+            rejected: false,
+            highlighted: false,
+            omega: vec![1.0, 3.0, 10.0].into(),
+            magnitude_db: vec![level_db; 3].into(),
+            phase_deg: vec![f64::NAN, 0.0, f64::NAN].into(),
+        }
+    }
+
+    /// One decade and 100 dB on 100 by 100 points: a decibel is a point.
+    fn transform() -> PlotTransform {
+        let frame = Rect::from_min_max(pos2(0.0, 0.0), pos2(100.0, 100.0));
+        PlotTransform::new(frame, PlotBounds::from_min_max([0.0, 0.0], [1.0, 100.0]), false)
+    }
+
+    #[test]
+    fn the_nearest_curve_is_meant_wherever_it_stands_in_the_list() {
+        let curves = [
+            flat(1, 50.0, Role::Perturbed),
+            flat(2, 54.0, Role::Corrected),
+            flat(3, 60.0, Role::Nominal),
+        ];
+        let hit = |y| nearest(&curves, Pane::Magnitude, pos2(50.0, y), &transform()).map(|hit| hit.id);
+        assert_eq!(hit(49.0), Some(CurveId(1)));
+        assert_eq!(hit(47.0), Some(CurveId(2)));
+        assert_eq!(hit(42.0), Some(CurveId(3)));
+        assert_eq!(hit(31.0), None);
+    }
+
+    #[test]
+    fn of_equally_near_curves_the_one_on_top_is_meant() {
+        let curves = [flat(1, 50.0, Role::Corrected), flat(2, 50.0, Role::Perturbed)];
+        let hit = nearest(&curves, Pane::Magnitude, pos2(50.0, 50.0), &transform());
+        assert_eq!(hit.map(|hit| hit.id), Some(CurveId(1)));
+    }
+
+    #[test]
+    fn the_frequency_is_that_under_the_pointer() {
+        let curves = [flat(1, 50.0, Role::Nominal)];
+        let hit = nearest(&curves, Pane::Magnitude, pos2(50.0, 48.0), &transform());
+        assert!(hit.is_some_and(|hit| (hit.omega - 10f64.sqrt()).abs() < 1e-4));
+    }
+
+    #[test]
+    fn gaps_cannot_be_meant() {
+        let curves = [flat(1, 50.0, Role::Nominal)];
+        assert_eq!(nearest(&curves, Pane::Phase, pos2(50.0, 100.0), &transform()), None);
+    }
+}

@@ -1,0 +1,71 @@
+//! What hovering a curve says.
+
+use egui::{PopupAnchor, Response, RichText, Tooltip, Ui};
+
+use super::curve::{BodeCurve, Pane};
+use super::log_axis::FrequencyUnit;
+use super::number::decimals;
+use crate::view::palette::{Palette, SMALL_SIZE};
+
+/// "nominal · 2.9 dB · −99°" at `omega` \[rad/s\].
+pub(super) fn value_text(curve: &BodeCurve, omega: f64) -> String {
+    let value = |pane, count, unit: &str| match curve.value_at(pane, omega) {
+        Some(value) => format!("{}{unit}", decimals(value, count)),
+        None => "–".to_owned(),
+    };
+    format!(
+        "{} · {} · {}",
+        curve.label,
+        value(Pane::Magnitude, 1, " dB"),
+        value(Pane::Phase, 0, "°")
+    )
+}
+
+/// Shows frequency, name and values of `curve` at `omega` \[rad/s\] beside the pointer.
+pub(super) fn curve_tooltip_ui(plot: &Response, curve: &BodeCurve, omega: f64, unit: FrequencyUnit, palette: &Palette) {
+    tooltip_ui(plot, |ui| {
+        ui.label(
+            RichText::new(unit.readout(omega))
+                .size(SMALL_SIZE)
+                .color(palette.dim_text),
+        );
+        ui.label(value_text(curve, omega));
+        if !curve.detail.is_empty() {
+            ui.label(RichText::new(&curve.detail).size(SMALL_SIZE).color(palette.dim_text));
+        }
+    });
+}
+
+/// Shows `content` beside the pointer, which is over `plot`.
+pub(super) fn tooltip_ui(plot: &Response, content: impl FnOnce(&mut Ui)) {
+    Tooltip::always_open(plot.ctx.clone(), plot.layer_id, plot.id, PopupAnchor::Pointer)
+        .gap(14.0)
+        .show(|ui| {
+            ui.spacing_mut().item_spacing.y = 2.0;
+            content(ui);
+        });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::plot::curve::CurveId;
+    use crate::view::plot::role::Role;
+
+    #[test]
+    fn a_readout_names_the_curve_and_its_values() {
+        let curve = BodeCurve {
+            id: CurveId(0),
+            label: "nominal".into(),
+            detail: String::new(),
+            role: Role::Nominal,
+            rejected: true,
+            highlighted: false,
+            omega: vec![1.0, 2.0].into(),
+            magnitude_db: vec![2.94, 3.0].into(),
+            phase_deg: vec![-99.2, f64::NAN].into(),
+        };
+        assert_eq!(value_text(&curve, 1.0), "nominal · 2.9 dB · \u{2212}99°");
+        assert_eq!(value_text(&curve, 2.0), "nominal · 3.0 dB · –");
+    }
+}

@@ -1,0 +1,83 @@
+//! What the plots answer to the mouse, without a display.
+
+mod bode;
+mod gains;
+mod tables;
+
+use std::sync::Arc;
+
+use egui::{Event, Modifiers, PointerButton, Pos2};
+use egui_kittest::Harness;
+
+use super::*;
+
+/// Presses and releases a button at `at`.
+fn press<State>(harness: &mut Harness<'_, State>, at: Pos2, button: PointerButton, modifiers: Modifiers) {
+    harness.hover_at(at);
+    harness.step();
+    for pressed in [true, false] {
+        harness.event(Event::PointerButton {
+            pos: at,
+            button,
+            pressed,
+            modifiers,
+        });
+        harness.step();
+    }
+    harness.step();
+}
+
+fn click<State>(harness: &mut Harness<'_, State>, at: Pos2) {
+    press(harness, at, PointerButton::Primary, Modifiers::NONE);
+}
+
+/// Drags with a button along `path`.
+fn drag<State>(harness: &mut Harness<'_, State>, path: &[Pos2], button: PointerButton) {
+    let (Some(first), Some(last)) = (path.first(), path.last()) else {
+        return;
+    };
+    harness.hover_at(*first);
+    harness.step();
+    harness.event(Event::PointerButton {
+        pos: *first,
+        button,
+        pressed: true,
+        modifiers: Modifiers::NONE,
+    });
+    harness.step();
+    for at in path {
+        harness.hover_at(*at);
+        harness.step();
+    }
+    harness.event(Event::PointerButton {
+        pos: *last,
+        button,
+        pressed: false,
+        modifiers: Modifiers::NONE,
+    });
+    harness.step();
+    harness.step();
+}
+
+/// A first-order lag of this gain \[dB\] and corner frequency \[rad/s\] on 120 frequencies from 0.3 to 20 rad/s.
+fn lag(id: u64, gain_db: f64, corner: f64, role: Role) -> BodeCurve {
+    let omega: Arc<[f64]> = (0..120)
+        .map(|k| 0.3 * (20.0f64 / 0.3).powf(f64::from(k) / 119.0))
+        .collect();
+    let magnitude_db = omega
+        .iter()
+        .map(|w| gain_db - 10.0 * (1.0 + (w / corner).powi(2)).log10())
+        .collect();
+    let phase_deg = omega.iter().map(|w| -(w / corner).atan().to_degrees()).collect();
+    BodeCurve {
+        id: CurveId(id),
+        label: format!("model {id}"),
+        detail: "click to reject".to_owned(),
+        role,
+        rejected: false,
+        highlighted: false,
+        omega,
+        magnitude_db,
+        phase_deg,
+    }
+}

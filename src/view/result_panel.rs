@@ -1,0 +1,139 @@
+//! The result of the condition shown, in words and numbers.
+
+use egui::{Align, Button, Color32, Grid, Layout, RichText, Ui, vec2};
+
+use crate::correction::{GainObjective, Outcome};
+use crate::dataset::Channel;
+use crate::study::ConditionAnalysis;
+use crate::units::s_to_ms;
+
+use super::command::{Command, FormKind};
+use super::explanation::{Remark, RemarkKind, remarks};
+use super::heading::heading_ui;
+use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
+use super::state::State;
+
+/// Outcome, channel gains and delays, objective, and what could not be matched and why.
+pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    match state.analysis().map(|analysis| &analysis.conditions[state.display.condition]) {
+        None => {
+            heading_ui(ui, palette, "Result", "");
+            ui.label(RichText::new("computing …").color(palette.dim_text));
+        }
+        Some(Err(failure)) => {
+            heading_ui(ui, palette, "Result", "none");
+            remark_ui(ui, palette, &Remark { kind: RemarkKind::Trouble, text: failure.to_string() });
+        }
+        Some(Ok(shown)) => {
+            header_ui(ui, shown, palette);
+            channels_ui(ui, state, shown, palette);
+            objective_ui(ui, shown, palette);
+            for remark in remarks(state, shown) {
+                remark_ui(ui, palette, &remark);
+            }
+        }
+    }
+    ui.add_space(4.0);
+    let ready = state.analysis().is_some();
+    let label = RichText::new("Export corrections…").strong().color(palette.on_accent());
+    let export = ui.add_enabled(ready, Button::new(label).fill(palette.accent));
+    if export.on_hover_text("Write corrections.json, corrections.csv and assessment.csv (Ctrl+E)").clicked() {
+        commands.push(Command::ShowForm(Some(FormKind::Export)));
+    }
+}
+
+fn header_ui(ui: &mut Ui, shown: &ConditionAnalysis, palette: &Palette) {
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("Result").size(SMALL_SIZE).strong().color(palette.dim_text));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let (word, color, gap, hint) = outcome(shown, palette);
+            ui.label(RichText::new(format!("gap {gap:.0e}")).size(SMALL_SIZE).color(palette.dim_text));
+            badge_ui(ui, word, color, palette).on_hover_text(hint);
+        });
+    });
+}
+
+fn outcome(shown: &ConditionAnalysis, palette: &Palette) -> (&'static str, Color32, f64, &'static str) {
+    let (gap, proven) = match shown.gains.outcome {
+        Outcome::Proven { gap } => (gap, true),
+        Outcome::NotProven { gap } => (gap, false),
+    };
+    match (shown.gains.matched, proven) {
+        (false, _) => ("not matched", palette.warning, gap, "Not every held gain can be reached; the reasons stand below"),
+        (true, true) => ("proven", palette.good, gap, "No gains inside the bounds are better: a lower bound proves it"),
+        (true, false) => ("not proven", palette.warning, gap, "A better answer may exist; none is better by more than the gap"),
+    }
+}
+
+fn badge_ui(ui: &mut Ui, word: &str, color: Color32, palette: &Palette) -> egui::Response {
+    let text = RichText::new(word).size(SMALL_SIZE).strong().color(palette.on_accent());
+    egui::Frame::new().fill(color).corner_radius(3.0).inner_margin(egui::Margin::symmetric(6, 1)).show(ui, |ui| ui.label(text)).response
+}
+
+fn channels_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Palette) {
+    let (gains, delays) = (&shown.gains, &shown.delays);
+    let dataset = state.dataset();
+    let sides = [
+        ("input", dataset.inputs(), &gains.inputs, &delays.inputs_s),
+        ("output", dataset.outputs(), &gains.outputs, &delays.outputs_s),
+    ];
+    ui.columns(2, |columns| {
+        for (ui, (title, channels, gains, delays_s)) in columns.iter_mut().zip(sides) {
+            channel_table_ui(ui, title, channels, gains, delays_s, palette);
+        }
+    });
+}
+
+fn channel_table_ui(ui: &mut Ui, title: &str, channels: &[Channel], gains: &[f64], delays_s: &[f64], palette: &Palette) {
+    let width = ui.available_width();
+    Grid::new(title).num_columns(3).spacing([6.0, 3.0]).min_col_width(0.3 * width - 6.0).show(ui, |ui| {
+        let head = |ui: &mut Ui, text: &str| ui.label(RichText::new(text).size(SMALL_SIZE).color(palette.dim_text));
+        head(ui, title);
+        right(ui, |ui| head(ui, "k"));
+        right(ui, |ui| head(ui, "τ ms"));
+        ui.end_row();
+        for ((channel, gain), delay_s) in channels.iter().zip(gains).zip(delays_s) {
+            ui.label(RichText::new(&channel.name).size(BODY_SIZE));
+            right(ui, |ui| ui.label(format!("{gain:.3}")).on_hover_text(format!("{gain}")));
+            let delay_ms = s_to_ms(*delay_s);
+            let text = if delay_ms == 0.0 { "0".to_owned() } else { format!("{delay_ms:.1}") };
+            let color = if delay_ms == 0.0 { palette.dim_text } else { palette.text };
+            right(ui, |ui| ui.label(RichText::new(text).color(color)).on_hover_text(format!("{delay_ms} ms")));
+            ui.end_row();
+        }
+    });
+}
+
+fn right<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
+    ui.with_layout(Layout::right_to_left(Align::Center), add).inner
+}
+
+fn objective_ui(ui: &mut Ui, shown: &ConditionAnalysis, palette: &Palette) {
+    let unit = match shown.gains.minimised {
+        GainObjective::Ratio => "",
+        GainObjective::Decibel => " dB²",
+    };
+    let gains = format!("objective {:.4}{unit}", shown.gains.objective);
+    let delays = format!("delays {:.4} s²", shown.delays.objective);
+    let label = ui.label(RichText::new(format!("{gains} · {delays}")).size(SMALL_SIZE).color(palette.dim_text));
+    label.on_hover_text(format!(
+        "eq. (7): {}{unit}, lower bound {}{unit}\neq. (11): {} s²",
+        shown.gains.objective, shown.gains.lower_bound, shown.delays.objective
+    ));
+}
+
+fn remark_ui(ui: &mut Ui, palette: &Palette, remark: &Remark) {
+    let color = match remark.kind {
+        RemarkKind::Good => palette.good,
+        RemarkKind::Caution | RemarkKind::Trouble => palette.warning,
+    };
+    let text = RichText::new(&remark.text).size(SMALL_SIZE);
+    let shown = ui.horizontal(|ui| {
+        ui.add_space(8.0);
+        ui.vertical(|ui| ui.label(text));
+    });
+    let rect = shown.response.rect;
+    let bar = egui::Rect::from_min_size(rect.min, vec2(3.0, rect.height()));
+    ui.painter().rect_filled(bar, 1.0, color);
+}

@@ -1,0 +1,203 @@
+//! Everything the window shows.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::dataset::{Band, BundleKind, Condition, Dataset, ModelId, Pair};
+use crate::study::{Analysis, ConditionAnalysis, ConditionCurves, History, Study};
+
+use super::bode_scene::CachedShapes;
+use super::command::FormKind;
+use super::plot::{AssessmentView, BodeCurve, BodeView, ChannelsView, FrequencyUnit, GainView, OverviewView};
+
+/// The large plots.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tab {
+    /// The focused response: magnitude and phase.
+    #[default]
+    Bode,
+    /// Every response, small.
+    Overview,
+    /// Channel gains against airspeed.
+    Channels,
+    /// What the scheduled correction is worth.
+    Assessment,
+}
+
+/// What is shown, none of which changes a result.
+#[derive(Debug, Default)]
+pub struct Display {
+    /// Index of the condition shown.
+    pub condition: usize,
+    /// The response in the large plot.
+    pub pair: Pair,
+    /// The model pointed at.
+    pub hovered: Option<ModelId>,
+    /// The only model shown beside the representatives.
+    pub isolated: Option<ModelId>,
+    /// The plot above.
+    pub tab: Tab,
+    /// Unit of frequencies.
+    pub unit: FrequencyUnit,
+    /// Ranges and transforms of the large plot.
+    pub bode: BodeView,
+    /// Transforms of the net-gain plots.
+    pub net_gain: GainView,
+    /// Transforms of the channel-gain plots.
+    pub channels: ChannelsView,
+    /// Cells of the overview.
+    pub overview: OverviewView,
+    /// Transforms of the assessment.
+    pub assessment: AssessmentView,
+    /// Band for which the large plot was fitted last.
+    pub bode_band: Option<Band>,
+    /// Shapes of the responses drawn, kept from frame to frame.
+    pub shapes: BTreeMap<Pair, CachedShapes>,
+    /// The curves that the large plot shows.
+    pub drawn: Vec<BodeCurve>,
+}
+
+/// What was computed; never saved.
+#[derive(Debug, Default)]
+pub struct Results {
+    /// The newest analysis.
+    pub analysis: Option<Arc<Analysis>>,
+    /// Responses for drawing, with the index of their condition.
+    pub curves: Option<(usize, Arc<ConditionCurves>)>,
+    /// Number of the newest request.
+    pub requested: u64,
+    /// Number of the request the analysis answers.
+    pub received: u64,
+    /// When the oldest request without an answer was made \[s of the window's clock\].
+    pub waiting_since: Option<f64>,
+    /// How long the newest analysis took \[ms\].
+    pub elapsed_ms: f64,
+    /// How far the analysis under way is: conditions done, of how many.
+    pub progress: Option<(usize, usize)>,
+}
+
+/// Age \[s\] from which shown results that no longer fit the settings are marked as stale.
+const STALE_AFTER_S: f64 = 0.15;
+
+impl Results {
+    /// Whether an answer is still to come.
+    pub fn is_waiting(&self) -> bool {
+        self.requested > self.received
+    }
+
+    /// Whether what is shown should be marked as stale at `now` \[s of the window's clock\].
+    pub fn is_stale(&self, now: f64) -> bool {
+        self.waiting_since.is_some_and(|since| now - since > STALE_AFTER_S)
+    }
+}
+
+/// How a message is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoticeKind {
+    /// Something was done.
+    Done,
+    /// Something could not be done.
+    Trouble,
+}
+
+/// A message to the engineer.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Notice {
+    /// How it is meant.
+    pub kind: NoticeKind,
+    /// The message.
+    pub text: String,
+}
+
+/// What the export form holds.
+#[derive(Clone, Debug, Default)]
+pub struct ExportForm {
+    /// The folder, as typed.
+    pub folder: String,
+    /// Whether each condition is exported.
+    pub chosen: Vec<bool>,
+}
+
+/// What the forms hold while they are shown.
+#[derive(Debug, Default)]
+pub struct Forms {
+    /// The form shown.
+    pub shown: Option<FormKind>,
+    /// The path in the open form, as typed.
+    pub open_path: String,
+    /// The path in the save form, as typed.
+    pub save_path: String,
+    /// The export form.
+    pub export: ExportForm,
+}
+
+/// Everything the window shows.
+#[derive(Debug)]
+pub struct State {
+    /// The study: what is saved.
+    pub study: Study,
+    /// What undo goes back over.
+    pub history: History,
+    /// Name of the study's file, or what stands for it.
+    pub study_name: String,
+    /// Whether there are decisions that are not saved.
+    pub unsaved: bool,
+    /// What is shown.
+    pub display: Display,
+    /// What was computed.
+    pub results: Results,
+    /// Cautions of the file.
+    pub file_cautions: Vec<String>,
+    /// The message shown.
+    pub notice: Option<Notice>,
+    /// Name of a file being read.
+    pub opening: Option<String>,
+    /// What the forms hold.
+    pub forms: Forms,
+}
+
+impl State {
+    /// The state of a window that shows `study` for the first time.
+    pub fn new(study: Study, study_name: String, file_cautions: Vec<String>) -> Self {
+        let pair = study.dataset.measuring_pairs().marked().next().unwrap_or_default();
+        let display = Display { pair, ..Display::default() };
+        Self {
+            study,
+            history: History::default(),
+            study_name,
+            unsaved: false,
+            display,
+            results: Results::default(),
+            file_cautions,
+            notice: None,
+            opening: None,
+            forms: Forms::default(),
+        }
+    }
+
+    /// The dataset.
+    pub fn dataset(&self) -> &Dataset {
+        &self.study.dataset
+    }
+
+    /// The condition shown.
+    pub fn condition(&self) -> &Condition {
+        &self.study.dataset.conditions()[self.display.condition]
+    }
+
+    /// The result of the condition shown, where there is one of this dataset.
+    pub fn shown(&self) -> Option<&ConditionAnalysis> {
+        self.analysis()?.condition(self.display.condition)
+    }
+
+    /// The newest analysis, where it is one of the dataset shown.
+    pub fn analysis(&self) -> Option<&Analysis> {
+        let analysis = self.results.analysis.as_deref()?;
+        Arc::ptr_eq(&analysis.study.dataset, &self.study.dataset).then_some(analysis)
+    }
+
+    /// A model of the condition shown.
+    pub fn model_id(&self, bundle: BundleKind, model: usize) -> ModelId {
+        ModelId { condition: self.display.condition, bundle, model }
+    }
+}

@@ -1,0 +1,70 @@
+//! The bar below: whether the results are up to date, and the message to the engineer.
+
+use egui::{Align, Button, Layout, RichText, Ui};
+
+use crate::dataset::BundleKind;
+use crate::study::Assessed;
+
+use super::command::Command;
+use super::palette::{Palette, SMALL_SIZE};
+use super::state::{NoticeKind, State};
+
+/// State of the computation on the left, message or standing remark on the right.
+pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        computation_ui(ui, state, palette);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| match &state.notice {
+            Some(notice) => {
+                if ui.add(Button::new("Dismiss").small()).clicked() {
+                    commands.push(Command::DismissNotice);
+                }
+                let color = if notice.kind == NoticeKind::Done { palette.good } else { palette.warning };
+                let text = RichText::new(&notice.text).size(SMALL_SIZE).color(color);
+                ui.add(egui::Label::new(text).truncate()).on_hover_text(&notice.text);
+            }
+            None => {
+                let text = RichText::new(standing_remark(state)).size(SMALL_SIZE).color(palette.dim_text);
+                ui.add(egui::Label::new(text).truncate());
+            }
+        });
+    });
+}
+
+fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette) {
+    let now = ui.input(|input| input.time);
+    let (text, color) = match (&state.opening, state.results.is_stale(now), state.results.progress) {
+        (Some(name), ..) => (format!("● reading {name} …"), palette.accent),
+        (None, true, Some((done, total))) => (format!("● computing, {done} of {total} conditions …"), palette.warning),
+        (None, true, None) => ("● computing …".to_owned(), palette.warning),
+        (None, false, _) => ("● up to date".to_owned(), palette.good),
+    };
+    ui.label(RichText::new(text).size(SMALL_SIZE).color(color));
+    let dim = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
+    let models: usize = state.dataset().conditions().iter().map(|condition| model_count(condition)).sum();
+    ui.label(dim(format!("{models} responses · {} frequencies", state.study.settings.points)));
+    if state.analysis().is_some() {
+        ui.label(dim(format!("{:.1} ms", state.results.elapsed_ms))).on_hover_text("Time the newest analysis took");
+    }
+    if !state.file_cautions.is_empty() {
+        let count = state.file_cautions.len();
+        let text = if count == 1 { "1 caution".to_owned() } else { format!("{count} cautions") };
+        let label = ui.label(RichText::new(text).size(SMALL_SIZE).color(palette.warning));
+        label.on_hover_text(state.file_cautions.join("\n"));
+    }
+}
+
+fn model_count(condition: &crate::dataset::Condition) -> usize {
+    condition.bundle(BundleKind::Physics).len() + condition.bundle(BundleKind::Identified).len()
+}
+
+/// Why the condition shown is left out of the assessment, or what the data are.
+fn standing_remark(state: &State) -> String {
+    let left_out = state.analysis().and_then(|analysis| match &analysis.assessment[state.display.condition] {
+        Assessed::LeftOut { why } => Some(why),
+        Assessed::Nominal(_) => None,
+    });
+    match left_out {
+        Some(why) => format!("condition {} is left out of the assessment: {why}", state.condition().id()),
+        None => state.condition().flight_state().name.clone(),
+    }
+}

@@ -66,6 +66,7 @@ impl GdcmApp {
         self.requested = Some((study.clone(), condition));
         let results = &mut self.state.results;
         results.requested += 1;
+        results.toggles = None;
         results.waiting_since.get_or_insert(now);
         self.worker.request(Request { generation: results.requested, study, condition });
     }
@@ -96,8 +97,11 @@ impl GdcmApp {
                         self.state.display.bode_band = Some(band);
                     }
                 }
+                Reply::Toggles { generation, toggles } if generation == results.requested => {
+                    results.toggles = Some(toggles);
+                }
                 // Answers to questions that no longer stand.
-                Reply::Progress { .. } | Reply::Analysis { .. } | Reply::Curves { .. } => {}
+                Reply::Progress { .. } | Reply::Analysis { .. } | Reply::Toggles { .. } | Reply::Curves { .. } => {}
             }
         }
     }

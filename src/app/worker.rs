@@ -7,7 +7,7 @@ use std::thread::JoinHandle;
 use std::time::Instant;
 
 use crate::dataset::{Band, Dataset};
-use crate::study::{Analysis, ConditionCurves, Engine, Stopped, Study, Watch, display_band};
+use crate::study::{Analysis, ConditionCurves, Engine, Study, Toggles, Watch, display_band};
 
 /// Frequencies of the curves that are drawn.
 const CURVE_POINTS: usize = 400;
@@ -43,6 +43,13 @@ pub enum Reply {
         analysis: Arc<Analysis>,
         /// Time it took \[ms\].
         elapsed_ms: f64,
+    },
+    /// What holding or freeing each response of the condition shown would cost.
+    Toggles {
+        /// Number of the request.
+        generation: u64,
+        /// The costs.
+        toggles: Arc<Toggles>,
     },
     /// Responses of one condition for drawing.
     Curves {
@@ -153,7 +160,9 @@ impl Desk<'_> {
         let mut curves_of: Option<CurvesKey> = None;
         while let Some(request) = self.shared.take() {
             self.answer_curves(&request, &mut curves_of);
-            self.answer_analysis(&request, &mut engine);
+            if let Some(analysis) = self.answer_analysis(&request, &mut engine) {
+                self.answer_toggles(&request, &analysis);
+            }
         }
     }
 
@@ -171,17 +180,24 @@ impl Desk<'_> {
         self.send(Reply::Curves { dataset: Arc::clone(dataset), condition, curves });
     }
 
-    fn answer_analysis(&self, request: &Request, engine: &mut Engine) {
+    /// The analysis, unless a newer request came first: that one waits in the mailbox.
+    fn answer_analysis(&self, request: &Request, engine: &mut Engine) -> Option<Arc<Analysis>> {
         let start = Instant::now();
         let watch = RequestWatch { desk: self, generation: request.generation };
-        match engine.analyze(&request.study, &watch) {
-            Ok(analysis) => {
-                let elapsed_ms = 1e3 * start.elapsed().as_secs_f64();
-                let (generation, analysis) = (request.generation, Arc::new(analysis));
-                self.send(Reply::Analysis { generation, analysis, elapsed_ms });
-            }
-            // A newer request waits in the mailbox.
-            Err(Stopped) => {}
+        let analysis = Arc::new(engine.analyze(&request.study, &watch).ok()?);
+        let elapsed_ms = 1e3 * start.elapsed().as_secs_f64();
+        let generation = request.generation;
+        self.send(Reply::Analysis { generation, analysis: Arc::clone(&analysis), elapsed_ms });
+        Some(analysis)
+    }
+
+    /// The costs of all single toggles: in the background, given up as soon as a newer request comes.
+    fn answer_toggles(&self, request: &Request, analysis: &Analysis) {
+        let generation = request.generation;
+        let stop = || RequestWatch { desk: self, generation }.stopped();
+        let toggles = analysis.condition(request.condition).and_then(|condition| Toggles::of(condition, &stop));
+        if let Some(toggles) = toggles {
+            self.send(Reply::Toggles { generation, toggles: Arc::new(toggles) });
         }
     }
 

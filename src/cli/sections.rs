@@ -67,7 +67,7 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> TextTable<
         let cost = result.cost[pair];
         table.row([
             plain(&dataset.pair_name(pair)),
-            if result.held[pair] { "yes" } else { "no" }.to_owned(),
+            if result.held()[pair] { "yes" } else { "no" }.to_owned(),
             figure(delta.gain[pair], 3),
             figure(Some(result.correction.net_gain(pair)), 3),
             figure(delta.delay_s[pair].map(s_to_ms), 1),

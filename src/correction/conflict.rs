@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::channel::Channel;
-use super::reach::{Held, Reached};
+use super::reach::{Held, Reached, STRAIN};
 use crate::dataset::Pair;
 
 /// An irreducible set of held entries, with at most two bounds, that cannot hold together, in sums of logarithms or of delays.
@@ -41,11 +41,24 @@ struct Pull {
     pair: Pair,
 }
 
-/// The smallest clash through each entry that stage 1 missed by more than `tolerance`, with repeats.
+impl Pull {
+    /// The same entry asked the other way round: it is an equation.
+    fn reversed(&self) -> Self {
+        Self {
+            from: self.to,
+            to: self.from,
+            weight: -self.weight,
+            pair: self.pair,
+        }
+    }
+}
+
+/// The smallest clash behind each entry that stage 1 missed by more than `tolerance`, with repeats.
 ///
 /// Stage 1 is a least squares problem, so the misses are a flow: what pulls at a channel is passed on by another missed entry or
 /// is stopped by an active bound. Every path of the flow from bound to bound, and every loop of it, is a set that
-/// cannot hold, and every missed entry is on one (Farkas).
+/// cannot hold, and every missed entry is on one (Farkas). Where a part of that set cannot hold by itself, that part is the
+/// clash, and the entry's own miss is the compromise with it.
 pub(crate) fn clashes(held: &Held, reached: &Reached, tolerance: f64) -> Vec<(Pair, Clash)> {
     let Some(point) = &reached.point else { return Vec::new() };
     let flow = Flow::new(held, reached, point);
@@ -62,6 +75,7 @@ pub(crate) fn clashes(held: &Held, reached: &Reached, tolerance: f64) -> Vec<(Pa
 
 struct Flow {
     inputs: usize,
+    range: (f64, f64),
     pulls: Vec<Pull>,
     at_lower: Vec<bool>,
     at_upper: Vec<bool>,
@@ -69,11 +83,14 @@ struct Flow {
 
 impl Flow {
     fn new(held: &Held, reached: &Reached, point: &[f64]) -> Self {
-        let (low, high) = held.range;
-        let lower = |node: usize| if node < held.inputs { low } else { -high };
-        let upper = |node: usize| if node < held.inputs { high } else { -low };
         let nodes = held.inputs + held.outputs;
-        let mut pulls = Vec::new();
+        let mut flow = Self {
+            inputs: held.inputs,
+            range: held.range,
+            pulls: Vec::new(),
+            at_lower: vec![],
+            at_upper: vec![],
+        };
         let mut net = vec![0.0; nodes];
         for ((pair, wanted), (_, target)) in held.entries.iter().zip(&reached.targets) {
             let (input, output) = (pair.input, held.inputs + pair.output);
@@ -89,48 +106,44 @@ impl Flow {
             };
             net[from] -= missing.abs();
             net[to] += missing.abs();
-            pulls.push(Pull {
+            flow.pulls.push(Pull {
                 from,
                 to,
                 weight,
                 pair: *pair,
             });
         }
-        let at_lower = (0..nodes)
-            .map(|node| point[node] <= lower(node) && net[node] < 0.0)
+        flow.at_lower = (0..nodes)
+            .map(|node| point[node] <= flow.ends(node).0 && net[node] < 0.0)
             .collect();
-        let at_upper = (0..nodes)
-            .map(|node| point[node] >= upper(node) && net[node] > 0.0)
+        flow.at_upper = (0..nodes)
+            .map(|node| point[node] >= flow.ends(node).1 && net[node] > 0.0)
             .collect();
-        Self {
-            inputs: held.inputs,
-            pulls,
-            at_lower,
-            at_upper,
-        }
+        flow
     }
 
     /// The shorter of the shortest loop and the shortest path from bound to bound through `pull`; a bound counts like an entry.
     fn smallest_through(&self, pull: &Pull) -> Option<Clash> {
-        let round = self.shortest(pull.to, |node| node == pull.from, false);
+        let around = self.shortest(pull.to, |node| node == pull.from, false);
         let onward = self.shortest(pull.to, |node| self.at_upper[node], false);
         let back = self.shortest(pull.from, |node| self.at_lower[node], true);
-        let path = back.zip(onward).map(|((mut before, start), (after, end))| {
-            before.reverse();
-            before.push(*pull);
-            before.extend(after);
-            (before, start, end)
+        let path = back.zip(onward).map(|(back, onward)| {
+            let before = back.into_iter().rev();
+            before.chain([*pull]).chain(onward).collect::<Vec<Pull>>()
         });
-        match (round, path) {
-            (Some((around, _)), Some((path, ..))) if around.len() < path.len() + 2 => Some(self.round(pull, around)),
-            (_, Some((path, start, end))) => Some(self.stretched(&path, start, end)),
-            (Some((around, _)), None) => Some(self.round(pull, around)),
+        match (around, path) {
+            (Some(around), Some(path)) if around.len() < path.len() + 2 => Some(self.round(pull, around)),
+            (_, Some(path)) => Some(self.stretched(&path)),
+            (Some(around), None) => Some(self.round(pull, around)),
             (None, None) => None,
         }
     }
 
     fn round(&self, pull: &Pull, around: Vec<Pull>) -> Clash {
         let pulls: Vec<Pull> = std::iter::once(*pull).chain(around).collect();
+        if let Some(clash) = self.smallest_part(&pulls, pulls.len()) {
+            return clash;
+        }
         let mismatch = pulls.iter().map(|pull| pull.weight).sum();
         Clash {
             entries: pulls.iter().map(|pull| pull.pair).collect(),
@@ -138,9 +151,52 @@ impl Flow {
         }
     }
 
-    /// The clash of a path from a node at its least value to one at its greatest. An output's node is minus its value.
-    fn stretched(&self, path: &[Pull], start: usize, end: usize) -> Clash {
+    /// The clash of a path from a node at its least value to one at its greatest, or of the shortest part of it that the bounds
+    /// do not allow either.
+    fn stretched(&self, path: &[Pull]) -> Clash {
+        self.smallest_part(path, 0).unwrap_or_else(|| self.clash(path))
+    }
+
+    /// The shortest run of the pulls, less than all of them, that the bounds of its two ends do not allow. Runs may begin at the
+    /// first `round` pulls and go on past the last into the first ones again.
+    fn smallest_part(&self, pulls: &[Pull], round: usize) -> Option<Clash> {
+        let count = pulls.len();
+        (1..count).find_map(|length| {
+            let begins = if round > 0 { round } else { count - length + 1 };
+            (0..begins).find_map(|begin| {
+                let run: Vec<Pull> = (begin..begin + length).map(|index| pulls[index % count]).collect();
+                let back: Vec<Pull> = run.iter().rev().map(Pull::reversed).collect();
+                [run, back]
+                    .iter()
+                    .find(|run| self.is_impossible(run))
+                    .map(|run| self.clash(run))
+            })
+        })
+    }
+
+    /// Whether the run needs more than there is between the least value of its first node and the greatest of its last.
+    fn is_impossible(&self, run: &[Pull]) -> bool {
+        let (Some(first), Some(last)) = (run.first(), run.last()) else {
+            return false;
+        };
+        let needed: f64 = run.iter().map(|pull| pull.weight).sum();
+        needed - (self.ends(last.to).1 - self.ends(first.from).0) > STRAIN
+    }
+
+    /// Least and greatest value of a node: an output's is minus its channel's.
+    fn ends(&self, node: usize) -> (f64, f64) {
+        let (low, high) = self.range;
+        if node < self.inputs { (low, high) } else { (-high, -low) }
+    }
+
+    /// The clash of a path from a node at its least value to one at its greatest.
+    fn clash(&self, path: &[Pull]) -> Clash {
         let needed: f64 = path.iter().map(|pull| pull.weight).sum();
+        let mut entries: Vec<Pair> = path.iter().map(|pull| pull.pair).collect();
+        let (start, end) = (
+            path.first().map_or(0, |pull| pull.from),
+            path.last().map_or(0, |pull| pull.to),
+        );
         let kind = match (self.channel(start), self.channel(end)) {
             (first @ Channel::Output(_), last @ Channel::Input(_)) => ClashKind::SumAbove {
                 channels: (last, first),
@@ -156,10 +212,8 @@ impl Flow {
                 difference: needed,
             },
         };
-        Clash {
-            entries: path.iter().map(|pull| pull.pair).collect(),
-            kind,
-        }
+        entries.sort();
+        Clash { entries, kind }
     }
 
     fn channel(&self, node: usize) -> Channel {
@@ -171,7 +225,7 @@ impl Flow {
     }
 
     /// Fewest pulls from `start` along (or against) their direction to a node that `ends`, in the order walked.
-    fn shortest(&self, start: usize, ends: impl Fn(usize) -> bool, against: bool) -> Option<(Vec<Pull>, usize)> {
+    fn shortest(&self, start: usize, ends: impl Fn(usize) -> bool, against: bool) -> Option<Vec<Pull>> {
         let mut came_by: Vec<Option<Pull>> = vec![None; self.at_lower.len()];
         let mut queue = VecDeque::from([start]);
         while let Some(node) = queue.pop_front() {
@@ -184,7 +238,7 @@ impl Flow {
                     walked.push(pull);
                 }
                 walked.reverse();
-                return Some((walked, node));
+                return Some(walked);
             }
             for pull in &self.pulls {
                 let (leaves, enters) = if against {

@@ -8,16 +8,23 @@ mod conflict;
 mod delays;
 mod delta;
 mod gains;
+mod multipliers;
 mod reach;
+mod remedy;
 mod scales;
 mod three_digits;
+mod toggle;
 
 pub use bounds::{delay_upper_s, gain_bounds};
 pub use channel::Channel;
 pub use channel_correction::ChannelCorrection;
-pub use delays::{DelayConflict, DelayError, DelayProblem, DelaySolution, UnmatchedDelay, solve_delays};
+pub use delays::{
+    DelayConflict, DelayError, DelayProblem, DelayRemedy, DelayRestraint, DelaySensitivity, DelaySolution, DelayToggle,
+    UnmatchedDelay, delay_sensitivities, delay_toggles, solve_delays,
+};
 pub use delta::{Delta, mismatch_table};
 pub use gains::{
-    GainBounds, GainConflict, GainError, GainObjective, GainProblem, GainSolution, LocalMinimum, Outcome, ProofBudget,
-    UnmatchedGain, solve_gains, solve_gains_until,
+    GainBounds, GainConflict, GainError, GainObjective, GainProblem, GainRemedy, GainRestraint, GainSensitivity,
+    GainSolution, GainToggle, LocalMinimum, Outcome, ProofBudget, UnmatchedGain, gain_sensitivities, gain_toggles,
+    solve_gains, solve_gains_until,
 };

@@ -1,7 +1,7 @@
 //! Stage 1: what the held entries can be held at.
 
 use super::components::Components;
-use super::scales::{Landscape, Link, Shape};
+use super::scales::{Landscape, Link, Shape, Sum};
 use crate::dataset::Pair;
 
 /// What is asked of the channels: sums of logarithms (or delays) over the held entries, in a box.
@@ -30,7 +30,7 @@ pub(crate) struct Reached {
 
 /// Strain below which a component counts as possible as asked: well below the 1e-8 of M8, and its product's error stays
 /// below 1e-9.
-const STRAIN: f64 = 1e-9;
+pub(crate) const STRAIN: f64 = 1e-9;
 
 /// Finds the targets: `min sum (x_o + y_i - wanted)^2` over the held entries, in the box (M8, reachability; M9).
 ///
@@ -61,6 +61,12 @@ pub(crate) fn reach<E>(held: &Held, minimise: impl FnOnce(&Landscape) -> Result<
     })
 }
 
+/// Whether everything can be held as asked.
+pub(crate) fn is_reachable(held: &Held) -> bool {
+    let asked = Components::new(held.outputs, held.inputs, &held.entries, held.range);
+    asked.strain.iter().all(|strain| *strain <= STRAIN)
+}
+
 /// The least squares problem of stage 1: one node for each input and (with its sign turned) each output.
 fn nearest(held: &Held, strained: impl Fn(&Pair) -> bool) -> Landscape {
     let (low, high) = held.range;
@@ -78,12 +84,13 @@ fn nearest(held: &Held, strained: impl Fn(&Pair) -> bool) -> Landscape {
             shape: Shape::Parabola {
                 weight: 1.0,
                 centre: *wanted,
+                size: wanted.abs(),
             },
         });
     Landscape {
         lower,
         upper,
         links: links.collect(),
-        constant: 0.0,
+        constant: Sum::default(),
     }
 }

@@ -33,3 +33,25 @@ fn three_digits(value: f64, round: impl Fn(f64) -> f64) -> f64 {
         digits * 10f64.powi(exponent)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_figure_is_rounded_to_three_digits_so_that_it_still_suffices() {
+        assert_eq!((three_digits_up(1.8681), three_digits_down(1.8681)), (1.87, 1.86));
+        assert_eq!(
+            (three_digits_up(0.060_801), three_digits_down(0.060_801)),
+            (0.0609, 0.0608)
+        );
+        assert_eq!((three_digits_up(1234.0), three_digits_down(1234.0)), (1240.0, 1230.0));
+        assert_eq!((three_digits_up(0.999_7), three_digits_down(0.999_7)), (1.0, 0.999));
+    }
+
+    #[test]
+    fn a_figure_of_three_digits_up_to_rounding_stays() {
+        assert_eq!((three_digits_up(0.7 * 2.5), three_digits_down(1.4 / 2.5)), (1.75, 0.56));
+        assert_eq!((three_digits_up(0.0), three_digits_down(0.0)), (0.0, 0.0));
+    }
+}

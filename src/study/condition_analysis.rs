@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::correction::{ChannelCorrection, DelayError, DelaySolution, GainBounds, GainError, GainSolution};
+use crate::correction::{
+    ChannelCorrection, DelayError, DelayProblem, DelaySolution, GainBounds, GainError, GainProblem, GainSolution,
+};
 use crate::dataset::PairTable;
 use crate::schedule::CostChange;
 
@@ -16,12 +18,10 @@ pub struct ConditionAnalysis {
     pub figures: Arc<BundleFigures>,
     /// Representatives, G and D.
     pub comparison: Arc<Comparison>,
-    /// Responses held: the constrained ones that are defined.
-    pub held: PairTable<bool>,
-    /// Bounds of every channel gain.
-    pub gain_bounds: GainBounds,
-    /// Upper bound of every channel delay \[s\].
-    pub delay_upper_s: f64,
+    /// What the gains were asked to do.
+    pub gain_problem: Arc<GainProblem>,
+    /// What the delays were asked to do.
+    pub delay_problem: Arc<DelayProblem>,
     /// Optimal gains, eq. (7).
     pub gains: Arc<GainSolution>,
     /// Optimal delays, eq. (11).
@@ -35,6 +35,21 @@ pub struct ConditionAnalysis {
 }
 
 impl ConditionAnalysis {
+    /// Responses held: the constrained ones that are defined.
+    pub fn held(&self) -> &PairTable<bool> {
+        &self.gain_problem.constrained
+    }
+
+    /// Bounds of every channel gain.
+    pub fn gain_bounds(&self) -> GainBounds {
+        self.gain_problem.bounds
+    }
+
+    /// Upper bound of every channel delay \[s\].
+    pub fn delay_upper_s(&self) -> f64 {
+        self.delay_problem.upper_s
+    }
+
     /// Indices of the physics models suggested as outliers, whatever is rejected.
     pub fn suggested(&self) -> Vec<usize> {
         self.figures

@@ -42,8 +42,8 @@ struct ConditionStages {
     figures: Memo<GridKey, Arc<BundleFigures>>,
     comparison: Memo<ComparisonKey, Arc<Comparison>>,
     bounds: Memo<BoundsKey, (GainBounds, f64)>,
-    gains: Memo<GainProblem, Result<Arc<GainSolution>, GainError>>,
-    delays: Memo<DelayProblem, Result<Arc<DelaySolution>, DelayError>>,
+    gains: Memo<Arc<GainProblem>, Result<Arc<GainSolution>, GainError>>,
+    delays: Memo<Arc<DelayProblem>, Result<Arc<DelaySolution>, DelayError>>,
     cost: Memo<(ComparisonKey, ChannelCorrection), Arc<PairTable<Option<CostChange>>>>,
 }
 
@@ -124,13 +124,8 @@ impl ConditionStages {
         let bounds = self
             .bounds
             .get(bounds_key, |_| bounds_of(&comparison, settings, &measuring, grid));
-        let (gains, delays, held) = self.solve(&comparison, settings, bounds)?;
-        let correction = ChannelCorrection {
-            input_gains: gains.inputs.clone(),
-            output_gains: gains.outputs.clone(),
-            input_delays_s: delays.inputs_s.clone(),
-            output_delays_s: delays.outputs_s.clone(),
-        };
+        let solved = self.solve(&comparison, settings, bounds)?;
+        let correction = solved.correction();
         let cost = self.cost.get((key, correction.clone()), |(_, correction)| {
             let models = &comparison.representative;
             Arc::new(assess(
@@ -142,13 +137,12 @@ impl ConditionStages {
             ))
         });
         let cautions = cautions_of(condition, choice, settings, &comparison, &figures);
-        let (gain_bounds, delay_upper_s) = bounds;
+        let Solved { gain_problem, delay_problem, gains, delays } = solved;
         Ok(ConditionAnalysis {
             figures,
             comparison,
-            held,
-            gain_bounds,
-            delay_upper_s,
+            gain_problem,
+            delay_problem,
             gains,
             delays,
             correction,
@@ -162,33 +156,47 @@ impl ConditionStages {
         comparison: &Comparison,
         settings: &Settings,
         (bounds, upper_s): (GainBounds, f64),
-    ) -> Result<(Arc<GainSolution>, Arc<DelaySolution>, PairTable<bool>), ConditionFailure> {
+    ) -> Result<Solved, ConditionFailure> {
         let delta = &comparison.delta;
-        let held = settings
-            .constrained
-            .map(|pair, constrained| *constrained && delta.gain[pair].is_some());
-        let gain_problem = GainProblem {
+        let held = settings.constrained.map(|pair, constrained| *constrained && delta.gain[pair].is_some());
+        let gain_problem = Arc::new(GainProblem {
             wanted: delta.gain.clone(),
             constrained: held.clone(),
             fitted: settings.fitted.clone(),
             bounds,
             alpha: settings.alpha_gain,
             objective: settings.gain_objective,
-        };
-        let delay_problem = DelayProblem {
+        });
+        let delay_problem = Arc::new(DelayProblem {
             wanted_s: delta.delay_s.clone(),
-            constrained: held.clone(),
+            constrained: held,
             fitted: settings.fitted.clone(),
             upper_s,
             alpha: settings.alpha_delay,
-        };
-        let gains = self.gains.get(gain_problem, |problem| {
-            solve_gains(problem, ProofBudget::default()).map(Arc::new)
-        })?;
-        let delays = self
-            .delays
-            .get(delay_problem, |problem| solve_delays(problem).map(Arc::new))?;
-        Ok((gains, delays, held))
+        });
+        let solve = |problem: &Arc<GainProblem>| solve_gains(problem, ProofBudget::default()).map(Arc::new);
+        let gains = self.gains.get(Arc::clone(&gain_problem), solve)?;
+        let delays = self.delays.get(Arc::clone(&delay_problem), |problem| solve_delays(problem).map(Arc::new))?;
+        Ok(Solved { gain_problem, delay_problem, gains, delays })
+    }
+}
+
+/// The two optima of a condition with what they are the optima of.
+struct Solved {
+    gain_problem: Arc<GainProblem>,
+    delay_problem: Arc<DelayProblem>,
+    gains: Arc<GainSolution>,
+    delays: Arc<DelaySolution>,
+}
+
+impl Solved {
+    fn correction(&self) -> ChannelCorrection {
+        ChannelCorrection {
+            input_gains: self.gains.inputs.clone(),
+            output_gains: self.gains.outputs.clone(),
+            input_delays_s: self.delays.inputs_s.clone(),
+            output_delays_s: self.delays.outputs_s.clone(),
+        }
     }
 }
 

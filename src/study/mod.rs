@@ -12,6 +12,7 @@ mod history;
 mod memo;
 mod setting;
 mod settings;
+mod toggles;
 mod watch;
 
 pub use analysis::{Analysis, Assessed};
@@ -25,4 +26,5 @@ pub use engine::Engine;
 pub use history::History;
 pub use setting::Setting;
 pub use settings::{GREATEST_GAIN, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings};
+pub use toggles::Toggles;
 pub use watch::{Stopped, Unwatched, Watch};

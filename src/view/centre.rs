@@ -114,9 +114,10 @@ fn net_gain_header_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &
     ui.horizontal(|ui| {
         ui.label(RichText::new("Net gain").strong());
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.label(RichText::new(dot_key(state)).size(SMALL_SIZE).color(palette.dim_text));
+            let small = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
             commands.extend(schedule_ui(ui, state.study.settings.schedule));
-            ui.label(RichText::new("schedule").size(SMALL_SIZE).color(palette.dim_text));
+            ui.label(small("schedule".to_owned()));
+            ui.add(egui::Label::new(small(dot_key(state))).truncate());
         });
     });
 }

@@ -47,9 +47,9 @@ fn paint_flight_state(ui: &Ui, row: egui::Rect, condition: &Condition, palette: 
     let altitude = state.altitude.clone().or_else(|| state.altitude_ft.map(|feet| format!("{feet} ft")));
     let weight = state.weight.clone().or_else(|| state.mass_kg.map(|mass| format!("{mass} kg")));
     row_text(ui, row, 6.0, &condition.id().to_string(), BODY_SIZE, color);
-    row_text(ui, row, 34.0, &format!("{} kt", state.airspeed_kt), BODY_SIZE, color);
-    row_text(ui, row, 88.0, altitude.as_deref().unwrap_or("–"), BODY_SIZE, color);
-    row_text(ui, row, 132.0, weight.as_deref().unwrap_or("–"), BODY_SIZE, color);
+    row_text(ui, row, 30.0, &format!("{} kt", state.airspeed_kt), BODY_SIZE, color);
+    row_text(ui, row, 80.0, altitude.as_deref().unwrap_or("–"), BODY_SIZE, color);
+    row_text(ui, row, 118.0, weight.as_deref().unwrap_or("–"), BODY_SIZE, color);
 }
 
 /// What the list says about a condition's result.
@@ -84,9 +84,9 @@ impl Marks {
         let mut mark = |count: usize, symbol: &str, emphasised: bool| {
             if count > 0 {
                 let color = if emphasised { palette.warning } else { palette.dim_text };
-                row_text(ui, row, right, &format!("{symbol} {count}"), SMALL_SIZE, color);
+                let place = row_text(ui, row, right, &format!("{symbol} {count}"), SMALL_SIZE, color);
+                right = place.left() - row.right() - 8.0;
             }
-            right -= 30.0;
         };
         mark(self.unmatched_delays, "τ", false);
         mark(self.unmatched_gains, "k", true);

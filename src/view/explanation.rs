@@ -1,5 +1,6 @@
 //! What the result of a condition says, in the engineer's words.
 
+use crate::dataset::Pair;
 use crate::study::ConditionAnalysis;
 use crate::units::s_to_ms;
 
@@ -42,7 +43,7 @@ pub fn remarks(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
 }
 
 fn gain_remarks(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
-    let held = shown.held.marked().count();
+    let held = shown.held().marked().count();
     if shown.gains.matched {
         let text = match held {
             0 => "No gain is held.".to_owned(),
@@ -63,7 +64,7 @@ fn gain_remarks(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
 }
 
 fn delay_remarks(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
-    let (held, unmatched) = (shown.held.marked().count(), &shown.delays.unmatched);
+    let (held, unmatched) = (shown.held().marked().count(), &shown.delays.unmatched);
     if unmatched.is_empty() {
         let text = format!("All {held} held delays are matched exactly.");
         return if held == 0 { Vec::new() } else { vec![Remark::new(RemarkKind::Good, text)] };
@@ -86,6 +87,16 @@ fn delay_remarks(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
     let others = unmatched.iter().filter(|unmatched| unmatched.wanted_s >= 0.0);
     remarks.extend(others.map(|unmatched| Remark::new(RemarkKind::Caution, unmatched.words(top, &inputs, &outputs))));
     remarks
+}
+
+/// What holding or freeing a response would cost, in words; nothing until the table of all toggles is computed.
+pub fn toggle_costs(state: &State, pair: Pair) -> Vec<String> {
+    let Some(toggles) = &state.results.toggles else { return Vec::new() };
+    let (inputs, outputs) = channel_names(state);
+    let (gain, delay) = toggles.of_pair(pair);
+    let gain = gain.map(|toggle| format!("Gains: {}", toggle.words(&inputs, &outputs)));
+    let delay = delay.map(|toggle| format!("Delays: {}", toggle.words(&inputs, &outputs)));
+    gain.into_iter().chain(delay).collect()
 }
 
 /// Names of the inputs and of the outputs.

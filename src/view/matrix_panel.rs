@@ -8,6 +8,7 @@ use crate::study::{ConditionAnalysis, Edit, Setting};
 use crate::units::s_to_ms;
 
 use super::command::Command;
+use super::explanation::toggle_costs;
 use super::heading::heading_ui;
 use super::palette::{Palette, SMALL_SIZE};
 use super::state::State;
@@ -57,6 +58,8 @@ struct Cell<'a> {
     constrained: bool,
     fitted: bool,
     shown: Option<&'a ConditionAnalysis>,
+    /// What holding or freeing it would cost, in words; empty until that is known.
+    toggle_costs: Vec<String>,
 }
 
 impl<'a> Cell<'a> {
@@ -69,6 +72,7 @@ impl<'a> Cell<'a> {
             constrained: state.study.settings.constrained[pair],
             fitted: state.study.settings.fitted[pair],
             shown: state.shown(),
+            toggle_costs: toggle_costs(state, pair),
         }
     }
 
@@ -150,7 +154,9 @@ impl<'a> Cell<'a> {
 
     fn paint_figures(&self, ui: &Ui, rect: Rect, palette: &Palette) {
         let text = |y: f32, text: &str, size: f32, color: Color32| {
-            let place = pos2(rect.center().x, rect.top() + y);
+            // Clear of the box in the corner, where the cell is narrow.
+            let aside = if y < LOCK_SIZE + 4.0 { (40.0 - 0.5 * rect.width()).max(0.0) } else { 0.0 };
+            let place = pos2(rect.center().x + aside, rect.top() + y);
             ui.painter().text(place, Align2::CENTER_CENTER, text, FontId::proportional(size), color);
         };
         let Some(shown) = self.shown else { return };
@@ -201,6 +207,9 @@ impl<'a> Cell<'a> {
         ui.label(format!("D = {:.1} ms: the delay that would match the phase (negative: lead)", s_to_ms(delay)));
         ui.label(format!("net gain k_o k_i = {:.4}", shown.correction.net_gain(self.pair)));
         ui.label(format!("net delay τ_o + τ_i = {:.1} ms", s_to_ms(shown.correction.net_delay_s(self.pair))));
+        for sentence in &self.toggle_costs {
+            ui.label(sentence);
+        }
         if let Some(cost) = shown.cost[self.pair] {
             let (before, after) = (cost.uncorrected, cost.corrected);
             ui.label(format!("J_mag {:.1} → {:.1}, J_phase {:.1} → {:.1}", before.magnitude, after.magnitude, before.phase, after.phase));

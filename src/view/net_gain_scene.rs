@@ -105,7 +105,7 @@ pub fn dot_key(state: &State) -> String {
         words.push(format!("● {altitude} altitude, ◆ other"));
     }
     if let Some(weight) = classes.weight {
-        words.push(format!("filled {weight} weight, open other"));
+        words.push(format!("filled: {weight} weight"));
     }
     words.join(" · ")
 }

@@ -26,7 +26,7 @@ pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
         }
         Some(Ok(shown)) => {
             header_ui(ui, shown, palette);
-            channels_ui(ui, state, shown, palette);
+            ui.scope(|ui| channels_ui(ui, state, shown, palette));
             objective_ui(ui, shown, palette);
             for remark in remarks(state, shown) {
                 remark_ui(ui, palette, &remark);
@@ -71,6 +71,7 @@ fn badge_ui(ui: &mut Ui, word: &str, color: Color32, palette: &Palette) -> egui:
     egui::Frame::new().fill(color).corner_radius(3.0).inner_margin(egui::Margin::symmetric(6, 1)).show(ui, |ui| ui.label(text)).response
 }
 
+/// Inputs beside outputs.
 fn channels_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Palette) {
     let (gains, delays) = (&shown.gains, &shown.delays);
     let dataset = state.dataset();
@@ -78,6 +79,7 @@ fn channels_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &
         ("input", dataset.inputs(), &gains.inputs, &delays.inputs_s),
         ("output", dataset.outputs(), &gains.outputs, &delays.outputs_s),
     ];
+    ui.spacing_mut().item_spacing.x = 18.0;
     ui.columns(2, |columns| {
         for (ui, (title, channels, gains, delays_s)) in columns.iter_mut().zip(sides) {
             channel_table_ui(ui, title, channels, gains, delays_s, palette);

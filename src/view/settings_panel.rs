@@ -72,7 +72,8 @@ impl Panel<'_, '_> {
         let (slider, typed) = self
             .ui
             .horizontal(|ui| {
-                ui.add_sized([LABEL_WIDTH, 18.0], egui::Label::new(RichText::new(name).color(self.palette.dim_text)));
+                let label = ui.label(RichText::new(name).color(self.palette.dim_text));
+                ui.add_space((LABEL_WIDTH - label.rect.width()).max(0.0));
                 let gap = ui.spacing().item_spacing.x;
                 ui.spacing_mut().slider_width = (ui.available_width() - TYPED_WIDTH - 2.0 * gap).max(60.0);
                 let slider = Slider::new(&mut value, 0.0..=SLIDER_ALPHA)
@@ -155,7 +156,7 @@ impl Panel<'_, '_> {
 
     fn gain_bounds_ui(&mut self) {
         let by_hand = self.state.study.settings.gain_bounds;
-        let shown = self.state.shown().map(|shown| shown.gain_bounds);
+        let shown = self.state.shown().map(|shown| shown.gain_bounds());
         let Some(GainBounds { mut lower, mut upper }) = by_hand.or(shown) else {
             self.label("Gain bounds");
             self.label("…");
@@ -190,7 +191,7 @@ impl Panel<'_, '_> {
 
     fn delay_bound_ui(&mut self) {
         let by_hand = self.state.study.settings.delay_upper_s;
-        let shown = self.state.shown().map(|shown| shown.delay_upper_s);
+        let shown = self.state.shown().map(|shown| shown.delay_upper_s());
         self.label("Delay bound");
         let Some(upper_s) = by_hand.or(shown) else {
             self.label("…");

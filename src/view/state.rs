@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::dataset::{Band, BundleKind, Condition, Dataset, ModelId, Pair};
-use crate::study::{Analysis, ConditionAnalysis, ConditionCurves, History, Study};
+use crate::study::{Analysis, ConditionAnalysis, ConditionCurves, History, Study, Toggles};
 
 use super::bode_scene::CachedShapes;
 use super::command::FormKind;
@@ -62,6 +62,8 @@ pub struct Display {
 pub struct Results {
     /// The newest analysis.
     pub analysis: Option<Arc<Analysis>>,
+    /// What holding or freeing each response of the condition shown would cost; computed after the analysis.
+    pub toggles: Option<Arc<Toggles>>,
     /// Responses for drawing, with the index of their condition.
     pub curves: Option<(usize, Arc<ConditionCurves>)>,
     /// Number of the newest request.

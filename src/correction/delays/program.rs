@@ -71,7 +71,7 @@ fn quadratic(landscape: &Landscape, free: &[usize]) -> (DMatrix<f64>, DVector<f6
     let mut slope = DVector::zeros(free.len());
     let place = |node: usize| free.iter().position(|&candidate| candidate == node);
     for link in &landscape.links {
-        let Shape::Parabola { weight, centre } = link.shape else {
+        let Shape::Parabola { weight, centre, .. } = link.shape else {
             continue;
         };
         let ends = [(place(link.to), link.to, 1.0), (place(link.from), link.from, -1.0)];

@@ -1,6 +1,7 @@
 //! The delays found.
 
 use super::conflict::DelayConflict;
+use super::remedy::DelayRemedy;
 use crate::correction::channel::pair_name;
 use crate::dataset::{Pair, PairTable};
 
@@ -13,7 +14,7 @@ pub struct UnmatchedDelay {
     pub wanted_s: f64,
     /// The sum at which it is held instead, in seconds.
     pub target_s: f64,
-    /// What is in the way.
+    /// What is in the way; where the entry is not part of it, its miss is the compromise with those that are.
     pub why: DelayConflict,
 }
 
@@ -34,7 +35,7 @@ impl UnmatchedDelay {
         let lead_ms = 1e3 * self.lead_s();
         let left = self.phase_left_deg(omega_top).abs();
         let why = match self.why {
-            DelayConflict::NeedsLead { ref entries, .. } if entries.len() == 1 => {
+            DelayConflict::NeedsLead { ref entries, .. } if *entries == [self.pair] => {
                 format!("{pair} needs {lead_ms:.1} ms of lead: a delay cannot give it")
             }
             _ if lead_ms > 0.0 => format!("{pair} gets {lead_ms:.1} ms more delay than it needs"),
@@ -61,4 +62,21 @@ pub struct DelaySolution {
     pub unmatched: Vec<UnmatchedDelay>,
     /// Each set of held entries and bounds that cannot hold together, once; loops first, then by number of entries.
     pub conflicts: Vec<DelayConflict>,
+    /// The single changes that would let every held entry be held, where some cannot.
+    pub remedy: Option<DelayRemedy>,
+}
+
+impl DelaySolution {
+    /// What there is to say about the answer, a sentence each: what could not be held, what remains of the phase error at
+    /// `omega_top` rad/s, why, and what would help. Empty where everything is held.
+    pub fn words(&self, omega_top: f64, inputs: &[String], outputs: &[String]) -> Vec<String> {
+        let misses = self.unmatched.iter().map(|miss| miss.words(omega_top, inputs, outputs));
+        let conflicts = self.conflicts.iter().map(|conflict| conflict.words(inputs, outputs));
+        let remedies = self
+            .remedy
+            .iter()
+            .map(|remedy| remedy.words(inputs, outputs))
+            .filter(|remedy| !remedy.is_empty());
+        misses.chain(conflicts).chain(remedies).collect()
+    }
 }

@@ -3,10 +3,12 @@
 use super::conflict::DelayConflict;
 use super::problem::{DelayError, DelayProblem};
 use super::program::solve_program;
+use super::remedy::DelayRemedy;
 use super::solution::{DelaySolution, UnmatchedDelay};
 use crate::correction::components::{Components, Placement};
 use crate::correction::conflict::clashes;
 use crate::correction::reach::{Held, Reached, reach};
+use crate::correction::remedy::remedy;
 use crate::correction::scales::{Entry, Landscape, parabolas, settle};
 use crate::dataset::{Pair, PairTable};
 
@@ -23,6 +25,8 @@ pub fn solve_delays(problem: &DelayProblem) -> Result<DelaySolution, DelayError>
     problem.check()?;
     // The problem is homogeneous: in units of its greatest time every figure is of order 1.
     let unit_s = unit(problem);
+    // No path of held entries asks a channel for more than one unit each: a bound above that never acts.
+    let most = (problem.wanted_s.outputs() + problem.wanted_s.inputs()) as f64;
     let held = Held {
         outputs: problem.wanted_s.outputs(),
         inputs: problem.wanted_s.inputs(),
@@ -30,7 +34,7 @@ pub fn solve_delays(problem: &DelayProblem) -> Result<DelaySolution, DelayError>
             .held_entries()
             .map(|(pair, wanted)| (pair, wanted / unit_s))
             .collect(),
-        range: (0.0, problem.upper_s / unit_s),
+        range: (0.0, (problem.upper_s / unit_s).min(most)),
     };
     let reached = reach(&held, solve_program)?;
     let landscape = landscape(problem, &reached.components, unit_s);
@@ -48,6 +52,7 @@ pub fn solve_delays(problem: &DelayProblem) -> Result<DelaySolution, DelayError>
         outputs_s,
         targets_s,
         matched: unmatched.is_empty(),
+        remedy: remedy_of(problem, &held, &conflicts, unit_s),
         unmatched,
         conflicts,
     })
@@ -69,12 +74,13 @@ fn landscape(problem: &DelayProblem, components: &Components, unit_s: f64) -> La
     let ground = components.count();
     let fit = problem.fit_entries().map(|(pair, wanted)| {
         let (output, input) = (components.outputs[pair.output], components.inputs[pair.input]);
-        let difference = wanted / unit_s - output.offset - input.offset;
+        let (wanted, offset) = (wanted / unit_s, output.offset + input.offset);
         Entry {
             output: output.component,
             input: input.component,
             share: 1.0,
-            difference,
+            wanted,
+            offset,
         }
     });
     let departure = components
@@ -85,7 +91,8 @@ fn landscape(problem: &DelayProblem, components: &Components, unit_s: f64) -> La
             output: output.component,
             input: ground,
             share: problem.alpha,
-            difference: -output.offset,
+            wanted: 0.0,
+            offset: output.offset,
         });
     let (links, constant) = parabolas(&fit.chain(departure).collect::<Vec<_>>(), ground + 1);
     let (mut lower, mut upper) = (components.lower.clone(), components.upper.clone());
@@ -180,4 +187,15 @@ fn misses(
         )
     });
     (unmatched, conflicts)
+}
+
+/// What would let everything be held, where something cannot.
+fn remedy_of(problem: &DelayProblem, held: &Held, conflicts: &[DelayConflict], unit_s: f64) -> Option<DelayRemedy> {
+    let mut suspects: Vec<Pair> = conflicts
+        .iter()
+        .flat_map(|conflict| conflict.entries().iter().copied())
+        .collect();
+    suspects.sort();
+    suspects.dedup();
+    (!suspects.is_empty()).then(|| DelayRemedy::new(remedy(held, &suspects), unit_s, problem.upper_s))
 }

@@ -2,7 +2,7 @@
 
 use super::problem::{GainObjective, GainProblem};
 use crate::correction::components::Components;
-use crate::correction::scales::{Entry, Gather, Landscape, Link, Shape, parabolas};
+use crate::correction::scales::{Entry, Gather, Landscape, Link, Shape, Sum, parabolas, product_roundings};
 
 /// `(20 / ln 10)^2`: squared dB in a squared natural logarithm.
 pub(crate) const SQUARED_DECIBEL: f64 = (20.0 / std::f64::consts::LN_10) * (20.0 / std::f64::consts::LN_10);
@@ -58,16 +58,18 @@ pub(crate) fn landscape(problem: &GainProblem, components: &Components) -> Lands
 }
 
 /// One link for each two nodes that share an entry: `forward` holds the entries whose input has the greater index.
-fn ratio_links(terms: &[Term], ground: usize) -> (Vec<Link>, f64) {
+fn ratio_links(terms: &[Term], ground: usize) -> (Vec<Link>, Sum) {
     let nodes = ground + 1;
     let mut gathered: Vec<Gather> = vec![Gather::default(); nodes * nodes];
-    let mut constant = 0.0;
+    let mut constant = Sum::default();
     for term in terms {
-        let product = term.offset.exp();
         if term.output_component == term.input_component {
-            constant += term.share * (term.wanted - product).powi(2);
+            let product = term.offset.exp();
+            let roundings = product_roundings(term.offset);
+            constant.add(term.share, term.wanted - product, term.wanted + product, roundings);
         } else {
-            gathered[term.output_component * nodes + term.input_component].add(term.share, term.wanted, product);
+            let group = &mut gathered[term.output_component * nodes + term.input_component];
+            group.add(term.share, term.wanted, term.offset);
         }
     }
     let mut links = Vec::new();
@@ -75,7 +77,8 @@ fn ratio_links(terms: &[Term], ground: usize) -> (Vec<Link>, f64) {
         for to in from + 1..nodes {
             let (forward, ahead) = gathered[from * nodes + to].well();
             let (backward, behind) = gathered[to * nodes + from].well();
-            constant += ahead + behind;
+            constant.join(ahead);
+            constant.join(behind);
             if !(forward.is_flat() && backward.is_flat()) {
                 links.push(Link {
                     from,
@@ -88,12 +91,13 @@ fn ratio_links(terms: &[Term], ground: usize) -> (Vec<Link>, f64) {
     (links, constant)
 }
 
-fn decibel_links(terms: &[Term], ground: usize) -> (Vec<Link>, f64) {
+fn decibel_links(terms: &[Term], ground: usize) -> (Vec<Link>, Sum) {
     let entry = |term: &Term| Entry {
         output: term.output_component,
         input: term.input_component,
         share: SQUARED_DECIBEL * term.share,
-        difference: term.wanted.ln() - term.offset,
+        wanted: term.wanted.ln(),
+        offset: term.offset,
     };
     parabolas(&terms.iter().map(entry).collect::<Vec<_>>(), ground + 1)
 }

@@ -5,10 +5,12 @@ use std::convert::Infallible;
 use super::conflict::{DECIBEL, GainConflict};
 use super::landscape::{SQUARED_DECIBEL, landscape};
 use super::problem::{GainError, GainObjective, GainProblem};
+use super::remedy::GainRemedy;
 use super::solution::{GainSolution, LocalMinimum, Outcome, ProofBudget, UnmatchedGain};
 use crate::correction::components::Components;
 use crate::correction::conflict::clashes;
 use crate::correction::reach::{Held, Reached, reach};
+use crate::correction::remedy::remedy;
 use crate::correction::scales::{Descent, Effort, Found, Landscape, PROOF, search, settle};
 use crate::dataset::{Pair, PairTable};
 
@@ -43,6 +45,7 @@ pub fn solve_gains_until(
         &landscape,
         Effort {
             boxes: budget.boxes,
+            listing: budget.minima,
             floor: floor(problem),
             stop,
         },
@@ -86,15 +89,16 @@ pub(crate) fn reach_gains(held: &Held) -> Reached {
     }
 }
 
-/// A hundred-thousandth of the objective without any gain: what the rounding of a sum of a few tens of squares, known to
-/// 1e-14, leaves of a relative gap of 1e-9.
+/// The objective below which rounding decides, not the search: a billionth of the objective without any gain (the rounding of a
+/// sum of squares grows with the root of what the squares are taken of), and for the output gains, known to their rounding, its
+/// square.
 fn floor(problem: &GainProblem) -> f64 {
     let square = |wanted: f64| match problem.objective {
         GainObjective::Ratio => wanted * wanted,
-        GainObjective::Decibel => SQUARED_DECIBEL * wanted.ln().powi(2),
+        GainObjective::Decibel => SQUARED_DECIBEL * (wanted.ln().powi(2) + 1.0),
     };
     let energy: f64 = problem.fit_entries().map(|(_, wanted)| square(wanted)).sum();
-    (1e-5 * energy).max(f64::MIN_POSITIVE)
+    (1e-9 * energy + 1e-20 * problem.alpha * problem.wanted.outputs() as f64).max(f64::MIN_POSITIVE)
 }
 
 /// The limit `alpha -> 0+`: a free common scale goes where the output gains are nearest to 1 (inputs, where there is no output).
@@ -177,6 +181,7 @@ fn assemble(problem: &GainProblem, held: &Held, reached: &Reached, found: &Found
         boxes: found.boxes,
         targets,
         matched: unmatched.is_empty(),
+        remedy: remedy_of(problem, held, &conflicts),
         unmatched,
         conflicts,
         local_minima,
@@ -218,4 +223,15 @@ fn misses(problem: &GainProblem, held: &Held, reached: &Reached) -> (Vec<Unmatch
     }
     conflicts.sort_by_key(|conflict| (!matches!(conflict, GainConflict::Loop { .. }), conflict.entries().len()));
     (unmatched, conflicts)
+}
+
+/// What would let everything be held, where something cannot.
+fn remedy_of(problem: &GainProblem, held: &Held, conflicts: &[GainConflict]) -> Option<GainRemedy> {
+    let mut suspects: Vec<Pair> = conflicts
+        .iter()
+        .flat_map(|conflict| conflict.entries().iter().copied())
+        .collect();
+    suspects.sort();
+    suspects.dedup();
+    (!suspects.is_empty()).then(|| GainRemedy::new(remedy(held, &suspects), problem.bounds))
 }

@@ -1,6 +1,7 @@
 //! The objective after the constraints are eliminated, as a function of the scales.
 
 use super::link::Link;
+use super::sum::Sum;
 
 /// Value, gradient and curvature (row-major Hessian) of a function of the scales, with bounds on the rounding errors.
 #[derive(Clone, Debug, Default)]
@@ -58,8 +59,6 @@ pub(crate) enum Bend {
 
 /// A function of the scales that a descent can follow.
 pub(crate) trait Slope {
-    /// Value at `scales`.
-    fn value(&self, scales: &[f64]) -> f64;
     /// Value, gradient and curvature at `scales`.
     fn slopes(&self, scales: &[f64], bend: Bend, into: &mut Slopes);
 }
@@ -76,7 +75,7 @@ pub(crate) struct Landscape {
     /// Every link, at most one for each two nodes.
     pub(crate) links: Vec<Link>,
     /// What no scale changes.
-    pub(crate) constant: f64,
+    pub(crate) constant: Sum,
 }
 
 impl Landscape {
@@ -88,6 +87,16 @@ impl Landscape {
     /// The node whose scale is always 0.
     pub(crate) fn ground(&self) -> usize {
         self.lower.len() - 1
+    }
+
+    /// Value at `scales`.
+    pub(crate) fn value(&self, scales: &[f64]) -> f64 {
+        let links: f64 = self
+            .links
+            .iter()
+            .map(|link| link.shape.at(scales[link.to] - scales[link.from]).value)
+            .sum();
+        self.constant.value + links
     }
 
     /// The pieces that links tie together, each with its nodes; `true` where the piece holds the ground.
@@ -115,19 +124,10 @@ impl Landscape {
 }
 
 impl Slope for Landscape {
-    fn value(&self, scales: &[f64]) -> f64 {
-        let links: f64 = self
-            .links
-            .iter()
-            .map(|link| link.shape.at(scales[link.to] - scales[link.from]).value)
-            .sum();
-        self.constant + links
-    }
-
     fn slopes(&self, scales: &[f64], bend: Bend, into: &mut Slopes) {
         into.clear();
-        into.value = self.constant;
-        into.value_error = self.constant * 128.0 * f64::EPSILON;
+        into.value = self.constant.value;
+        into.value_error = self.constant.error;
         for link in &self.links {
             let jet = link.shape.at(scales[link.to] - scales[link.from]);
             let curvature = if bend == Bend::Upward {

@@ -16,8 +16,8 @@ pub(crate) struct Link {
 /// A function of one difference of scales.
 #[derive(Clone, Debug)]
 pub(crate) enum Shape {
-    /// `weight (u - centre)^2`: gains compared in dB, and delays.
-    Parabola { weight: f64, centre: f64 },
+    /// `weight (u - centre)^2`: gains compared in dB, and delays. `size` is that of the figures whose difference `centre` is.
+    Parabola { weight: f64, centre: f64, size: f64 },
     /// `forward` in `u` plus `backward` in `-u`: gains compared as ratios.
     Wells {
         forward: Well,
@@ -39,17 +39,17 @@ impl Shape {
     /// Value, slope and curvature at `u`.
     pub(crate) fn at(&self, u: f64) -> Jet {
         match self {
-            Shape::Parabola { weight, centre } => {
+            Shape::Parabola { weight, centre, size } => {
                 let away = u - centre;
                 let value = weight * away * away;
-                let reach = weight * (u.abs() + centre.abs());
-                let rounding = 16.0 * f64::EPSILON;
+                let reach = weight * (u.abs() + size);
+                let rounding = 8.0 * f64::EPSILON;
                 Jet {
                     value,
                     slope: 2.0 * weight * away,
                     curvature: 2.0 * weight,
-                    value_error: rounding * (away.abs() * reach + value),
-                    slope_error: rounding * reach,
+                    value_error: rounding * (2.0 * away.abs() * reach + value),
+                    slope_error: rounding * 2.0 * reach,
                 }
             }
             Shape::Wells { forward, backward, .. } => {
@@ -78,13 +78,50 @@ impl Shape {
         }
     }
 
+    /// The end of the concave interval that parts `u` from it, if `u` is outside and the end is inside `(low, high)`.
+    pub(crate) fn concave_edge(&self, u: f64, low: f64, high: f64) -> Option<f64> {
+        let Shape::Wells {
+            concave: Some((from, to)),
+            ..
+        } = self
+        else {
+            return None;
+        };
+        let edge = if u < *from {
+            *from
+        } else if u > *to {
+            *to
+        } else {
+            return None;
+        };
+        (low < edge && edge < high).then_some(edge)
+    }
+
+    /// Bounds on the slope over `[low, high]`.
+    pub(crate) fn slopes(&self, low: f64, high: f64) -> (f64, f64) {
+        match self {
+            Shape::Parabola { weight, centre, .. } => (2.0 * weight * (low - centre), 2.0 * weight * (high - centre)),
+            Shape::Wells { forward, backward, .. } => {
+                let (least, most) = (low.exp(), high.exp());
+                let ahead = forward.slopes(least, most);
+                let behind = backward.slopes(1.0 / most, 1.0 / least);
+                (ahead.0 - behind.1, ahead.1 - behind.0)
+            }
+        }
+    }
+
     /// A lower bound on the curvature over `[low, high]`.
     pub(crate) fn least_curvature(&self, low: f64, high: f64) -> f64 {
         match self {
             Shape::Parabola { weight, .. } => 2.0 * weight,
             Shape::Wells { forward, backward, .. } => {
                 let (least, most) = (low.exp(), high.exp());
-                forward.least_curvature(least, most) + backward.least_curvature(1.0 / most, 1.0 / least)
+                let each = forward.least_curvature(least, most) + backward.least_curvature(1.0 / most, 1.0 / least);
+                if self.is_convex_over(low, high) {
+                    each.max(0.0)
+                } else {
+                    each
+                }
             }
         }
     }

@@ -53,6 +53,16 @@ impl Region {
         self.below(to, from, -least)
     }
 
+    /// The least region of this kind that holds this one and `scales`.
+    pub(crate) fn hull(&self, scales: &[f64]) -> Self {
+        let nodes = self.nodes;
+        let bound = |index: usize| self.bounds[index].max(scales[index % nodes] - scales[index / nodes]);
+        Self {
+            nodes,
+            bounds: (0..nodes * nodes).map(bound).collect(),
+        }
+    }
+
     /// Writes the least and greatest scale of each node.
     pub(crate) fn write_box(&self, lower: &mut [f64], upper: &mut [f64]) {
         let ground = self.nodes - 1;

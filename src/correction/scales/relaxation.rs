@@ -34,6 +34,13 @@ struct Stand {
     high: f64,
 }
 
+impl Stand {
+    /// The link's difference at `scales`, kept inside the range.
+    fn difference(&self, link: &Link, scales: &[f64]) -> f64 {
+        (scales[link.to] - scales[link.from]).clamp(self.low, self.high)
+    }
+}
+
 /// Convex function of the scales that is nowhere in the region above the landscape.
 pub(crate) struct Relaxation<'a> {
     landscape: &'a Landscape,
@@ -64,29 +71,44 @@ impl<'a> Relaxation<'a> {
         self.stands.iter().all(|stand| matches!(stand.under, Under::Itself))
     }
 
-    /// The link that lies furthest above its envelope at `scales` (kept inside the region's ranges), with that distance.
-    pub(crate) fn widest_gap(&self, scales: &[f64]) -> Option<(usize, f64)> {
-        let links = self.landscape.links.iter().zip(&self.stands).enumerate();
-        let open = links.filter(|(_, (_, stand))| !matches!(stand.under, Under::Itself));
-        let gap = |(index, (link, stand)): (usize, (&Link, &Stand))| {
-            let u = (scales[link.to] - scales[link.from]).clamp(stand.low, stand.high);
-            (
-                index,
-                link.shape.at(u).value - inside(&link.shape, &stand.under, u).value,
-            )
-        };
-        open.map(gap).max_by(|a, b| a.1.total_cmp(&b.1))
+    /// The links that are not convex over the region.
+    fn bent(&self) -> impl Iterator<Item = (&'a Link, &Stand)> {
+        let links = self.landscape.links.iter().zip(&self.stands);
+        links.filter(|(_, stand)| !matches!(stand.under, Under::Itself))
     }
 
-    /// Least curvature of the link from `node` to the ground over the region, at least 0.
-    pub(crate) fn ground_curvature(&self, into: &mut [f64]) {
-        let ground = self.landscape.ground();
-        into.fill(0.0);
-        for (link, stand) in self.landscape.links.iter().zip(&self.stands) {
-            if link.to == ground && matches!(stand.under, Under::Itself) {
-                into[link.from] += link.shape.least_curvature(stand.low, stand.high).max(0.0);
-            }
-        }
+    /// The link that lies furthest above its envelope at `scales` (kept inside the region's ranges), with that distance less the
+    /// rounding of it.
+    pub(crate) fn widest_gap(&self, scales: &[f64]) -> Option<(&'a Link, f64)> {
+        let gap = |(link, stand): (&'a Link, &Stand)| {
+            let u = stand.difference(link, scales);
+            let (above, below) = (link.shape.at(u), inside(&link.shape, &stand.under, u));
+            (link, above.value - below.value - above.value_error - below.value_error)
+        };
+        self.bent().map(gap).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// The link (from, to) furthest at `scales` from where it is concave, with the edge of that interval: the part beyond the
+    /// edge is easily bounded, and what is left is convex in the link.
+    pub(crate) fn farthest_edge(&self, scales: &[f64]) -> Option<(usize, usize, f64)> {
+        let edge = |(link, stand): (&Link, &Stand)| {
+            let u = stand.difference(link, scales);
+            let edge = link.shape.concave_edge(u, stand.low, stand.high)?;
+            Some((link.from, link.to, edge, (edge - u).abs()))
+        };
+        let farthest = self.bent().filter_map(edge).max_by(|a, b| a.3.total_cmp(&b.3));
+        farthest.map(|(from, to, edge, _)| (from, to, edge))
+    }
+
+    /// The link whose slope varies most over the region, weighed with its range: what hides the sign of a scale's slope, or that
+    /// there is but one minimum.
+    pub(crate) fn widest_slope(&self) -> Option<&'a Link> {
+        let variation = |(link, stand): (&'a Link, &Stand)| {
+            let (least, most) = link.shape.slopes(stand.low, stand.high);
+            (link, (most - least) * (stand.high - stand.low))
+        };
+        let links = self.landscape.links.iter().zip(&self.stands).map(variation);
+        links.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(link, _)| link)
     }
 
     fn jet(&self, link: &Link, stand: &Stand, scales: &[f64]) -> Jet {
@@ -107,16 +129,10 @@ impl<'a> Relaxation<'a> {
 }
 
 impl Slope for Relaxation<'_> {
-    fn value(&self, scales: &[f64]) -> f64 {
-        let links = self.landscape.links.iter().zip(&self.stands);
-        let sum: f64 = links.map(|(link, stand)| self.jet(link, stand, scales).value).sum();
-        self.landscape.constant + sum
-    }
-
     fn slopes(&self, scales: &[f64], _bend: Bend, into: &mut Slopes) {
         into.clear();
-        into.value = self.landscape.constant;
-        into.value_error = self.landscape.constant * 128.0 * f64::EPSILON;
+        into.value = self.landscape.constant.value;
+        into.value_error = self.landscape.constant.error;
         for (link, stand) in self.landscape.links.iter().zip(&self.stands) {
             let jet = self.jet(link, stand, scales);
             into.value += jet.value;
@@ -229,4 +245,85 @@ fn envelope(well: &Well, low: f64, high: f64) -> Option<Line> {
         slope: tangent.slope,
         error,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::sum::Sum;
+    use super::super::well::Gather;
+    use super::*;
+
+    fn well(share: f64, centre: f64) -> Well {
+        let mut gather = Gather::default();
+        gather.add(share, centre, 0.0);
+        gather.well().0
+    }
+
+    fn landscape(forward: (f64, f64), backward: (f64, f64), range: (f64, f64)) -> Landscape {
+        let shape = Shape::wells(well(forward.0, forward.1), well(backward.0, backward.1));
+        let links = vec![Link { from: 0, to: 1, shape }];
+        Landscape {
+            lower: vec![range.0, 0.0],
+            upper: vec![range.1, 0.0],
+            links,
+            constant: Sum::default(),
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn the_relaxation_is_convex_and_nowhere_above_the_landscape(
+            forward in (0.01..10.0_f64, 0.05..20.0_f64),
+            backward in (prop_oneof![Just(0.0), 0.01..10.0_f64], 0.05..20.0_f64),
+            low in -3.0..1.0_f64,
+            width in 0.01..4.0_f64,
+        ) {
+            let landscape = landscape(forward, backward, (low, low + width));
+            let region = Region::of_box(&landscape.lower, &landscape.upper);
+            let relaxation = Relaxation::new(&landscape, &region, 1.0);
+            let mut slopes = Slopes::zero(2);
+            let mut steepness = f64::INFINITY;
+            for step in 0..=200 {
+                let scales = [low + width * f64::from(step) / 200.0, 0.0];
+                relaxation.slopes(&scales, Bend::True, &mut slopes);
+                let value = landscape.value(&scales);
+                prop_assert!(slopes.value - slopes.value_error <= value, "{} is above {}", slopes.value, value);
+                // The difference is measured from node 0 to node 1: the slope of node 1 falls as the scale of node 0 rises.
+                let rounding = 1e-9 * (1.0 + steepness.abs().min(1e9));
+                prop_assert!(slopes.gradient[1] <= steepness + rounding, "{} after {}", slopes.gradient[1], steepness);
+                steepness = slopes.gradient[1];
+            }
+        }
+
+        #[test]
+        fn two_wells_are_convex_wherever_they_say_so(
+            forward in (0.01..10.0_f64, 0.05..20.0_f64),
+            backward in (0.01..10.0_f64, 0.05..20.0_f64),
+            at in -3.0..3.0_f64,
+        ) {
+            let shape = Shape::wells(well(forward.0, forward.1), well(backward.0, backward.1));
+            let convex = shape.is_convex_over(at, at);
+            let curvature = shape.at(at).curvature;
+            // The interval is widened by 1e-11; the curvature there is as small as that times its own slope.
+            prop_assert!(convex == (curvature > 0.0) || curvature.abs() <= 1e-6, "{} {}", convex, curvature);
+        }
+
+        #[test]
+        fn bounds_on_slope_and_curvature_hold_over_the_range(
+            forward in (0.01..10.0_f64, 0.05..20.0_f64),
+            backward in (0.01..10.0_f64, 0.05..20.0_f64),
+            low in -3.0..1.0_f64,
+            width in 0.01..4.0_f64,
+            share in 0.0..1.0_f64,
+        ) {
+            let shape = Shape::wells(well(forward.0, forward.1), well(backward.0, backward.1));
+            let jet = shape.at(low + share * width);
+            let (least, most) = shape.slopes(low, low + width);
+            // The rounding of figures of up to 1e4.
+            prop_assert!(least - 1e-9 <= jet.slope && jet.slope <= most + 1e-9);
+            prop_assert!(shape.least_curvature(low, low + width) <= jet.curvature + 1e-9);
+        }
+    }
 }

@@ -1,5 +1,7 @@
 //! The squared gain error of a group of entries, as a function of one logarithm.
 
+use super::sum::Sum;
+
 /// Value, slope and curvature of a function of one variable at a point, with a bound on the rounding error of each.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Jet {
@@ -22,43 +24,63 @@ pub(crate) struct Well {
     rounding: f64,
 }
 
-/// Entries `(gain, product)` of `sum (gain - product e^v)^2`, gathered before they become a [`Well`].
+/// One entry `share (gain - product e^v)^2`, with `product` given by its logarithm.
+#[derive(Clone, Copy, Debug)]
+struct Member {
+    share: f64,
+    gain: f64,
+    product: f64,
+    logarithm: f64,
+}
+
+/// The entries that share a logarithm, gathered before they become a [`Well`].
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Gather {
-    entries: Vec<(f64, f64, f64)>,
+    members: Vec<Member>,
+}
+
+/// Roundings of a product that is the exponential of a sum of logarithms: those of the logarithms become the product's.
+pub(crate) fn product_roundings(logarithm: f64) -> f64 {
+    8.0 + 4.0 * logarithm.abs()
 }
 
 impl Gather {
-    /// Adds `share (gain - product e^v)^2`.
-    pub(crate) fn add(&mut self, share: f64, gain: f64, product: f64) {
-        self.entries.push((share, gain, product));
+    /// Adds `share (gain - e^logarithm e^v)^2`.
+    pub(crate) fn add(&mut self, share: f64, gain: f64, logarithm: f64) {
+        self.members.push(Member {
+            share,
+            gain,
+            product: logarithm.exp(),
+            logarithm,
+        });
     }
 
-    /// The well, and the constant that is the sum at the well's bottom.
+    /// The well, and the sum at the well's bottom.
     ///
-    /// The constant is summed from the residuals, not from `P - Q^2 / R`, which would cancel.
-    pub(crate) fn well(&self) -> (Well, f64) {
-        let weight: f64 = self
-            .entries
-            .iter()
-            .map(|(share, _, product)| share * product * product)
-            .sum();
+    /// The latter is summed from the residuals, not from `P - Q^2 / R`, which would cancel.
+    pub(crate) fn well(&self) -> (Well, Sum) {
+        let total = |term: fn(&Member) -> f64| self.members.iter().map(term).sum::<f64>();
+        let weight = total(|member| member.share * member.product * member.product);
         if weight <= 0.0 {
-            return (Well::default(), 0.0);
+            return (Well::default(), Sum::default());
         }
-        let moment: f64 = self
-            .entries
-            .iter()
-            .map(|(share, gain, product)| share * gain * product)
-            .sum();
-        let centre = moment / weight;
-        let bottom = self
-            .entries
-            .iter()
-            .map(|(share, gain, product)| share * (gain - product * centre).powi(2))
-            .sum();
-        // A sum of n positive terms is exact to n roundings; 8 more cover the exponential, the differences and the square.
-        let rounding = (self.entries.len() as f64 + 8.0) * f64::EPSILON;
+        let centre = total(|member| member.share * member.gain * member.product) / weight;
+        let mut bottom = Sum::default();
+        let mut roundings = 0.0_f64;
+        for Member {
+            share,
+            gain,
+            product,
+            logarithm,
+        } in &self.members
+        {
+            let met = product * centre;
+            bottom.add(*share, gain - met, gain + met, product_roundings(*logarithm));
+            roundings = roundings.max(product_roundings(*logarithm));
+        }
+        // A sum of n positive terms is exact to n roundings; 32 more cover the exponential of a difference of scales (up to
+        // 180 dB), the differences and the square.
+        let rounding = (self.members.len() as f64 + roundings + 32.0) * f64::EPSILON;
         (
             Well {
                 weight,
@@ -110,5 +132,11 @@ impl Well {
     pub(crate) fn least_curvature(&self, low: f64, high: f64) -> f64 {
         let z = (0.25 * self.centre).clamp(low, high);
         2.0 * self.weight * z * (2.0 * z - self.centre)
+    }
+
+    /// Least and greatest slope over `e^v` in `[low, high]`: the slope is a parabola in `e^v`, lowest at `centre / 2`.
+    pub(crate) fn slopes(&self, low: f64, high: f64) -> (f64, f64) {
+        let slope = |z: f64| 2.0 * self.weight * z * (z - self.centre);
+        (slope((0.5 * self.centre).clamp(low, high)), slope(low).max(slope(high)))
     }
 }

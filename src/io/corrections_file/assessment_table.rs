@@ -65,7 +65,7 @@ fn row(
         dataset.outputs()[pair.output].name.clone(),
         dataset.inputs()[pair.input].name.clone(),
         dataset.on_axis()[pair].to_string(),
-        result.is_some_and(|result| result.held[pair]).to_string(),
+        result.is_some_and(|result| result.held()[pair]).to_string(),
         cell(delta.and_then(|delta| delta.gain[pair])),
         cell(delta.and_then(|delta| delta.delay_s[pair])),
         cell(own.map(|correction| correction.net_gain(pair))),

@@ -105,11 +105,11 @@ impl Gather<'_> {
             suggested_outliers: result.suggested().into_iter().map(|at| model(BundleKind::Physics, at)).collect(),
             discontinuity: ByName(physics.iter().map(|model| model.name.clone()).zip(ratios.iter().copied()).collect()),
             scheduled: study.choices[index].scheduled,
-            held: names.marked(&result.held),
+            held: names.marked(result.held()),
             delta_gain: rows(&result.comparison.delta.gain, |gain| *gain),
             delta_delay_s: rows(&result.comparison.delta.delay_s, |delay| *delay),
-            gain_bounds: [result.gain_bounds.lower, result.gain_bounds.upper],
-            delay_upper_s: result.delay_upper_s,
+            gain_bounds: [result.gain_bounds().lower, result.gain_bounds().upper],
+            delay_upper_s: result.delay_upper_s(),
             gains: names.channels(&correction.input_gains, &correction.output_gains),
             delays_s: names.channels(&correction.input_delays_s, &correction.output_delays_s),
             gain_solution: self.gain_outcome(result),
@@ -121,7 +121,7 @@ impl Gather<'_> {
     }
 
     fn net_gains(&self, result: &ConditionAnalysis) -> Vec<NetGain> {
-        let pairs = result.held.pairs();
+        let pairs = result.held().pairs();
         pairs
             .map(|pair| {
                 let (output, input) = self.names.pair(pair);

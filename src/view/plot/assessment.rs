@@ -4,7 +4,8 @@ use egui::{Align2, Pos2, Rect, RichText, Stroke, Ui, UiBuilder, Vec2, pos2, vec2
 use egui_plot::{PlotPoint, PlotTransform};
 
 use super::axes::{caption_font, use_frame_colors};
-use super::bar_panel::{AssessmentBar, AssessmentPanel, BarValue, PHASE_FADE, bar_panel_ui};
+use super::bar::{AssessmentBar, AssessmentPanel, BarValue};
+use super::bar_panel::{BarAnswer, PHASE_FADE, bar_panel_ui};
 use super::message::message_ui;
 use super::number::decimals;
 use super::readout::tooltip_ui;
@@ -84,25 +85,28 @@ pub fn assessment_ui(
             LEAST_PANEL,
             |ui, index, rect| {
                 let panel = &scene.panels[index];
-                let id = ui.make_persistent_id(("assessment", index));
-                let answer = bar_panel_ui(ui, (id, rect), panel, palette);
-                if let Some(remembered) = view.panels.get_mut(index) {
-                    *remembered = (Some(answer.transform), panel.bars.iter().map(|bar| bar.key).collect());
-                }
-                if let Some(bar) = answer.hovered.and_then(|hovered| panel.bars.get(hovered)) {
-                    tooltip_ui(&answer.response, |ui| bar_text_ui(ui, panel, bar, palette));
-                    if answer.response.clicked() {
-                        events.push(AssessmentEvent::BarClicked {
-                            panel: index,
-                            key: bar.key,
-                        });
-                    }
-                }
+                let answer = bar_panel_ui(ui, (ui.make_persistent_id(("assessment", index)), rect), panel, palette);
+                view.panels[index] = (Some(answer.transform), panel.bars.iter().map(|bar| bar.key).collect());
+                events.extend(panel_event(index, panel, &answer, palette));
             },
         );
     });
     ui.advance_cursor_after_rect(rect);
     events
+}
+
+fn panel_event(
+    index: usize,
+    panel: &AssessmentPanel,
+    answer: &BarAnswer,
+    palette: &Palette,
+) -> Option<AssessmentEvent> {
+    let bar = panel.bars.get(answer.hovered?)?;
+    tooltip_ui(&answer.response, |ui| bar_text_ui(ui, panel, bar, palette));
+    answer.response.clicked().then_some(AssessmentEvent::BarClicked {
+        panel: index,
+        key: bar.key,
+    })
 }
 
 fn bar_text_ui(ui: &mut Ui, panel: &AssessmentPanel, bar: &AssessmentBar, palette: &Palette) {

@@ -113,12 +113,16 @@ fn paint(
     }
     let text = unit.readout(end.of(band));
     let galley = painter.layout_no_wrap(text, caption_font(), palette.text);
-    // Inside the band, where there is room on the screen for sure unless the band is very narrow.
+    // Inside the band, level with the pointer.
+    let pointer = response.interact_pointer_pos().or(response.hover_pos());
+    let y = pointer
+        .map_or(frame.center().y, |pointer| pointer.y)
+        .clamp(frame.top() + 12.0, frame.bottom() - 12.0);
     let (align, offset) = match end {
-        End::Lower => (Align2::LEFT_BOTTOM, 6.0),
-        End::Upper => (Align2::RIGHT_BOTTOM, -6.0),
+        End::Lower => (Align2::LEFT_CENTER, 8.0),
+        End::Upper => (Align2::RIGHT_CENTER, -8.0),
     };
-    let place = align.anchor_size(pos2(x + offset, frame.bottom() - 6.0), galley.size() + vec2(10.0, 4.0));
+    let place = align.anchor_size(pos2(x + offset, y), galley.size() + vec2(10.0, 4.0));
     painter.rect(
         place,
         3.0,

@@ -1,14 +1,14 @@
 //! One panel of the assessment: bars up for worse, down for better, made of a magnitude and a phase part.
 
 use egui::{Align2, Color32, FontId, Id, Painter, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, UiBuilder};
-use egui::{WidgetInfo, pos2, vec2};
-use egui_plot::{Axis, GridInput, GridMark, HLine, PlotBounds, PlotTransform};
+use egui::{Vec2, WidgetInfo, pos2, vec2};
+use egui_plot::{Axis, GridInput, GridMark, HLine, Plot, PlotBounds, PlotTransform};
 
 use super::axes::{LABELLED_HEIGHT, axis_hints, caption_font, quiet_plot, tick_font};
+use super::bar::{AssessmentBar, AssessmentPanel, BarValue, stacked};
 use super::grid_strength::labelled_mark;
 use super::linear_axis::{Ladder, tick_text};
 use super::number::decimals;
-use super::range::Range;
 use crate::view::palette::Palette;
 
 /// How much fainter the phase part of a bar is.
@@ -22,71 +22,6 @@ const BAR_PART: f32 = 0.6;
 const VALUE_FONT: FontId = FontId::proportional(10.0);
 /// Bars narrower than this have no number \[pt\].
 const LEAST_WITH_NUMBER: f32 = 26.0;
-
-/// What a bar says.
-#[derive(Clone, Debug, PartialEq)]
-pub enum BarValue {
-    /// The change of J: negative is better.
-    Change {
-        /// Of its magnitude part.
-        magnitude: f64,
-        /// Of its phase part.
-        phase: f64,
-    },
-    /// Not assessed.
-    LeftOut {
-        /// Why not: "its nominal model is rejected".
-        why: String,
-    },
-}
-
-/// One bar.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AssessmentBar {
-    /// How events name the bar; unique within its panel.
-    pub key: usize,
-    /// The text below it: a condition's number, or a pair.
-    pub label: String,
-    /// Its value.
-    pub value: BarValue,
-    /// Whether it is the condition or pair in focus.
-    pub selected: bool,
-    /// A further line for hovering, such as J before and after. May be empty.
-    pub detail: String,
-}
-
-/// Bars side by side: of one pair in every condition, or of one condition in every pair.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AssessmentPanel {
-    /// The pair or the condition.
-    pub title: String,
-    /// What the labels of the bars are: "Condition", "Pair".
-    pub axis_label: String,
-    /// The bars, from left to right.
-    pub bars: Vec<AssessmentBar>,
-}
-
-impl AssessmentPanel {
-    /// The values in view: all parts of all bars, and zero.
-    fn values(&self) -> Range {
-        let parts = self.bars.iter().flat_map(|bar| match bar.value {
-            BarValue::Change { magnitude, phase } => {
-                let [from_magnitude, from_phase] = stacked(magnitude, phase);
-                vec![from_magnitude[1], from_phase[1]]
-            }
-            BarValue::LeftOut { .. } => Vec::new(),
-        });
-        Range::of(parts.chain([0.0]))
-            .unwrap_or(Range::new(-1.0, 1.0))
-            .with_margin(0.12, 1.0)
-    }
-}
-
-/// Both parts as `[from, to]`: of one sign they stand on one another, of two signs on either side of zero.
-fn stacked(magnitude: f64, phase: f64) -> [[f64; 2]; 2] {
-    let foot = if magnitude * phase > 0.0 { magnitude } else { 0.0 };
-    [[0.0, magnitude], [foot, foot + phase]]
-}
 
 /// What a panel found out in a frame.
 pub(super) struct BarAnswer {
@@ -145,30 +80,13 @@ fn frame_ui(
     palette: &Palette,
 ) -> (Response, PlotTransform) {
     let values = panel.values();
-    let count = panel.bars.len();
-    let bounds = PlotBounds::from_min_max([-0.5, values.min], [count as f64 - 0.5, values.max]);
+    let bounds = PlotBounds::from_min_max([-0.5, values.min], [panel.bars.len() as f64 - 0.5, values.max]);
     let widest = panel
         .bars
         .iter()
         .map(|bar| text_width(ui, &bar.label))
         .fold(0.0, f32::max);
-    let labels: Vec<String> = panel.bars.iter().map(|bar| bar.label.clone()).collect();
-    let label = move |mark: GridMark| labels.get(mark.value.round() as usize).cloned().unwrap_or_default();
-    let plot = quiet_plot(id, palette)
-        .sense(Sense::click())
-        .width(rect.width())
-        .height(rect.height())
-        .show_grid([false, true])
-        .x_grid_spacer(move |input| bar_marks(&input, count, widest))
-        .y_grid_spacer(Ladder::Decimal.spacer(TICK_GAP))
-        .custom_x_axes(vec![axis_hints(
-            Axis::X,
-            &panel.axis_label,
-            LABELLED_HEIGHT,
-            palette,
-            label,
-        )])
-        .custom_y_axes(vec![axis_hints(Axis::Y, "", VALUE_AXIS_WIDTH, palette, tick_text)]);
+    let plot = bar_plot((id, rect.size()), panel, widest, palette);
     let shown = ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(rect), |ui| {
         plot.show(ui, |plot| {
             plot.set_plot_bounds(bounds);
@@ -179,6 +97,27 @@ fn frame_ui(
     let description = format!("Change of J, {}: {}", panel.title, in_words(panel));
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, description.clone()));
     (response, shown.inner.transform)
+}
+
+fn bar_plot<'a>((id, size): (Id, Vec2), panel: &AssessmentPanel, widest: f32, palette: &Palette) -> Plot<'a> {
+    let count = panel.bars.len();
+    let labels: Vec<String> = panel.bars.iter().map(|bar| bar.label.clone()).collect();
+    let label = move |mark: GridMark| labels.get(mark.value.round() as usize).cloned().unwrap_or_default();
+    quiet_plot(id, palette)
+        .sense(Sense::click())
+        .width(size.x)
+        .height(size.y)
+        .show_grid([false, true])
+        .x_grid_spacer(move |input| bar_marks(&input, count, widest))
+        .y_grid_spacer(Ladder::Decimal.spacer(TICK_GAP))
+        .custom_x_axes(vec![axis_hints(
+            Axis::X,
+            &panel.axis_label,
+            LABELLED_HEIGHT,
+            palette,
+            label,
+        )])
+        .custom_y_axes(vec![axis_hints(Axis::Y, "", VALUE_AXIS_WIDTH, palette, tick_text)])
 }
 
 /// One mark under each bar; where the labels are too wide, under every second, third … one.
@@ -280,12 +219,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parts_of_one_sign_stand_on_one_another() {
-        assert_eq!(stacked(-30.0, -10.0), [[0.0, -30.0], [-30.0, -40.0]]);
-        assert_eq!(stacked(-30.0, 10.0), [[0.0, -30.0], [0.0, 10.0]]);
-    }
-
-    #[test]
     fn wide_labels_are_thinned_until_they_fit() {
         // Eleven bars on 110 points: 10 points each.
         let input = GridInput {
@@ -295,22 +228,5 @@ mod tests {
         assert_eq!(bar_marks(&input, 11, 4.0).len(), 11);
         assert_eq!(bar_marks(&input, 11, 12.0).len(), 6);
         assert_eq!(bar_marks(&input, 11, 30.0).len(), 3);
-    }
-
-    #[test]
-    fn zero_is_in_view_even_where_everything_got_better() {
-        let bar = |key, magnitude| AssessmentBar {
-            key,
-            label: key.to_string(),
-            value: BarValue::Change { magnitude, phase: 0.0 },
-            selected: false,
-            detail: String::new(),
-        };
-        let panel = AssessmentPanel {
-            title: "a".into(),
-            axis_label: "b".into(),
-            bars: vec![bar(1, -40.0), bar(2, -90.0)],
-        };
-        assert!(panel.values().contains(0.0) && panel.values().contains(-90.0));
     }
 }

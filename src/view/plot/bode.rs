@@ -71,7 +71,7 @@ pub fn bode_ui(ui: &mut Ui, scene: &BodeScene<'_>, view: &mut BodeView, palette:
         set_hovered(view, None, &mut events);
         return events;
     }
-    view.fit_if_requested(scene.curves);
+    view.fit_if_requested(scene.curves, scene.band);
     ui.scope_builder(UiBuilder::new().id_salt("bode").max_rect(rect), |ui| {
         use_frame_colors(ui, palette);
         panes_ui(ui, rect, scene, view, palette, &mut events);

@@ -9,10 +9,13 @@ use super::bode_view::BodeView;
 use super::box_zoom::box_zoom_ui;
 use super::curve::{BodeCurve, CurveId, Pane, runs_in_view};
 use super::linear_axis::{Ladder, tick_text};
+use super::thinning::thinned;
 use crate::view::palette::Palette;
 
 /// Width of the vertical axes \[pt\]: the same above and below, so that the frequencies stand under one another.
 const VALUE_AXIS_WIDTH: f32 = 52.0;
+/// How far from a curve its drawn line may be \[pt\].
+const TOLERANCE: f64 = 0.1;
 
 impl Pane {
     fn name(self) -> &'static str {
@@ -138,6 +141,7 @@ fn draw_curves(
     let mut curves: Vec<&BodeCurve> = scene.curves.iter().collect();
     curves.sort_by_key(|curve| (is_emphasized(curve), curve.role.layer(curve.rejected)));
     let bounds = view.bounds(pane);
+    let tolerance = TOLERANCE * bounds.height() / f64::from(plot.transform().frame().height());
     for curve in curves {
         let mut look = curve.role.look(curve.rejected, palette);
         if is_emphasized(curve) {
@@ -146,6 +150,7 @@ fn draw_curves(
             look.color = look.color.gamma_multiply(0.5);
         }
         for run in runs_in_view(curve.points(pane), &bounds) {
+            let run = thinned(&run, tolerance);
             plot.line(
                 Line::new("", run)
                     .color(look.color)

@@ -17,6 +17,8 @@ const DECIBELS: Range = Range { min: 1e-3, max: 5e3 };
 const DEGREES: Range = Range { min: 1e-2, max: 1e5 };
 /// Space above and below the curves after fitting, as a part of their height.
 const FIT_MARGIN: f64 = 0.04;
+/// Height that fitting gives to values outside the band on either side, as a part of the height within it.
+const OUTSIDE_PART: f64 = 0.4;
 
 /// What the Bode plot remembers between frames. The ranges stay when the data change; fitting is asked for.
 #[derive(Clone, Debug)]
@@ -161,15 +163,12 @@ impl BodeView {
     }
 
     /// Shows all of `curves`, rejected ones included, if that was asked for. Without data the request stays.
-    pub(super) fn fit_if_requested(&mut self, curves: &[BodeCurve]) {
+    pub(super) fn fit_if_requested(&mut self, curves: &[BodeCurve], band: (f64, f64)) {
         if !self.must_fit {
             return;
         }
-        let Some(log_omega) = Range::of(
-            curves
-                .iter()
-                .flat_map(|curve| curve.omega.iter().map(|omega| omega.log10())),
-        ) else {
+        let omega = curves.iter().flat_map(|curve| curve.omega.iter());
+        let Some(log_omega) = Range::of(omega.map(|omega| omega.log10())) else {
             return;
         };
         self.must_fit = false;
@@ -177,9 +176,69 @@ impl BodeView {
         self.legend.corner = None;
         self.set_log_omega(log_omega);
         for (pane, least) in [(Pane::Magnitude, 4.0), (Pane::Phase, 20.0)] {
-            if let Some(values) = Range::of(curves.iter().flat_map(|curve| curve.values(pane).iter().copied())) {
+            if let Some(values) = fitted_values(curves, pane, band) {
                 self.set_values(pane, values.with_margin(FIT_MARGIN, least));
             }
         }
+    }
+}
+
+/// The values to show: all within the band, and outside it as far as they leave room for those within.
+fn fitted_values(curves: &[BodeCurve], pane: Pane, (min, max): (f64, f64)) -> Option<Range> {
+    let points = || {
+        curves
+            .iter()
+            .flat_map(|curve| curve.omega.iter().zip(curve.values(pane)))
+    };
+    let all = Range::of(points().map(|(_, value)| *value))?;
+    let within = points().filter(|(omega, _)| (min..=max).contains(*omega));
+    let Some(within) = Range::of(within.map(|(_, value)| *value)) else {
+        return Some(all);
+    };
+    let room = within.with_margin(OUTSIDE_PART, 0.0);
+    Some(Range::new(all.min.max(room.min), all.max.min(room.max)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::plot::curve::CurveId;
+    use crate::view::plot::role::Role;
+
+    fn fitted(magnitude_db: &[f64]) -> Option<Range> {
+        let curve = BodeCurve {
+            id: CurveId(0),
+            label: String::new(),
+            detail: String::new(),
+            role: Role::Perturbed,
+            rejected: true,
+            highlighted: false,
+            omega: vec![0.3, 0.5, 1.0, 10.0, 20.0].into(),
+            magnitude_db: magnitude_db.into(),
+            phase_deg: vec![0.0; 5].into(),
+        };
+        fitted_values(&[curve], Pane::Magnitude, (0.5, 12.0))
+    }
+
+    #[test]
+    fn fitting_shows_all_that_is_within_the_band_and_what_is_near_it() {
+        assert_eq!(fitted(&[2.0, 0.0, -5.0, -10.0, -12.0]), Some(Range::new(-12.0, 2.0)));
+    }
+
+    #[test]
+    fn a_peak_outside_the_band_does_not_flatten_what_is_within() {
+        assert_eq!(
+            fitted(&[90.0, 0.0, -5.0, -10.0, -12.0]),
+            Some(Range::new(-12.0, 10.0 * OUTSIDE_PART))
+        );
+    }
+
+    #[test]
+    fn without_values_in_the_band_all_are_shown() {
+        assert_eq!(
+            fitted(&[3.0, f64::NAN, f64::NAN, f64::NAN, -50.0]),
+            Some(Range::new(-50.0, 3.0))
+        );
+        assert_eq!(fitted(&[f64::NAN; 5]), None);
     }
 }

@@ -45,25 +45,17 @@ pub fn channels_ui(
         return Vec::new();
     };
     let middle = rect.top() + rect.height() * inputs_part(scene, rect.size());
-    let upper = Rect::from_min_max(rect.min, pos2(rect.right(), middle - 0.5 * GAP));
-    let lower = Rect::from_min_max(pos2(rect.left(), middle + 0.5 * GAP), rect.max);
+    let (upper, lower) = rect.split_top_bottom_at_y(middle);
+    let groups = [
+        ("Input channels", upper, scene.inputs, &mut view.inputs),
+        ("Output channels", lower, scene.outputs, &mut view.outputs),
+    ];
     let mut events = Vec::new();
-    for (name, panels, view, rect) in [
-        ("Input channels", scene.inputs, &mut view.inputs, upper),
-        ("Output channels", scene.outputs, &mut view.outputs, lower),
-    ] {
-        if panels.is_empty() {
-            continue;
-        }
-        let heading_place = pos2(rect.left() + 2.0, rect.top() + 0.5 * HEADING_HEIGHT);
-        ui.painter().text(
-            heading_place,
-            Align2::LEFT_CENTER,
-            name,
-            caption_font(),
-            palette.dim_text,
-        );
-        let rect = Rect::from_min_max(rect.min + vec2(0.0, HEADING_HEIGHT), rect.max);
+    for (name, rect, panels, view) in groups.into_iter().filter(|(_, _, panels, _)| !panels.is_empty()) {
+        let place = pos2(rect.left() + 2.0, rect.top() + 0.5 * HEADING_HEIGHT);
+        ui.painter()
+            .text(place, Align2::LEFT_CENTER, name, caption_font(), palette.dim_text);
+        let rect = Rect::from_min_max(rect.min + vec2(0.0, HEADING_HEIGHT), rect.max - vec2(0.0, GAP));
         events.extend(gain_group_ui(
             ui,
             (name, rect),

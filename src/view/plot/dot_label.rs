@@ -18,11 +18,11 @@ const GAPS: [f32; 5] = [1.5, 9.0, 17.0, 25.0, 33.0];
 /// How often every label is placed anew, given the others: early labels make room for late ones.
 const SWEEPS: usize = 3;
 
-/// Cost of covering a square point of another label, a dot, or what lies outside; of the path, per point on it.
+/// Cost of covering a square point of another label, of a dot, or of what lies outside, and a point of the path's length.
 const ON_LABEL: f32 = 40.0;
 const ON_DOT: f32 = 40.0;
 const OUTSIDE: f32 = 30.0;
-const ON_PATH: f32 = 2.0;
+const ON_PATH: f32 = 1.0;
 /// Cost of standing nearer to another dot than to one's own.
 const AMBIGUOUS: f32 = 6.0;
 /// Cost of a later side, and of a point of distance.
@@ -54,7 +54,7 @@ pub struct LabelledDot {
 pub struct Surroundings<'a> {
     /// The area labels stay in.
     pub bounds: Rect,
-    /// Points of a curve that labels had better not cover.
+    /// A line that labels had better not cover.
     pub path: &'a [Pos2],
 }
 
@@ -89,16 +89,18 @@ fn best_place(
         .filter(|(k, _)| *k != index)
         .filter_map(|(_, place)| Some((*place)?.rect))
         .collect();
-    let candidates = candidates(dots[index]).map(|(place, preference)| {
-        let obstruction = obstruction(place.rect, &others, dots, around);
-        (
-            place,
-            preference + obstruction + AMBIGUOUS * nearer_dots(place.rect, index, dots) as f32,
-        )
-    });
-    candidates
-        .min_by(|(_, a), (_, b)| a.total_cmp(b))
-        .map(|(place, _)| place)
+    let mut best: Option<(LabelPlace, f32)> = None;
+    for (place, preference) in candidates(dots[index]) {
+        // Most places are worse than the best one by their distance alone.
+        if best.is_none_or(|(_, least)| preference < least) {
+            let ambiguity = AMBIGUOUS * nearer_dots(place.rect, index, dots) as f32;
+            let cost = preference + ambiguity + obstruction(place.rect, &others, dots, around);
+            if best.is_none_or(|(_, least)| cost < least) {
+                best = Some((place, cost));
+            }
+        }
+    }
+    best.map(|(place, _)| place)
 }
 
 fn candidates(dot: LabelledDot) -> impl Iterator<Item = (LabelPlace, f32)> {
@@ -123,8 +125,27 @@ fn obstruction(rect: Rect, labels: &[Rect], dots: &[LabelledDot], around: Surrou
     let dot_rect = |dot: &LabelledDot| Rect::from_center_size(dot.center, Vec2::splat(1.9 * dot.radius));
     let on_dots: f32 = dots.iter().map(|dot| common_area(rect, dot_rect(dot))).sum();
     let outside = rect.area() - common_area(rect, around.bounds);
-    let on_path = around.path.iter().filter(|point| rect.contains(**point)).count() as f32;
+    let on_path: f32 = around
+        .path
+        .windows(2)
+        .map(|ends| length_inside(rect, ends[0], ends[1]))
+        .sum();
     ON_LABEL * on_labels + ON_DOT * on_dots + OUTSIDE * outside + ON_PATH * on_path
+}
+
+/// About how much of a segment lies in `rect` \[pt\].
+fn length_inside(rect: Rect, from: Pos2, to: Pos2) -> f32 {
+    if !rect.intersects(Rect::from_two_pos(from, to)) {
+        return 0.0;
+    }
+    /// Distance between the points that are tried \[pt\].
+    const STEP: f32 = 2.0;
+    let length = from.distance(to);
+    let steps = (length / STEP).ceil().max(1.0);
+    let inside = (0..steps as usize)
+        .filter(|k| rect.contains(from.lerp(to, (*k as f32 + 0.5) / steps)))
+        .count();
+    inside as f32 * length / steps
 }
 
 /// How many other dots are nearer to the label of a dot than the dot itself.
@@ -211,6 +232,19 @@ mod tests {
         let places = places(&[pos2(70.0, 80.0), pos2(70.0, 89.0), pos2(70.0, 98.0)]);
         let y: Vec<f32> = places.iter().map(|place| place.rect.center().y).collect();
         assert!(y[0] < y[1] && y[1] < y[2], "{y:?}");
+    }
+
+    #[test]
+    fn a_label_keeps_off_the_line() {
+        let dots = [LabelledDot {
+            center: pos2(70.0, 80.0),
+            radius: 4.0,
+            label: SIZE,
+        }];
+        let path = [pos2(60.0, 90.0), pos2(90.0, 60.0)];
+        let bounds = Rect::from_min_max(pos2(0.0, 0.0), pos2(140.0, 170.0));
+        let place = place_labels(&dots, Surroundings { bounds, path: &path })[0];
+        assert_eq!(length_inside(place.rect, path[0], path[1]), 0.0);
     }
 
     #[test]

@@ -14,7 +14,7 @@ use crate::view::palette::{Palette, SMALL_SIZE};
 /// Width of the strip at the left with the label of the gain axes \[pt\].
 const LABEL_STRIP: f32 = 16.0;
 /// A panel is never smaller \[pt\].
-const LEAST_PANEL: Vec2 = vec2(150.0, 130.0);
+const LEAST_PANEL: Vec2 = vec2(122.0, 120.0);
 
 /// What the engineer did in the plots of gains over airspeed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! One small plot of gains over airspeed: the optimum of each condition as a dot, and the schedule as a line.
 
-use egui::{Align2, FontId, Id, Pos2, Rect, Response, Sense, Stroke, Ui, UiBuilder, WidgetInfo, pos2, vec2};
-use egui_plot::{Axis, HLine, Line, LineStyle, PlotBounds, PlotPoint, PlotTransform};
+use egui::{Align2, FontId, Id, Pos2, Rect, Response, Sense, Stroke, Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2};
+use egui_plot::{Axis, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotTransform, PlotUi};
 
 use super::axes::{LABELLED_HEIGHT, axis_hints, caption_font, quiet_plot};
 use super::dot::{DOT_RADIUS, Dot};
@@ -144,10 +144,23 @@ fn frame_ui(
 ) -> (Response, PlotTransform) {
     let (airspeed, gain) = (ranges.airspeed_kt, ranges.gain);
     let bounds = PlotBounds::from_min_max([airspeed.min, gain.min], [airspeed.max, gain.max]);
-    let plot = quiet_plot(id, palette)
+    let shown = ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(rect), |ui| {
+        gain_plot(id, rect.size(), palette).show(ui, |plot| {
+            plot.set_plot_bounds(bounds);
+            draw_lines(plot, panel, palette);
+        })
+    });
+    let description = format!("{}, {} conditions", panel.title, panel.dots.len());
+    let response = shown.inner.response;
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, description.clone()));
+    (response, shown.inner.transform)
+}
+
+fn gain_plot<'a>(id: Id, size: Vec2, palette: &Palette) -> Plot<'a> {
+    quiet_plot(id, palette)
         .sense(Sense::click())
-        .width(rect.width())
-        .height(rect.height())
+        .width(size.x)
+        .height(size.y)
         .x_grid_spacer(Ladder::Decimal.spacer(AIRSPEED_TICK_GAP))
         .y_grid_spacer(Ladder::Decimal.spacer(GAIN_TICK_GAP))
         .custom_x_axes(vec![axis_hints(
@@ -157,36 +170,26 @@ fn frame_ui(
             palette,
             tick_text,
         )])
-        .custom_y_axes(vec![axis_hints(Axis::Y, "", GAIN_AXIS_WIDTH, palette, tick_text)]);
+        .custom_y_axes(vec![axis_hints(Axis::Y, "", GAIN_AXIS_WIDTH, palette, tick_text)])
+}
+
+fn draw_lines(plot: &mut PlotUi<'_>, panel: &GainPanel, palette: &Palette) {
+    let reference = palette.dim_text.gamma_multiply(0.8);
+    plot.hline(
+        HLine::new("", 1.0)
+            .color(reference)
+            .width(1.0)
+            .style(LineStyle::Dashed { length: 3.0 }),
+    );
     let look = Role::Scheduled.look(false, palette);
-    let schedule: Vec<[f64; 2]> = panel
-        .schedule
-        .iter()
-        .copied()
-        .filter(|point| point.iter().all(|c| c.is_finite()))
-        .collect();
-    let shown = ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(rect), |ui| {
-        plot.show(ui, |plot| {
-            plot.set_plot_bounds(bounds);
-            let reference = palette.dim_text.gamma_multiply(0.8);
-            plot.hline(
-                HLine::new("", 1.0)
-                    .color(reference)
-                    .width(1.0)
-                    .style(LineStyle::Dashed { length: 3.0 }),
-            );
-            plot.line(
-                Line::new("", schedule)
-                    .color(look.color)
-                    .width(look.width)
-                    .style(look.style),
-            );
-        })
-    });
-    let description = format!("{}, {} conditions", panel.title, panel.dots.len());
-    let response = shown.inner.response;
-    response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, description.clone()));
-    (response, shown.inner.transform)
+    let finite = |point: &[f64; 2]| point.iter().all(|c| c.is_finite());
+    let schedule: Vec<[f64; 2]> = panel.schedule.iter().copied().filter(finite).collect();
+    plot.line(
+        Line::new("", schedule)
+            .color(look.color)
+            .width(look.width)
+            .style(look.style),
+    );
 }
 
 fn paint_labels(ui: &Ui, placed: &[(&Dot, Pos2)], panel: &GainPanel, transform: &PlotTransform, palette: &Palette) {

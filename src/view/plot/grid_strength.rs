@@ -31,3 +31,8 @@ pub fn minor_mark(value: f64, units_per_point: f64) -> GridMark {
         step_size: MINOR * units_per_point,
     }
 }
+
+/// Whether a mark of an axis of `units_per_point` has a label.
+pub fn is_labelled(mark: GridMark, units_per_point: f64) -> bool {
+    mark.step_size / units_per_point > f64::from(LABEL_SPACING.min)
+}

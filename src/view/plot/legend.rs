@@ -1,6 +1,11 @@
 //! The legend of a Bode plot: one line for each role that is present.
 
-use egui::{Align2, CursorIcon, Painter, Rect, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2};
+use std::sync::Arc;
+
+use egui::{
+    Align2, CursorIcon, Galley, Painter, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2,
+    vec2,
+};
 
 use super::axes::caption_font;
 use super::curve::BodeCurve;
@@ -9,6 +14,7 @@ use crate::view::palette::Palette;
 
 const ROW_HEIGHT: f32 = 16.5;
 const SAMPLE_WIDTH: f32 = 26.0;
+const SAMPLE_GAP: f32 = 8.0;
 const PADDING: Vec2 = vec2(8.0, 6.0);
 const MARGIN: f32 = 9.0;
 /// Longest name of a single model shown beside its role, in characters.
@@ -73,15 +79,12 @@ pub(super) fn legend_ui(
     palette: &Palette,
 ) {
     let painter = ui.painter().with_clip_rect(frame);
-    let layout = |text: &str| painter.layout_no_wrap(text.to_owned(), caption_font(), palette.text);
-    let galleys: Vec<_> = entries.iter().map(|entry| layout(&entry.text)).collect();
-    let text_width = galleys.iter().map(|galley| galley.size().x).fold(0.0, f32::max);
-    let open_size = vec2(SAMPLE_WIDTH + 8.0 + text_width, ROW_HEIGHT * entries.len() as f32) + 2.0 * PADDING;
-    let has_room = open_size.x < 0.5 * frame.width() && open_size.y < 0.75 * frame.height();
-    let folded = layout("Legend");
+    let rows = Rows::new(&painter, entries, palette);
+    let has_room = rows.size.x < 0.5 * frame.width() && rows.size.y < 0.75 * frame.height();
     let is_unfolded = state.is_open && has_room;
+    let folded = painter.layout_no_wrap("Legend".to_owned(), caption_font(), palette.dim_text);
     let size = if is_unfolded {
-        open_size
+        rows.size
     } else {
         folded.size() + PADDING
     };
@@ -91,43 +94,71 @@ pub(super) fn legend_ui(
         return;
     }
     let chosen = state.corner.filter(|(_, size)| *size == room.size());
-    let (corner, _) = chosen.unwrap_or_else(|| (emptiest_corner(room, open_size, covered), room.size()));
-    state.corner = Some((corner, room.size()));
+    let (corner, _) = chosen.unwrap_or_else(|| (emptiest_corner(room, rows.size, covered), room.size()));
     let rect = corner.align_size_within_rect(size, room);
+    state.corner = Some((corner, room.size()));
     state.rect = Some(rect);
-    let response = ui.interact(rect, ui.scope_id().with("legend"), Sense::click());
-    let description = legend_description(entries);
-    response.widget_info(|| WidgetInfo::selected(egui::Role::Button, true, is_unfolded, description.clone()));
-    let outline = if response.hovered() || response.has_focus() {
-        palette.accent
-    } else {
-        palette.line
-    };
-    painter.rect(
-        rect,
-        4.0,
-        palette.raised.gamma_multiply(0.93),
-        Stroke::new(1.0, outline),
-        StrokeKind::Inside,
-    );
+    let response = frame_ui(ui, rect, is_unfolded, entries, palette);
     if is_unfolded {
-        for (row, (entry, galley)) in entries.iter().zip(galleys).enumerate() {
-            let top = rect.top() + PADDING.y + ROW_HEIGHT * row as f32;
-            paint_sample(&painter, rect.left() + PADDING.x, top + 0.5 * ROW_HEIGHT, entry.look);
-            let left = rect.left() + PADDING.x + SAMPLE_WIDTH + 8.0;
-            painter.galley(
-                pos2(left, top + 0.5 * (ROW_HEIGHT - galley.size().y)),
-                galley,
-                palette.text,
-            );
-        }
+        rows.paint(&painter, rect.min + PADDING, palette);
     } else {
         painter.galley(rect.min + 0.5 * PADDING, folded, palette.dim_text);
     }
     if response.clicked() && has_room {
         state.is_open = !state.is_open;
     }
-    response.on_hover_cursor(CursorIcon::PointingHand);
+}
+
+/// The ground of the legend, which can be clicked.
+fn frame_ui(ui: &Ui, rect: Rect, is_unfolded: bool, entries: &[LegendEntry], palette: &Palette) -> Response {
+    let response = ui.interact(rect, ui.scope_id().with("legend"), Sense::click());
+    let names: Vec<&str> = entries.iter().map(|entry| entry.text.as_str()).collect();
+    let description = format!("Legend: {}", names.join(", "));
+    response.widget_info(|| WidgetInfo::selected(egui::Role::Button, true, is_unfolded, description.clone()));
+    let outline = if response.hovered() || response.has_focus() {
+        palette.accent
+    } else {
+        palette.line
+    };
+    let fill = palette.raised.gamma_multiply(0.93);
+    ui.painter()
+        .rect(rect, 4.0, fill, Stroke::new(1.0, outline), StrokeKind::Inside);
+    response.on_hover_cursor(CursorIcon::PointingHand)
+}
+
+/// The lines of the legend, laid out.
+struct Rows {
+    rows: Vec<(LineLook, Arc<Galley>)>,
+    /// Size of the whole, with the space around.
+    size: Vec2,
+}
+
+impl Rows {
+    fn new(painter: &Painter, entries: &[LegendEntry], palette: &Palette) -> Self {
+        let layout = |entry: &LegendEntry| {
+            (
+                entry.look,
+                painter.layout_no_wrap(entry.text.clone(), caption_font(), palette.text),
+            )
+        };
+        let rows: Vec<_> = entries.iter().map(layout).collect();
+        let text_width = rows.iter().map(|(_, galley)| galley.size().x).fold(0.0, f32::max);
+        let inner = vec2(SAMPLE_WIDTH + SAMPLE_GAP + text_width, ROW_HEIGHT * rows.len() as f32);
+        Self {
+            rows,
+            size: inner + 2.0 * PADDING,
+        }
+    }
+
+    fn paint(self, painter: &Painter, corner: Pos2, palette: &Palette) {
+        for (row, (look, galley)) in self.rows.into_iter().enumerate() {
+            let middle = corner.y + ROW_HEIGHT * (row as f32 + 0.5);
+            let sample = [pos2(corner.x, middle), pos2(corner.x + SAMPLE_WIDTH, middle)];
+            painter.extend(look.shapes(&sample));
+            let text = pos2(corner.x + SAMPLE_WIDTH + SAMPLE_GAP, middle - 0.5 * galley.size().y);
+            painter.galley(text, galley, palette.text);
+        }
+    }
 }
 
 /// The corner of `room` where something of `size` covers least; of equal ones the earlier.
@@ -142,13 +173,4 @@ fn emptiest_corner(room: Rect, size: Vec2, covered: impl Fn(Rect) -> usize) -> A
         .into_iter()
         .min_by_key(|corner| covered(corner.align_size_within_rect(size, room)));
     least.unwrap_or(Align2::RIGHT_TOP)
-}
-
-fn paint_sample(painter: &Painter, left: f32, y: f32, look: LineLook) {
-    painter.extend(look.shapes(&[pos2(left, y), pos2(left + SAMPLE_WIDTH, y)]));
-}
-
-fn legend_description(entries: &[LegendEntry]) -> String {
-    let names: Vec<&str> = entries.iter().map(|entry| entry.text.as_str()).collect();
-    format!("Legend: {}", names.join(", "))
 }

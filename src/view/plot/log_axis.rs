@@ -2,7 +2,7 @@
 
 use egui_plot::{GridInput, GridMark};
 
-use super::grid_strength::{labelled_mark, minor_mark};
+use super::grid_strength::{is_labelled, labelled_mark, minor_mark};
 use super::number::compact;
 use crate::units::rad_s_to_hz;
 
@@ -12,6 +12,11 @@ const LABEL_GAP: f64 = 34.0;
 const NINE_LABELS_GAP: f64 = 44.0;
 /// Least distance between two minor lines \[pt\].
 const LINE_GAP: f64 = 5.0;
+
+/// Where less than this is in view \[decades\], equal steps may be labelled instead of parts of a decade.
+const LINEAR_BELOW: f64 = 0.9;
+/// From 9 to 10, the narrowest gap between the lines of a decade \[decades\].
+const NINE_TO_TEN: f64 = 0.045_757_490_560_675_115;
 
 /// The unit frequencies are shown in; inside they are always rad/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -90,16 +95,11 @@ enum Labels {
     OneTwoFive,
     /// 1 to 9.
     Nine,
-    /// Equal steps, where less than a decade is in view.
-    Linear,
 }
 
 impl Labels {
     fn for_density(points_per_decade: f64) -> Self {
-        let from_nine_to_ten = points_per_decade * (10.0f64 / 9.0).log10();
-        if from_nine_to_ten >= 2.0 * NINE_LABELS_GAP {
-            Self::Linear
-        } else if from_nine_to_ten >= NINE_LABELS_GAP {
+        if points_per_decade * NINE_TO_TEN >= NINE_LABELS_GAP {
             Self::Nine
         } else if points_per_decade * 2f64.log10() >= LABEL_GAP {
             Self::OneTwoFive
@@ -112,27 +112,36 @@ impl Labels {
         match self {
             Self::Decades(every) => mantissa == 1 && exponent.rem_euclid(every) == 0,
             Self::OneTwoFive => matches!(mantissa, 1 | 2 | 5),
-            Self::Nine | Self::Linear => true,
+            Self::Nine => true,
         }
     }
 }
 
 fn marks_of_unit(bounds: (f64, f64), decades_per_point: f64) -> Vec<GridMark> {
-    let labels = Labels::for_density(1.0 / decades_per_point);
-    if labels == Labels::Linear {
-        return linear_marks(bounds, decades_per_point);
+    let decades = decade_marks(bounds, decades_per_point);
+    if bounds.1 - bounds.0 > LINEAR_BELOW {
+        return decades;
     }
-    // Between 9 and 10 lies the narrowest gap of a decade.
-    let has_minor_lines = (10.0f64 / 9.0).log10() / decades_per_point >= LINE_GAP;
+    let labelled = decades
+        .iter()
+        .filter(|mark| is_labelled(**mark, decades_per_point))
+        .count();
+    let linear = linear_marks(bounds, decades_per_point);
+    if linear.len() > labelled { linear } else { decades }
+}
+
+fn decade_marks(bounds: (f64, f64), decades_per_point: f64) -> Vec<GridMark> {
+    let labels = Labels::for_density(1.0 / decades_per_point);
+    let has_minor_lines = NINE_TO_TEN / decades_per_point >= LINE_GAP;
     let decades = bounds.0.floor() as i64..=bounds.1.floor() as i64;
     let candidates = decades.flat_map(|exponent| (1..=9u8).map(move |mantissa| (mantissa, exponent)));
     candidates
         .filter_map(|(mantissa, exponent)| {
             let value = f64::from(mantissa).log10() + exponent as f64;
-            let is_labelled = labels.include(mantissa, exponent);
-            if !within(value, bounds) || !(is_labelled || has_minor_lines || mantissa == 1) {
+            let has_label = labels.include(mantissa, exponent);
+            if !within(value, bounds) || !(has_label || has_minor_lines || mantissa == 1) {
                 None
-            } else if is_labelled {
+            } else if has_label {
                 Some(labelled_mark(value, decades_per_point))
             } else {
                 Some(minor_mark(value, decades_per_point))
@@ -180,11 +189,10 @@ mod tests {
     fn labels(unit: FrequencyUnit, omega: (f64, f64), points: f64) -> Vec<String> {
         let bounds = (omega.0.log10(), omega.1.log10());
         let decades_per_point = (bounds.1 - bounds.0) / points;
-        let labelled = |mark: &GridMark| mark.step_size / decades_per_point > 50.0;
         let marks = unit.marks(bounds, decades_per_point);
         marks
             .into_iter()
-            .filter(labelled)
+            .filter(|mark| is_labelled(*mark, decades_per_point))
             .map(|mark| unit.tick_text(mark))
             .collect()
     }
@@ -215,6 +223,8 @@ mod tests {
             Some("2")
         );
         assert!(labels(FrequencyUnit::RadPerSecond, (2.0001, 2.0009), 800.0).len() > 3);
+        let texts = labels(FrequencyUnit::RadPerSecond, (1.2, 4.2), 900.0);
+        assert_eq!(texts, ["1.5", "2", "2.5", "3", "3.5", "4"]);
     }
 
     #[test]
@@ -231,7 +241,7 @@ mod tests {
             for points in [150.0, 400.0, 900.0, 2500.0] {
                 let per_point = width / points;
                 let marks = FrequencyUnit::RadPerSecond.marks((-0.52, -0.52 + width), per_point);
-                let labelled: Vec<_> = marks.iter().filter(|m| m.step_size / per_point > 50.0).collect();
+                let labelled: Vec<_> = marks.iter().filter(|m| is_labelled(**m, per_point)).collect();
                 assert!(labelled.len() < 80, "{width} {points}: {}", labelled.len());
                 for pair in labelled.windows(2) {
                     let gap = (pair[1].value - pair[0].value) / per_point;

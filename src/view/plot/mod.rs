@@ -3,6 +3,7 @@
 mod assessment;
 mod axes;
 mod band_handle;
+mod bar;
 mod bar_panel;
 mod bode;
 mod bode_pane;
@@ -29,10 +30,11 @@ mod role;
 mod sparkline;
 #[cfg(test)]
 mod tests;
+mod thinning;
 mod tiles;
 
 pub use assessment::{AssessmentEvent, AssessmentScene, AssessmentView, assessment_ui};
-pub use bar_panel::{AssessmentBar, AssessmentPanel, BarValue};
+pub use bar::{AssessmentBar, AssessmentPanel, BarValue};
 pub use bode::{BodeEvent, BodeScene, bode_ui};
 pub use bode_view::BodeView;
 pub use channels::{ChannelsScene, ChannelsView, channels_ui};

@@ -1,24 +1,24 @@
 //! Every response at once: a table of small Bode plots, outputs down, inputs across.
 
 use egui::{
-    Align2, Button, FontId, Pos2, Rect, RichText, Sense, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+    Align2, Button, Color32, CursorIcon, FontId, Painter, Pos2, Rect, RichText, Sense, Stroke, StrokeKind, Ui,
+    UiBuilder, Vec2, WidgetInfo, pos2, vec2,
 };
 
 use super::axes::caption_font;
 use super::curve::{BodeCurve, Pane};
 use super::message::message_ui;
-use super::number::compact;
 use super::range::Range;
 use super::sparkline::Sparkline;
 use crate::dataset::Pair;
 use crate::view::palette::{Palette, SMALL_SIZE};
 
-const HEADER: egui::Vec2 = vec2(52.0, 22.0);
+const HEADER: Vec2 = vec2(52.0, 22.0);
 const GAP: f32 = 4.0;
 /// Part of a cell's height that the magnitude gets where the phase is shown too.
 const MAGNITUDE_PART: f32 = 0.58;
 /// Cells smaller than this have no texts \[pt\].
-const LEAST_WITH_TEXT: egui::Vec2 = vec2(96.0, 54.0);
+const LEAST_WITH_TEXT: Vec2 = vec2(96.0, 54.0);
 const CELL_FONT: FontId = FontId::proportional(10.0);
 
 /// One response in the overview.
@@ -167,55 +167,82 @@ fn cell_ui(
     let response = ui.interact(place, ui.scope_id().with(cell.pair), Sense::click());
     let title = title(scene, cell.pair);
     let name = if cell.note.is_empty() {
-        title.clone()
+        title
     } else {
         format!("{title}: {}", cell.note)
     };
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, name.clone()));
-    if !ui.is_rect_visible(place) {
-        return response.clicked();
-    }
-    let fill = if cell.constrained {
-        palette.background.lerp_to_gamma(palette.selected, 0.55)
-    } else {
-        palette.background
-    };
-    let outline = if cell.selected {
-        Stroke::new(2.0, palette.accent)
-    } else if response.hovered() || response.has_focus() {
-        Stroke::new(1.0, palette.accent)
-    } else {
-        Stroke::new(1.0, palette.line)
-    };
-    ui.painter().rect(place, 2.0, fill, outline, StrokeKind::Inside);
-    let painter = ui.painter().with_clip_rect(place.shrink(1.5).intersect(ui.clip_rect()));
-    for (pane, rect) in pane_rects(place.shrink(2.0), show_phase) {
-        let sparkline = Sparkline {
-            curves: cell.curves,
-            pane,
-            log_omega,
-            rect,
-        };
-        paint_band(&painter, rect, scene.band, log_omega, palette);
-        sparkline.paint(&painter, palette);
-        if place.size().min(LEAST_WITH_TEXT) == LEAST_WITH_TEXT {
-            paint_values(&painter, &sparkline, palette);
+    if ui.is_rect_visible(place) {
+        paint_frame(ui, cell, place, response.hovered() || response.has_focus(), palette);
+        let painter = ui.painter().with_clip_rect(place.shrink(1.5).intersect(ui.clip_rect()));
+        for (pane, rect) in pane_rects(place.shrink(2.0), show_phase) {
+            paint_band(&painter, rect, scene.band, log_omega, palette);
+            paint_curves(&painter, cell, (pane, rect), log_omega, has_texts(place), palette);
+        }
+        if has_texts(place) && !cell.note.is_empty() {
+            let corner = place.right_top() + vec2(-5.0, 3.0);
+            paint_text(&painter, corner, Align2::RIGHT_TOP, &cell.note, palette.text, palette);
         }
     }
-    let has_text = place.size().min(LEAST_WITH_TEXT) == LEAST_WITH_TEXT && !cell.note.is_empty();
-    if has_text {
-        painter.text(
-            place.right_top() + vec2(-5.0, 3.0),
-            Align2::RIGHT_TOP,
-            &cell.note,
-            CELL_FONT,
-            palette.text,
-        );
-    }
     response
-        .on_hover_cursor(egui::CursorIcon::PointingHand)
+        .on_hover_cursor(CursorIcon::PointingHand)
         .on_hover_text(name)
         .clicked()
+}
+
+fn has_texts(place: Rect) -> bool {
+    place.width() >= LEAST_WITH_TEXT.x && place.height() >= LEAST_WITH_TEXT.y
+}
+
+fn paint_frame(ui: &Ui, cell: &OverviewCell<'_>, place: Rect, is_pointed_at: bool, palette: &Palette) {
+    let fill = match cell.constrained {
+        true => palette.background.lerp_to_gamma(palette.selected, 0.55),
+        false => palette.background,
+    };
+    let outline = match (cell.selected, is_pointed_at) {
+        (true, _) => Stroke::new(2.0, palette.accent),
+        (false, true) => Stroke::new(1.0, palette.accent),
+        (false, false) => Stroke::new(1.0, palette.line),
+    };
+    ui.painter().rect(place, 2.0, fill, outline, StrokeKind::Inside);
+}
+
+fn paint_curves(
+    painter: &Painter,
+    cell: &OverviewCell<'_>,
+    (pane, rect): (Pane, Rect),
+    log_omega: Range,
+    has_text: bool,
+    palette: &Palette,
+) {
+    let Some(sparkline) = Sparkline::new(cell.curves, pane, log_omega, rect) else {
+        return;
+    };
+    sparkline.paint(painter, palette);
+    if has_text {
+        // For want of an axis.
+        let corner = rect.left_bottom() + vec2(3.0, -2.0);
+        paint_text(
+            painter,
+            corner,
+            Align2::LEFT_BOTTOM,
+            &sparkline.range_text(),
+            palette.dim_text,
+            palette,
+        );
+    }
+}
+
+/// A text that curves may run behind.
+fn paint_text(painter: &Painter, corner: Pos2, align: Align2, text: &str, color: Color32, palette: &Palette) {
+    let galley = painter.layout_no_wrap(text.to_owned(), CELL_FONT, color);
+    let place = align.anchor_size(corner, galley.size());
+    painter.rect_filled(
+        place.expand2(vec2(2.0, 0.0)),
+        2.0,
+        palette.background.gamma_multiply(0.6),
+    );
+    painter.galley(place.min, galley, color);
 }
 
 fn title(scene: &OverviewScene<'_>, pair: Pair) -> String {
@@ -236,7 +263,7 @@ fn pane_rects(rect: Rect, show_phase: bool) -> Vec<(Pane, Rect)> {
     vec![(Pane::Magnitude, upper), (Pane::Phase, lower)]
 }
 
-fn paint_band(painter: &egui::Painter, rect: Rect, (min, max): (f64, f64), log_omega: Range, palette: &Palette) {
+fn paint_band(painter: &Painter, rect: Rect, (min, max): (f64, f64), log_omega: Range, palette: &Palette) {
     let x = |omega: f64| {
         let fraction = (omega.log10() - log_omega.min) / log_omega.width();
         rect.left() + fraction.clamp(0.0, 1.0) as f32 * rect.width()
@@ -244,20 +271,4 @@ fn paint_band(painter: &egui::Painter, rect: Rect, (min, max): (f64, f64), log_o
     let band = Rect::from_x_y_ranges(x(min)..=x(max), rect.y_range());
     painter.rect_filled(band, 0.0, palette.accent.gamma_multiply(0.06));
     painter.hline(rect.x_range(), rect.bottom(), Stroke::new(1.0, palette.grid));
-}
-
-/// The range of the values, for want of an axis.
-fn paint_values(painter: &egui::Painter, sparkline: &Sparkline<'_>, palette: &Palette) {
-    let Some(values) = sparkline.values() else { return };
-    let unit = match sparkline.pane {
-        Pane::Magnitude => " dB",
-        Pane::Phase => "°",
-    };
-    let text = format!(
-        "{} … {}{unit}",
-        compact(values.min.round()),
-        compact(values.max.round())
-    );
-    let corner = sparkline.rect.left_bottom() + vec2(3.0, -2.0);
-    painter.text(corner, Align2::LEFT_BOTTOM, text, CELL_FONT, palette.dim_text);
 }

@@ -20,16 +20,10 @@ impl Range {
 
     /// The least range that holds every finite value, or nothing where there is none.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
-        values
-            .into_iter()
-            .filter(|value| value.is_finite())
-            .fold(None, |range, value| match range {
-                None => Some(Self { min: value, max: value }),
-                Some(range) => Some(Self {
-                    min: range.min.min(value),
-                    max: range.max.max(value),
-                }),
-            })
+        let empty = (f64::INFINITY, f64::NEG_INFINITY);
+        let finite = values.into_iter().filter(|value| value.is_finite());
+        let (min, max) = finite.fold(empty, |(min, max), value| (value.min(min), value.max(max)));
+        (min <= max).then_some(Self { min, max })
     }
 
     /// Upper end minus lower end.

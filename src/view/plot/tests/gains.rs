@@ -18,7 +18,7 @@ fn dot(condition: usize, airspeed_kt: f64, gain: f64) -> Dot {
         airspeed_kt,
         gain,
         shape: DotShape::of_class(condition % 4),
-        filled: condition % 2 == 0,
+        filled: condition.is_multiple_of(2),
         selected: condition == 2,
         chosen: true,
         detail: String::new(),

@@ -91,6 +91,31 @@ fn change(key: usize, magnitude: f64, phase: f64) -> AssessmentBar {
     }
 }
 
+fn assessment_harness(panels: Vec<AssessmentPanel>) -> Harness<'static, Model> {
+    let model = Model {
+        panels,
+        ..Model::default()
+    };
+    let builder = Harness::builder()
+        .with_size(vec2(800.0, 400.0))
+        .with_context_setup(palette::apply);
+    let mut harness = builder.build_ui_state(
+        |ui, model: &mut Model| {
+            let scene = AssessmentScene {
+                panels: &model.panels,
+                message: None,
+            };
+            let palette = Palette::of(ui.visuals());
+            model
+                .bars
+                .extend(assessment_ui(ui, &scene, &mut model.assessment, &palette));
+        },
+        model,
+    );
+    harness.run();
+    harness
+}
+
 #[test]
 fn a_click_on_a_bar_names_it_and_its_panel() {
     let left_out = AssessmentBar {
@@ -110,33 +135,11 @@ fn a_click_on_a_bar_names_it_and_its_panel() {
         axis_label: "Condition".to_owned(),
         bars,
     };
-    let model = Model {
-        panels: vec![
-            AssessmentPanel {
-                title: "LAT → P".to_owned(),
-                ..panel.clone()
-            },
-            panel,
-        ],
-        ..Model::default()
+    let other = AssessmentPanel {
+        title: "LAT → P".to_owned(),
+        ..panel.clone()
     };
-    let mut harness = Harness::builder()
-        .with_size(vec2(800.0, 400.0))
-        .with_context_setup(palette::apply)
-        .build_ui_state(
-            |ui, model: &mut Model| {
-                let scene = AssessmentScene {
-                    panels: &model.panels,
-                    message: None,
-                };
-                let palette = Palette::of(ui.visuals());
-                model
-                    .bars
-                    .extend(assessment_ui(ui, &scene, &mut model.assessment, &palette));
-            },
-            model,
-        );
-    harness.run();
+    let mut harness = assessment_harness(vec![other, panel]);
     for key in [3, 10] {
         let at = harness.state().assessment.screen_position(1, key).unwrap();
         click(&mut harness, at);

@@ -88,7 +88,10 @@ fn from_the_example_to_exported_corrections() {
     assert_eq!(state(&window).condition().bundle(BundleKind::Physics)[representative.model].name, "ROLL-5deg");
     assert!(drawn(&window, CurveRole::Nominal).rejected, "the nominal model is one of the outliers");
     let corrected = drawn(&window, CurveRole::Corrected);
-    assert_ne!(corrected.magnitude_db, corrected_before.magnitude_db, "another representative, another corrected curve");
+    assert_ne!(
+        corrected.magnitude_db, corrected_before.magnitude_db,
+        "another representative, another corrected curve"
+    );
 
     let on_axis = pair(&window, "Q", "LON");
     let wanted = state(&window).shown().unwrap().comparison.delta.gain[on_axis].unwrap();
@@ -115,7 +118,11 @@ fn from_the_example_to_exported_corrections() {
     let tenth = &written.conditions[9];
     assert_eq!((tenth.id, tenth.physics_representative.as_str()), (10, "ROLL-5deg"));
     let shown = state(&window).shown().unwrap();
-    assert_eq!(tenth.gains.outputs.get("Q").copied(), Some(shown.correction.output_gains[1]), "read back to the last digit");
+    assert_eq!(
+        tenth.gains.outputs.get("Q").copied(),
+        Some(shown.correction.output_gains[1]),
+        "read back to the last digit"
+    );
     assert!(folder.path().join("corrections.csv").exists() && folder.path().join("assessment.csv").exists());
 }
 

@@ -140,7 +140,9 @@ impl GdcmApp {
         if self.state.results.is_waiting() {
             return self.trouble("the newest results are still being computed; export again in a moment".to_owned());
         }
-        let Some(analysis) = self.state.results.analysis.clone() else { return };
+        let Some(analysis) = self.state.results.analysis.clone() else {
+            return;
+        };
         let form = &self.state.forms.export;
         let chosen: Vec<usize> = (0..form.chosen.len()).filter(|&index| form.chosen[index]).collect();
         let folder = PathBuf::from(form.folder.trim());

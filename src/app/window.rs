@@ -9,7 +9,9 @@ use crate::study::{Study, display_band};
 use crate::view::command::{Command, FormKind};
 use crate::view::palette::{self, Palette};
 use crate::view::state::State;
-use crate::view::{centre, conditions_panel, forms, matrix_panel, menu_bar, models_panel, result_panel, settings_panel, status_bar};
+use crate::view::{
+    centre, conditions_panel, forms, matrix_panel, menu_bar, models_panel, result_panel, settings_panel, status_bar,
+};
 
 use super::dialogs::Dialogs;
 use super::files::SavedStudy;
@@ -135,13 +137,16 @@ impl GdcmApp {
                 models_panel::identified_models_ui(ui, state, palette, commands);
             });
         });
-        Panel::right("constraints and result").frame(side).default_size(right).size_range(250.0..=620.0).show(ui, |ui| {
-            scrolled(ui, "right", |ui| {
-                matrix_panel::matrix_ui(ui, state, palette, commands);
-                settings_panel::settings_ui(ui, state, palette, commands);
-                result_panel::result_ui(ui, state, palette, commands);
-            });
-        });
+        Panel::right("constraints and result").frame(side).default_size(right).size_range(250.0..=620.0).show(
+            ui,
+            |ui| {
+                scrolled(ui, "right", |ui| {
+                    matrix_panel::matrix_ui(ui, state, palette, commands);
+                    settings_panel::settings_ui(ui, state, palette, commands);
+                    result_panel::result_ui(ui, state, palette, commands);
+                });
+            },
+        );
         let middle = Frame::new().fill(palette.background).inner_margin(Margin::symmetric(8, 4));
         CentralPanel::default().frame(middle).show(ui, |ui| centre::centre_ui(ui, state, palette, commands));
     }

@@ -1,11 +1,10 @@
 //! `gdcm analyze`.
 
-use crate::dataset::{BundleKind, ModelId};
+use crate::dataset::{Band, BundleKind, Channel, ModelId};
 use crate::io::{
     Corrections, LoadedDataset, embedded_example, load_any, make_directory, write_assessment_csv, write_corrections,
     write_corrections_csv,
 };
-use crate::dataset::Band;
 use crate::schedule::{ScheduleKind, ScheduleSettings};
 use crate::study::{Analysis, Edit, Engine, Setting, Study};
 
@@ -55,8 +54,8 @@ fn take_options(study: &mut Study, arguments: &AnalyzeArguments) -> Result<(), F
         set("--alpha-delay", Setting::AlphaDelay(alpha))?;
     }
     if let Some([low, high]) = arguments.band.as_deref() {
-        let band = Band::new(*low, *high)
-            .map_err(|error| Failure::Option { option: "--band", reason: error.to_string() })?;
+        let band =
+            Band::new(*low, *high).map_err(|error| Failure::Option { option: "--band", reason: error.to_string() })?;
         set("--band", Setting::Band(band))?;
     }
     if let Some(points) = arguments.points {
@@ -76,7 +75,7 @@ fn hold(study: &mut Study, list: &PairList) -> Result<(), Failure> {
     let dataset = study.dataset.clone();
     let find = |(output, input): &(String, String)| {
         dataset.find_pair(output, input).ok_or_else(|| {
-            let names = |channels: &[crate::dataset::Channel]| {
+            let names = |channels: &[Channel]| {
                 channels.iter().map(|channel| channel.name.as_str()).collect::<Vec<_>>().join(", ")
             };
             let reason = format!(
@@ -129,10 +128,11 @@ fn reject_suggested(study: &mut Study, analysis: &Analysis) -> Result<bool, Fail
 
 /// Refuses an analysis without any result; says which conditions of another have none.
 fn check_result(analysis: &Analysis) -> Result<(), Failure> {
-    let failures = analysis.study.dataset.conditions().iter().zip(&analysis.conditions).filter_map(|(condition, result)| {
-        let failure = result.as_ref().err()?;
-        Some(format!("condition {}: {failure}", condition.id()))
-    });
+    let failures =
+        analysis.study.dataset.conditions().iter().zip(&analysis.conditions).filter_map(|(condition, result)| {
+            let failure = result.as_ref().err()?;
+            Some(format!("condition {}: {failure}", condition.id()))
+        });
     let failures: Vec<String> = failures.collect();
     match failures.first() {
         Some(first) if failures.len() == analysis.conditions.len() => Err(Failure::NoResult { reason: first.clone() }),

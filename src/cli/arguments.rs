@@ -83,7 +83,9 @@ impl FromStr for PairList {
             return Ok(Self { pairs: Vec::new() });
         }
         let pair = |words: &str| match words.trim().split_once('/') {
-            Some((output, input)) if !output.is_empty() && !input.is_empty() => Ok((output.to_owned(), input.to_owned())),
+            Some((output, input)) if !output.is_empty() && !input.is_empty() => {
+                Ok((output.to_owned(), input.to_owned()))
+            }
             _ => Err(format!("expected OUTPUT/INPUT, as P/LAT, found \"{words}\"")),
         };
         Ok(Self { pairs: text.split(',').map(pair).collect::<Result<_, _>>()? })

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use crate::dataset::{BundleKind, Channel, Condition, Dataset, Dynamics, Model};
-use crate::io::{LoadedDataset, Opened, load_any};
+use crate::io::{LoadedDataset, Opened, load_any, plain};
 use crate::study::Study;
 
 use super::failure::Failure;
 use super::summary::LABEL;
-use super::terminal::{plain, say};
+use super::terminal::say;
 use super::text_table::{Side, TextTable, labelled};
 
 /// Says what a dataset or a study holds.
@@ -94,9 +94,11 @@ fn order_words(models: &[Model]) -> String {
     });
     let orders: Vec<usize> = orders.collect();
     let measured = (orders.len() < models.len()).then(|| "measured".to_owned());
-    let range = orders.iter().min().zip(orders.iter().max()).map(|(least, most)| {
-        if least == most { least.to_string() } else { format!("{least}-{most}") }
-    });
+    let range = orders
+        .iter()
+        .min()
+        .zip(orders.iter().max())
+        .map(|(least, most)| if least == most { least.to_string() } else { format!("{least}-{most}") });
     range.into_iter().chain(measured).collect::<Vec<_>>().join(", ")
 }
 

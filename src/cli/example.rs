@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use crate::io::write_example;
+use crate::io::{plain, write_example};
 
 use super::failure::Failure;
-use super::terminal::{plain, say};
+use super::terminal::say;
 
 /// Writes the embedded example into a directory and says where.
 pub(super) fn example(directory: &Path) -> Result<(), Failure> {

@@ -41,7 +41,9 @@ impl Failure {
     pub(super) fn status(&self) -> u8 {
         match self {
             Failure::Input(_) | Failure::Option { .. } => WRONG_INPUT,
-            Failure::NoResult { .. } | Failure::Stopped(_) | Failure::Output(_) | Failure::StandardOutput { .. } => NOT_DONE,
+            Failure::NoResult { .. } | Failure::Stopped(_) | Failure::Output(_) | Failure::StandardOutput { .. } => {
+                NOT_DONE
+            }
         }
     }
 }

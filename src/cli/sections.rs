@@ -1,13 +1,25 @@
 //! The sections of the summary.
 
-use crate::dataset::{BundleKind, Condition, Pair};
+use crate::correction::{DelayConflict, Outcome};
+use crate::dataset::{BundleKind, Channel, Condition, Pair};
+use crate::io::plain;
 use crate::schedule::{Schedule, ScheduleKind, ScheduledQuantity};
-use crate::study::{Analysis, ConditionAnalysis};
+use crate::study::{Analysis, ConditionAnalysis, Study};
 use crate::units::s_to_ms;
 
 use super::summary::LABEL;
-use super::terminal::plain;
 use super::text_table::{Side, TextTable, labelled, listed};
+
+/// A line of a section.
+fn detail(label: &str, words: &str) -> String {
+    labelled(2, label, LABEL - 2, words)
+}
+
+/// A list in a section; says so where it is empty.
+fn detail_list(label: &str, entries: Vec<String>) -> String {
+    let entries = if entries.is_empty() { vec!["none".to_owned()] } else { entries };
+    listed(2, label, LABEL - 2, &entries)
+}
 
 /// One condition: representatives, rejections, the on-axis and held responses, and what could not be matched.
 pub(super) fn condition_section(analysis: &Analysis, index: usize) -> String {
@@ -22,7 +34,7 @@ pub(super) fn condition_section(analysis: &Analysis, index: usize) -> String {
             text.push_str(&channel_lines(analysis, result));
             text.push_str(&trouble_lines(analysis, result));
         }
-        Err(failure) => text.push_str(&labelled(2, "no result", LABEL - 2, &plain(&failure.to_string()))),
+        Err(failure) => text.push_str(&detail("no result", &plain(&failure.to_string()))),
     }
     text
 }
@@ -33,19 +45,21 @@ fn model_lines(analysis: &Analysis, index: usize, condition: &Condition, result:
     let is_rejected = |model: &usize| analysis.study.choices[index].physics.rejected.contains(model);
     let suggested = result.suggested().into_iter().filter(|model| !is_rejected(model));
     let suggested: Vec<String> = suggested.map(|model| name(BundleKind::Physics, model)).collect();
-    let mut text = labelled(2, "physics", LABEL - 2, &name(BundleKind::Physics, result.comparison.physics.model));
+    let mut text = detail("physics", &name(BundleKind::Physics, result.comparison.physics.model));
     let identified = name(BundleKind::Identified, result.comparison.identified.model);
-    text.push_str(&labelled(2, "identified", LABEL - 2, &identified));
-    text.push_str(&listed(2, "rejected", LABEL - 2, &or_none(rejected)));
+    text.push_str(&detail("identified", &identified));
+    text.push_str(&detail_list("rejected", rejected));
     if !suggested.is_empty() {
-        text.push_str(&listed(2, "outliers?", LABEL - 2, &suggested));
+        text.push_str(&detail_list("outliers?", suggested));
     }
     text
 }
 
-/// A list that says so where it is empty.
-fn or_none(entries: Vec<String>) -> Vec<String> {
-    if entries.is_empty() { vec!["none".to_owned()] } else { entries }
+/// The responses that tables show: those that measure a model (the on-axis ones), and those to be held.
+fn shown_pairs(study: &Study) -> impl Iterator<Item = Pair> {
+    let measuring = study.dataset.measuring_pairs();
+    let shown = measuring.map(|pair, measures| *measures || study.settings.constrained[pair]);
+    shown.marked().collect::<Vec<_>>().into_iter()
 }
 
 fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> TextTable<8> {
@@ -62,8 +76,7 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> TextTable<
     ]);
     let dataset = &analysis.study.dataset;
     let delta = &result.comparison.delta;
-    let shown = |pair: &Pair| dataset.on_axis()[*pair] || analysis.study.settings.constrained[*pair];
-    for pair in dataset.on_axis().pairs().filter(shown) {
+    for pair in shown_pairs(&analysis.study) {
         let cost = result.cost[pair];
         table.row([
             plain(&dataset.pair_name(pair)),
@@ -89,22 +102,21 @@ fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let (dataset, correction) = (&analysis.study.dataset, &result.correction);
     let channels = || dataset.inputs().iter().chain(dataset.outputs()).map(|channel| plain(&channel.name));
     let gains = correction.input_gains.iter().chain(&correction.output_gains);
-    let gains: Vec<String> = channels().zip(gains).map(|(name, gain)| format!("{name} {}", figure(Some(*gain), 3))).collect();
+    let gains: Vec<String> =
+        channels().zip(gains).map(|(name, gain)| format!("{name} {}", figure(Some(*gain), 3))).collect();
     let delays = correction.input_delays_s.iter().chain(&correction.output_delays_s);
     let delays = channels().zip(delays).filter_map(|(name, delay)| {
         let words = figure(Some(s_to_ms(*delay)), 1);
         (words != "0.0").then(|| format!("{name} {words} ms"))
     });
-    let delays = or_none(delays.collect());
-    listed(2, "gains", LABEL - 2, &gains) + &listed(2, "delays", LABEL - 2, &delays)
+
+    detail_list("gains", gains) + &detail_list("delays", delays.collect())
 }
 
 /// What could not be matched, what is not proven, and other cautions.
 fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let dataset = &analysis.study.dataset;
-    let names = |channels: &[crate::dataset::Channel]| -> Vec<String> {
-        channels.iter().map(|channel| plain(&channel.name)).collect()
-    };
+    let names = |channels: &[Channel]| -> Vec<String> { channels.iter().map(|channel| plain(&channel.name)).collect() };
     let (inputs, outputs) = (names(dataset.inputs()), names(dataset.outputs()));
     let mut text = String::new();
     for entry in &result.gains.unmatched {
@@ -115,21 +127,27 @@ fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
             entry.wanted,
             entry.shortfall_db
         );
-        text.push_str(&labelled(2, "not matched", LABEL - 2, &words));
+        text.push_str(&detail("not matched", &words));
     }
     for conflict in &result.gains.conflicts {
-        text.push_str(&labelled(2, "why", LABEL - 2, &conflict.words(&inputs, &outputs)));
+        text.push_str(&detail("why", &conflict.words(&inputs, &outputs)));
     }
     let top = analysis.study.settings.band.max();
     for entry in &result.delays.unmatched {
-        text.push_str(&labelled(2, "not matched", LABEL - 2, &entry.words(top, &inputs, &outputs)));
+        text.push_str(&detail("not matched", &entry.words(top, &inputs, &outputs)));
     }
-    if let crate::correction::Outcome::NotProven { gap } = result.gains.outcome {
-        let words = format!("better gains may exist, by at most {:.1e} of the objective", gap);
-        text.push_str(&labelled(2, "not proven", LABEL - 2, &words));
+    // A lone response that needs lead has said so already.
+    let is_told =
+        |conflict: &DelayConflict| matches!(conflict, DelayConflict::NeedsLead { entries, .. } if entries.len() == 1);
+    for conflict in result.delays.conflicts.iter().filter(|conflict| !is_told(conflict)) {
+        text.push_str(&detail("why", &conflict.words(&inputs, &outputs)));
+    }
+    if let Outcome::NotProven { gap } = result.gains.outcome {
+        let words = format!("better gains may exist, by at most {gap:.1e} of the objective");
+        text.push_str(&detail("not proven", &words));
     }
     for caution in &result.cautions {
-        text.push_str(&labelled(2, "caution", LABEL - 2, &plain(&caution.words(|pair| dataset.pair_name(pair)))));
+        text.push_str(&detail("caution", &plain(&caution.words(|pair| dataset.pair_name(pair)))));
     }
     text
 }
@@ -151,7 +169,7 @@ pub(super) fn schedule_section(analysis: &Analysis) -> String {
     let range = format!("{} to {} kt", schedule.airspeeds.min_kt, schedule.airspeeds.max_kt);
     let mut text = labelled(0, "Schedule", LABEL, &format!("{kind}, {range}; net gains:"));
     if schedule.has_non_positive_gain() {
-        text.push_str(&labelled(2, "caution", LABEL - 2, "a scheduled gain is not positive somewhere in this range"));
+        text.push_str(&detail("caution", "a scheduled gain is not positive somewhere in this range"));
     }
     text + &schedule_table(analysis, schedule)
 }
@@ -166,8 +184,7 @@ fn schedule_table(analysis: &Analysis, schedule: &Schedule) -> String {
     let [a, b, c, d, e] = heading.each_ref().map(|words| (words.as_str(), Side::Right));
     let mut table = TextTable::new([("response", Side::Left), a, b, c, d, e]);
     let corrections = at.map(|airspeed| schedule.at(airspeed));
-    let shown = |pair: &Pair| dataset.on_axis()[*pair] || analysis.study.settings.constrained[*pair];
-    for pair in dataset.on_axis().pairs().filter(shown) {
+    for pair in shown_pairs(&analysis.study) {
         let [a, b, c, d, e] = corrections.each_ref().map(|correction| figure(Some(correction.net_gain(pair)), 3));
         table.row([plain(&dataset.pair_name(pair)), a, b, c, d, e]);
     }

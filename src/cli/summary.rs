@@ -2,11 +2,10 @@
 
 use std::path::Path;
 
-use crate::io::LoadedDataset;
+use crate::io::{LoadedDataset, plain};
 use crate::study::{Analysis, Assessed};
 
 use super::sections::{condition_section, schedule_section};
-use super::terminal::plain;
 use super::text_table::labelled;
 
 /// Width of the labels at the left of a section.
@@ -47,12 +46,12 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
 fn assessment_lines(analysis: &Analysis) -> String {
     let (mut better, mut compared) = (0, 0);
     let mut left_out = Vec::new();
-    let on_axis = analysis.study.dataset.measuring_pairs();
+    let measuring = analysis.study.dataset.measuring_pairs();
     for (condition, assessed) in analysis.study.dataset.conditions().iter().zip(&analysis.assessment) {
         match assessed {
             Assessed::LeftOut { why } => left_out.push(format!("condition {}: {}", condition.id(), plain(why))),
             Assessed::Nominal(changes) => {
-                let changes = on_axis.marked().filter_map(|pair| changes[pair]).map(|change| change.total());
+                let changes = measuring.marked().filter_map(|pair| changes[pair]).map(|change| change.total());
                 for change in changes {
                     compared += 1;
                     better += usize::from(change < 0.0);
@@ -61,8 +60,9 @@ fn assessment_lines(analysis: &Analysis) -> String {
         }
     }
     let conditions = analysis.conditions.len() - left_out.len();
+    let which = if analysis.study.dataset.on_axis().marked().next().is_some() { "on-axis " } else { "" };
     let words = format!(
-        "under the schedule J of the nominal models falls in {better} of {compared} on-axis responses of {conditions} conditions"
+        "under the schedule J of the nominal models falls in {better} of {compared} {which}responses of {conditions} conditions"
     );
     let mut text = labelled(0, "Assessment", LABEL, &words);
     for words in left_out {

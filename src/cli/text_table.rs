@@ -55,7 +55,9 @@ pub(super) fn labelled(indent: usize, label: &str, width: usize, words: &str) ->
 /// A list behind a label, with commas, broken between its entries.
 pub(super) fn listed(indent: usize, label: &str, width: usize, entries: &[String]) -> String {
     let last = entries.len().saturating_sub(1);
-    let with_comma = |(index, entry): (usize, &String)| if index < last { format!("{entry},") } else { entry.clone() };
+    let with_comma = |(index, entry): (usize, &String)| {
+        if index < last { format!("{entry},") } else { entry.clone() }
+    };
     let entries: Vec<String> = entries.iter().enumerate().map(with_comma).collect();
     hanging(indent, label, width, entries.iter().map(String::as_str))
 }
@@ -98,7 +100,9 @@ mod tests {
     fn long_words_hang_under_their_start() {
         let text = labelled(2, "rejected", 10, &"model ".repeat(40));
         assert!(text.lines().all(|line| line.chars().count() <= PAGE));
-        assert!(text.lines().skip(1).all(|line| line.starts_with(&" ".repeat(12)) && line.chars().nth(12) == Some('m')));
+        assert!(
+            text.lines().skip(1).all(|line| line.starts_with(&" ".repeat(12)) && line.chars().nth(12) == Some('m'))
+        );
         assert_eq!(text.matches("model").count(), 40);
     }
 }

@@ -13,11 +13,7 @@ fn pooled<'a>(
     measuring: &PairTable<bool>,
 ) -> impl Iterator<Item = &'a Mismatch> + use<'a> {
     let marked: Vec<Pair> = measuring.marked().filter(|&pair| mismatch[pair].is_some()).collect();
-    let pairs = if marked.is_empty() {
-        mismatch.pairs().collect()
-    } else {
-        marked
-    };
+    let pairs = if marked.is_empty() { mismatch.pairs().collect() } else { marked };
     pairs.into_iter().filter_map(|pair| mismatch[pair].as_ref())
 }
 
@@ -36,8 +32,6 @@ pub fn delay_upper_s(
     omega: &[f64],
     q: f64,
 ) -> f64 {
-    let mut pool: Vec<f64> = pooled(mismatch, measuring)
-        .flat_map(|mismatch| delays(mismatch, omega))
-        .collect();
+    let mut pool: Vec<f64> = pooled(mismatch, measuring).flat_map(|mismatch| delays(mismatch, omega)).collect();
     quantile(&mut pool, 1.0 - q).max(0.0)
 }

@@ -18,10 +18,7 @@ impl Channel {
             Channel::Input(index) => (inputs, index, "input"),
             Channel::Output(index) => (outputs, index, "output"),
         };
-        names
-            .get(index)
-            .cloned()
-            .unwrap_or_else(|| format!("{kind} {}", index + 1))
+        names.get(index).cloned().unwrap_or_else(|| format!("{kind} {}", index + 1))
     }
 }
 

@@ -32,11 +32,7 @@ impl ChannelCorrection {
     pub fn apply(&self, values: &PairTable<Vec<Complex<f64>>>, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
         values.map(|pair, values| {
             let (gain, delay) = (self.net_gain(pair), self.net_delay_s(pair));
-            values
-                .iter()
-                .zip(omega)
-                .map(|(value, omega)| value * Complex::from_polar(gain, -omega * delay))
-                .collect()
+            values.iter().zip(omega).map(|(value, omega)| value * Complex::from_polar(gain, -omega * delay)).collect()
         })
     }
 }

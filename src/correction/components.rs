@@ -31,23 +31,14 @@ pub(crate) struct Components {
 impl Components {
     /// The components of `outputs` x `inputs` channels in `[low, high]` with these sums held.
     pub(crate) fn new(outputs: usize, inputs: usize, held: &[(Pair, f64)], (low, high): (f64, f64)) -> Self {
-        let mut placed = Placed {
-            inputs: vec![None; inputs],
-            outputs: vec![None; outputs],
-            count: 0,
-        };
+        let mut placed = Placed { inputs: vec![None; inputs], outputs: vec![None; outputs], count: 0 };
         for input in 0..inputs {
             if placed.inputs[input].is_none() {
                 placed.spread(input, held);
             }
         }
         let (inputs, outputs) = placed.finish();
-        let count = inputs
-            .iter()
-            .chain(&outputs)
-            .map(|channel| channel.component + 1)
-            .max()
-            .unwrap_or(0);
+        let count = inputs.iter().chain(&outputs).map(|channel| channel.component + 1).max().unwrap_or(0);
         let mut components = Self {
             inputs,
             outputs,
@@ -73,16 +64,8 @@ impl Components {
 
     /// Logarithm (or delay) of each input and of each output at these scales.
     pub(crate) fn channels(&self, scales: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let inputs = self
-            .inputs
-            .iter()
-            .map(|channel| channel.offset + scales[channel.component])
-            .collect();
-        let outputs = self
-            .outputs
-            .iter()
-            .map(|channel| channel.offset - scales[channel.component])
-            .collect();
+        let inputs = self.inputs.iter().map(|channel| channel.offset + scales[channel.component]).collect();
+        let outputs = self.outputs.iter().map(|channel| channel.offset - scales[channel.component]).collect();
         (inputs, outputs)
     }
 
@@ -101,14 +84,9 @@ impl Components {
     fn close_box(&mut self, low: f64, high: f64) {
         self.lower.fill(f64::NEG_INFINITY);
         self.upper.fill(f64::INFINITY);
-        let inputs = self
-            .inputs
-            .iter()
-            .map(|channel| (channel.component, low - channel.offset, high - channel.offset));
-        let outputs = self
-            .outputs
-            .iter()
-            .map(|channel| (channel.component, channel.offset - high, channel.offset - low));
+        let inputs = self.inputs.iter().map(|channel| (channel.component, low - channel.offset, high - channel.offset));
+        let outputs =
+            self.outputs.iter().map(|channel| (channel.component, channel.offset - high, channel.offset - low));
         for (component, least, most) in inputs.chain(outputs) {
             self.lower[component] = self.lower[component].max(least);
             self.upper[component] = self.upper[component].min(most);
@@ -142,17 +120,13 @@ impl Placed {
             for (pair, sum) in held {
                 match (self.inputs[pair.input], self.outputs[pair.output]) {
                     (Some(known), None) => {
-                        self.outputs[pair.output] = Some(Placement {
-                            component: known.component,
-                            offset: sum - known.offset,
-                        });
+                        self.outputs[pair.output] =
+                            Some(Placement { component: known.component, offset: sum - known.offset });
                         grown = true;
                     }
                     (None, Some(known)) => {
-                        self.inputs[pair.input] = Some(Placement {
-                            component: known.component,
-                            offset: sum - known.offset,
-                        });
+                        self.inputs[pair.input] =
+                            Some(Placement { component: known.component, offset: sum - known.offset });
                         grown = true;
                     }
                     _ => {}
@@ -166,21 +140,10 @@ impl Placed {
         let mut count = self.count;
         let mut alone = || {
             count += 1;
-            Placement {
-                component: count - 1,
-                offset: 0.0,
-            }
+            Placement { component: count - 1, offset: 0.0 }
         };
-        let outputs = self
-            .outputs
-            .into_iter()
-            .map(|placement| placement.unwrap_or_else(&mut alone))
-            .collect();
-        let inputs = self
-            .inputs
-            .into_iter()
-            .map(|placement| placement.unwrap_or_else(&mut alone))
-            .collect();
+        let outputs = self.outputs.into_iter().map(|placement| placement.unwrap_or_else(&mut alone)).collect();
+        let inputs = self.inputs.into_iter().map(|placement| placement.unwrap_or_else(&mut alone)).collect();
         (inputs, outputs)
     }
 }

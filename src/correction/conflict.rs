@@ -23,11 +23,7 @@ pub(crate) enum ClashKind {
     /// The entries fix the sum of two channels, and it is below what the lower bound allows.
     SumBelow { channels: (Channel, Channel), sum: f64 },
     /// The entries fix how far `greater` is above `lesser`, and the box is narrower.
-    Apart {
-        greater: Channel,
-        lesser: Channel,
-        difference: f64,
-    },
+    Apart { greater: Channel, lesser: Channel, difference: f64 },
     /// The entries form a loop, and going round it does not lead back.
     Loop { mismatch: f64 },
 }
@@ -44,12 +40,7 @@ struct Pull {
 impl Pull {
     /// The same entry asked the other way round: it is an equation.
     fn reversed(&self) -> Self {
-        Self {
-            from: self.to,
-            to: self.from,
-            weight: -self.weight,
-            pair: self.pair,
-        }
+        Self { from: self.to, to: self.from, weight: -self.weight, pair: self.pair }
     }
 }
 
@@ -66,11 +57,7 @@ pub(crate) fn clashes(held: &Held, reached: &Reached, tolerance: f64) -> Vec<(Pa
         let lacking = pull.weight - (point[pull.to] - point[pull.from]);
         lacking > tolerance
     };
-    flow.pulls
-        .iter()
-        .filter(missed)
-        .filter_map(|pull| Some((pull.pair, flow.smallest_through(pull)?)))
-        .collect()
+    flow.pulls.iter().filter(missed).filter_map(|pull| Some((pull.pair, flow.smallest_through(pull)?))).collect()
 }
 
 struct Flow {
@@ -84,13 +71,8 @@ struct Flow {
 impl Flow {
     fn new(held: &Held, reached: &Reached, point: &[f64]) -> Self {
         let nodes = held.inputs + held.outputs;
-        let mut flow = Self {
-            inputs: held.inputs,
-            range: held.range,
-            pulls: Vec::new(),
-            at_lower: vec![],
-            at_upper: vec![],
-        };
+        let mut flow =
+            Self { inputs: held.inputs, range: held.range, pulls: Vec::new(), at_lower: vec![], at_upper: vec![] };
         let mut net = vec![0.0; nodes];
         for ((pair, wanted), (_, target)) in held.entries.iter().zip(&reached.targets) {
             let (input, output) = (pair.input, held.inputs + pair.output);
@@ -99,26 +81,13 @@ impl Flow {
             if missing.abs() <= 1e-11 * (1.0 + wanted.abs()) {
                 continue;
             }
-            let (from, to, weight) = if missing > 0.0 {
-                (output, input, *wanted)
-            } else {
-                (input, output, -wanted)
-            };
+            let (from, to, weight) = if missing > 0.0 { (output, input, *wanted) } else { (input, output, -wanted) };
             net[from] -= missing.abs();
             net[to] += missing.abs();
-            flow.pulls.push(Pull {
-                from,
-                to,
-                weight,
-                pair: *pair,
-            });
+            flow.pulls.push(Pull { from, to, weight, pair: *pair });
         }
-        flow.at_lower = (0..nodes)
-            .map(|node| point[node] <= flow.ends(node).0 && net[node] < 0.0)
-            .collect();
-        flow.at_upper = (0..nodes)
-            .map(|node| point[node] >= flow.ends(node).1 && net[node] > 0.0)
-            .collect();
+        flow.at_lower = (0..nodes).map(|node| point[node] <= flow.ends(node).0 && net[node] < 0.0).collect();
+        flow.at_upper = (0..nodes).map(|node| point[node] >= flow.ends(node).1 && net[node] > 0.0).collect();
         flow
     }
 
@@ -145,10 +114,7 @@ impl Flow {
             return clash;
         }
         let mismatch = pulls.iter().map(|pull| pull.weight).sum();
-        Clash {
-            entries: pulls.iter().map(|pull| pull.pair).collect(),
-            kind: ClashKind::Loop { mismatch },
-        }
+        Clash { entries: pulls.iter().map(|pull| pull.pair).collect(), kind: ClashKind::Loop { mismatch } }
     }
 
     /// The clash of a path from a node at its least value to one at its greatest, or of the shortest part of it that the bounds
@@ -166,10 +132,7 @@ impl Flow {
             (0..begins).find_map(|begin| {
                 let run: Vec<Pull> = (begin..begin + length).map(|index| pulls[index % count]).collect();
                 let back: Vec<Pull> = run.iter().rev().map(Pull::reversed).collect();
-                [run, back]
-                    .iter()
-                    .find(|run| self.is_impossible(run))
-                    .map(|run| self.clash(run))
+                [run, back].iter().find(|run| self.is_impossible(run)).map(|run| self.clash(run))
             })
         })
     }
@@ -193,35 +156,24 @@ impl Flow {
     fn clash(&self, path: &[Pull]) -> Clash {
         let needed: f64 = path.iter().map(|pull| pull.weight).sum();
         let mut entries: Vec<Pair> = path.iter().map(|pull| pull.pair).collect();
-        let (start, end) = (
-            path.first().map_or(0, |pull| pull.from),
-            path.last().map_or(0, |pull| pull.to),
-        );
+        let (start, end) = (path.first().map_or(0, |pull| pull.from), path.last().map_or(0, |pull| pull.to));
         let kind = match (self.channel(start), self.channel(end)) {
-            (first @ Channel::Output(_), last @ Channel::Input(_)) => ClashKind::SumAbove {
-                channels: (last, first),
-                sum: needed,
-            },
-            (first @ Channel::Input(_), last @ Channel::Output(_)) => ClashKind::SumBelow {
-                channels: (first, last),
-                sum: -needed,
-            },
-            (lesser @ Channel::Input(_), greater @ Channel::Input(_)) | (greater, lesser) => ClashKind::Apart {
-                greater,
-                lesser,
-                difference: needed,
-            },
+            (first @ Channel::Output(_), last @ Channel::Input(_)) => {
+                ClashKind::SumAbove { channels: (last, first), sum: needed }
+            }
+            (first @ Channel::Input(_), last @ Channel::Output(_)) => {
+                ClashKind::SumBelow { channels: (first, last), sum: -needed }
+            }
+            (lesser @ Channel::Input(_), greater @ Channel::Input(_)) | (greater, lesser) => {
+                ClashKind::Apart { greater, lesser, difference: needed }
+            }
         };
         entries.sort();
         Clash { entries, kind }
     }
 
     fn channel(&self, node: usize) -> Channel {
-        if node < self.inputs {
-            Channel::Input(node)
-        } else {
-            Channel::Output(node - self.inputs)
-        }
+        if node < self.inputs { Channel::Input(node) } else { Channel::Output(node - self.inputs) }
     }
 
     /// Fewest pulls from `start` along (or against) their direction to a node that `ends`, in the order walked.
@@ -241,11 +193,7 @@ impl Flow {
                 return Some(walked);
             }
             for pull in &self.pulls {
-                let (leaves, enters) = if against {
-                    (pull.to, pull.from)
-                } else {
-                    (pull.from, pull.to)
-                };
+                let (leaves, enters) = if against { (pull.to, pull.from) } else { (pull.from, pull.to) };
                 if leaves == node && enters != start && came_by[enters].is_none() {
                     came_by[enters] = Some(*pull);
                     queue.push_back(enters);

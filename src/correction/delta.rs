@@ -39,10 +39,5 @@ pub(super) fn ratios(mismatch: &Mismatch) -> Vec<f64> {
 
 /// `Delta phi(H_sim, H_ref) / omega` \[s\] at each frequency.
 pub(super) fn delays(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
-    mismatch
-        .phase_difference()
-        .iter()
-        .zip(omega)
-        .map(|(phase, omega)| phase / omega)
-        .collect()
+    mismatch.phase_difference().iter().zip(omega).map(|(phase, omega)| phase / omega).collect()
 }

@@ -1,4 +1,8 @@
 //! From two models to one gain and one delay for each channel (M6 to M10).
+//!
+//! [`Delta`] says what each response would want; [`solve_gains`] minimises eq. (7) with a proof of the global minimum,
+//! [`solve_delays`] the convex eq. (11). Both explain what cannot be held, what would help, and what each held entry costs.
+//! Tables are `[output, input]`, gains are ratios, delays are seconds.
 
 mod bounds;
 mod channel;

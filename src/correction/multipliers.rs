@@ -31,18 +31,11 @@ pub(crate) fn multipliers(minimum: &Restrained<'_>) -> Multipliers {
     let sign = |channel: usize| if channel < minimum.inputs { 1.0 } else { -1.0 };
     let mut bounds = vec![0.0; channels];
     for piece in pieces(minimum) {
-        let push: f64 = piece
-            .iter()
-            .map(|&channel| sign(channel) * minimum.slopes[channel])
-            .sum();
+        let push: f64 = piece.iter().map(|&channel| sign(channel) * minimum.slopes[channel]).sum();
         // The piece would move against the slope: an input on its upper bound stops a rise, an output on its lower one too.
         let stops = |channel: &&usize| {
             let rises = sign(**channel) * push < 0.0;
-            if rises {
-                minimum.at_bounds[**channel].1
-            } else {
-                minimum.at_bounds[**channel].0
-            }
+            if rises { minimum.at_bounds[**channel].1 } else { minimum.at_bounds[**channel].0 }
         };
         let stopping: Vec<usize> = piece.iter().filter(stops).copied().collect();
         for &channel in &stopping {
@@ -52,11 +45,7 @@ pub(crate) fn multipliers(minimum: &Restrained<'_>) -> Multipliers {
     let left = DVector::from_fn(channels, |channel, _| minimum.slopes[channel] - bounds[channel]);
     let ties = DMatrix::from_fn(channels, minimum.held.len(), |channel, entry| {
         let pair = minimum.held[entry];
-        if channel == pair.input || channel == minimum.inputs + pair.output {
-            1.0
-        } else {
-            0.0
-        }
+        if channel == pair.input || channel == minimum.inputs + pair.output { 1.0 } else { 0.0 }
     });
     let held = if minimum.held.is_empty() {
         Vec::new()
@@ -80,10 +69,6 @@ fn pieces(minimum: &Restrained<'_>) -> Vec<Vec<usize>> {
             }
         }
     }
-    let members = |name: usize| {
-        (0..channels)
-            .filter(|&channel| piece[channel] == name)
-            .collect::<Vec<_>>()
-    };
+    let members = |name: usize| (0..channels).filter(|&channel| piece[channel] == name).collect::<Vec<_>>();
     (0..channels).map(members).filter(|piece| !piece.is_empty()).collect()
 }

@@ -39,11 +39,7 @@ pub(crate) const STRAIN: f64 = 1e-9;
 pub(crate) fn reach<E>(held: &Held, minimise: impl FnOnce(&Landscape) -> Result<Vec<f64>, E>) -> Result<Reached, E> {
     let asked = Components::new(held.outputs, held.inputs, &held.entries, held.range);
     if asked.strain.iter().all(|strain| *strain <= STRAIN) {
-        return Ok(Reached {
-            targets: held.entries.clone(),
-            components: asked,
-            point: None,
-        });
+        return Ok(Reached { targets: held.entries.clone(), components: asked, point: None });
     }
     let strained = |pair: &Pair| asked.strain[asked.inputs[pair.input].component] > STRAIN;
     let landscape = nearest(held, strained);
@@ -54,11 +50,7 @@ pub(crate) fn reach<E>(held: &Held, minimise: impl FnOnce(&Landscape) -> Result<
     };
     let targets: Vec<(Pair, f64)> = held.entries.iter().map(target).collect();
     let components = Components::new(held.outputs, held.inputs, &targets, held.range);
-    Ok(Reached {
-        targets,
-        components,
-        point: Some(point),
-    })
+    Ok(Reached { targets, components, point: Some(point) })
 }
 
 /// Whether everything can be held as asked.
@@ -74,23 +66,10 @@ fn nearest(held: &Held, strained: impl Fn(&Pair) -> bool) -> Landscape {
     let mut upper = vec![high; held.inputs];
     lower.extend(std::iter::repeat_n(-high, held.outputs).chain([0.0]));
     upper.extend(std::iter::repeat_n(-low, held.outputs).chain([0.0]));
-    let links = held
-        .entries
-        .iter()
-        .filter(|(pair, _)| strained(pair))
-        .map(|(pair, wanted)| Link {
-            from: held.inputs + pair.output,
-            to: pair.input,
-            shape: Shape::Parabola {
-                weight: 1.0,
-                centre: *wanted,
-                size: wanted.abs(),
-            },
-        });
-    Landscape {
-        lower,
-        upper,
-        links: links.collect(),
-        constant: Sum::default(),
-    }
+    let links = held.entries.iter().filter(|(pair, _)| strained(pair)).map(|(pair, wanted)| Link {
+        from: held.inputs + pair.output,
+        to: pair.input,
+        shape: Shape::Parabola { weight: 1.0, centre: *wanted, size: wanted.abs() },
+    });
+    Landscape { lower, upper, links: links.collect(), constant: Sum::default() }
 }

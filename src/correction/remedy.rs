@@ -29,24 +29,13 @@ pub(crate) fn remedy(held: &Held, suspects: &[Pair]) -> Remedy {
         entries: held.entries.iter().filter(|(pair, _)| pair != freed).copied().collect(),
         ..held.clone()
     };
-    let free = suspects
-        .iter()
-        .filter(|pair| is_reachable(&without(pair)))
-        .copied()
-        .collect();
+    let free = suspects.iter().filter(|pair| is_reachable(&without(pair))).copied().collect();
     if !loops_agree(&components, held) {
-        return Remedy {
-            upper: None,
-            lower: None,
-            free,
-        };
+        return Remedy { upper: None, lower: None, free };
     }
-    let spreads: Vec<Spread> = (0..components.count())
-        .filter_map(|component| spread(&components, component))
-        .collect();
-    let widest = spreads
-        .iter()
-        .map(|spread| (spread.inputs.1 - spread.inputs.0).max(spread.outputs.1 - spread.outputs.0));
+    let spreads: Vec<Spread> = (0..components.count()).filter_map(|component| spread(&components, component)).collect();
+    let widest =
+        spreads.iter().map(|spread| (spread.inputs.1 - spread.inputs.0).max(spread.outputs.1 - spread.outputs.0));
     let widest = widest.fold(0.0, f64::max);
     let half_sum = |ends: fn(&Spread) -> f64| spreads.iter().map(move |spread| 0.5 * ends(spread));
     let highest = half_sum(|spread| spread.inputs.1 + spread.outputs.1).fold(f64::NEG_INFINITY, f64::max);
@@ -70,17 +59,11 @@ fn loops_agree(components: &Components, held: &Held) -> bool {
 /// The spread of a component with both inputs and outputs; a single channel is always possible.
 fn spread(components: &Components, component: usize) -> Option<Spread> {
     let ends = |channels: &[super::components::Placement]| {
-        let offsets = channels
-            .iter()
-            .filter(|channel| channel.component == component)
-            .map(|channel| channel.offset);
+        let offsets = channels.iter().filter(|channel| channel.component == component).map(|channel| channel.offset);
         offsets.fold(None, |ends: Option<(f64, f64)>, offset| match ends {
             Some((least, most)) => Some((least.min(offset), most.max(offset))),
             None => Some((offset, offset)),
         })
     };
-    Some(Spread {
-        inputs: ends(&components.inputs)?,
-        outputs: ends(&components.outputs)?,
-    })
+    Some(Spread { inputs: ends(&components.inputs)?, outputs: ends(&components.outputs)? })
 }

@@ -44,14 +44,7 @@ mod tests {
 
     #[test]
     fn a_reversed_empty_or_non_positive_band_is_refused() {
-        for (min, max) in [
-            (12.0, 0.5),
-            (1.0, 1.0),
-            (0.0, 1.0),
-            (-1.0, 1.0),
-            (f64::NAN, 1.0),
-            (1.0, f64::INFINITY),
-        ] {
+        for (min, max) in [(12.0, 0.5), (1.0, 1.0), (0.0, 1.0), (-1.0, 1.0), (f64::NAN, 1.0), (1.0, f64::INFINITY)] {
             assert!(Band::new(min, max).is_err(), "{min} .. {max}");
         }
         assert!(Band::new(0.5, 12.0).is_ok());

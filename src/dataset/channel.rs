@@ -14,10 +14,6 @@ pub struct Channel {
 impl Channel {
     /// A channel with a name and a unit, and no description.
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
-        Self {
-            name: name.into(),
-            unit: unit.into(),
-            description: String::new(),
-        }
+        Self { name: name.into(), unit: unit.into(), description: String::new() }
     }
 }

@@ -97,20 +97,10 @@ impl Condition {
         check_flight_state(&flight_state)?;
         check_bundle("physics_models", &physics)?;
         check_bundle("identified_models", &identified)?;
-        let nominal: Vec<usize> = (0..physics.len())
-            .filter(|&index| physics[index].is_nominal())
-            .collect();
+        let nominal: Vec<usize> = (0..physics.len()).filter(|&index| physics[index].is_nominal()).collect();
         match nominal[..] {
-            [nominal] => Ok(Self {
-                flight_state,
-                physics,
-                identified,
-                nominal,
-            }),
-            _ => Err(ConditionError::Nominal {
-                found: nominal.len(),
-                names: names_of(&physics, &nominal),
-            }),
+            [nominal] => Ok(Self { flight_state, physics, identified, nominal }),
+            _ => Err(ConditionError::Nominal { found: nominal.len(), names: names_of(&physics, &nominal) }),
         }
     }
 
@@ -161,12 +151,7 @@ fn check_bundle(list: &'static str, models: &[Model]) -> Result<(), ConditionErr
     for (second, model) in models.iter().enumerate() {
         if let Some(first) = models[..second].iter().position(|earlier| earlier.name == model.name) {
             let name = model.name.clone();
-            return Err(ConditionError::DuplicateName {
-                list,
-                name,
-                first: first + 1,
-                second: second + 1,
-            });
+            return Err(ConditionError::DuplicateName { list, name, first: first + 1, second: second + 1 });
         }
     }
     Ok(())

@@ -106,32 +106,12 @@ impl Dataset {
         let (outputs, inputs) = (header.outputs.len(), header.inputs.len());
         let (rows, columns) = (header.on_axis.outputs(), header.on_axis.inputs());
         if (rows, columns) != (outputs, inputs) {
-            return Err(DatasetError::OnAxisShape {
-                outputs,
-                inputs,
-                rows,
-                columns,
-            });
+            return Err(DatasetError::OnAxisShape { outputs, inputs, rows, columns });
         }
         check_conditions(&conditions, outputs, inputs)?;
-        let DatasetHeader {
-            name,
-            description,
-            inputs,
-            outputs,
-            on_axis,
-            band,
-        } = header;
+        let DatasetHeader { name, description, inputs, outputs, on_axis, band } = header;
         let conditions = conditions.into_iter().map(Arc::new).collect();
-        Ok(Self {
-            name,
-            description,
-            inputs,
-            outputs,
-            on_axis,
-            band,
-            conditions,
-        })
+        Ok(Self { name, description, inputs, outputs, on_axis, band, conditions })
     }
 
     /// Name for people.
@@ -202,10 +182,7 @@ fn check_channels(list: &'static str, channels: &[Channel]) -> Result<(), Datase
     }
     for (index, channel) in channels.iter().enumerate() {
         if channels[..index].iter().any(|earlier| earlier.name == channel.name) {
-            return Err(DatasetError::DuplicateChannel {
-                list,
-                name: channel.name.clone(),
-            });
+            return Err(DatasetError::DuplicateChannel { list, name: channel.name.clone() });
         }
     }
     Ok(())
@@ -218,27 +195,13 @@ fn check_conditions(conditions: &[Condition], outputs: usize, inputs: usize) -> 
     for (second, condition) in conditions.iter().enumerate() {
         let id = condition.id();
         if let Some(first) = conditions[..second].iter().position(|earlier| earlier.id() == id) {
-            return Err(DatasetError::DuplicateId {
-                id,
-                first: first + 1,
-                second: second + 1,
-            });
+            return Err(DatasetError::DuplicateId { id, first: first + 1, second: second + 1 });
         }
-        for model in [BundleKind::Physics, BundleKind::Identified]
-            .into_iter()
-            .flat_map(|kind| condition.bundle(kind))
-        {
+        for model in [BundleKind::Physics, BundleKind::Identified].into_iter().flat_map(|kind| condition.bundle(kind)) {
             let (rows, columns) = model.dynamics.shape();
             if (rows, columns) != (outputs, inputs) {
                 let (condition, model) = (id, model.name.clone());
-                return Err(DatasetError::ModelShape {
-                    condition,
-                    model,
-                    outputs,
-                    inputs,
-                    rows,
-                    columns,
-                });
+                return Err(DatasetError::ModelShape { condition, model, outputs, inputs, rows, columns });
             }
         }
     }

@@ -79,17 +79,8 @@ impl MeasuredResponse {
                 (0.0..=1.0).contains(&value)
             })?;
         }
-        let values = re.map(|pair, re| {
-            re.iter()
-                .zip(&im[pair])
-                .map(|(&re, &im)| Complex::new(re, im))
-                .collect()
-        });
-        Ok(Self {
-            omega,
-            values,
-            coherence,
-        })
+        let values = re.map(|pair, re| re.iter().zip(&im[pair]).map(|(&re, &im)| Complex::new(re, im)).collect());
+        Ok(Self { omega, values, coherence })
     }
 
     /// Frequencies \[rad/s\], strictly rising.
@@ -115,10 +106,7 @@ fn check_frequencies(omega: &[f64]) -> Result<(), MeasuredResponseError> {
     let mut before = 0.0;
     for (index, &value) in omega.iter().enumerate() {
         if !value.is_finite() || value <= before {
-            return Err(MeasuredResponseError::Frequency {
-                entry: index + 1,
-                value,
-            });
+            return Err(MeasuredResponseError::Frequency { entry: index + 1, value });
         }
         before = value;
     }
@@ -136,24 +124,11 @@ fn check_values(
         let (output, input) = (pair.output + 1, pair.input + 1);
         if values.len() != length {
             let found = values.len();
-            return Err(MeasuredResponseError::Length {
-                array,
-                output,
-                input,
-                expected: length,
-                found,
-            });
+            return Err(MeasuredResponseError::Length { array, output, input, expected: length, found });
         }
         if let Some(index) = values.iter().position(|&value| !accepts(value)) {
             let (entry, value) = (index + 1, values[index]);
-            return Err(MeasuredResponseError::Value {
-                array,
-                output,
-                input,
-                entry,
-                expected,
-                value,
-            });
+            return Err(MeasuredResponseError::Value { array, output, input, entry, expected, value });
         }
     }
     Ok(())
@@ -181,19 +156,8 @@ mod tests {
 
     #[test]
     fn a_coherence_above_one_is_refused() {
-        let result = MeasuredResponse::new(
-            vec![1.0, 2.0],
-            &table(&[0.0; 2]),
-            &table(&[0.0; 2]),
-            Some(table(&[0.5, 1.5])),
-        );
-        assert!(matches!(
-            result,
-            Err(MeasuredResponseError::Value {
-                array: "coherence",
-                entry: 2,
-                ..
-            })
-        ));
+        let result =
+            MeasuredResponse::new(vec![1.0, 2.0], &table(&[0.0; 2]), &table(&[0.0; 2]), Some(table(&[0.5, 1.5])));
+        assert!(matches!(result, Err(MeasuredResponseError::Value { array: "coherence", entry: 2, .. })));
     }
 }

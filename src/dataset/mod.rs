@@ -3,10 +3,7 @@
 mod band;
 mod channel;
 mod condition;
-#[expect(
-    clippy::module_inception,
-    reason = "the folder is named for its noun, and so is the file that holds it"
-)]
+#[expect(clippy::module_inception, reason = "the folder is named for its noun, and so is the file that holds it")]
 mod dataset;
 mod measured_response;
 mod model;

@@ -35,11 +35,7 @@ impl<T> PairTable<T> {
             .flat_map(|output| (0..inputs).map(move |input| Pair { output, input }))
             .map(&mut entry)
             .collect();
-        Self {
-            outputs,
-            inputs,
-            entries,
-        }
+        Self { outputs, inputs, entries }
     }
 
     /// Number of output channels, `p`.
@@ -77,11 +73,7 @@ impl<T> PairTable<T> {
 impl<T: Clone> PairTable<T> {
     /// The table with the same entry everywhere.
     pub fn filled(outputs: usize, inputs: usize, entry: T) -> Self {
-        Self {
-            outputs,
-            inputs,
-            entries: vec![entry; outputs * inputs],
-        }
+        Self { outputs, inputs, entries: vec![entry; outputs * inputs] }
     }
 }
 

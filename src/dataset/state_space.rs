@@ -63,12 +63,7 @@ impl StateSpace {
         for (matrix, of) in [('A', &a), ('B', &b), ('C', &c), ('D', &d)] {
             if let Some(at) = of.iter().position(|value| !value.is_finite()) {
                 let (row, column) = of.vector_to_matrix_index(at);
-                return Err(StateSpaceError::NotFinite {
-                    matrix,
-                    row: row + 1,
-                    column: column + 1,
-                    value: of[at],
-                });
+                return Err(StateSpaceError::NotFinite { matrix, row: row + 1, column: column + 1, value: of[at] });
             }
         }
         Ok(Self { a, b, c, d })
@@ -116,13 +111,9 @@ mod tests {
 
     #[test]
     fn a_matrix_of_the_wrong_shape_is_named() {
-        let error = StateSpace::new(
-            DMatrix::zeros(2, 2),
-            DMatrix::zeros(3, 1),
-            DMatrix::zeros(1, 2),
-            DMatrix::zeros(1, 1),
-        )
-        .unwrap_err();
+        let error =
+            StateSpace::new(DMatrix::zeros(2, 2), DMatrix::zeros(3, 1), DMatrix::zeros(1, 2), DMatrix::zeros(1, 1))
+                .unwrap_err();
         assert_eq!(error.to_string(), "matrix B: expected 2 x 1, found 3 x 1");
     }
 
@@ -131,10 +122,7 @@ mod tests {
         let mut c = DMatrix::zeros(3, 2);
         c[(2, 1)] = f64::NAN;
         let error = StateSpace::new(DMatrix::zeros(2, 2), DMatrix::zeros(2, 1), c, DMatrix::zeros(3, 1)).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "matrix C, row 3, column 2: expected a finite number, found NaN"
-        );
+        assert_eq!(error.to_string(), "matrix C, row 3, column 2: expected a finite number, found NaN");
     }
 
     #[test]

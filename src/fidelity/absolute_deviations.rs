@@ -56,10 +56,7 @@ fn best_corner(rows: &Rows<'_>, start: Corner) -> Corner {
         next += 1;
     }
     let misfit = |corner: &Corner| rows.squared_root_deviations(&corner.weights);
-    equal
-        .into_iter()
-        .min_by(|a, b| misfit(a).total_cmp(&misfit(b)))
-        .unwrap_or_else(|| unreachable!("never emptied"))
+    equal.into_iter().min_by(|a, b| misfit(a).total_cmp(&misfit(b))).unwrap_or_else(|| unreachable!("never emptied"))
 }
 
 fn solve_linear_program(x: &[Vec<f64>], y: &[f64], unknowns: usize) -> Result<Vec<f64>, FitError> {
@@ -82,12 +79,7 @@ fn solve_linear_program(x: &[Vec<f64>], y: &[f64], unknowns: usize) -> Result<Ve
         entry(2 * rows + column, column, -1.0);
     }
     let a = CscMatrix::new_from_triplets(2 * rows + unknowns, unknowns + rows, i, j, v);
-    let b: Vec<f64> = y
-        .iter()
-        .copied()
-        .chain(y.iter().map(|y| -y))
-        .chain(vec![0.0; unknowns])
-        .collect();
+    let b: Vec<f64> = y.iter().copied().chain(y.iter().map(|y| -y)).chain(vec![0.0; unknowns]).collect();
     let q: Vec<f64> = vec![0.0; unknowns].into_iter().chain(vec![1.0; rows]).collect();
     let failed = |status: String| FitError { status };
     // Close enough that the nearest corner is an optimal one, or one edge from it.

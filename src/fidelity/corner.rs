@@ -73,9 +73,7 @@ impl<'a> Rows<'a> {
 
     /// `sum_i (sqrt(x_i w) - sqrt(y_i))^2`.
     pub fn squared_root_deviations(&self, w: &[f64]) -> f64 {
-        (0..self.x.len())
-            .map(|row| (self.left(row, w).max(0.0).sqrt() - self.y[row].sqrt()).powi(2))
-            .sum()
+        (0..self.x.len()).map(|row| (self.left(row, w).max(0.0).sqrt() - self.y[row].sqrt()).powi(2)).sum()
     }
 }
 
@@ -83,11 +81,7 @@ impl Corner {
     /// The corner of the conditions that `weights` fulfils best; `None` where they make none, or one with a negative weight.
     pub fn nearest(rows: &Rows<'_>, weights: &[f64]) -> Option<Self> {
         let mut order: Vec<usize> = (0..rows.count()).collect();
-        order.sort_by(|&a, &b| {
-            rows.deviation(a, weights)
-                .abs()
-                .total_cmp(&rows.deviation(b, weights).abs())
-        });
+        order.sort_by(|&a, &b| rows.deviation(a, weights).abs().total_cmp(&rows.deviation(b, weights).abs()));
         let mut active = Vec::new();
         for condition in order {
             active.push(condition);
@@ -109,26 +103,17 @@ impl Corner {
         }
         let right = DVector::from_iterator(active.len(), active.iter().map(|&condition| rows.right(condition)));
         let weights: Vec<f64> = matrix.lu().solve(&right)?.iter().copied().collect();
-        weights
-            .iter()
-            .all(|&weight| weight > -ZERO)
-            .then_some(Self { weights, active })
+        weights.iter().all(|&weight| weight > -ZERO).then_some(Self { weights, active })
     }
 
     /// Whether two corners are one place.
     pub fn is_at(&self, other: &Self) -> bool {
-        self.weights
-            .iter()
-            .zip(&other.weights)
-            .all(|(a, b)| (a - b).abs() <= ZERO)
+        self.weights.iter().zip(&other.weights).all(|(a, b)| (a - b).abs() <= ZERO)
     }
 
     /// The corners at the ends of this one's edges, where the deviations do not grow on the way.
     pub fn neighbours(&self, rows: &Rows<'_>) -> Neighbours {
-        let mut neighbours = Neighbours {
-            better: None,
-            equal: Vec::new(),
-        };
+        let mut neighbours = Neighbours { better: None, equal: Vec::new() };
         let Some(inverse) = rows.matrix(&self.active).try_inverse() else {
             return neighbours;
         };
@@ -163,11 +148,7 @@ impl Corner {
             let change = rows.left(row, direction);
             let deviation = rows.deviation(row, &self.weights);
             let tight = deviation.abs() <= ZERO || self.active.contains(&row);
-            slope += if tight {
-                change.abs()
-            } else {
-                change * deviation.signum()
-            };
+            slope += if tight { change.abs() } else { change * deviation.signum() };
             scale += change.abs();
         }
         (slope, scale)

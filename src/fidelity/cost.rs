@@ -71,12 +71,7 @@ mod tests {
 
     #[test]
     fn a_constant_error_has_the_cost_of_the_definition() {
-        let cost = Cost::of(
-            [2.0; 5].into_iter(),
-            [0.1; 5].into_iter(),
-            CostAverage::Median,
-            &mut Vec::new(),
-        );
+        let cost = Cost::of([2.0; 5].into_iter(), [0.1; 5].into_iter(), CostAverage::Median, &mut Vec::new());
         assert_eq!(cost.magnitude, 80.0);
         // 20 * 0.0175 * (18 / pi)^2, by hand: 11.48966...; a few roundings.
         assert!((cost.phase - 0.35 * (18.0 / std::f64::consts::PI).powi(2)).abs() < 1e-12);
@@ -86,13 +81,7 @@ mod tests {
     fn the_median_ignores_one_bad_frequency_and_the_mean_does_not() {
         let error = || [1.0, 1.0, 10.0].into_iter();
         let none = || [0.0; 3].into_iter();
-        assert_eq!(
-            Cost::of(error(), none(), CostAverage::Median, &mut Vec::new()).total(),
-            20.0
-        );
-        assert_eq!(
-            Cost::of(error(), none(), CostAverage::Mean, &mut Vec::new()).total(),
-            680.0
-        );
+        assert_eq!(Cost::of(error(), none(), CostAverage::Median, &mut Vec::new()).total(), 20.0);
+        assert_eq!(Cost::of(error(), none(), CostAverage::Mean, &mut Vec::new()).total(), 680.0);
     }
 }

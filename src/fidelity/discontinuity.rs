@@ -54,29 +54,19 @@ impl Discontinuity {
         perturbations: &[(&str, Option<&BTreeMap<String, f64>>)],
     ) -> Result<Self, DiscontinuityError> {
         if perturbations.len() < LEAST_MODELS {
-            return Err(DiscontinuityError::TooFewModels {
-                found: perturbations.len(),
-            });
+            return Err(DiscontinuityError::TooFewModels { found: perturbations.len() });
         }
         let coordinates = scaled_coordinates(perturbations)?;
         let pairs = model_pairs(perturbations.len());
         let squares: Vec<f64> = pairs.iter().map(|&(a, b)| distance.between(a, b).powi(2)).collect();
-        let rows: Vec<Vec<f64>> = pairs
-            .iter()
-            .map(|&(a, b)| squared_offsets(&coordinates[a], &coordinates[b]))
-            .collect();
+        let rows: Vec<Vec<f64>> =
+            pairs.iter().map(|&(a, b)| squared_offsets(&coordinates[a], &coordinates[b])).collect();
         let weights = least_absolute_deviations(&rows, &squares)?;
         let fitted = |a: usize, b: usize| -> f64 {
             let offsets = squared_offsets(&coordinates[a], &coordinates[b]);
-            offsets
-                .iter()
-                .zip(&weights)
-                .map(|(offset, weight)| offset * weight)
-                .sum()
+            offsets.iter().zip(&weights).map(|(offset, weight)| offset * weight).sum()
         };
-        let ratios = (0..perturbations.len())
-            .map(|a| ratio_of(a, distance, fitted))
-            .collect();
+        let ratios = (0..perturbations.len()).map(|a| ratio_of(a, distance, fitted)).collect();
         Ok(Self { ratios })
     }
 
@@ -97,9 +87,7 @@ fn scaled_coordinates(
     let mut largest: BTreeMap<&str, f64> = BTreeMap::new();
     for (model, perturbation) in perturbations {
         let Some(perturbation) = perturbation else {
-            return Err(DiscontinuityError::NoPerturbation {
-                model: (*model).to_owned(),
-            });
+            return Err(DiscontinuityError::NoPerturbation { model: (*model).to_owned() });
         };
         for (name, value) in *perturbation {
             let entry = largest.entry(name).or_default();
@@ -111,15 +99,9 @@ fn scaled_coordinates(
         return Err(DiscontinuityError::AllZero);
     }
     let scaled = |perturbation: &BTreeMap<String, f64>| {
-        largest
-            .iter()
-            .map(|(name, magnitude)| perturbation.get(*name).map_or(0.0, |value| value / magnitude))
-            .collect()
+        largest.iter().map(|(name, magnitude)| perturbation.get(*name).map_or(0.0, |value| value / magnitude)).collect()
     };
-    Ok(perturbations
-        .iter()
-        .filter_map(|(_, perturbation)| perturbation.map(scaled))
-        .collect())
+    Ok(perturbations.iter().filter_map(|(_, perturbation)| perturbation.map(scaled)).collect())
 }
 
 fn squared_offsets(a: &[f64], b: &[f64]) -> Vec<f64> {
@@ -150,11 +132,6 @@ mod tests {
     #[test]
     fn a_model_without_perturbation_is_named() {
         let error = scaled_coordinates(&[("V+5kt", None)]).unwrap_err();
-        assert_eq!(
-            error,
-            DiscontinuityError::NoPerturbation {
-                model: "V+5kt".to_owned()
-            }
-        );
+        assert_eq!(error, DiscontinuityError::NoPerturbation { model: "V+5kt".to_owned() });
     }
 }

@@ -30,22 +30,13 @@ impl BundleDistance {
         }
         let curves: Vec<Vec<&PolarCurve>> = responses
             .iter()
-            .map(|response| {
-                compared
-                    .iter()
-                    .filter_map(|&pair| response.curves()[pair].as_ref())
-                    .collect()
-            })
+            .map(|response| compared.iter().filter_map(|&pair| response.curves()[pair].as_ref()).collect())
             .collect();
         let mut distances = Vec::with_capacity(responses.len() * responses.len().saturating_sub(1) / 2);
         for (index, a) in curves.iter().enumerate() {
             distances.extend(curves[index + 1..].iter().map(|b| distance(a, b, omega)));
         }
-        Self {
-            models: responses.len(),
-            distances,
-            compared,
-        }
+        Self { models: responses.len(), distances, compared }
     }
 
     /// Number of models.

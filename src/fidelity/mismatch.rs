@@ -19,10 +19,7 @@ impl Mismatch {
         let difference = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>();
         let mut phase = difference(&simulated.phase, &reference.phase);
         phase.iter_mut().for_each(|angle| *angle = wrap(*angle));
-        Self {
-            magnitude_db: difference(&simulated.magnitude_db, &reference.magnitude_db),
-            phase,
-        }
+        Self { magnitude_db: difference(&simulated.magnitude_db, &reference.magnitude_db), phase }
     }
 
     /// J after a correction of `gain_db` \[dB\] and `delay_s` \[s\] of the simulated response (M4, M10).
@@ -34,11 +31,7 @@ impl Mismatch {
         let mut phase: Vec<f64> = if delay_s == 0.0 {
             self.phase.clone()
         } else {
-            self.phase
-                .iter()
-                .zip(omega)
-                .map(|(phase, omega)| wrap(phase - omega * delay_s))
-                .collect()
+            self.phase.iter().zip(omega).map(|(phase, omega)| wrap(phase - omega * delay_s)).collect()
         };
         centred_unwrap(&mut phase, &mut scratch);
         let magnitude = self.magnitude_db.iter().map(|error| error + gain_db);
@@ -78,11 +71,7 @@ mod tests {
         let omega = [1.0, 2.0];
         let mismatch = Mismatch::new(&curve(0.0, 0.0, &omega), &curve(0.0, 0.1, &omega));
         assert!(
-            mismatch
-                .phase_difference()
-                .iter()
-                .zip(omega)
-                .all(|(phase, omega)| (phase - 0.1 * omega).abs() < 1e-15)
+            mismatch.phase_difference().iter().zip(omega).all(|(phase, omega)| (phase - 0.1 * omega).abs() < 1e-15)
         );
     }
 }

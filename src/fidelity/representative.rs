@@ -18,9 +18,7 @@ impl Representative {
     ///
     /// Where every model is rejected the first one stands in; [`crate::study::Study`] never lets that happen.
     pub fn of(distance: &BundleDistance, rejected: &BTreeSet<usize>, pinned: Option<usize>) -> Self {
-        let kept: Vec<usize> = (0..distance.models())
-            .filter(|model| !rejected.contains(model))
-            .collect();
+        let kept: Vec<usize> = (0..distance.models()).filter(|model| !rejected.contains(model)).collect();
         let mut scores = vec![None; distance.models()];
         for &a in &kept {
             let sum: f64 = kept.iter().map(|&b| distance.between(a, b)).sum();

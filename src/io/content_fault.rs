@@ -3,6 +3,8 @@
 use crate::dataset::{BandError, ConditionError, DatasetError, MeasuredResponseError, StateSpaceError};
 use crate::study::EditRefusal;
 
+use super::plain::{plain, quoted};
+
 /// What is wrong at a place in a file: expected, found, how to mend it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ContentFault {
@@ -43,7 +45,7 @@ pub enum ContentFault {
         key: String,
     },
     /// A key stands twice.
-    #[error("the key \"{key}\" stands twice; remove one")]
+    #[error("the key {} stands twice; remove one", quoted(key))]
     DuplicateKey {
         /// The key.
         key: String,
@@ -67,7 +69,7 @@ pub enum ContentFault {
         found: usize,
     },
     /// A text is none of those that may stand there.
-    #[error("expected {expected}, found \"{found}\"")]
+    #[error("expected {expected}, found {}", quoted(found))]
     Word {
         /// What may stand there.
         expected: String,
@@ -83,7 +85,7 @@ pub enum ContentFault {
         found: String,
     },
     /// A pair names a channel that the dataset does not have.
-    #[error("the dataset has no {kind} \"{name}\"; a pair is written [output, input]")]
+    #[error("the dataset has no {kind} {}; a pair is written [output, input]", quoted(name))]
     UnknownChannel {
         /// "output" or "input".
         kind: &'static str,
@@ -91,7 +93,7 @@ pub enum ContentFault {
         name: String,
     },
     /// A pair stands twice in a list.
-    #[error("the pair [\"{output}\", \"{input}\"] stands twice; remove one")]
+    #[error("the pair [{}, {}] stands twice; remove one", quoted(output), quoted(input))]
     DuplicatePair {
         /// The output's name.
         output: String,
@@ -107,7 +109,7 @@ pub enum ContentFault {
     /// A physics model is given by frequency data.
     #[error("a physics model needs matrices A, B, C, D; a frequency_response is for identified models")]
     MeasuredPhysics,
-    /// The bands ends are wrong.
+    /// The ends of the band are wrong.
     #[error(transparent)]
     Band(#[from] BandError),
     /// The matrices are no state-space model.
@@ -117,10 +119,10 @@ pub enum ContentFault {
     #[error(transparent)]
     MeasuredResponse(#[from] MeasuredResponseError),
     /// The models are no condition.
-    #[error(transparent)]
+    #[error("{}", plain(&.0.to_string()))]
     Condition(#[from] ConditionError),
     /// The conditions are no dataset.
-    #[error(transparent)]
+    #[error("{}", plain(&.0.to_string()))]
     Dataset(#[from] DatasetError),
     /// A study has a condition that its dataset does not have.
     #[error("the dataset has no condition {id}")]
@@ -135,12 +137,12 @@ pub enum ContentFault {
         id: i64,
     },
     /// A study names a model that the condition does not have.
-    #[error("the dataset's condition has no such model: \"{name}\"")]
+    #[error("the dataset's condition has no such model: {}", quoted(name))]
     UnknownModel {
         /// The name.
         name: String,
     },
     /// A study holds a decision that cannot be taken.
-    #[error(transparent)]
+    #[error("{}", plain(&.0.to_string()))]
     Refused(#[from] EditRefusal),
 }

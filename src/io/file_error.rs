@@ -4,6 +4,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::content_fault::ContentFault;
+use super::flaw::Flaw;
 use super::place::Place;
 
 /// Why a file could not be read or written: one line that names the file, and the place in it.
@@ -57,7 +58,7 @@ pub enum FileError {
         /// The file.
         path: PathBuf,
         /// What was being read.
-        place: Place,
+        place: Box<Place>,
         /// Line, counted from 1.
         line: usize,
         /// Column in bytes, counted from 1.
@@ -69,7 +70,7 @@ pub enum FileError {
         /// The file.
         path: PathBuf,
         /// What was being read.
-        place: Place,
+        place: Box<Place>,
         /// Line, counted from 1.
         line: usize,
         /// Column in bytes, counted from 1.
@@ -105,7 +106,7 @@ pub enum FileError {
         /// The file.
         path: PathBuf,
         /// Where in the file.
-        place: Place,
+        place: Box<Place>,
         /// What is wrong there.
         fault: Box<ContentFault>,
     },
@@ -156,7 +157,8 @@ impl FileError {
         FileError::Unwritable { path: path.to_owned(), reason: reason.to_string() }
     }
 
-    pub(super) fn content(path: &Path, place: Place, fault: ContentFault) -> Self {
-        FileError::Content { path: path.to_owned(), place, fault: Box::new(fault) }
+    pub(super) fn content(path: &Path, flaw: Flaw) -> Self {
+        let Flaw { place, fault } = flaw;
+        FileError::Content { path: path.to_owned(), place, fault }
     }
 }

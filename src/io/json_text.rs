@@ -1,6 +1,5 @@
 //! JSON text to values, with the place of what is wrong and of what is not known.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::Deserialize;
@@ -8,8 +7,11 @@ use serde_json::error::Category;
 
 use super::content_fault::ContentFault;
 use super::file_error::FileError;
+use super::flaw::Flaw;
 use super::outline::Outline;
 use super::place::{Place, Step};
+use super::plain::shortened;
+use super::unknown_keys::UnknownKeys;
 
 /// A kind of file: what its "format" and "version" have to say.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +29,7 @@ impl Format {
         text: &'t [u8],
         path: &Path,
     ) -> Result<(T, Vec<String>), FileError> {
+        check_object(text, path)?;
         let mut unknown = UnknownKeys::default();
         let mut json = serde_json::Deserializer::from_slice(text);
         let mut track = serde_path_to_error::Track::new();
@@ -60,10 +63,18 @@ impl Format {
 
     /// Refuses a format or a version that was read, but is another.
     pub(super) fn check_read(self, format: &str, version: u64, path: &Path) -> Result<(), FileError> {
-        let outline =
-            Outline { format: Some(format!("\"{format}\"")), version: Some(version.to_string()), conditions: Vec::new() };
-        self.check(&outline, path)
+        self.check(&Outline::named(format, version), path)
     }
+}
+
+/// Refuses a list at the top, which serde would take for an object without its keys.
+fn check_object(text: &[u8], path: &Path) -> Result<(), FileError> {
+    if text.trim_ascii_start().first() != Some(&b'[') {
+        return Ok(());
+    }
+    let (expected, found) = ("an object".to_owned(), "a list".to_owned());
+    let fault = ContentFault::Type { expected, found, line: 1, column: 1 };
+    Err(FileError::content(path, Flaw::new(Place::default(), fault)))
 }
 
 fn step_of(segment: &serde_path_to_error::Segment) -> Option<Step> {
@@ -78,17 +89,17 @@ fn step_of(segment: &serde_path_to_error::Segment) -> Option<Step> {
 fn json_error(text: &[u8], path: &Path, place: Place, error: &serde_json::Error) -> FileError {
     let (line, column) = (error.line(), error.column());
     let full = error.to_string();
-    let reason = full.split(" at line ").next().unwrap_or(&full).to_owned();
+    let reason = full.rsplit_once(" at line ").map_or(full.as_str(), |(reason, _)| reason).to_owned();
     let path_owned = path.to_owned();
     match error.classify() {
-        Category::Eof => FileError::CutOff { path: path_owned, place, line, column },
-        Category::Data => FileError::content(path, place, data_fault(reason, line, column)),
+        Category::Eof => FileError::CutOff { path: path_owned, place: Box::new(place), line, column },
+        Category::Data => FileError::content(path, Flaw::new(place, data_fault(reason, line, column))),
         _ if reason.starts_with("recursion limit") => {
-            FileError::content(path, place, ContentFault::TooDeep { line, column })
+            FileError::content(path, Flaw::new(place, ContentFault::TooDeep { line, column }))
         }
         _ => match token_at(text, line, column).filter(|token| is_number_like(token)) {
-            Some(found) => FileError::content(path, place, ContentFault::NotFinite { found, line, column }),
-            None => FileError::NotJson { path: path_owned, place, line, column, reason },
+            Some(found) => FileError::content(path, Flaw::new(place, ContentFault::NotFinite { found, line, column })),
+            None => FileError::NotJson { path: path_owned, place: Box::new(place), line, column, reason },
         },
     }
 }
@@ -102,8 +113,9 @@ fn data_fault(reason: String, line: usize, column: usize) -> ContentFault {
         return ContentFault::DuplicateKey { key };
     }
     let mismatch = ["invalid type: ", "invalid value: ", "invalid length "].iter().find_map(|start| {
-        let (found, expected) = reason.strip_prefix(start)?.split_once(", expected ")?;
-        Some((found_words(found, *start == "invalid length "), expected_words(expected)))
+        let (found, expected) = reason.strip_prefix(start)?.rsplit_once(", expected ")?;
+        let found = found_words(found, *start == "invalid length ");
+        Some((shortened(&found), expected_words(expected)))
     });
     match mismatch {
         Some((found, expected)) => ContentFault::Type { expected, found, line, column },
@@ -158,52 +170,4 @@ fn token_at(text: &[u8], line: usize, column: usize) -> Option<String> {
 fn is_number_like(token: &str) -> bool {
     // Rust reads NaN, inf and infinity in any case and with any sign, as C and Python write them; 1e999 reads as infinite.
     token.parse::<f64>().is_ok_and(|value| !value.is_finite())
-}
-
-/// Keys that the program does not know, the same key in the same kind of place counted once.
-#[derive(Debug, Default)]
-struct UnknownKeys {
-    /// By the steps without their indices: the first such place, and how many there are.
-    found: BTreeMap<Vec<String>, (Vec<Step>, usize)>,
-}
-
-impl UnknownKeys {
-    fn add(&mut self, path: &serde_ignored::Path<'_>) {
-        let mut steps = Vec::new();
-        collect_steps(path, &mut steps);
-        let keys = steps.iter().filter_map(|step| match step {
-            Step::Key(key) => Some(key.clone()),
-            Step::Entry(_) => None,
-        });
-        self.found.entry(keys.collect()).or_insert((steps, 0)).1 += 1;
-    }
-
-    fn cautions(&self, text: &[u8]) -> Vec<String> {
-        if self.found.is_empty() {
-            return Vec::new();
-        }
-        let outline = Outline::of(text);
-        let caution = |(steps, count): &(Vec<Step>, usize)| {
-            let more = if *count > 1 { format!(", and {} more like it", count - 1) } else { String::new() };
-            match steps.split_last() {
-                Some((Step::Key(key), place)) => {
-                    format!("{}the key \"{key}\" is not known and not used{more}", Place::of(place, &outline).before())
-                }
-                _ => format!("{}this entry is not known and not used{more}", Place::of(steps, &outline).before()),
-            }
-        };
-        self.found.values().map(caution).collect()
-    }
-}
-
-fn collect_steps(path: &serde_ignored::Path<'_>, steps: &mut Vec<Step>) {
-    use serde_ignored::Path as Ignored;
-    let (parent, step) = match path {
-        Ignored::Root => return,
-        Ignored::Seq { parent, index } => (parent, Some(Step::Entry(*index))),
-        Ignored::Map { parent, key } => (parent, Some(Step::Key(key.clone()))),
-        Ignored::Some { parent } | Ignored::NewtypeStruct { parent } | Ignored::NewtypeVariant { parent } => (parent, None),
-    };
-    collect_steps(parent, steps);
-    steps.extend(step);
 }

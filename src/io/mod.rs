@@ -7,22 +7,25 @@ mod csv_file;
 mod dataset_file;
 mod directory;
 mod file_error;
+mod flaw;
 mod json_text;
 mod nested;
 mod opened;
 mod outline;
 mod place;
+mod plain;
 mod source;
 mod study_file;
+mod unknown_keys;
 mod whole_file;
 
 pub use by_name::ByName;
 pub use content_fault::ContentFault;
 pub use corrections_file::{
-    Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
-    DelayOutcome, GainOutcome, NetGain, ScheduleUsed, ScheduledDelays, ScheduledGains, SettingsUsed, Table,
-    UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult, read_corrections, write_assessment_csv, write_corrections,
-    write_corrections_csv,
+    Assessment, Channels, ConditionAssessment, ConditionCorrections, ConflictEntry, Corrections, CostTable, CostTables,
+    DatasetLabel, DelayOutcome, Explanation, GainOutcome, NetGain, RemedyEntry, ScheduleUsed, ScheduledDelays,
+    ScheduledGains, SensitivityEntry, SettingsUsed, Table, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
+    read_corrections, write_assessment_csv, write_corrections, write_corrections_csv,
 };
 pub use dataset_file::{
     DatasetOrigin, LoadedDataset, embedded_example, load_dataset, load_dataset_bytes, save_dataset, write_example,
@@ -31,5 +34,6 @@ pub use directory::make_directory;
 pub use file_error::FileError;
 pub use opened::{Opened, load_any};
 pub use place::{ConditionPlace, ModelPlace, Place};
+pub use plain::plain;
 pub use source::LARGEST_TEXT;
 pub use study_file::{STUDY_EXTENSION, open_study, save_study};

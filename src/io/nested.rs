@@ -75,9 +75,9 @@ impl<'de, const DEPTH: usize> Visitor<'de> for List<'_, DEPTH> {
         }
         match *self.filling.lengths[self.depth].get_or_insert(length) {
             expected if expected == length => Ok(()),
-            expected => {
-                Err(A::Error::custom(format!("expected {expected} entries, as in the first of these lists, found {length}")))
-            }
+            expected => Err(A::Error::custom(format!(
+                "expected {expected} entries, as in the first of these lists, found {length}"
+            ))),
         }
     }
 }

@@ -12,6 +12,7 @@ use super::study_file::study_from;
 
 /// What a file turned out to be.
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "one is made when a file is opened, and taken apart at once")]
 pub enum Opened {
     /// A dataset.
     Dataset(LoadedDataset),

@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
+use super::plain::quoted;
+
 /// A label of one condition: its id, and the names of its models.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct ConditionOutline {
@@ -20,12 +22,22 @@ pub(super) struct Outline {
     /// What stands at "version".
     pub(super) version: Option<String>,
     pub(super) conditions: Vec<ConditionOutline>,
+    /// How many conditions and models have been labelled.
+    labels: usize,
 }
+
+/// Most conditions and models that are labelled, so that an outline takes no more memory than a dataset.
+const MOST_LABELS: usize = 50_000;
 
 impl Outline {
     /// Every label that can be read before the text ends or breaks.
     pub(super) fn of(text: &[u8]) -> Self {
         Self::read(text, Spot::Root { only_format: false })
+    }
+
+    /// The outline of a file whose format and version are known, and nothing else.
+    pub(super) fn named(format: &str, version: u64) -> Self {
+        Self { format: Some(quoted(format)), version: Some(version.to_string()), ..Self::default() }
     }
 
     /// What the file calls its format; reads no further than that.
@@ -188,6 +200,10 @@ impl<'de> Visitor<'de> for Sketch<'_> {
             return Ok(());
         };
         loop {
+            self.outline.labels += 1;
+            if self.outline.labels > MOST_LABELS {
+                return Err(A::Error::custom("the rest is named by its number"));
+            }
             self.outline.open_entry(list);
             let entry = Sketch { outline: &mut *self.outline, spot: Spot::Entry(list) };
             if entries.next_element_seed(entry)?.is_none() {
@@ -207,15 +223,6 @@ impl<'de> Visitor<'de> for Sketch<'_> {
         }
         self.note("an object".to_owned());
         Ok(())
-    }
-}
-
-/// The text in quotation marks, no longer than an error message can bear.
-fn quoted(text: &str) -> String {
-    const LONGEST: usize = 60;
-    match text.char_indices().nth(LONGEST) {
-        Some((end, _)) => format!("\"{}…\"", &text[..end]),
-        None => format!("\"{text}\""),
     }
 }
 

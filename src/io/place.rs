@@ -5,6 +5,7 @@ use std::fmt;
 use crate::dataset::BundleKind;
 
 use super::outline::Outline;
+use super::plain::{plain, quoted, shortened};
 
 /// One step on the way from the top of a JSON text to a value in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -113,7 +114,7 @@ impl fmt::Display for Place {
                 BundleKind::Identified => "identified model",
             };
             match name {
-                Some(name) => format!("{kind} \"{name}\" (number {position})"),
+                Some(name) => format!("{kind} {} (number {position})", quoted(name)),
                 None => format!("{kind} number {position}"),
             }
         });
@@ -144,7 +145,7 @@ fn entry_words(steps: &[Step]) -> String {
                     _ => &[],
                 };
                 let matrix = if indices == ["row", "column"] { "matrix " } else { "" };
-                words.push(format!("{matrix}{key}"));
+                words.push(format!("{matrix}{}", shortened(&plain(key))));
             }
             Step::Entry(index) => {
                 let (name, after) = indices.split_first().map_or(("entry", indices), |(name, after)| (*name, after));
@@ -168,7 +169,8 @@ mod tests {
     fn a_place_is_named_by_id_name_matrix_row_and_column() {
         let outline = Outline::of(br#"{"conditions": [{"id": 10, "physics_models": [{"name": "nominal"}]}]}"#);
         let place = Place::of(&steps(&["conditions", "0", "physics_models", "0", "A", "2", "4"]), &outline);
-        let expected = "condition 10 (number 1 in the file), physics model \"nominal\" (number 1), matrix A, row 3, column 5";
+        let expected =
+            "condition 10 (number 1 in the file), physics model \"nominal\" (number 1), matrix A, row 3, column 5";
         assert_eq!(place.to_string(), expected);
     }
 
@@ -176,8 +178,7 @@ mod tests {
     fn what_cannot_be_named_is_counted() {
         let path = steps(&["conditions", "2", "identified_models", "1", "frequency_response", "re", "0", "1", "4"]);
         let place = Place::of(&path, &Outline::default());
-        let expected =
-            "condition number 3 in the file, identified model number 2, frequency_response, re, output 1, input 2, entry 5";
+        let expected = "condition number 3 in the file, identified model number 2, frequency_response, re, output 1, input 2, entry 5";
         assert_eq!(place.to_string(), expected);
     }
 }

@@ -13,9 +13,7 @@ impl FrequencyGrid {
     pub fn logarithmic(band: Band, points: usize) -> Self {
         let last = points.max(2) - 1;
         let (low, high) = (band.min().ln(), band.max().ln());
-        let mut omega: Vec<f64> = (0..=last)
-            .map(|k| (low + (high - low) * k as f64 / last as f64).exp())
-            .collect();
+        let mut omega: Vec<f64> = (0..=last).map(|k| (low + (high - low) * k as f64 / last as f64).exp()).collect();
         omega[0] = band.min();
         omega[last] = band.max();
         Self { omega }

@@ -43,10 +43,7 @@ impl Place {
             None
         } else {
             let (low, high) = (measured[after - 1], measured[after]);
-            Some(Self {
-                after,
-                fraction: (omega / low).ln() / (high / low).ln(),
-            })
+            Some(Self { after, fraction: (omega / low).ln() / (high / low).ln() })
         }
     }
 

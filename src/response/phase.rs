@@ -46,11 +46,7 @@ pub fn centred_unwrap(angles: &mut [f64], scratch: &mut Vec<f64>) {
 pub fn nearest_turn_offset(phase: &[f64], reference: &[f64]) -> f64 {
     let differences = phase.iter().zip(reference).map(|(phase, reference)| reference - phase);
     let mut differences: Vec<f64> = differences.filter(|difference| difference.is_finite()).collect();
-    if differences.is_empty() {
-        0.0
-    } else {
-        TAU * (median(&mut differences) / TAU).round()
-    }
+    if differences.is_empty() { 0.0 } else { TAU * (median(&mut differences) / TAU).round() }
 }
 
 #[cfg(test)]

@@ -53,11 +53,7 @@ impl HessenbergForm {
             c.column_mut(state).scale_mut(s);
         }
         let (q, f) = Hessenberg::new(a).unpack();
-        Self {
-            b: q.transpose() * b,
-            c: c * q,
-            f,
-        }
+        Self { b: q.transpose() * b, c: c * q, f }
     }
 }
 
@@ -75,12 +71,7 @@ impl Workspace {
     fn of(reduced: &HessenbergForm) -> Self {
         let (order, inputs) = reduced.b.shape();
         let zero = Complex::new(0.0, 0.0);
-        Self {
-            order,
-            inputs,
-            rows: vec![zero; order * order],
-            columns: vec![zero; order * inputs],
-        }
+        Self { order, inputs, rows: vec![zero; order * order], columns: vec![zero; order * inputs] }
     }
 
     fn solution(&self, input: usize) -> &[Complex<f64>] {
@@ -140,10 +131,7 @@ impl Workspace {
         let column = &mut self.columns[input * n..(input + 1) * n];
         for row in (0..n).rev() {
             let mut sum = column[row];
-            for (entry, known) in self.rows[row * n + row + 1..(row + 1) * n]
-                .iter()
-                .zip(&column[row + 1..])
-            {
+            for (entry, known) in self.rows[row * n + row + 1..(row + 1) * n].iter().zip(&column[row + 1..]) {
                 sum -= entry * known;
             }
             column[row] = sum / self.rows[row * n + row];
@@ -167,10 +155,7 @@ mod tests {
     #[test]
     fn a_first_order_lag_has_its_known_response() {
         // 1 / (j omega + 2) at omega = 3: (2 - 3j) / 13.
-        let value = only(evaluate(
-            &siso(dmatrix![-2.0], dmatrix![1.0], dmatrix![1.0], 0.0),
-            &[3.0],
-        ));
+        let value = only(evaluate(&siso(dmatrix![-2.0], dmatrix![1.0], dmatrix![1.0], 0.0), &[3.0]));
         assert!((value - Complex::new(2.0 / 13.0, -3.0 / 13.0)).norm() < 1e-16);
     }
 
@@ -182,12 +167,7 @@ mod tests {
 
     #[test]
     fn an_undamped_oscillator_at_its_own_frequency_is_not_finite() {
-        let oscillator = siso(
-            dmatrix![0.0, 1.0; -4.0, 0.0],
-            dmatrix![0.0; 1.0],
-            dmatrix![1.0, 0.0],
-            0.0,
-        );
+        let oscillator = siso(dmatrix![0.0, 1.0; -4.0, 0.0], dmatrix![0.0; 1.0], dmatrix![1.0, 0.0], 0.0);
         assert!(!only(evaluate(&oscillator, &[2.0])).is_finite());
     }
 
@@ -197,10 +177,7 @@ mod tests {
         let scale = DMatrix::from_diagonal(&nalgebra::dvector![1e-9, 1e9]);
         let inverse = DMatrix::from_diagonal(&nalgebra::dvector![1e9, 1e-9]);
         let plain = only(evaluate(&siso(a.clone(), b.clone(), c.clone(), 0.1), &[1.3]));
-        let scaled = only(evaluate(
-            &siso(&scale * a * &inverse, scale * b, c * inverse, 0.1),
-            &[1.3],
-        ));
+        let scaled = only(evaluate(&siso(&scale * a * &inverse, scale * b, c * inverse, 0.1), &[1.3]));
         // The scaling itself rounds each entry once.
         assert!((plain - scaled).norm() < 1e-14 * plain.norm());
     }

@@ -35,11 +35,7 @@ pub fn quantile(values: &mut [f64], q: f64) -> f64 {
     let lower = *lower;
     let upper = above.iter().copied().fold(f64::INFINITY, f64::min);
     let fraction = position - below as f64;
-    if fraction == 0.0 {
-        lower
-    } else {
-        lower + fraction * (upper - lower)
-    }
+    if fraction == 0.0 { lower } else { lower + fraction * (upper - lower) }
 }
 
 #[cfg(test)]

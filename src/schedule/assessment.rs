@@ -46,12 +46,7 @@ pub fn assess(
         if gain <= 0.0 {
             return None;
         }
-        let corrected = mismatch
-            .as_ref()?
-            .cost(omega, ratio_to_db(gain), correction.net_delay_s(pair), average);
-        Some(CostChange {
-            uncorrected: uncorrected[pair]?,
-            corrected,
-        })
+        let corrected = mismatch.as_ref()?.cost(omega, ratio_to_db(gain), correction.net_delay_s(pair), average);
+        Some(CostChange { uncorrected: uncorrected[pair]?, corrected })
     })
 }

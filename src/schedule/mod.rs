@@ -2,12 +2,11 @@
 
 mod assessment;
 mod regression;
-#[expect(
-    clippy::module_inception,
-    reason = "the folder is named for its noun, and so is the file that holds it"
-)]
+#[expect(clippy::module_inception, reason = "the folder is named for its noun, and so is the file that holds it")]
 mod schedule;
 
 pub use assessment::{CostChange, assess};
 pub use regression::{Airspeeds, Regression};
-pub use schedule::{Schedule, ScheduleError, ScheduleKind, ScheduleSettings, ScheduledPoint, ScheduledQuantity};
+pub use schedule::{
+    HIGHEST_DEGREE, Schedule, ScheduleError, ScheduleKind, ScheduleSettings, ScheduledPoint, ScheduledQuantity,
+};

@@ -26,13 +26,7 @@ impl Airspeeds {
         let min_kt = values_kt.iter().copied().fold(f64::INFINITY, f64::min);
         let max_kt = values_kt.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let mean_kt = values_kt.iter().sum::<f64>() / values_kt.len() as f64;
-        Some(Self {
-            values_kt,
-            mean_kt,
-            half_range_kt: 0.5 * (max_kt - min_kt),
-            min_kt,
-            max_kt,
-        })
+        Some(Self { values_kt, mean_kt, half_range_kt: 0.5 * (max_kt - min_kt), min_kt, max_kt })
     }
 
     /// The scaled airspeed `v`; outside the conditions' range, that of the nearer end. Zero where there is no range.
@@ -73,30 +67,20 @@ impl Regression {
     /// The polynomial of least squares; its degree is at most the number of distinct airspeeds less one.
     pub fn polynomial(airspeeds: &Airspeeds, figures: &[f64], degree: usize) -> Self {
         let degree = degree.min(airspeeds.distinct_kt().len().saturating_sub(1));
-        let v: Vec<f64> = airspeeds
-            .values_kt
-            .iter()
-            .map(|&airspeed| airspeeds.scaled(airspeed))
-            .collect();
+        let v: Vec<f64> = airspeeds.values_kt.iter().map(|&airspeed| airspeeds.scaled(airspeed)).collect();
         let design = DMatrix::from_fn(v.len(), degree + 1, |row, power| v[row].powi(power as i32));
         let qr = design.qr();
         // Full column rank: as many distinct v in [-1, 1] as there are columns, so R has no zero on its diagonal.
         let projected = qr.q().transpose() * DVector::from_column_slice(figures);
         let coefficients = qr.r().solve_upper_triangular(&projected).unwrap_or(projected);
-        Self::Polynomial {
-            coefficients: coefficients.iter().copied().collect(),
-        }
+        Self::Polynomial { coefficients: coefficients.iter().copied().collect() }
     }
 
     /// The mean figure at each distinct airspeed.
     pub fn table(airspeeds: &Airspeeds, figures: &[f64]) -> Self {
         let airspeeds_kt = airspeeds.distinct_kt();
         let mean_at = |airspeed: &f64| {
-            let at = airspeeds
-                .values_kt
-                .iter()
-                .zip(figures)
-                .filter(|(value, _)| *value == airspeed);
+            let at = airspeeds.values_kt.iter().zip(figures).filter(|(value, _)| *value == airspeed);
             let (sum, count) = at.fold((0.0, 0.0), |(sum, count), (_, figure)| (sum + figure, count + 1.0));
             sum / count
         };
@@ -109,10 +93,7 @@ impl Regression {
         match self {
             Regression::Polynomial { coefficients } => {
                 let v = airspeeds.scaled(airspeed_kt);
-                coefficients
-                    .iter()
-                    .rev()
-                    .fold(0.0, |sum, coefficient| sum * v + coefficient)
+                coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * v + coefficient)
             }
             Regression::Table { airspeeds_kt, values } => {
                 let after = airspeeds_kt.partition_point(|&at| at < airspeed_kt);
@@ -147,14 +128,8 @@ mod tests {
         let regression = Regression::polynomial(&airspeeds, &figures, 2);
         // Least squares with a condition number of about 5.
         assert!((regression.at(&airspeeds, 120.0) - figure(120.0)).abs() < 1e-13);
-        assert!(
-            (regression.at(&airspeeds, 200.0) - figure(140.0)).abs() < 1e-13,
-            "the end value holds"
-        );
-        assert!(
-            (regression.at(&airspeeds, 0.0) - figure(45.0)).abs() < 1e-13,
-            "the end value holds"
-        );
+        assert!((regression.at(&airspeeds, 200.0) - figure(140.0)).abs() < 1e-13, "the end value holds");
+        assert!((regression.at(&airspeeds, 0.0) - figure(45.0)).abs() < 1e-13, "the end value holds");
     }
 
     #[test]
@@ -168,14 +143,7 @@ mod tests {
     fn a_table_takes_means_and_is_linear_between_them() {
         let airspeeds = airspeeds();
         let regression = Regression::table(&airspeeds, &[1.0, 2.0, 4.0, 6.0, 5.0]);
-        for (airspeed, expected) in [
-            (30.0, 1.0),
-            (45.0, 1.0),
-            (52.5, 2.0),
-            (60.0, 3.0),
-            (115.0, 5.5),
-            (150.0, 5.0),
-        ] {
+        for (airspeed, expected) in [(30.0, 1.0), (45.0, 1.0), (52.5, 2.0), (60.0, 3.0), (115.0, 5.5), (150.0, 5.0)] {
             assert_eq!(regression.at(&airspeeds, airspeed), expected, "{airspeed} kt");
         }
     }

@@ -4,12 +4,15 @@ use crate::correction::ChannelCorrection;
 
 use super::regression::{Airspeeds, Regression};
 
+/// Highest degree of a polynomial schedule (M11).
+pub const HIGHEST_DEGREE: usize = 3;
+
 /// The form of the schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ScheduleKind {
     /// A polynomial of least squares.
     Polynomial {
-        /// Degree, 0 to 3.
+        /// Degree, 0 to [`HIGHEST_DEGREE`].
         degree: usize,
     },
     /// A lookup table: the mean at each distinct airspeed, linear between.
@@ -38,11 +41,7 @@ pub struct ScheduleSettings {
 
 impl Default for ScheduleSettings {
     fn default() -> Self {
-        Self {
-            kind: ScheduleKind::Polynomial { degree: 2 },
-            quantity: ScheduledQuantity::LnGain,
-            delays: false,
-        }
+        Self { kind: ScheduleKind::Polynomial { degree: 2 }, quantity: ScheduledQuantity::LnGain, delays: false }
     }
 }
 
@@ -94,10 +93,8 @@ impl Schedule {
         let fit_channels = |of: fn(&ChannelCorrection) -> &[f64], transform: &dyn Fn(f64) -> f64| -> Vec<Regression> {
             (0..of(points[0].correction).len())
                 .map(|channel| {
-                    let figures: Vec<f64> = points
-                        .iter()
-                        .map(|point| transform(of(point.correction)[channel]))
-                        .collect();
+                    let figures: Vec<f64> =
+                        points.iter().map(|point| transform(of(point.correction)[channel])).collect();
                     fit(&figures)
                 })
                 .collect()
@@ -109,13 +106,7 @@ impl Schedule {
             let inputs = fit_channels(|correction| &correction.input_delays_s, &same);
             (inputs, fit_channels(|correction| &correction.output_delays_s, &same))
         });
-        Ok(Self {
-            settings,
-            airspeeds,
-            inputs,
-            outputs,
-            delays,
-        })
+        Ok(Self { settings, airspeeds, inputs, outputs, delays })
     }
 
     /// The scheduled correction at an airspeed \[kt\]; outside the conditions' range the end value holds.
@@ -148,11 +139,7 @@ impl Schedule {
         let span = self.airspeeds.max_kt - self.airspeeds.min_kt;
         (0..=STEPS).any(|step| {
             let correction = self.at(self.airspeeds.min_kt + span * f64::from(step) / f64::from(STEPS));
-            correction
-                .input_gains
-                .iter()
-                .chain(&correction.output_gains)
-                .any(|gain| *gain <= 0.0)
+            correction.input_gains.iter().chain(&correction.output_gains).any(|gain| *gain <= 0.0)
         })
     }
 }
@@ -178,10 +165,7 @@ mod tests {
         let points: Vec<_> = corrections
             .iter()
             .zip(airspeeds)
-            .map(|(correction, airspeed_kt)| ScheduledPoint {
-                airspeed_kt,
-                correction,
-            })
+            .map(|(correction, airspeed_kt)| ScheduledPoint { airspeed_kt, correction })
             .collect();
         let schedule = Schedule::of(&points, ScheduleSettings::default()).unwrap();
         let products: Vec<f64> = corrections.iter().map(|c| c.net_gain(Pair::new(0, 0)).ln()).collect();
@@ -195,30 +179,15 @@ mod tests {
 
     #[test]
     fn without_a_condition_there_is_no_schedule() {
-        assert_eq!(
-            Schedule::of(&[], ScheduleSettings::default()),
-            Err(ScheduleError::NoCondition)
-        );
+        assert_eq!(Schedule::of(&[], ScheduleSettings::default()), Err(ScheduleError::NoCondition));
     }
 
     #[test]
     fn delays_are_scheduled_only_where_asked_for() {
         let own = correction(1.0);
-        let points = [ScheduledPoint {
-            airspeed_kt: 60.0,
-            correction: &own,
-        }];
-        assert_eq!(
-            Schedule::of(&points, ScheduleSettings::default())
-                .unwrap()
-                .at(60.0)
-                .input_delays_s,
-            [0.0]
-        );
-        let settings = ScheduleSettings {
-            delays: true,
-            ..ScheduleSettings::default()
-        };
+        let points = [ScheduledPoint { airspeed_kt: 60.0, correction: &own }];
+        assert_eq!(Schedule::of(&points, ScheduleSettings::default()).unwrap().at(60.0).input_delays_s, [0.0]);
+        let settings = ScheduleSettings { delays: true, ..ScheduleSettings::default() };
         assert_eq!(Schedule::of(&points, settings).unwrap().at(60.0).input_delays_s, [0.01]);
     }
 }

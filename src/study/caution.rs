@@ -29,10 +29,7 @@ impl Caution {
     pub fn words(&self, pair_name: impl Fn(Pair) -> String) -> String {
         match self {
             Caution::HeldButUndefined { pair } => {
-                format!(
-                    "{} is not held: its response is zero or not finite somewhere in the band",
-                    pair_name(*pair)
-                )
+                format!("{} is not held: its response is zero or not finite somewhere in the band", pair_name(*pair))
             }
             Caution::NoSuggestions(error) => error.to_string(),
             Caution::BandNotCovered { model, min, max } => format!(

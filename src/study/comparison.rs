@@ -21,17 +21,8 @@ pub struct ConditionResponses {
 impl ConditionResponses {
     /// Evaluates every model.
     pub fn of(condition: &Condition, grid: &FrequencyGrid) -> Self {
-        let bundle = |kind| {
-            condition
-                .bundle(kind)
-                .iter()
-                .map(|model: &Model| respond(&model.dynamics, grid))
-                .collect()
-        };
-        Self {
-            physics: bundle(BundleKind::Physics),
-            identified: bundle(BundleKind::Identified),
-        }
+        let bundle = |kind| condition.bundle(kind).iter().map(|model: &Model| respond(&model.dynamics, grid)).collect();
+        Self { physics: bundle(BundleKind::Physics), identified: bundle(BundleKind::Identified) }
     }
 }
 
@@ -63,16 +54,10 @@ impl BundleFigures {
         };
         let physics = distance(&responses.physics);
         let models = condition.bundle(BundleKind::Physics);
-        let perturbations: Vec<(&str, Option<&BTreeMap<String, f64>>)> = models
-            .iter()
-            .map(|model| (model.name.as_str(), model.perturbation()))
-            .collect();
+        let perturbations: Vec<(&str, Option<&BTreeMap<String, f64>>)> =
+            models.iter().map(|model| (model.name.as_str(), model.perturbation())).collect();
         let discontinuity = Discontinuity::of(&physics, &perturbations);
-        Self {
-            physics,
-            identified: distance(&responses.identified),
-            discontinuity,
-        }
+        Self { physics, identified: distance(&responses.identified), discontinuity }
     }
 }
 
@@ -119,26 +104,13 @@ impl Comparison {
         average: CostAverage,
     ) -> Self {
         let physics = Representative::of(&figures.physics, &choice.physics.rejected, choice.physics.pinned);
-        let identified = Representative::of(
-            &figures.identified,
-            &choice.identified.rejected,
-            choice.identified.pinned,
-        );
+        let identified = Representative::of(&figures.identified, &choice.identified.rejected, choice.identified.pinned);
         let reference = &responses.identified[identified.model];
         let against = |model: usize| ModelMismatch::of(&responses.physics[model], reference, grid.omega(), average);
         let representative = against(physics.model);
-        let nominal = if physics.model == condition.nominal() {
-            representative.clone()
-        } else {
-            against(condition.nominal())
-        };
+        let nominal =
+            if physics.model == condition.nominal() { representative.clone() } else { against(condition.nominal()) };
         let delta = Delta::of(&representative.mismatch, grid.omega());
-        Self {
-            physics,
-            identified,
-            representative,
-            nominal,
-            delta,
-        }
+        Self { physics, identified, representative, nominal, delta }
     }
 }

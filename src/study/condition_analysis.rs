@@ -52,11 +52,7 @@ impl ConditionAnalysis {
 
     /// Indices of the physics models suggested as outliers, whatever is rejected.
     pub fn suggested(&self) -> Vec<usize> {
-        self.figures
-            .discontinuity
-            .as_ref()
-            .map(crate::fidelity::Discontinuity::suggested)
-            .unwrap_or_default()
+        self.figures.discontinuity.as_ref().map(crate::fidelity::Discontinuity::suggested).unwrap_or_default()
     }
 }
 

@@ -19,18 +19,10 @@ impl ConditionCurves {
     pub fn of(condition: &Condition, band: Band, points: usize) -> Self {
         let grid = FrequencyGrid::logarithmic(band, points);
         let respond = |kind: BundleKind| {
-            condition
-                .bundle(kind)
-                .iter()
-                .map(|model| FrequencyResponse::of(&model.dynamics, &grid))
-                .collect()
+            condition.bundle(kind).iter().map(|model| FrequencyResponse::of(&model.dynamics, &grid)).collect()
         };
         let (physics, identified) = (respond(BundleKind::Physics), respond(BundleKind::Identified));
-        Self {
-            grid,
-            physics,
-            identified,
-        }
+        Self { grid, physics, identified }
     }
 
     /// The responses of one bundle.

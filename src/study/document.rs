@@ -29,11 +29,7 @@ pub struct ConditionChoice {
 
 impl Default for ConditionChoice {
     fn default() -> Self {
-        Self {
-            physics: BundleChoice::default(),
-            identified: BundleChoice::default(),
-            scheduled: true,
-        }
+        Self { physics: BundleChoice::default(), identified: BundleChoice::default(), scheduled: true }
     }
 }
 
@@ -71,19 +67,12 @@ impl Study {
     pub fn new(dataset: Arc<Dataset>) -> Self {
         let settings = Settings::of(&dataset);
         let choices = vec![ConditionChoice::default(); dataset.conditions().len()];
-        Self {
-            dataset,
-            settings,
-            choices,
-        }
+        Self { dataset, settings, choices }
     }
 
     /// Whether a model is rejected.
     pub fn is_rejected(&self, id: ModelId) -> bool {
-        self.choices[id.condition]
-            .bundle(id.bundle)
-            .rejected
-            .contains(&id.model)
+        self.choices[id.condition].bundle(id.bundle).rejected.contains(&id.model)
     }
 
     /// Names of the rejected models of one condition, the physics bundle first.
@@ -92,11 +81,7 @@ impl Study {
             .into_iter()
             .flat_map(|kind| {
                 let models = self.dataset.conditions()[condition].bundle(kind);
-                self.choices[condition]
-                    .bundle(kind)
-                    .rejected
-                    .iter()
-                    .map(|&index| models[index].name.as_str())
+                self.choices[condition].bundle(kind).rejected.iter().map(|&index| models[index].name.as_str())
             })
             .collect()
     }

@@ -98,10 +98,7 @@ impl Edit {
             Edit::RestoreAll { condition } => format!("restore all (condition {})", id_of(condition)),
             Edit::Pin(id) => format!("pin {}", name_of(id)),
             Edit::Unpin { condition, .. } => format!("unpin (condition {})", id_of(condition)),
-            Edit::SetScheduled {
-                condition,
-                scheduled: true,
-            } => format!("schedule condition {}", id_of(condition)),
+            Edit::SetScheduled { condition, scheduled: true } => format!("schedule condition {}", id_of(condition)),
             Edit::SetScheduled { condition, .. } => format!("leave condition {} out", id_of(condition)),
             Edit::ConstrainOnAxis => "hold the on-axis responses".to_owned(),
             Edit::Set(setting) => setting.label(dataset),
@@ -126,10 +123,7 @@ impl Study {
             Edit::Pin(id) => return self.pin(*id),
             Edit::Restore(id) => {
                 self.check_model(*id)?;
-                self.choices[id.condition]
-                    .bundle_mut(id.bundle)
-                    .rejected
-                    .remove(&id.model);
+                self.choices[id.condition].bundle_mut(id.bundle).rejected.remove(&id.model);
             }
             Edit::RestoreAll { condition } => {
                 self.check_condition(*condition)?;
@@ -151,21 +145,13 @@ impl Study {
     }
 
     fn check_condition(&self, condition: usize) -> Result<(), EditRefusal> {
-        if condition < self.choices.len() {
-            Ok(())
-        } else {
-            Err(EditRefusal::NoSuch { what: "condition" })
-        }
+        if condition < self.choices.len() { Ok(()) } else { Err(EditRefusal::NoSuch { what: "condition" }) }
     }
 
     fn check_model(&self, id: ModelId) -> Result<(), EditRefusal> {
         self.check_condition(id.condition)?;
         let models = self.dataset.conditions()[id.condition].bundle(id.bundle);
-        if id.model < models.len() {
-            Ok(())
-        } else {
-            Err(EditRefusal::NoSuch { what: "model" })
-        }
+        if id.model < models.len() { Ok(()) } else { Err(EditRefusal::NoSuch { what: "model" }) }
     }
 
     fn reject(&mut self, id: ModelId) -> Result<(), EditRefusal> {
@@ -174,10 +160,7 @@ impl Study {
         let models = condition.bundle(id.bundle);
         let choice = self.choices[id.condition].bundle_mut(id.bundle);
         if !choice.rejected.contains(&id.model) && choice.rejected.len() + 1 == models.len() {
-            return Err(EditRefusal::LastModel {
-                condition: condition.id(),
-                model: models[id.model].name.clone(),
-            });
+            return Err(EditRefusal::LastModel { condition: condition.id(), model: models[id.model].name.clone() });
         }
         choice.rejected.insert(id.model);
         if choice.pinned == Some(id.model) {
@@ -189,11 +172,7 @@ impl Study {
     fn reject_all(&mut self, condition: usize, models: &[usize]) -> Result<(), EditRefusal> {
         let mut trial = self.clone();
         for &model in models {
-            trial.reject(ModelId {
-                condition,
-                bundle: BundleKind::Physics,
-                model,
-            })?;
+            trial.reject(ModelId { condition, bundle: BundleKind::Physics, model })?;
         }
         *self = trial;
         Ok(())
@@ -203,10 +182,7 @@ impl Study {
         self.check_model(id)?;
         if self.is_rejected(id) {
             let condition = self.dataset.conditions()[id.condition].id();
-            return Err(EditRefusal::PinRejected {
-                condition,
-                model: self.dataset.model(id).name.clone(),
-            });
+            return Err(EditRefusal::PinRejected { condition, model: self.dataset.model(id).name.clone() });
         }
         self.choices[id.condition].bundle_mut(id.bundle).pinned = Some(id.model);
         Ok(())

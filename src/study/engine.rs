@@ -62,25 +62,13 @@ impl Engine {
             watch.progress(index + 1, total);
         }
         let schedule = Schedule::of(&scheduled_points(study, &conditions), study.settings.schedule);
-        let assessment = (0..total)
-            .map(|index| assessed(study, index, &conditions[index], &schedule, &grid))
-            .collect();
-        Ok(Analysis {
-            study: study.clone(),
-            omega: grid.omega().into(),
-            conditions,
-            schedule,
-            assessment,
-        })
+        let assessment = (0..total).map(|index| assessed(study, index, &conditions[index], &schedule, &grid)).collect();
+        Ok(Analysis { study: study.clone(), omega: grid.omega().into(), conditions, schedule, assessment })
     }
 
     fn take(&mut self, dataset: &Arc<Dataset>) {
         if !self.dataset.as_ref().is_some_and(|kept| Arc::ptr_eq(kept, dataset)) {
-            self.conditions = dataset
-                .conditions()
-                .iter()
-                .map(|_| ConditionStages::default())
-                .collect();
+            self.conditions = dataset.conditions().iter().map(|_| ConditionStages::default()).collect();
             self.dataset = Some(Arc::clone(dataset));
         }
     }
@@ -96,45 +84,22 @@ impl ConditionStages {
         let (settings, condition) = (&study.settings, &study.dataset.conditions()[index]);
         let measuring = study.dataset.measuring_pairs();
         let grid_key = (settings.band, settings.points);
-        let responses = self
-            .responses
-            .get(grid_key, |_| Arc::new(ConditionResponses::of(condition, grid)));
-        let figures = self.figures.get(grid_key, |_| {
-            Arc::new(BundleFigures::of(condition, &responses, grid, &measuring))
-        });
+        let responses = self.responses.get(grid_key, |_| Arc::new(ConditionResponses::of(condition, grid)));
+        let figures =
+            self.figures.get(grid_key, |_| Arc::new(BundleFigures::of(condition, &responses, grid, &measuring)));
         let choice = &study.choices[index];
         let key: ComparisonKey = (grid_key, choice.clone(), settings.cost_average);
         let comparison = self.comparison.get(key.clone(), |_| {
-            Arc::new(Comparison::of(
-                condition,
-                &responses,
-                &figures,
-                grid,
-                choice,
-                settings.cost_average,
-            ))
+            Arc::new(Comparison::of(condition, &responses, &figures, grid, choice, settings.cost_average))
         });
         check_comparable(condition, &comparison)?;
-        let bounds_key = (
-            key.clone(),
-            settings.quantile,
-            settings.gain_bounds,
-            settings.delay_upper_s,
-        );
-        let bounds = self
-            .bounds
-            .get(bounds_key, |_| bounds_of(&comparison, settings, &measuring, grid));
+        let bounds_key = (key.clone(), settings.quantile, settings.gain_bounds, settings.delay_upper_s);
+        let bounds = self.bounds.get(bounds_key, |_| bounds_of(&comparison, settings, &measuring, grid));
         let solved = self.solve(&comparison, settings, bounds)?;
         let correction = solved.correction();
         let cost = self.cost.get((key, correction.clone()), |(_, correction)| {
             let models = &comparison.representative;
-            Arc::new(assess(
-                &models.mismatch,
-                &models.cost,
-                correction,
-                grid.omega(),
-                settings.cost_average,
-            ))
+            Arc::new(assess(&models.mismatch, &models.cost, correction, grid.omega(), settings.cost_average))
         });
         let cautions = cautions_of(condition, choice, settings, &comparison, &figures);
         let Solved { gain_problem, delay_problem, gains, delays } = solved;
@@ -218,12 +183,9 @@ fn bounds_of(
     grid: &FrequencyGrid,
 ) -> (GainBounds, f64) {
     let mismatch = &comparison.representative.mismatch;
-    let gains = settings
-        .gain_bounds
-        .unwrap_or_else(|| gain_bounds(mismatch, measuring, settings.quantile));
-    let delay = settings
-        .delay_upper_s
-        .unwrap_or_else(|| delay_upper_s(mismatch, measuring, grid.omega(), settings.quantile));
+    let gains = settings.gain_bounds.unwrap_or_else(|| gain_bounds(mismatch, measuring, settings.quantile));
+    let delay =
+        settings.delay_upper_s.unwrap_or_else(|| delay_upper_s(mismatch, measuring, grid.omega(), settings.quantile));
     (gains, delay)
 }
 
@@ -234,19 +196,9 @@ fn cautions_of(
     comparison: &Comparison,
     figures: &BundleFigures,
 ) -> Vec<Caution> {
-    let undefined = settings
-        .constrained
-        .marked()
-        .filter(|&pair| comparison.delta.gain[pair].is_none());
+    let undefined = settings.constrained.marked().filter(|&pair| comparison.delta.gain[pair].is_none());
     let mut cautions: Vec<Caution> = undefined.map(|pair| Caution::HeldButUndefined { pair }).collect();
-    cautions.extend(
-        figures
-            .discontinuity
-            .as_ref()
-            .err()
-            .cloned()
-            .map(Caution::NoSuggestions),
-    );
+    cautions.extend(figures.discontinuity.as_ref().err().cloned().map(Caution::NoSuggestions));
     for (index, model) in condition.bundle(BundleKind::Identified).iter().enumerate() {
         let Dynamics::Measured(response) = &model.dynamics else {
             continue;
@@ -254,11 +206,7 @@ fn cautions_of(
         let (min, max) = (response.omega()[0], response.omega()[response.omega().len() - 1]);
         let covered = min <= settings.band.min() && settings.band.max() <= max;
         if !covered && !choice.identified.rejected.contains(&index) {
-            cautions.push(Caution::BandNotCovered {
-                model: model.name.clone(),
-                min,
-                max,
-            });
+            cautions.push(Caution::BandNotCovered { model: model.name.clone(), min, max });
         }
     }
     cautions
@@ -268,17 +216,11 @@ fn scheduled_points<'a>(
     study: &Study,
     conditions: &'a [Result<ConditionAnalysis, ConditionFailure>],
 ) -> Vec<ScheduledPoint<'a>> {
-    let chosen = conditions
-        .iter()
-        .enumerate()
-        .filter(|(index, _)| study.choices[*index].scheduled);
+    let chosen = conditions.iter().enumerate().filter(|(index, _)| study.choices[*index].scheduled);
     chosen
         .filter_map(|(index, analysis)| {
             let airspeed_kt = study.dataset.conditions()[index].flight_state().airspeed_kt;
-            Some(ScheduledPoint {
-                airspeed_kt,
-                correction: &analysis.as_ref().ok()?.correction,
-            })
+            Some(ScheduledPoint { airspeed_kt, correction: &analysis.as_ref().ok()?.correction })
         })
         .collect()
 }
@@ -302,13 +244,7 @@ fn assessed(
             let models = &analysis.comparison.nominal;
             let correction = schedule.at(condition.flight_state().airspeed_kt);
             let average = study.settings.cost_average;
-            Assessed::Nominal(assess(
-                &models.mismatch,
-                &models.cost,
-                &correction,
-                grid.omega(),
-                average,
-            ))
+            Assessed::Nominal(assess(&models.mismatch, &models.cost, &correction, grid.omega(), average))
         }
     }
 }

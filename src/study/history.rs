@@ -33,10 +33,7 @@ impl History {
         if self.past.len() == MOST_STEPS {
             self.past.remove(0);
         }
-        self.past.push(Step {
-            label: edit.label(&before),
-            study: before,
-        });
+        self.past.push(Step { label: edit.label(&before), study: before });
         self.open = Some(edit.clone());
     }
 
@@ -49,10 +46,7 @@ impl History {
     pub fn undo(&mut self, now: &Study) -> Option<Study> {
         let step = self.past.pop()?;
         self.open = None;
-        self.future.push(Step {
-            label: step.label,
-            study: now.clone(),
-        });
+        self.future.push(Step { label: step.label, study: now.clone() });
         Some(step.study)
     }
 
@@ -60,10 +54,7 @@ impl History {
     pub fn redo(&mut self, now: &Study) -> Option<Study> {
         let step = self.future.pop()?;
         self.open = None;
-        self.past.push(Step {
-            label: step.label,
-            study: now.clone(),
-        });
+        self.past.push(Step { label: step.label, study: now.clone() });
         Some(step.study)
     }
 

@@ -3,7 +3,7 @@
 use crate::correction::{GainBounds, GainObjective};
 use crate::dataset::{Band, Dataset, Pair, PairTable};
 use crate::fidelity::CostAverage;
-use crate::schedule::ScheduleSettings;
+use crate::schedule::{HIGHEST_DEGREE, ScheduleKind, ScheduleSettings};
 
 use super::edit::EditRefusal;
 use super::settings::{GREATEST_GAIN, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings};
@@ -74,11 +74,7 @@ impl Setting {
     }
 
     fn refuse(&self, expected: impl Into<String>, found: f64) -> EditRefusal {
-        EditRefusal::OutOfRange {
-            setting: self.name(),
-            expected: expected.into(),
-            found,
-        }
+        EditRefusal::OutOfRange { setting: self.name(), expected: expected.into(), found }
     }
 
     fn check_range(&self, value: f64, least: f64, most: f64) -> Result<(), EditRefusal> {
@@ -92,6 +88,9 @@ impl Setting {
     fn check(&self) -> Result<(), EditRefusal> {
         match self {
             Setting::AlphaGain(alpha) | Setting::AlphaDelay(alpha) => self.check_range(*alpha, 0.0, LARGEST_ALPHA),
+            Setting::Schedule(ScheduleSettings { kind: ScheduleKind::Polynomial { degree }, .. }) => {
+                self.check_range(*degree as f64, 0.0, HIGHEST_DEGREE as f64)
+            }
             Setting::Points(points) => self.check_range(*points as f64, LEAST_POINTS as f64, MOST_POINTS as f64),
             Setting::Quantile(quantile) => self.check_range(*quantile, 0.0, 0.5),
             Setting::GainBounds(Some(GainBounds { lower, upper })) => {

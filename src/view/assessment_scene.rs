@@ -8,7 +8,9 @@ use super::state::State;
 
 /// One panel for each measuring response and the responses themselves: the change of J of the nominal model in each condition.
 pub fn assessment_panels(state: &State) -> (Vec<Pair>, Vec<AssessmentPanel>) {
-    let Some(analysis) = state.analysis() else { return (Vec::new(), Vec::new()) };
+    let Some(analysis) = state.analysis() else {
+        return (Vec::new(), Vec::new());
+    };
     let pairs: Vec<Pair> = state.dataset().measuring_pairs().marked().collect();
     let panels = pairs
         .iter()

@@ -59,7 +59,8 @@ struct Shape {
 impl Shape {
     /// The phase is principal at the first finite value, then unwrapped; a value that is not finite leaves a gap (M2).
     fn of(values: &[Complex<f64>]) -> Self {
-        let finite: Vec<usize> = (0..values.len()).filter(|&k| values[k].is_finite() && values[k].norm() > 0.0).collect();
+        let finite: Vec<usize> =
+            (0..values.len()).filter(|&k| values[k].is_finite() && values[k].norm() > 0.0).collect();
         let mut phase: Vec<f64> = finite.iter().map(|&k| values[k].arg()).collect();
         unwrap(&mut phase);
         let mut shape = (vec![f64::NAN; values.len()], vec![f64::NAN; values.len()]);
@@ -130,7 +131,9 @@ impl CachedShapes {
 
 /// Every curve of one response in the condition shown; none until its responses are there.
 pub fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
-    let Some((condition, curves)) = state.results.curves.clone() else { return Vec::new() };
+    let Some((condition, curves)) = state.results.curves.clone() else {
+        return Vec::new();
+    };
     let fits = condition == state.display.condition
         && curves.physics.len() == state.condition().bundle(BundleKind::Physics).len()
         && curves.identified.len() == state.condition().bundle(BundleKind::Identified).len();
@@ -139,7 +142,9 @@ pub fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
     }
     let reference = state.shown().map_or(0, |shown| shown.comparison.identified.model);
     state.display.shapes.entry(pair).or_default().refresh(&curves, pair, reference);
-    let Some(shapes) = state.display.shapes.get(&pair) else { return Vec::new() };
+    let Some(shapes) = state.display.shapes.get(&pair) else {
+        return Vec::new();
+    };
     let mut drawn = model_curves(state, shapes, BundleKind::Physics);
     drawn.extend(model_curves(state, shapes, BundleKind::Identified));
     if let Some(shown) = state.shown() {
@@ -156,9 +161,8 @@ fn model_curves(state: &State, shapes: &CachedShapes, kind: BundleKind) -> Vec<B
     });
     let models = state.condition().bundle(kind);
     let isolated = state.display.isolated.filter(|id| id.condition == state.display.condition);
-    let visible = |index: &usize| {
-        isolated.is_none_or(|id| id == state.model_id(kind, *index) || representative == Some(*index))
-    };
+    let visible =
+        |index: &usize| isolated.is_none_or(|id| id == state.model_id(kind, *index) || representative == Some(*index));
     (0..models.len())
         .filter(visible)
         .map(|index| {
@@ -193,7 +197,8 @@ fn role_of(kind: BundleKind, nominal: bool, represents: bool) -> Role {
 /// "ratio 3.68, suggested as an outlier · click to reject".
 fn detail(shown: Option<&ConditionAnalysis>, kind: BundleKind, index: usize, rejected: bool) -> String {
     let discontinuity = shown.and_then(|shown| shown.figures.discontinuity.as_ref().ok());
-    let ratio = discontinuity.and_then(|discontinuity| discontinuity.ratios[index]).filter(|_| kind == BundleKind::Physics);
+    let ratio =
+        discontinuity.and_then(|discontinuity| discontinuity.ratios[index]).filter(|_| kind == BundleKind::Physics);
     let action = if rejected { "click to restore" } else { "click to reject" };
     match ratio {
         Some(ratio) if ratio > SUGGESTION_RATIO => format!("ratio {ratio:.2}, suggested as an outlier · {action}"),

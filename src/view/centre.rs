@@ -6,15 +6,15 @@ use crate::dataset::{Band, Pair};
 use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
 use crate::study::{Edit, Setting};
 
-use super::bode_scene::{CurveSubject, bode_curves, subject_of};
 use super::assessment_scene::assessment_panels;
+use super::bode_scene::{CurveSubject, bode_curves, subject_of};
 use super::command::Command;
 use super::explanation::channel_names;
 use super::net_gain_scene::{channel_panels, dot_key, net_gain_panels};
 use super::palette::{Palette, SMALL_SIZE};
 use super::plot::{
-    AssessmentEvent, AssessmentScene, BodeCurve, BodeEvent, BodeScene, ChannelsScene, GainEvent, NetGainScene, OverviewCell,
-    OverviewEvent, OverviewScene, assessment_ui, bode_ui, channels_ui, net_gain_ui, overview_ui,
+    AssessmentEvent, AssessmentScene, BodeCurve, BodeEvent, BodeScene, ChannelsScene, GainEvent, NetGainScene,
+    OverviewCell, OverviewEvent, OverviewScene, assessment_ui, bode_ui, channels_ui, net_gain_ui, overview_ui,
 };
 use super::settings_panel::choice_ui;
 use super::state::{State, Tab};
@@ -52,7 +52,11 @@ fn header_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
             commands.extend(tab_ui(ui, palette, text, tab, &state.display.tab).map(Command::ShowTab));
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            if ui.add(Button::new("Fit").small()).on_hover_text("Bring every curve into view (F, or double click)").clicked() {
+            if ui
+                .add(Button::new("Fit").small())
+                .on_hover_text("Bring every curve into view (F, or double click)")
+                .clicked()
+            {
                 commands.push(Command::FitPlots);
             }
             let condition = state.condition();
@@ -105,7 +109,9 @@ fn bode_command(state: &State, event: BodeEvent) -> Option<Command> {
             CurveSubject::Model(id) => Some(Command::Isolate(id)),
             CurveSubject::Corrected | CurveSubject::Scheduled => None,
         },
-        BodeEvent::BandDragged { min, max } => Band::new(min, max).ok().map(|band| Edit::Set(Setting::Band(band)).into()),
+        BodeEvent::BandDragged { min, max } => {
+            Band::new(min, max).ok().map(|band| Edit::Set(Setting::Band(band)).into())
+        }
         BodeEvent::BandReleased => Some(Command::EndEdit),
     }
 }
@@ -152,7 +158,8 @@ fn schedule_ui(ui: &mut Ui, settings: ScheduleSettings) -> Option<Command> {
 
 fn net_gain_tab_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let panels = net_gain_panels(state);
-    let message = if state.analysis().is_none() { "computing …" } else { "No response is held: hold one in the matrix" };
+    let message =
+        if state.analysis().is_none() { "computing …" } else { "No response is held: hold one in the matrix" };
     let scene = NetGainScene { panels: &panels, message: Some(message) };
     let events = net_gain_ui(ui, &scene, &mut state.display.net_gain, palette);
     commands.extend(events.into_iter().filter_map(gain_command));
@@ -203,7 +210,8 @@ fn cost_note(state: &State, pair: Pair) -> String {
 fn assessment_tab_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let (pairs, panels) = assessment_panels(state);
     let scene = AssessmentScene { panels: &panels, message: Some("computing …") };
-    for AssessmentEvent::BarClicked { panel, key } in assessment_ui(ui, &scene, &mut state.display.assessment, palette) {
+    for AssessmentEvent::BarClicked { panel, key } in assessment_ui(ui, &scene, &mut state.display.assessment, palette)
+    {
         commands.push(Command::SelectCondition(key));
         commands.extend(pairs.get(panel).map(|&pair| Command::FocusPair(pair)));
     }

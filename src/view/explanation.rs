@@ -1,5 +1,8 @@
 //! What the result of a condition says, in the engineer's words.
 
+use std::collections::BTreeSet;
+
+use crate::correction::{Channel, delay_sensitivities, gain_sensitivities};
 use crate::dataset::Pair;
 use crate::study::ConditionAnalysis;
 use crate::units::s_to_ms;
@@ -53,14 +56,12 @@ fn gain_remarks(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
         return vec![Remark::new(RemarkKind::Good, text)];
     }
     let (inputs, outputs) = channel_names(state);
-    let misses = shown.gains.unmatched.iter().map(|unmatched| {
-        let name = state.dataset().pair_name(unmatched.pair);
-        format!("{name} gets {:.3} instead of {:.3} ({:+.2} dB)", unmatched.target, unmatched.wanted, unmatched.shortfall_db)
-    });
-    let mut remarks = vec![Remark::new(RemarkKind::Trouble, format!("Not matched: {}.", misses.collect::<Vec<_>>().join(", ")))];
-    let conflicts = shown.gains.conflicts.iter().map(|conflict| conflict.words(&inputs, &outputs));
-    remarks.extend(conflicts.map(|text| Remark::new(RemarkKind::Trouble, text)));
-    remarks
+    let gains = &shown.gains;
+    let misses: Vec<String> = gains.unmatched.iter().map(|unmatched| unmatched.words(&inputs, &outputs)).collect();
+    let conflicts = gains.conflicts.iter().map(|conflict| conflict.words(&inputs, &outputs));
+    let remedy = gains.remedy.iter().map(|remedy| remedy.words(&inputs, &outputs)).filter(|words| !words.is_empty());
+    let texts = std::iter::once(misses.join(" ")).chain(conflicts).chain(remedy);
+    texts.map(|text| Remark::new(RemarkKind::Trouble, text)).collect()
 }
 
 fn delay_remarks(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
@@ -72,14 +73,19 @@ fn delay_remarks(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
     let lead: Vec<String> = unmatched
         .iter()
         .filter(|unmatched| unmatched.wanted_s < 0.0)
-        .map(|unmatched| format!("{} {:.0} ms", state.dataset().pair_name(unmatched.pair), -s_to_ms(unmatched.wanted_s)))
+        .map(|unmatched| {
+            format!("{} {:.0} ms", state.dataset().pair_name(unmatched.pair), -s_to_ms(unmatched.wanted_s))
+        })
         .collect();
     let mut remarks = Vec::new();
     if !lead.is_empty() {
         let count = if lead.len() == held { "Every".to_owned() } else { format!("{} of {held}", lead.len()) };
         let noun = if lead.len() == 1 { "held response needs" } else { "held responses need" };
         let (count, noun) = if lead.len() == held && held > 1 { (format!("All {held}"), noun) } else { (count, noun) };
-        let text = format!("{count} {noun} lead, because the physics model lags: {}. A delay cannot give it.", lead.join(", "));
+        let text = format!(
+            "{count} {noun} lead, because the physics model lags: {}. A delay cannot give it.",
+            lead.join(", ")
+        );
         remarks.push(Remark::new(RemarkKind::Caution, text));
     }
     let (inputs, outputs) = channel_names(state);
@@ -89,9 +95,39 @@ fn delay_remarks(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
     remarks
 }
 
+/// What the outcome leaves to say, entry by entry: other minima, what each missed delay leaves at the top of the band, and what
+/// the held responses and the active bounds cost.
+pub fn details(state: &State, shown: &ConditionAnalysis) -> Vec<String> {
+    /// A share of the objective below which a restraint costs nothing worth reading.
+    const NOTABLE: f64 = 1e-3;
+    let (inputs, outputs) = channel_names(state);
+    let mut details = vec![shown.gains.outcome.words()];
+    if shown.gains.local_minima.len() > 1 {
+        details.push(format!("{} different sets of gains are within 1 % of the best.", shown.gains.local_minima.len()));
+    }
+    let top = state.study.settings.band.max();
+    details.extend(shown.delays.unmatched.iter().map(|unmatched| unmatched.words(top, &inputs, &outputs)));
+    let gains = gain_sensitivities(&shown.gain_problem, &shown.gains);
+    let notable = gains.iter().filter(|sensitivity| sensitivity.share_per_db.abs() > NOTABLE);
+    details.extend(notable.map(|sensitivity| sensitivity.words(&inputs, &outputs)));
+    let delays = delay_sensitivities(&shown.delay_problem, &shown.delays);
+    let notable = delays.iter().filter(|sensitivity| sensitivity.share_per_ms.abs() > NOTABLE);
+    details.extend(notable.map(|sensitivity| sensitivity.words(&inputs, &outputs)));
+    details
+}
+
+/// The responses and the channels that are in each other's way, of the gains.
+pub fn gain_conflict_marks(shown: &ConditionAnalysis) -> (BTreeSet<Pair>, BTreeSet<Channel>) {
+    let conflicts = &shown.gains.conflicts;
+    let pairs = conflicts.iter().flat_map(|conflict| conflict.entries().iter().copied()).collect();
+    (pairs, conflicts.iter().flat_map(|conflict| conflict.channels()).collect())
+}
+
 /// What holding or freeing a response would cost, in words; nothing until the table of all toggles is computed.
 pub fn toggle_costs(state: &State, pair: Pair) -> Vec<String> {
-    let Some(toggles) = &state.results.toggles else { return Vec::new() };
+    let Some(toggles) = &state.results.toggles else {
+        return Vec::new();
+    };
     let (inputs, outputs) = channel_names(state);
     let (gain, delay) = toggles.of_pair(pair);
     let gain = gain.map(|toggle| format!("Gains: {}", toggle.words(&inputs, &outputs)));

@@ -1,6 +1,6 @@
 //! The forms in front of the window: paths, export, questions, help.
 
-use egui::{Button, Context, Grid, Id, Key, Modal, RichText, ScrollArea, TextEdit, Ui, WidgetInfo, Role};
+use egui::{Button, Context, Grid, Id, Key, Modal, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 use super::command::{Command, FormKind};
 use super::palette::Palette;
@@ -114,9 +114,8 @@ fn conditions_ui(ui: &mut Ui, form: &mut ExportForm, names: &[(i64, String)]) {
         for ((id, name), chosen) in names.iter().zip(&mut form.chosen) {
             let response = ui.checkbox(chosen, format!("{id}   {name}"));
             let selected = *chosen;
-            response.widget_info(|| {
-                WidgetInfo::selected(Role::CheckBox, true, selected, format!("Export condition {id}"))
-            });
+            response
+                .widget_info(|| WidgetInfo::selected(Role::CheckBox, true, selected, format!("Export condition {id}")));
         }
     });
 }
@@ -172,6 +171,9 @@ fn about_ui(ui: &mut Ui, palette: &Palette) {
         "The Gain-Delay Correction Method: one gain and one delay for each input and output channel, so that a physics-based \
          helicopter model matches flight and holds the important responses exactly.",
     );
-    ui.label(RichText::new("The embedded example is simulated; nothing in it comes from a real aircraft.").color(palette.dim_text));
+    ui.label(
+        RichText::new("The embedded example is simulated; nothing in it comes from a real aircraft.")
+            .color(palette.dim_text),
+    );
     ui.label(RichText::new("MIT OR Apache-2.0").color(palette.dim_text));
 }

@@ -1,14 +1,18 @@
 //! The constraint matrix: every response with G, D and J, held or free.
 
-use egui::{Align2, Color32, FontId, Key, Rect, Response, RichText, ScrollArea, Sense, Stroke, StrokeKind, Ui, WidgetInfo, Role, pos2, vec2};
+use egui::{
+    Align2, Color32, FontId, Key, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui,
+    WidgetInfo, pos2, vec2,
+};
 
+use crate::correction::Channel;
 use crate::dataset::Pair;
 use crate::fidelity::{ACCEPTABLE, INDISTINGUISHABLE};
 use crate::study::{ConditionAnalysis, Edit, Setting};
 use crate::units::s_to_ms;
 
 use super::command::Command;
-use super::explanation::toggle_costs;
+use super::explanation::{gain_conflict_marks, toggle_costs};
 use super::heading::heading_ui;
 use super::palette::{Palette, SMALL_SIZE};
 use super::state::State;
@@ -27,27 +31,38 @@ pub fn matrix_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
     let room = (ui.available_width() - ROW_LABEL_WIDTH) / inputs.len() as f32;
     let width = room.max(LEAST_CELL_WIDTH);
     let size = vec2(ROW_LABEL_WIDTH + width * inputs.len() as f32, HEADER_HEIGHT + CELL_HEIGHT * outputs.len() as f32);
+    let (in_conflict, blamed) = state.shown().map(gain_conflict_marks).unwrap_or_default();
+    let name_color = |channel| {
+        if blamed.contains(&channel) { palette.warning } else { palette.dim_text }
+    };
     ScrollArea::horizontal().id_salt("constraint matrix").show(ui, |ui| {
         let (area, _) = ui.allocate_exact_size(size, Sense::hover());
         for (input, channel) in inputs.iter().enumerate() {
             let x = area.left() + ROW_LABEL_WIDTH + width * (input as f32 + 0.5);
-            label(ui, pos2(x, area.top() + 0.5 * HEADER_HEIGHT), Align2::CENTER_CENTER, &channel.name, palette);
+            label(
+                ui,
+                pos2(x, area.top() + 0.5 * HEADER_HEIGHT),
+                Align2::CENTER_CENTER,
+                &channel.name,
+                name_color(Channel::Input(input)),
+            );
         }
         for (output, channel) in outputs.iter().enumerate() {
             let top = area.top() + HEADER_HEIGHT + CELL_HEIGHT * output as f32;
             let place = pos2(area.left() + ROW_LABEL_WIDTH - 6.0, top + 0.5 * CELL_HEIGHT);
-            label(ui, place, Align2::RIGHT_CENTER, &channel.name, palette);
+            label(ui, place, Align2::RIGHT_CENTER, &channel.name, name_color(Channel::Output(output)));
             for input in 0..inputs.len() {
                 let left = area.left() + ROW_LABEL_WIDTH + width * input as f32;
                 let rect = Rect::from_min_size(pos2(left, top), vec2(width, CELL_HEIGHT));
-                Cell::of(state, Pair { output, input }).ui(ui, rect, palette, commands);
+                let pair = Pair { output, input };
+                Cell::of(state, pair, in_conflict.contains(&pair)).ui(ui, rect, palette, commands);
             }
         }
     });
 }
 
-fn label(ui: &Ui, place: egui::Pos2, align: Align2, text: &str, palette: &Palette) {
-    ui.painter().text(place, align, text, FontId::proportional(SMALL_SIZE), palette.dim_text);
+fn label(ui: &Ui, place: egui::Pos2, align: Align2, text: &str, color: Color32) {
+    ui.painter().text(place, align, text, FontId::proportional(SMALL_SIZE), color);
 }
 
 struct Cell<'a> {
@@ -57,13 +72,15 @@ struct Cell<'a> {
     on_axis: bool,
     constrained: bool,
     fitted: bool,
+    /// Whether it is not matched, or keeps others from being matched.
+    in_conflict: bool,
     shown: Option<&'a ConditionAnalysis>,
     /// What holding or freeing it would cost, in words; empty until that is known.
     toggle_costs: Vec<String>,
 }
 
 impl<'a> Cell<'a> {
-    fn of(state: &'a State, pair: Pair) -> Self {
+    fn of(state: &'a State, pair: Pair, in_conflict: bool) -> Self {
         Self {
             pair,
             name: state.dataset().pair_name(pair),
@@ -71,6 +88,7 @@ impl<'a> Cell<'a> {
             on_axis: state.dataset().on_axis()[pair],
             constrained: state.study.settings.constrained[pair],
             fitted: state.study.settings.fitted[pair],
+            in_conflict,
             shown: state.shown(),
             toggle_costs: toggle_costs(state, pair),
         }
@@ -84,15 +102,10 @@ impl<'a> Cell<'a> {
         self.shown.is_some() && self.gain().is_none()
     }
 
-    fn is_unmatched(&self) -> bool {
-        self.shown.is_some_and(|shown| shown.gains.unmatched.iter().any(|unmatched| unmatched.pair == self.pair))
-    }
-
     fn ui(&self, ui: &mut Ui, rect: Rect, palette: &Palette, commands: &mut Vec<Command>) {
         let response = ui.interact(rect, ui.scope_id().with(("cell", self.pair)), Sense::click());
-        response.widget_info(|| {
-            WidgetInfo::selected(Role::Button, true, self.focused, format!("Response {}", self.name))
-        });
+        response
+            .widget_info(|| WidgetInfo::selected(Role::Button, true, self.focused, format!("Response {}", self.name)));
         self.paint(ui, rect, &response, palette);
         let lock = self.lock_ui(ui, rect, palette);
         let space = response.has_focus() && ui.input(|input| input.key_pressed(Key::Space));
@@ -117,7 +130,11 @@ impl<'a> Cell<'a> {
         if self.constrained {
             ui.painter().rect_filled(square, 2.0, palette.accent);
             let stroke = Stroke::new(1.6, palette.on_accent());
-            let tick = [square.left_center() + vec2(2.0, 0.3), square.center() + vec2(-0.7, 2.4), square.right_top() + vec2(-1.8, 2.6)];
+            let tick = [
+                square.left_center() + vec2(2.0, 0.3),
+                square.center() + vec2(-0.7, 2.4),
+                square.right_top() + vec2(-1.8, 2.6),
+            ];
             ui.painter().line(tick.to_vec(), stroke);
         } else if !self.is_undefined() {
             ui.painter().rect_stroke(square, 2.0, Stroke::new(1.0, color), StrokeKind::Inside);
@@ -143,7 +160,7 @@ impl<'a> Cell<'a> {
         if self.on_axis {
             painter.rect_stroke(rect.shrink(2.0), 2.0, Stroke::new(1.2, palette.dim_text), StrokeKind::Inside);
         }
-        if self.is_unmatched() {
+        if self.in_conflict {
             painter.rect_stroke(rect.shrink(2.0), 2.0, Stroke::new(2.0, palette.warning), StrokeKind::Inside);
         }
         if self.focused || response.has_focus() {
@@ -212,7 +229,10 @@ impl<'a> Cell<'a> {
         }
         if let Some(cost) = shown.cost[self.pair] {
             let (before, after) = (cost.uncorrected, cost.corrected);
-            ui.label(format!("J_mag {:.1} → {:.1}, J_phase {:.1} → {:.1}", before.magnitude, after.magnitude, before.phase, after.phase));
+            ui.label(format!(
+                "J_mag {:.1} → {:.1}, J_phase {:.1} → {:.1}",
+                before.magnitude, after.magnitude, before.phase, after.phase
+            ));
             ui.label(format!("J {:.1} → {:.1}: {}", before.total(), after.total(), verdict(after.total())));
         }
         ui.label("Click: show it · box, double click or space: hold or free it · secondary click: more");

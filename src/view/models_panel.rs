@@ -1,6 +1,6 @@
 //! The bundles of the condition shown: which models are kept, which represents, which are suspect.
 
-use egui::{Checkbox, Rect, RichText, Sense, Ui, WidgetInfo, Role, pos2, vec2};
+use egui::{Checkbox, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use crate::dataset::{BundleKind, Model, ModelId, Origin};
 use crate::fidelity::SUGGESTION_RATIO;
@@ -20,7 +20,8 @@ pub fn physics_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands
     let suggested = state.shown().map(|shown| shown.suggested()).unwrap_or_default();
     let open: Vec<usize> = suggested.into_iter().filter(|model| !rejected.contains(model)).collect();
     ui.horizontal_wrapped(|ui| {
-        let label = if open.is_empty() { "Reject suggested".to_owned() } else { format!("Reject {} suggested", open.len()) };
+        let label =
+            if open.is_empty() { "Reject suggested".to_owned() } else { format!("Reject {} suggested", open.len()) };
         let button = ui.add_enabled(!open.is_empty(), egui::Button::new(label));
         let hint = format!("Reject every model whose discontinuity ratio exceeds {SUGGESTION_RATIO} (Ctrl+R)");
         if button.on_hover_text(&hint).on_disabled_hover_text("No kept model is suggested as an outlier").clicked() {
@@ -72,7 +73,8 @@ impl<'a> ModelRow<'a> {
             BundleKind::Physics => &shown.comparison.physics,
             BundleKind::Identified => &shown.comparison.identified,
         });
-        let ratios = shown.and_then(|shown| shown.figures.discontinuity.as_ref().ok()).filter(|_| kind == BundleKind::Physics);
+        let ratios =
+            shown.and_then(|shown| shown.figures.discontinuity.as_ref().ok()).filter(|_| kind == BundleKind::Physics);
         Self {
             id,
             model,

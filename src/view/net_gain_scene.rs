@@ -15,7 +15,9 @@ const SAMPLES: usize = 120;
 
 /// One panel for each held response: the net gain of each condition's optimum, and the schedule.
 pub fn net_gain_panels(state: &State) -> Vec<GainPanel> {
-    let Some(analysis) = state.analysis() else { return Vec::new() };
+    let Some(analysis) = state.analysis() else {
+        return Vec::new();
+    };
     state
         .study
         .settings
@@ -27,7 +29,9 @@ pub fn net_gain_panels(state: &State) -> Vec<GainPanel> {
 
 /// One panel for each input and one for each output: the channel's gain in each condition's optimum, and the schedule.
 pub fn channel_panels(state: &State) -> (Vec<GainPanel>, Vec<GainPanel>) {
-    let Some(analysis) = state.analysis() else { return (Vec::new(), Vec::new()) };
+    let Some(analysis) = state.analysis() else {
+        return (Vec::new(), Vec::new());
+    };
     let inputs = state.dataset().inputs().iter().enumerate().map(|(index, channel)| {
         panel(state, analysis, channel.name.clone(), move |correction| correction.input_gains[index])
     });

@@ -127,11 +127,7 @@ impl Palette {
 
     /// The visuals made of these colours.
     pub fn visuals(&self) -> Visuals {
-        let base = if self.is_dark {
-            Visuals::dark()
-        } else {
-            Visuals::light()
-        };
+        let base = if self.is_dark { Visuals::dark() } else { Visuals::light() };
         let shadow = Shadow {
             offset: [0, 3],
             blur: 10,
@@ -140,10 +136,7 @@ impl Palette {
         };
         Visuals {
             widgets: self.widgets(),
-            selection: Selection {
-                bg_fill: self.selected,
-                stroke: Stroke::new(1.0, self.text),
-            },
+            selection: Selection { bg_fill: self.selected, stroke: Stroke::new(1.0, self.text) },
             weak_text_color: Some(self.dim_text),
             hyperlink_color: self.accent,
             faint_bg_color: self.panel.lerp_to_gamma(self.raised, 0.5),
@@ -186,11 +179,7 @@ impl Palette {
 
     /// The whole style made of these colours: small text, close spacing, thin scroll bars.
     pub fn style(&self) -> Style {
-        let mut style = Style {
-            visuals: self.visuals(),
-            animation_time: 0.08,
-            ..Style::default()
-        };
+        let mut style = Style { visuals: self.visuals(), animation_time: 0.08, ..Style::default() };
         style.text_styles = [
             (TextStyle::Small, FontId::new(SMALL_SIZE, FontFamily::Proportional)),
             (TextStyle::Body, FontId::new(BODY_SIZE, FontFamily::Proportional)),
@@ -209,10 +198,7 @@ impl Palette {
         spacing.icon_width = 15.0;
         spacing.icon_width_inner = 9.0;
         spacing.icon_spacing = 6.0;
-        spacing.scroll = ScrollStyle {
-            bar_width: 7.0,
-            ..ScrollStyle::thin()
-        };
+        spacing.scroll = ScrollStyle { bar_width: 7.0, ..ScrollStyle::thin() };
         style
     }
 }
@@ -267,12 +253,7 @@ mod tests {
     #[test]
     fn curves_stand_out_from_the_background_of_both_themes() {
         for palette in [Palette::dark(), Palette::light()] {
-            for color in [
-                palette.nominal,
-                palette.perturbed,
-                palette.identified,
-                palette.corrected,
-            ] {
+            for color in [palette.nominal, palette.perturbed, palette.identified, palette.corrected] {
                 assert!(contrast(color, palette.background) > 3.0, "{color:?} of {palette:?}");
             }
         }

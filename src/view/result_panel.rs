@@ -1,6 +1,6 @@
 //! The result of the condition shown, in words and numbers.
 
-use egui::{Align, Button, Color32, Grid, Layout, RichText, Ui, vec2};
+use egui::{Align, Button, CollapsingHeader, Color32, Grid, Layout, RichText, Ui, vec2};
 
 use crate::correction::{GainObjective, Outcome};
 use crate::dataset::Channel;
@@ -8,7 +8,7 @@ use crate::study::ConditionAnalysis;
 use crate::units::s_to_ms;
 
 use super::command::{Command, FormKind};
-use super::explanation::{Remark, RemarkKind, remarks};
+use super::explanation::{Remark, RemarkKind, details, remarks};
 use super::heading::heading_ui;
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 use super::state::State;
@@ -31,6 +31,12 @@ pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
             for remark in remarks(state, shown) {
                 remark_ui(ui, palette, &remark);
             }
+            let header = RichText::new("In detail").size(SMALL_SIZE).color(palette.dim_text);
+            CollapsingHeader::new(header).id_salt("details").show(ui, |ui| {
+                for sentence in details(state, shown) {
+                    ui.label(RichText::new(sentence).size(SMALL_SIZE));
+                }
+            });
         }
     }
     ui.add_space(4.0);
@@ -55,20 +61,26 @@ fn header_ui(ui: &mut Ui, shown: &ConditionAnalysis, palette: &Palette) {
 }
 
 fn outcome(shown: &ConditionAnalysis, palette: &Palette) -> (&'static str, Color32, f64, &'static str) {
-    let (gap, proven) = match shown.gains.outcome {
-        Outcome::Proven { gap } => (gap, true),
-        Outcome::NotProven { gap } => (gap, false),
-    };
+    let (gap, proven) = (shown.gains.outcome.gap(), matches!(shown.gains.outcome, Outcome::Proven { .. }));
     match (shown.gains.matched, proven) {
-        (false, _) => ("not matched", palette.warning, gap, "Not every held gain can be reached; the reasons stand below"),
+        (false, _) => {
+            ("not matched", palette.warning, gap, "Not every held gain can be reached; the reasons stand below")
+        }
         (true, true) => ("proven", palette.good, gap, "No gains inside the bounds are better: a lower bound proves it"),
-        (true, false) => ("not proven", palette.warning, gap, "A better answer may exist; none is better by more than the gap"),
+        (true, false) => {
+            ("not proven", palette.warning, gap, "A better answer may exist; none is better by more than the gap")
+        }
     }
 }
 
 fn badge_ui(ui: &mut Ui, word: &str, color: Color32, palette: &Palette) -> egui::Response {
     let text = RichText::new(word).size(SMALL_SIZE).strong().color(palette.on_accent());
-    egui::Frame::new().fill(color).corner_radius(3.0).inner_margin(egui::Margin::symmetric(6, 1)).show(ui, |ui| ui.label(text)).response
+    egui::Frame::new()
+        .fill(color)
+        .corner_radius(3.0)
+        .inner_margin(egui::Margin::symmetric(6, 1))
+        .show(ui, |ui| ui.label(text))
+        .response
 }
 
 /// Inputs beside outputs.
@@ -87,7 +99,14 @@ fn channels_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &
     });
 }
 
-fn channel_table_ui(ui: &mut Ui, title: &str, channels: &[Channel], gains: &[f64], delays_s: &[f64], palette: &Palette) {
+fn channel_table_ui(
+    ui: &mut Ui,
+    title: &str,
+    channels: &[Channel],
+    gains: &[f64],
+    delays_s: &[f64],
+    palette: &Palette,
+) {
     let width = ui.available_width();
     Grid::new(title).num_columns(3).spacing([6.0, 3.0]).min_col_width(0.3 * width - 6.0).show(ui, |ui| {
         let head = |ui: &mut Ui, text: &str| ui.label(RichText::new(text).size(SMALL_SIZE).color(palette.dim_text));

@@ -1,6 +1,6 @@
 //! A selectable row that fills the width: one line of a list.
 
-use egui::{Align2, Color32, FontId, Rect, Response, Sense, Ui, WidgetInfo, Role, pos2, vec2};
+use egui::{Align2, Color32, FontId, Rect, Response, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use super::palette::Palette;
 
@@ -24,6 +24,7 @@ pub fn row_ui(ui: &mut Ui, palette: &Palette, selected: bool, pointed: bool, nam
 
 /// Paints text at `x` points from the row's left edge (from its right edge where negative), centred in height.
 pub fn row_text(ui: &Ui, row: Rect, x: f32, text: &str, size: f32, color: Color32) -> Rect {
-    let (left, align) = if x < 0.0 { (row.right() + x, Align2::RIGHT_CENTER) } else { (row.left() + x, Align2::LEFT_CENTER) };
+    let (left, align) =
+        if x < 0.0 { (row.right() + x, Align2::RIGHT_CENTER) } else { (row.left() + x, Align2::LEFT_CENTER) };
     ui.painter().text(pos2(left, row.center().y), align, text, FontId::proportional(size), color)
 }

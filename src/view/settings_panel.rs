@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{ComboBox, DragValue, Grid, Response, RichText, Slider, Ui, WidgetInfo, Role};
+use egui::{ComboBox, DragValue, Grid, Response, RichText, Role, Slider, Ui, WidgetInfo};
 
 use crate::correction::{GainBounds, GainObjective};
 use crate::dataset::Band;
@@ -106,7 +106,7 @@ impl Panel<'_, '_> {
         let (low, high) = self
             .ui
             .horizontal(|ui| {
-                                let low = named(ui.add(frequency_value(&mut min, 1e-4..=0.999 * max)), Role::SpinButton, "Band from");
+                let low = named(ui.add(frequency_value(&mut min, 1e-4..=0.999 * max)), Role::SpinButton, "Band from");
                 Self::unit(ui, palette, "–");
                 let high = named(ui.add(frequency_value(&mut max, 1.001 * min..=1e5)), Role::SpinButton, "Band to");
                 Self::unit(ui, palette, "rad/s");

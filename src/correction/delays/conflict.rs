@@ -66,39 +66,17 @@ impl DelayConflict {
         match clash.kind {
             ClashKind::SumAbove { channels, sum } => {
                 let sum_s = sum * unit_s;
-                DelayConflict::SumTooGreat {
-                    entries,
-                    channels,
-                    sum_s,
-                    bound_s,
-                    upper_s: three_digits_up(0.5 * sum_s),
-                }
+                DelayConflict::SumTooGreat { entries, channels, sum_s, bound_s, upper_s: three_digits_up(0.5 * sum_s) }
             }
-            ClashKind::SumBelow { channels, sum } => DelayConflict::NeedsLead {
-                entries,
-                channels,
-                lead_s: -sum * unit_s,
-            },
-            ClashKind::Apart {
-                greater,
-                lesser,
-                difference,
-            } => {
+            ClashKind::SumBelow { channels, sum } => {
+                DelayConflict::NeedsLead { entries, channels, lead_s: -sum * unit_s }
+            }
+            ClashKind::Apart { greater, lesser, difference } => {
                 let difference_s = difference * unit_s;
                 let upper_s = three_digits_up(difference_s);
-                DelayConflict::DifferenceTooGreat {
-                    entries,
-                    greater,
-                    lesser,
-                    difference_s,
-                    bound_s,
-                    upper_s,
-                }
+                DelayConflict::DifferenceTooGreat { entries, greater, lesser, difference_s, bound_s, upper_s }
             }
-            ClashKind::Loop { mismatch } => DelayConflict::Loop {
-                entries,
-                mismatch_s: mismatch * unit_s,
-            },
+            ClashKind::Loop { mismatch } => DelayConflict::Loop { entries, mismatch_s: mismatch * unit_s },
         }
     }
 
@@ -113,6 +91,17 @@ impl DelayConflict {
         }
     }
 
+    /// The channels whose bounds are in the way; none of a loop.
+    pub fn channels(&self) -> Vec<Channel> {
+        match *self {
+            DelayConflict::NeedsLead { channels, .. } | DelayConflict::SumTooGreat { channels, .. } => {
+                vec![channels.0, channels.1]
+            }
+            DelayConflict::DifferenceTooGreat { greater, lesser, .. } => vec![greater, lesser],
+            DelayConflict::Loop { .. } | DelayConflict::Unclear { .. } => Vec::new(),
+        }
+    }
+
     /// The conflict and what would resolve it, in words.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let name = |channel: &Channel| format!("tau_{}", channel.name(inputs, outputs));
@@ -123,39 +112,21 @@ impl DelayConflict {
             _ => format!("{} cannot all be held", pairs(entries)),
         };
         let free = |entries: &[Pair]| {
-            if entries.len() == 1 {
-                "free it"
-            } else {
-                "free one of them"
-            }
+            if entries.len() == 1 { "free it" } else { "free one of them" }
         };
         let ms = |seconds: f64| 1e3 * seconds;
         match self {
             DelayConflict::NeedsLead { entries, lead_s, .. } if entries.len() == 1 => {
-                format!(
-                    "{} needs {:.1} ms of lead: a delay cannot give it; free it.",
-                    pairs(entries),
-                    ms(*lead_s)
-                )
+                format!("{} needs {:.1} ms of lead: a delay cannot give it; free it.", pairs(entries), ms(*lead_s))
             }
-            DelayConflict::NeedsLead {
-                entries,
-                channels: (first, second),
-                lead_s,
-            } => format!(
+            DelayConflict::NeedsLead { entries, channels: (first, second), lead_s } => format!(
                 "{}: {} and {} would have to give {:.1} ms of lead together, and a delay cannot; free one of them.",
                 cannot(entries),
                 name(first),
                 name(second),
                 ms(*lead_s)
             ),
-            DelayConflict::SumTooGreat {
-                entries,
-                channels: (first, second),
-                sum_s,
-                bound_s,
-                upper_s,
-            } => format!(
+            DelayConflict::SumTooGreat { entries, channels: (first, second), sum_s, bound_s, upper_s } => format!(
                 "{}: {} and {} give at most {:.1} ms together, not {:.1}; set the upper bound to {} s or {}.",
                 cannot(entries),
                 name(first),
@@ -165,14 +136,7 @@ impl DelayConflict {
                 upper_s,
                 free(entries)
             ),
-            DelayConflict::DifferenceTooGreat {
-                entries,
-                greater,
-                lesser,
-                difference_s,
-                bound_s,
-                upper_s,
-            } => format!(
+            DelayConflict::DifferenceTooGreat { entries, greater, lesser, difference_s, bound_s, upper_s } => format!(
                 "{}: {} cannot be {:.1} ms above {} with delays <= {:.1} ms; set the upper bound to {} s or {}.",
                 cannot(entries),
                 name(greater),

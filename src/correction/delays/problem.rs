@@ -74,13 +74,7 @@ impl DelayProblem {
     /// The problem of equation (11) that fits every entry, with `alpha = 1`.
     pub fn new(wanted_s: PairTable<Option<f64>>, constrained: PairTable<bool>, upper_s: f64) -> Self {
         let fitted = PairTable::filled(wanted_s.outputs(), wanted_s.inputs(), true);
-        Self {
-            wanted_s,
-            constrained,
-            fitted,
-            upper_s,
-            alpha: 1.0,
-        }
+        Self { wanted_s, constrained, fitted, upper_s, alpha: 1.0 }
     }
 
     /// Checks shapes and figures.
@@ -92,22 +86,13 @@ impl DelayProblem {
         for (table, entries) in [("constrained", &self.constrained), ("fitted", &self.fitted)] {
             let (outputs, inputs) = (entries.outputs(), entries.inputs());
             if (outputs, inputs) != (wanted_outputs, wanted_inputs) {
-                return Err(DelayError::Shape {
-                    table,
-                    outputs,
-                    inputs,
-                    wanted_outputs,
-                    wanted_inputs,
-                });
+                return Err(DelayError::Shape { table, outputs, inputs, wanted_outputs, wanted_inputs });
             }
         }
         for (pair, delay_s) in self.wanted_s.iter() {
             match delay_s {
                 Some(delay_s) if !(-1e50..=1e50).contains(delay_s) => {
-                    return Err(DelayError::Delay {
-                        pair,
-                        delay_s: *delay_s,
-                    });
+                    return Err(DelayError::Delay { pair, delay_s: *delay_s });
                 }
                 None if self.constrained[pair] => return Err(DelayError::ConstrainedUndefined { pair }),
                 _ => {}
@@ -139,8 +124,6 @@ impl DelayProblem {
 
     /// The held entries, with their wanted delay.
     pub(crate) fn held_entries(&self) -> impl Iterator<Item = (Pair, f64)> + '_ {
-        self.constrained
-            .marked()
-            .filter_map(|pair| self.wanted_s[pair].map(|delay| (pair, delay)))
+        self.constrained.marked().filter_map(|pair| self.wanted_s[pair].map(|delay| (pair, delay)))
     }
 }

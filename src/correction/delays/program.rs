@@ -15,9 +15,8 @@ use crate::correction::scales::{Descent, Landscape, Shape};
 /// [`DelayError::Program`] where clarabel does not report the problem as solved ("almost solved" is not).
 pub(crate) fn solve_program(landscape: &Landscape) -> Result<Vec<f64>, DelayError> {
     let mut scales = landscape.lower.clone();
-    let free: Vec<usize> = (0..landscape.nodes())
-        .filter(|&node| landscape.lower[node] < landscape.upper[node])
-        .collect();
+    let free: Vec<usize> =
+        (0..landscape.nodes()).filter(|&node| landscape.lower[node] < landscape.upper[node]).collect();
     if !free.is_empty() {
         for (position, value) in interior_point(landscape, &free)?.into_iter().enumerate() {
             let node = free[position];
@@ -38,26 +37,13 @@ fn interior_point(landscape: &Landscape, free: &[usize]) -> Result<Vec<f64>, Del
     let rows = (0..size).flat_map(|column| [column, size + column]).collect();
     let signs = (0..size).flat_map(|_| [1.0, -1.0]).collect();
     let sides = CscMatrix::new(2 * size, size, columns, rows, signs);
-    let ends = free
-        .iter()
-        .map(|&node| landscape.upper[node])
-        .chain(free.iter().map(|&node| -landscape.lower[node]));
+    let ends = free.iter().map(|&node| landscape.upper[node]).chain(free.iter().map(|&node| -landscape.lower[node]));
     let ends: Vec<f64> = ends.collect();
-    let settings = DefaultSettings {
-        verbose: false,
-        presolve_enable: false,
-        ..DefaultSettings::default()
-    };
+    let settings = DefaultSettings { verbose: false, presolve_enable: false, ..DefaultSettings::default() };
     let failed = |reason: String| DelayError::Program { reason };
-    let mut solver = DefaultSolver::new(
-        &quadratic,
-        slope.as_slice(),
-        &sides,
-        &ends,
-        &[NonnegativeConeT(2 * size)],
-        settings,
-    )
-    .map_err(|error| failed(error.to_string()))?;
+    let mut solver =
+        DefaultSolver::new(&quadratic, slope.as_slice(), &sides, &ends, &[NonnegativeConeT(2 * size)], settings)
+            .map_err(|error| failed(error.to_string()))?;
     solver.solve();
     match solver.solution.status {
         SolverStatus::Solved => Ok(solver.solution.x),

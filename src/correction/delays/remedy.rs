@@ -18,24 +18,14 @@ impl DelayRemedy {
     /// The remedy of the change `remedy`, given in units of `unit_s`.
     pub(crate) fn new(remedy: Remedy, unit_s: f64, bound_s: f64) -> Self {
         let upper_s = remedy.upper.map(|upper| three_digits_up(upper * unit_s).max(bound_s));
-        Self {
-            upper_s,
-            free: remedy.free,
-        }
+        Self { upper_s, free: remedy.free }
     }
 
     /// The remedies in words; empty where there is none.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let upper = self.upper_s.map(|upper| format!("an upper bound of {upper} s"));
-        let free = self
-            .free
-            .iter()
-            .map(|&pair| format!("freeing {}", pair_name(pair, inputs, outputs)));
+        let free = self.free.iter().map(|&pair| format!("freeing {}", pair_name(pair, inputs, outputs)));
         let ways: Vec<String> = upper.into_iter().chain(free).collect();
-        if ways.is_empty() {
-            String::new()
-        } else {
-            format!("Any one of these lets all be held: {}.", ways.join("; "))
-        }
+        if ways.is_empty() { String::new() } else { format!("Any one of these lets all be held: {}.", ways.join("; ")) }
     }
 }

@@ -36,10 +36,7 @@ impl DelaySensitivity {
         match self.restraint {
             DelayRestraint::Held(pair) => {
                 let change = if self.per_ms > 0.0 { "less" } else { "more" };
-                format!(
-                    "{} is held: 1 ms {change} delay {effect}.",
-                    pair_name(pair, inputs, outputs)
-                )
+                format!("{} is held: 1 ms {change} delay {effect}.", pair_name(pair, inputs, outputs))
             }
             DelayRestraint::Zero(channel) => {
                 format!("tau_{} is 0: 1 ms of lead {effect}.", channel.name(inputs, outputs))
@@ -71,49 +68,20 @@ pub fn delay_sensitivities(problem: &DelayProblem, solution: &DelaySolution) -> 
     }
     let on = |delay: &f64| (*delay == 0.0, *delay == problem.upper_s);
     let at_bounds = solution.inputs_s.iter().chain(&solution.outputs_s).map(on).collect();
-    let found = multipliers(&Restrained {
-        inputs,
-        slopes,
-        at_bounds,
-        held: &held,
-    });
+    let found = multipliers(&Restrained { inputs, slopes, at_bounds, held: &held });
     let sensitivity = |restraint: DelayRestraint, slope: f64| {
         let per_ms = 1e-3 * slope;
-        let share_per_ms = if solution.objective > 0.0 {
-            per_ms / solution.objective
-        } else {
-            0.0
-        };
-        DelaySensitivity {
-            restraint,
-            per_ms,
-            share_per_ms,
-        }
+        let share_per_ms = if solution.objective > 0.0 { per_ms / solution.objective } else { 0.0 };
+        DelaySensitivity { restraint, per_ms, share_per_ms }
     };
-    let of_held = held
-        .iter()
-        .zip(&found.held)
-        .map(|(pair, slope)| sensitivity(DelayRestraint::Held(*pair), *slope));
-    let of_bounds = found
-        .bounds
-        .iter()
-        .enumerate()
-        .filter(|(_, slope)| **slope != 0.0)
-        .map(|(index, slope)| {
-            let channel = if index < inputs {
-                Channel::Input(index)
-            } else {
-                Channel::Output(index - inputs)
-            };
-            sensitivity(
-                if *slope < 0.0 {
-                    DelayRestraint::UpperBound(channel)
-                } else {
-                    DelayRestraint::Zero(channel)
-                },
-                *slope,
-            )
-        });
+    let of_held = held.iter().zip(&found.held).map(|(pair, slope)| sensitivity(DelayRestraint::Held(*pair), *slope));
+    let of_bounds = found.bounds.iter().enumerate().filter(|(_, slope)| **slope != 0.0).map(|(index, slope)| {
+        let channel = if index < inputs { Channel::Input(index) } else { Channel::Output(index - inputs) };
+        sensitivity(
+            if *slope < 0.0 { DelayRestraint::UpperBound(channel) } else { DelayRestraint::Zero(channel) },
+            *slope,
+        )
+    });
     let mut all: Vec<DelaySensitivity> = of_held.chain(of_bounds).collect();
     all.sort_by(|a, b| b.per_ms.abs().total_cmp(&a.per_ms.abs()));
     all

@@ -72,11 +72,8 @@ impl DelaySolution {
     pub fn words(&self, omega_top: f64, inputs: &[String], outputs: &[String]) -> Vec<String> {
         let misses = self.unmatched.iter().map(|miss| miss.words(omega_top, inputs, outputs));
         let conflicts = self.conflicts.iter().map(|conflict| conflict.words(inputs, outputs));
-        let remedies = self
-            .remedy
-            .iter()
-            .map(|remedy| remedy.words(inputs, outputs))
-            .filter(|remedy| !remedy.is_empty());
+        let remedies =
+            self.remedy.iter().map(|remedy| remedy.words(inputs, outputs)).filter(|remedy| !remedy.is_empty());
         misses.chain(conflicts).chain(remedies).collect()
     }
 }

@@ -30,10 +30,7 @@ pub fn solve_delays(problem: &DelayProblem) -> Result<DelaySolution, DelayError>
     let held = Held {
         outputs: problem.wanted_s.outputs(),
         inputs: problem.wanted_s.inputs(),
-        entries: problem
-            .held_entries()
-            .map(|(pair, wanted)| (pair, wanted / unit_s))
-            .collect(),
+        entries: problem.held_entries().map(|(pair, wanted)| (pair, wanted / unit_s)).collect(),
         range: (0.0, (problem.upper_s / unit_s).min(most)),
     };
     let reached = reach(&held, solve_program)?;
@@ -60,11 +57,8 @@ pub fn solve_delays(problem: &DelayProblem) -> Result<DelaySolution, DelayError>
 
 /// The greatest time of the problem, or one second where every time is 0.
 fn unit(problem: &DelayProblem) -> f64 {
-    let wanted = problem
-        .wanted_s
-        .iter()
-        .filter_map(|(_, delay)| *delay)
-        .fold(0.0_f64, |most, delay| most.max(delay.abs()));
+    let wanted =
+        problem.wanted_s.iter().filter_map(|(_, delay)| *delay).fold(0.0_f64, |most, delay| most.max(delay.abs()));
     // A bound far above what any channel could be asked for says nothing about the size of the answer.
     let unit = if wanted > 0.0 { wanted } else { problem.upper_s };
     if unit > 0.0 { unit } else { 1.0 }
@@ -75,35 +69,20 @@ fn landscape(problem: &DelayProblem, components: &Components, unit_s: f64) -> La
     let fit = problem.fit_entries().map(|(pair, wanted)| {
         let (output, input) = (components.outputs[pair.output], components.inputs[pair.input]);
         let (wanted, offset) = (wanted / unit_s, output.offset + input.offset);
-        Entry {
-            output: output.component,
-            input: input.component,
-            share: 1.0,
-            wanted,
-            offset,
-        }
+        Entry { output: output.component, input: input.component, share: 1.0, wanted, offset }
     });
-    let departure = components
-        .outputs
-        .iter()
-        .filter(|_| problem.alpha > 0.0)
-        .map(|output| Entry {
-            output: output.component,
-            input: ground,
-            share: problem.alpha,
-            wanted: 0.0,
-            offset: output.offset,
-        });
+    let departure = components.outputs.iter().filter(|_| problem.alpha > 0.0).map(|output| Entry {
+        output: output.component,
+        input: ground,
+        share: problem.alpha,
+        wanted: 0.0,
+        offset: output.offset,
+    });
     let (links, constant) = parabolas(&fit.chain(departure).collect::<Vec<_>>(), ground + 1);
     let (mut lower, mut upper) = (components.lower.clone(), components.upper.clone());
     lower.push(0.0);
     upper.push(0.0);
-    Landscape {
-        lower,
-        upper,
-        links,
-        constant,
-    }
+    Landscape { lower, upper, links, constant }
 }
 
 /// The limit `alpha -> 0+`: a free common shift goes where the output delays are least (inputs, where there is no output).
@@ -111,10 +90,7 @@ fn settle_delays(components: &Components, landscape: &Landscape, scales: &mut [f
     settle(landscape, scales, |nodes, scales| {
         let (inputs, outputs) = components.channels(scales);
         let mean = |channels: &[Placement], values: &[f64]| {
-            let inside = channels
-                .iter()
-                .zip(values)
-                .filter(|(channel, _)| nodes.contains(&channel.component));
+            let inside = channels.iter().zip(values).filter(|(channel, _)| nodes.contains(&channel.component));
             let (sum, count) = inside.fold((0.0, 0.0), |(sum, count), (_, value)| (sum + value, count + 1.0));
             if count > 0.0 { Some(sum / count) } else { None }
         };
@@ -154,20 +130,13 @@ fn misses(
     let clashes = clashes(held, reached, MATCHED);
     let why = |pair: Pair| match clashes.iter().find(|(missed, _)| *missed == pair) {
         Some((_, clash)) => DelayConflict::new(clash.clone(), unit_s, problem.upper_s),
-        None => DelayConflict::Unclear {
-            entries: held.entries.iter().map(|(pair, _)| *pair).collect(),
-        },
+        None => DelayConflict::Unclear { entries: held.entries.iter().map(|(pair, _)| *pair).collect() },
     };
     let mut unmatched = Vec::new();
     for ((pair, wanted), (_, target)) in held.entries.iter().zip(&reached.targets) {
         if (target - wanted).abs() > MATCHED {
             let (wanted_s, target_s) = (wanted * unit_s, target * unit_s);
-            unmatched.push(UnmatchedDelay {
-                pair: *pair,
-                wanted_s,
-                target_s,
-                why: why(*pair),
-            });
+            unmatched.push(UnmatchedDelay { pair: *pair, wanted_s, target_s, why: why(*pair) });
         }
     }
     let mut conflicts: Vec<DelayConflict> = Vec::new();
@@ -180,21 +149,13 @@ fn misses(
             conflicts.push(miss.why.clone());
         }
     }
-    conflicts.sort_by_key(|conflict| {
-        (
-            !matches!(conflict, DelayConflict::Loop { .. }),
-            conflict.entries().len(),
-        )
-    });
+    conflicts.sort_by_key(|conflict| (!matches!(conflict, DelayConflict::Loop { .. }), conflict.entries().len()));
     (unmatched, conflicts)
 }
 
 /// What would let everything be held, where something cannot.
 fn remedy_of(problem: &DelayProblem, held: &Held, conflicts: &[DelayConflict], unit_s: f64) -> Option<DelayRemedy> {
-    let mut suspects: Vec<Pair> = conflicts
-        .iter()
-        .flat_map(|conflict| conflict.entries().iter().copied())
-        .collect();
+    let mut suspects: Vec<Pair> = conflicts.iter().flat_map(|conflict| conflict.entries().iter().copied()).collect();
     suspects.sort();
     suspects.dedup();
     (!suspects.is_empty()).then(|| DelayRemedy::new(remedy(held, &suspects), unit_s, problem.upper_s))

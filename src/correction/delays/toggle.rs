@@ -35,21 +35,8 @@ impl DelayToggle {
     }
 
     fn price(&self) -> Price {
-        let Self {
-            pair,
-            held_now,
-            matched_after,
-            before,
-            after,
-            ..
-        } = *self;
-        Price {
-            pair,
-            held_now,
-            matched_after,
-            before,
-            after,
-        }
+        let Self { pair, held_now, matched_after, before, after, .. } = *self;
+        Price { pair, held_now, matched_after, before, after }
     }
 }
 

@@ -75,48 +75,18 @@ impl GainConflict {
         match clash.kind {
             ClashKind::SumAbove { channels, sum } => {
                 let upper = three_digits_up((0.5 * sum).exp());
-                GainConflict::ProductTooGreat {
-                    entries,
-                    channels,
-                    product: sum.exp(),
-                    bounds,
-                    upper,
-                }
+                GainConflict::ProductTooGreat { entries, channels, product: sum.exp(), bounds, upper }
             }
             ClashKind::SumBelow { channels, sum } => {
                 let lower = three_digits_down((0.5 * sum).exp());
-                GainConflict::ProductTooSmall {
-                    entries,
-                    channels,
-                    product: sum.exp(),
-                    bounds,
-                    lower,
-                }
+                GainConflict::ProductTooSmall { entries, channels, product: sum.exp(), bounds, lower }
             }
-            ClashKind::Apart {
-                greater,
-                lesser,
-                difference,
-            } => {
+            ClashKind::Apart { greater, lesser, difference } => {
                 let ratio = difference.exp();
-                let (upper, lower) = (
-                    three_digits_up(bounds.lower * ratio),
-                    three_digits_down(bounds.upper / ratio),
-                );
-                GainConflict::RatioTooGreat {
-                    entries,
-                    greater,
-                    lesser,
-                    ratio,
-                    bounds,
-                    upper,
-                    lower,
-                }
+                let (upper, lower) = (three_digits_up(bounds.lower * ratio), three_digits_down(bounds.upper / ratio));
+                GainConflict::RatioTooGreat { entries, greater, lesser, ratio, bounds, upper, lower }
             }
-            ClashKind::Loop { mismatch } => GainConflict::Loop {
-                entries,
-                mismatch_db: mismatch * DECIBEL,
-            },
+            ClashKind::Loop { mismatch } => GainConflict::Loop { entries, mismatch_db: mismatch * DECIBEL },
         }
     }
 
@@ -131,6 +101,17 @@ impl GainConflict {
         }
     }
 
+    /// The channels whose bounds are in the way; none of a loop.
+    pub fn channels(&self) -> Vec<Channel> {
+        match *self {
+            GainConflict::ProductTooGreat { channels, .. } | GainConflict::ProductTooSmall { channels, .. } => {
+                vec![channels.0, channels.1]
+            }
+            GainConflict::RatioTooGreat { greater, lesser, .. } => vec![greater, lesser],
+            GainConflict::Loop { .. } | GainConflict::Unclear { .. } => Vec::new(),
+        }
+    }
+
     /// The conflict and what would resolve it, in words.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let name = |channel: &Channel| format!("k_{}", channel.name(inputs, outputs));
@@ -141,20 +122,10 @@ impl GainConflict {
             _ => format!("{} cannot all be held", pairs(entries)),
         };
         let free = |entries: &[Pair]| {
-            if entries.len() == 1 {
-                "free it"
-            } else {
-                "free one of them"
-            }
+            if entries.len() == 1 { "free it" } else { "free one of them" }
         };
         match self {
-            GainConflict::ProductTooGreat {
-                entries,
-                channels: (first, second),
-                product,
-                bounds,
-                upper,
-            } => format!(
+            GainConflict::ProductTooGreat { entries, channels: (first, second), product, bounds, upper } => format!(
                 "{}: with gains <= {:.3} the product {} {} is at most {:.3}, not {product:.3}; set the upper bound to {upper} or {}.",
                 cannot(entries),
                 bounds.upper,
@@ -163,13 +134,7 @@ impl GainConflict {
                 bounds.upper.powi(2),
                 free(entries)
             ),
-            GainConflict::ProductTooSmall {
-                entries,
-                channels: (first, second),
-                product,
-                bounds,
-                lower,
-            } => format!(
+            GainConflict::ProductTooSmall { entries, channels: (first, second), product, bounds, lower } => format!(
                 "{}: with gains >= {:.3} the product {} {} is at least {:.3}, not {product:.3}; set the lower bound to {lower} or {}.",
                 cannot(entries),
                 bounds.lower,
@@ -178,15 +143,7 @@ impl GainConflict {
                 bounds.lower.powi(2),
                 free(entries)
             ),
-            GainConflict::RatioTooGreat {
-                entries,
-                greater,
-                lesser,
-                ratio,
-                bounds,
-                upper,
-                lower,
-            } => format!(
+            GainConflict::RatioTooGreat { entries, greater, lesser, ratio, bounds, upper, lower } => format!(
                 "{}: with {} <= {:.3} and {} >= {:.3} their ratio is at most {:.3}, not {ratio:.3}; set the upper bound to {upper}, \
                  or the lower bound to {lower}, or {}.",
                 cannot(entries),

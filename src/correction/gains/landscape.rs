@@ -30,17 +30,13 @@ pub(crate) fn landscape(problem: &GainProblem, components: &Components) -> Lands
             offset: output.offset + input.offset,
         }
     });
-    let departure = components
-        .outputs
-        .iter()
-        .filter(|_| problem.alpha > 0.0)
-        .map(|output| Term {
-            output_component: output.component,
-            input_component: ground,
-            share: problem.alpha,
-            wanted: 1.0,
-            offset: output.offset,
-        });
+    let departure = components.outputs.iter().filter(|_| problem.alpha > 0.0).map(|output| Term {
+        output_component: output.component,
+        input_component: ground,
+        share: problem.alpha,
+        wanted: 1.0,
+        offset: output.offset,
+    });
     let terms: Vec<Term> = fit.chain(departure).collect();
     let (links, constant) = match problem.objective {
         GainObjective::Ratio => ratio_links(&terms, ground),
@@ -49,12 +45,7 @@ pub(crate) fn landscape(problem: &GainProblem, components: &Components) -> Lands
     let (mut lower, mut upper) = (components.lower.clone(), components.upper.clone());
     lower.push(0.0);
     upper.push(0.0);
-    Landscape {
-        lower,
-        upper,
-        links,
-        constant,
-    }
+    Landscape { lower, upper, links, constant }
 }
 
 /// One link for each two nodes that share an entry: `forward` holds the entries whose input has the greater index.
@@ -80,11 +71,7 @@ fn ratio_links(terms: &[Term], ground: usize) -> (Vec<Link>, Sum) {
             constant.join(ahead);
             constant.join(behind);
             if !(forward.is_flat() && backward.is_flat()) {
-                links.push(Link {
-                    from,
-                    to,
-                    shape: Shape::wells(forward, backward),
-                });
+                links.push(Link { from, to, shape: Shape::wells(forward, backward) });
             }
         }
     }

@@ -100,14 +100,7 @@ impl GainProblem {
     /// The problem of equation (7) that fits every entry: `alpha = 1`, the paper's objective.
     pub fn new(wanted: PairTable<Option<f64>>, constrained: PairTable<bool>, bounds: GainBounds) -> Self {
         let fitted = PairTable::filled(wanted.outputs(), wanted.inputs(), true);
-        Self {
-            wanted,
-            constrained,
-            fitted,
-            bounds,
-            alpha: 1.0,
-            objective: GainObjective::Ratio,
-        }
+        Self { wanted, constrained, fitted, bounds, alpha: 1.0, objective: GainObjective::Ratio }
     }
 
     /// Checks shapes and figures.
@@ -119,13 +112,7 @@ impl GainProblem {
         for (table, entries) in [("constrained", &self.constrained), ("fitted", &self.fitted)] {
             let (outputs, inputs) = (entries.outputs(), entries.inputs());
             if (outputs, inputs) != (wanted_outputs, wanted_inputs) {
-                return Err(GainError::Shape {
-                    table,
-                    outputs,
-                    inputs,
-                    wanted_outputs,
-                    wanted_inputs,
-                });
+                return Err(GainError::Shape { table, outputs, inputs, wanted_outputs, wanted_inputs });
             }
         }
         for (pair, gain) in self.wanted.iter() {
@@ -151,10 +138,8 @@ impl GainProblem {
             GainObjective::Ratio => (wanted - gain).powi(2),
             GainObjective::Decibel => (20.0 * (wanted / gain).log10()).powi(2),
         };
-        let fit: f64 = self
-            .fit_entries()
-            .map(|(pair, wanted)| error(wanted, outputs[pair.output] * inputs[pair.input]))
-            .sum();
+        let fit: f64 =
+            self.fit_entries().map(|(pair, wanted)| error(wanted, outputs[pair.output] * inputs[pair.input])).sum();
         // Skipped at alpha = 0, where it would only add rounding.
         if self.alpha == 0.0 {
             fit
@@ -173,8 +158,6 @@ impl GainProblem {
 
     /// The held entries, with their wanted gain.
     pub(crate) fn held_entries(&self) -> impl Iterator<Item = (Pair, f64)> + '_ {
-        self.constrained
-            .marked()
-            .filter_map(|pair| self.wanted[pair].map(|gain| (pair, gain)))
+        self.constrained.marked().filter_map(|pair| self.wanted[pair].map(|gain| (pair, gain)))
     }
 }

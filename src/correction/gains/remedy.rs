@@ -22,29 +22,16 @@ impl GainRemedy {
     pub(crate) fn new(remedy: Remedy, bounds: GainBounds) -> Self {
         // A bound that is not the obstacle stays as it is.
         let upper = remedy.upper.map(|upper| three_digits_up(upper.exp()).max(bounds.upper));
-        let lower = remedy
-            .lower
-            .map(|lower| three_digits_down(lower.exp()).min(bounds.lower));
-        Self {
-            upper,
-            lower,
-            free: remedy.free,
-        }
+        let lower = remedy.lower.map(|lower| three_digits_down(lower.exp()).min(bounds.lower));
+        Self { upper, lower, free: remedy.free }
     }
 
     /// The remedies in words; empty where there is none.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let upper = self.upper.map(|upper| format!("an upper bound of {upper}"));
         let lower = self.lower.map(|lower| format!("a lower bound of {lower}"));
-        let free = self
-            .free
-            .iter()
-            .map(|&pair| format!("freeing {}", pair_name(pair, inputs, outputs)));
+        let free = self.free.iter().map(|&pair| format!("freeing {}", pair_name(pair, inputs, outputs)));
         let ways: Vec<String> = upper.into_iter().chain(lower).chain(free).collect();
-        if ways.is_empty() {
-            String::new()
-        } else {
-            format!("Any one of these lets all be held: {}.", ways.join("; "))
-        }
+        if ways.is_empty() { String::new() } else { format!("Any one of these lets all be held: {}.", ways.join("; ")) }
     }
 }

@@ -38,22 +38,13 @@ impl GainSensitivity {
         let effect = format!("by 1 dB would lower the objective by about {percent:.2} %");
         match self.restraint {
             GainRestraint::Held(pair) => {
-                format!(
-                    "{} is held: {change} its gain {effect}.",
-                    pair_name(pair, inputs, outputs)
-                )
+                format!("{} is held: {change} its gain {effect}.", pair_name(pair, inputs, outputs))
             }
             GainRestraint::LowerBound(channel) => {
-                format!(
-                    "k_{} is on its lower bound: {change} the bound {effect}.",
-                    channel.name(inputs, outputs)
-                )
+                format!("k_{} is on its lower bound: {change} the bound {effect}.", channel.name(inputs, outputs))
             }
             GainRestraint::UpperBound(channel) => {
-                format!(
-                    "k_{} is on its upper bound: {change} the bound {effect}.",
-                    channel.name(inputs, outputs)
-                )
+                format!("k_{} is on its upper bound: {change} the bound {effect}.", channel.name(inputs, outputs))
             }
         }
     }
@@ -74,44 +65,17 @@ pub fn gain_sensitivities(problem: &GainProblem, solution: &GainSolution) -> Vec
     let found = multipliers(&minimum);
     let sensitivity = |restraint: GainRestraint, slope: f64| {
         let per_db = slope / DECIBEL;
-        let share_per_db = if solution.objective > 0.0 {
-            per_db / solution.objective
-        } else {
-            0.0
-        };
-        GainSensitivity {
-            restraint,
-            per_db,
-            share_per_db,
-        }
+        let share_per_db = if solution.objective > 0.0 { per_db / solution.objective } else { 0.0 };
+        GainSensitivity { restraint, per_db, share_per_db }
     };
-    let of_held = held
-        .iter()
-        .zip(&found.held)
-        .map(|(pair, slope)| sensitivity(GainRestraint::Held(*pair), *slope));
-    let of_bounds = found
-        .bounds
-        .iter()
-        .enumerate()
-        .filter(|(_, slope)| **slope != 0.0)
-        .map(|(index, slope)| {
-            let inputs = minimum.inputs;
-            let channel = if index < inputs {
-                Channel::Input(index)
-            } else {
-                Channel::Output(index - inputs)
-            };
-            // The objective falls as the upper bound is raised, or the lower one lowered.
-            let upper = *slope < 0.0;
-            sensitivity(
-                if upper {
-                    GainRestraint::UpperBound(channel)
-                } else {
-                    GainRestraint::LowerBound(channel)
-                },
-                *slope,
-            )
-        });
+    let of_held = held.iter().zip(&found.held).map(|(pair, slope)| sensitivity(GainRestraint::Held(*pair), *slope));
+    let of_bounds = found.bounds.iter().enumerate().filter(|(_, slope)| **slope != 0.0).map(|(index, slope)| {
+        let inputs = minimum.inputs;
+        let channel = if index < inputs { Channel::Input(index) } else { Channel::Output(index - inputs) };
+        // The objective falls as the upper bound is raised, or the lower one lowered.
+        let upper = *slope < 0.0;
+        sensitivity(if upper { GainRestraint::UpperBound(channel) } else { GainRestraint::LowerBound(channel) }, *slope)
+    });
     let mut all: Vec<GainSensitivity> = of_held.chain(of_bounds).collect();
     all.sort_by(|a, b| b.per_db.abs().total_cmp(&a.per_db.abs()));
     all

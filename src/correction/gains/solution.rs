@@ -18,10 +18,7 @@ pub struct ProofBudget {
 impl Default for ProofBudget {
     /// Far more than a condition needs for the proof, and at most a millisecond or two for the other minima.
     fn default() -> Self {
-        Self {
-            boxes: 20_000,
-            minima: 300,
-        }
+        Self { boxes: 20_000, minima: 300 }
     }
 }
 
@@ -41,15 +38,19 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// `(objective - lower bound) / objective`.
+    pub fn gap(self) -> f64 {
+        match self {
+            Outcome::Proven { gap } | Outcome::NotProven { gap } => gap,
+        }
+    }
+
     /// The outcome in words.
     pub fn words(self) -> String {
         match self {
             Outcome::Proven { .. } => "Proven: no gains within the bounds are better.".to_owned(),
             Outcome::NotProven { gap } => {
-                format!(
-                    "Not proven: gains that are up to {:.2} % better may exist.",
-                    100.0 * gap
-                )
+                format!("Not proven: gains that are up to {:.2} % better may exist.", 100.0 * gap)
             }
         }
     }
@@ -85,10 +86,7 @@ impl UnmatchedGain {
     /// The miss in words.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let pair = pair_name(self.pair, inputs, outputs);
-        format!(
-            "{pair} is held at {:.3} instead of {:.3} ({:+.1} dB).",
-            self.target, self.wanted, self.shortfall_db
-        )
+        format!("{pair} is held at {:.3} instead of {:.3} ({:+.1} dB).", self.target, self.wanted, self.shortfall_db)
     }
 }
 
@@ -131,19 +129,12 @@ impl GainSolution {
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> Vec<String> {
         let mut words = vec![self.outcome.words()];
         if self.local_minima.len() > 1 {
-            words.push(format!(
-                "{} different sets of gains are within 1 % of each other.",
-                self.local_minima.len()
-            ));
+            words.push(format!("{} different sets of gains are within 1 % of each other.", self.local_minima.len()));
         }
         words.extend(self.unmatched.iter().map(|miss| miss.words(inputs, outputs)));
         words.extend(self.conflicts.iter().map(|conflict| conflict.words(inputs, outputs)));
-        words.extend(
-            self.remedy
-                .iter()
-                .map(|remedy| remedy.words(inputs, outputs))
-                .filter(|remedy| !remedy.is_empty()),
-        );
+        words
+            .extend(self.remedy.iter().map(|remedy| remedy.words(inputs, outputs)).filter(|remedy| !remedy.is_empty()));
         words
     }
 }

@@ -22,6 +22,20 @@ pub(crate) const MATCHED: f64 = 1e-8;
 /// Entries that the bounds or their own loops do not allow are held at the nearest products that are possible (least squares in
 /// logarithms), and reported.
 ///
+/// ```
+/// use gdcm::correction::{GainBounds, GainProblem, Outcome, ProofBudget, solve_gains};
+/// use gdcm::dataset::{Pair, PairTable};
+///
+/// let delta_gains = [[1.2, 0.8], [0.9, 1.1]];
+/// let wanted = PairTable::from_fn(2, 2, |pair| Some(delta_gains[pair.output][pair.input]));
+/// let held = PairTable::from_fn(2, 2, |pair| pair == Pair::new(0, 0));
+/// let problem = GainProblem::new(wanted, held, GainBounds { lower: 0.5, upper: 2.0 });
+/// let solution = solve_gains(&problem, ProofBudget::default())?;
+/// assert!((solution.outputs[0] * solution.inputs[0] - 1.2).abs() < 1e-12);
+/// assert!(matches!(solution.outcome, Outcome::Proven { .. }));
+/// # Ok::<(), gdcm::correction::GainError>(())
+/// ```
+///
 /// # Errors
 /// [`GainError`] where the problem is not well posed ([`GainProblem::check`]).
 pub fn solve_gains(problem: &GainProblem, budget: ProofBudget) -> Result<GainSolution, GainError> {
@@ -41,15 +55,8 @@ pub fn solve_gains_until(
     let held = held(problem);
     let reached = reach_gains(&held);
     let landscape = landscape(problem, &reached.components);
-    let mut found = search(
-        &landscape,
-        Effort {
-            boxes: budget.boxes,
-            listing: budget.minima,
-            floor: floor(problem),
-            stop,
-        },
-    );
+    let mut found =
+        search(&landscape, Effort { boxes: budget.boxes, listing: budget.minima, floor: floor(problem), stop });
     for (scales, _) in &mut found.minima {
         settle_gains(problem, &reached.components, &landscape, scales);
     }
@@ -61,10 +68,7 @@ pub(crate) fn held(problem: &GainProblem) -> Held {
     Held {
         outputs: problem.wanted.outputs(),
         inputs: problem.wanted.inputs(),
-        entries: problem
-            .held_entries()
-            .map(|(pair, wanted)| (pair, wanted.ln()))
-            .collect(),
+        entries: problem.held_entries().map(|(pair, wanted)| (pair, wanted.ln())).collect(),
         range: (problem.bounds.lower.ln(), problem.bounds.upper.ln()),
     }
 }
@@ -72,15 +76,9 @@ pub(crate) fn held(problem: &GainProblem) -> Held {
 /// Stage 1 of M8.
 pub(crate) fn reach_gains(held: &Held) -> Reached {
     let nearest = |landscape: &Landscape| {
-        let mut point: Vec<f64> = landscape
-            .lower
-            .iter()
-            .zip(&landscape.upper)
-            .map(|(low, high)| 0.0_f64.clamp(*low, *high))
-            .collect();
-        Descent::new(landscape.nodes()).run(landscape, (&landscape.lower, &landscape.upper), &mut point, |_, _| {
-            false
-        });
+        let mut point: Vec<f64> =
+            landscape.lower.iter().zip(&landscape.upper).map(|(low, high)| 0.0_f64.clamp(*low, *high)).collect();
+        Descent::new(landscape.nodes()).run(landscape, (&landscape.lower, &landscape.upper), &mut point, |_, _| false);
         Ok::<_, Infallible>(point)
     };
     match reach(held, nearest) {
@@ -107,24 +105,17 @@ fn settle_gains(problem: &GainProblem, components: &Components, landscape: &Land
         let (inputs, outputs) = components.channels(scales);
         let of_piece = |channels: &[crate::correction::components::Placement], values: &[f64]| -> Vec<f64> {
             let pairs = channels.iter().zip(values);
-            pairs
-                .filter(|(channel, _)| nodes.contains(&channel.component))
-                .map(|(_, value)| *value)
-                .collect()
+            pairs.filter(|(channel, _)| nodes.contains(&channel.component)).map(|(_, value)| *value).collect()
         };
-        let (inputs, outputs) = (
-            of_piece(&components.inputs, &inputs),
-            of_piece(&components.outputs, &outputs),
-        );
+        let (inputs, outputs) = (of_piece(&components.inputs, &inputs), of_piece(&components.outputs, &outputs));
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
         match (problem.objective, outputs.is_empty(), inputs.is_empty()) {
             (_, true, true) => 0.0,
             (_, true, false) => -mean(&inputs),
             (GainObjective::Decibel, false, _) => mean(&outputs),
             (GainObjective::Ratio, false, _) => {
-                let (sum, square) = outputs
-                    .iter()
-                    .fold((0.0, 0.0), |(sum, square), x| (sum + x.exp(), square + (2.0 * x).exp()));
+                let (sum, square) =
+                    outputs.iter().fold((0.0, 0.0), |(sum, square), x| (sum + x.exp(), square + (2.0 * x).exp()));
                 (square / sum).ln()
             }
         }
@@ -153,20 +144,13 @@ fn assemble(problem: &GainProblem, held: &Held, reached: &Reached, found: &Found
     let minimum = |(scales, _): &(Vec<f64>, f64)| {
         let (inputs, outputs) = gains_at(problem, &reached.components, scales);
         let objective = problem.objective_at(&inputs, &outputs);
-        LocalMinimum {
-            inputs,
-            outputs,
-            objective,
-        }
+        LocalMinimum { inputs, outputs, objective }
     };
     let local_minima: Vec<LocalMinimum> = found.minima.iter().map(minimum).collect();
     let best = local_minima[0].clone();
     let (unmatched, conflicts) = misses(problem, held, reached);
-    let outcome = if found.gap <= PROOF {
-        Outcome::Proven { gap: found.gap }
-    } else {
-        Outcome::NotProven { gap: found.gap }
-    };
+    let outcome =
+        if found.gap <= PROOF { Outcome::Proven { gap: found.gap } } else { Outcome::NotProven { gap: found.gap } };
     let mut targets = PairTable::filled(held.outputs, held.inputs, None);
     for (pair, target) in &reached.targets {
         targets[*pair] = Some(target.exp());
@@ -194,9 +178,7 @@ fn misses(problem: &GainProblem, held: &Held, reached: &Reached) -> (Vec<Unmatch
     let clashes = clashes(held, reached, MATCHED);
     let why = |pair: Pair| match clashes.iter().find(|(missed, _)| *missed == pair) {
         Some((_, clash)) => GainConflict::new(clash.clone(), problem.bounds),
-        None => GainConflict::Unclear {
-            entries: held.entries.iter().map(|(pair, _)| *pair).collect(),
-        },
+        None => GainConflict::Unclear { entries: held.entries.iter().map(|(pair, _)| *pair).collect() },
     };
     let mut unmatched = Vec::new();
     for ((pair, wanted), (_, target)) in held.entries.iter().zip(&reached.targets) {
@@ -227,10 +209,7 @@ fn misses(problem: &GainProblem, held: &Held, reached: &Reached) -> (Vec<Unmatch
 
 /// What would let everything be held, where something cannot.
 fn remedy_of(problem: &GainProblem, held: &Held, conflicts: &[GainConflict]) -> Option<GainRemedy> {
-    let mut suspects: Vec<Pair> = conflicts
-        .iter()
-        .flat_map(|conflict| conflict.entries().iter().copied())
-        .collect();
+    let mut suspects: Vec<Pair> = conflicts.iter().flat_map(|conflict| conflict.entries().iter().copied()).collect();
     suspects.sort();
     suspects.dedup();
     (!suspects.is_empty()).then(|| GainRemedy::new(remedy(held, &suspects), problem.bounds))

@@ -37,21 +37,8 @@ impl GainToggle {
     }
 
     fn price(&self) -> Price {
-        let Self {
-            pair,
-            held_now,
-            matched_after,
-            before,
-            after,
-            ..
-        } = *self;
-        Price {
-            pair,
-            held_now,
-            matched_after,
-            before,
-            after,
-        }
+        let Self { pair, held_now, matched_after, before, after, .. } = *self;
+        Price { pair, held_now, matched_after, before, after }
     }
 }
 

@@ -65,13 +65,7 @@ impl Descent {
     /// The decrease of the model's step: with the true curvature (`true`) where that is positive definite, else with its
     /// magnitude.
     fn step_model(&mut self, function: &impl Slope, scales: &[f64]) -> Option<(f64, bool)> {
-        let Self {
-            slopes,
-            model,
-            low,
-            high,
-            ..
-        } = self;
+        let Self { slopes, model, low, high, .. } = self;
         if let Some(decrease) = model.minimise(&slopes.gradient, &slopes.curvature, low, high) {
             return Some((decrease, true));
         }

@@ -91,11 +91,7 @@ impl Landscape {
 
     /// Value at `scales`.
     pub(crate) fn value(&self, scales: &[f64]) -> f64 {
-        let links: f64 = self
-            .links
-            .iter()
-            .map(|link| link.shape.at(scales[link.to] - scales[link.from]).value)
-            .sum();
+        let links: f64 = self.links.iter().map(|link| link.shape.at(scales[link.to] - scales[link.from]).value).sum();
         self.constant.value + links
     }
 
@@ -111,11 +107,7 @@ impl Landscape {
             }
         }
         (0..self.nodes())
-            .map(|piece| {
-                (0..self.nodes())
-                    .filter(|&node| piece_of[node] == piece)
-                    .collect::<Vec<_>>()
-            })
+            .map(|piece| (0..self.nodes()).filter(|&node| piece_of[node] == piece).collect::<Vec<_>>())
             .filter(|nodes| !nodes.is_empty())
             .map(|nodes| (nodes.contains(&self.ground()), nodes))
             .map(|(grounded, nodes)| (nodes, grounded))
@@ -130,11 +122,7 @@ impl Slope for Landscape {
         into.value_error = self.constant.error;
         for link in &self.links {
             let jet = link.shape.at(scales[link.to] - scales[link.from]);
-            let curvature = if bend == Bend::Upward {
-                jet.curvature.abs()
-            } else {
-                jet.curvature
-            };
+            let curvature = if bend == Bend::Upward { jet.curvature.abs() } else { jet.curvature };
             into.value += jet.value;
             into.value_error += jet.value_error;
             into.add(link, jet.slope, jet.slope_error, curvature);

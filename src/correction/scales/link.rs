@@ -19,21 +19,13 @@ pub(crate) enum Shape {
     /// `weight (u - centre)^2`: gains compared in dB, and delays. `size` is that of the figures whose difference `centre` is.
     Parabola { weight: f64, centre: f64, size: f64 },
     /// `forward` in `u` plus `backward` in `-u`: gains compared as ratios.
-    Wells {
-        forward: Well,
-        backward: Well,
-        concave: Option<(f64, f64)>,
-    },
+    Wells { forward: Well, backward: Well, concave: Option<(f64, f64)> },
 }
 
 impl Shape {
     /// The two wells, with the interval of `u` on which their sum is concave.
     pub(crate) fn wells(forward: Well, backward: Well) -> Self {
-        Shape::Wells {
-            forward,
-            backward,
-            concave: concave_interval(&forward, &backward),
-        }
+        Shape::Wells { forward, backward, concave: concave_interval(&forward, &backward) }
     }
 
     /// Value, slope and curvature at `u`.
@@ -80,11 +72,7 @@ impl Shape {
 
     /// The end of the concave interval that parts `u` from it, if `u` is outside and the end is inside `(low, high)`.
     pub(crate) fn concave_edge(&self, u: f64, low: f64, high: f64) -> Option<f64> {
-        let Shape::Wells {
-            concave: Some((from, to)),
-            ..
-        } = self
-        else {
+        let Shape::Wells { concave: Some((from, to)), .. } = self else {
             return None;
         };
         let edge = if u < *from {
@@ -117,11 +105,7 @@ impl Shape {
             Shape::Wells { forward, backward, .. } => {
                 let (least, most) = (low.exp(), high.exp());
                 let each = forward.least_curvature(least, most) + backward.least_curvature(1.0 / most, 1.0 / least);
-                if self.is_convex_over(low, high) {
-                    each.max(0.0)
-                } else {
-                    each
-                }
+                if self.is_convex_over(low, high) { each.max(0.0) } else { each }
             }
         }
     }

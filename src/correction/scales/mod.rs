@@ -15,6 +15,8 @@
 
 mod bound;
 mod descent;
+mod envelope;
+mod found;
 mod landscape;
 mod link;
 mod model;
@@ -29,10 +31,11 @@ mod terrain;
 mod well;
 
 pub(crate) use descent::Descent;
+pub(crate) use found::{Effort, Found, PROOF};
 pub(crate) use landscape::Landscape;
 pub(crate) use link::{Link, Shape};
 pub(crate) use parabolas::{Entry, parabolas};
-pub(crate) use search::{Effort, Found, PROOF, search};
+pub(crate) use search::search;
 pub(crate) use settle::settle;
 pub(crate) use sum::Sum;
 pub(crate) use well::{Gather, product_roundings};

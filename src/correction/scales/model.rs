@@ -39,10 +39,7 @@ impl Model {
             let stopped = (low[node] >= 0.0 && slope >= 0.0) || (high[node] <= 0.0 && slope <= 0.0);
             self.is_free[node] = low[node] < high[node] && !stopped;
         }
-        let ridge = 1e-12
-            * (0..self.nodes)
-                .map(|node| curvature[node * self.nodes + node])
-                .fold(0.0, f64::max);
+        let ridge = 1e-12 * (0..self.nodes).map(|node| curvature[node * self.nodes + node]).fold(0.0, f64::max);
         // Each pass adds a stop or releases one after a decrease; 8 n passes are far above what is ever needed.
         for _ in 0..8 * self.nodes + 8 {
             self.solve_free(curvature, ridge)?;
@@ -60,9 +57,7 @@ impl Model {
                 break;
             }
         }
-        let change: f64 = (0..self.nodes)
-            .map(|node| 0.5 * (gradient[node] + self.slope[node]) * self.step[node])
-            .sum();
+        let change: f64 = (0..self.nodes).map(|node| 0.5 * (gradient[node] + self.slope[node]) * self.step[node]).sum();
         Some(-change)
     }
 
@@ -147,11 +142,7 @@ impl Model {
             if self.is_free[node] || low[node] >= high[node] {
                 continue;
             }
-            let inward = if self.step[node] <= low[node] {
-                -self.slope[node]
-            } else {
-                self.slope[node]
-            };
+            let inward = if self.step[node] <= low[node] { -self.slope[node] } else { self.slope[node] };
             if inward > greatest {
                 greatest = inward;
                 worst = Some(node);

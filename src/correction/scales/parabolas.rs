@@ -65,15 +65,7 @@ pub(crate) fn parabolas(entries: &[Entry], nodes: usize) -> (Vec<Link>, Sum) {
         for to in from + 1..nodes {
             let Gathered { weight, moment, size } = gathered[from * nodes + to];
             if weight > 0.0 {
-                links.push(Link {
-                    from,
-                    to,
-                    shape: Shape::Parabola {
-                        weight,
-                        centre: moment / weight,
-                        size,
-                    },
-                });
+                links.push(Link { from, to, shape: Shape::Parabola { weight, centre: moment / weight, size } });
             }
         }
     }

@@ -22,10 +22,7 @@ impl Region {
 
     /// The least and the greatest `s_to - s_from`.
     pub(crate) fn range(&self, from: usize, to: usize) -> (f64, f64) {
-        (
-            -self.bounds[to * self.nodes + from],
-            self.bounds[from * self.nodes + to],
-        )
+        (-self.bounds[to * self.nodes + from], self.bounds[from * self.nodes + to])
     }
 
     /// The part with `s_to - s_from <= most`, with what follows for every other difference, or `None` where it is empty.
@@ -57,10 +54,7 @@ impl Region {
     pub(crate) fn hull(&self, scales: &[f64]) -> Self {
         let nodes = self.nodes;
         let bound = |index: usize| self.bounds[index].max(scales[index % nodes] - scales[index / nodes]);
-        Self {
-            nodes,
-            bounds: (0..nodes * nodes).map(bound).collect(),
-        }
+        Self { nodes, bounds: (0..nodes * nodes).map(bound).collect() }
     }
 
     /// Writes the least and greatest scale of each node.

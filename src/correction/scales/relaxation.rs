@@ -1,28 +1,16 @@
 //! A convex function below the objective, over one region.
 
+use super::envelope::{Line, envelope, well_jet};
 use super::landscape::{Bend, Landscape, Slope, Slopes};
 use super::link::{Link, Shape};
 use super::region::Region;
-use super::well::{Jet, Well};
-
-/// A straight line that replaces a well left of `until`.
-#[derive(Clone, Copy, Debug)]
-struct Line {
-    until: f64,
-    at: f64,
-    value: f64,
-    slope: f64,
-    error: f64,
-}
+use super::well::Jet;
 
 /// What stands for a link over the region: the link itself where it is convex, else the convex envelopes of its wells.
 #[derive(Clone, Copy, Debug)]
 enum Under {
     Itself,
-    Envelopes {
-        forward: Option<Line>,
-        backward: Option<Line>,
-    },
+    Envelopes { forward: Option<Line>, backward: Option<Line> },
 }
 
 /// A link's stand-in with the range of its difference. The descent keeps to the box of the region only, so beyond the range
@@ -53,17 +41,9 @@ impl<'a> Relaxation<'a> {
     pub(crate) fn new(landscape: &'a Landscape, region: &Region, fence: f64) -> Self {
         let stand = |link: &Link| {
             let (low, high) = region.range(link.from, link.to);
-            Stand {
-                under: under(link, (low, high)),
-                low,
-                high: high.max(low),
-            }
+            Stand { under: under(link, (low, high)), low, high: high.max(low) }
         };
-        Self {
-            landscape,
-            stands: landscape.links.iter().map(stand).collect(),
-            fence,
-        }
+        Self { landscape, stands: landscape.links.iter().map(stand).collect(), fence }
     }
 
     /// Whether it is the landscape itself: the region is a convex piece, link by link.
@@ -88,16 +68,17 @@ impl<'a> Relaxation<'a> {
         self.bent().map(gap).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// The link (from, to) furthest at `scales` from where it is concave, with the edge of that interval: the part beyond the
-    /// edge is easily bounded, and what is left is convex in the link.
-    pub(crate) fn farthest_edge(&self, scales: &[f64]) -> Option<(usize, usize, f64)> {
-        let edge = |(link, stand): (&Link, &Stand)| {
+    /// Each link (from, to) that is bent but not where it is at `scales`, with the edge of the interval where it is concave:
+    /// what lies beyond the edges is easily bounded, and what is left is convex in these links. The furthest edge comes first.
+    pub(crate) fn edges(&self, scales: &[f64]) -> Vec<(usize, usize, f64)> {
+        let edge = |(link, stand): (&'a Link, &Stand)| {
             let u = stand.difference(link, scales);
             let edge = link.shape.concave_edge(u, stand.low, stand.high)?;
-            Some((link.from, link.to, edge, (edge - u).abs()))
+            Some((link, edge, (edge - u).abs()))
         };
-        let farthest = self.bent().filter_map(edge).max_by(|a, b| a.3.total_cmp(&b.3));
-        farthest.map(|(from, to, edge, _)| (from, to, edge))
+        let mut edges: Vec<(&Link, f64, f64)> = self.bent().filter_map(edge).collect();
+        edges.sort_by(|a, b| b.2.total_cmp(&a.2));
+        edges.into_iter().map(|(link, edge, _)| (link.from, link.to, edge)).collect()
     }
 
     /// The link whose slope varies most over the region, weighed with its range: what hides the sign of a scale's slope, or that
@@ -146,10 +127,9 @@ impl Slope for Relaxation<'_> {
 fn under(link: &Link, (low, high): (f64, f64)) -> Under {
     match &link.shape {
         shape if shape.is_convex_over(low, high) => Under::Itself,
-        Shape::Wells { forward, backward, .. } => Under::Envelopes {
-            forward: envelope(forward, low, high),
-            backward: envelope(backward, -high, -low),
-        },
+        Shape::Wells { forward, backward, .. } => {
+            Under::Envelopes { forward: envelope(forward, low, high), backward: envelope(backward, -high, -low) }
+        }
         Shape::Parabola { .. } => Under::Itself,
     }
 }
@@ -157,13 +137,7 @@ fn under(link: &Link, (low, high): (f64, f64)) -> Under {
 /// The stand-in within the range of its difference.
 fn inside(shape: &Shape, under: &Under, u: f64) -> Jet {
     match (shape, under) {
-        (
-            Shape::Wells { forward, backward, .. },
-            Under::Envelopes {
-                forward: ahead,
-                backward: behind,
-            },
-        ) => {
+        (Shape::Wells { forward, backward, .. }, Under::Envelopes { forward: ahead, backward: behind }) => {
             let ahead = well_jet(forward, ahead.as_ref(), u);
             let behind = well_jet(backward, behind.as_ref(), -u);
             Jet {
@@ -178,81 +152,12 @@ fn inside(shape: &Shape, under: &Under, u: f64) -> Jet {
     }
 }
 
-fn well_jet(well: &Well, line: Option<&Line>, v: f64) -> Jet {
-    match line {
-        Some(line) if v < line.until => {
-            let rise = line.slope * (v - line.at);
-            Jet {
-                value: line.value + rise,
-                slope: line.slope,
-                curvature: 0.0,
-                value_error: line.error + 8.0 * f64::EPSILON * (line.value.abs() + rise.abs()),
-                slope_error: 8.0 * f64::EPSILON * line.slope.abs(),
-            }
-        }
-        _ if well.is_flat() => Jet::default(),
-        _ => well.at(v.exp()),
-    }
-}
-
-/// The line of the convex envelope of a well over `[low, high]`: none where it is convex there, the chord where the line from
-/// the left end is nowhere tangent, else the tangent, with the well itself to the right of it.
-fn envelope(well: &Well, low: f64, high: f64) -> Option<Line> {
-    if well.is_flat() || low >= well.inflection() {
-        return None;
-    }
-    let start = well.at(low.exp());
-    let end = well.at(high.exp());
-    // Height over the well's left end of the tangent at b: falls as b moves right of the inflection.
-    let overshoot = |b: f64, jet: &Jet| jet.value + jet.slope * (low - b) - start.value;
-    if high <= well.inflection() || overshoot(high, &end) >= 0.0 {
-        let slope = if high > low {
-            (end.value - start.value) / (high - low)
-        } else {
-            0.0
-        };
-        let error = start.value_error + end.value_error;
-        return Some(Line {
-            until: f64::INFINITY,
-            at: low,
-            value: start.value.min(end.value - slope * (high - low)),
-            slope,
-            error,
-        });
-    }
-    let (mut over, mut under) = (well.inflection().max(low), high);
-    let mut tangent = end;
-    // Any point of the bracket's right side is valid; twelve halvings cost the bound less than a millionth.
-    for round in 0..12 {
-        let middle = if round == 0 {
-            well.centre().ln().min(0.5 * (over + under)).max(over)
-        } else {
-            0.5 * (over + under)
-        };
-        let jet = well.at(middle.exp());
-        if overshoot(middle, &jet) > 0.0 {
-            over = middle;
-        } else {
-            under = middle;
-            tangent = jet;
-        }
-    }
-    let error = start.value_error + tangent.value_error + tangent.slope_error * (under - low);
-    Some(Line {
-        until: under,
-        at: under,
-        value: tangent.value,
-        slope: tangent.slope,
-        error,
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
     use super::super::sum::Sum;
-    use super::super::well::Gather;
+    use super::super::well::{Gather, Well};
     use super::*;
 
     fn well(share: f64, centre: f64) -> Well {
@@ -264,12 +169,7 @@ mod tests {
     fn landscape(forward: (f64, f64), backward: (f64, f64), range: (f64, f64)) -> Landscape {
         let shape = Shape::wells(well(forward.0, forward.1), well(backward.0, backward.1));
         let links = vec![Link { from: 0, to: 1, shape }];
-        Landscape {
-            lower: vec![range.0, 0.0],
-            upper: vec![range.1, 0.0],
-            links,
-            constant: Sum::default(),
-        }
+        Landscape { lower: vec![range.0, 0.0], upper: vec![range.1, 0.0], links, constant: Sum::default() }
     }
 
     proptest! {

@@ -4,6 +4,7 @@ use std::collections::BinaryHeap;
 
 use super::bound::tangent_bound;
 use super::descent::Descent;
+use super::found::{Effort, Found};
 use super::landscape::{Bend, Landscape, Slope, Slopes};
 use super::open::Open;
 use super::region::Region;
@@ -13,39 +14,8 @@ use super::terrain::Terrain;
 /// Minima within this factor of the best are kept.
 const NEAR: f64 = 1.01;
 
-/// A relative gap that counts as proof.
-pub(crate) const PROOF: f64 = 1e-9;
-
-/// The search stops splitting at this gap, to end safely below [`PROOF`].
+/// The search stops splitting at this gap, to end safely below [`super::PROOF`].
 const AIM: f64 = 2e-10;
-
-/// How far the search goes.
-#[derive(Clone, Copy)]
-pub(crate) struct Effort<'a> {
-    /// Regions to visit at most.
-    pub(crate) boxes: usize,
-    /// Regions to visit at most after the proof, to list the minima.
-    pub(crate) listing: usize,
-    /// Objective below which the gap is no longer relative: what rounding allows.
-    pub(crate) floor: f64,
-    /// Asked before each region.
-    pub(crate) stop: &'a dyn Fn() -> bool,
-}
-
-/// What the search found.
-#[derive(Clone, Debug)]
-pub(crate) struct Found {
-    /// Distinct local minima within 1 % of the best, best first, each with its value.
-    pub(crate) minima: Vec<(Vec<f64>, f64)>,
-    /// No point of the box is below this.
-    pub(crate) lower_bound: f64,
-    /// `(best - lower_bound) / max(best, floor)`.
-    pub(crate) gap: f64,
-    /// Regions visited.
-    pub(crate) boxes: usize,
-    /// Whether there can be no other local minimum within 1 %.
-    pub(crate) all_minima: bool,
-}
 
 /// Finds the global minimum of `landscape` over its box, with a rigorous lower bound.
 ///
@@ -103,11 +73,7 @@ impl<'a> Search<'a> {
         let nearest_to_zero: Vec<f64> = bounds.map(|(low, high)| 0.0_f64.clamp(*low, *high)).collect();
         self.descend(&nearest_to_zero);
         let region = Region::of_box(&self.landscape.lower, &self.landscape.upper);
-        self.open.push(Open {
-            bound: 0.0,
-            region,
-            start: self.minima[0].0.clone(),
-        });
+        self.open.push(Open { bound: 0.0, region, start: self.minima[0].0.clone() });
         let mut listing = 0;
         while let Some(top) = self.open.peek() {
             // Proven: what is left only serves to list the other minima.
@@ -138,11 +104,7 @@ impl<'a> Search<'a> {
 
     fn visit(&mut self, open: Open) {
         self.boxes += 1;
-        let Open {
-            bound,
-            region,
-            mut start,
-        } = open;
+        let Open { bound, region, mut start } = open;
         if bound >= self.aim() && self.is_searched(&region) {
             return self.close(bound);
         }
@@ -162,9 +124,8 @@ impl<'a> Search<'a> {
             if relaxation.is_exact() || (self.minima.len() > known && self.is_searched(&region)) {
                 return self.close(bound);
             }
-        } else if let Some(convex) = self
-            .bound_convex(&region, relaxation.is_exact())
-            .filter(|convex| *convex >= self.aim())
+        } else if let Some(convex) =
+            self.bound_convex(&region, relaxation.is_exact()).filter(|convex| *convex >= self.aim())
         {
             return self.close(bound.max(convex));
         }
@@ -199,16 +160,10 @@ impl<'a> Search<'a> {
     fn descend(&mut self, start: &[f64]) {
         let mut scales = start.to_vec();
         let (lower, upper) = (&self.landscape.lower, &self.landscape.upper);
-        self.descent
-            .run(self.landscape, (lower, upper), &mut scales, |_, _| false);
+        self.descent.run(self.landscape, (lower, upper), &mut scales, |_, _| false);
         let value = self.descent.slopes.value;
         if value < self.best {
-            let curvature = self
-                .descent
-                .slopes
-                .curvature
-                .iter()
-                .fold(0.0_f64, |most, entry| most.max(entry.abs()));
+            let curvature = self.descent.slopes.curvature.iter().fold(0.0_f64, |most, entry| most.max(entry.abs()));
             self.fence = 8.0 * curvature;
         }
         let same = |(known, _): &(Vec<f64>, f64)| {
@@ -243,20 +198,13 @@ impl<'a> Search<'a> {
         self.landscape.slopes(scales, Bend::True, &mut slopes);
         hull.write_box(&mut self.lower, &mut self.upper);
         let tangent = tangent_bound(scales, &slopes, (&self.lower, &self.upper));
-        Some(
-            self.terrain
-                .bound_at(scales, &slopes)
-                .map_or(tangent, |curved| curved.max(tangent)),
-        )
+        Some(self.terrain.bound_at(scales, &slopes).map_or(tangent, |curved| curved.max(tangent)))
     }
 
     /// Whether the region holds no local minimum, or none but a known one.
     fn is_searched(&self, region: &Region) -> bool {
         self.terrain.has_no_minimum(region)
-            || self
-                .minima
-                .iter()
-                .any(|(scales, _)| self.terrain.has_only(region, scales))
+            || self.minima.iter().any(|(scales, _)| self.terrain.has_only(region, scales))
     }
 
     /// Splits the region: where its bound loses most or, where nothing is lost or the best is already proven, so that what is
@@ -264,18 +212,13 @@ impl<'a> Search<'a> {
     fn split(&mut self, relaxation: &Relaxation<'_>, region: &Region, bound: f64, start: &[f64]) {
         let listing = bound >= self.aim();
         let least_gap = 1e-13 * self.denominator();
-        let gap = relaxation
-            .widest_gap(start)
-            .filter(|(_, gap)| !listing && *gap > least_gap)
-            .map(|(link, _)| link);
-        if gap.is_none()
-            && let Some((from, to, at)) = relaxation.farthest_edge(start)
-        {
-            return self.split_at((from, to), at, region, bound, start);
+        let gap = relaxation.widest_gap(start).filter(|(_, gap)| !listing && *gap > least_gap).map(|(link, _)| link);
+        let edges = if gap.is_none() { relaxation.edges(start) } else { Vec::new() };
+        if !edges.is_empty() {
+            let count = if listing { edges.len() } else { 1 };
+            return self.peel(&edges[..count], region, bound, start);
         }
-        let widest = gap
-            .or_else(|| relaxation.widest_slope())
-            .map(|link| (link, region.range(link.from, link.to)));
+        let widest = gap.or_else(|| relaxation.widest_slope()).map(|link| (link, region.range(link.from, link.to)));
         let Some((link, (low, high))) = widest.filter(|(_, (low, high))| high - low > 1e-7) else {
             // The bound is as sharp as rounding allows.
             self.all_minima &= !listing;
@@ -286,16 +229,27 @@ impl<'a> Search<'a> {
         self.split_at((link.from, link.to), at, region, bound, start);
     }
 
+    /// Takes off what lies beyond each edge, seen from `start`, and keeps the rest as one region.
+    fn peel(&mut self, edges: &[(usize, usize, f64)], region: &Region, bound: f64, start: &[f64]) {
+        let mut rest = Some(region.clone());
+        for &(from, to, at) in edges {
+            let Some(region) = rest else { return };
+            let (below, above) = (region.below(from, to, at), region.above(from, to, at));
+            let (inner, outer) = if start[to] - start[from] < at { (below, above) } else { (above, below) };
+            self.push(outer, bound, start);
+            rest = inner;
+        }
+        self.push(rest, bound, start);
+    }
+
     fn split_at(&mut self, (from, to): (usize, usize), at: f64, region: &Region, bound: f64, start: &[f64]) {
-        for part in [region.below(from, to, at), region.above(from, to, at)]
-            .into_iter()
-            .flatten()
-        {
-            self.open.push(Open {
-                bound,
-                region: part,
-                start: start.to_vec(),
-            });
+        self.push(region.below(from, to, at), bound, start);
+        self.push(region.above(from, to, at), bound, start);
+    }
+
+    fn push(&mut self, region: Option<Region>, bound: f64, start: &[f64]) {
+        if let Some(region) = region {
+            self.open.push(Open { bound, region, start: start.to_vec() });
         }
     }
 
@@ -307,12 +261,7 @@ impl<'a> Search<'a> {
         let gap = (self.best - lower_bound) / self.denominator();
         self.minima.sort_by(|a, b| a.1.total_cmp(&b.1));
         // The best itself always stays.
-        let kept = self
-            .minima
-            .iter()
-            .take_while(|(_, value)| *value <= cutoff)
-            .count()
-            .max(1);
+        let kept = self.minima.iter().take_while(|(_, value)| *value <= cutoff).count().max(1);
         self.minima.truncate(kept);
         Found {
             minima: self.minima,

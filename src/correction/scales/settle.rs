@@ -11,14 +11,8 @@ pub(crate) fn settle(landscape: &Landscape, scales: &mut [f64], mut wanted: impl
         if grounded {
             continue;
         }
-        let least = nodes
-            .iter()
-            .map(|&node| landscape.lower[node] - scales[node])
-            .fold(f64::NEG_INFINITY, f64::max);
-        let most = nodes
-            .iter()
-            .map(|&node| landscape.upper[node] - scales[node])
-            .fold(f64::INFINITY, f64::min);
+        let least = nodes.iter().map(|&node| landscape.lower[node] - scales[node]).fold(f64::NEG_INFINITY, f64::max);
+        let most = nodes.iter().map(|&node| landscape.upper[node] - scales[node]).fold(f64::INFINITY, f64::min);
         let shift = wanted(&nodes, scales).min(most).max(least);
         for &node in &nodes {
             scales[node] = (scales[node] + shift).clamp(landscape.lower[node], landscape.upper[node]);

@@ -39,29 +39,23 @@ impl<'a> Terrain<'a> {
         let mut base = vec![ground; landscape.nodes()];
         let mut stops = vec![vec![ground]; landscape.nodes()];
         let pieces = landscape.pieces().into_iter();
-        let free_pieces: Vec<Vec<usize>> = pieces
-            .filter(|(_, grounded)| !grounded)
-            .map(|(nodes, _)| nodes)
-            .collect();
+        let free_pieces: Vec<Vec<usize>> = pieces.filter(|(_, grounded)| !grounded).map(|(nodes, _)| nodes).collect();
         for nodes in &free_pieces {
             for &node in nodes {
                 base[node] = nodes[0];
                 stops[node] = nodes.iter().copied().filter(|&other| other != node).collect();
             }
         }
-        Self {
-            landscape,
-            base,
-            stops,
-            free_pieces,
-        }
+        Self { landscape, base, stops, free_pieces }
     }
 
     /// Whether some scale's slope keeps its sign over the whole region although nothing stops the scale: no local minimum is
     /// there.
     pub(super) fn has_no_minimum(&self, region: &Region) -> bool {
         let slopes = self.slope_ranges(region);
+        let can_move = |node: &usize| self.landscape.lower[*node] < self.landscape.upper[*node];
         (0..self.landscape.ground())
+            .filter(can_move)
             .any(|node| slopes.sign(node) != 0 && !self.is_stopped(region, node, slopes.sign(node)))
     }
 
@@ -89,11 +83,7 @@ impl<'a> Terrain<'a> {
 
     fn slope_ranges(&self, region: &Region) -> SlopeRanges {
         let nodes = self.landscape.nodes();
-        let mut ranges = SlopeRanges {
-            least: vec![0.0; nodes],
-            most: vec![0.0; nodes],
-            size: vec![0.0; nodes],
-        };
+        let mut ranges = SlopeRanges { least: vec![0.0; nodes], most: vec![0.0; nodes], size: vec![0.0; nodes] };
         for link in &self.landscape.links {
             let (low, high) = region.range(link.from, link.to);
             let (down, up) = link.shape.slopes(low, high.max(low));
@@ -114,9 +104,7 @@ impl<'a> Terrain<'a> {
             let u = minimum[link.to] - minimum[link.from];
             (u - 2.0 * WITHIN, u + 2.0 * WITHIN)
         });
-        let push: Vec<f64> = (0..minimum.len())
-            .map(|node| self.push(minimum, slopes, node))
-            .collect();
+        let push: Vec<f64> = (0..minimum.len()).map(|node| self.push(minimum, slopes, node)).collect();
         let anchors = self.anchors(slopes, &push)?;
         let (lower, upper) = (&self.landscape.lower, &self.landscape.upper);
         let free: Vec<usize> = (0..self.landscape.ground())
@@ -138,11 +126,7 @@ impl<'a> Terrain<'a> {
         } else {
             minimum[node] >= self.landscape.upper[node]
         };
-        if stopped {
-            (slope.abs() - slopes.gradient_error[node]).max(0.0)
-        } else {
-            0.0
-        }
+        if stopped { (slope.abs() - slopes.gradient_error[node]).max(0.0) } else { 0.0 }
     }
 
     /// The scale against which each piece that is not tied to the ground is measured: one that cannot move or, where bounds push,
@@ -157,9 +141,7 @@ impl<'a> Terrain<'a> {
             }
             let hardest = nodes.iter().copied().max_by(|a, b| push[*a].total_cmp(&push[*b]))?;
             let loose = nodes.iter().filter(|&&node| push[node] == 0.0);
-            let lean: f64 = loose
-                .map(|&node| slopes.gradient[node].abs() + slopes.gradient_error[node])
-                .sum();
+            let lean: f64 = loose.map(|&node| slopes.gradient[node].abs() + slopes.gradient_error[node]).sum();
             if push[hardest] > 0.0 && push[hardest] < lean {
                 return None;
             }
@@ -170,9 +152,7 @@ impl<'a> Terrain<'a> {
 
     /// The nodes that are measured against a base, and `pick`.
     fn free_nodes(&self, pick: impl Fn(usize) -> bool) -> Vec<usize> {
-        (0..self.landscape.ground())
-            .filter(|&node| self.base[node] != node && pick(node))
-            .collect()
+        (0..self.landscape.ground()).filter(|&node| self.base[node] != node && pick(node)).collect()
     }
 
     /// The Hessian with every link's least curvature over its range, and (as the gradient's error) what its diagonal is summed
@@ -201,10 +181,6 @@ fn reduced(hessian: &Slopes, free: &[usize]) -> DMatrix<f64> {
     let nodes = hessian.gradient.len();
     DMatrix::from_fn(free.len(), free.len(), |row, column| {
         let entry = hessian.curvature[free[row] * nodes + free[column]];
-        if row == column {
-            entry - 1e-13 * nodes as f64 * hessian.gradient_error[free[row]]
-        } else {
-            entry
-        }
+        if row == column { entry - 1e-13 * nodes as f64 * hessian.gradient_error[free[row]] } else { entry }
     })
 }

@@ -47,12 +47,7 @@ pub(crate) fn product_roundings(logarithm: f64) -> f64 {
 impl Gather {
     /// Adds `share (gain - e^logarithm e^v)^2`.
     pub(crate) fn add(&mut self, share: f64, gain: f64, logarithm: f64) {
-        self.members.push(Member {
-            share,
-            gain,
-            product: logarithm.exp(),
-            logarithm,
-        });
+        self.members.push(Member { share, gain, product: logarithm.exp(), logarithm });
     }
 
     /// The well, and the sum at the well's bottom.
@@ -67,13 +62,7 @@ impl Gather {
         let centre = total(|member| member.share * member.gain * member.product) / weight;
         let mut bottom = Sum::default();
         let mut roundings = 0.0_f64;
-        for Member {
-            share,
-            gain,
-            product,
-            logarithm,
-        } in &self.members
-        {
+        for Member { share, gain, product, logarithm } in &self.members {
             let met = product * centre;
             bottom.add(*share, gain - met, gain + met, product_roundings(*logarithm));
             roundings = roundings.max(product_roundings(*logarithm));
@@ -81,14 +70,7 @@ impl Gather {
         // A sum of n positive terms is exact to n roundings; 32 more cover the exponential of a difference of scales (up to
         // 180 dB), the differences and the square.
         let rounding = (self.members.len() as f64 + roundings + 32.0) * f64::EPSILON;
-        (
-            Well {
-                weight,
-                centre,
-                rounding,
-            },
-            bottom,
-        )
+        (Well { weight, centre, rounding }, bottom)
     }
 }
 

@@ -37,7 +37,8 @@ pub fn write_assessment_csv(analysis: &Analysis, chosen: &[usize], path: &Path) 
     let conditions = analysis.study.dataset.conditions();
     let known = chosen.iter().filter_map(|&index| Some((index, conditions.get(index)?)));
     let rows = known.flat_map(|(index, condition)| {
-        let scheduled = analysis.schedule.as_ref().ok().map(|schedule| schedule.at(condition.flight_state().airspeed_kt));
+        let scheduled =
+            analysis.schedule.as_ref().ok().map(|schedule| schedule.at(condition.flight_state().airspeed_kt));
         let pairs = analysis.study.dataset.on_axis().pairs();
         pairs.map(move |pair| row(analysis, index, condition, scheduled.as_ref(), pair))
     });

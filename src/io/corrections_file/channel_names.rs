@@ -1,5 +1,6 @@
 //! Results by the names of their channels.
 
+use crate::correction;
 use crate::dataset::{Channel, Dataset, Pair, PairTable};
 use crate::io::by_name::ByName;
 
@@ -22,6 +23,11 @@ impl ChannelNames {
         (self.outputs[pair.output].clone(), self.inputs[pair.input].clone())
     }
 
+    /// The name of a channel of the correction.
+    pub(super) fn channel(&self, channel: correction::Channel) -> String {
+        channel.name(&self.inputs, &self.outputs)
+    }
+
     /// The names of the marked pairs.
     pub(super) fn marked(&self, table: &PairTable<bool>) -> Vec<(String, String)> {
         table.marked().map(|pair| self.pair(pair)).collect()
@@ -39,10 +45,7 @@ impl ChannelNames {
 
     /// One figure for each channel.
     pub(super) fn channels(&self, inputs: &[f64], outputs: &[f64]) -> Channels {
-        Channels {
-            inputs: self.by_input(inputs.iter().copied()),
-            outputs: self.by_output(outputs.iter().copied()),
-        }
+        Channels { inputs: self.by_input(inputs.iter().copied()), outputs: self.by_output(outputs.iter().copied()) }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::correction::ChannelCorrection;
 use crate::dataset::{Channel, Condition};
 use crate::io::csv_file::{cell, write_csv};
 use crate::io::file_error::FileError;
@@ -38,13 +39,15 @@ fn condition_rows(analysis: &Analysis, index: usize, condition: &Condition) -> V
         ]
     };
     let inputs = analysis.study.dataset.inputs().iter().enumerate().map(|(at, channel)| {
-        let figures = |of: &crate::correction::ChannelCorrection| (of.input_gains[at], of.input_delays_s[at]);
-        let ((gain, delay), (scheduled_gain, scheduled_delay)) = (own.map(figures).unzip(), scheduled.map(figures).unzip());
+        let figures = |of: &ChannelCorrection| (of.input_gains[at], of.input_delays_s[at]);
+        let ((gain, delay), (scheduled_gain, scheduled_delay)) =
+            (own.map(figures).unzip(), scheduled.map(figures).unzip());
         row("input", channel, [gain, delay, scheduled_gain, scheduled_delay])
     });
     let outputs = analysis.study.dataset.outputs().iter().enumerate().map(|(at, channel)| {
-        let figures = |of: &crate::correction::ChannelCorrection| (of.output_gains[at], of.output_delays_s[at]);
-        let ((gain, delay), (scheduled_gain, scheduled_delay)) = (own.map(figures).unzip(), scheduled.map(figures).unzip());
+        let figures = |of: &ChannelCorrection| (of.output_gains[at], of.output_delays_s[at]);
+        let ((gain, delay), (scheduled_gain, scheduled_delay)) =
+            (own.map(figures).unzip(), scheduled.map(figures).unzip());
         row("output", channel, [gain, delay, scheduled_gain, scheduled_delay])
     });
     inputs.chain(outputs).collect()

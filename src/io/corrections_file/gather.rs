@@ -1,16 +1,16 @@
 //! From an analysis to what its corrections file says.
 
+use crate::correction::{DelayConflict, GainObjective, Outcome, delay_sensitivities, gain_sensitivities};
 use crate::dataset::{BundleKind, Condition, PairTable};
 use crate::fidelity::{Cost, CostAverage};
-use crate::correction::{GainObjective, Outcome};
 use crate::io::by_name::ByName;
 use crate::schedule::{Regression, Schedule, ScheduleKind, ScheduledQuantity};
-use crate::study::{Analysis, Assessed, ConditionAnalysis, Settings};
+use crate::study::{Analysis, Assessed, ConditionAnalysis, ConditionFailure, Settings};
 
 use super::channel_names::{ChannelNames, rows};
+use super::explanation;
 use super::schema::{
-    Channels,
-    Assessment, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
+    Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
     DelayOutcome, GainOutcome, NetGain, ScheduleUsed, ScheduledDelays, ScheduledGains, SettingsUsed,
     UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
 };
@@ -35,23 +35,8 @@ impl Corrections {
             assessment: Assessment { conditions: Vec::new(), left_out: Vec::new() },
         };
         for &index in chosen {
-            let (Some(condition), Some(result)) = (dataset.conditions().get(index), analysis.conditions.get(index)) else {
-                continue;
-            };
-            let id = condition.id();
-            match result {
-                Ok(result) => corrections.conditions.push(gather.condition(index, condition, result)),
-                Err(failure) => corrections.failed.push(WithoutResult { id, why: failure.to_string() }),
-            }
-            match &analysis.assessment[index] {
-                Assessed::LeftOut { why } => corrections.assessment.left_out.push(WithoutResult { id, why: why.clone() }),
-                Assessed::Nominal(changes) => corrections.assessment.conditions.push(ConditionAssessment {
-                    id,
-                    model: condition.bundle(BundleKind::Physics)[condition.nominal()].name.clone(),
-                    total: rows(changes, |change| change.total()),
-                    magnitude: rows(changes, |change| change.magnitude()),
-                    phase: rows(changes, |change| change.phase()),
-                }),
+            if let (Some(condition), Some(result)) = (dataset.conditions().get(index), analysis.conditions.get(index)) {
+                gather.add(&mut corrections, index, condition, result);
             }
         }
         corrections
@@ -64,6 +49,32 @@ struct Gather<'a> {
 }
 
 impl Gather<'_> {
+    /// Adds what the analysis says of one condition.
+    fn add(
+        &self,
+        corrections: &mut Corrections,
+        index: usize,
+        condition: &Condition,
+        result: &Result<ConditionAnalysis, ConditionFailure>,
+    ) {
+        let id = condition.id();
+        let without = |why: String| WithoutResult { id, why };
+        match result {
+            Ok(result) => corrections.conditions.push(self.condition(index, condition, result)),
+            Err(failure) => corrections.failed.push(without(failure.to_string())),
+        }
+        match &self.analysis.assessment[index] {
+            Assessed::LeftOut { why } => corrections.assessment.left_out.push(without(why.clone())),
+            Assessed::Nominal(changes) => corrections.assessment.conditions.push(ConditionAssessment {
+                id,
+                model: condition.bundle(BundleKind::Physics)[condition.nominal()].name.clone(),
+                total: rows(changes, |change| change.total()),
+                magnitude: rows(changes, |change| change.magnitude()),
+                phase: rows(changes, |change| change.phase()),
+            }),
+        }
+    }
+
     fn settings(&self, settings: &Settings) -> SettingsUsed {
         let ignored = settings.fitted.map(|_, fitted| !fitted);
         SettingsUsed {
@@ -92,8 +103,6 @@ impl Gather<'_> {
     fn condition(&self, index: usize, condition: &Condition, result: &ConditionAnalysis) -> ConditionCorrections {
         let (study, names) = (&self.analysis.study, &self.names);
         let model = |kind, model: usize| condition.bundle(kind)[model].name.clone();
-        let physics = condition.bundle(BundleKind::Physics);
-        let ratios = result.figures.discontinuity.as_ref().map(|found| found.ratios.as_slice()).unwrap_or_default();
         let correction = &result.correction;
         ConditionCorrections {
             id: condition.id(),
@@ -103,7 +112,7 @@ impl Gather<'_> {
             identified_representative: model(BundleKind::Identified, result.comparison.identified.model),
             rejected: study.rejected_names(index).into_iter().map(str::to_owned).collect(),
             suggested_outliers: result.suggested().into_iter().map(|at| model(BundleKind::Physics, at)).collect(),
-            discontinuity: ByName(physics.iter().map(|model| model.name.clone()).zip(ratios.iter().copied()).collect()),
+            discontinuity: discontinuity_of(condition, result),
             scheduled: study.choices[index].scheduled,
             held: names.marked(result.held()),
             delta_gain: rows(&result.comparison.delta.gain, |gain| *gain),
@@ -116,7 +125,11 @@ impl Gather<'_> {
             delay_solution: self.delay_outcome(result),
             net_gains: self.net_gains(result),
             cost: cost_tables(result),
-            cautions: result.cautions.iter().map(|caution| caution.words(|pair| study.dataset.pair_name(pair))).collect(),
+            cautions: result
+                .cautions
+                .iter()
+                .map(|caution| caution.words(|pair| study.dataset.pair_name(pair)))
+                .collect(),
         }
     }
 
@@ -142,8 +155,11 @@ impl Gather<'_> {
             objective: gains.objective,
             lower_bound: Some(gains.lower_bound).filter(|bound| bound.is_finite()),
             proven: matches!(gains.outcome, Outcome::Proven { .. }),
+            gap: gains.outcome.gap(),
+            local_minima: gains.local_minima.len(),
             matched: gains.matched,
             unmatched: unmatched.collect(),
+            explanation: explanation::of_gains(gains, &gain_sensitivities(&result.gain_problem, gains), names),
         }
     }
 
@@ -152,10 +168,26 @@ impl Gather<'_> {
         let top = self.analysis.study.settings.band.max();
         let unmatched = delays.unmatched.iter().map(|entry| {
             let (output, input) = names.pair(entry.pair);
-            let why = entry.words(top, &names.inputs, &names.outputs);
-            UnmatchedDelayEntry { output, input, target_s: entry.target_s, wanted_s: entry.wanted_s, why }
+            let mut why = entry.words(top, &names.inputs, &names.outputs);
+            // A lone response that needs lead has said so already.
+            if !matches!(&entry.why, DelayConflict::NeedsLead { entries, .. } if entries.len() == 1) {
+                why = format!("{why} {}", entry.why.words(&names.inputs, &names.outputs));
+            }
+            UnmatchedDelayEntry {
+                output,
+                input,
+                target_s: entry.target_s,
+                wanted_s: entry.wanted_s,
+                phase_left_deg: entry.phase_left_deg(top),
+                why,
+            }
         });
-        DelayOutcome { objective: delays.objective, matched: delays.matched, unmatched: unmatched.collect() }
+        DelayOutcome {
+            objective: delays.objective,
+            matched: delays.matched,
+            unmatched: unmatched.collect(),
+            explanation: explanation::of_delays(delays, &delay_sensitivities(&result.delay_problem, delays), names),
+        }
     }
 
     fn schedule(&self, schedule: &Schedule) -> ScheduleUsed {
@@ -193,6 +225,13 @@ impl Gather<'_> {
             table: table.collect(),
         }
     }
+}
+
+/// Discontinuity ratios by name, in file order; none where none could be computed.
+fn discontinuity_of(condition: &Condition, result: &ConditionAnalysis) -> ByName<Option<f64>> {
+    let ratios = result.figures.discontinuity.as_ref().map(|found| found.ratios.clone()).unwrap_or_default();
+    let names = condition.bundle(BundleKind::Physics).iter().map(|model| model.name.clone());
+    ByName(names.zip(ratios).collect())
 }
 
 fn figures_of(regression: &Regression) -> Vec<f64> {

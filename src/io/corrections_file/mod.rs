@@ -3,6 +3,7 @@
 mod assessment_table;
 mod channel_names;
 mod channel_table;
+mod explanation;
 mod gather;
 mod schema;
 
@@ -15,6 +16,7 @@ use super::whole_file::write_whole;
 
 pub use assessment_table::write_assessment_csv;
 pub use channel_table::write_corrections_csv;
+pub use explanation::{ConflictEntry, Explanation, RemedyEntry, SensitivityEntry};
 pub use schema::{
     Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
     DelayOutcome, GainOutcome, NetGain, ScheduleUsed, ScheduledDelays, ScheduledGains, SettingsUsed, Table,

@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::io::by_name::ByName;
 
+use super::explanation::Explanation;
+
 /// A table `[output][input]` in the dataset's channel order; `None` (null) where a response has no such figure.
 pub type Table = Vec<Vec<Option<f64>>>;
 
@@ -133,12 +135,18 @@ pub struct GainOutcome {
     pub objective: f64,
     /// No gains inside the bounds have a lower objective.
     pub lower_bound: Option<f64>,
-    /// Whether the objective is proven to be the least.
+    /// Whether the objective is proven to be the least, to a relative gap of 1e-9.
     pub proven: bool,
+    /// The relative gap between objective and lower bound.
+    pub gap: f64,
+    /// How many distinct local minima lie within 1 % of the objective, itself included.
+    pub local_minima: usize,
     /// Whether every held response is held at its G.
     pub matched: bool,
     /// The responses that are not.
     pub unmatched: Vec<UnmatchedGainEntry>,
+    /// Why not, what would help, and what holding costs.
+    pub explanation: Explanation,
 }
 
 /// A response that could not be held at its G.
@@ -167,6 +175,8 @@ pub struct DelayOutcome {
     pub matched: bool,
     /// The responses that are not.
     pub unmatched: Vec<UnmatchedDelayEntry>,
+    /// Why not, what would help, and what holding costs.
+    pub explanation: Explanation,
 }
 
 /// A response that could not be held at its D.
@@ -180,6 +190,8 @@ pub struct UnmatchedDelayEntry {
     pub target_s: f64,
     /// Its D \[s\].
     pub wanted_s: f64,
+    /// Phase error that remains at the top of the band \[deg\].
+    pub phase_left_deg: f64,
     /// What is in the way.
     pub why: String,
 }

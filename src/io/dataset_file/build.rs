@@ -1,10 +1,10 @@
 //! From what a dataset file says to the dataset, each error with its place.
 
 use crate::dataset::{
-    Band, BundleKind, Channel, Condition, Dataset, DatasetHeader, Dynamics, FlightState,
-    Model, Origin, Pair, PairTable,
+    Band, BundleKind, Channel, Condition, Dataset, DatasetHeader, Dynamics, FlightState, Model, Origin, Pair, PairTable,
 };
 use crate::io::content_fault::ContentFault;
+use crate::io::flaw::Flaw;
 use crate::io::place::Place;
 
 use super::dynamics::{Matrices, state_space_or_response};
@@ -14,9 +14,6 @@ use super::schema::{BandText, ChannelText, ConditionText, DatasetText, Identifie
 const MOST_CHANNELS: usize = 200;
 /// Most conditions, and most models of a bundle: comparing names takes time that grows with the square.
 const MOST_ENTRIES: usize = 5000;
-
-/// What is wrong, and where.
-pub(super) type Flaw = (Place, ContentFault);
 
 /// The dataset, and a caution for each thing in it that is odd but harmless.
 pub(super) fn dataset_of(text: DatasetText) -> Result<(Dataset, Vec<String>), Flaw> {
@@ -36,14 +33,15 @@ pub(super) fn dataset_of(text: DatasetText) -> Result<(Dataset, Vec<String>), Fl
     };
     let mut reader = Reader { outputs, inputs, cautions: Vec::new() };
     let conditions = text.conditions.into_iter().enumerate();
-    let conditions = conditions.map(|(index, condition)| reader.condition(index + 1, condition)).collect::<Result<_, _>>()?;
+    let conditions =
+        conditions.map(|(index, condition)| reader.condition(index + 1, condition)).collect::<Result<_, _>>()?;
     // These errors name the list or the condition themselves.
-    let dataset = Dataset::new(header, conditions).map_err(|error| (Place::default(), error.into()))?;
+    let dataset = Dataset::new(header, conditions).map_err(|error| Flaw::new(Place::default(), error))?;
     Ok((dataset, reader.cautions))
 }
 
 fn check_count(list: &str, found: usize, most: usize) -> Result<(), Flaw> {
-    if found > most { Err((Place::entry(list), ContentFault::TooMany { most, found })) } else { Ok(()) }
+    if found > most { Err(Flaw::new(Place::entry(list), ContentFault::TooMany { most, found })) } else { Ok(()) }
 }
 
 fn channel_of(text: ChannelText) -> Channel {
@@ -53,15 +51,15 @@ fn channel_of(text: ChannelText) -> Channel {
 fn band_of(text: &BandText) -> Result<Band, Flaw> {
     if text.unit != "rad/s" {
         let fault = ContentFault::Word { expected: "\"rad/s\"".to_owned(), found: text.unit.clone() };
-        return Err((Place::entry("frequency_band, unit"), fault));
+        return Err(Flaw::new(Place::entry("frequency_band, unit"), fault));
     }
-    Band::new(text.min, text.max).map_err(|error| (Place::entry("frequency_band"), error.into()))
+    Band::new(text.min, text.max).map_err(|error| Flaw::new(Place::entry("frequency_band"), error))
 }
 
 fn on_axis_of(text: &DatasetText) -> Result<PairTable<bool>, Flaw> {
     let mut table = PairTable::filled(text.outputs.len(), text.inputs.len(), false);
     for (index, (output, input)) in text.on_axis.iter().flatten().enumerate() {
-        let flaw = |fault: ContentFault| (Place::entry(format!("on_axis, entry {}", index + 1)), fault);
+        let flaw = |fault: ContentFault| Flaw::new(Place::entry(format!("on_axis, entry {}", index + 1)), fault);
         let find = |channels: &[ChannelText], kind: &'static str, name: &String| {
             let found = channels.iter().position(|channel| channel.name == *name);
             found.ok_or_else(|| flaw(ContentFault::UnknownChannel { kind, name: name.clone() }))
@@ -88,7 +86,7 @@ impl Reader {
             [("physics_models", text.physics_models.len()), ("identified_models", text.identified_models.len())]
         {
             if found > MOST_ENTRIES {
-                return Err((place.at(list), ContentFault::TooMany { most: MOST_ENTRIES, found }));
+                return Err(Flaw::new(place.at(list), ContentFault::TooMany { most: MOST_ENTRIES, found }));
             }
         }
         let flight_state = FlightState {
@@ -106,21 +104,22 @@ impl Reader {
         let identified = text.identified_models.into_iter().enumerate();
         let identified: Vec<Model> =
             identified.map(|(index, model)| self.identified(&place, index + 1, model)).collect::<Result<_, _>>()?;
-        Condition::new(flight_state, physics, identified).map_err(|error| (place, error.into()))
+        Condition::new(flight_state, physics, identified).map_err(|error| Flaw::new(place, error))
     }
 
     fn physics(&self, condition: &Place, position: usize, text: PhysicsText) -> Result<Model, Flaw> {
         let place = condition.model(BundleKind::Physics, position, &text.name);
         if text.frequency_response.is_some() {
-            return Err((place.at("frequency_response"), ContentFault::MeasuredPhysics));
+            return Err(Flaw::new(place.at("frequency_response"), ContentFault::MeasuredPhysics));
         }
         let perturbation = text.perturbation;
         let origin = match text.role.as_str() {
             "nominal" => Origin::Nominal { perturbation },
             "perturbed" => Origin::Perturbed { perturbation },
             _ => {
-                let fault = ContentFault::Word { expected: "\"nominal\" or \"perturbed\"".to_owned(), found: text.role };
-                return Err((place.at("role"), fault));
+                let fault =
+                    ContentFault::Word { expected: "\"nominal\" or \"perturbed\"".to_owned(), found: text.role };
+                return Err(Flaw::new(place.at("role"), fault));
             }
         };
         let matrices = Matrices { a: text.a, b: text.b, c: text.c, d: text.d };
@@ -131,8 +130,7 @@ impl Reader {
     fn identified(&mut self, condition: &Place, position: usize, text: IdentifiedText) -> Result<Model, Flaw> {
         let place = condition.model(BundleKind::Identified, position, &text.name);
         let matrices = Matrices { a: text.a, b: text.b, c: text.c, d: text.d };
-        let dynamics =
-            state_space_or_response(matrices, text.frequency_response, &place, self.outputs, self.inputs)?;
+        let dynamics = state_space_or_response(matrices, text.frequency_response, &place, self.outputs, self.inputs)?;
         if let (Dynamics::StateSpace(model), Some(order)) = (&dynamics, text.order)
             && model.order() != order
         {

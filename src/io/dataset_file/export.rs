@@ -11,9 +11,10 @@ use super::schema::{
 
 /// The text of a dataset, entry by entry. Names of states, which the program does not keep, are not in it.
 pub(super) fn text_of(dataset: &Dataset) -> DatasetText {
-    let on_axis = dataset.on_axis().marked().map(|pair| {
-        (dataset.outputs()[pair.output].name.clone(), dataset.inputs()[pair.input].name.clone())
-    });
+    let on_axis = dataset
+        .on_axis()
+        .marked()
+        .map(|pair| (dataset.outputs()[pair.output].name.clone(), dataset.inputs()[pair.input].name.clone()));
     DatasetText {
         format: FORMAT.name.to_owned(),
         version: FORMAT.version,
@@ -102,5 +103,10 @@ fn response_text(response: &MeasuredResponse) -> ResponseText {
         shape,
         values: table.iter().flat_map(|(_, values)| values.iter().copied()).collect(),
     });
-    ResponseText { omega_rad_s: response.omega().to_vec(), re: part(|value| value.re), im: part(|value| value.im), coherence }
+    ResponseText {
+        omega_rad_s: response.omega().to_vec(),
+        re: part(|value| value.re),
+        im: part(|value| value.im),
+        coherence,
+    }
 }

@@ -113,7 +113,7 @@ pub(super) fn dataset_from(source: &Source<'_>, origin: DatasetOrigin) -> Result
     let path = origin.path();
     let (text, mut cautions) = FORMAT.decode::<DatasetText>(source.text(), &path)?;
     FORMAT.check_read(&text.format, text.version, &path)?;
-    let (dataset, odd) = dataset_of(text).map_err(|(place, fault)| FileError::content(&path, place, fault))?;
+    let (dataset, odd) = dataset_of(text).map_err(|flaw| FileError::content(&path, flaw))?;
     cautions.extend(odd);
     Ok(LoadedDataset { dataset: Arc::new(dataset), sha256: source.sha256.clone(), origin, cautions })
 }

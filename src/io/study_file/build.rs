@@ -7,6 +7,7 @@ use crate::correction::{GainBounds, GainObjective};
 use crate::dataset::{Band, BundleKind, Dataset, ModelId, Pair};
 use crate::fidelity::CostAverage;
 use crate::io::content_fault::ContentFault;
+use crate::io::flaw::Flaw;
 use crate::io::place::Place;
 use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
 use crate::study::{Edit, Setting, Study};
@@ -14,9 +15,6 @@ use crate::study::{Edit, Setting, Study};
 use super::schema::{
     AverageText, BundleText, ConditionText, KindText, ObjectiveText, QuantityText, ScheduleText, SettingsText,
 };
-
-/// What is wrong, and where.
-type Flaw = (Place, ContentFault);
 
 /// The study of `dataset` with these settings and choices; every one goes the way of the engineer's own decisions, so that the
 /// file cannot hold what could not be decided.
@@ -38,7 +36,7 @@ pub(super) fn study_of(
 
 fn take_settings(study: &mut Study, text: &SettingsText) -> Result<(), Flaw> {
     let [min, max] = text.band_rad_s;
-    let band = Band::new(min, max).map_err(|error| (Place::entry("settings, band_rad_s"), error.into()))?;
+    let band = Band::new(min, max).map_err(|error| Flaw::new(Place::entry("settings, band_rad_s"), error))?;
     let average = match text.cost_average {
         AverageText::Median => CostAverage::Median,
         AverageText::Mean => CostAverage::Mean,
@@ -62,7 +60,7 @@ fn take_settings(study: &mut Study, text: &SettingsText) -> Result<(), Flaw> {
     ];
     for (key, setting) in settings {
         let place = Place::entry(format!("settings, {key}"));
-        study.apply(&Edit::Set(setting)).map_err(|refusal| (place, refusal.into()))?;
+        study.apply(&Edit::Set(setting)).map_err(|refusal| Flaw::new(place, refusal))?;
     }
     Ok(())
 }
@@ -73,7 +71,7 @@ fn schedule_of(text: &ScheduleText) -> Result<ScheduleSettings, Flaw> {
         (KindText::Polynomial, Some(degree)) => ScheduleKind::Polynomial { degree },
         (KindText::Polynomial, None) => {
             let fault = ContentFault::MissingKey { key: "degree".to_owned() };
-            return Err((Place::entry("settings, schedule"), fault));
+            return Err(Flaw::new(Place::entry("settings, schedule"), fault));
         }
     };
     let quantity = match text.of {
@@ -96,13 +94,13 @@ fn take_pairs(
             let unknown_output = !study.dataset.outputs().iter().any(|channel| channel.name == *output);
             let (kind, name) = if unknown_output { ("output", output) } else { ("input", input) };
             let place = Place::entry(format!("settings, {key}, entry {}", index + 1));
-            (place, ContentFault::UnknownChannel { kind, name: name.clone() })
+            Flaw::new(place, ContentFault::UnknownChannel { kind, name: name.clone() })
         })?;
         pairs.insert(pair);
     }
     for pair in study.settings.constrained.pairs() {
         let edit = Edit::Set(setting(pair, pairs.contains(&pair)));
-        study.apply(&edit).map_err(|refusal| (Place::entry(format!("settings, {key}")), refusal.into()))?;
+        study.apply(&edit).map_err(|refusal| Flaw::new(Place::entry(format!("settings, {key}")), refusal))?;
     }
     Ok(())
 }
@@ -115,13 +113,13 @@ fn take_condition(
 ) -> Result<(), Flaw> {
     let id = text.id;
     if !seen.insert(id) {
-        return Err((place.clone(), ContentFault::DuplicateCondition { id }));
+        return Err(Flaw::new(place.clone(), ContentFault::DuplicateCondition { id }));
     }
     let found = study.dataset.conditions().iter().position(|condition| condition.id() == id);
-    let condition = found.ok_or_else(|| (place.clone(), ContentFault::UnknownCondition { id }))?;
+    let condition = found.ok_or_else(|| Flaw::new(place.clone(), ContentFault::UnknownCondition { id }))?;
     study
         .apply(&Edit::SetScheduled { condition, scheduled: text.scheduled })
-        .map_err(|refusal| (place.at("scheduled"), refusal.into()))?;
+        .map_err(|refusal| Flaw::new(place.at("scheduled"), refusal))?;
     take_bundle(study, place, condition, BundleKind::Physics, &text.physics)?;
     take_bundle(study, place, condition, BundleKind::Identified, &text.identified)
 }
@@ -140,18 +138,19 @@ fn take_bundle(
     let find = |study: &Study, name: &String, entry: String| {
         let models = study.dataset.conditions()[condition].bundle(bundle);
         let model = models.iter().position(|model| model.name == *name);
-        let model = model.ok_or_else(|| (place.at(entry), ContentFault::UnknownModel { name: name.clone() }))?;
+        let model =
+            model.ok_or_else(|| Flaw::new(place.at(entry), ContentFault::UnknownModel { name: name.clone() }))?;
         Ok(ModelId { condition, bundle, model })
     };
     for (index, name) in text.rejected.iter().enumerate() {
         let entry = format!("{key}, rejected, entry {}", index + 1);
         let id = find(study, name, entry.clone())?;
-        study.apply(&Edit::Reject(id)).map_err(|refusal| (place.at(entry), refusal.into()))?;
+        study.apply(&Edit::Reject(id)).map_err(|refusal| Flaw::new(place.at(entry), refusal))?;
     }
     if let Some(name) = &text.pinned {
         let entry = format!("{key}, pinned");
         let id = find(study, name, entry.clone())?;
-        study.apply(&Edit::Pin(id)).map_err(|refusal| (place.at(entry), refusal.into()))?;
+        study.apply(&Edit::Pin(id)).map_err(|refusal| Flaw::new(place.at(entry), refusal))?;
     }
     Ok(())
 }

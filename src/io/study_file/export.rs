@@ -59,9 +59,9 @@ fn settings_text(settings: &Settings, dataset: &Dataset) -> SettingsText {
 }
 
 fn pair_names(table: &PairTable<bool>, dataset: &Dataset) -> Vec<(String, String)> {
-    let names = table.marked().map(|pair| {
-        (dataset.outputs()[pair.output].name.clone(), dataset.inputs()[pair.input].name.clone())
-    });
+    let names = table
+        .marked()
+        .map(|pair| (dataset.outputs()[pair.output].name.clone(), dataset.inputs()[pair.input].name.clone()));
     names.collect()
 }
 

@@ -55,7 +55,7 @@ pub(super) fn study_from(source: &Source<'_>, path: &Path) -> Result<(Study, Loa
     FORMAT.check_read(&text.format, text.version, path)?;
     let mut loaded = load_referenced(&text.dataset, path)?;
     let study = study_of(loaded.dataset.clone(), &text.settings, &text.conditions)
-        .map_err(|(place, fault)| FileError::content(path, place, fault))?;
+        .map_err(|flaw| FileError::content(path, flaw))?;
     loaded.cautions.extend(unknown);
     Ok((study, loaded))
 }

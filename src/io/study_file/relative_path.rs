@@ -5,7 +5,8 @@ use std::path::{Component, Path, PathBuf};
 /// The path that leads from a directory to a file, both absolute and free of `.` and `..`; the file's own path where there is no
 /// common root (another drive).
 pub(super) fn relative_path(file: &Path, directory: &Path) -> PathBuf {
-    let (to, from): (Vec<Component<'_>>, Vec<Component<'_>>) = (file.components().collect(), directory.components().collect());
+    let (to, from): (Vec<Component<'_>>, Vec<Component<'_>>) =
+        (file.components().collect(), directory.components().collect());
     let common = to.iter().zip(&from).take_while(|(to, from)| to == from).count();
     if common == 0 {
         return file.to_owned();

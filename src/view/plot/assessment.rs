@@ -52,10 +52,7 @@ impl AssessmentView {
     /// Where the foot of a bar is on the screen.
     pub fn screen_position(&self, panel: usize, key: usize) -> Option<Pos2> {
         let index = self.panels.get(panel)?.1.iter().position(|known| *known == key)?;
-        Some(
-            self.transform(panel)?
-                .position_from_point(&PlotPoint::new(index as f64, 0.0)),
-        )
+        Some(self.transform(panel)?.position_from_point(&PlotPoint::new(index as f64, 0.0)))
     }
 }
 
@@ -77,19 +74,12 @@ pub fn assessment_ui(
         use_frame_colors(ui, palette);
         key_ui(ui, rect, palette);
         let inner = Rect::from_min_max(rect.min + vec2(0.0, KEY_HEIGHT), rect.max);
-        tiles_ui(
-            ui,
-            "panels",
-            inner,
-            scene.panels.len(),
-            LEAST_PANEL,
-            |ui, index, rect| {
-                let panel = &scene.panels[index];
-                let answer = bar_panel_ui(ui, (ui.make_persistent_id(("assessment", index)), rect), panel, palette);
-                view.panels[index] = (Some(answer.transform), panel.bars.iter().map(|bar| bar.key).collect());
-                events.extend(panel_event(index, panel, &answer, palette));
-            },
-        );
+        tiles_ui(ui, "panels", inner, scene.panels.len(), LEAST_PANEL, |ui, index, rect| {
+            let panel = &scene.panels[index];
+            let answer = bar_panel_ui(ui, (ui.make_persistent_id(("assessment", index)), rect), panel, palette);
+            view.panels[index] = (Some(answer.transform), panel.bars.iter().map(|bar| bar.key).collect());
+            events.extend(panel_event(index, panel, &answer, palette));
+        });
     });
     ui.advance_cursor_after_rect(rect);
     events
@@ -103,28 +93,16 @@ fn panel_event(
 ) -> Option<AssessmentEvent> {
     let bar = panel.bars.get(answer.hovered?)?;
     tooltip_ui(&answer.response, |ui| bar_text_ui(ui, panel, bar, palette));
-    answer.response.clicked().then_some(AssessmentEvent::BarClicked {
-        panel: index,
-        key: bar.key,
-    })
+    answer.response.clicked().then_some(AssessmentEvent::BarClicked { panel: index, key: bar.key })
 }
 
 fn bar_text_ui(ui: &mut Ui, panel: &AssessmentPanel, bar: &AssessmentBar, palette: &Palette) {
     let dim = |text: &str| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
-    ui.label(dim(&format!(
-        "{} · {} {}",
-        panel.title,
-        panel.axis_label.to_lowercase(),
-        bar.label
-    )));
+    ui.label(dim(&format!("{} · {} {}", panel.title, panel.axis_label.to_lowercase(), bar.label)));
     match &bar.value {
         BarValue::Change { magnitude, phase } => {
             ui.label(format!("ΔJ {}", decimals(magnitude + phase, 1)));
-            ui.label(dim(&format!(
-                "magnitude {} · phase {}",
-                decimals(*magnitude, 1),
-                decimals(*phase, 1)
-            )));
+            ui.label(dim(&format!("magnitude {} · phase {}", decimals(*magnitude, 1), decimals(*phase, 1))));
         }
         BarValue::LeftOut { why } => {
             ui.label(format!("left out: {why}"));
@@ -141,13 +119,7 @@ fn key_ui(ui: &Ui, rect: Rect, palette: &Palette) {
     let mut right = rect.right() - 10.0;
     let y = rect.top() + 0.5 * KEY_HEIGHT;
     let mut write = |text: &str| {
-        let place = painter.text(
-            pos2(right, y),
-            Align2::RIGHT_CENTER,
-            text,
-            caption_font(),
-            palette.dim_text,
-        );
+        let place = painter.text(pos2(right, y), Align2::RIGHT_CENTER, text, caption_font(), palette.dim_text);
         let sample = Rect::from_center_size(pos2(place.left() - 11.0, y), vec2(12.0, 10.0));
         right = sample.left() - 14.0;
         sample

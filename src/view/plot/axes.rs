@@ -58,11 +58,7 @@ pub fn axis_hints<'a>(
         .label_spacing(LABEL_SPACING)
         .tick_label_color(palette.text)
         .tick_label_font(tick_font());
-    if label.is_empty() {
-        hints
-    } else {
-        hints.label(RichText::new(label).size(SMALL_SIZE).color(palette.dim_text))
-    }
+    if label.is_empty() { hints } else { hints.label(RichText::new(label).size(SMALL_SIZE).color(palette.dim_text)) }
 }
 
 /// Makes the frame of the plots drawn in `ui` that of the palette, whatever the style around says.

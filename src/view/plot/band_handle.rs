@@ -102,11 +102,8 @@ fn paint(
 ) {
     let is_held = response.hovered() || response.dragged();
     let painter = ui.painter().with_clip_rect(frame);
-    let stroke = if is_held {
-        Stroke::new(2.0, palette.accent)
-    } else {
-        Stroke::new(1.0, palette.accent.gamma_multiply(0.65))
-    };
+    let stroke =
+        if is_held { Stroke::new(2.0, palette.accent) } else { Stroke::new(1.0, palette.accent.gamma_multiply(0.65)) };
     painter.vline(x, frame.y_range(), stroke);
     if !is_held {
         return;
@@ -115,21 +112,13 @@ fn paint(
     let galley = painter.layout_no_wrap(text, caption_font(), palette.text);
     // Inside the band, level with the pointer.
     let pointer = response.interact_pointer_pos().or(response.hover_pos());
-    let y = pointer
-        .map_or(frame.center().y, |pointer| pointer.y)
-        .clamp(frame.top() + 12.0, frame.bottom() - 12.0);
+    let y = pointer.map_or(frame.center().y, |pointer| pointer.y).clamp(frame.top() + 12.0, frame.bottom() - 12.0);
     let (align, offset) = match end {
         End::Lower => (Align2::LEFT_CENTER, 8.0),
         End::Upper => (Align2::RIGHT_CENTER, -8.0),
     };
     let place = align.anchor_size(pos2(x + offset, y), galley.size() + vec2(10.0, 4.0));
-    painter.rect(
-        place,
-        3.0,
-        palette.raised,
-        Stroke::new(1.0, palette.line),
-        StrokeKind::Inside,
-    );
+    painter.rect(place, 3.0, palette.raised, Stroke::new(1.0, palette.line), StrokeKind::Inside);
     painter.galley(place.min + vec2(5.0, 2.0), galley, palette.text);
 }
 

@@ -55,9 +55,7 @@ impl AssessmentPanel {
             }
             BarValue::LeftOut { .. } => Vec::new(),
         });
-        Range::of(parts.chain([0.0]))
-            .unwrap_or(Range::new(-1.0, 1.0))
-            .with_margin(0.12, 1.0)
+        Range::of(parts.chain([0.0])).unwrap_or(Range::new(-1.0, 1.0)).with_margin(0.12, 1.0)
     }
 }
 
@@ -86,11 +84,8 @@ mod tests {
             selected: false,
             detail: String::new(),
         };
-        let panel = AssessmentPanel {
-            title: "a".into(),
-            axis_label: "b".into(),
-            bars: vec![bar(1, -40.0), bar(2, -90.0)],
-        };
+        let panel =
+            AssessmentPanel { title: "a".into(), axis_label: "b".into(), bars: vec![bar(1, -40.0), bar(2, -90.0)] };
         assert!(panel.values().contains(0.0) && panel.values().contains(-90.0));
     }
 }

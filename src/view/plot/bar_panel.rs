@@ -42,16 +42,8 @@ pub(super) fn bar_panel_ui(
     let (response, transform) = frame_ui(ui, (id, plot_rect), panel, palette);
     let frame = *transform.frame();
     let title_place = pos2(frame.center().x, rect.top() + 0.5 * TITLE_HEIGHT);
-    ui.painter().text(
-        title_place,
-        Align2::CENTER_CENTER,
-        &panel.title,
-        caption_font(),
-        palette.text,
-    );
-    let hovered = response
-        .hover_pos()
-        .and_then(|pointer| bar_at(panel, &transform, pointer));
+    ui.painter().text(title_place, Align2::CENTER_CENTER, &panel.title, caption_font(), palette.text);
+    let hovered = response.hover_pos().and_then(|pointer| bar_at(panel, &transform, pointer));
     let painter = ui.painter().with_clip_rect(frame.intersect(ui.clip_rect()));
     for (index, bar) in panel.bars.iter().enumerate() {
         let slot = slot(&transform, index);
@@ -66,11 +58,7 @@ pub(super) fn bar_panel_ui(
             BarValue::LeftOut { .. } => paint_left_out(&painter, slot, palette),
         }
     }
-    BarAnswer {
-        response,
-        transform,
-        hovered,
-    }
+    BarAnswer { response, transform, hovered }
 }
 
 fn frame_ui(
@@ -81,11 +69,7 @@ fn frame_ui(
 ) -> (Response, PlotTransform) {
     let values = panel.values();
     let bounds = PlotBounds::from_min_max([-0.5, values.min], [panel.bars.len() as f64 - 0.5, values.max]);
-    let widest = panel
-        .bars
-        .iter()
-        .map(|bar| text_width(ui, &bar.label))
-        .fold(0.0, f32::max);
+    let widest = panel.bars.iter().map(|bar| text_width(ui, &bar.label)).fold(0.0, f32::max);
     let plot = bar_plot((id, rect.size()), panel, widest, palette);
     let shown = ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(rect), |ui| {
         plot.show(ui, |plot| {
@@ -110,13 +94,7 @@ fn bar_plot<'a>((id, size): (Id, Vec2), panel: &AssessmentPanel, widest: f32, pa
         .show_grid([false, true])
         .x_grid_spacer(move |input| bar_marks(&input, count, widest))
         .y_grid_spacer(Ladder::Decimal.spacer(TICK_GAP))
-        .custom_x_axes(vec![axis_hints(
-            Axis::X,
-            &panel.axis_label,
-            LABELLED_HEIGHT,
-            palette,
-            label,
-        )])
+        .custom_x_axes(vec![axis_hints(Axis::X, &panel.axis_label, LABELLED_HEIGHT, palette, label)])
         .custom_y_axes(vec![axis_hints(Axis::Y, "", VALUE_AXIS_WIDTH, palette, tick_text)])
 }
 
@@ -125,17 +103,11 @@ fn bar_marks(input: &GridInput, count: usize, widest: f32) -> Vec<GridMark> {
     /// Least space between two labels \[pt\].
     const SPACE: f64 = 6.0;
     let every = ((f64::from(widest) + SPACE) * input.base_step_size).ceil().max(1.0);
-    (0..count)
-        .step_by(every as usize)
-        .map(|index| labelled_mark(index as f64, input.base_step_size))
-        .collect()
+    (0..count).step_by(every as usize).map(|index| labelled_mark(index as f64, input.base_step_size)).collect()
 }
 
 fn text_width(ui: &Ui, text: &str) -> f32 {
-    ui.painter()
-        .layout_no_wrap(text.to_owned(), tick_font(), Color32::PLACEHOLDER)
-        .size()
-        .x
+    ui.painter().layout_no_wrap(text.to_owned(), tick_font(), Color32::PLACEHOLDER).size().x
 }
 
 fn in_words(panel: &AssessmentPanel) -> String {
@@ -176,13 +148,7 @@ fn paint_change(
     let part = |[from, to]: [f64; 2]| Rect::from_x_y_ranges(columns.clone(), y(from).min(y(to))..=y(from).max(y(to)));
     painter.rect_filled(part(of_magnitude), 0.0, color(magnitude));
     let faint = color(phase).gamma_multiply(PHASE_FADE);
-    painter.rect(
-        part(of_phase),
-        0.0,
-        faint,
-        Stroke::new(1.0, color(phase).gamma_multiply(0.7)),
-        StrokeKind::Inside,
-    );
+    painter.rect(part(of_phase), 0.0, faint, Stroke::new(1.0, color(phase).gamma_multiply(0.7)), StrokeKind::Inside);
     let overhang = 0.08 * slot.width();
     let mark = columns.start() - overhang..=columns.end() + overhang;
     painter.hline(mark, y(total), Stroke::new(2.0, palette.text));
@@ -200,11 +166,7 @@ fn paint_change(
 }
 
 fn paint_left_out(painter: &Painter, slot: Rect, palette: &Palette) {
-    painter.rect_filled(
-        slot.shrink2(vec2(0.15 * slot.width(), 0.0)),
-        0.0,
-        palette.rejected.gamma_multiply(0.13),
-    );
+    painter.rect_filled(slot.shrink2(vec2(0.15 * slot.width(), 0.0)), 0.0, palette.rejected.gamma_multiply(0.13));
     let galley = painter.layout_no_wrap("left out".to_owned(), VALUE_FONT, palette.dim_text);
     if galley.size().y > slot.width() || galley.size().x > slot.height() {
         return;
@@ -221,10 +183,7 @@ mod tests {
     #[test]
     fn wide_labels_are_thinned_until_they_fit() {
         // Eleven bars on 110 points: 10 points each.
-        let input = GridInput {
-            bounds: (-0.5, 10.5),
-            base_step_size: 0.1,
-        };
+        let input = GridInput { bounds: (-0.5, 10.5), base_step_size: 0.1 };
         assert_eq!(bar_marks(&input, 11, 4.0).len(), 11);
         assert_eq!(bar_marks(&input, 11, 12.0).len(), 6);
         assert_eq!(bar_marks(&input, 11, 30.0).len(), 3);

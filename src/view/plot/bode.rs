@@ -81,11 +81,7 @@ pub fn bode_ui(ui: &mut Ui, scene: &BodeScene<'_>, view: &mut BodeView, palette:
 }
 
 fn has_data(curves: &[BodeCurve]) -> bool {
-    let is_finite = |curve: &BodeCurve| {
-        curve
-            .points(Pane::Magnitude)
-            .any(|point| point.iter().all(|c| c.is_finite()))
-    };
+    let is_finite = |curve: &BodeCurve| curve.points(Pane::Magnitude).any(|point| point.iter().all(|c| c.is_finite()));
     curves.iter().any(is_finite)
 }
 
@@ -100,19 +96,12 @@ fn panes_ui(
     let pointing = Pointing::find(ui, scene, view);
     let hit = pointing.and_then(|pointing| pointing.hit);
     set_hovered(view, hit.map(|hit| hit.id), events);
-    let emphasis = Emphasis {
-        curve: view.hovered,
-        cursor: pointing.map(|pointing| pointing.log_omega),
-    };
+    let emphasis = Emphasis { curve: view.hovered, cursor: pointing.map(|pointing| pointing.log_omega) };
     for (pane, rect) in pane_rects(rect) {
         let response = pane_ui(ui, (pane, rect), scene, view, &emphasis, palette);
         click(pane, scene, &response, view, events);
         drag_band(ui, pane, scene, view, palette, events);
-        if let Some(Pointing {
-            pane: pointed,
-            hit: Some(hit),
-            ..
-        }) = pointing
+        if let Some(Pointing { pane: pointed, hit: Some(hit), .. }) = pointing
             && pointed == pane
             && let Some(curve) = scene.curves.iter().find(|curve| curve.id == hit.id)
         {
@@ -152,11 +141,7 @@ impl Pointing {
             let transform = view.transform(pane).filter(|transform| is_inside(*transform.frame()))?;
             let log_omega = transform.value_from_position(pointer).x;
             // While something is dragged, curves passing under the pointer are not meant.
-            let hit = if is_dragging {
-                None
-            } else {
-                nearest(scene.curves, pane, pointer, transform)
-            };
+            let hit = if is_dragging { None } else { nearest(scene.curves, pane, pointer, transform) };
             Some(Self { pane, log_omega, hit })
         })
     }
@@ -178,18 +163,11 @@ fn click(pane: Pane, scene: &BodeScene<'_>, response: &Response, view: &mut Bode
     } else if response.clicked() {
         let alt = response.ctx.input(|input| input.modifiers.alt);
         let pointer = response.interact_pointer_pos();
-        let hit = pointer
-            .zip(view.transform(pane))
-            .and_then(|(at, transform)| nearest(scene.curves, pane, at, transform));
+        let hit =
+            pointer.zip(view.transform(pane)).and_then(|(at, transform)| nearest(scene.curves, pane, at, transform));
         let id = hit.map(|hit| hit.id);
         view.last_clicked = if alt { None } else { id };
-        events.extend(id.map(|id| {
-            if alt {
-                BodeEvent::Isolated(id)
-            } else {
-                BodeEvent::Clicked(id)
-            }
-        }));
+        events.extend(id.map(|id| if alt { BodeEvent::Isolated(id) } else { BodeEvent::Clicked(id) }));
     }
 }
 
@@ -206,20 +184,14 @@ fn drag_band(
         Pane::Magnitude => "magnitude plot",
         Pane::Phase => "phase plot",
     };
-    events.extend(
-        band_handles_ui(ui, place, scene.band, transform, scene.unit, palette).map(|change| match change {
-            BandChange::Dragged { min, max } => BodeEvent::BandDragged { min, max },
-            BandChange::Released => BodeEvent::BandReleased,
-        }),
-    );
+    events.extend(band_handles_ui(ui, place, scene.band, transform, scene.unit, palette).map(|change| match change {
+        BandChange::Dragged { min, max } => BodeEvent::BandDragged { min, max },
+        BandChange::Released => BodeEvent::BandReleased,
+    }));
 }
 
 fn set_cursor_icon(response: Response, hit: Option<Hit>) {
-    let icon = if hit.is_some() {
-        CursorIcon::PointingHand
-    } else {
-        CursorIcon::Crosshair
-    };
+    let icon = if hit.is_some() { CursorIcon::PointingHand } else { CursorIcon::Crosshair };
     response.on_hover_cursor(icon);
 }
 
@@ -236,7 +208,5 @@ fn captions_ui(ui: &Ui, scene: &BodeScene<'_>, view: &mut BodeView, palette: &Pa
     legend::legend_ui(ui, frame, &entries, &mut view.legend, covered, palette);
     let corner: Pos2 = frame.left_bottom() + vec2(8.0, -6.0);
     let text = if scene.stale { "updating…" } else { "" };
-    ui.painter()
-        .with_clip_rect(frame)
-        .text(corner, Align2::LEFT_BOTTOM, text, caption_font(), palette.dim_text);
+    ui.painter().with_clip_rect(frame).text(corner, Align2::LEFT_BOTTOM, text, caption_font(), palette.dim_text);
 }

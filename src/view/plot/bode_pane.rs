@@ -77,9 +77,7 @@ pub(super) fn pane_ui(
     }
     zoom_by_scrolling(ui, pane, &shown.response, view);
     let description = format!("{} of {}, {} curves", pane.name(), scene.pair_title, scene.curves.len());
-    shown
-        .response
-        .widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, description.clone()));
+    shown.response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, description.clone()));
     shown.response
 }
 
@@ -98,26 +96,12 @@ fn pane_plot<'a>(id: Id, pane: Pane, rect: Rect, scene: &BodeScene<'_>, palette:
         .allow_axis_zoom_drag(true)
         .x_grid_spacer(unit.spacer())
         .y_grid_spacer(pane.ladder().spacer(VERTICAL_TICK_GAP))
-        .custom_x_axes(vec![axis_hints(
-            Axis::X,
-            &frequency_label,
-            frequency_height,
-            palette,
-            frequency_text,
-        )])
-        .custom_y_axes(vec![axis_hints(
-            Axis::Y,
-            pane.axis_label(),
-            VALUE_AXIS_WIDTH,
-            palette,
-            tick_text,
-        )])
+        .custom_x_axes(vec![axis_hints(Axis::X, &frequency_label, frequency_height, palette, frequency_text)])
+        .custom_y_axes(vec![axis_hints(Axis::Y, pane.axis_label(), VALUE_AXIS_WIDTH, palette, tick_text)])
 }
 
 fn band_shade(plot: &mut PlotUi<'_>, (min, max): (f64, f64), palette: &Palette) {
-    let fill = palette
-        .accent
-        .gamma_multiply(if palette.is_dark { 0.055 } else { 0.075 });
+    let fill = palette.accent.gamma_multiply(if palette.is_dark { 0.055 } else { 0.075 });
     plot.span(Span::new("", min.log10()..=max.log10()).fill(fill).border_width(0.0));
 }
 
@@ -151,13 +135,7 @@ fn draw_curves(
         }
         for run in runs_in_view(curve.points(pane), &bounds) {
             let run = thinned(&run, tolerance);
-            plot.line(
-                Line::new("", run)
-                    .color(look.color)
-                    .width(look.width)
-                    .style(look.style)
-                    .allow_hover(false),
-            );
+            plot.line(Line::new("", run).color(look.color).width(look.width).style(look.style).allow_hover(false));
         }
     }
 }
@@ -165,12 +143,7 @@ fn draw_curves(
 fn draw_cursor(plot: &mut PlotUi<'_>, cursor: Option<f64>, palette: &Palette) {
     if let Some(log_omega) = cursor {
         let color = palette.text.gamma_multiply(0.55);
-        plot.vline(
-            VLine::new("", log_omega)
-                .color(color)
-                .width(0.8)
-                .style(LineStyle::Dotted { spacing: 4.0 }),
-        );
+        plot.vline(VLine::new("", log_omega).color(color).width(0.8).style(LineStyle::Dotted { spacing: 4.0 }));
     }
 }
 

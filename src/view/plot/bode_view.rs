@@ -40,11 +40,7 @@ impl Default for BodeView {
             log_omega: Range { min: -1.0, max: 2.0 },
             magnitude_db: Range { min: -40.0, max: 20.0 },
             phase_deg: Range { min: -360.0, max: 90.0 },
-            legend: LegendState {
-                is_open: true,
-                corner: None,
-                rect: None,
-            },
+            legend: LegendState { is_open: true, corner: None, rect: None },
             hovered: None,
             last_clicked: None,
             must_fit: true,
@@ -135,10 +131,7 @@ impl BodeView {
     /// Shows what lies in `area` of the screen.
     pub(super) fn zoom_to(&mut self, pane: Pane, area: Rect) {
         let Some(transform) = self.transform(pane) else { return };
-        let (a, b) = (
-            transform.value_from_position(area.min),
-            transform.value_from_position(area.max),
-        );
+        let (a, b) = (transform.value_from_position(area.min), transform.value_from_position(area.max));
         self.set_log_omega(Range::new(a.x, b.x));
         self.set_values(pane, Range::new(a.y, b.y));
     }
@@ -185,11 +178,7 @@ impl BodeView {
 
 /// The values to show: all within the band, and outside it as far as they leave room for those within.
 fn fitted_values(curves: &[BodeCurve], pane: Pane, (min, max): (f64, f64)) -> Option<Range> {
-    let points = || {
-        curves
-            .iter()
-            .flat_map(|curve| curve.omega.iter().zip(curve.values(pane)))
-    };
+    let points = || curves.iter().flat_map(|curve| curve.omega.iter().zip(curve.values(pane)));
     let all = Range::of(points().map(|(_, value)| *value))?;
     let within = points().filter(|(omega, _)| (min..=max).contains(*omega));
     let Some(within) = Range::of(within.map(|(_, value)| *value)) else {
@@ -227,18 +216,12 @@ mod tests {
 
     #[test]
     fn a_peak_outside_the_band_does_not_flatten_what_is_within() {
-        assert_eq!(
-            fitted(&[90.0, 0.0, -5.0, -10.0, -12.0]),
-            Some(Range::new(-12.0, 10.0 * OUTSIDE_PART))
-        );
+        assert_eq!(fitted(&[90.0, 0.0, -5.0, -10.0, -12.0]), Some(Range::new(-12.0, 10.0 * OUTSIDE_PART)));
     }
 
     #[test]
     fn without_values_in_the_band_all_are_shown() {
-        assert_eq!(
-            fitted(&[3.0, f64::NAN, f64::NAN, f64::NAN, -50.0]),
-            Some(Range::new(-50.0, 3.0))
-        );
+        assert_eq!(fitted(&[3.0, f64::NAN, f64::NAN, f64::NAN, -50.0]), Some(Range::new(-50.0, 3.0)));
         assert_eq!(fitted(&[f64::NAN; 5]), None);
     }
 }

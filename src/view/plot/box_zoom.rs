@@ -26,8 +26,6 @@ pub(super) fn box_zoom_ui(ui: &Ui, plot: &Response, frame: Rect, palette: &Palet
         return is_wanted.then_some(area);
     }
     let (fill, stroke) = (palette.accent.gamma_multiply(0.12), Stroke::new(1.0, palette.accent));
-    ui.painter()
-        .with_clip_rect(frame)
-        .rect(area, 0.0, fill, stroke, StrokeKind::Inside);
+    ui.painter().with_clip_rect(frame).rect(area, 0.0, fill, stroke, StrokeKind::Inside);
     None
 }

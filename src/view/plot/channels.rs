@@ -53,17 +53,9 @@ pub fn channels_ui(
     let mut events = Vec::new();
     for (name, rect, panels, view) in groups.into_iter().filter(|(_, _, panels, _)| !panels.is_empty()) {
         let place = pos2(rect.left() + 2.0, rect.top() + 0.5 * HEADING_HEIGHT);
-        ui.painter()
-            .text(place, Align2::LEFT_CENTER, name, caption_font(), palette.dim_text);
+        ui.painter().text(place, Align2::LEFT_CENTER, name, caption_font(), palette.dim_text);
         let rect = Rect::from_min_max(rect.min + vec2(0.0, HEADING_HEIGHT), rect.max - vec2(0.0, GAP));
-        events.extend(gain_group_ui(
-            ui,
-            (name, rect),
-            panels,
-            (ranges, "Gain [-]"),
-            view,
-            palette,
-        ));
+        events.extend(gain_group_ui(ui, (name, rect), panels, (ranges, "Gain [-]"), view, palette));
     }
     ui.advance_cursor_after_rect(rect);
     events

@@ -53,10 +53,7 @@ impl BodeCurve {
 
     /// The points of a pane in plot coordinates, `[log10 omega, value]`; gaps are points that are not finite.
     pub fn points(&self, pane: Pane) -> impl Iterator<Item = [f64; 2]> + '_ {
-        self.omega
-            .iter()
-            .zip(self.values(pane))
-            .map(|(omega, value)| [omega.log10(), *value])
+        self.omega.iter().zip(self.values(pane)).map(|(omega, value)| [omega.log10(), *value])
     }
 
     /// The value at `omega` \[rad/s\], linear in `log10 omega` between points; nothing outside them or beside a gap.

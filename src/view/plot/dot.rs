@@ -85,11 +85,7 @@ pub struct Dot {
 impl Dot {
     /// Draws the dot at `center`.
     pub(super) fn paint(&self, painter: &Painter, center: Pos2, is_hovered: bool, palette: &Palette) {
-        let color = if self.chosen {
-            palette.perturbed
-        } else {
-            palette.rejected
-        };
+        let color = if self.chosen { palette.perturbed } else { palette.rejected };
         let radius = if is_hovered { DOT_RADIUS + 1.2 } else { DOT_RADIUS };
         if self.selected {
             painter.circle_stroke(center, radius + RING_GAP, Stroke::new(1.6, palette.text));
@@ -98,22 +94,12 @@ impl Dot {
             self.shape.paint(painter, center, radius, color, Stroke::NONE);
         } else {
             // An open dot hides the lines that run through it, and looks as large as a filled one.
-            self.shape.paint(
-                painter,
-                center,
-                radius - 0.75,
-                palette.background,
-                Stroke::new(1.5, color),
-            );
+            self.shape.paint(painter, center, radius - 0.75, palette.background, Stroke::new(1.5, color));
         }
     }
 
     /// How far from its centre a label must stay \[pt\].
     pub(super) fn clearance(&self) -> f32 {
-        if self.selected {
-            DOT_RADIUS + RING_GAP + 1.0
-        } else {
-            DOT_RADIUS
-        }
+        if self.selected { DOT_RADIUS + RING_GAP + 1.0 } else { DOT_RADIUS }
     }
 }

@@ -66,15 +66,9 @@ pub fn place_labels(dots: &[LabelledDot], around: Surroundings<'_>) -> Vec<Label
             places[index] = best_place(index, dots, &places, around);
         }
     }
-    let fallback = |index: usize| LabelPlace {
-        rect: Rect::from_min_size(dots[index].center, dots[index].label),
-        leader: None,
-    };
-    places
-        .into_iter()
-        .enumerate()
-        .map(|(index, place)| place.unwrap_or_else(|| fallback(index)))
-        .collect()
+    let fallback =
+        |index: usize| LabelPlace { rect: Rect::from_min_size(dots[index].center, dots[index].label), leader: None };
+    places.into_iter().enumerate().map(|(index, place)| place.unwrap_or_else(|| fallback(index))).collect()
 }
 
 fn best_place(
@@ -83,12 +77,8 @@ fn best_place(
     places: &[Option<LabelPlace>],
     around: Surroundings<'_>,
 ) -> Option<LabelPlace> {
-    let others: Vec<Rect> = places
-        .iter()
-        .enumerate()
-        .filter(|(k, _)| *k != index)
-        .filter_map(|(_, place)| Some((*place)?.rect))
-        .collect();
+    let others: Vec<Rect> =
+        places.iter().enumerate().filter(|(k, _)| *k != index).filter_map(|(_, place)| Some((*place)?.rect)).collect();
     let mut best: Option<(LabelPlace, f32)> = None;
     for (place, preference) in candidates(dots[index]) {
         // Most places are worse than the best one by their distance alone.
@@ -109,13 +99,7 @@ fn candidates(dot: LabelledDot) -> impl Iterator<Item = (LabelPlace, f32)> {
             let anchor = dot.center + direction * (dot.radius + gap);
             let leader = (ring > 0).then_some(anchor);
             let preference = side as f32 * LATER_SIDE + gap * FARTHER;
-            (
-                LabelPlace {
-                    rect: align.anchor_size(anchor, dot.label),
-                    leader,
-                },
-                preference,
-            )
+            (LabelPlace { rect: align.anchor_size(anchor, dot.label), leader }, preference)
         })
     })
 }
@@ -125,11 +109,7 @@ fn obstruction(rect: Rect, labels: &[Rect], dots: &[LabelledDot], around: Surrou
     let dot_rect = |dot: &LabelledDot| Rect::from_center_size(dot.center, Vec2::splat(1.9 * dot.radius));
     let on_dots: f32 = dots.iter().map(|dot| common_area(rect, dot_rect(dot))).sum();
     let outside = rect.area() - common_area(rect, around.bounds);
-    let on_path: f32 = around
-        .path
-        .windows(2)
-        .map(|ends| length_inside(rect, ends[0], ends[1]))
-        .sum();
+    let on_path: f32 = around.path.windows(2).map(|ends| length_inside(rect, ends[0], ends[1])).sum();
     ON_LABEL * on_labels + ON_DOT * on_dots + OUTSIDE * outside + ON_PATH * on_path
 }
 
@@ -142,9 +122,7 @@ fn length_inside(rect: Rect, from: Pos2, to: Pos2) -> f32 {
     const STEP: f32 = 2.0;
     let length = from.distance(to);
     let steps = (length / STEP).ceil().max(1.0);
-    let inside = (0..steps as usize)
-        .filter(|k| rect.contains(from.lerp(to, (*k as f32 + 0.5) / steps)))
-        .count();
+    let inside = (0..steps as usize).filter(|k| rect.contains(from.lerp(to, (*k as f32 + 0.5) / steps))).count();
     inside as f32 * length / steps
 }
 
@@ -154,10 +132,7 @@ fn nearer_dots(label: Rect, index: usize, dots: &[LabelledDot]) -> usize {
     const SLACK: f32 = 0.5;
     let distance = |dot: &LabelledDot| label.distance_to_pos(dot.center) - dot.radius;
     let own = distance(&dots[index]);
-    dots.iter()
-        .enumerate()
-        .filter(|(k, dot)| *k != index && distance(dot) + SLACK < own)
-        .count()
+    dots.iter().enumerate().filter(|(k, dot)| *k != index && distance(dot) + SLACK < own).count()
 }
 
 fn common_area(a: Rect, b: Rect) -> f32 {
@@ -173,11 +148,7 @@ mod tests {
     const SIZE: Vec2 = vec2(12.0, 12.0);
 
     fn places(dots: &[Pos2]) -> Vec<LabelPlace> {
-        let dot = |center: &Pos2| LabelledDot {
-            center: *center,
-            radius: 4.0,
-            label: SIZE,
-        };
+        let dot = |center: &Pos2| LabelledDot { center: *center, radius: 4.0, label: SIZE };
         let dots: Vec<LabelledDot> = dots.iter().map(dot).collect();
         let bounds = Rect::from_min_max(pos2(0.0, 0.0), pos2(140.0, 170.0));
         place_labels(&dots, Surroundings { bounds, path: &[] })
@@ -202,21 +173,8 @@ mod tests {
     #[test]
     fn labels_of_the_example_do_not_overlap() {
         // PED to NY: conditions 1, 4, 8 and 2, 9 nearly coincide.
-        let dots = [
-            (120.0, 128.0),
-            (136.0, 134.0),
-            (12.0, 18.0),
-            (120.0, 137.0),
-            (12.0, 54.0),
-            (50.0, 110.0),
-        ];
-        let more = [
-            (80.0, 106.0),
-            (120.0, 134.0),
-            (136.0, 134.5),
-            (50.0, 91.0),
-            (80.0, 120.0),
-        ];
+        let dots = [(120.0, 128.0), (136.0, 134.0), (12.0, 18.0), (120.0, 137.0), (12.0, 54.0), (50.0, 110.0)];
+        let more = [(80.0, 106.0), (120.0, 134.0), (136.0, 134.5), (50.0, 91.0), (80.0, 120.0)];
         let dots: Vec<Pos2> = dots.into_iter().chain(more).map(|(x, y)| pos2(x, y)).collect();
         assert_no_two_overlap(&places(&dots));
     }
@@ -236,11 +194,7 @@ mod tests {
 
     #[test]
     fn a_label_keeps_off_the_line() {
-        let dots = [LabelledDot {
-            center: pos2(70.0, 80.0),
-            radius: 4.0,
-            label: SIZE,
-        }];
+        let dots = [LabelledDot { center: pos2(70.0, 80.0), radius: 4.0, label: SIZE }];
         let path = [pos2(60.0, 90.0), pos2(90.0, 60.0)];
         let bounds = Rect::from_min_max(pos2(0.0, 0.0), pos2(140.0, 170.0));
         let place = place_labels(&dots, Surroundings { bounds, path: &path })[0];

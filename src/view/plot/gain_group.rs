@@ -57,10 +57,7 @@ impl GainView {
     /// Where the dot of a condition is on the screen.
     pub fn screen_position(&self, panel: usize, condition: usize) -> Option<Pos2> {
         let (_, [airspeed_kt, gain]) = self.dots.get(panel)?.iter().find(|(index, _)| *index == condition)?;
-        Some(
-            self.transform(panel)?
-                .position_from_point(&PlotPoint::new(*airspeed_kt, *gain)),
-        )
+        Some(self.transform(panel)?.position_from_point(&PlotPoint::new(*airspeed_kt, *gain)))
     }
 
     fn remember(&mut self, index: usize, panel: &GainPanel, answer: &PanelAnswer) {
@@ -68,11 +65,7 @@ impl GainView {
             *transform = Some(answer.transform);
         }
         if let Some(dots) = self.dots.get_mut(index) {
-            *dots = panel
-                .dots
-                .iter()
-                .map(|dot| (dot.condition, [dot.airspeed_kt, dot.gain]))
-                .collect();
+            *dots = panel.dots.iter().map(|dot| (dot.condition, [dot.airspeed_kt, dot.gain])).collect();
         }
     }
 }
@@ -144,9 +137,7 @@ fn dot_tooltip_ui(answer: &PanelAnswer, panel: &GainPanel, dot: &Dot, palette: &
 
 /// The label of all the gain axes, upright at the left edge.
 fn gain_label_ui(ui: &Ui, rect: Rect, label: &str, palette: &Palette) {
-    let galley = ui
-        .painter()
-        .layout_no_wrap(label.to_owned(), FontId::proportional(SMALL_SIZE), palette.dim_text);
+    let galley = ui.painter().layout_no_wrap(label.to_owned(), FontId::proportional(SMALL_SIZE), palette.dim_text);
     let place = pos2(rect.left() + 1.0, rect.center().y + 0.5 * galley.size().x);
     let text = egui::epaint::TextShape::new(place, galley, palette.dim_text);
     ui.painter().add(text.with_angle(-std::f32::consts::FRAC_PI_2));

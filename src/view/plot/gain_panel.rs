@@ -45,9 +45,7 @@ impl GainPanel {
     }
 
     fn drawable_dots(&self) -> impl Iterator<Item = &Dot> {
-        self.dots
-            .iter()
-            .filter(|dot| dot.airspeed_kt.is_finite() && dot.gain.is_finite())
+        self.dots.iter().filter(|dot| dot.airspeed_kt.is_finite() && dot.gain.is_finite())
     }
 }
 
@@ -62,23 +60,16 @@ impl SharedRanges {
     /// What holds all dots and schedules of `panels`, and the gain 1; nothing where there is no dot.
     pub(super) fn of(panels: &[GainPanel]) -> Option<Self> {
         let dots = || panels.iter().flat_map(GainPanel::drawable_dots);
-        let scheduled = panels
-            .iter()
-            .flat_map(|panel| panel.schedule.iter().map(|point| point[1]));
+        let scheduled = panels.iter().flat_map(|panel| panel.schedule.iter().map(|point| point[1]));
         let airspeed_kt = Range::of(dots().map(|dot| dot.airspeed_kt))?.with_margin(0.07, 10.0);
-        let gain = Range::of(dots().map(|dot| dot.gain).chain(scheduled))?
-            .including(1.0)
-            .with_margin(0.09, 0.1);
+        let gain = Range::of(dots().map(|dot| dot.gain).chain(scheduled))?.including(1.0).with_margin(0.09, 0.1);
         Some(Self { airspeed_kt, gain })
     }
 
     /// The least ranges that hold both.
     pub(super) fn union(self, other: Self) -> Self {
         let union = |a: Range, b: Range| a.including(b.min).including(b.max);
-        Self {
-            airspeed_kt: union(self.airspeed_kt, other.airspeed_kt),
-            gain: union(self.gain, other.gain),
-        }
+        Self { airspeed_kt: union(self.airspeed_kt, other.airspeed_kt), gain: union(self.gain, other.gain) }
     }
 }
 
@@ -105,13 +96,7 @@ pub(super) fn gain_panel_ui(
     let (response, transform) = frame_ui(ui, (id, plot_rect), panel, ranges, palette);
     let frame = *transform.frame();
     let title_place = pos2(frame.center().x, rect.top() + 0.5 * TITLE_HEIGHT);
-    ui.painter().text(
-        title_place,
-        Align2::CENTER_CENTER,
-        &panel.title,
-        caption_font(),
-        palette.text,
-    );
+    ui.painter().text(title_place, Align2::CENTER_CENTER, &panel.title, caption_font(), palette.text);
     let position = |dot: &Dot| transform.position_from_point(&PlotPoint::new(dot.airspeed_kt, dot.gain));
     let placed: Vec<(&Dot, Pos2)> = panel.drawable_dots().map(|dot| (dot, position(dot))).collect();
     paint_labels(ui, &placed, panel, &transform, palette);
@@ -122,16 +107,8 @@ pub(super) fn gain_panel_ui(
     }
     let condition_at = |pointer: Pos2| Some(nearest_dot(&placed, pointer)?.condition);
     let hovered = response.hover_pos().and_then(condition_at);
-    let clicked = response
-        .interact_pointer_pos()
-        .filter(|_| response.clicked())
-        .and_then(condition_at);
-    PanelAnswer {
-        response,
-        transform,
-        hovered,
-        clicked,
-    }
+    let clicked = response.interact_pointer_pos().filter(|_| response.clicked()).and_then(condition_at);
+    PanelAnswer { response, transform, hovered, clicked }
 }
 
 /// The axes, the line at 1 and the schedule.
@@ -163,33 +140,17 @@ fn gain_plot<'a>(id: Id, size: Vec2, palette: &Palette) -> Plot<'a> {
         .height(size.y)
         .x_grid_spacer(Ladder::Decimal.spacer(AIRSPEED_TICK_GAP))
         .y_grid_spacer(Ladder::Decimal.spacer(GAIN_TICK_GAP))
-        .custom_x_axes(vec![axis_hints(
-            Axis::X,
-            "Airspeed [kt]",
-            LABELLED_HEIGHT,
-            palette,
-            tick_text,
-        )])
+        .custom_x_axes(vec![axis_hints(Axis::X, "Airspeed [kt]", LABELLED_HEIGHT, palette, tick_text)])
         .custom_y_axes(vec![axis_hints(Axis::Y, "", GAIN_AXIS_WIDTH, palette, tick_text)])
 }
 
 fn draw_lines(plot: &mut PlotUi<'_>, panel: &GainPanel, palette: &Palette) {
     let reference = palette.dim_text.gamma_multiply(0.8);
-    plot.hline(
-        HLine::new("", 1.0)
-            .color(reference)
-            .width(1.0)
-            .style(LineStyle::Dashed { length: 3.0 }),
-    );
+    plot.hline(HLine::new("", 1.0).color(reference).width(1.0).style(LineStyle::Dashed { length: 3.0 }));
     let look = Role::Scheduled.look(false, palette);
     let finite = |point: &[f64; 2]| point.iter().all(|c| c.is_finite());
     let schedule: Vec<[f64; 2]> = panel.schedule.iter().copied().filter(finite).collect();
-    plot.line(
-        Line::new("", schedule)
-            .color(look.color)
-            .width(look.width)
-            .style(look.style),
-    );
+    plot.line(Line::new("", schedule).color(look.color).width(look.width).style(look.style));
 }
 
 fn paint_labels(ui: &Ui, placed: &[(&Dot, Pos2)], panel: &GainPanel, transform: &PlotTransform, palette: &Palette) {
@@ -209,24 +170,14 @@ fn paint_labels(ui: &Ui, placed: &[(&Dot, Pos2)], panel: &GainPanel, transform: 
             label: galley.size() - vec2(0.0, LABEL_LEADING),
         })
         .collect();
-    let path: Vec<Pos2> = panel
-        .schedule
-        .iter()
-        .map(|[x, y]| transform.position_from_point(&PlotPoint::new(*x, *y)))
-        .collect();
-    let around = Surroundings {
-        bounds: transform.frame().shrink(1.0),
-        path: &path,
-    };
+    let path: Vec<Pos2> =
+        panel.schedule.iter().map(|[x, y]| transform.position_from_point(&PlotPoint::new(*x, *y))).collect();
+    let around = Surroundings { bounds: transform.frame().shrink(1.0), path: &path };
     for ((place, galley), (_, center)) in place_labels(&dots, around).into_iter().zip(galleys).zip(placed) {
         if let Some(end) = place.leader {
             painter.line_segment([*center, end], Stroke::new(0.8, palette.dim_text.gamma_multiply(0.6)));
         }
-        painter.galley(
-            place.rect.min - vec2(0.0, 0.5 * LABEL_LEADING),
-            galley,
-            palette.dim_text,
-        );
+        painter.galley(place.rect.min - vec2(0.0, 0.5 * LABEL_LEADING), galley, palette.dim_text);
     }
 }
 
@@ -234,10 +185,7 @@ fn paint_labels(ui: &Ui, placed: &[(&Dot, Pos2)], panel: &GainPanel, transform: 
 fn name_dot(ui: &Ui, id: Id, panel: &GainPanel, dot: &Dot, center: Pos2) {
     let place = Rect::from_center_size(center, vec2(2.0, 2.0) * DOT_RADIUS);
     let response = ui.interact(place, id.with(("dot", dot.condition)), Sense::hover());
-    let text = format!(
-        "{}, condition {}: {:.3} at {:.0} kt",
-        panel.title, dot.label, dot.gain, dot.airspeed_kt
-    );
+    let text = format!("{}, condition {}: {:.3} at {:.0} kt", panel.title, dot.label, dot.gain, dot.airspeed_kt);
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, text.clone()));
 }
 
@@ -253,10 +201,7 @@ mod tests {
 
     #[test]
     fn the_schedule_is_linear_between_its_samples() {
-        let panel = GainPanel {
-            schedule: vec![[40.0, 1.0], [60.0, 2.0], [80.0, 1.0]],
-            ..GainPanel::default()
-        };
+        let panel = GainPanel { schedule: vec![[40.0, 1.0], [60.0, 2.0], [80.0, 1.0]], ..GainPanel::default() };
         assert_eq!(panel.scheduled(50.0), Some(1.5));
         assert_eq!(panel.scheduled(80.0), Some(1.0));
         assert_eq!(panel.scheduled(81.0), None);
@@ -275,10 +220,7 @@ mod tests {
             chosen: true,
             detail: String::new(),
         };
-        let panel = GainPanel {
-            dots: vec![dot],
-            ..GainPanel::default()
-        };
+        let panel = GainPanel { dots: vec![dot], ..GainPanel::default() };
         assert!(
             SharedRanges::of(&[panel]).is_some_and(|ranges| ranges.gain.contains(1.0) && ranges.gain.contains(1.4))
         );

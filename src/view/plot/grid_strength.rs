@@ -18,18 +18,12 @@ pub const LABEL_SPACING: Rangef = Rangef { min: 50.0, max: 51.0 };
 
 /// A mark with a label at `value`, on an axis of `units_per_point`.
 pub fn labelled_mark(value: f64, units_per_point: f64) -> GridMark {
-    GridMark {
-        value,
-        step_size: LABELLED * units_per_point,
-    }
+    GridMark { value, step_size: LABELLED * units_per_point }
 }
 
 /// A faint mark without a label at `value`, on an axis of `units_per_point`.
 pub fn minor_mark(value: f64, units_per_point: f64) -> GridMark {
-    GridMark {
-        value,
-        step_size: MINOR * units_per_point,
-    }
+    GridMark { value, step_size: MINOR * units_per_point }
 }
 
 /// Whether a mark of an axis of `units_per_point` has a label.

@@ -30,17 +30,11 @@ pub(super) struct LegendEntry {
 /// One line for each role among `curves`, in the order of [`Role::ALL`].
 pub(super) fn entries(curves: &[BodeCurve], palette: &Palette) -> Vec<LegendEntry> {
     let of_role = |role: Role| {
-        let members: Vec<&BodeCurve> = curves
-            .iter()
-            .filter(|curve| curve.role.shown(curve.rejected) == role)
-            .collect();
+        let members: Vec<&BodeCurve> = curves.iter().filter(|curve| curve.role.shown(curve.rejected) == role).collect();
         let first = members.first()?;
         // One line for kept and rejected nominal models: dotted only where none is kept.
         let rejected = members.iter().all(|curve| curve.rejected);
-        Some(LegendEntry {
-            text: text(role, &members, rejected),
-            look: first.role.look(rejected, palette),
-        })
+        Some(LegendEntry { text: text(role, &members, rejected), look: first.role.look(rejected, palette) })
     };
     Role::ALL.into_iter().filter_map(of_role).collect()
 }
@@ -83,11 +77,7 @@ pub(super) fn legend_ui(
     let has_room = rows.size.x < 0.5 * frame.width() && rows.size.y < 0.75 * frame.height();
     let is_unfolded = state.is_open && has_room;
     let folded = painter.layout_no_wrap("Legend".to_owned(), caption_font(), palette.dim_text);
-    let size = if is_unfolded {
-        rows.size
-    } else {
-        folded.size() + PADDING
-    };
+    let size = if is_unfolded { rows.size } else { folded.size() + PADDING };
     let room = frame.shrink(MARGIN);
     if entries.is_empty() || size.x > room.width() || size.y > room.height() {
         state.rect = None;
@@ -115,14 +105,9 @@ fn frame_ui(ui: &Ui, rect: Rect, is_unfolded: bool, entries: &[LegendEntry], pal
     let names: Vec<&str> = entries.iter().map(|entry| entry.text.as_str()).collect();
     let description = format!("Legend: {}", names.join(", "));
     response.widget_info(|| WidgetInfo::selected(egui::Role::Button, true, is_unfolded, description.clone()));
-    let outline = if response.hovered() || response.has_focus() {
-        palette.accent
-    } else {
-        palette.line
-    };
+    let outline = if response.hovered() || response.has_focus() { palette.accent } else { palette.line };
     let fill = palette.raised.gamma_multiply(0.93);
-    ui.painter()
-        .rect(rect, 4.0, fill, Stroke::new(1.0, outline), StrokeKind::Inside);
+    ui.painter().rect(rect, 4.0, fill, Stroke::new(1.0, outline), StrokeKind::Inside);
     response.on_hover_cursor(CursorIcon::PointingHand)
 }
 
@@ -136,18 +121,12 @@ struct Rows {
 impl Rows {
     fn new(painter: &Painter, entries: &[LegendEntry], palette: &Palette) -> Self {
         let layout = |entry: &LegendEntry| {
-            (
-                entry.look,
-                painter.layout_no_wrap(entry.text.clone(), caption_font(), palette.text),
-            )
+            (entry.look, painter.layout_no_wrap(entry.text.clone(), caption_font(), palette.text))
         };
         let rows: Vec<_> = entries.iter().map(layout).collect();
         let text_width = rows.iter().map(|(_, galley)| galley.size().x).fold(0.0, f32::max);
         let inner = vec2(SAMPLE_WIDTH + SAMPLE_GAP + text_width, ROW_HEIGHT * rows.len() as f32);
-        Self {
-            rows,
-            size: inner + 2.0 * PADDING,
-        }
+        Self { rows, size: inner + 2.0 * PADDING }
     }
 
     fn paint(self, painter: &Painter, corner: Pos2, palette: &Palette) {
@@ -163,14 +142,7 @@ impl Rows {
 
 /// The corner of `room` where something of `size` covers least; of equal ones the earlier.
 fn emptiest_corner(room: Rect, size: Vec2, covered: impl Fn(Rect) -> usize) -> Align2 {
-    let corners = [
-        Align2::RIGHT_TOP,
-        Align2::LEFT_BOTTOM,
-        Align2::RIGHT_BOTTOM,
-        Align2::LEFT_TOP,
-    ];
-    let least = corners
-        .into_iter()
-        .min_by_key(|corner| covered(corner.align_size_within_rect(size, room)));
+    let corners = [Align2::RIGHT_TOP, Align2::LEFT_BOTTOM, Align2::RIGHT_BOTTOM, Align2::LEFT_TOP];
+    let least = corners.into_iter().min_by_key(|corner| covered(corner.align_size_within_rect(size, room)));
     least.unwrap_or(Align2::RIGHT_TOP)
 }

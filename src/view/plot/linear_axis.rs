@@ -15,18 +15,15 @@ pub enum Ladder {
 }
 
 /// Degrees between ticks, from about one degree on; below, decimal steps.
-const DEGREE_STEPS: [f64; 13] = [
-    5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0, 720.0, 1800.0, 3600.0, 7200.0,
-];
+const DEGREE_STEPS: [f64; 13] = [5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0, 720.0, 1800.0, 3600.0, 7200.0];
 
 impl Ladder {
     /// The least step of this ladder that is not below `least`.
     pub fn step(self, least: f64) -> f64 {
         match self {
-            Self::Degrees if least > 2.0 => DEGREE_STEPS
-                .into_iter()
-                .find(|step| *step >= least)
-                .unwrap_or_else(|| step_above(least)),
+            Self::Degrees if least > 2.0 => {
+                DEGREE_STEPS.into_iter().find(|step| *step >= least).unwrap_or_else(|| step_above(least))
+            }
             Self::Decimal | Self::Degrees => step_above(least),
         }
     }
@@ -39,9 +36,7 @@ impl Ladder {
         let step = self.step(gap * units_per_point);
         let slack = 1e-6;
         let indices = (bounds.0 / step - slack).ceil() as i64..=(bounds.1 / step + slack).floor() as i64;
-        indices
-            .map(|k| labelled_mark(k as f64 * step, units_per_point))
-            .collect()
+        indices.map(|k| labelled_mark(k as f64 * step, units_per_point)).collect()
     }
 
     /// [`Self::marks`] as egui_plot asks for them, where the base step is one point.
@@ -78,10 +73,7 @@ mod tests {
 
     #[test]
     fn magnitudes_are_labelled_at_five_ten_or_twenty_decibels() {
-        assert_eq!(
-            values(Ladder::Decimal, (-26.0, 10.0), 290.0),
-            [-25.0, -20.0, -15.0, -10.0, -5.0, 0.0, 5.0, 10.0]
-        );
+        assert_eq!(values(Ladder::Decimal, (-26.0, 10.0), 290.0), [-25.0, -20.0, -15.0, -10.0, -5.0, 0.0, 5.0, 10.0]);
         assert_eq!(
             values(Ladder::Decimal, (-80.0, 20.0), 290.0),
             [-80.0, -70.0, -60.0, -50.0, -40.0, -30.0, -20.0, -10.0, 0.0, 10.0, 20.0]
@@ -90,28 +82,15 @@ mod tests {
 
     #[test]
     fn phases_are_labelled_at_parts_of_a_turn() {
-        assert_eq!(
-            values(Ladder::Degrees, (-330.0, 60.0), 200.0),
-            [-300.0, -240.0, -180.0, -120.0, -60.0, 0.0, 60.0]
-        );
-        assert_eq!(
-            values(Ladder::Degrees, (-200.0, 10.0), 250.0),
-            [-180.0, -150.0, -120.0, -90.0, -60.0, -30.0, 0.0]
-        );
-        assert_eq!(
-            values(Ladder::Degrees, (-900.0, 0.0), 200.0),
-            [-900.0, -720.0, -540.0, -360.0, -180.0, 0.0]
-        );
+        assert_eq!(values(Ladder::Degrees, (-330.0, 60.0), 200.0), [-300.0, -240.0, -180.0, -120.0, -60.0, 0.0, 60.0]);
+        assert_eq!(values(Ladder::Degrees, (-200.0, 10.0), 250.0), [-180.0, -150.0, -120.0, -90.0, -60.0, -30.0, 0.0]);
+        assert_eq!(values(Ladder::Degrees, (-900.0, 0.0), 200.0), [-900.0, -720.0, -540.0, -360.0, -180.0, 0.0]);
     }
 
     #[test]
     fn a_step_is_the_next_round_number() {
         for (least, step) in [(0.011, 0.02), (0.2, 0.2), (3.0, 5.0), (6.0, 10.0), (1e-7, 1e-7)] {
-            assert!(
-                (step_above(least) / step - 1.0).abs() < 1e-9,
-                "{least}: {}",
-                step_above(least)
-            );
+            assert!((step_above(least) / step - 1.0).abs() < 1e-9, "{least}: {}", step_above(least));
         }
     }
 

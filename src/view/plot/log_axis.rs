@@ -71,13 +71,7 @@ impl FrequencyUnit {
         }
         let shift = self.of_omega(1.0).log10();
         let marks = marks_of_unit((bounds.0 + shift, bounds.1 + shift), decades_per_point);
-        marks
-            .into_iter()
-            .map(|mark| GridMark {
-                value: mark.value - shift,
-                ..mark
-            })
-            .collect()
+        marks.into_iter().map(|mark| GridMark { value: mark.value - shift, ..mark }).collect()
     }
 
     /// [`Self::marks`] as egui_plot asks for them, where the base step is one point.
@@ -122,10 +116,7 @@ fn marks_of_unit(bounds: (f64, f64), decades_per_point: f64) -> Vec<GridMark> {
     if bounds.1 - bounds.0 > LINEAR_BELOW {
         return decades;
     }
-    let labelled = decades
-        .iter()
-        .filter(|mark| is_labelled(**mark, decades_per_point))
-        .count();
+    let labelled = decades.iter().filter(|mark| is_labelled(**mark, decades_per_point)).count();
     let linear = linear_marks(bounds, decades_per_point);
     if linear.len() > labelled { linear } else { decades }
 }
@@ -157,9 +148,7 @@ fn linear_marks(bounds: (f64, f64), decades_per_point: f64) -> Vec<GridMark> {
     let units_per_point = high * decades_per_point * std::f64::consts::LN_10;
     let step = super::linear_axis::step_above(LABEL_GAP * 1.5 * units_per_point);
     let indices = (low / step).ceil() as i64..=(high / step).floor() as i64;
-    indices
-        .map(|k| labelled_mark((k as f64 * step).log10(), decades_per_point))
-        .collect()
+    indices.map(|k| labelled_mark((k as f64 * step).log10(), decades_per_point)).collect()
 }
 
 /// Whether `value` lies in `bounds`, whose ends may miss a round number by rounding.
@@ -199,29 +188,18 @@ mod tests {
 
     #[test]
     fn a_usual_plot_is_labelled_at_one_two_five() {
-        assert_eq!(
-            labels(FrequencyUnit::RadPerSecond, (0.3, 20.0), 800.0),
-            ["0.5", "1", "2", "5", "10", "20"]
-        );
+        assert_eq!(labels(FrequencyUnit::RadPerSecond, (0.3, 20.0), 800.0), ["0.5", "1", "2", "5", "10", "20"]);
     }
 
     #[test]
     fn a_narrow_plot_is_labelled_at_decades_only() {
-        assert_eq!(
-            labels(FrequencyUnit::RadPerSecond, (0.05, 200.0), 300.0),
-            ["0.1", "1", "10", "100"]
-        );
+        assert_eq!(labels(FrequencyUnit::RadPerSecond, (0.05, 200.0), 300.0), ["0.1", "1", "10", "100"]);
         assert_eq!(labels(FrequencyUnit::RadPerSecond, (1e-6, 1e6), 200.0).len(), 5);
     }
 
     #[test]
     fn a_close_view_is_labelled_in_equal_steps() {
-        assert_eq!(
-            labels(FrequencyUnit::RadPerSecond, (1.98, 2.32), 800.0)
-                .first()
-                .map(String::as_str),
-            Some("2")
-        );
+        assert_eq!(labels(FrequencyUnit::RadPerSecond, (1.98, 2.32), 800.0).first().map(String::as_str), Some("2"));
         assert!(labels(FrequencyUnit::RadPerSecond, (2.0001, 2.0009), 800.0).len() > 3);
         let texts = labels(FrequencyUnit::RadPerSecond, (1.2, 4.2), 900.0);
         assert_eq!(texts, ["1.5", "2", "2.5", "3", "3.5", "4"]);
@@ -229,10 +207,7 @@ mod tests {
 
     #[test]
     fn ticks_in_hertz_are_round_in_hertz() {
-        assert_eq!(
-            labels(FrequencyUnit::Hertz, (0.3, 20.0), 800.0),
-            ["0.05", "0.1", "0.2", "0.5", "1", "2"]
-        );
+        assert_eq!(labels(FrequencyUnit::Hertz, (0.3, 20.0), 800.0), ["0.05", "0.1", "0.2", "0.5", "1", "2"]);
     }
 
     #[test]

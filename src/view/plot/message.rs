@@ -9,12 +9,7 @@ pub(super) fn message_ui(ui: &mut Ui, rect: Rect, message: &str, palette: &Palet
     let response = ui.allocate_rect(rect, Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, message));
     let font = egui::FontId::proportional(BODY_SIZE);
-    let galley = ui.painter().layout(
-        message.to_owned(),
-        font,
-        palette.dim_text,
-        (rect.width() - 32.0).max(40.0),
-    );
+    let galley = ui.painter().layout(message.to_owned(), font, palette.dim_text, (rect.width() - 32.0).max(40.0));
     let place = Align2::CENTER_CENTER.align_size_within_rect(galley.size(), rect);
     ui.painter().galley(place.min, galley, palette.dim_text);
 }

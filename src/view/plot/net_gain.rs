@@ -23,14 +23,7 @@ pub fn net_gain_ui(ui: &mut Ui, scene: &NetGainScene<'_>, view: &mut GainView, p
         message_ui(ui, rect, scene.message.unwrap_or("Nothing to draw"), palette);
         return Vec::new();
     };
-    let events = gain_group_ui(
-        ui,
-        ("net gain", rect),
-        scene.panels,
-        (ranges, "Net gain [-]"),
-        view,
-        palette,
-    );
+    let events = gain_group_ui(ui, ("net gain", rect), scene.panels, (ranges, "Net gain [-]"), view, palette);
     ui.advance_cursor_after_rect(rect);
     events
 }

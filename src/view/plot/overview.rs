@@ -69,10 +69,7 @@ pub struct OverviewView {
 impl OverviewView {
     /// The middle of a response's cell on the screen.
     pub fn screen_position(&self, pair: Pair) -> Option<Pos2> {
-        self.places
-            .iter()
-            .find(|(placed, _)| *placed == pair)
-            .map(|(_, rect)| rect.center())
+        self.places.iter().find(|(placed, _)| *placed == pair).map(|(_, rect)| rect.center())
     }
 }
 
@@ -91,11 +88,7 @@ pub fn overview_ui(
         message_ui(ui, rect, scene.message.unwrap_or("Nothing to draw"), palette);
         return Vec::new();
     };
-    let table = Table {
-        rect,
-        columns: scene.inputs.len(),
-        rows: scene.outputs.len(),
-    };
+    let table = Table { rect, columns: scene.inputs.len(), rows: scene.outputs.len() };
     let mut events = Vec::new();
     ui.scope_builder(UiBuilder::new().id_salt("overview").max_rect(rect), |ui| {
         headers_ui(ui, scene, view, &table, palette);
@@ -131,26 +124,16 @@ fn headers_ui(ui: &mut Ui, scene: &OverviewScene<'_>, view: &mut OverviewView, t
     let toggle_place = Rect::from_min_size(table.rect.min, HEADER - vec2(4.0, 4.0));
     let toggle = Button::selectable(view.show_phase, RichText::new("phase").size(SMALL_SIZE))
         .wrap_mode(egui::TextWrapMode::Extend);
-    if ui
-        .put(toggle_place, toggle)
-        .on_hover_text("Show phases below magnitudes")
-        .clicked()
-    {
+    if ui.put(toggle_place, toggle).on_hover_text("Show phases below magnitudes").clicked() {
         view.show_phase = !view.show_phase;
     }
     let painter = ui.painter();
     for (input, name) in scene.inputs.iter().enumerate() {
-        let place = pos2(
-            table.cell(Pair::new(0, input)).center().x,
-            table.rect.top() + 0.5 * HEADER.y - 1.0,
-        );
+        let place = pos2(table.cell(Pair::new(0, input)).center().x, table.rect.top() + 0.5 * HEADER.y - 1.0);
         painter.text(place, Align2::CENTER_CENTER, name, caption_font(), palette.dim_text);
     }
     for (output, name) in scene.outputs.iter().enumerate() {
-        let place = pos2(
-            table.rect.left() + 0.5 * HEADER.x - 2.0,
-            table.cell(Pair::new(output, 0)).center().y,
-        );
+        let place = pos2(table.rect.left() + 0.5 * HEADER.x - 2.0, table.cell(Pair::new(output, 0)).center().y);
         painter.text(place, Align2::CENTER_CENTER, name, caption_font(), palette.dim_text);
     }
 }
@@ -166,11 +149,7 @@ fn cell_ui(
 ) -> bool {
     let response = ui.interact(place, ui.scope_id().with(cell.pair), Sense::click());
     let title = title(scene, cell.pair);
-    let name = if cell.note.is_empty() {
-        title
-    } else {
-        format!("{title}: {}", cell.note)
-    };
+    let name = if cell.note.is_empty() { title } else { format!("{title}: {}", cell.note) };
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, name.clone()));
     if ui.is_rect_visible(place) {
         paint_frame(ui, cell, place, response.hovered() || response.has_focus(), palette);
@@ -184,10 +163,7 @@ fn cell_ui(
             paint_text(&painter, corner, Align2::RIGHT_TOP, &cell.note, palette.text, palette);
         }
     }
-    response
-        .on_hover_cursor(CursorIcon::PointingHand)
-        .on_hover_text(name)
-        .clicked()
+    response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text(name).clicked()
 }
 
 fn has_texts(place: Rect) -> bool {
@@ -222,14 +198,7 @@ fn paint_curves(
     if has_text {
         // For want of an axis.
         let corner = rect.left_bottom() + vec2(3.0, -2.0);
-        paint_text(
-            painter,
-            corner,
-            Align2::LEFT_BOTTOM,
-            &sparkline.range_text(),
-            palette.dim_text,
-            palette,
-        );
+        paint_text(painter, corner, Align2::LEFT_BOTTOM, &sparkline.range_text(), palette.dim_text, palette);
     }
 }
 
@@ -237,21 +206,13 @@ fn paint_curves(
 fn paint_text(painter: &Painter, corner: Pos2, align: Align2, text: &str, color: Color32, palette: &Palette) {
     let galley = painter.layout_no_wrap(text.to_owned(), CELL_FONT, color);
     let place = align.anchor_size(corner, galley.size());
-    painter.rect_filled(
-        place.expand2(vec2(2.0, 0.0)),
-        2.0,
-        palette.background.gamma_multiply(0.6),
-    );
+    painter.rect_filled(place.expand2(vec2(2.0, 0.0)), 2.0, palette.background.gamma_multiply(0.6));
     painter.galley(place.min, galley, color);
 }
 
 fn title(scene: &OverviewScene<'_>, pair: Pair) -> String {
     let name = |names: &[String], index: usize| names.get(index).cloned().unwrap_or_default();
-    format!(
-        "{} → {}",
-        name(scene.inputs, pair.input),
-        name(scene.outputs, pair.output)
-    )
+    format!("{} → {}", name(scene.inputs, pair.input), name(scene.outputs, pair.output))
 }
 
 fn pane_rects(rect: Rect, show_phase: bool) -> Vec<(Pane, Rect)> {

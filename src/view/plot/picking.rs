@@ -31,14 +31,7 @@ pub fn nearest(curves: &[BodeCurve], pane: Pane, pointer: Pos2, transform: &Plot
             best.is_none_or(|(hit, top)| distance < hit.distance || (distance == hit.distance && layer > top));
         if distance <= PICK_RADIUS && is_better {
             let omega = 10f64.powf(transform.value_from_position(at).x);
-            best = Some((
-                Hit {
-                    id: curve.id,
-                    omega,
-                    distance,
-                },
-                layer,
-            ));
+            best = Some((Hit { id: curve.id, omega, distance }, layer));
         }
     }
     best.map(|(hit, _)| hit)
@@ -106,11 +99,7 @@ mod tests {
 
     #[test]
     fn the_nearest_curve_is_meant_wherever_it_stands_in_the_list() {
-        let curves = [
-            flat(1, 50.0, Role::Perturbed),
-            flat(2, 54.0, Role::Corrected),
-            flat(3, 60.0, Role::Nominal),
-        ];
+        let curves = [flat(1, 50.0, Role::Perturbed), flat(2, 54.0, Role::Corrected), flat(3, 60.0, Role::Nominal)];
         let hit = |y| nearest(&curves, Pane::Magnitude, pos2(50.0, y), &transform()).map(|hit| hit.id);
         assert_eq!(hit(49.0), Some(CurveId(1)));
         assert_eq!(hit(47.0), Some(CurveId(2)));

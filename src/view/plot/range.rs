@@ -12,10 +12,7 @@ pub struct Range {
 impl Range {
     /// The range from `min` to `max`, which need not be in order.
     pub fn new(min: f64, max: f64) -> Self {
-        Self {
-            min: min.min(max),
-            max: max.max(min),
-        }
+        Self { min: min.min(max), max: max.max(min) }
     }
 
     /// The least range that holds every finite value, or nothing where there is none.
@@ -38,27 +35,18 @@ impl Range {
 
     /// The least range that holds this one and `value`.
     pub fn including(self, value: f64) -> Self {
-        Self {
-            min: self.min.min(value),
-            max: self.max.max(value),
-        }
+        Self { min: self.min.min(value), max: self.max.max(value) }
     }
 
     /// This range with `fraction` of its width added on either side, and at least as wide as `least`.
     pub fn with_margin(self, fraction: f64, least: f64) -> Self {
         let half = (0.5 * self.width() * (1.0 + 2.0 * fraction)).max(0.5 * least);
-        Self {
-            min: self.middle() - half,
-            max: self.middle() + half,
-        }
+        Self { min: self.middle() - half, max: self.middle() + half }
     }
 
     /// This range seen `factor` times closer, with `fixed` staying where it is.
     pub fn zoomed(self, factor: f64, fixed: f64) -> Self {
-        Self {
-            min: fixed + (self.min - fixed) / factor,
-            max: fixed + (self.max - fixed) / factor,
-        }
+        Self { min: fixed + (self.min - fixed) / factor, max: fixed + (self.max - fixed) / factor }
     }
 
     /// This range where its width lies in `widths`, else the nearest range about the same middle whose width does.
@@ -70,14 +58,7 @@ impl Range {
             return None;
         }
         let limited = width.clamp(widths.min, widths.max);
-        Some(if limited == width {
-            self
-        } else {
-            Self {
-                min: middle - 0.5 * limited,
-                max: middle + 0.5 * limited,
-            }
-        })
+        Some(if limited == width { self } else { Self { min: middle - 0.5 * limited, max: middle + 0.5 * limited } })
     }
 
     /// Whether `value` lies in the range, ends included.
@@ -92,10 +73,7 @@ mod tests {
 
     #[test]
     fn values_that_are_not_finite_do_not_count() {
-        assert_eq!(
-            Range::of([f64::NAN, 2.0, f64::NEG_INFINITY, -1.0]),
-            Some(Range::new(-1.0, 2.0))
-        );
+        assert_eq!(Range::of([f64::NAN, 2.0, f64::NEG_INFINITY, -1.0]), Some(Range::new(-1.0, 2.0)));
         assert_eq!(Range::of([f64::NAN]), None);
     }
 
@@ -115,13 +93,6 @@ mod tests {
         let widths = Range::new(1.0, 100.0);
         assert_eq!(Range::new(0.0, 1e9).limited(widths).map(Range::width), Some(100.0));
         assert_eq!(Range::new(0.0, 1e-9).limited(widths).map(Range::width), Some(1.0));
-        assert_eq!(
-            Range {
-                min: f64::NAN,
-                max: 1.0
-            }
-            .limited(widths),
-            None
-        );
+        assert_eq!(Range { min: f64::NAN, max: 1.0 }.limited(widths), None);
     }
 }

@@ -13,22 +13,13 @@ pub(super) fn value_text(curve: &BodeCurve, omega: f64) -> String {
         Some(value) => format!("{}{unit}", decimals(value, count)),
         None => "–".to_owned(),
     };
-    format!(
-        "{} · {} · {}",
-        curve.label,
-        value(Pane::Magnitude, 1, " dB"),
-        value(Pane::Phase, 0, "°")
-    )
+    format!("{} · {} · {}", curve.label, value(Pane::Magnitude, 1, " dB"), value(Pane::Phase, 0, "°"))
 }
 
 /// Shows frequency, name and values of `curve` at `omega` \[rad/s\] beside the pointer.
 pub(super) fn curve_tooltip_ui(plot: &Response, curve: &BodeCurve, omega: f64, unit: FrequencyUnit, palette: &Palette) {
     tooltip_ui(plot, |ui| {
-        ui.label(
-            RichText::new(unit.readout(omega))
-                .size(SMALL_SIZE)
-                .color(palette.dim_text),
-        );
+        ui.label(RichText::new(unit.readout(omega)).size(SMALL_SIZE).color(palette.dim_text));
         ui.label(value_text(curve, omega));
         if !curve.detail.is_empty() {
             ui.label(RichText::new(&curve.detail).size(SMALL_SIZE).color(palette.dim_text));
@@ -38,12 +29,10 @@ pub(super) fn curve_tooltip_ui(plot: &Response, curve: &BodeCurve, omega: f64, u
 
 /// Shows `content` beside the pointer, which is over `plot`.
 pub(super) fn tooltip_ui(plot: &Response, content: impl FnOnce(&mut Ui)) {
-    Tooltip::always_open(plot.ctx.clone(), plot.layer_id, plot.id, PopupAnchor::Pointer)
-        .gap(14.0)
-        .show(|ui| {
-            ui.spacing_mut().item_spacing.y = 2.0;
-            content(ui);
-        });
+    Tooltip::always_open(plot.ctx.clone(), plot.layer_id, plot.id, PopupAnchor::Pointer).gap(14.0).show(|ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        content(ui);
+    });
 }
 
 #[cfg(test)]

@@ -45,17 +45,9 @@ impl LineLook {
             // Dots need room to stay dots.
             LineStyle::Dotted { spacing } => {
                 let style = LineStyle::Dotted { spacing: 1.5 * spacing };
-                Self {
-                    color,
-                    width: self.width + 0.7,
-                    style,
-                }
+                Self { color, width: self.width + 0.7, style }
             }
-            _ => Self {
-                color,
-                width: self.width + 1.6,
-                style: self.style,
-            },
+            _ => Self { color, width: self.width + 1.6, style: self.style },
         }
     }
 
@@ -103,11 +95,7 @@ impl Role {
 
     /// The role that a curve is shown in: a rejected curve is `Rejected`, but the nominal model stays nominal.
     pub fn shown(self, rejected: bool) -> Self {
-        if rejected && self != Self::Nominal {
-            Self::Rejected
-        } else {
-            self
-        }
+        if rejected && self != Self::Nominal { Self::Rejected } else { self }
     }
 
     /// How a curve of this role is drawn. A rejected nominal model stays red, but dotted.

@@ -27,11 +27,7 @@ impl<'a> Sparkline<'a> {
         let values = Range::of(curves.iter().flat_map(|curve| curve.values(pane).iter().copied()))?;
         let values = values.with_margin(0.06, 1.0);
         let bounds = PlotBounds::from_min_max([log_omega.min, values.min], [log_omega.max, values.max]);
-        Some(Self {
-            curves,
-            pane,
-            transform: PlotTransform::new(rect, bounds, false),
-        })
+        Some(Self { curves, pane, transform: PlotTransform::new(rect, bounds, false) })
     }
 
     /// The part of the vertical axis in view, in words.
@@ -69,8 +65,6 @@ impl<'a> Sparkline<'a> {
         let tolerance = TOLERANCE * self.transform.dvalue_dpos()[1].abs();
         let position = |[x, y]: [f64; 2]| self.transform.position_from_point(&PlotPoint::new(x, y));
         let runs = runs_in_view(curve.points(self.pane), self.transform.bounds());
-        runs.iter()
-            .map(|run| thinned(run, tolerance).into_iter().map(position).collect())
-            .collect()
+        runs.iter().map(|run| thinned(run, tolerance).into_iter().map(position).collect()).collect()
     }
 }

@@ -20,10 +20,7 @@ pub(super) fn thinned(run: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
             slopes = (f64::NEG_INFINITY, f64::INFINITY);
         }
         let slope_to = |y: f64| (y - anchor[1]) / (point[0] - anchor[0]);
-        slopes = (
-            slopes.0.max(slope_to(point[1] - tolerance)),
-            slopes.1.min(slope_to(point[1] + tolerance)),
-        );
+        slopes = (slopes.0.max(slope_to(point[1] - tolerance)), slopes.1.min(slope_to(point[1] + tolerance)));
         previous = *point;
     }
     if !rest.is_empty() {
@@ -43,10 +40,7 @@ mod tests {
             let ([x0, y0], [x1, y1]) = (kept[after - 1], kept[after]);
             y0 + (y1 - y0) * (x - x0) / (x1 - x0)
         };
-        points
-            .iter()
-            .map(|point| (point[1] - at(point[0])).abs())
-            .fold(0.0, f64::max)
+        points.iter().map(|point| (point[1] - at(point[0])).abs()).fold(0.0, f64::max)
     }
 
     #[test]
@@ -57,10 +51,8 @@ mod tests {
 
     #[test]
     fn a_curve_keeps_within_the_tolerance_with_a_tenth_of_its_points() {
-        let curve: Vec<[f64; 2]> = (0..2000)
-            .map(|k| 0.01 * f64::from(k))
-            .map(|x| [x, 40.0 * (x.sin() + 0.2 * (5.0 * x).cos())])
-            .collect();
+        let curve: Vec<[f64; 2]> =
+            (0..2000).map(|k| 0.01 * f64::from(k)).map(|x| [x, 40.0 * (x.sin() + 0.2 * (5.0 * x).cos())]).collect();
         let kept = thinned(&curve, 0.2);
         assert!(error(&curve, &kept) <= 0.2 + 1e-12, "{}", error(&curve, &kept));
         assert!(kept.len() < 200, "{}", kept.len());

@@ -23,20 +23,14 @@ impl Tiles {
         let count = count.max(1);
         let candidates = (1..=count).map(|columns| {
             let rows = count.div_ceil(columns);
-            Self {
-                columns,
-                rows,
-                size: vec2(available.x / columns as f32, available.y / rows as f32),
-            }
+            Self { columns, rows, size: vec2(available.x / columns as f32, available.y / rows as f32) }
         });
         let fitting = candidates.filter(|tiles| tiles.size.x >= least.x && tiles.size.y >= least.y);
-        fitting
-            .max_by(|a, b| a.usefulness(count).total_cmp(&b.usefulness(count)))
-            .unwrap_or(Self {
-                columns: count,
-                rows: 1,
-                size: vec2(least.x.max(available.x / count as f32), available.y.max(least.y)),
-            })
+        fitting.max_by(|a, b| a.usefulness(count).total_cmp(&b.usefulness(count))).unwrap_or(Self {
+            columns: count,
+            rows: 1,
+            size: vec2(least.x.max(available.x / count as f32), available.y.max(least.y)),
+        })
     }
 
     /// Size of the largest plot of good proportions in a tile; full rows look better than a last one with gaps.

@@ -11,12 +11,7 @@ struct Model {
 }
 
 fn harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
-    let model = Model {
-        curves,
-        band: (0.5, 12.0),
-        view: BodeView::default(),
-        events: Vec::new(),
-    };
+    let model = Model { curves, band: (0.5, 12.0), view: BodeView::default(), events: Vec::new() };
     let mut harness = Harness::builder()
         .with_step_dt(0.02)
         .with_size(vec2(900.0, 600.0))
@@ -46,21 +41,13 @@ fn harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
 }
 
 fn three_curves() -> Vec<BodeCurve> {
-    vec![
-        lag(1, 0.0, 1.0, Role::Nominal),
-        lag(2, 3.0, 1.0, Role::Perturbed),
-        lag(3, 20.0, 3.0, Role::Corrected),
-    ]
+    vec![lag(1, 0.0, 1.0, Role::Nominal), lag(2, 3.0, 1.0, Role::Perturbed), lag(3, 20.0, 3.0, Role::Corrected)]
 }
 
 /// A point on the magnitude of curve `index` at the frequency of sample `k`.
 fn point_on(harness: &Harness<'_, Model>, index: usize, k: usize) -> Pos2 {
     let curve = &harness.state().curves[index];
-    harness
-        .state()
-        .view
-        .screen_position(Pane::Magnitude, curve.omega[k], curve.magnitude_db[k])
-        .unwrap()
+    harness.state().view.screen_position(Pane::Magnitude, curve.omega[k], curve.magnitude_db[k]).unwrap()
 }
 
 /// A place in the magnitude plot that is far from every curve.
@@ -124,19 +111,8 @@ fn dragging_an_end_of_the_band_moves_it_and_not_the_plot() {
     let path = [at(&harness, 0.5), at(&harness, 0.8), at(&harness, 1.0)];
     drag(&mut harness, &path, PointerButton::Primary);
     let model = harness.state();
-    assert!(
-        (model.band.0 - 1.0).abs() < 1e-3 && model.band.1 == 12.0,
-        "{:?}",
-        model.band
-    );
-    assert_eq!(
-        model
-            .events
-            .iter()
-            .filter(|event| **event == BodeEvent::BandReleased)
-            .count(),
-        1
-    );
+    assert!((model.band.0 - 1.0).abs() < 1e-3 && model.band.1 == 12.0, "{:?}", model.band);
+    assert_eq!(model.events.iter().filter(|event| **event == BodeEvent::BandReleased).count(), 1);
     assert_eq!(model.view.omega_range(), before);
 }
 
@@ -145,11 +121,7 @@ fn panning_one_plot_pans_the_frequencies_of_both() {
     let mut harness = harness(three_curves());
     let (before, _) = harness.state().view.omega_range();
     let from = empty_spot(&harness);
-    drag(
-        &mut harness,
-        &[from, from + vec2(50.0, 0.0), from + vec2(100.0, 0.0)],
-        PointerButton::Primary,
-    );
+    drag(&mut harness, &[from, from + vec2(50.0, 0.0), from + vec2(100.0, 0.0)], PointerButton::Primary);
     let view = &harness.state().view;
     assert!(view.omega_range().0 < 0.9 * before);
     let left = |transform: Option<&egui_plot::PlotTransform>| transform.map(|transform| transform.bounds().min()[0]);
@@ -160,11 +132,7 @@ fn panning_one_plot_pans_the_frequencies_of_both() {
 fn a_box_drawn_with_the_secondary_button_is_zoomed_into() {
     let mut harness = harness(three_curves());
     let at = |harness: &Harness<'_, Model>, omega, db| {
-        harness
-            .state()
-            .view
-            .screen_position(Pane::Magnitude, omega, db)
-            .unwrap()
+        harness.state().view.screen_position(Pane::Magnitude, omega, db).unwrap()
     };
     let path = [at(&harness, 1.0, 5.0), at(&harness, 2.0, 0.0), at(&harness, 3.0, -5.0)];
     drag(&mut harness, &path, PointerButton::Secondary);
@@ -214,10 +182,7 @@ fn new_data_keep_the_zoom_and_a_double_click_fits_them() {
     harness.run();
     let view = &harness.state().view;
     assert_eq!(view.omega_range(), fitted);
-    assert!(
-        view.value_range(Pane::Magnitude).min < -56.0,
-        "the new curve is in view"
-    );
+    assert!(view.value_range(Pane::Magnitude).min < -56.0, "the new curve is in view");
 }
 
 #[test]
@@ -236,18 +201,11 @@ fn a_double_click_on_a_curve_fits_and_takes_its_first_click_back() {
 #[test]
 fn values_that_are_not_finite_leave_gaps_and_nothing_panics() {
     let mut curves = three_curves();
-    curves[0].magnitude_db = curves[0]
-        .magnitude_db
-        .iter()
-        .enumerate()
-        .map(|(k, db)| if k % 7 == 0 { f64::NAN } else { *db })
-        .collect();
+    curves[0].magnitude_db =
+        curves[0].magnitude_db.iter().enumerate().map(|(k, db)| if k % 7 == 0 { f64::NAN } else { *db }).collect();
     curves[1].magnitude_db = vec![f64::NEG_INFINITY; 120].into();
     curves[2].phase_deg = vec![f64::NAN; 120].into();
-    curves.push(BodeCurve {
-        omega: vec![0.0, -1.0].into(),
-        ..lag(4, 0.0, 1.0, Role::Identified)
-    });
+    curves.push(BodeCurve { omega: vec![0.0, -1.0].into(), ..lag(4, 0.0, 1.0, Role::Identified) });
     let mut harness = harness(curves);
     let at = point_on(&harness, 0, 59);
     click(&mut harness, at);
@@ -264,13 +222,7 @@ fn without_curves_there_is_a_message() {
 #[test]
 fn every_size_can_be_drawn() {
     let mut harness = harness(three_curves());
-    for size in [
-        vec2(40.0, 40.0),
-        vec2(150.0, 140.0),
-        vec2(320.0, 200.0),
-        vec2(2000.0, 150.0),
-        vec2(160.0, 1200.0),
-    ] {
+    for size in [vec2(40.0, 40.0), vec2(150.0, 140.0), vec2(320.0, 200.0), vec2(2000.0, 150.0), vec2(160.0, 1200.0)] {
         harness.set_size(size);
         harness.run();
     }

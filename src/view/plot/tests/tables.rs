@@ -16,14 +16,9 @@ struct Model {
 }
 
 fn overview_harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
-    let model = Model {
-        curves,
-        ..Model::default()
-    };
-    let mut harness = Harness::builder()
-        .with_size(vec2(800.0, 600.0))
-        .with_context_setup(palette::apply)
-        .build_ui_state(
+    let model = Model { curves, ..Model::default() };
+    let mut harness =
+        Harness::builder().with_size(vec2(800.0, 600.0)).with_context_setup(palette::apply).build_ui_state(
             |ui, model: &mut Model| {
                 let inputs = ["LON", "LAT", "PED", "COL"].map(String::from);
                 let outputs = ["P", "Q", "R", "NX", "NY", "NZ"].map(String::from);
@@ -92,23 +87,13 @@ fn change(key: usize, magnitude: f64, phase: f64) -> AssessmentBar {
 }
 
 fn assessment_harness(panels: Vec<AssessmentPanel>) -> Harness<'static, Model> {
-    let model = Model {
-        panels,
-        ..Model::default()
-    };
-    let builder = Harness::builder()
-        .with_size(vec2(800.0, 400.0))
-        .with_context_setup(palette::apply);
+    let model = Model { panels, ..Model::default() };
+    let builder = Harness::builder().with_size(vec2(800.0, 400.0)).with_context_setup(palette::apply);
     let mut harness = builder.build_ui_state(
         |ui, model: &mut Model| {
-            let scene = AssessmentScene {
-                panels: &model.panels,
-                message: None,
-            };
+            let scene = AssessmentScene { panels: &model.panels, message: None };
             let palette = Palette::of(ui.visuals());
-            model
-                .bars
-                .extend(assessment_ui(ui, &scene, &mut model.assessment, &palette));
+            model.bars.extend(assessment_ui(ui, &scene, &mut model.assessment, &palette));
         },
         model,
     );
@@ -118,35 +103,15 @@ fn assessment_harness(panels: Vec<AssessmentPanel>) -> Harness<'static, Model> {
 
 #[test]
 fn a_click_on_a_bar_names_it_and_its_panel() {
-    let left_out = AssessmentBar {
-        value: BarValue::LeftOut {
-            why: "rejected".to_owned(),
-        },
-        ..change(10, 0.0, 0.0)
-    };
-    let bars = vec![
-        change(1, -20.0, -3.0),
-        change(3, 4.0, -1.0),
-        left_out,
-        change(11, f64::NAN, 0.0),
-    ];
-    let panel = AssessmentPanel {
-        title: "LON → Q".to_owned(),
-        axis_label: "Condition".to_owned(),
-        bars,
-    };
-    let other = AssessmentPanel {
-        title: "LAT → P".to_owned(),
-        ..panel.clone()
-    };
+    let left_out = AssessmentBar { value: BarValue::LeftOut { why: "rejected".to_owned() }, ..change(10, 0.0, 0.0) };
+    let bars = vec![change(1, -20.0, -3.0), change(3, 4.0, -1.0), left_out, change(11, f64::NAN, 0.0)];
+    let panel = AssessmentPanel { title: "LON → Q".to_owned(), axis_label: "Condition".to_owned(), bars };
+    let other = AssessmentPanel { title: "LAT → P".to_owned(), ..panel.clone() };
     let mut harness = assessment_harness(vec![other, panel]);
     for key in [3, 10] {
         let at = harness.state().assessment.screen_position(1, key).unwrap();
         click(&mut harness, at);
-        assert_eq!(
-            harness.state().bars.last(),
-            Some(&AssessmentEvent::BarClicked { panel: 1, key })
-        );
+        assert_eq!(harness.state().bars.last(), Some(&AssessmentEvent::BarClicked { panel: 1, key }));
     }
     harness.get_by_label("Change of J, LON → Q: 1 −23.0, 3 3.0, 10 left out, 11 NaN");
 }

@@ -1,0 +1,89 @@
+//! Time of the gains with their proof, of the delays, and of plain methods for the same problems in the same run.
+//!
+//! `cargo bench --bench optimiser`. The figures to reach: `gains/base` median of the instances <= 0.1 ms, `gains/wide` worst
+//! <= 5 ms, `delays` <= 0.2 ms a stage, `example/all conditions` <= 6 ms.
+
+// `criterion_group!` makes a public function, which cannot be documented.
+#![allow(missing_docs)]
+
+use std::hint::black_box;
+use std::time::Duration;
+
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use gdcm::correction::{ProofBudget, solve_delays, solve_gains};
+
+#[path = "../tests/optimiser/instances.rs"]
+// The tests use more of it.
+#[allow(dead_code)]
+mod instances;
+mod plain;
+
+fn gains(criterion: &mut Criterion) {
+    for kind in ["base", "wide"] {
+        let mut group = criterion.benchmark_group(format!("gains/{kind}"));
+        for instance in instances::gain_instances().iter().filter(|instance| instance.kind == kind) {
+            group.bench_with_input(
+                BenchmarkId::new("with proof", instance.id),
+                &instance.problem,
+                |bencher, problem| {
+                    bencher.iter(|| solve_gains(black_box(problem), ProofBudget::default()));
+                },
+            );
+        }
+        for instance in instances::gain_instances().iter().filter(|instance| instance.kind == kind) {
+            group.bench_with_input(
+                BenchmarkId::new("plain, no proof", instance.id),
+                &instance.problem,
+                |bencher, problem| {
+                    bencher.iter(|| plain::projected_gradient(black_box(problem)));
+                },
+            );
+        }
+        group.finish();
+    }
+}
+
+fn delays(criterion: &mut Criterion) {
+    let instances = instances::delay_instances();
+    let mut group = criterion.benchmark_group("delays");
+    for (name, matched) in [("one stage", true), ("two stages", false)] {
+        let problems: Vec<_> = instances.iter().filter(|instance| instance.matched == matched).collect();
+        group.bench_function(format!("{name}, {} problems", problems.len()), |bencher| {
+            bencher.iter(|| {
+                problems.iter().map(|instance| solve_delays(black_box(&instance.problem))).filter(Result::is_ok).count()
+            });
+        });
+    }
+    group.bench_function(format!("plain projected gradient, {} problems", instances.len()), |bencher| {
+        bencher
+            .iter(|| instances.iter().map(|instance| plain::delay_gradient(black_box(&instance.problem))).sum::<f64>());
+    });
+    group.finish();
+}
+
+fn example(criterion: &mut Criterion) {
+    let conditions = instances::example_conditions();
+    criterion.bench_function("example/all conditions, gains with proof and delays", |bencher| {
+        bencher.iter(|| {
+            conditions
+                .iter()
+                .map(|condition| {
+                    let gains = solve_gains(black_box(&condition.gains), ProofBudget::default());
+                    let delays = solve_delays(black_box(&condition.delays));
+                    usize::from(gains.is_ok() && delays.is_ok())
+                })
+                .sum::<usize>()
+        });
+    });
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default()
+        .warm_up_time(Duration::from_millis(100))
+        .measurement_time(Duration::from_millis(400))
+        .sample_size(20)
+        .without_plots();
+    targets = gains, delays, example
+}
+criterion_main!(benches);

@@ -1,0 +1,85 @@
+//! What a plain method costs: projected gradient on the channel gains or delays with the held entries as a penalty, no proof.
+
+use gdcm::correction::{DelayProblem, GainProblem};
+
+/// Steps after which the plain method gives up.
+const STEPS: usize = 400;
+
+/// Weight of the held entries in the penalty.
+const PENALTY: f64 = 100.0;
+
+/// Objective of the gains that a projected gradient with a penalty for the held entries reaches.
+pub fn projected_gradient(problem: &GainProblem) -> f64 {
+    let (outputs, inputs) = (problem.wanted.outputs(), problem.wanted.inputs());
+    let slope = |point: &[f64], gradient: &mut [f64]| {
+        gradient.fill(0.0);
+        let mut value = 0.0;
+        for (pair, wanted) in problem.wanted.iter() {
+            let Some(wanted) = wanted else { continue };
+            let weight =
+                f64::from(u8::from(problem.fitted[pair])) + PENALTY * f64::from(u8::from(problem.constrained[pair]));
+            let (input, output) = (point[pair.input], point[inputs + pair.output]);
+            let error = input * output - wanted;
+            value += weight * error * error;
+            gradient[pair.input] += 2.0 * weight * error * output;
+            gradient[inputs + pair.output] += 2.0 * weight * error * input;
+        }
+        for output in inputs..inputs + outputs {
+            value += problem.alpha * (point[output] - 1.0).powi(2);
+            gradient[output] += 2.0 * problem.alpha * (point[output] - 1.0);
+        }
+        value
+    };
+    let point = descend(vec![1.0; inputs + outputs], (problem.bounds.lower, problem.bounds.upper), slope);
+    problem.objective_at(&point[..inputs], &point[inputs..])
+}
+
+/// Objective of the delays that the same method reaches, in units of 0.1 s.
+pub fn delay_gradient(problem: &DelayProblem) -> f64 {
+    let (outputs, inputs) = (problem.wanted_s.outputs(), problem.wanted_s.inputs());
+    let slope = |point: &[f64], gradient: &mut [f64]| {
+        gradient.fill(0.0);
+        let mut value = 0.0;
+        for (pair, wanted) in problem.wanted_s.iter() {
+            let Some(wanted) = wanted else { continue };
+            let weight =
+                f64::from(u8::from(problem.fitted[pair])) + PENALTY * f64::from(u8::from(problem.constrained[pair]));
+            let error = point[pair.input] + point[inputs + pair.output] - 10.0 * wanted;
+            value += weight * error * error;
+            gradient[pair.input] += 2.0 * weight * error;
+            gradient[inputs + pair.output] += 2.0 * weight * error;
+        }
+        for output in inputs..inputs + outputs {
+            value += problem.alpha * point[output].powi(2);
+            gradient[output] += 2.0 * problem.alpha * point[output];
+        }
+        value
+    };
+    let point = descend(vec![0.0; inputs + outputs], (0.0, 10.0 * problem.upper_s), slope);
+    problem.objective_at(&point[..inputs], &point[inputs..])
+}
+
+fn descend(mut point: Vec<f64>, (lower, upper): (f64, f64), slope: impl Fn(&[f64], &mut [f64]) -> f64) -> Vec<f64> {
+    let mut gradient = vec![0.0; point.len()];
+    let mut next_gradient = gradient.clone();
+    let mut value = slope(&point, &mut gradient);
+    let mut stride = 1e-2;
+    for _ in 0..STEPS {
+        let next: Vec<f64> =
+            point.iter().zip(&gradient).map(|(at, slope)| (at - stride * slope).clamp(lower, upper)).collect();
+        let reached = slope(&next, &mut next_gradient);
+        if reached < value {
+            let done = value - reached <= 1e-10 * value;
+            point = next;
+            value = reached;
+            std::mem::swap(&mut gradient, &mut next_gradient);
+            stride *= 1.5;
+            if done {
+                break;
+            }
+        } else {
+            stride *= 0.4;
+        }
+    }
+    point
+}

@@ -1,0 +1,17 @@
+//! Something wrong in a file.
+
+use super::content_fault::ContentFault;
+use super::place::Place;
+
+/// What is wrong in a file, and where. Boxed, so that results that are mostly right stay small.
+#[derive(Debug)]
+pub(super) struct Flaw {
+    pub(super) place: Box<Place>,
+    pub(super) fault: Box<ContentFault>,
+}
+
+impl Flaw {
+    pub(super) fn new(place: Place, fault: impl Into<ContentFault>) -> Self {
+        Self { place: Box::new(place), fault: Box::new(fault.into()) }
+    }
+}

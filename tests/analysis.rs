@@ -1,0 +1,56 @@
+//! The whole method against reference figures, and properties of whole studies (figures: see `tests/data/README.md`).
+
+use std::sync::LazyLock;
+
+use gdcm::dataset::{BundleKind, Dynamics, Pair, PairTable, StateSpace};
+use gdcm::io::{Corrections, embedded_example};
+use gdcm::response::{FrequencyGrid, FrequencyResponse};
+use gdcm::study::{Analysis, Assessed, Edit, Engine, Setting, Study, Unwatched};
+use nalgebra::{Complex, DMatrix};
+use serde_json::Value;
+
+#[path = "analysis/example.rs"]
+mod example;
+#[path = "analysis/responses.rs"]
+mod responses;
+#[path = "analysis/studies.rs"]
+mod studies;
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(number).collect()
+}
+
+fn list(value: &Value) -> &[Value] {
+    value.as_array().unwrap()
+}
+
+fn texts(value: &Value) -> Vec<&str> {
+    list(value).iter().map(|text| text.as_str().unwrap()).collect()
+}
+
+fn analyze(engine: &mut Engine, study: &Study) -> Analysis {
+    engine.analyze(study, &Unwatched).unwrap()
+}
+
+fn study_of_example() -> Study {
+    Study::new(embedded_example().unwrap().dataset)
+}
+
+/// The example analysed, its suggested outliers rejected, and analysed again.
+static EXAMPLE_WITH_SUGGESTIONS_REJECTED: LazyLock<Analysis> = LazyLock::new(|| {
+    let (mut study, mut engine) = (study_of_example(), Engine::default());
+    let first = analyze(&mut engine, &study);
+    for condition in 0..first.conditions.len() {
+        let models = first.condition(condition).unwrap().suggested();
+        study.apply(&Edit::RejectAll { condition, models }).unwrap();
+    }
+    analyze(&mut engine, &study)
+});

@@ -1,0 +1,368 @@
+//! The commands, through the program itself.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use gdcm::io::{load_dataset, read_corrections, save_study};
+use gdcm::study::{Edit, Setting, Study};
+use serde_json::{Value, json};
+
+const SMALL: &str = include_str!("data/small-dataset.json");
+
+/// A directory with the small dataset in it, where commands are run.
+struct Desk {
+    directory: tempfile::TempDir,
+}
+
+impl Desk {
+    fn new() -> Self {
+        let directory = tempfile::tempdir().unwrap();
+        fs::write(directory.path().join("small.json"), SMALL).unwrap();
+        Self { directory }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.directory.path().join(name)
+    }
+
+    fn write(&self, name: &str, change: impl FnOnce(&mut Value)) {
+        let mut value: Value = serde_json::from_str(SMALL).unwrap();
+        change(&mut value);
+        fs::write(self.path(name), serde_json::to_vec(&value).unwrap()).unwrap();
+    }
+
+    fn gdcm(&self, arguments: &[&str]) -> Ended {
+        let output = self.command(arguments).output().unwrap();
+        Ended::of(&output)
+    }
+
+    fn command<S: AsRef<OsStr>>(&self, arguments: &[S]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_gdcm"));
+        command.args(arguments).current_dir(self.directory.path());
+        command
+    }
+}
+
+/// How a command ended.
+#[derive(Debug)]
+struct Ended {
+    status: i32,
+    out: String,
+    error: String,
+}
+
+impl Ended {
+    fn of(output: &Output) -> Self {
+        let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
+        Self { status: output.status.code().unwrap(), out: text(&output.stdout), error: text(&output.stderr) }
+    }
+
+    /// Asserts a failure told in one or two lines of standard error that hold these words, and nothing on standard output.
+    #[track_caller]
+    fn assert_failed(&self, status: i32, words: &[&str]) {
+        assert_eq!((self.status, self.out.as_str()), (status, ""), "{self:?}");
+        assert!((1..=2).contains(&self.error.lines().count()), "{}", self.error);
+        for word in words {
+            assert!(self.error.contains(word), "expected \"{word}\" in: {}", self.error);
+        }
+    }
+
+    #[track_caller]
+    fn assert_done(&self) {
+        assert_eq!((self.status, self.error.as_str()), (0, ""), "{self:?}");
+    }
+}
+
+fn rows(path: &Path) -> Vec<csv::StringRecord> {
+    csv::Reader::from_path(path).unwrap().records().map(Result::unwrap).collect()
+}
+
+#[test]
+fn the_embedded_example_is_analysed_without_a_file() {
+    let desk = Desk::new();
+    let ended = desk.gdcm(&["analyze", "--out", "results/of/today", "--reject-suggested"]);
+    ended.assert_done();
+    let corrections = read_corrections(&desk.path("results/of/today/corrections.json")).unwrap();
+    assert_eq!((corrections.conditions.len(), corrections.failed.len()), (11, 0));
+    let tenth = corrections.conditions.iter().find(|condition| condition.id == 10).unwrap();
+    assert_eq!(tenth.rejected, ["nominal", "ROLL+5deg", "V+5kt ROC+150fpm ROLL+5deg"]);
+    assert_eq!(tenth.rejected, tenth.suggested_outliers);
+    assert_eq!(corrections.assessment.left_out[0].id, 10);
+    assert_eq!(rows(&desk.path("results/of/today/corrections.csv")).len(), 11 * 10);
+    assert_eq!(rows(&desk.path("results/of/today/assessment.csv")).len(), 11 * 24);
+    for words in
+        ["Condition 10", "rejected    nominal, ROLL+5deg", "LON → Q", "needs", "Schedule", "Left out      condition 10"]
+    {
+        assert!(ended.out.contains(words), "expected \"{words}\" in:\n{}", ended.out);
+    }
+    let widest = ended.out.lines().map(|line| line.chars().count()).max().unwrap();
+    assert!(widest <= 120, "{widest} columns");
+}
+
+#[test]
+fn what_is_written_says_the_same_in_all_three_files() {
+    let desk = Desk::new();
+    desk.gdcm(&["analyze", "small.json", "--out", "."]).assert_done();
+    let corrections = read_corrections(&desk.path("corrections.json")).unwrap();
+    for row in rows(&desk.path("corrections.csv")) {
+        let condition = corrections.conditions.iter().find(|condition| condition.id.to_string() == row[0]).unwrap();
+        let of = |channels: &gdcm::io::Channels| match &row[2] {
+            "input" => *channels.inputs.get(&row[3]).unwrap(),
+            _ => *channels.outputs.get(&row[3]).unwrap(),
+        };
+        let figures: [f64; 2] = [row[4].parse().unwrap(), row[5].parse().unwrap()];
+        assert_eq!(figures, [of(&condition.gains), of(&condition.delays_s)], "to the last digit");
+    }
+    let header = csv::Reader::from_path(desk.path("assessment.csv")).unwrap().headers().unwrap().clone();
+    let column = |name: &str| header.iter().position(|heading| heading == name).unwrap();
+    for row in rows(&desk.path("assessment.csv")) {
+        let condition = corrections.conditions.iter().find(|condition| condition.id.to_string() == row[0]).unwrap();
+        let net = condition.net_gains.iter().find(|net| net.output == row[2] && net.input == row[3]).unwrap();
+        assert_eq!(row[column("net_gain")].parse::<f64>().unwrap(), net.gain);
+        let held = condition.held.contains(&(row[2].to_owned(), row[3].to_owned()));
+        assert_eq!(&row[column("held")], if held { "true" } else { "false" });
+    }
+}
+
+#[test]
+fn every_option_reaches_the_analysis() {
+    let desk = Desk::new();
+    let options = ["--alpha", "0.25", "--alpha-delay", "2", "--band", "1", "8", "--points", "31", "--degree", "1"];
+    let more = ["--on", "P/LAT, Q/LAT", "--reject", "7:V+5kt", "--reject", "10:static gain"];
+    let arguments: Vec<&str> =
+        ["analyze", "small.json", "--out", "out"].into_iter().chain(options).chain(more).collect();
+    desk.gdcm(&arguments).assert_done();
+    let written = read_corrections(&desk.path("out/corrections.json")).unwrap();
+    let settings = &written.settings;
+    assert_eq!((settings.alpha_gain, settings.alpha_delay, settings.points), (0.25, 2.0, 31));
+    assert_eq!(settings.band_rad_s, [1.0, 8.0]);
+    let pair = |output: &str, input: &str| (output.to_owned(), input.to_owned());
+    assert_eq!(settings.constrained, [pair("P", "LAT"), pair("Q", "LAT")]);
+    assert_eq!(written.schedule.unwrap().degree, Some(1));
+    assert_eq!(
+        (&written.conditions[0].rejected, &written.conditions[1].rejected),
+        (&vec!["V+5kt".into()], &vec!["static gain".into()])
+    );
+}
+
+#[test]
+fn no_pair_held_is_a_choice_of_its_own() {
+    let desk = Desk::new();
+    desk.gdcm(&["analyze", "small.json", "--out", "out", "--on", "none"]).assert_done();
+    assert!(read_corrections(&desk.path("out/corrections.json")).unwrap().settings.constrained.is_empty());
+}
+
+#[test]
+fn what_cannot_be_held_together_is_told_with_the_reason() {
+    let desk = Desk::new();
+    let ended = desk.gdcm(&["analyze", "small.json", "--out", "out", "--on", "P/LON,P/LAT,Q/LON,Q/LAT"]);
+    ended.assert_done();
+    assert!(ended.out.contains("not matched gain of LON → P") && ended.out.contains("form a loop"), "{}", ended.out);
+    let written = read_corrections(&desk.path("out/corrections.json")).unwrap();
+    let gains = &written.conditions[0].gain_solution;
+    assert!(!gains.matched && gains.unmatched.iter().all(|entry| entry.why.contains("form a loop")), "{gains:?}");
+    for entry in &gains.unmatched {
+        let net =
+            written.conditions[0].net_gains.iter().find(|net| net.output == entry.output && net.input == entry.input);
+        // The products are held at their targets within 1e-8 of the logarithm.
+        assert!((net.unwrap().gain / entry.target).ln().abs() < 1e-8, "{entry:?}");
+        assert!((entry.short_db - 20.0 * (entry.target / entry.wanted).log10()).abs() < 1e-9, "{entry:?}");
+    }
+}
+
+#[test]
+fn a_study_stands_in_place_of_a_dataset_and_options_over_what_it_says() {
+    let desk = Desk::new();
+    let loaded = load_dataset(&desk.path("small.json")).unwrap();
+    let mut study = Study::new(loaded.dataset.clone());
+    for setting in [Setting::AlphaGain(0.1 + 0.2), Setting::Points(33)] {
+        study.apply(&Edit::Set(setting)).unwrap();
+    }
+    save_study(&study, &loaded, &desk.path("a.gdcm-study.json")).unwrap();
+    desk.gdcm(&["analyze", "a.gdcm-study.json", "--out", "out", "--points", "44"]).assert_done();
+    let written = read_corrections(&desk.path("out/corrections.json")).unwrap();
+    assert_eq!((written.settings.alpha_gain, written.settings.points), (0.1 + 0.2, 44));
+    assert_eq!(written.dataset.sha256, loaded.sha256);
+    let checked = desk.gdcm(&["check", "a.gdcm-study.json"]);
+    checked.assert_done();
+    assert!(checked.out.contains("Study         a.gdcm-study.json") && checked.out.contains("two conditions"));
+}
+
+#[test]
+fn check_says_what_a_file_holds() {
+    let desk = Desk::new();
+    desk.write("odd.json", |file| file["author"] = json!("someone"));
+    let ended = desk.gdcm(&["check", "odd.json"]);
+    ended.assert_done();
+    for words in [
+        "two conditions, odd.json",
+        "Inputs        LON [%], LAT [%]",
+        "On-axis       LAT → P, LON → Q",
+        "Band          0.5 to 12 rad/s",
+        "2, measured  hover",
+        "0-2  cruise",
+        "Caution       the key \"author\" is not known",
+    ] {
+        assert!(ended.out.contains(words), "expected \"{words}\" in:\n{}", ended.out);
+    }
+}
+
+#[test]
+fn a_wrong_file_is_status_2_with_path_and_place() {
+    let desk = Desk::new();
+    desk.write("bad.json", |file| file["conditions"][0]["physics_models"][1]["A"][1][0] = json!("x"));
+    let words = ["bad.json: ", "condition 7", "physics model \"V+5kt\"", "matrix A, row 2, column 1"];
+    desk.gdcm(&["check", "bad.json"]).assert_failed(2, &words);
+    desk.gdcm(&["analyze", "bad.json", "--out", "out"]).assert_failed(2, &words);
+    assert!(!desk.path("out").exists(), "nothing is made before the file is known to be good");
+    desk.gdcm(&["check", "missing.json"]).assert_failed(2, &["missing.json: there is no such file"]);
+    desk.gdcm(&["check", "."]).assert_failed(2, &["this is a directory"]);
+}
+
+#[test]
+fn a_wrong_command_line_is_status_2_with_the_option() {
+    let desk = Desk::new();
+    let analyze = |options: &[&str]| {
+        let arguments: Vec<&str> = ["analyze", "small.json", "--out", "out"].iter().chain(options).copied().collect();
+        desk.gdcm(&arguments)
+    };
+    analyze(&["--alpha", "-1"]).assert_failed(2, &["--alpha: ", "from 0", "found -1"]);
+    analyze(&["--alpha", "NaN"]).assert_failed(2, &["--alpha: ", "found NaN"]);
+    analyze(&["--alpha", "much"]).assert_failed(2, &["'much'", "--alpha"]);
+    analyze(&["--alpha-delay", "1e9"]).assert_failed(2, &["--alpha-delay: ", "found 1000000000"]);
+    analyze(&["--band", "8", "1"]).assert_failed(2, &["--band: ", "0 < min < max"]);
+    analyze(&["--band", "8"]).assert_failed(2, &["--band"]);
+    analyze(&["--points", "1"]).assert_failed(2, &["--points: ", "from 2 to 5000"]);
+    analyze(&["--degree", "4"]).assert_failed(2, &["--degree: ", "from 0 to 3"]);
+    analyze(&["--on", "P"]).assert_failed(2, &["OUTPUT/INPUT"]);
+    analyze(&["--on", "P/PED"]).assert_failed(2, &["--on: ", "no response P/PED", "inputs are LON, LAT"]);
+    analyze(&["--reject", "nominal"]).assert_failed(2, &["ID:NAME"]);
+    analyze(&["--reject", "8:nominal"]).assert_failed(2, &["--reject: ", "no condition 8"]);
+    analyze(&["--reject", "7:other"]).assert_failed(2, &["--reject: ", "condition 7 has no model \"other\""]);
+    analyze(&["--reject", "10:nominal"]).assert_failed(2, &["--reject: ", "the last model kept"]);
+    analyze(&["--colour"]).assert_failed(2, &["--colour"]);
+    desk.gdcm(&["analyze", "small.json"]).assert_failed(2, &["--out"]);
+    assert!(!desk.path("out").exists());
+}
+
+#[test]
+fn an_output_directory_that_cannot_be_made_is_status_2_before_any_work() {
+    let desk = Desk::new();
+    let ended = desk.gdcm(&["analyze", "small.json", "--out", "small.json"]);
+    ended.assert_failed(2, &["small.json: cannot be written", "a file stands where"]);
+}
+
+#[test]
+fn results_that_cannot_be_written_are_status_1_and_leave_no_half_of_a_file() {
+    let desk = Desk::new();
+    // A directory where the file has to stand cannot be replaced, whoever asks.
+    fs::create_dir_all(desk.path("out/corrections.csv")).unwrap();
+    desk.gdcm(&["analyze", "small.json", "--out", "out"]).assert_failed(1, &["corrections.csv", "directory"]);
+    let names = fs::read_dir(desk.path("out")).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<String> = names.collect();
+    names.sort();
+    assert_eq!(names, ["corrections.csv", "corrections.json"]);
+}
+
+#[test]
+fn an_analysis_without_any_result_is_status_1() {
+    let desk = Desk::new();
+    desk.write("silent.json", |file| {
+        for condition in file["conditions"].as_array_mut().unwrap() {
+            for model in condition["physics_models"].as_array_mut().unwrap() {
+                model["B"] = json!([[0, 0], [0, 0]]);
+                model["D"] = json!([[0, 0], [0, 0]]);
+            }
+        }
+    });
+    let ended = desk.gdcm(&["analyze", "silent.json", "--out", "out"]);
+    ended.assert_failed(1, &["the analysis has no result: condition 7: no response of \"nominal\""]);
+}
+
+#[test]
+fn a_condition_without_result_is_told_and_the_others_are_written() {
+    let desk = Desk::new();
+    desk.write("half.json", |file| {
+        let model = &mut file["conditions"][1]["physics_models"][0];
+        model["B"] = json!([[0, 0], [0, 0]]);
+        model["D"] = json!([[0, 0], [0, 0]]);
+    });
+    let ended = desk.gdcm(&["analyze", "half.json", "--out", "out"]);
+    assert_eq!(ended.status, 0);
+    assert!(ended.error.starts_with("gdcm: condition 10: no response of \"nominal\""), "{}", ended.error);
+    let written = read_corrections(&desk.path("out/corrections.json")).unwrap();
+    assert_eq!((written.conditions.len(), written.failed[0].id), (1, 10));
+    let text = fs::read_to_string(desk.path("out/corrections.json")).unwrap();
+    assert!(!text.contains("NaN"));
+    let undefined = rows(&desk.path("out/corrections.csv")).into_iter().filter(|row| &row[0] == "10");
+    assert!(undefined.into_iter().all(|row| row[4].is_empty()), "an undefined figure is an empty cell");
+}
+
+#[test]
+fn a_file_may_be_named_like_a_command() {
+    let desk = Desk::new();
+    fs::rename(desk.path("small.json"), desk.path("check")).unwrap();
+    desk.gdcm(&["check", "check"]).assert_done();
+    desk.gdcm(&["analyze", "./check", "--out", "out"]).assert_done();
+}
+
+#[test]
+fn the_example_is_written_and_can_be_read() {
+    let desk = Desk::new();
+    let ended = desk.gdcm(&["example", "learn/the format"]);
+    ended.assert_done();
+    let path = desk.path("learn/the format/example-dataset.json");
+    assert_eq!(load_dataset(&path).unwrap().dataset.conditions().len(), 11);
+    assert!(ended.out.contains("learn/the format/example-dataset.json"));
+}
+
+#[test]
+fn a_reader_that_closes_the_pipe_is_no_failure() {
+    let desk = Desk::new();
+    let mut child =
+        desk.command(&["check", "small.json"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), output.stderr.len()), (Some(0), 0), "{output:?}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_behind_standard_output_is_status_1() {
+    let desk = Desk::new();
+    let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let output = desk.command(&["check", "small.json"]).stdout(full).output().unwrap();
+    Ended::of(&output).assert_failed(1, &["standard output cannot be written"]);
+}
+
+#[test]
+fn help_and_version_are_status_0_on_standard_output() {
+    let desk = Desk::new();
+    for arguments in [["--help"].as_slice(), &["analyze", "--help"], &["--version"]] {
+        let ended = desk.gdcm(arguments);
+        ended.assert_done();
+        assert!(ended.out.contains("gdcm"), "{}", ended.out);
+    }
+}
+
+#[test]
+fn names_from_a_file_cannot_write_to_the_terminal_what_they_like() {
+    let desk = Desk::new();
+    desk.write("escape.json", |file| file["conditions"][0]["name"] = json!("\u{1b}[2Jgone\nCondition 99"));
+    let ended = desk.gdcm(&["check", "escape.json"]);
+    ended.assert_done();
+    assert!(!ended.out.contains('\u{1b}') && !ended.out.contains("\nCondition 99"), "{}", ended.out);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_path_that_is_not_unicode_is_read_all_the_same() {
+    use std::os::unix::ffi::OsStrExt;
+    let desk = Desk::new();
+    let name = OsStr::from_bytes(b"sm\xffall.json");
+    fs::rename(desk.path("small.json"), desk.directory.path().join(name)).unwrap();
+    let output = desk.command(&[OsStr::new("check"), name]).output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+}

@@ -1,0 +1,152 @@
+//! Dataset files: what is read, what is refused and in what words, and that nothing else can happen.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use gdcm::io::{DatasetOrigin, FileError, LARGEST_TEXT, embedded_example, load_any, load_dataset, load_dataset_bytes};
+use serde_json::{Value, json};
+
+#[path = "dataset_file/properties.rs"]
+mod properties;
+#[path = "dataset_file/studies.rs"]
+mod studies;
+#[path = "dataset_file/wrong_content.rs"]
+mod wrong_content;
+#[path = "dataset_file/wrong_text.rs"]
+mod wrong_text;
+
+const SMALL: &str = include_str!("data/small-dataset.json");
+
+/// The small dataset, changed.
+fn small(change: impl FnOnce(&mut Value)) -> Vec<u8> {
+    let mut value: Value = serde_json::from_str(SMALL).unwrap();
+    change(&mut value);
+    serde_json::to_vec(&value).unwrap()
+}
+
+fn load(bytes: &[u8]) -> Result<gdcm::io::LoadedDataset, FileError> {
+    load_dataset_bytes(bytes, DatasetOrigin::File(PathBuf::from("test.json")))
+}
+
+/// The message that refuses these bytes; asserts that it is one line, and names the file.
+fn refusal(bytes: &[u8]) -> String {
+    let message = load(bytes).expect_err("the file is wrong and has to be refused").to_string();
+    assert!(message.starts_with("test.json: ") && !message.contains('\n'), "{message}");
+    message
+}
+
+/// Asserts that the small dataset, changed, is refused with every one of these words.
+fn assert_refused(change: impl FnOnce(&mut Value), words: &[&str]) {
+    let message = refusal(&small(change));
+    for word in words {
+        assert!(message.contains(word), "expected \"{word}\" in: {message}");
+    }
+}
+
+/// The same of the small dataset's text, with the first `from` replaced.
+fn assert_text_refused(from: &str, to: &str, words: &[&str]) {
+    assert!(SMALL.contains(from), "{from}");
+    let message = refusal(SMALL.replacen(from, to, 1).as_bytes());
+    for word in words {
+        assert!(message.contains(word), "expected \"{word}\" in: {message}");
+    }
+}
+
+fn gzip(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+    encoder.write_all(bytes).unwrap();
+    encoder.finish().unwrap()
+}
+
+#[test]
+fn the_small_dataset_is_read_as_it_is_written() {
+    let loaded = load(SMALL.as_bytes()).unwrap();
+    let dataset = &loaded.dataset;
+    assert_eq!((dataset.inputs().len(), dataset.outputs().len(), dataset.conditions().len()), (2, 2, 2));
+    let orders: Vec<Option<usize>> = dataset
+        .conditions()
+        .iter()
+        .flat_map(|condition| condition.bundle(gdcm::dataset::BundleKind::Identified))
+        .map(gdcm::dataset::Model::order)
+        .collect();
+    assert_eq!(orders, [Some(2), None, Some(2), Some(0)]);
+    let gdcm::dataset::Dynamics::StateSpace(model) =
+        &dataset.conditions()[0].bundle(gdcm::dataset::BundleKind::Physics)[0].dynamics
+    else {
+        panic!("matrices are given")
+    };
+    assert_eq!((model.a()[(0, 1)], model.a()[(1, 0)]), (1.0, -2.0), "A[row][column]");
+    assert_eq!(loaded.cautions, Vec::<String>::new());
+}
+
+#[test]
+fn a_packed_file_is_known_by_its_bytes_and_not_by_its_name() {
+    let plain = load(SMALL.as_bytes()).unwrap();
+    let packed = load(&gzip(SMALL.as_bytes())).unwrap();
+    assert_eq!(plain.dataset, packed.dataset);
+    assert_ne!(plain.sha256, packed.sha256, "the hash is that of the bytes as stored");
+}
+
+#[test]
+fn the_embedded_example_has_eleven_conditions_and_no_cautions() {
+    let example = embedded_example().unwrap();
+    assert_eq!((example.dataset.conditions().len(), example.cautions.len()), (11, 0));
+    assert_eq!(example.origin, DatasetOrigin::EmbeddedExample);
+}
+
+#[test]
+fn a_byte_order_mark_is_passed_over() {
+    assert!(load(&[b"\xef\xbb\xbf", SMALL.as_bytes()].concat()).is_ok());
+}
+
+#[test]
+fn a_model_of_order_zero_may_leave_its_rows_out() {
+    for c in [json!([]), json!([[], []])] {
+        let bytes = small(|file| file["conditions"][1]["identified_models"][1]["C"] = c.clone());
+        assert!(load(&bytes).is_ok(), "{c}");
+    }
+}
+
+#[test]
+fn keys_that_are_not_known_are_named_with_their_places_once() {
+    let bytes = small(|file| {
+        file["author"] = json!("someone");
+        for model in file["conditions"][0]["physics_models"].as_array_mut().unwrap() {
+            model["wind"] = json!({"deep": [1, 2]});
+        }
+    });
+    let cautions = load(&bytes).unwrap().cautions;
+    assert_eq!(
+        cautions,
+        [
+            "the key \"author\" is not known and not used",
+            "condition 7 (number 1 in the file), physics model \"nominal\" (number 1): the key \"wind\" is not known and not \
+             used, and 1 more like it",
+        ]
+    );
+}
+
+#[test]
+fn an_order_that_the_matrices_do_not_have_is_a_caution() {
+    let bytes = small(|file| file["conditions"][1]["identified_models"][0]["order"] = json!(12));
+    let cautions = load(&bytes).unwrap().cautions;
+    assert_eq!(
+        cautions,
+        [
+            "condition 10 (number 2 in the file), identified model \"sweeps\" (number 1): order says 12, the matrices have 2 states"
+        ]
+    );
+}
+
+#[test]
+fn a_file_full_of_keys_that_are_not_known_tells_the_first_of_them_and_counts_the_rest() {
+    let bytes = small(|file| {
+        for index in 0..1000 {
+            file[format!("key {index}")] = json!(index);
+        }
+    });
+    let cautions = load(&bytes).unwrap().cautions;
+    assert_eq!((cautions.len(), cautions[50].as_str()), (51, "950 other keys are not known and not used"));
+}

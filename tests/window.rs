@@ -12,6 +12,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use gdcm::app::GdcmApp;
 use gdcm::dataset::{BundleKind, ModelId, Pair};
 use gdcm::io::{Opened, embedded_example, open_study, read_corrections};
+use gdcm::view::explanation::{gain_conflict_marks, remarks, toggle_costs};
 use gdcm::view::net_gain_scene::channel_panels;
 use gdcm::view::plot::{BodeCurve, Pane, Role as CurveRole};
 use gdcm::view::state::{NoticeKind, State};
@@ -281,6 +282,49 @@ fn a_study_is_saved_and_opens_with_the_same_result() {
     click(&mut window, "Lose them");
     click(&mut window, CONDITION_10);
     assert_eq!(net_gain(&window, "Q", "LON"), gain, "to the last digit");
+}
+
+#[test]
+fn the_badge_says_proven_and_every_cell_says_what_holding_or_freeing_it_costs() {
+    let mut window = window();
+    window.get_by_label("proven");
+    wait_for_toggles(&mut window);
+    for (output, input, word) in [("Q", "LON", "holding LON → Q costs"), ("Q", "PED", "holding PED → Q would")] {
+        let costs = toggle_costs(state(&window), pair(&window, output, input));
+        assert!(costs.iter().any(|cost| cost.contains(word)), "{costs:?}");
+    }
+}
+
+fn wait_for_toggles(window: &mut Window) {
+    let limit = Instant::now() + Duration::from_secs(120);
+    while state(window).results.toggles.is_none() {
+        window.run_steps(1);
+        assert!(Instant::now() < limit, "the costs never came");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn held_gains_out_of_reach_are_explained_and_the_explanation_is_exported() {
+    let mut window = window();
+    window.get_by_label("Upper gain bound").set_value_accesskit(1.0);
+    settle(&mut window);
+    window.get_by_label("not matched");
+    let shown = state(&window).shown().unwrap();
+    let texts: Vec<String> = remarks(state(&window), shown).into_iter().map(|remark| remark.text).collect();
+    assert!(texts.iter().any(|text| text.contains("LON → Q cannot be held")), "{texts:?}");
+    let (marked, _) = gain_conflict_marks(shown);
+    assert!(marked.contains(&pair(&window, "Q", "LON")));
+
+    let folder = tempfile::tempdir().unwrap();
+    export_to(&mut window, folder.path());
+    let written = read_corrections(&folder.path().join("corrections.json")).unwrap();
+    let solution = &written.conditions[0].gain_solution;
+    assert!(!solution.matched && solution.proven);
+    let conflict = solution.explanation.conflicts.iter().find(|c| c.entries == [("Q".to_owned(), "LON".to_owned())]);
+    let upper = conflict.and_then(|conflict| conflict.upper).expect("the bound that would do is written");
+    // k_Q k_LON = 1.15 needs a bound of at least its square root, 1.0723, rounded up to three digits.
+    assert_eq!(upper, 1.08);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Opening, saving and exporting.
 
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, channel};
 
 use egui::Context;
 
@@ -22,6 +23,19 @@ pub(super) struct SavedStudy {
     pub(super) path: Option<PathBuf>,
     /// What was saved, or what a new study starts from.
     pub(super) study: Study,
+}
+
+/// The threads that read files, and where their answers arrive.
+pub(super) struct Readers {
+    sender: Sender<Result<Opened, FileError>>,
+    receiver: Receiver<Result<Opened, FileError>>,
+}
+
+impl Default for Readers {
+    fn default() -> Self {
+        let (sender, receiver) = channel();
+        Self { sender, receiver }
+    }
 }
 
 impl GdcmApp {
@@ -53,7 +67,7 @@ impl GdcmApp {
     pub(super) fn open(&mut self, path: PathBuf, ctx: &Context) {
         self.state.forms.shown = None;
         self.state.opening = Some(path.display().to_string());
-        let (sender, wake) = (self.opened.0.clone(), ctx.clone());
+        let (sender, wake) = (self.readers.sender.clone(), ctx.clone());
         let read = move || {
             // The window may be gone by now.
             let _ = sender.send(load_any(&path));
@@ -79,7 +93,7 @@ impl GdcmApp {
 
     /// Takes what files and dialogs have answered since the last frame.
     pub(super) fn receive_files(&mut self, ctx: &Context) {
-        while let Ok(opened) = self.opened.1.try_recv() {
+        while let Ok(opened) = self.readers.receiver.try_recv() {
             self.answer_opened(opened);
         }
         while let Some(answer) = self.dialogs.answer() {

@@ -1,10 +1,8 @@
 //! The window: state, the thread that computes, the dialogs.
 
-use std::sync::mpsc::{Receiver, Sender, channel};
-
 use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, ViewportCommand};
 
-use crate::io::{FileError, LoadedDataset, Opened};
+use crate::io::{LoadedDataset, Opened};
 use crate::study::{Study, display_band};
 use crate::view::command::{Command, FormKind};
 use crate::view::palette::{self, Palette};
@@ -14,7 +12,7 @@ use crate::view::{
 };
 
 use super::dialogs::Dialogs;
-use super::files::SavedStudy;
+use super::files::{Readers, SavedStudy};
 use super::shortcuts;
 use super::worker::{Reply, Request, Worker};
 
@@ -25,7 +23,7 @@ pub struct GdcmApp {
     pub(super) saved: SavedStudy,
     pub(super) worker: Worker,
     pub(super) dialogs: Dialogs,
-    pub(super) opened: (Sender<Result<Opened, FileError>>, Receiver<Result<Opened, FileError>>),
+    pub(super) readers: Readers,
     /// What waits for the answer whether to lose unsaved decisions.
     pub(super) postponed: Option<Command>,
     pub(super) closing: bool,
@@ -46,7 +44,7 @@ impl GdcmApp {
             saved,
             worker,
             dialogs: Dialogs::new(),
-            opened: channel(),
+            readers: Readers::default(),
             postponed: None,
             closing: false,
             requested: None,
@@ -130,26 +128,31 @@ impl GdcmApp {
         let width = ui.available_width();
         // The sides give way before the plots do.
         let (left, right) = ((0.19 * width).clamp(215.0, 330.0), (0.24 * width).clamp(290.0, 420.0));
-        Panel::left("conditions and models").frame(side).default_size(left).size_range(190.0..=460.0).show(ui, |ui| {
-            scrolled(ui, "left", |ui| {
-                conditions_panel::conditions_ui(ui, state, palette, commands);
-                models_panel::physics_models_ui(ui, state, palette, commands);
-                models_panel::identified_models_ui(ui, state, palette, commands);
-            });
-        });
-        Panel::right("constraints and result").frame(side).default_size(right).size_range(250.0..=620.0).show(
-            ui,
-            |ui| {
-                scrolled(ui, "right", |ui| {
-                    matrix_panel::matrix_ui(ui, state, palette, commands);
-                    settings_panel::settings_ui(ui, state, palette, commands);
-                    result_panel::result_ui(ui, state, palette, commands);
-                });
-            },
-        );
+        let panel = Panel::left("conditions and models").frame(side).default_size(left).size_range(190.0..=460.0);
+        panel.show(ui, |ui| left_ui(ui, state, palette, commands));
+        let panel = Panel::right("constraints and result").frame(side).default_size(right).size_range(250.0..=620.0);
+        panel.show(ui, |ui| right_ui(ui, state, palette, commands));
         let middle = Frame::new().fill(palette.background).inner_margin(Margin::symmetric(8, 4));
         CentralPanel::default().frame(middle).show(ui, |ui| centre::centre_ui(ui, state, palette, commands));
     }
+}
+
+fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    scrolled(ui, "left", |ui| {
+        conditions_panel::conditions_ui(ui, state, palette, commands);
+        models_panel::physics_models_ui(ui, state, palette, commands);
+        models_panel::identified_models_ui(ui, state, palette, commands);
+    });
+}
+
+fn right_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let foot = Frame::new().inner_margin(Margin { top: 6, bottom: 4, ..Margin::ZERO });
+    Panel::bottom("export").frame(foot).show(ui, |ui| result_panel::export_button_ui(ui, state, palette, commands));
+    scrolled(ui, "right", |ui| {
+        matrix_panel::matrix_ui(ui, state, palette, commands);
+        settings_panel::settings_ui(ui, state, palette, commands);
+        result_panel::result_ui(ui, state, palette);
+    });
 }
 
 /// A column that scrolls where it is too long; its content keeps clear of the scroll bar.

@@ -22,10 +22,11 @@ impl Price {
     /// The price in words: what is held costs something, what is free would.
     pub(crate) fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let pair = pair_name(self.pair, inputs, outputs);
-        let percent = 100.0 * self.share();
+        // Without the sum, no change would read -0.0.
+        let percent = 100.0 * self.share() + 0.0;
         match (self.held_now, self.matched_after) {
             (true, _) if self.after <= self.before => {
-                format!("holding {pair} costs {:.1} % of the objective", -percent)
+                format!("holding {pair} costs {:.1} % of the objective", 0.0 - percent)
             }
             (true, _) => {
                 format!("freeing {pair} would raise the objective by {percent:.1} %: others are then held better")

@@ -14,7 +14,7 @@ use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 use super::state::State;
 
 /// Outcome, channel gains and delays, objective, and what could not be matched and why.
-pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     match state.analysis().map(|analysis| &analysis.conditions[state.display.condition]) {
         None => {
             heading_ui(ui, palette, "Result", "");
@@ -39,7 +39,10 @@ pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
             });
         }
     }
-    ui.add_space(4.0);
+}
+
+/// The way to the export form; always in sight.
+pub fn export_button_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let ready = state.analysis().is_some();
     let label = RichText::new("Export corrections…").strong().color(palette.on_accent());
     let export = ui.add_enabled(ready, Button::new(label).fill(palette.accent));

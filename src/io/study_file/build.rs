@@ -25,7 +25,7 @@ pub(super) fn study_of(
 ) -> Result<Study, Flaw> {
     let mut study = Study::new(dataset);
     take_settings(&mut study, settings)?;
-    take_pairs(&mut study, "constrained", &settings.constrained, |pair, listed| Setting::Constrained(pair, listed))?;
+    take_pairs(&mut study, "constrained", &settings.constrained, Setting::Constrained)?;
     take_pairs(&mut study, "ignored", &settings.ignored, |pair, listed| Setting::Fitted(pair, !listed))?;
     let mut seen = BTreeSet::new();
     for (index, text) in conditions.iter().enumerate() {

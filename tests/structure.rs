@@ -28,6 +28,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("std::fs", &["io"]),
     ("fs::File", &["io"]),
     ("std::thread", &["app"]),
+    ("rayon::", &["app"]),
     ("clap::", &["cli"]),
     ("serde_json::", &["io"]),
 ];

@@ -3,10 +3,12 @@
 mod dialogs;
 mod files;
 mod launch;
+mod pool;
 mod shortcuts;
 mod update;
 mod window;
 mod worker;
 
 pub use launch::open;
+pub use pool::Pool;
 pub use window::GdcmApp;

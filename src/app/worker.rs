@@ -6,6 +6,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Instant;
 
+use super::pool::Pool;
 use crate::dataset::{Band, Dataset};
 use crate::study::{Analysis, ConditionCurves, Engine, Study, Toggles, Watch, display_band};
 
@@ -63,7 +64,7 @@ pub enum Reply {
 }
 
 /// Called after each reply: wakes the window.
-type Wake = Box<dyn Fn() + Send>;
+type Wake = Box<dyn Fn() + Send + Sync>;
 
 #[derive(Default)]
 struct Mailbox {
@@ -148,7 +149,7 @@ impl Drop for Worker {
 struct Desk<'a> {
     shared: &'a Shared,
     sender: &'a Sender<Reply>,
-    wake: &'a (dyn Fn() + Send),
+    wake: &'a (dyn Fn() + Send + Sync),
 }
 
 /// What the kept curves were made from.
@@ -156,7 +157,7 @@ type CurvesKey = (Arc<Dataset>, usize, Band);
 
 impl Desk<'_> {
     fn work(&self) {
-        let mut engine = Engine::default();
+        let mut engine = Engine::with_crew(Box::new(Pool));
         let mut curves_of: Option<CurvesKey> = None;
         while let Some(request) = self.shared.take() {
             self.answer_curves(&request, &mut curves_of);

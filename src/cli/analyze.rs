@@ -22,7 +22,7 @@ pub(super) fn analyze(arguments: &AnalyzeArguments) -> Result<(), Failure> {
     }
     take_options(&mut study, arguments)?;
     make_directory(&arguments.out)?;
-    let mut engine = Engine::default();
+    let mut engine = Engine::with_crew(Box::new(crate::app::Pool));
     let progress = Progress::new();
     let mut analysis = engine.analyze(&study, &progress)?;
     if arguments.reject_suggested && reject_suggested(&mut study, &analysis)? {

@@ -71,6 +71,19 @@ impl<'a> Rows<'a> {
         })
     }
 
+    /// `sum_i |x_i w - y_i|`.
+    pub fn deviations(&self, w: &[f64]) -> f64 {
+        (0..self.x.len()).map(|row| self.deviation(row, w).abs()).sum()
+    }
+
+    /// The weights of least squares, those below zero set to zero: not far from the corner sought.
+    pub fn least_squares(&self) -> Vec<f64> {
+        let x = DMatrix::from_fn(self.x.len(), self.unknowns(), |row, column| self.x[row][column]);
+        let normal = x.tr_mul(&x).cholesky();
+        let solution = normal.map(|normal| normal.solve(&x.tr_mul(&DVector::from_column_slice(self.y))));
+        solution.map_or(vec![0.0; self.unknowns()], |w| w.iter().map(|weight| weight.max(0.0)).collect())
+    }
+
     /// `sum_i (sqrt(x_i w) - sqrt(y_i))^2`.
     pub fn squared_root_deviations(&self, w: &[f64]) -> f64 {
         (0..self.x.len()).map(|row| (self.left(row, w).max(0.0).sqrt() - self.y[row].sqrt()).powi(2)).sum()
@@ -94,6 +107,12 @@ impl Corner {
             }
         }
         Self::of(rows, active)
+    }
+
+    /// The corner in which every weight is zero.
+    pub fn origin(rows: &Rows<'_>) -> Self {
+        let active = (rows.x.len()..rows.count()).collect();
+        Self { weights: vec![0.0; rows.unknowns()], active }
     }
 
     fn of(rows: &Rows<'_>, active: Vec<usize>) -> Option<Self> {
@@ -127,7 +146,7 @@ impl Corner {
                 if slope > FLAT * scale {
                     continue;
                 }
-                let Some(end) = self.end_of_edge(rows, leaving, &direction) else {
+                let Some(end) = self.end_of_edge(rows, leaving, &direction, (slope, scale)) else {
                     continue;
                 };
                 if slope < -FLAT * scale {
@@ -154,17 +173,39 @@ impl Corner {
         (slope, scale)
     }
 
-    /// The next corner along `direction`: where the first other condition is met.
-    fn end_of_edge(&self, rows: &Rows<'_>, leaving: usize, direction: &[f64]) -> Option<Self> {
+    /// The corner along `direction` at which the sum of deviations, which changes at the rate `slope`, stops falling.
+    ///
+    /// Each row whose deviation changes its sign on the way adds twice its change to the rate; a weight that reaches zero ends
+    /// the edge.
+    fn end_of_edge(
+        &self,
+        rows: &Rows<'_>,
+        leaving: usize,
+        direction: &[f64],
+        (slope, scale): (f64, f64),
+    ) -> Option<Self> {
         let others = (0..rows.count()).filter(|condition| !self.active.contains(condition));
-        let steps = others.filter_map(|condition| {
-            let change = rows.left(condition, direction);
-            let step = -rows.deviation(condition, &self.weights) / change;
-            (change.abs() > ZERO && step > ZERO).then_some((condition, step))
-        });
-        let (entering, _) = steps.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
+        let mut met: Vec<(usize, f64, f64)> = others
+            .filter_map(|condition| {
+                let change = rows.left(condition, direction);
+                let step = -rows.deviation(condition, &self.weights) / change;
+                (change.abs() > ZERO && step > ZERO).then_some((condition, step, change.abs()))
+            })
+            .collect();
+        met.sort_by(|(_, a, _), (_, b, _)| a.total_cmp(b));
+        let mut rate = slope;
+        let (entering, ..) = met.into_iter().find(|&(condition, _, change)| {
+            rate += 2.0 * change;
+            rows.is_weight(condition) || rate >= -FLAT * scale
+        })?;
         let mut active = self.active.clone();
         active[leaving] = entering;
         Self::of(rows, active)
+    }
+
+    /// Whether more conditions meet in this corner than it takes: then its edges may not show every way down.
+    pub fn is_degenerate(&self, rows: &Rows<'_>) -> bool {
+        let meet = |condition: &usize| rows.deviation(*condition, &self.weights).abs() <= ZERO;
+        (0..rows.count()).filter(meet).count() > rows.unknowns()
     }
 }

@@ -1,6 +1,7 @@
 //! The analysis of a study, stage by stage, each kept while what it depends on stays the same.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::correction::{
     ChannelCorrection, DelayError, DelayProblem, DelaySolution, GainBounds, GainError, GainProblem, GainSolution,
@@ -15,6 +16,7 @@ use super::analysis::{Analysis, Assessed};
 use super::caution::Caution;
 use super::comparison::{BundleFigures, Comparison, ConditionResponses};
 use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
+use super::crew::{Alone, Crew, Job};
 use super::document::{ConditionChoice, Study};
 use super::memo::Memo;
 use super::settings::Settings;
@@ -23,10 +25,18 @@ use super::watch::{Stopped, Watch};
 /// Computes analyses and keeps each stage's last result:
 /// responses (band, points) -> distances -> representatives, G, D (rejections, pins, average) -> bounds (quantile) ->
 /// gains, delays (constraints, weights, alpha, bounds) -> schedule -> assessment.
-#[derive(Debug, Default)]
+///
+/// Conditions do not depend on one another: the result is the same to the last bit whoever carries them out.
 pub struct Engine {
+    crew: Box<dyn Crew>,
     dataset: Option<Arc<Dataset>>,
     conditions: Vec<ConditionStages>,
+}
+
+impl Default for Engine {
+    fn default() -> Self {
+        Self::with_crew(Box::new(Alone))
+    }
 }
 
 /// What the responses and the distances depend on, besides the condition.
@@ -48,22 +58,55 @@ struct ConditionStages {
 }
 
 impl Engine {
+    /// An engine whose conditions are carried out by `crew`.
+    pub fn with_crew(crew: Box<dyn Crew>) -> Self {
+        Self { crew, dataset: None, conditions: Vec::new() }
+    }
+
     /// The analysis of `study`; stages that do not depend on what changed since the last call are not computed again.
     pub fn analyze(&mut self, study: &Study, watch: &dyn Watch) -> Result<Analysis, Stopped> {
         self.take(&study.dataset);
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
-        let total = self.conditions.len();
-        let mut conditions = Vec::with_capacity(total);
-        for (index, stages) in self.conditions.iter_mut().enumerate() {
-            if watch.stopped() {
-                return Err(Stopped);
-            }
-            conditions.push(stages.analyze(study, index, &grid));
-            watch.progress(index + 1, total);
-        }
+        let conditions = self.analyze_conditions(study, &grid, watch)?;
         let schedule = Schedule::of(&scheduled_points(study, &conditions), study.settings.schedule);
-        let assessment = (0..total).map(|index| assessed(study, index, &conditions[index], &schedule, &grid)).collect();
+        let assess = |index: usize| assessed(study, index, &conditions[index], &schedule, &grid);
+        let assessment = self.each(conditions.len(), assess);
         Ok(Analysis { study: study.clone(), omega: grid.omega().into(), conditions, schedule, assessment })
+    }
+
+    fn analyze_conditions(
+        &mut self,
+        study: &Study,
+        grid: &FrequencyGrid,
+        watch: &dyn Watch,
+    ) -> Result<Vec<Result<ConditionAnalysis, ConditionFailure>>, Stopped> {
+        let (total, done) = (self.conditions.len(), AtomicUsize::new(0));
+        let mut results: Vec<Option<_>> = Vec::new();
+        results.resize_with(total, || None);
+        let slots = self.conditions.iter_mut().zip(&mut results).enumerate();
+        let done = &done;
+        let jobs = slots.map(|(index, (stages, result))| -> Job<'_> {
+            Box::new(move || {
+                if !watch.stopped() {
+                    *result = Some(stages.analyze(study, index, grid));
+                    watch.progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
+                }
+            })
+        });
+        self.crew.carry_out(jobs.collect());
+        results.into_iter().collect::<Option<Vec<_>>>().ok_or(Stopped)
+    }
+
+    /// `of(0), of(1), ...`, carried out by the crew.
+    fn each<T: Send>(&self, count: usize, of: impl Fn(usize) -> T + Sync) -> Vec<T> {
+        let mut results: Vec<Option<T>> = Vec::new();
+        results.resize_with(count, || None);
+        let of = &of;
+        let jobs = results.iter_mut().enumerate();
+        self.crew.carry_out(
+            jobs.map(|(index, result)| -> Job<'_> { Box::new(move || *result = Some(of(index))) }).collect(),
+        );
+        results.into_iter().flatten().collect()
     }
 
     fn take(&mut self, dataset: &Arc<Dataset>) {

@@ -1,7 +1,9 @@
 //! How a long analysis is watched and stopped.
 
 /// Told of the progress of an analysis, and asked whether it is still wanted.
-pub trait Watch {
+///
+/// Conditions may be carried out by several threads, and each of them asks.
+pub trait Watch: Sync {
     /// Whether the analysis should end now, without a result.
     fn stopped(&self) -> bool;
 

@@ -1,0 +1,83 @@
+//! `cargo bench --bench analysis`: each stage of the example's analysis, and the live loop as a whole.
+//!
+//! Figures to reach: a drag of alpha <= 4 ms, a rejected model <= 10 ms, a moved band edge <= 40 ms for all 11 conditions.
+
+#![expect(missing_docs, reason = "criterion's macros make undocumented functions")]
+
+use std::hint::black_box;
+use std::sync::Arc;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+
+use gdcm::correction::{Delta, delay_upper_s, gain_bounds, mismatch_table};
+use gdcm::dataset::{Band, BundleKind, Dataset, ModelId};
+use gdcm::fidelity::Discontinuity;
+use gdcm::io::embedded_example;
+use gdcm::response::FrequencyGrid;
+use gdcm::study::{BundleFigures, ConditionResponses, Edit, Engine, Setting, Study, Unwatched};
+
+fn example() -> Arc<Dataset> {
+    embedded_example().expect("the embedded example is a dataset").dataset
+}
+
+/// One condition: 19 physics and 3 identified models, 200 frequencies.
+fn stages(criterion: &mut Criterion) {
+    let dataset = example();
+    let condition = &dataset.conditions()[9];
+    let grid = FrequencyGrid::logarithmic(dataset.band(), 200);
+    let measuring = dataset.measuring_pairs();
+    let responses = ConditionResponses::of(condition, &grid);
+    let figures = BundleFigures::of(condition, &responses, &grid, &measuring);
+    let mismatch = mismatch_table(&responses.physics[10], &responses.identified[2]);
+    let models = condition.bundle(BundleKind::Physics);
+    let perturbations: Vec<_> = models.iter().map(|model| (model.name.as_str(), model.perturbation())).collect();
+    let mut group = criterion.benchmark_group("one condition");
+    group.bench_function("responses", |bencher| bencher.iter(|| ConditionResponses::of(condition, &grid)));
+    group.bench_function("distances and ratios", |bencher| {
+        bencher.iter(|| BundleFigures::of(condition, &responses, &grid, &measuring));
+    });
+    group.bench_function("ratios", |bencher| bencher.iter(|| Discontinuity::of(&figures.physics, &perturbations)));
+    group.bench_function("G and D", |bencher| bencher.iter(|| Delta::of(&mismatch, grid.omega())));
+    group.bench_function("bounds", |bencher| {
+        bencher.iter(|| {
+            (gain_bounds(&mismatch, &measuring, 0.05), delay_upper_s(&mismatch, &measuring, grid.omega(), 0.05))
+        });
+    });
+    group.finish();
+}
+
+/// All 11 conditions, as the window asks for them.
+fn live_loop(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("all conditions");
+    group.sample_size(20);
+    group.bench_function("everything anew", |bencher| {
+        let study = Study::new(example());
+        bencher.iter(|| Engine::default().analyze(black_box(&study), &Unwatched));
+    });
+    let mut turn = 0.0;
+    let mut drag = |name: &str, change: &dyn Fn(&mut Study, f64)| {
+        let (mut engine, mut study) = (Engine::default(), Study::new(example()));
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                turn += 1.0;
+                change(&mut study, turn);
+                engine.analyze(&study, &Unwatched)
+            });
+        });
+    };
+    let set = |study: &mut Study, setting: Setting| study.apply(&Edit::Set(setting)).expect("within its range");
+    drag("alpha dragged", &|study, turn| set(study, Setting::AlphaGain(1.0 + 1e-6 * turn)));
+    drag("band edge dragged", &|study, turn| {
+        let band = Band::new(0.5, 12.0 + 1e-6 * turn).expect("rising");
+        set(study, Setting::Band(band));
+    });
+    drag("model rejected", &|study, turn| {
+        let id = ModelId { condition: 9, bundle: BundleKind::Physics, model: 0 };
+        let edit = if turn % 2.0 == 0.0 { Edit::Reject(id) } else { Edit::Restore(id) };
+        study.apply(&edit).expect("others are kept");
+    });
+    group.finish();
+}
+
+criterion_group!(benches, stages, live_loop);
+criterion_main!(benches);

@@ -1,0 +1,13 @@
+//! All processor cores as a crew.
+
+use crate::study::{Crew, Job};
+
+/// The threads of the global pool: one for each core.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Pool;
+
+impl Crew for Pool {
+    fn carry_out(&self, jobs: Vec<Job<'_>>) {
+        rayon::scope(|scope| jobs.into_iter().for_each(|job| scope.spawn(move |_| job())));
+    }
+}

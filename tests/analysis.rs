@@ -11,6 +11,8 @@ use serde_json::Value;
 
 #[path = "analysis/example.rs"]
 mod example;
+#[path = "analysis/known_answer.rs"]
+mod known_answer;
 #[path = "analysis/responses.rs"]
 mod responses;
 #[path = "analysis/studies.rs"]

@@ -262,6 +262,30 @@ fn open_by_path(window: &mut Window, path: &Path) {
     click(window, "Open file");
 }
 
+#[derive(Debug)]
+struct Dropped(std::path::PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+#[test]
+fn a_dataset_dropped_on_the_window_is_opened() {
+    let mut window = window();
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/small-dataset.json");
+    window.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(path)));
+    window.run_steps(1);
+    settle(&mut window);
+    assert_eq!(state(&window).dataset().conditions().len(), 2);
+    assert_eq!(state(&window).notice.as_ref().map(|notice| notice.kind), Some(NoticeKind::Done));
+}
+
 #[test]
 fn a_study_is_saved_and_opens_with_the_same_result() {
     let mut window = window();

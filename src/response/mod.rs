@@ -7,6 +7,7 @@ mod phase;
 mod polar;
 mod state_space_response;
 mod statistics;
+mod structure;
 
 pub use frequency_grid::FrequencyGrid;
 pub use frequency_response::FrequencyResponse;

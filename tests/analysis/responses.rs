@@ -9,7 +9,8 @@ fn matrix(value: &Value) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), rows[0].len(), |row, column| rows[row][column])
 }
 
-fn model_of(file: &str) -> Dynamics {
+/// A model from the literature, by file name.
+pub fn model_of(file: &str) -> Dynamics {
     let value = json(match file {
         "compleib_HE2_AH64_130kt.json" => {
             include_str!("../data/reference/published-models/compleib_HE2_AH64_130kt.json")

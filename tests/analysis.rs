@@ -13,6 +13,8 @@ use serde_json::Value;
 mod example;
 #[path = "analysis/known_answer.rs"]
 mod known_answer;
+#[path = "analysis/response_paths.rs"]
+mod response_paths;
 #[path = "analysis/responses.rs"]
 mod responses;
 #[path = "analysis/studies.rs"]

@@ -1,8 +1,13 @@
 //! Frequency responses: the grid, the evaluation of a model on it, magnitude and phase (M2, M3).
 
+mod back_substitution;
+mod complex_lanes;
 mod frequency_grid;
 mod frequency_response;
+mod hessenberg_form;
 mod interpolation;
+mod lane_elimination;
+mod lane_response;
 mod phase;
 mod polar;
 mod state_space_response;

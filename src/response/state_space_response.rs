@@ -1,151 +1,42 @@
-//! The frequency response of a state-space model, by Hessenberg reduction.
+//! The frequency response of a state-space model.
 
-use nalgebra::linalg::{Hessenberg, balancing};
-use nalgebra::{Complex, DMatrix};
+use nalgebra::Complex;
+use pulp::Arch;
 
 use crate::dataset::{PairTable, StateSpace};
 
+use super::hessenberg_form::HessenbergForm;
+use super::lane_response::LaneResponse;
+
 /// `H(j omega) = C (j omega I - A)^-1 B + D` at each `omega` \[rad/s\]: a p x m table of `N` values.
 ///
-/// `A` is balanced (a diagonal similarity, so that the units of the states do not matter), reduced once to upper Hessenberg
-/// form `A = T F T^-1` in O(n^3), and for each frequency `(j omega I - F) X = T^-1 B` is solved by Gaussian elimination with
-/// row exchanges in O(n^2 m); then `H = (C T) X + D`. Laub, "Efficient multivariable frequency response computations",
-/// IEEE Trans. Automatic Control 26(2), 1981. Where `j omega` is a pole the values are not finite.
+/// The model is balanced and reduced to Hessenberg form once; at each frequency a Hessenberg system is then solved by
+/// Gaussian elimination with pivoting, in O(n^2 min(m, p)). Laub, "Efficient multivariable frequency response
+/// computations", IEEE Trans. Automatic Control 26(2), 1981. As many frequencies are solved at once as a vector of the
+/// processor holds: eight with AVX-512, four with AVX2, two with NEON, else one.
+///
+/// A value depends on its own frequency only, not on the rest of the grid; wherever fused multiply-adds are (AVX2, AVX-512,
+/// NEON) it has the same bits, given the same reduced model. Its error is that of a model changed by a few times 1e-15 of
+/// the largest entries of A, so the relative error grows as `j omega` comes close to a pole; at a pole, where elimination
+/// meets a zero, the values are not finite.
 pub fn evaluate(model: &StateSpace, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
-    let (p, m) = (model.outputs(), model.inputs());
-    let reduced = HessenbergForm::of(model);
-    let mut table = PairTable::from_fn(p, m, |_| Vec::with_capacity(omega.len()));
-    let mut workspace = Workspace::of(&reduced);
-    for &omega in omega {
-        workspace.solve(&reduced, omega);
-        for (pair, values) in table.iter_mut() {
-            let mut sum = Complex::new(model.d()[(pair.output, pair.input)], 0.0);
-            let solution = workspace.solution(pair.input);
-            for (c, x) in reduced.c.row(pair.output).iter().zip(solution) {
-                sum += x * *c;
-            }
-            values.push(sum);
-        }
-    }
-    table
-}
-
-/// The model in balanced coordinates with an upper Hessenberg system matrix.
-struct HessenbergForm {
-    /// F, n x n, zero below the first subdiagonal.
-    f: DMatrix<f64>,
-    /// T^-1 B, n x m.
-    b: DMatrix<f64>,
-    /// C T, p x n.
-    c: DMatrix<f64>,
-}
-
-impl HessenbergForm {
-    fn of(model: &StateSpace) -> Self {
-        let (mut a, mut b, mut c) = (model.a().clone(), model.b().clone(), model.c().clone());
-        if model.order() < 2 {
-            return Self { f: a, b, c };
-        }
-        // `a` becomes S^-1 A S; the entries of S are powers of two, so nothing is rounded.
-        let scale = balancing::balance_parlett_reinsch(&mut a);
-        for (state, &s) in scale.iter().enumerate() {
-            b.row_mut(state).scale_mut(1.0 / s);
-            c.column_mut(state).scale_mut(s);
-        }
-        let (q, f) = Hessenberg::new(a).unpack();
-        Self { b: q.transpose() * b, c: c * q, f }
-    }
-}
-
-/// What one frequency needs, kept from one to the next.
-struct Workspace {
-    order: usize,
-    inputs: usize,
-    /// Rows of `j omega I - F` under elimination, row-major.
-    rows: Vec<Complex<f64>>,
-    /// Right-hand sides, then the solution, one column of length n for each input.
-    columns: Vec<Complex<f64>>,
-}
-
-impl Workspace {
-    fn of(reduced: &HessenbergForm) -> Self {
-        let (order, inputs) = reduced.b.shape();
-        let zero = Complex::new(0.0, 0.0);
-        Self { order, inputs, rows: vec![zero; order * order], columns: vec![zero; order * inputs] }
-    }
-
-    fn solution(&self, input: usize) -> &[Complex<f64>] {
-        &self.columns[input * self.order..(input + 1) * self.order]
-    }
-
-    fn solve(&mut self, reduced: &HessenbergForm, omega: f64) {
-        self.load(reduced, omega);
-        for pivot in 0..self.order.saturating_sub(1) {
-            self.eliminate(pivot);
-        }
-        for input in 0..self.inputs {
-            self.substitute_back(input);
-        }
-    }
-
-    fn load(&mut self, reduced: &HessenbergForm, omega: f64) {
-        let n = self.order;
-        for row in 0..n {
-            for column in row.saturating_sub(1)..n {
-                self.rows[row * n + column] = Complex::new(-reduced.f[(row, column)], 0.0);
-            }
-            self.rows[row * n + row].im = omega;
-        }
-        for (value, b) in self.columns.iter_mut().zip(reduced.b.iter()) {
-            *value = Complex::new(*b, 0.0);
-        }
-    }
-
-    /// Clears the one entry below the diagonal of column `pivot`, the larger of the two candidates on the diagonal.
-    fn eliminate(&mut self, pivot: usize) {
-        let n = self.order;
-        let (above, below) = self.rows.split_at_mut((pivot + 1) * n);
-        let (upper, lower) = (&mut above[pivot * n + pivot..], &mut below[pivot..n]);
-        let exchange = lower[0].l1_norm() > upper[0].l1_norm();
-        if exchange {
-            upper.swap_with_slice(lower);
-        }
-        if lower[0] == Complex::new(0.0, 0.0) {
-            return;
-        }
-        let factor = lower[0] / upper[0];
-        for (lower, upper) in lower[1..].iter_mut().zip(&upper[1..]) {
-            *lower -= factor * upper;
-        }
-        for column in self.columns.chunks_exact_mut(n) {
-            if exchange {
-                column.swap(pivot, pivot + 1);
-            }
-            let known = column[pivot];
-            column[pivot + 1] -= factor * known;
-        }
-    }
-
-    fn substitute_back(&mut self, input: usize) {
-        let n = self.order;
-        let column = &mut self.columns[input * n..(input + 1) * n];
-        for row in (0..n).rev() {
-            let mut sum = column[row];
-            for (entry, known) in self.rows[row * n + row + 1..(row + 1) * n].iter().zip(&column[row + 1..]) {
-                sum -= entry * known;
-            }
-            column[row] = sum / self.rows[row * n + row];
-        }
-    }
+    let zeros = vec![Complex::new(0.0, 0.0); omega.len()];
+    let mut values = PairTable::filled(model.outputs(), model.inputs(), zeros);
+    Arch::new().dispatch(LaneResponse { form: &HessenbergForm::of(model), omega, values: &mut values });
+    values
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::dmatrix;
+    use nalgebra::{DMatrix, dmatrix};
 
     fn siso(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>, d: f64) -> StateSpace {
         StateSpace::new(a, b, c, dmatrix![d]).unwrap()
+    }
+
+    fn oscillator() -> StateSpace {
+        siso(dmatrix![0.0, 1.0; -4.0, 0.0], dmatrix![0.0; 1.0], dmatrix![1.0, 0.0], 0.0)
     }
 
     fn only(table: PairTable<Vec<Complex<f64>>>) -> Complex<f64> {
@@ -167,8 +58,19 @@ mod tests {
 
     #[test]
     fn an_undamped_oscillator_at_its_own_frequency_is_not_finite() {
-        let oscillator = siso(dmatrix![0.0, 1.0; -4.0, 0.0], dmatrix![0.0; 1.0], dmatrix![1.0, 0.0], 0.0);
-        assert!(!only(evaluate(&oscillator, &[2.0])).is_finite());
+        assert!(!only(evaluate(&oscillator(), &[2.0])).is_finite());
+    }
+
+    #[test]
+    fn a_pole_on_the_grid_leaves_the_other_frequencies_alone() {
+        let omega: Vec<f64> = (0..19).map(|k| f64::from(k) * 0.25).collect();
+        let table = evaluate(&oscillator(), &omega);
+        for (omega, value) in omega.iter().zip(table.iter().next().unwrap().1) {
+            // 1 / (4 - omega^2); a handful of operations, of which the difference amplifies rounding up to 8 times.
+            let expected = 1.0 / (4.0 - omega * omega);
+            assert_eq!(value.is_finite(), *omega != 2.0, "{omega}");
+            assert!(*omega == 2.0 || (value - expected).norm() < 1e-14 * expected.abs(), "{omega}");
+        }
     }
 
     #[test]

@@ -79,13 +79,13 @@ fn delay_remarks(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
         .collect();
     let mut remarks = Vec::new();
     if !lead.is_empty() {
-        let count = if lead.len() == held { "Every".to_owned() } else { format!("{} of {held}", lead.len()) };
-        let noun = if lead.len() == 1 { "held response needs" } else { "held responses need" };
-        let (count, noun) = if lead.len() == held && held > 1 { (format!("All {held}"), noun) } else { (count, noun) };
-        let text = format!(
-            "{count} {noun} lead, because the physics model lags: {}. A delay cannot give it.",
-            lead.join(", ")
-        );
+        let who = match (lead.len(), held) {
+            (1, 1) => "The held response needs".to_owned(),
+            (1, _) => format!("1 of {held} held responses needs"),
+            (count, _) if count == held => format!("All {held} held responses need"),
+            (count, _) => format!("{count} of {held} held responses need"),
+        };
+        let text = format!("{who} lead, because the physics model lags: {}. A delay cannot give it.", lead.join(", "));
         remarks.push(Remark::new(RemarkKind::Caution, text));
     }
     let (inputs, outputs) = channel_names(state);
@@ -102,9 +102,14 @@ pub fn details(state: &State, shown: &ConditionAnalysis) -> Vec<String> {
     const NOTABLE: f64 = 1e-3;
     let (inputs, outputs) = channel_names(state);
     let mut details = vec![shown.gains.outcome.words()];
-    if shown.gains.local_minima.len() > 1 {
-        details.push(format!("{} different sets of gains are within 1 % of the best.", shown.gains.local_minima.len()));
-    }
+    details.extend(shown.gains.local_minima.iter().skip(1).map(|other| {
+        let worse = 100.0 * (other.objective / shown.gains.objective - 1.0);
+        let figures = |names: &[String], gains: &[f64]| {
+            names.iter().zip(gains).map(|(name, gain)| format!("{name} {gain:.3}")).collect::<Vec<_>>().join(", ")
+        };
+        let (of_inputs, of_outputs) = (figures(&inputs, &other.inputs), figures(&outputs, &other.outputs));
+        format!("Another set of gains is only {worse:.2} % worse: {of_inputs}; {of_outputs}.")
+    }));
     let top = state.study.settings.band.max();
     details.extend(shown.delays.unmatched.iter().map(|unmatched| unmatched.words(top, &inputs, &outputs)));
     let gains = gain_sensitivities(&shown.gain_problem, &shown.gains);

@@ -1,0 +1,75 @@
+//! Complex numbers of many frequencies at once, one frequency to a lane of a vector register.
+
+use pulp::Simd;
+
+/// One complex number for each lane; real and imaginary parts in a vector register each.
+///
+/// Aligned to a cache line: a 512-bit load across two lines costs twice.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub struct ComplexLanes<S: Simd> {
+    /// Real parts.
+    pub re: S::f64s,
+    /// Imaginary parts.
+    pub im: S::f64s,
+}
+
+impl<S: Simd> ComplexLanes<S> {
+    /// The same real number in every lane.
+    #[inline(always)]
+    pub fn real(simd: S, value: f64) -> Self {
+        Self { re: simd.splat_f64s(value), im: simd.splat_f64s(0.0) }
+    }
+
+    /// `self - factor real`: 2 fused operations.
+    #[inline(always)]
+    pub fn minus_real_product(self, simd: S, factor: Self, real: S::f64s) -> Self {
+        Self {
+            re: simd.negate_mul_add_e_f64s(factor.re, real, self.re),
+            im: simd.negate_mul_add_e_f64s(factor.im, real, self.im),
+        }
+    }
+
+    /// `self + factor j imaginary`: 2 fused operations.
+    #[inline(always)]
+    pub fn plus_imaginary_product(self, simd: S, factor: Self, imaginary: S::f64s) -> Self {
+        Self {
+            re: simd.negate_mul_add_e_f64s(factor.im, imaginary, self.re),
+            im: simd.mul_add_e_f64s(factor.re, imaginary, self.im),
+        }
+    }
+
+    /// `self other`.
+    #[inline(always)]
+    pub fn product(self, simd: S, other: Self) -> Self {
+        let re = simd.mul_f64s(self.re, other.re);
+        let im = simd.mul_f64s(self.re, other.im);
+        Self { re: simd.negate_mul_add_e_f64s(self.im, other.im, re), im: simd.mul_add_e_f64s(self.im, other.re, im) }
+    }
+
+    /// `self scale`, with a real scale for each lane.
+    #[inline(always)]
+    pub fn scaled(self, simd: S, scale: S::f64s) -> Self {
+        Self { re: simd.mul_f64s(self.re, scale), im: simd.mul_f64s(self.im, scale) }
+    }
+
+    /// `1 / self = conj(self) / |self|^2`; not finite in the lanes where `self` is zero.
+    #[inline(always)]
+    pub fn reciprocal(self, simd: S) -> Self {
+        let square = simd.mul_add_e_f64s(self.im, self.im, simd.mul_f64s(self.re, self.re));
+        let inverse = simd.div_f64s(simd.splat_f64s(1.0), square);
+        Self { re: simd.mul_f64s(self.re, inverse), im: simd.neg_f64s(simd.mul_f64s(self.im, inverse)) }
+    }
+
+    /// `|re| + |im|`, within a factor sqrt 2 of the modulus and cheaper.
+    #[inline(always)]
+    pub fn magnitude(self, simd: S) -> S::f64s {
+        simd.add_f64s(simd.abs_f64s(self.re), simd.abs_f64s(self.im))
+    }
+
+    /// `chosen` in the lanes of `mask`, `self` in the others.
+    #[inline(always)]
+    pub fn replaced_where(self, simd: S, mask: S::m64s, chosen: Self) -> Self {
+        Self { re: simd.select_f64s(mask, chosen.re, self.re), im: simd.select_f64s(mask, chosen.im, self.im) }
+    }
+}

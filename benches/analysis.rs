@@ -13,7 +13,7 @@ use gdcm::correction::{Delta, delay_upper_s, gain_bounds, mismatch_table};
 use gdcm::dataset::{Band, BundleKind, Dataset, ModelId};
 use gdcm::fidelity::Discontinuity;
 use gdcm::io::embedded_example;
-use gdcm::response::FrequencyGrid;
+use gdcm::response::{FrequencyGrid, PolarResponse};
 use gdcm::study::{BundleFigures, ConditionResponses, Edit, Engine, Setting, Study, Unwatched};
 
 fn example() -> Arc<Dataset> {
@@ -28,7 +28,8 @@ fn stages(criterion: &mut Criterion) {
     let measuring = dataset.measuring_pairs();
     let responses = ConditionResponses::of(condition, &grid);
     let figures = BundleFigures::of(condition, &responses, &grid, &measuring);
-    let mismatch = mismatch_table(&responses.physics[10], &responses.identified[2]);
+    let polar = PolarResponse::of;
+    let mismatch = mismatch_table(&polar(&responses.physics[10]), &polar(&responses.identified[2]));
     let models = condition.bundle(BundleKind::Physics);
     let perturbations: Vec<_> = models.iter().map(|model| (model.name.as_str(), model.perturbation())).collect();
     let mut group = criterion.benchmark_group("one condition");

@@ -1,5 +1,7 @@
 //! A frequency response as magnitude and phase, the form in which models are compared.
 
+use nalgebra::Complex;
+
 use crate::dataset::PairTable;
 use crate::units::ratio_to_db;
 
@@ -14,6 +16,17 @@ pub struct PolarCurve {
     pub phase: Vec<f64>,
 }
 
+impl PolarCurve {
+    /// Magnitude and phase of one response, where it is finite and not zero at every frequency.
+    fn of(values: &[Complex<f64>]) -> Option<Self> {
+        let magnitude_db: Vec<f64> = values.iter().map(|value| ratio_to_db(value.norm())).collect();
+        if magnitude_db.iter().any(|magnitude| !magnitude.is_finite()) {
+            return None;
+        }
+        Some(Self { magnitude_db, phase: values.iter().map(|value| value.arg()).collect() })
+    }
+}
+
 /// Every response of a model as magnitude and phase.
 ///
 /// An entry is `None` where the response is zero or not finite at some frequency (a structurally zero response, a pole on the
@@ -26,13 +39,14 @@ pub struct PolarResponse {
 impl PolarResponse {
     /// Magnitude and phase of every response.
     pub fn of(response: &FrequencyResponse) -> Self {
-        let curves = response.values().map(|_, values| {
-            let magnitude_db: Vec<f64> = values.iter().map(|value| ratio_to_db(value.norm())).collect();
-            let phase: Vec<f64> = values.iter().map(|value| value.arg()).collect();
-            let finite = magnitude_db.iter().chain(&phase).all(|value| value.is_finite());
-            finite.then_some(PolarCurve { magnitude_db, phase })
-        });
-        Self { curves }
+        Self { curves: response.values().map(|_, values| PolarCurve::of(values)) }
+    }
+
+    /// Magnitude and phase of the marked responses; the others are left undefined, for a logarithm and an arc tangent cost more
+    /// than the response itself.
+    pub fn of_marked(response: &FrequencyResponse, marked: &PairTable<bool>) -> Self {
+        let curve = |pair, values: &Vec<Complex<f64>>| if marked[pair] { PolarCurve::of(values) } else { None };
+        Self { curves: response.values().map(curve) }
     }
 
     /// The curves, `[output, input]`.

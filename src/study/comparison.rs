@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::correction::{Delta, mismatch_table};
-use crate::dataset::{BundleKind, Condition, Dynamics, Model, PairTable};
+use crate::dataset::{BundleKind, Condition, Model, PairTable};
 use crate::fidelity::{BundleDistance, Cost, CostAverage, Discontinuity, DiscontinuityError, Mismatch, Representative};
 use crate::response::{FrequencyGrid, FrequencyResponse, PolarResponse};
 
@@ -13,21 +13,20 @@ use super::document::ConditionChoice;
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionResponses {
     /// Responses of the physics models, in file order.
-    pub physics: Vec<PolarResponse>,
+    pub physics: Vec<FrequencyResponse>,
     /// Responses of the identified models, in file order.
-    pub identified: Vec<PolarResponse>,
+    pub identified: Vec<FrequencyResponse>,
 }
 
 impl ConditionResponses {
     /// Evaluates every model.
     pub fn of(condition: &Condition, grid: &FrequencyGrid) -> Self {
-        let bundle = |kind| condition.bundle(kind).iter().map(|model: &Model| respond(&model.dynamics, grid)).collect();
+        let bundle = |kind| {
+            let models = condition.bundle(kind).iter();
+            models.map(|model: &Model| FrequencyResponse::of(&model.dynamics, grid)).collect()
+        };
         Self { physics: bundle(BundleKind::Physics), identified: bundle(BundleKind::Identified) }
     }
-}
-
-fn respond(dynamics: &Dynamics, grid: &FrequencyGrid) -> PolarResponse {
-    PolarResponse::of(&FrequencyResponse::of(dynamics, grid))
 }
 
 /// Distances within each bundle and discontinuity ratios of the physics bundle; they do not depend on what is rejected.
@@ -49,9 +48,7 @@ impl BundleFigures {
         grid: &FrequencyGrid,
         measuring: &PairTable<bool>,
     ) -> Self {
-        let distance = |responses: &[PolarResponse]| {
-            BundleDistance::of(&responses.iter().collect::<Vec<_>>(), grid.omega(), measuring)
-        };
+        let distance = |responses: &[FrequencyResponse]| distances(responses, grid, measuring);
         let physics = distance(&responses.physics);
         let models = condition.bundle(BundleKind::Physics);
         let perturbations: Vec<(&str, Option<&BTreeMap<String, f64>>)> =
@@ -59,6 +56,14 @@ impl BundleFigures {
         let discontinuity = Discontinuity::of(&physics, &perturbations);
         Self { physics, identified: distance(&responses.identified), discontinuity }
     }
+}
+
+/// Distances over the marked responses; over all where none of those can be compared.
+fn distances(responses: &[FrequencyResponse], grid: &FrequencyGrid, measuring: &PairTable<bool>) -> BundleDistance {
+    let over =
+        |polar: Vec<PolarResponse>| BundleDistance::of(&polar.iter().collect::<Vec<_>>(), grid.omega(), measuring);
+    let marked = over(responses.iter().map(|response| PolarResponse::of_marked(response, measuring)).collect());
+    if marked.compared().is_empty() { over(responses.iter().map(PolarResponse::of).collect()) } else { marked }
 }
 
 /// Mismatch of a physics model and the identified representative, with the J it amounts to.
@@ -105,8 +110,10 @@ impl Comparison {
     ) -> Self {
         let physics = Representative::of(&figures.physics, &choice.physics.rejected, choice.physics.pinned);
         let identified = Representative::of(&figures.identified, &choice.identified.rejected, choice.identified.pinned);
-        let reference = &responses.identified[identified.model];
-        let against = |model: usize| ModelMismatch::of(&responses.physics[model], reference, grid.omega(), average);
+        let reference = PolarResponse::of(&responses.identified[identified.model]);
+        let against = |model: usize| {
+            ModelMismatch::of(&PolarResponse::of(&responses.physics[model]), &reference, grid.omega(), average)
+        };
         let representative = against(physics.model);
         let nominal =
             if physics.model == condition.nominal() { representative.clone() } else { against(condition.nominal()) };

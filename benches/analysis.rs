@@ -9,12 +9,13 @@ use std::sync::Arc;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 
+use gdcm::app::Pool;
 use gdcm::correction::{Delta, delay_upper_s, gain_bounds, mismatch_table};
 use gdcm::dataset::{Band, BundleKind, Dataset, ModelId};
 use gdcm::fidelity::Discontinuity;
 use gdcm::io::embedded_example;
 use gdcm::response::{FrequencyGrid, PolarResponse};
-use gdcm::study::{BundleFigures, ConditionResponses, Edit, Engine, Setting, Study, Unwatched};
+use gdcm::study::{BundleFigures, Edit, Effort, Engine, PreparedCondition, Setting, Study, Unwatched};
 
 fn example() -> Arc<Dataset> {
     embedded_example().expect("the embedded example is a dataset").dataset
@@ -26,16 +27,20 @@ fn stages(criterion: &mut Criterion) {
     let condition = &dataset.conditions()[9];
     let grid = FrequencyGrid::logarithmic(dataset.band(), 200);
     let measuring = dataset.measuring_pairs();
-    let responses = ConditionResponses::of(condition, &grid);
-    let figures = BundleFigures::of(condition, &responses, &grid, &measuring);
+    let (prepared, alone) = (PreparedCondition::of(condition), Effort::alone());
+    let responses = prepared.responses(condition, &grid, &alone).expect("nobody stops it");
+    let figures = BundleFigures::of(condition, &responses, &measuring, &alone).expect("nobody stops it");
     let polar = PolarResponse::of;
     let mismatch = mismatch_table(&polar(&responses.physics[10]), &polar(&responses.identified[2]));
     let models = condition.bundle(BundleKind::Physics);
     let perturbations: Vec<_> = models.iter().map(|model| (model.name.as_str(), model.perturbation())).collect();
     let mut group = criterion.benchmark_group("one condition");
-    group.bench_function("responses", |bencher| bencher.iter(|| ConditionResponses::of(condition, &grid)));
+    group.bench_function("responses of models not prepared", |bencher| {
+        bencher.iter(|| PreparedCondition::of(condition).responses(condition, &grid, &alone));
+    });
+    group.bench_function("responses", |bencher| bencher.iter(|| prepared.responses(condition, &grid, &alone)));
     group.bench_function("distances and ratios", |bencher| {
-        bencher.iter(|| BundleFigures::of(condition, &responses, &grid, &measuring));
+        bencher.iter(|| BundleFigures::of(condition, &responses, &measuring, &alone));
     });
     group.bench_function("ratios", |bencher| bencher.iter(|| Discontinuity::of(&figures.physics, &perturbations)));
     group.bench_function("G and D", |bencher| bencher.iter(|| Delta::of(&mismatch, grid.omega())));
@@ -47,17 +52,22 @@ fn stages(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// All 11 conditions, as the window asks for them.
+/// All 11 conditions, as the window asks for them: on all cores, and on one.
 fn live_loop(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("all conditions");
+    all_conditions(criterion, "all conditions, all cores", || Engine::with_crew(Box::new(Pool)));
+    all_conditions(criterion, "all conditions, one core", Engine::default);
+}
+
+fn all_conditions(criterion: &mut Criterion, name: &str, engine: impl Fn() -> Engine) {
+    let mut group = criterion.benchmark_group(name);
     group.sample_size(20);
     group.bench_function("everything anew", |bencher| {
         let study = Study::new(example());
-        bencher.iter(|| Engine::default().analyze(black_box(&study), &Unwatched));
+        bencher.iter(|| engine().analyze(black_box(&study), &Unwatched));
     });
     let mut turn = 0.0;
     let mut drag = |name: &str, change: &dyn Fn(&mut Study, f64)| {
-        let (mut engine, mut study) = (Engine::default(), Study::new(example()));
+        let (mut engine, mut study) = (engine(), Study::new(example()));
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
                 turn += 1.0;

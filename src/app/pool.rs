@@ -8,6 +8,7 @@ pub struct Pool;
 
 impl Crew for Pool {
     fn carry_out(&self, jobs: Vec<Job<'_>>) {
-        rayon::scope(|scope| jobs.into_iter().for_each(|job| scope.spawn(move |_| job())));
+        // First come, first served: what was asked for first is done first.
+        rayon::scope_fifo(|scope| jobs.into_iter().for_each(|job| scope.spawn_fifo(move |_| job())));
     }
 }

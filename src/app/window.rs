@@ -71,18 +71,20 @@ impl GdcmApp {
         self.worker.request(Request { generation: results.requested, study, condition });
     }
 
-    fn receive(&mut self) {
+    fn receive(&mut self, now: f64) {
         while let Some(reply) = self.worker.reply() {
             let results = &mut self.state.results;
             match reply {
                 Reply::Progress { generation, done, total } if generation == results.requested => {
                     results.progress = Some((done, total));
                 }
-                Reply::Analysis { generation, analysis, elapsed_ms } if generation == results.requested => {
+                Reply::First(first) => results.first = Some(first),
+                Reply::Analysis { generation, analysis, elapsed_ms } => {
                     results.received = generation;
                     results.analysis = Some(analysis);
+                    results.first = None;
                     results.elapsed_ms = elapsed_ms;
-                    results.waiting_since = None;
+                    results.waiting_since = results.is_waiting().then_some(now);
                     results.progress = None;
                 }
                 Reply::Curves { dataset, condition, curves }
@@ -101,7 +103,7 @@ impl GdcmApp {
                     results.toggles = Some(toggles);
                 }
                 // Answers to questions that no longer stand.
-                Reply::Progress { .. } | Reply::Analysis { .. } | Reply::Toggles { .. } | Reply::Curves { .. } => {}
+                Reply::Progress { .. } | Reply::Toggles { .. } | Reply::Curves { .. } => {}
             }
         }
     }
@@ -167,7 +169,7 @@ fn scrolled(ui: &mut Ui, id: &str, add: impl FnOnce(&mut Ui)) {
 
 impl eframe::App for GdcmApp {
     fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
-        self.receive();
+        self.receive(ctx.input(|input| input.time));
         self.receive_files(ctx);
         self.guard_closing(ctx);
     }

@@ -4,11 +4,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::pool::Pool;
-use crate::dataset::{Band, Dataset};
-use crate::study::{Analysis, ConditionCurves, Engine, Study, Toggles, Watch, display_band};
+use crate::dataset::Dataset;
+use crate::study::{
+    Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, Engine, Study, Toggles, Watch, display_band,
+};
+use crate::view::state::FirstResult;
 
 /// Frequencies of the curves that are drawn.
 const CURVE_POINTS: usize = 400;
@@ -31,11 +34,13 @@ pub enum Reply {
     Progress {
         /// Number of the request.
         generation: u64,
-        /// Conditions done.
+        /// Steps done.
         done: usize,
         /// Of how many.
         total: usize,
     },
+    /// The result of the condition shown, ahead of the others'.
+    First(FirstResult),
     /// The analysis of a request.
     Analysis {
         /// Number of the request.
@@ -62,6 +67,9 @@ pub enum Reply {
         curves: Arc<ConditionCurves>,
     },
 }
+
+/// The newest request of a worker that is dropped.
+const CLOSED: u64 = u64::MAX;
 
 /// Called after each reply: wakes the window.
 type Wake = Box<dyn Fn() + Send + Sync>;
@@ -135,7 +143,7 @@ impl Worker {
 
 impl Drop for Worker {
     fn drop(&mut self) {
-        self.shared.newest.store(u64::MAX, Ordering::Release);
+        self.shared.newest.store(CLOSED, Ordering::Release);
         self.shared.mailbox().closed = true;
         self.shared.filled.notify_one();
         if let Some(thread) = self.thread.take() {
@@ -152,39 +160,35 @@ struct Desk<'a> {
     wake: &'a (dyn Fn() + Send + Sync),
 }
 
-/// What the kept curves were made from.
-type CurvesKey = (Arc<Dataset>, usize, Band);
-
 impl Desk<'_> {
     fn work(&self) {
         let mut engine = Engine::with_crew(Box::new(Pool));
-        let mut curves_of: Option<CurvesKey> = None;
+        let mut drawn: Option<Arc<ConditionCurves>> = None;
         while let Some(request) = self.shared.take() {
-            self.answer_curves(&request, &mut curves_of);
+            self.answer_curves(&request, &mut engine, &mut drawn);
             if let Some(analysis) = self.answer_analysis(&request, &mut engine) {
                 self.answer_toggles(&request, &analysis);
             }
         }
     }
 
-    fn answer_curves(&self, request: &Request, kept: &mut Option<CurvesKey>) {
-        let (dataset, band) = (&request.study.dataset, display_band(request.study.settings.band));
-        let same = |(of, condition, of_band): &CurvesKey| {
-            Arc::ptr_eq(of, dataset) && *condition == request.condition && *of_band == band
-        };
-        if kept.as_ref().is_some_and(same) {
+    fn answer_curves(&self, request: &Request, engine: &mut Engine, drawn: &mut Option<Arc<ConditionCurves>>) {
+        let (dataset, condition) = (&request.study.dataset, request.condition);
+        let grid = (display_band(request.study.settings.band), CURVE_POINTS);
+        let watch = RequestWatch::new(self, request);
+        let Ok(curves) = engine.curves(dataset, condition, grid, &watch) else {
             return;
+        };
+        if !drawn.as_ref().is_some_and(|drawn| Arc::ptr_eq(drawn, &curves)) {
+            *drawn = Some(Arc::clone(&curves));
+            self.send(Reply::Curves { dataset: Arc::clone(dataset), condition, curves });
         }
-        let condition = request.condition;
-        let curves = Arc::new(ConditionCurves::of(&dataset.conditions()[condition], band, CURVE_POINTS));
-        *kept = Some((Arc::clone(dataset), condition, band));
-        self.send(Reply::Curves { dataset: Arc::clone(dataset), condition, curves });
     }
 
     /// The analysis, unless a newer request came first: that one waits in the mailbox.
     fn answer_analysis(&self, request: &Request, engine: &mut Engine) -> Option<Arc<Analysis>> {
         let start = Instant::now();
-        let watch = RequestWatch { desk: self, generation: request.generation };
+        let watch = RequestWatch::new(self, request);
         let analysis = Arc::new(engine.analyze(&request.study, &watch).ok()?);
         let elapsed_ms = 1e3 * start.elapsed().as_secs_f64();
         let generation = request.generation;
@@ -195,7 +199,7 @@ impl Desk<'_> {
     /// The costs of all single toggles: in the background, given up as soon as a newer request comes.
     fn answer_toggles(&self, request: &Request, analysis: &Analysis) {
         let generation = request.generation;
-        let stop = || RequestWatch { desk: self, generation }.stopped();
+        let stop = || self.shared.newest.load(Ordering::Acquire) != generation;
         let toggles = analysis.condition(request.condition).and_then(|condition| Toggles::of(condition, &stop));
         if let Some(toggles) = toggles {
             self.send(Reply::Toggles { generation, toggles: Arc::new(toggles) });
@@ -209,17 +213,41 @@ impl Desk<'_> {
     }
 }
 
+/// How long an answer to an older question is still worth having. During a steady drag every answer is: without it only the
+/// condition shown would keep up with the hand.
+const PATIENCE: Duration = Duration::from_millis(60);
+
 struct RequestWatch<'a, 'd> {
     desk: &'a Desk<'d>,
-    generation: u64,
+    request: &'a Request,
+    started: Instant,
+}
+
+impl<'a, 'd> RequestWatch<'a, 'd> {
+    fn new(desk: &'a Desk<'d>, request: &'a Request) -> Self {
+        Self { desk, request, started: Instant::now() }
+    }
 }
 
 impl Watch for RequestWatch<'_, '_> {
     fn stopped(&self) -> bool {
-        self.desk.shared.newest.load(Ordering::Acquire) != self.generation
+        let newest = self.desk.shared.newest.load(Ordering::Acquire);
+        newest == CLOSED || (newest != self.request.generation && self.started.elapsed() > PATIENCE)
     }
 
     fn progress(&self, done: usize, total: usize) {
-        self.desk.send(Reply::Progress { generation: self.generation, done, total });
+        if self.started.elapsed() > PATIENCE {
+            self.desk.send(Reply::Progress { generation: self.request.generation, done, total });
+        }
+    }
+
+    fn wanted_first(&self) -> Option<usize> {
+        Some(self.request.condition)
+    }
+
+    fn first_result(&self, outcome: &Result<ConditionAnalysis, ConditionFailure>) {
+        let (dataset, condition) = (Arc::clone(&self.request.study.dataset), self.request.condition);
+        let first = FirstResult { dataset, condition, outcome: outcome.clone() };
+        self.desk.send(Reply::First(first));
     }
 }

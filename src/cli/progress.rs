@@ -19,7 +19,7 @@ impl Progress {
     pub(super) fn new() -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
         // The template is a constant; without it the bar has its own looks.
-        if let Ok(style) = ProgressStyle::with_template("analysing {bar:40} {pos} of {len} conditions") {
+        if let Ok(style) = ProgressStyle::with_template("analysing {bar:40} {percent} %") {
             bar.set_style(style);
         }
         Self { bar, started: Instant::now() }

@@ -11,7 +11,8 @@ pub const ACCEPTABLE: f64 = 100.0;
 /// J up to which two responses are next to indistinguishable.
 pub const INDISTINGUISHABLE: f64 = 50.0;
 
-const SCALE: f64 = 20.0;
+/// Factor before both parts of J.
+pub(super) const SCALE: f64 = 20.0;
 
 /// How squared errors are averaged over frequency.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

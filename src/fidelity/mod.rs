@@ -5,12 +5,13 @@ mod corner;
 mod cost;
 mod discontinuity;
 mod distance;
+mod mean_cost;
 mod mismatch;
 mod representative;
 
 pub use absolute_deviations::FitError;
 pub use cost::{ACCEPTABLE, Cost, CostAverage, INDISTINGUISHABLE, PHASE_WEIGHT};
 pub use discontinuity::{Discontinuity, DiscontinuityError, SUGGESTION_RATIO};
-pub use distance::BundleDistance;
+pub use distance::{BundleDistance, compared_pairs, distances_from};
 pub use mismatch::Mismatch;
 pub use representative::Representative;

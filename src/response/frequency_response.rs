@@ -2,12 +2,10 @@
 
 use nalgebra::Complex;
 
-use crate::dataset::{Dynamics, PairTable, StateSpace};
+use crate::dataset::{Dynamics, PairTable};
 
 use super::frequency_grid::FrequencyGrid;
-use super::interpolation::interpolate;
-use super::state_space_response::evaluate;
-use super::structure::connected;
+use super::prepared_model::PreparedModel;
 
 /// `H(j omega)` of every response of a model on a grid: p x m tables of `N` complex values.
 ///
@@ -19,13 +17,12 @@ pub struct FrequencyResponse {
 }
 
 impl FrequencyResponse {
-    /// `H(j omega) = C (j omega I - A)^-1 B + D` on the grid, or measured data interpolated on it (M2). A response that its
-    /// input cannot reach is exactly zero.
+    /// The response of a model on one grid; for several grids prepare the model once, see [`PreparedModel`].
     pub fn of(dynamics: &Dynamics, grid: &FrequencyGrid) -> Self {
-        let values = match dynamics {
-            Dynamics::StateSpace(model) => of_state_space(model, grid.omega()),
-            Dynamics::Measured(response) => interpolate(response, grid.omega()),
-        };
+        PreparedModel::of(dynamics).response(grid)
+    }
+
+    pub(super) fn from_values(values: PairTable<Vec<Complex<f64>>>) -> Self {
         Self { values }
     }
 
@@ -33,13 +30,4 @@ impl FrequencyResponse {
     pub fn values(&self) -> &PairTable<Vec<Complex<f64>>> {
         &self.values
     }
-}
-
-fn of_state_space(model: &StateSpace, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
-    let mut values = evaluate(model, omega);
-    let connected = connected(model);
-    for (_, values) in values.iter_mut().filter(|(pair, _)| !connected[*pair]) {
-        values.fill(Complex::new(0.0, 0.0));
-    }
-    values
 }

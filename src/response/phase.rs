@@ -20,9 +20,22 @@ pub fn wrap(angle: f64) -> f64 {
 }
 
 /// Adds multiples of 2 pi to each angle \[rad\] but the first, so that no step exceeds pi.
+///
+/// The whole turns are summed, not the steps: an angle is rounded once, however many come before it.
 pub fn unwrap(angles: &mut [f64]) {
-    for k in 1..angles.len() {
-        angles[k] = angles[k - 1] + wrap(angles[k] - angles[k - 1]);
+    let Some(&first) = angles.first() else {
+        return;
+    };
+    let (mut before, mut turns) = (first, 0.0);
+    for angle in angles {
+        let step = *angle - before;
+        before = *angle;
+        if !(step > -PI && step <= PI) {
+            turns += ((wrap(step) - step) / TAU).round();
+        }
+        if turns != 0.0 {
+            *angle += turns * TAU;
+        }
     }
 }
 
@@ -30,6 +43,10 @@ pub fn unwrap(angles: &mut [f64]) {
 /// 2 pi that puts their median in (-pi, pi]. `scratch` is overwritten.
 pub fn centred_unwrap(angles: &mut [f64], scratch: &mut Vec<f64>) {
     unwrap(angles);
+    if angles.iter().all(|angle| *angle > -PI && *angle <= PI) {
+        // So is their median, which costs more than all the rest.
+        return;
+    }
     scratch.clear();
     scratch.extend_from_slice(angles);
     let middle = median(scratch);

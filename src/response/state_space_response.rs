@@ -20,9 +20,16 @@ use super::lane_response::LaneResponse;
 /// the largest entries of A, so the relative error grows as `j omega` comes close to a pole; at a pole, where elimination
 /// meets a zero, the values are not finite.
 pub fn evaluate(model: &StateSpace, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
+    evaluate_reduced(&HessenbergForm::of(model), omega)
+}
+
+/// [`evaluate`] of a model that is reduced already.
+pub fn evaluate_reduced(form: &HessenbergForm, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
     let zeros = vec![Complex::new(0.0, 0.0); omega.len()];
-    let mut values = PairTable::filled(model.outputs(), model.inputs(), zeros);
-    Arch::new().dispatch(LaneResponse { form: &HessenbergForm::of(model), omega, values: &mut values });
+    let (rows, columns) = (form.outputs(), form.sides());
+    let (outputs, inputs) = if form.is_dual() { (columns, rows) } else { (rows, columns) };
+    let mut values = PairTable::filled(outputs, inputs, zeros);
+    Arch::new().dispatch(LaneResponse { form, omega, values: &mut values });
     values
 }
 

@@ -3,31 +3,17 @@
 use std::collections::BTreeMap;
 
 use crate::correction::{Delta, mismatch_table};
-use crate::dataset::{BundleKind, Condition, Model, PairTable};
-use crate::fidelity::{BundleDistance, Cost, CostAverage, Discontinuity, DiscontinuityError, Mismatch, Representative};
+use crate::dataset::{BundleKind, Condition, PairTable};
+use crate::fidelity::{
+    BundleDistance, Cost, CostAverage, Discontinuity, DiscontinuityError, Mismatch, Representative, compared_pairs,
+    distances_from,
+};
 use crate::response::{FrequencyGrid, FrequencyResponse, PolarResponse};
 
+use super::condition_responses::ConditionResponses;
 use super::document::ConditionChoice;
-
-/// Responses of every model of a condition on the grid of comparison.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ConditionResponses {
-    /// Responses of the physics models, in file order.
-    pub physics: Vec<FrequencyResponse>,
-    /// Responses of the identified models, in file order.
-    pub identified: Vec<FrequencyResponse>,
-}
-
-impl ConditionResponses {
-    /// Evaluates every model.
-    pub fn of(condition: &Condition, grid: &FrequencyGrid) -> Self {
-        let bundle = |kind| {
-            let models = condition.bundle(kind).iter();
-            models.map(|model: &Model| FrequencyResponse::of(&model.dynamics, grid)).collect()
-        };
-        Self { physics: bundle(BundleKind::Physics), identified: bundle(BundleKind::Identified) }
-    }
-}
+use super::effort::Effort;
+use super::watch::Stopped;
 
 /// Distances within each bundle and discontinuity ratios of the physics bundle; they do not depend on what is rejected.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,29 +27,42 @@ pub struct BundleFigures {
 }
 
 impl BundleFigures {
-    /// Distances over the responses marked in `measuring`.
+    /// Distances over the responses marked in `measuring`, two steps for each model.
     pub fn of(
         condition: &Condition,
         responses: &ConditionResponses,
-        grid: &FrequencyGrid,
         measuring: &PairTable<bool>,
-    ) -> Self {
-        let distance = |responses: &[FrequencyResponse]| distances(responses, grid, measuring);
-        let physics = distance(&responses.physics);
+        effort: &Effort<'_>,
+    ) -> Result<Self, Stopped> {
+        let physics = distances(&responses.physics, measuring, effort)?;
+        let identified = distances(&responses.identified, measuring, effort)?;
         let models = condition.bundle(BundleKind::Physics);
         let perturbations: Vec<(&str, Option<&BTreeMap<String, f64>>)> =
             models.iter().map(|model| (model.name.as_str(), model.perturbation())).collect();
         let discontinuity = Discontinuity::of(&physics, &perturbations);
-        Self { physics, identified: distance(&responses.identified), discontinuity }
+        Ok(Self { physics, identified, discontinuity })
     }
 }
 
 /// Distances over the marked responses; over all where none of those can be compared.
-fn distances(responses: &[FrequencyResponse], grid: &FrequencyGrid, measuring: &PairTable<bool>) -> BundleDistance {
-    let over =
-        |polar: Vec<PolarResponse>| BundleDistance::of(&polar.iter().collect::<Vec<_>>(), grid.omega(), measuring);
-    let marked = over(responses.iter().map(|response| PolarResponse::of_marked(response, measuring)).collect());
-    if marked.compared().is_empty() { over(responses.iter().map(PolarResponse::of).collect()) } else { marked }
+fn distances(
+    responses: &[FrequencyResponse],
+    measuring: &PairTable<bool>,
+    effort: &Effort<'_>,
+) -> Result<BundleDistance, Stopped> {
+    let polar = |marked: &PairTable<bool>, steps| {
+        effort.each(responses.len(), steps, |model| PolarResponse::of_marked(&responses[model], marked))
+    };
+    let references = |polar: &[PolarResponse]| compared_pairs(&polar.iter().collect::<Vec<_>>(), measuring);
+    let mut polar_responses = polar(measuring, 1)?;
+    let mut compared = references(&polar_responses);
+    if compared.is_empty() {
+        polar_responses = polar(&measuring.map(|_, _| true), 0)?;
+        compared = references(&polar_responses);
+    }
+    let all: Vec<&PolarResponse> = polar_responses.iter().collect();
+    let rows = effort.each(all.len(), 1, |model| distances_from(model, &all, &compared))?;
+    Ok(BundleDistance::from_rows(rows, compared))
 }
 
 /// Mismatch of a physics model and the identified representative, with the J it amounts to.

@@ -1,7 +1,9 @@
 //! Responses of one condition for drawing, over a wider band than that of comparison.
 
-use crate::dataset::{Band, BundleKind, Condition};
+use crate::dataset::{Band, BundleKind};
 use crate::response::{FrequencyGrid, FrequencyResponse};
+
+use super::condition_responses::ConditionResponses;
 
 /// Responses of every model of a condition on a grid for drawing.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,14 +17,8 @@ pub struct ConditionCurves {
 }
 
 impl ConditionCurves {
-    /// Evaluates every model on `points` frequencies of `band`.
-    pub fn of(condition: &Condition, band: Band, points: usize) -> Self {
-        let grid = FrequencyGrid::logarithmic(band, points);
-        let respond = |kind: BundleKind| {
-            condition.bundle(kind).iter().map(|model| FrequencyResponse::of(&model.dynamics, &grid)).collect()
-        };
-        let (physics, identified) = (respond(BundleKind::Physics), respond(BundleKind::Identified));
-        Self { grid, physics, identified }
+    pub(super) fn new(grid: FrequencyGrid, responses: ConditionResponses) -> Self {
+        Self { grid, physics: responses.physics, identified: responses.identified }
     }
 
     /// The responses of one bundle.

@@ -1,14 +1,24 @@
 //! How a long analysis is watched and stopped.
 
+use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
+
 /// Told of the progress of an analysis, and asked whether it is still wanted.
 ///
-/// Conditions may be carried out by several threads, and each of them asks.
+/// The work may be carried out by several threads, and each of them asks.
 pub trait Watch: Sync {
     /// Whether the analysis should end now, without a result.
     fn stopped(&self) -> bool;
 
-    /// `done` of `total` conditions are finished.
+    /// `done` of `total` steps are behind.
     fn progress(&self, done: usize, total: usize);
+
+    /// Index of the condition whose result is wanted before the others'.
+    fn wanted_first(&self) -> Option<usize> {
+        None
+    }
+
+    /// The result of the condition wanted first, which the whole analysis will contain.
+    fn first_result(&self, _result: &Result<ConditionAnalysis, ConditionFailure>) {}
 }
 
 /// Nobody watches: the analysis runs to its end.

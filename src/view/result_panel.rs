@@ -15,7 +15,7 @@ use super::state::State;
 
 /// Outcome, channel gains and delays, objective, and what could not be matched and why.
 pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette) {
-    match state.analysis().map(|analysis| &analysis.conditions[state.display.condition]) {
+    match state.outcome() {
         None => {
             heading_ui(ui, palette, "Result", "");
             ui.label(RichText::new("computing …").color(palette.dim_text));

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::dataset::{Band, BundleKind, Condition, Dataset, ModelId, Pair};
-use crate::study::{Analysis, ConditionAnalysis, ConditionCurves, History, Study, Toggles};
+use crate::study::{Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, History, Study, Toggles};
 
 use super::bode_scene::CachedShapes;
 use super::command::FormKind;
@@ -57,11 +57,24 @@ pub struct Display {
     pub drawn: Vec<BodeCurve>,
 }
 
+/// The result of the condition shown, ahead of the others'.
+#[derive(Clone, Debug)]
+pub struct FirstResult {
+    /// The dataset it belongs to.
+    pub dataset: Arc<Dataset>,
+    /// Index of the condition.
+    pub condition: usize,
+    /// The result.
+    pub outcome: Result<ConditionAnalysis, ConditionFailure>,
+}
+
 /// What was computed; never saved.
 #[derive(Debug, Default)]
 pub struct Results {
     /// The newest analysis.
     pub analysis: Option<Arc<Analysis>>,
+    /// The condition shown, where it is ahead of that analysis.
+    pub first: Option<FirstResult>,
     /// What holding or freeing each response of the condition shown would cost; computed after the analysis.
     pub toggles: Option<Arc<Toggles>>,
     /// Responses for drawing, with the index of their condition.
@@ -74,7 +87,7 @@ pub struct Results {
     pub waiting_since: Option<f64>,
     /// How long the newest analysis took \[ms\].
     pub elapsed_ms: f64,
-    /// How far the analysis under way is: conditions done, of how many.
+    /// How far the analysis under way is: steps done, of how many.
     pub progress: Option<(usize, usize)>,
 }
 
@@ -189,7 +202,18 @@ impl State {
 
     /// The result of the condition shown, where there is one of this dataset.
     pub fn shown(&self) -> Option<&ConditionAnalysis> {
-        self.analysis()?.condition(self.display.condition)
+        self.outcome()?.as_ref().ok()
+    }
+
+    /// What came of the condition shown: the newest there is of this dataset.
+    pub fn outcome(&self) -> Option<&Result<ConditionAnalysis, ConditionFailure>> {
+        let condition = self.display.condition;
+        let first = self
+            .results
+            .first
+            .as_ref()
+            .filter(|first| first.condition == condition && Arc::ptr_eq(&first.dataset, &self.study.dataset));
+        first.map(|first| &first.outcome).or_else(|| self.analysis()?.conditions.get(condition))
     }
 
     /// The newest analysis, where it is one of the dataset shown.

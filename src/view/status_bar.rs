@@ -34,7 +34,9 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     let now = ui.input(|input| input.time);
     let (text, color) = match (&state.opening, state.results.is_stale(now), state.results.progress) {
         (Some(name), ..) => (format!("● reading {name} …"), palette.accent),
-        (None, true, Some((done, total))) => (format!("● computing, {done} of {total} conditions …"), palette.warning),
+        (None, true, Some((done, total))) => {
+            (format!("● computing, {} % …", 100 * done / total.max(1)), palette.warning)
+        }
         (None, true, None) => ("● computing …".to_owned(), palette.warning),
         (None, false, _) => ("● up to date".to_owned(), palette.good),
     };

@@ -1,6 +1,7 @@
 //! Complex numbers of many frequencies at once, one frequency to a lane of a vector register.
 
-use pulp::Simd;
+use nalgebra::Complex;
+use pulp::{Simd, bytemuck};
 
 /// One complex number for each lane; real and imaginary parts in a vector register each.
 ///
@@ -19,6 +20,13 @@ impl<S: Simd> ComplexLanes<S> {
     #[inline(always)]
     pub fn real(simd: S, value: f64) -> Self {
         Self { re: simd.splat_f64s(value), im: simd.splat_f64s(0.0) }
+    }
+
+    /// Calls `use_values` with the numbers in the order of [`frequencies`].
+    #[inline(always)]
+    pub fn values<T>(self, simd: S, use_values: impl FnOnce(&[Complex<f64>]) -> T) -> T {
+        let pairs = simd.interleave_shfl_f64s([self.re, self.im]);
+        use_values(bytemuck::cast_slice(&pairs))
     }
 
     /// `self - factor real`: 2 fused operations.
@@ -72,4 +80,22 @@ impl<S: Simd> ComplexLanes<S> {
     pub fn replaced_where(self, simd: S, mask: S::m64s, chosen: Self) -> Self {
         Self { re: simd.select_f64s(mask, chosen.re, self.re), im: simd.select_f64s(mask, chosen.im, self.im) }
     }
+}
+
+/// Up to a vector of frequencies, zero in the other lanes; in the order that makes interleaving a shuffle.
+#[inline(always)]
+pub fn frequencies<S: Simd>(simd: S, omega: &[f64]) -> S::f64s {
+    let mut pairs = [simd.splat_f64s(0.0); 2];
+    let numbers: &mut [f64] = bytemuck::cast_slice_mut(&mut pairs);
+    for (pair, omega) in numbers.chunks_exact_mut(2).zip(omega) {
+        pair.fill(*omega);
+    }
+    let [frequencies, _] = simd.deinterleave_shfl_f64s(pairs);
+    frequencies
+}
+
+/// Whether a mask holds in any lane.
+#[inline(always)]
+pub fn any<S: Simd>(simd: S, mask: S::m64s) -> bool {
+    simd.first_true_m64s(mask) < S::F64_LANES
 }

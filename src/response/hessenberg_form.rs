@@ -1,73 +1,61 @@
 //! A state-space model in the coordinates in which one frequency costs O(n^2).
 
 use nalgebra::DMatrix;
-use nalgebra::linalg::{Hessenberg, balancing};
+use nalgebra::linalg::balancing;
+use pulp::Arch;
 
 use crate::dataset::StateSpace;
+
+use super::householder_reduction::HouseholderReduction;
+use super::system_table::{BLOCK, SystemTable};
 
 /// Subdiagonal entries below this part the model in two; the largest entry is of order 1, and a double has 16 digits.
 const NEGLIGIBLE: f64 = 1e-70;
 
 /// A model with its system matrix balanced, scaled, and reduced to upper Hessenberg form.
 ///
-/// `H(j omega) = D - C Y`, `(F - j (omega / alpha) I) Y = B`, with F of n x n zero below its first subdiagonal, B of n x m
-/// and C of p x n. Balancing (a diagonal similarity) makes the units of the states irrelevant; alpha, a power of two, brings
-/// the largest entry of F to order 1; Householder reflections make F Hessenberg in `14/3 n^3` operations (Golub & Van Loan,
-/// "Matrix Computations", 4th ed. 2013, 7.4.2 and 7.5.7). A model with fewer outputs than inputs is held as its dual
-/// `(A', C', B', D')`, whose response is the transpose: the work at each frequency grows with the columns of B.
+/// `H(j omega) = D - C Y`, `(F - j (omega / alpha) I) Y = B`, with F of n x n zero below its first subdiagonal, B of n
+/// x m and C of p x n. Balancing (a diagonal similarity) makes the units of the states irrelevant; alpha, a power of
+/// two, brings the largest entry of F to order 1; Householder reflections make F Hessenberg. A model with fewer outputs
+/// than inputs is held as its dual `(A', C', B', D')`, whose response is the transpose: the work at each frequency
+/// grows with the columns of B.
 #[derive(Clone, Debug)]
 pub struct HessenbergForm {
-    order: usize,
     sides: usize,
     dual: bool,
     frequency_scale: f64,
-    /// `[F B]`, row by row.
-    rows: Vec<f64>,
+    /// `[F B; C 0]`.
+    table: SystemTable,
     /// One over each subdiagonal entry of F; zero where that is negligible.
     reciprocals: Vec<f64>,
-    /// C, row by row.
-    c: Vec<f64>,
     d: DMatrix<f64>,
 }
 
 impl HessenbergForm {
-    /// The reduced form of a model.
-    pub fn of(model: &StateSpace) -> Self {
+    /// The reduced form of a model: the same bits on every instruction set, on which only the time depends.
+    pub fn of(arch: Arch, model: &StateSpace) -> Self {
         let dual = model.outputs() < model.inputs();
-        let (mut a, mut b, mut c, d) = if dual {
-            let [a, b, c, d] = [model.a(), model.c(), model.b(), model.d()].map(DMatrix::transpose);
-            (a, b, c, d)
+        let matrices = [model.a(), model.b(), model.c(), model.d()];
+        let [mut a, mut b, mut c, d] = if dual {
+            let [a, b, c, d] = matrices.map(DMatrix::transpose);
+            [a, c, b, d]
         } else {
-            (model.a().clone(), model.b().clone(), model.c().clone(), model.d().clone())
+            matrices.map(DMatrix::clone)
         };
         balance(&mut a, &mut b, &mut c);
-        let frequency_scale = 1.0 / power_of_two_below(a.amax());
+        let frequency_scale = 1.0 / power_of_two_below(largest_magnitude(a.as_slice()));
         a *= frequency_scale;
         b *= frequency_scale;
-        if a.nrows() > 2 {
-            let (q, f) = Hessenberg::new(a).unpack();
-            (a, b, c) = (f, q.tr_mul(&b), c * q);
-        }
-        let (order, sides) = b.shape();
-        let mut rows = DMatrix::zeros(order + sides, order);
-        rows.rows_mut(0, order).copy_from(&a.transpose());
-        rows.rows_mut(order, sides).copy_from(&b.transpose());
-        Self {
-            order,
-            sides,
-            dual,
-            frequency_scale,
-            rows: rows.as_slice().to_vec(),
-            reciprocals: (1..order).map(|row| reciprocal(a[(row, row - 1)])).collect(),
-            c: c.transpose().as_slice().to_vec(),
-            d,
-        }
+        let mut table = table(&a, &b, &c);
+        arch.dispatch(HouseholderReduction(&mut table));
+        let reciprocals = (1..a.nrows()).map(|row| reciprocal(table.row(row)[row - 1])).collect();
+        Self { sides: b.ncols(), dual, frequency_scale, table, reciprocals, d }
     }
 
     /// Number of states, `n`.
     #[inline(always)]
     pub fn order(&self) -> usize {
-        self.order
+        self.table.states()
     }
 
     /// Number of right-hand sides, the columns of B.
@@ -94,24 +82,34 @@ impl HessenbergForm {
         self.frequency_scale
     }
 
-    /// Row `row` of `[F B]` from the diagonal of F on.
+    /// Numbers in a row of `[F B]`, the zeros included that make it whole vectors.
     #[inline(always)]
-    pub fn row_from_diagonal(&self, row: usize) -> &[f64] {
-        let width = self.order + self.sides;
-        &self.rows[row * width + row..(row + 1) * width]
+    pub fn width(&self) -> usize {
+        self.table.width()
     }
 
-    /// One over the entry of F below the diagonal in `column`; `None` where it is negligible.
+    /// Entries of row `row` of `[F B]` from column `first` on.
     #[inline(always)]
-    pub fn subdiagonal_reciprocal(&self, column: usize) -> Option<f64> {
-        let reciprocal = self.reciprocals[column];
-        (reciprocal != 0.0).then_some(reciprocal)
+    pub fn entries<const N: usize>(&self, row: usize, first: usize) -> &[f64; N] {
+        self.table.numbers()[row * self.width() + first..].first_chunk().expect("rows are whole blocks")
+    }
+
+    /// Row `row` of `[F B]`, with zeros up to the width.
+    #[inline(always)]
+    pub fn row(&self, row: usize) -> &[f64] {
+        self.table.row(row)
+    }
+
+    /// One over each entry of F below the diagonal, column by column; zero where that is negligible.
+    #[inline(always)]
+    pub fn reciprocals(&self) -> &[f64] {
+        &self.reciprocals
     }
 
     /// Row `row` of C.
     #[inline(always)]
     pub fn c_row(&self, row: usize) -> &[f64] {
-        &self.c[row * self.order..(row + 1) * self.order]
+        &self.table.row(self.order() + row)[..self.order()]
     }
 
     /// The entry of D in a row, for one right-hand side.
@@ -119,6 +117,20 @@ impl HessenbergForm {
     pub fn d(&self, row: usize, side: usize) -> f64 {
         self.d[(row, side)]
     }
+}
+
+/// `[A B; C 0]`.
+fn table(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>) -> SystemTable {
+    let mut table = SystemTable::zeros(a.nrows(), b.ncols(), c.nrows());
+    for (matrix, row, column) in [(a, 0, 0), (b, 0, a.ncols()), (c, a.nrows(), 0)] {
+        let width = table.width();
+        for (from, entries) in matrix.column_iter().enumerate() {
+            for (entry, value) in table.numbers_mut()[row * width..].chunks_exact_mut(width).zip(entries.iter()) {
+                entry[column + from] = *value;
+            }
+        }
+    }
+    table
 }
 
 /// Makes rows and columns of `a` alike in norm by a diagonal similarity of powers of two, so that nothing is rounded.
@@ -131,6 +143,18 @@ fn balance(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, c: &mut DMatrix<f64>) {
         b.row_mut(state).scale_mut(1.0 / scale);
         c.column_mut(state).scale_mut(scale);
     }
+}
+
+/// The largest absolute value. Eight maxima of every eighth number each do not wait for one another.
+fn largest_magnitude(numbers: &[f64]) -> f64 {
+    let (blocks, rest) = numbers.as_chunks::<BLOCK>();
+    let mut largest = [0.0_f64; BLOCK];
+    for block in blocks {
+        for (largest, number) in largest.iter_mut().zip(block) {
+            *largest = largest.max(number.abs());
+        }
+    }
+    rest.iter().map(|number| number.abs()).chain(largest).fold(0.0, f64::max)
 }
 
 /// The largest power of two that does not exceed `value`, within 2^-1000 ... 2^1000; 1 for zero.
@@ -160,18 +184,18 @@ mod tests {
     fn the_side_with_fewer_channels_is_solved_for() {
         let model = |p, m| {
             let (a, b, c) = (dmatrix![-1.0], DMatrix::zeros(1, m), DMatrix::zeros(p, 1));
-            HessenbergForm::of(&StateSpace::new(a, b, c, DMatrix::zeros(p, m)).unwrap())
+            HessenbergForm::of(Arch::new(), &StateSpace::new(a, b, c, DMatrix::zeros(p, m)).unwrap())
         };
         assert_eq!((model(6, 4).sides(), model(6, 4).is_dual()), (4, false));
         assert_eq!((model(1, 3).sides(), model(1, 3).is_dual()), (1, true));
     }
 
     #[test]
-    fn a_row_is_the_rest_of_a_row_of_f_followed_by_its_row_of_b() {
+    fn a_row_is_a_row_of_f_followed_by_its_row_of_b_and_zeros() {
         let model =
             StateSpace::new(dmatrix![1.0, 1.25; 1.5, 1.75], dmatrix![2.0; 3.0], dmatrix![1.0, 1.0], dmatrix![0.0]);
-        let form = HessenbergForm::of(&model.unwrap());
-        assert_eq!(form.row_from_diagonal(1), [1.75, 3.0]);
-        assert_eq!(form.subdiagonal_reciprocal(0), Some(1.0 / 1.5));
+        let form = HessenbergForm::of(Arch::new(), &model.unwrap());
+        assert_eq!(form.row(1)[1..], [1.75, 3.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        assert_eq!(form.reciprocals(), [1.0 / 1.5]);
     }
 }

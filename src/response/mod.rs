@@ -1,10 +1,12 @@
 //! Frequency responses: the grid, the evaluation of a model on it, magnitude and phase (M2, M3).
 
+mod active_row;
 mod back_substitution;
 mod complex_lanes;
 mod frequency_grid;
 mod frequency_response;
 mod hessenberg_form;
+mod householder_reduction;
 mod interpolation;
 mod lane_elimination;
 mod lane_response;
@@ -14,10 +16,12 @@ mod prepared_model;
 mod state_space_response;
 mod statistics;
 mod structure;
+mod system_table;
 
 pub use frequency_grid::FrequencyGrid;
 pub use frequency_response::FrequencyResponse;
 pub use phase::{centred_unwrap, nearest_turn_offset, unwrap, wrap};
 pub use polar::{PolarCurve, PolarResponse};
 pub use prepared_model::PreparedModel;
+pub use state_space_response::{evaluate, evaluate_on};
 pub use statistics::{mean, median, quantile};

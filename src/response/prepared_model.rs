@@ -1,6 +1,7 @@
 //! A model made ready for its frequency response on any grid.
 
 use nalgebra::Complex;
+use pulp::Arch;
 
 use crate::dataset::{Dynamics, MeasuredResponse, PairTable};
 
@@ -30,9 +31,10 @@ impl PreparedModel {
     /// Prepares a model.
     pub fn of(dynamics: &Dynamics) -> Self {
         let source = match dynamics {
-            Dynamics::StateSpace(model) => {
-                Source::StateSpace { form: Box::new(HessenbergForm::of(model)), connected: connected(model) }
-            }
+            Dynamics::StateSpace(model) => Source::StateSpace {
+                form: Box::new(HessenbergForm::of(Arch::new(), model)),
+                connected: connected(model),
+            },
             Dynamics::Measured(response) => Source::Measured(response.clone()),
         };
         Self { source }
@@ -43,7 +45,7 @@ impl PreparedModel {
     pub fn response(&self, grid: &FrequencyGrid) -> FrequencyResponse {
         FrequencyResponse::from_values(match &self.source {
             Source::StateSpace { form, connected } => {
-                let mut values = evaluate_reduced(form, grid.omega());
+                let mut values = evaluate_reduced(Arch::new(), form, grid.omega());
                 for (_, values) in values.iter_mut().filter(|(pair, _)| !connected[*pair]) {
                     values.fill(Complex::new(0.0, 0.0));
                 }

@@ -7,6 +7,7 @@ use crate::dataset::{PairTable, StateSpace};
 
 use super::hessenberg_form::HessenbergForm;
 use super::lane_response::LaneResponse;
+use super::system_table::BLOCK;
 
 /// `H(j omega) = C (j omega I - A)^-1 B + D` at each `omega` \[rad/s\]: a p x m table of `N` values.
 ///
@@ -15,21 +16,27 @@ use super::lane_response::LaneResponse;
 /// computations", IEEE Trans. Automatic Control 26(2), 1981. As many frequencies are solved at once as a vector of the
 /// processor holds: eight with AVX-512, four with AVX2, two with NEON, else one.
 ///
-/// A value depends on its own frequency only, not on the rest of the grid; wherever fused multiply-adds are (AVX2, AVX-512,
-/// NEON) it has the same bits, given the same reduced model. Its error is that of a model changed by a few times 1e-15 of
-/// the largest entries of A, so the relative error grows as `j omega` comes close to a pole; at a pole, where elimination
-/// meets a zero, the values are not finite.
+/// A value depends on its own frequency only, not on the rest of the grid; it has the same bits wherever fused
+/// multiply-adds are (AVX2, AVX-512, NEON). Its error is that of a model whose entries are changed by less than
+/// 1e-10 of the largest of A, in practice by some 1e-15, so the relative error grows as `j omega` comes close to a pole; at a pole, where elimination meets a
+/// zero, the values are not finite.
 pub fn evaluate(model: &StateSpace, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
-    evaluate_reduced(&HessenbergForm::of(model), omega)
+    evaluate_on(Arch::new(), model, omega)
 }
 
-/// [`evaluate`] of a model that is reduced already.
-pub fn evaluate_reduced(form: &HessenbergForm, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
-    let zeros = vec![Complex::new(0.0, 0.0); omega.len()];
+/// [`evaluate`] on a given instruction set: for tests and benchmarks.
+pub fn evaluate_on(arch: Arch, model: &StateSpace, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
+    evaluate_reduced(arch, &HessenbergForm::of(arch, model), omega)
+}
+
+/// [`evaluate_on`] of a model that is reduced already.
+pub(super) fn evaluate_reduced(arch: Arch, form: &HessenbergForm, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
     let (rows, columns) = (form.outputs(), form.sides());
     let (outputs, inputs) = if form.is_dual() { (columns, rows) } else { (rows, columns) };
-    let mut values = PairTable::filled(outputs, inputs, zeros);
-    Arch::new().dispatch(LaneResponse { form, omega, values: &mut values });
+    // Whole vectors are appended, and cut to length in the end.
+    let room = omega.len().next_multiple_of(BLOCK);
+    let mut values = PairTable::from_fn(outputs, inputs, |_| Vec::with_capacity(room));
+    arch.dispatch(LaneResponse { form, omega, values: &mut values });
     values
 }
 

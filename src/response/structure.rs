@@ -21,10 +21,15 @@ pub fn connected(model: &StateSpace) -> PairTable<bool> {
 fn reached_states(model: &StateSpace, input: usize) -> Vec<bool> {
     let mut reached: Vec<bool> = model.b().column(input).iter().map(|b| *b != 0.0).collect();
     let mut open: Vec<usize> = (0..reached.len()).filter(|&state| reached[state]).collect();
+    let mut left = reached.len() - open.len();
     while let Some(from) = open.pop() {
+        if left == 0 {
+            break;
+        }
         for (to, a) in model.a().column(from).iter().enumerate() {
             if *a != 0.0 && !reached[to] {
                 reached[to] = true;
+                left -= 1;
                 open.push(to);
             }
         }

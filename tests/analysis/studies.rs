@@ -1,6 +1,10 @@
 //! Properties of whole studies.
 
 use super::*;
+use gdcm::app::Pool;
+use gdcm::study::{ConditionAnalysis, ConditionFailure, Stopped, Watch};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A study of the example on few frequencies: what these tests ask does not depend on how many.
 fn short_study() -> Study {
@@ -82,4 +86,69 @@ fn corrections_of_chosen_conditions_hold_those_and_the_schedule_of_all() {
     let ids: Vec<i64> = written.conditions.iter().map(|condition| condition.id).collect();
     assert_eq!(ids, [10, 3], "in the order chosen, and an index that is not there passed over");
     assert_eq!(written.schedule.unwrap().airspeed_range_kt, [45.0, 140.0]);
+}
+
+/// Keeps the first result, and ends the analysis after so many steps.
+struct Onlooker {
+    first: usize,
+    steps: usize,
+    seen: Mutex<Vec<Result<ConditionAnalysis, ConditionFailure>>>,
+    heard: AtomicUsize,
+}
+
+impl Onlooker {
+    fn new(first: usize, steps: usize) -> Self {
+        Self { first, steps, seen: Mutex::default(), heard: AtomicUsize::new(0) }
+    }
+}
+
+impl Watch for Onlooker {
+    fn stopped(&self) -> bool {
+        self.heard.load(Ordering::Relaxed) >= self.steps
+    }
+
+    fn progress(&self, done: usize, total: usize) {
+        assert!(done <= total);
+        self.heard.store(done, Ordering::Relaxed);
+    }
+
+    fn wanted_first(&self) -> Option<usize> {
+        Some(self.first)
+    }
+
+    fn first_result(&self, result: &Result<ConditionAnalysis, ConditionFailure>) {
+        // Nothing but the condition wanted first is done by then.
+        assert!(self.heard.load(Ordering::Relaxed) <= 100);
+        self.seen.lock().unwrap().push(result.clone());
+    }
+}
+
+#[test]
+fn results_have_the_same_bits_whatever_the_number_of_threads() {
+    let study = short_study();
+    let alone = analyze(&mut Engine::default(), &study);
+    for threads in [1, 2, 3, 7] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let together = pool.install(|| analyze(&mut Engine::with_crew(Box::new(Pool)), &study));
+        // Debug prints the shortest text that reads back as the same bits, and tells -0 from 0.
+        assert!(format!("{together:?}") == format!("{alone:?}"), "{threads} threads");
+    }
+}
+
+#[test]
+fn the_condition_wanted_first_is_told_first_and_as_the_whole_analysis_has_it() {
+    let (study, onlooker) = (short_study(), Onlooker::new(9, usize::MAX));
+    let analysis = Engine::with_crew(Box::new(Pool)).analyze(&study, &onlooker).unwrap();
+    assert_eq!(onlooker.seen.into_inner().unwrap(), [analysis.conditions[9].clone()]);
+    let alone = analyze(&mut Engine::default(), &study);
+    assert_eq!(analysis.conditions, alone.conditions, "the order of work is not the order of results");
+}
+
+#[test]
+fn an_analysis_that_is_stopped_halfway_goes_on_from_there_with_the_same_result() {
+    let (study, mut engine) = (short_study(), Engine::default());
+    for steps in [1, 100, 400] {
+        assert_eq!(engine.analyze(&study, &Onlooker::new(0, steps)), Err(Stopped));
+    }
+    assert_eq!(analyze(&mut engine, &study), analyze(&mut Engine::default(), &study));
 }

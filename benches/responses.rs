@@ -23,36 +23,13 @@ use nalgebra::{Complex, DMatrix};
 use pulp::{Arch, Simd, WithSimd};
 use serde_json::json;
 
-const OUTPUTS: usize = 6;
-const INPUTS: usize = 4;
+#[path = "random_model/mod.rs"]
+mod random_model;
+
+use random_model::{INPUTS, OUTPUTS, dense_responses, model};
+
 const FREQUENCIES: usize = 500;
 const ORDERS: [usize; 3] = [12, 30, 60];
-
-/// A stable model without structure: a random matrix whose eigenvalues fill a disc of radius 8 rad/s about -9 rad/s.
-fn model(order: usize) -> StateSpace {
-    let mut state = 88_172_645_463_325_252_u64;
-    let mut uniform = || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
-    };
-    // The sum of three such numbers has variance 1.
-    let mut matrix = |rows, columns| DMatrix::from_fn(rows, columns, |_, _| uniform() + uniform() + uniform());
-    let a = matrix(order, order) * (8.0 / (order as f64).sqrt()) - DMatrix::identity(order, order) * 9.0;
-    let (b, c, d) = (matrix(order, INPUTS), matrix(OUTPUTS, order), matrix(OUTPUTS, INPUTS));
-    StateSpace::new(a, b, c, d).expect("the shapes agree")
-}
-
-fn plain(model: &StateSpace, omega: &[f64]) -> Vec<DMatrix<Complex<f64>>> {
-    let [a, b, c, d] = [model.a(), model.b(), model.c(), model.d()].map(|matrix| matrix.map(Complex::from));
-    let identity = DMatrix::<Complex<f64>>::identity(a.nrows(), a.nrows());
-    let at = |omega: &f64| {
-        let states = (&identity * Complex::new(0.0, *omega) - &a).lu().solve(&b);
-        &c * states.expect("no pole on the imaginary axis") + &d
-    };
-    omega.iter().map(at).collect()
-}
 
 /// The instruction sets of this machine.
 fn instruction_sets() -> Vec<(&'static str, Arch)> {
@@ -108,7 +85,7 @@ fn shortest<T>(runs: usize, mut run: impl FnMut() -> T) -> f64 {
 /// One row of the table for each instruction set.
 fn compare(order: usize, omega: &[f64]) {
     let model = model(order);
-    let dense = shortest(5, || plain(&model, omega)) / FREQUENCIES as f64;
+    let dense = shortest(5, || dense_responses(&model, omega)) / FREQUENCIES as f64;
     for (name, arch) in instruction_sets() {
         let seconds = shortest(400, || evaluate_on(arch, &model, omega)) / FREQUENCIES as f64;
         let peak = arch.dispatch(MultiplyAdds) / shortest(400, || arch.dispatch(MultiplyAdds));

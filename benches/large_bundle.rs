@@ -1,0 +1,111 @@
+//! `cargo bench --bench large_bundle`: a bundle of 1000 models of 60 states on 500 frequencies, ten times the paper's and more.
+//!
+//! Figures to reach: responses <= 1 s on two cores, memory <= 1 GB.
+
+use std::collections::BTreeMap;
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use criterion::Criterion;
+use gdcm::app::Pool;
+use gdcm::dataset::{Band, Condition, Dynamics, FlightState, Model, Origin, Pair, PairTable, StateSpace};
+use gdcm::response::FrequencyGrid;
+use gdcm::study::{Alone, BundleFigures, Crew, Effort, PreparedCondition, Unwatched};
+use nalgebra::DMatrix;
+
+#[path = "random_model/mod.rs"]
+mod random_model;
+
+use random_model::{INPUTS, OUTPUTS, dense_responses, model};
+
+const MODELS: usize = 1000;
+const STATES: usize = 60;
+const FREQUENCIES: usize = 500;
+
+/// One model and its neighbours, whose system matrices differ in proportion to two coordinates of the trim.
+fn condition() -> Condition {
+    let base = model(STATES);
+    let change = |seed: f64| DMatrix::from_fn(STATES, STATES, |i, j| 0.05 * (seed + 7.3 * i as f64 + j as f64).sin());
+    let (by_roll, by_airspeed) = (change(0.1), change(0.7));
+    let physics = (0..MODELS).map(|index| {
+        let (roll, airspeed) = ((index as f64).sin(), (index as f64 * 1.7).cos());
+        let offset = if index == 0 { 0.0 } else { 1.0 };
+        let a = base.a() + offset * (&by_roll * roll + &by_airspeed * airspeed);
+        let (b, c, d) = (base.b().clone(), base.c().clone(), base.d().clone());
+        let perturbation =
+            BTreeMap::from([("roll_deg".to_owned(), offset * roll), ("airspeed_kt".to_owned(), offset * airspeed)]);
+        let origin = if index == 0 {
+            Origin::Nominal { perturbation: Some(perturbation) }
+        } else {
+            Origin::Perturbed { perturbation: Some(perturbation) }
+        };
+        let dynamics = Dynamics::StateSpace(StateSpace::new(a, b, c, d).expect("the shapes agree"));
+        Model { name: format!("model {index}"), origin, dynamics }
+    });
+    let identified = Model {
+        name: "flight".to_owned(),
+        origin: Origin::Identified { method: None, order: None },
+        dynamics: Dynamics::StateSpace(base.clone()),
+    };
+    let flight_state = FlightState {
+        id: 1,
+        name: "a large bundle".to_owned(),
+        airspeed_kt: 60.0,
+        altitude: None,
+        altitude_ft: None,
+        weight: None,
+        mass_kg: None,
+    };
+    Condition::new(flight_state, physics.collect(), vec![identified]).expect("one nominal model, all names different")
+}
+
+/// Most memory that the process has had, resident \[MB\], where the system tells.
+fn peak_memory_mb() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM"))?;
+    Some(line.split_whitespace().nth(1)?.parse::<f64>().ok()? / 1024.0)
+}
+
+/// The shortest of a few runs.
+fn shortest<T>(runs: usize, mut run: impl FnMut() -> T) -> Duration {
+    let time = |_| {
+        let start = Instant::now();
+        drop(black_box(run()));
+        start.elapsed()
+    };
+    (0..runs).map(time).min().unwrap_or_default()
+}
+
+fn main() {
+    let condition = condition();
+    let grid = FrequencyGrid::logarithmic(Band::new(0.1, 100.0).expect("a band"), FREQUENCIES);
+    let mut measuring = PairTable::filled(OUTPUTS, INPUTS, false);
+    (0..INPUTS).for_each(|channel| measuring[Pair::new(channel, channel)] = true);
+    let responses = |crew: &dyn Crew| {
+        let effort = Effort::new(crew, &Unwatched, MODELS);
+        PreparedCondition::of(&condition).responses(&condition, &grid, &effort).expect("nobody stops it")
+    };
+    let mut criterion = Criterion::default().sample_size(10).configure_from_args();
+    let mut group = criterion.benchmark_group(format!("{MODELS} models, {STATES} states, {FREQUENCIES} frequencies"));
+    group.bench_function("responses, all cores", |bencher| bencher.iter(|| responses(&Pool)));
+    group.bench_function("responses, one core", |bencher| bencher.iter(|| responses(&Alone)));
+    let all = responses(&Pool);
+    group.bench_function("distances and ratios, all cores", |bencher| {
+        bencher.iter(|| BundleFigures::of(&condition, &all, &measuring, &Effort::new(&Pool, &Unwatched, 2 * MODELS)));
+    });
+    group.finish();
+    criterion.final_summary();
+    let (together, alone) = (shortest(3, || responses(&Pool)), shortest(3, || responses(&Alone)));
+    let dense = shortest(3, || dense_responses(&model(STATES), grid.omega())) * MODELS as u32;
+    println!(
+        "responses: {together:.2?} on all cores, {alone:.2?} on one; a dense LU for each would take {dense:.1?} on one"
+    );
+    println!(
+        "ratio {:.0} on one core, {:.0} on all",
+        dense.as_secs_f64() / alone.as_secs_f64(),
+        dense.as_secs_f64() / together.as_secs_f64()
+    );
+    if let Some(memory) = peak_memory_mb() {
+        println!("memory: {memory:.0} MB at most, two sets of responses and the models among them");
+    }
+}

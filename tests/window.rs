@@ -154,6 +154,23 @@ fn freeing_an_on_axis_entry_moves_its_net_gain_dots_with_alpha() {
 }
 
 #[test]
+fn a_long_computation_can_be_stopped_and_taken_up_again() {
+    let mut window = window();
+    let before = state(&window).results.received;
+    // The most points there can be: far more work than the frames until the click give it time for.
+    window.get_by_role_and_label(Role::SpinButton, "Frequencies in the band").set_value_accesskit(5000.0);
+    window.run_steps(3);
+    window.get_by_label("Stop").click();
+    window.run_steps(3);
+    assert!(state(&window).results.stopped && state(&window).results.received == before);
+    window.get_by_label("● stopped: the results are older than the settings");
+    assert!(state(&window).analysis().is_some(), "the results there were are still shown");
+    click(&mut window, "Compute");
+    assert!(!state(&window).results.is_behind());
+    assert_eq!(state(&window).analysis().map(|analysis| analysis.omega.len()), Some(5000));
+}
+
+#[test]
 fn every_choice_can_be_undone_and_done_again() {
     let mut window = window();
     choose_condition_10(&mut window);

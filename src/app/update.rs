@@ -48,6 +48,8 @@ impl GdcmApp {
             Command::FitPlots => display.bode.request_fit(),
             Command::SetTheme(theme) => ctx.set_theme(theme),
             Command::ShowForm(form) => self.show_form(form),
+            Command::StopComputing => self.stop_computing(),
+            Command::Compute => self.compute_again(),
             Command::DismissNotice => self.state.notice = None,
             Command::AskOpen => self.dialogs.ask(DialogPurpose::Open, String::new(), ctx),
             Command::AskSaveStudy => self.dialogs.ask(DialogPurpose::SaveStudy, self.proposed_name(), ctx),

@@ -66,9 +66,24 @@ impl GdcmApp {
         self.requested = Some((study.clone(), condition));
         let results = &mut self.state.results;
         results.requested += 1;
+        results.stopped = false;
         results.toggles = None;
         results.waiting_since.get_or_insert(now);
         self.worker.request(Request { generation: results.requested, study, condition });
+    }
+
+    /// Gives up the computation under way; what is shown stays.
+    pub(super) fn stop_computing(&mut self) {
+        self.worker.stop();
+        let results = &mut self.state.results;
+        results.stopped = results.is_behind();
+        results.waiting_since = None;
+        results.progress = None;
+    }
+
+    /// Asks again for what was given up.
+    pub(super) fn compute_again(&mut self) {
+        self.requested = None;
     }
 
     fn receive(&mut self, now: f64) {
@@ -83,6 +98,7 @@ impl GdcmApp {
                     results.received = generation;
                     results.analysis = Some(analysis);
                     results.first = None;
+                    results.stopped &= results.is_behind();
                     results.elapsed_ms = elapsed_ms;
                     results.waiting_since = results.is_waiting().then_some(now);
                     results.progress = None;

@@ -68,8 +68,8 @@ pub enum Reply {
     },
 }
 
-/// The newest request of a worker that is dropped.
-const CLOSED: u64 = u64::MAX;
+/// In place of the newest request's number where nothing is wanted any more.
+const NOTHING: u64 = u64::MAX;
 
 /// Called after each reply: wakes the window.
 type Wake = Box<dyn Fn() + Send + Sync>;
@@ -135,6 +135,12 @@ impl Worker {
         self.shared.filled.notify_one();
     }
 
+    /// Gives up the request under way, and the one that waits.
+    pub fn stop(&self) {
+        self.shared.newest.store(NOTHING, Ordering::Release);
+        self.shared.mailbox().request = None;
+    }
+
     /// The next reply, if one is there.
     pub fn reply(&self) -> Option<Reply> {
         self.replies.try_recv().ok()
@@ -143,7 +149,7 @@ impl Worker {
 
 impl Drop for Worker {
     fn drop(&mut self) {
-        self.shared.newest.store(CLOSED, Ordering::Release);
+        self.shared.newest.store(NOTHING, Ordering::Release);
         self.shared.mailbox().closed = true;
         self.shared.filled.notify_one();
         if let Some(thread) = self.thread.take() {
@@ -232,7 +238,7 @@ impl<'a, 'd> RequestWatch<'a, 'd> {
 impl Watch for RequestWatch<'_, '_> {
     fn stopped(&self) -> bool {
         let newest = self.desk.shared.newest.load(Ordering::Acquire);
-        newest == CLOSED || (newest != self.request.generation && self.started.elapsed() > PATIENCE)
+        newest == NOTHING || (newest != self.request.generation && self.started.elapsed() > PATIENCE)
     }
 
     fn progress(&self, done: usize, total: usize) {

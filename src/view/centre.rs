@@ -77,7 +77,11 @@ fn bode_tab_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
     let band = state.study.settings.band;
     let title = state.dataset().pair_name(state.display.pair);
     let stale = state.results.is_stale(ui.input(|input| input.time));
-    let message = state.results.is_waiting().then_some("computing …");
+    let message = match (state.results.stopped, state.results.is_waiting()) {
+        (true, _) => Some("not computed"),
+        (false, true) => Some("computing …"),
+        (false, false) => None,
+    };
     let scene = BodeScene {
         pair_title: &title,
         curves: &state.display.drawn,

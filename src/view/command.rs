@@ -57,6 +57,10 @@ pub enum Command {
     Export,
     /// Go on with what would lose unsaved decisions.
     DiscardAndGoOn,
+    /// Give up the computation under way.
+    StopComputing,
+    /// Compute what was given up.
+    Compute,
     /// Put the message away.
     DismissNotice,
     /// Close the window.

@@ -95,7 +95,7 @@ fn export_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut V
         if ui.button("Cancel").clicked() {
             commands.push(Command::ShowForm(None));
         }
-        if state.results.is_waiting() {
+        if state.results.is_behind() {
             ui.label(dim("waits for the newest results"));
         }
     });

@@ -87,6 +87,8 @@ pub struct Results {
     pub waiting_since: Option<f64>,
     /// How long the newest analysis took \[ms\].
     pub elapsed_ms: f64,
+    /// Whether the newest request was given up by hand: what is shown stays older than the settings.
+    pub stopped: bool,
     /// How far the analysis under way is: steps done, of how many.
     pub progress: Option<(usize, usize)>,
 }
@@ -97,12 +99,17 @@ const STALE_AFTER_S: f64 = 0.15;
 impl Results {
     /// Whether an answer is still to come.
     pub fn is_waiting(&self) -> bool {
+        self.is_behind() && !self.stopped
+    }
+
+    /// Whether what is shown is older than the settings.
+    pub fn is_behind(&self) -> bool {
         self.requested > self.received
     }
 
     /// Whether what is shown should be marked as stale at `now` \[s of the window's clock\].
     pub fn is_stale(&self, now: f64) -> bool {
-        self.waiting_since.is_some_and(|since| now - since > STALE_AFTER_S)
+        self.stopped || self.waiting_since.is_some_and(|since| now - since > STALE_AFTER_S)
     }
 }
 

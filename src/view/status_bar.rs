@@ -12,7 +12,7 @@ use super::state::{NoticeKind, State};
 /// State of the computation on the left, message or standing remark on the right.
 pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        computation_ui(ui, state, palette);
+        computation_ui(ui, state, palette, commands);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| match &state.notice {
             Some(notice) => {
                 if ui.add(Button::new("Dismiss").small()).clicked() {
@@ -30,9 +30,12 @@ pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
     });
 }
 
-fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette) {
+fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let now = ui.input(|input| input.time);
     let (text, color) = match (&state.opening, state.results.is_stale(now), state.results.progress) {
+        (None, ..) if state.results.stopped => {
+            ("● stopped: the results are older than the settings".to_owned(), palette.warning)
+        }
         (Some(name), ..) => (format!("● reading {name} …"), palette.accent),
         (None, true, Some((done, total))) => {
             (format!("● computing, {} % …", 100 * done / total.max(1)), palette.warning)
@@ -41,6 +44,13 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette) {
         (None, false, _) => ("● up to date".to_owned(), palette.good),
     };
     ui.label(RichText::new(text).size(SMALL_SIZE).color(color));
+    if state.results.stopped {
+        if ui.add(Button::new("Compute").small()).clicked() {
+            commands.push(Command::Compute);
+        }
+    } else if state.results.is_stale(now) && ui.add(Button::new("Stop").small()).clicked() {
+        commands.push(Command::StopComputing);
+    }
     let dim = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
     let models: usize = state.dataset().conditions().iter().map(|condition| model_count(condition)).sum();
     ui.label(dim(format!("{models} responses · {} frequencies", state.study.settings.points)));

@@ -161,6 +161,10 @@ fn names_of(models: &[Model], indices: &[usize]) -> String {
     if indices.is_empty() {
         return String::new();
     }
-    let names: Vec<&str> = indices.iter().map(|&index| models[index].name.as_str()).collect();
-    format!(" ({})", names.join(", "))
+    /// Enough to see what went wrong.
+    const SHOWN: usize = 5;
+    let names: Vec<&str> = indices.iter().take(SHOWN).map(|&index| models[index].name.as_str()).collect();
+    let rest = indices.len() - names.len();
+    let more = if rest == 0 { String::new() } else { format!(" and {rest} more") };
+    format!(" ({}{more})", names.join(", "))
 }

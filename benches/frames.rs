@@ -1,0 +1,184 @@
+//! `cargo bench --bench frames`: what a frame of the window costs the processor, for each tab, beside plain lines.
+//!
+//! Figure to reach: <= 4 ms, tessellation included, for the Bode plot with the net gains below. The baseline gives the curves of both
+//! panes to egui_plot as they are, point by point, and draws nothing else.
+
+mod window;
+
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use criterion::Criterion;
+use egui::{Context, FullOutput, RawInput, Rect, Ui, pos2, vec2};
+use egui_plot::{Line, Plot};
+
+use gdcm::view::palette::Palette;
+use gdcm::view::plot::{BodeCurve, BodeScene, BodeView, CurveId, FrequencyUnit, Role, bode_ui};
+
+use window::Window;
+
+const SIZE: egui::Vec2 = vec2(1600.0, 900.0);
+const CURVES: usize = 25;
+const POINTS: usize = 500;
+/// Frames of which the middle one counts in the table.
+const FRAMES: usize = 301;
+
+/// Something that draws a frame.
+struct Screen<'a> {
+    ctx: Context,
+    draw: Box<dyn FnMut(&mut Ui) + 'a>,
+    frames: u32,
+}
+
+impl<'a> Screen<'a> {
+    fn new(ctx: Context, draw: impl FnMut(&mut Ui) + 'a) -> Self {
+        let mut screen = Self { ctx, draw: Box::new(draw), frames: 0 };
+        // Sizes settle, and the texts of the first frames are laid out.
+        for _ in 0..10 {
+            screen.tessellated_frame();
+        }
+        screen
+    }
+
+    /// Input is taken, everything is laid out and painted as shapes.
+    fn shapes(&mut self) -> FullOutput {
+        self.frames += 1;
+        let input = RawInput {
+            screen_rect: Some(Rect::from_min_size(pos2(0.0, 0.0), SIZE)),
+            // Long after everything that was animated.
+            time: Some(1e4 + f64::from(self.frames) / 60.0),
+            ..RawInput::default()
+        };
+        self.ctx.run_ui(input, &mut self.draw)
+    }
+
+    /// A whole frame; how long its shapes took and how long their triangles, and the number of vertices.
+    fn tessellated_frame(&mut self) -> (Duration, Duration, usize) {
+        let start = Instant::now();
+        let mut output = self.shapes();
+        let shapes = start.elapsed();
+        let primitives = self.ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
+        let tessellation = start.elapsed() - shapes;
+        output.drop_without_applying_deltas();
+        let vertices = |primitive: &egui::ClippedPrimitive| match &primitive.primitive {
+            egui::epaint::Primitive::Mesh(mesh) => mesh.vertices.len(),
+            egui::epaint::Primitive::Callback(_) => 0,
+        };
+        (shapes, tessellation, black_box(&primitives).iter().map(vertices).sum())
+    }
+}
+
+/// A second-order lag with a notch: as many bends as a coupled response has.
+fn curve(number: usize) -> BodeCurve {
+    let omega: Vec<f64> = (0..POINTS).map(|k| 0.3 * (20.0f64 / 0.3).powf(k as f64 / (POINTS - 1) as f64)).collect();
+    let corner = 2.0 + 0.05 * number as f64;
+    let magnitude = |w: &f64| {
+        let (lag, notch) = ((w / corner).powi(2), (w / (2.0 * corner)).powi(2));
+        -10.0 * ((1.0 - lag).powi(2) + 0.3 * lag).log10() + 5.0 * ((1.0 - notch).powi(2) + 0.1 * notch).log10()
+    };
+    let phase = |w: &f64| -(0.5 * w / corner).atan2(1.0 - (w / corner).powi(2)).to_degrees() - 4.0 * w;
+    BodeCurve {
+        id: CurveId(number as u64),
+        label: format!("model {number}"),
+        detail: String::new(),
+        role: match number {
+            0 => Role::Nominal,
+            1 => Role::Representative,
+            2 => Role::Corrected,
+            3 => Role::Scheduled,
+            4 => Role::IdentifiedRepresentative,
+            5 | 6 => Role::Identified,
+            _ => Role::Perturbed,
+        },
+        rejected: number > 22,
+        highlighted: false,
+        magnitude_db: omega.iter().map(magnitude).collect(),
+        phase_deg: omega.iter().map(phase).collect(),
+        omega: omega.into(),
+    }
+}
+
+/// The Bode plot alone, as the window draws it.
+fn bode(curves: &[BodeCurve]) -> Screen<'_> {
+    let (mut view, palette) = (BodeView::default(), Palette::dark());
+    Screen::new(Context::default(), move |ui| {
+        let scene = BodeScene {
+            pair_title: "LON → Q",
+            curves,
+            band: (0.5, 12.0),
+            unit: FrequencyUnit::RadPerSecond,
+            stale: false,
+            message: None,
+        };
+        bode_ui(ui, &scene, &mut view, &palette);
+    })
+}
+
+/// The same curves as plain lines in two plots.
+fn plain(curves: &[BodeCurve]) -> Screen<'_> {
+    Screen::new(Context::default(), move |ui| {
+        let height = 0.5 * ui.available_height() - 4.0;
+        for (name, values) in [("magnitude", 0), ("phase", 1)] {
+            Plot::new(name).height(height).show(ui, |plot| {
+                for curve in curves {
+                    let values = if values == 0 { &curve.magnitude_db } else { &curve.phase_deg };
+                    let points: Vec<[f64; 2]> =
+                        curve.omega.iter().zip(values.iter()).map(|(omega, value)| [omega.log10(), *value]).collect();
+                    plot.line(Line::new(&curve.label, points));
+                }
+            });
+        }
+    })
+}
+
+/// The median times of a frame \[ms\]: shapes, triangles; and the vertices of the last.
+fn measured(screen: &mut Screen<'_>) -> (f64, f64, usize) {
+    let frames: Vec<_> = (0..FRAMES).map(|_| screen.tessellated_frame()).collect();
+    let median = |of: fn(&(Duration, Duration, usize)) -> Duration| {
+        let mut times: Vec<Duration> = frames.iter().map(of).collect();
+        times.sort();
+        times[FRAMES / 2].as_secs_f64() * 1e3
+    };
+    (median(|frame| frame.0), median(|frame| frame.1), frames[FRAMES - 1].2)
+}
+
+fn frames(criterion: &mut Criterion) {
+    let curves: Vec<BodeCurve> = (0..CURVES).map(curve).collect();
+    let mut window = Window::settled();
+    let mut rows = Vec::new();
+    let mut group = criterion.benchmark_group("a frame");
+    let mut measure = |name: String, screen: &mut Screen<'_>| {
+        group.bench_function(&name, |bencher| bencher.iter(|| screen.tessellated_frame()));
+        rows.push((name, measured(screen)));
+    };
+    measure(format!("plain lines, {CURVES} curves of {POINTS} points"), &mut plain(&curves));
+    measure(format!("Bode plot alone, {CURVES} curves of {POINTS} points"), &mut bode(&curves));
+    for tab in ["Bode", "Overview", "Channels", "Assessment"] {
+        window.show(tab);
+        let name = format!("window, {tab}, {}", window.curves_drawn());
+        let (ctx, draw) = window.drawn();
+        measure(name, &mut Screen::new(ctx, draw));
+    }
+    group.finish();
+    print_table(&rows);
+}
+
+fn print_table(rows: &[(String, (f64, f64, usize))]) {
+    let total = |(shapes, triangles, _): (f64, f64, usize)| shapes + triangles;
+    let baseline = rows.first().map_or(f64::NAN, |row| total(row.1));
+    println!(
+        "{:50} {:>9} {:>9} {:>9} {:>9} {:>9}",
+        "median of a frame", "ui ms", "tess. ms", "both ms", "vertices", "of plain"
+    );
+    for (name, figures) in rows {
+        let (shapes, triangles, vertices) = *figures;
+        let both = total(*figures);
+        println!("{name:50} {shapes:9.2} {triangles:9.2} {both:9.2} {vertices:9} {:9.2}", both / baseline);
+    }
+}
+
+fn main() {
+    let mut criterion = Criterion::default().configure_from_args();
+    frames(&mut criterion);
+    criterion.final_summary();
+}

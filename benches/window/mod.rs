@@ -1,0 +1,65 @@
+//! The program's window without a display, its analysis done.
+
+use std::time::Duration;
+
+use eframe::App;
+use egui::{Context, Ui, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+use gdcm::app::GdcmApp;
+use gdcm::io::{Opened, embedded_example};
+use gdcm::view::state::Tab;
+
+/// The window on the embedded example.
+pub struct Window {
+    harness: Harness<'static, GdcmApp>,
+}
+
+impl Window {
+    /// The window once nothing is being computed any more.
+    pub fn settled() -> Self {
+        let build = |creation: &mut eframe::CreationContext<'static>| {
+            let example = embedded_example().expect("the embedded example is a dataset");
+            GdcmApp::new(&creation.egui_ctx, Opened::Dataset(example)).expect("a thread can be started")
+        };
+        let mut harness = Harness::builder().with_size(vec2(1600.0, 900.0)).build_eframe(build);
+        while harness.state().state().results.toggles.is_none() {
+            harness.run_steps(1);
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        harness.run_steps(4);
+        Self { harness }
+    }
+
+    /// Goes to a tab by its name.
+    pub fn show(&mut self, tab: &str) {
+        self.harness.ctx.enable_accesskit();
+        self.harness.run_steps(2);
+        self.harness.get_by_label(tab).click();
+        self.harness.run_steps(4);
+    }
+
+    /// How many curves of how many points the large plot holds, where it is shown.
+    pub fn curves_drawn(&self) -> String {
+        let display = &self.harness.state().state().display;
+        match (display.tab, display.drawn.first()) {
+            (Tab::Bode, Some(curve)) => format!("{} curves of {} points", display.drawn.len(), curve.omega.len()),
+            _ => "all conditions".to_owned(),
+        }
+    }
+
+    /// The window's context, and what draws it.
+    pub fn drawn(&mut self) -> (Context, impl FnMut(&mut Ui)) {
+        let ctx = self.harness.ctx.clone();
+        // Names for screen readers are made only where one listens.
+        ctx.disable_accesskit();
+        let app = self.harness.state_mut();
+        let mut frame = eframe::Frame::_new_kittest();
+        let draw = move |ui: &mut Ui| {
+            app.logic(ui, &mut frame);
+            app.ui(ui, &mut frame);
+        };
+        (ctx, draw)
+    }
+}

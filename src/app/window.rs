@@ -1,5 +1,7 @@
 //! The window: state, the thread that computes, the dialogs.
 
+use std::sync::Arc;
+
 use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, ViewportCommand};
 
 use crate::io::{LoadedDataset, Opened};
@@ -58,11 +60,11 @@ impl GdcmApp {
 
     /// Asks for what the study and the condition shown need, unless it was asked for already.
     fn request(&mut self, now: f64) {
-        let wanted = (&self.state.study, self.state.display.condition);
-        if self.requested.as_ref().is_some_and(|(study, condition)| (study, *condition) == wanted) {
+        let (study, condition) = (&self.state.study, self.state.display.condition);
+        if self.requested.as_ref().is_some_and(|(of, at)| *at == condition && asks_the_same(of, study)) {
             return;
         }
-        let (study, condition) = (self.state.study.clone(), self.state.display.condition);
+        let study = study.clone();
         self.requested = Some((study.clone(), condition));
         let results = &mut self.state.results;
         results.requested += 1;
@@ -104,7 +106,7 @@ impl GdcmApp {
                     results.progress = None;
                 }
                 Reply::Curves { dataset, condition, curves }
-                    if std::sync::Arc::ptr_eq(&dataset, &self.state.study.dataset)
+                    if Arc::ptr_eq(&dataset, &self.state.study.dataset)
                         && condition == self.state.display.condition =>
                 {
                     let band = display_band(self.state.study.settings.band);
@@ -153,6 +155,12 @@ impl GdcmApp {
         let middle = Frame::new().fill(palette.background).inner_margin(Margin::symmetric(8, 4));
         CentralPanel::default().frame(middle).show(ui, |ui| centre::centre_ui(ui, state, palette, commands));
     }
+}
+
+/// Whether two studies ask for the same results of the very same dataset. Its numbers are not compared: that would cost a part of
+/// every frame, and results of another dataset belong to that one even where it is equal.
+fn asks_the_same(a: &Study, b: &Study) -> bool {
+    Arc::ptr_eq(&a.dataset, &b.dataset) && a.settings == b.settings && a.choices == b.choices
 }
 
 fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {

@@ -58,8 +58,30 @@ pub struct Surroundings<'a> {
     pub path: &'a [Pos2],
 }
 
+/// Labels as they were placed last: placing them costs more than drawing them, and from frame to frame little moves.
+#[derive(Clone, Debug, Default)]
+pub struct PlacedLabels {
+    /// The dots, the bounds and the path that the places are for.
+    placed_for: Option<(Vec<LabelledDot>, Rect, Vec<Pos2>)>,
+    places: Vec<LabelPlace>,
+}
+
+impl PlacedLabels {
+    /// The places of the labels of `dots`, in their order.
+    pub fn places(&mut self, dots: &[LabelledDot], around: Surroundings<'_>) -> &[LabelPlace] {
+        let same = |(of, bounds, path): &(Vec<LabelledDot>, Rect, Vec<Pos2>)| {
+            of == dots && *bounds == around.bounds && path == around.path
+        };
+        if !self.placed_for.as_ref().is_some_and(same) {
+            self.places = place_labels(dots, around);
+            self.placed_for = Some((dots.to_vec(), around.bounds, around.path.to_vec()));
+        }
+        &self.places
+    }
+}
+
 /// The places of the labels of `dots`, in their order.
-pub fn place_labels(dots: &[LabelledDot], around: Surroundings<'_>) -> Vec<LabelPlace> {
+fn place_labels(dots: &[LabelledDot], around: Surroundings<'_>) -> Vec<LabelPlace> {
     let mut places: Vec<Option<LabelPlace>> = vec![None; dots.len()];
     for _ in 0..SWEEPS {
         for index in 0..dots.len() {
@@ -190,6 +212,19 @@ mod tests {
         let places = places(&[pos2(70.0, 80.0), pos2(70.0, 89.0), pos2(70.0, 98.0)]);
         let y: Vec<f32> = places.iter().map(|place| place.rect.center().y).collect();
         assert!(y[0] < y[1] && y[1] < y[2], "{y:?}");
+    }
+
+    #[test]
+    fn labels_are_placed_anew_where_a_dot_moved() {
+        let mut labels = PlacedLabels::default();
+        let bounds = Rect::from_min_max(pos2(0.0, 0.0), pos2(140.0, 170.0));
+        let mut placed = |x: f32| {
+            let dots = [LabelledDot { center: pos2(x, 80.0), radius: 4.0, label: SIZE }];
+            labels.places(&dots, Surroundings { bounds, path: &[] })[0].rect
+        };
+        let (first, again, moved) = (placed(70.0), placed(70.0), placed(75.0));
+        assert_eq!(first, again);
+        assert_eq!(moved, first.translate(vec2(5.0, 0.0)));
     }
 
     #[test]

@@ -5,6 +5,7 @@ use egui_plot::{PlotPoint, PlotTransform};
 
 use super::axes::use_frame_colors;
 use super::dot::Dot;
+use super::dot_label::PlacedLabels;
 use super::gain_panel::{GainPanel, PanelAnswer, SharedRanges, gain_panel_ui};
 use super::number::decimals;
 use super::readout::tooltip_ui;
@@ -32,6 +33,7 @@ pub struct GainView {
     highlighted: Option<usize>,
     transforms: Vec<Option<PlotTransform>>,
     dots: Vec<Vec<(usize, [f64; 2])>>,
+    labels: Vec<PlacedLabels>,
 }
 
 impl GainView {
@@ -87,6 +89,7 @@ pub(super) fn gain_group_ui(
     let mut events = Vec::new();
     view.transforms.resize(panels.len(), None);
     view.dots.resize(panels.len(), Vec::new());
+    view.labels.resize(panels.len(), PlacedLabels::default());
     ui.scope_builder(UiBuilder::new().id_salt(name).max_rect(rect), |ui| {
         use_frame_colors(ui, palette);
         gain_label_ui(ui, rect, gain_label, palette);
@@ -95,7 +98,8 @@ pub(super) fn gain_group_ui(
         tiles_ui(ui, "panels", inner, panels.len(), LEAST_PANEL, |ui, index, rect| {
             let panel = &panels[index];
             let id = ui.make_persistent_id((name, index));
-            let answer = gain_panel_ui(ui, (id, rect), panel, ranges, view.emphasized(), palette);
+            let remembered = (view.emphasized(), &mut view.labels[index]);
+            let answer = gain_panel_ui(ui, (id, rect), panel, ranges, remembered, palette);
             view.remember(index, panel, &answer);
             hovered = hovered.or(answer.hovered);
             events.extend(panel_event(panel, answer, palette));

@@ -5,7 +5,7 @@ use egui_plot::{Axis, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotT
 
 use super::axes::{LABELLED_HEIGHT, axis_hints, caption_font, quiet_plot};
 use super::dot::{DOT_RADIUS, Dot};
-use super::dot_label::{LabelledDot, Surroundings, place_labels};
+use super::dot_label::{LabelledDot, PlacedLabels, Surroundings};
 use super::linear_axis::{Ladder, tick_text};
 use super::range::Range;
 use super::role::Role;
@@ -83,13 +83,14 @@ pub(super) struct PanelAnswer {
     pub(super) clicked: Option<usize>,
 }
 
-/// Draws a panel into `rect`; `hovered` is the condition to emphasise, whichever panel the pointer is in.
+/// Draws a panel into `rect`; `hovered` is the condition to emphasise, whichever panel the pointer is in, and `labels` are those of
+/// the last frame.
 pub(super) fn gain_panel_ui(
     ui: &mut Ui,
     (id, rect): (Id, Rect),
     panel: &GainPanel,
     ranges: SharedRanges,
-    hovered: Option<usize>,
+    (hovered, labels): (Option<usize>, &mut PlacedLabels),
     palette: &Palette,
 ) -> PanelAnswer {
     let plot_rect = Rect::from_min_max(rect.min + vec2(0.0, TITLE_HEIGHT), rect.max - vec2(RIGHT_MARGIN, 0.0));
@@ -99,7 +100,7 @@ pub(super) fn gain_panel_ui(
     ui.painter().text(title_place, Align2::CENTER_CENTER, &panel.title, caption_font(), palette.text);
     let position = |dot: &Dot| transform.position_from_point(&PlotPoint::new(dot.airspeed_kt, dot.gain));
     let placed: Vec<(&Dot, Pos2)> = panel.drawable_dots().map(|dot| (dot, position(dot))).collect();
-    paint_labels(ui, &placed, panel, &transform, palette);
+    paint_labels(ui, &placed, panel, (&transform, labels), palette);
     let painter = ui.painter().with_clip_rect(frame.expand(DOT_RADIUS));
     for (dot, center) in &placed {
         dot.paint(&painter, *center, hovered == Some(dot.condition), palette);
@@ -153,7 +154,13 @@ fn draw_lines(plot: &mut PlotUi<'_>, panel: &GainPanel, palette: &Palette) {
     plot.line(Line::new("", schedule).color(look.color).width(look.width).style(look.style));
 }
 
-fn paint_labels(ui: &Ui, placed: &[(&Dot, Pos2)], panel: &GainPanel, transform: &PlotTransform, palette: &Palette) {
+fn paint_labels(
+    ui: &Ui,
+    placed: &[(&Dot, Pos2)],
+    panel: &GainPanel,
+    (transform, labels): (&PlotTransform, &mut PlacedLabels),
+    palette: &Palette,
+) {
     let painter = ui.painter().with_clip_rect(*transform.frame());
     let layout = |dot: &Dot| {
         let color = if dot.selected { palette.text } else { palette.dim_text };
@@ -173,7 +180,7 @@ fn paint_labels(ui: &Ui, placed: &[(&Dot, Pos2)], panel: &GainPanel, transform: 
     let path: Vec<Pos2> =
         panel.schedule.iter().map(|[x, y]| transform.position_from_point(&PlotPoint::new(*x, *y))).collect();
     let around = Surroundings { bounds: transform.frame().shrink(1.0), path: &path };
-    for ((place, galley), (_, center)) in place_labels(&dots, around).into_iter().zip(galleys).zip(placed) {
+    for ((place, galley), (_, center)) in labels.places(&dots, around).iter().zip(galleys).zip(placed) {
         if let Some(end) = place.leader {
             painter.line_segment([*center, end], Stroke::new(0.8, palette.dim_text.gamma_multiply(0.6)));
         }

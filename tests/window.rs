@@ -5,7 +5,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
-use egui::{Key, Modifiers, vec2};
+use egui::{Key, Modifiers, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
@@ -377,6 +377,74 @@ fn the_matrix_can_be_worked_from_the_keyboard() {
     window.key_press(Key::Space);
     settle(&mut window);
     assert!(state(&window).study.settings.constrained[target]);
+}
+
+#[test]
+fn an_idle_window_draws_no_frames() {
+    let mut window = window();
+    wait_for_toggles(&mut window);
+    for tab in ["Bode", "Overview", "Channels", "Assessment"] {
+        click(&mut window, tab);
+        let frames = window.run();
+        assert!(frames < 60, "{tab} settled after {frames} frames");
+        assert_asks_for_no_frame(&mut window, tab);
+    }
+    click(&mut window, "Bode");
+    // A pointer that rests on a curve: its name is shown, and stays.
+    let nominal = drawn(&window, CurveRole::Nominal);
+    let view = &state(&window).display.bode;
+    let place = view.screen_position(Pane::Magnitude, nominal.omega[200], nominal.magnitude_db[200]).unwrap();
+    window.hover_at(place);
+    window.run();
+    assert!(state(&window).display.hovered.is_some());
+    assert_asks_for_no_frame(&mut window, "Bode with the pointer on a curve");
+}
+
+/// Draws a few frames without input, none of which may ask for another one.
+fn assert_asks_for_no_frame(window: &mut Window, what: &str) {
+    for _ in 0..5 {
+        window.run_steps(1);
+        let delays: Vec<Duration> =
+            window.output().viewport_output.values().map(|output| output.repaint_delay).collect();
+        assert_eq!(delays, [Duration::MAX], "{what}: {:?}", window.ctx.repaint_causes());
+    }
+}
+
+#[test]
+fn pointing_at_plots_starts_no_analysis() {
+    let mut window = window();
+    let (requested, analysis) = (state(&window).results.requested, state(&window).results.analysis.clone());
+    for step in 0..40 {
+        // From corner to corner, across lists, plots, matrix and settings.
+        window.hover_at(pos2(40.0 * step as f32, 25.0 * step as f32));
+        window.run_steps(1);
+    }
+    assert_eq!(state(&window).results.requested, requested);
+    let same =
+        state(&window).results.analysis.as_ref().zip(analysis.as_ref()).map(|(a, b)| std::sync::Arc::ptr_eq(a, b));
+    assert_eq!(same, Some(true));
+}
+
+#[test]
+fn control_and_r_reject_the_suggested_outliers() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    let suggested = state(&window).shown().unwrap().suggested();
+    assert_eq!(suggested.len(), 3);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::R);
+    settle(&mut window);
+    let rejected = &state(&window).study.choices[9].physics.rejected;
+    assert_eq!(rejected.iter().copied().collect::<Vec<_>>(), suggested);
+}
+
+#[test]
+fn a_dataset_opened_again_is_analysed_again() {
+    let mut window = window();
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/small-dataset.json");
+    for _ in 0..2 {
+        open_by_path(&mut window, &path);
+        assert!(state(&window).analysis().is_some());
+    }
 }
 
 #[test]

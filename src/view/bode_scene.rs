@@ -1,5 +1,6 @@
 //! The curves of the focused response, made of what was computed.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use nalgebra::Complex;
@@ -9,7 +10,7 @@ use crate::dataset::{BundleKind, ModelId, Pair};
 use crate::fidelity::SUGGESTION_RATIO;
 use crate::response::{nearest_turn_offset, unwrap};
 use crate::study::{ConditionAnalysis, ConditionCurves};
-use crate::units::ratio_to_db;
+use crate::units::{ratio_to_db, s_to_ms};
 
 use super::plot::{BodeCurve, CurveId, Role};
 use super::state::State;
@@ -82,9 +83,9 @@ impl Shape {
     }
 
     /// The shape after a gain and a delay: exact in frequency, no Pade (M10).
-    fn corrected(&self, omega: &[f64], correction: &ChannelCorrection, pair: Pair) -> Self {
-        let (gain_db, delay_s) = (ratio_to_db(correction.net_gain(pair)), correction.net_delay_s(pair));
-        let lag = |omega: &f64| (omega * delay_s).to_degrees();
+    fn corrected(&self, omega: &[f64], treatment: Treatment) -> Self {
+        let gain_db = ratio_to_db(treatment.net_gain);
+        let lag = |omega: &f64| (omega * treatment.net_delay_s).to_degrees();
         Self {
             magnitude_db: self.magnitude_db.iter().map(|magnitude| magnitude + gain_db).collect(),
             phase_deg: self.phase_deg.iter().zip(omega).map(|(phase, omega)| phase - lag(omega)).collect(),
@@ -99,6 +100,17 @@ pub struct CachedShapes {
     omega: Arc<[f64]>,
     physics: Vec<Shape>,
     identified: Vec<Shape>,
+    /// Of each corrected curve, by its number: what it was made with, and its shape.
+    corrected: BTreeMap<u64, (Treatment, Shape)>,
+}
+
+/// What a corrected curve is made with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Treatment {
+    /// Index of the physics model.
+    model: usize,
+    net_gain: f64,
+    net_delay_s: f64,
 }
 
 impl CachedShapes {
@@ -118,7 +130,20 @@ impl CachedShapes {
         self.physics = shapes(BundleKind::Physics);
         self.identified = shapes(BundleKind::Identified);
         self.omega = curves.grid.omega().into();
+        self.corrected.clear();
         self.made_of = Some((Arc::clone(curves), pair, reference));
+    }
+
+    /// The corrected shape of the curve `id`: the same one until it is made with something else.
+    fn corrected(&mut self, id: u64, treatment: Treatment) -> Shape {
+        match self.corrected.get(&id) {
+            Some((with, shape)) if *with == treatment => shape.clone(),
+            _ => {
+                let shape = self.physics[treatment.model].corrected(&self.omega, treatment);
+                self.corrected.insert(id, (treatment, shape.clone()));
+                shape
+            }
+        }
     }
 
     fn of_bundle(&self, kind: BundleKind) -> &[Shape] {
@@ -141,15 +166,14 @@ pub fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
         return Vec::new();
     }
     let reference = state.shown().map_or(0, |shown| shown.comparison.identified.model);
-    state.display.shapes.entry(pair).or_default().refresh(&curves, pair, reference);
-    let Some(shapes) = state.display.shapes.get(&pair) else {
-        return Vec::new();
-    };
-    let mut drawn = model_curves(state, shapes, BundleKind::Physics);
-    drawn.extend(model_curves(state, shapes, BundleKind::Identified));
+    let mut shapes = state.display.shapes.remove(&pair).unwrap_or_default();
+    shapes.refresh(&curves, pair, reference);
+    let mut drawn = model_curves(state, &shapes, BundleKind::Physics);
+    drawn.extend(model_curves(state, &shapes, BundleKind::Identified));
     if let Some(shown) = state.shown() {
-        drawn.extend(corrected_curves(state, shapes, shown, pair));
+        drawn.extend(corrected_curves(state, &mut shapes, shown, pair));
     }
+    state.display.shapes.insert(pair, shapes);
     drawn
 }
 
@@ -207,17 +231,18 @@ fn detail(shown: Option<&ConditionAnalysis>, kind: BundleKind, index: usize, rej
     }
 }
 
-fn corrected_curves(state: &State, shapes: &CachedShapes, shown: &ConditionAnalysis, pair: Pair) -> Vec<BodeCurve> {
-    let representative = shown.comparison.physics.model;
-    let name = &state.condition().bundle(BundleKind::Physics)[representative].name;
+fn corrected_curves(state: &State, shapes: &mut CachedShapes, shown: &ConditionAnalysis, pair: Pair) -> Vec<BodeCurve> {
+    let model = shown.comparison.physics.model;
+    let name = &state.condition().bundle(BundleKind::Physics)[model].name;
     let airspeed_kt = state.condition().flight_state().airspeed_kt;
-    let curve = |id: u64, label: String, role: Role, correction: &ChannelCorrection| {
-        let shape = shapes.physics[representative].corrected(&shapes.omega, correction, pair);
-        let (gain, delay_ms) = (correction.net_gain(pair), 1e3 * correction.net_delay_s(pair));
+    let mut curve = |id: u64, label: String, role: Role, correction: &ChannelCorrection| {
+        let (net_gain, net_delay_s) = (correction.net_gain(pair), correction.net_delay_s(pair));
+        let shape = shapes.corrected(id, Treatment { model, net_gain, net_delay_s });
+        let delay_ms = s_to_ms(net_delay_s);
         BodeCurve {
             id: CurveId(id),
             label,
-            detail: format!("net gain {gain:.3}, net delay {delay_ms:.1} ms"),
+            detail: format!("net gain {net_gain:.3}, net delay {delay_ms:.1} ms"),
             role,
             rejected: false,
             highlighted: false,

@@ -1,14 +1,15 @@
 //! One of the two stacked plots: axes, band, curves and cursor.
 
 use egui::{Id, Rect, Response, Ui, UiBuilder, WidgetInfo};
-use egui_plot::{Axis, Line, LineStyle, PlotUi, Span, VLine};
+use egui_plot::{Axis, Line, LineStyle, PlotTransform, PlotUi, Span, VLine};
 
 use super::axes::{LABELLED_HEIGHT, TICKS_HEIGHT, VERTICAL_TICK_GAP, axis_hints, quiet_plot};
 use super::bode::BodeScene;
 use super::bode_view::BodeView;
 use super::box_zoom::box_zoom_ui;
-use super::curve::{BodeCurve, CurveId, Pane, runs_in_view};
+use super::curve::{BodeCurve, CurveId, LogFrequencies, Pane, runs_in_view};
 use super::linear_axis::{Ladder, tick_text};
+use super::pixel::Pixel;
 use super::thinning::thinned;
 use crate::view::palette::Palette;
 
@@ -16,6 +17,10 @@ use crate::view::palette::Palette;
 const VALUE_AXIS_WIDTH: f32 = 52.0;
 /// How far from a curve its drawn line may be \[pt\].
 const TOLERANCE: f64 = 0.1;
+/// How far outside the view a point may be to be drawn, as a part of the view: a line has a width.
+const LINE_MARGIN: f64 = 0.02;
+/// The same for dashes and dots: panning a little is not to change where they begin.
+const PATTERN_MARGIN: f64 = 1.0;
 
 impl Pane {
     fn name(self) -> &'static str {
@@ -125,7 +130,9 @@ fn draw_curves(
     let mut curves: Vec<&BodeCurve> = scene.curves.iter().collect();
     curves.sort_by_key(|curve| (is_emphasized(curve), curve.role.layer(curve.rejected)));
     let bounds = view.bounds(pane);
-    let tolerance = TOLERANCE * bounds.height() / f64::from(plot.transform().frame().height());
+    let transform = PlotTransform::new(*plot.transform().frame(), bounds, false);
+    let pixel = Pixel::of(&transform, plot.ctx().pixels_per_point(), TOLERANCE);
+    let mut axis = LogFrequencies::default();
     for curve in curves {
         let mut look = curve.role.look(curve.rejected, palette);
         if is_emphasized(curve) {
@@ -133,8 +140,9 @@ fn draw_curves(
         } else if scene.stale {
             look.color = look.color.gamma_multiply(0.5);
         }
-        for run in runs_in_view(curve.points(pane), &bounds) {
-            let run = thinned(&run, tolerance);
+        let margin = if look.style == LineStyle::Solid { LINE_MARGIN } else { PATTERN_MARGIN };
+        for run in runs_in_view(curve.points_on(&mut axis, pane), &bounds, margin) {
+            let run = thinned(&run, pixel);
             plot.line(Line::new("", run).color(look.color).width(look.width).style(look.style).allow_hover(false));
         }
     }

@@ -11,7 +11,7 @@ use super::role::Role;
 pub struct CurveId(pub u64);
 
 /// Which of the two stacked plots.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Pane {
     /// Magnitude \[dB\], above.
     Magnitude,
@@ -45,6 +45,11 @@ pub struct BodeCurve {
 impl BodeCurve {
     /// What a pane shows of this curve.
     pub fn values(&self, pane: Pane) -> &[f64] {
+        self.shared_values(pane)
+    }
+
+    /// [`Self::values`] with their owner: whoever holds it can tell later whether they are still the same.
+    pub(super) fn shared_values(&self, pane: Pane) -> &Arc<[f64]> {
         match pane {
             Pane::Magnitude => &self.magnitude_db,
             Pane::Phase => &self.phase_deg,
@@ -54,6 +59,15 @@ impl BodeCurve {
     /// The points of a pane in plot coordinates, `[log10 omega, value]`; gaps are points that are not finite.
     pub fn points(&self, pane: Pane) -> impl Iterator<Item = [f64; 2]> + '_ {
         self.omega.iter().zip(self.values(pane)).map(|(omega, value)| [omega.log10(), *value])
+    }
+
+    /// [`Self::points`], with logarithms taken once for all the curves on the same frequencies.
+    pub(super) fn points_on<'a>(
+        &'a self,
+        axis: &'a mut LogFrequencies,
+        pane: Pane,
+    ) -> impl Iterator<Item = [f64; 2]> + 'a {
+        axis.of(&self.omega).iter().zip(self.values(pane)).map(|(log_omega, value)| [*log_omega, *value])
     }
 
     /// The value at `omega` \[rad/s\], linear in `log10 omega` between points; nothing outside them or beside a gap.
@@ -73,12 +87,30 @@ impl BodeCurve {
     }
 }
 
-/// Splits points into runs that are finite throughout and come near `view`.
+/// The logarithms of the frequencies asked for last: the curves of a scene mostly share theirs.
+#[derive(Clone, Debug, Default)]
+pub(super) struct LogFrequencies {
+    omega: Arc<[f64]>,
+    log_omega: Vec<f64>,
+}
+
+impl LogFrequencies {
+    /// `log10` of each of `omega`.
+    fn of(&mut self, omega: &Arc<[f64]>) -> &[f64] {
+        if !Arc::ptr_eq(&self.omega, omega) {
+            self.omega = Arc::clone(omega);
+            self.log_omega = omega.iter().map(|omega| omega.log10()).collect();
+        }
+        &self.log_omega
+    }
+}
+
+/// Splits points into runs that are finite throughout and come within `margin` of `view`, a part of its size.
 ///
-/// A point that is not finite makes debug builds of egui_plot panic, and dashing a curve that runs far outside the view
-/// costs time in proportion to its length on the screen.
-pub fn runs_in_view(points: impl Iterator<Item = [f64; 2]>, view: &PlotBounds) -> Vec<Vec<[f64; 2]>> {
-    let near = enlarged(view);
+/// A point that is not finite makes debug builds of egui_plot panic, and a curve that runs far outside the view costs time in
+/// proportion to its points, and where it is dashed, to its length on the screen.
+pub fn runs_in_view(points: impl Iterator<Item = [f64; 2]>, view: &PlotBounds, margin: f64) -> Vec<Vec<[f64; 2]>> {
+    let near = enlarged(view, margin);
     let mut runs: Vec<Vec<[f64; 2]>> = Vec::new();
     let mut run: Vec<[f64; 2]> = Vec::new();
     let mut previous: Option<[f64; 2]> = None;
@@ -103,10 +135,9 @@ fn take_filled(run: &mut Vec<[f64; 2]>) -> Option<Vec<[f64; 2]>> {
     (!run.is_empty()).then(|| std::mem::take(run))
 }
 
-/// `view` and one more of it on every side: panning a little does not change where dashes begin.
-fn enlarged(view: &PlotBounds) -> PlotBounds {
+fn enlarged(view: &PlotBounds, margin: f64) -> PlotBounds {
     let (min, max) = (view.min(), view.max());
-    let (width, height) = (view.width(), view.height());
+    let (width, height) = (margin * view.width(), margin * view.height());
     PlotBounds::from_min_max([min[0] - width, min[1] - height], [max[0] + width, max[1] + height])
 }
 
@@ -117,6 +148,8 @@ fn touches(a: [f64; 2], b: [f64; 2], bounds: &PlotBounds) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     const UNIT: [[f64; 2]; 2] = [[0.0, 0.0], [1.0, 1.0]];
@@ -140,19 +173,34 @@ mod tests {
         }
     }
 
+    proptest! {
+        #[test]
+        fn no_line_leads_across_a_gap(
+            values in prop::collection::vec(prop_oneof![4 => 0.0..1.0f64, 1 => Just(f64::NAN), 1 => Just(f64::INFINITY)], 0..60)
+        ) {
+            let points: Vec<[f64; 2]> = values.iter().enumerate().map(|(k, value)| [k as f64 / 60.0, *value]).collect();
+            let stretches = points.split(|point| !point[1].is_finite());
+            // A single point between two gaps makes no line.
+            let expected: Vec<Vec<[f64; 2]>> = stretches.filter(|run| run.len() > 1).map(<[_]>::to_vec).collect();
+            prop_assert_eq!(runs_in_view(points.into_iter(), &unit_view(), 0.0), expected);
+        }
+    }
+
     #[test]
     fn a_gap_splits_a_curve_into_two() {
         let points = [0.1, 0.2, f64::NAN, 0.3, 0.4, f64::INFINITY].map(|x| [x, 0.5]);
-        let runs = runs_in_view(points.into_iter(), &unit_view());
+        let runs = runs_in_view(points.into_iter(), &unit_view(), 0.0);
         assert_eq!(runs, [vec![[0.1, 0.5], [0.2, 0.5]], vec![[0.3, 0.5], [0.4, 0.5]]]);
     }
 
     #[test]
     fn what_is_far_outside_the_view_is_not_drawn() {
         let points = (-100..100).map(|k| [f64::from(k), 0.5]);
-        let runs = runs_in_view(points, &unit_view());
-        assert_eq!(runs.len(), 1);
-        assert!(runs[0].len() <= 6);
+        for (margin, count) in [(0.0, 4), (1.0, 6)] {
+            let runs = runs_in_view(points.clone(), &unit_view(), margin);
+            assert_eq!(runs.len(), 1);
+            assert_eq!(runs[0].len(), count, "those within, and one on either side to lead there");
+        }
     }
 
     #[test]

@@ -44,6 +44,10 @@ impl GainPanel {
         self.schedule.windows(2).find_map(value)
     }
 
+    fn drawable_schedule(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.schedule.iter().copied().filter(|point| point.iter().all(|c| c.is_finite()))
+    }
+
     fn drawable_dots(&self) -> impl Iterator<Item = &Dot> {
         self.dots.iter().filter(|dot| dot.airspeed_kt.is_finite() && dot.gain.is_finite())
     }
@@ -149,8 +153,7 @@ fn draw_lines(plot: &mut PlotUi<'_>, panel: &GainPanel, palette: &Palette) {
     let reference = palette.dim_text.gamma_multiply(0.8);
     plot.hline(HLine::new("", 1.0).color(reference).width(1.0).style(LineStyle::Dashed { length: 3.0 }));
     let look = Role::Scheduled.look(false, palette);
-    let finite = |point: &[f64; 2]| point.iter().all(|c| c.is_finite());
-    let schedule: Vec<[f64; 2]> = panel.schedule.iter().copied().filter(finite).collect();
+    let schedule: Vec<[f64; 2]> = panel.drawable_schedule().collect();
     plot.line(Line::new("", schedule).color(look.color).width(look.width).style(look.style));
 }
 
@@ -178,7 +181,7 @@ fn paint_labels(
         })
         .collect();
     let path: Vec<Pos2> =
-        panel.schedule.iter().map(|[x, y]| transform.position_from_point(&PlotPoint::new(*x, *y))).collect();
+        panel.drawable_schedule().map(|[x, y]| transform.position_from_point(&PlotPoint::new(x, y))).collect();
     let around = Surroundings { bounds: transform.frame().shrink(1.0), path: &path };
     for ((place, galley), (_, center)) in labels.places(&dots, around).iter().zip(galleys).zip(placed) {
         if let Some(end) = place.leader {

@@ -24,9 +24,11 @@ mod net_gain;
 mod number;
 mod overview;
 mod picking;
+mod pixel;
 mod range;
 mod readout;
 mod role;
+mod sketch;
 mod sparkline;
 #[cfg(test)]
 mod tests;

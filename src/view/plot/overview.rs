@@ -1,5 +1,7 @@
 //! Every response at once: a table of small Bode plots, outputs down, inputs across.
 
+use std::collections::BTreeMap;
+
 use egui::{
     Align2, Button, Color32, CursorIcon, FontId, Painter, Pos2, Rect, RichText, Sense, Stroke, StrokeKind, Ui,
     UiBuilder, Vec2, WidgetInfo, pos2, vec2,
@@ -9,7 +11,7 @@ use super::axes::caption_font;
 use super::curve::{BodeCurve, Pane};
 use super::message::message_ui;
 use super::range::Range;
-use super::sparkline::Sparkline;
+use super::sketch::Sketch;
 use crate::dataset::Pair;
 use crate::view::palette::{Palette, SMALL_SIZE};
 
@@ -64,6 +66,7 @@ pub struct OverviewView {
     /// Whether phases are shown below magnitudes.
     pub show_phase: bool,
     places: Vec<(Pair, Rect)>,
+    sketches: BTreeMap<(Pair, Pane), Sketch>,
 }
 
 impl OverviewView {
@@ -82,7 +85,9 @@ pub fn overview_ui(
 ) -> Vec<OverviewEvent> {
     let rect = ui.available_rect_before_wrap();
     let curves = scene.cells.iter().flat_map(|cell| cell.curves);
-    let log_omega = Range::of(curves.flat_map(|curve| curve.omega.iter().map(|omega| omega.log10())));
+    // Frequencies ascend: the ends are enough.
+    let ends = curves.flat_map(|curve| [curve.omega.first(), curve.omega.last()]).flatten();
+    let log_omega = Range::of(ends.map(|omega| omega.log10()));
     view.places.clear();
     let (Some(log_omega), false, false) = (log_omega, scene.inputs.is_empty(), scene.outputs.is_empty()) else {
         message_ui(ui, rect, scene.message.unwrap_or("Nothing to draw"), palette);
@@ -95,7 +100,7 @@ pub fn overview_ui(
         for cell in scene.cells {
             let place = table.cell(cell.pair);
             view.places.push((cell.pair, place));
-            if cell_ui(ui, scene, (cell, place), view.show_phase, log_omega, palette) {
+            if cell_ui(ui, scene, (cell, place), view, log_omega, palette) {
                 events.push(OverviewEvent::PairClicked(cell.pair));
             }
         }
@@ -143,7 +148,7 @@ fn cell_ui(
     ui: &Ui,
     scene: &OverviewScene<'_>,
     (cell, place): (&OverviewCell<'_>, Rect),
-    show_phase: bool,
+    view: &mut OverviewView,
     log_omega: Range,
     palette: &Palette,
 ) -> bool {
@@ -154,9 +159,15 @@ fn cell_ui(
     if ui.is_rect_visible(place) {
         paint_frame(ui, cell, place, response.hovered() || response.has_focus(), palette);
         let painter = ui.painter().with_clip_rect(place.shrink(1.5).intersect(ui.clip_rect()));
-        for (pane, rect) in pane_rects(place.shrink(2.0), show_phase) {
+        for (pane, rect) in pane_rects(place.shrink(2.0), view.show_phase) {
             paint_band(&painter, rect, scene.band, log_omega, palette);
-            paint_curves(&painter, cell, (pane, rect), log_omega, has_texts(place), palette);
+            let sketch = view.sketches.entry((cell.pair, pane)).or_default();
+            sketch.paint(&painter, cell.curves, (pane, rect), log_omega, palette);
+            if has_texts(place) && !sketch.range_text().is_empty() {
+                // For want of an axis.
+                let corner = rect.left_bottom() + vec2(3.0, -2.0);
+                paint_text(&painter, corner, Align2::LEFT_BOTTOM, sketch.range_text(), palette.dim_text, palette);
+            }
         }
         if has_texts(place) && !cell.note.is_empty() {
             let corner = place.right_top() + vec2(-5.0, 3.0);
@@ -181,25 +192,6 @@ fn paint_frame(ui: &Ui, cell: &OverviewCell<'_>, place: Rect, is_pointed_at: boo
         (false, false) => Stroke::new(1.0, palette.line),
     };
     ui.painter().rect(place, 2.0, fill, outline, StrokeKind::Inside);
-}
-
-fn paint_curves(
-    painter: &Painter,
-    cell: &OverviewCell<'_>,
-    (pane, rect): (Pane, Rect),
-    log_omega: Range,
-    has_text: bool,
-    palette: &Palette,
-) {
-    let Some(sparkline) = Sparkline::new(cell.curves, pane, log_omega, rect) else {
-        return;
-    };
-    sparkline.paint(painter, palette);
-    if has_text {
-        // For want of an axis.
-        let corner = rect.left_bottom() + vec2(3.0, -2.0);
-        paint_text(painter, corner, Align2::LEFT_BOTTOM, &sparkline.range_text(), palette.dim_text, palette);
-    }
 }
 
 /// A text that curves may run behind.

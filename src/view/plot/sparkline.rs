@@ -1,10 +1,11 @@
 //! Curves without axes, in the little room of a table's cell.
 
-use egui::{Painter, Pos2, Rect, Shape};
+use egui::{Pos2, Rect, Shape};
 use egui_plot::{LineStyle, PlotBounds, PlotPoint, PlotTransform};
 
-use super::curve::{BodeCurve, Pane, runs_in_view};
+use super::curve::{BodeCurve, LogFrequencies, Pane, runs_in_view};
 use super::number::decimals;
+use super::pixel::Pixel;
 use super::range::Range;
 use super::thinning::thinned;
 use crate::view::palette::Palette;
@@ -40,11 +41,13 @@ impl<'a> Sparkline<'a> {
         format!("{} … {}{unit}", decimals(min, 0), decimals(max, 0))
     }
 
-    /// Draws the curves; what matters most comes last, on top.
-    pub(super) fn paint(&self, painter: &Painter, palette: &Palette) {
+    /// The curves as shapes; what matters most comes last, on top.
+    pub(super) fn shapes(&self, palette: &Palette, pixels_per_point: f32) -> Vec<Shape> {
         let mut curves: Vec<&BodeCurve> = self.curves.iter().collect();
         curves.sort_by_key(|curve| (curve.highlighted, curve.role.layer(curve.rejected)));
-        for curve in curves {
+        let pixel = Pixel::of(&self.transform, pixels_per_point, TOLERANCE);
+        let mut axis = LogFrequencies::default();
+        let shapes = |curve: &BodeCurve| {
             let mut look = curve.role.look(curve.rejected, palette);
             look.width *= WIDTH_PART;
             look.style = match look.style {
@@ -55,16 +58,16 @@ impl<'a> Sparkline<'a> {
             if curve.highlighted {
                 look = look.emphasized();
             }
-            let shapes = self.paths(curve).into_iter().flat_map(|path| look.shapes(&path));
-            painter.extend(shapes.collect::<Vec<Shape>>());
-        }
+            self.paths(curve, &mut axis, pixel).iter().flat_map(|path| look.shapes(path)).collect::<Vec<Shape>>()
+        };
+        curves.into_iter().flat_map(shapes).collect()
     }
 
     /// A curve on the screen, thinned to what can be told apart.
-    fn paths(&self, curve: &BodeCurve) -> Vec<Vec<Pos2>> {
-        let tolerance = TOLERANCE * self.transform.dvalue_dpos()[1].abs();
+    fn paths(&self, curve: &BodeCurve, axis: &mut LogFrequencies, pixel: Pixel) -> Vec<Vec<Pos2>> {
         let position = |[x, y]: [f64; 2]| self.transform.position_from_point(&PlotPoint::new(x, y));
-        let runs = runs_in_view(curve.points(self.pane), self.transform.bounds());
-        runs.iter().map(|run| thinned(run, tolerance).into_iter().map(position).collect()).collect()
+        // All of it is in view.
+        let runs = runs_in_view(curve.points_on(axis, self.pane), self.transform.bounds(), 0.0);
+        runs.iter().map(|run| thinned(run, pixel).into_iter().map(position).collect()).collect()
     }
 }

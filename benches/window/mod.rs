@@ -9,7 +9,6 @@ use egui_kittest::kittest::Queryable;
 
 use gdcm::app::GdcmApp;
 use gdcm::io::{Opened, embedded_example};
-use gdcm::view::state::Tab;
 
 /// The window on the embedded example.
 pub struct Window {
@@ -40,13 +39,11 @@ impl Window {
         self.harness.run_steps(4);
     }
 
-    /// How many curves of how many points the large plot holds, where it is shown.
+    /// How many curves of how many points the large plot holds.
     pub fn curves_drawn(&self) -> String {
-        let display = &self.harness.state().state().display;
-        match (display.tab, display.drawn.first()) {
-            (Tab::Bode, Some(curve)) => format!("{} curves of {} points", display.drawn.len(), curve.omega.len()),
-            _ => "all conditions".to_owned(),
-        }
+        let drawn = &self.harness.state().state().display.drawn;
+        let points = drawn.first().map_or(0, |curve| curve.omega.len());
+        format!("{} curves of {points} points", drawn.len())
     }
 
     /// The window's context, and what draws it.

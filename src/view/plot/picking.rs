@@ -3,7 +3,7 @@
 use egui::Pos2;
 use egui_plot::{PlotPoint, PlotTransform};
 
-use super::curve::{BodeCurve, CurveId, Pane};
+use super::curve::{BodeCurve, CurveId, LogFrequencies, Pane};
 
 /// How far from a curve the pointer may be to mean it \[pt\].
 pub const PICK_RADIUS: f32 = 8.0;
@@ -22,8 +22,10 @@ pub struct Hit {
 /// The curve nearest to `pointer`, if one is within [`PICK_RADIUS`]. Of equally near ones, the one drawn on top.
 pub fn nearest(curves: &[BodeCurve], pane: Pane, pointer: Pos2, transform: &PlotTransform) -> Option<Hit> {
     let mut best: Option<(Hit, usize)> = None;
+    let mut axis = LogFrequencies::default();
     for curve in curves {
-        let Some((distance, at)) = distance_to(curve, pane, pointer, transform) else {
+        let points = curve.points_on(&mut axis, pane);
+        let Some((distance, at)) = distance_to(points, pointer, transform) else {
             continue;
         };
         let layer = curve.role.layer(curve.rejected);
@@ -38,10 +40,13 @@ pub fn nearest(curves: &[BodeCurve], pane: Pane, pointer: Pos2, transform: &Plot
 }
 
 /// Distance from `pointer` to a curve and the point of the curve that has it; nothing where no part comes near.
-fn distance_to(curve: &BodeCurve, pane: Pane, pointer: Pos2, transform: &PlotTransform) -> Option<(f32, Pos2)> {
+fn distance_to(
+    points: impl Iterator<Item = [f64; 2]>,
+    pointer: Pos2,
+    transform: &PlotTransform,
+) -> Option<(f32, Pos2)> {
     let near = pointer.x - PICK_RADIUS..=pointer.x + PICK_RADIUS;
-    let positions = curve
-        .points(pane)
+    let positions = points
         .map(|[x, y]| (x.is_finite() && y.is_finite()).then(|| transform.position_from_point(&PlotPoint::new(x, y))));
     let mut previous: Option<Pos2> = None;
     let mut best: Option<(f32, Pos2)> = None;

@@ -3,23 +3,28 @@
 use std::sync::Arc;
 
 use egui::{Painter, Rect, Shape};
+use egui_plot::PlotBounds;
 
-use super::curve::{BodeCurve, Pane};
+use super::curve::{BodeCurve, LogFrequencies, Pane};
 use super::range::Range;
 use super::role::Role;
 use super::sparkline::Sparkline;
 use crate::view::palette::Palette;
 
-/// A sparkline as shapes, kept as long as it would come out the same: making it costs far more than showing it again.
+/// A sparkline as shapes, kept as long as they would come out the same: making them costs far more than showing them again.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sketch {
-    drawn_from: Option<Subject>,
-    shapes: Vec<Shape>,
+    /// Where it was drawn, and the part of the curves that was in view, where there was anything to draw.
+    drawn: Option<(Place, Option<PlotBounds>)>,
+    /// In the order of the curves.
+    traces: Vec<Trace>,
+    /// Indices of the traces, what matters most last, on top.
+    order: Vec<usize>,
     range_text: String,
 }
 
 impl Sketch {
-    /// Draws `curves` into `rect`, anew only where something changed since the last frame.
+    /// Draws `curves` into `rect`, anew only what changed since the last frame.
     pub(super) fn paint(
         &mut self,
         painter: &Painter,
@@ -29,34 +34,49 @@ impl Sketch {
         palette: &Palette,
     ) {
         let place = Place { rect, log_omega, palette: *palette, pixels_per_point: painter.pixels_per_point() };
-        if !self.drawn_from.as_ref().is_some_and(|subject| subject.is(curves, pane, &place)) {
-            let sparkline = Sparkline::new(curves, pane, log_omega, rect);
-            self.range_text = sparkline.as_ref().map(Sparkline::range_text).unwrap_or_default();
-            self.shapes =
-                sparkline.map(|sparkline| sparkline.shapes(&place.palette, place.pixels_per_point)).unwrap_or_default();
-            self.drawn_from =
-                Some(Subject { lines: curves.iter().map(|curve| Trace::of(curve, pane)).collect(), place });
+        if !self.shows(curves, pane, &place) {
+            self.draw(curves, pane, place);
         }
-        painter.extend(self.shapes.iter().cloned());
+        for index in &self.order {
+            painter.extend(self.traces[*index].shapes.iter().cloned());
+        }
     }
 
     /// The part of the vertical axis that was in view, in words; empty where there was nothing to draw.
     pub(super) fn range_text(&self) -> &str {
         &self.range_text
     }
-}
 
-/// What a sketch was drawn from.
-#[derive(Clone, Debug)]
-struct Subject {
-    lines: Vec<Trace>,
-    place: Place,
-}
+    fn shows(&self, curves: &[BodeCurve], pane: Pane, place: &Place) -> bool {
+        let same = |(trace, curve): (&Trace, &BodeCurve)| trace.is_of(curve, pane);
+        self.drawn.is_some_and(|(drawn, _)| drawn == *place)
+            && self.traces.len() == curves.len()
+            && self.traces.iter().zip(curves).all(same)
+    }
 
-impl Subject {
-    fn is(&self, curves: &[BodeCurve], pane: Pane, place: &Place) -> bool {
-        let same = |(line, curve): (&Trace, &BodeCurve)| line.is(curve, pane);
-        self.place == *place && self.lines.len() == curves.len() && self.lines.iter().zip(curves).all(same)
+    fn draw(&mut self, curves: &[BodeCurve], pane: Pane, place: Place) {
+        let sparkline = Sparkline::new(curves, pane, place.log_omega, place.rect);
+        let drawn = Some((place, sparkline.as_ref().map(Sparkline::bounds)));
+        let mut kept = std::mem::take(&mut self.traces);
+        if self.drawn != drawn {
+            kept.clear();
+        }
+        let mut axis = LogFrequencies::default();
+        let trace = |curve: &BodeCurve| match kept.iter().position(|trace| trace.is_of(curve, pane)) {
+            Some(index) => kept.swap_remove(index),
+            None => {
+                let shapes = sparkline
+                    .as_ref()
+                    .map(|sparkline| sparkline.shapes(curve, &mut axis, &place.palette, place.pixels_per_point));
+                Trace::of(curve, pane, shapes.unwrap_or_default())
+            }
+        };
+        self.traces = curves.iter().map(trace).collect();
+        self.order = (0..curves.len()).collect();
+        let rank = |index: &usize| (curves[*index].highlighted, curves[*index].role.layer(curves[*index].rejected));
+        self.order.sort_by_key(rank);
+        self.range_text = sparkline.as_ref().map(Sparkline::range_text).unwrap_or_default();
+        self.drawn = drawn;
     }
 }
 
@@ -69,7 +89,7 @@ struct Place {
     pixels_per_point: f32,
 }
 
-/// What one line of a sketch was drawn from. It holds the numbers, so that no others can take their place in memory.
+/// A curve as it was drawn, and from what. It holds the numbers, so that no others can take their place in memory.
 #[derive(Clone, Debug)]
 struct Trace {
     omega: Arc<[f64]>,
@@ -77,22 +97,94 @@ struct Trace {
     role: Role,
     rejected: bool,
     highlighted: bool,
+    shapes: Vec<Shape>,
 }
 
 impl Trace {
-    fn of(curve: &BodeCurve, pane: Pane) -> Self {
+    fn of(curve: &BodeCurve, pane: Pane, shapes: Vec<Shape>) -> Self {
         Self {
             omega: Arc::clone(&curve.omega),
             values: Arc::clone(curve.shared_values(pane)),
             role: curve.role,
             rejected: curve.rejected,
             highlighted: curve.highlighted,
+            shapes,
         }
     }
 
-    fn is(&self, curve: &BodeCurve, pane: Pane) -> bool {
+    /// Whether `curve` would come out the same, in the same place.
+    fn is_of(&self, curve: &BodeCurve, pane: Pane) -> bool {
         Arc::ptr_eq(&self.omega, &curve.omega)
             && Arc::ptr_eq(&self.values, curve.shared_values(pane))
             && (self.role, self.rejected, self.highlighted) == (curve.role, curve.rejected, curve.highlighted)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::{Context, LayerId, pos2};
+
+    use super::*;
+    use crate::view::plot::curve::CurveId;
+
+    fn curve(id: u64, values: &[f64]) -> BodeCurve {
+        BodeCurve {
+            id: CurveId(id),
+            label: String::new(),
+            detail: String::new(),
+            role: Role::Perturbed,
+            rejected: false,
+            highlighted: false,
+            omega: vec![1.0, 2.0, 4.0].into(),
+            magnitude_db: values.into(),
+            phase_deg: values.into(),
+        }
+    }
+
+    fn paint(sketch: &mut Sketch, curves: &[BodeCurve]) {
+        let rect = Rect::from_min_max(pos2(0.0, 0.0), pos2(100.0, 60.0));
+        let painter = Painter::new(Context::default(), LayerId::background(), rect);
+        let log_omega = Range::new(0.0, 0.7);
+        sketch.paint(&painter, curves, (Pane::Magnitude, rect), log_omega, &Palette::dark());
+    }
+
+    /// Where the shapes of a trace are in memory: elsewhere once it is drawn anew.
+    fn places(sketch: &Sketch) -> Vec<*const Shape> {
+        sketch.traces.iter().map(|trace| trace.shapes.as_ptr()).collect()
+    }
+
+    #[test]
+    fn only_what_changed_is_drawn_anew() {
+        let (mut sketch, mut curves) =
+            (Sketch::default(), vec![curve(0, &[0.0, 9.0, 5.0]), curve(1, &[1.0, 2.0, 3.0])]);
+        paint(&mut sketch, &curves);
+        let first = places(&sketch);
+        paint(&mut sketch, &curves);
+        assert_eq!(places(&sketch), first);
+        // Inside the values in view.
+        curves[1] = curve(1, &[3.0, 2.0, 1.0]);
+        paint(&mut sketch, &curves);
+        assert_eq!(places(&sketch)[0], first[0]);
+        assert!(sketch.traces[1].is_of(&curves[1], Pane::Magnitude));
+    }
+
+    #[test]
+    fn a_curve_that_reaches_farther_moves_the_others() {
+        let (mut sketch, mut curves) =
+            (Sketch::default(), vec![curve(0, &[0.0, 9.0, 5.0]), curve(1, &[1.0, 2.0, 3.0])]);
+        paint(&mut sketch, &curves);
+        let before = sketch.traces[0].shapes.clone();
+        curves[1] = curve(1, &[1.0, 20.0, 3.0]);
+        paint(&mut sketch, &curves);
+        assert_ne!(sketch.traces[0].shapes, before);
+        assert_eq!(sketch.range_text(), "\u{2212}1 … 21 dB");
+    }
+
+    #[test]
+    fn what_is_pointed_at_is_on_top() {
+        let (mut sketch, mut curves) = (Sketch::default(), vec![curve(0, &[0.0; 3]), curve(1, &[1.0; 3])]);
+        curves[0].highlighted = true;
+        paint(&mut sketch, &curves);
+        assert_eq!(sketch.order, [1, 0]);
     }
 }

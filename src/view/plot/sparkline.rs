@@ -15,20 +15,19 @@ const TOLERANCE: f64 = 0.25;
 /// Width of lines here as a part of that in a full plot.
 const WIDTH_PART: f32 = 0.72;
 
-/// The curves of one pane in a small rectangle.
-pub(super) struct Sparkline<'a> {
-    curves: &'a [BodeCurve],
+/// One pane of some curves in a small rectangle.
+pub(super) struct Sparkline {
     pane: Pane,
     transform: PlotTransform,
 }
 
-impl<'a> Sparkline<'a> {
+impl Sparkline {
     /// All values of `curves` in `rect`, with a little space above and below; nothing where there is no value.
-    pub(super) fn new(curves: &'a [BodeCurve], pane: Pane, log_omega: Range, rect: Rect) -> Option<Self> {
+    pub(super) fn new(curves: &[BodeCurve], pane: Pane, log_omega: Range, rect: Rect) -> Option<Self> {
         let values = Range::of(curves.iter().flat_map(|curve| curve.values(pane).iter().copied()))?;
         let values = values.with_margin(0.06, 1.0);
         let bounds = PlotBounds::from_min_max([log_omega.min, values.min], [log_omega.max, values.max]);
-        Some(Self { curves, pane, transform: PlotTransform::new(rect, bounds, false) })
+        Some(Self { pane, transform: PlotTransform::new(rect, bounds, false) })
     }
 
     /// The part of the vertical axis in view, in words.
@@ -41,26 +40,31 @@ impl<'a> Sparkline<'a> {
         format!("{} … {}{unit}", decimals(min, 0), decimals(max, 0))
     }
 
-    /// The curves as shapes; what matters most comes last, on top.
-    pub(super) fn shapes(&self, palette: &Palette, pixels_per_point: f32) -> Vec<Shape> {
-        let mut curves: Vec<&BodeCurve> = self.curves.iter().collect();
-        curves.sort_by_key(|curve| (curve.highlighted, curve.role.layer(curve.rejected)));
-        let pixel = Pixel::of(&self.transform, pixels_per_point, TOLERANCE);
-        let mut axis = LogFrequencies::default();
-        let shapes = |curve: &BodeCurve| {
-            let mut look = curve.role.look(curve.rejected, palette);
-            look.width *= WIDTH_PART;
-            look.style = match look.style {
-                LineStyle::Solid => LineStyle::Solid,
-                LineStyle::Dashed { .. } => LineStyle::Dashed { length: 4.0 },
-                LineStyle::Dotted { .. } => LineStyle::Dotted { spacing: 3.5 },
-            };
-            if curve.highlighted {
-                look = look.emphasized();
-            }
-            self.paths(curve, &mut axis, pixel).iter().flat_map(|path| look.shapes(path)).collect::<Vec<Shape>>()
+    /// The part in view: `log10 omega` and values.
+    pub(super) fn bounds(&self) -> PlotBounds {
+        *self.transform.bounds()
+    }
+
+    /// One of the curves as shapes.
+    pub(super) fn shapes(
+        &self,
+        curve: &BodeCurve,
+        axis: &mut LogFrequencies,
+        palette: &Palette,
+        pixels_per_point: f32,
+    ) -> Vec<Shape> {
+        let mut look = curve.role.look(curve.rejected, palette);
+        look.width *= WIDTH_PART;
+        look.style = match look.style {
+            LineStyle::Solid => LineStyle::Solid,
+            LineStyle::Dashed { .. } => LineStyle::Dashed { length: 4.0 },
+            LineStyle::Dotted { .. } => LineStyle::Dotted { spacing: 3.5 },
         };
-        curves.into_iter().flat_map(shapes).collect()
+        if curve.highlighted {
+            look = look.emphasized();
+        }
+        let pixel = Pixel::of(&self.transform, pixels_per_point, TOLERANCE);
+        self.paths(curve, axis, pixel).iter().flat_map(|path| look.shapes(path)).collect()
     }
 
     /// A curve on the screen, thinned to what can be told apart.

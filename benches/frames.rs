@@ -18,8 +18,8 @@ use gdcm::view::plot::{BodeCurve, BodeScene, BodeView, CurveId, FrequencyUnit, R
 use window::Window;
 
 const SIZE: egui::Vec2 = vec2(1600.0, 900.0);
-const CURVES: usize = 25;
-const POINTS: usize = 500;
+/// Curves and their points: first the size that the figure to reach is for.
+const SIZES: [(usize, usize); 4] = [(25, 500), (25, 5000), (100, 500), (6, 500)];
 /// Frames of which the middle one counts in the table.
 const FRAMES: usize = 301;
 
@@ -85,8 +85,8 @@ impl<'a> Screen<'a> {
 }
 
 /// A second-order lag with a notch: as many bends as a coupled response has.
-fn curve(number: usize) -> BodeCurve {
-    let omega: Vec<f64> = (0..POINTS).map(|k| 0.3 * (20.0f64 / 0.3).powf(k as f64 / (POINTS - 1) as f64)).collect();
+fn curve(number: usize, points: usize) -> BodeCurve {
+    let omega: Vec<f64> = (0..points).map(|k| 0.3 * (20.0f64 / 0.3).powf(k as f64 / (points - 1) as f64)).collect();
     let corner = 2.0 + 0.05 * number as f64;
     let magnitude = |w: &f64| {
         let (lag, notch) = ((w / corner).powi(2), (w / (2.0 * corner)).powi(2));
@@ -106,7 +106,7 @@ fn curve(number: usize) -> BodeCurve {
             5 | 6 => Role::Identified,
             _ => Role::Perturbed,
         },
-        rejected: number > 22,
+        rejected: number == 23,
         highlighted: false,
         magnitude_db: omega.iter().map(magnitude).collect(),
         phase_deg: omega.iter().map(phase).collect(),
@@ -180,18 +180,33 @@ impl Figures {
     }
 }
 
+/// One line of the table.
+struct Row {
+    name: String,
+    figures: Figures,
+    /// What plain lines take \[ms\].
+    plain: f64,
+}
+
 fn frames(criterion: &mut Criterion) {
-    let curves: Vec<BodeCurve> = (0..CURVES).map(curve).collect();
+    // First, so that the heap is as large for the plain lines as for the window.
     let mut window = Window::settled();
     println!("The window shows {}.", window.curves_drawn());
-    let mut rows = Vec::new();
+    let mut rows: Vec<Row> = Vec::new();
     let mut group = criterion.benchmark_group("a frame");
     let mut measure = |name: String, screen: &mut Screen<'_>| {
         group.bench_function(&name, |bencher| bencher.iter(|| screen.tessellated_frame()));
-        rows.push((name, Figures::of(screen)));
+        (name, Figures::of(screen))
     };
-    measure(format!("plain lines, {CURVES} curves of {POINTS} points"), &mut plain(&curves));
-    measure(format!("Bode plot alone, {CURVES} curves of {POINTS} points"), &mut bode(&curves));
+    for (count, points) in SIZES {
+        let curves: Vec<BodeCurve> = (0..count).map(|number| curve(number, points)).collect();
+        let (name, figures) = measure(format!("plain lines, {count} of {points} points"), &mut plain(&curves));
+        let plain = figures.both;
+        rows.push(Row { name, figures, plain });
+        let (name, figures) = measure(format!("Bode plot, {count} curves of {points} points"), &mut bode(&curves));
+        rows.push(Row { name, figures, plain });
+    }
+    let plain = rows[0].plain;
     for (tab, doing, what) in [
         ("Bode", Doing::Nothing, ""),
         ("Bode", Doing::Pointing, ", pointer moving"),
@@ -203,24 +218,23 @@ fn frames(criterion: &mut Criterion) {
         ("Assessment", Doing::Nothing, ""),
     ] {
         window.show(tab);
-        let name = format!("window, {tab}{what}");
         let (ctx, draw) = window.drawn();
-        measure(name, &mut Screen::new(ctx, doing, draw));
+        let (name, figures) = measure(format!("window, {tab}{what}"), &mut Screen::new(ctx, doing, draw));
+        rows.push(Row { name, figures, plain });
     }
     group.finish();
     print_table(&rows);
 }
 
-fn print_table(rows: &[(String, Figures)]) {
-    let baseline = rows.first().map_or(f64::NAN, |(_, plain)| plain.both);
+fn print_table(rows: &[Row]) {
     println!(
-        "{:50} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}",
+        "{:40} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}",
         "ms a frame, median", "ui", "tessel.", "both", "shortest", "vertices", "of plain"
     );
-    for (name, figures) in rows {
+    for Row { name, figures, plain } in rows {
         let Figures { shapes, tessellation, both, shortest, vertices } = figures;
-        let ratio = both / baseline;
-        println!("{name:50} {shapes:8.2} {tessellation:8.2} {both:8.2} {shortest:8.2} {vertices:8} {ratio:8.2}");
+        let ratio = both / plain;
+        println!("{name:40} {shapes:8.2} {tessellation:8.2} {both:8.2} {shortest:8.2} {vertices:8} {ratio:8.2}");
     }
 }
 

@@ -411,6 +411,54 @@ fn assert_asks_for_no_frame(window: &mut Window, what: &str) {
 }
 
 #[test]
+fn what_is_out_of_sight_is_not_tessellated() {
+    let mut window = window();
+    for tab in ["Overview", "Channels", "Assessment", "Bode"] {
+        click(&mut window, tab);
+        assert_little_is_hidden(&window, tab);
+    }
+    let nominal = drawn(&window, CurveRole::Nominal);
+    let view = &state(&window).display.bode;
+    let place = view.screen_position(Pane::Magnitude, nominal.omega[200], nominal.magnitude_db[200]).unwrap();
+    window.hover_at(place);
+    for _ in 0..20 {
+        window.event(egui::Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Line,
+            delta: vec2(0.0, 1.0),
+            phase: egui::TouchPhase::Move,
+            modifiers: Modifiers::NONE,
+            source: egui::MouseWheelSource::Wheel,
+        });
+        window.run_steps(4);
+    }
+    let (min, max) = state(&window).display.bode.omega_range();
+    assert!(max / min < 1.2, "the wheel zoomed in: {min} to {max} rad/s");
+    assert_little_is_hidden(&window, "Bode zoomed in");
+}
+
+/// Every shape in view is tessellated as a whole: dashes and letters at an edge have a few triangles beyond it.
+fn assert_little_is_hidden(window: &Window, what: &str) {
+    let (hidden, all) = hidden_triangles(window);
+    assert!(all > 10_000 && hidden < all / 100, "{what}: {hidden} of {all} triangles");
+}
+
+/// How many triangles of the frame drawn last lie outside what they are clipped to, and how many there are.
+fn hidden_triangles(window: &Window) -> (usize, usize) {
+    let output = window.output();
+    let (mut hidden, mut all) = (0, 0);
+    for primitive in window.ctx.tessellate(output.shapes.clone(), output.pixels_per_point) {
+        let egui::epaint::Primitive::Mesh(mesh) = &primitive.primitive else { continue };
+        for corners in mesh.indices.chunks_exact(3) {
+            let positions = corners.iter().map(|&corner| mesh.vertices[corner as usize].pos);
+            let bounds = egui::Rect::from_points(&positions.collect::<Vec<_>>());
+            hidden += usize::from(!bounds.intersects(primitive.clip_rect));
+            all += 1;
+        }
+    }
+    (hidden, all)
+}
+
+#[test]
 fn pointing_at_plots_starts_no_analysis() {
     let mut window = window();
     let (requested, analysis) = (state(&window).results.requested, state(&window).results.analysis.clone());

@@ -18,8 +18,17 @@ impl Pixel {
         Self { width: x_per_point / f64::from(pixels_per_point), tolerance: tolerance_pt * y_per_point }
     }
 
-    /// The index of the column that `x` lies in.
-    pub(super) fn column(self, x: f64) -> f64 {
-        (x / self.width).floor()
+    /// Splits points, ascending in x, into those of each column of pixels.
+    pub(super) fn columns(self, points: &[[f64; 2]]) -> impl Iterator<Item = &[[f64; 2]]> {
+        let mut rest = points;
+        std::iter::from_fn(move || {
+            let first = rest.first()?;
+            let end = ((first[0] / self.width).floor() + 1.0) * self.width;
+            // By rounding, the end may come out at the first point itself.
+            let count = rest.iter().take_while(|point| point[0] < end).count().max(1);
+            let (column, others) = rest.split_at(count);
+            rest = others;
+            Some(column)
+        })
     }
 }

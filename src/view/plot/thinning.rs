@@ -17,7 +17,7 @@ fn column_extremes(run: &[[f64; 2]], pixel: Pixel) -> Cow<'_, [[f64; 2]]> {
         return Cow::Borrowed(run);
     }
     let mut kept = Vec::with_capacity(run.len());
-    for points in run.chunk_by(|a, b| pixel.column(a[0]) == pixel.column(b[0])) {
+    for points in pixel.columns(run) {
         if points.len() <= 2 {
             kept.extend_from_slice(points);
             continue;
@@ -85,10 +85,6 @@ mod tests {
         points.iter().map(|point| (point[1] - drawn_at(kept, point[0])).abs()).fold(0.0, f64::max)
     }
 
-    fn columns(points: &[[f64; 2]], pixel: Pixel) -> impl Iterator<Item = &[[f64; 2]]> {
-        points.chunk_by(move |a, b| pixel.column(a[0]) == pixel.column(b[0]))
-    }
-
     /// The least and the greatest value of some points.
     fn extremes(points: &[[f64; 2]]) -> (f64, f64) {
         let start = (f64::INFINITY, f64::NEG_INFINITY);
@@ -119,8 +115,8 @@ mod tests {
         #[test]
         fn every_column_keeps_its_first_its_last_and_its_extremes(run in run()) {
             let kept = column_extremes(&run, PIXEL);
-            prop_assert_eq!(columns(&run, PIXEL).count(), columns(&kept, PIXEL).count());
-            for (all, kept) in columns(&run, PIXEL).zip(columns(&kept, PIXEL)) {
+            prop_assert_eq!(PIXEL.columns(&run).count(), PIXEL.columns(&kept).count());
+            for (all, kept) in PIXEL.columns(&run).zip(PIXEL.columns(&kept)) {
                 prop_assert_eq!(extremes(all), extremes(kept));
                 prop_assert_eq!((all.first(), all.last()), (kept.first(), kept.last()));
             }
@@ -129,7 +125,7 @@ mod tests {
         #[test]
         fn what_is_drawn_in_a_column_reaches_as_far_as_its_points(run in run()) {
             let kept = thinned(&run, PIXEL);
-            for column in columns(&run, PIXEL) {
+            for column in PIXEL.columns(&run) {
                 let (first, last) = (column[0], column[column.len() - 1]);
                 let inside = |point: &&[f64; 2]| (first[0]..=last[0]).contains(&point[0]);
                 let mut drawn: Vec<[f64; 2]> = kept.iter().filter(inside).copied().collect();

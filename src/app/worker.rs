@@ -14,7 +14,7 @@ use crate::study::{
 use crate::view::state::FirstResult;
 
 /// Frequencies of the curves that are drawn.
-const CURVE_POINTS: usize = 400;
+const CURVE_POINTS: usize = 500;
 
 /// What is to be computed. All of it is shared, so that a request costs next to nothing.
 #[derive(Clone, Debug)]

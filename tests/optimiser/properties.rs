@@ -190,3 +190,19 @@ fn an_exact_product_of_gains_is_found_with_an_objective_of_zero() {
     assert!(solution.objective <= 1e-28, "{}", solution.objective);
     assert!(matches!(solution.outcome, Outcome::Proven { .. }), "{:?}", solution.outcome);
 }
+
+#[test]
+fn a_strong_regularisation_that_meets_its_bound_is_proven() {
+    // Found by the random problems: the optimum lies 1e-8 inside the upper bound of 1.
+    let wanted = [Some(0.9897481972920906), None, Some(0.989970222018355)];
+    let problem = GainProblem {
+        wanted: PairTable::from_fn(3, 1, |pair| wanted[pair.output]),
+        constrained: PairTable::filled(3, 1, false),
+        fitted: PairTable::from_fn(3, 1, |pair| pair.output != 1),
+        bounds: GainBounds { lower: 0.2, upper: 1.0 },
+        alpha: 1e6,
+        objective: gdcm::correction::GainObjective::Ratio,
+    };
+    let solution = solve_gains(&problem, ProofBudget::default()).unwrap();
+    assert!(matches!(solution.outcome, Outcome::Proven { gap } if gap <= 1e-9), "{:?}", solution.outcome);
+}

@@ -219,7 +219,7 @@ impl<'a> Search<'a> {
             return self.peel(&edges[..count], region, bound, start);
         }
         let widest = gap.or_else(|| relaxation.widest_slope()).map(|link| (link, region.range(link.from, link.to)));
-        let Some((link, (low, high))) = widest.filter(|(_, (low, high))| high - low > 1e-7) else {
+        let Some((link, (low, high))) = widest.filter(|(_, (low, high))| high - low > 1e-11) else {
             // The bound is as sharp as rounding allows.
             self.all_minima &= !listing;
             return self.close(bound);

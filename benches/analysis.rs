@@ -6,16 +6,23 @@
 
 use std::hint::black_box;
 use std::sync::Arc;
+use std::time::Instant;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 
 use gdcm::app::Pool;
 use gdcm::correction::{Delta, delay_upper_s, gain_bounds, mismatch_table};
-use gdcm::dataset::{Band, BundleKind, Dataset, ModelId};
+use gdcm::dataset::{Band, BundleKind, Dataset, Dynamics, ModelId};
 use gdcm::fidelity::Discontinuity;
 use gdcm::io::embedded_example;
 use gdcm::response::{FrequencyGrid, PolarResponse};
 use gdcm::study::{BundleFigures, Edit, Effort, Engine, PreparedCondition, Setting, Study, Unwatched};
+
+#[path = "random_model/mod.rs"]
+#[expect(dead_code, reason = "other benches use the rest of it")]
+mod random_model;
+
+use random_model::dense_responses;
 
 fn example() -> Arc<Dataset> {
     embedded_example().expect("the embedded example is a dataset").dataset
@@ -90,5 +97,43 @@ fn all_conditions(criterion: &mut Criterion, name: &str, engine: impl Fn() -> En
     group.finish();
 }
 
-criterion_group!(benches, stages, live_loop);
+/// What the stages are worth beside plain ways, in the same run: the shortest of a few runs each.
+fn ratios(_: &mut Criterion) {
+    let dataset = example();
+    let (condition, grid) = (&dataset.conditions()[9], FrequencyGrid::logarithmic(dataset.band(), 200));
+    let alone = Effort::alone();
+    let ours = shortest(20, || PreparedCondition::of(condition).responses(condition, &grid, &alone));
+    let models = [BundleKind::Physics, BundleKind::Identified].map(|kind| condition.bundle(kind)).concat();
+    let plain = shortest(3, || {
+        for model in &models {
+            if let Dynamics::StateSpace(model) = &model.dynamics {
+                black_box(dense_responses(model, grid.omega()));
+            }
+        }
+    });
+    println!("responses of one condition: a dense LU at each frequency takes {:.0} times as long", plain / ours);
+    let study = Study::new(Arc::clone(&dataset));
+    let anew = shortest(5, || Engine::default().analyze(&study, &Unwatched));
+    let together = shortest(5, || Engine::with_crew(Box::new(Pool)).analyze(&study, &Unwatched));
+    println!("everything anew: one core takes {:.2} times as long as all", anew / together);
+    let (mut engine, mut dragged, mut alpha) = (Engine::default(), study.clone(), 1.0);
+    let drag = shortest(50, || {
+        alpha += 1e-6;
+        dragged.apply(&Edit::Set(Setting::AlphaGain(alpha))).expect("within its range");
+        engine.analyze(&dragged, &Unwatched)
+    });
+    println!("alpha dragged: everything anew would take {:.0} times as long", anew / drag);
+}
+
+/// The shortest of a few runs in seconds.
+fn shortest<T>(runs: usize, mut run: impl FnMut() -> T) -> f64 {
+    let time = |_| {
+        let start = Instant::now();
+        black_box(run());
+        start.elapsed()
+    };
+    (0..runs).map(time).min().unwrap_or_default().as_secs_f64()
+}
+
+criterion_group!(benches, stages, live_loop, ratios);
 criterion_main!(benches);

@@ -2,7 +2,7 @@
 
 use super::*;
 
-const GOLDEN: &str = include_str!("../data/reference/frequency-response-golden.json");
+pub const GOLDEN: &str = include_str!("../data/reference/frequency-response-golden.json");
 
 fn matrix(value: &Value) -> DMatrix<f64> {
     let rows: Vec<Vec<f64>> = list(value).iter().map(numbers).collect();
@@ -32,7 +32,7 @@ pub fn model_of(file: &str) -> Dynamics {
 }
 
 /// A model of the example, by condition, bundle and name; or of a file.
-fn dynamics_of(case: &Value) -> Dynamics {
+pub fn dynamics_of(case: &Value) -> Dynamics {
     let name = case["model"].as_str().unwrap();
     let Some(id) = case["condition"].as_i64() else {
         return model_of(name);

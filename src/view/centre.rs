@@ -77,11 +77,7 @@ fn bode_tab_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
     let band = state.study.settings.band;
     let title = state.dataset().pair_name(state.display.pair);
     let stale = state.results.is_stale(ui.input(|input| input.time));
-    let message = match (state.results.stopped, state.results.is_waiting()) {
-        (true, _) => Some("not computed"),
-        (false, true) => Some("computing …"),
-        (false, false) => None,
-    };
+    let message = state.results.is_behind().then(|| state.results.absence());
     let scene = BodeScene {
         pair_title: &title,
         curves: &state.display.drawn,
@@ -162,8 +158,11 @@ fn schedule_ui(ui: &mut Ui, settings: ScheduleSettings) -> Option<Command> {
 
 fn net_gain_tab_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let panels = net_gain_panels(state);
-    let message =
-        if state.analysis().is_none() { "computing …" } else { "No response is held: hold one in the matrix" };
+    let message = if state.analysis().is_none() {
+        state.results.absence()
+    } else {
+        "No response is held: hold one in the matrix"
+    };
     let scene = NetGainScene { panels: &panels, message: Some(message) };
     let events = net_gain_ui(ui, &scene, &mut state.display.net_gain, palette);
     commands.extend(events.into_iter().filter_map(gain_command));
@@ -171,7 +170,7 @@ fn net_gain_tab_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: 
 
 fn channels_tab_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let (inputs, outputs) = channel_panels(state);
-    let scene = ChannelsScene { inputs: &inputs, outputs: &outputs, message: Some("computing …") };
+    let scene = ChannelsScene { inputs: &inputs, outputs: &outputs, message: Some(state.results.absence()) };
     let events = channels_ui(ui, &scene, &mut state.display.channels, palette);
     commands.extend(events.into_iter().filter_map(gain_command));
 }
@@ -197,7 +196,7 @@ fn overview_tab_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: 
         outputs: &outputs,
         cells: &cells,
         band: (band.min(), band.max()),
-        message: Some("computing …"),
+        message: Some(state.results.absence()),
     };
     for OverviewEvent::PairClicked(pair) in overview_ui(ui, &scene, &mut state.display.overview, palette) {
         commands.push(Command::FocusPair(pair));
@@ -213,7 +212,7 @@ fn cost_note(state: &State, pair: Pair) -> String {
 
 fn assessment_tab_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let (pairs, panels) = assessment_panels(state);
-    let scene = AssessmentScene { panels: &panels, message: Some("computing …") };
+    let scene = AssessmentScene { panels: &panels, message: Some(state.results.absence()) };
     for AssessmentEvent::BarClicked { panel, key } in assessment_ui(ui, &scene, &mut state.display.assessment, palette)
     {
         commands.push(Command::SelectCondition(key));

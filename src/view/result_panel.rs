@@ -18,7 +18,7 @@ pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     match state.outcome() {
         None => {
             heading_ui(ui, palette, "Result", "");
-            ui.label(RichText::new("computing …").color(palette.dim_text));
+            ui.label(RichText::new(state.results.absence()).color(palette.dim_text));
         }
         Some(Err(failure)) => {
             heading_ui(ui, palette, "Result", "none");

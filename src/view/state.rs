@@ -102,6 +102,11 @@ impl Results {
         self.is_behind() && !self.stopped
     }
 
+    /// What stands in the place of a result that is not there.
+    pub fn absence(&self) -> &'static str {
+        if self.stopped { "not computed" } else { "computing …" }
+    }
+
     /// Whether what is shown is older than the settings.
     pub fn is_behind(&self) -> bool {
         self.requested > self.received

@@ -1,6 +1,6 @@
 //! The Bode plot: magnitude over phase, of every model of a condition, for one pair.
 
-use egui::{Align2, CursorIcon, Pos2, Rect, Response, Ui, UiBuilder, pos2, vec2};
+use egui::{Align2, CursorIcon, Rect, Response, Ui, UiBuilder, pos2, vec2};
 use egui_plot::PlotPoint;
 
 use super::axes::{caption_font, use_frame_colors};
@@ -206,7 +206,12 @@ fn captions_ui(ui: &Ui, scene: &BodeScene<'_>, view: &mut BodeView, palette: &Pa
     let position = |[x, y]: [f64; 2]| transform.position_from_point(&PlotPoint::new(x, y));
     let covered = |place: Rect| points().filter(|point| place.contains(position(*point))).count();
     legend::legend_ui(ui, frame, &entries, &mut view.legend, covered, palette);
-    let corner: Pos2 = frame.left_bottom() + vec2(8.0, -6.0);
-    let text = if scene.stale { "updating…" } else { "" };
-    ui.painter().with_clip_rect(frame).text(corner, Align2::LEFT_BOTTOM, text, caption_font(), palette.dim_text);
+    if scene.stale {
+        // The other corner below where the legend stands in this one.
+        let taken = view.legend.corner.is_some_and(|(corner, _)| corner == Align2::LEFT_BOTTOM);
+        let corner = if taken { Align2::RIGHT_BOTTOM } else { Align2::LEFT_BOTTOM };
+        let at = corner.pos_in_rect(&frame.shrink2(vec2(8.0, 6.0)));
+        let text = scene.message.unwrap_or("updating…");
+        ui.painter().with_clip_rect(frame).text(at, corner, text, caption_font(), palette.dim_text);
+    }
 }

@@ -186,7 +186,12 @@ impl<'a> Cell<'a> {
         text(28.0, &format!("{:.0} ms", s_to_ms(delay)), 10.5, palette.dim_text);
         if let Some(cost) = shown.cost[self.pair] {
             let (before, after) = (cost.uncorrected.total(), cost.corrected.total());
-            text(40.5, &format!("{before:.0}→{after:.0}"), 10.5, change_color(before, after, palette));
+            text(
+                40.5,
+                &format!("{}→{}", cost_text(before), cost_text(after)),
+                10.5,
+                change_color(before, after, palette),
+            );
         }
     }
 
@@ -257,5 +262,22 @@ fn verdict(cost: f64) -> &'static str {
         "acceptable (J ≤ 100)"
     } else {
         "above the guide of 100"
+    }
+}
+
+/// J as a cell has room for it: in thousands from ten thousand on.
+fn cost_text(cost: f64) -> String {
+    if cost < 9999.5 { format!("{cost:.0}") } else { format!("{:.0}k", 1e-3 * cost) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cost_takes_no_more_than_four_digits() {
+        for (cost, text) in [(0.4, "0"), (9999.4, "9999"), (9999.6, "10k"), (66_248.0, "66k")] {
+            assert_eq!(cost_text(cost), text);
+        }
     }
 }

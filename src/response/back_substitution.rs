@@ -1,10 +1,13 @@
 //! Triangular solution for several right-hand sides and many frequencies at once.
 
+use std::ops::Range;
+
 use pulp::Simd;
 
+use super::active_row::Across;
 use super::complex_lanes::ComplexLanes;
 use super::hessenberg_form::HessenbergForm;
-use super::lane_elimination::{Elimination, TriangleRow};
+use super::lane_elimination::Elimination;
 
 /// `R` complex numbers, one for each right-hand side, in each lane.
 pub type Sides<S, const R: usize> = [ComplexLanes<S>; R];
@@ -12,65 +15,79 @@ pub type Sides<S, const R: usize> = [ComplexLanes<S>; R];
 /// The rows up to the one to be solved for, which is the last of them, and those below, which are known.
 type Parts<'a, S, const R: usize> = (&'a mut [Sides<S, R>], &'a mut [Sides<S, R>]);
 
-/// Solves `(F - j omega I) Y = B` for the `R` columns of B from `first` on; `y` has a row for each state.
+/// Solves `(F - j omega I) Y = B` for the `R` columns of B from `first` on, in some vectors of a group: row by row in all
+/// of them, so that one need not wait for another. `solutions` has a row for each state, for each of the vectors.
 ///
 /// For each entry of the triangle 4 R fused operations where its row is complex and 2 R where it is real: n^2 R to 2
 /// n^2 R, most of all the work.
 #[inline(always)]
-pub fn substitute_back<S: Simd, const R: usize>(
+pub fn substitute_back<S: Simd, const R: usize, const V: usize>(
     simd: S,
     form: &HessenbergForm,
-    elimination: &Elimination<S>,
+    elimination: &Elimination<S, V>,
+    vectors: Range<usize>,
     first: usize,
-    y: &mut [Sides<S, R>],
+    solutions: &mut [Vec<Sides<S, R>>],
 ) {
-    let mut unknown = y.len();
+    let Some(mut unknown) = form.order().checked_sub(1) else { return };
+    for (vector, y) in vectors.clone().zip(&mut *solutions) {
+        for (side, last) in (first..).zip(&mut y[unknown]) {
+            *last = elimination.last(form, vector, side);
+        }
+    }
     while let Some(row) = unknown.checked_sub(1) {
         unknown = row;
-        let lower = elimination.row(form, row);
-        match (lower, row.checked_sub(1).map(|upper| elimination.row(form, upper))) {
-            (TriangleRow::Real(here, lower), Some(TriangleRow::Real(above, upper))) => {
-                unknown = row - 1;
-                substitute_real_pair(
-                    simd,
-                    elimination.omega(),
-                    [above, here],
-                    [upper, lower],
-                    first,
-                    y.split_at_mut(row + 1),
-                );
+        if row > 1 && elimination.are_real(row - 2..row + 1) {
+            unknown = row - 2;
+            for (vector, y) in vectors.clone().zip(&mut *solutions) {
+                substitute_three_real(simd, form, elimination.omega(vector), row, first, y.split_at_mut(row + 1));
             }
-            (TriangleRow::Real(reciprocal, entries), _) => {
-                substitute_real(simd, elimination.omega(), reciprocal, entries, first, y.split_at_mut(row + 1));
+        } else if elimination.are_real(row..row + 1) {
+            for (vector, y) in vectors.clone().zip(&mut *solutions) {
+                substitute_real(simd, form, elimination.omega(vector), row, first, y.split_at_mut(row + 1));
             }
-            (TriangleRow::Complex(reciprocal, entries), _) => {
-                substitute_complex(simd, reciprocal, entries, first, y.split_at_mut(row + 1));
+        } else {
+            for (vector, y) in vectors.clone().zip(&mut *solutions) {
+                let (entries, sides) = elimination.complex_row(form, vector, row);
+                substitute_complex(simd, entries, &sides[first..first + R], vector % V, y.split_at_mut(row + 1));
             }
         }
     }
 }
 
-/// Solves two real rows, which share what is read of the known ones: the upper one is given first.
+/// Solves three real rows, which share what is read of the known ones: `row` and the two above.
 #[inline(always)]
-fn substitute_real_pair<S: Simd, const R: usize>(
+fn substitute_three_real<S: Simd, const R: usize>(
     simd: S,
+    form: &HessenbergForm,
     omega: S::f64s,
-    reciprocals: [f64; 2],
-    [upper, lower]: [&[f64]; 2],
+    row: usize,
     first: usize,
     (unknown, known): Parts<S, R>,
 ) {
-    let [.., above, here] = unknown else { return };
-    let (next, upper) = upper.split_at(1);
-    let sides = known.len() + first;
-    let mut sums = [real_sides(simd, &upper[sides..]), real_sides(simd, &lower[sides..])];
-    subtract_real_products(simd, &mut sums, [upper, lower], known);
+    let ([.., highest, above, here], Some(below)) = (unknown, known.first()) else { return };
+    let (entries_here, sides_here) = form.unit_row(row);
+    let (entries_above, sides_above) = form.unit_row(row - 1);
+    let (entries_highest, sides_highest) = form.unit_row(row - 2);
+    let Some(([next], entries_above)) = entries_above.split_first_chunk() else { return };
+    let Some(([near, far], entries_highest)) = entries_highest.split_first_chunk() else { return };
+    let mut sums = [
+        real_sides(simd, sides_here, first),
+        real_sides(simd, sides_above, first),
+        real_sides(simd, sides_highest, first),
+    ];
+    subtract_real_products(simd, &mut sums, [entries_here, entries_above, entries_highest], known);
+    let (next, near, far) = (simd.splat_f64s(*next), simd.splat_f64s(*near), simd.splat_f64s(*far));
+    let shift_here = shift(simd, form, omega, row);
+    let shift_above = shift(simd, form, omega, row - 1);
+    let shift_highest = shift(simd, form, omega, row - 2);
     for side in 0..R {
-        let sum = sums[1][side].plus_imaginary_product(simd, known[0][side], omega);
-        here[side] = sum.scaled(simd, simd.splat_f64s(reciprocals[1]));
-        let sum = sums[0][side].minus_real_product(simd, here[side], simd.splat_f64s(next[0]));
-        let sum = sum.plus_imaginary_product(simd, here[side], omega);
-        above[side] = sum.scaled(simd, simd.splat_f64s(reciprocals[0]));
+        here[side] = sums[0][side].plus_imaginary_product(simd, below[side], shift_here);
+        let sum = sums[1][side].minus_real_product(simd, here[side], next);
+        above[side] = sum.plus_imaginary_product(simd, here[side], shift_above);
+        let sum = sums[2][side].minus_real_product(simd, here[side], far);
+        let sum = sum.minus_real_product(simd, above[side], near);
+        highest[side] = sum.plus_imaginary_product(simd, above[side], shift_highest);
     }
 }
 
@@ -78,60 +95,62 @@ fn substitute_real_pair<S: Simd, const R: usize>(
 #[inline(always)]
 fn substitute_real<S: Simd, const R: usize>(
     simd: S,
+    form: &HessenbergForm,
     omega: S::f64s,
-    reciprocal: f64,
-    entries: &[f64],
+    row: usize,
     first: usize,
     (unknown, known): Parts<S, R>,
 ) {
     let Some(here) = unknown.last_mut() else { return };
-    let mut sum = real_sides(simd, &entries[known.len() + first..]);
+    let (entries, sides) = form.unit_row(row);
+    let mut sum = real_sides(simd, sides, first);
     subtract_real_product(simd, &mut sum, entries, known);
+    let shift = shift(simd, form, omega, row);
     for side in 0..R {
-        let sum = sum[side].plus_imaginary_product(simd, known[0][side], omega);
-        here[side] = sum.scaled(simd, simd.splat_f64s(reciprocal));
+        here[side] = sum[side].plus_imaginary_product(simd, known[0][side], shift);
     }
 }
 
-/// Solves one complex row.
+/// Solves one complex row, in one of `V` vectors.
 #[inline(always)]
-fn substitute_complex<S: Simd, const R: usize>(
+fn substitute_complex<S: Simd, const R: usize, const V: usize>(
     simd: S,
-    reciprocal: ComplexLanes<S>,
-    entries: &[ComplexLanes<S>],
-    first: usize,
+    entries: &[Across<S, V>],
+    sides: &[Across<S, V>],
+    vector: usize,
     (unknown, known): Parts<S, R>,
 ) {
-    let (entries, sides) = entries.split_at(known.len());
+    let (Some(here), Some((reciprocal, entries))) = (unknown.last_mut(), entries.split_first()) else { return };
     let mut sum = [ComplexLanes::real(simd, 0.0); R];
-    sum.copy_from_slice(&sides[first..first + R]);
-    if let (Some((next, entries)), Some((y, known))) = (entries.split_first(), known.split_first()) {
-        subtract_product(simd, &mut sum, entries, known);
-        // The order of a real row, which some lanes may have here: a lane's bits must not depend on its neighbours.
-        for (sum, y) in sum.iter_mut().zip(y) {
-            let part = sum.minus_real_product(simd, *y, next.re);
-            *sum = part.plus_imaginary_product(simd, *y, simd.neg_f64s(next.im));
-        }
+    for side in 0..R {
+        sum[side] = sides[side][vector];
     }
-    let Some(here) = unknown.last_mut() else { return };
-    for (y, sum) in here.iter_mut().zip(&sum) {
-        *y = sum.product(simd, reciprocal);
+    subtract_product(simd, &mut sum, entries, vector, known);
+    for side in 0..R {
+        here[side] = sum[side].product(simd, reciprocal[vector]);
     }
 }
 
-/// Real right-hand sides.
+/// The imaginary part of the first entry of a real row, with its sign changed.
 #[inline(always)]
-fn real_sides<S: Simd, const R: usize>(simd: S, sides: &[f64]) -> Sides<S, R> {
+fn shift<S: Simd>(simd: S, form: &HessenbergForm, omega: S::f64s, row: usize) -> S::f64s {
+    simd.mul_f64s(omega, simd.splat_f64s(form.subdiagonals()[row].reciprocal))
+}
+
+/// Real right-hand sides from `first` on.
+#[inline(always)]
+fn real_sides<S: Simd, const R: usize>(simd: S, sides: &[f64], first: usize) -> Sides<S, R> {
+    let sides = &sides[first..first + R];
     let mut lanes = [ComplexLanes::real(simd, 0.0); R];
-    for (lanes, side) in lanes.iter_mut().zip(sides) {
-        lanes.re = simd.splat_f64s(*side);
+    for side in 0..R {
+        lanes[side].re = simd.splat_f64s(sides[side]);
     }
     lanes
 }
 
 /// `sum -= row y` for a real row, from the last entry to the first: the first `y` is the last to become known.
 #[inline(always)]
-pub fn subtract_real_product<S: Simd, const R: usize>(simd: S, sum: &mut Sides<S, R>, row: &[f64], y: &[Sides<S, R>]) {
+fn subtract_real_product<S: Simd, const R: usize>(simd: S, sum: &mut Sides<S, R>, row: &[f64], y: &[Sides<S, R>]) {
     let mut part = *sum;
     for (entry, y) in row.iter().zip(y).rev() {
         let entry = simd.splat_f64s(*entry);
@@ -142,87 +161,51 @@ pub fn subtract_real_product<S: Simd, const R: usize>(simd: S, sum: &mut Sides<S
     *sum = part;
 }
 
-/// [`subtract_real_product`] for two rows, which share what is read of `y`.
+/// [`subtract_real_product`] for three rows, which share what is read of `y`.
 #[inline(always)]
 pub fn subtract_real_products<S: Simd, const R: usize>(
     simd: S,
-    sums: &mut [Sides<S, R>; 2],
-    rows: [&[f64]; 2],
+    sums: &mut [Sides<S, R>; 3],
+    rows: [&[f64]; 3],
     y: &[Sides<S, R>],
 ) {
-    if S::REGISTER_COUNT >= 32 || R % 2 == 1 {
-        subtract_real_products_from::<S, R, R>(simd, sums, rows, y, 0);
-    } else {
-        for first in (0..R).step_by(2) {
-            subtract_real_products_from::<S, R, 2>(simd, sums, rows, y, first);
+    let [mut first, mut second, mut third] = *sums;
+    for (((a, b), c), y) in rows[0].iter().zip(rows[1]).zip(rows[2]).zip(y).rev() {
+        let (a, b, c) = (simd.splat_f64s(*a), simd.splat_f64s(*b), simd.splat_f64s(*c));
+        // In this order sixteen registers hold twelve sums, three entries and one part of y.
+        for side in 0..R {
+            let y = y[side];
+            first[side].re = simd.negate_mul_add_e_f64s(y.re, a, first[side].re);
+            second[side].re = simd.negate_mul_add_e_f64s(y.re, b, second[side].re);
+            third[side].re = simd.negate_mul_add_e_f64s(y.re, c, third[side].re);
+            first[side].im = simd.negate_mul_add_e_f64s(y.im, a, first[side].im);
+            second[side].im = simd.negate_mul_add_e_f64s(y.im, b, second[side].im);
+            third[side].im = simd.negate_mul_add_e_f64s(y.im, c, third[side].im);
         }
     }
+    *sums = [first, second, third];
 }
 
-/// [`subtract_real_products`] for `G` right-hand sides.
+/// `sum -= row y`, in the same order, in one of `V` vectors. Products with real and with imaginary parts are summed apart:
+/// twice as many independent sums keep the multipliers busy.
 #[inline(always)]
-fn subtract_real_products_from<S: Simd, const R: usize, const G: usize>(
-    simd: S,
-    sums: &mut [Sides<S, R>; 2],
-    rows: [&[f64]; 2],
-    y: &[Sides<S, R>],
-    first: usize,
-) {
-    let mut parts = [[ComplexLanes::real(simd, 0.0); G]; 2];
-    parts[0].copy_from_slice(&sums[0][first..first + G]);
-    parts[1].copy_from_slice(&sums[1][first..first + G]);
-    for ((upper, lower), y) in rows[0].iter().zip(rows[1]).zip(y).rev() {
-        let (upper, lower) = (simd.splat_f64s(*upper), simd.splat_f64s(*lower));
-        for side in 0..G {
-            let y = y[first + side];
-            parts[0][side] = parts[0][side].minus_real_product(simd, y, upper);
-            parts[1][side] = parts[1][side].minus_real_product(simd, y, lower);
-        }
-    }
-    sums[0][first..first + G].copy_from_slice(&parts[0]);
-    sums[1][first..first + G].copy_from_slice(&parts[1]);
-}
-
-/// `sum -= row y`, in the same order.
-#[inline(always)]
-fn subtract_product<S: Simd, const R: usize>(
+fn subtract_product<S: Simd, const R: usize, const V: usize>(
     simd: S,
     sum: &mut Sides<S, R>,
-    row: &[ComplexLanes<S>],
+    row: &[Across<S, V>],
+    vector: usize,
     y: &[Sides<S, R>],
 ) {
-    // Four registers for each side: thirty-two registers hold four sides at once, sixteen hold two.
-    if S::REGISTER_COUNT >= 32 || R % 2 == 1 {
-        subtract_product_from::<S, R, R>(simd, sum, row, y, 0);
-    } else {
-        for first in (0..R).step_by(2) {
-            subtract_product_from::<S, R, 2>(simd, sum, row, y, first);
-        }
-    }
-}
-
-/// [`subtract_product`] for `G` right-hand sides. Products with real and with imaginary parts are summed apart: twice
-/// as many independent sums keep the multipliers busy.
-#[inline(always)]
-fn subtract_product_from<S: Simd, const R: usize, const G: usize>(
-    simd: S,
-    sum: &mut Sides<S, R>,
-    row: &[ComplexLanes<S>],
-    y: &[Sides<S, R>],
-    first: usize,
-) {
-    let zero = ComplexLanes::real(simd, 0.0);
-    let (mut direct, mut crossed) = ([zero; G], [zero; G]);
-    direct.copy_from_slice(&sum[first..first + G]);
+    let (mut direct, mut crossed) = (*sum, [ComplexLanes::real(simd, 0.0); R]);
     for (entry, y) in row.iter().zip(y).rev() {
-        for side in 0..G {
-            let y = y[first + side];
-            direct[side] = direct[side].minus_real_product(simd, y, entry.re);
-            crossed[side] = crossed[side].minus_real_product(simd, y, entry.im);
+        let entry = entry[vector];
+        for side in 0..R {
+            direct[side] = direct[side].minus_real_product(simd, y[side], entry.re);
+            crossed[side] = crossed[side].minus_real_product(simd, y[side], entry.im);
         }
     }
-    for side in 0..G {
-        sum[first + side] = ComplexLanes {
+    for side in 0..R {
+        sum[side] = ComplexLanes {
             re: simd.sub_f64s(direct[side].re, crossed[side].im),
             im: simd.add_f64s(direct[side].im, crossed[side].re),
         };

@@ -1,7 +1,6 @@
 //! Complex numbers of many frequencies at once, one frequency to a lane of a vector register.
 
-use nalgebra::Complex;
-use pulp::{Simd, bytemuck};
+use pulp::Simd;
 
 /// One complex number for each lane; real and imaginary parts in a vector register each.
 ///
@@ -22,11 +21,10 @@ impl<S: Simd> ComplexLanes<S> {
         Self { re: simd.splat_f64s(value), im: simd.splat_f64s(0.0) }
     }
 
-    /// Calls `use_values` with the numbers in the order of [`frequencies`].
+    /// The numbers in the order of [`frequencies`], each in two neighbouring places.
     #[inline(always)]
-    pub fn values<T>(self, simd: S, use_values: impl FnOnce(&[Complex<f64>]) -> T) -> T {
-        let pairs = simd.interleave_shfl_f64s([self.re, self.im]);
-        use_values(bytemuck::cast_slice(&pairs))
+    pub fn interleaved(self, simd: S) -> [S::f64s; 2] {
+        simd.interleave_shfl_f64s([self.re, self.im])
     }
 
     /// `self - factor real`: 2 fused operations.
@@ -64,15 +62,14 @@ impl<S: Simd> ComplexLanes<S> {
     /// `1 / self = conj(self) / |self|^2`; not finite in the lanes where `self` is zero.
     #[inline(always)]
     pub fn reciprocal(self, simd: S) -> Self {
-        let square = simd.mul_add_e_f64s(self.im, self.im, simd.mul_f64s(self.re, self.re));
-        let inverse = simd.div_f64s(simd.splat_f64s(1.0), square);
+        let inverse = simd.div_f64s(simd.splat_f64s(1.0), self.square(simd));
         Self { re: simd.mul_f64s(self.re, inverse), im: simd.neg_f64s(simd.mul_f64s(self.im, inverse)) }
     }
 
-    /// `|re| + |im|`, within a factor sqrt 2 of the modulus and cheaper.
+    /// `|self|^2`.
     #[inline(always)]
-    pub fn magnitude(self, simd: S) -> S::f64s {
-        simd.add_f64s(simd.abs_f64s(self.re), simd.abs_f64s(self.im))
+    pub fn square(self, simd: S) -> S::f64s {
+        simd.mul_add_e_f64s(self.im, self.im, simd.mul_f64s(self.re, self.re))
     }
 
     /// `chosen` in the lanes of `mask`, `self` in the others.
@@ -82,16 +79,27 @@ impl<S: Simd> ComplexLanes<S> {
     }
 }
 
-/// Up to a vector of frequencies, zero in the other lanes; in the order that makes interleaving a shuffle.
+/// A vector of frequencies, in the order that makes interleaving a shuffle; if there are fewer, the last in the other
+/// lanes.
 #[inline(always)]
 pub fn frequencies<S: Simd>(simd: S, omega: &[f64]) -> S::f64s {
-    let mut pairs = [simd.splat_f64s(0.0); 2];
-    let numbers: &mut [f64] = bytemuck::cast_slice_mut(&mut pairs);
-    for (pair, omega) in numbers.chunks_exact_mut(2).zip(omega) {
-        pair.fill(*omega);
+    let mut pairs = [simd.splat_f64s(omega.last().copied().unwrap_or(0.0)); 2];
+    let (places, _) = bytemuck::cast_slice_mut::<_, f64>(&mut pairs).as_chunks_mut::<2>();
+    for (place, omega) in places.iter_mut().zip(omega) {
+        *place = [*omega; 2];
     }
     let [frequencies, _] = simd.deinterleave_shfl_f64s(pairs);
     frequencies
+}
+
+/// So many copies of a value. Unlike those of `vec!`, its instructions are those of the vectors that the caller works on.
+#[inline(always)]
+pub fn filled<T: Copy>(value: T, count: usize) -> Vec<T> {
+    let mut values = Vec::with_capacity(count);
+    for _ in 0..count {
+        values.push(value);
+    }
+    values
 }
 
 /// Whether a mask holds in any lane.

@@ -7,10 +7,11 @@ use pulp::Arch;
 use crate::dataset::StateSpace;
 
 use super::householder_reduction::HouseholderReduction;
+use super::subdiagonal::Subdiagonal;
 use super::system_table::{BLOCK, SystemTable};
 
-/// Subdiagonal entries below this part the model in two; the largest entry is of order 1, and a double has 16 digits.
-const NEGLIGIBLE: f64 = 1e-70;
+/// Columns that elimination computes at once.
+pub const PANEL: usize = 4;
 
 /// A model with its system matrix balanced, scaled, and reduced to upper Hessenberg form.
 ///
@@ -24,10 +25,12 @@ pub struct HessenbergForm {
     sides: usize,
     dual: bool,
     frequency_scale: f64,
-    /// `[F B; C 0]`.
+    /// `[F B; C 0]`, each row of F but the first divided by its subdiagonal entry.
     table: SystemTable,
-    /// One over each subdiagonal entry of F; zero where that is negligible.
-    reciprocals: Vec<f64>,
+    /// One for each column but the last.
+    subdiagonals: Vec<Subdiagonal>,
+    /// The divided rows, panel by panel of their columns.
+    panels: Vec<[f64; PANEL]>,
     d: DMatrix<f64>,
 }
 
@@ -48,8 +51,9 @@ impl HessenbergForm {
         b *= frequency_scale;
         let mut table = table(&a, &b, &c);
         arch.dispatch(HouseholderReduction(&mut table));
-        let reciprocals = (1..a.nrows()).map(|row| reciprocal(table.row(row)[row - 1])).collect();
-        Self { sides: b.ncols(), dual, frequency_scale, table, reciprocals, d }
+        let subdiagonals = divide_rows(&mut table);
+        let panels = panels(&table);
+        Self { sides: b.ncols(), dual, frequency_scale, table, subdiagonals, panels, d }
     }
 
     /// Number of states, `n`.
@@ -82,28 +86,36 @@ impl HessenbergForm {
         self.frequency_scale
     }
 
-    /// Numbers in a row of `[F B]`, the zeros included that make it whole vectors.
+    /// The entry below the diagonal in each column but the last.
     #[inline(always)]
-    pub fn width(&self) -> usize {
-        self.table.width()
+    pub fn subdiagonals(&self) -> &[Subdiagonal] {
+        &self.subdiagonals
     }
 
-    /// Entries of row `row` of `[F B]` from column `first` on.
+    /// The first row of `[F B]` from column `first` on.
     #[inline(always)]
-    pub fn entries<const N: usize>(&self, row: usize, first: usize) -> &[f64; N] {
-        self.table.numbers()[row * self.width() + first..].first_chunk().expect("rows are whole blocks")
+    pub fn first_row(&self, first: usize) -> &[f64; PANEL] {
+        self.table.row(0)[first..].first_chunk().expect("rows are whole blocks")
     }
 
-    /// Row `row` of `[F B]`, with zeros up to the width.
+    /// The row that has a one below the diagonal of `column`, right of that: its entries of F and those of B.
     #[inline(always)]
-    pub fn row(&self, row: usize) -> &[f64] {
-        self.table.row(row)
+    pub fn unit_row(&self, column: usize) -> (&[f64], &[f64]) {
+        let (order, row) = (self.order(), self.table.row(column + 1));
+        (&row[column + 1..order], &row[order..order + self.sides])
     }
 
-    /// One over each entry of F below the diagonal, column by column; zero where that is negligible.
+    /// Panels of columns of `[F B]`.
     #[inline(always)]
-    pub fn reciprocals(&self) -> &[f64] {
-        &self.reciprocals
+    pub fn panels(&self) -> usize {
+        self.table.width() / PANEL
+    }
+
+    /// The columns from `first` on of all rows of [`unit_row`](Self::unit_row).
+    #[inline(always)]
+    pub fn panel(&self, first: usize) -> &[[f64; PANEL]] {
+        let rows = self.subdiagonals.len();
+        &self.panels[first / PANEL * rows..][..rows]
     }
 
     /// Row `row` of C.
@@ -131,6 +143,27 @@ fn table(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>) -> SystemTable {
         }
     }
     table
+}
+
+/// Divides each row but the first by its subdiagonal entry.
+fn divide_rows(table: &mut SystemTable) -> Vec<Subdiagonal> {
+    let (order, width) = (table.states(), table.width());
+    let rows = table.numbers_mut().chunks_exact_mut(width).take(order).enumerate().skip(1);
+    let divide = |(row, numbers): (usize, &mut [f64])| {
+        let subdiagonal = Subdiagonal::new(numbers[row - 1], order);
+        numbers.iter_mut().for_each(|number| *number *= subdiagonal.reciprocal);
+        subdiagonal
+    };
+    rows.map(divide).collect()
+}
+
+/// All rows but the first of `[A B]`, panel by panel of their columns.
+fn panels(table: &SystemTable) -> Vec<[f64; PANEL]> {
+    let mut panels = Vec::with_capacity(table.states() * table.width() / PANEL);
+    for panel in 0..table.width() / PANEL {
+        panels.extend((1..table.states()).map(|row| table.row(row).as_chunks().0[panel]));
+    }
+    panels
 }
 
 /// Makes rows and columns of `a` alike in norm by a diagonal similarity of powers of two, so that nothing is rounded.
@@ -165,11 +198,6 @@ fn power_of_two_below(value: f64) -> f64 {
     value.log2().floor().clamp(-1e3, 1e3).exp2()
 }
 
-/// One over a subdiagonal entry, or zero where it is negligible.
-fn reciprocal(subdiagonal: f64) -> f64 {
-    if subdiagonal.abs() < NEGLIGIBLE { 0.0 } else { 1.0 / subdiagonal }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -191,11 +219,13 @@ mod tests {
     }
 
     #[test]
-    fn a_row_is_a_row_of_f_followed_by_its_row_of_b_and_zeros() {
+    fn rows_are_divided_by_their_subdiagonal_entry() {
         let model =
             StateSpace::new(dmatrix![1.0, 1.25; 1.5, 1.75], dmatrix![2.0; 3.0], dmatrix![1.0, 1.0], dmatrix![0.0]);
         let form = HessenbergForm::of(Arch::new(), &model.unwrap());
-        assert_eq!(form.row(1)[1..], [1.75, 3.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        assert_eq!(form.reciprocals(), [1.0 / 1.5]);
+        assert_eq!(form.first_row(0), &[1.0, 1.25, 2.0, 0.0]);
+        assert_eq!(form.unit_row(0), (&[1.75 * (1.0 / 1.5)][..], &[3.0 * (1.0 / 1.5)][..]));
+        assert_eq!(form.panel(0), [[1.0, 1.75 * (1.0 / 1.5), 3.0 * (1.0 / 1.5), 0.0]]);
+        assert_eq!(form.subdiagonals()[0].entry, 1.5);
     }
 }

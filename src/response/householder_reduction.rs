@@ -2,7 +2,11 @@
 
 use pulp::{Simd, WithSimd};
 
+use super::aligned_numbers::AlignedNumbers;
 use super::system_table::{BLOCK, Block, SystemTable};
+
+/// Blocks of a row that are summed up in registers at once.
+const TOGETHER: usize = 4;
 
 /// Brings A of a table `[A B; C 0]` to upper Hessenberg form: `Q' A Q`, `Q' B`, `C Q` with Q orthogonal.
 ///
@@ -36,23 +40,23 @@ impl WithSimd for HouseholderReduction<'_> {
 struct Reflector {
     beta: f64,
     /// One entry for each state; zeros up to the column that is cleared.
-    v: Vec<Block>,
-    w: Vec<Block>,
+    v: AlignedNumbers,
+    w: AlignedNumbers,
     /// One entry for each row of the table.
-    y: Vec<Block>,
+    y: AlignedNumbers,
 }
 
 impl Reflector {
     fn with_room_for(table: &SystemTable) -> Self {
-        let zeros = vec![[0.0; BLOCK]; table.blocks()];
-        Self { beta: 0.0, v: zeros.clone(), w: zeros, y: vec![[0.0; BLOCK]; table.rows().len().div_ceil(BLOCK)] }
+        let zeros = |count: usize| AlignedNumbers::zeros(count.next_multiple_of(BLOCK));
+        Self { beta: 0.0, v: zeros(table.width()), w: zeros(table.width()), y: zeros(table.rows().len()) }
     }
 
     /// Makes the reflection that clears a column below the subdiagonal, and clears it; `false` where it was clear.
     #[inline(always)]
     fn clear(&mut self, table: &mut SystemTable, column: usize) -> bool {
         let (states, width, first) = (table.states(), table.width(), column + 1);
-        let v = self.v.as_flattened_mut();
+        let v = &mut *self.v;
         v[..first].fill(0.0);
         let numbers = table.numbers_mut();
         for row in first..states {
@@ -74,28 +78,72 @@ impl Reflector {
     #[inline(always)]
     fn apply<S: Simd>(&mut self, simd: S, table: &mut SystemTable, column: usize) {
         let (first, states, blocks) = (column + 1, table.states(), (column + 1) / BLOCK..table.blocks());
-        let Self { beta, v: all, w, y } = self;
-        let factors = all.as_flattened();
-        let (v, w) = (&all[blocks.clone()], &mut w[blocks.clone()]);
-        for (y, row) in y.as_flattened_mut().iter_mut().zip(table.rows()) {
-            *y = *beta * dot(simd, &row[blocks.clone()], v);
+        let (all, _) = self.v.as_chunks();
+        let v = &all[blocks.clone()];
+        for (y, row) in self.y.iter_mut().zip(table.rows()) {
+            *y = self.beta * dot(simd, &row[blocks.clone()], v);
         }
-        w.fill([0.0; BLOCK]);
-        for (factor, row) in factors.iter().zip(table.rows()).take(states).skip(first) {
-            subtract_multiple(simd, w, -factor * *beta, &row[blocks.clone()]);
-        }
-        let gamma = *beta * dot(simd, all, y);
+        let gamma = self.beta * dot(simd, all, self.y.as_chunks().0);
+        let w = &mut self.w.as_chunks_mut().0[blocks.clone()];
+        sum_rows(simd, w, table, blocks.start, first, &self.v[..states], self.beta);
         subtract_multiple(simd, w, gamma, v);
         // The first block may begin with columns that are done; v is zero there.
         w.as_flattened_mut()[..first % BLOCK].fill(0.0);
-        for (row, (y, entries)) in y.as_flattened().iter().zip(table.rows_mut()).enumerate() {
+        for (row, (y, entries)) in self.y.iter().zip(table.rows_mut()).enumerate() {
             let entries = &mut entries[blocks.clone()];
             if (first..states).contains(&row) {
-                subtract_multiples(simd, entries, [*y, factors[row]], [v, w]);
+                subtract_multiples(simd, entries, [*y, self.v[row]], [v, w]);
             } else {
                 subtract_multiple(simd, entries, *y, v);
             }
         }
+    }
+}
+
+/// `sums = beta T' v` of the blocks from `block` on; v is zero before row `first`.
+#[inline(always)]
+fn sum_rows<S: Simd>(
+    simd: S,
+    sums: &mut [Block],
+    table: &SystemTable,
+    block: usize,
+    first: usize,
+    v: &[f64],
+    beta: f64,
+) {
+    let (whole, rest) = sums.as_chunks_mut::<TOGETHER>();
+    let start_of_rest = block + whole.len() * TOGETHER;
+    for (sums, block) in whole.iter_mut().zip((block..).step_by(TOGETHER)) {
+        sum_blocks(simd, sums, table, block, first, v, beta);
+    }
+    for (sum, block) in rest.iter_mut().zip(start_of_rest..) {
+        sum_blocks(simd, std::array::from_mut(sum), table, block, first, v, beta);
+    }
+}
+
+/// [`sum_rows`] of `N` blocks, in registers.
+#[inline(always)]
+fn sum_blocks<S: Simd, const N: usize>(
+    simd: S,
+    sums: &mut [Block; N],
+    table: &SystemTable,
+    block: usize,
+    first: usize,
+    v: &[f64],
+    beta: f64,
+) {
+    let vectors = BLOCK / S::F64_LANES;
+    let mut parts = [[simd.splat_f64s(0.0); BLOCK]; N];
+    for (factor, row) in v.iter().zip(table.rows()).skip(first) {
+        let factor = simd.splat_f64s(-factor * beta);
+        for (parts, row) in parts.iter_mut().zip(&row[block..block + N]) {
+            for (part, row) in parts[..vectors].iter_mut().zip(S::as_simd_f64s(row).0) {
+                *part = simd.sub_f64s(*part, simd.mul_f64s(factor, *row));
+            }
+        }
+    }
+    for (sum, parts) in sums.iter_mut().zip(&parts) {
+        S::as_mut_simd_f64s(sum).0.copy_from_slice(&parts[..vectors]);
     }
 }
 

@@ -1,50 +1,44 @@
 //! Gaussian elimination of an upper Hessenberg matrix shifted by many frequencies at once.
 
+use std::ops::Range;
+
 use pulp::Simd;
 
-use super::active_row::{ActiveRow, Base, PANEL, Panel, panel_at_mut};
-use super::complex_lanes::{ComplexLanes, any};
-use super::hessenberg_form::HessenbergForm;
+use super::active_row::{Across, ActiveRow, Panel};
+use super::complex_lanes::{ComplexLanes, any, filled};
+use super::hessenberg_form::{HessenbergForm, PANEL};
 
-/// How many times larger than the real row's pivot that of the complex row must be to be preferred (tau).
-///
-/// With 1 this is partial pivoting. Real rows halve the work of back-substitution, and are not stored; they cost at
-/// most this factor in accuracy (see [`Elimination`]): `n tau` times the unit roundoff of 1.1e-16 is 3e-11 for 60
-/// states. From 2^6 to 2^12 the error of the model of 60 states in `benches/responses.rs` grows from 2e-14 to 6e-13 of
-/// its largest value.
-const PREFERENCE_FOR_REAL: f64 = 4096.0;
-
-/// An active row that has gathered a larger scale is multiplied by [`SHRINKING`], long before squares overflow.
-const LARGE: f64 = 1e50;
-
-/// 2^-166, about 1 / [`LARGE`]: a power of two, so that nothing is rounded.
-const SHRINKING: f64 = 1.0 / ((1_u128 << 83) as f64 * (1_u128 << 83) as f64);
+/// Frequencies that choose their pivots together, whatever the length of a vector.
+pub const GROUP: usize = 16;
 
 /// The upper triangle that row operations make of `[F - j omega I, B]`, one frequency to a lane.
 ///
 /// Column k is cleared by combining the one complex *active* row `u` (what the rows above have become) with the next
-/// row `r`, which is real but for its diagonal entry:
+/// row `r`, which is real but for its diagonal entry: `u - h r`, `h = u_k / r_k`. That takes 2 fused operations an entry,
+/// n^2 + 2 n m in all. Then one of `u` and `r` stays in the triangle: `r`, unless in some lane of the group `|u_k| > tau
+/// |r_k|`. If so, both are interchanged in all lanes where `|u_k| > |r_k|`, which for neighbouring frequencies are nearly
+/// always all: the row that each lane keeps is of one kind. This is threshold pivoting (Duff, Erisman & Reid, "Direct
+/// Methods for Sparse Matrices", 2nd ed. 2017, 5.2): multipliers are at most tau; and since each row enters as it is,
+/// entries grow at most to `n tau` times the largest.
 ///
-/// ```text
-/// u' = u - h r,   h = u_k / r_k,   r_k = F_(k+1,k) real
-/// ```
-///
-/// 2 fused operations an entry, n^2 + 2 n m in all. Rows may be scaled at will, so the same `u'` serves whichever of
-/// `u` and `r` is the pivot row: `r - u / h` is `-u' / h`, with the same relative rounding errors. Pivoting only
-/// chooses which of the two stays in the triangle, in each lane for itself: `r`, unless `|u_k| > tau s |r_k|`, where
-/// `s` is the scale that `u` has gathered. This is threshold pivoting (Duff, Erisman & Reid, "Direct Methods for Sparse
-/// Matrices", 2nd ed. 2017, 5.2): multipliers are at most tau; and since each row enters as it is, entries grow at most
-/// to `n tau` times the largest.
-pub struct Elimination<S: Simd> {
-    active: ActiveRow<S>,
-    /// By how much the active row is larger than partial pivoting would have left it.
-    scale: S::f64s,
-    /// Complex rows, each from the first column of a panel on; one over the diagonal entry is in its place.
-    stored: Vec<ComplexLanes<S>>,
-    /// Where the next one goes.
-    end: usize,
-    /// The row that stays in the triangle for each column.
+/// A panel of columns is cleared as if no row were interchanged, in all vectors of the group; where that is found not to
+/// hold, it is cleared again column by column; and where that was so in the last group, only so. Both ways give the same
+/// bits. `V` vectors share what is read of F.
+pub struct Elimination<S: Simd, const V: usize> {
+    rows: Vec<ActiveRow<S, V>>,
+    /// How many of them are in use.
+    used: usize,
+    /// The panel that is being cleared, of each.
+    panels: Vec<Panel<S, V>>,
+    /// The last panel, cleared as if no row were interchanged.
+    cleared: Vec<Panel<S, V>>,
+    interchanges: usize,
+    /// Whether the last group had interchanges in each panel, as the next then mostly has.
+    expected: Vec<bool>,
+    /// The row that stays in the triangle for each column but the last.
     kept: Vec<Kept>,
+    /// The right-hand sides of the last row of the triangle, divided by its diagonal entry.
+    last: Vec<Across<S, V>>,
 }
 
 /// Which row stays in the triangle.
@@ -52,201 +46,191 @@ pub struct Elimination<S: Simd> {
 enum Kept {
     /// The next row in all lanes.
     Next,
-    /// The active row, or what each lane has chosen; its diagonal is stored here.
+    /// What the interchange of an index left.
     Stored(usize),
 }
 
-/// A row of the triangle: one over its diagonal entry, and its entries right of that with the right-hand sides at the
-/// end.
-pub enum TriangleRow<'a, S: Simd> {
-    /// Of `[F B]`; the first entry has `-j omega` besides.
-    Real(f64, &'a [f64]),
-    /// Any other.
-    Complex(ComplexLanes<S>, &'a [ComplexLanes<S>]),
-}
+/// A row of the triangle in `V` vectors: its entries from the diagonal on, the first of which is one over the diagonal
+/// entry, and its right-hand sides.
+pub type ComplexRow<'a, S, const V: usize> = (&'a [Across<S, V>], &'a [Across<S, V>]);
 
-impl<S: Simd> Elimination<S> {
+impl<S: Simd, const V: usize> Elimination<S, V> {
     /// Room for a model; that for complex rows is made as they come.
     #[inline(always)]
     pub fn with_room_for(simd: S, form: &HessenbergForm) -> Self {
+        let zero = [ComplexLanes::real(simd, 0.0); V];
+        let count = GROUP / S::F64_LANES / V;
+        let mut rows = Vec::with_capacity(count);
+        for _ in 0..count {
+            rows.push(ActiveRow::with_room_for(simd, form));
+        }
         Self {
-            active: ActiveRow::with_room_for(simd, form),
-            scale: simd.splat_f64s(1.0),
-            stored: Vec::new(),
-            end: 0,
-            kept: vec![Kept::Next; form.order()],
+            rows,
+            used: 0,
+            panels: filled([zero; PANEL], count),
+            cleared: filled([zero; PANEL], count),
+            interchanges: 0,
+            expected: vec![false; form.panels()],
+            kept: filled(Kept::Next, form.subdiagonals().len()),
+            last: filled(zero, count * form.sides()),
         }
     }
 
-    /// The frequencies \[rad/s / alpha\].
+    /// The frequencies of a vector of the group \[rad/s / alpha\].
     #[inline(always)]
-    pub fn omega(&self) -> S::f64s {
-        self.active.omega()
+    pub fn omega(&self, vector: usize) -> S::f64s {
+        self.rows[vector / V].omega(vector % V)
     }
 
-    /// A row of the triangle.
+    /// Whether rows of the triangle are those of F and B in all lanes.
     #[inline(always)]
-    pub fn row<'a>(&'a self, form: &'a HessenbergForm, row: usize) -> TriangleRow<'a, S> {
-        let end = form.order() + form.sides();
-        match self.kept[row] {
-            Kept::Next => TriangleRow::Real(form.reciprocals()[row], &form.row(row + 1)[row + 1..end]),
-            Kept::Stored(diagonal) => {
-                let row = &self.stored[diagonal..diagonal + end - row];
-                TriangleRow::Complex(row[0], &row[1..])
+    pub fn are_real(&self, rows: Range<usize>) -> bool {
+        self.kept[rows].iter().all(|kept| matches!(kept, Kept::Next))
+    }
+
+    /// A row of the triangle that is complex, in the vectors beside `vector`; empty for one that is real.
+    #[inline(always)]
+    pub fn complex_row(&self, form: &HessenbergForm, vector: usize, row: usize) -> ComplexRow<'_, S, V> {
+        let Kept::Stored(interchange) = self.kept[row] else { return (&[], &[]) };
+        let (entries, sides) = self.rows[vector / V].stored(interchange).split_at(form.order());
+        (&entries[row..], sides)
+    }
+
+    /// The last unknown for one right-hand side, in one vector.
+    #[inline(always)]
+    pub fn last(&self, form: &HessenbergForm, vector: usize, side: usize) -> ComplexLanes<S> {
+        self.last[vector / V * form.sides() + side][vector % V]
+    }
+
+    /// Eliminates at the frequencies `omega` of a group \[rad/s / alpha\].
+    #[inline(always)]
+    pub fn run(&mut self, simd: S, form: &HessenbergForm, omega: &[S::f64s]) {
+        self.start(simd, omega);
+        let Some(last) = form.order().checked_sub(1) else { return };
+        for first in (0..=last).step_by(PANEL) {
+            let columns = PANEL.min(last - first);
+            self.kept[first..first + columns].fill(Kept::Next);
+            let before = self.interchanges;
+            if self.expected[first / PANEL] {
+                self.compute(simd, form, first);
+                self.clear_with_interchanges(simd, form, first, columns);
+            } else if !self.clear(simd, form, first, columns) {
+                self.clear_with_interchanges(simd, form, first, columns);
+            } else if columns < PANEL {
+                self.panels.copy_from_slice(&self.cleared);
+            }
+            self.expected[first / PANEL] = self.interchanges > before;
+        }
+        self.finish(simd, form, last);
+    }
+
+    #[inline(always)]
+    fn start(&mut self, simd: S, omega: &[S::f64s]) {
+        self.used = omega.len().div_ceil(V);
+        self.interchanges = 0;
+        for (row, omega) in self.rows.iter_mut().zip(omega.chunks(V)) {
+            // A vector too many repeats the last.
+            let mut all = [omega.last().copied().unwrap_or(simd.splat_f64s(0.0)); V];
+            all[..omega.len()].copy_from_slice(omega);
+            row.start(all);
+        }
+    }
+
+    /// Computes the panel that begins in column `first`, before any of its columns is cleared.
+    #[inline(always)]
+    fn compute(&mut self, simd: S, form: &HessenbergForm, first: usize) {
+        for (row, panel) in self.rows[..self.used].iter_mut().zip(&mut self.panels) {
+            *panel = row.panel(simd, form, first, first);
+        }
+    }
+
+    /// Computes the panel that begins in column `first` and clears columns of it as if no row were interchanged; whether that
+    /// is so.
+    #[inline(always)]
+    fn clear(&mut self, simd: S, form: &HessenbergForm, first: usize, columns: usize) -> bool {
+        let one = simd.splat_f64s(1.0);
+        let mut stays = simd.less_than_or_equal_f64s(one, one);
+        let places = self.panels.iter_mut().zip(&mut self.cleared);
+        for (row, (before, cleared)) in self.rows[..self.used].iter_mut().zip(places) {
+            let mut panel = row.panel(simd, form, first, first);
+            *before = panel;
+            for excess in &row.clear(simd, form, first, columns, &mut panel) {
+                stays = simd.and_m64s(stays, simd.less_than_or_equal_f64s(*excess, one));
+            }
+            if columns < PANEL {
+                *cleared = panel;
             }
         }
+        !any(simd, simd.not_m64s(stays))
     }
 
-    /// Eliminates at the frequencies `omega` \[rad/s / alpha\].
+    /// Clears columns one by one.
     #[inline(always)]
-    pub fn run(&mut self, simd: S, form: &HessenbergForm, omega: S::f64s) {
-        self.active.start(omega);
-        self.scale = simd.splat_f64s(1.0);
-        self.end = 0;
-        let Some(last) = form.order().checked_sub(1) else {
-            return;
-        };
-        for first in (0..=last).step_by(PANEL) {
-            let mut panel = self.active.panel(simd, form, &self.stored, first, first);
-            if !self.clear_panel(simd, form, first, &mut panel) {
-                for column in first..last.min(first + PANEL) {
-                    self.clear(simd, form, first, column, &mut panel);
+    fn clear_with_interchanges(&mut self, simd: S, form: &HessenbergForm, first: usize, columns: usize) {
+        if columns > 0 {
+            self.clear_one::<0>(simd, form, first);
+        }
+        if columns > 1 {
+            self.clear_one::<1>(simd, form, first);
+        }
+        if columns > 2 {
+            self.clear_one::<2>(simd, form, first);
+        }
+        if columns > 3 {
+            self.clear_one::<3>(simd, form, first);
+        }
+    }
+
+    #[inline(always)]
+    fn clear_one<const OFFSET: usize>(&mut self, simd: S, form: &HessenbergForm, first: usize) {
+        let interchange = !self.next_stays::<OFFSET>(simd, form, first);
+        if interchange {
+            self.kept[first + OFFSET] = Kept::Stored(self.interchanges);
+            self.interchanges += 1;
+        }
+        for (row, panel) in self.rows[..self.used].iter_mut().zip(&mut self.panels) {
+            let multipliers =
+                if interchange { row.interchange::<OFFSET>(simd, form, first, panel) } else { panel[OFFSET] };
+            row.subtract_next::<OFFSET>(simd, form, first, multipliers, panel);
+        }
+    }
+
+    /// Whether `|u_k| <= tau |h|` in all lanes.
+    #[inline(always)]
+    fn next_stays<const OFFSET: usize>(&self, simd: S, form: &HessenbergForm, first: usize) -> bool {
+        let one = simd.splat_f64s(1.0);
+        let sensitivity = simd.splat_f64s(form.subdiagonals()[first + OFFSET].sensitivity);
+        let mut stays = simd.less_than_or_equal_f64s(one, one);
+        for panel in &self.panels[..self.used] {
+            for entry in &panel[OFFSET] {
+                let excess = simd.mul_f64s(entry.square(simd), sensitivity);
+                stays = simd.and_m64s(stays, simd.less_than_or_equal_f64s(excess, one));
+            }
+        }
+        !any(simd, simd.not_m64s(stays))
+    }
+
+    /// Divides the right-hand sides of the last row by its diagonal entry; its panel has all other columns clear.
+    #[inline(always)]
+    fn finish(&mut self, simd: S, form: &HessenbergForm, last: usize) {
+        let (order, sides) = (form.order(), form.sides());
+        let first_panel = last / PANEL * PANEL;
+        for (index, row) in self.rows[..self.used].iter_mut().enumerate() {
+            let mut reciprocals = self.panels[index][last - first_panel];
+            for reciprocal in &mut reciprocals {
+                *reciprocal = reciprocal.reciprocal(simd);
+            }
+            let into = &mut self.last[index * sides..(index + 1) * sides];
+            for first in (first_panel..order + sides).step_by(PANEL) {
+                let panel = if first == first_panel { self.panels[index] } else { row.panel(simd, form, first, last) };
+                for (column, entry) in (first..).zip(&panel) {
+                    let side = column.checked_sub(order).and_then(|side| into.get_mut(side));
+                    let Some(into) = side else { continue };
+                    for vector in 0..V {
+                        into[vector] = entry[vector].product(simd, reciprocals[vector]);
+                    }
                 }
             }
-            if last - first < PANEL {
-                self.keep_active(simd, form, first, last, &panel);
-            }
         }
-    }
-
-    /// Clears the columns of a panel if the next row stays in each of them, in all lanes; else returns `false`.
-    #[inline(always)]
-    fn clear_panel(&mut self, simd: S, form: &HessenbergForm, first: usize, panel: &mut Panel<S>) -> bool {
-        let columns = PANEL.min(form.order() - 1 - first);
-        let reciprocals = &form.reciprocals()[first..first + columns];
-        let limit = simd.mul_f64s(simd.splat_f64s(PREFERENCE_FOR_REAL), self.scale);
-        let mut entries = *panel;
-        let mut exceeded = simd.greater_than_f64s(limit, limit);
-        for offset in 0..PANEL {
-            if offset >= columns {
-                break;
-            }
-            let multiplier = entries[offset].scaled(simd, simd.splat_f64s(reciprocals[offset]));
-            exceeded = simd.or_m64s(exceeded, simd.greater_than_f64s(multiplier.magnitude(simd), limit));
-            self.active.push(first + offset, multiplier);
-            self.active.subtract_next(simd, form, first, first + offset, multiplier, &mut entries);
-        }
-        if any(simd, exceeded) || reciprocals.contains(&0.0) {
-            return false;
-        }
-        self.kept[first..first + columns].fill(Kept::Next);
-        *panel = entries;
-        true
-    }
-
-    /// Clears what stands below the diagonal in one column of a panel.
-    #[inline(always)]
-    fn clear(&mut self, simd: S, form: &HessenbergForm, first: usize, column: usize, panel: &mut Panel<S>) {
-        let reciprocal = form.reciprocals()[column];
-        if reciprocal == 0.0 {
-            // The model falls in two parts, of which the second begins with the next row.
-            self.keep_active(simd, form, first, column, panel);
-            self.active.restart(Base::Real(column + 1), column + 1);
-            self.scale = simd.splat_f64s(1.0);
-            *panel = self.active.panel(simd, form, &self.stored, first, column + 1);
-            return;
-        }
-        let mut multiplier = panel[column - first].scaled(simd, simd.splat_f64s(reciprocal));
-        let size = multiplier.magnitude(simd);
-        let limit = simd.mul_f64s(simd.splat_f64s(PREFERENCE_FOR_REAL), self.scale);
-        self.kept[column] = Kept::Next;
-        if any(simd, simd.greater_than_f64s(size, limit)) {
-            let next_stays = simd.less_than_or_equal_f64s(size, limit);
-            self.scale = simd.select_f64s(next_stays, self.scale, size);
-            let start = self.store(simd, form, first, column, panel);
-            if any(simd, simd.greater_than_f64s(size, simd.splat_f64s(LARGE))) {
-                multiplier = multiplier.scaled(simd, self.shrink(simd, start, panel));
-            }
-            let diagonal = start + column - first;
-            self.kept[column] = Kept::Stored(diagonal);
-            self.stored[diagonal] = panel[column - first].reciprocal(simd);
-            let base = if any(simd, next_stays) {
-                self.put_next(simd, form, start, diagonal, column, next_stays)
-            } else {
-                start
-            };
-            self.active.restart(Base::Stored { start: base, column: first }, column);
-        }
-        self.active.push(column, multiplier);
-        self.active.subtract_next(simd, form, first, column, multiplier, panel);
-    }
-
-    /// Keeps the active row in the triangle for a column that needs no clearing.
-    #[inline(always)]
-    fn keep_active(&mut self, simd: S, form: &HessenbergForm, first: usize, column: usize, panel: &Panel<S>) {
-        let diagonal = self.store(simd, form, first, column, panel) + column - first;
-        self.stored[diagonal] = panel[column - first].reciprocal(simd);
-        self.kept[column] = Kept::Stored(diagonal);
-    }
-
-    /// Puts the next row in the place of the stored active row, in the lanes of a mask; returns where a copy of the
-    /// latter is.
-    #[inline(always)]
-    fn put_next(
-        &mut self,
-        simd: S,
-        form: &HessenbergForm,
-        start: usize,
-        diagonal: usize,
-        column: usize,
-        mask: S::m64s,
-    ) -> usize {
-        let copy = self.end;
-        self.reserve(simd, copy - start);
-        self.stored.copy_within(start..copy, copy);
-        let reciprocal = ComplexLanes::real(simd, form.reciprocals()[column]);
-        self.stored[diagonal] = self.stored[diagonal].replaced_where(simd, mask, reciprocal);
-        let omega = self.omega();
-        let row = &mut self.stored[diagonal + 1..copy];
-        for (entry, real) in row.iter_mut().zip(&form.row(column + 1)[column + 1..]) {
-            *entry = entry.replaced_where(simd, mask, ComplexLanes::real(simd, *real));
-        }
-        row[0].im = simd.select_f64s(mask, simd.neg_f64s(omega), row[0].im);
-        copy
-    }
-
-    /// Takes room for so many more entries.
-    #[inline(always)]
-    fn reserve(&mut self, simd: S, entries: usize) {
-        self.end += entries;
-        if self.stored.len() < self.end {
-            self.stored.resize(self.end, ComplexLanes::real(simd, 0.0));
-        }
-    }
-
-    /// Stores the active row from column `first` on, of which `panel` is the beginning; returns where.
-    #[inline(always)]
-    fn store(&mut self, simd: S, form: &HessenbergForm, first: usize, column: usize, panel: &Panel<S>) -> usize {
-        let (start, width) = (self.end, form.order() + form.sides() - first);
-        self.reserve(simd, width.next_multiple_of(PANEL));
-        *panel_at_mut(&mut self.stored, start) = *panel;
-        for offset in (PANEL..width).step_by(PANEL) {
-            let panel = self.active.panel(simd, form, &self.stored, first + offset, column);
-            *panel_at_mut(&mut self.stored, start + offset) = panel;
-        }
-        start
-    }
-
-    /// Multiplies the active row, stored from `start` on, by [`SHRINKING`] in the lanes where its scale is large;
-    /// returns the factors.
-    #[inline(always)]
-    fn shrink(&mut self, simd: S, start: usize, panel: &mut Panel<S>) -> S::f64s {
-        let large = simd.greater_than_f64s(self.scale, simd.splat_f64s(LARGE));
-        let factors = simd.select_f64s(large, simd.splat_f64s(SHRINKING), simd.splat_f64s(1.0));
-        for entry in self.stored[start..self.end].iter_mut().chain(panel) {
-            *entry = entry.scaled(simd, factors);
-        }
-        self.scale = simd.mul_f64s(self.scale, factors);
-        factors
     }
 }

@@ -1,6 +1,7 @@
 //! Frequency responses: the grid, the evaluation of a model on it, magnitude and phase (M2, M3).
 
 mod active_row;
+mod aligned_numbers;
 mod back_substitution;
 mod complex_lanes;
 mod frequency_grid;
@@ -16,6 +17,7 @@ mod prepared_model;
 mod state_space_response;
 mod statistics;
 mod structure;
+mod subdiagonal;
 mod system_table;
 
 pub use frequency_grid::FrequencyGrid;

@@ -7,7 +7,6 @@ use crate::dataset::{PairTable, StateSpace};
 
 use super::hessenberg_form::HessenbergForm;
 use super::lane_response::LaneResponse;
-use super::system_table::BLOCK;
 
 /// `H(j omega) = C (j omega I - A)^-1 B + D` at each `omega` \[rad/s\]: a p x m table of `N` values.
 ///
@@ -16,10 +15,10 @@ use super::system_table::BLOCK;
 /// computations", IEEE Trans. Automatic Control 26(2), 1981. As many frequencies are solved at once as a vector of the
 /// processor holds: eight with AVX-512, four with AVX2, two with NEON, else one.
 ///
-/// A value depends on its own frequency only, not on the rest of the grid; it has the same bits wherever fused
-/// multiply-adds are (AVX2, AVX-512, NEON). Its error is that of a model whose entries are changed by less than
-/// 1e-10 of the largest of A, in practice by some 1e-15, so the relative error grows as `j omega` comes close to a pole; at a pole, where elimination meets a
-/// zero, the values are not finite.
+/// Sixteen neighbouring frequencies choose their pivots together: a value depends on those of its sixteen, by rounding
+/// only. It has the same bits wherever fused multiply-adds are (AVX2, AVX-512, NEON). Its error is that of a model whose
+/// entries are changed by less than 1e-10 of the largest of A, in practice by some 1e-13, so the relative error grows as
+/// `j omega` comes close to a pole; at a pole, where elimination meets a zero, the values are not finite.
 pub fn evaluate(model: &StateSpace, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
     evaluate_on(Arch::new(), model, omega)
 }
@@ -31,13 +30,7 @@ pub fn evaluate_on(arch: Arch, model: &StateSpace, omega: &[f64]) -> PairTable<V
 
 /// [`evaluate_on`] of a model that is reduced already.
 pub(super) fn evaluate_reduced(arch: Arch, form: &HessenbergForm, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
-    let (rows, columns) = (form.outputs(), form.sides());
-    let (outputs, inputs) = if form.is_dual() { (columns, rows) } else { (rows, columns) };
-    // Whole vectors are appended, and cut to length in the end.
-    let room = omega.len().next_multiple_of(BLOCK);
-    let mut values = PairTable::from_fn(outputs, inputs, |_| Vec::with_capacity(room));
-    arch.dispatch(LaneResponse { form, omega, values: &mut values });
-    values
+    arch.dispatch(LaneResponse { form, omega })
 }
 
 #[cfg(test)]

@@ -1,7 +1,9 @@
 //! The matrices of a model in one table whose rows are whole vectors.
 
+use super::aligned_numbers::{AlignedNumbers, LINE};
+
 /// Numbers in a [`Block`]: as many as the longest vector register holds.
-pub const BLOCK: usize = 8;
+pub const BLOCK: usize = LINE;
 
 /// Neighbouring entries of a row. Loops over them become vector instructions of whatever length the processor has.
 pub type Block = [f64; BLOCK];
@@ -11,14 +13,14 @@ pub type Block = [f64; BLOCK];
 pub struct SystemTable {
     states: usize,
     blocks: usize,
-    entries: Vec<Block>,
+    entries: AlignedNumbers,
 }
 
 impl SystemTable {
     /// Zeros for so many states, columns of B and rows of C.
     pub fn zeros(states: usize, sides: usize, outputs: usize) -> Self {
         let blocks = (states + sides).div_ceil(BLOCK).max(1);
-        Self { states, blocks, entries: vec![[0.0; BLOCK]; blocks * (states + outputs)] }
+        Self { states, blocks, entries: AlignedNumbers::zeros(blocks * BLOCK * (states + outputs)) }
     }
 
     /// Rows of A.
@@ -42,7 +44,7 @@ impl SystemTable {
     /// All numbers, row by row.
     #[inline(always)]
     pub fn numbers(&self) -> &[f64] {
-        self.entries.as_flattened()
+        &self.entries
     }
 
     /// A row, its blocks as numbers.
@@ -54,18 +56,18 @@ impl SystemTable {
     /// All numbers to change, row by row.
     #[inline(always)]
     pub fn numbers_mut(&mut self) -> &mut [f64] {
-        self.entries.as_flattened_mut()
+        &mut self.entries
     }
 
     /// Every row as blocks.
     #[inline(always)]
     pub fn rows(&self) -> impl ExactSizeIterator<Item = &[Block]> {
-        self.entries.chunks_exact(self.blocks)
+        self.entries.as_chunks().0.chunks_exact(self.blocks)
     }
 
     /// Every row as blocks to change.
     #[inline(always)]
     pub fn rows_mut(&mut self) -> impl Iterator<Item = &mut [Block]> {
-        self.entries.chunks_exact_mut(self.blocks)
+        self.entries.as_chunks_mut().0.chunks_exact_mut(self.blocks)
     }
 }

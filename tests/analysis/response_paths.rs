@@ -115,8 +115,8 @@ fn every_instruction_set_agrees_with_50_digit_arithmetic_at_every_remainder_leng
         models += 1;
         let (name, golden) = (&case["model"], Golden::of(case));
         for arch in instruction_sets() {
-            // Every remainder of a division by the eight lanes of the longest vector, and all frequencies of the case.
-            for count in (0..=17).chain([golden.omega.len()]) {
+            // Every remainder of a division by the sixteen of a group, and all frequencies of the case.
+            for count in (0..=33).chain([golden.omega.len()]) {
                 let error = golden.error(arch, &model, count);
                 // The limit of the specification. A fourfold pole at -0.001 rad/s magnifies rounding of the system
                 // matrix some 1e7 times: the near-defective model comes near the limit; the others have errors about
@@ -134,7 +134,7 @@ fn every_shape_agrees_with_dense_lu() {
         for (outputs, inputs) in [(1, 1), (6, 4), (4, 6), (2, 5), (9, 7)] {
             // Far below the poles, among them, and far above.
             let difference = difference_from_dense(&model(order, outputs, inputs), &grid(1e-2, 1e3, 43));
-            // Rounding of at most 60 times 1e-16 times the pivoting's factor of 4096 is 3e-11; poles nearby amplify it.
+            // Rounding of at most 3e-11 (`n tau` times 1e-16); poles nearby amplify it.
             assert!(difference < 1e-10, "{order} states, {outputs} x {inputs}: {difference:.1e}");
         }
     }
@@ -143,20 +143,24 @@ fn every_shape_agrees_with_dense_lu() {
 #[test]
 fn every_number_of_frequencies_agrees_with_dense_lu() {
     let model = model(10, 6, 4);
-    for points in 2..=19 {
+    for points in 2..=35 {
         let difference = difference_from_dense(&model, &grid(0.1, 100.0, points));
-        // As above, of order 10.
-        assert!(difference < 1e-11, "{points} frequencies: {difference:.1e}");
+        // As above.
+        assert!(difference < 1e-10, "{points} frequencies: {difference:.1e}");
     }
 }
 
 #[test]
-fn a_value_has_the_same_bits_whatever_the_rest_of_the_grid() {
+fn the_rest_of_the_grid_changes_a_value_by_rounding_only() {
     let (model, whole) = (model(21, 6, 4), grid(0.01, 1000.0, 53));
     let values = response(&model, &whole);
+    let largest = values.iter().flat_map(|(_, values)| values).map(|value| value.norm()).fold(0.0, f64::max);
     for (k, omega) in whole.omega().iter().enumerate() {
-        let alone = response(&model, &grid(*omega, 2.0 * omega, 2));
-        assert!(alone.iter().all(|(pair, alone)| alone[0] == values[pair][k]), "{omega} rad/s");
+        for (pair, alone) in response(&model, &grid(*omega, 2.0 * omega, 2)).iter() {
+            let difference = (alone[0] - values[pair][k]).norm() / largest;
+            // Frequencies of a group choose their pivots together; the bound of either choice is 3e-11.
+            assert!(difference < 6e-11, "{omega} rad/s, {pair:?}: {difference:.1e}");
+        }
     }
 }
 

@@ -1,7 +1,5 @@
 //! Triangular solution for several right-hand sides and many frequencies at once.
 
-use std::ops::Range;
-
 use pulp::Simd;
 
 use super::active_row::Across;
@@ -15,8 +13,8 @@ pub type Sides<S, const R: usize> = [ComplexLanes<S>; R];
 /// The rows up to the one to be solved for, which is the last of them, and those below, which are known.
 type Parts<'a, S, const R: usize> = (&'a mut [Sides<S, R>], &'a mut [Sides<S, R>]);
 
-/// Solves `(F - j omega I) Y = B` for the `R` columns of B from `first` on, in some vectors of a group: row by row in all
-/// of them, so that one need not wait for another. `solutions` has a row for each state, for each of the vectors.
+/// Solves `(F - j omega I) Y = B` for the `R` columns of B from `first` on, in one vector of a group; `y` has a row for
+/// each state.
 ///
 /// For each entry of the triangle 4 R fused operations where its row is complex and 2 R where it is real: n^2 R to 2
 /// n^2 R, most of all the work.
@@ -25,32 +23,26 @@ pub fn substitute_back<S: Simd, const R: usize, const V: usize>(
     simd: S,
     form: &HessenbergForm,
     elimination: &Elimination<S, V>,
-    vectors: Range<usize>,
+    vector: usize,
     first: usize,
-    solutions: &mut [Vec<Sides<S, R>>],
+    y: &mut [Sides<S, R>],
 ) {
-    let Some(mut unknown) = form.order().checked_sub(1) else { return };
-    for (vector, y) in vectors.clone().zip(&mut *solutions) {
-        for (side, last) in (first..).zip(&mut y[unknown]) {
-            *last = elimination.last(form, vector, side);
-        }
+    let Some(mut unknown) = y.len().checked_sub(1) else { return };
+    for (side, last) in (first..).zip(&mut y[unknown]) {
+        *last = elimination.last(form, vector, side);
     }
+    let omega = elimination.omega(vector);
     while let Some(row) = unknown.checked_sub(1) {
         unknown = row;
+        let parts = y.split_at_mut(row + 1);
         if row > 1 && elimination.are_real(row - 2..row + 1) {
             unknown = row - 2;
-            for (vector, y) in vectors.clone().zip(&mut *solutions) {
-                substitute_three_real(simd, form, elimination.omega(vector), row, first, y.split_at_mut(row + 1));
-            }
+            substitute_three_real(simd, form, omega, row, first, parts);
         } else if elimination.are_real(row..row + 1) {
-            for (vector, y) in vectors.clone().zip(&mut *solutions) {
-                substitute_real(simd, form, elimination.omega(vector), row, first, y.split_at_mut(row + 1));
-            }
+            substitute_real(simd, form, omega, row, first, parts);
         } else {
-            for (vector, y) in vectors.clone().zip(&mut *solutions) {
-                let (entries, sides) = elimination.complex_row(form, vector, row);
-                substitute_complex(simd, entries, &sides[first..first + R], vector % V, y.split_at_mut(row + 1));
-            }
+            let (entries, sides) = elimination.complex_row(form, vector, row);
+            substitute_complex(simd, entries, &sides[first..first + R], vector % V, parts);
         }
     }
 }

@@ -136,9 +136,10 @@ fn table(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>) -> SystemTable {
     let mut table = SystemTable::zeros(a.nrows(), b.ncols(), c.nrows());
     for (matrix, row, column) in [(a, 0, 0), (b, 0, a.ncols()), (c, a.nrows(), 0)] {
         let width = table.width();
-        for (from, entries) in matrix.column_iter().enumerate() {
-            for (entry, value) in table.numbers_mut()[row * width..].chunks_exact_mut(width).zip(entries.iter()) {
-                entry[column + from] = *value;
+        let rows = table.numbers_mut()[row * width..].chunks_exact_mut(width);
+        for (entries, values) in rows.zip(matrix.row_iter()) {
+            for (entry, value) in entries[column..].iter_mut().zip(values.iter()) {
+                *entry = *value;
             }
         }
     }

@@ -10,10 +10,6 @@ use super::complex_lanes::{ComplexLanes, filled, frequencies};
 use super::hessenberg_form::HessenbergForm;
 use super::lane_elimination::{Elimination, GROUP};
 
-/// Bytes of the first-level cache that the solutions of vectors that are solved together may take; it has 32 KiB at
-/// least.
-const CACHE: usize = 32 << 10;
-
 /// `H(j omega) = D - C Y` of a reduced model, to be evaluated with the vectors of an instruction set.
 pub struct LaneResponse<'a> {
     /// The model.
@@ -46,11 +42,10 @@ impl LaneResponse<'_> {
         let mut values: Vec<Vec<Values<S>>> = Vec::with_capacity(form.outputs() * form.sides());
         values.resize_with(form.outputs() * form.sides(), || Vec::with_capacity(room));
         let mut elimination = Elimination::<S, V>::with_room_for(simd, form);
-        let one_solution = (form.order() * size_of::<Sides<S, R>>()).max(1);
-        let together = (CACHE / one_solution).clamp(1, GROUP / S::F64_LANES);
         let whole = form.sides() / R * R;
-        let mut many = solutions::<S, R>(simd, form, if whole > 0 { together } else { 0 });
-        let mut one = solutions::<S, 1>(simd, form, if whole < form.sides() { together } else { 0 });
+        let zero = ComplexLanes::real(simd, 0.0);
+        let mut many = filled([zero; R], if whole > 0 { form.order() } else { 0 });
+        let mut one = filled([zero; 1], if whole < form.sides() { form.order() } else { 0 });
         let mut lanes = [simd.splat_f64s(0.0); GROUP];
         for omega in self.omega.chunks(GROUP) {
             let vectors = omega.len().div_ceil(S::F64_LANES);
@@ -58,15 +53,14 @@ impl LaneResponse<'_> {
                 *lanes = simd.mul_f64s(scale, frequencies(simd, omega));
             }
             elimination.run(simd, form, &lanes[..vectors]);
-            for vector in (0..vectors).step_by(together) {
-                let vectors = vector..vectors.min(vector + together);
+            for vector in 0..vectors {
                 for first in (0..whole).step_by(R) {
-                    substitute_back(simd, form, &elimination, vectors.clone(), first, &mut many);
-                    self.append(simd, first, &many[..vectors.len()], &mut values);
+                    substitute_back(simd, form, &elimination, vector, first, &mut many);
+                    self.append(simd, first, &many, &mut values);
                 }
                 for first in whole..form.sides() {
-                    substitute_back(simd, form, &elimination, vectors.clone(), first, &mut one);
-                    self.append(simd, first, &one[..vectors.len()], &mut values);
+                    substitute_back(simd, form, &elimination, vector, first, &mut one);
+                    self.append(simd, first, &one, &mut values);
                 }
             }
         }
@@ -74,38 +68,26 @@ impl LaneResponse<'_> {
     }
 
     /// Appends `D - C Y` of `R` right-hand sides from `first` on to the values of each response, row by row of C: 2 n p
-    /// fused operations for each solution and side.
+    /// fused operations for each side.
     #[inline(always)]
-    fn append<S: Simd, const R: usize>(
-        &self,
-        simd: S,
-        first: usize,
-        solutions: &[Vec<Sides<S, R>>],
-        values: &mut [Vec<Values<S>>],
-    ) {
+    fn append<S: Simd, const R: usize>(&self, simd: S, first: usize, y: &[Sides<S, R>], values: &mut [Vec<Values<S>>]) {
         let form = self.form;
         let rows = form.outputs();
-        for y in solutions {
-            for row in (0..rows).step_by(3) {
-                // Three rows at a time; the last of them is computed again for those that there are not.
-                let three = [row, (row + 1).min(rows - 1), (row + 2).min(rows - 1)];
-                let mut sums = [[ComplexLanes::real(simd, 0.0); R]; 3];
-                for (sum, row) in sums.iter_mut().zip(three) {
-                    for (side, sum) in sum.iter_mut().enumerate() {
-                        sum.re = simd.splat_f64s(form.d(row, first + side));
-                    }
+        for row in (0..rows).step_by(3) {
+            // Three rows at a time; the last of them is computed again for those that there are not.
+            let three = [row, (row + 1).min(rows - 1), (row + 2).min(rows - 1)];
+            let mut sums = [[ComplexLanes::real(simd, 0.0); R]; 3];
+            for (sum, row) in sums.iter_mut().zip(three) {
+                for (side, sum) in sum.iter_mut().enumerate() {
+                    sum.re = simd.splat_f64s(form.d(row, first + side));
                 }
-                subtract_real_products(
-                    simd,
-                    &mut sums,
-                    [form.c_row(three[0]), form.c_row(three[1]), form.c_row(three[2])],
-                    y,
-                );
-                for (sum, row) in sums.iter().zip(row..rows) {
-                    let into = &mut values[row * form.sides() + first..][..R];
-                    for (into, sum) in into.iter_mut().zip(sum) {
-                        into.push(sum.interleaved(simd));
-                    }
+            }
+            let table = [form.c_row(three[0]), form.c_row(three[1]), form.c_row(three[2])];
+            subtract_real_products(simd, &mut sums, table, y);
+            for (sum, row) in sums.iter().zip(row..rows) {
+                let into = &mut values[row * form.sides() + first..][..R];
+                for (into, sum) in into.iter_mut().zip(sum) {
+                    into.push(sum.interleaved(simd));
                 }
             }
         }
@@ -125,16 +107,6 @@ impl LaneResponse<'_> {
         }
         table
     }
-}
-
-/// Room for the solutions of so many vectors for `R` right-hand sides.
-#[inline(always)]
-fn solutions<S: Simd, const R: usize>(simd: S, form: &HessenbergForm, vectors: usize) -> Vec<Vec<Sides<S, R>>> {
-    let mut solutions = Vec::with_capacity(vectors);
-    for _ in 0..vectors {
-        solutions.push(filled([ComplexLanes::real(simd, 0.0); R], form.order()));
-    }
-    solutions
 }
 
 #[cfg(test)]

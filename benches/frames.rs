@@ -19,7 +19,7 @@ use window::Window;
 
 const SIZE: egui::Vec2 = vec2(1600.0, 900.0);
 /// Curves and their points: first the size that the figure to reach is for.
-const SIZES: [(usize, usize); 4] = [(25, 500), (25, 5000), (100, 500), (6, 500)];
+const SIZES: [(usize, usize); 5] = [(25, 500), (25, 5000), (100, 500), (6, 500), (1000, 500)];
 /// Frames of which the middle one counts in the table.
 const FRAMES: usize = 301;
 

@@ -1,27 +1,22 @@
 //! One of the two stacked plots: axes, band, curves and cursor.
 
 use egui::{Id, Rect, Response, Ui, UiBuilder, WidgetInfo};
-use egui_plot::{Axis, Line, LineStyle, PlotTransform, PlotUi, Span, VLine};
+use egui_plot::{Axis, Line, LineStyle, PlotPoints, PlotTransform, PlotUi, Span, VLine};
 
 use super::axes::{LABELLED_HEIGHT, TICKS_HEIGHT, VERTICAL_TICK_GAP, axis_hints, quiet_plot};
 use super::bode::BodeScene;
 use super::bode_view::BodeView;
 use super::box_zoom::box_zoom_ui;
-use super::curve::{BodeCurve, CurveId, LogFrequencies, Pane, runs_in_view};
+use super::curve::{BodeCurve, CurveId, Pane};
+use super::drawn_curves::DrawnCurves;
 use super::linear_axis::{Ladder, tick_text};
 use super::pixel::Pixel;
-use super::thinning::thinned;
 use crate::view::palette::Palette;
 
 /// Width of the vertical axes \[pt\]: the same above and below, so that the frequencies stand under one another.
 const VALUE_AXIS_WIDTH: f32 = 52.0;
 /// How far from a curve its drawn line may be \[pt\].
 const TOLERANCE: f64 = 0.1;
-/// How far outside the view a point may be to be drawn, as a part of the view: a line has a width.
-const LINE_MARGIN: f64 = 0.02;
-/// The same for dashes and dots: panning a little is not to change where they begin.
-const PATTERN_MARGIN: f64 = 1.0;
-
 impl Pane {
     fn name(self) -> &'static str {
         match self {
@@ -64,17 +59,23 @@ pub(super) fn pane_ui(
 ) -> Response {
     let id = ui.make_persistent_id(pane.name());
     let builder = UiBuilder::new().id_salt(pane.name()).max_rect(rect);
+    let mut kept = std::mem::take(view.drawn_curves(pane));
+    let drawn = &mut kept;
     let shown = ui.scope_builder(builder, |ui| {
         let bounds = view.bounds(pane);
-        pane_plot(id, pane, rect, scene, palette).show(ui, |plot| {
+        pane_plot(id, pane, rect, scene, palette).show(ui, move |plot| {
             plot.set_plot_bounds(bounds);
             band_shade(plot, scene.band, palette);
-            draw_curves(plot, pane, scene, view, emphasis, palette);
+            let transform = PlotTransform::new(*plot.transform().frame(), bounds, false);
+            let pixel = Pixel::of(&transform, plot.ctx().pixels_per_point(), TOLERANCE);
+            drawn.update(scene.curves, pane, (bounds, pixel), palette);
+            draw_curves(plot, scene, drawn, emphasis, palette);
             outside_shade(plot, scene.band, palette);
             draw_cursor(plot, emphasis.cursor, palette);
         })
     });
     let shown = shown.inner;
+    *view.drawn_curves(pane) = kept;
     view.take_over(pane, shown.transform);
     if let Some(area) = box_zoom_ui(ui, &shown.response, *shown.transform.frame(), palette) {
         view.zoom_to(pane, area);
@@ -118,32 +119,26 @@ fn outside_shade(plot: &mut PlotUi<'_>, (min, max): (f64, f64), palette: &Palett
     }
 }
 
-fn draw_curves(
-    plot: &mut PlotUi<'_>,
-    pane: Pane,
+fn draw_curves<'a>(
+    plot: &mut PlotUi<'a>,
     scene: &BodeScene<'_>,
-    view: &BodeView,
+    drawn: &'a DrawnCurves,
     emphasis: &Emphasis,
     palette: &Palette,
 ) {
     let is_emphasized = |curve: &BodeCurve| curve.highlighted || emphasis.curve == Some(curve.id);
-    let mut curves: Vec<&BodeCurve> = scene.curves.iter().collect();
-    curves.sort_by_key(|curve| (is_emphasized(curve), curve.role.layer(curve.rejected)));
-    let bounds = view.bounds(pane);
-    let transform = PlotTransform::new(*plot.transform().frame(), bounds, false);
-    let pixel = Pixel::of(&transform, plot.ctx().pixels_per_point(), TOLERANCE);
-    let mut axis = LogFrequencies::default();
-    for curve in curves {
+    let mut curves: Vec<(usize, &BodeCurve)> = scene.curves.iter().enumerate().collect();
+    curves.sort_by_key(|(_, curve)| (is_emphasized(curve), curve.role.layer(curve.rejected)));
+    for (index, curve) in curves {
         let mut look = curve.role.look(curve.rejected, palette);
         if is_emphasized(curve) {
             look = look.emphasized();
         } else if scene.stale {
             look.color = look.color.gamma_multiply(0.5);
         }
-        let margin = if look.style == LineStyle::Solid { LINE_MARGIN } else { PATTERN_MARGIN };
-        for run in runs_in_view(curve.points_on(&mut axis, pane), &bounds, margin) {
-            let run = thinned(&run, pixel);
-            plot.line(Line::new("", run).color(look.color).width(look.width).style(look.style).allow_hover(false));
+        for run in drawn.runs(index) {
+            let line = Line::new("", PlotPoints::Borrowed(run)).color(look.color).width(look.width).style(look.style);
+            plot.line(line.allow_hover(false));
         }
     }
 }

@@ -4,6 +4,7 @@ use egui::{Pos2, Rect};
 use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
 
 use super::curve::{BodeCurve, CurveId, Pane};
+use super::drawn_curves::DrawnCurves;
 use super::legend::LegendState;
 use super::range::Range;
 
@@ -32,6 +33,8 @@ pub struct BodeView {
     must_fit: bool,
     magnitude_transform: Option<PlotTransform>,
     phase_transform: Option<PlotTransform>,
+    magnitude_curves: DrawnCurves,
+    phase_curves: DrawnCurves,
 }
 
 impl Default for BodeView {
@@ -46,6 +49,8 @@ impl Default for BodeView {
             must_fit: true,
             magnitude_transform: None,
             phase_transform: None,
+            magnitude_curves: DrawnCurves::default(),
+            phase_curves: DrawnCurves::default(),
         }
     }
 }
@@ -101,6 +106,14 @@ impl BodeView {
     pub fn screen_position(&self, pane: Pane, omega: f64, value: f64) -> Option<Pos2> {
         let transform = self.transform(pane)?;
         Some(transform.position_from_point(&PlotPoint::new(omega.log10(), value)))
+    }
+
+    /// What a pane drew last.
+    pub(super) fn drawn_curves(&mut self, pane: Pane) -> &mut DrawnCurves {
+        match pane {
+            Pane::Magnitude => &mut self.magnitude_curves,
+            Pane::Phase => &mut self.phase_curves,
+        }
     }
 
     /// The part in view of a pane as egui_plot wants it.

@@ -70,6 +70,20 @@ impl BodeCurve {
         axis.of(&self.omega).iter().zip(self.values(pane)).map(|(log_omega, value)| [*log_omega, *value])
     }
 
+    /// Those of [`Self::points_on`] from `low` to `high` in `log10 omega`, and one on either side.
+    pub(super) fn points_between<'a>(
+        &'a self,
+        axis: &'a mut LogFrequencies,
+        pane: Pane,
+        (low, high): (f64, f64),
+    ) -> impl Iterator<Item = [f64; 2]> + 'a {
+        let log_omega = axis.of(&self.omega);
+        let from = log_omega.partition_point(|at| *at < low).saturating_sub(1);
+        let count = log_omega[from..].partition_point(|at| *at <= high) + 1;
+        let points = log_omega.iter().zip(self.values(pane)).skip(from).take(count);
+        points.map(|(log_omega, value)| [*log_omega, *value])
+    }
+
     /// The value at `omega` \[rad/s\], linear in `log10 omega` between points; nothing outside them or beside a gap.
     pub fn value_at(&self, pane: Pane, omega: f64) -> Option<f64> {
         let values = self.values(pane);
@@ -211,6 +225,20 @@ mod tests {
         assert!(value(10f64.sqrt()).is_some_and(|db| (db + 10.0).abs() < 1e-12));
         assert_eq!(value(0.5), None);
         assert_eq!(value(101.0), None);
+    }
+
+    #[test]
+    fn points_between_two_frequencies_lead_to_both() {
+        let curve = curve(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
+        let mut axis = LogFrequencies::default();
+        let mut between = |low, high| -> Vec<f64> {
+            curve.points_between(&mut axis, Pane::Magnitude, (low, high)).map(|[x, _]| x).collect()
+        };
+        assert_eq!(between(1.5, 2.5), [1.0, 2.0, 3.0]);
+        assert_eq!(between(2.0, 3.0), [1.0, 2.0, 3.0, 4.0]);
+        assert_eq!(between(-9.0, 0.5), [0.0, 1.0]);
+        assert_eq!(between(4.5, 9.0), [4.0, 5.0]);
+        assert_eq!(between(7.0, 9.0), [5.0]);
     }
 
     #[test]

@@ -13,6 +13,7 @@ mod channels;
 mod curve;
 mod dot;
 mod dot_label;
+mod drawn_curves;
 mod gain_group;
 mod gain_panel;
 mod grid_strength;

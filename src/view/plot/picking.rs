@@ -1,6 +1,6 @@
 //! Which curve the pointer means: the nearest one, not the topmost.
 
-use egui::Pos2;
+use egui::{Pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
 
 use super::curve::{BodeCurve, CurveId, LogFrequencies, Pane};
@@ -23,8 +23,9 @@ pub struct Hit {
 pub fn nearest(curves: &[BodeCurve], pane: Pane, pointer: Pos2, transform: &PlotTransform) -> Option<Hit> {
     let mut best: Option<(Hit, usize)> = None;
     let mut axis = LogFrequencies::default();
+    let [low, high] = [-PICK_RADIUS, PICK_RADIUS].map(|dx| transform.value_from_position(pointer + vec2(dx, 0.0)).x);
     for curve in curves {
-        let points = curve.points_on(&mut axis, pane);
+        let points = curve.points_between(&mut axis, pane, (low, high));
         let Some((distance, at)) = distance_to(points, pointer, transform) else {
             continue;
         };

@@ -14,8 +14,8 @@ use super::structure::connected;
 
 /// What of a response does not depend on the grid: made once for each model, it serves every band and every drawing.
 ///
-/// For a state-space model of `n` states that is the Hessenberg form, `O(n^3)` operations to make and
-/// `8 n (n + m + p)` bytes to keep.
+/// For a state-space model of `n` states that is the Hessenberg form, `O(n^3)` operations to make and some
+/// `16 n (n + m + p)` bytes to keep.
 #[derive(Clone, Debug)]
 pub struct PreparedModel {
     source: Source,

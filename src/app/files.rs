@@ -152,9 +152,8 @@ impl GdcmApp {
     /// Writes the corrections of the conditions chosen in the form.
     pub(super) fn export(&mut self) {
         if self.state.results.stopped {
-            return self.trouble(
-                "the results are older than the settings, for computing was stopped; compute first".to_owned(),
-            );
+            let left = self.state.after_stop();
+            return self.trouble(format!("{left}, for computing was stopped; compute first"));
         }
         if self.state.results.is_waiting() {
             return self.trouble("the newest results are still being computed; export again in a moment".to_owned());

@@ -234,8 +234,35 @@ impl State {
         Arc::ptr_eq(&analysis.study.dataset, &self.study.dataset).then_some(analysis)
     }
 
+    /// What giving up a computation leaves, in words.
+    pub fn after_stop(&self) -> &'static str {
+        match self.analysis() {
+            Some(_) => "the results are older than the settings",
+            None => "there are no results yet",
+        }
+    }
+
     /// A model of the condition shown.
     pub fn model_id(&self, bundle: BundleKind, model: usize) -> ModelId {
         ModelId { condition: self.display.condition, bundle, model }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::embedded_example;
+    use crate::study::{Engine, Unwatched};
+
+    #[test]
+    fn a_stop_before_the_first_result_leaves_none_and_one_after_it_leaves_that() {
+        let study = Study::new(embedded_example().unwrap().dataset);
+        let mut state = State::new(study.clone(), String::new(), Vec::new());
+        assert_eq!(state.after_stop(), "there are no results yet");
+        state.results.analysis = Some(Arc::new(Engine::default().analyze(&study, &Unwatched).unwrap()));
+        assert_eq!(state.after_stop(), "the results are older than the settings");
+        let other = Study::new(embedded_example().unwrap().dataset);
+        state.study = other;
+        assert_eq!(state.after_stop(), "there are no results yet", "of the dataset that is shown now");
     }
 }

@@ -33,9 +33,7 @@ pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
 fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let now = ui.input(|input| input.time);
     let (text, color) = match (&state.opening, state.results.is_stale(now), state.results.progress) {
-        (None, ..) if state.results.stopped => {
-            ("● stopped: the results are older than the settings".to_owned(), palette.warning)
-        }
+        (None, ..) if state.results.stopped => (format!("● stopped: {}", state.after_stop()), palette.warning),
         (Some(name), ..) => (format!("● reading {name} …"), palette.accent),
         (None, true, Some((done, total))) => {
             (format!("● computing, {} % …", 100 * done / total.max(1)), palette.warning)

@@ -14,7 +14,7 @@ pub const GROUP: usize = 16;
 /// The upper triangle that row operations make of `[F - j omega I, B]`, one frequency to a lane.
 ///
 /// Column k is cleared by combining the one complex *active* row `u` (what the rows above have become) with the next
-/// row `r`, which is real but for its diagonal entry: `u - h r`, `h = u_k / r_k`. That takes 2 fused operations an entry,
+/// row `r`, which is real but for its diagonal entry: `u - m r`, `m = u_k / r_k`. That takes 2 fused operations an entry,
 /// n^2 + 2 n m in all. Then one of `u` and `r` stays in the triangle: `r`, unless in some lane of the group `|u_k| > tau
 /// |r_k|`. If so, both are interchanged in all lanes where `|u_k| > |r_k|`, which for neighbouring frequencies are nearly
 /// always all: the row that each lane keeps is of one kind. This is threshold pivoting (Duff, Erisman & Reid, "Direct

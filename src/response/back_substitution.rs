@@ -38,6 +38,9 @@ pub fn substitute_back<S: Simd, const R: usize, const V: usize>(
         if row > 1 && elimination.are_real(row - 2..row + 1) {
             unknown = row - 2;
             substitute_three_real(simd, form, omega, row, first, parts);
+        } else if row > 0 && elimination.are_real(row - 1..row + 1) {
+            unknown = row - 1;
+            substitute_two_real(simd, form, omega, row, first, parts);
         } else if elimination.are_real(row..row + 1) {
             substitute_real(simd, form, omega, row, first, parts);
         } else {
@@ -68,7 +71,7 @@ fn substitute_three_real<S: Simd, const R: usize>(
         real_sides(simd, sides_above, first),
         real_sides(simd, sides_highest, first),
     ];
-    subtract_real_products(simd, &mut sums, [entries_here, entries_above, entries_highest], known);
+    subtract_three_real_products(simd, &mut sums, [entries_here, entries_above, entries_highest], known);
     let (next, near, far) = (simd.splat_f64s(*next), simd.splat_f64s(*near), simd.splat_f64s(*far));
     let shift_here = shift(simd, form, omega, row);
     let shift_above = shift(simd, form, omega, row - 1);
@@ -80,6 +83,31 @@ fn substitute_three_real<S: Simd, const R: usize>(
         let sum = sums[2][side].minus_real_product(simd, here[side], far);
         let sum = sum.minus_real_product(simd, above[side], near);
         highest[side] = sum.plus_imaginary_product(simd, above[side], shift_highest);
+    }
+}
+
+/// Solves two real rows, which share what is read of the known ones: `row` and the one above.
+#[inline(always)]
+fn substitute_two_real<S: Simd, const R: usize>(
+    simd: S,
+    form: &HessenbergForm,
+    omega: S::f64s,
+    row: usize,
+    first: usize,
+    (unknown, known): Parts<S, R>,
+) {
+    let ([.., above, here], Some(below)) = (unknown, known.first()) else { return };
+    let (entries_here, sides_here) = form.unit_row(row);
+    let (entries_above, sides_above) = form.unit_row(row - 1);
+    let Some(([next], entries_above)) = entries_above.split_first_chunk() else { return };
+    let mut sums = [real_sides(simd, sides_here, first), real_sides(simd, sides_above, first)];
+    subtract_two_real_products(simd, &mut sums, [entries_here, entries_above], known);
+    let next = simd.splat_f64s(*next);
+    let (shift_here, shift_above) = (shift(simd, form, omega, row), shift(simd, form, omega, row - 1));
+    for side in 0..R {
+        here[side] = sums[0][side].plus_imaginary_product(simd, below[side], shift_here);
+        let sum = sums[1][side].minus_real_product(simd, here[side], next);
+        above[side] = sum.plus_imaginary_product(simd, here[side], shift_above);
     }
 }
 
@@ -153,9 +181,28 @@ fn subtract_real_product<S: Simd, const R: usize>(simd: S, sum: &mut Sides<S, R>
     *sum = part;
 }
 
+/// [`subtract_real_product`] for two rows, which share what is read of `y`.
+#[inline(always)]
+fn subtract_two_real_products<S: Simd, const R: usize>(
+    simd: S,
+    sums: &mut [Sides<S, R>; 2],
+    rows: [&[f64]; 2],
+    y: &[Sides<S, R>],
+) {
+    let [mut first, mut second] = *sums;
+    for ((a, b), y) in rows[0].iter().zip(rows[1]).zip(y).rev() {
+        let (a, b) = (simd.splat_f64s(*a), simd.splat_f64s(*b));
+        for side in 0..R {
+            first[side] = first[side].minus_real_product(simd, y[side], a);
+            second[side] = second[side].minus_real_product(simd, y[side], b);
+        }
+    }
+    *sums = [first, second];
+}
+
 /// [`subtract_real_product`] for three rows, which share what is read of `y`.
 #[inline(always)]
-pub fn subtract_real_products<S: Simd, const R: usize>(
+pub fn subtract_three_real_products<S: Simd, const R: usize>(
     simd: S,
     sums: &mut [Sides<S, R>; 3],
     rows: [&[f64]; 3],

@@ -5,7 +5,7 @@ use pulp::{Simd, WithSimd};
 
 use crate::dataset::{Pair, PairTable};
 
-use super::back_substitution::{Sides, substitute_back, subtract_real_products};
+use super::back_substitution::{Sides, substitute_back, subtract_three_real_products};
 use super::complex_lanes::{ComplexLanes, filled, frequencies};
 use super::hessenberg_form::HessenbergForm;
 use super::lane_elimination::{Elimination, GROUP};
@@ -83,7 +83,7 @@ impl LaneResponse<'_> {
                 }
             }
             let table = [form.c_row(three[0]), form.c_row(three[1]), form.c_row(three[2])];
-            subtract_real_products(simd, &mut sums, table, y);
+            subtract_three_real_products(simd, &mut sums, table, y);
             for (sum, row) in sums.iter().zip(row..rows) {
                 let into = &mut values[row * form.sides() + first..][..R];
                 for (into, sum) in into.iter_mut().zip(sum) {

@@ -6,7 +6,6 @@
 
 use std::hint::black_box;
 use std::sync::Arc;
-use std::time::Instant;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 
@@ -21,8 +20,11 @@ use gdcm::study::{BundleFigures, Edit, Effort, Engine, PreparedCondition, Settin
 #[path = "random_model/mod.rs"]
 #[expect(dead_code, reason = "other benches use the rest of it")]
 mod random_model;
+#[path = "stopwatch/mod.rs"]
+mod stopwatch;
 
 use random_model::dense_responses;
+use stopwatch::shortest;
 
 fn example() -> Arc<Dataset> {
     embedded_example().expect("the embedded example is a dataset").dataset
@@ -111,28 +113,21 @@ fn ratios(_: &mut Criterion) {
             }
         }
     });
-    println!("responses of one condition: a dense LU at each frequency takes {:.0} times as long", plain / ours);
+    println!(
+        "responses of one condition: a dense LU at each frequency takes {:.0} times as long",
+        plain.div_duration_f64(ours)
+    );
     let study = Study::new(Arc::clone(&dataset));
     let anew = shortest(5, || Engine::default().analyze(&study, &Unwatched));
     let together = shortest(5, || Engine::with_crew(Box::new(Pool)).analyze(&study, &Unwatched));
-    println!("everything anew: one core takes {:.2} times as long as all", anew / together);
+    println!("everything anew: one core takes {:.2} times as long as all", anew.div_duration_f64(together));
     let (mut engine, mut dragged, mut alpha) = (Engine::default(), study.clone(), 1.0);
     let drag = shortest(50, || {
         alpha += 1e-6;
         dragged.apply(&Edit::Set(Setting::AlphaGain(alpha))).expect("within its range");
         engine.analyze(&dragged, &Unwatched)
     });
-    println!("alpha dragged: everything anew would take {:.0} times as long", anew / drag);
-}
-
-/// The shortest of a few runs in seconds.
-fn shortest<T>(runs: usize, mut run: impl FnMut() -> T) -> f64 {
-    let time = |_| {
-        let start = Instant::now();
-        black_box(run());
-        start.elapsed()
-    };
-    (0..runs).map(time).min().unwrap_or_default().as_secs_f64()
+    println!("alpha dragged: everything anew would take {:.0} times as long", anew.div_duration_f64(drag));
 }
 
 criterion_group!(benches, stages, live_loop, ratios);

@@ -3,8 +3,6 @@
 //! Figures to reach: responses <= 1 s on two cores, memory <= 1 GB.
 
 use std::collections::BTreeMap;
-use std::hint::black_box;
-use std::time::{Duration, Instant};
 
 use criterion::Criterion;
 use gdcm::app::Pool;
@@ -15,8 +13,11 @@ use nalgebra::DMatrix;
 
 #[path = "random_model/mod.rs"]
 mod random_model;
+#[path = "stopwatch/mod.rs"]
+mod stopwatch;
 
 use random_model::{INPUTS, OUTPUTS, dense_responses, model};
+use stopwatch::shortest;
 
 const MODELS: usize = 1000;
 const STATES: usize = 60;
@@ -64,16 +65,6 @@ fn peak_memory_mb() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM"))?;
     Some(line.split_whitespace().nth(1)?.parse::<f64>().ok()? / 1024.0)
-}
-
-/// The shortest of a few runs.
-fn shortest<T>(runs: usize, mut run: impl FnMut() -> T) -> Duration {
-    let time = |_| {
-        let start = Instant::now();
-        drop(black_box(run()));
-        start.elapsed()
-    };
-    (0..runs).map(time).min().unwrap_or_default()
 }
 
 fn main() {

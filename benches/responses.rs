@@ -14,7 +14,7 @@
 
 use std::hint::black_box;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use criterion::{Criterion, Throughput};
 use gdcm::dataset::{Band, Pair, PairTable, StateSpace};
@@ -25,8 +25,11 @@ use serde_json::json;
 
 #[path = "random_model/mod.rs"]
 mod random_model;
+#[path = "stopwatch/mod.rs"]
+mod stopwatch;
 
 use random_model::{INPUTS, OUTPUTS, dense_responses, model};
+use stopwatch::shortest;
 
 const FREQUENCIES: usize = 500;
 const ORDERS: [usize; 3] = [12, 30, 60];
@@ -72,23 +75,13 @@ fn multiply_adds(order: usize) -> usize {
     order * order * (1 + INPUTS) + 2 * order * INPUTS * (1 + OUTPUTS)
 }
 
-/// The shortest of a few runs in seconds: what the machine does when nothing disturbs it.
-fn shortest<T>(runs: usize, mut run: impl FnMut() -> T) -> f64 {
-    let time = |_| {
-        let start = Instant::now();
-        black_box(run());
-        start.elapsed()
-    };
-    (0..runs).map(time).min().unwrap_or_default().as_secs_f64()
-}
-
 /// One row of the table for each instruction set.
 fn compare(order: usize, omega: &[f64]) {
     let model = model(order);
-    let dense = shortest(5, || dense_responses(&model, omega)) / FREQUENCIES as f64;
+    let dense = shortest(5, || dense_responses(&model, omega)).as_secs_f64() / FREQUENCIES as f64;
     for (name, arch) in instruction_sets() {
-        let seconds = shortest(400, || evaluate_on(arch, &model, omega)) / FREQUENCIES as f64;
-        let peak = arch.dispatch(MultiplyAdds) / shortest(400, || arch.dispatch(MultiplyAdds));
+        let seconds = shortest(400, || evaluate_on(arch, &model, omega)).as_secs_f64() / FREQUENCIES as f64;
+        let peak = arch.dispatch(MultiplyAdds) / shortest(400, || arch.dispatch(MultiplyAdds)).as_secs_f64();
         let part = multiply_adds(order) as f64 / seconds / peak;
         let (time, ratio, peak) = (seconds * 1e6, dense / seconds, peak * 1e-9);
         println!("{order:6}  {name:<8} {time:8.3} {:10.2} {ratio:8.1} {peak:12.1} {:7.0} %", dense * 1e6, part * 100.0);
@@ -109,14 +102,14 @@ fn scaling(omega: &[f64]) {
             run(second);
         });
     });
-    println!("64 models of 30 states: two threads are {:.2} times as fast as one", one / two);
+    println!("64 models of 30 states: two threads are {:.2} times as fast as one", one.div_duration_f64(two));
 }
 
 /// Writes a model and its response to `<order>-states.json`, indices `[frequency][output][input]`.
 fn export(folder: &Path, order: usize, omega: &[f64]) {
     let model = model(order);
     let (name, arch) = instruction_sets()[0];
-    let seconds = shortest(400, || evaluate_on(arch, &model, omega)) / FREQUENCIES as f64;
+    let seconds = shortest(400, || evaluate_on(arch, &model, omega)).as_secs_f64() / FREQUENCIES as f64;
     let response = evaluate_on(arch, &model, omega);
     let text = json!({
         "a": rows(model.a()), "b": rows(model.b()), "c": rows(model.c()), "d": rows(model.d()),

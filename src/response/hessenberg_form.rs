@@ -92,10 +92,10 @@ impl HessenbergForm {
         &self.subdiagonals
     }
 
-    /// The first row of `[F B]` from column `first` on.
+    /// The panel of the first row of `[F B]` that begins in column `first`.
     #[inline(always)]
     pub fn first_row(&self, first: usize) -> &[f64; PANEL] {
-        self.table.row(0)[first..].first_chunk().expect("rows are whole blocks")
+        &self.table.row(0).as_chunks().0[first / PANEL]
     }
 
     /// The row that has a one below the diagonal of `column`, right of that: its entries of F and those of B.

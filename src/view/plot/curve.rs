@@ -160,6 +160,22 @@ fn touches(a: [f64; 2], b: [f64; 2], bounds: &PlotBounds) -> bool {
     (0..2).all(|axis| a[axis].max(b[axis]) >= bounds.min()[axis] && a[axis].min(b[axis]) <= bounds.max()[axis])
 }
 
+/// A curve of three values, an octave apart, the same in both panes.
+#[cfg(test)]
+pub(super) fn sample_curve(id: u64, values: &[f64]) -> BodeCurve {
+    BodeCurve {
+        id: CurveId(id),
+        label: String::new(),
+        detail: String::new(),
+        role: Role::Perturbed,
+        rejected: false,
+        highlighted: false,
+        omega: vec![1.0, 2.0, 4.0].into(),
+        magnitude_db: values.into(),
+        phase_deg: values.into(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -174,17 +190,7 @@ mod tests {
 
     fn curve(magnitude_db: &[f64]) -> BodeCurve {
         let omega: Vec<f64> = (0..magnitude_db.len()).map(|k| 10f64.powi(k as i32)).collect();
-        BodeCurve {
-            id: CurveId(1),
-            label: "a".into(),
-            detail: String::new(),
-            role: Role::Nominal,
-            rejected: false,
-            highlighted: false,
-            omega: omega.into(),
-            magnitude_db: magnitude_db.into(),
-            phase_deg: magnitude_db.into(),
-        }
+        BodeCurve { omega: omega.into(), ..sample_curve(1, magnitude_db) }
     }
 
     proptest! {

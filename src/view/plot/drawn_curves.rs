@@ -1,10 +1,9 @@
 //! The points of a pane's curves that have to be drawn.
 
-use std::sync::Arc;
-
 use egui_plot::{LineStyle, PlotBounds, PlotPoint};
 
 use super::curve::{BodeCurve, LogFrequencies, Pane, runs_in_view};
+use super::curve_numbers::CurveNumbers;
 use super::pixel::Pixel;
 use super::thinning::thinned;
 use crate::view::palette::Palette;
@@ -24,12 +23,10 @@ pub(super) struct DrawnCurves {
     curves: Vec<DrawnCurve>,
 }
 
-/// The points of one curve, and from what they were made. It holds the numbers, so that no others can take their place in
-/// memory.
+/// The points of one curve, and from what they were made.
 #[derive(Clone, Debug)]
 struct DrawnCurve {
-    omega: Arc<[f64]>,
-    values: Arc<[f64]>,
+    numbers: CurveNumbers,
     margin: f64,
     runs: Vec<Vec<PlotPoint>>,
 }
@@ -43,6 +40,13 @@ impl DrawnCurves {
         (bounds, pixel): (PlotBounds, Pixel),
         palette: &Palette,
     ) {
+        let is_same = |(drawn, curve): (&DrawnCurve, &BodeCurve)| drawn.is_of(curve, pane, margin(curve, palette));
+        if self.drawn == Some((bounds, pixel))
+            && self.curves.len() == curves.len()
+            && self.curves.iter().zip(curves).all(is_same)
+        {
+            return;
+        }
         let mut kept = std::mem::take(&mut self.curves).into_iter().map(Some).collect::<Vec<_>>();
         if self.drawn != Some((bounds, pixel)) {
             kept.clear();
@@ -58,12 +62,7 @@ impl DrawnCurves {
             place.and_then(|place| kept[place].take()).unwrap_or_else(|| {
                 let runs = runs_in_view(curve.points_on(&mut axis, pane), &bounds, margin);
                 let points = |run: &Vec<[f64; 2]>| thinned(run, pixel).into_iter().map(PlotPoint::from).collect();
-                DrawnCurve {
-                    omega: Arc::clone(&curve.omega),
-                    values: Arc::clone(curve.shared_values(pane)),
-                    margin,
-                    runs: runs.iter().map(points).collect(),
-                }
+                DrawnCurve { numbers: CurveNumbers::of(curve, pane), margin, runs: runs.iter().map(points).collect() }
             })
         };
         self.curves = curves.iter().enumerate().map(drawn).collect();
@@ -77,9 +76,7 @@ impl DrawnCurves {
 
 impl DrawnCurve {
     fn is_of(&self, curve: &BodeCurve, pane: Pane, margin: f64) -> bool {
-        Arc::ptr_eq(&self.values, curve.shared_values(pane))
-            && Arc::ptr_eq(&self.omega, &curve.omega)
-            && self.margin == margin
+        self.margin == margin && self.numbers.are_of(curve, pane)
     }
 }
 
@@ -93,24 +90,9 @@ fn margin(curve: &BodeCurve, palette: &Palette) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::plot::curve::CurveId;
-    use crate::view::plot::role::Role;
+    use crate::view::plot::curve::sample_curve as curve;
 
     const PIXEL: Pixel = Pixel { width: 0.01, tolerance: 0.01 };
-
-    fn curve(id: u64, values: &[f64]) -> BodeCurve {
-        BodeCurve {
-            id: CurveId(id),
-            label: String::new(),
-            detail: String::new(),
-            role: Role::Perturbed,
-            rejected: false,
-            highlighted: false,
-            omega: vec![1.0, 2.0, 4.0].into(),
-            magnitude_db: values.into(),
-            phase_deg: values.into(),
-        }
-    }
 
     fn view(height: f64) -> (PlotBounds, Pixel) {
         (PlotBounds::from_min_max([0.0, 0.0], [1.0, height]), PIXEL)

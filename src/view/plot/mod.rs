@@ -11,6 +11,7 @@ mod bode_view;
 mod box_zoom;
 mod channels;
 mod curve;
+mod curve_numbers;
 mod dot;
 mod dot_label;
 mod drawn_curves;

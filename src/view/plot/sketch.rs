@@ -1,11 +1,10 @@
 //! A sparkline as it was drawn last.
 
-use std::sync::Arc;
-
 use egui::{Painter, Rect, Shape};
 use egui_plot::PlotBounds;
 
 use super::curve::{BodeCurve, LogFrequencies, Pane};
+use super::curve_numbers::CurveNumbers;
 use super::range::Range;
 use super::role::Role;
 use super::sparkline::Sparkline;
@@ -89,11 +88,10 @@ struct Place {
     pixels_per_point: f32,
 }
 
-/// A curve as it was drawn, and from what. It holds the numbers, so that no others can take their place in memory.
+/// A curve as it was drawn, and from what.
 #[derive(Clone, Debug)]
 struct Trace {
-    omega: Arc<[f64]>,
-    values: Arc<[f64]>,
+    numbers: CurveNumbers,
     role: Role,
     rejected: bool,
     highlighted: bool,
@@ -103,8 +101,7 @@ struct Trace {
 impl Trace {
     fn of(curve: &BodeCurve, pane: Pane, shapes: Vec<Shape>) -> Self {
         Self {
-            omega: Arc::clone(&curve.omega),
-            values: Arc::clone(curve.shared_values(pane)),
+            numbers: CurveNumbers::of(curve, pane),
             role: curve.role,
             rejected: curve.rejected,
             highlighted: curve.highlighted,
@@ -114,8 +111,7 @@ impl Trace {
 
     /// Whether `curve` would come out the same, in the same place.
     fn is_of(&self, curve: &BodeCurve, pane: Pane) -> bool {
-        Arc::ptr_eq(&self.omega, &curve.omega)
-            && Arc::ptr_eq(&self.values, curve.shared_values(pane))
+        self.numbers.are_of(curve, pane)
             && (self.role, self.rejected, self.highlighted) == (curve.role, curve.rejected, curve.highlighted)
     }
 }
@@ -125,21 +121,7 @@ mod tests {
     use egui::{Context, LayerId, pos2};
 
     use super::*;
-    use crate::view::plot::curve::CurveId;
-
-    fn curve(id: u64, values: &[f64]) -> BodeCurve {
-        BodeCurve {
-            id: CurveId(id),
-            label: String::new(),
-            detail: String::new(),
-            role: Role::Perturbed,
-            rejected: false,
-            highlighted: false,
-            omega: vec![1.0, 2.0, 4.0].into(),
-            magnitude_db: values.into(),
-            phase_deg: values.into(),
-        }
-    }
+    use crate::view::plot::curve::sample_curve as curve;
 
     fn paint(sketch: &mut Sketch, curves: &[BodeCurve]) {
         let rect = Rect::from_min_max(pos2(0.0, 0.0), pos2(100.0, 60.0));

@@ -45,6 +45,13 @@ impl<S: Simd> ComplexLanes<S> {
         }
     }
 
+    /// `self - left right`: 4 fused operations.
+    #[inline(always)]
+    pub fn minus_product(self, simd: S, left: Self, right: Self) -> Self {
+        let Self { re, im } = self.minus_real_product(simd, left, right.re);
+        Self { re: simd.mul_add_e_f64s(left.im, right.im, re), im: simd.negate_mul_add_e_f64s(left.re, right.im, im) }
+    }
+
     /// `self other`.
     #[inline(always)]
     pub fn product(self, simd: S, other: Self) -> Self {

@@ -4,34 +4,54 @@ use nalgebra::DMatrix;
 use nalgebra::linalg::balancing;
 use pulp::Arch;
 
-use crate::dataset::StateSpace;
+use crate::dataset::{Pair, StateSpace};
 
 use super::householder_reduction::HouseholderReduction;
 use super::subdiagonal::Subdiagonal;
 use super::system_table::{BLOCK, SystemTable};
 
 /// Columns that elimination computes at once.
-pub const PANEL: usize = 4;
+pub const PANEL: usize = 3;
 
-/// A model with its system matrix balanced, scaled, and reduced to upper Hessenberg form.
+/// Neighbouring entries of a row.
+pub type Entries = [f64; PANEL];
+
+/// Rows of zeros after those of a model, for tiles of up to four rows.
+const PADDING: usize = 3;
+
+/// The system matrix of a model, ready for elimination of its states.
 ///
-/// `H(j omega) = D - C Y`, `(F - j (omega / alpha) I) Y = B`, with F of n x n zero below its first subdiagonal, B of n
-/// x m and C of p x n. Balancing (a diagonal similarity) makes the units of the states irrelevant; alpha, a power of
-/// two, brings the largest entry of F to order 1; Householder reflections make F Hessenberg. A model with fewer outputs
-/// than inputs is held as its dual `(A', C', B', D')`, whose response is the transpose: the work at each frequency
-/// grows with the columns of B.
+/// ```text
+/// [ G - j (omega / alpha) I   K  ]
+/// [ L                         D' ]     H(j omega)' = D' - L (G - j (omega / alpha) I)^-1 K
+/// ```
+///
+/// G of n x n is zero below its first subdiagonal; the first row of L, which has one for each input, is zero but for its
+/// last entry; K has a column for each output. All come from the model (A, B, C, D) in these steps: balancing (a diagonal
+/// similarity) makes the units of the states irrelevant; alpha and another power of two bring the largest entries of A and
+/// B to order 1; Householder reflections make A Hessenberg and the first column of B a multiple of the first unit vector; then the
+/// system matrix is transposed, and the order of the states reversed, which makes it so again.
+///
+/// The work at each frequency grows with the rows of L. A model with fewer outputs than inputs is therefore held as its
+/// dual `(A', C', B', D')`, whose response is the transpose.
 #[derive(Clone, Debug)]
 pub struct HessenbergForm {
+    order: usize,
     sides: usize,
+    outputs: usize,
     dual: bool,
+    /// The input that is the first row of L; the first is in its place.
+    first_side: usize,
     frequency_scale: f64,
-    /// `[F B; C 0]`, each row of F but the first divided by its subdiagonal entry.
-    table: SystemTable,
-    /// One for each column but the last.
-    subdiagonals: Vec<Subdiagonal>,
-    /// The divided rows, panel by panel of their columns.
-    panels: Vec<[f64; PANEL]>,
-    d: DMatrix<f64>,
+    gain: f64,
+    /// One for each column of G, those that make the last panel whole included.
+    subdiagonals: Vec<[Subdiagonal; PANEL]>,
+    /// The first row of `[G K]` and all rows of `[L D']` but the first, panel by panel of columns.
+    complex_rows: Vec<Entries>,
+    /// The other rows of `[G K]`, each divided by its subdiagonal entry, panel by panel of columns.
+    next_rows: Vec<[Entries; PANEL]>,
+    /// The first row of D', panel by panel.
+    feed_through: Vec<Entries>,
 }
 
 impl HessenbergForm {
@@ -39,7 +59,7 @@ impl HessenbergForm {
     pub fn of(arch: Arch, model: &StateSpace) -> Self {
         let dual = model.outputs() < model.inputs();
         let matrices = [model.a(), model.b(), model.c(), model.d()];
-        let [mut a, mut b, mut c, d] = if dual {
+        let [mut a, mut b, mut c, mut d] = if dual {
             let [a, b, c, d] = matrices.map(DMatrix::transpose);
             [a, c, b, d]
         } else {
@@ -47,37 +67,69 @@ impl HessenbergForm {
         };
         balance(&mut a, &mut b, &mut c);
         let frequency_scale = 1.0 / power_of_two_below(largest_magnitude(a.as_slice()));
+        let (first_side, largest) = largest_column(&b);
+        let input_scale = 1.0 / power_of_two_below(largest);
         a *= frequency_scale;
-        b *= frequency_scale;
-        let mut table = table(&a, &b, &c);
+        b *= input_scale;
+        c *= frequency_scale / input_scale;
+        if first_side > 0 {
+            b.swap_columns(0, first_side);
+            d.swap_columns(0, first_side);
+        }
+        let (order, sides, outputs) = (a.nrows(), b.ncols(), c.nrows());
+        let mut table = table(&a, &b, &c, &d);
         arch.dispatch(HouseholderReduction(&mut table));
-        let subdiagonals = divide_rows(&mut table);
-        let panels = panels(&table);
-        Self { sides: b.ncols(), dual, frequency_scale, table, subdiagonals, panels, d }
+        let gain = if order > 0 && sides > 0 { table.row(0)[order] } else { 0.0 };
+        let subdiagonals = subdiagonals(&table);
+        let rows = RowsOfPanels::of(&table, &subdiagonals, sides, outputs);
+        let RowsOfPanels { complex_rows, next_rows, feed_through } = rows;
+        Self {
+            order,
+            sides,
+            outputs,
+            dual,
+            first_side,
+            frequency_scale,
+            gain,
+            subdiagonals,
+            complex_rows,
+            next_rows,
+            feed_through,
+        }
     }
 
     /// Number of states, `n`.
     #[inline(always)]
     pub fn order(&self) -> usize {
-        self.table.states()
+        self.order
     }
 
-    /// Number of right-hand sides, the columns of B.
+    /// Rows of L.
     #[inline(always)]
     pub fn sides(&self) -> usize {
         self.sides
     }
 
-    /// Number of rows of C.
+    /// Columns of K.
     #[inline(always)]
     pub fn outputs(&self) -> usize {
-        self.d.nrows()
+        self.outputs
     }
 
-    /// Whether this is the dual: rows of C then belong to inputs and columns of B to outputs.
+    /// Whether this is the dual: rows of L then belong to outputs and columns of K to inputs.
     #[inline(always)]
     pub fn is_dual(&self) -> bool {
         self.dual
+    }
+
+    /// The response of a row of L and a column of K.
+    pub fn pair(&self, side: usize, output: usize) -> Pair {
+        let input = match side {
+            0 => self.first_side,
+            side if side == self.first_side => 0,
+            side => side,
+        };
+        if self.dual { Pair::new(input, output) } else { Pair::new(output, input) }
     }
 
     /// `1 / alpha`.
@@ -86,55 +138,122 @@ impl HessenbergForm {
         self.frequency_scale
     }
 
-    /// The entry below the diagonal in each column but the last.
+    /// The one entry of the first row of L.
     #[inline(always)]
-    pub fn subdiagonals(&self) -> &[Subdiagonal] {
-        &self.subdiagonals
+    pub fn gain(&self) -> f64 {
+        self.gain
     }
 
-    /// The panel of the first row of `[F B]` that begins in column `first`.
+    /// Panels of columns of G.
     #[inline(always)]
-    pub fn first_row(&self, first: usize) -> &[f64; PANEL] {
-        &self.table.row(0).as_chunks().0[first / PANEL]
+    pub fn state_panels(&self) -> usize {
+        self.subdiagonals.len()
     }
 
-    /// The row that has a one below the diagonal of `column`, right of that: its entries of F and those of B.
+    /// Panels of columns of K, which follow those of G.
     #[inline(always)]
-    pub fn unit_row(&self, column: usize) -> (&[f64], &[f64]) {
-        let (order, row) = (self.order(), self.table.row(column + 1));
-        (&row[column + 1..order], &row[order..order + self.sides])
+    pub fn output_panels(&self) -> usize {
+        self.feed_through.len()
     }
 
-    /// Panels of columns of `[F B]`.
+    /// The entries of G below the diagonal in the columns of a panel.
     #[inline(always)]
-    pub fn panels(&self) -> usize {
-        self.table.width() / PANEL
+    pub fn subdiagonals(&self, panel: usize) -> &[Subdiagonal; PANEL] {
+        &self.subdiagonals[panel]
     }
 
-    /// The columns from `first` on of all rows of [`unit_row`](Self::unit_row).
+    /// A panel of `R` of the rows that become complex: the first row of `[G K]` and all of `[L D']` but the first.
     #[inline(always)]
-    pub fn panel(&self, first: usize) -> &[[f64; PANEL]] {
-        let rows = self.subdiagonals.len();
-        &self.panels[first / PANEL * rows..][..rows]
+    pub fn complex_rows<const R: usize>(&self, panel: usize, tile: usize) -> &[Entries; R] {
+        let rows = self.sides.max(1) + PADDING;
+        &self.complex_rows[panel * rows + tile * R..].as_chunks().0[0]
     }
 
-    /// Row `row` of C.
+    /// A panel of the other rows of `[G K]`, each with a one below the diagonal.
     #[inline(always)]
-    pub fn c_row(&self, row: usize) -> &[f64] {
-        &self.table.row(self.order() + row)[..self.order()]
+    pub fn next_rows(&self, panel: usize) -> &[[Entries; PANEL]] {
+        let blocks = self.state_panels();
+        &self.next_rows[panel * blocks..][..blocks]
     }
 
-    /// The entry of D in a row, for one right-hand side.
+    /// A panel of outputs of the first row of D'.
     #[inline(always)]
-    pub fn d(&self, row: usize, side: usize) -> f64 {
-        self.d[(row, side)]
+    pub fn feed_through(&self, output_panel: usize) -> &Entries {
+        &self.feed_through[output_panel]
     }
 }
 
-/// `[A B; C 0]`.
-fn table(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>) -> SystemTable {
-    let mut table = SystemTable::zeros(a.nrows(), b.ncols(), c.nrows());
-    for (matrix, row, column) in [(a, 0, 0), (b, 0, a.ncols()), (c, a.nrows(), 0)] {
+/// The rows of a system matrix, panel by panel of columns.
+struct RowsOfPanels {
+    complex_rows: Vec<Entries>,
+    next_rows: Vec<[Entries; PANEL]>,
+    feed_through: Vec<Entries>,
+}
+
+impl RowsOfPanels {
+    /// The rows of the transpose of a table, with its states in reversed order.
+    fn of(table: &SystemTable, subdiagonals: &[[Subdiagonal; PANEL]], sides: usize, outputs: usize) -> Self {
+        let (order, blocks, zeros) = (table.states(), subdiagonals.len(), vec![0.0; table.width()]);
+        let panels = blocks + outputs.div_ceil(PANEL);
+        let mut rows = Self {
+            complex_rows: Vec::with_capacity(panels * (sides.max(1) + PADDING)),
+            next_rows: Vec::with_capacity(panels * blocks),
+            feed_through: Vec::with_capacity(panels - blocks),
+        };
+        for panel in 0..panels {
+            let columns: [&[f64]; PANEL] = std::array::from_fn(|offset| {
+                let row = match panel.checked_sub(blocks) {
+                    None => order.checked_sub(panel * PANEL + offset + 1),
+                    Some(panel) => {
+                        Some(panel * PANEL + offset).filter(|output| *output < outputs).map(|row| order + row)
+                    }
+                };
+                row.map_or(&zeros[..], |row| table.row(row))
+            });
+            rows.push(order, sides, columns, subdiagonals);
+            if panel >= blocks {
+                rows.feed_through.push(columns.map(|column| if sides > 0 { column[order] } else { 0.0 }));
+            }
+        }
+        rows
+    }
+
+    /// Appends the rows of a panel, whose columns are rows of the table.
+    fn push(&mut self, order: usize, sides: usize, columns: [&[f64]; PANEL], subdiagonals: &[[Subdiagonal; PANEL]]) {
+        let state = |state: Option<usize>| state.map_or([0.0; PANEL], |state| columns.map(|column| column[state]));
+        self.complex_rows.push(state(order.checked_sub(1)));
+        self.complex_rows.extend((1..sides).map(|side| columns.map(|column| column[order + side])));
+        self.complex_rows.extend([[0.0; PANEL]; PADDING]);
+        for (block, subdiagonals) in subdiagonals.iter().enumerate() {
+            self.next_rows.push(std::array::from_fn(|offset| {
+                let next = state(order.checked_sub(block * PANEL + offset + 2));
+                next.map(|entry| entry * subdiagonals[offset].reciprocal)
+            }));
+        }
+    }
+}
+
+/// The subdiagonal entries of A from the last on.
+fn subdiagonals(table: &SystemTable) -> Vec<[Subdiagonal; PANEL]> {
+    let order = table.states();
+    let of_column = |column: usize| match order.checked_sub(column + 1) {
+        Some(row) if row > 0 => Subdiagonal::new(table.row(row)[row - 1], order),
+        _ => Subdiagonal::NONE,
+    };
+    (0..order.div_ceil(PANEL)).map(|panel| std::array::from_fn(|offset| of_column(panel * PANEL + offset))).collect()
+}
+
+/// The column with the largest absolute value, and that; the first if all are zero.
+fn largest_column(matrix: &DMatrix<f64>) -> (usize, f64) {
+    let columns = matrix.as_slice().chunks_exact(matrix.nrows().max(1)).map(largest_magnitude).enumerate();
+    columns.fold((0, 0.0), |largest, next| if next.1 > largest.1 { next } else { largest })
+}
+
+/// `[A B; C D]`.
+fn table(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>, d: &DMatrix<f64>) -> SystemTable {
+    let order = a.nrows();
+    let mut table = SystemTable::zeros(order, b.ncols(), c.nrows());
+    for (matrix, row, column) in [(a, 0, 0), (b, 0, order), (c, order, 0), (d, order, order)] {
         let width = table.width();
         let rows = table.numbers_mut()[row * width..].chunks_exact_mut(width);
         // Stored by columns: the transpose is, row by row, what goes into the table.
@@ -144,27 +263,6 @@ fn table(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>) -> SystemTable {
         }
     }
     table
-}
-
-/// Divides each row but the first by its subdiagonal entry.
-fn divide_rows(table: &mut SystemTable) -> Vec<Subdiagonal> {
-    let (order, width) = (table.states(), table.width());
-    let rows = table.numbers_mut().chunks_exact_mut(width).take(order).enumerate().skip(1);
-    let divide = |(row, numbers): (usize, &mut [f64])| {
-        let subdiagonal = Subdiagonal::new(numbers[row - 1], order);
-        numbers.iter_mut().for_each(|number| *number *= subdiagonal.reciprocal);
-        subdiagonal
-    };
-    rows.map(divide).collect()
-}
-
-/// All rows but the first of `[A B]`, panel by panel of their columns.
-fn panels(table: &SystemTable) -> Vec<[f64; PANEL]> {
-    let mut panels = Vec::with_capacity(table.states() * table.width() / PANEL);
-    for panel in 0..table.width() / PANEL {
-        panels.extend((1..table.states()).map(|row| table.row(row).as_chunks().0[panel]));
-    }
-    panels
 }
 
 /// Makes rows and columns of `a` alike in norm by a diagonal similarity of powers of two, so that nothing is rounded.
@@ -221,13 +319,27 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_divided_by_their_subdiagonal_entry() {
+    fn a_model_of_one_state_and_no_reduction_is_its_own_system_matrix() {
         let model =
-            StateSpace::new(dmatrix![1.0, 1.25; 1.5, 1.75], dmatrix![2.0; 3.0], dmatrix![1.0, 1.0], dmatrix![0.0]);
+            StateSpace::new(dmatrix![-1.5], dmatrix![1.0, 1.5], dmatrix![4.0; 5.0], dmatrix![0.1, 0.2; 0.3, 0.4]);
         let form = HessenbergForm::of(Arch::new(), &model.unwrap());
-        assert_eq!(form.first_row(0), &[1.0, 1.25, 2.0, 0.0]);
-        assert_eq!(form.unit_row(0), (&[1.75 * (1.0 / 1.5)][..], &[3.0 * (1.0 / 1.5)][..]));
-        assert_eq!(form.panel(0), [[1.0, 1.75 * (1.0 / 1.5), 3.0 * (1.0 / 1.5), 0.0]]);
-        assert_eq!(form.subdiagonals()[0].entry, 1.5);
+        // The second input has the larger column of B.
+        assert_eq!((form.gain(), form.pair(0, 1), form.pair(1, 0)), (1.5, Pair::new(1, 1), Pair::new(0, 0)));
+        assert_eq!(form.complex_rows::<2>(0, 0), &[[-1.5, 0.0, 0.0], [1.0, 0.0, 0.0]]);
+        assert_eq!(form.complex_rows::<2>(1, 0), &[[4.0, 5.0, 0.0], [0.1, 0.3, 0.0]]);
+        assert_eq!(form.feed_through(0), &[0.2, 0.4, 0.0]);
+    }
+
+    #[test]
+    fn next_rows_have_a_one_below_the_diagonal_and_the_first_input_reaches_one_state() {
+        let a = dmatrix![1.0, 1.25, 0.5; 1.5, 1.75, -1.0; 0.25, 0.5, -0.75];
+        let model = StateSpace::new(a, dmatrix![2.0; 3.0; 1.0], dmatrix![1.0, 1.0, 2.0], dmatrix![0.0]);
+        let form = HessenbergForm::of(Arch::new(), &model.unwrap());
+        let next = form.next_rows(0)[0];
+        // A handful of roundings; there are two next rows.
+        assert!((next[0][0] - 1.0).abs() < 1e-15 && (next[1][1] - 1.0).abs() < 1e-15);
+        assert_eq!((next[1][0], next[2]), (0.0, [0.0; PANEL]));
+        // |B| = sqrt(14), which a reflection keeps, over the power of two below 3.
+        assert!((form.gain().abs() - 14.0_f64.sqrt() / 2.0).abs() < 1e-14);
     }
 }

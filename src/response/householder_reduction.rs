@@ -8,17 +8,18 @@ use super::system_table::{BLOCK, Block, SystemTable};
 /// Blocks of a row that are summed up in registers at once.
 const TOGETHER: usize = 4;
 
-/// Brings A of a table `[A B; C 0]` to upper Hessenberg form: `Q' A Q`, `Q' B`, `C Q` with Q orthogonal.
+/// Brings a table `[A B; C D]` to `[Q' A Q, Q' B; C Q, D]` with Q orthogonal, `Q' A Q` upper Hessenberg, and the first
+/// column of `Q' B` zero below its first entry.
 ///
-/// One reflection `I - beta v v'` a column (Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 7.4.2), applied from
-/// both sides in one pass over the table T, as `T - y v' - v w'` with
+/// One reflection `I - beta v v'` for that column, then one for each column of A (Golub & Van Loan, "Matrix
+/// Computations", 4th ed. 2013, 7.4.2), applied from both sides in one pass over the table T, as `T - y v' - v w'` with
 ///
 /// ```text
 /// y = beta T v,   w = beta T' v - gamma v,   gamma = beta v' y
 /// ```
 ///
-/// 10/3 n^3 + 4 n^2 (m + p) operations. Sums run over eight partial sums whatever the length of a vector,
-/// and products are rounded before they are added: the result has the same bits on every instruction set.
+/// 10/3 n^3 + 4 n^2 (m + p) operations. Sums run over eight partial sums whatever the length of a vector, and every
+/// multiply-add is fused, without one in hardware too: the result has the same bits on every instruction set.
 pub struct HouseholderReduction<'a>(pub &'a mut SystemTable);
 
 impl WithSimd for HouseholderReduction<'_> {
@@ -27,11 +28,11 @@ impl WithSimd for HouseholderReduction<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let table = self.0;
+        let (states, first_side) = (table.states(), table.states());
         let mut reflector = Reflector::with_room_for(table);
-        for column in 0..table.states().saturating_sub(2) {
-            if reflector.clear(table, column) {
-                reflector.apply(simd, table, column);
-            }
+        reflector.clear(simd, table, first_side, 0);
+        for column in 0..states.saturating_sub(2) {
+            reflector.clear(simd, table, column, column + 1);
         }
     }
 }
@@ -52,32 +53,37 @@ impl Reflector {
         Self { beta: 0.0, v: zeros(table.width()), w: zeros(table.width()), y: zeros(table.rows().len()) }
     }
 
-    /// Makes the reflection that clears a column below the subdiagonal, and clears it; `false` where it was clear.
+    /// Clears a column below row `first` by a reflection of the states from `first` on, applied from both sides; the column
+    /// itself is not among those of these states.
     #[inline(always)]
-    fn clear(&mut self, table: &mut SystemTable, column: usize) -> bool {
-        let (states, width, first) = (table.states(), table.width(), column + 1);
+    fn clear<S: Simd>(&mut self, simd: S, table: &mut SystemTable, column: usize, first: usize) {
+        let (states, width) = (table.states(), table.width());
         let v = &mut *self.v;
         v[..first].fill(0.0);
+        for (entry, row) in v.iter_mut().zip(table.numbers().chunks_exact(width)).take(states).skip(first) {
+            *entry = row[column];
+        }
+        let Some((head, tail)) = v[first..states].split_first_mut() else { return };
+        let tail: f64 = tail.iter().map(|entry| entry * entry).sum();
+        if tail == 0.0 {
+            return;
+        }
+        // The largest entries of A and B are of order 1: squares that underflow are negligible.
+        let norm = (*head * *head + tail).sqrt();
+        let left = -norm.copysign(*head);
+        self.beta = 1.0 / (norm * (norm + head.abs()));
+        *head -= left;
+        self.apply(simd, table, first);
         let numbers = table.numbers_mut();
         for row in first..states {
-            v[row] = numbers[row * width + column];
-            numbers[row * width + column] = 0.0;
+            numbers[row * width + column] = if row == first { left } else { 0.0 };
         }
-        let tail: f64 = v[first + 1..states].iter().map(|entry| entry * entry).sum();
-        let head = v[first];
-        // The largest entry of the table is of order 1: squares that underflow are negligible.
-        let norm = (head * head + tail).sqrt();
-        let subdiagonal = if tail == 0.0 { head } else { -norm.copysign(head) };
-        numbers[first * width + column] = subdiagonal;
-        v[first] = head - subdiagonal;
-        self.beta = 1.0 / (norm * (norm + head.abs()));
-        tail != 0.0
     }
 
-    /// Applies the reflection to the columns right of `column`, from both sides.
+    /// Applies the reflection to the columns from `first` on, from both sides.
     #[inline(always)]
-    fn apply<S: Simd>(&mut self, simd: S, table: &mut SystemTable, column: usize) {
-        let (first, states, blocks) = (column + 1, table.states(), (column + 1) / BLOCK..table.blocks());
+    fn apply<S: Simd>(&mut self, simd: S, table: &mut SystemTable, first: usize) {
+        let (states, blocks) = (table.states(), first / BLOCK..table.blocks());
         let (all, _) = self.v.as_chunks();
         let v = &all[blocks.clone()];
         for (y, row) in self.y.iter_mut().zip(table.rows()) {
@@ -138,7 +144,7 @@ fn sum_blocks<S: Simd, const N: usize>(
         let factor = simd.splat_f64s(-factor * beta);
         for (parts, row) in parts.iter_mut().zip(&row[block..block + N]) {
             for (part, row) in parts[..vectors].iter_mut().zip(S::as_simd_f64s(row).0) {
-                *part = simd.sub_f64s(*part, simd.mul_f64s(factor, *row));
+                *part = simd.negate_mul_add_f64s(factor, *row, *part);
             }
         }
     }
@@ -154,7 +160,7 @@ fn dot<S: Simd>(simd: S, left: &[Block], right: &[Block]) -> f64 {
     for (left, right) in left.iter().zip(right) {
         let vectors = S::as_simd_f64s(left).0.iter().zip(S::as_simd_f64s(right).0);
         for (sum, (left, right)) in sums.iter_mut().zip(vectors) {
-            *sum = simd.add_f64s(*sum, simd.mul_f64s(*left, *right));
+            *sum = simd.mul_add_f64s(*left, *right, *sum);
         }
     }
     let mut count = BLOCK / S::F64_LANES;
@@ -174,7 +180,7 @@ fn subtract_multiple<S: Simd>(simd: S, from: &mut [Block], factor: f64, row: &[B
     let (from, _) = S::as_mut_simd_f64s(from.as_flattened_mut());
     let (row, _) = S::as_simd_f64s(row.as_flattened());
     for (from, row) in from.iter_mut().zip(row) {
-        *from = simd.sub_f64s(*from, simd.mul_f64s(factor, *row));
+        *from = simd.negate_mul_add_f64s(factor, *row, *from);
     }
 }
 
@@ -185,8 +191,8 @@ fn subtract_multiples<S: Simd>(simd: S, from: &mut [Block], factors: [f64; 2], r
     let (from, _) = S::as_mut_simd_f64s(from.as_flattened_mut());
     let rows = [S::as_simd_f64s(rows[0].as_flattened()).0, S::as_simd_f64s(rows[1].as_flattened()).0];
     for ((from, first), second) in from.iter_mut().zip(rows[0]).zip(rows[1]) {
-        let part = simd.sub_f64s(*from, simd.mul_f64s(factors[0], *first));
-        *from = simd.sub_f64s(part, simd.mul_f64s(factors[1], *second));
+        let part = simd.negate_mul_add_f64s(factors[0], *first, *from);
+        *from = simd.negate_mul_add_f64s(factors[1], *second, part);
     }
 }
 

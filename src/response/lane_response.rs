@@ -3,14 +3,15 @@
 use nalgebra::Complex;
 use pulp::{Simd, WithSimd};
 
-use crate::dataset::{Pair, PairTable};
+use crate::dataset::PairTable;
 
-use super::back_substitution::{Sides, substitute_back, subtract_three_real_products};
-use super::complex_lanes::{ComplexLanes, filled, frequencies};
-use super::hessenberg_form::HessenbergForm;
+use super::complex_lanes::frequencies;
+use super::eliminated_rows::Panel;
+use super::frequency_response::FrequencyResponse;
+use super::hessenberg_form::{HessenbergForm, PANEL};
 use super::lane_elimination::{Elimination, GROUP};
 
-/// `H(j omega) = D - C Y` of a reduced model, to be evaluated with the vectors of an instruction set.
+/// `H(j omega)` of a reduced model, to be evaluated with the vectors of an instruction set.
 pub struct LaneResponse<'a> {
     /// The model.
     pub form: &'a HessenbergForm,
@@ -22,30 +23,36 @@ pub struct LaneResponse<'a> {
 type Values<S> = [<S as Simd>::f64s; 2];
 
 impl WithSimd for LaneResponse<'_> {
-    /// p x m.
-    type Output = PairTable<Vec<Complex<f64>>>;
+    type Output = FrequencyResponse;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        // In registers: a panel of elimination takes eight for each vector, three rows of the solution six for each side.
-        if S::REGISTER_COUNT >= 32 { self.evaluate::<S, 2, 4>(simd) } else { self.evaluate::<S, 1, 2>(simd) }
+    fn with_simd<S: Simd>(self, simd: S) -> FrequencyResponse {
+        // In registers a panel takes six for each row.
+        let most = if S::REGISTER_COUNT >= 32 { 4 } else { 2 };
+        match tile_of(self.form.sides(), most) {
+            1 => self.evaluate::<S, 1>(simd),
+            3 if S::REGISTER_COUNT >= 32 => self.evaluate::<S, 3>(simd),
+            4 if S::REGISTER_COUNT >= 32 => self.evaluate::<S, 4>(simd),
+            _ => self.evaluate::<S, 2>(simd),
+        }
     }
 }
 
+/// Rows of each tile, at most so many, that leave the fewest places of tiles empty.
+fn tile_of(rows: usize, most: usize) -> usize {
+    let rows = rows.max(1);
+    rows.div_ceil(rows.div_ceil(most))
+}
+
 impl LaneResponse<'_> {
-    /// All values, with `V` vectors side by side in elimination and `R` right-hand sides in back-substitution.
+    /// All values, with tiles of `R` rows.
     #[inline(always)]
-    fn evaluate<S: Simd, const V: usize, const R: usize>(&self, simd: S) -> PairTable<Vec<Complex<f64>>> {
+    fn evaluate<S: Simd, const R: usize>(&self, simd: S) -> FrequencyResponse {
         let form = self.form;
         let scale = simd.splat_f64s(form.frequency_scale());
-        let room = self.omega.len().div_ceil(S::F64_LANES);
-        let mut values: Vec<Vec<Values<S>>> = Vec::with_capacity(form.outputs() * form.sides());
-        values.resize_with(form.outputs() * form.sides(), || Vec::with_capacity(room));
-        let mut elimination = Elimination::<S, V>::with_room_for(simd, form);
-        let whole = form.sides() / R * R;
-        let zero = ComplexLanes::real(simd, 0.0);
-        let mut many = filled([zero; R], if whole > 0 { form.order() } else { 0 });
-        let mut one = filled([zero; 1], if whole < form.sides() { form.order() } else { 0 });
+        let room = self.omega.len().div_ceil(S::F64_LANES) * form.outputs() * form.sides();
+        let mut values: Vec<Values<S>> = Vec::with_capacity(room);
+        let mut elimination = Elimination::<S, R>::with_room_for(simd, form);
         let mut lanes = [simd.splat_f64s(0.0); GROUP];
         for omega in self.omega.chunks(GROUP) {
             let vectors = omega.len().div_ceil(S::F64_LANES);
@@ -53,60 +60,66 @@ impl LaneResponse<'_> {
                 *lanes = simd.mul_f64s(scale, frequencies(simd, omega));
             }
             elimination.run(simd, form, &lanes[..vectors]);
-            for vector in 0..vectors {
-                for first in (0..whole).step_by(R) {
-                    substitute_back(simd, form, &elimination, vector, first, &mut many);
-                    self.append(simd, first, &many, &mut values);
-                }
-                for first in whole..form.sides() {
-                    substitute_back(simd, form, &elimination, vector, first, &mut one);
-                    self.append(simd, first, &one, &mut values);
+            for rows in elimination.vectors_mut() {
+                for panel in 0..form.output_panels() {
+                    for tile in 0..rows.tiles() {
+                        let entries = rows.responses(simd, form, panel, tile);
+                        append(simd, form, panel, tile, &entries, &mut values);
+                    }
                 }
             }
         }
-        self.table(values)
+        let values: Vec<Complex<f64>> = bytemuck::cast_vec(values);
+        FrequencyResponse::from_blocks(self.omega.len(), S::F64_LANES, places(form, R), values)
     }
+}
 
-    /// Appends `D - C Y` of `R` right-hand sides from `first` on to the values of each response, row by row of C: 2 n p
-    /// fused operations for each side.
-    #[inline(always)]
-    fn append<S: Simd, const R: usize>(&self, simd: S, first: usize, y: &[Sides<S, R>], values: &mut [Vec<Values<S>>]) {
-        let form = self.form;
-        let rows = form.outputs();
-        for row in (0..rows).step_by(3) {
-            // Three rows at a time; the last of them is computed again for those that there are not.
-            let three = [row, (row + 1).min(rows - 1), (row + 2).min(rows - 1)];
-            let mut sums = [[ComplexLanes::real(simd, 0.0); R]; 3];
-            for (sum, row) in sums.iter_mut().zip(three) {
-                for (side, sum) in sum.iter_mut().enumerate() {
-                    sum.re = simd.splat_f64s(form.d(row, first + side));
-                }
-            }
-            let table = [form.c_row(three[0]), form.c_row(three[1]), form.c_row(three[2])];
-            subtract_three_real_products(simd, &mut sums, table, y);
-            for (sum, row) in sums.iter().zip(row..rows) {
-                let into = &mut values[row * form.sides() + first..][..R];
-                for (into, sum) in into.iter_mut().zip(sum) {
-                    into.push(sum.interleaved(simd));
-                }
-            }
+/// Appends the values of a tile: output by output, those of its sides.
+#[inline(always)]
+fn append<S: Simd, const R: usize>(
+    simd: S,
+    form: &HessenbergForm,
+    panel: usize,
+    tile: usize,
+    entries: &Panel<S, R>,
+    values: &mut Vec<Values<S>>,
+) {
+    let mut interleaved = [[[simd.splat_f64s(0.0); 2]; R]; PANEL];
+    for offset in 0..PANEL {
+        for row in 0..R {
+            interleaved[offset][row] = entries[offset][row].interleaved(simd);
         }
     }
+    let (sides, outputs) = of_tile(form, R, panel, tile);
+    for values_of_output in &interleaved[..outputs] {
+        values.extend_from_slice(&values_of_output[..sides]);
+    }
+}
 
-    /// The values of all responses, of which `values` has those of one row of C after the other.
-    fn table<T: bytemuck::NoUninit>(&self, values: Vec<Vec<T>>) -> PairTable<Vec<Complex<f64>>> {
-        let (rows, sides, dual) = (self.form.outputs(), self.form.sides(), self.form.is_dual());
-        let (outputs, inputs) = if dual { (sides, rows) } else { (rows, sides) };
-        let mut table = PairTable::from_fn(outputs, inputs, |_| Vec::new());
-        for (index, values) in values.into_iter().enumerate() {
-            let (row, side) = (index / sides, index % sides);
-            let into = &mut table[if dual { Pair::new(side, row) } else { Pair::new(row, side) }];
-            *into = bytemuck::cast_vec(values);
-            // Whole vectors were appended.
-            into.truncate(self.omega.len());
+/// Sides and outputs of a panel of a tile that the model has.
+#[inline(always)]
+fn of_tile(form: &HessenbergForm, rows: usize, panel: usize, tile: usize) -> (usize, usize) {
+    (rows.min(form.sides() - tile * rows), PANEL.min(form.outputs() - panel * PANEL))
+}
+
+/// The place of each response in the order in which tiles of so many rows are appended.
+fn places(form: &HessenbergForm, rows: usize) -> PairTable<usize> {
+    let (outputs, inputs) =
+        if form.is_dual() { (form.sides(), form.outputs()) } else { (form.outputs(), form.sides()) };
+    let mut places = PairTable::filled(outputs, inputs, 0);
+    let mut place = 0;
+    for panel in 0..form.output_panels() {
+        for tile in 0..form.sides().div_ceil(rows) {
+            let (sides, outputs) = of_tile(form, rows, panel, tile);
+            for output in 0..outputs {
+                for side in 0..sides {
+                    places[form.pair(tile * rows + side, panel * PANEL + output)] = place;
+                    place += 1;
+                }
+            }
         }
-        table
     }
+    places
 }
 
 #[cfg(test)]
@@ -120,7 +133,7 @@ mod tests {
 
     fn on<S: Simd>(simd: S, model: &StateSpace, omega: &[f64]) -> Values {
         let form = &HessenbergForm::of(Arch::new(), model);
-        simd.vectorize(LaneResponse { form, omega })
+        simd.vectorize(LaneResponse { form, omega }).curves()
     }
 
     /// The values on every instruction set of this machine with fused multiply-adds, which must have the same bits.
@@ -170,6 +183,12 @@ mod tests {
     }
 
     #[test]
+    fn tiles_are_as_alike_as_they_can_be() {
+        assert_eq!([1, 2, 3, 4, 5, 6, 7, 8, 9].map(|rows| tile_of(rows, 4)), [1, 2, 3, 4, 3, 3, 4, 4, 3]);
+        assert_eq!([0, 1, 2, 3, 9].map(|rows| tile_of(rows, 2)), [1, 1, 2, 2, 2]);
+    }
+
+    #[test]
     fn vectors_of_every_length_agree_with_scalars_at_every_remainder_length() {
         for count in 0..=17 {
             let (model, omega) = (model(9, 3, 3), wide(count));
@@ -183,7 +202,9 @@ mod tests {
 
     #[test]
     fn vectors_of_every_length_give_the_same_bits() {
-        for (order, outputs, inputs) in [(1, 1, 1), (2, 6, 4), (12, 6, 4), (30, 6, 4), (17, 3, 5), (8, 7, 6)] {
+        for (order, outputs, inputs) in
+            [(0, 2, 1), (1, 1, 1), (2, 6, 4), (12, 6, 4), (30, 6, 4), (17, 3, 5), (8, 7, 6), (7, 9, 9)]
+        {
             let (model, omega) = (model(order, outputs, inputs), wide(61));
             let all = on_vectors(&model, &omega);
             assert!(all.windows(2).all(|pair| pair[0] == pair[1]), "order {order}");

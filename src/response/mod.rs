@@ -1,13 +1,13 @@
 //! Frequency responses: the grid, the evaluation of a model on it, magnitude and phase (M2, M3).
 
-mod active_row;
 mod aligned_numbers;
-mod back_substitution;
 mod complex_lanes;
+mod eliminated_rows;
 mod frequency_grid;
 mod frequency_response;
 mod hessenberg_form;
 mod householder_reduction;
+mod interchange;
 mod interpolation;
 mod lane_elimination;
 mod lane_response;

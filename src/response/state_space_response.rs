@@ -1,42 +1,43 @@
 //! The frequency response of a state-space model.
 
-use nalgebra::Complex;
 use pulp::Arch;
 
-use crate::dataset::{PairTable, StateSpace};
+use crate::dataset::StateSpace;
 
+use super::frequency_response::FrequencyResponse;
 use super::hessenberg_form::HessenbergForm;
 use super::lane_response::LaneResponse;
 
 /// `H(j omega) = C (j omega I - A)^-1 B + D` at each `omega` \[rad/s\]: a p x m table of `N` values.
 ///
-/// The model is balanced and reduced to Hessenberg form once; at each frequency a Hessenberg system is then solved by
-/// Gaussian elimination with pivoting, in O(n^2 min(m, p)). Laub, "Efficient multivariable frequency response
-/// computations", IEEE Trans. Automatic Control 26(2), 1981. As many frequencies are solved at once as a vector of the
-/// processor holds: eight with AVX-512, four with AVX2, two with NEON, else one.
+/// The model is balanced and reduced to Hessenberg form once; at each frequency its states are then eliminated from the
+/// system matrix, with pivoting, in O(n (n + 2 max(m, p)) min(m, p)) operations. Hessenberg form: Laub, "Efficient
+/// multivariable frequency response computations", IEEE Trans. Automatic Control 26(2), 1981. As many frequencies are
+/// solved at once as a vector of the processor holds: eight with AVX-512, four with AVX2, two with NEON, else one.
 ///
-/// Sixteen neighbouring frequencies choose their pivots together: a value depends on those of its sixteen, by rounding
+/// Eight neighbouring frequencies choose their pivots together: a value depends on those of its eight, by rounding
 /// only. It has the same bits wherever fused multiply-adds are (AVX2, AVX-512, NEON). Its error is that of a model whose
 /// entries are changed by less than 1e-10 of the largest of A, in practice by some 1e-13, so the relative error grows as
 /// `j omega` comes close to a pole; at a pole, where elimination meets a zero, the values are not finite.
-pub fn evaluate(model: &StateSpace, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
+pub fn evaluate(model: &StateSpace, omega: &[f64]) -> FrequencyResponse {
     evaluate_on(Arch::new(), model, omega)
 }
 
 /// [`evaluate`] on a given instruction set: for tests and benchmarks.
-pub fn evaluate_on(arch: Arch, model: &StateSpace, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
+pub fn evaluate_on(arch: Arch, model: &StateSpace, omega: &[f64]) -> FrequencyResponse {
     evaluate_reduced(arch, &HessenbergForm::of(arch, model), omega)
 }
 
 /// [`evaluate_on`] of a model that is reduced already.
-pub(super) fn evaluate_reduced(arch: Arch, form: &HessenbergForm, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
+pub(super) fn evaluate_reduced(arch: Arch, form: &HessenbergForm, omega: &[f64]) -> FrequencyResponse {
     arch.dispatch(LaneResponse { form, omega })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::{DMatrix, dmatrix};
+    use crate::dataset::Pair;
+    use nalgebra::{Complex, DMatrix, dmatrix};
 
     fn siso(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>, d: f64) -> StateSpace {
         StateSpace::new(a, b, c, dmatrix![d]).unwrap()
@@ -46,8 +47,8 @@ mod tests {
         siso(dmatrix![0.0, 1.0; -4.0, 0.0], dmatrix![0.0; 1.0], dmatrix![1.0, 0.0], 0.0)
     }
 
-    fn only(table: PairTable<Vec<Complex<f64>>>) -> Complex<f64> {
-        table.iter().next().unwrap().1[0]
+    fn only(response: FrequencyResponse) -> Complex<f64> {
+        response.curve(Pair::new(0, 0)).next().unwrap()
     }
 
     #[test]
@@ -71,12 +72,24 @@ mod tests {
     #[test]
     fn a_pole_on_the_grid_leaves_the_other_frequencies_alone() {
         let omega: Vec<f64> = (0..19).map(|k| f64::from(k) * 0.25).collect();
-        let table = evaluate(&oscillator(), &omega);
-        for (omega, value) in omega.iter().zip(table.iter().next().unwrap().1) {
+        let response = evaluate(&oscillator(), &omega);
+        for (omega, value) in omega.iter().zip(response.curve(Pair::new(0, 0))) {
             // 1 / (4 - omega^2); a handful of operations, of which the difference amplifies rounding up to 8 times.
             let expected = 1.0 / (4.0 - omega * omega);
             assert_eq!(value.is_finite(), *omega != 2.0, "{omega}");
             assert!(*omega == 2.0 || (value - expected).norm() < 1e-14 * expected.abs(), "{omega}");
+        }
+    }
+
+    #[test]
+    fn units_of_inputs_and_outputs_do_not_matter() {
+        let a = dmatrix![-1.0, 2.0; -3.0, -0.5];
+        let plain = only(evaluate(&siso(a.clone(), dmatrix![1.0; 0.5], dmatrix![1.0, -2.0], 0.0), &[1.3]));
+        for exponent in [-800, 800] {
+            let unit = 2.0_f64.powi(exponent);
+            let scaled = only(evaluate(&siso(a.clone(), dmatrix![unit; 0.5 * unit], dmatrix![1.0, -2.0], 0.0), &[1.3]));
+            // A power of two: nothing is rounded.
+            assert_eq!(scaled, plain * unit);
         }
     }
 

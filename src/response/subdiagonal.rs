@@ -6,12 +6,12 @@ const NEGLIGIBLE: f64 = 1e-70;
 /// How much larger than the entry of the next row that of the active row must be for both to be interchanged, times the
 /// order (`n tau`).
 ///
-/// With tau = 1 elimination is partial pivoting. Real rows halve the work of back-substitution, and are not stored; they
-/// cost at most this factor in accuracy: `n tau` times the unit roundoff of 1.1e-16 is 3e-11, for every order. The errors of the
-/// models in `benches/responses.rs` are 5e-13 of their largest value.
+/// With tau = 1 elimination is partial pivoting. Real rows take a half to a third of the work of complex ones; they cost at
+/// most this factor in accuracy: `n tau` times the unit roundoff of 1.1e-16 is 3e-11, for every order. The errors of the
+/// models in `benches/responses.rs` are @@ERR@@ of their largest value.
 const PREFERENCE_FOR_REAL: f64 = (1_u32 << 18) as f64;
 
-/// The one entry of a column of F below the diagonal, `h`, and how it is eliminated.
+/// The one entry of a column of G below the diagonal, `h`, and how it is eliminated.
 #[derive(Clone, Copy, Debug)]
 pub struct Subdiagonal {
     /// `h`; zero where that is negligible.
@@ -27,6 +27,9 @@ pub struct Subdiagonal {
 }
 
 impl Subdiagonal {
+    /// That of a column after which no row follows: nothing is subtracted, and no interchange asked for.
+    pub const NONE: Self = Self { entry: 0.0, divisor: 1.0, reciprocal: 0.0, sensitivity: 0.0, square: f64::INFINITY };
+
     /// Of a model of an order.
     pub fn new(entry: f64, order: usize) -> Self {
         if entry.abs() < NEGLIGIBLE {

@@ -8,7 +8,7 @@ pub const BLOCK: usize = LINE;
 /// Neighbouring entries of a row. Loops over them become vector instructions of whatever length the processor has.
 pub type Block = [f64; BLOCK];
 
-/// `[A B; C 0]`, row by row, with zeros after each row up to a whole number of blocks.
+/// `[A B; C D]`, row by row, with zeros after each row up to a whole number of blocks.
 #[derive(Clone, Debug)]
 pub struct SystemTable {
     states: usize,

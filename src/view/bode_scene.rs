@@ -8,7 +8,7 @@ use nalgebra::Complex;
 use crate::correction::ChannelCorrection;
 use crate::dataset::{BundleKind, ModelId, Pair};
 use crate::fidelity::SUGGESTION_RATIO;
-use crate::response::{nearest_turn_offset, unwrap};
+use crate::response::{FrequencyResponse, nearest_turn_offset, unwrap};
 use crate::study::{ConditionAnalysis, ConditionCurves};
 use crate::units::{ratio_to_db, s_to_ms};
 
@@ -59,7 +59,8 @@ struct Shape {
 
 impl Shape {
     /// The phase is principal at the first finite value, then unwrapped; a value that is not finite leaves a gap (M2).
-    fn of(values: &[Complex<f64>]) -> Self {
+    fn of(values: impl Iterator<Item = Complex<f64>>) -> Self {
+        let values: Vec<Complex<f64>> = values.collect();
         let finite: Vec<usize> =
             (0..values.len()).filter(|&k| values[k].is_finite() && values[k].norm() > 0.0).collect();
         let mut phase: Vec<f64> = finite.iter().map(|&k| values[k].arg()).collect();
@@ -122,10 +123,10 @@ impl CachedShapes {
         if self.made_of.as_ref().is_some_and(same) {
             return;
         }
-        let reference_shape = Shape::of(&curves.identified[reference].values()[pair]);
+        let reference_shape = Shape::of(curves.identified[reference].curve(pair));
         let shapes = |kind| {
-            let laid = |values: &[Complex<f64>]| Shape::of(values).laid_on(&reference_shape);
-            curves.bundle(kind).iter().map(|response| laid(&response.values()[pair])).collect()
+            let laid = |response: &FrequencyResponse| Shape::of(response.curve(pair)).laid_on(&reference_shape);
+            curves.bundle(kind).iter().map(laid).collect()
         };
         self.physics = shapes(BundleKind::Physics);
         self.identified = shapes(BundleKind::Identified);

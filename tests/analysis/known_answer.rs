@@ -22,7 +22,7 @@ fn dataset_of(file: &str, delay_s: f64) -> Dataset {
     let (outputs, inputs) = dynamics.shape();
     let grid = FrequencyGrid::logarithmic(Band::new(0.2, 30.0).unwrap(), 3000);
     let response = FrequencyResponse::of(&dynamics, &grid);
-    let flight = response.values().map(|pair, values| {
+    let flight = response.curves().map(|pair, values| {
         let net_gain = gain(pair.output) * gain(outputs + pair.input);
         let lag = |omega: &f64| Complex::from_polar(net_gain, -omega * delay_s);
         values.iter().zip(grid.omega()).map(|(value, omega)| value * lag(omega)).collect::<Vec<_>>()

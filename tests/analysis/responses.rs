@@ -51,7 +51,7 @@ pub fn dynamics_of(case: &Value) -> Dynamics {
 fn response_at(dynamics: &Dynamics, omega: f64) -> PairTable<Complex<f64>> {
     let band = gdcm::dataset::Band::new(omega, 2.0 * omega).unwrap();
     let response = FrequencyResponse::of(dynamics, &FrequencyGrid::logarithmic(band, 2));
-    response.values().map(|_, values| values[0])
+    response.curves().map(|_, values| values[0])
 }
 
 #[test]

@@ -1,0 +1,427 @@
+//! The complex rows of an elimination in one vector of frequencies.
+
+use pulp::Simd;
+
+use super::complex_lanes::{ComplexLanes, any, filled};
+use super::hessenberg_form::{Entries, HessenbergForm, PANEL};
+use super::interchange::Interchange;
+
+/// A number of `R` rows, in each lane.
+pub type Rows<S, const R: usize> = [ComplexLanes<S>; R];
+
+/// Neighbouring columns of `R` rows.
+pub type Panel<S, const R: usize> = [Rows<S, R>; PANEL];
+
+/// The active row in neighbouring columns.
+type Pivots<S> = [ComplexLanes<S>; PANEL];
+
+/// In which columns of a panel rows were interchanged.
+pub type Interchanged = [bool; PANEL];
+
+/// What the complex rows of a system matrix become, in one vector of frequencies.
+///
+/// They are the *active* row, which begins as the first of `[G K]`, and all rows of `[L D']` but the first. That has one
+/// entry in G's columns, the last, and needs nothing before all others are clear: it takes no part, and the active row
+/// has its place, so that rows and responses are counted alike.
+///
+/// Column k is cleared in all of them with the next row of `[G K]`, divided by its entry there and real but for its
+/// diagonal: row `w` becomes `w - w_k r`, `r = (G_(k+1) - j omega e_(k+1)) / h`, `h = G_(k+1,k)`. Where the active row is
+/// much larger than that, rows are interchanged ([`Interchange`]).
+///
+/// Only multipliers are written at every column. Entries are computed where they are needed, a panel of columns of `R`
+/// rows at a time in registers: 2 fused operations on real numbers for each entry and column before it, n (n + 2 p) a row
+/// in all. Rows beyond `R` are other tiles, which follow the first: that one has the active row.
+pub struct EliminatedRows<S: Simd, const R: usize> {
+    omega: S::f64s,
+    tiles: Vec<Tile<S, R>>,
+    interchanged: Vec<Interchanged>,
+    interchanges: Vec<Interchange<S>>,
+    /// How many interchanges there are.
+    count: usize,
+    /// The active row at each interchange, in the columns of the panel at hand.
+    pivots: Vec<Pivots<S>>,
+    /// The active row in the columns of outputs at hand, when it alone is left.
+    left: Pivots<S>,
+}
+
+/// `R` rows.
+struct Tile<S: Simd, const R: usize> {
+    /// Multiples of the next row in each column; in the last, what is left there.
+    multipliers: Vec<Panel<S, R>>,
+    /// Multiples of the active row at each interchange.
+    quotients: Vec<Rows<S, R>>,
+    /// Multiples of the active row, when it alone is left.
+    last: Rows<S, R>,
+}
+
+impl<S: Simd, const R: usize> EliminatedRows<S, R> {
+    /// Room for a model; that for interchanges is made as they come.
+    #[inline(always)]
+    pub fn with_room_for(simd: S, form: &HessenbergForm) -> Self {
+        let zeros = [ComplexLanes::real(simd, 0.0); R];
+        let count = form.sides().div_ceil(R).max(1);
+        let mut tiles = Vec::with_capacity(count);
+        for _ in 0..count {
+            let multipliers = filled([zeros; PANEL], form.state_panels());
+            tiles.push(Tile { multipliers, quotients: filled(zeros, form.order()), last: zeros });
+        }
+        let interchanged = filled([false; PANEL], form.state_panels());
+        let left = [zeros[0]; PANEL];
+        let (interchanges, pivots) = (filled(Interchange::none(simd), form.order()), filled(left, form.order()));
+        Self { omega: left[0].re, tiles, interchanged, interchanges, count: 0, pivots, left }
+    }
+
+    /// Starts at the frequencies `omega` \[rad/s / alpha\].
+    #[inline(always)]
+    pub fn start(&mut self, omega: S::f64s) {
+        self.omega = omega;
+        self.count = 0;
+    }
+
+    /// Clears a panel of the first tile without an interchange; whether none is asked for.
+    #[inline(always)]
+    pub fn clear(&mut self, simd: S, form: &HessenbergForm, panel: usize) -> bool {
+        self.forget_from(panel);
+        let mut entries = self.state_panel::<true>(simd, form, 0, panel);
+        self.subtract_next::<0>(simd, form, panel, entries[0], &mut entries);
+        self.subtract_next::<1>(simd, form, panel, entries[1], &mut entries);
+        // Their sum: not a number if one is none.
+        let mut excess = simd.splat_f64s(0.0);
+        for (entries, subdiagonal) in entries.iter().zip(form.subdiagonals(panel)) {
+            let sensitivity = simd.splat_f64s(subdiagonal.sensitivity);
+            excess = simd.mul_add_e_f64s(entries[0].square(simd), sensitivity, excess);
+        }
+        self.tiles[0].multipliers[panel] = entries;
+        self.interchanged[panel] = [false; PANEL];
+        !exceeds(simd, excess)
+    }
+
+    /// Clears a panel of the first tile column by column, with an interchange where one is asked for or `wanted`; returns
+    /// where.
+    #[inline(always)]
+    pub fn clear_with_interchanges(
+        &mut self,
+        simd: S,
+        form: &HessenbergForm,
+        panel: usize,
+        wanted: Interchanged,
+    ) -> Interchanged {
+        self.forget_from(panel);
+        let mut entries = self.state_panel::<true>(simd, form, 0, panel);
+        let mut multipliers = entries;
+        let mut interchanged = wanted;
+        // Written out: a loop has no constants.
+        (interchanged[0], multipliers[0]) = self.clear_one::<0>(simd, form, panel, wanted[0], &mut entries);
+        (interchanged[1], multipliers[1]) = self.clear_one::<1>(simd, form, panel, wanted[1], &mut entries);
+        (interchanged[2], multipliers[2]) = self.clear_one::<2>(simd, form, panel, wanted[2], &mut entries);
+        self.tiles[0].multipliers[panel] = multipliers;
+        self.interchanged[panel] = interchanged;
+        interchanged
+    }
+
+    /// Forgets what was done to a panel of the first tile.
+    #[inline(always)]
+    fn forget_from(&mut self, panel: usize) {
+        self.count = self.before(panel);
+    }
+
+    #[inline(always)]
+    fn clear_one<const OFFSET: usize>(
+        &mut self,
+        simd: S,
+        form: &HessenbergForm,
+        panel: usize,
+        wanted: bool,
+        entries: &mut Panel<S, R>,
+    ) -> (bool, Rows<S, R>) {
+        let sensitivity = simd.splat_f64s(form.subdiagonals(panel)[OFFSET].sensitivity);
+        let asked = exceeds(simd, simd.mul_f64s(entries[OFFSET][0].square(simd), sensitivity));
+        let mut multipliers = entries[OFFSET];
+        if asked || wanted {
+            multipliers = self.interchange::<OFFSET>(simd, form, panel, entries);
+        }
+        self.subtract_next::<OFFSET>(simd, form, panel, multipliers, entries);
+        (asked || wanted, multipliers)
+    }
+
+    /// Interchanges the active and the next row in a column; returns the multiples of the next row that are left to
+    /// subtract.
+    #[inline(always)]
+    fn interchange<const OFFSET: usize>(
+        &mut self,
+        simd: S,
+        form: &HessenbergForm,
+        panel: usize,
+        entries: &mut Panel<S, R>,
+    ) -> Rows<S, R> {
+        let (column, subdiagonal) = (panel * PANEL + OFFSET, &form.subdiagonals(panel)[OFFSET]);
+        let interchange = Interchange::new(simd, column, subdiagonal, entries[OFFSET][0]);
+        let mut quotients = interchange.quotients(simd, entries[OFFSET]);
+        let mut multipliers = interchange.multipliers(simd, entries[OFFSET]);
+        quotients[0] = interchange.active_quotient(simd, subdiagonal);
+        multipliers[0] = interchange.active_multiplier(simd, subdiagonal, entries[OFFSET][0]);
+        let index = self.count;
+        *entries = subtract_active(simd, *entries, &quotients, &mut self.pivots[index]);
+        self.interchanges[index] = interchange;
+        self.tiles[0].quotients[index] = quotients;
+        self.count += 1;
+        multipliers
+    }
+
+    /// Interchanges in the first panels.
+    #[inline(always)]
+    fn before(&self, panels: usize) -> usize {
+        let mut count = self.count;
+        while let Some(last) = count.checked_sub(1)
+            && self.interchanges[last].column >= panels * PANEL
+        {
+            count = last;
+        }
+        count
+    }
+
+    /// Clears a panel that is clear in the first tile in the others.
+    #[inline(always)]
+    pub fn follow(&mut self, simd: S, form: &HessenbergForm, panel: usize) {
+        for tile in 1..self.tiles.len() {
+            let mut entries = self.state_panel::<false>(simd, form, tile, panel);
+            let mut multipliers = entries;
+            let mut done = self.before(panel);
+            multipliers[0] = self.follow_one::<0>(simd, form, tile, panel, &mut done, &mut entries);
+            multipliers[1] = self.follow_one::<1>(simd, form, tile, panel, &mut done, &mut entries);
+            multipliers[2] = self.follow_one::<2>(simd, form, tile, panel, &mut done, &mut entries);
+            self.tiles[tile].multipliers[panel] = multipliers;
+        }
+    }
+
+    #[inline(always)]
+    fn follow_one<const OFFSET: usize>(
+        &mut self,
+        simd: S,
+        form: &HessenbergForm,
+        tile: usize,
+        panel: usize,
+        done: &mut usize,
+        entries: &mut Panel<S, R>,
+    ) -> Rows<S, R> {
+        let mut multipliers = entries[OFFSET];
+        if self.interchanged[panel][OFFSET] {
+            let index = *done;
+            *done += 1;
+            let interchange = &self.interchanges[index];
+            let quotients = interchange.quotients(simd, entries[OFFSET]);
+            multipliers = interchange.multipliers(simd, entries[OFFSET]);
+            *entries = subtract_pivots(simd, *entries, &quotients, &self.pivots[index]);
+            self.tiles[tile].quotients[index] = quotients;
+        }
+        self.subtract_next::<OFFSET>(simd, form, panel, multipliers, entries);
+        multipliers
+    }
+
+    /// Subtracts multiples of the next row of a column from what is right of it in the panel.
+    #[inline(always)]
+    fn subtract_next<const OFFSET: usize>(
+        &self,
+        simd: S,
+        form: &HessenbergForm,
+        panel: usize,
+        multipliers: Rows<S, R>,
+        entries: &mut Panel<S, R>,
+    ) {
+        let next = &form.next_rows(panel)[panel][OFFSET];
+        for offset in OFFSET + 1..PANEL {
+            let real = simd.splat_f64s(next[offset]);
+            for row in 0..R {
+                entries[offset][row] = entries[offset][row].minus_real_product(simd, multipliers[row], real);
+            }
+        }
+        if let Some(diagonal) = entries.get_mut(OFFSET + 1) {
+            let reciprocal = simd.splat_f64s(form.subdiagonals(panel)[OFFSET].reciprocal);
+            subtract_diagonal(simd, diagonal, multipliers, simd.mul_f64s(self.omega, reciprocal));
+        }
+    }
+
+    /// A panel of states of a tile, when those before it are clear.
+    #[inline(always)]
+    fn state_panel<const LEADS: bool>(
+        &mut self,
+        simd: S,
+        form: &HessenbergForm,
+        tile: usize,
+        panel: usize,
+    ) -> Panel<S, R> {
+        let mut entries = self.panel::<LEADS>(simd, form, tile, panel, panel);
+        if let Some(before) = panel.checked_sub(1) {
+            let multipliers = self.tiles[tile].multipliers[before][PANEL - 1];
+            let reciprocal = simd.splat_f64s(form.subdiagonals(before)[PANEL - 1].reciprocal);
+            subtract_diagonal(simd, &mut entries[0], multipliers, simd.mul_f64s(self.omega, reciprocal));
+        } else if LEADS {
+            entries[0][0].im = simd.neg_f64s(self.omega);
+        }
+        entries
+    }
+
+    /// A panel of a tile when the first `clear` panels are, but for the imaginary part of the next row after them.
+    #[inline(always)]
+    fn panel<const LEADS: bool>(
+        &mut self,
+        simd: S,
+        form: &HessenbergForm,
+        tile: usize,
+        panel: usize,
+        clear: usize,
+    ) -> Panel<S, R> {
+        let rows = &self.tiles[tile];
+        let (next, multipliers) =
+            (form.next_rows(panel)[..clear].as_flattened(), rows.multipliers[..clear].as_flattened());
+        let count = self.before(clear);
+        let mut entries = real_panel(simd, form.complex_rows(panel, tile));
+        let mut from = 0;
+        let interchanges = self.interchanges[..count].iter().zip(&rows.quotients).zip(&mut self.pivots);
+        for ((interchange, quotients), pivots) in interchanges {
+            let to = interchange.column;
+            entries = subtract_multiples(simd, entries, &multipliers[from..to], &next[from..to]);
+            entries = if LEADS {
+                subtract_active(simd, entries, quotients, pivots)
+            } else {
+                subtract_pivots(simd, entries, quotients, pivots)
+            };
+            from = to;
+        }
+        subtract_multiples(simd, entries, &multipliers[from..], &next[from..])
+    }
+
+    /// Clears the last column with the active row, of which multiples are then left to subtract.
+    #[inline(always)]
+    pub fn finish(&mut self, simd: S, form: &HessenbergForm) {
+        let Some(last) = form.order().checked_sub(1) else { return };
+        let (panel, offset) = (last / PANEL, last % PANEL);
+        let reciprocal = self.tiles[0].multipliers[panel][offset][0].reciprocal(simd);
+        for tile in &mut self.tiles {
+            tile.last = tile.multipliers[panel][offset];
+            for entry in &mut tile.last {
+                *entry = entry.product(simd, reciprocal);
+            }
+        }
+        // The first row of L has its turn.
+        self.tiles[0].last[0] = reciprocal.scaled(simd, simd.splat_f64s(form.gain()));
+    }
+
+    /// Tiles of rows.
+    #[inline(always)]
+    pub fn tiles(&self) -> usize {
+        self.tiles.len()
+    }
+
+    /// The responses of a panel of outputs, when all states are eliminated: of one tile after the other.
+    #[inline(always)]
+    pub fn responses(&mut self, simd: S, form: &HessenbergForm, output_panel: usize, tile: usize) -> Panel<S, R> {
+        let states = form.state_panels();
+        if tile > 0 {
+            let values = self.panel::<false>(simd, form, tile, states + output_panel, states);
+            return subtract_pivots(simd, values, &self.tiles[tile].last, &self.left);
+        }
+        let mut values = self.panel::<true>(simd, form, tile, states + output_panel, states);
+        {
+            let feed_through = form.feed_through(output_panel);
+            for offset in 0..PANEL {
+                self.left[offset] = values[offset][0];
+                values[offset][0] = ComplexLanes::real(simd, feed_through[offset]);
+            }
+        }
+        subtract_pivots(simd, values, &self.tiles[tile].last, &self.left)
+    }
+}
+
+/// Whether a sum of `(|u_k| / (tau |h|))^2` is more than 1, or not a number, in any lane.
+#[inline(always)]
+fn exceeds<S: Simd>(simd: S, excess: S::f64s) -> bool {
+    any(simd, simd.not_m64s(simd.less_than_or_equal_f64s(excess, simd.splat_f64s(1.0))))
+}
+
+/// A panel of rows before anything is eliminated.
+#[inline(always)]
+fn real_panel<S: Simd, const R: usize>(simd: S, rows: &[Entries; R]) -> Panel<S, R> {
+    let mut panel = [[ComplexLanes::real(simd, 0.0); R]; PANEL];
+    for offset in 0..PANEL {
+        for row in 0..R {
+            panel[offset][row].re = simd.splat_f64s(rows[row][offset]);
+        }
+    }
+    panel
+}
+
+/// Subtracts multiples of the imaginary part of a next row, `-shift` right of the column that it clears.
+#[inline(always)]
+fn subtract_diagonal<S: Simd, const R: usize>(
+    simd: S,
+    entries: &mut Rows<S, R>,
+    multipliers: Rows<S, R>,
+    shift: S::f64s,
+) {
+    for row in 0..R {
+        entries[row] = entries[row].plus_imaginary_product(simd, multipliers[row], shift);
+    }
+}
+
+/// `panel - sum of multipliers times next rows`: nearly all the work of an elimination.
+#[inline(always)]
+fn subtract_multiples<S: Simd, const R: usize>(
+    simd: S,
+    mut panel: Panel<S, R>,
+    multipliers: &[Rows<S, R>],
+    next: &[Entries],
+) -> Panel<S, R> {
+    for (next, multipliers) in next.iter().zip(multipliers) {
+        let (a, b, c) = (simd.splat_f64s(next[0]), simd.splat_f64s(next[1]), simd.splat_f64s(next[2]));
+        // In this order sixteen registers hold the panel of two rows, three entries and one part of a multiplier.
+        for row in 0..R {
+            let ComplexLanes { re, im } = multipliers[row];
+            panel[0][row].re = simd.negate_mul_add_e_f64s(re, a, panel[0][row].re);
+            panel[1][row].re = simd.negate_mul_add_e_f64s(re, b, panel[1][row].re);
+            panel[2][row].re = simd.negate_mul_add_e_f64s(re, c, panel[2][row].re);
+            panel[0][row].im = simd.negate_mul_add_e_f64s(im, a, panel[0][row].im);
+            panel[1][row].im = simd.negate_mul_add_e_f64s(im, b, panel[1][row].im);
+            panel[2][row].im = simd.negate_mul_add_e_f64s(im, c, panel[2][row].im);
+        }
+    }
+    panel
+}
+
+/// `panel - quotients pivots`: 4 fused operations on real numbers for each entry.
+#[inline(always)]
+fn subtract_pivots<S: Simd, const R: usize>(
+    simd: S,
+    mut panel: Panel<S, R>,
+    quotients: &Rows<S, R>,
+    pivots: &Pivots<S>,
+) -> Panel<S, R> {
+    for row in 0..R {
+        for offset in 0..PANEL {
+            panel[offset][row] = panel[offset][row].minus_product(simd, quotients[row], pivots[offset]);
+        }
+    }
+    panel
+}
+
+/// [`subtract_pivots`] of the tile whose first row is the active one: that is kept as `pivots`, and has zero in its place.
+#[inline(always)]
+fn subtract_active<S: Simd, const R: usize>(
+    simd: S,
+    mut panel: Panel<S, R>,
+    quotients: &Rows<S, R>,
+    pivots: &mut Pivots<S>,
+) -> Panel<S, R> {
+    let zero = ComplexLanes::real(simd, 0.0);
+    for row in 1..R {
+        for entries in &mut panel {
+            entries[row] = entries[row].minus_product(simd, quotients[row], entries[0]);
+        }
+    }
+    // The active row last, so that it need not be copied.
+    for (pivot, rows) in pivots.iter_mut().zip(&mut panel) {
+        *pivot = rows[0];
+        rows[0] = zero.minus_product(simd, quotients[0], rows[0]);
+    }
+    panel
+}

@@ -18,17 +18,17 @@ pub struct PolarCurve {
 
 impl PolarCurve {
     /// Magnitude and phase of one response, where it is finite and not zero at every frequency.
-    fn of(values: impl Iterator<Item = Complex<f64>> + Clone) -> Option<Self> {
-        let magnitude_db: Vec<f64> = values.clone().map(magnitude_db).collect();
+    fn of(values: &[Complex<f64>]) -> Option<Self> {
+        let magnitude_db: Vec<f64> = values.iter().map(magnitude_db).collect();
         if magnitude_db.iter().any(|magnitude| !magnitude.is_finite()) {
             return None;
         }
-        Some(Self { magnitude_db, phase: values.map(|value| value.arg()).collect() })
+        Some(Self { magnitude_db, phase: values.iter().map(|value| value.arg()).collect() })
     }
 }
 
 /// `20 log10 |H| = 10 log10 |H|^2`; the square spares a root where it neither overflows nor underflows.
-fn magnitude_db(value: Complex<f64>) -> f64 {
+fn magnitude_db(value: &Complex<f64>) -> f64 {
     let square = value.norm_sqr();
     if square.is_normal() { 10.0 * square.log10() } else { ratio_to_db(value.norm()) }
 }
@@ -45,14 +45,14 @@ pub struct PolarResponse {
 impl PolarResponse {
     /// Magnitude and phase of every response.
     pub fn of(response: &FrequencyResponse) -> Self {
-        let curve = |pair| PolarCurve::of(response.curve(pair));
+        let curve = |pair| PolarCurve::of(&response.curve(pair));
         Self { curves: PairTable::from_fn(response.outputs(), response.inputs(), curve) }
     }
 
     /// Magnitude and phase of the marked responses; the others are left undefined, for a logarithm and an arc tangent cost more
     /// than the response itself.
     pub fn of_marked(response: &FrequencyResponse, marked: &PairTable<bool>) -> Self {
-        let curve = |pair| if marked[pair] { PolarCurve::of(response.curve(pair)) } else { None };
+        let curve = |pair| if marked[pair] { PolarCurve::of(&response.curve(pair)) } else { None };
         Self { curves: PairTable::from_fn(response.outputs(), response.inputs(), curve) }
     }
 
@@ -70,9 +70,9 @@ mod tests {
     fn magnitudes_beyond_the_range_of_their_squares_are_right() {
         for (magnitude, db) in [(1e-200, -4000.0), (1e-20, -400.0), (1.0, 0.0), (1e200, 4000.0)] {
             // One rounding of the logarithm and one of its multiple.
-            assert!((magnitude_db(Complex::new(0.0, magnitude)) - db).abs() < 1e-12);
+            assert!((magnitude_db(&Complex::new(0.0, magnitude)) - db).abs() < 1e-12);
         }
-        assert_eq!(magnitude_db(Complex::new(0.0, 0.0)), f64::NEG_INFINITY);
-        assert!(magnitude_db(Complex::new(f64::NAN, 0.0)).is_nan());
+        assert_eq!(magnitude_db(&Complex::new(0.0, 0.0)), f64::NEG_INFINITY);
+        assert!(magnitude_db(&Complex::new(f64::NAN, 0.0)).is_nan());
     }
 }

@@ -48,7 +48,7 @@ mod tests {
     }
 
     fn only(response: FrequencyResponse) -> Complex<f64> {
-        response.curve(Pair::new(0, 0)).next().unwrap()
+        response.curve(Pair::new(0, 0))[0]
     }
 
     #[test]

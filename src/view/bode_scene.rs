@@ -59,8 +59,7 @@ struct Shape {
 
 impl Shape {
     /// The phase is principal at the first finite value, then unwrapped; a value that is not finite leaves a gap (M2).
-    fn of(values: impl Iterator<Item = Complex<f64>>) -> Self {
-        let values: Vec<Complex<f64>> = values.collect();
+    fn of(values: &[Complex<f64>]) -> Self {
         let finite: Vec<usize> =
             (0..values.len()).filter(|&k| values[k].is_finite() && values[k].norm() > 0.0).collect();
         let mut phase: Vec<f64> = finite.iter().map(|&k| values[k].arg()).collect();
@@ -123,9 +122,9 @@ impl CachedShapes {
         if self.made_of.as_ref().is_some_and(same) {
             return;
         }
-        let reference_shape = Shape::of(curves.identified[reference].curve(pair));
+        let reference_shape = Shape::of(&curves.identified[reference].curve(pair));
         let shapes = |kind| {
-            let laid = |response: &FrequencyResponse| Shape::of(response.curve(pair)).laid_on(&reference_shape);
+            let laid = |response: &FrequencyResponse| Shape::of(&response.curve(pair)).laid_on(&reference_shape);
             curves.bundle(kind).iter().map(laid).collect()
         };
         self.physics = shapes(BundleKind::Physics);

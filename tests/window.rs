@@ -5,7 +5,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
-use egui::{Key, Modifiers, pos2, vec2};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
@@ -193,15 +193,20 @@ fn every_choice_can_be_undone_and_done_again() {
     assert_eq!(state(&window).study, end);
 }
 
+/// A point of the nominal model's curve.
+fn place_on_nominal(window: &Window) -> Pos2 {
+    let nominal = drawn(window, CurveRole::Nominal);
+    // At 2 rad/s the nominal model stands 3 dB above the bundle: nothing else is near.
+    let at = nominal.omega.iter().position(|&omega| omega > 2.0).unwrap();
+    let view = &state(window).display.bode;
+    view.screen_position(Pane::Magnitude, nominal.omega[at], nominal.magnitude_db[at]).unwrap()
+}
+
 #[test]
 fn a_click_on_a_curve_rejects_it_and_another_click_restores_it() {
     let mut window = window();
     choose_condition_10(&mut window);
-    let nominal = drawn(&window, CurveRole::Nominal);
-    // At 2 rad/s the nominal model stands 3 dB above the bundle: nothing else is near.
-    let at = nominal.omega.iter().position(|&omega| omega > 2.0).unwrap();
-    let view = &state(&window).display.bode;
-    let place = view.screen_position(Pane::Magnitude, nominal.omega[at], nominal.magnitude_db[at]).unwrap();
+    let place = place_on_nominal(&window);
     let id = ModelId { condition: 9, bundle: BundleKind::Physics, model: 0 };
     for rejected in [true, false] {
         window.hover_at(place);
@@ -215,6 +220,31 @@ fn a_click_on_a_curve_rejects_it_and_another_click_restores_it() {
         // A second click soon after would be a double click, which fits the plot.
         window.run_steps(4);
     }
+}
+
+#[test]
+fn a_double_click_on_a_curve_fits_the_plot_and_leaves_no_decision() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    let start = state(&window).study.clone();
+    click(&mut window, "Keep physics model V+10kt");
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(&mut window);
+    let place = place_on_nominal(&window);
+    window.hover_at(place);
+    window.run_steps(2);
+    for _ in 0..2 {
+        // Both in one frame: a frame of the harness takes nearly as long as two clicks may be apart.
+        for pressed in [true, false] {
+            let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+            window.input_mut().events.push(Event::PointerButton { pos: place, button, pressed, modifiers });
+        }
+        window.step();
+    }
+    settle(&mut window);
+    assert_eq!(state(&window).study, start);
+    assert_eq!(state(&window).history.undo_label(), None, "nothing to undo");
+    assert!(state(&window).history.redo_label().is_some(), "what could be redone before still can");
 }
 
 #[test]

@@ -32,6 +32,7 @@ impl GdcmApp {
             Command::Edit(edit) => self.decide(&edit),
             Command::EndEdit => self.state.history.seal(),
             Command::Undo => self.go_back(),
+            Command::Forget(edit) => self.forget(&edit),
             Command::Redo => self.go_forward(),
             Command::SelectCondition(condition) => select_condition(display, condition),
             Command::FocusPair(pair) if display.pair != pair => {
@@ -82,6 +83,13 @@ impl GdcmApp {
 
     fn go_back(&mut self) {
         if let Some(study) = self.state.history.undo(&self.state.study) {
+            self.state.study = study;
+            self.study_changed();
+        }
+    }
+
+    fn forget(&mut self, edit: &Edit) {
+        if let Some(study) = self.state.history.forget(edit) {
             self.state.study = study;
             self.study_changed();
         }

@@ -17,6 +17,8 @@ struct Step {
 pub struct History {
     past: Vec<Step>,
     future: Vec<Step>,
+    /// What the last decision took from the future.
+    lost: Vec<Step>,
     /// The last decision, while the next may still be a part of it (a slider being dragged).
     open: Option<Edit>,
 }
@@ -26,10 +28,11 @@ impl History {
     ///
     /// A decision that continues the last one (see [`Edit::continues`]) adds no step until [`History::seal`].
     pub fn record(&mut self, before: Study, edit: &Edit) {
-        self.future.clear();
+        let lost = std::mem::take(&mut self.future);
         if self.open.as_ref().is_some_and(|open| edit.continues(open)) {
             return;
         }
+        self.lost = lost;
         if self.past.len() == MOST_STEPS {
             self.past.remove(0);
         }
@@ -47,6 +50,18 @@ impl History {
         let step = self.past.pop()?;
         self.open = None;
         self.future.push(Step { label: step.label, study: now.clone() });
+        Some(step.study)
+    }
+
+    /// The study before the last decision, as if that had never been taken, where it was `edit`: it cannot be brought back,
+    /// and those that it took from the future can again.
+    pub fn forget(&mut self, edit: &Edit) -> Option<Study> {
+        if self.open.as_ref() != Some(edit) {
+            return None;
+        }
+        let step = self.past.pop()?;
+        self.open = None;
+        self.future = std::mem::take(&mut self.lost);
         Some(step.study)
     }
 

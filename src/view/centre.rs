@@ -105,6 +105,11 @@ fn bode_command(state: &State, event: BodeEvent) -> Option<Command> {
             CurveSubject::Model(id) => Some(Edit::Reject(id).into()),
             CurveSubject::Corrected | CurveSubject::Scheduled => None,
         },
+        BodeEvent::TakenBack(id) => match subject(id) {
+            CurveSubject::Model(id) if state.study.is_rejected(id) => Some(Command::Forget(Edit::Reject(id))),
+            CurveSubject::Model(id) => Some(Command::Forget(Edit::Restore(id))),
+            CurveSubject::Corrected | CurveSubject::Scheduled => None,
+        },
         BodeEvent::Isolated(id) => match subject(id) {
             CurveSubject::Model(id) => Some(Command::Isolate(id)),
             CurveSubject::Corrected | CurveSubject::Scheduled => None,

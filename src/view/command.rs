@@ -19,6 +19,8 @@ pub enum Command {
     EndEdit,
     /// Take the last decision back.
     Undo,
+    /// Take a decision back as if it had never been taken, if it was the last.
+    Forget(Edit),
     /// Bring a decision taken back again.
     Redo,
     /// Show a condition, by index.

@@ -46,6 +46,8 @@ pub enum BodeEvent {
     Hovered(Option<CurveId>),
     /// A curve was clicked.
     Clicked(CurveId),
+    /// The last click was the first of a double click, which means something else.
+    TakenBack(CurveId),
     /// A curve was clicked with Alt held.
     Isolated(CurveId),
     /// The band is being dragged to these ends \[rad/s\].
@@ -159,7 +161,7 @@ fn click(pane: Pane, scene: &BodeScene<'_>, response: &Response, view: &mut Bode
         view.request_fit();
         response.ctx.request_repaint();
         // The first click of the two was taken at once, for it to answer at once; fitting takes it back.
-        events.extend(view.last_clicked.take().map(BodeEvent::Clicked));
+        events.extend(view.last_clicked.take().map(BodeEvent::TakenBack));
     } else if response.clicked() {
         let alt = response.ctx.input(|input| input.modifiers.alt);
         let pointer = response.interact_pointer_pos();

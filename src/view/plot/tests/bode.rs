@@ -56,7 +56,8 @@ fn empty_spot(harness: &Harness<'_, Model>) -> Pos2 {
 }
 
 fn clicks(harness: &Harness<'_, Model>) -> Vec<BodeEvent> {
-    let is_click = |event: &&BodeEvent| matches!(event, BodeEvent::Clicked(_) | BodeEvent::Isolated(_));
+    let is_click =
+        |event: &&BodeEvent| matches!(event, BodeEvent::Clicked(_) | BodeEvent::TakenBack(_) | BodeEvent::Isolated(_));
     harness.state().events.iter().filter(is_click).copied().collect()
 }
 
@@ -194,7 +195,7 @@ fn a_double_click_on_a_curve_fits_and_takes_its_first_click_back() {
     let at = point_on(&harness, 1, 60);
     click(&mut harness, at);
     click(&mut harness, at);
-    assert_eq!(clicks(&harness), [BodeEvent::Clicked(CurveId(2)); 2]);
+    assert_eq!(clicks(&harness), [BodeEvent::Clicked(CurveId(2)), BodeEvent::TakenBack(CurveId(2))]);
     assert_eq!(harness.state().view.omega_range(), fitted);
 }
 

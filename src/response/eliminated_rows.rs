@@ -55,7 +55,7 @@ struct Tile<S: Simd, const R: usize> {
 }
 
 impl<S: Simd, const R: usize> EliminatedRows<S, R> {
-    /// Room for a model; that for interchanges is made as they come.
+    /// Room for a model, and for an interchange in every column: a list that grows would cost the registers their contents.
     #[inline(always)]
     pub fn with_room_for(simd: S, form: &HessenbergForm) -> Self {
         let zeros = [ComplexLanes::real(simd, 0.0); R];

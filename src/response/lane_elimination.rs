@@ -26,7 +26,7 @@ pub struct Elimination<S: Simd, const R: usize> {
 }
 
 impl<S: Simd, const R: usize> Elimination<S, R> {
-    /// Room for a model; that for interchanges is made as they come.
+    /// Room for a model.
     #[inline(always)]
     pub fn with_room_for(simd: S, form: &HessenbergForm) -> Self {
         let count = GROUP / S::F64_LANES;

@@ -245,6 +245,29 @@ mod tests {
     }
 
     #[test]
+    fn poles_on_the_grid_are_survived_by_models_of_any_order() {
+        for order in 1..=9 {
+            let (b, c) = (matrix(order, 2, 1.1), matrix(3, order, 2.3));
+            // All poles in zero; then pairs at 2 rad/s, with one in zero left over.
+            let turning = DMatrix::from_fn(order, order, |row, column| match (row % 2, column) {
+                (0, column) if column == row + 1 => 2.0,
+                (1, column) if column + 1 == row => -2.0,
+                _ => 0.0,
+            });
+            for (a, omega) in [(DMatrix::zeros(order, order), 0.0), (turning, 2.0)] {
+                let model = StateSpace::new(a, b.clone(), c.clone(), DMatrix::zeros(3, 2)).unwrap();
+                for frequencies in [vec![omega], vec![1.0, omega, 3.0]] {
+                    let mut all = on_vectors(&model, &frequencies);
+                    all.push(on(Scalar::new(), &model, &frequencies));
+                    let finite =
+                        |k: usize| all.iter().all(|values| values.iter().all(|(_, curve)| curve[k].is_finite()));
+                    assert!(frequencies.len() == 1 || (finite(0) && finite(2)), "{order} states");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn a_chain_coupled_by_1e_minus_55_neither_overflows_nor_loses_its_coupling() {
         // One over the coupling is 1e55 a step: without shrinking, the fifth step would overflow the square of a pivot.
         let weak = 1e-55;

@@ -51,7 +51,9 @@ fn stages(criterion: &mut Criterion) {
     group.bench_function("distances and ratios", |bencher| {
         bencher.iter(|| BundleFigures::of(condition, &responses, &measuring, &alone));
     });
-    group.bench_function("ratios", |bencher| bencher.iter(|| Discontinuity::of(&figures.physics, &perturbations)));
+    group.bench_function("ratios", |bencher| {
+        bencher.iter(|| Discontinuity::of(&figures.physics, &perturbations, &|| true))
+    });
     group.bench_function("G and D", |bencher| bencher.iter(|| Delta::of(&mismatch, grid.omega())));
     group.bench_function("bounds", |bencher| {
         bencher.iter(|| {

@@ -5,12 +5,18 @@ use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, Nonnegat
 
 use super::corner::{Corner, Rows};
 
-/// The linear program did not end at its optimum.
+/// Why there is no fit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("the fit of least absolute deviations ended with {status}")]
-pub struct FitError {
-    /// The solver's own word.
-    pub status: String,
+pub enum FitError {
+    /// The linear program did not end at its optimum.
+    #[error("the fit of least absolute deviations ended with {status}")]
+    NotSolved {
+        /// The solver's own word.
+        status: String,
+    },
+    /// It was not wanted any more.
+    #[error("the fit of least absolute deviations was given up")]
+    GivenUp,
 }
 
 /// `argmin sum_i |x_i w - y_i|` over `w >= 0`; of equally good corners the one of least `sum_i (sqrt(x_i w) - sqrt(y_i))^2`.
@@ -19,8 +25,9 @@ pub struct FitError {
 /// whole edge or face between corners that are equally good. From the corner nearest to the fit of least squares the search
 /// goes along descending edges, each to where the deviations stop falling (the simplex method of Barrodale and Roberts),
 /// then over the corners that tie: exact, and the same on every machine. Only in a corner where more conditions meet than
-/// it takes can this end early; there the linear program is solved. `x` and `y` must not be negative.
-pub fn least_absolute_deviations(x: &[Vec<f64>], y: &[f64]) -> Result<Vec<f64>, FitError> {
+/// it takes can this end early; there the linear program is solved. `x` and `y` must not be negative. The search is given up
+/// at a corner at which it is not `wanted` any more.
+pub fn least_absolute_deviations(x: &[Vec<f64>], y: &[f64], wanted: &dyn Fn() -> bool) -> Result<Vec<f64>, FitError> {
     let unknowns = x.first().map_or(0, Vec::len);
     let scale = y.iter().copied().fold(0.0, f64::max);
     if scale == 0.0 {
@@ -29,10 +36,10 @@ pub fn least_absolute_deviations(x: &[Vec<f64>], y: &[f64]) -> Result<Vec<f64>, 
     let scaled: Vec<f64> = y.iter().map(|y| y / scale).collect();
     let rows = Rows::new(x, &scaled);
     let start = Corner::nearest(&rows, &rows.least_squares()).unwrap_or_else(|| Corner::origin(&rows));
-    let mut best = best_corner(&rows, start);
+    let mut best = best_corner(&rows, start, wanted)?;
     if best.is_degenerate(&rows) {
         let weights = solve_linear_program(x, &scaled, unknowns)?;
-        let other = Corner::nearest(&rows, &weights).map(|corner| best_corner(&rows, corner));
+        let other = Corner::nearest(&rows, &weights).map(|corner| best_corner(&rows, corner, wanted)).transpose()?;
         let better = other.filter(|other| rows.deviations(&other.weights) < rows.deviations(&best.weights));
         best = better.unwrap_or(best);
     }
@@ -40,7 +47,7 @@ pub fn least_absolute_deviations(x: &[Vec<f64>], y: &[f64]) -> Result<Vec<f64>, 
 }
 
 /// Goes along descending edges to the optimum, then over all equally good corners.
-fn best_corner(rows: &Rows<'_>, start: Corner) -> Corner {
+fn best_corner(rows: &Rows<'_>, start: Corner, wanted: &dyn Fn() -> bool) -> Result<Corner, FitError> {
     /// Far more than the corners of a face in a few unknowns; only a bound on time.
     const MOST_CORNERS: usize = 300;
     let misfit = |corner: &Corner| rows.squared_root_deviations(&corner.weights);
@@ -48,6 +55,9 @@ fn best_corner(rows: &Rows<'_>, start: Corner) -> Corner {
     let mut equal = vec![start];
     let mut next = 0;
     while next < equal.len() && equal.len() < MOST_CORNERS {
+        if !wanted() {
+            return Err(FitError::GivenUp);
+        }
         let neighbours = equal[next].neighbours(rows);
         if let Some(better) = neighbours.better {
             best = better.clone();
@@ -65,7 +75,7 @@ fn best_corner(rows: &Rows<'_>, start: Corner) -> Corner {
         }
         next += 1;
     }
-    best
+    Ok(best)
 }
 
 /// The linear program `min sum t` subject to `x w - t <= y`, `-x w - t <= -y`, `w >= 0`.
@@ -91,7 +101,7 @@ fn solve_linear_program(x: &[Vec<f64>], y: &[f64], unknowns: usize) -> Result<Ve
     let a = CscMatrix::new_from_triplets(2 * rows + unknowns, unknowns + rows, i, j, v);
     let b: Vec<f64> = y.iter().copied().chain(y.iter().map(|y| -y)).chain(vec![0.0; unknowns]).collect();
     let q: Vec<f64> = vec![0.0; unknowns].into_iter().chain(vec![1.0; rows]).collect();
-    let failed = |status: String| FitError { status };
+    let failed = |status: String| FitError::NotSolved { status };
     // Close enough that the nearest corner is an optimal one, or one edge from it.
     let settings = DefaultSettingsBuilder::default()
         .verbose(false)
@@ -121,7 +131,7 @@ mod tests {
         let x: Vec<Vec<f64>> = (0..9).map(|k| vec![f64::from(k % 3), f64::from(k / 3)]).collect();
         let mut y: Vec<f64> = x.iter().map(|x| 2.0 * x[0] + 3.0 * x[1]).collect();
         y[8] = 100.0;
-        let weights = least_absolute_deviations(&x, &y).unwrap();
+        let weights = least_absolute_deviations(&x, &y, &|| true).unwrap();
         // A corner is solved for, not iterated to: a few roundings of numbers up to 100.
         assert!((weights[0] - 2.0).abs() < 1e-12 && (weights[1] - 3.0).abs() < 1e-12);
     }
@@ -144,7 +154,7 @@ mod tests {
             let scaled: Vec<f64> = y.iter().map(|y| y / largest).collect();
             let rows = Rows::new(&x, &scaled);
             let weights = |weights: Vec<f64>| weights.iter().map(|weight| weight / largest).collect::<Vec<f64>>();
-            let found = rows.deviations(&weights(least_absolute_deviations(&x, &y).unwrap()));
+            let found = rows.deviations(&weights(least_absolute_deviations(&x, &y, &|| true).unwrap()));
             let program = rows.deviations(&solve_linear_program(&x, &scaled, 3).unwrap());
             // The program is solved to 1e-11 relative; the search is exact.
             proptest::prop_assert!(found <= program * (1.0 + 1e-9) + 1e-12, "{found} {program}");
@@ -152,9 +162,15 @@ mod tests {
     }
 
     #[test]
+    fn a_fit_that_is_not_wanted_any_more_is_given_up() {
+        let x = vec![vec![1.0], vec![2.0], vec![3.0]];
+        assert_eq!(least_absolute_deviations(&x, &[1.0, 2.0, 4.0], &|| false), Err(FitError::GivenUp));
+    }
+
+    #[test]
     fn weights_do_not_go_below_zero() {
         let x = vec![vec![1.0, 1.0], vec![1.0, 2.0], vec![1.0, 3.0]];
-        let weights = least_absolute_deviations(&x, &[3.0, 2.0, 1.0]).unwrap();
+        let weights = least_absolute_deviations(&x, &[3.0, 2.0, 1.0], &|| true).unwrap();
         assert!(weights.iter().all(|&weight| weight >= 0.0));
     }
 
@@ -162,7 +178,10 @@ mod tests {
     fn of_equally_good_corners_the_one_nearest_in_square_roots_is_taken() {
         // Every w from 4 to 9 is a median of these. Square roots 0, 2, 3, 4: from 2 the squares add to 9, from 3 to 11;
         // square roots 1, 2, 3, 5: from 2 they add to 11, from 3 to 9. (A corner is solved for: a few roundings.)
-        let fit = |y: &[f64]| least_absolute_deviations(&[vec![1.0], vec![1.0], vec![1.0], vec![1.0]], y).unwrap()[0];
+        let fit = |y: &[f64]| {
+            let x = [vec![1.0], vec![1.0], vec![1.0], vec![1.0]];
+            least_absolute_deviations(&x, y, &|| true).unwrap()[0]
+        };
         assert!((fit(&[0.0, 4.0, 9.0, 16.0]) - 4.0).abs() < 1e-13);
         assert!((fit(&[1.0, 4.0, 9.0, 25.0]) - 9.0).abs() < 1e-13);
     }

@@ -209,14 +209,17 @@ impl Corner {
         let Some(inverse) = rows.matrix(&self.active).try_inverse() else {
             return Vec::new();
         };
-        let sides = |leaving: usize| if rows.is_weight(self.active[leaving]) { &[1.0][..] } else { &[1.0, -1.0] };
-        let edges = (0..self.active.len()).flat_map(|leaving| sides(leaving).iter().map(move |side| (leaving, side)));
-        let edge = |(leaving, side): (usize, &f64)| {
-            let direction: Vec<f64> = inverse.column(leaving).iter().map(|entry| side * entry).collect();
-            let (slope, scale) = slope(rows, deviations, &direction);
-            Edge { leaving, direction, slope, scale }
-        };
-        edges.map(edge).collect()
+        let mut edges = Vec::with_capacity(2 * self.active.len());
+        for leaving in 0..self.active.len() {
+            let upwards: Vec<f64> = inverse.column(leaving).iter().copied().collect();
+            let (slopes, scale) = slopes(rows, deviations, &upwards);
+            let sides = if rows.is_weight(self.active[leaving]) { &[1.0][..] } else { &[1.0, -1.0] };
+            for (side, slope) in sides.iter().zip(slopes) {
+                let direction = upwards.iter().map(|entry| side * entry).collect();
+                edges.push(Edge { leaving, direction, slope, scale });
+            }
+        }
+        edges
     }
 
     /// Deviation of each condition, those that meet here exactly zero.
@@ -255,14 +258,18 @@ impl Corner {
     }
 }
 
-/// Rate at which the sum of deviations changes along `direction`, and the most it could change.
-fn slope(rows: &Rows<'_>, deviations: &[f64], direction: &[f64]) -> (f64, f64) {
-    let mut slope = 0.0;
-    let mut scale = 0.0;
+/// Rates at which the sum of deviations changes along `direction` and against it, and the most it could change.
+fn slopes(rows: &Rows<'_>, deviations: &[f64], direction: &[f64]) -> ([f64; 2], f64) {
+    // A deviation of zero grows either way.
+    let (mut growing, mut signed, mut scale) = (0.0, 0.0, 0.0);
     for (row, deviation) in deviations[..rows.y.len()].iter().enumerate() {
         let change = rows.left(row, direction);
-        slope += if deviation.abs() <= ZERO { change.abs() } else { change * deviation.signum() };
+        if deviation.abs() <= ZERO {
+            growing += change.abs();
+        } else {
+            signed += change * deviation.signum();
+        }
         scale += change.abs();
     }
-    (slope, scale)
+    ([growing + signed, growing - signed], scale)
 }

@@ -37,7 +37,7 @@ pub enum DiscontinuityError {
     /// All models were linearised at the same trim.
     #[error("outliers cannot be suggested: every perturbation is zero")]
     AllZero,
-    /// The linear program did not end at its optimum.
+    /// There is no fit.
     #[error("outliers cannot be suggested: {0}")]
     Fit(#[from] FitError),
 }
@@ -48,10 +48,12 @@ impl Discontinuity {
     /// Each coordinate is divided by its largest magnitude. The fit `d(a,b)^2 ~ sum_k w_k (p_ak - p_bk)^2`, `w >= 0`, is the
     /// least in absolute deviations over all pairs (of equally good ones, the one whose fitted distances come nearest to the
     /// distances in least squares); `r_ab = d(a,b) / sqrt(fitted)`, `r_a = median over b of r_ab`, pairs of zero fitted
-    /// distance skipped. A coordinate that a model does not name counts as zero.
+    /// distance skipped. A coordinate that a model does not name counts as zero. The fit, over half a million pairs of a thousand
+    /// models, is given up when it is not `wanted` any more.
     pub fn of(
         distance: &BundleDistance,
         perturbations: &[(&str, Option<&BTreeMap<String, f64>>)],
+        wanted: &dyn Fn() -> bool,
     ) -> Result<Self, DiscontinuityError> {
         if perturbations.len() < LEAST_MODELS {
             return Err(DiscontinuityError::TooFewModels { found: perturbations.len() });
@@ -61,7 +63,7 @@ impl Discontinuity {
         let squares: Vec<f64> = pairs.iter().map(|&(a, b)| distance.between(a, b).powi(2)).collect();
         let rows: Vec<Vec<f64>> =
             pairs.iter().map(|&(a, b)| squared_offsets(&coordinates[a], &coordinates[b])).collect();
-        let weights = least_absolute_deviations(&rows, &squares)?;
+        let weights = least_absolute_deviations(&rows, &squares, wanted)?;
         let fitted = |a: usize, b: usize| -> f64 {
             let offsets = squared_offsets(&coordinates[a], &coordinates[b]);
             offsets.iter().zip(&weights).map(|(offset, weight)| offset * weight).sum()

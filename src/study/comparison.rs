@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use crate::correction::{Delta, mismatch_table};
 use crate::dataset::{BundleKind, Condition, PairTable};
 use crate::fidelity::{
-    BundleDistance, Cost, CostAverage, Discontinuity, DiscontinuityError, Mismatch, Representative, compared_pairs,
-    distances_from,
+    BundleDistance, Cost, CostAverage, Discontinuity, DiscontinuityError, FitError, Mismatch, Representative,
+    compared_pairs, distances_from,
 };
 use crate::response::{FrequencyGrid, FrequencyResponse, PolarResponse};
 
@@ -39,7 +39,10 @@ impl BundleFigures {
         let models = condition.bundle(BundleKind::Physics);
         let perturbations: Vec<(&str, Option<&BTreeMap<String, f64>>)> =
             models.iter().map(|model| (model.name.as_str(), model.perturbation())).collect();
-        let discontinuity = Discontinuity::of(&physics, &perturbations);
+        let discontinuity = Discontinuity::of(&physics, &perturbations, &|| !effort.watch().stopped());
+        if discontinuity == Err(DiscontinuityError::Fit(FitError::GivenUp)) {
+            return Err(Stopped);
+        }
         Ok(Self { physics, identified, discontinuity })
     }
 }

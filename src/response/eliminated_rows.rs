@@ -34,7 +34,6 @@ pub type Interchanged = [bool; PANEL];
 pub struct EliminatedRows<S: Simd, const R: usize> {
     omega: S::f64s,
     tiles: Vec<Tile<S, R>>,
-    interchanged: Vec<Interchanged>,
     interchanges: Vec<Interchange<S>>,
     /// How many interchanges there are.
     count: usize,
@@ -65,10 +64,9 @@ impl<S: Simd, const R: usize> EliminatedRows<S, R> {
             let multipliers = filled([zeros; PANEL], form.state_panels());
             tiles.push(Tile { multipliers, quotients: filled(zeros, form.order()), last: zeros });
         }
-        let interchanged = filled([false; PANEL], form.state_panels());
         let left = [zeros[0]; PANEL];
         let (interchanges, pivots) = (filled(Interchange::none(simd), form.order()), filled(left, form.order()));
-        Self { omega: left[0].re, tiles, interchanged, interchanges, count: 0, pivots, left }
+        Self { omega: left[0].re, tiles, interchanges, count: 0, pivots, left }
     }
 
     /// Starts at the frequencies `omega` \[rad/s / alpha\].
@@ -92,7 +90,6 @@ impl<S: Simd, const R: usize> EliminatedRows<S, R> {
             excess = simd.mul_add_e_f64s(entries[0].square(simd), sensitivity, excess);
         }
         self.tiles[0].multipliers[panel] = entries;
-        self.interchanged[panel] = [false; PANEL];
         !exceeds(simd, excess)
     }
 
@@ -115,7 +112,6 @@ impl<S: Simd, const R: usize> EliminatedRows<S, R> {
         (interchanged[1], multipliers[1]) = self.clear_one::<1>(simd, form, panel, wanted[1], &mut entries);
         (interchanged[2], multipliers[2]) = self.clear_one::<2>(simd, form, panel, wanted[2], &mut entries);
         self.tiles[0].multipliers[panel] = multipliers;
-        self.interchanged[panel] = interchanged;
         interchanged
     }
 
@@ -205,10 +201,11 @@ impl<S: Simd, const R: usize> EliminatedRows<S, R> {
         entries: &mut Panel<S, R>,
     ) -> Rows<S, R> {
         let mut multipliers = entries[OFFSET];
-        if self.interchanged[panel][OFFSET] {
-            let index = *done;
+        let index = *done;
+        if let Some(interchange) = self.interchanges[..self.count].get(index)
+            && interchange.column == panel * PANEL + OFFSET
+        {
             *done += 1;
-            let interchange = &self.interchanges[index];
             let quotients = interchange.quotients(simd, entries[OFFSET]);
             multipliers = interchange.multipliers(simd, entries[OFFSET]);
             *entries = subtract_pivots(simd, *entries, &quotients, &self.pivots[index]);

@@ -7,8 +7,8 @@ use gdcm::correction::{
 use gdcm::dataset::{Pair, PairTable};
 use proptest::prelude::*;
 
-use crate::instances::{delay_instances, gain_instances, on_axis};
-use crate::random::{Pattern, delay_problems, gain_problems};
+use super::instances::{delay_instances, gain_instances, on_axis};
+use super::random::{Pattern, delay_problems, gain_problems};
 
 /// Reachability needs no proof.
 const BUDGET: ProofBudget = ProofBudget { boxes: 1, minima: 0 };

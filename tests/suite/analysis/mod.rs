@@ -9,15 +9,10 @@ use gdcm::study::{Analysis, Assessed, Edit, Engine, Setting, Study, Unwatched};
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 
-#[path = "analysis/example.rs"]
 mod example;
-#[path = "analysis/known_answer.rs"]
 mod known_answer;
-#[path = "analysis/response_paths.rs"]
 mod response_paths;
-#[path = "analysis/responses.rs"]
 mod responses;
-#[path = "analysis/studies.rs"]
 mod studies;
 
 fn json(text: &str) -> Value {

@@ -4,8 +4,8 @@ use gdcm::correction::{GainBounds, GainProblem, GainSolution, Outcome, ProofBudg
 use gdcm::dataset::{Pair, PairTable};
 use proptest::prelude::*;
 
-use crate::kkt::{delay_residual, gain_residual};
-use crate::random::{Pattern, delay_problems, gain_problems};
+use super::kkt::{delay_residual, gain_residual};
+use super::random::{Pattern, delay_problems, gain_problems};
 
 /// Bounds the time of one case; what is not proven by then must say so.
 const BUDGET: ProofBudget = ProofBudget { boxes: 2000, minima: 50 };

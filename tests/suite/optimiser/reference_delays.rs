@@ -2,7 +2,7 @@
 
 use gdcm::correction::solve_delays;
 
-use crate::instances::delay_instances;
+use super::instances::delay_instances;
 
 #[test]
 fn every_minimum_is_reached() {

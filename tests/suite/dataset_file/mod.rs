@@ -8,16 +8,12 @@ use flate2::write::GzEncoder;
 use gdcm::io::{DatasetOrigin, FileError, LARGEST_TEXT, embedded_example, load_any, load_dataset, load_dataset_bytes};
 use serde_json::{Value, json};
 
-#[path = "dataset_file/properties.rs"]
 mod properties;
-#[path = "dataset_file/studies.rs"]
 mod studies;
-#[path = "dataset_file/wrong_content.rs"]
 mod wrong_content;
-#[path = "dataset_file/wrong_text.rs"]
 mod wrong_text;
 
-const SMALL: &str = include_str!("data/small-dataset.json");
+const SMALL: &str = include_str!("../../data/small-dataset.json");
 
 /// The small dataset, changed.
 fn small(change: impl FnOnce(&mut Value)) -> Vec<u8> {

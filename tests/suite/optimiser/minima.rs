@@ -6,7 +6,7 @@ use gdcm::correction::{
 };
 use gdcm::dataset::{Pair, PairTable};
 
-use crate::instances::{delay_instances, example_conditions, gain_instances};
+use super::instances::{delay_instances, example_conditions, gain_instances};
 
 /// Four outputs by two inputs whose first two entries on the diagonal are held; found by a search for two minima within 1 %.
 fn two_minima() -> GainProblem {

@@ -3,7 +3,7 @@
 use gdcm::correction::{Outcome, ProofBudget, solve_gains};
 use gdcm::dataset::Pair;
 
-use crate::instances::gain_instances;
+use super::instances::gain_instances;
 
 #[test]
 fn every_certified_minimum_is_reached_and_proven() {

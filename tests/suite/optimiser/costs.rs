@@ -5,7 +5,7 @@ use gdcm::correction::{
     delay_toggles, gain_sensitivities, gain_toggles, solve_delays, solve_gains,
 };
 
-use crate::instances::{delay_instances, gain_instances};
+use super::instances::{delay_instances, gain_instances};
 
 /// 1e-4 dB: small enough for the second order to vanish, large enough for the objective's rounding to.
 const STEP_DB: f64 = 1e-4;

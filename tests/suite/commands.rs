@@ -9,7 +9,7 @@ use gdcm::io::{load_dataset, read_corrections, save_study};
 use gdcm::study::{Edit, Setting, Study};
 use serde_json::{Value, json};
 
-const SMALL: &str = include_str!("data/small-dataset.json");
+const SMALL: &str = include_str!("../data/small-dataset.json");
 
 /// A directory with the small dataset in it, where commands are run.
 struct Desk {

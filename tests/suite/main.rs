@@ -1,0 +1,9 @@
+//! Every test that is not beside the code it tests, as one program: linking the window library is what building tests spends
+//! its time on.
+
+mod analysis;
+mod commands;
+mod dataset_file;
+mod optimiser;
+mod structure;
+mod window;

@@ -15,7 +15,7 @@ use gdcm::dataset::{Band, BundleKind, Dataset, Dynamics, ModelId};
 use gdcm::fidelity::Discontinuity;
 use gdcm::io::embedded_example;
 use gdcm::response::{FrequencyGrid, PolarResponse};
-use gdcm::study::{BundleFigures, Edit, Effort, Engine, PreparedCondition, Setting, Study, Unwatched};
+use gdcm::study::{BundleFigures, Edit, Engine, Execution, PreparedCondition, Setting, Study, Unobserved};
 
 #[path = "random_model/mod.rs"]
 #[expect(dead_code, reason = "other benches use the rest of it")]
@@ -36,7 +36,7 @@ fn stages(criterion: &mut Criterion) {
     let condition = &dataset.conditions()[9];
     let grid = FrequencyGrid::logarithmic(dataset.band(), 200);
     let measuring = dataset.measuring_pairs();
-    let (prepared, alone) = (PreparedCondition::of(condition), Effort::alone());
+    let (prepared, alone) = (PreparedCondition::of(condition), Execution::sequential());
     let responses = prepared.responses(condition, &grid, &alone).expect("nobody stops it");
     let figures = BundleFigures::of(condition, &responses, &measuring, &alone).expect("nobody stops it");
     let polar = PolarResponse::of;
@@ -65,7 +65,7 @@ fn stages(criterion: &mut Criterion) {
 
 /// All 11 conditions, as the window asks for them: on all cores, and on one.
 fn live_loop(criterion: &mut Criterion) {
-    all_conditions(criterion, "all conditions, all cores", || Engine::with_crew(Box::new(Pool)));
+    all_conditions(criterion, "all conditions, all cores", || Engine::with_executor(Box::new(Pool)));
     all_conditions(criterion, "all conditions, one core", Engine::default);
 }
 
@@ -74,7 +74,7 @@ fn all_conditions(criterion: &mut Criterion, name: &str, engine: impl Fn() -> En
     group.sample_size(20);
     group.bench_function("everything anew", |bencher| {
         let study = Study::new(example());
-        bencher.iter(|| engine().analyze(black_box(&study), &Unwatched));
+        bencher.iter(|| engine().analyze(black_box(&study), &Unobserved));
     });
     let mut turn = 0.0;
     let mut drag = |name: &str, change: &dyn Fn(&mut Study, f64)| {
@@ -83,7 +83,7 @@ fn all_conditions(criterion: &mut Criterion, name: &str, engine: impl Fn() -> En
             bencher.iter(|| {
                 turn += 1.0;
                 change(&mut study, turn);
-                engine.analyze(&study, &Unwatched)
+                engine.analyze(&study, &Unobserved)
             });
         });
     };
@@ -105,7 +105,7 @@ fn all_conditions(criterion: &mut Criterion, name: &str, engine: impl Fn() -> En
 fn ratios(_: &mut Criterion) {
     let dataset = example();
     let (condition, grid) = (&dataset.conditions()[9], FrequencyGrid::logarithmic(dataset.band(), 200));
-    let alone = Effort::alone();
+    let alone = Execution::sequential();
     let ours = shortest(20, || PreparedCondition::of(condition).responses(condition, &grid, &alone));
     let models = [BundleKind::Physics, BundleKind::Identified].map(|kind| condition.bundle(kind)).concat();
     let plain = shortest(3, || {
@@ -120,14 +120,14 @@ fn ratios(_: &mut Criterion) {
         plain.div_duration_f64(ours)
     );
     let study = Study::new(Arc::clone(&dataset));
-    let anew = shortest(5, || Engine::default().analyze(&study, &Unwatched));
-    let together = shortest(5, || Engine::with_crew(Box::new(Pool)).analyze(&study, &Unwatched));
+    let anew = shortest(5, || Engine::default().analyze(&study, &Unobserved));
+    let together = shortest(5, || Engine::with_executor(Box::new(Pool)).analyze(&study, &Unobserved));
     println!("everything anew: one core takes {:.2} times as long as all", anew.div_duration_f64(together));
     let (mut engine, mut dragged, mut alpha) = (Engine::default(), study.clone(), 1.0);
     let drag = shortest(50, || {
         alpha += 1e-6;
         dragged.apply(&Edit::Set(Setting::AlphaGain(alpha))).expect("within its range");
-        engine.analyze(&dragged, &Unwatched)
+        engine.analyze(&dragged, &Unobserved)
     });
     println!("alpha dragged: everything anew would take {:.0} times as long", anew.div_duration_f64(drag));
 }

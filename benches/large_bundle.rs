@@ -8,7 +8,7 @@ use criterion::Criterion;
 use gdcm::app::Pool;
 use gdcm::dataset::{Band, Condition, Dynamics, FlightState, Model, Origin, Pair, PairTable, StateSpace};
 use gdcm::response::FrequencyGrid;
-use gdcm::study::{Alone, BundleFigures, Crew, Effort, PreparedCondition, Unwatched};
+use gdcm::study::{BundleFigures, Execution, Executor, PreparedCondition, Sequential, Unobserved};
 use nalgebra::DMatrix;
 
 #[path = "random_model/mod.rs"]
@@ -72,21 +72,22 @@ fn main() {
     let grid = FrequencyGrid::logarithmic(Band::new(0.1, 100.0).expect("a band"), FREQUENCIES);
     let mut measuring = PairTable::filled(OUTPUTS, INPUTS, false);
     (0..INPUTS).for_each(|channel| measuring[Pair::new(channel, channel)] = true);
-    let responses = |crew: &dyn Crew| {
-        let effort = Effort::new(crew, &Unwatched, MODELS);
-        PreparedCondition::of(&condition).responses(&condition, &grid, &effort).expect("nobody stops it")
+    let responses = |executor: &dyn Executor| {
+        let execution = Execution::new(executor, &Unobserved, MODELS);
+        PreparedCondition::of(&condition).responses(&condition, &grid, &execution).expect("nobody stops it")
     };
     let mut criterion = Criterion::default().sample_size(10).configure_from_args();
     let mut group = criterion.benchmark_group(format!("{MODELS} models, {STATES} states, {FREQUENCIES} frequencies"));
     group.bench_function("responses, all cores", |bencher| bencher.iter(|| responses(&Pool)));
-    group.bench_function("responses, one core", |bencher| bencher.iter(|| responses(&Alone)));
+    group.bench_function("responses, one core", |bencher| bencher.iter(|| responses(&Sequential)));
     let all = responses(&Pool);
     group.bench_function("distances and ratios, all cores", |bencher| {
-        bencher.iter(|| BundleFigures::of(&condition, &all, &measuring, &Effort::new(&Pool, &Unwatched, 2 * MODELS)));
+        bencher
+            .iter(|| BundleFigures::of(&condition, &all, &measuring, &Execution::new(&Pool, &Unobserved, 2 * MODELS)));
     });
     group.finish();
     criterion.final_summary();
-    let (together, alone) = (shortest(3, || responses(&Pool)), shortest(3, || responses(&Alone)));
+    let (together, alone) = (shortest(3, || responses(&Pool)), shortest(3, || responses(&Sequential)));
     let dense = shortest(3, || dense_responses(&model(STATES), grid.omega())) * MODELS as u32;
     println!(
         "responses: {together:.2?} on all cores, {alone:.2?} on one; a dense LU for each would take {dense:.1?} on one"

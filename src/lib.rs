@@ -79,11 +79,11 @@
 //!
 //! ```
 //! use gdcm::io::embedded_example;
-//! use gdcm::study::{Engine, Study, Unwatched};
+//! use gdcm::study::{Engine, Study, Unobserved};
 //!
 //! let example = embedded_example()?;
 //! let study = Study::new(example.dataset);
-//! let analysis = Engine::default().analyze(&study, &Unwatched)?;
+//! let analysis = Engine::default().analyze(&study, &Unobserved)?;
 //! let pair = study.dataset.find_pair("Q", "LON").ok_or("the example has this response")?;
 //! let condition = analysis.condition(0).ok_or("the first condition has a result")?;
 //! assert!((condition.correction.net_gain(pair) - 1.15).abs() < 0.005);

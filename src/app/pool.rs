@@ -1,14 +1,14 @@
-//! All processor cores as a crew.
+//! All processor cores as a executor.
 
-use crate::study::{Crew, Job};
+use crate::study::{Executor, Task};
 
 /// The threads of the global pool: one for each core.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Pool;
 
-impl Crew for Pool {
-    fn carry_out(&self, jobs: Vec<Job<'_>>) {
+impl Executor for Pool {
+    fn carry_out(&self, tasks: Vec<Task<'_>>) {
         // First come, first served: what was asked for first is done first.
-        rayon::scope_fifo(|scope| jobs.into_iter().for_each(|job| scope.spawn_fifo(move |_| job())));
+        rayon::scope_fifo(|scope| tasks.into_iter().for_each(|task| scope.spawn_fifo(move |_| task())));
     }
 }

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use super::pool::Pool;
 use crate::dataset::Dataset;
 use crate::study::{
-    Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, Engine, Study, Toggles, Watch, display_band,
+    Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, Engine, Progress, Study, Toggles, display_band,
 };
 use crate::view::state::FirstResult;
 
@@ -168,7 +168,7 @@ struct Desk<'a> {
 
 impl Desk<'_> {
     fn work(&self) {
-        let mut engine = Engine::with_crew(Box::new(Pool));
+        let mut engine = Engine::with_executor(Box::new(Pool));
         let mut drawn: Option<Arc<ConditionCurves>> = None;
         while let Some(request) = self.shared.take() {
             self.answer_curves(&request, &mut engine, &mut drawn);
@@ -181,8 +181,8 @@ impl Desk<'_> {
     fn answer_curves(&self, request: &Request, engine: &mut Engine, drawn: &mut Option<Arc<ConditionCurves>>) {
         let (dataset, condition) = (&request.study.dataset, request.condition);
         let grid = (display_band(request.study.settings.band), CURVE_POINTS);
-        let watch = RequestWatch::new(self, request);
-        let Ok(curves) = engine.curves(dataset, condition, grid, &watch) else {
+        let progress = RequestProgress::new(self, request);
+        let Ok(curves) = engine.curves(dataset, condition, grid, &progress) else {
             return;
         };
         if !drawn.as_ref().is_some_and(|drawn| Arc::ptr_eq(drawn, &curves)) {
@@ -194,8 +194,8 @@ impl Desk<'_> {
     /// The analysis, unless a newer request came first: that one waits in the mailbox.
     fn answer_analysis(&self, request: &Request, engine: &mut Engine) -> Option<Arc<Analysis>> {
         let start = Instant::now();
-        let watch = RequestWatch::new(self, request);
-        let analysis = Arc::new(engine.analyze(&request.study, &watch).ok()?);
+        let progress = RequestProgress::new(self, request);
+        let analysis = Arc::new(engine.analyze(&request.study, &progress).ok()?);
         let elapsed_ms = 1e3 * start.elapsed().as_secs_f64();
         let generation = request.generation;
         self.send(Reply::Analysis { generation, analysis: Arc::clone(&analysis), elapsed_ms });
@@ -223,25 +223,25 @@ impl Desk<'_> {
 /// condition shown would keep up with the hand.
 const PATIENCE: Duration = Duration::from_millis(60);
 
-struct RequestWatch<'a, 'd> {
+struct RequestProgress<'a, 'd> {
     desk: &'a Desk<'d>,
     request: &'a Request,
     started: Instant,
 }
 
-impl<'a, 'd> RequestWatch<'a, 'd> {
+impl<'a, 'd> RequestProgress<'a, 'd> {
     fn new(desk: &'a Desk<'d>, request: &'a Request) -> Self {
         Self { desk, request, started: Instant::now() }
     }
 }
 
-impl Watch for RequestWatch<'_, '_> {
-    fn stopped(&self) -> bool {
+impl Progress for RequestProgress<'_, '_> {
+    fn cancelled(&self) -> bool {
         let newest = self.desk.shared.newest.load(Ordering::Acquire);
         newest == NOTHING || (newest != self.request.generation && self.started.elapsed() > PATIENCE)
     }
 
-    fn progress(&self, done: usize, total: usize) {
+    fn advanced(&self, done: usize, total: usize) {
         if self.started.elapsed() > PATIENCE {
             self.desk.send(Reply::Progress { generation: self.request.generation, done, total });
         }

@@ -10,7 +10,7 @@ use crate::study::{Analysis, Edit, Engine, Setting, Study};
 
 use super::arguments::{AnalyzeArguments, PairList, Rejection};
 use super::failure::Failure;
-use super::progress::Progress;
+use super::progress::TerminalProgress;
 use super::summary::summary;
 use super::terminal::{say, say_error};
 
@@ -22,8 +22,8 @@ pub(super) fn analyze(arguments: &AnalyzeArguments) -> Result<(), Failure> {
     }
     take_options(&mut study, arguments)?;
     make_directory(&arguments.out)?;
-    let mut engine = Engine::with_crew(Box::new(crate::app::Pool));
-    let progress = Progress::new();
+    let mut engine = Engine::with_executor(Box::new(crate::app::Pool));
+    let progress = TerminalProgress::new();
     let mut analysis = engine.analyze(&study, &progress)?;
     if arguments.reject_suggested && reject_suggested(&mut study, &analysis)? {
         analysis = engine.analyze(&study, &progress)?;

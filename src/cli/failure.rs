@@ -1,7 +1,7 @@
 //! Why a command was not carried out, and the exit status that says so.
 
 use crate::io::FileError;
-use crate::study::{EditRefusal, Stopped};
+use crate::study::{Cancelled, EditRefusal};
 
 /// Exit status where the analysis could not be done.
 pub(super) const NOT_DONE: u8 = 1;
@@ -22,7 +22,7 @@ pub(super) enum Failure {
     NoResult { reason: String },
     /// The analysis was stopped.
     #[error(transparent)]
-    Stopped(#[from] Stopped),
+    Cancelled(#[from] Cancelled),
     /// A result cannot be written.
     #[error(transparent)]
     Output(FileError),
@@ -41,7 +41,7 @@ impl Failure {
     pub(super) fn status(&self) -> u8 {
         match self {
             Failure::Input(_) | Failure::Option { .. } => WRONG_INPUT,
-            Failure::NoResult { .. } | Failure::Stopped(_) | Failure::Output(_) | Failure::StandardOutput { .. } => {
+            Failure::NoResult { .. } | Failure::Cancelled(_) | Failure::Output(_) | Failure::StandardOutput { .. } => {
                 NOT_DONE
             }
         }

@@ -4,18 +4,18 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::study::Watch;
+use crate::study::Progress;
 
 /// An analysis that is done sooner needs no progress.
 const PATIENCE: Duration = Duration::from_millis(500);
 
 /// A bar on standard error, where that is a terminal, once the analysis takes longer than half a second.
-pub(super) struct Progress {
+pub(super) struct TerminalProgress {
     bar: ProgressBar,
     started: Instant,
 }
 
-impl Progress {
+impl TerminalProgress {
     pub(super) fn new() -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
         // The template is a constant; without it the bar has its own looks.
@@ -26,18 +26,18 @@ impl Progress {
     }
 }
 
-impl Drop for Progress {
+impl Drop for TerminalProgress {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }
 }
 
-impl Watch for Progress {
-    fn stopped(&self) -> bool {
+impl Progress for TerminalProgress {
+    fn cancelled(&self) -> bool {
         false
     }
 
-    fn progress(&self, done: usize, total: usize) {
+    fn advanced(&self, done: usize, total: usize) {
         if self.bar.is_hidden() && self.started.elapsed() >= PATIENCE {
             // Draws nothing where standard error is no terminal.
             self.bar.set_draw_target(ProgressDrawTarget::stderr());

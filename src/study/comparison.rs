@@ -12,8 +12,8 @@ use crate::response::{FrequencyGrid, FrequencyResponse, PolarResponse};
 
 use super::condition_responses::ConditionResponses;
 use super::document::ConditionChoice;
-use super::effort::Effort;
-use super::watch::Stopped;
+use super::executor::Execution;
+use super::progress::Cancelled;
 
 /// Distances within each bundle and discontinuity ratios of the physics bundle; they do not depend on what is rejected.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,16 +32,16 @@ impl BundleFigures {
         condition: &Condition,
         responses: &ConditionResponses,
         measuring: &PairTable<bool>,
-        effort: &Effort<'_>,
-    ) -> Result<Self, Stopped> {
-        let physics = distances(&responses.physics, measuring, effort)?;
-        let identified = distances(&responses.identified, measuring, effort)?;
+        execution: &Execution<'_>,
+    ) -> Result<Self, Cancelled> {
+        let physics = distances(&responses.physics, measuring, execution)?;
+        let identified = distances(&responses.identified, measuring, execution)?;
         let models = condition.bundle(BundleKind::Physics);
         let perturbations: Vec<(&str, Option<&BTreeMap<String, f64>>)> =
             models.iter().map(|model| (model.name.as_str(), model.perturbation())).collect();
-        let discontinuity = Discontinuity::of(&physics, &perturbations, &|| !effort.watch().stopped());
+        let discontinuity = Discontinuity::of(&physics, &perturbations, &|| !execution.progress().cancelled());
         if discontinuity == Err(DiscontinuityError::Fit(FitError::GivenUp)) {
-            return Err(Stopped);
+            return Err(Cancelled);
         }
         Ok(Self { physics, identified, discontinuity })
     }
@@ -51,10 +51,10 @@ impl BundleFigures {
 fn distances(
     responses: &[FrequencyResponse],
     measuring: &PairTable<bool>,
-    effort: &Effort<'_>,
-) -> Result<BundleDistance, Stopped> {
+    execution: &Execution<'_>,
+) -> Result<BundleDistance, Cancelled> {
     let polar = |marked: &PairTable<bool>, steps| {
-        effort.each(responses.len(), steps, |model| PolarResponse::of_marked(&responses[model], marked))
+        execution.each(responses.len(), steps, |model| PolarResponse::of_marked(&responses[model], marked))
     };
     let references = |polar: &[PolarResponse]| compared_pairs(&polar.iter().collect::<Vec<_>>(), measuring);
     let mut polar_responses = polar(measuring, 1)?;
@@ -64,7 +64,7 @@ fn distances(
         compared = references(&polar_responses);
     }
     let all: Vec<&PolarResponse> = polar_responses.iter().collect();
-    let rows = effort.each(all.len(), 1, |model| distances_from(model, &all, &compared))?;
+    let rows = execution.each(all.len(), 1, |model| distances_from(model, &all, &compared))?;
     Ok(BundleDistance::from_rows(rows, compared))
 }
 

@@ -5,8 +5,8 @@ use std::sync::OnceLock;
 use crate::dataset::{BundleKind, Condition};
 use crate::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
 
-use super::effort::Effort;
-use super::watch::Stopped;
+use super::executor::Execution;
+use super::progress::Cancelled;
 
 /// Responses of every model of a condition on one grid.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,12 +36,12 @@ impl PreparedCondition {
         &self,
         condition: &Condition,
         grid: &FrequencyGrid,
-        effort: &Effort<'_>,
-    ) -> Result<ConditionResponses, Stopped> {
+        execution: &Execution<'_>,
+    ) -> Result<ConditionResponses, Cancelled> {
         let bundle = |kind, prepared: &[OnceLock<PreparedModel>]| {
             let models = condition.bundle(kind);
             let prepare = |index: usize| prepared[index].get_or_init(|| PreparedModel::of(&models[index].dynamics));
-            effort.each(models.len(), 1, |index| prepare(index).response(grid))
+            execution.each(models.len(), 1, |index| prepare(index).response(grid))
         };
         let identified = bundle(BundleKind::Identified, &self.identified)?;
         Ok(ConditionResponses { physics: bundle(BundleKind::Physics, &self.physics)?, identified })

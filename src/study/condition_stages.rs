@@ -16,10 +16,10 @@ use super::comparison::{BundleFigures, Comparison};
 use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
 use super::condition_responses::{ConditionResponses, PreparedCondition};
 use super::document::{ConditionChoice, Study};
-use super::effort::Effort;
+use super::executor::Execution;
 use super::memo::Memo;
+use super::progress::Cancelled;
 use super::settings::Settings;
-use super::watch::Stopped;
 
 /// What the responses and the distances depend on, besides the condition.
 type GridKey = (Band, usize);
@@ -72,23 +72,23 @@ impl ConditionStages {
         study: &Study,
         index: usize,
         grid: &FrequencyGrid,
-        effort: &Effort<'_>,
-    ) -> Result<Result<ConditionAnalysis, ConditionFailure>, Stopped> {
+        execution: &Execution<'_>,
+    ) -> Result<Result<ConditionAnalysis, ConditionFailure>, Cancelled> {
         let (settings, condition) = (&study.settings, &study.dataset.conditions()[index]);
         let grid_key = (settings.band, settings.points);
         if self.figures.holds(&grid_key) {
-            effort.step(3 * model_count(condition));
+            execution.step(3 * model_count(condition));
         }
         let responses = self.responses.get_or_fail(grid_key, |_| {
-            let responses = self.prepared.responses(condition, grid, effort);
+            let responses = self.prepared.responses(condition, grid, execution);
             responses.map(Arc::new)
         })?;
         let figures = self.figures.get_or_fail(grid_key, |_| {
-            let figures = BundleFigures::of(condition, &responses, &study.dataset.measuring_pairs(), effort);
+            let figures = BundleFigures::of(condition, &responses, &study.dataset.measuring_pairs(), execution);
             figures.map(Arc::new)
         })?;
         let outcome = self.compare_and_solve(study, index, grid, &responses, figures);
-        effort.step(1);
+        execution.step(1);
         Ok(outcome)
     }
 

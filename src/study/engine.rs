@@ -9,12 +9,11 @@ use crate::schedule::{Schedule, ScheduleError, ScheduledPoint, assess};
 use super::analysis::{Analysis, Assessed};
 use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
 use super::condition_stages::{ConditionStages, model_count};
-use super::crew::{Alone, Crew};
 use super::curves::ConditionCurves;
 use super::document::Study;
-use super::effort::Effort;
+use super::executor::{Execution, Executor, Sequential};
 use super::memo::Memo;
-use super::watch::{Stopped, Watch};
+use super::progress::{Cancelled, Progress};
 
 /// Computes analyses and keeps each stage's last result:
 /// responses (band, points) -> distances -> representatives, G, D (rejections, pins, average) -> bounds (quantile) ->
@@ -22,7 +21,7 @@ use super::watch::{Stopped, Watch};
 ///
 /// Neither conditions nor models depend on one another: the result is the same to the last bit whoever carries them out.
 pub struct Engine {
-    crew: Box<dyn Crew>,
+    executor: Box<dyn Executor>,
     dataset: Option<Arc<Dataset>>,
     conditions: Vec<ConditionStages>,
     /// Curves of the condition drawn last.
@@ -31,7 +30,7 @@ pub struct Engine {
 
 impl Default for Engine {
     fn default() -> Self {
-        Self::with_crew(Box::new(Alone))
+        Self::with_executor(Box::new(Sequential))
     }
 }
 
@@ -39,21 +38,21 @@ impl Default for Engine {
 type Outcomes = Vec<Result<ConditionAnalysis, ConditionFailure>>;
 
 impl Engine {
-    /// An engine whose work is carried out by `crew`.
-    pub fn with_crew(crew: Box<dyn Crew>) -> Self {
-        Self { crew, dataset: None, conditions: Vec::new(), curves: Memo::default() }
+    /// An engine whose work is carried out by `executor`.
+    pub fn with_executor(executor: Box<dyn Executor>) -> Self {
+        Self { executor, dataset: None, conditions: Vec::new(), curves: Memo::default() }
     }
 
     /// The analysis of `study`; stages that do not depend on what changed since the last call are not computed again.
-    pub fn analyze(&mut self, study: &Study, watch: &dyn Watch) -> Result<Analysis, Stopped> {
+    pub fn analyze(&mut self, study: &Study, progress: &dyn Progress) -> Result<Analysis, Cancelled> {
         self.take(&study.dataset);
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
         let total = study.dataset.conditions().iter().map(|of| ConditionStages::steps(of)).sum();
-        let effort = Effort::new(self.crew.as_ref(), watch, total);
-        let conditions = analyze_conditions(&mut self.conditions, study, &grid, &effort)?;
+        let execution = Execution::new(self.executor.as_ref(), progress, total);
+        let conditions = analyze_conditions(&mut self.conditions, study, &grid, &execution)?;
         let schedule = Schedule::of(&scheduled_points(study, &conditions), study.settings.schedule);
         let assessed = |index: usize| assessed(study, index, &conditions[index], &schedule, &grid);
-        let assessment = effort.each(conditions.len(), 0, assessed)?;
+        let assessment = execution.each(conditions.len(), 0, assessed)?;
         Ok(Analysis { study: study.clone(), omega: grid.omega().into(), conditions, schedule, assessment })
     }
 
@@ -63,15 +62,15 @@ impl Engine {
         dataset: &Arc<Dataset>,
         condition: usize,
         (band, points): (Band, usize),
-        watch: &dyn Watch,
-    ) -> Result<Arc<ConditionCurves>, Stopped> {
+        progress: &dyn Progress,
+    ) -> Result<Arc<ConditionCurves>, Cancelled> {
         self.take(dataset);
-        let (crew, prepared) = (self.crew.as_ref(), self.conditions[condition].prepared());
+        let (executor, prepared) = (self.executor.as_ref(), self.conditions[condition].prepared());
         let of = &dataset.conditions()[condition];
         self.curves.get_or_fail((condition, band, points), |_| {
             let grid = FrequencyGrid::logarithmic(band, points);
-            let effort = Effort::new(crew, watch, model_count(of));
-            let responses = prepared.responses(of, &grid, &effort)?;
+            let execution = Execution::new(executor, progress, model_count(of));
+            let responses = prepared.responses(of, &grid, &execution)?;
             Ok(Arc::new(ConditionCurves::new(grid, responses)))
         })
     }
@@ -90,18 +89,18 @@ fn analyze_conditions(
     stages: &mut [ConditionStages],
     study: &Study,
     grid: &FrequencyGrid,
-    effort: &Effort<'_>,
-) -> Result<Outcomes, Stopped> {
-    let first = effort.watch().wanted_first().filter(|&first| first < stages.len());
+    execution: &Execution<'_>,
+) -> Result<Outcomes, Cancelled> {
+    let first = execution.progress().wanted_first().filter(|&first| first < stages.len());
     let mut first_outcome = None;
     if let Some(first) = first {
-        let outcome = stages[first].analyze(study, first, grid, effort)?;
-        effort.watch().first_result(&outcome);
+        let outcome = stages[first].analyze(study, first, grid, execution)?;
+        execution.progress().first_result(&outcome);
         first_outcome = Some(outcome);
     }
     let others: Vec<(usize, &mut ConditionStages)> =
         stages.iter_mut().enumerate().filter(|(index, _)| Some(*index) != first).collect();
-    let mut outcomes = effort.each_mut(others, |(index, stages)| stages.analyze(study, index, grid, effort))?;
+    let mut outcomes = execution.each_mut(others, |(index, stages)| stages.analyze(study, index, grid, execution))?;
     if let (Some(first), Some(outcome)) = (first, first_outcome) {
         outcomes.insert(first, outcome);
     }

@@ -252,14 +252,14 @@ impl State {
 mod tests {
     use super::*;
     use crate::io::embedded_example;
-    use crate::study::{Engine, Unwatched};
+    use crate::study::{Engine, Unobserved};
 
     #[test]
     fn a_stop_before_the_first_result_leaves_none_and_one_after_it_leaves_that() {
         let study = Study::new(embedded_example().unwrap().dataset);
         let mut state = State::new(study.clone(), String::new(), Vec::new());
         assert_eq!(state.after_stop(), "there are no results yet");
-        state.results.analysis = Some(Arc::new(Engine::default().analyze(&study, &Unwatched).unwrap()));
+        state.results.analysis = Some(Arc::new(Engine::default().analyze(&study, &Unobserved).unwrap()));
         assert_eq!(state.after_stop(), "the results are older than the settings");
         let other = Study::new(embedded_example().unwrap().dataset);
         state.study = other;

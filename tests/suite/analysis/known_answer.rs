@@ -70,7 +70,7 @@ fn gains_and_delays_put_into_published_helicopters_are_found_again() {
         ] {
             study.apply(&Edit::Set(setting)).unwrap();
         }
-        let analysis = Engine::default().analyze(&study, &Unwatched).unwrap();
+        let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
         let result = analysis.condition(0).unwrap();
         let mut defined = 0;
         for (pair, wanted) in result.comparison.delta.gain.iter().filter(|(_, wanted)| wanted.is_some()) {
@@ -90,7 +90,7 @@ fn gains_and_delays_put_into_published_helicopters_are_found_again() {
 fn a_band_beyond_the_measured_frequencies_leaves_no_result_and_says_why() {
     let mut study = Study::new(Arc::new(dataset_of("compleib_HE2_AH64_130kt.json", 0.0)));
     study.apply(&Edit::Set(Setting::Band(Band::new(0.1, 12.0).unwrap()))).unwrap();
-    let analysis = Engine::default().analyze(&study, &Unwatched).unwrap();
+    let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
     let failure = analysis.conditions[0].as_ref().unwrap_err().to_string();
     assert!(failure.contains("over the whole band"), "{failure}");
     assert!(analysis.schedule.is_err());

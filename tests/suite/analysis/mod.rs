@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use gdcm::dataset::{BundleKind, Dynamics, Pair, PairTable, StateSpace};
 use gdcm::io::{Corrections, embedded_example};
 use gdcm::response::{FrequencyGrid, FrequencyResponse};
-use gdcm::study::{Analysis, Assessed, Edit, Engine, Setting, Study, Unwatched};
+use gdcm::study::{Analysis, Assessed, Edit, Engine, Setting, Study, Unobserved};
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 
@@ -36,7 +36,7 @@ fn texts(value: &Value) -> Vec<&str> {
 }
 
 fn analyze(engine: &mut Engine, study: &Study) -> Analysis {
-    engine.analyze(study, &Unwatched).unwrap()
+    engine.analyze(study, &Unobserved).unwrap()
 }
 
 fn study_of_example() -> Study {

@@ -2,7 +2,7 @@
 
 use super::*;
 use gdcm::app::Pool;
-use gdcm::study::{ConditionAnalysis, ConditionFailure, Stopped, Watch};
+use gdcm::study::{Cancelled, ConditionAnalysis, ConditionFailure, Progress};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -102,12 +102,12 @@ impl Onlooker {
     }
 }
 
-impl Watch for Onlooker {
-    fn stopped(&self) -> bool {
+impl Progress for Onlooker {
+    fn cancelled(&self) -> bool {
         self.heard.load(Ordering::Relaxed) >= self.steps
     }
 
-    fn progress(&self, done: usize, total: usize) {
+    fn advanced(&self, done: usize, total: usize) {
         assert!(done <= total);
         self.heard.store(done, Ordering::Relaxed);
     }
@@ -129,7 +129,7 @@ fn results_have_the_same_bits_whatever_the_number_of_threads() {
     let alone = analyze(&mut Engine::default(), &study);
     for threads in [1, 2, 3, 7] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let together = pool.install(|| analyze(&mut Engine::with_crew(Box::new(Pool)), &study));
+        let together = pool.install(|| analyze(&mut Engine::with_executor(Box::new(Pool)), &study));
         // Debug prints the shortest text that reads back as the same bits, and tells -0 from 0.
         assert!(format!("{together:?}") == format!("{alone:?}"), "{threads} threads");
     }
@@ -138,7 +138,7 @@ fn results_have_the_same_bits_whatever_the_number_of_threads() {
 #[test]
 fn the_condition_wanted_first_is_told_first_and_as_the_whole_analysis_has_it() {
     let (study, onlooker) = (short_study(), Onlooker::new(9, usize::MAX));
-    let analysis = Engine::with_crew(Box::new(Pool)).analyze(&study, &onlooker).unwrap();
+    let analysis = Engine::with_executor(Box::new(Pool)).analyze(&study, &onlooker).unwrap();
     assert_eq!(onlooker.seen.into_inner().unwrap(), [analysis.conditions[9].clone()]);
     let alone = analyze(&mut Engine::default(), &study);
     assert_eq!(analysis.conditions, alone.conditions, "the order of work is not the order of results");
@@ -148,7 +148,7 @@ fn the_condition_wanted_first_is_told_first_and_as_the_whole_analysis_has_it() {
 fn an_analysis_that_is_stopped_halfway_goes_on_from_there_with_the_same_result() {
     let (study, mut engine) = (short_study(), Engine::default());
     for steps in [1, 100, 400] {
-        assert_eq!(engine.analyze(&study, &Onlooker::new(0, steps)), Err(Stopped));
+        assert_eq!(engine.analyze(&study, &Onlooker::new(0, steps)), Err(Cancelled));
     }
     assert_eq!(analyze(&mut engine, &study), analyze(&mut Engine::default(), &study));
 }

@@ -1,16 +1,16 @@
-//! How a long analysis is watched and stopped.
+//! The progress of long work, and its cancellation.
 
 use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
 
-/// Told of the progress of an analysis, and asked whether it is still wanted.
+/// Told of the progress of long work, and asked whether it is still wanted.
 ///
 /// The work may be carried out by several threads, and each of them asks.
-pub trait Watch: Sync {
-    /// Whether the analysis should end now, without a result.
-    fn stopped(&self) -> bool;
+pub trait Progress: Sync {
+    /// Whether the work should end now, without a result.
+    fn cancelled(&self) -> bool;
 
     /// `done` of `total` steps are behind.
-    fn progress(&self, done: usize, total: usize);
+    fn advanced(&self, done: usize, total: usize);
 
     /// Index of the condition whose result is wanted before the others'.
     fn wanted_first(&self) -> Option<usize> {
@@ -21,19 +21,19 @@ pub trait Watch: Sync {
     fn first_result(&self, _result: &Result<ConditionAnalysis, ConditionFailure>) {}
 }
 
-/// Nobody watches: the analysis runs to its end.
+/// Nobody observes: the work runs to its end.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Unwatched;
+pub struct Unobserved;
 
-impl Watch for Unwatched {
-    fn stopped(&self) -> bool {
+impl Progress for Unobserved {
+    fn cancelled(&self) -> bool {
         false
     }
 
-    fn progress(&self, _done: usize, _total: usize) {}
+    fn advanced(&self, _done: usize, _total: usize) {}
 }
 
-/// The analysis was stopped before its end.
+/// The work was stopped before its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the analysis was stopped")]
-pub struct Stopped;
+pub struct Cancelled;

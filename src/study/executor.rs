@@ -1,0 +1,149 @@
+//! The carrying out of an analysis: by whom, how far, whether still wanted.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::progress::{Cancelled, Progress, Unobserved};
+
+/// One piece of work that depends on no other.
+pub type Task<'a> = Box<dyn FnOnce() + Send + 'a>;
+
+/// Carries out independent pieces of work, in any order and on as many threads as it has; returns when all are done.
+pub trait Executor: Send + Sync {
+    /// Carries out `tasks`.
+    fn carry_out(&self, tasks: Vec<Task<'_>>);
+}
+
+/// One thread: the caller's.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sequential;
+
+impl Executor for Sequential {
+    fn carry_out(&self, tasks: Vec<Task<'_>>) {
+        tasks.into_iter().for_each(|task| task());
+    }
+}
+
+/// Carries out the pieces of one analysis, stops between two of them, and tells how far it is.
+pub struct Execution<'a> {
+    executor: &'a dyn Executor,
+    progress: &'a dyn Progress,
+    done: AtomicUsize,
+    total: usize,
+}
+
+impl<'a> Execution<'a> {
+    /// An analysis of `total` steps.
+    pub fn new(executor: &'a dyn Executor, progress: &'a dyn Progress, total: usize) -> Self {
+        Self { executor, progress, done: AtomicUsize::new(0), total }
+    }
+
+    /// An analysis by one thread that nobody observes.
+    pub fn sequential() -> Execution<'static> {
+        Execution::new(&Sequential, &Unobserved, 0)
+    }
+
+    /// Who is told of the progress.
+    pub(super) fn progress(&self) -> &'a dyn Progress {
+        self.progress
+    }
+
+    /// `count` steps more are done. Every hundredth of the total is told.
+    pub(super) fn step(&self, count: usize) {
+        let before = self.done.fetch_add(count, Ordering::Relaxed);
+        let hundredth = |done: usize| 100 * done / self.total.max(1);
+        if hundredth(before + count) > hundredth(before) {
+            self.progress.advanced(before + count, self.total);
+        }
+    }
+
+    /// `of(0), of(1), ...`, in any order; each is `steps` steps.
+    pub(super) fn each<T: Send>(
+        &self,
+        count: usize,
+        steps: usize,
+        of: impl Fn(usize) -> T + Sync,
+    ) -> Result<Vec<T>, Cancelled> {
+        let mut results: Vec<Option<T>> = Vec::new();
+        results.resize_with(count, || None);
+        let of = &of;
+        let task = |(index, result)| self.task(steps, move || of(index), result);
+        self.executor.carry_out(results.iter_mut().enumerate().map(task).collect());
+        results.into_iter().collect::<Option<Vec<_>>>().ok_or(Cancelled)
+    }
+
+    /// One piece of work, given up if it is not wanted any more.
+    fn task<'b, T: Send>(
+        &'b self,
+        steps: usize,
+        work: impl FnOnce() -> T + Send + 'b,
+        result: &'b mut Option<T>,
+    ) -> Task<'b> {
+        Box::new(move || {
+            if !self.progress.cancelled() {
+                *result = Some(work());
+                self.step(steps);
+            }
+        })
+    }
+
+    /// As [`Execution::each`] for work on things that change, which may itself be stopped.
+    pub(super) fn each_mut<S: Send, T: Send>(
+        &self,
+        things: Vec<S>,
+        of: impl Fn(S) -> Result<T, Cancelled> + Sync,
+    ) -> Result<Vec<T>, Cancelled> {
+        let mut results: Vec<Option<Result<T, Cancelled>>> = Vec::new();
+        results.resize_with(things.len(), || None);
+        let of = &of;
+        let tasks = things.into_iter().zip(&mut results).map(|(thing, result)| self.task(0, move || of(thing), result));
+        self.executor.carry_out(tasks.collect());
+        results.into_iter().map(|result| result.unwrap_or(Err(Cancelled))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Mutex;
+
+    /// Stops after so many pieces of work, and keeps what it hears.
+    struct Impatient {
+        left: AtomicUsize,
+        heard: Mutex<Vec<(usize, usize)>>,
+    }
+
+    impl Progress for Impatient {
+        fn cancelled(&self) -> bool {
+            self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1)).is_err()
+        }
+
+        fn advanced(&self, done: usize, total: usize) {
+            self.heard.lock().unwrap().push((done, total));
+        }
+    }
+
+    fn impatient(left: usize) -> Impatient {
+        Impatient { left: AtomicUsize::new(left), heard: Mutex::default() }
+    }
+
+    #[test]
+    fn results_come_in_order() {
+        assert_eq!(Execution::sequential().each(4, 1, |index| 10 * index), Ok(vec![0, 10, 20, 30]));
+    }
+
+    #[test]
+    fn work_that_is_not_wanted_any_more_is_given_up() {
+        let progress = impatient(3);
+        let begun = AtomicUsize::new(0);
+        let result = Execution::new(&Sequential, &progress, 100).each(50, 1, |_| begun.fetch_add(1, Ordering::Relaxed));
+        assert_eq!((result, begun.into_inner()), (Err(Cancelled), 3));
+    }
+
+    #[test]
+    fn hundredths_only_are_told() {
+        let progress = impatient(usize::MAX);
+        Execution::new(&Sequential, &progress, 1000).each(1000, 1, |_| ()).unwrap();
+        let heard = progress.heard.into_inner().unwrap();
+        assert_eq!((heard.len(), heard[0], heard[99]), (100, (10, 1000), (1000, 1000)));
+    }
+}

@@ -6,10 +6,11 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use egui::Context;
 
 use crate::io::{
-    Corrections, DatasetOrigin, FileError, LoadedDataset, Opened, STUDY_EXTENSION, embedded_example, load_any,
-    make_directory, save_study, write_assessment_csv, write_corrections, write_corrections_csv,
+    Corrections, FileError, LoadedDataset, Opened, STUDY_EXTENSION, embedded_example, load_any, make_directory,
+    save_study, write_assessment_csv, write_corrections, write_corrections_csv,
 };
 use crate::study::{Analysis, Study};
+use crate::view::bars::Bar;
 use crate::view::command::FormKind;
 use crate::view::state::State;
 
@@ -21,14 +22,28 @@ use super::window::GdcmApp;
 pub(super) struct SavedStudy {
     /// Where; nowhere yet for a new study.
     pub(super) path: Option<PathBuf>,
-    /// What was saved, or what a new study starts from.
-    pub(super) study: Study,
+    /// What was saved, or what a new study starts from; none of decisions that were restored.
+    pub(super) study: Option<Study>,
 }
+
+/// What a file is read for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ReadFor {
+    /// To be shown in place of what is open.
+    Opening,
+    /// To take the place of the dataset that is open, which was read from it before.
+    Reloading,
+    /// To go on with decisions that were not saved, by the number of the offer.
+    Restoring(usize),
+}
+
+/// What was read, or why not.
+type Answer = (ReadFor, Result<Opened, FileError>);
 
 /// The threads that read files, and where their answers arrive.
 pub(super) struct Readers {
-    sender: Sender<Result<Opened, FileError>>,
-    receiver: Receiver<Result<Opened, FileError>>,
+    sender: Sender<Answer>,
+    receiver: Receiver<Answer>,
 }
 
 impl Default for Readers {
@@ -46,31 +61,56 @@ impl GdcmApp {
             Opened::Study { study, loaded, path } => (study, loaded, Some(path)),
         };
         let state = State::new(study.clone(), study_name(path.as_deref()), loaded.cautions.clone());
-        (state, loaded, SavedStudy { path, study })
+        (state, loaded, SavedStudy { path, study: Some(study) })
     }
 
     /// Shows what was opened in place of what is open.
-    fn show(&mut self, opened: Opened) {
-        let (state, loaded, saved) = Self::parts_of(opened);
+    pub(super) fn show(&mut self, opened: Opened, ctx: &Context) {
+        let (mut state, loaded, saved) = Self::parts_of(opened);
         let requested = self.state.results.requested;
         let name = loaded.origin.to_string();
+        state.recent = std::mem::take(&mut self.state.recent);
+        // What was lost is offered still; the other bars are about what was open.
+        state.bars = std::mem::take(&mut self.state.bars);
+        state.bars.retain(|bar| matches!(bar, Bar::Recovery { .. }));
         self.state = state;
         // Request numbers go on, so that late answers about the old dataset are told apart.
         self.state.results.requested = requested;
         self.state.results.received = requested;
         self.loaded = loaded;
+        self.earlier.clear();
         self.saved = saved;
+        self.agreed_to_lose = false;
+        self.keep_unsaved();
+        self.look_for_recent(ctx);
         self.done(format!("opened {name}"));
     }
 
-    /// Reads a file in a thread of its own; what is open stays until it is read.
+    /// Puts what is open in front of the recent files: the study, or else the dataset.
+    pub(super) fn look_for_recent(&self, ctx: &Context) {
+        let dataset = || self.loaded.path().map(Path::to_owned);
+        self.recent.look(self.saved.path.clone().or_else(dataset), ctx);
+    }
+
+    /// Opens a dataset or a study; what is open stays until it is read.
     pub(super) fn open(&mut self, path: PathBuf, ctx: &Context) {
         self.state.forms.shown = None;
-        self.state.opening = Some(path.display().to_string());
+        self.read(ReadFor::Opening, path.display().to_string(), move || load_any(&path), ctx);
+    }
+
+    /// Reads in a thread of its own.
+    pub(super) fn read(
+        &mut self,
+        purpose: ReadFor,
+        name: String,
+        read: impl FnOnce() -> Result<Opened, FileError> + Send + 'static,
+        ctx: &Context,
+    ) {
+        self.state.opening = Some(name);
         let (sender, wake) = (self.readers.sender.clone(), ctx.clone());
         let read = move || {
             // The window may be gone by now.
-            let _ = sender.send(load_any(&path));
+            let _ = sender.send((purpose, read()));
             wake.request_repaint();
         };
         if let Err(error) = std::thread::Builder::new().name("reading".to_owned()).spawn(read) {
@@ -79,27 +119,34 @@ impl GdcmApp {
         }
     }
 
-    pub(super) fn open_example(&mut self) {
-        self.answer_opened(embedded_example().map(Opened::Dataset));
+    pub(super) fn open_example(&mut self, ctx: &Context) {
+        self.answer_opened(ReadFor::Opening, embedded_example().map(Opened::Dataset), ctx);
     }
 
-    fn answer_opened(&mut self, opened: Result<Opened, FileError>) {
+    fn answer_opened(&mut self, purpose: ReadFor, opened: Result<Opened, FileError>, ctx: &Context) {
         self.state.opening = None;
-        match opened {
-            Ok(opened) => self.show(opened),
-            Err(error) => self.trouble(error.to_string()),
+        match (purpose, opened) {
+            (ReadFor::Opening, Ok(opened)) => self.show(opened, ctx),
+            (ReadFor::Reloading, Ok(opened)) => self.show_reloaded(opened.into_study().1),
+            (ReadFor::Restoring(offer), Ok(opened)) => self.show_restored(offer, opened, ctx),
+            (_, Err(error)) => {
+                // What was to be lost is still open.
+                self.agreed_to_lose = false;
+                self.recent.look(None, ctx);
+                self.trouble(error.to_string());
+            }
         }
     }
 
     /// Takes what files and dialogs have answered since the last frame.
     pub(super) fn receive_files(&mut self, ctx: &Context) {
-        while let Ok(opened) = self.readers.receiver.try_recv() {
-            self.answer_opened(opened);
+        while let Ok((purpose, opened)) = self.readers.receiver.try_recv() {
+            self.answer_opened(purpose, opened, ctx);
         }
         while let Some(answer) = self.dialogs.answer() {
             match answer {
                 DialogAnswer::Chosen(DialogPurpose::Open, path) => self.open(path, ctx),
-                DialogAnswer::Chosen(DialogPurpose::SaveStudy, path) => self.save_as(path),
+                DialogAnswer::Chosen(DialogPurpose::SaveStudy, path) => self.save_as(path, ctx),
                 DialogAnswer::Chosen(DialogPurpose::ExportFolder, path) => {
                     self.state.forms.export.folder = path.display().to_string();
                 }
@@ -117,12 +164,12 @@ impl GdcmApp {
     /// Saves the study where it was saved last, or asks where.
     pub(super) fn save(&mut self, ctx: &Context) {
         match self.saved.path.clone() {
-            Some(path) => self.save_as(path),
+            Some(path) => self.save_as(path, ctx),
             None => self.dialogs.ask(DialogPurpose::SaveStudy, self.proposed_name(), ctx),
         }
     }
 
-    pub(super) fn save_as(&mut self, path: PathBuf) {
+    pub(super) fn save_as(&mut self, path: PathBuf, ctx: &Context) {
         let path = with_study_extension(path);
         match save_study(&self.state.study, &self.loaded, &path) {
             Ok(()) => {
@@ -130,7 +177,9 @@ impl GdcmApp {
                 self.state.study_name = study_name(Some(&path));
                 self.state.unsaved = false;
                 self.done(format!("saved {}", path.display()));
-                self.saved = SavedStudy { path: Some(path), study: self.state.study.clone() };
+                self.saved = SavedStudy { path: Some(path), study: Some(self.state.study.clone()) };
+                self.keep_unsaved();
+                self.look_for_recent(ctx);
             }
             Err(error) => self.trouble(error.to_string()),
         }
@@ -141,10 +190,7 @@ impl GdcmApp {
         if let Some(path) = &self.saved.path {
             return path.display().to_string();
         }
-        let stem = match &self.loaded.origin {
-            DatasetOrigin::File(path) => path.file_stem().map(|stem| stem.to_string_lossy().into_owned()),
-            DatasetOrigin::EmbeddedExample => None,
-        };
+        let stem = self.loaded.path().and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
         let stem = stem.unwrap_or_else(|| "example".to_owned());
         format!("{}.{STUDY_EXTENSION}", stem.trim_end_matches(".json"))
     }
@@ -154,6 +200,9 @@ impl GdcmApp {
         if self.state.results.stopped {
             let left = self.state.after_stop();
             return self.trouble(format!("{left}, for computing was stopped; compute first"));
+        }
+        if !self.state.results.background.proofs.is_empty() {
+            return self.trouble("the gains are still being proven; export again in a moment, or stop it".to_owned());
         }
         if self.state.results.is_waiting() {
             return self.trouble("the newest results are still being computed; export again in a moment".to_owned());
@@ -181,7 +230,7 @@ fn write_results(analysis: &Analysis, sha256: &str, chosen: &[usize], folder: &P
     write_assessment_csv(analysis, chosen, &folder.join("assessment.csv"))
 }
 
-fn study_name(path: Option<&Path>) -> String {
+pub(super) fn study_name(path: Option<&Path>) -> String {
     let name = path.and_then(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());
     name.unwrap_or_else(|| "untitled study".to_owned())
 }

@@ -1,16 +1,24 @@
 //! From the command line to a window on the screen.
 
+use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::{Arc, OnceLock};
 
-use eframe::NativeOptions;
-use egui::ViewportBuilder;
+use eframe::{App, Frame, NativeOptions};
+use egui::{Context, Ui, ViewportBuilder};
 
 use crate::io::{FileError, Opened, embedded_example, load_any};
 
+use super::autosave::Autosave;
+use super::fault::{self, Fault, caught};
+use super::recovery::{LAST_WAIT, end_words};
+use super::setup::Setup;
 use super::window::GdcmApp;
 
-/// Exit status where the window could not be opened.
+/// What the desktop knows the program by; also the name of the directory for its data.
+pub(super) const APP_ID: &str = "gdcm";
+/// Exit status where the window could not be opened, or panicked.
 const NO_WINDOW: u8 = 1;
 /// Exit status where the file is wrong.
 const WRONG_FILE: u8 = 2;
@@ -27,14 +35,28 @@ pub fn open(path: Option<PathBuf>) -> ExitCode {
         }
     };
     if let Some(reason) = missing_display() {
-        return no_window(&reason);
+        eprintln!("gdcm: {}", no_window(&reason));
+        return ExitCode::from(NO_WINDOW);
     }
-    // A missing system library is a panic inside the window library's start-up, not an error.
-    let run = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| run(opened)));
-    match run {
-        Ok(Ok(())) => ExitCode::SUCCESS,
-        Ok(Err(error)) => no_window(&error.to_string()),
-        Err(panic) => no_window(panic_text(panic.as_ref())),
+    std::panic::set_hook(Box::new(fault::note));
+    let opening = Arc::new(OnceLock::new());
+    match ending(caught(|| run(opened, Setup::of_program(), &opening)), opening.get()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(words) => {
+            eprintln!("gdcm: {words}");
+            ExitCode::from(NO_WINDOW)
+        }
+    }
+}
+
+/// Why the window ended, in words, unless it was closed. `kept` is what keeps its decisions, once it has drawn a frame.
+fn ending(run: Result<eframe::Result, Fault>, kept: Option<&Autosave>) -> Result<(), String> {
+    match (run, kept) {
+        (Ok(Ok(())), _) => Ok(()),
+        (Ok(Err(error)), _) => Err(no_window(&error.to_string())),
+        // A missing system library is a panic inside the window library's start-up, not an error.
+        (Err(fault), None) => Err(no_window(&fault.message)),
+        (Err(fault), Some(autosave)) => Err(end_words(&fault, &autosave.flush(LAST_WAIT))),
     }
 }
 
@@ -45,14 +67,35 @@ fn load(path: Option<PathBuf>) -> Result<Opened, FileError> {
     }
 }
 
-fn run(opened: Opened) -> eframe::Result {
+fn run(opened: Opened, setup: Setup, opening: &Arc<OnceLock<Autosave>>) -> eframe::Result {
     let viewport = ViewportBuilder::default()
         .with_title("gdcm")
-        .with_app_id("gdcm")
+        .with_app_id(APP_ID)
         .with_inner_size([1440.0, 900.0])
         .with_min_inner_size([900.0, 560.0]);
     let options = NativeOptions { viewport, ..NativeOptions::default() };
-    eframe::run_native("gdcm", options, Box::new(|creation| Ok(Box::new(GdcmApp::new(&creation.egui_ctx, opened)?))))
+    let opening = Arc::clone(opening);
+    let build = move |creation: &eframe::CreationContext<'_>| -> Result<Box<dyn App>, Box<dyn Error + Send + Sync>> {
+        Ok(Box::new(Guarded { app: GdcmApp::with(&creation.egui_ctx, opened, setup)?, opening }))
+    };
+    eframe::run_native(APP_ID, options, Box::new(build))
+}
+
+/// The window, with what outlives it once it has drawn a frame.
+struct Guarded {
+    app: GdcmApp,
+    opening: Arc<OnceLock<Autosave>>,
+}
+
+impl App for Guarded {
+    fn logic(&mut self, ctx: &Context, frame: &mut Frame) {
+        self.app.logic(ctx, frame);
+    }
+
+    fn ui(&mut self, ui: &mut Ui, frame: &mut Frame) {
+        self.app.ui(ui, frame);
+        self.opening.get_or_init(|| self.app.autosave());
+    }
 }
 
 /// Why no window can be had, where that can be told beforehand: on Linux, neither Wayland nor X11.
@@ -65,16 +108,25 @@ fn missing_display() -> Option<String> {
     (!found).then(|| "there is no display (neither WAYLAND_DISPLAY nor DISPLAY is set)".to_owned())
 }
 
-fn panic_text(panic: &(dyn std::any::Any + Send)) -> &str {
-    panic
-        .downcast_ref::<String>()
-        .map(String::as_str)
-        .or_else(|| panic.downcast_ref::<&str>().copied())
-        .unwrap_or("the window library stopped without a reason")
+fn no_window(reason: &str) -> String {
+    let reason = reason.lines().next().unwrap_or(reason).trim_end_matches('.');
+    format!("the window could not be opened: {reason}. Without a window: gdcm analyze [FILE] --out DIR")
 }
 
-fn no_window(reason: &str) -> ExitCode {
-    let reason = reason.lines().next().unwrap_or(reason).trim_end_matches('.');
-    eprintln!("gdcm: the window could not be opened: {reason}. Without a window: gdcm analyze [FILE] --out DIR");
-    ExitCode::from(NO_WINDOW)
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    #[test]
+    fn a_panic_before_the_first_frame_is_a_window_that_could_not_be_opened_and_one_after_it_is_not() {
+        let fault = || Err(Fault { message: "no libxkbcommon".to_owned(), place: None });
+        let words = ending(fault(), None).unwrap_err();
+        assert!(words.starts_with("the window could not be opened: no libxkbcommon"), "{words}");
+        let folder = tempfile::tempdir().unwrap();
+        let autosave = Autosave::start(Some(folder.path()), Duration::from_secs(3), || ()).unwrap();
+        let words = ending(fault(), Some(&autosave)).unwrap_err();
+        assert!(words.starts_with("gdcm stopped by a fault in its window: no libxkbcommon"), "{words}");
+        assert!(words.ends_with("every decision was saved"), "{words}");
+    }
 }

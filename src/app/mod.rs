@@ -1,9 +1,17 @@
 //! The window: the only place that knows eframe, file dialogs and threads.
 
+mod autosave;
 mod dialogs;
+mod disk_watch;
+pub mod fault;
 mod files;
+mod lane;
 mod launch;
 mod pool;
+mod recent;
+mod recovery;
+mod reload;
+mod setup;
 mod shortcuts;
 mod update;
 mod window;
@@ -11,4 +19,6 @@ mod worker;
 
 pub use launch::open;
 pub use pool::Pool;
+pub use setup::Setup;
 pub use window::GdcmApp;
+pub use worker::EngineMaker;

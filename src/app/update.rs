@@ -11,8 +11,8 @@ use super::window::GdcmApp;
 
 impl GdcmApp {
     /// Saves the study to a file, as the menu does once a path is chosen.
-    pub fn save_study_as(&mut self, path: std::path::PathBuf) {
-        self.save_as(path);
+    pub fn save_study_as(&mut self, path: std::path::PathBuf, ctx: &Context) {
+        self.save_as(path, ctx);
     }
 
     /// Carries out the commands of one frame.
@@ -55,15 +55,24 @@ impl GdcmApp {
             Command::AskOpen => self.dialogs.ask(DialogPurpose::Open, String::new(), ctx),
             Command::AskSaveStudy => self.dialogs.ask(DialogPurpose::SaveStudy, self.proposed_name(), ctx),
             Command::AskExportFolder => self.dialogs.ask(DialogPurpose::ExportFolder, String::new(), ctx),
-            Command::Open(_) | Command::OpenExample | Command::Quit if self.state.unsaved && !self.closing => {
+            Command::Open(_) | Command::OpenExample | Command::RestoreRecovery(_) | Command::Quit
+                if self.state.unsaved && !self.agreed_to_lose && !self.closing =>
+            {
                 self.postponed = Some(command);
                 self.state.forms.shown = Some(FormKind::Unsaved);
             }
             Command::Open(path) => self.open(path, ctx),
-            Command::OpenExample => self.open_example(),
+            Command::OpenExample => self.open_example(ctx),
+            Command::RestoreRecovery(offer) => self.restore(offer, ctx),
+            Command::DiscardRecovery(offer) => self.discard(offer),
+            Command::Reload => self.reload(ctx),
+            Command::KeepOpen => self.keep_open(),
+            Command::LookForRecent => self.recent.look(None, ctx),
+            Command::CloseBar(bar) => self.state.bars.retain(|shown| *shown != bar),
+            Command::CopyText(text) => ctx.copy_text(text),
             Command::Quit => self.quit(ctx),
             Command::SaveStudy => self.save(ctx),
-            Command::SaveStudyAs(path) => self.save_as(path),
+            Command::SaveStudyAs(path) => self.save_as(path, ctx),
             Command::Export => self.export(),
             Command::DiscardAndGoOn => self.discard_and_go_on(ctx),
         }
@@ -105,7 +114,9 @@ impl GdcmApp {
     /// Says what is true of the study now: saved or not.
     pub(super) fn study_changed(&mut self) {
         self.state.notice = None;
-        self.state.unsaved = self.saved.study != self.state.study;
+        self.state.unsaved = self.saved.study.as_ref() != Some(&self.state.study);
+        self.follow_dataset();
+        self.keep_unsaved();
     }
 
     fn show_form(&mut self, form: Option<FormKind>) {
@@ -118,13 +129,14 @@ impl GdcmApp {
         }
         if form.is_none() {
             self.postponed = None;
+            self.agreed_to_lose = false;
         }
         self.state.forms.shown = form;
     }
 
     fn discard_and_go_on(&mut self, ctx: &Context) {
         self.state.forms.shown = None;
-        self.state.unsaved = false;
+        self.agreed_to_lose = true;
         if let Some(command) = self.postponed.take() {
             self.carry_out_one(command, ctx);
         }
@@ -132,6 +144,8 @@ impl GdcmApp {
 
     fn quit(&mut self, ctx: &Context) {
         self.closing = true;
+        // Saved, or agreed to be lost.
+        self.autosave.clear();
         ctx.send_viewport_cmd(ViewportCommand::Close);
     }
 

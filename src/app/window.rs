@@ -4,17 +4,25 @@ use std::sync::Arc;
 
 use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, ViewportCommand};
 
-use crate::io::{LoadedDataset, Opened};
+use crate::io::{LoadedDataset, LostStudy, Opened};
 use crate::study::{Study, display_band};
+use crate::view::bars::Bar;
 use crate::view::command::{Command, FormKind};
 use crate::view::palette::{self, Palette};
-use crate::view::state::State;
+use crate::view::state::{Background, State};
 use crate::view::{
-    centre, conditions_panel, forms, matrix_panel, menu_bar, models_panel, result_panel, settings_panel, status_bar,
+    bars, centre, conditions_panel, forms, matrix_panel, menu_bar, models_panel, result_panel, settings_panel,
+    status_bar,
 };
 
+use super::autosave::Autosave;
 use super::dialogs::Dialogs;
+use super::disk_watch::DiskWatch;
+use super::fault::Fault;
 use super::files::{Readers, SavedStudy};
+use super::recent::Recent;
+use super::recovery::LAST_WAIT;
+use super::setup::Setup;
 use super::shortcuts;
 use super::worker::{Reply, Request, Worker};
 
@@ -28,19 +36,37 @@ pub struct GdcmApp {
     pub(super) readers: Readers,
     /// What waits for the answer whether to lose unsaved decisions.
     pub(super) postponed: Option<Command>,
+    /// Whether the decisions that are not saved may be lost to what is being opened.
+    pub(super) agreed_to_lose: bool,
     pub(super) closing: bool,
+    /// Datasets that were open before a reload, or after one that was undone.
+    pub(super) earlier: Vec<LoadedDataset>,
+    pub(super) autosave: Autosave,
+    /// What was lost, by the number of the offer, until it is restored or discarded.
+    pub(super) offers: Vec<Option<LostStudy>>,
+    pub(super) disk: DiskWatch,
+    pub(super) recent: Recent,
     /// What the newest request was made from.
     requested: Option<(Study, usize)>,
 }
 
 impl GdcmApp {
-    /// The window on a dataset or a study. Starts the thread that computes.
+    /// The window on a dataset or a study, that keeps nothing on the disk unasked.
     pub fn new(ctx: &Context, opened: Opened) -> std::io::Result<Self> {
+        Self::with(ctx, opened, Setup::default())
+    }
+
+    /// The window on a dataset or a study. Starts the threads that compute, and those that look at the disk.
+    pub fn with(ctx: &Context, opened: Opened, setup: Setup) -> std::io::Result<Self> {
         palette::apply(ctx);
-        let wake = ctx.clone();
-        let worker = Worker::start(Box::new(move || wake.request_repaint()))?;
+        let waker = || {
+            let ctx = ctx.clone();
+            move || ctx.request_repaint()
+        };
+        let worker = Worker::start(setup.engine, Arc::new(waker()))?;
+        let autosave = Autosave::start(setup.directory.as_deref(), setup.keep_after, waker())?;
         let (state, loaded, saved) = Self::parts_of(opened);
-        Ok(Self {
+        let app = Self {
             state,
             loaded,
             saved,
@@ -48,9 +74,22 @@ impl GdcmApp {
             dialogs: Dialogs::new(),
             readers: Readers::default(),
             postponed: None,
+            agreed_to_lose: false,
             closing: false,
+            earlier: Vec::new(),
+            autosave,
+            offers: Vec::new(),
+            disk: DiskWatch::start(setup.look_every, waker())?,
+            recent: Recent::new(setup.directory),
             requested: None,
-        })
+        };
+        app.look_for_recent(ctx);
+        Ok(app)
+    }
+
+    /// What keeps decisions that are not saved, for whoever outlives the window.
+    pub(super) fn autosave(&self) -> Autosave {
+        self.autosave.clone()
     }
 
     /// What the window shows.
@@ -69,15 +108,14 @@ impl GdcmApp {
         let results = &mut self.state.results;
         results.requested += 1;
         results.stopped = false;
-        results.toggles = None;
         results.waiting_since.get_or_insert(now);
         self.worker.request(Request { generation: results.requested, study, condition });
     }
 
     /// Gives up the computation under way; what is shown stays.
     pub(super) fn stop_computing(&mut self) {
-        self.worker.stop();
         let results = &mut self.state.results;
+        results.background_stopped = self.worker.stop();
         results.stopped = results.is_behind();
         results.waiting_since = None;
         results.progress = None;
@@ -86,6 +124,9 @@ impl GdcmApp {
     /// Asks again for what was given up.
     pub(super) fn compute_again(&mut self) {
         self.requested = None;
+        self.state.results.background_stopped = false;
+        self.state.bars.retain(|bar| !matches!(bar, Bar::Fault { .. }));
+        self.worker.resume();
     }
 
     fn receive(&mut self, now: f64) {
@@ -97,33 +138,58 @@ impl GdcmApp {
                 }
                 Reply::First(first) => results.first = Some(first),
                 Reply::Analysis { generation, analysis, elapsed_ms } => {
+                    // One with a proof added has the number of the one without it, and took no time.
+                    if results.received != generation {
+                        results.elapsed_ms = elapsed_ms;
+                    }
                     results.received = generation;
                     results.analysis = Some(analysis);
                     results.first = None;
                     results.stopped &= results.is_behind();
-                    results.elapsed_ms = elapsed_ms;
                     results.waiting_since = results.is_waiting().then_some(now);
                     results.progress = None;
                 }
-                Reply::Curves { dataset, condition, curves }
-                    if Arc::ptr_eq(&dataset, &self.state.study.dataset)
-                        && condition == self.state.display.condition =>
+                Reply::Curves(job, curves)
+                    if Arc::ptr_eq(&job.dataset, &self.state.study.dataset)
+                        && job.condition == self.state.display.condition =>
                 {
                     let band = display_band(self.state.study.settings.band);
                     let first = results.curves.is_none();
-                    results.curves = Some((condition, curves));
+                    results.curves = Some((job, curves));
                     if first || self.state.display.bode_band != Some(band) {
                         self.state.display.bode.request_fit();
                         self.state.display.bode_band = Some(band);
                     }
                 }
-                Reply::Toggles { generation, toggles } if generation == results.requested => {
-                    results.toggles = Some(toggles);
-                }
+                Reply::Toggles(job, toggles) => results.toggles = Some((job, toggles)),
+                Reply::Fault { generation, fault } => self.tell_fault(generation, &fault),
                 // Answers to questions that no longer stand.
-                Reply::Progress { .. } | Reply::Toggles { .. } | Reply::Curves { .. } => {}
+                Reply::Progress { .. } | Reply::Curves(..) => {}
             }
         }
+        let results = &mut self.state.results;
+        results.background = self.worker.background();
+        let is_busy = results.background != Background::default();
+        results.background_since = is_busy.then(|| results.background_since.unwrap_or(now));
+    }
+
+    /// Says that computing panicked, what is kept, and what to send.
+    fn tell_fault(&mut self, generation: Option<u64>, fault: &Fault) {
+        let results = &mut self.state.results;
+        if generation == Some(results.requested) {
+            results.stopped = true;
+            results.waiting_since = None;
+            results.progress = None;
+        }
+        let sentence = format!(
+            "A fault in the program ended the computation; your decisions are kept and can be saved: please send this message, \
+             the saved study and the dataset {} to the program's authors (gdcm {}: {}).",
+            self.loaded.origin,
+            env!("CARGO_PKG_VERSION"),
+            fault.words(),
+        );
+        self.state.bars.retain(|bar| !matches!(bar, Bar::Fault { .. }));
+        self.state.bars.push(Bar::Fault { sentence });
     }
 
     fn take_dropped_files(&mut self, ctx: &Context, commands: &mut Vec<Command>) {
@@ -143,6 +209,9 @@ impl GdcmApp {
         let bar = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(10, 4));
         let state = &mut self.state;
         Panel::top("menu bar").frame(bar).show(ui, |ui| menu_bar::menu_bar_ui(ui, state, palette, commands));
+        if !state.bars.is_empty() {
+            Panel::top("bars").frame(bar).show(ui, |ui| bars::bars_ui(ui, &state.bars, palette, commands));
+        }
         Panel::bottom("status bar").frame(bar).show(ui, |ui| status_bar::status_bar_ui(ui, state, palette, commands));
         let side = Frame::new().fill(palette.panel).inner_margin(Margin { left: 10, right: 4, top: 4, bottom: 4 });
         let width = ui.available_width();
@@ -154,6 +223,13 @@ impl GdcmApp {
         panel.show(ui, |ui| right_ui(ui, state, palette, commands));
         let middle = Frame::new().fill(palette.background).inner_margin(Margin::symmetric(8, 4));
         CentralPanel::default().frame(middle).show(ui, |ui| centre::centre_ui(ui, state, palette, commands));
+    }
+}
+
+impl Drop for GdcmApp {
+    /// Also where the window panics: what was decided last is kept.
+    fn drop(&mut self) {
+        self.autosave.close(LAST_WAIT);
     }
 }
 
@@ -195,6 +271,9 @@ impl eframe::App for GdcmApp {
     fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
         self.receive(ctx.input(|input| input.time));
         self.receive_files(ctx);
+        self.receive_disk();
+        self.receive_recent();
+        self.receive_recovery();
         self.guard_closing(ctx);
     }
 
@@ -208,8 +287,8 @@ impl eframe::App for GdcmApp {
         self.carry_out(commands, &ctx);
         let now = ctx.input(|input| input.time);
         self.request(now);
-        if self.state.results.is_waiting() {
-            // The mark of stale results appears by the clock, not by an event.
+        if self.state.results.is_waiting() || self.state.results.background_since.is_some() {
+            // The mark of stale results appears by the clock, not by an event, and so does that of work under way.
             ctx.request_repaint_after(std::time::Duration::from_millis(160));
         }
     }

@@ -1,17 +1,18 @@
-//! The one thread that computes, with a mailbox that keeps only the newest request.
+//! The thread that answers, with a mailbox that keeps only the newest request, and the jobs beside it.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use super::pool::Pool;
-use crate::dataset::Dataset;
+use super::fault::{Fault, caught};
+use super::lane::{Ending, Lane, PATIENCE};
+use crate::correction::{GainProblem, GainSolution, Outcome};
 use crate::study::{
-    Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, Engine, Progress, Study, Toggles, display_band,
+    Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, CurvesJob, Engine, Job, LIVE_PROOF, Progress,
+    ProofJob, Study, Toggles, TogglesJob, display_band,
 };
-use crate::view::state::FirstResult;
+use crate::view::state::{Background, FirstResult};
 
 /// Frequencies of the curves that are drawn.
 const CURVE_POINTS: usize = 500;
@@ -23,7 +24,7 @@ pub struct Request {
     pub generation: u64,
     /// The study to analyse.
     pub study: Study,
-    /// Index of the condition shown, whose curves are wanted.
+    /// Index of the condition shown, whose result and curves are wanted first.
     pub condition: usize,
 }
 
@@ -41,7 +42,7 @@ pub enum Reply {
     },
     /// The result of the condition shown, ahead of the others'.
     First(FirstResult),
-    /// The analysis of a request.
+    /// The analysis of a request; once more with the same number when a proof has been added to it.
     Analysis {
         /// Number of the request.
         generation: u64,
@@ -50,21 +51,16 @@ pub enum Reply {
         /// Time it took \[ms\].
         elapsed_ms: f64,
     },
-    /// What holding or freeing each response of the condition shown would cost.
-    Toggles {
-        /// Number of the request.
-        generation: u64,
-        /// The costs.
-        toggles: Arc<Toggles>,
-    },
+    /// What holding or freeing each response of a condition would cost.
+    Toggles(TogglesJob, Arc<Toggles>),
     /// Responses of one condition for drawing.
-    Curves {
-        /// Dataset they belong to.
-        dataset: Arc<Dataset>,
-        /// Index of the condition.
-        condition: usize,
-        /// The responses.
-        curves: Arc<ConditionCurves>,
+    Curves(CurvesJob, Arc<ConditionCurves>),
+    /// Computing panicked.
+    Fault {
+        /// Number of the request that has no answer for it; none for a job.
+        generation: Option<u64>,
+        /// The panic.
+        fault: Fault,
     },
 }
 
@@ -72,11 +68,17 @@ pub enum Reply {
 const NOTHING: u64 = u64::MAX;
 
 /// Called after each reply: wakes the window.
-type Wake = Box<dyn Fn() + Send + Sync>;
+pub(super) type Wake = Arc<dyn Fn() + Send + Sync>;
+/// Makes an engine, at the start and anew after a panic, which may leave its caches half made.
+pub type EngineMaker = Arc<dyn Fn() -> Engine + Send + Sync>;
+
+/// A proof that a job has completed.
+type Proof = (Arc<GainProblem>, Arc<GainSolution>);
 
 #[derive(Default)]
 struct Mailbox {
     request: Option<Request>,
+    proofs: Vec<Proof>,
     closed: bool,
 }
 
@@ -94,51 +96,104 @@ impl Shared {
         self.mailbox.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits for the next request; none once the worker is dropped.
-    fn take(&self) -> Option<Request> {
+    /// Waits for a request, for proofs or for both; none once the worker is dropped.
+    fn take(&self) -> Option<(Option<Request>, Vec<Proof>)> {
         let mut mailbox = self.mailbox();
         loop {
             if mailbox.closed {
                 return None;
             }
-            if let Some(request) = mailbox.request.take() {
-                return Some(request);
+            if mailbox.request.is_some() || !mailbox.proofs.is_empty() {
+                return Some((mailbox.request.take(), std::mem::take(&mut mailbox.proofs)));
             }
             mailbox = self.filled.wait(mailbox).unwrap_or_else(PoisonError::into_inner);
         }
     }
 }
 
-/// The thread that computes. Dropping it ends the thread.
+/// The long work beside the live answer, a thread for each kind.
+struct Lanes {
+    curves: Lane<CurvesJob>,
+    toggles: Lane<TogglesJob>,
+    proofs: Lane<ProofJob>,
+}
+
+/// The threads that compute. Dropping it ends them, and waits for none.
 pub struct Worker {
     shared: Arc<Shared>,
+    lanes: Arc<Lanes>,
     replies: Receiver<Reply>,
-    thread: Option<JoinHandle<()>>,
+}
+
+/// Where replies go to.
+#[derive(Clone)]
+struct Outbox {
+    sender: Sender<Reply>,
+    wake: Wake,
+}
+
+impl Outbox {
+    fn send(&self, reply: Reply) {
+        // The window is gone when nobody listens; the threads end soon after.
+        let _ = self.sender.send(reply);
+        (self.wake)();
+    }
+
+    /// Sends the reply that a job ends in.
+    fn deliver<J: Job>(&self, ending: Ending<J>, reply: impl FnOnce(J::Output) -> Option<Reply>) {
+        let reply = match ending {
+            Ok(output) => reply(output),
+            Err(fault) => Some(Reply::Fault { generation: None, fault }),
+        };
+        // Without a reply too: the job is not under way any more.
+        reply.map_or_else(|| (self.wake)(), |reply| self.send(reply));
+    }
 }
 
 impl Worker {
-    /// Starts the thread; `wake` is called after each reply.
-    pub fn start(wake: Wake) -> std::io::Result<Self> {
+    /// Starts the threads; `wake` is called after each reply.
+    pub fn start(make_engine: EngineMaker, wake: Wake) -> std::io::Result<Self> {
         let shared = Arc::new(Shared::default());
         let (sender, replies) = channel();
-        let of_thread = Arc::clone(&shared);
-        let thread = std::thread::Builder::new()
-            .name("analysis".to_owned())
-            .spawn(move || Desk { shared: &of_thread, sender: &sender, wake: &wake }.work())?;
-        Ok(Self { shared, replies, thread: Some(thread) })
+        let outbox = Outbox { sender, wake };
+        let lanes = Arc::new(Lanes::start(&shared, &make_engine, &outbox)?);
+        let desk = Desk { shared: Arc::clone(&shared), lanes: Arc::clone(&lanes), outbox, make_engine };
+        std::thread::Builder::new().name("analysis".to_owned()).spawn(move || desk.work())?;
+        Ok(Self { shared, lanes, replies })
     }
 
     /// Asks for a computation in place of any that is not done yet.
     pub fn request(&self, request: Request) {
+        let grid = (display_band(request.study.settings.band), CURVE_POINTS);
+        let dataset = Arc::clone(&request.study.dataset);
+        self.lanes.curves.want(vec![CurvesJob { dataset, condition: request.condition, grid }]);
         self.shared.newest.store(request.generation, Ordering::Release);
         self.shared.mailbox().request = Some(request);
         self.shared.filled.notify_one();
     }
 
-    /// Gives up the request under way, and the one that waits.
-    pub fn stop(&self) {
+    /// Gives up the request under way, the one that waits, and every job; says whether there was a job.
+    pub fn stop(&self) -> bool {
         self.shared.newest.store(NOTHING, Ordering::Release);
         self.shared.mailbox().request = None;
+        let lanes = &self.lanes;
+        // Each of them, whatever the others say.
+        [lanes.curves.stop(), lanes.toggles.stop(), lanes.proofs.stop()].contains(&true)
+    }
+
+    /// Lets the jobs that were stopped be begun again.
+    pub fn resume(&self) {
+        self.lanes.curves.resume();
+        self.lanes.toggles.resume();
+        self.lanes.proofs.resume();
+    }
+
+    /// What is under way beside the live answer.
+    pub fn background(&self) -> Background {
+        let proofs = self.lanes.proofs.unfinished().into_iter().map(|job| job.problem).collect();
+        let curves =
+            (!self.lanes.curves.unfinished().is_empty()).then(|| self.lanes.curves.progress().unwrap_or((0, 0)));
+        Background { proofs, toggles: !self.lanes.toggles.unfinished().is_empty(), curves }
     }
 
     /// The next reply, if one is there.
@@ -152,90 +207,113 @@ impl Drop for Worker {
         self.shared.newest.store(NOTHING, Ordering::Release);
         self.shared.mailbox().closed = true;
         self.shared.filled.notify_one();
-        if let Some(thread) = self.thread.take() {
-            // A panic of the thread has been reported by then; there is nothing left to do about it.
-            let _ = thread.join();
-        }
+        self.stop();
     }
 }
 
-/// What the thread works with.
-struct Desk<'a> {
-    shared: &'a Shared,
-    sender: &'a Sender<Reply>,
-    wake: &'a (dyn Fn() + Send + Sync),
+impl Lanes {
+    fn start(shared: &Arc<Shared>, make_engine: &EngineMaker, outbox: &Outbox) -> std::io::Result<Self> {
+        let make_engine = Arc::clone(make_engine);
+        let out = outbox.clone();
+        let curves = Lane::start(
+            "curves",
+            move || make_engine(),
+            move |job: CurvesJob, ending| {
+                out.deliver::<CurvesJob>(ending, |curves| Some(Reply::Curves(job, curves)));
+            },
+        )?;
+        let out = outbox.clone();
+        let toggles = Lane::start(
+            "toggles",
+            || (),
+            move |job: TogglesJob, ending| {
+                out.deliver::<TogglesJob>(ending, |toggles| Some(Reply::Toggles(job, Arc::new(toggles?))));
+            },
+        )?;
+        let (out, shared) = (outbox.clone(), Arc::clone(shared));
+        let proofs = Lane::start(
+            "proofs",
+            || (),
+            move |job: ProofJob, ending| {
+                out.deliver::<ProofJob>(ending, |solution| {
+                    // A problem without an answer has been told by the live answer.
+                    shared.mailbox().proofs.push((job.problem, solution.ok()?));
+                    shared.filled.notify_one();
+                    None
+                });
+            },
+        )?;
+        Ok(Self { curves, toggles, proofs })
+    }
 }
 
-impl Desk<'_> {
+/// What the thread that answers works with.
+struct Desk {
+    shared: Arc<Shared>,
+    lanes: Arc<Lanes>,
+    outbox: Outbox,
+    make_engine: EngineMaker,
+}
+
+impl Desk {
     fn work(&self) {
-        let mut engine = Engine::with_executor(Box::new(Pool));
-        let mut drawn: Option<Arc<ConditionCurves>> = None;
-        while let Some(request) = self.shared.take() {
-            self.answer_curves(&request, &mut engine, &mut drawn);
-            if let Some(analysis) = self.answer_analysis(&request, &mut engine) {
-                self.answer_toggles(&request, &analysis);
+        let mut engine = None;
+        let mut newest: Option<Request> = None;
+        while let Some((request, proofs)) = self.shared.take() {
+            newest = request.or(newest);
+            let Some(request) = &newest else { continue };
+            let answered = caught(|| {
+                let engine = engine.get_or_insert_with(|| (self.make_engine)().with_proofs_within(LIVE_PROOF));
+                proofs.into_iter().for_each(|(problem, solution)| engine.take_gains(&problem, &solution));
+                self.answer(request, engine)
+            });
+            if let Err(fault) = answered {
+                engine = None;
+                self.outbox.send(Reply::Fault { generation: Some(request.generation), fault });
             }
         }
     }
 
-    fn answer_curves(&self, request: &Request, engine: &mut Engine, drawn: &mut Option<Arc<ConditionCurves>>) {
-        let (dataset, condition) = (&request.study.dataset, request.condition);
-        let grid = (display_band(request.study.settings.band), CURVE_POINTS);
-        let progress = RequestProgress::new(self, request);
-        let Ok(curves) = engine.curves(dataset, condition, grid, &progress) else {
+    /// Sends the analysis and asks for the jobs that it leaves; nothing where a newer request came first.
+    fn answer(&self, request: &Request, engine: &mut Engine) {
+        let start = Instant::now();
+        let progress = RequestProgress { desk: self, request, started: start };
+        let Ok(analysis) = engine.analyze(&request.study, &progress) else {
             return;
         };
-        if !drawn.as_ref().is_some_and(|drawn| Arc::ptr_eq(drawn, &curves)) {
-            *drawn = Some(Arc::clone(&curves));
-            self.send(Reply::Curves { dataset: Arc::clone(dataset), condition, curves });
-        }
-    }
-
-    /// The analysis, unless a newer request came first: that one waits in the mailbox.
-    fn answer_analysis(&self, request: &Request, engine: &mut Engine) -> Option<Arc<Analysis>> {
-        let start = Instant::now();
-        let progress = RequestProgress::new(self, request);
-        let analysis = Arc::new(engine.analyze(&request.study, &progress).ok()?);
+        let analysis = Arc::new(analysis);
         let elapsed_ms = 1e3 * start.elapsed().as_secs_f64();
-        let generation = request.generation;
-        self.send(Reply::Analysis { generation, analysis: Arc::clone(&analysis), elapsed_ms });
-        Some(analysis)
+        self.post_jobs(request, &analysis);
+        self.outbox.send(Reply::Analysis { generation: request.generation, analysis, elapsed_ms });
     }
 
-    /// The costs of all single toggles: in the background, given up as soon as a newer request comes.
-    fn answer_toggles(&self, request: &Request, analysis: &Analysis) {
-        let generation = request.generation;
-        let stop = || self.shared.newest.load(Ordering::Acquire) != generation;
-        let toggles = analysis.condition(request.condition).and_then(|condition| Toggles::of(condition, &stop));
-        if let Some(toggles) = toggles {
-            self.send(Reply::Toggles { generation, toggles: Arc::new(toggles) });
+    /// Asks for the costs of the condition shown, and for what is not proven, the condition shown first.
+    fn post_jobs(&self, request: &Request, analysis: &Analysis) {
+        let shown = analysis.condition(request.condition);
+        self.lanes
+            .toggles
+            .want(shown.map(|condition| TogglesJob { condition: condition.clone() }).into_iter().collect());
+        let others = analysis.conditions.iter().filter_map(|outcome| outcome.as_ref().ok());
+        let open = shown.into_iter().chain(others).filter(|of| matches!(of.gains.outcome, Outcome::NotProven { .. }));
+        let mut proofs: Vec<ProofJob> = Vec::new();
+        for condition in open {
+            let job = ProofJob { problem: Arc::clone(&condition.gain_problem) };
+            if !proofs.contains(&job) {
+                proofs.push(job);
+            }
         }
-    }
-
-    fn send(&self, reply: Reply) {
-        // The window is gone when nobody listens; the thread ends with the next take.
-        let _ = self.sender.send(reply);
-        (self.wake)();
+        self.lanes.proofs.want(proofs);
     }
 }
 
-/// How long an answer to an older question is still worth having. During a steady drag every answer is: without it only the
-/// condition shown would keep up with the hand.
-const PATIENCE: Duration = Duration::from_millis(60);
-
-struct RequestProgress<'a, 'd> {
-    desk: &'a Desk<'d>,
+struct RequestProgress<'a> {
+    desk: &'a Desk,
     request: &'a Request,
     started: Instant,
 }
 
-impl<'a, 'd> RequestProgress<'a, 'd> {
-    fn new(desk: &'a Desk<'d>, request: &'a Request) -> Self {
-        Self { desk, request, started: Instant::now() }
-    }
-}
-
-impl Progress for RequestProgress<'_, '_> {
+impl Progress for RequestProgress<'_> {
+    /// During a steady drag every answer is worth having: without that only the condition shown would keep up with the hand.
     fn cancelled(&self) -> bool {
         let newest = self.desk.shared.newest.load(Ordering::Acquire);
         newest == NOTHING || (newest != self.request.generation && self.started.elapsed() > PATIENCE)
@@ -243,7 +321,7 @@ impl Progress for RequestProgress<'_, '_> {
 
     fn advanced(&self, done: usize, total: usize) {
         if self.started.elapsed() > PATIENCE {
-            self.desk.send(Reply::Progress { generation: self.request.generation, done, total });
+            self.desk.outbox.send(Reply::Progress { generation: self.request.generation, done, total });
         }
     }
 
@@ -253,7 +331,7 @@ impl Progress for RequestProgress<'_, '_> {
 
     fn first_result(&self, outcome: &Result<ConditionAnalysis, ConditionFailure>) {
         let (dataset, condition) = (Arc::clone(&self.request.study.dataset), self.request.condition);
-        let first = FirstResult { dataset, condition, outcome: outcome.clone() };
-        self.desk.send(Reply::First(first));
+        let generation = self.request.generation;
+        self.desk.outbox.send(Reply::First(FirstResult { generation, dataset, condition, outcome: outcome.clone() }));
     }
 }

@@ -66,12 +66,20 @@ impl ConditionStages {
         &self.prepared
     }
 
+    /// Takes gains of the same problem in place of those kept.
+    pub(super) fn take_gains(&mut self, problem: &Arc<GainProblem>, solution: &Arc<GainSolution>) {
+        if self.gains.holds(problem) {
+            self.gains = Memo::of(Arc::clone(problem), Ok(Arc::clone(solution)));
+        }
+    }
+
     /// Whatever is not kept of the analysis of condition `index`.
     pub(super) fn analyze(
         &mut self,
         study: &Study,
         index: usize,
         grid: &FrequencyGrid,
+        proofs: ProofBudget,
         execution: &Execution<'_>,
     ) -> Result<Result<ConditionAnalysis, ConditionFailure>, Cancelled> {
         let (settings, condition) = (&study.settings, &study.dataset.conditions()[index]);
@@ -87,7 +95,7 @@ impl ConditionStages {
             let figures = BundleFigures::of(condition, &responses, &study.dataset.measuring_pairs(), execution);
             figures.map(Arc::new)
         })?;
-        let outcome = self.compare_and_solve(study, index, grid, &responses, figures);
+        let outcome = self.compare_and_solve(study, index, grid, proofs, &responses, figures);
         execution.step(1);
         Ok(outcome)
     }
@@ -97,6 +105,7 @@ impl ConditionStages {
         study: &Study,
         index: usize,
         grid: &FrequencyGrid,
+        proofs: ProofBudget,
         responses: &ConditionResponses,
         figures: Arc<BundleFigures>,
     ) -> Result<ConditionAnalysis, ConditionFailure> {
@@ -111,7 +120,7 @@ impl ConditionStages {
         check_comparable(condition, &comparison)?;
         let bounds_key = (key.clone(), settings.quantile, settings.gain_bounds, settings.delay_upper_s);
         let bounds = self.bounds.get(bounds_key, |_| bounds_of(&comparison, settings, &measuring, grid));
-        let solved = self.solve(&comparison, settings, bounds)?;
+        let solved = self.solve(&comparison, settings, bounds, proofs)?;
         let correction = solved.correction();
         let cost = self.cost.get((key, correction.clone()), |(_, correction)| {
             let models = &comparison.representative;
@@ -137,6 +146,7 @@ impl ConditionStages {
         comparison: &Comparison,
         settings: &Settings,
         (bounds, upper_s): (GainBounds, f64),
+        proofs: ProofBudget,
     ) -> Result<Solved, ConditionFailure> {
         let delta = &comparison.delta;
         let held = settings.constrained.map(|pair, constrained| *constrained && delta.gain[pair].is_some());
@@ -155,7 +165,7 @@ impl ConditionStages {
             upper_s,
             alpha: settings.alpha_delay,
         });
-        let solve = |problem: &Arc<GainProblem>| solve_gains(problem, ProofBudget::default()).map(Arc::new);
+        let solve = |problem: &Arc<GainProblem>| solve_gains(problem, proofs).map(Arc::new);
         let gains = self.gains.get(Arc::clone(&gain_problem), solve)?;
         let delays = self.delays.get(Arc::clone(&delay_problem), |problem| solve_delays(problem).map(Arc::new))?;
         Ok(Solved { gain_problem, delay_problem, gains, delays })

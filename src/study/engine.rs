@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::correction::{GainProblem, GainSolution, ProofBudget};
 use crate::dataset::{Band, Dataset};
 use crate::response::FrequencyGrid;
 use crate::schedule::{Schedule, ScheduleError, ScheduledPoint, assess};
@@ -22,11 +23,16 @@ use super::progress::{Cancelled, Progress};
 /// Neither conditions nor models depend on one another: the result is the same to the last bit whoever carries them out.
 pub struct Engine {
     executor: Box<dyn Executor>,
+    /// How far the proof of each condition's gains may go.
+    proofs: ProofBudget,
     dataset: Option<Arc<Dataset>>,
     conditions: Vec<ConditionStages>,
     /// Curves of the condition drawn last.
     curves: Memo<(usize, Band, usize), Arc<ConditionCurves>>,
 }
+
+/// The budget of a proof that an answer may wait for; what needs more of it is proven beside the answer ([`super::ProofJob`]).
+pub const LIVE_PROOF: ProofBudget = ProofBudget { boxes: 1_000, minima: 300 };
 
 impl Default for Engine {
     fn default() -> Self {
@@ -40,7 +46,23 @@ type Outcomes = Vec<Result<ConditionAnalysis, ConditionFailure>>;
 impl Engine {
     /// An engine whose work is carried out by `executor`.
     pub fn with_executor(executor: Box<dyn Executor>) -> Self {
-        Self { executor, dataset: None, conditions: Vec::new(), curves: Memo::default() }
+        Self {
+            executor,
+            proofs: ProofBudget::default(),
+            dataset: None,
+            conditions: Vec::new(),
+            curves: Memo::default(),
+        }
+    }
+
+    /// The same engine with another budget for the proof of each condition's gains.
+    pub fn with_proofs_within(self, proofs: ProofBudget) -> Self {
+        Self { proofs, ..self }
+    }
+
+    /// Takes gains that were proven elsewhere, with a larger budget, in place of its own for the same problem.
+    pub fn take_gains(&mut self, problem: &Arc<GainProblem>, solution: &Arc<GainSolution>) {
+        self.conditions.iter_mut().for_each(|stages| stages.take_gains(problem, solution));
     }
 
     /// The analysis of `study`; stages that do not depend on what changed since the last call are not computed again.
@@ -49,7 +71,7 @@ impl Engine {
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
         let total = study.dataset.conditions().iter().map(|of| ConditionStages::steps(of)).sum();
         let execution = Execution::new(self.executor.as_ref(), progress, total);
-        let conditions = analyze_conditions(&mut self.conditions, study, &grid, &execution)?;
+        let conditions = analyze_conditions(&mut self.conditions, study, &grid, self.proofs, &execution)?;
         let schedule = Schedule::of(&scheduled_points(study, &conditions), study.settings.schedule);
         let assessed = |index: usize| assessed(study, index, &conditions[index], &schedule, &grid);
         let assessment = execution.each(conditions.len(), 0, assessed)?;
@@ -89,18 +111,20 @@ fn analyze_conditions(
     stages: &mut [ConditionStages],
     study: &Study,
     grid: &FrequencyGrid,
+    proofs: ProofBudget,
     execution: &Execution<'_>,
 ) -> Result<Outcomes, Cancelled> {
     let first = execution.progress().wanted_first().filter(|&first| first < stages.len());
     let mut first_outcome = None;
     if let Some(first) = first {
-        let outcome = stages[first].analyze(study, first, grid, execution)?;
+        let outcome = stages[first].analyze(study, first, grid, proofs, execution)?;
         execution.progress().first_result(&outcome);
         first_outcome = Some(outcome);
     }
     let others: Vec<(usize, &mut ConditionStages)> =
         stages.iter_mut().enumerate().filter(|(index, _)| Some(*index) != first).collect();
-    let mut outcomes = execution.each_mut(others, |(index, stages)| stages.analyze(study, index, grid, execution))?;
+    let mut outcomes =
+        execution.each_mut(others, |(index, stages)| stages.analyze(study, index, grid, proofs, execution))?;
     if let (Some(first), Some(outcome)) = (first, first_outcome) {
         outcomes.insert(first, outcome);
     }

@@ -33,11 +33,22 @@ impl History {
             return;
         }
         self.lost = lost;
+        self.push(Step { label: edit.label(&before), study: before });
+        self.open = Some(edit.clone());
+    }
+
+    /// Keeps `before`, the study of the dataset as it was before it was read again.
+    pub fn record_reload(&mut self, before: Study, label: String) {
+        self.future.clear();
+        self.push(Step { label, study: before });
+        self.open = None;
+    }
+
+    fn push(&mut self, step: Step) {
         if self.past.len() == MOST_STEPS {
             self.past.remove(0);
         }
-        self.past.push(Step { label: edit.label(&before), study: before });
-        self.open = Some(edit.clone());
+        self.past.push(step);
     }
 
     /// Ends the decision being taken: the slider was let go.

@@ -15,6 +15,11 @@ impl<K, V> Default for Memo<K, V> {
 }
 
 impl<K: PartialEq, V: Clone> Memo<K, V> {
+    /// A value made elsewhere.
+    pub(super) fn of(key: K, value: V) -> Self {
+        Self { kept: Some((key, value)) }
+    }
+
     /// The value for `key`: the kept one where the key is the same, `make(&key)` otherwise.
     pub(super) fn get(&mut self, key: K, make: impl FnOnce(&K) -> V) -> V {
         let made = self.get_or_fail(key, |key| Ok::<V, Infallible>(make(key)));

@@ -1,6 +1,7 @@
 //! What the engineer does: settings, rejections, pins; and the analysis of it all, in cached stages.
 
 mod analysis;
+mod carried_over;
 mod caution;
 mod comparison;
 mod condition_analysis;
@@ -12,6 +13,7 @@ mod edit;
 mod engine;
 mod executor;
 mod history;
+mod job;
 mod memo;
 mod progress;
 mod setting;
@@ -19,6 +21,7 @@ mod settings;
 mod toggles;
 
 pub use analysis::{Analysis, Assessed};
+pub use carried_over::Difference;
 pub use caution::Caution;
 pub use comparison::{BundleFigures, Comparison};
 pub use condition_analysis::{ConditionAnalysis, ConditionFailure};
@@ -26,9 +29,10 @@ pub use condition_responses::{ConditionResponses, PreparedCondition};
 pub use curves::{ConditionCurves, display_band};
 pub use document::{BundleChoice, ConditionChoice, Study};
 pub use edit::{Edit, EditRefusal};
-pub use engine::Engine;
+pub use engine::{Engine, LIVE_PROOF};
 pub use executor::{Execution, Executor, Sequential, Task};
 pub use history::History;
+pub use job::{CurvesJob, Job, ProofJob, TogglesJob};
 pub use progress::{Cancelled, Progress, Unobserved};
 pub use setting::Setting;
 pub use settings::{GREATEST_GAIN, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings};

@@ -156,15 +156,9 @@ impl CachedShapes {
 
 /// Every curve of one response in the condition shown; none until its responses are there.
 pub fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
-    let Some((condition, curves)) = state.results.curves.clone() else {
+    let Some(curves) = state.curves().cloned() else {
         return Vec::new();
     };
-    let fits = condition == state.display.condition
-        && curves.physics.len() == state.condition().bundle(BundleKind::Physics).len()
-        && curves.identified.len() == state.condition().bundle(BundleKind::Identified).len();
-    if !fits {
-        return Vec::new();
-    }
     let reference = state.shown().map_or(0, |shown| shown.comparison.identified.model);
     let mut shapes = state.display.shapes.remove(&pair).unwrap_or_default();
     shapes.refresh(&curves, pair, reference);
@@ -255,7 +249,8 @@ fn corrected_curves(state: &State, shapes: &mut CachedShapes, shown: &ConditionA
     if let Some(Ok(schedule)) = state.analysis().map(|analysis| &analysis.schedule) {
         let scheduled = schedule.at(airspeed_kt);
         if scheduled.net_gain(pair) > 0.0 {
-            curves.push(curve(SCHEDULED, format!("{name}, scheduled"), Role::Scheduled, &scheduled));
+            let older = if state.others_are_older() { " of older settings" } else { "" };
+            curves.push(curve(SCHEDULED, format!("{name}, scheduled{older}"), Role::Scheduled, &scheduled));
         }
     }
     curves

@@ -59,6 +59,9 @@ fn header_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
             {
                 commands.push(Command::FitPlots);
             }
+            if matches!(state.display.tab, Tab::Channels | Tab::Assessment) {
+                older_ui(ui, state, palette);
+            }
             let condition = state.condition();
             let title = format!(
                 "{} · condition {} · {}",
@@ -77,7 +80,8 @@ fn bode_tab_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
     let band = state.study.settings.band;
     let title = state.dataset().pair_name(state.display.pair);
     let stale = state.results.is_stale(ui.input(|input| input.time));
-    let message = state.results.is_behind().then(|| state.results.absence());
+    let waits = state.results.is_behind() || state.curves().is_none();
+    let message = waits.then(|| state.results.absence());
     let scene = BodeScene {
         pair_title: &title,
         curves: &state.display.drawn,
@@ -124,6 +128,7 @@ fn bode_command(state: &State, event: BodeEvent) -> Option<Command> {
 fn net_gain_header_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         ui.label(RichText::new("Net gain").strong());
+        older_ui(ui, state, palette);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let small = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
             commands.extend(schedule_ui(ui, state.study.settings.schedule));
@@ -131,6 +136,14 @@ fn net_gain_header_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &
             ui.add(egui::Label::new(small(dot_key(state))).truncate());
         });
     });
+}
+
+/// Says that what stands beside is of older settings than the result of the condition shown.
+fn older_ui(ui: &mut Ui, state: &State, palette: &Palette) {
+    if state.others_are_older() {
+        let text = RichText::new("of older settings").size(SMALL_SIZE).color(palette.warning);
+        ui.label(text).on_hover_text("The condition shown is computed anew already; the others are on their way");
+    }
 }
 
 /// The form of the schedule; the edit where it was changed. Laid out from right to left.

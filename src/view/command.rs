@@ -7,6 +7,7 @@ use egui::ThemePreference;
 use crate::dataset::{ModelId, Pair};
 use crate::study::Edit;
 
+use super::bars::Bar;
 use super::plot::FrequencyUnit;
 use super::state::Tab;
 
@@ -63,6 +64,20 @@ pub enum Command {
     StopComputing,
     /// Compute what was given up.
     Compute,
+    /// Read the dataset's file again, which has changed.
+    Reload,
+    /// Stay with the dataset that is open, though its file has changed.
+    KeepOpen,
+    /// Open the decisions of a recovery file, by the number of its offer.
+    RestoreRecovery(usize),
+    /// Remove a recovery file, by the number of its offer.
+    DiscardRecovery(usize),
+    /// See which of the recent files are there.
+    LookForRecent,
+    /// Put a bar away.
+    CloseBar(Bar),
+    /// Put a text on the clipboard.
+    CopyText(String),
     /// Put the message away.
     DismissNotice,
     /// Close the window.

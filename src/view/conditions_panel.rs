@@ -14,7 +14,8 @@ use super::state::State;
 /// Every condition with speed, altitude, weight and its marks; a click shows it.
 pub fn conditions_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let conditions = state.dataset().conditions();
-    heading_ui(ui, palette, "Conditions", &conditions.len().to_string());
+    let older = if state.others_are_older() { " · marks of older settings" } else { "" };
+    heading_ui(ui, palette, "Conditions", &format!("{}{older}", conditions.len()));
     for (index, condition) in conditions.iter().enumerate() {
         let selected = index == state.display.condition;
         let marks = Marks::of(state.analysis(), index);

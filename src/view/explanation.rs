@@ -128,9 +128,9 @@ pub fn gain_conflict_marks(shown: &ConditionAnalysis) -> (BTreeSet<Pair>, BTreeS
     (pairs, conflicts.iter().flat_map(|conflict| conflict.channels()).collect())
 }
 
-/// What holding or freeing a response would cost, in words; nothing until the table of all toggles is computed.
+/// What holding or freeing a response would cost, in words; nothing until the table of all toggles of this very result is computed.
 pub fn toggle_costs(state: &State, pair: Pair) -> Vec<String> {
-    let Some(toggles) = &state.results.toggles else {
+    let Some(toggles) = state.toggles() else {
         return Vec::new();
     };
     let (inputs, outputs) = channel_names(state);

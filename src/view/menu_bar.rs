@@ -7,14 +7,16 @@ use crate::study::Edit;
 use super::command::{Command, FormKind};
 use super::palette::Palette;
 use super::plot::FrequencyUnit;
-use super::state::State;
+use super::state::{RecentFile, State};
 
 /// Menus and the state of the document.
 pub fn menu_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     MenuBar::new().ui(ui, |ui| {
         ui.label(RichText::new("gdcm").strong());
         ui.add_space(4.0);
-        ui.menu_button("File", |ui| file_menu_ui(ui, state, commands));
+        if ui.menu_button("File", |ui| file_menu_ui(ui, state, commands)).response.clicked() {
+            commands.push(Command::LookForRecent);
+        }
         ui.menu_button("Edit", |ui| edit_menu_ui(ui, state, commands));
         ui.menu_button("View", |ui| view_menu_ui(ui, state, commands));
         ui.menu_button("Help", |ui| help_menu_ui(ui, commands));
@@ -37,6 +39,9 @@ fn entry(ui: &mut Ui, text: &str, keys: &str, command: Command, commands: &mut V
 fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     entry(ui, "Open…", "Ctrl+O", Command::AskOpen, commands);
     entry(ui, "Open by path…", "Ctrl+Shift+O", Command::ShowForm(Some(FormKind::Open)), commands);
+    if !state.recent.is_empty() {
+        ui.menu_button("Open recent", |ui| recent_menu_ui(ui, state, commands));
+    }
     entry(ui, "Open the example", "", Command::OpenExample, commands);
     ui.separator();
     entry(ui, "Save study", "Ctrl+S", Command::SaveStudy, commands);
@@ -47,6 +52,20 @@ fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         ui.separator();
     }
     entry(ui, "Quit", "Ctrl+Q", Command::Quit, commands);
+}
+
+/// The newest first; what is not there any more cannot be chosen.
+fn recent_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    for RecentFile { path, missing } in &state.recent {
+        let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let folder = path.parent().map(|folder| folder.display().to_string()).unwrap_or_default();
+        let button = Button::new(name).right_text(if *missing { "missing" } else { "" });
+        let response = ui.add_enabled(!missing, button).on_hover_text(&folder);
+        if response.on_disabled_hover_text(format!("It is not in {folder} any more")).clicked() {
+            commands.push(Command::Open(path.clone()));
+            ui.close();
+        }
+    }
 }
 
 fn edit_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {

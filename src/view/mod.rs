@@ -1,6 +1,7 @@
 //! What the window shows: functions that draw the state and say what the engineer asks for.
 
 mod assessment_scene;
+pub mod bars;
 pub mod bode_scene;
 pub mod centre;
 pub mod command;

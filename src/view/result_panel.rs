@@ -25,7 +25,7 @@ pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette) {
             remark_ui(ui, palette, &Remark { kind: RemarkKind::Trouble, text: failure.to_string() });
         }
         Some(Ok(shown)) => {
-            header_ui(ui, shown, palette);
+            header_ui(ui, state, shown, palette);
             ui.scope(|ui| channels_ui(ui, state, shown, palette));
             objective_ui(ui, shown, palette);
             for remark in remarks(state, shown) {
@@ -51,25 +51,28 @@ pub fn export_button_ui(ui: &mut Ui, state: &State, palette: &Palette, commands:
     }
 }
 
-fn header_ui(ui: &mut Ui, shown: &ConditionAnalysis, palette: &Palette) {
+fn header_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Palette) {
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         ui.label(RichText::new("Result").size(SMALL_SIZE).strong().color(palette.dim_text));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let (word, color, gap, hint) = outcome(shown, palette);
+            let (word, color, gap, hint) = outcome(shown, state.is_proving(shown), palette);
             ui.label(RichText::new(format!("gap {gap:.0e}")).size(SMALL_SIZE).color(palette.dim_text));
             badge_ui(ui, word, color, palette).on_hover_text(hint);
         });
     });
 }
 
-fn outcome(shown: &ConditionAnalysis, palette: &Palette) -> (&'static str, Color32, f64, &'static str) {
+fn outcome(shown: &ConditionAnalysis, proving: bool, palette: &Palette) -> (&'static str, Color32, f64, &'static str) {
     let (gap, proven) = (shown.gains.outcome.gap(), matches!(shown.gains.outcome, Outcome::Proven { .. }));
     match (shown.gains.matched, proven) {
         (false, _) => {
             ("not matched", palette.warning, gap, "Not every held gain can be reached; the reasons stand below")
         }
         (true, true) => ("proven", palette.good, gap, "No gains inside the bounds are better: a lower bound proves it"),
+        (true, false) if proving => {
+            ("proving …", palette.warning, gap, "Whether better gains exist is being searched beside the live answer")
+        }
         (true, false) => {
             ("not proven", palette.warning, gap, "A better answer may exist; none is better by more than the gap")
         }

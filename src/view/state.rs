@@ -1,11 +1,16 @@
 //! Everything the window shows.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 
+use crate::correction::GainProblem;
 use crate::dataset::{Band, BundleKind, Condition, Dataset, ModelId, Pair};
-use crate::study::{Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, History, Study, Toggles};
+use crate::study::{
+    Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, CurvesJob, History, Study, Toggles, TogglesJob,
+};
 
+use super::bars::Bar;
 use super::bode_scene::CachedShapes;
 use super::command::FormKind;
 use super::plot::{AssessmentView, BodeCurve, BodeView, ChannelsView, FrequencyUnit, GainView, OverviewView};
@@ -60,12 +65,25 @@ pub struct Display {
 /// The result of the condition shown, ahead of the others'.
 #[derive(Clone, Debug)]
 pub struct FirstResult {
+    /// Number of the request it answers.
+    pub generation: u64,
     /// The dataset it belongs to.
     pub dataset: Arc<Dataset>,
     /// Index of the condition.
     pub condition: usize,
     /// The result.
     pub outcome: Result<ConditionAnalysis, ConditionFailure>,
+}
+
+/// What is under way beside the live answer.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Background {
+    /// The problems whose gains are being proven, or are to be.
+    pub proofs: Vec<Arc<GainProblem>>,
+    /// Whether the costs of holding and freeing are being computed.
+    pub toggles: bool,
+    /// Whether curves are being computed: models done, of how many.
+    pub curves: Option<(usize, usize)>,
 }
 
 /// What was computed; never saved.
@@ -75,10 +93,16 @@ pub struct Results {
     pub analysis: Option<Arc<Analysis>>,
     /// The condition shown, where it is ahead of that analysis.
     pub first: Option<FirstResult>,
-    /// What holding or freeing each response of the condition shown would cost; computed after the analysis.
-    pub toggles: Option<Arc<Toggles>>,
-    /// Responses for drawing, with the index of their condition.
-    pub curves: Option<(usize, Arc<ConditionCurves>)>,
+    /// What holding or freeing each response of a condition would cost, and of which; see [`State::toggles`].
+    pub toggles: Option<(TogglesJob, Arc<Toggles>)>,
+    /// Responses for drawing, and of what; see [`State::curves`].
+    pub curves: Option<(CurvesJob, Arc<ConditionCurves>)>,
+    /// What is under way beside the live answer.
+    pub background: Background,
+    /// Since when something has been \[s of the window's clock\].
+    pub background_since: Option<f64>,
+    /// Whether work beside the live answer was stopped by hand.
+    pub background_stopped: bool,
     /// Number of the newest request.
     pub requested: u64,
     /// Number of the request the analysis answers.
@@ -87,7 +111,7 @@ pub struct Results {
     pub waiting_since: Option<f64>,
     /// How long the newest analysis took \[ms\].
     pub elapsed_ms: f64,
-    /// Whether the newest request was given up by hand: what is shown stays older than the settings.
+    /// Whether the newest request was given up, by hand or by a fault: what is shown stays older than the settings.
     pub stopped: bool,
     /// How far the analysis under way is: steps done, of how many.
     pub progress: Option<(usize, usize)>,
@@ -95,6 +119,8 @@ pub struct Results {
 
 /// Age \[s\] from which shown results that no longer fit the settings are marked as stale.
 const STALE_AFTER_S: f64 = 0.15;
+/// Time \[s\] from which work beside the live answer is told: most of it is over before it could be read.
+const BACKGROUND_AFTER_S: f64 = 0.5;
 
 impl Results {
     /// Whether an answer is still to come.
@@ -110,6 +136,16 @@ impl Results {
     /// Whether what is shown is older than the settings.
     pub fn is_behind(&self) -> bool {
         self.requested > self.received
+    }
+
+    /// Whether the condition shown is of newer settings than the analysis of all of them.
+    pub fn first_is_ahead(&self) -> bool {
+        self.analysis.is_some() && self.first.as_ref().is_some_and(|first| first.generation > self.received)
+    }
+
+    /// Whether something has been under way beside the live answer for so long that it should be told at `now`.
+    pub fn is_background_told(&self, now: f64) -> bool {
+        self.background_since.is_some_and(|since| now - since > BACKGROUND_AFTER_S)
     }
 
     /// Whether what is shown should be marked as stale at `now` \[s of the window's clock\].
@@ -134,6 +170,15 @@ pub struct Notice {
     pub kind: NoticeKind,
     /// The message.
     pub text: String,
+}
+
+/// A file opened or saved of late.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RecentFile {
+    /// Where it is, or was.
+    pub path: PathBuf,
+    /// Whether it was not there when it was looked for last.
+    pub missing: bool,
 }
 
 /// What the export form holds.
@@ -177,6 +222,10 @@ pub struct State {
     pub file_cautions: Vec<String>,
     /// The message shown.
     pub notice: Option<Notice>,
+    /// What is told until it is dealt with, in bars below the menu.
+    pub bars: Vec<Bar>,
+    /// Files opened and saved of late, the newest first.
+    pub recent: Vec<RecentFile>,
     /// Name of a file being read.
     pub opening: Option<String>,
     /// What the forms hold.
@@ -197,6 +246,8 @@ impl State {
             results: Results::default(),
             file_cautions,
             notice: None,
+            bars: Vec::new(),
+            recent: Vec::new(),
             opening: None,
             forms: Forms::default(),
         }
@@ -228,6 +279,33 @@ impl State {
         first.map(|first| &first.outcome).or_else(|| self.analysis()?.conditions.get(condition))
     }
 
+    /// Whether the results of the other conditions, and all that is made from them, are of older settings than what is shown of
+    /// this one: it is said beside each of them.
+    pub fn others_are_older(&self) -> bool {
+        let of_this_dataset = |first: &FirstResult| Arc::ptr_eq(&first.dataset, &self.study.dataset);
+        self.results.first_is_ahead()
+            && self.results.first.as_ref().is_some_and(of_this_dataset)
+            && self.analysis().is_some()
+    }
+
+    /// What holding or freeing each response would cost, where it is of the result shown.
+    pub fn toggles(&self) -> Option<&Toggles> {
+        let (job, toggles) = self.results.toggles.as_ref()?;
+        job.is_of(self.shown()?).then_some(toggles)
+    }
+
+    /// The responses of the condition shown, for drawing.
+    pub fn curves(&self) -> Option<&Arc<ConditionCurves>> {
+        let (job, curves) = self.results.curves.as_ref()?;
+        let fits = job.condition == self.display.condition && Arc::ptr_eq(&job.dataset, &self.study.dataset);
+        fits.then_some(curves)
+    }
+
+    /// Whether the proof of a result is still under way.
+    pub fn is_proving(&self, shown: &ConditionAnalysis) -> bool {
+        self.results.background.proofs.contains(&shown.gain_problem)
+    }
+
     /// The newest analysis, where it is one of the dataset shown.
     pub fn analysis(&self) -> Option<&Analysis> {
         let analysis = self.results.analysis.as_deref()?;
@@ -240,6 +318,22 @@ impl State {
             Some(_) => "the results are older than the settings",
             None => "there are no results yet",
         }
+    }
+
+    /// Shows what there is of another dataset: the same condition and response where it has them, the first otherwise.
+    pub fn follow_dataset(&mut self) {
+        let dataset = &self.study.dataset;
+        let pair = self.display.pair;
+        if self.display.condition >= dataset.conditions().len() {
+            self.display.condition = 0;
+        }
+        if pair.output >= dataset.outputs().len() || pair.input >= dataset.inputs().len() {
+            self.display.pair = dataset.measuring_pairs().marked().next().unwrap_or_default();
+        }
+        self.display.hovered = None;
+        self.display.isolated = None;
+        self.display.shapes.clear();
+        self.display.bode.request_fit();
     }
 
     /// A model of the condition shown.

@@ -7,7 +7,7 @@ use crate::study::Assessed;
 
 use super::command::Command;
 use super::palette::{Palette, SMALL_SIZE};
-use super::state::{NoticeKind, State};
+use super::state::{Background, NoticeKind, State};
 
 /// State of the computation on the left, message or standing remark on the right.
 pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
@@ -42,11 +42,16 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
         (None, false, _) => ("● up to date".to_owned(), palette.good),
     };
     ui.label(RichText::new(text).size(SMALL_SIZE).color(color));
-    if state.results.stopped {
+    let beside = state.results.is_background_told(now).then(|| background_words(&state.results.background));
+    let beside = if state.results.background_stopped { Some("the rest was stopped".to_owned()) } else { beside };
+    if let Some(words) = &beside {
+        ui.label(RichText::new(words).size(SMALL_SIZE).color(palette.dim_text));
+    }
+    if state.results.stopped || state.results.background_stopped {
         if ui.add(Button::new("Compute").small()).clicked() {
             commands.push(Command::Compute);
         }
-    } else if state.results.is_stale(now) && ui.add(Button::new("Stop").small()).clicked() {
+    } else if (state.results.is_stale(now) || beside.is_some()) && ui.add(Button::new("Stop").small()).clicked() {
         commands.push(Command::StopComputing);
     }
     let dim = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
@@ -60,6 +65,17 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
         let text = if count == 1 { "1 caution".to_owned() } else { format!("{count} cautions") };
         let label = ui.label(RichText::new(text).size(SMALL_SIZE).color(palette.warning));
         label.on_hover_text(state.file_cautions.join("\n"));
+    }
+}
+
+/// What is under way beside the live answer, the longest first.
+fn background_words(background: &Background) -> String {
+    match (background.proofs.len(), background.curves) {
+        (1, _) => "proving the gains of 1 condition …".to_owned(),
+        (2.., _) => format!("proving the gains of {} conditions …", background.proofs.len()),
+        (0, Some((done, total))) if total > 0 => format!("curves, {} % …", 100 * done / total),
+        (0, Some(_)) => "curves …".to_owned(),
+        (0, None) => "what holding and freeing would cost …".to_owned(),
     }
 }
 

@@ -68,6 +68,22 @@ pub struct LoadedDataset {
     pub cautions: Vec<String>,
 }
 
+impl LoadedDataset {
+    /// The dataset's file; none of the embedded example.
+    pub fn path(&self) -> Option<&Path> {
+        match &self.origin {
+            DatasetOrigin::File(path) => Some(path),
+            DatasetOrigin::EmbeddedExample => None,
+        }
+    }
+
+    /// The name of the dataset's file, or what stands for it.
+    pub fn file_name(&self) -> String {
+        let name = self.path().and_then(Path::file_name);
+        name.map_or_else(|| self.origin.to_string(), |name| name.to_string_lossy().into_owned())
+    }
+}
+
 /// Loads a dataset from a file, packed by gzip or not; whole, or not at all.
 pub fn load_dataset(path: &Path) -> Result<LoadedDataset, FileError> {
     dataset_from(&Source::read(path)?, DatasetOrigin::File(path.to_owned()))

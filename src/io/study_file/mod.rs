@@ -27,20 +27,44 @@ const EMBEDDED: &str = "embedded example";
 
 /// Saves a study of a loaded dataset; replaced whole, or not at all.
 pub fn save_study(study: &Study, loaded: &LoadedDataset, path: &Path) -> Result<(), FileError> {
+    save(study, loaded, path, |dataset| path_text(dataset, path))
+}
+
+/// Saves a study with its dataset's absolute path: for a file that lies nowhere near it.
+pub(super) fn save_recovery(study: &Study, loaded: &LoadedDataset, path: &Path) -> Result<(), FileError> {
+    // Its directory may be out of reach just now: the decisions are kept all the same.
+    let absolute =
+        |dataset: &Path| settled(dataset).or_else(|_| Ok(std::path::absolute(dataset).unwrap_or(dataset.into())));
+    save(study, loaded, path, |dataset| slashed(&absolute(dataset)?, path))
+}
+
+fn save(
+    study: &Study,
+    loaded: &LoadedDataset,
+    path: &Path,
+    path_text: impl FnOnce(&Path) -> Result<String, FileError>,
+) -> Result<(), FileError> {
+    let sha256 = loaded.sha256.clone();
     let reference = match &loaded.origin {
-        DatasetOrigin::EmbeddedExample => {
-            DatasetReference { path: None, name: EMBEDDED.to_owned(), sha256: loaded.sha256.clone() }
+        DatasetOrigin::EmbeddedExample => DatasetReference { path: None, name: EMBEDDED.to_owned(), sha256 },
+        DatasetOrigin::File(dataset) => {
+            DatasetReference { path: Some(path_text(dataset)?), name: study.dataset.name().to_owned(), sha256 }
         }
-        DatasetOrigin::File(dataset) => DatasetReference {
-            path: Some(path_text(dataset, path)?),
-            name: study.dataset.name().to_owned(),
-            sha256: loaded.sha256.clone(),
-        },
     };
     let text = text_of(study, reference);
     write_whole(path, |file| {
         serde_json::to_writer_pretty(&mut *file, &text)?;
         file.write_all(b"\n")
+    })
+}
+
+/// What a study file says its dataset is, in words: the name of its file. None where the study cannot be read.
+pub(super) fn dataset_of_study(path: &Path) -> Option<String> {
+    let source = Source::read(path).ok()?;
+    let (text, _) = FORMAT.decode::<StudyText>(source.text(), path).ok()?;
+    Some(match text.dataset.path {
+        None => format!("the {EMBEDDED}"),
+        Some(path) => Path::new(&path).file_name()?.to_string_lossy().into_owned(),
     })
 }
 
@@ -85,8 +109,12 @@ fn load_referenced(reference: &DatasetReference, study: &Path) -> Result<LoadedD
 
 /// The dataset's path as the study at `study` has to write it.
 fn path_text(dataset: &Path, study: &Path) -> Result<String, FileError> {
-    let relative = relative_path(&settled(dataset)?, settled(study)?.parent().unwrap_or(Path::new("/")));
-    let text = relative.to_str().ok_or_else(|| FileError::writing(study, "the dataset's path is not valid Unicode"))?;
+    slashed(&relative_path(&settled(dataset)?, settled(study)?.parent().unwrap_or(Path::new("/"))), study)
+}
+
+/// A path with `/` between its parts.
+fn slashed(path: &Path, study: &Path) -> Result<String, FileError> {
+    let text = path.to_str().ok_or_else(|| FileError::writing(study, "the dataset's path is not valid Unicode"))?;
     Ok(if std::path::MAIN_SEPARATOR == '/' { text.to_owned() } else { text.replace(std::path::MAIN_SEPARATOR, "/") })
 }
 

@@ -1,0 +1,40 @@
+//! What a window is given besides what it shows.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::pool::Pool;
+use super::worker::EngineMaker;
+use crate::study::Engine;
+
+/// What a window is given besides what it shows; a test gives other things than the program does.
+#[derive(Clone)]
+pub struct Setup {
+    /// Makes the engines.
+    pub engine: EngineMaker,
+    /// Where recovery files and the list of recent files are kept; nowhere without it.
+    pub directory: Option<PathBuf>,
+    /// How long after a change the decisions are kept in the recovery file at the latest.
+    pub keep_after: Duration,
+    /// How often the dataset's file is looked at.
+    pub look_every: Duration,
+}
+
+impl Default for Setup {
+    fn default() -> Self {
+        Self {
+            engine: Arc::new(|| Engine::with_executor(Box::new(Pool))),
+            directory: None,
+            keep_after: Duration::from_secs(3),
+            look_every: Duration::from_millis(1500),
+        }
+    }
+}
+
+impl Setup {
+    /// That of the program: with the directory that the platform gives it for its data.
+    pub(super) fn of_program() -> Self {
+        Self { directory: eframe::storage_dir(super::launch::APP_ID), ..Self::default() }
+    }
+}

@@ -1,0 +1,77 @@
+//! The list of files opened and saved of late.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::directory::make_directory;
+use super::file_error::FileError;
+use super::json_text::Format;
+use super::source::Source;
+use super::whole_file::write_whole;
+
+/// Most files that are listed.
+const MOST: usize = 10;
+/// Name of the list in the program's directory.
+const NAME: &str = "recent-files.json";
+/// What the list calls itself.
+const FORMAT: Format = Format { name: "gdcm-recent-files", version: 1 };
+
+#[derive(Deserialize, Serialize)]
+struct RecentText {
+    format: String,
+    version: u64,
+    files: Vec<String>,
+}
+
+/// The files listed in `directory`, the newest first; none where there is no list, or none that can be read.
+pub fn recent_files(directory: &Path) -> Vec<PathBuf> {
+    let path = directory.join(NAME);
+    let Ok(source) = Source::read(&path) else { return Vec::new() };
+    let decoded = FORMAT.decode::<RecentText>(source.text(), &path);
+    decoded.map_or_else(|_| Vec::new(), |(text, _)| text.files.into_iter().map(PathBuf::from).collect())
+}
+
+/// Puts a file in front of the list, of which another window may have written in between.
+///
+/// # Errors
+/// Where the list cannot be written.
+pub fn add_recent_file(directory: &Path, file: &Path) -> Result<(), FileError> {
+    let Some(file) = std::path::absolute(file).ok().and_then(|path| path.to_str().map(str::to_owned)) else {
+        // A name that is not valid Unicode cannot be listed.
+        return Ok(());
+    };
+    let others = recent_files(directory).into_iter().filter_map(|path| path.to_str().map(str::to_owned));
+    let others = others.filter(|other| *other != file);
+    let files = std::iter::once(file.clone()).chain(others).take(MOST).collect();
+    let text = RecentText { format: FORMAT.name.to_owned(), version: FORMAT.version, files };
+    make_directory(directory)?;
+    write_whole(&directory.join(NAME), |writer| Ok(serde_json::to_writer_pretty(writer, &text)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_newest_is_first_none_is_listed_twice_and_ten_are_kept() {
+        let directory = tempfile::tempdir().unwrap();
+        for number in (0..12).chain([5]) {
+            add_recent_file(directory.path(), Path::new(&format!("/data/{number}.json"))).unwrap();
+        }
+        let names: Vec<String> = recent_files(directory.path())
+            .iter()
+            .map(|path| path.file_stem().unwrap().to_str().unwrap().into())
+            .collect();
+        assert_eq!(names, ["5", "11", "10", "9", "8", "7", "6", "4", "3", "2"]);
+    }
+
+    #[test]
+    fn a_damaged_list_is_an_empty_one_and_is_mended_by_the_next_file() {
+        let directory = tempfile::tempdir().unwrap();
+        std::fs::write(directory.path().join(NAME), "{\"format\": ").unwrap();
+        assert!(recent_files(directory.path()).is_empty());
+        add_recent_file(directory.path(), Path::new("/data/a.json")).unwrap();
+        assert_eq!(recent_files(directory.path()).len(), 1);
+    }
+}

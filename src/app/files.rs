@@ -15,6 +15,7 @@ use crate::view::command::FormKind;
 use crate::view::state::State;
 
 use super::dialogs::{DialogAnswer, DialogPurpose};
+use super::fault::{Fault, caught};
 use super::window::GdcmApp;
 
 /// The study as it was saved last.
@@ -37,8 +38,8 @@ pub(super) enum ReadFor {
     Restoring(usize),
 }
 
-/// What was read, or why not.
-type Answer = (ReadFor, Result<Opened, FileError>);
+/// What was read, or why not; a fault where reading panicked.
+type Answer = (ReadFor, Result<Result<Opened, FileError>, Fault>);
 
 /// The threads that read files, and where their answers arrive.
 pub(super) struct Readers {
@@ -110,7 +111,7 @@ impl GdcmApp {
         let (sender, wake) = (self.readers.sender.clone(), ctx.clone());
         let read = move || {
             // The window may be gone by now.
-            let _ = sender.send((purpose, read()));
+            let _ = sender.send((purpose, caught(read)));
             wake.request_repaint();
         };
         if let Err(error) = std::thread::Builder::new().name("reading".to_owned()).spawn(read) {
@@ -140,8 +141,15 @@ impl GdcmApp {
 
     /// Takes what files and dialogs have answered since the last frame.
     pub(super) fn receive_files(&mut self, ctx: &Context) {
-        while let Ok((purpose, opened)) = self.readers.receiver.try_recv() {
-            self.answer_opened(purpose, opened, ctx);
+        while let Ok((purpose, read)) = self.readers.receiver.try_recv() {
+            match read {
+                Ok(opened) => self.answer_opened(purpose, opened, ctx),
+                Err(fault) => {
+                    self.state.opening = None;
+                    self.agreed_to_lose = false;
+                    self.tell_fault("the reading of a file", &fault);
+                }
+            }
         }
         while let Some(answer) = self.dialogs.answer() {
             match answer {

@@ -52,16 +52,16 @@ struct Mailbox<J> {
     /// The jobs asked for, the most urgent first.
     wanted: Vec<J>,
     running: Option<(J, Arc<Run>)>,
-    /// Those asked for that have ended.
-    ended: Vec<J>,
-    /// Those asked for that were stopped by hand.
+    /// Those asked for that are done.
+    done: Vec<J>,
+    /// Those asked for that were stopped, by hand or by a fault.
     stopped: Vec<J>,
     closed: bool,
 }
 
 impl<J: Job> Mailbox<J> {
     fn unfinished(&self) -> impl Iterator<Item = &J> {
-        self.wanted.iter().filter(|job| !self.ended.contains(job) && !self.stopped.contains(job))
+        self.wanted.iter().filter(|job| !self.done.contains(job) && !self.stopped.contains(job))
     }
 
     fn stop_running(&self) {
@@ -114,7 +114,7 @@ impl<J: Job> Lane<J> {
         deliver: impl Fn(J, Ending<J>) + Send + 'static,
     ) -> std::io::Result<Self> {
         let mailbox =
-            Mailbox { wanted: Vec::new(), running: None, ended: Vec::new(), stopped: Vec::new(), closed: false };
+            Mailbox { wanted: Vec::new(), running: None, done: Vec::new(), stopped: Vec::new(), closed: false };
         let shared = Arc::new(Shared { mailbox: Mutex::new(mailbox), changed: Condvar::new() });
         let of_thread = Arc::clone(&shared);
         std::thread::Builder::new().name(name.to_owned()).spawn(move || work(&of_thread, &tools, &deliver))?;
@@ -122,10 +122,10 @@ impl<J: Job> Lane<J> {
     }
 
     /// Asks for these jobs, the most urgent first, and for no others: one under way goes on if it is among them, and one that
-    /// has ended or was stopped is not begun again as long as it is.
+    /// is done or was stopped is not begun again as long as it is.
     pub(super) fn want(&self, jobs: Vec<J>) {
         let mut mailbox = self.shared.mailbox();
-        mailbox.ended.retain(|job| jobs.contains(job));
+        mailbox.done.retain(|job| jobs.contains(job));
         mailbox.stopped.retain(|job| jobs.contains(job));
         if let Some((job, run)) = &mailbox.running {
             run.outdated.store(!jobs.contains(job), Ordering::Release);
@@ -134,13 +134,12 @@ impl<J: Job> Lane<J> {
         self.shared.changed.notify_one();
     }
 
-    /// Gives up what is under way and what waits; says whether there was anything.
-    pub(super) fn stop(&self) -> bool {
+    /// Gives up what is under way and what waits.
+    pub(super) fn stop(&self) {
         let mut mailbox = self.shared.mailbox();
         let left: Vec<J> = mailbox.unfinished().cloned().collect();
         mailbox.stop_running();
-        mailbox.stopped.extend(left.iter().cloned());
-        !left.is_empty()
+        mailbox.stopped.extend(left);
     }
 
     /// Lets what was stopped be begun again.
@@ -152,6 +151,11 @@ impl<J: Job> Lane<J> {
     /// The jobs that are asked for and not done.
     pub(super) fn unfinished(&self) -> Vec<J> {
         self.shared.mailbox().unfinished().cloned().collect()
+    }
+
+    /// Whether something that is asked for was stopped.
+    pub(super) fn is_stopped(&self) -> bool {
+        !self.shared.mailbox().stopped.is_empty()
     }
 
     /// Steps done of how many, of the job under way.
@@ -187,7 +191,8 @@ fn work<J: Job>(shared: &Shared<J>, make_tools: &dyn Fn() -> J::Tools, deliver: 
         mailbox.running = None;
         let Some(ending) = ending else { continue };
         if mailbox.wanted.contains(&job) {
-            mailbox.ended.push(job.clone());
+            let over = if ending.is_ok() { &mut mailbox.done } else { &mut mailbox.stopped };
+            over.push(job.clone());
         }
         drop(mailbox);
         deliver(job, ending);
@@ -277,10 +282,11 @@ mod tests {
         let (lane, job, said) = lane();
         lane.want(vec![job("long"), job("short")]);
         assert_eq!(next(&said), "begun long");
-        assert!(lane.stop());
+        lane.stop();
+        assert!(lane.is_stopped());
         assert_eq!(next(&said), "cancelled long");
         lane.want(vec![job("long"), job("short")]);
-        assert!(said.recv_timeout(Duration::from_millis(30)).is_err() && !lane.stop());
+        assert!(said.recv_timeout(Duration::from_millis(30)).is_err());
         lane.resume();
         assert_eq!(next(&said), "begun long");
     }

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::pool::Pool;
 use super::worker::EngineMaker;
-use crate::study::Engine;
+use crate::study::{Engine, LIVE_PROOF};
 
 /// What a window is given besides what it shows; a test gives other things than the program does.
 #[derive(Clone)]
@@ -24,7 +24,7 @@ pub struct Setup {
 impl Default for Setup {
     fn default() -> Self {
         Self {
-            engine: Arc::new(|| Engine::with_executor(Box::new(Pool))),
+            engine: Arc::new(|| Engine::with_executor(Box::new(Pool)).with_proofs_within(LIVE_PROOF)),
             directory: None,
             keep_after: Duration::from_secs(3),
             look_every: Duration::from_millis(1500),

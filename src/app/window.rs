@@ -9,7 +9,7 @@ use crate::study::{Study, display_band};
 use crate::view::bars::Bar;
 use crate::view::command::{Command, FormKind};
 use crate::view::palette::{self, Palette};
-use crate::view::state::{Background, State};
+use crate::view::state::State;
 use crate::view::{
     bars, centre, conditions_panel, forms, matrix_panel, menu_bar, models_panel, result_panel, settings_panel,
     status_bar,
@@ -114,8 +114,8 @@ impl GdcmApp {
 
     /// Gives up the computation under way; what is shown stays.
     pub(super) fn stop_computing(&mut self) {
+        self.worker.stop();
         let results = &mut self.state.results;
-        results.background_stopped = self.worker.stop();
         results.stopped = results.is_behind();
         results.waiting_since = None;
         results.progress = None;
@@ -124,7 +124,6 @@ impl GdcmApp {
     /// Asks again for what was given up.
     pub(super) fn compute_again(&mut self) {
         self.requested = None;
-        self.state.results.background_stopped = false;
         self.state.bars.retain(|bar| !matches!(bar, Bar::Fault { .. }));
         self.worker.resume();
     }
@@ -162,28 +161,31 @@ impl GdcmApp {
                     }
                 }
                 Reply::Toggles(job, toggles) => results.toggles = Some((job, toggles)),
-                Reply::Fault { generation, fault } => self.tell_fault(generation, &fault),
+                Reply::Fault { generation, fault } => self.computing_failed(generation, &fault),
                 // Answers to questions that no longer stand.
                 Reply::Progress { .. } | Reply::Curves(..) => {}
             }
         }
         let results = &mut self.state.results;
         results.background = self.worker.background();
-        let is_busy = results.background != Background::default();
-        results.background_since = is_busy.then(|| results.background_since.unwrap_or(now));
+        results.background_since = results.background.is_busy().then(|| results.background_since.unwrap_or(now));
     }
 
-    /// Says that computing panicked, what is kept, and what to send.
-    fn tell_fault(&mut self, generation: Option<u64>, fault: &Fault) {
+    fn computing_failed(&mut self, generation: Option<u64>, fault: &Fault) {
         let results = &mut self.state.results;
         if generation == Some(results.requested) {
             results.stopped = true;
             results.waiting_since = None;
             results.progress = None;
         }
+        self.tell_fault("the computation", fault);
+    }
+
+    /// Says that the program panicked, what is kept, and what to send.
+    pub(super) fn tell_fault(&mut self, ended: &str, fault: &Fault) {
         let sentence = format!(
-            "A fault in the program ended the computation; your decisions are kept and can be saved: please send this message, \
-             the saved study and the dataset {} to the program's authors (gdcm {}: {}).",
+            "A fault in the program ended {ended}; your decisions are kept and can be saved: please send this message, the \
+             saved study and the dataset {} to the program's authors (gdcm {}: {}).",
             self.loaded.origin,
             env!("CARGO_PKG_VERSION"),
             fault.words(),

@@ -1,6 +1,6 @@
 //! The thread that answers, with a mailbox that keeps only the newest request, and the jobs beside it.
 
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
@@ -9,8 +9,8 @@ use super::fault::{Fault, caught};
 use super::lane::{Ending, Lane, PATIENCE};
 use crate::correction::{GainProblem, GainSolution, Outcome};
 use crate::study::{
-    Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, CurvesJob, Engine, Job, LIVE_PROOF, Progress,
-    ProofJob, Study, Toggles, TogglesJob, display_band,
+    Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, CurvesJob, Engine, Job, Progress, ProofJob, Study,
+    Toggles, TogglesJob, display_band,
 };
 use crate::view::state::{Background, FirstResult};
 
@@ -26,6 +26,15 @@ pub struct Request {
     pub study: Study,
     /// Index of the condition shown, whose result and curves are wanted first.
     pub condition: usize,
+}
+
+impl Request {
+    /// Whether it needs the same responses and distances, and the same first.
+    fn compares_the_same(&self, other: &Request) -> bool {
+        let settings = |request: &Request| (request.study.settings.band, request.study.settings.points);
+        let same_models = Arc::ptr_eq(&self.study.dataset, &other.study.dataset);
+        same_models && self.condition == other.condition && settings(self) == settings(other)
+    }
 }
 
 /// What was computed.
@@ -172,13 +181,13 @@ impl Worker {
         self.shared.filled.notify_one();
     }
 
-    /// Gives up the request under way, the one that waits, and every job; says whether there was a job.
-    pub fn stop(&self) -> bool {
+    /// Gives up the request under way, the one that waits, and every job.
+    pub fn stop(&self) {
         self.shared.newest.store(NOTHING, Ordering::Release);
         self.shared.mailbox().request = None;
-        let lanes = &self.lanes;
-        // Each of them, whatever the others say.
-        [lanes.curves.stop(), lanes.toggles.stop(), lanes.proofs.stop()].contains(&true)
+        self.lanes.curves.stop();
+        self.lanes.toggles.stop();
+        self.lanes.proofs.stop();
     }
 
     /// Lets the jobs that were stopped be begun again.
@@ -193,7 +202,9 @@ impl Worker {
         let proofs = self.lanes.proofs.unfinished().into_iter().map(|job| job.problem).collect();
         let curves =
             (!self.lanes.curves.unfinished().is_empty()).then(|| self.lanes.curves.progress().unwrap_or((0, 0)));
-        Background { proofs, toggles: !self.lanes.toggles.unfinished().is_empty(), curves }
+        let Lanes { curves: of_curves, toggles, proofs: of_proofs } = &*self.lanes;
+        let stopped = of_curves.is_stopped() || toggles.is_stopped() || of_proofs.is_stopped();
+        Background { proofs, toggles: !toggles.unfinished().is_empty(), curves, stopped }
     }
 
     /// The next reply, if one is there.
@@ -263,7 +274,7 @@ impl Desk {
             newest = request.or(newest);
             let Some(request) = &newest else { continue };
             let answered = caught(|| {
-                let engine = engine.get_or_insert_with(|| (self.make_engine)().with_proofs_within(LIVE_PROOF));
+                let engine = engine.get_or_insert_with(|| (self.make_engine)());
                 proofs.into_iter().for_each(|(problem, solution)| engine.take_gains(&problem, &solution));
                 self.answer(request, engine)
             });
@@ -277,7 +288,7 @@ impl Desk {
     /// Sends the analysis and asks for the jobs that it leaves; nothing where a newer request came first.
     fn answer(&self, request: &Request, engine: &mut Engine) {
         let start = Instant::now();
-        let progress = RequestProgress { desk: self, request, started: start };
+        let progress = RequestProgress { desk: self, request, started: start, compared: AtomicBool::new(false) };
         let Ok(analysis) = engine.analyze(&request.study, &progress) else {
             return;
         };
@@ -310,16 +321,32 @@ struct RequestProgress<'a> {
     desk: &'a Desk,
     request: &'a Request,
     started: Instant,
+    /// Whether all responses and distances are there: what is left depends on more than they do.
+    compared: AtomicBool,
+}
+
+impl RequestProgress<'_> {
+    /// Whether the request that waits needs the very responses and distances that are being computed.
+    fn is_of_use(&self) -> bool {
+        let mailbox = self.desk.shared.mailbox();
+        !self.compared.load(Ordering::Relaxed)
+            && mailbox.request.as_ref().is_some_and(|newer| newer.compares_the_same(self.request))
+    }
 }
 
 impl Progress for RequestProgress<'_> {
     /// During a steady drag every answer is worth having: without that only the condition shown would keep up with the hand.
     fn cancelled(&self) -> bool {
-        let newest = self.desk.shared.newest.load(Ordering::Acquire);
-        newest == NOTHING || (newest != self.request.generation && self.started.elapsed() > PATIENCE)
+        match self.desk.shared.newest.load(Ordering::Acquire) {
+            NOTHING => true,
+            newest => newest != self.request.generation && self.started.elapsed() > PATIENCE && !self.is_of_use(),
+        }
     }
 
     fn advanced(&self, done: usize, total: usize) {
+        // The last step of each condition is its optimum.
+        let compared = done + self.request.study.dataset.conditions().len() >= total;
+        self.compared.fetch_or(compared, Ordering::Relaxed);
         if self.started.elapsed() > PATIENCE {
             self.desk.outbox.send(Reply::Progress { generation: self.request.generation, done, total });
         }

@@ -80,8 +80,7 @@ fn bode_tab_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
     let band = state.study.settings.band;
     let title = state.dataset().pair_name(state.display.pair);
     let stale = state.results.is_stale(ui.input(|input| input.time));
-    let waits = state.results.is_behind() || state.curves().is_none();
-    let message = waits.then(|| state.results.absence());
+    let message = state.curves_message();
     let scene = BodeScene {
         pair_title: &title,
         curves: &state.display.drawn,

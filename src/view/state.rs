@@ -84,6 +84,15 @@ pub struct Background {
     pub toggles: bool,
     /// Whether curves are being computed: models done, of how many.
     pub curves: Option<(usize, usize)>,
+    /// Whether something of it was stopped, by hand or by a fault.
+    pub stopped: bool,
+}
+
+impl Background {
+    /// Whether anything is under way.
+    pub fn is_busy(&self) -> bool {
+        !self.proofs.is_empty() || self.toggles || self.curves.is_some()
+    }
 }
 
 /// What was computed; never saved.
@@ -101,8 +110,6 @@ pub struct Results {
     pub background: Background,
     /// Since when something has been \[s of the window's clock\].
     pub background_since: Option<f64>,
-    /// Whether work beside the live answer was stopped by hand.
-    pub background_stopped: bool,
     /// Number of the newest request.
     pub requested: u64,
     /// Number of the request the analysis answers.
@@ -299,6 +306,17 @@ impl State {
         let (job, curves) = self.results.curves.as_ref()?;
         let fits = job.condition == self.display.condition && Arc::ptr_eq(&job.dataset, &self.study.dataset);
         fits.then_some(curves)
+    }
+
+    /// What stands in the place of curves that are not there, or are to be renewed.
+    pub fn curves_message(&self) -> Option<&'static str> {
+        let results = &self.results;
+        match self.curves() {
+            _ if results.is_behind() => Some(results.absence()),
+            Some(_) => None,
+            None if results.background.stopped => Some("not computed"),
+            None => Some("computing …"),
+        }
     }
 
     /// Whether the proof of a result is still under way.

@@ -43,11 +43,12 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
     };
     ui.label(RichText::new(text).size(SMALL_SIZE).color(color));
     let beside = state.results.is_background_told(now).then(|| background_words(&state.results.background));
-    let beside = if state.results.background_stopped { Some("the rest was stopped".to_owned()) } else { beside };
+    let is_stopped = state.results.background.stopped;
+    let beside = if is_stopped { Some("the rest was stopped".to_owned()) } else { beside };
     if let Some(words) = &beside {
         ui.label(RichText::new(words).size(SMALL_SIZE).color(palette.dim_text));
     }
-    if state.results.stopped || state.results.background_stopped {
+    if state.results.stopped || is_stopped {
         if ui.add(Button::new("Compute").small()).clicked() {
             commands.push(Command::Compute);
         }

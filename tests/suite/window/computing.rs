@@ -1,0 +1,208 @@
+//! Long work, and work that fails.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, Once};
+
+use gdcm::app::{Pool, fault};
+use gdcm::correction::{Outcome, ProofBudget};
+use gdcm::study::{Engine, Executor, LIVE_PROOF, Study, Task, Unobserved};
+
+use super::*;
+
+/// Executes as the program does; while it is armed it panics inside one of the tasks, or keeps them waiting.
+#[derive(Clone, Default)]
+struct Trap {
+    panics: Arc<AtomicBool>,
+    closed: Arc<(Mutex<bool>, Condvar)>,
+}
+
+impl Trap {
+    fn setup(&self) -> Setup {
+        let trap = self.clone();
+        Setup { engine: Arc::new(move || Engine::with_executor(Box::new(trap.clone()))), ..Setup::default() }
+    }
+
+    fn close(&self, closed: bool) {
+        *self.closed.0.lock().unwrap() = closed;
+        self.closed.1.notify_all();
+    }
+}
+
+impl Executor for Trap {
+    fn carry_out(&self, mut tasks: Vec<Task<'_>>) {
+        drop(self.closed.1.wait_while(self.closed.0.lock().unwrap(), |closed| *closed));
+        if self.panics.swap(false, Ordering::Relaxed) {
+            tasks.push(Box::new(|| panic!("a pivot that cannot be")));
+        }
+        Pool.carry_out(tasks);
+    }
+}
+
+/// Notes where panics are, as the program does, besides what the tests do with them.
+fn note_panics() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let before = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |panic| {
+            fault::note(panic);
+            before(panic);
+        }));
+    });
+}
+
+fn set_alpha(window: &mut Window, alpha: f64) {
+    window.get_by_role_and_label(Role::Slider, "α gains slider").set_value_accesskit(alpha);
+    window.run_steps(2);
+}
+
+#[test]
+fn a_panic_while_computing_is_told_with_what_to_send_and_the_study_stays() {
+    note_panics();
+    let trap = Trap::default();
+    let mut window = window_with(example(), trap.setup());
+    let before = state(&window).results.received;
+    trap.panics.store(true, Ordering::Relaxed);
+    set_alpha(&mut window, 12.5);
+    wait_until(&mut window, "the fault is told", |window| {
+        window.query_by_label_contains("A fault in the program ended the computation").is_some()
+    });
+    for part in ["a pivot that cannot be at tests/suite/window/computing.rs:", "gdcm 0.", "(embedded example)"] {
+        window.get_by_label_contains(part);
+    }
+    assert!(!state(&window).results.is_waiting() && state(&window).results.received == before);
+    window.get_by_label("● stopped: the results are older than the settings");
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.gdcm-study.json");
+    save_as(&mut window, &path);
+    assert_eq!(open_study(&path).unwrap().0.settings.alpha_gain, 12.5, "the study can be saved");
+    set_alpha(&mut window, 3.0);
+    settle(&mut window);
+    assert_eq!(state(&window).analysis().unwrap().study.settings.alpha_gain, 3.0, "and edited, with a new engine");
+    click(&mut window, "Put away");
+    assert!(window.query_by_label_contains("A fault in the program").is_none());
+}
+
+#[test]
+fn after_a_panic_the_same_can_be_computed_again() {
+    let trap = Trap::default();
+    let mut window = window_with(example(), trap.setup());
+    trap.panics.store(true, Ordering::Relaxed);
+    set_alpha(&mut window, 12.5);
+    wait_until(&mut window, "the fault is told", |window| window.query_by_label("Compute again").is_some());
+    click(&mut window, "Compute again");
+    assert_eq!(state(&window).analysis().unwrap().study.settings.alpha_gain, 12.5);
+    assert!(window.query_by_label_contains("A fault in the program").is_none());
+}
+
+#[test]
+fn a_panic_over_the_first_results_leaves_a_window_that_can_open_another_file() {
+    let trap = Trap::default();
+    trap.panics.store(true, Ordering::Relaxed);
+    let build = |creation: &mut eframe::CreationContext<'static>| {
+        GdcmApp::with(&creation.egui_ctx, example(), trap.setup()).expect("a thread can be started")
+    };
+    let mut window = Harness::builder().with_size(vec2(1600.0, 1000.0)).build_eframe(build);
+    wait_until(&mut window, "the fault is told", |window| window.query_by_label("Compute again").is_some());
+    window.input_mut().dropped_files.push(Arc::new(files::Dropped(files::small_dataset())));
+    window.run_steps(2);
+    settle(&mut window);
+    assert_eq!(state(&window).dataset().conditions().len(), 2);
+    assert!(state(&window).shown().is_some());
+}
+
+#[test]
+fn results_of_two_generations_of_settings_are_told_apart() {
+    let trap = Trap::default();
+    let mut window = window_with(example(), trap.setup());
+    assert!(window.query_by_label("of older settings").is_none());
+    trap.close(true);
+    set_alpha(&mut window, 12.5);
+    wait_until(&mut window, "the condition shown is ahead", |window| state(window).results.first_is_ahead());
+    window.get_by_label("of older settings");
+    window.get_by_label_contains("marks of older settings");
+    let scheduled = drawn(&window, CurveRole::Scheduled);
+    assert!(scheduled.label.ends_with("scheduled of older settings"), "{}", scheduled.label);
+    trap.close(false);
+    settle(&mut window);
+    assert!(window.query_by_label("of older settings").is_none());
+    assert!(drawn(&window, CurveRole::Scheduled).label.ends_with("scheduled"));
+}
+
+#[test]
+fn quitting_does_not_wait_for_what_is_being_computed() {
+    let trap = Trap::default();
+    let mut window = window_with(example(), trap.setup());
+    trap.close(true);
+    set_alpha(&mut window, 12.5);
+    wait_until(&mut window, "it computes", |window| state(window).results.first_is_ahead());
+    let start = Instant::now();
+    drop(window);
+    // What is being computed would never end.
+    assert!(start.elapsed() < Duration::from_secs(30));
+    trap.close(false);
+}
+
+#[test]
+fn the_costs_of_toggles_stay_where_nothing_that_they_depend_on_changes() {
+    let mut window = window();
+    wait_for_toggles(&mut window);
+    let costs =
+        |window: &Window| state(window).results.toggles.as_ref().map(|(_, toggles)| Arc::clone(toggles)).unwrap();
+    let before = costs(&window);
+    click(&mut window, "Edit");
+    click(&mut window, "Leave this condition out of the schedule");
+    assert!(state(&window).toggles().is_some() && Arc::ptr_eq(&costs(&window), &before));
+    set_alpha(&mut window, 12.5);
+    settle(&mut window);
+    wait_for_toggles(&mut window);
+    assert!(!Arc::ptr_eq(&costs(&window), &before), "those of other problems are others");
+}
+
+#[test]
+fn a_long_computation_can_be_stopped_and_taken_up_again() {
+    let mut window = window();
+    let before = state(&window).results.received;
+    // The most points there can be: far more work than the frames until the click give it time for.
+    window.get_by_role_and_label(Role::SpinButton, "Frequencies in the band").set_value_accesskit(5000.0);
+    window.run_steps(3);
+    window.get_by_label("Stop").click();
+    window.run_steps(3);
+    assert!(state(&window).results.stopped && state(&window).results.received == before);
+    window.get_by_label("● stopped: the results are older than the settings");
+    assert!(state(&window).analysis().is_some(), "the results there were are still shown");
+    click(&mut window, "Compute");
+    assert!(!state(&window).results.is_behind());
+    assert_eq!(state(&window).analysis().map(|analysis| analysis.omega.len()), Some(5000));
+}
+
+#[test]
+fn gains_that_the_answer_leaves_open_are_proven_beside_it() {
+    let hasty = ProofBudget { boxes: 1, minima: 0 };
+    let engine = move || Engine::default().with_proofs_within(hasty);
+    let study = Study::new(embedded_example().unwrap().dataset);
+    let open = engine().analyze(&study, &Unobserved).unwrap();
+    let is_open = |outcome: Outcome| matches!(outcome, Outcome::NotProven { .. });
+    assert!(open.conditions.iter().flatten().any(|condition| is_open(condition.gains.outcome)), "nothing to prove");
+
+    let mut window = window_with(example(), Setup { engine: Arc::new(engine), ..Setup::default() });
+    wait_until(&mut window, "every proof", |window| !state(window).results.background.is_busy());
+    settle(&mut window);
+    window.get_by_label("proven");
+    let proven = Engine::default().analyze(&study, &Unobserved).unwrap();
+    let shown = state(&window).analysis().unwrap();
+    for (condition, (beside, alone)) in shown.conditions.iter().zip(&proven.conditions).enumerate() {
+        let (beside, alone) = (beside.as_ref().unwrap(), alone.as_ref().unwrap());
+        assert!(!is_open(beside.gains.outcome), "condition {condition}");
+        assert!(!is_open(alone.gains.outcome) && beside.correction == alone.correction, "condition {condition}");
+    }
+    assert_eq!(shown.schedule, proven.schedule, "what is made from the gains follows them");
+}
+
+#[test]
+fn the_example_needs_no_proof_beside_the_answer() {
+    let study = Study::new(embedded_example().unwrap().dataset);
+    let analysis = Engine::default().with_proofs_within(LIVE_PROOF).analyze(&study, &Unobserved).unwrap();
+    let proven = analysis.conditions.iter().flatten().filter(|of| matches!(of.gains.outcome, Outcome::Proven { .. }));
+    assert_eq!(proven.count(), 11);
+}

@@ -1,0 +1,37 @@
+//! Every control by name; a machine without a display.
+
+use super::*;
+
+#[test]
+fn every_control_has_a_label_of_its_own() {
+    let window = window();
+    let mut labels: Vec<(Role, String)> = Vec::new();
+    let controls = [Role::Button, Role::CheckBox, Role::Slider, Role::SpinButton, Role::ComboBox, Role::TextInput];
+    for node in window.root().children_recursive() {
+        let role = node.accesskit_node().role();
+        if controls.contains(&role) {
+            let label = node.accesskit_node().label().unwrap_or_default();
+            assert!(!label.is_empty(), "a control without a label: {role:?}");
+            labels.push((role, label));
+        }
+    }
+    assert!(labels.len() > 80, "the controls were found: {}", labels.len());
+    labels.sort_by(|a, b| a.1.cmp(&b.1));
+    let twice: Vec<_> = labels.windows(2).filter(|pair| pair[0] == pair[1]).map(|pair| &pair[0]).collect();
+    assert!(twice.is_empty(), "{twice:?}");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn without_a_display_one_line_names_the_headless_command() {
+    let output = Command::new(env!("CARGO_BIN_EXE_gdcm"))
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        .output()
+        .unwrap();
+    let words = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(words.trim_end().lines().count(), 1, "{words}");
+    assert!(words.contains("no display") && words.contains("gdcm analyze"), "{words}");
+}

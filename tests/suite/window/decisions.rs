@@ -1,0 +1,168 @@
+//! Decisions, by hand, and what they give.
+
+use super::*;
+
+#[test]
+fn from_the_example_to_exported_corrections() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    assert_eq!(drawn(&window, CurveRole::Nominal).label, "nominal");
+    let corrected_before = drawn(&window, CurveRole::Corrected);
+
+    click(&mut window, "Reject 3 suggested");
+    let representative = &state(&window).shown().unwrap().comparison.physics;
+    assert_eq!(state(&window).condition().bundle(BundleKind::Physics)[representative.model].name, "ROLL-5deg");
+    assert!(drawn(&window, CurveRole::Nominal).rejected, "the nominal model is one of the outliers");
+    let corrected = drawn(&window, CurveRole::Corrected);
+    assert_ne!(
+        corrected.magnitude_db, corrected_before.magnitude_db,
+        "another representative, another corrected curve"
+    );
+
+    let on_axis = pair(&window, "Q", "LON");
+    let wanted = state(&window).shown().unwrap().comparison.delta.gain[on_axis].unwrap();
+    // Held exactly: only the rounding of a product of two gains.
+    assert!((net_gain(&window, "Q", "LON") / wanted - 1.0).abs() < 1e-9);
+    click(&mut window, "Hold LON → Q");
+    assert!(!state(&window).study.settings.constrained[on_axis]);
+    assert!((net_gain(&window, "Q", "LON") / wanted - 1.0).abs() > 1e-4, "free, it goes where the others pull it");
+
+    // LAT → P is held and stays; LON → Q is free: hold it again, free PED → R, and let alpha move that one's dots.
+    click(&mut window, "Hold LON → Q");
+    let (before, _) = channel_panels(state(&window));
+    window.get_by_role_and_label(Role::Slider, "α gains slider").set_value_accesskit(12.5);
+    settle(&mut window);
+    assert_eq!(state(&window).study.settings.alpha_gain, 12.5);
+    let (moved, _) = channel_panels(state(&window));
+    assert!((before[0].dots[0].gain - moved[0].dots[0].gain).abs() > 1e-4, "the dots of the channel gains moved");
+
+    let folder = tempfile::tempdir().unwrap();
+    export_to(&mut window, folder.path());
+    let written = read_corrections(&folder.path().join("corrections.json")).unwrap();
+    assert_eq!(written.conditions.len(), 11);
+    assert_eq!(written.settings.alpha_gain, 12.5);
+    let tenth = &written.conditions[9];
+    assert_eq!((tenth.id, tenth.physics_representative.as_str()), (10, "ROLL-5deg"));
+    let shown = state(&window).shown().unwrap();
+    assert_eq!(
+        tenth.gains.outputs.get("Q").copied(),
+        Some(shown.correction.output_gains[1]),
+        "read back to the last digit"
+    );
+    assert!(folder.path().join("corrections.csv").exists() && folder.path().join("assessment.csv").exists());
+}
+
+#[test]
+fn freeing_an_on_axis_entry_moves_its_net_gain_dots_with_alpha() {
+    let mut window = window();
+    let gain = |window: &Window| net_gain(window, "NY", "PED");
+    click(&mut window, "Hold PED → NY");
+    let before = gain(&window);
+    window.get_by_role_and_label(Role::Slider, "α gains slider").set_value_accesskit(100.0);
+    settle(&mut window);
+    assert!((gain(&window) - before).abs() > 1e-4, "{before} stayed");
+}
+
+#[test]
+fn every_choice_can_be_undone_and_done_again() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    let start = state(&window).study.clone();
+    click(&mut window, "Reject 3 suggested");
+    click(&mut window, "Hold PED → R");
+    window.get_by_role_and_label(Role::Slider, "α delays slider").set_value_accesskit(3.0);
+    settle(&mut window);
+    let end = state(&window).study.clone();
+    for _ in 0..3 {
+        window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        settle(&mut window);
+    }
+    assert_eq!(state(&window).study, start);
+    assert_eq!(state(&window).history.undo_label(), None);
+    for _ in 0..3 {
+        window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+        settle(&mut window);
+    }
+    assert_eq!(state(&window).study, end);
+}
+
+#[test]
+fn at_least_one_model_stays_in_each_bundle() {
+    let mut window = window();
+    let models: Vec<String> =
+        state(&window).condition().bundle(BundleKind::Identified).iter().map(|model| model.name.clone()).collect();
+    for model in &models {
+        click(&mut window, &format!("Keep identified model {model}"));
+    }
+    let notice = state(&window).notice.clone().expect("the refusal is shown");
+    assert_eq!(notice.kind, NoticeKind::Trouble);
+    assert!(notice.text.contains("at least one must stay"), "{}", notice.text);
+    assert_eq!(state(&window).study.choices[0].identified.rejected.len(), models.len() - 1);
+}
+
+#[test]
+fn a_pinned_model_represents_its_bundle() {
+    let mut window = window();
+    click(&mut window, "Pin physics model V+10kt");
+    let representative = state(&window).shown().unwrap().comparison.physics.model;
+    assert_eq!(state(&window).condition().bundle(BundleKind::Physics)[representative].name, "V+10kt");
+    click(&mut window, "Pin physics model V+10kt");
+    assert_eq!(state(&window).shown().unwrap().comparison.physics.model, 0, "the medoid again");
+}
+
+#[test]
+fn the_badge_says_proven_and_every_cell_says_what_holding_or_freeing_it_costs() {
+    let mut window = window();
+    window.get_by_label("proven");
+    wait_for_toggles(&mut window);
+    for (output, input, word) in [("Q", "LON", "holding LON → Q costs"), ("Q", "PED", "holding PED → Q would")] {
+        let costs = toggle_costs(state(&window), pair(&window, output, input));
+        assert!(costs.iter().any(|cost| cost.contains(word)), "{costs:?}");
+    }
+}
+
+#[test]
+fn held_gains_out_of_reach_are_explained_and_the_explanation_is_exported() {
+    let mut window = window();
+    window.get_by_label("Upper gain bound").set_value_accesskit(1.0);
+    settle(&mut window);
+    window.get_by_label("not matched");
+    let shown = state(&window).shown().unwrap();
+    let texts: Vec<String> = remarks(state(&window), shown).into_iter().map(|remark| remark.text).collect();
+    assert!(texts.iter().any(|text| text.contains("LON → Q cannot be held")), "{texts:?}");
+    let (marked, _) = gain_conflict_marks(shown);
+    assert!(marked.contains(&pair(&window, "Q", "LON")));
+
+    let folder = tempfile::tempdir().unwrap();
+    export_to(&mut window, folder.path());
+    let written = read_corrections(&folder.path().join("corrections.json")).unwrap();
+    let solution = &written.conditions[0].gain_solution;
+    assert!(!solution.matched && solution.proven);
+    let conflict = solution.explanation.conflicts.iter().find(|c| c.entries == [("Q".to_owned(), "LON".to_owned())]);
+    let upper = conflict.and_then(|conflict| conflict.upper).expect("the bound that would do is written");
+    // k_Q k_LON = 1.15 needs a bound of at least its square root, 1.0723, rounded up to three digits.
+    assert_eq!(upper, 1.08);
+}
+
+#[test]
+fn the_matrix_can_be_worked_from_the_keyboard() {
+    let mut window = window();
+    let target = pair(&window, "Q", "PED");
+    window.get_by_label("Response PED → Q").focus();
+    window.run_steps(2);
+    window.key_press(Key::Space);
+    settle(&mut window);
+    assert!(state(&window).study.settings.constrained[target]);
+}
+
+#[test]
+fn control_and_r_reject_the_suggested_outliers() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    let suggested = state(&window).shown().unwrap().suggested();
+    assert_eq!(suggested.len(), 3);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::R);
+    settle(&mut window);
+    let rejected = &state(&window).study.choices[9].physics.rejected;
+    assert_eq!(rejected.iter().copied().collect::<Vec<_>>(), suggested);
+}

@@ -1,0 +1,115 @@
+//! Opening and saving.
+
+use super::*;
+
+#[test]
+fn a_file_that_cannot_be_read_leaves_what_is_open_and_says_what_is_wrong() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    click(&mut window, "Reject 3 suggested");
+    // Nothing that is not saved is lost without a question.
+    let before = state(&window).study.clone();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("broken.json");
+    std::fs::write(&path, "{\"format\": \"gdcm-dataset\", ").unwrap();
+    open_by_path(&mut window, &path);
+    click(&mut window, "Lose them");
+    let notice = state(&window).notice.clone().expect("the trouble is shown");
+    assert_eq!(notice.kind, NoticeKind::Trouble);
+    assert!(notice.text.contains("broken.json"), "{}", notice.text);
+    assert_eq!(state(&window).study, before);
+}
+
+/// The path of a dataset of two conditions.
+pub(super) fn small_dataset() -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/small-dataset.json")
+}
+
+/// A file dropped on the window.
+#[derive(Debug)]
+pub(super) struct Dropped(pub(super) std::path::PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+#[test]
+fn a_dataset_dropped_on_the_window_is_opened() {
+    let mut window = window();
+    let path = small_dataset();
+    window.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(path)));
+    window.run_steps(1);
+    settle(&mut window);
+    assert_eq!(state(&window).dataset().conditions().len(), 2);
+    assert_eq!(state(&window).notice.as_ref().map(|notice| notice.kind), Some(NoticeKind::Done));
+}
+
+#[test]
+fn a_study_is_saved_and_opens_with_the_same_result() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    click(&mut window, "Reject 3 suggested");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.gdcm-study.json");
+    save_as(&mut window, &path);
+    settle(&mut window);
+    assert!(!state(&window).unsaved);
+    let (study, _) = open_study(&path).unwrap();
+    assert_eq!(study.choices, state(&window).study.choices);
+    let gain = net_gain(&window, "Q", "LON");
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(&mut window);
+    assert!(state(&window).unsaved);
+    open_by_path(&mut window, &path);
+    click(&mut window, "Lose them");
+    click(&mut window, CONDITION_10);
+    assert_eq!(net_gain(&window, "Q", "LON"), gain, "to the last digit");
+}
+
+#[test]
+fn a_dataset_opened_again_is_analysed_again() {
+    let mut window = window();
+    let path = small_dataset();
+    for _ in 0..2 {
+        open_by_path(&mut window, &path);
+        assert!(state(&window).analysis().is_some());
+    }
+}
+
+#[test]
+fn files_opened_of_late_are_in_the_menu_and_a_missing_one_cannot_be_chosen() {
+    let (directory, folder) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let setup = Setup { directory: Some(directory.path().to_owned()), ..Setup::default() };
+    let small = small_dataset();
+    let mut window = window_with(example(), setup.clone());
+    for name in ["first.json", "second.json"] {
+        let path = folder.path().join(name);
+        std::fs::copy(&small, &path).unwrap();
+        open_by_path(&mut window, &path);
+    }
+    wait_until(&mut window, "both are listed", |window| state(window).recent.len() == 2);
+    std::fs::remove_file(folder.path().join("second.json")).unwrap();
+
+    let mut window = window_with(example(), setup);
+    wait_until(&mut window, "the list is read", |window| state(window).recent.len() == 2);
+    click(&mut window, "File");
+    click(&mut window, "Open recent");
+    let missing = window.get_by_label_contains("second.json");
+    assert!(missing.accesskit_node().is_disabled());
+    window.get_by_label_contains("first.json").click();
+    settle(&mut window);
+    assert_eq!(state(&window).dataset().conditions().len(), 2, "the small dataset is open");
+}
+
+#[test]
+fn a_window_without_a_directory_of_its_own_lists_nothing() {
+    let mut window = window();
+    click(&mut window, "File");
+    assert!(window.query_by_label("Open recent").is_none() && state(&window).recent.is_empty());
+}

@@ -1,0 +1,134 @@
+//! The window, driven by accessible labels: no display, no GPU.
+
+mod computing;
+mod controls;
+mod decisions;
+mod files;
+mod plots;
+mod recovery;
+mod reload;
+
+use std::path::Path;
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+
+use gdcm::app::{GdcmApp, Setup};
+use gdcm::dataset::{BundleKind, ModelId, Pair};
+use gdcm::io::{Opened, embedded_example, load_any, open_study, read_corrections};
+use gdcm::view::explanation::{gain_conflict_marks, remarks, toggle_costs};
+use gdcm::view::net_gain_scene::channel_panels;
+use gdcm::view::plot::{BodeCurve, Pane, Role as CurveRole};
+use gdcm::view::state::{NoticeKind, State};
+
+type Window = Harness<'static, GdcmApp>;
+
+/// Far above what the slowest machine needs: only a hang gets there.
+const LIMIT: Duration = Duration::from_secs(120);
+
+const CONDITION_10: &str = "Condition 10: 60 kt, low altitude, high weight";
+
+/// The window on the example, its first results there.
+fn window() -> Window {
+    window_with(example(), Setup::default())
+}
+
+fn example() -> Opened {
+    Opened::Dataset(embedded_example().expect("the embedded example is a dataset"))
+}
+
+fn window_with(opened: Opened, setup: Setup) -> Window {
+    let build = |creation: &mut eframe::CreationContext<'static>| {
+        GdcmApp::with(&creation.egui_ctx, opened, setup).expect("a thread can be started")
+    };
+    let mut window = Harness::builder().with_size(vec2(1600.0, 1000.0)).build_eframe(build);
+    settle(&mut window);
+    window
+}
+
+/// Draws frames until something is so.
+fn wait_until(window: &mut Window, what: &str, is_so: impl Fn(&Window) -> bool) {
+    let limit = Instant::now() + LIMIT;
+    while !is_so(window) {
+        window.run_steps(1);
+        assert!(Instant::now() < limit, "never came: {what}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    window.run_steps(1);
+}
+
+/// Draws frames until nothing is being computed or read, and the curves of the condition shown are there.
+fn settle(window: &mut Window) {
+    window.run_steps(2);
+    wait_until(window, "the results", |window| {
+        let state = state(window);
+        let shown = state.curves().is_some() && !state.display.drawn.is_empty();
+        !state.results.is_waiting() && shown && state.opening.is_none()
+    });
+    window.run_steps(2);
+}
+
+fn click(window: &mut Window, label: &str) {
+    window.get_by_label(label).click();
+    settle(window);
+}
+
+fn state(window: &Window) -> &State {
+    window.state().state()
+}
+
+fn pair(window: &Window, output: &str, input: &str) -> Pair {
+    state(window).dataset().find_pair(output, input).expect("the example has this response")
+}
+
+fn net_gain(window: &Window, output: &str, input: &str) -> f64 {
+    let pair = pair(window, output, input);
+    state(window).shown().expect("the condition has a result").correction.net_gain(pair)
+}
+
+fn drawn(window: &Window, role: CurveRole) -> BodeCurve {
+    let mut curves = state(window).display.drawn.iter();
+    curves.find(|curve| curve.role == role).expect("a curve of this role is drawn").clone()
+}
+
+fn choose_condition_10(window: &mut Window) {
+    click(window, CONDITION_10);
+    click(window, "Response LON → Q");
+}
+
+fn fill(window: &mut Window, field: &str, path: &Path) {
+    window.get_by_label(field).focus();
+    window.run_steps(2);
+    window.get_by_label(field).type_text(path.to_str().unwrap());
+    window.run_steps(2);
+}
+
+fn open_by_path(window: &mut Window, path: &Path) {
+    window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::O);
+    window.run_steps(2);
+    fill(window, "Path to open", path);
+    click(window, "Open file");
+}
+
+fn export_to(window: &mut Window, folder: &Path) {
+    click(window, "Export corrections…");
+    fill(window, "Export folder", folder);
+    click(window, "Export");
+    let notice = state(window).notice.clone().expect("the export is reported");
+    assert_eq!(notice.kind, NoticeKind::Done, "{}", notice.text);
+}
+
+fn wait_for_toggles(window: &mut Window) {
+    wait_until(window, "the costs", |window| state(window).toggles().is_some());
+}
+
+/// Saves the study as the form does.
+fn save_as(window: &mut Window, path: &Path) {
+    let ctx = window.ctx.clone();
+    window.state_mut().save_study_as(path.to_owned(), &ctx);
+    settle(window);
+}

@@ -1,0 +1,164 @@
+//! The plots, worked with the pointer.
+
+use super::*;
+
+/// A point of the nominal model's curve.
+fn place_on_nominal(window: &Window) -> Pos2 {
+    let nominal = drawn(window, CurveRole::Nominal);
+    // At 2 rad/s the nominal model stands 3 dB above the bundle: nothing else is near.
+    let at = nominal.omega.iter().position(|&omega| omega > 2.0).unwrap();
+    let view = &state(window).display.bode;
+    view.screen_position(Pane::Magnitude, nominal.omega[at], nominal.magnitude_db[at]).unwrap()
+}
+
+#[test]
+fn a_click_on_a_curve_rejects_it_and_another_click_restores_it() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    let place = place_on_nominal(&window);
+    let id = ModelId { condition: 9, bundle: BundleKind::Physics, model: 0 };
+    for rejected in [true, false] {
+        window.hover_at(place);
+        window.run_steps(2);
+        assert_eq!(state(&window).display.hovered, Some(id), "hovering points at the model");
+        window.drag_at(place);
+        window.run_steps(1);
+        window.drop_at(place);
+        settle(&mut window);
+        assert_eq!(state(&window).study.is_rejected(id), rejected);
+        // A second click soon after would be a double click, which fits the plot.
+        window.run_steps(4);
+    }
+}
+
+#[test]
+fn a_double_click_on_a_curve_fits_the_plot_and_leaves_no_decision() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    let start = state(&window).study.clone();
+    click(&mut window, "Keep physics model V+10kt");
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(&mut window);
+    let place = place_on_nominal(&window);
+    window.hover_at(place);
+    window.run_steps(2);
+    for _ in 0..2 {
+        // Both in one frame: a frame of the harness takes nearly as long as two clicks may be apart.
+        for pressed in [true, false] {
+            let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+            window.input_mut().events.push(Event::PointerButton { pos: place, button, pressed, modifiers });
+        }
+        window.step();
+    }
+    settle(&mut window);
+    assert_eq!(state(&window).study, start);
+    assert_eq!(state(&window).history.undo_label(), None, "nothing to undo");
+    assert!(state(&window).history.redo_label().is_some(), "what could be redone before still can");
+}
+
+#[test]
+fn a_click_on_a_net_gain_dot_goes_to_its_condition() {
+    let mut window = window();
+    let place = state(&window).display.net_gain.screen_position(0, 2).expect("condition 3 has a dot");
+    window.hover_at(place);
+    window.run_steps(2);
+    window.drag_at(place);
+    window.run_steps(1);
+    window.drop_at(place);
+    settle(&mut window);
+    assert_eq!(state(&window).condition().id(), 3);
+}
+
+#[test]
+fn an_idle_window_draws_no_frames() {
+    let mut window = window();
+    wait_for_toggles(&mut window);
+    for tab in ["Bode", "Overview", "Channels", "Assessment"] {
+        click(&mut window, tab);
+        let frames = window.run();
+        assert!(frames < 60, "{tab} settled after {frames} frames");
+        assert_asks_for_no_frame(&mut window, tab);
+    }
+    click(&mut window, "Bode");
+    // A pointer that rests on a curve: its name is shown, and stays.
+    let nominal = drawn(&window, CurveRole::Nominal);
+    let view = &state(&window).display.bode;
+    let place = view.screen_position(Pane::Magnitude, nominal.omega[200], nominal.magnitude_db[200]).unwrap();
+    window.hover_at(place);
+    window.run();
+    assert!(state(&window).display.hovered.is_some());
+    assert_asks_for_no_frame(&mut window, "Bode with the pointer on a curve");
+}
+
+/// Draws a few frames without input, none of which may ask for another one.
+fn assert_asks_for_no_frame(window: &mut Window, what: &str) {
+    for _ in 0..5 {
+        window.run_steps(1);
+        let delays: Vec<Duration> =
+            window.output().viewport_output.values().map(|output| output.repaint_delay).collect();
+        assert_eq!(delays, [Duration::MAX], "{what}: {:?}", window.ctx.repaint_causes());
+    }
+}
+
+#[test]
+fn what_is_out_of_sight_is_not_tessellated() {
+    let mut window = window();
+    for tab in ["Overview", "Channels", "Assessment", "Bode"] {
+        click(&mut window, tab);
+        assert_little_is_hidden(&window, tab);
+    }
+    let nominal = drawn(&window, CurveRole::Nominal);
+    let view = &state(&window).display.bode;
+    let place = view.screen_position(Pane::Magnitude, nominal.omega[200], nominal.magnitude_db[200]).unwrap();
+    window.hover_at(place);
+    for _ in 0..20 {
+        window.event(egui::Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Line,
+            delta: vec2(0.0, 1.0),
+            phase: egui::TouchPhase::Move,
+            modifiers: Modifiers::NONE,
+            source: egui::MouseWheelSource::Wheel,
+        });
+        window.run_steps(4);
+    }
+    let (min, max) = state(&window).display.bode.omega_range();
+    assert!(max / min < 1.2, "the wheel zoomed in: {min} to {max} rad/s");
+    assert_little_is_hidden(&window, "Bode zoomed in");
+}
+
+/// Every shape in view is tessellated as a whole: dashes and letters at an edge have a few triangles beyond it.
+fn assert_little_is_hidden(window: &Window, what: &str) {
+    let (hidden, all) = hidden_triangles(window);
+    assert!(all > 10_000 && hidden < all / 100, "{what}: {hidden} of {all} triangles");
+}
+
+/// How many triangles of the frame drawn last lie outside what they are clipped to, and how many there are.
+fn hidden_triangles(window: &Window) -> (usize, usize) {
+    let output = window.output();
+    let (mut hidden, mut all) = (0, 0);
+    for primitive in window.ctx.tessellate(output.shapes.clone(), output.pixels_per_point) {
+        let egui::epaint::Primitive::Mesh(mesh) = &primitive.primitive else { continue };
+        for corners in mesh.indices.chunks_exact(3) {
+            let positions = corners.iter().map(|&corner| mesh.vertices[corner as usize].pos);
+            let bounds = egui::Rect::from_points(&positions.collect::<Vec<_>>());
+            hidden += usize::from(!bounds.intersects(primitive.clip_rect));
+            all += 1;
+        }
+    }
+    (hidden, all)
+}
+
+#[test]
+fn pointing_at_plots_starts_no_analysis() {
+    let mut window = window();
+    let (requested, analysis) = (state(&window).results.requested, state(&window).results.analysis.clone());
+    for step in 0..40 {
+        // From corner to corner, across lists, plots, matrix and settings.
+        window.hover_at(pos2(40.0 * step as f32, 25.0 * step as f32));
+        window.run_steps(1);
+    }
+    assert_eq!(state(&window).results.requested, requested);
+    let same =
+        state(&window).results.analysis.as_ref().zip(analysis.as_ref()).map(|(a, b)| std::sync::Arc::ptr_eq(a, b));
+    assert_eq!(same, Some(true));
+}

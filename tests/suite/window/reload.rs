@@ -1,0 +1,112 @@
+//! A dataset whose file changes on the disk while it is open.
+
+use std::path::PathBuf;
+
+use super::*;
+
+/// A copy of the small dataset that may be changed.
+struct Copy {
+    _folder: tempfile::TempDir,
+    path: PathBuf,
+    text: String,
+}
+
+impl Copy {
+    fn new() -> Self {
+        let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/small-dataset.json"));
+        let (folder, text) = (tempfile::tempdir().unwrap(), text.unwrap());
+        let path = folder.path().join("my-dataset.json");
+        std::fs::write(&path, &text).unwrap();
+        Self { _folder: folder, path, text }
+    }
+
+    /// Writes another name of the dataset into the file: the figures stay.
+    fn rename(&self, name: &str) {
+        let text = self.text.replacen("\"name\": \"", &format!("\"name\": \"{name} "), 1);
+        assert_ne!(text, self.text);
+        std::fs::write(&self.path, text).unwrap();
+    }
+
+    fn window(&self) -> Window {
+        let setup = Setup { look_every: Duration::from_millis(20), ..Setup::default() };
+        window_with(load_any(&self.path).unwrap(), setup)
+    }
+}
+
+fn is_told(window: &Window) -> bool {
+    window.query_by_label_contains("my-dataset.json has changed on disk").is_some()
+}
+
+#[test]
+fn a_file_that_changes_is_told_and_reloaded_and_undo_goes_back_across_it() {
+    let copy = Copy::new();
+    let mut window = copy.window();
+    let before = state(&window).dataset().name().to_owned();
+    window.get_by_role_and_label(Role::Slider, "α gains slider").set_value_accesskit(12.5);
+    settle(&mut window);
+    let received = state(&window).results.received;
+    copy.rename("renewed");
+    wait_until(&mut window, "the change is told", is_told);
+    assert_eq!(state(&window).dataset().name(), before, "nothing is taken up unasked");
+    click(&mut window, "Reload");
+    assert!(state(&window).dataset().name().starts_with("renewed"));
+    assert_eq!(state(&window).study.settings.alpha_gain, 12.5, "the decision still applies");
+    assert!(state(&window).results.received > received && state(&window).shown().is_some());
+    assert!(!is_told(&window));
+    window.get_by_label("Undo reload my-dataset.json");
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(&mut window);
+    assert_eq!(state(&window).dataset().name(), before);
+    assert!(state(&window).shown().is_some(), "its results are there again");
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(&mut window);
+    assert_eq!(state(&window).study.settings.alpha_gain, 1.0, "and the decisions before it");
+    for _ in 0..2 {
+        window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+        settle(&mut window);
+    }
+    assert!(state(&window).dataset().name().starts_with("renewed"));
+}
+
+#[test]
+fn a_study_saved_after_a_reload_is_one_of_the_file_as_it_is_now() {
+    let copy = Copy::new();
+    let mut window = copy.window();
+    copy.rename("renewed");
+    wait_until(&mut window, "the change is told", is_told);
+    click(&mut window, "Reload");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.gdcm-study.json");
+    save_as(&mut window, &path);
+    let (study, loaded) = open_study(&path).unwrap();
+    assert!(study.dataset.name().starts_with("renewed") && loaded.path().is_some());
+}
+
+#[test]
+fn what_is_open_may_be_kept_and_the_next_change_is_told_again() {
+    let copy = Copy::new();
+    let mut window = copy.window();
+    let before = state(&window).dataset().name().to_owned();
+    copy.rename("renewed");
+    wait_until(&mut window, "the change is told", is_told);
+    click(&mut window, "Keep what is open");
+    assert!(!is_told(&window) && state(&window).dataset().name() == before);
+    copy.rename("once more");
+    wait_until(&mut window, "the next change is told", is_told);
+    std::fs::write(&copy.path, &copy.text).unwrap();
+    wait_until(&mut window, "as it was opened: nothing to tell", |window| !is_told(window));
+}
+
+#[test]
+fn a_changed_file_that_is_wrong_leaves_what_is_open() {
+    let copy = Copy::new();
+    let mut window = copy.window();
+    let before = state(&window).study.clone();
+    std::fs::write(&copy.path, "{\"format\": \"gdcm-dataset\", ").unwrap();
+    wait_until(&mut window, "the change is told", is_told);
+    click(&mut window, "Reload");
+    let notice = state(&window).notice.clone().expect("the trouble is told");
+    assert!(notice.kind == NoticeKind::Trouble && notice.text.contains("my-dataset.json"), "{}", notice.text);
+    assert_eq!(state(&window).study, before);
+    assert!(is_told(&window), "it can be tried again");
+}

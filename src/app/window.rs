@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, ViewportCommand};
 
+use crate::dataset::ConditionId;
 use crate::io::{LoadedDataset, Opened};
 use crate::study::{Study, display_band};
 use crate::view::command::{Command, FormKind};
@@ -30,7 +31,7 @@ pub struct GdcmApp {
     pub(super) postponed: Option<Command>,
     pub(super) closing: bool,
     /// What the newest request was made from.
-    requested: Option<(Study, usize)>,
+    requested: Option<(Study, ConditionId)>,
 }
 
 impl GdcmApp {
@@ -60,7 +61,7 @@ impl GdcmApp {
 
     /// Asks for what the study and the condition shown need, unless it was asked for already.
     fn request(&mut self, now: f64) {
-        let (study, condition) = (&self.state.study, self.state.display.condition);
+        let (study, condition) = (&self.state.study, self.state.condition().id());
         if self.requested.as_ref().is_some_and(|(of, at)| *at == condition && asks_the_same(of, study)) {
             return;
         }
@@ -90,6 +91,7 @@ impl GdcmApp {
 
     fn receive(&mut self, now: f64) {
         while let Some(reply) = self.worker.reply() {
+            let condition = self.state.condition().id();
             let results = &mut self.state.results;
             match reply {
                 Reply::Progress { generation, done, total } if generation == results.requested => {
@@ -105,13 +107,10 @@ impl GdcmApp {
                     results.waiting_since = results.is_waiting().then_some(now);
                     results.progress = None;
                 }
-                Reply::Curves { dataset, condition, curves }
-                    if Arc::ptr_eq(&dataset, &self.state.study.dataset)
-                        && condition == self.state.display.condition =>
-                {
+                Reply::Curves(curves) if curves.condition.id() == condition => {
                     let band = display_band(self.state.study.settings.band);
                     let first = results.curves.is_none();
-                    results.curves = Some((condition, curves));
+                    results.curves = Some(curves);
                     if first || self.state.display.bode_band != Some(band) {
                         self.state.display.bode.request_fit();
                         self.state.display.bode_band = Some(band);
@@ -121,7 +120,7 @@ impl GdcmApp {
                     results.toggles = Some(toggles);
                 }
                 // Answers to questions that no longer stand.
-                Reply::Progress { .. } | Reply::Toggles { .. } | Reply::Curves { .. } => {}
+                Reply::Progress { .. } | Reply::Toggles { .. } | Reply::Curves(_) => {}
             }
         }
     }

@@ -7,7 +7,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use super::pool::Pool;
-use crate::dataset::Dataset;
+use crate::dataset::ConditionId;
 use crate::study::{
     Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, Engine, Study, Toggles, Watch, display_band,
 };
@@ -23,8 +23,8 @@ pub struct Request {
     pub generation: u64,
     /// The study to analyse.
     pub study: Study,
-    /// Index of the condition shown, whose curves are wanted.
-    pub condition: usize,
+    /// The condition shown, whose curves are wanted.
+    pub condition: ConditionId,
 }
 
 /// What was computed.
@@ -58,14 +58,7 @@ pub enum Reply {
         toggles: Arc<Toggles>,
     },
     /// Responses of one condition for drawing.
-    Curves {
-        /// Dataset they belong to.
-        dataset: Arc<Dataset>,
-        /// Index of the condition.
-        condition: usize,
-        /// The responses.
-        curves: Arc<ConditionCurves>,
-    },
+    Curves(Arc<ConditionCurves>),
 }
 
 /// In place of the newest request's number where nothing is wanted any more.
@@ -182,12 +175,12 @@ impl Desk<'_> {
         let (dataset, condition) = (&request.study.dataset, request.condition);
         let grid = (display_band(request.study.settings.band), CURVE_POINTS);
         let watch = RequestWatch::new(self, request);
-        let Ok(curves) = engine.curves(dataset, condition, grid, &watch) else {
+        let Ok(Some(curves)) = engine.curves(dataset, condition, grid, &watch) else {
             return;
         };
         if !drawn.as_ref().is_some_and(|drawn| Arc::ptr_eq(drawn, &curves)) {
             *drawn = Some(Arc::clone(&curves));
-            self.send(Reply::Curves { dataset: Arc::clone(dataset), condition, curves });
+            self.send(Reply::Curves(curves));
         }
     }
 
@@ -247,7 +240,7 @@ impl Watch for RequestWatch<'_, '_> {
         }
     }
 
-    fn wanted_first(&self) -> Option<usize> {
+    fn wanted_first(&self) -> Option<ConditionId> {
         Some(self.request.condition)
     }
 

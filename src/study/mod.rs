@@ -23,7 +23,7 @@ pub use analysis::{Analysis, Assessed};
 pub use caution::Caution;
 pub use comparison::{BundleFigures, Comparison};
 pub use condition_analysis::{ConditionAnalysis, ConditionFailure};
-pub use condition_responses::{ConditionResponses, PreparedCondition};
+pub use condition_responses::ConditionResponses;
 pub use crew::{Alone, Crew, Job};
 pub use curves::{ConditionCurves, display_band};
 pub use document::{BundleChoice, ConditionChoice, Study};

@@ -1,9 +1,9 @@
 //! Everything the window shows.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use crate::dataset::{Band, BundleKind, Condition, Dataset, ModelId, Pair};
+use crate::dataset::{Band, BundleKind, Condition, ConditionId, Dataset, ModelId, Pair};
 use crate::study::{Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, History, Study, Toggles};
 
 use super::bode_scene::CachedShapes;
@@ -25,10 +25,10 @@ pub enum Tab {
 }
 
 /// What is shown, none of which changes a result.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Display {
-    /// Index of the condition shown.
-    pub condition: usize,
+    /// The condition shown.
+    pub condition: ConditionId,
     /// The response in the large plot.
     pub pair: Pair,
     /// The model pointed at.
@@ -57,13 +57,35 @@ pub struct Display {
     pub drawn: Vec<BodeCurve>,
 }
 
+impl Display {
+    /// A condition and a response, in plots that fit what they show.
+    fn of(condition: ConditionId, pair: Pair) -> Self {
+        Self {
+            condition,
+            pair,
+            hovered: None,
+            isolated: None,
+            tab: Tab::default(),
+            unit: FrequencyUnit::default(),
+            bode: BodeView::default(),
+            net_gain: GainView::default(),
+            channels: ChannelsView::default(),
+            overview: OverviewView::default(),
+            assessment: AssessmentView::default(),
+            bode_band: None,
+            shapes: BTreeMap::new(),
+            drawn: Vec::new(),
+        }
+    }
+}
+
 /// The result of the condition shown, ahead of the others'.
 #[derive(Clone, Debug)]
 pub struct FirstResult {
     /// The dataset it belongs to.
     pub dataset: Arc<Dataset>,
-    /// Index of the condition.
-    pub condition: usize,
+    /// The condition.
+    pub condition: ConditionId,
     /// The result.
     pub outcome: Result<ConditionAnalysis, ConditionFailure>,
 }
@@ -77,8 +99,8 @@ pub struct Results {
     pub first: Option<FirstResult>,
     /// What holding or freeing each response of the condition shown would cost; computed after the analysis.
     pub toggles: Option<Arc<Toggles>>,
-    /// Responses for drawing, with the index of their condition.
-    pub curves: Option<(usize, Arc<ConditionCurves>)>,
+    /// Responses for drawing.
+    pub curves: Option<Arc<ConditionCurves>>,
     /// Number of the newest request.
     pub requested: u64,
     /// Number of the request the analysis answers.
@@ -141,8 +163,8 @@ pub struct Notice {
 pub struct ExportForm {
     /// The folder, as typed.
     pub folder: String,
-    /// Whether each condition is exported.
-    pub chosen: Vec<bool>,
+    /// The conditions that are exported.
+    pub chosen: BTreeSet<ConditionId>,
 }
 
 /// What the forms hold while they are shown.
@@ -187,7 +209,7 @@ impl State {
     /// The state of a window that shows `study` for the first time.
     pub fn new(study: Study, study_name: String, file_cautions: Vec<String>) -> Self {
         let pair = study.dataset.measuring_pairs().marked().next().unwrap_or_default();
-        let display = Display { pair, ..Display::default() };
+        let display = Display::of(study.dataset.conditions()[0].id(), pair);
         Self {
             study,
             history: History::default(),
@@ -207,9 +229,10 @@ impl State {
         &self.study.dataset
     }
 
-    /// The condition shown.
+    /// The condition shown; the first one where the dataset does not have that any more.
     pub fn condition(&self) -> &Condition {
-        &self.study.dataset.conditions()[self.display.condition]
+        let found = self.study.dataset.condition(self.display.condition);
+        found.unwrap_or(&self.study.dataset.conditions()[0])
     }
 
     /// The result of the condition shown, where there is one of this dataset.
@@ -219,13 +242,13 @@ impl State {
 
     /// What came of the condition shown: the newest there is of this dataset.
     pub fn outcome(&self) -> Option<&Result<ConditionAnalysis, ConditionFailure>> {
-        let condition = self.display.condition;
+        let condition = self.condition().id();
         let first = self
             .results
             .first
             .as_ref()
             .filter(|first| first.condition == condition && Arc::ptr_eq(&first.dataset, &self.study.dataset));
-        first.map(|first| &first.outcome).or_else(|| self.analysis()?.conditions.get(condition))
+        first.map(|first| &first.outcome).or_else(|| self.analysis()?.conditions.get(&condition))
     }
 
     /// The newest analysis, where it is one of the dataset shown.
@@ -243,8 +266,8 @@ impl State {
     }
 
     /// A model of the condition shown.
-    pub fn model_id(&self, bundle: BundleKind, model: usize) -> ModelId {
-        ModelId { condition: self.display.condition, bundle, model }
+    pub fn model_id(&self, bundle: BundleKind, name: &str) -> ModelId {
+        ModelId::new(self.condition().id(), bundle, name)
     }
 }
 

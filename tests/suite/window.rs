@@ -10,7 +10,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
 use gdcm::app::GdcmApp;
-use gdcm::dataset::{BundleKind, ModelId, Pair};
+use gdcm::dataset::{BundleKind, ConditionId, ModelId, Pair};
 use gdcm::io::{Opened, embedded_example, open_study, read_corrections};
 use gdcm::view::explanation::{gain_conflict_marks, remarks, toggle_costs};
 use gdcm::view::net_gain_scene::channel_panels;
@@ -39,7 +39,8 @@ fn settle(window: &mut Window) {
     loop {
         window.run_steps(2);
         let state = window.state().state();
-        let curves = state.results.curves.as_ref().is_some_and(|(condition, _)| *condition == state.display.condition);
+        let curves =
+            state.results.curves.as_ref().is_some_and(|curves| curves.condition.id() == state.condition().id());
         if !state.results.is_waiting() && curves && state.opening.is_none() && !state.display.drawn.is_empty() {
             break;
         }
@@ -85,8 +86,7 @@ fn from_the_example_to_exported_corrections() {
     let corrected_before = drawn(&window, CurveRole::Corrected);
 
     click(&mut window, "Reject 3 suggested");
-    let representative = &state(&window).shown().unwrap().comparison.physics;
-    assert_eq!(state(&window).condition().bundle(BundleKind::Physics)[representative.model].name, "ROLL-5deg");
+    assert_eq!(state(&window).shown().unwrap().representative_name(BundleKind::Physics), "ROLL-5deg");
     assert!(drawn(&window, CurveRole::Nominal).rejected, "the nominal model is one of the outliers");
     let corrected = drawn(&window, CurveRole::Corrected);
     assert_ne!(
@@ -207,16 +207,16 @@ fn a_click_on_a_curve_rejects_it_and_another_click_restores_it() {
     let mut window = window();
     choose_condition_10(&mut window);
     let place = place_on_nominal(&window);
-    let id = ModelId { condition: 9, bundle: BundleKind::Physics, model: 0 };
+    let id = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
     for rejected in [true, false] {
         window.hover_at(place);
         window.run_steps(2);
-        assert_eq!(state(&window).display.hovered, Some(id), "hovering points at the model");
+        assert_eq!(state(&window).display.hovered.as_ref(), Some(&id), "hovering points at the model");
         window.drag_at(place);
         window.run_steps(1);
         window.drop_at(place);
         settle(&mut window);
-        assert_eq!(state(&window).study.is_rejected(id), rejected);
+        assert_eq!(state(&window).study.is_rejected(&id), rejected);
         // A second click soon after would be a double click, which fits the plot.
         window.run_steps(4);
     }
@@ -250,14 +250,14 @@ fn a_double_click_on_a_curve_fits_the_plot_and_leaves_no_decision() {
 #[test]
 fn a_click_on_a_net_gain_dot_goes_to_its_condition() {
     let mut window = window();
-    let place = state(&window).display.net_gain.screen_position(0, 2).expect("condition 3 has a dot");
+    let place = state(&window).display.net_gain.screen_position(0, ConditionId(3)).expect("condition 3 has a dot");
     window.hover_at(place);
     window.run_steps(2);
     window.drag_at(place);
     window.run_steps(1);
     window.drop_at(place);
     settle(&mut window);
-    assert_eq!(state(&window).condition().id(), 3);
+    assert_eq!(state(&window).condition().id(), ConditionId(3));
 }
 
 #[test]
@@ -271,17 +271,18 @@ fn at_least_one_model_stays_in_each_bundle() {
     let notice = state(&window).notice.clone().expect("the refusal is shown");
     assert_eq!(notice.kind, NoticeKind::Trouble);
     assert!(notice.text.contains("at least one must stay"), "{}", notice.text);
-    assert_eq!(state(&window).study.choices[0].identified.rejected.len(), models.len() - 1);
+    assert_eq!(state(&window).study.choice(ConditionId(1)).identified.rejected.len(), models.len() - 1);
 }
 
 #[test]
 fn a_pinned_model_represents_its_bundle() {
     let mut window = window();
     click(&mut window, "Pin physics model V+10kt");
-    let representative = state(&window).shown().unwrap().comparison.physics.model;
-    assert_eq!(state(&window).condition().bundle(BundleKind::Physics)[representative].name, "V+10kt");
+    let representative =
+        |window: &Window| state(window).shown().unwrap().representative_name(BundleKind::Physics).to_owned();
+    assert_eq!(representative(&window), "V+10kt");
     click(&mut window, "Pin physics model V+10kt");
-    assert_eq!(state(&window).shown().unwrap().comparison.physics.model, 0, "the medoid again");
+    assert_eq!(representative(&window), "nominal", "the medoid again");
 }
 
 #[test]
@@ -511,8 +512,8 @@ fn control_and_r_reject_the_suggested_outliers() {
     assert_eq!(suggested.len(), 3);
     window.key_press_modifiers(Modifiers::COMMAND, Key::R);
     settle(&mut window);
-    let rejected = &state(&window).study.choices[9].physics.rejected;
-    assert_eq!(rejected.iter().copied().collect::<Vec<_>>(), suggested);
+    let rejected = &state(&window).study.choice(ConditionId(10)).physics.rejected;
+    assert_eq!(*rejected, suggested.into_iter().collect());
 }
 
 #[test]

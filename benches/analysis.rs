@@ -11,11 +11,11 @@ use criterion::{Criterion, criterion_group, criterion_main};
 
 use gdcm::app::Pool;
 use gdcm::correction::{Delta, delay_upper_s, gain_bounds, mismatch_table};
-use gdcm::dataset::{Band, BundleKind, Dataset, Dynamics, ModelId};
+use gdcm::dataset::{Band, BundleKind, ConditionId, Dataset, Dynamics, ModelId};
 use gdcm::fidelity::Discontinuity;
 use gdcm::io::embedded_example;
 use gdcm::response::{FrequencyGrid, PolarResponse};
-use gdcm::study::{BundleFigures, Edit, Engine, Execution, PreparedCondition, Setting, Study, Unobserved};
+use gdcm::study::{BundleFigures, ConditionResponses, Edit, Engine, Execution, Setting, Study, Unobserved};
 
 #[path = "random_model/mod.rs"]
 #[expect(dead_code, reason = "other benches use the rest of it")]
@@ -45,7 +45,7 @@ fn stages(criterion: &mut Criterion) {
     let perturbations: Vec<_> = models.iter().map(|model| (model.name.as_str(), model.perturbation())).collect();
     let mut group = criterion.benchmark_group("one condition");
     group.bench_function("responses of models not prepared", |bencher| {
-        bencher.iter(|| PreparedCondition::of(condition).responses(condition, &grid, &alone));
+        bencher.iter(|| ConditionResponses::of(condition, (dataset.band(), 200), &alone));
     });
     group.bench_function("responses", |bencher| bencher.iter(|| prepared.responses(condition, &grid, &alone)));
     group.bench_function("distances and ratios", |bencher| {
@@ -94,7 +94,7 @@ fn all_conditions(criterion: &mut Criterion, name: &str, engine: impl Fn() -> En
         set(study, Setting::Band(band));
     });
     drag("model rejected", &|study, turn| {
-        let id = ModelId { condition: 9, bundle: BundleKind::Physics, model: 0 };
+        let id = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
         let edit = if turn % 2.0 == 0.0 { Edit::Reject(id) } else { Edit::Restore(id) };
         study.apply(&edit).expect("others are kept");
     });
@@ -106,7 +106,7 @@ fn ratios(_: &mut Criterion) {
     let dataset = example();
     let (condition, grid) = (&dataset.conditions()[9], FrequencyGrid::logarithmic(dataset.band(), 200));
     let alone = Execution::sequential();
-    let ours = shortest(20, || PreparedCondition::of(condition).responses(condition, &grid, &alone));
+    let ours = shortest(20, || ConditionResponses::of(condition, (dataset.band(), 200), &alone));
     let models = [BundleKind::Physics, BundleKind::Identified].map(|kind| condition.bundle(kind)).concat();
     let plain = shortest(3, || {
         for model in &models {

@@ -12,6 +12,7 @@ use criterion::Criterion;
 use egui::{Context, Event, FullOutput, RawInput, Rect, Ui, pos2, vec2};
 use egui_plot::{Line, Plot};
 
+use gdcm::dataset::{BundleKind, ConditionId, ModelId};
 use gdcm::view::palette::Palette;
 use gdcm::view::plot::{BodeCurve, BodeScene, BodeView, CurveId, FrequencyUnit, Role, bode_ui};
 
@@ -94,7 +95,7 @@ fn curve(number: usize, points: usize) -> BodeCurve {
     };
     let phase = |w: &f64| -(0.5 * w / corner).atan2(1.0 - (w / corner).powi(2)).to_degrees() - 4.0 * w;
     BodeCurve {
-        id: CurveId(number as u64),
+        id: CurveId::Model(ModelId::new(ConditionId(1), BundleKind::Physics, number.to_string())),
         label: format!("model {number}"),
         detail: String::new(),
         role: match number {

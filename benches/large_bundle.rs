@@ -3,12 +3,13 @@
 //! Figures to reach: responses <= 1 s on two cores, memory <= 1 GB.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use criterion::Criterion;
 use gdcm::app::Pool;
-use gdcm::dataset::{Band, Condition, Dynamics, FlightState, Model, Origin, Pair, PairTable, StateSpace};
+use gdcm::dataset::{Band, Condition, ConditionId, Dynamics, FlightState, Model, Origin, Pair, PairTable, StateSpace};
 use gdcm::response::FrequencyGrid;
-use gdcm::study::{BundleFigures, Execution, Executor, PreparedCondition, Sequential, Unobserved};
+use gdcm::study::{BundleFigures, ConditionResponses, Execution, Executor, Sequential, Unobserved};
 use nalgebra::DMatrix;
 
 #[path = "random_model/mod.rs"]
@@ -41,15 +42,12 @@ fn condition() -> Condition {
             Origin::Perturbed { perturbation: Some(perturbation) }
         };
         let dynamics = Dynamics::StateSpace(StateSpace::new(a, b, c, d).expect("the shapes agree"));
-        Model { name: format!("model {index}"), origin, dynamics }
+        Model::new(format!("model {index}"), origin, dynamics)
     });
-    let identified = Model {
-        name: "flight".to_owned(),
-        origin: Origin::Identified { method: None, order: None },
-        dynamics: Dynamics::StateSpace(base.clone()),
-    };
+    let origin = Origin::Identified { method: None, order: None };
+    let identified = Model::new("flight", origin, Dynamics::StateSpace(base.clone()));
     let flight_state = FlightState {
-        id: 1,
+        id: ConditionId(1),
         name: "a large bundle".to_owned(),
         airspeed_kt: 60.0,
         altitude: None,
@@ -68,13 +66,14 @@ fn peak_memory_mb() -> Option<f64> {
 }
 
 fn main() {
-    let condition = condition();
-    let grid = FrequencyGrid::logarithmic(Band::new(0.1, 100.0).expect("a band"), FREQUENCIES);
+    let condition = Arc::new(condition());
+    let band = Band::new(0.1, 100.0).expect("a band");
+    let grid = FrequencyGrid::logarithmic(band, FREQUENCIES);
     let mut measuring = PairTable::filled(OUTPUTS, INPUTS, false);
     (0..INPUTS).for_each(|channel| measuring[Pair::new(channel, channel)] = true);
     let responses = |executor: &dyn Executor| {
         let execution = Execution::new(executor, &Unobserved, MODELS);
-        PreparedCondition::of(&condition).responses(&condition, &grid, &execution).expect("nobody stops it")
+        ConditionResponses::of(&condition, (band, FREQUENCIES), &execution).expect("nobody stops it")
     };
     let mut criterion = Criterion::default().sample_size(10).configure_from_args();
     let mut group = criterion.benchmark_group(format!("{MODELS} models, {STATES} states, {FREQUENCIES} frequencies"));

@@ -1,10 +1,12 @@
 //! Opening, saving and exporting.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use egui::Context;
 
+use crate::dataset::ConditionId;
 use crate::io::{
     Corrections, FileError, LoadedDataset, Opened, STUDY_EXTENSION, embedded_example, load_any, make_directory,
     save_study, write_assessment_csv, write_corrections, write_corrections_csv,
@@ -219,7 +221,7 @@ impl GdcmApp {
             return;
         };
         let form = &self.state.forms.export;
-        let chosen: Vec<usize> = (0..form.chosen.len()).filter(|&index| form.chosen[index]).collect();
+        let chosen = form.chosen.clone();
         let folder = PathBuf::from(form.folder.trim());
         match write_results(&analysis, &self.loaded.sha256, &chosen, &folder) {
             Ok(()) => {
@@ -231,7 +233,12 @@ impl GdcmApp {
     }
 }
 
-fn write_results(analysis: &Analysis, sha256: &str, chosen: &[usize], folder: &Path) -> Result<(), FileError> {
+fn write_results(
+    analysis: &Analysis,
+    sha256: &str,
+    chosen: &BTreeSet<ConditionId>,
+    folder: &Path,
+) -> Result<(), FileError> {
     make_directory(folder)?;
     write_corrections(&Corrections::of(analysis, sha256, chosen), &folder.join("corrections.json"))?;
     write_corrections_csv(analysis, chosen, &folder.join("corrections.csv"))?;

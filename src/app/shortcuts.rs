@@ -41,10 +41,10 @@ pub fn pressed(ctx: &Context, state: &State) -> Vec<Command> {
 }
 
 fn reject_suggested(state: &State) -> Option<Command> {
-    let condition = state.display.condition;
-    let rejected = &state.study.choices[condition].physics.rejected;
+    let condition = state.condition().id();
+    let rejected = &state.study.choice(condition).physics.rejected;
     let suggested = state.shown()?.suggested();
-    let models: Vec<usize> = suggested.into_iter().filter(|model| !rejected.contains(model)).collect();
+    let models: Vec<String> = suggested.into_iter().filter(|model| !rejected.contains(model)).collect();
     (!models.is_empty()).then(|| Edit::RejectAll { condition, models }.into())
 }
 
@@ -55,12 +55,13 @@ fn navigation(ctx: &Context, state: &State) -> Vec<Command> {
     if ctx.memory(|memory| memory.focused().is_some()) {
         return commands;
     }
-    let (condition, conditions) = (state.display.condition, state.dataset().conditions().len());
-    if pressed(Key::ArrowDown) && condition + 1 < conditions {
-        commands.push(Command::SelectCondition(condition + 1));
+    let conditions = state.dataset().conditions();
+    let at = conditions.iter().position(|condition| condition.id() == state.condition().id()).unwrap_or(0);
+    if pressed(Key::ArrowDown) && at + 1 < conditions.len() {
+        commands.push(Command::SelectCondition(conditions[at + 1].id()));
     }
-    if pressed(Key::ArrowUp) && condition > 0 {
-        commands.push(Command::SelectCondition(condition - 1));
+    if pressed(Key::ArrowUp) && at > 0 {
+        commands.push(Command::SelectCondition(conditions[at - 1].id()));
     }
     let (inputs, outputs) = (state.dataset().inputs().len(), state.dataset().outputs().len());
     let place = state.display.pair.output * inputs + state.display.pair.input;

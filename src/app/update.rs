@@ -2,9 +2,10 @@
 
 use egui::{Context, ViewportCommand};
 
+use crate::dataset::ConditionId;
 use crate::study::Edit;
 use crate::view::command::{Command, FormKind};
-use crate::view::state::{Display, ExportForm, Notice, NoticeKind};
+use crate::view::state::{Display, Notice, NoticeKind};
 
 use super::dialogs::DialogPurpose;
 use super::window::GdcmApp;
@@ -42,7 +43,7 @@ impl GdcmApp {
             Command::FocusPair(_) => {}
             Command::Hover(model) => display.hovered = Some(model),
             Command::Isolate(model) => {
-                display.isolated = if display.isolated == Some(model) { None } else { Some(model) };
+                display.isolated = if display.isolated.as_ref() == Some(&model) { None } else { Some(model) };
             }
             Command::ShowTab(tab) => display.tab = tab,
             Command::SetFrequencyUnit(unit) => display.unit = unit,
@@ -121,11 +122,8 @@ impl GdcmApp {
 
     fn show_form(&mut self, form: Option<FormKind>) {
         if form == Some(FormKind::Export) {
-            let form = &mut self.state.forms.export;
-            let count = self.state.study.dataset.conditions().len();
-            if form.chosen.len() != count {
-                *form = ExportForm { chosen: vec![true; count], folder: form.folder.clone() };
-            }
+            let all = self.state.study.dataset.conditions().iter().map(|condition| condition.id());
+            self.state.forms.export.chosen = all.collect();
         }
         if form.is_none() {
             self.postponed = None;
@@ -160,7 +158,7 @@ impl GdcmApp {
     }
 }
 
-fn select_condition(display: &mut Display, condition: usize) {
+fn select_condition(display: &mut Display, condition: ConditionId) {
     if display.condition != condition {
         display.condition = condition;
         display.isolated = None;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, ViewportCommand};
 
+use crate::dataset::ConditionId;
 use crate::io::{LoadedDataset, LostStudy, Opened};
 use crate::study::{Study, display_band};
 use crate::view::bars::Bar;
@@ -47,7 +48,7 @@ pub struct GdcmApp {
     pub(super) disk: DiskWatch,
     pub(super) recent: Recent,
     /// What the newest request was made from.
-    requested: Option<(Study, usize)>,
+    requested: Option<(Study, ConditionId)>,
 }
 
 impl GdcmApp {
@@ -99,7 +100,7 @@ impl GdcmApp {
 
     /// Asks for what the study and the condition shown need, unless it was asked for already.
     fn request(&mut self, now: f64) {
-        let (study, condition) = (&self.state.study, self.state.display.condition);
+        let (study, condition) = (&self.state.study, self.state.condition().id());
         if self.requested.as_ref().is_some_and(|(of, at)| *at == condition && asks_the_same(of, study)) {
             return;
         }
@@ -130,6 +131,7 @@ impl GdcmApp {
 
     fn receive(&mut self, now: f64) {
         while let Some(reply) = self.worker.reply() {
+            let condition = self.state.condition().id();
             let results = &mut self.state.results;
             match reply {
                 Reply::Progress { generation, done, total } if generation == results.requested => {
@@ -149,8 +151,7 @@ impl GdcmApp {
                     results.progress = None;
                 }
                 Reply::Curves(job, curves)
-                    if Arc::ptr_eq(&job.dataset, &self.state.study.dataset)
-                        && job.condition == self.state.display.condition =>
+                    if Arc::ptr_eq(&job.dataset, &self.state.study.dataset) && job.condition == condition =>
                 {
                     let band = display_band(self.state.study.settings.band);
                     let first = results.curves.is_none();

@@ -8,6 +8,7 @@ use std::time::Instant;
 use super::fault::{Fault, caught};
 use super::lane::{Ending, Lane, PATIENCE};
 use crate::correction::{GainProblem, GainSolution, Outcome};
+use crate::dataset::ConditionId;
 use crate::study::{
     Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, CurvesJob, Engine, Job, Progress, ProofJob, Study,
     Toggles, TogglesJob, display_band,
@@ -24,8 +25,8 @@ pub struct Request {
     pub generation: u64,
     /// The study to analyse.
     pub study: Study,
-    /// Index of the condition shown, whose result and curves are wanted first.
-    pub condition: usize,
+    /// The condition shown, whose result and curves are wanted first.
+    pub condition: ConditionId,
 }
 
 impl Request {
@@ -230,7 +231,7 @@ impl Lanes {
             "curves",
             move || make_engine(),
             move |job: CurvesJob, ending| {
-                out.deliver::<CurvesJob>(ending, |curves| Some(Reply::Curves(job, curves)));
+                out.deliver::<CurvesJob>(ending, |curves| Some(Reply::Curves(job, curves?)));
             },
         )?;
         let out = outbox.clone();
@@ -304,7 +305,7 @@ impl Desk {
         self.lanes
             .toggles
             .want(shown.map(|condition| TogglesJob { condition: condition.clone() }).into_iter().collect());
-        let others = analysis.conditions.iter().filter_map(|outcome| outcome.as_ref().ok());
+        let others = analysis.conditions.values().filter_map(|outcome| outcome.as_ref().ok());
         let open = shown.into_iter().chain(others).filter(|of| matches!(of.gains.outcome, Outcome::NotProven { .. }));
         let mut proofs: Vec<ProofJob> = Vec::new();
         for condition in open {
@@ -352,7 +353,7 @@ impl Progress for RequestProgress<'_> {
         }
     }
 
-    fn wanted_first(&self) -> Option<usize> {
+    fn wanted_first(&self) -> Option<ConditionId> {
         Some(self.request.condition)
     }
 

@@ -1,6 +1,6 @@
 //! `gdcm analyze`.
 
-use crate::dataset::{Band, BundleKind, Channel, ModelId};
+use crate::dataset::{Band, BundleKind, Channel, ConditionId, ModelId};
 use crate::io::{
     Corrections, LoadedDataset, embedded_example, load_any, make_directory, write_assessment_csv, write_corrections,
     write_corrections_csv,
@@ -97,14 +97,10 @@ fn hold(study: &mut Study, list: &PairList) -> Result<(), Failure> {
 fn reject(study: &mut Study, rejection: &Rejection) -> Result<(), Failure> {
     let Rejection { condition: id, model: name } = rejection;
     let wrong = |reason: String| Failure::Option { option: "--reject", reason };
-    let conditions = study.dataset.conditions();
-    let condition = conditions.iter().position(|condition| condition.id() == *id);
+    let id = ConditionId(*id);
+    let condition = study.dataset.condition(id);
     let condition = condition.ok_or_else(|| wrong(format!("the dataset has no condition {id}")))?;
-    let find = |bundle| {
-        let models = conditions[condition].bundle(bundle);
-        let model = models.iter().position(|model| model.name == *name)?;
-        Some(ModelId { condition, bundle, model })
-    };
+    let find = |bundle| condition.position(bundle, name).map(|_| ModelId::new(id, bundle, name));
     let model = match (find(BundleKind::Physics), find(BundleKind::Identified)) {
         (Some(model), None) | (None, Some(model)) => model,
         (None, None) => return Err(wrong(format!("condition {id} has no model \"{name}\""))),
@@ -119,8 +115,8 @@ fn reject(study: &mut Study, rejection: &Rejection) -> Result<(), Failure> {
 /// Rejects what the analysis suggests; says whether anything changed.
 fn reject_suggested(study: &mut Study, analysis: &Analysis) -> Result<bool, Failure> {
     let before = study.clone();
-    for condition in 0..analysis.conditions.len() {
-        let models = analysis.condition(condition).map(|result| result.suggested()).unwrap_or_default();
+    for (&condition, result) in &analysis.conditions {
+        let models = result.as_ref().map(|result| result.suggested()).unwrap_or_default();
         study.apply(&Edit::RejectAll { condition, models }).map_err(Failure::refused("--reject-suggested"))?;
     }
     Ok(*study != before)
@@ -128,11 +124,10 @@ fn reject_suggested(study: &mut Study, analysis: &Analysis) -> Result<bool, Fail
 
 /// Refuses an analysis without any result; says which conditions of another have none.
 fn check_result(analysis: &Analysis) -> Result<(), Failure> {
-    let failures =
-        analysis.study.dataset.conditions().iter().zip(&analysis.conditions).filter_map(|(condition, result)| {
-            let failure = result.as_ref().err()?;
-            Some(format!("condition {}: {failure}", condition.id()))
-        });
+    let failures = analysis.study.dataset.conditions().iter().filter_map(|condition| {
+        let failure = analysis.conditions.get(&condition.id())?.as_ref().err()?;
+        Some(format!("condition {}: {failure}", condition.id()))
+    });
     let failures: Vec<String> = failures.collect();
     match failures.first() {
         Some(first) if failures.len() == analysis.conditions.len() => Err(Failure::NoResult { reason: first.clone() }),
@@ -145,7 +140,7 @@ fn check_result(analysis: &Analysis) -> Result<(), Failure> {
 
 fn write(analysis: &Analysis, loaded: &LoadedDataset, arguments: &AnalyzeArguments) -> Result<(), Failure> {
     let out = &arguments.out;
-    let all: Vec<usize> = (0..analysis.conditions.len()).collect();
+    let all = analysis.conditions.keys().copied().collect();
     let corrections = Corrections::of(analysis, &loaded.sha256, &all);
     write_corrections(&corrections, &out.join("corrections.json")).map_err(Failure::Output)?;
     write_corrections_csv(analysis, &all, &out.join("corrections.csv")).map_err(Failure::Output)?;

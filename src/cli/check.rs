@@ -105,19 +105,20 @@ fn order_words(models: &[Model]) -> String {
 /// What a study has decided.
 fn decisions(file: &Path, study: &Study) -> String {
     let mut text = labelled(0, "Study", LABEL, &plain(&file.display().to_string()));
-    for (index, condition) in study.dataset.conditions().iter().enumerate() {
-        let rejected: Vec<String> = study.rejected_names(index).into_iter().map(plain).collect();
+    for condition in study.dataset.conditions() {
+        let choice = study.choice(condition.id());
+        let rejected: Vec<String> = study.rejected_names(condition.id()).into_iter().map(plain).collect();
         if !rejected.is_empty() {
             let words = format!("condition {}: {}", condition.id(), rejected.join(", "));
             text.push_str(&labelled(0, "Rejected", LABEL, &words));
         }
-        for kind in [BundleKind::Physics, BundleKind::Identified] {
-            if let Some(model) = study.choices[index].bundle(kind).pinned {
-                let words = format!("condition {}: {}", condition.id(), plain(&condition.bundle(kind)[model].name));
+        for kind in BundleKind::BOTH {
+            if let Some(name) = &choice.bundle(kind).pinned {
+                let words = format!("condition {}: {}", condition.id(), plain(name));
                 text.push_str(&labelled(0, "Pinned", LABEL, &words));
             }
         }
-        if !study.choices[index].scheduled {
+        if !choice.scheduled {
             text.push_str(&labelled(0, "Unscheduled", LABEL, &format!("condition {}", condition.id())));
         }
     }

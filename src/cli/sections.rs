@@ -22,32 +22,31 @@ fn detail_list(label: &str, entries: Vec<String>) -> String {
 }
 
 /// One condition: representatives, rejections, the on-axis and held responses, and what could not be matched.
-pub(super) fn condition_section(analysis: &Analysis, index: usize) -> String {
-    let condition = &analysis.study.dataset.conditions()[index];
+pub(super) fn condition_section(analysis: &Analysis, condition: &Condition) -> String {
     let state = condition.flight_state();
     let title = format!("{} ({} kt)", plain(&state.name), state.airspeed_kt);
     let mut text = labelled(0, &format!("Condition {}", state.id), LABEL, &title);
-    match &analysis.conditions[index] {
-        Ok(result) => {
-            text.push_str(&model_lines(analysis, index, condition, result));
+    match analysis.conditions.get(&condition.id()) {
+        None => {}
+        Some(Ok(result)) => {
+            text.push_str(&model_lines(analysis, result));
             text.push_str(&response_table(analysis, result).lines(2));
             text.push_str(&channel_lines(analysis, result));
             text.push_str(&trouble_lines(analysis, result));
         }
-        Err(failure) => text.push_str(&detail("no result", &plain(&failure.to_string()))),
+        Some(Err(failure)) => text.push_str(&detail("no result", &plain(&failure.to_string()))),
     }
     text
 }
 
-fn model_lines(analysis: &Analysis, index: usize, condition: &Condition, result: &ConditionAnalysis) -> String {
-    let name = |kind, model: usize| plain(&condition.bundle(kind)[model].name);
-    let rejected: Vec<String> = analysis.study.rejected_names(index).into_iter().map(plain).collect();
-    let is_rejected = |model: &usize| analysis.study.choices[index].physics.rejected.contains(model);
-    let suggested = result.suggested().into_iter().filter(|model| !is_rejected(model));
-    let suggested: Vec<String> = suggested.map(|model| name(BundleKind::Physics, model)).collect();
-    let mut text = detail("physics", &name(BundleKind::Physics, result.comparison.physics.model));
-    let identified = name(BundleKind::Identified, result.comparison.identified.model);
-    text.push_str(&detail("identified", &identified));
+fn model_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
+    let id = result.condition.id();
+    let rejected: Vec<String> = analysis.study.rejected_names(id).into_iter().map(plain).collect();
+    let is_rejected = |name: &String| analysis.study.choice(id).physics.rejected.contains(name);
+    let suggested = result.suggested().into_iter().filter(|name| !is_rejected(name));
+    let suggested: Vec<String> = suggested.map(|name| plain(&name)).collect();
+    let mut text = detail("physics", &plain(result.representative_name(BundleKind::Physics)));
+    text.push_str(&detail("identified", &plain(result.representative_name(BundleKind::Identified))));
     text.push_str(&detail_list("rejected", rejected));
     if !suggested.is_empty() {
         text.push_str(&detail_list("outliers?", suggested));

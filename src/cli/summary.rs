@@ -14,9 +14,9 @@ pub(super) const LABEL: usize = 14;
 /// The results for a person to read: the settings, each condition, the schedule, the assessment, and where the files are.
 pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -> String {
     let mut text = heading(analysis, loaded);
-    for index in 0..analysis.conditions.len() {
+    for condition in analysis.study.dataset.conditions() {
         text.push('\n');
-        text.push_str(&condition_section(analysis, index));
+        text.push_str(&condition_section(analysis, condition));
     }
     text.push('\n');
     text.push_str(&schedule_section(analysis));
@@ -47,10 +47,11 @@ fn assessment_lines(analysis: &Analysis) -> String {
     let (mut better, mut compared) = (0, 0);
     let mut left_out = Vec::new();
     let measuring = analysis.study.dataset.measuring_pairs();
-    for (condition, assessed) in analysis.study.dataset.conditions().iter().zip(&analysis.assessment) {
-        match assessed {
-            Assessed::LeftOut { why } => left_out.push(format!("condition {}: {}", condition.id(), plain(why))),
-            Assessed::Nominal(changes) => {
+    for condition in analysis.study.dataset.conditions() {
+        match analysis.assessment.get(&condition.id()) {
+            None => {}
+            Some(Assessed::LeftOut { why }) => left_out.push(format!("condition {}: {}", condition.id(), plain(why))),
+            Some(Assessed::Nominal(changes)) => {
                 let changes = measuring.marked().filter_map(|pair| changes[pair]).map(|change| change.total());
                 for change in changes {
                     compared += 1;

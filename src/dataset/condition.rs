@@ -1,32 +1,13 @@
 //! One flight condition with its two bundles of models.
 
+use super::identity::{BundleKind, ConditionId};
 use super::model::Model;
-
-/// Which of a condition's two bundles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum BundleKind {
-    /// The physics models: one nominal, the others at perturbed trims.
-    Physics,
-    /// The models identified from flight.
-    Identified,
-}
-
-/// One model of a dataset, by index.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct ModelId {
-    /// Index of the condition in the dataset.
-    pub condition: usize,
-    /// Which bundle of that condition.
-    pub bundle: BundleKind,
-    /// Index of the model in the bundle, in file order.
-    pub model: usize,
-}
 
 /// What describes a flight condition, besides its models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightState {
     /// Identity in the dataset ("condition 10").
-    pub id: i64,
+    pub id: ConditionId,
     /// Name for people.
     pub name: String,
     /// True airspeed \[kt\].
@@ -110,7 +91,7 @@ impl Condition {
     }
 
     /// Identity in the dataset.
-    pub fn id(&self) -> i64 {
+    pub fn id(&self) -> ConditionId {
         self.flight_state.id
     }
 
@@ -120,6 +101,11 @@ impl Condition {
             BundleKind::Physics => &self.physics,
             BundleKind::Identified => &self.identified,
         }
+    }
+
+    /// Position of the model of this name in its bundle, in file order.
+    pub fn position(&self, kind: BundleKind, name: &str) -> Option<usize> {
+        self.bundle(kind).iter().position(|model| model.name == name)
     }
 
     /// Index of the nominal model in the physics bundle.

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use super::band::Band;
 use super::channel::Channel;
-use super::condition::{BundleKind, Condition, ModelId};
+use super::condition::Condition;
+use super::identity::{BundleKind, ConditionId, ModelId};
 use super::model::Model;
 use super::pair::{Pair, PairTable};
 
@@ -43,7 +44,7 @@ pub enum DatasetError {
     #[error("conditions: the id {id} stands twice (conditions number {first} and {second}); ids must differ")]
     DuplicateId {
         /// The id.
-        id: i64,
+        id: ConditionId,
         /// First condition, counted from 1.
         first: usize,
         /// Second condition, counted from 1.
@@ -67,7 +68,7 @@ pub enum DatasetError {
     )]
     ModelShape {
         /// The condition's id.
-        condition: i64,
+        condition: ConditionId,
         /// The model's name.
         model: String,
         /// Number of output channels.
@@ -149,9 +150,14 @@ impl Dataset {
         &self.conditions
     }
 
-    /// One model by index.
-    pub fn model(&self, id: ModelId) -> &Model {
-        &self.conditions[id.condition].bundle(id.bundle)[id.model]
+    /// One condition.
+    pub fn condition(&self, id: ConditionId) -> Option<&Arc<Condition>> {
+        self.conditions.iter().find(|condition| condition.id() == id)
+    }
+
+    /// One model.
+    pub fn model(&self, id: &ModelId) -> Option<&Model> {
+        self.condition(id.condition)?.bundle(id.bundle).iter().find(|model| model.name == id.name)
     }
 
     /// A response in words, input first: "LON → Q".
@@ -197,7 +203,7 @@ fn check_conditions(conditions: &[Condition], outputs: usize, inputs: usize) -> 
         if let Some(first) = conditions[..second].iter().position(|earlier| earlier.id() == id) {
             return Err(DatasetError::DuplicateId { id, first: first + 1, second: second + 1 });
         }
-        for model in [BundleKind::Physics, BundleKind::Identified].into_iter().flat_map(|kind| condition.bundle(kind)) {
+        for model in BundleKind::BOTH.into_iter().flat_map(|kind| condition.bundle(kind)) {
             let (rows, columns) = model.dynamics.shape();
             if (rows, columns) != (outputs, inputs) {
                 let (condition, model) = (id, model.name.clone());

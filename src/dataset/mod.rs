@@ -3,8 +3,10 @@
 mod band;
 mod channel;
 mod condition;
+mod content;
 #[expect(clippy::module_inception, reason = "the folder is named for its noun, and so is the file that holds it")]
 mod dataset;
+mod identity;
 mod measured_response;
 mod model;
 mod pair;
@@ -12,8 +14,10 @@ mod state_space;
 
 pub use band::{Band, BandError};
 pub use channel::Channel;
-pub use condition::{BundleKind, Condition, ConditionError, FlightState, ModelId};
+pub use condition::{Condition, ConditionError, FlightState};
+pub use content::ContentHash;
 pub use dataset::{Dataset, DatasetError, DatasetHeader};
+pub use identity::{BundleKind, ConditionId, ModelId};
 pub use measured_response::{MeasuredResponse, MeasuredResponseError};
 pub use model::{Dynamics, Model, Origin};
 pub use pair::{Pair, PairTable};

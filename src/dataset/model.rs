@@ -58,6 +58,11 @@ pub struct Model {
 }
 
 impl Model {
+    /// A model of this name.
+    pub fn new(name: impl Into<String>, origin: Origin, dynamics: Dynamics) -> Self {
+        Self { name: name.into(), origin, dynamics }
+    }
+
     /// Whether this is the physics model at the condition's own trim.
     pub fn is_nominal(&self) -> bool {
         matches!(self.origin, Origin::Nominal { .. })

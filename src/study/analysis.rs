@@ -1,8 +1,9 @@
 //! The result of a whole study.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::dataset::PairTable;
+use crate::dataset::{ConditionId, PairTable};
 use crate::schedule::{CostChange, Schedule, ScheduleError};
 
 use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
@@ -27,17 +28,17 @@ pub struct Analysis {
     pub study: Study,
     /// Frequencies of comparison \[rad/s\].
     pub omega: Arc<[f64]>,
-    /// Result of each condition, in the dataset's order.
-    pub conditions: Vec<Result<ConditionAnalysis, ConditionFailure>>,
+    /// Result of each condition.
+    pub conditions: BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>,
     /// The schedule of the chosen conditions.
     pub schedule: Result<Schedule, ScheduleError>,
-    /// Assessment of each condition, in the dataset's order.
-    pub assessment: Vec<Assessed>,
+    /// Assessment of each condition.
+    pub assessment: BTreeMap<ConditionId, Assessed>,
 }
 
 impl Analysis {
     /// Result of one condition, where there is one.
-    pub fn condition(&self, index: usize) -> Option<&ConditionAnalysis> {
-        self.conditions.get(index)?.as_ref().ok()
+    pub fn condition(&self, id: ConditionId) -> Option<&ConditionAnalysis> {
+        self.conditions.get(&id)?.as_ref().ok()
     }
 }

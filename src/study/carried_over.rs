@@ -20,25 +20,10 @@ impl fmt::Display for Difference {
 impl Study {
     /// STAND-IN: this study of another dataset.
     pub fn carried_over(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
-        let mut study = Study::new(dataset);
-        let mut differences = Vec::new();
-        if study.settings.constrained.outputs() == self.settings.constrained.outputs()
-            && study.settings.constrained.inputs() == self.settings.constrained.inputs()
-        {
-            study.settings = self.settings.clone();
-        }
-        for (new, condition) in study.choices.iter_mut().zip(study.dataset.conditions()) {
-            let old = self.dataset.conditions().iter().position(|old| old.id() == condition.id());
-            match old {
-                Some(old)
-                    if self.dataset.conditions()[old].bundle(crate::dataset::BundleKind::Physics).len()
-                        == condition.bundle(crate::dataset::BundleKind::Physics).len() =>
-                {
-                    *new = self.choices[old].clone();
-                }
-                _ => differences.push(Difference(format!("condition {} is changed", condition.id()))),
-            }
-        }
+        let mut study = self.clone();
+        let gone = self.dataset.conditions().iter().filter(|old| dataset.condition(old.id()).is_none());
+        let differences = gone.map(|old| Difference(format!("condition {} is gone", old.id()))).collect();
+        study.dataset = dataset;
         (study, differences)
     }
 }

@@ -1,6 +1,7 @@
 //! The stages of a condition's analysis that do not depend on constraints, alpha or bounds.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use crate::correction::{Delta, mismatch_table};
 use crate::dataset::{BundleKind, Condition, PairTable};
@@ -49,7 +50,7 @@ impl BundleFigures {
 
 /// Distances over the marked responses; over all where none of those can be compared.
 fn distances(
-    responses: &[FrequencyResponse],
+    responses: &[Arc<FrequencyResponse>],
     measuring: &PairTable<bool>,
     execution: &Execution<'_>,
 ) -> Result<BundleDistance, Cancelled> {
@@ -110,8 +111,14 @@ impl Comparison {
         choice: &ConditionChoice,
         average: CostAverage,
     ) -> Self {
-        let physics = Representative::of(&figures.physics, &choice.physics.rejected, choice.physics.pinned);
-        let identified = Representative::of(&figures.identified, &choice.identified.rejected, choice.identified.pinned);
+        let represent = |kind, distance: &BundleDistance| {
+            let position = |name: &String| condition.position(kind, name);
+            let choice = choice.bundle(kind);
+            let rejected: BTreeSet<usize> = choice.rejected.iter().filter_map(position).collect();
+            Representative::of(distance, &rejected, choice.pinned.as_ref().and_then(position))
+        };
+        let physics = represent(BundleKind::Physics, &figures.physics);
+        let identified = represent(BundleKind::Identified, &figures.identified);
         let reference = PolarResponse::of(&responses.identified[identified.model]);
         let against = |model: usize| {
             ModelMismatch::of(&PolarResponse::of(&responses.physics[model]), &reference, grid.omega(), average)

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use crate::correction::{
     ChannelCorrection, DelayError, DelayProblem, DelaySolution, GainBounds, GainError, GainProblem, GainSolution,
 };
-use crate::dataset::PairTable;
+use crate::dataset::{BundleKind, Condition, PairTable};
+use crate::fidelity::{Discontinuity, Representative};
 use crate::schedule::CostChange;
 
 use super::caution::Caution;
@@ -14,6 +15,8 @@ use super::comparison::{BundleFigures, Comparison};
 /// Everything the analysis says of one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionAnalysis {
+    /// The condition that was analysed: it names the models that the figures below are in the order of.
+    pub condition: Arc<Condition>,
     /// Distances and discontinuity ratios of the bundles.
     pub figures: Arc<BundleFigures>,
     /// Representatives, G and D.
@@ -50,9 +53,35 @@ impl ConditionAnalysis {
         self.delay_problem.upper_s
     }
 
-    /// Indices of the physics models suggested as outliers, whatever is rejected.
-    pub fn suggested(&self) -> Vec<usize> {
-        self.figures.discontinuity.as_ref().map(crate::fidelity::Discontinuity::suggested).unwrap_or_default()
+    /// Names of the physics models suggested as outliers, whatever is rejected.
+    pub fn suggested(&self) -> Vec<String> {
+        let suggested = self.figures.discontinuity.as_ref().map(Discontinuity::suggested).unwrap_or_default();
+        let models = self.condition.bundle(BundleKind::Physics);
+        suggested.into_iter().map(|index| models[index].name.clone()).collect()
+    }
+
+    /// The representative of a bundle, with the scores of its models in the order of [`ConditionAnalysis::condition`].
+    pub fn representative(&self, kind: BundleKind) -> &Representative {
+        match kind {
+            BundleKind::Physics => &self.comparison.physics,
+            BundleKind::Identified => &self.comparison.identified,
+        }
+    }
+
+    /// Name of the representative of a bundle.
+    pub fn representative_name(&self, kind: BundleKind) -> &str {
+        &self.condition.bundle(kind)[self.representative(kind).model].name
+    }
+
+    /// Mean distance of a model to the other kept ones, where it has one.
+    pub fn score(&self, kind: BundleKind, name: &str) -> Option<f64> {
+        self.representative(kind).scores[self.condition.position(kind, name)?]
+    }
+
+    /// Discontinuity ratio of a physics model, where it has one.
+    pub fn discontinuity_ratio(&self, name: &str) -> Option<f64> {
+        let ratios = &self.figures.discontinuity.as_ref().ok()?.ratios;
+        ratios[self.condition.position(BundleKind::Physics, name)?]
     }
 }
 

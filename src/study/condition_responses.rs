@@ -1,49 +1,164 @@
-//! Responses of every model of a condition.
+//! Responses of every model of a condition, each kept by what it is computed from.
 
-use std::sync::OnceLock;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
-use crate::dataset::{BundleKind, Condition};
+use crate::dataset::{Band, BundleKind, Condition, ContentHash, Model};
 use crate::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
 
 use super::executor::Execution;
+use super::memo::Memo;
 use super::progress::Cancelled;
+
+/// What a response depends on besides the numbers of its model: the band and the number of frequencies in it.
+pub(super) type GridKey = (Band, usize);
+
+/// What a response is computed for. The last one for each is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Purpose {
+    /// Comparing models, in the band of comparison.
+    Comparison,
+    /// Drawing them, in a wider band.
+    Drawing,
+}
 
 /// Responses of every model of a condition on one grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionResponses {
     /// Responses of the physics models, in file order.
-    pub physics: Vec<FrequencyResponse>,
+    pub physics: Vec<Arc<FrequencyResponse>>,
     /// Responses of the identified models, in file order.
-    pub identified: Vec<FrequencyResponse>,
+    pub identified: Vec<Arc<FrequencyResponse>>,
 }
 
-/// The models of a condition, each prepared the first time that it is asked for a response.
-#[derive(Debug)]
-pub struct PreparedCondition {
-    physics: Vec<OnceLock<PreparedModel>>,
-    identified: Vec<OnceLock<PreparedModel>>,
+impl ConditionResponses {
+    /// The responses of every model of `condition` on `points` frequencies of `band`.
+    pub fn of(
+        condition: &Arc<Condition>,
+        (band, points): (Band, usize),
+        execution: &Execution<'_>,
+    ) -> Result<Self, Cancelled> {
+        let models = ConditionModels::of(condition, &mut KnownModels::default());
+        let grid = FrequencyGrid::logarithmic(band, points);
+        models.responses(Purpose::Comparison, (band, points), &grid, execution)
+    }
 }
 
-impl PreparedCondition {
-    /// Room for the models of `condition`.
-    pub fn of(condition: &Condition) -> Self {
-        let room = |kind| condition.bundle(kind).iter().map(|_| OnceLock::new()).collect();
-        Self { physics: room(BundleKind::Physics), identified: room(BundleKind::Identified) }
+/// The last responses of one model, and what they start from.
+#[derive(Debug, Default)]
+struct ModelResponses {
+    prepared: OnceLock<PreparedModel>,
+    compared: Mutex<Memo<GridKey, Arc<FrequencyResponse>>>,
+    drawn: Mutex<Memo<GridKey, Arc<FrequencyResponse>>>,
+}
+
+impl ModelResponses {
+    fn slot(&self, purpose: Purpose) -> &Mutex<Memo<GridKey, Arc<FrequencyResponse>>> {
+        match purpose {
+            Purpose::Comparison => &self.compared,
+            Purpose::Drawing => &self.drawn,
+        }
     }
 
-    /// Responses of every model of the same condition, model by model; each is a step.
-    pub fn responses(
+    fn kept(&self, purpose: Purpose, key: GridKey) -> Option<Arc<FrequencyResponse>> {
+        // A value is kept whole or not at all, whoever panicked.
+        self.slot(purpose).lock().unwrap_or_else(PoisonError::into_inner).kept(&key).cloned()
+    }
+
+    fn response(&self, model: &Model, purpose: Purpose, key: GridKey, grid: &FrequencyGrid) -> Arc<FrequencyResponse> {
+        let prepared = self.prepared.get_or_init(|| PreparedModel::of(&model.dynamics));
+        let mut memo = self.slot(purpose).lock().unwrap_or_else(PoisonError::into_inner);
+        memo.get(key, |_| Arc::new(prepared.response(grid)))
+    }
+}
+
+/// The models that some condition holds, by their numbers: a model that stays, or comes back under another name or in another
+/// place, keeps its responses.
+#[derive(Debug, Default)]
+pub(super) struct KnownModels {
+    by_content: HashMap<ContentHash, Weak<ModelResponses>>,
+}
+
+impl KnownModels {
+    /// Forgets the models that no condition holds any more.
+    pub(super) fn forget_unused(&mut self) {
+        self.by_content.retain(|_, responses| responses.strong_count() > 0);
+    }
+
+    fn responses_of(&mut self, content: ContentHash) -> Arc<ModelResponses> {
+        let known = self.by_content.entry(content).or_default();
+        known.upgrade().unwrap_or_else(|| {
+            let made = Arc::new(ModelResponses::default());
+            *known = Arc::downgrade(&made);
+            made
+        })
+    }
+}
+
+/// The models of a condition with their responses.
+#[derive(Debug)]
+pub(super) struct ConditionModels {
+    condition: Arc<Condition>,
+    /// Hash and responses of each model of both bundles, the physics models first.
+    models: Vec<(ContentHash, Arc<ModelResponses>)>,
+}
+
+impl ConditionModels {
+    /// The models of `condition`; those that are known already bring their responses.
+    pub(super) fn of(condition: &Arc<Condition>, known: &mut KnownModels) -> Self {
+        let contents = models_of(condition).map(|model| ContentHash::of(&model.dynamics));
+        let models = contents.map(|content| (content, known.responses_of(content))).collect();
+        Self { condition: Arc::clone(condition), models }
+    }
+
+    /// The condition.
+    pub(super) fn condition(&self) -> &Arc<Condition> {
+        &self.condition
+    }
+
+    /// Whether the bundles hold the same models, by name, origin and numbers, in the same order.
+    pub(super) fn are_the_same_as(&self, other: &Self) -> bool {
+        let contents = |models: &Self| models.models.iter().map(|(content, _)| *content).collect::<Vec<_>>();
+        let named = |condition| models_of(condition).map(|model| (&model.name, &model.origin));
+        let physics = |models: &Self| models.condition.bundle(BundleKind::Physics).len();
+        physics(self) == physics(other)
+            && contents(self) == contents(other)
+            && named(&self.condition).eq(named(&other.condition))
+    }
+
+    /// Responses of every model, model by model; each is a step.
+    pub(super) fn responses(
         &self,
-        condition: &Condition,
+        purpose: Purpose,
+        key: GridKey,
         grid: &FrequencyGrid,
         execution: &Execution<'_>,
     ) -> Result<ConditionResponses, Cancelled> {
-        let bundle = |kind, prepared: &[OnceLock<PreparedModel>]| {
-            let models = condition.bundle(kind);
-            let prepare = |index: usize| prepared[index].get_or_init(|| PreparedModel::of(&models[index].dynamics));
-            execution.each(models.len(), 1, |index| prepare(index).response(grid))
+        let physics = self.condition.bundle(BundleKind::Physics);
+        let bundle = |models: &[Model], responses: &[(ContentHash, Arc<ModelResponses>)]| {
+            let kept: Option<Vec<_>> = responses.iter().map(|(_, responses)| responses.kept(purpose, key)).collect();
+            match kept {
+                Some(kept) => {
+                    execution.step(kept.len());
+                    Ok(kept)
+                }
+                None => execution
+                    .each(models.len(), 1, |index| responses[index].1.response(&models[index], purpose, key, grid)),
+            }
         };
-        let identified = bundle(BundleKind::Identified, &self.identified)?;
-        Ok(ConditionResponses { physics: bundle(BundleKind::Physics, &self.physics)?, identified })
+        let (of_physics, of_identified) = self.models.split_at(physics.len());
+        let identified = bundle(self.condition.bundle(BundleKind::Identified), of_identified)?;
+        Ok(ConditionResponses { physics: bundle(physics, of_physics)?, identified })
     }
+
+    /// Lets go of what was computed for drawing.
+    pub(super) fn forget_drawn(&self) {
+        for (_, responses) in &self.models {
+            *responses.drawn.lock().unwrap_or_else(PoisonError::into_inner) = Memo::default();
+        }
+    }
+}
+
+fn models_of(condition: &Condition) -> impl Iterator<Item = &Model> {
+    BundleKind::BOTH.into_iter().flat_map(|kind| condition.bundle(kind))
 }

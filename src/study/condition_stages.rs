@@ -6,7 +6,7 @@ use crate::correction::{
     ChannelCorrection, DelayError, DelayProblem, DelaySolution, GainBounds, GainError, GainProblem, GainSolution,
     ProofBudget, delay_upper_s, gain_bounds, solve_delays, solve_gains,
 };
-use crate::dataset::{Band, BundleKind, Condition, Dynamics, PairTable};
+use crate::dataset::{BundleKind, Condition, Dynamics, PairTable};
 use crate::fidelity::CostAverage;
 use crate::response::FrequencyGrid;
 use crate::schedule::{CostChange, assess};
@@ -14,26 +14,25 @@ use crate::schedule::{CostChange, assess};
 use super::caution::Caution;
 use super::comparison::{BundleFigures, Comparison};
 use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
-use super::condition_responses::{ConditionResponses, PreparedCondition};
+use super::condition_responses::{ConditionModels, ConditionResponses, GridKey, Purpose};
 use super::document::{ConditionChoice, Study};
 use super::executor::Execution;
 use super::memo::Memo;
 use super::progress::Cancelled;
 use super::settings::Settings;
 
-/// What the responses and the distances depend on, besides the condition.
-type GridKey = (Band, usize);
-/// What the comparison of the representatives depends on, besides the condition.
-type ComparisonKey = (GridKey, ConditionChoice, CostAverage);
+/// What the distances depend on, besides the models: the grid, and the responses that measure them.
+type FiguresKey = (GridKey, PairTable<bool>);
+/// What the comparison of the representatives depends on, besides the models.
+type ComparisonKey = (FiguresKey, ConditionChoice, CostAverage);
 /// What the bounds depend on: the comparison, the quantile, and the bounds set by hand.
 type BoundsKey = (ComparisonKey, f64, Option<GainBounds>, Option<f64>);
 
 /// The last result of each stage of a condition.
 #[derive(Debug)]
 pub(super) struct ConditionStages {
-    prepared: PreparedCondition,
-    responses: Memo<GridKey, Arc<ConditionResponses>>,
-    figures: Memo<GridKey, Arc<BundleFigures>>,
+    models: ConditionModels,
+    figures: Memo<FiguresKey, Arc<BundleFigures>>,
     comparison: Memo<ComparisonKey, Arc<Comparison>>,
     bounds: Memo<BoundsKey, (GainBounds, f64)>,
     gains: Memo<Arc<GainProblem>, Result<Arc<GainSolution>, GainError>>,
@@ -42,11 +41,10 @@ pub(super) struct ConditionStages {
 }
 
 impl ConditionStages {
-    /// Nothing computed yet.
-    pub(super) fn of(condition: &Condition) -> Self {
+    /// Nothing computed yet but what the models bring.
+    pub(super) fn of(models: ConditionModels) -> Self {
         Self {
-            prepared: PreparedCondition::of(condition),
-            responses: Memo::default(),
+            models,
             figures: Memo::default(),
             comparison: Memo::default(),
             bounds: Memo::default(),
@@ -56,14 +54,23 @@ impl ConditionStages {
         }
     }
 
+    /// Goes on with `models`: what was computed stays where the bundles are the same.
+    pub(super) fn take(&mut self, models: ConditionModels) {
+        if self.models.are_the_same_as(&models) {
+            self.models = models;
+        } else {
+            *self = Self::of(models);
+        }
+    }
+
     /// Steps of the analysis of a condition: three for each model, and one.
     pub(super) fn steps(condition: &Condition) -> usize {
         3 * model_count(condition) + 1
     }
 
-    /// The models, prepared for their responses.
-    pub(super) fn prepared(&self) -> &PreparedCondition {
-        &self.prepared
+    /// The models with their responses.
+    pub(super) fn models(&self) -> &ConditionModels {
+        &self.models
     }
 
     /// Takes gains of the same problem in place of those kept.
@@ -73,29 +80,25 @@ impl ConditionStages {
         }
     }
 
-    /// Whatever is not kept of the analysis of condition `index`.
+    /// Whatever is not kept of the analysis of the condition.
     pub(super) fn analyze(
         &mut self,
         study: &Study,
-        index: usize,
         grid: &FrequencyGrid,
         proofs: ProofBudget,
         execution: &Execution<'_>,
     ) -> Result<Result<ConditionAnalysis, ConditionFailure>, Cancelled> {
-        let (settings, condition) = (&study.settings, &study.dataset.conditions()[index]);
-        let grid_key = (settings.band, settings.points);
-        if self.figures.holds(&grid_key) {
-            execution.step(3 * model_count(condition));
+        let condition = Arc::clone(self.models.condition());
+        let grid_key = (study.settings.band, study.settings.points);
+        let figures_key = (grid_key, study.dataset.measuring_pairs());
+        let responses = self.models.responses(Purpose::Comparison, grid_key, grid, execution)?;
+        if self.figures.holds(&figures_key) {
+            execution.step(2 * model_count(&condition));
         }
-        let responses = self.responses.get_or_fail(grid_key, |_| {
-            let responses = self.prepared.responses(condition, grid, execution);
-            responses.map(Arc::new)
+        let figures = self.figures.get_or_fail(figures_key, |(_, measuring)| {
+            BundleFigures::of(&condition, &responses, measuring, execution).map(Arc::new)
         })?;
-        let figures = self.figures.get_or_fail(grid_key, |_| {
-            let figures = BundleFigures::of(condition, &responses, &study.dataset.measuring_pairs(), execution);
-            figures.map(Arc::new)
-        })?;
-        let outcome = self.compare_and_solve(study, index, grid, proofs, &responses, figures);
+        let outcome = self.compare_and_solve(study, &condition, grid, proofs, &responses, figures);
         execution.step(1);
         Ok(outcome)
     }
@@ -103,17 +106,17 @@ impl ConditionStages {
     fn compare_and_solve(
         &mut self,
         study: &Study,
-        index: usize,
+        condition: &Arc<Condition>,
         grid: &FrequencyGrid,
         proofs: ProofBudget,
         responses: &ConditionResponses,
         figures: Arc<BundleFigures>,
     ) -> Result<ConditionAnalysis, ConditionFailure> {
-        let (settings, condition) = (&study.settings, &study.dataset.conditions()[index]);
+        let settings = &study.settings;
         let measuring = study.dataset.measuring_pairs();
-        let grid_key = (settings.band, settings.points);
-        let choice = &study.choices[index];
-        let key: ComparisonKey = (grid_key, choice.clone(), settings.cost_average);
+        let choice = study.choice(condition.id());
+        let figures_key = ((settings.band, settings.points), measuring.clone());
+        let key: ComparisonKey = (figures_key, choice.clone(), settings.cost_average);
         let comparison = self.comparison.get(key.clone(), |_| {
             Arc::new(Comparison::of(condition, responses, &figures, grid, choice, settings.cost_average))
         });
@@ -129,6 +132,7 @@ impl ConditionStages {
         let cautions = cautions_of(condition, choice, settings, &comparison, &figures);
         let Solved { gain_problem, delay_problem, gains, delays } = solved;
         Ok(ConditionAnalysis {
+            condition: Arc::clone(condition),
             figures,
             comparison,
             gain_problem,
@@ -225,13 +229,13 @@ fn cautions_of(
     let undefined = settings.constrained.marked().filter(|&pair| comparison.delta.gain[pair].is_none());
     let mut cautions: Vec<Caution> = undefined.map(|pair| Caution::HeldButUndefined { pair }).collect();
     cautions.extend(figures.discontinuity.as_ref().err().cloned().map(Caution::NoSuggestions));
-    for (index, model) in condition.bundle(BundleKind::Identified).iter().enumerate() {
+    for model in condition.bundle(BundleKind::Identified) {
         let Dynamics::Measured(response) = &model.dynamics else {
             continue;
         };
         let (min, max) = (response.omega()[0], response.omega()[response.omega().len() - 1]);
         let covered = min <= settings.band.min() && settings.band.max() <= max;
-        if !covered && !choice.identified.rejected.contains(&index) {
+        if !covered && !choice.identified.rejected.contains(&model.name) {
             cautions.push(Caution::BandNotCovered { model: model.name.clone(), min, max });
         }
     }

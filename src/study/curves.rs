@@ -1,6 +1,8 @@
 //! Responses of one condition for drawing, over a wider band than that of comparison.
 
-use crate::dataset::{Band, BundleKind};
+use std::sync::Arc;
+
+use crate::dataset::{Band, BundleKind, Condition};
 use crate::response::{FrequencyGrid, FrequencyResponse};
 
 use super::condition_responses::ConditionResponses;
@@ -8,21 +10,23 @@ use super::condition_responses::ConditionResponses;
 /// Responses of every model of a condition on a grid for drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionCurves {
+    /// The condition: it names the models in whose order the responses are.
+    pub condition: Arc<Condition>,
     /// The frequencies.
     pub grid: FrequencyGrid,
-    /// Responses of the physics models, in file order.
-    pub physics: Vec<FrequencyResponse>,
-    /// Responses of the identified models, in file order.
-    pub identified: Vec<FrequencyResponse>,
+    /// Responses of the physics models.
+    pub physics: Vec<Arc<FrequencyResponse>>,
+    /// Responses of the identified models.
+    pub identified: Vec<Arc<FrequencyResponse>>,
 }
 
 impl ConditionCurves {
-    pub(super) fn new(grid: FrequencyGrid, responses: ConditionResponses) -> Self {
-        Self { grid, physics: responses.physics, identified: responses.identified }
+    pub(super) fn new(condition: Arc<Condition>, grid: FrequencyGrid, responses: ConditionResponses) -> Self {
+        Self { condition, grid, physics: responses.physics, identified: responses.identified }
     }
 
     /// The responses of one bundle.
-    pub fn bundle(&self, kind: BundleKind) -> &[FrequencyResponse] {
+    pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
         match kind {
             BundleKind::Physics => &self.physics,
             BundleKind::Identified => &self.identified,

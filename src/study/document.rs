@@ -1,19 +1,25 @@
 //! What the engineer decided about a dataset.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use crate::dataset::{BundleKind, Dataset, ModelId};
+use crate::dataset::{BundleKind, ConditionId, Dataset, ModelId};
 
 use super::settings::Settings;
 
 /// The engineer's choices in one bundle.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct BundleChoice {
-    /// Indices of the rejected models.
-    pub rejected: BTreeSet<usize>,
-    /// The model that represents the bundle in place of the medoid; never a rejected one.
-    pub pinned: Option<usize>,
+    /// Names of the rejected models.
+    pub rejected: BTreeSet<String>,
+    /// Name of the model that represents the bundle in place of the medoid; never a rejected one.
+    pub pinned: Option<String>,
+}
+
+impl BundleChoice {
+    const fn none() -> Self {
+        Self { rejected: BTreeSet::new(), pinned: None }
+    }
 }
 
 /// The engineer's choices in one condition.
@@ -29,11 +35,16 @@ pub struct ConditionChoice {
 
 impl Default for ConditionChoice {
     fn default() -> Self {
-        Self { physics: BundleChoice::default(), identified: BundleChoice::default(), scheduled: true }
+        Self::none()
     }
 }
 
 impl ConditionChoice {
+    /// Every model kept, none pinned, the condition scheduled.
+    const fn none() -> Self {
+        Self { physics: BundleChoice::none(), identified: BundleChoice::none(), scheduled: true }
+    }
+
     /// The choices in one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &BundleChoice {
         match kind {
@@ -58,8 +69,8 @@ pub struct Study {
     pub dataset: Arc<Dataset>,
     /// Every setting that changes a result.
     pub settings: Settings,
-    /// Choices in each condition, in the dataset's order.
-    pub choices: Vec<ConditionChoice>,
+    /// Choices in each condition of the dataset.
+    pub choices: BTreeMap<ConditionId, ConditionChoice>,
 }
 
 impl PartialEq for Study {
@@ -74,23 +85,29 @@ impl Study {
     /// The study of a dataset before any decision.
     pub fn new(dataset: Arc<Dataset>) -> Self {
         let settings = Settings::of(&dataset);
-        let choices = vec![ConditionChoice::default(); dataset.conditions().len()];
+        let ids = dataset.conditions().iter().map(|condition| condition.id());
+        let choices = ids.map(|id| (id, ConditionChoice::default())).collect();
         Self { dataset, settings, choices }
     }
 
-    /// Whether a model is rejected.
-    pub fn is_rejected(&self, id: ModelId) -> bool {
-        self.choices[id.condition].bundle(id.bundle).rejected.contains(&id.model)
+    /// The choices in one condition; those of a condition that the dataset does not have are none.
+    pub fn choice(&self, condition: ConditionId) -> &ConditionChoice {
+        static NONE: ConditionChoice = ConditionChoice::none();
+        self.choices.get(&condition).unwrap_or(&NONE)
     }
 
-    /// Names of the rejected models of one condition, the physics bundle first.
-    pub fn rejected_names(&self, condition: usize) -> Vec<&str> {
-        [BundleKind::Physics, BundleKind::Identified]
-            .into_iter()
-            .flat_map(|kind| {
-                let models = self.dataset.conditions()[condition].bundle(kind);
-                self.choices[condition].bundle(kind).rejected.iter().map(|&index| models[index].name.as_str())
-            })
-            .collect()
+    /// Whether a model is rejected.
+    pub fn is_rejected(&self, id: &ModelId) -> bool {
+        self.choice(id.condition).bundle(id.bundle).rejected.contains(&id.name)
+    }
+
+    /// Names of the rejected models of one condition in file order, the physics bundle first.
+    pub fn rejected_names(&self, condition: ConditionId) -> Vec<&str> {
+        let of = |kind| {
+            let rejected = &self.choice(condition).bundle(kind).rejected;
+            let models = self.dataset.condition(condition).map_or(&[][..], |found| found.bundle(kind));
+            models.iter().map(|model| model.name.as_str()).filter(|name| rejected.contains(*name))
+        };
+        BundleKind::BOTH.into_iter().flat_map(of).collect()
     }
 }

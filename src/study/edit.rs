@@ -1,8 +1,8 @@
 //! Every decision the engineer can take about a study, and the only code that carries one out.
 
-use crate::dataset::{BundleKind, ModelId};
+use crate::dataset::{BundleKind, Condition, ConditionId, ModelId, Pair};
 
-use super::document::Study;
+use super::document::{ConditionChoice, Study};
 use super::setting::Setting;
 
 /// One decision about a study.
@@ -14,29 +14,29 @@ pub enum Edit {
     Restore(ModelId),
     /// Reject all of these models of one condition's physics bundle.
     RejectAll {
-        /// Index of the condition.
-        condition: usize,
-        /// Indices of the models.
-        models: Vec<usize>,
+        /// The condition.
+        condition: ConditionId,
+        /// Names of the models.
+        models: Vec<String>,
     },
     /// Put every rejected model of a condition back, in both bundles.
     RestoreAll {
-        /// Index of the condition.
-        condition: usize,
+        /// The condition.
+        condition: ConditionId,
     },
     /// Let a model represent its bundle, whatever the medoid is.
     Pin(ModelId),
     /// Let the medoid represent a bundle again.
     Unpin {
-        /// Index of the condition.
-        condition: usize,
+        /// The condition.
+        condition: ConditionId,
         /// Which bundle.
         bundle: BundleKind,
     },
     /// Take a condition into the schedule, or leave it out.
     SetScheduled {
-        /// Index of the condition.
-        condition: usize,
+        /// The condition.
+        condition: ConditionId,
         /// Whether it enters the schedule.
         scheduled: bool,
     },
@@ -53,7 +53,7 @@ pub enum EditRefusal {
     #[error("condition {condition}: \"{model}\" is the last model kept in its bundle; at least one must stay")]
     LastModel {
         /// The condition's id.
-        condition: i64,
+        condition: ConditionId,
         /// The model's name.
         model: String,
     },
@@ -61,7 +61,7 @@ pub enum EditRefusal {
     #[error("condition {condition}: \"{model}\" is rejected; restore it before pinning it")]
     PinRejected {
         /// The condition's id.
-        condition: i64,
+        condition: ConditionId,
         /// The model's name.
         model: String,
     },
@@ -75,33 +75,43 @@ pub enum EditRefusal {
         /// The value given.
         found: f64,
     },
-    /// The condition, model or response does not exist in this dataset.
-    #[error("this dataset has no such {what}")]
-    NoSuch {
-        /// "condition", "model" or "response".
-        what: &'static str,
+    /// The dataset has no such condition.
+    #[error("the dataset has no condition {condition}")]
+    NoCondition {
+        /// The condition.
+        condition: ConditionId,
+    },
+    /// The dataset has no such model.
+    #[error("condition {} has no {} model \"{}\"", model.condition, model.bundle, model.name)]
+    NoModel {
+        /// The model.
+        model: ModelId,
+    },
+    /// The dataset has no such response.
+    #[error("the dataset has no response of output number {} to input number {}", pair.output + 1, pair.input + 1)]
+    NoResponse {
+        /// The response.
+        pair: Pair,
     },
 }
 
 impl Edit {
     /// The decision in a few words, for the undo list: "reject nominal (condition 10)".
     pub fn label(&self, study: &Study) -> String {
-        let dataset = &study.dataset;
-        let id_of = |condition: &usize| dataset.conditions()[*condition].id();
-        let name_of = |id: &ModelId| format!("{} (condition {})", dataset.model(*id).name, id_of(&id.condition));
+        let name_of = |id: &ModelId| format!("{} (condition {})", id.name, id.condition);
         match self {
             Edit::Reject(id) => format!("reject {}", name_of(id)),
             Edit::Restore(id) => format!("restore {}", name_of(id)),
             Edit::RejectAll { condition, models } => {
-                format!("reject {} suggested (condition {})", models.len(), id_of(condition))
+                format!("reject {} suggested (condition {condition})", models.len())
             }
-            Edit::RestoreAll { condition } => format!("restore all (condition {})", id_of(condition)),
+            Edit::RestoreAll { condition } => format!("restore all (condition {condition})"),
             Edit::Pin(id) => format!("pin {}", name_of(id)),
-            Edit::Unpin { condition, .. } => format!("unpin (condition {})", id_of(condition)),
-            Edit::SetScheduled { condition, scheduled: true } => format!("schedule condition {}", id_of(condition)),
-            Edit::SetScheduled { condition, .. } => format!("leave condition {} out", id_of(condition)),
+            Edit::Unpin { condition, .. } => format!("unpin (condition {condition})"),
+            Edit::SetScheduled { condition, scheduled: true } => format!("schedule condition {condition}"),
+            Edit::SetScheduled { condition, .. } => format!("leave condition {condition} out"),
             Edit::ConstrainOnAxis => "hold the on-axis responses".to_owned(),
-            Edit::Set(setting) => setting.label(dataset),
+            Edit::Set(setting) => setting.label(&study.dataset),
         }
     }
 
@@ -118,73 +128,71 @@ impl Study {
     /// Carries out one decision, or refuses it and leaves the study as it was.
     pub fn apply(&mut self, edit: &Edit) -> Result<(), EditRefusal> {
         match edit {
-            Edit::Reject(id) => return self.reject(*id),
+            Edit::Reject(id) => return self.reject(id),
             Edit::RejectAll { condition, models } => return self.reject_all(*condition, models),
-            Edit::Pin(id) => return self.pin(*id),
+            Edit::Pin(id) => return self.pin(id),
             Edit::Restore(id) => {
-                self.check_model(*id)?;
-                self.choices[id.condition].bundle_mut(id.bundle).rejected.remove(&id.model);
+                self.model(id)?.1.bundle_mut(id.bundle).rejected.remove(&id.name);
             }
             Edit::RestoreAll { condition } => {
-                self.check_condition(*condition)?;
-                self.choices[*condition].physics.rejected.clear();
-                self.choices[*condition].identified.rejected.clear();
+                let (_, choice) = self.condition(*condition)?;
+                choice.physics.rejected.clear();
+                choice.identified.rejected.clear();
             }
-            Edit::Unpin { condition, bundle } => {
-                self.check_condition(*condition)?;
-                self.choices[*condition].bundle_mut(*bundle).pinned = None;
-            }
-            Edit::SetScheduled { condition, scheduled } => {
-                self.check_condition(*condition)?;
-                self.choices[*condition].scheduled = *scheduled;
-            }
+            Edit::Unpin { condition, bundle } => self.condition(*condition)?.1.bundle_mut(*bundle).pinned = None,
+            Edit::SetScheduled { condition, scheduled } => self.condition(*condition)?.1.scheduled = *scheduled,
             Edit::ConstrainOnAxis => self.settings.constrained = self.dataset.on_axis().clone(),
             Edit::Set(setting) => return self.settings.apply(setting),
         }
         Ok(())
     }
 
-    fn check_condition(&self, condition: usize) -> Result<(), EditRefusal> {
-        if condition < self.choices.len() { Ok(()) } else { Err(EditRefusal::NoSuch { what: "condition" }) }
+    /// A condition with the choices in it, to change.
+    fn condition(&mut self, id: ConditionId) -> Result<(&Condition, &mut ConditionChoice), EditRefusal> {
+        let found = self.dataset.condition(id).zip(self.choices.get_mut(&id));
+        let (condition, choice) = found.ok_or(EditRefusal::NoCondition { condition: id })?;
+        Ok((condition, choice))
     }
 
-    fn check_model(&self, id: ModelId) -> Result<(), EditRefusal> {
-        self.check_condition(id.condition)?;
-        let models = self.dataset.conditions()[id.condition].bundle(id.bundle);
-        if id.model < models.len() { Ok(()) } else { Err(EditRefusal::NoSuch { what: "model" }) }
-    }
-
-    fn reject(&mut self, id: ModelId) -> Result<(), EditRefusal> {
-        self.check_model(id)?;
-        let condition = &self.dataset.conditions()[id.condition];
-        let models = condition.bundle(id.bundle);
-        let choice = self.choices[id.condition].bundle_mut(id.bundle);
-        if !choice.rejected.contains(&id.model) && choice.rejected.len() + 1 == models.len() {
-            return Err(EditRefusal::LastModel { condition: condition.id(), model: models[id.model].name.clone() });
+    /// As [`Study::condition`], of a model that is there.
+    fn model(&mut self, id: &ModelId) -> Result<(&Condition, &mut ConditionChoice), EditRefusal> {
+        let (condition, choice) = self.condition(id.condition)?;
+        if condition.position(id.bundle, &id.name).is_none() {
+            return Err(EditRefusal::NoModel { model: id.clone() });
         }
-        choice.rejected.insert(id.model);
-        if choice.pinned == Some(id.model) {
+        Ok((condition, choice))
+    }
+
+    fn reject(&mut self, id: &ModelId) -> Result<(), EditRefusal> {
+        let (condition, choice) = self.model(id)?;
+        let models = condition.bundle(id.bundle).len();
+        let choice = choice.bundle_mut(id.bundle);
+        if !choice.rejected.contains(&id.name) && choice.rejected.len() + 1 == models {
+            return Err(EditRefusal::LastModel { condition: id.condition, model: id.name.clone() });
+        }
+        choice.rejected.insert(id.name.clone());
+        if choice.pinned.as_ref() == Some(&id.name) {
             choice.pinned = None;
         }
         Ok(())
     }
 
-    fn reject_all(&mut self, condition: usize, models: &[usize]) -> Result<(), EditRefusal> {
+    fn reject_all(&mut self, condition: ConditionId, models: &[String]) -> Result<(), EditRefusal> {
         let mut trial = self.clone();
-        for &model in models {
-            trial.reject(ModelId { condition, bundle: BundleKind::Physics, model })?;
+        for model in models {
+            trial.reject(&ModelId::new(condition, BundleKind::Physics, model))?;
         }
         *self = trial;
         Ok(())
     }
 
-    fn pin(&mut self, id: ModelId) -> Result<(), EditRefusal> {
-        self.check_model(id)?;
-        if self.is_rejected(id) {
-            let condition = self.dataset.conditions()[id.condition].id();
-            return Err(EditRefusal::PinRejected { condition, model: self.dataset.model(id).name.clone() });
+    fn pin(&mut self, id: &ModelId) -> Result<(), EditRefusal> {
+        let (_, choice) = self.model(id)?;
+        let choice = choice.bundle_mut(id.bundle);
+        if choice.rejected.contains(&id.name) {
+            return Err(EditRefusal::PinRejected { condition: id.condition, model: id.name.clone() });
         }
-        self.choices[id.condition].bundle_mut(id.bundle).pinned = Some(id.model);
+        choice.pinned = Some(id.name.clone());
         Ok(())
     }
 }

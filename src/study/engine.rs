@@ -1,14 +1,16 @@
 //! The analysis of a study, stage by stage, each kept while what it depends on stays the same.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::correction::{GainProblem, GainSolution, ProofBudget};
-use crate::dataset::{Band, Dataset};
+use crate::dataset::{Band, BundleKind, Condition, ConditionId, Dataset};
 use crate::response::FrequencyGrid;
 use crate::schedule::{Schedule, ScheduleError, ScheduledPoint, assess};
 
 use super::analysis::{Analysis, Assessed};
 use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
+use super::condition_responses::{ConditionModels, KnownModels, Purpose};
 use super::condition_stages::{ConditionStages, model_count};
 use super::curves::ConditionCurves;
 use super::document::Study;
@@ -16,8 +18,9 @@ use super::executor::{Execution, Executor, Sequential};
 use super::memo::Memo;
 use super::progress::{Cancelled, Progress};
 
-/// Computes analyses and keeps each stage's last result:
-/// responses (band, points) -> distances -> representatives, G, D (rejections, pins, average) -> bounds (quantile) ->
+/// Computes analyses and keeps each stage's last result by what it is computed from, never by where that came from: of a dataset
+/// with one other model, one response is computed.
+/// Responses (numbers of the model, band, points) -> distances -> representatives, G, D (rejections, pins, average) -> bounds (quantile) ->
 /// gains, delays (constraints, weights, alpha, bounds) -> schedule -> assessment.
 ///
 /// Neither conditions nor models depend on one another: the result is the same to the last bit whoever carries them out.
@@ -26,9 +29,12 @@ pub struct Engine {
     /// How far the proof of each condition's gains may go.
     proofs: ProofBudget,
     dataset: Option<Arc<Dataset>>,
-    conditions: Vec<ConditionStages>,
-    /// Curves of the condition drawn last.
-    curves: Memo<(usize, Band, usize), Arc<ConditionCurves>>,
+    known: KnownModels,
+    conditions: BTreeMap<ConditionId, ConditionStages>,
+    /// The condition drawn last.
+    drawn: Option<ConditionId>,
+    /// Its curves.
+    curves: Memo<(Band, usize), Arc<ConditionCurves>>,
 }
 
 /// The budget of a proof that an answer may wait for; what needs more of it is proven beside the answer ([`super::ProofJob`]).
@@ -41,7 +47,7 @@ impl Default for Engine {
 }
 
 /// What came of each condition.
-type Outcomes = Vec<Result<ConditionAnalysis, ConditionFailure>>;
+type Outcomes = BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>;
 
 impl Engine {
     /// An engine whose work is carried out by `executor`.
@@ -50,7 +56,9 @@ impl Engine {
             executor,
             proofs: ProofBudget::default(),
             dataset: None,
-            conditions: Vec::new(),
+            known: KnownModels::default(),
+            conditions: BTreeMap::new(),
+            drawn: None,
             curves: Memo::default(),
         }
     }
@@ -62,7 +70,7 @@ impl Engine {
 
     /// Takes gains that were proven elsewhere, with a larger budget, in place of its own for the same problem.
     pub fn take_gains(&mut self, problem: &Arc<GainProblem>, solution: &Arc<GainSolution>) {
-        self.conditions.iter_mut().for_each(|stages| stages.take_gains(problem, solution));
+        self.conditions.values_mut().for_each(|stages| stages.take_gains(problem, solution));
     }
 
     /// The analysis of `study`; stages that do not depend on what changed since the last call are not computed again.
@@ -73,93 +81,120 @@ impl Engine {
         let execution = Execution::new(self.executor.as_ref(), progress, total);
         let conditions = analyze_conditions(&mut self.conditions, study, &grid, self.proofs, &execution)?;
         let schedule = Schedule::of(&scheduled_points(study, &conditions), study.settings.schedule);
-        let assessed = |index: usize| assessed(study, index, &conditions[index], &schedule, &grid);
-        let assessment = execution.each(conditions.len(), 0, assessed)?;
+        let all = study.dataset.conditions();
+        let assess = |index: usize| assessed(study, &all[index], conditions.get(&all[index].id()), &schedule, &grid);
+        let assessment = execution.each(all.len(), 0, assess)?;
+        let assessment = all.iter().map(|condition| condition.id()).zip(assessment).collect();
         Ok(Analysis { study: study.clone(), omega: grid.omega().into(), conditions, schedule, assessment })
     }
 
-    /// The curves of every model of one condition on `points` frequencies of `band`.
+    /// The curves of every model of one condition on `points` frequencies of `band`; none of a condition that is not there.
     pub fn curves(
         &mut self,
         dataset: &Arc<Dataset>,
-        condition: usize,
+        condition: ConditionId,
         (band, points): (Band, usize),
         progress: &dyn Progress,
-    ) -> Result<Arc<ConditionCurves>, Cancelled> {
+    ) -> Result<Option<Arc<ConditionCurves>>, Cancelled> {
         self.take(dataset);
-        let (executor, prepared) = (self.executor.as_ref(), self.conditions[condition].prepared());
-        let of = &dataset.conditions()[condition];
-        self.curves.get_or_fail((condition, band, points), |_| {
+        if self.drawn != Some(condition) {
+            let before = self.drawn.replace(condition);
+            before.and_then(|id| self.conditions.get(&id)).iter().for_each(|stages| stages.models().forget_drawn());
+            self.curves = Memo::default();
+        }
+        let Some(stages) = self.conditions.get(&condition) else {
+            return Ok(None);
+        };
+        let (executor, models) = (self.executor.as_ref(), stages.models());
+        let curves = self.curves.get_or_fail((band, points), |&key| {
             let grid = FrequencyGrid::logarithmic(band, points);
-            let execution = Execution::new(executor, progress, model_count(of));
-            let responses = prepared.responses(of, &grid, &execution)?;
-            Ok(Arc::new(ConditionCurves::new(grid, responses)))
-        })
+            let execution = Execution::new(executor, progress, model_count(models.condition()));
+            let responses = models.responses(Purpose::Drawing, key, &grid, &execution)?;
+            Ok(Arc::new(ConditionCurves::new(Arc::clone(models.condition()), grid, responses)))
+        })?;
+        Ok(Some(curves))
     }
 
+    /// Goes on with this dataset: whatever it shares with the last one stays computed.
     fn take(&mut self, dataset: &Arc<Dataset>) {
-        if !self.dataset.as_ref().is_some_and(|kept| Arc::ptr_eq(kept, dataset)) {
-            self.conditions = dataset.conditions().iter().map(|of| ConditionStages::of(of)).collect();
-            self.curves = Memo::default();
-            self.dataset = Some(Arc::clone(dataset));
+        if self.dataset.as_ref().is_some_and(|kept| Arc::ptr_eq(kept, dataset)) {
+            return;
         }
+        let models = dataset.conditions().iter().map(|condition| ConditionModels::of(condition, &mut self.known));
+        // All are made before any of the last dataset's is dropped: a model may have moved.
+        let models: Vec<ConditionModels> = models.collect();
+        let mut before = std::mem::take(&mut self.conditions);
+        for models in models {
+            let id = models.condition().id();
+            let stages = match before.remove(&id) {
+                Some(mut stages) => {
+                    stages.take(models);
+                    stages
+                }
+                None => ConditionStages::of(models),
+            };
+            self.conditions.insert(id, stages);
+        }
+        drop(before);
+        self.known.forget_unused();
+        self.curves = Memo::default();
+        self.dataset = Some(Arc::clone(dataset));
     }
 }
 
 /// All conditions: first the one that is wanted first, by everybody together, then the others side by side.
 fn analyze_conditions(
-    stages: &mut [ConditionStages],
+    stages: &mut BTreeMap<ConditionId, ConditionStages>,
     study: &Study,
     grid: &FrequencyGrid,
     proofs: ProofBudget,
     execution: &Execution<'_>,
 ) -> Result<Outcomes, Cancelled> {
-    let first = execution.progress().wanted_first().filter(|&first| first < stages.len());
-    let mut first_outcome = None;
-    if let Some(first) = first {
-        let outcome = stages[first].analyze(study, first, grid, proofs, execution)?;
+    let mut outcomes = Outcomes::new();
+    if let Some(first) = execution.progress().wanted_first()
+        && let Some(stages) = stages.get_mut(&first)
+    {
+        let outcome = stages.analyze(study, grid, proofs, execution)?;
         execution.progress().first_result(&outcome);
-        first_outcome = Some(outcome);
-    }
-    let others: Vec<(usize, &mut ConditionStages)> =
-        stages.iter_mut().enumerate().filter(|(index, _)| Some(*index) != first).collect();
-    let mut outcomes =
-        execution.each_mut(others, |(index, stages)| stages.analyze(study, index, grid, proofs, execution))?;
-    if let (Some(first), Some(outcome)) = (first, first_outcome) {
         outcomes.insert(first, outcome);
     }
+    let others = stages.iter_mut().filter(|(id, _)| !outcomes.contains_key(id)).collect();
+    let others = execution.each_mut(others, |(id, stages): (&ConditionId, &mut ConditionStages)| {
+        Ok((*id, stages.analyze(study, grid, proofs, execution)?))
+    })?;
+    outcomes.extend(others);
     Ok(outcomes)
 }
 
-fn scheduled_points<'a>(
-    study: &Study,
-    conditions: &'a [Result<ConditionAnalysis, ConditionFailure>],
-) -> Vec<ScheduledPoint<'a>> {
-    let chosen = conditions.iter().enumerate().filter(|(index, _)| study.choices[*index].scheduled);
+/// The scheduled conditions that have a result, in the dataset's order.
+fn scheduled_points<'a>(study: &Study, outcomes: &'a Outcomes) -> Vec<ScheduledPoint<'a>> {
+    let chosen = study.dataset.conditions().iter().filter(|condition| study.choice(condition.id()).scheduled);
     chosen
-        .filter_map(|(index, analysis)| {
-            let airspeed_kt = study.dataset.conditions()[index].flight_state().airspeed_kt;
-            Some(ScheduledPoint { airspeed_kt, correction: &analysis.as_ref().ok()?.correction })
+        .filter_map(|condition| {
+            let analysis = outcomes.get(&condition.id())?.as_ref().ok()?;
+            let airspeed_kt = condition.flight_state().airspeed_kt;
+            Some(ScheduledPoint { airspeed_kt, correction: &analysis.correction })
         })
         .collect()
 }
 
 fn assessed(
     study: &Study,
-    index: usize,
-    analysis: &Result<ConditionAnalysis, ConditionFailure>,
+    condition: &Condition,
+    outcome: Option<&Result<ConditionAnalysis, ConditionFailure>>,
     schedule: &Result<Schedule, ScheduleError>,
     grid: &FrequencyGrid,
 ) -> Assessed {
-    let condition = &study.dataset.conditions()[index];
     let left_out = |why: String| Assessed::LeftOut { why };
-    match (analysis, schedule) {
-        _ if study.choices[index].physics.rejected.contains(&condition.nominal()) => {
+    let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()].name;
+    match (outcome, schedule) {
+        _ if study.choice(condition.id()).physics.rejected.contains(nominal) => {
             left_out("the nominal model is rejected".to_owned())
         }
-        (Err(failure), _) => left_out(failure.to_string()),
+        (None, _) => left_out("it was not analysed".to_owned()),
+        (Some(Err(failure)), _) => left_out(failure.to_string()),
         (_, Err(error)) => left_out(error.to_string()),
-        (Ok(analysis), Ok(schedule)) => {
+        (Some(Ok(analysis)), Ok(schedule)) => {
             let models = &analysis.comparison.nominal;
             let correction = schedule.at(condition.flight_state().airspeed_kt);
             let average = study.settings.cost_average;

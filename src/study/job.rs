@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::correction::{GainError, GainProblem, GainSolution, ProofBudget, solve_gains_until};
-use crate::dataset::{Band, Dataset};
+use crate::dataset::{Band, ConditionId, Dataset};
 
 use super::condition_analysis::ConditionAnalysis;
 use super::curves::ConditionCurves;
@@ -83,8 +83,8 @@ impl Job for TogglesJob {
 pub struct CurvesJob {
     /// The models.
     pub dataset: Arc<Dataset>,
-    /// Index of the condition.
-    pub condition: usize,
+    /// The condition.
+    pub condition: ConditionId,
     /// Band, and the number of frequencies in it.
     pub grid: (Band, usize),
 }
@@ -99,7 +99,8 @@ impl PartialEq for CurvesJob {
 impl Job for CurvesJob {
     /// The engine that keeps the models prepared.
     type Tools = Engine;
-    type Output = Arc<ConditionCurves>;
+    /// None of a condition that the dataset does not have.
+    type Output = Option<Arc<ConditionCurves>>;
 
     fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
         engine.curves(&self.dataset, self.condition, self.grid, progress)

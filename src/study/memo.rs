@@ -29,9 +29,7 @@ impl<K: PartialEq, V: Clone> Memo<K, V> {
     /// As [`Memo::get`], for a value that may fail to be made: nothing is kept then. The old value is dropped first, so that
     /// a large one is not in memory twice.
     pub(super) fn get_or_fail<E>(&mut self, key: K, make: impl FnOnce(&K) -> Result<V, E>) -> Result<V, E> {
-        if let Some((kept, value)) = &self.kept
-            && *kept == key
-        {
+        if let Some(value) = self.kept(&key) {
             return Ok(value.clone());
         }
         self.kept = None;
@@ -40,9 +38,14 @@ impl<K: PartialEq, V: Clone> Memo<K, V> {
         Ok(value)
     }
 
+    /// The value for `key`, if it is kept.
+    pub(super) fn kept(&self, key: &K) -> Option<&V> {
+        self.kept.as_ref().filter(|(kept, _)| kept == key).map(|(_, value)| value)
+    }
+
     /// Whether the value for `key` is kept.
     pub(super) fn holds(&self, key: &K) -> bool {
-        self.kept.as_ref().is_some_and(|(kept, _)| kept == key)
+        self.kept(key).is_some()
     }
 }
 

@@ -25,7 +25,7 @@ pub use carried_over::Difference;
 pub use caution::Caution;
 pub use comparison::{BundleFigures, Comparison};
 pub use condition_analysis::{ConditionAnalysis, ConditionFailure};
-pub use condition_responses::{ConditionResponses, PreparedCondition};
+pub use condition_responses::ConditionResponses;
 pub use curves::{ConditionCurves, display_band};
 pub use document::{BundleChoice, ConditionChoice, Study};
 pub use edit::{Edit, EditRefusal};

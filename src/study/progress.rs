@@ -1,5 +1,7 @@
 //! The progress of long work, and its cancellation.
 
+use crate::dataset::ConditionId;
+
 use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
 
 /// Told of the progress of long work, and asked whether it is still wanted.
@@ -12,8 +14,8 @@ pub trait Progress: Sync {
     /// `done` of `total` steps are behind.
     fn advanced(&self, done: usize, total: usize);
 
-    /// Index of the condition whose result is wanted before the others'.
-    fn wanted_first(&self) -> Option<usize> {
+    /// The condition whose result is wanted before the others'.
+    fn wanted_first(&self) -> Option<ConditionId> {
         None
     }
 

@@ -129,7 +129,7 @@ impl Settings {
 
 fn mark(table: &mut PairTable<bool>, pair: Pair, value: bool) -> Result<(), EditRefusal> {
     if pair.output >= table.outputs() || pair.input >= table.inputs() {
-        return Err(EditRefusal::NoSuch { what: "response" });
+        return Err(EditRefusal::NoResponse { pair });
     }
     table[pair] = value;
     Ok(())

@@ -1,6 +1,6 @@
 //! What the scheduled correction is worth, made of what was computed (M12, Figures 8 to 19).
 
-use crate::dataset::Pair;
+use crate::dataset::{Condition, Pair};
 use crate::study::{Analysis, Assessed};
 
 use super::plot::{AssessmentBar, AssessmentPanel, BarValue};
@@ -17,18 +17,18 @@ pub fn assessment_panels(state: &State) -> (Vec<Pair>, Vec<AssessmentPanel>) {
         .map(|&pair| AssessmentPanel {
             title: state.dataset().pair_name(pair),
             axis_label: "Condition".to_owned(),
-            bars: (0..analysis.assessment.len()).map(|index| bar(state, analysis, pair, index)).collect(),
+            bars: state.dataset().conditions().iter().map(|condition| bar(state, analysis, pair, condition)).collect(),
         })
         .collect();
     (pairs, panels)
 }
 
-fn bar(state: &State, analysis: &Analysis, pair: Pair, index: usize) -> AssessmentBar {
-    let condition = &state.dataset().conditions()[index];
+fn bar(state: &State, analysis: &Analysis, pair: Pair, condition: &Condition) -> AssessmentBar {
     let undefined = || BarValue::LeftOut { why: "the response is zero or not finite somewhere in the band".to_owned() };
-    let (value, detail) = match &analysis.assessment[index] {
-        Assessed::LeftOut { why } => (BarValue::LeftOut { why: why.clone() }, String::new()),
-        Assessed::Nominal(changes) => match changes[pair] {
+    let (value, detail) = match analysis.assessment.get(&condition.id()) {
+        None => (BarValue::LeftOut { why: state.results.absence().to_owned() }, String::new()),
+        Some(Assessed::LeftOut { why }) => (BarValue::LeftOut { why: why.clone() }, String::new()),
+        Some(Assessed::Nominal(changes)) => match changes[pair] {
             Some(change) => (
                 BarValue::Change { magnitude: change.magnitude(), phase: change.phase() },
                 format!("J {:.1} → {:.1}", change.uncorrected.total(), change.corrected.total()),
@@ -37,10 +37,10 @@ fn bar(state: &State, analysis: &Analysis, pair: Pair, index: usize) -> Assessme
         },
     };
     AssessmentBar {
-        key: index,
+        condition: condition.id(),
         label: condition.id().to_string(),
         value,
-        selected: index == state.display.condition,
+        selected: condition.id() == state.condition().id(),
         detail,
     }
 }

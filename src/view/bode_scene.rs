@@ -6,7 +6,7 @@ use std::sync::Arc;
 use nalgebra::Complex;
 
 use crate::correction::ChannelCorrection;
-use crate::dataset::{BundleKind, ModelId, Pair};
+use crate::dataset::{BundleKind, Condition, Model, ModelId, Pair};
 use crate::fidelity::SUGGESTION_RATIO;
 use crate::response::{FrequencyResponse, nearest_turn_offset, unwrap};
 use crate::study::{ConditionAnalysis, ConditionCurves};
@@ -14,41 +14,6 @@ use crate::units::{ratio_to_db, s_to_ms};
 
 use super::plot::{BodeCurve, CurveId, Role};
 use super::state::State;
-
-/// What a curve of the large plot stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CurveSubject {
-    /// One model as it is.
-    Model(ModelId),
-    /// The representative physics model with the condition's own correction.
-    Corrected,
-    /// The representative physics model with the scheduled correction.
-    Scheduled,
-}
-
-const CORRECTED: u64 = u64::MAX;
-const SCHEDULED: u64 = u64::MAX - 1;
-
-/// The number by which the plot names a model of the condition shown.
-fn curve_id(bundle: BundleKind, model: usize) -> CurveId {
-    let of_bundle = match bundle {
-        BundleKind::Physics => 0,
-        BundleKind::Identified => 1,
-    };
-    CurveId(2 * model as u64 + of_bundle)
-}
-
-/// What the plot means by a number, in the condition of index `condition`.
-pub fn subject_of(id: CurveId, condition: usize) -> CurveSubject {
-    match id.0 {
-        CORRECTED => CurveSubject::Corrected,
-        SCHEDULED => CurveSubject::Scheduled,
-        number => {
-            let bundle = if number % 2 == 0 { BundleKind::Physics } else { BundleKind::Identified };
-            CurveSubject::Model(ModelId { condition, bundle, model: (number / 2) as usize })
-        }
-    }
-}
 
 /// Magnitude \[dB\] and unwrapped phase \[deg\] of one response.
 #[derive(Clone, Debug)]
@@ -100,8 +65,8 @@ pub struct CachedShapes {
     omega: Arc<[f64]>,
     physics: Vec<Shape>,
     identified: Vec<Shape>,
-    /// Of each corrected curve, by its number: what it was made with, and its shape.
-    corrected: BTreeMap<u64, (Treatment, Shape)>,
+    /// Of each corrected curve: what it was made with, and its shape.
+    corrected: BTreeMap<CurveId, (Treatment, Shape)>,
 }
 
 /// What a corrected curve is made with.
@@ -124,7 +89,7 @@ impl CachedShapes {
         }
         let reference_shape = Shape::of(&curves.identified[reference].curve(pair));
         let shapes = |kind| {
-            let laid = |response: &FrequencyResponse| Shape::of(&response.curve(pair)).laid_on(&reference_shape);
+            let laid = |response: &Arc<FrequencyResponse>| Shape::of(&response.curve(pair)).laid_on(&reference_shape);
             curves.bundle(kind).iter().map(laid).collect()
         };
         self.physics = shapes(BundleKind::Physics);
@@ -135,12 +100,12 @@ impl CachedShapes {
     }
 
     /// The corrected shape of the curve `id`: the same one until it is made with something else.
-    fn corrected(&mut self, id: u64, treatment: Treatment) -> Shape {
-        match self.corrected.get(&id) {
+    fn corrected(&mut self, id: &CurveId, treatment: Treatment) -> Shape {
+        match self.corrected.get(id) {
             Some((with, shape)) if *with == treatment => shape.clone(),
             _ => {
                 let shape = self.physics[treatment.model].corrected(&self.omega, treatment);
-                self.corrected.insert(id, (treatment, shape.clone()));
+                self.corrected.insert(id.clone(), (treatment, shape.clone()));
                 shape
             }
         }
@@ -159,47 +124,45 @@ pub fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
     let Some(curves) = state.curves().cloned() else {
         return Vec::new();
     };
-    let reference = state.shown().map_or(0, |shown| shown.comparison.identified.model);
+    let position = |name| curves.condition.position(BundleKind::Identified, name);
+    let reference =
+        state.shown().and_then(|shown| position(shown.representative_name(BundleKind::Identified))).unwrap_or(0);
     let mut shapes = state.display.shapes.remove(&pair).unwrap_or_default();
     shapes.refresh(&curves, pair, reference);
-    let mut drawn = model_curves(state, &shapes, BundleKind::Physics);
-    drawn.extend(model_curves(state, &shapes, BundleKind::Identified));
+    let mut drawn = model_curves(state, &curves.condition, &shapes, BundleKind::Physics);
+    drawn.extend(model_curves(state, &curves.condition, &shapes, BundleKind::Identified));
     if let Some(shown) = state.shown() {
-        drawn.extend(corrected_curves(state, &mut shapes, shown, pair));
+        drawn.extend(corrected_curves(state, &curves.condition, &mut shapes, shown, pair));
     }
     state.display.shapes.insert(pair, shapes);
     drawn
 }
 
-fn model_curves(state: &State, shapes: &CachedShapes, kind: BundleKind) -> Vec<BodeCurve> {
+/// The models of the condition that the shapes were computed of.
+fn model_curves(state: &State, condition: &Condition, shapes: &CachedShapes, kind: BundleKind) -> Vec<BodeCurve> {
     let shown = state.shown();
-    let representative = shown.map(|shown| match kind {
-        BundleKind::Physics => shown.comparison.physics.model,
-        BundleKind::Identified => shown.comparison.identified.model,
-    });
-    let models = state.condition().bundle(kind);
-    let isolated = state.display.isolated.filter(|id| id.condition == state.display.condition);
-    let visible =
-        |index: &usize| isolated.is_none_or(|id| id == state.model_id(kind, *index) || representative == Some(*index));
-    (0..models.len())
-        .filter(visible)
-        .map(|index| {
-            let id = state.model_id(kind, index);
-            let shape = &shapes.of_bundle(kind)[index];
-            let rejected = state.study.is_rejected(id);
-            BodeCurve {
-                id: curve_id(kind, index),
-                label: models[index].name.clone(),
-                detail: detail(shown, kind, index, rejected),
-                role: role_of(kind, models[index].is_nominal(), representative == Some(index)),
-                rejected,
-                highlighted: state.display.hovered == Some(id),
-                omega: Arc::clone(&shapes.omega),
-                magnitude_db: Arc::clone(&shape.magnitude_db),
-                phase_deg: Arc::clone(&shape.phase_deg),
-            }
-        })
-        .collect()
+    let representative = shown.map(|shown| shown.representative_name(kind));
+    let models = condition.bundle(kind);
+    let isolated = state.display.isolated.as_ref().filter(|id| id.condition == condition.id());
+    let is_visible =
+        |name: &str| isolated.is_none_or(|id| (id.bundle == kind && id.name == name) || representative == Some(name));
+    let curve = |(model, shape): (&Model, &Shape)| {
+        let id = ModelId::new(condition.id(), kind, &model.name);
+        let rejected = state.study.is_rejected(&id);
+        BodeCurve {
+            label: model.name.clone(),
+            detail: detail(shown, &id, rejected),
+            role: role_of(kind, model.is_nominal(), representative == Some(&model.name)),
+            rejected,
+            highlighted: state.display.hovered.as_ref() == Some(&id),
+            id: CurveId::Model(id),
+            omega: Arc::clone(&shapes.omega),
+            magnitude_db: Arc::clone(&shape.magnitude_db),
+            phase_deg: Arc::clone(&shape.phase_deg),
+        }
+    };
+    let shapes_of = shapes.of_bundle(kind);
+    models.iter().zip(shapes_of).filter(|(model, _)| is_visible(&model.name)).map(curve).collect()
 }
 
 fn role_of(kind: BundleKind, nominal: bool, represents: bool) -> Role {
@@ -213,10 +176,9 @@ fn role_of(kind: BundleKind, nominal: bool, represents: bool) -> Role {
 }
 
 /// "ratio 3.68, suggested as an outlier · click to reject".
-fn detail(shown: Option<&ConditionAnalysis>, kind: BundleKind, index: usize, rejected: bool) -> String {
-    let discontinuity = shown.and_then(|shown| shown.figures.discontinuity.as_ref().ok());
+fn detail(shown: Option<&ConditionAnalysis>, id: &ModelId, rejected: bool) -> String {
     let ratio =
-        discontinuity.and_then(|discontinuity| discontinuity.ratios[index]).filter(|_| kind == BundleKind::Physics);
+        shown.filter(|_| id.bundle == BundleKind::Physics).and_then(|shown| shown.discontinuity_ratio(&id.name));
     let action = if rejected { "click to restore" } else { "click to reject" };
     match ratio {
         Some(ratio) if ratio > SUGGESTION_RATIO => format!("ratio {ratio:.2}, suggested as an outlier · {action}"),
@@ -225,16 +187,24 @@ fn detail(shown: Option<&ConditionAnalysis>, kind: BundleKind, index: usize, rej
     }
 }
 
-fn corrected_curves(state: &State, shapes: &mut CachedShapes, shown: &ConditionAnalysis, pair: Pair) -> Vec<BodeCurve> {
-    let model = shown.comparison.physics.model;
-    let name = &state.condition().bundle(BundleKind::Physics)[model].name;
+fn corrected_curves(
+    state: &State,
+    condition: &Condition,
+    shapes: &mut CachedShapes,
+    shown: &ConditionAnalysis,
+    pair: Pair,
+) -> Vec<BodeCurve> {
+    let name = shown.representative_name(BundleKind::Physics);
+    let Some(model) = condition.position(BundleKind::Physics, name) else {
+        return Vec::new();
+    };
     let airspeed_kt = state.condition().flight_state().airspeed_kt;
-    let mut curve = |id: u64, label: String, role: Role, correction: &ChannelCorrection| {
+    let mut curve = |id: CurveId, label: String, role: Role, correction: &ChannelCorrection| {
         let (net_gain, net_delay_s) = (correction.net_gain(pair), correction.net_delay_s(pair));
-        let shape = shapes.corrected(id, Treatment { model, net_gain, net_delay_s });
+        let shape = shapes.corrected(&id, Treatment { model, net_gain, net_delay_s });
         let delay_ms = s_to_ms(net_delay_s);
         BodeCurve {
-            id: CurveId(id),
+            id,
             label,
             detail: format!("net gain {net_gain:.3}, net delay {delay_ms:.1} ms"),
             role,
@@ -245,12 +215,13 @@ fn corrected_curves(state: &State, shapes: &mut CachedShapes, shown: &ConditionA
             phase_deg: shape.phase_deg,
         }
     };
-    let mut curves = vec![curve(CORRECTED, format!("{name}, corrected"), Role::Corrected, &shown.correction)];
+    let own = curve(CurveId::Corrected, format!("{name}, corrected"), Role::Corrected, &shown.correction);
+    let mut curves = vec![own];
     if let Some(Ok(schedule)) = state.analysis().map(|analysis| &analysis.schedule) {
         let scheduled = schedule.at(airspeed_kt);
         if scheduled.net_gain(pair) > 0.0 {
             let older = if state.others_are_older() { " of older settings" } else { "" };
-            curves.push(curve(SCHEDULED, format!("{name}, scheduled{older}"), Role::Scheduled, &scheduled));
+            curves.push(curve(CurveId::Scheduled, format!("{name}, scheduled{older}"), Role::Scheduled, &scheduled));
         }
     }
     curves

@@ -7,13 +7,13 @@ use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
 use crate::study::{Edit, Setting};
 
 use super::assessment_scene::assessment_panels;
-use super::bode_scene::{CurveSubject, bode_curves, subject_of};
+use super::bode_scene::bode_curves;
 use super::command::Command;
 use super::explanation::channel_names;
 use super::net_gain_scene::{channel_panels, dot_key, net_gain_panels};
 use super::palette::{Palette, SMALL_SIZE};
 use super::plot::{
-    AssessmentEvent, AssessmentScene, BodeCurve, BodeEvent, BodeScene, ChannelsScene, GainEvent, NetGainScene,
+    AssessmentEvent, AssessmentScene, BodeCurve, BodeEvent, BodeScene, ChannelsScene, CurveId, GainEvent, NetGainScene,
     OverviewCell, OverviewEvent, OverviewScene, assessment_ui, bode_ui, channels_ui, net_gain_ui, overview_ui,
 };
 use super::settings_panel::choice_ui;
@@ -93,30 +93,22 @@ fn bode_tab_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
     for event in events {
         commands.extend(bode_command(state, event));
     }
-    let pointed = state.display.bode.hovered().map(|id| subject_of(id, state.display.condition));
-    if let Some(CurveSubject::Model(id)) = pointed {
-        commands.push(Command::Hover(id));
+    if let Some(CurveId::Model(id)) = state.display.bode.hovered() {
+        commands.push(Command::Hover(id.clone()));
     }
 }
 
 fn bode_command(state: &State, event: BodeEvent) -> Option<Command> {
-    let subject = |id| subject_of(id, state.display.condition);
+    let is_rejected = |id| state.study.is_rejected(id);
     match event {
-        BodeEvent::Hovered(_) => None,
-        BodeEvent::Clicked(id) => match subject(id) {
-            CurveSubject::Model(id) if state.study.is_rejected(id) => Some(Edit::Restore(id).into()),
-            CurveSubject::Model(id) => Some(Edit::Reject(id).into()),
-            CurveSubject::Corrected | CurveSubject::Scheduled => None,
-        },
-        BodeEvent::TakenBack(id) => match subject(id) {
-            CurveSubject::Model(id) if state.study.is_rejected(id) => Some(Command::Forget(Edit::Reject(id))),
-            CurveSubject::Model(id) => Some(Command::Forget(Edit::Restore(id))),
-            CurveSubject::Corrected | CurveSubject::Scheduled => None,
-        },
-        BodeEvent::Isolated(id) => match subject(id) {
-            CurveSubject::Model(id) => Some(Command::Isolate(id)),
-            CurveSubject::Corrected | CurveSubject::Scheduled => None,
-        },
+        BodeEvent::Clicked(CurveId::Model(id)) => {
+            Some(if is_rejected(&id) { Edit::Restore(id) } else { Edit::Reject(id) }.into())
+        }
+        BodeEvent::TakenBack(CurveId::Model(id)) => {
+            Some(Command::Forget(if is_rejected(&id) { Edit::Reject(id) } else { Edit::Restore(id) }))
+        }
+        BodeEvent::Isolated(CurveId::Model(id)) => Some(Command::Isolate(id)),
+        BodeEvent::Hovered(_) | BodeEvent::Clicked(_) | BodeEvent::TakenBack(_) | BodeEvent::Isolated(_) => None,
         BodeEvent::BandDragged { min, max } => {
             Band::new(min, max).ok().map(|band| Edit::Set(Setting::Band(band)).into())
         }
@@ -230,9 +222,9 @@ fn cost_note(state: &State, pair: Pair) -> String {
 fn assessment_tab_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let (pairs, panels) = assessment_panels(state);
     let scene = AssessmentScene { panels: &panels, message: Some(state.results.absence()) };
-    for AssessmentEvent::BarClicked { panel, key } in assessment_ui(ui, &scene, &mut state.display.assessment, palette)
-    {
-        commands.push(Command::SelectCondition(key));
+    let events = assessment_ui(ui, &scene, &mut state.display.assessment, palette);
+    for AssessmentEvent::BarClicked { panel, condition } in events {
+        commands.push(Command::SelectCondition(condition));
         commands.extend(pairs.get(panel).map(|&pair| Command::FocusPair(pair)));
     }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use egui::ThemePreference;
 
-use crate::dataset::{ModelId, Pair};
+use crate::dataset::{ConditionId, ModelId, Pair};
 use crate::study::Edit;
 
 use super::bars::Bar;
@@ -24,8 +24,8 @@ pub enum Command {
     Forget(Edit),
     /// Bring a decision taken back again.
     Redo,
-    /// Show a condition, by index.
-    SelectCondition(usize),
+    /// Show a condition.
+    SelectCondition(ConditionId),
     /// Show a response in the large plot.
     FocusPair(Pair),
     /// Point at a model in every view, as long as this is asked for in each frame.

@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 
-use crate::dataset::{Condition, FlightState};
+use crate::dataset::{Condition, ConditionId, FlightState};
 use crate::study::{Analysis, ConditionAnalysis};
 
 use super::command::Command;
@@ -16,15 +16,16 @@ pub fn conditions_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
     let conditions = state.dataset().conditions();
     let older = if state.others_are_older() { " · marks of older settings" } else { "" };
     heading_ui(ui, palette, "Conditions", &format!("{}{older}", conditions.len()));
-    for (index, condition) in conditions.iter().enumerate() {
-        let selected = index == state.display.condition;
-        let marks = Marks::of(state.analysis(), index);
-        let name = format!("Condition {}: {}", condition.id(), in_words(condition.flight_state()));
+    for condition in conditions {
+        let id = condition.id();
+        let selected = id == state.condition().id();
+        let marks = Marks::of(state.analysis(), id);
+        let name = format!("Condition {id}: {}", in_words(condition.flight_state()));
         let (row, response) = row_ui(ui, palette, selected, false, &name);
-        paint_flight_state(ui, row, condition, palette, state.study.choices[index].scheduled);
+        paint_flight_state(ui, row, condition, palette, state.study.choice(id).scheduled);
         marks.paint(ui, row, palette);
         if response.clicked() {
-            commands.push(Command::SelectCondition(index));
+            commands.push(Command::SelectCondition(id));
         }
         response.on_hover_ui(|ui| tooltip_ui(ui, condition, &marks));
     }
@@ -62,9 +63,9 @@ struct Marks {
 }
 
 impl Marks {
-    fn of(analysis: Option<&Analysis>, index: usize) -> Self {
+    fn of(analysis: Option<&Analysis>, condition: ConditionId) -> Self {
         let none = Self { suggested: 0, unmatched_gains: 0, unmatched_delays: 0, failure: None };
-        match analysis.and_then(|analysis| analysis.conditions.get(index)) {
+        match analysis.and_then(|analysis| analysis.conditions.get(&condition)) {
             None => none,
             Some(Err(failure)) => Self { failure: Some(failure.to_string()), ..none },
             Some(Ok(condition)) => Self::of_result(condition),

@@ -2,6 +2,8 @@
 
 use egui::{Button, Context, Grid, Id, Key, Modal, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
+use crate::dataset::ConditionId;
+
 use super::command::{Command, FormKind};
 use super::palette::Palette;
 use super::state::{ExportForm, State};
@@ -74,7 +76,7 @@ fn export_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut V
     title(ui, "Export corrections");
     let dim = |text: &str| RichText::new(text.to_owned()).color(palette.dim_text);
     ui.label(dim("Writes corrections.json, corrections.csv and assessment.csv into a folder."));
-    let names: Vec<(i64, String)> = state
+    let names: Vec<(ConditionId, String)> = state
         .dataset()
         .conditions()
         .iter()
@@ -84,7 +86,7 @@ fn export_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut V
     conditions_ui(ui, form, &names);
     ui.add_space(4.0);
     path_ui(ui, "Export folder", &mut form.folder, "folder; it is made where it does not exist");
-    let ready = form.chosen.contains(&true) && !form.folder.trim().is_empty();
+    let ready = !form.chosen.is_empty() && !form.folder.trim().is_empty();
     ui.horizontal(|ui| {
         if ui.add_enabled(ready, Button::new("Export")).clicked() {
             commands.push(Command::Export);
@@ -101,21 +103,26 @@ fn export_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut V
     });
 }
 
-fn conditions_ui(ui: &mut Ui, form: &mut ExportForm, names: &[(i64, String)]) {
+fn conditions_ui(ui: &mut Ui, form: &mut ExportForm, names: &[(ConditionId, String)]) {
     ui.horizontal(|ui| {
         if ui.small_button("All conditions").clicked() {
-            form.chosen.fill(true);
+            form.chosen.extend(names.iter().map(|(id, _)| *id));
         }
         if ui.small_button("No conditions").clicked() {
-            form.chosen.fill(false);
+            form.chosen.clear();
         }
     });
     ScrollArea::vertical().max_height(260.0).show(ui, |ui| {
-        for ((id, name), chosen) in names.iter().zip(&mut form.chosen) {
-            let response = ui.checkbox(chosen, format!("{id}   {name}"));
-            let selected = *chosen;
+        for (id, name) in names {
+            let mut chosen = form.chosen.contains(id);
+            let response = ui.checkbox(&mut chosen, format!("{id}   {name}"));
             response
-                .widget_info(|| WidgetInfo::selected(Role::CheckBox, true, selected, format!("Export condition {id}")));
+                .widget_info(|| WidgetInfo::selected(Role::CheckBox, true, chosen, format!("Export condition {id}")));
+            if response.changed() && chosen {
+                form.chosen.insert(*id);
+            } else if response.changed() {
+                form.chosen.remove(id);
+            }
         }
     });
 }

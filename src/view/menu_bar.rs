@@ -76,8 +76,8 @@ fn edit_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         entry(ui, &format!("Redo {label}"), "Ctrl+Shift+Z", Command::Redo, commands);
     }
     entry(ui, "Hold exactly the on-axis responses", "", Edit::ConstrainOnAxis.into(), commands);
-    let condition = state.display.condition;
-    let scheduled = state.study.choices[condition].scheduled;
+    let condition = state.condition().id();
+    let scheduled = state.study.choice(condition).scheduled;
     let text =
         if scheduled { "Leave this condition out of the schedule" } else { "Take this condition into the schedule" };
     entry(ui, text, "", Edit::SetScheduled { condition, scheduled: !scheduled }.into(), commands);

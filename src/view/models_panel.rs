@@ -15,10 +15,11 @@ use super::state::State;
 /// The physics models with discontinuity ratios, and what may be done with all of them at once.
 pub fn physics_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     bundle_ui(ui, state, palette, BundleKind::Physics, commands);
-    let condition = state.display.condition;
-    let rejected = &state.study.choices[condition].physics.rejected;
+    let condition = state.condition().id();
+    let choice = state.study.choice(condition);
+    let rejected = &choice.physics.rejected;
     let suggested = state.shown().map(|shown| shown.suggested()).unwrap_or_default();
-    let open: Vec<usize> = suggested.into_iter().filter(|model| !rejected.contains(model)).collect();
+    let open: Vec<String> = suggested.into_iter().filter(|model| !rejected.contains(model)).collect();
     ui.horizontal_wrapped(|ui| {
         let label =
             if open.is_empty() { "Reject suggested".to_owned() } else { format!("Reject {} suggested", open.len()) };
@@ -27,7 +28,7 @@ pub fn physics_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands
         if button.on_hover_text(&hint).on_disabled_hover_text("No kept model is suggested as an outlier").clicked() {
             commands.push(Edit::RejectAll { condition, models: open }.into());
         }
-        let any = !rejected.is_empty() || !state.study.choices[condition].identified.rejected.is_empty();
+        let any = !rejected.is_empty() || !choice.identified.rejected.is_empty();
         let restore = ui.add_enabled(any, egui::Button::new("Restore all"));
         if restore.on_hover_text("Put every rejected model of this condition back").clicked() {
             commands.push(Edit::RestoreAll { condition }.into());
@@ -42,14 +43,14 @@ pub fn identified_models_ui(ui: &mut Ui, state: &State, palette: &Palette, comma
 
 fn bundle_ui(ui: &mut Ui, state: &State, palette: &Palette, kind: BundleKind, commands: &mut Vec<Command>) {
     let models = state.condition().bundle(kind);
-    let rejected = &state.study.choices[state.display.condition].bundle(kind).rejected;
+    let rejected = &state.study.choice(state.condition().id()).bundle(kind).rejected;
     let title = match kind {
         BundleKind::Physics => format!("Physics models of {}", state.condition().id()),
         BundleKind::Identified => "Identified models".to_owned(),
     };
     heading_ui(ui, palette, &title, &format!("{} of {}", models.len() - rejected.len(), models.len()));
-    for (index, model) in models.iter().enumerate() {
-        let row = ModelRow::of(state, kind, index, model);
+    for model in models {
+        let row = ModelRow::of(state, kind, model);
         row.ui(ui, palette, commands);
     }
 }
@@ -66,31 +67,18 @@ struct ModelRow<'a> {
 }
 
 impl<'a> ModelRow<'a> {
-    fn of(state: &State, kind: BundleKind, index: usize, model: &'a Model) -> Self {
-        let id = state.model_id(kind, index);
+    fn of(state: &State, kind: BundleKind, model: &'a Model) -> Self {
+        let id = state.model_id(kind, &model.name);
         let shown = state.shown();
-        let representative = shown.map(|shown| match kind {
-            BundleKind::Physics => &shown.comparison.physics,
-            BundleKind::Identified => &shown.comparison.identified,
-        });
-        let ratios =
-            shown.and_then(|shown| shown.figures.discontinuity.as_ref().ok()).filter(|_| kind == BundleKind::Physics);
         Self {
-            id,
             model,
-            kept: !state.study.is_rejected(id),
-            pinned: state.study.choices[id.condition].bundle(kind).pinned == Some(index),
-            represents: representative.is_some_and(|representative| representative.model == index),
-            pointed: state.display.hovered == Some(id),
-            score: representative.and_then(|representative| representative.scores[index]),
-            ratio: ratios.and_then(|discontinuity| discontinuity.ratios[index]),
-        }
-    }
-
-    fn bundle_word(&self) -> &'static str {
-        match self.id.bundle {
-            BundleKind::Physics => "physics",
-            BundleKind::Identified => "identified",
+            kept: !state.study.is_rejected(&id),
+            pinned: state.study.choice(id.condition).bundle(kind).pinned.as_ref() == Some(&id.name),
+            represents: shown.is_some_and(|shown| shown.representative_name(kind) == id.name),
+            pointed: state.display.hovered.as_ref() == Some(&id),
+            score: shown.and_then(|shown| shown.score(kind, &id.name)),
+            ratio: shown.filter(|_| kind == BundleKind::Physics).and_then(|shown| shown.discontinuity_ratio(&id.name)),
+            id,
         }
     }
 
@@ -105,7 +93,7 @@ impl<'a> ModelRow<'a> {
         let figure_width = self.paint_figure(ui, rect, palette);
         self.paint_name(ui, rect, figure_width, palette);
         if response.contains_pointer() {
-            commands.push(Command::Hover(self.id));
+            commands.push(Command::Hover(self.id.clone()));
         }
         response.on_hover_ui(|ui| self.tooltip_ui(ui));
     }
@@ -114,10 +102,10 @@ impl<'a> ModelRow<'a> {
         let mut kept = self.kept;
         let place = Rect::from_min_size(rect.min + vec2(3.0, 0.0), vec2(18.0, rect.height()));
         let checkbox = ui.put(place, Checkbox::without_text(&mut kept));
-        let name = format!("Keep {} model {}", self.bundle_word(), self.model.name);
+        let name = format!("Keep {} model {}", self.id.bundle, self.model.name);
         checkbox.widget_info(|| WidgetInfo::selected(Role::CheckBox, ui.is_enabled(), self.kept, &name));
         if checkbox.changed() {
-            commands.push(if kept { Edit::Restore(self.id) } else { Edit::Reject(self.id) }.into());
+            commands.push(if kept { Edit::Restore(self.id.clone()) } else { Edit::Reject(self.id.clone()) }.into());
         }
         checkbox.on_hover_text(if self.kept { "Reject this model" } else { "Restore this model" });
     }
@@ -125,10 +113,10 @@ impl<'a> ModelRow<'a> {
     /// The star of the representative: a click pins the model, or lets the medoid represent again.
     fn star_ui(&self, ui: &mut Ui, rect: Rect, palette: &Palette, commands: &mut Vec<Command>) {
         let place = Rect::from_min_size(pos2(rect.left() + 24.0, rect.top()), vec2(16.0, rect.height()));
-        let id = ui.scope_id().with(("star", self.id));
+        let id = ui.scope_id().with(("star", &self.id));
         let sense = if self.kept { Sense::click() } else { Sense::hover() };
         let response = ui.interact(place, id, sense);
-        let name = format!("Pin {} model {}", self.bundle_word(), self.model.name);
+        let name = format!("Pin {} model {}", self.id.bundle, self.model.name);
         response.widget_info(|| WidgetInfo::selected(Role::CheckBox, self.kept, self.pinned, &name));
         let visible = self.represents || response.hovered() || response.has_focus();
         if visible && self.kept {
@@ -141,7 +129,8 @@ impl<'a> ModelRow<'a> {
         }
         if response.clicked() {
             let (condition, bundle) = (self.id.condition, self.id.bundle);
-            commands.push(if self.pinned { Edit::Unpin { condition, bundle } } else { Edit::Pin(self.id) }.into());
+            commands
+                .push(if self.pinned { Edit::Unpin { condition, bundle } } else { Edit::Pin(self.id.clone()) }.into());
         }
         let hint = match (self.pinned, self.represents) {
             (true, _) => "Pinned by hand; click: the medoid represents again",

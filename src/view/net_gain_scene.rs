@@ -48,18 +48,19 @@ fn panel(
     gain: impl Fn(&ChannelCorrection) -> f64 + Copy,
 ) -> GainPanel {
     let classes = Classes::of(state);
-    let dots = state.dataset().conditions().iter().enumerate().filter_map(|(index, condition)| {
-        let result = analysis.condition(index)?;
+    let dots = state.dataset().conditions().iter().filter_map(|condition| {
+        let id = condition.id();
+        let result = analysis.condition(id)?;
         let flight_state = condition.flight_state();
         Some(Dot {
-            condition: index,
-            label: condition.id().to_string(),
+            condition: id,
+            label: id.to_string(),
             airspeed_kt: flight_state.airspeed_kt,
             gain: gain(&result.correction),
             shape: if classes.is_first_altitude(flight_state) { DotShape::Circle } else { DotShape::Diamond },
             filled: classes.is_first_weight(flight_state),
-            selected: index == state.display.condition,
-            chosen: analysis.study.choices[index].scheduled,
+            selected: id == state.condition().id(),
+            chosen: analysis.study.choice(id).scheduled,
             detail: flight_state.name.clone(),
         })
     });

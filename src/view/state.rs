@@ -1,11 +1,11 @@
 //! Everything the window shows.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::correction::GainProblem;
-use crate::dataset::{Band, BundleKind, Condition, Dataset, ModelId, Pair};
+use crate::dataset::{Band, BundleKind, Condition, ConditionId, Dataset, ModelId, Pair};
 use crate::study::{
     Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, CurvesJob, History, Study, Toggles, TogglesJob,
 };
@@ -30,10 +30,10 @@ pub enum Tab {
 }
 
 /// What is shown, none of which changes a result.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Display {
-    /// Index of the condition shown.
-    pub condition: usize,
+    /// The condition shown.
+    pub condition: ConditionId,
     /// The response in the large plot.
     pub pair: Pair,
     /// The model pointed at.
@@ -62,6 +62,28 @@ pub struct Display {
     pub drawn: Vec<BodeCurve>,
 }
 
+impl Display {
+    /// A condition and a response, in plots that fit what they show.
+    fn of(condition: ConditionId, pair: Pair) -> Self {
+        Self {
+            condition,
+            pair,
+            hovered: None,
+            isolated: None,
+            tab: Tab::default(),
+            unit: FrequencyUnit::default(),
+            bode: BodeView::default(),
+            net_gain: GainView::default(),
+            channels: ChannelsView::default(),
+            overview: OverviewView::default(),
+            assessment: AssessmentView::default(),
+            bode_band: None,
+            shapes: BTreeMap::new(),
+            drawn: Vec::new(),
+        }
+    }
+}
+
 /// The result of the condition shown, ahead of the others'.
 #[derive(Clone, Debug)]
 pub struct FirstResult {
@@ -69,8 +91,8 @@ pub struct FirstResult {
     pub generation: u64,
     /// The dataset it belongs to.
     pub dataset: Arc<Dataset>,
-    /// Index of the condition.
-    pub condition: usize,
+    /// The condition.
+    pub condition: ConditionId,
     /// The result.
     pub outcome: Result<ConditionAnalysis, ConditionFailure>,
 }
@@ -193,8 +215,8 @@ pub struct RecentFile {
 pub struct ExportForm {
     /// The folder, as typed.
     pub folder: String,
-    /// Whether each condition is exported.
-    pub chosen: Vec<bool>,
+    /// The conditions that are exported.
+    pub chosen: BTreeSet<ConditionId>,
 }
 
 /// What the forms hold while they are shown.
@@ -243,7 +265,7 @@ impl State {
     /// The state of a window that shows `study` for the first time.
     pub fn new(study: Study, study_name: String, file_cautions: Vec<String>) -> Self {
         let pair = study.dataset.measuring_pairs().marked().next().unwrap_or_default();
-        let display = Display { pair, ..Display::default() };
+        let display = Display::of(study.dataset.conditions()[0].id(), pair);
         Self {
             study,
             history: History::default(),
@@ -265,9 +287,10 @@ impl State {
         &self.study.dataset
     }
 
-    /// The condition shown.
+    /// The condition shown; the first one where the dataset does not have that any more.
     pub fn condition(&self) -> &Condition {
-        &self.study.dataset.conditions()[self.display.condition]
+        let found = self.study.dataset.condition(self.display.condition);
+        found.unwrap_or(&self.study.dataset.conditions()[0])
     }
 
     /// The result of the condition shown, where there is one of this dataset.
@@ -277,13 +300,13 @@ impl State {
 
     /// What came of the condition shown: the newest there is of this dataset.
     pub fn outcome(&self) -> Option<&Result<ConditionAnalysis, ConditionFailure>> {
-        let condition = self.display.condition;
+        let condition = self.condition().id();
         let first = self
             .results
             .first
             .as_ref()
             .filter(|first| first.condition == condition && Arc::ptr_eq(&first.dataset, &self.study.dataset));
-        first.map(|first| &first.outcome).or_else(|| self.analysis()?.conditions.get(condition))
+        first.map(|first| &first.outcome).or_else(|| self.analysis()?.conditions.get(&condition))
     }
 
     /// Whether the results of the other conditions, and all that is made from them, are of older settings than what is shown of
@@ -304,7 +327,7 @@ impl State {
     /// The responses of the condition shown, for drawing.
     pub fn curves(&self) -> Option<&Arc<ConditionCurves>> {
         let (job, curves) = self.results.curves.as_ref()?;
-        let fits = job.condition == self.display.condition && Arc::ptr_eq(&job.dataset, &self.study.dataset);
+        let fits = job.condition == self.condition().id() && Arc::ptr_eq(&job.dataset, &self.study.dataset);
         fits.then_some(curves)
     }
 
@@ -338,13 +361,10 @@ impl State {
         }
     }
 
-    /// Shows what there is of another dataset: the same condition and response where it has them, the first otherwise.
+    /// Shows what there is of another dataset: the same response where it has that, the first otherwise.
     pub fn follow_dataset(&mut self) {
         let dataset = &self.study.dataset;
         let pair = self.display.pair;
-        if self.display.condition >= dataset.conditions().len() {
-            self.display.condition = 0;
-        }
         if pair.output >= dataset.outputs().len() || pair.input >= dataset.inputs().len() {
             self.display.pair = dataset.measuring_pairs().marked().next().unwrap_or_default();
         }
@@ -355,8 +375,8 @@ impl State {
     }
 
     /// A model of the condition shown.
-    pub fn model_id(&self, bundle: BundleKind, model: usize) -> ModelId {
-        ModelId { condition: self.display.condition, bundle, model }
+    pub fn model_id(&self, bundle: BundleKind, name: &str) -> ModelId {
+        ModelId::new(self.condition().id(), bundle, name)
     }
 }
 

@@ -86,7 +86,8 @@ fn model_count(condition: &crate::dataset::Condition) -> usize {
 
 /// Why the condition shown is left out of the assessment, or what the data are.
 fn standing_remark(state: &State) -> String {
-    let left_out = state.analysis().and_then(|analysis| match &analysis.assessment[state.display.condition] {
+    let assessed = state.analysis().and_then(|analysis| analysis.assessment.get(&state.condition().id()));
+    let left_out = assessed.and_then(|assessed| match assessed {
         Assessed::LeftOut { why } => Some(why),
         Assessed::Nominal(_) => None,
     });

@@ -1,9 +1,10 @@
 //! `assessment.csv`: one row for each condition and response.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::correction::ChannelCorrection;
-use crate::dataset::{Condition, Pair};
+use crate::dataset::{Condition, ConditionId, Pair};
 use crate::io::csv_file::{cell, write_csv};
 use crate::io::file_error::FileError;
 use crate::study::{Analysis, Assessed};
@@ -32,33 +33,27 @@ const HEADER: [&str; 20] = [
 ];
 
 /// Writes G, D \[s\], net gains and J of the nominal model before and under the scheduled correction, of every response of the
-/// chosen conditions (by index). A figure that does not exist is an empty cell; `left_out` says why a condition is not assessed.
-pub fn write_assessment_csv(analysis: &Analysis, chosen: &[usize], path: &Path) -> Result<(), FileError> {
-    let conditions = analysis.study.dataset.conditions();
-    let known = chosen.iter().filter_map(|&index| Some((index, conditions.get(index)?)));
-    let rows = known.flat_map(|(index, condition)| {
+/// chosen conditions. A figure that does not exist is an empty cell; `left_out` says why a condition is not assessed.
+pub fn write_assessment_csv(analysis: &Analysis, chosen: &BTreeSet<ConditionId>, path: &Path) -> Result<(), FileError> {
+    let conditions = analysis.study.dataset.conditions().iter();
+    let rows = conditions.filter(|condition| chosen.contains(&condition.id())).flat_map(|condition| {
         let scheduled =
             analysis.schedule.as_ref().ok().map(|schedule| schedule.at(condition.flight_state().airspeed_kt));
         let pairs = analysis.study.dataset.on_axis().pairs();
-        pairs.map(move |pair| row(analysis, index, condition, scheduled.as_ref(), pair))
+        pairs.map(move |pair| row(analysis, condition, scheduled.as_ref(), pair))
     });
     write_csv(path, &HEADER, rows)
 }
 
-fn row(
-    analysis: &Analysis,
-    index: usize,
-    condition: &Condition,
-    scheduled: Option<&ChannelCorrection>,
-    pair: Pair,
-) -> [String; 20] {
+fn row(analysis: &Analysis, condition: &Condition, scheduled: Option<&ChannelCorrection>, pair: Pair) -> [String; 20] {
     let dataset = &analysis.study.dataset;
-    let result = analysis.condition(index);
+    let result = analysis.condition(condition.id());
     let delta = result.map(|result| &result.comparison.delta);
     let own = result.map(|result| &result.correction);
-    let (change, left_out) = match &analysis.assessment[index] {
-        Assessed::Nominal(changes) => (changes[pair], ""),
-        Assessed::LeftOut { why } => (None, why.as_str()),
+    let (change, left_out) = match analysis.assessment.get(&condition.id()) {
+        Some(Assessed::Nominal(changes)) => (changes[pair], ""),
+        Some(Assessed::LeftOut { why }) => (None, why.as_str()),
+        None => (None, ""),
     };
     [
         condition.id().to_string(),

@@ -1,11 +1,13 @@
 //! From an analysis to what its corrections file says.
 
+use std::collections::BTreeSet;
+
 use crate::correction::{DelayConflict, GainObjective, Outcome, delay_sensitivities, gain_sensitivities};
-use crate::dataset::{BundleKind, Condition, PairTable};
+use crate::dataset::{BundleKind, Condition, ConditionId, PairTable};
 use crate::fidelity::{Cost, CostAverage};
 use crate::io::by_name::ByName;
 use crate::schedule::{Regression, Schedule, ScheduleKind, ScheduledQuantity};
-use crate::study::{Analysis, Assessed, ConditionAnalysis, ConditionFailure, Settings};
+use crate::study::{Analysis, Assessed, ConditionAnalysis, Settings};
 
 use super::channel_names::{ChannelNames, rows};
 use super::explanation;
@@ -17,10 +19,10 @@ use super::schema::{
 use super::{NAME, VERSION};
 
 impl Corrections {
-    /// The results of the chosen conditions (by index), with the schedule of the whole study.
+    /// The results of the chosen conditions, with the schedule of the whole study.
     ///
-    /// `sha256` is that of the dataset's file. An index that the dataset does not have is passed over.
-    pub fn of(analysis: &Analysis, sha256: &str, chosen: &[usize]) -> Self {
+    /// `sha256` is that of the dataset's file.
+    pub fn of(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<ConditionId>) -> Self {
         let dataset = &analysis.study.dataset;
         let gather = Gather { analysis, names: ChannelNames::of(dataset) };
         let mut corrections = Corrections {
@@ -34,10 +36,8 @@ impl Corrections {
             schedule: analysis.schedule.as_ref().ok().map(|schedule| gather.schedule(schedule)),
             assessment: Assessment { conditions: Vec::new(), left_out: Vec::new() },
         };
-        for &index in chosen {
-            if let (Some(condition), Some(result)) = (dataset.conditions().get(index), analysis.conditions.get(index)) {
-                gather.add(&mut corrections, index, condition, result);
-            }
+        for condition in dataset.conditions().iter().filter(|condition| chosen.contains(&condition.id())) {
+            gather.add(&mut corrections, condition);
         }
         corrections
     }
@@ -50,23 +50,19 @@ struct Gather<'a> {
 
 impl Gather<'_> {
     /// Adds what the analysis says of one condition.
-    fn add(
-        &self,
-        corrections: &mut Corrections,
-        index: usize,
-        condition: &Condition,
-        result: &Result<ConditionAnalysis, ConditionFailure>,
-    ) {
+    fn add(&self, corrections: &mut Corrections, condition: &Condition) {
         let id = condition.id();
-        let without = |why: String| WithoutResult { id, why };
-        match result {
-            Ok(result) => corrections.conditions.push(self.condition(index, condition, result)),
-            Err(failure) => corrections.failed.push(without(failure.to_string())),
+        let without = |why: String| WithoutResult { id: id.0, why };
+        match self.analysis.conditions.get(&id) {
+            Some(Ok(result)) => corrections.conditions.push(self.condition(condition, result)),
+            Some(Err(failure)) => corrections.failed.push(without(failure.to_string())),
+            None => {}
         }
-        match &self.analysis.assessment[index] {
-            Assessed::LeftOut { why } => corrections.assessment.left_out.push(without(why.clone())),
-            Assessed::Nominal(changes) => corrections.assessment.conditions.push(ConditionAssessment {
-                id,
+        match self.analysis.assessment.get(&id) {
+            None => {}
+            Some(Assessed::LeftOut { why }) => corrections.assessment.left_out.push(without(why.clone())),
+            Some(Assessed::Nominal(changes)) => corrections.assessment.conditions.push(ConditionAssessment {
+                id: id.0,
                 model: condition.bundle(BundleKind::Physics)[condition.nominal()].name.clone(),
                 total: rows(changes, |change| change.total()),
                 magnitude: rows(changes, |change| change.magnitude()),
@@ -100,20 +96,20 @@ impl Gather<'_> {
         }
     }
 
-    fn condition(&self, index: usize, condition: &Condition, result: &ConditionAnalysis) -> ConditionCorrections {
+    fn condition(&self, condition: &Condition, result: &ConditionAnalysis) -> ConditionCorrections {
         let (study, names) = (&self.analysis.study, &self.names);
-        let model = |kind, model: usize| condition.bundle(kind)[model].name.clone();
+        let representative = |kind| result.representative_name(kind).to_owned();
         let correction = &result.correction;
         ConditionCorrections {
-            id: condition.id(),
+            id: condition.id().0,
             name: condition.flight_state().name.clone(),
             airspeed_kt: condition.flight_state().airspeed_kt,
-            physics_representative: model(BundleKind::Physics, result.comparison.physics.model),
-            identified_representative: model(BundleKind::Identified, result.comparison.identified.model),
-            rejected: study.rejected_names(index).into_iter().map(str::to_owned).collect(),
-            suggested_outliers: result.suggested().into_iter().map(|at| model(BundleKind::Physics, at)).collect(),
+            physics_representative: representative(BundleKind::Physics),
+            identified_representative: representative(BundleKind::Identified),
+            rejected: study.rejected_names(condition.id()).into_iter().map(str::to_owned).collect(),
+            suggested_outliers: result.suggested(),
             discontinuity: discontinuity_of(condition, result),
-            scheduled: study.choices[index].scheduled,
+            scheduled: study.choice(condition.id()).scheduled,
             held: names.marked(result.held()),
             delta_gain: rows(&result.comparison.delta.gain, |gain| *gain),
             delta_delay_s: rows(&result.comparison.delta.delay_s, |delay| *delay),

@@ -1,7 +1,8 @@
 //! From what a dataset file says to the dataset, each error with its place.
 
 use crate::dataset::{
-    Band, BundleKind, Channel, Condition, Dataset, DatasetHeader, Dynamics, FlightState, Model, Origin, Pair, PairTable,
+    Band, BundleKind, Channel, Condition, ConditionId, Dataset, DatasetHeader, Dynamics, FlightState, Model, Origin,
+    Pair, PairTable,
 };
 use crate::io::content_fault::ContentFault;
 use crate::io::flaw::Flaw;
@@ -90,7 +91,7 @@ impl Reader {
             }
         }
         let flight_state = FlightState {
-            id: text.id,
+            id: ConditionId(text.id),
             name: text.name,
             airspeed_kt: text.airspeed_kt,
             altitude: text.altitude,

@@ -39,7 +39,7 @@ fn channel_text(channel: &Channel) -> ChannelText {
 fn condition_text(condition: &Condition) -> ConditionText {
     let state = condition.flight_state().clone();
     ConditionText {
-        id: state.id,
+        id: state.id.0,
         name: state.name,
         airspeed_kt: state.airspeed_kt,
         altitude: state.altitude,

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use crate::correction::{GainBounds, GainObjective};
-use crate::dataset::{Band, BundleKind, Dataset, ModelId, Pair};
+use crate::dataset::{Band, BundleKind, ConditionId, Dataset, ModelId, Pair};
 use crate::fidelity::CostAverage;
 use crate::io::content_fault::ContentFault;
 use crate::io::flaw::Flaw;
@@ -115,42 +115,33 @@ fn take_condition(
     if !seen.insert(id) {
         return Err(Flaw::new(place.clone(), ContentFault::DuplicateCondition { id }));
     }
-    let found = study.dataset.conditions().iter().position(|condition| condition.id() == id);
-    let condition = found.ok_or_else(|| Flaw::new(place.clone(), ContentFault::UnknownCondition { id }))?;
+    let id = ConditionId(id);
+    if study.dataset.condition(id).is_none() {
+        return Err(Flaw::new(place.clone(), ContentFault::UnknownCondition { id: id.0 }));
+    }
     study
-        .apply(&Edit::SetScheduled { condition, scheduled: text.scheduled })
+        .apply(&Edit::SetScheduled { condition: id, scheduled: text.scheduled })
         .map_err(|refusal| Flaw::new(place.at("scheduled"), refusal))?;
-    take_bundle(study, place, condition, BundleKind::Physics, &text.physics)?;
-    take_bundle(study, place, condition, BundleKind::Identified, &text.identified)
+    take_bundle(study, place, id, BundleKind::Physics, &text.physics)?;
+    take_bundle(study, place, id, BundleKind::Identified, &text.identified)
 }
 
 fn take_bundle(
     study: &mut Study,
     place: &Place,
-    condition: usize,
+    condition: ConditionId,
     bundle: BundleKind,
     text: &BundleText,
 ) -> Result<(), Flaw> {
-    let key = match bundle {
-        BundleKind::Physics => "physics",
-        BundleKind::Identified => "identified",
-    };
-    let find = |study: &Study, name: &String, entry: String| {
-        let models = study.dataset.conditions()[condition].bundle(bundle);
-        let model = models.iter().position(|model| model.name == *name);
-        let model =
-            model.ok_or_else(|| Flaw::new(place.at(entry), ContentFault::UnknownModel { name: name.clone() }))?;
-        Ok(ModelId { condition, bundle, model })
+    let take = |study: &mut Study, entry: String, edit: fn(ModelId) -> Edit, name: &String| {
+        let id = ModelId::new(condition, bundle, name);
+        study.apply(&edit(id)).map_err(|refusal| Flaw::new(place.at(entry), refusal))
     };
     for (index, name) in text.rejected.iter().enumerate() {
-        let entry = format!("{key}, rejected, entry {}", index + 1);
-        let id = find(study, name, entry.clone())?;
-        study.apply(&Edit::Reject(id)).map_err(|refusal| Flaw::new(place.at(entry), refusal))?;
+        take(study, format!("{bundle}, rejected, entry {}", index + 1), Edit::Reject, name)?;
     }
-    if let Some(name) = &text.pinned {
-        let entry = format!("{key}, pinned");
-        let id = find(study, name, entry.clone())?;
-        study.apply(&Edit::Pin(id)).map_err(|refusal| Flaw::new(place.at(entry), refusal))?;
+    match &text.pinned {
+        Some(name) => take(study, format!("{bundle}, pinned"), Edit::Pin, name),
+        None => Ok(()),
     }
-    Ok(())
 }

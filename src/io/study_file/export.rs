@@ -13,11 +13,14 @@ use super::schema::{
 
 /// The text of a study of the referenced dataset.
 pub(super) fn text_of(study: &Study, dataset: DatasetReference) -> StudyText {
-    let conditions = study.dataset.conditions().iter().zip(&study.choices).map(|(condition, choice)| ConditionText {
-        id: condition.id(),
-        physics: bundle_text(condition.bundle(BundleKind::Physics), &choice.physics),
-        identified: bundle_text(condition.bundle(BundleKind::Identified), &choice.identified),
-        scheduled: choice.scheduled,
+    let conditions = study.dataset.conditions().iter().map(|condition| {
+        let choice = study.choice(condition.id());
+        ConditionText {
+            id: condition.id().0,
+            physics: bundle_text(condition.bundle(BundleKind::Physics), &choice.physics),
+            identified: bundle_text(condition.bundle(BundleKind::Identified), &choice.identified),
+            scheduled: choice.scheduled,
+        }
     });
     StudyText {
         format: FORMAT.name.to_owned(),
@@ -30,8 +33,8 @@ pub(super) fn text_of(study: &Study, dataset: DatasetReference) -> StudyText {
 }
 
 fn bundle_text(models: &[Model], choice: &BundleChoice) -> BundleText {
-    let name = |&index: &usize| models[index].name.clone();
-    BundleText { rejected: choice.rejected.iter().map(name).collect(), pinned: choice.pinned.as_ref().map(name) }
+    let names = models.iter().map(|model| &model.name).filter(|name| choice.rejected.contains(*name));
+    BundleText { rejected: names.cloned().collect(), pinned: choice.pinned.clone() }
 }
 
 fn settings_text(settings: &Settings, dataset: &Dataset) -> SettingsText {

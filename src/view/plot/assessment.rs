@@ -3,6 +3,8 @@
 use egui::{Align2, Pos2, Rect, RichText, Stroke, Ui, UiBuilder, Vec2, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
 
+use crate::dataset::ConditionId;
+
 use super::axes::{caption_font, use_frame_colors};
 use super::bar::{AssessmentBar, AssessmentPanel, BarValue};
 use super::bar_panel::{BarAnswer, PHASE_FADE, bar_panel_ui};
@@ -19,7 +21,7 @@ const LEAST_PANEL: Vec2 = vec2(190.0, 150.0);
 /// What the assessment shows.
 #[derive(Clone, Copy, Debug)]
 pub struct AssessmentScene<'a> {
-    /// One panel for each pair, with a bar for each condition; or the other way round.
+    /// One panel for each pair, with a bar for each condition.
     pub panels: &'a [AssessmentPanel],
     /// What to say where there is nothing to draw.
     pub message: Option<&'a str>,
@@ -32,15 +34,15 @@ pub enum AssessmentEvent {
     BarClicked {
         /// Index of its panel.
         panel: usize,
-        /// Its own name to the caller.
-        key: usize,
+        /// Its condition.
+        condition: ConditionId,
     },
 }
 
 /// What the assessment remembers between frames.
 #[derive(Clone, Debug, Default)]
 pub struct AssessmentView {
-    panels: Vec<(Option<PlotTransform>, Vec<usize>)>,
+    panels: Vec<(Option<PlotTransform>, Vec<ConditionId>)>,
 }
 
 impl AssessmentView {
@@ -50,8 +52,8 @@ impl AssessmentView {
     }
 
     /// Where the foot of a bar is on the screen.
-    pub fn screen_position(&self, panel: usize, key: usize) -> Option<Pos2> {
-        let index = self.panels.get(panel)?.1.iter().position(|known| *known == key)?;
+    pub fn screen_position(&self, panel: usize, condition: ConditionId) -> Option<Pos2> {
+        let index = self.panels.get(panel)?.1.iter().position(|known| *known == condition)?;
         Some(self.transform(panel)?.position_from_point(&PlotPoint::new(index as f64, 0.0)))
     }
 }
@@ -77,7 +79,7 @@ pub fn assessment_ui(
         tiles_ui(ui, "panels", inner, scene.panels.len(), LEAST_PANEL, |ui, index, rect| {
             let panel = &scene.panels[index];
             let answer = bar_panel_ui(ui, (ui.make_persistent_id(("assessment", index)), rect), panel, palette);
-            view.panels[index] = (Some(answer.transform), panel.bars.iter().map(|bar| bar.key).collect());
+            view.panels[index] = (Some(answer.transform), panel.bars.iter().map(|bar| bar.condition).collect());
             events.extend(panel_event(index, panel, &answer, palette));
         });
     });
@@ -93,7 +95,7 @@ fn panel_event(
 ) -> Option<AssessmentEvent> {
     let bar = panel.bars.get(answer.hovered?)?;
     tooltip_ui(&answer.response, |ui| bar_text_ui(ui, panel, bar, palette));
-    answer.response.clicked().then_some(AssessmentEvent::BarClicked { panel: index, key: bar.key })
+    answer.response.clicked().then_some(AssessmentEvent::BarClicked { panel: index, condition: bar.condition })
 }
 
 fn bar_text_ui(ui: &mut Ui, panel: &AssessmentPanel, bar: &AssessmentBar, palette: &Palette) {

@@ -1,5 +1,7 @@
 //! The bars of an assessment: changes of J, side by side.
 
+use crate::dataset::ConditionId;
+
 use super::range::Range;
 
 /// What a bar says.
@@ -22,22 +24,22 @@ pub enum BarValue {
 /// One bar.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessmentBar {
-    /// How events name the bar; unique within its panel.
-    pub key: usize,
-    /// The text below it: a condition's number, or a pair.
+    /// Its condition.
+    pub condition: ConditionId,
+    /// The text below it: the condition's number.
     pub label: String,
     /// Its value.
     pub value: BarValue,
-    /// Whether it is the condition or pair in focus.
+    /// Whether it is the condition in focus.
     pub selected: bool,
     /// A further line for hovering, such as J before and after. May be empty.
     pub detail: String,
 }
 
-/// Bars side by side: of one pair in every condition, or of one condition in every pair.
+/// Bars side by side: one pair in every condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessmentPanel {
-    /// The pair or the condition.
+    /// The pair.
     pub title: String,
     /// What the labels of the bars are: "Condition", "Pair".
     pub axis_label: String,
@@ -77,9 +79,9 @@ mod tests {
 
     #[test]
     fn zero_is_in_view_even_where_everything_got_better() {
-        let bar = |key, magnitude| AssessmentBar {
-            key,
-            label: key.to_string(),
+        let bar = |id, magnitude| AssessmentBar {
+            condition: ConditionId(id),
+            label: id.to_string(),
             value: BarValue::Change { magnitude, phase: 0.0 },
             selected: false,
             detail: String::new(),

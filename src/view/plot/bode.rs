@@ -40,7 +40,7 @@ pub struct BodeScene<'a> {
 }
 
 /// What the engineer did in the Bode plot.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum BodeEvent {
     /// The pointer came to mean another curve, or none.
     Hovered(Option<CurveId>),
@@ -97,17 +97,17 @@ fn panes_ui(
 ) {
     let pointing = Pointing::find(ui, scene, view);
     let hit = pointing.and_then(|pointing| pointing.hit);
-    set_hovered(view, hit.map(|hit| hit.id), events);
-    let emphasis = Emphasis { curve: view.hovered, cursor: pointing.map(|pointing| pointing.log_omega) };
+    let meant = hit.map(|hit| scene.curves[hit.curve].id.clone());
+    set_hovered(view, meant.clone(), events);
+    let emphasis = Emphasis { curve: meant, cursor: pointing.map(|pointing| pointing.log_omega) };
     for (pane, rect) in pane_rects(rect) {
         let response = pane_ui(ui, (pane, rect), scene, view, &emphasis, palette);
         click(pane, scene, &response, view, events);
         drag_band(ui, pane, scene, view, palette, events);
         if let Some(Pointing { pane: pointed, hit: Some(hit), .. }) = pointing
             && pointed == pane
-            && let Some(curve) = scene.curves.iter().find(|curve| curve.id == hit.id)
         {
-            curve_tooltip_ui(&response, curve, hit.omega, scene.unit, palette);
+            curve_tooltip_ui(&response, &scene.curves[hit.curve], hit.omega, scene.unit, palette);
         }
         set_cursor_icon(response, hit);
     }
@@ -151,7 +151,7 @@ impl Pointing {
 
 fn set_hovered(view: &mut BodeView, hovered: Option<CurveId>, events: &mut Vec<BodeEvent>) {
     if view.hovered != hovered {
-        view.hovered = hovered;
+        view.hovered.clone_from(&hovered);
         events.push(BodeEvent::Hovered(hovered));
     }
 }
@@ -167,8 +167,8 @@ fn click(pane: Pane, scene: &BodeScene<'_>, response: &Response, view: &mut Bode
         let pointer = response.interact_pointer_pos();
         let hit =
             pointer.zip(view.transform(pane)).and_then(|(at, transform)| nearest(scene.curves, pane, at, transform));
-        let id = hit.map(|hit| hit.id);
-        view.last_clicked = if alt { None } else { id };
+        let id = hit.map(|hit| scene.curves[hit.curve].id.clone());
+        view.last_clicked = if alt { None } else { id.clone() };
         events.extend(id.map(|id| if alt { BodeEvent::Isolated(id) } else { BodeEvent::Clicked(id) }));
     }
 }

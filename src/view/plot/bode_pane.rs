@@ -126,7 +126,7 @@ fn draw_curves<'a>(
     emphasis: &Emphasis,
     palette: &Palette,
 ) {
-    let is_emphasized = |curve: &BodeCurve| curve.highlighted || emphasis.curve == Some(curve.id);
+    let is_emphasized = |curve: &BodeCurve| curve.highlighted || emphasis.curve.as_ref() == Some(&curve.id);
     let mut curves: Vec<(usize, &BodeCurve)> = scene.curves.iter().enumerate().collect();
     curves.sort_by_key(|(_, curve)| (is_emphasized(curve), curve.role.layer(curve.rejected)));
     for (index, curve) in curves {

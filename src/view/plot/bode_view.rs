@@ -67,8 +67,8 @@ impl BodeView {
     }
 
     /// The curve under the pointer.
-    pub fn hovered(&self) -> Option<CurveId> {
-        self.hovered
+    pub fn hovered(&self) -> Option<&CurveId> {
+        self.hovered.as_ref()
     }
 
     /// The frequencies in view \[rad/s\].
@@ -204,12 +204,12 @@ fn fitted_values(curves: &[BodeCurve], pane: Pane, (min, max): (f64, f64)) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::plot::curve::CurveId;
+    use crate::view::plot::curve::numbered;
     use crate::view::plot::role::Role;
 
     fn fitted(magnitude_db: &[f64]) -> Option<Range> {
         let curve = BodeCurve {
-            id: CurveId(0),
+            id: numbered(0),
             label: String::new(),
             detail: String::new(),
             role: Role::Perturbed,

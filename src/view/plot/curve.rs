@@ -4,11 +4,20 @@ use std::sync::Arc;
 
 use egui_plot::PlotBounds;
 
+use crate::dataset::ModelId;
+
 use super::role::Role;
 
-/// Names a curve to the caller, who chooses the number; unique within a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct CurveId(pub u64);
+/// What a curve stands for; unique within a scene.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum CurveId {
+    /// One model as it is.
+    Model(ModelId),
+    /// The representative physics model with the condition's own correction.
+    Corrected,
+    /// The representative physics model with the scheduled correction.
+    Scheduled,
+}
 
 /// Which of the two stacked plots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -160,11 +169,18 @@ fn touches(a: [f64; 2], b: [f64; 2], bounds: &PlotBounds) -> bool {
     (0..2).all(|axis| a[axis].max(b[axis]) >= bounds.min()[axis] && a[axis].min(b[axis]) <= bounds.max()[axis])
 }
 
+/// The curve of a physics model with this number for a name.
+#[cfg(test)]
+pub(super) fn numbered(number: u64) -> CurveId {
+    use crate::dataset::{BundleKind, ConditionId};
+    CurveId::Model(ModelId::new(ConditionId(1), BundleKind::Physics, number.to_string()))
+}
+
 /// A curve of three values, an octave apart, the same in both panes.
 #[cfg(test)]
 pub(super) fn sample_curve(id: u64, values: &[f64]) -> BodeCurve {
     BodeCurve {
-        id: CurveId(id),
+        id: numbered(id),
         label: String::new(),
         detail: String::new(),
         role: Role::Perturbed,

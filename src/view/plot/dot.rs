@@ -2,6 +2,7 @@
 
 use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
 
+use crate::dataset::ConditionId;
 use crate::view::palette::Palette;
 
 /// Radius of a dot \[pt\].
@@ -63,7 +64,7 @@ impl DotShape {
 #[derive(Clone, Debug)]
 pub struct Dot {
     /// How events name the condition.
-    pub condition: usize,
+    pub condition: ConditionId,
     /// The short text beside the dot: the condition's number.
     pub label: String,
     /// Airspeed \[kt\].

@@ -3,6 +3,8 @@
 use egui::{FontId, Pos2, Rect, RichText, Ui, UiBuilder, Vec2, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
 
+use crate::dataset::ConditionId;
+
 use super::axes::use_frame_colors;
 use super::dot::Dot;
 use super::dot_label::PlacedLabels;
@@ -21,33 +23,33 @@ const LEAST_PANEL: Vec2 = vec2(122.0, 120.0);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GainEvent {
     /// The pointer came to mean another condition, or none.
-    ConditionHovered(Option<usize>),
+    ConditionHovered(Option<ConditionId>),
     /// A condition's dot was clicked.
-    ConditionClicked(usize),
+    ConditionClicked(ConditionId),
 }
 
 /// What the plots of gains over airspeed remember between frames.
 #[derive(Clone, Debug, Default)]
 pub struct GainView {
-    hovered: Option<usize>,
-    highlighted: Option<usize>,
+    hovered: Option<ConditionId>,
+    highlighted: Option<ConditionId>,
     transforms: Vec<Option<PlotTransform>>,
-    dots: Vec<Vec<(usize, [f64; 2])>>,
+    dots: Vec<Vec<(ConditionId, [f64; 2])>>,
     labels: Vec<PlacedLabels>,
 }
 
 impl GainView {
     /// The condition under the pointer.
-    pub fn hovered(&self) -> Option<usize> {
+    pub fn hovered(&self) -> Option<ConditionId> {
         self.hovered
     }
 
     /// Emphasises a condition that another view points at.
-    pub fn highlight(&mut self, condition: Option<usize>) {
+    pub fn highlight(&mut self, condition: Option<ConditionId>) {
         self.highlighted = condition;
     }
 
-    fn emphasized(&self) -> Option<usize> {
+    fn emphasized(&self) -> Option<ConditionId> {
         self.hovered.or(self.highlighted)
     }
 
@@ -57,8 +59,8 @@ impl GainView {
     }
 
     /// Where the dot of a condition is on the screen.
-    pub fn screen_position(&self, panel: usize, condition: usize) -> Option<Pos2> {
-        let (_, [airspeed_kt, gain]) = self.dots.get(panel)?.iter().find(|(index, _)| *index == condition)?;
+    pub fn screen_position(&self, panel: usize, condition: ConditionId) -> Option<Pos2> {
+        let (_, [airspeed_kt, gain]) = self.dots.get(panel)?.iter().find(|(id, _)| *id == condition)?;
         Some(self.transform(panel)?.position_from_point(&PlotPoint::new(*airspeed_kt, *gain)))
     }
 

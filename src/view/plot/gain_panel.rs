@@ -3,6 +3,8 @@
 use egui::{Align2, FontId, Id, Pos2, Rect, Response, Sense, Stroke, Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2};
 use egui_plot::{Axis, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotTransform, PlotUi};
 
+use crate::dataset::ConditionId;
+
 use super::axes::{LABELLED_HEIGHT, axis_hints, caption_font, quiet_plot};
 use super::dot::{DOT_RADIUS, Dot};
 use super::dot_label::{LabelledDot, PlacedLabels, Surroundings};
@@ -82,9 +84,9 @@ pub(super) struct PanelAnswer {
     pub(super) response: Response,
     pub(super) transform: PlotTransform,
     /// The condition under the pointer.
-    pub(super) hovered: Option<usize>,
+    pub(super) hovered: Option<ConditionId>,
     /// The condition that was clicked.
-    pub(super) clicked: Option<usize>,
+    pub(super) clicked: Option<ConditionId>,
 }
 
 /// Draws a panel into `rect`; `hovered` is the condition to emphasise, whichever panel the pointer is in, and `labels` are those of
@@ -94,7 +96,7 @@ pub(super) fn gain_panel_ui(
     (id, rect): (Id, Rect),
     panel: &GainPanel,
     ranges: SharedRanges,
-    (hovered, labels): (Option<usize>, &mut PlacedLabels),
+    (hovered, labels): (Option<ConditionId>, &mut PlacedLabels),
     palette: &Palette,
 ) -> PanelAnswer {
     let plot_rect = Rect::from_min_max(rect.min + vec2(0.0, TITLE_HEIGHT), rect.max - vec2(RIGHT_MARGIN, 0.0));
@@ -220,7 +222,7 @@ mod tests {
     #[test]
     fn the_gain_one_is_always_in_view() {
         let dot = Dot {
-            condition: 0,
+            condition: ConditionId(0),
             label: "1".into(),
             airspeed_kt: 60.0,
             gain: 1.4,

@@ -3,7 +3,7 @@
 use egui::{Pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
 
-use super::curve::{BodeCurve, CurveId, LogFrequencies, Pane};
+use super::curve::{BodeCurve, LogFrequencies, Pane};
 
 /// How far from a curve the pointer may be to mean it \[pt\].
 pub const PICK_RADIUS: f32 = 8.0;
@@ -11,8 +11,8 @@ pub const PICK_RADIUS: f32 = 8.0;
 /// The curve that the pointer means.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// The curve.
-    pub id: CurveId,
+    /// Index of the curve.
+    pub curve: usize,
     /// The frequency of its point nearest to the pointer \[rad/s\].
     pub omega: f64,
     /// Distance from the pointer \[pt\].
@@ -24,7 +24,7 @@ pub fn nearest(curves: &[BodeCurve], pane: Pane, pointer: Pos2, transform: &Plot
     let mut best: Option<(Hit, usize)> = None;
     let mut axis = LogFrequencies::default();
     let [low, high] = [-PICK_RADIUS, PICK_RADIUS].map(|dx| transform.value_from_position(pointer + vec2(dx, 0.0)).x);
-    for curve in curves {
+    for (index, curve) in curves.iter().enumerate() {
         let points = curve.points_between(&mut axis, pane, (low, high));
         let Some((distance, at)) = distance_to(points, pointer, transform) else {
             continue;
@@ -34,7 +34,7 @@ pub fn nearest(curves: &[BodeCurve], pane: Pane, pointer: Pos2, transform: &Plot
             best.is_none_or(|(hit, top)| distance < hit.distance || (distance == hit.distance && layer > top));
         if distance <= PICK_RADIUS && is_better {
             let omega = 10f64.powf(transform.value_from_position(at).x);
-            best = Some((Hit { id: curve.id, omega, distance }, layer));
+            best = Some((Hit { curve: index, omega, distance }, layer));
         }
     }
     best.map(|(hit, _)| hit)
@@ -79,13 +79,14 @@ fn closest_on_segment(pointer: Pos2, from: Pos2, to: Pos2) -> Pos2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::view::plot::curve::numbered;
     use crate::view::plot::role::Role;
     use egui::{Rect, pos2};
     use egui_plot::PlotBounds;
 
     fn flat(id: u64, level_db: f64, role: Role) -> BodeCurve {
         BodeCurve {
-            id: CurveId(id),
+            id: numbered(id),
             label: format!("curve {id}"),
             detail: String::new(),
             role,
@@ -106,10 +107,10 @@ mod tests {
     #[test]
     fn the_nearest_curve_is_meant_wherever_it_stands_in_the_list() {
         let curves = [flat(1, 50.0, Role::Perturbed), flat(2, 54.0, Role::Corrected), flat(3, 60.0, Role::Nominal)];
-        let hit = |y| nearest(&curves, Pane::Magnitude, pos2(50.0, y), &transform()).map(|hit| hit.id);
-        assert_eq!(hit(49.0), Some(CurveId(1)));
-        assert_eq!(hit(47.0), Some(CurveId(2)));
-        assert_eq!(hit(42.0), Some(CurveId(3)));
+        let hit = |y| nearest(&curves, Pane::Magnitude, pos2(50.0, y), &transform()).map(|hit| hit.curve);
+        assert_eq!(hit(49.0), Some(0));
+        assert_eq!(hit(47.0), Some(1));
+        assert_eq!(hit(42.0), Some(2));
         assert_eq!(hit(31.0), None);
     }
 
@@ -117,7 +118,7 @@ mod tests {
     fn of_equally_near_curves_the_one_on_top_is_meant() {
         let curves = [flat(1, 50.0, Role::Corrected), flat(2, 50.0, Role::Perturbed)];
         let hit = nearest(&curves, Pane::Magnitude, pos2(50.0, 50.0), &transform());
-        assert_eq!(hit.map(|hit| hit.id), Some(CurveId(1)));
+        assert_eq!(hit.map(|hit| hit.curve), Some(0));
     }
 
     #[test]

@@ -38,13 +38,13 @@ pub(super) fn tooltip_ui(plot: &Response, content: impl FnOnce(&mut Ui)) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::plot::curve::CurveId;
+    use crate::view::plot::curve::numbered;
     use crate::view::plot::role::Role;
 
     #[test]
     fn a_readout_names_the_curve_and_its_values() {
         let curve = BodeCurve {
-            id: CurveId(0),
+            id: numbered(0),
             label: "nominal".into(),
             detail: String::new(),
             role: Role::Nominal,

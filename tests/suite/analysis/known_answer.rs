@@ -30,11 +30,11 @@ fn dataset_of(file: &str, delay_s: f64) -> Dataset {
     let part = |of: fn(&Complex<f64>) -> f64| flight.map(|_, values| values.iter().map(of).collect::<Vec<f64>>());
     let measured =
         MeasuredResponse::new(grid.omega().to_vec(), &part(|value| value.re), &part(|value| value.im), None).unwrap();
-    let model = |name: &str, origin, dynamics| Model { name: name.to_owned(), origin, dynamics };
+    let model = |name: &str, origin, dynamics| Model::new(name, origin, dynamics);
     let physics = model("nominal", Origin::Nominal { perturbation: None }, dynamics);
     let identified = model("flight", Origin::Identified { method: None, order: None }, Dynamics::Measured(measured));
     let flight_state = FlightState {
-        id: 1,
+        id: ConditionId(1),
         name: file.to_owned(),
         airspeed_kt: 0.0,
         altitude: None,
@@ -71,7 +71,7 @@ fn gains_and_delays_put_into_published_helicopters_are_found_again() {
             study.apply(&Edit::Set(setting)).unwrap();
         }
         let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
-        let result = analysis.condition(0).unwrap();
+        let result = analysis.condition(ConditionId(1)).unwrap();
         let mut defined = 0;
         for (pair, wanted) in result.comparison.delta.gain.iter().filter(|(_, wanted)| wanted.is_some()) {
             defined += 1;
@@ -91,9 +91,9 @@ fn a_band_beyond_the_measured_frequencies_leaves_no_result_and_says_why() {
     let mut study = Study::new(Arc::new(dataset_of("compleib_HE2_AH64_130kt.json", 0.0)));
     study.apply(&Edit::Set(Setting::Band(Band::new(0.1, 12.0).unwrap()))).unwrap();
     let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
-    let failure = analysis.conditions[0].as_ref().unwrap_err().to_string();
+    let failure = analysis.conditions[&ConditionId(1)].as_ref().unwrap_err().to_string();
     assert!(failure.contains("over the whole band"), "{failure}");
     assert!(analysis.schedule.is_err());
-    let kept = ModelId { condition: 0, bundle: BundleKind::Identified, model: 0 };
+    let kept = ModelId::new(ConditionId(1), BundleKind::Identified, "flight");
     assert!(study.apply(&Edit::Reject(kept)).is_err(), "the only model of a bundle stays");
 }

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use gdcm::dataset::{BundleKind, Dynamics, Pair, PairTable, StateSpace};
+use gdcm::dataset::{BundleKind, ConditionId, Dynamics, Pair, PairTable, StateSpace};
 use gdcm::io::{Corrections, embedded_example};
 use gdcm::response::{FrequencyGrid, FrequencyResponse};
 use gdcm::study::{Analysis, Assessed, Edit, Engine, Setting, Study, Unobserved};
@@ -47,8 +47,8 @@ fn study_of_example() -> Study {
 static EXAMPLE_WITH_SUGGESTIONS_REJECTED: LazyLock<Analysis> = LazyLock::new(|| {
     let (mut study, mut engine) = (study_of_example(), Engine::default());
     let first = analyze(&mut engine, &study);
-    for condition in 0..first.conditions.len() {
-        let models = first.condition(condition).unwrap().suggested();
+    for (&condition, result) in &first.conditions {
+        let models = result.as_ref().unwrap().suggested();
         study.apply(&Edit::RejectAll { condition, models }).unwrap();
     }
     analyze(&mut engine, &study)

@@ -43,7 +43,7 @@ pub fn dynamics_of(case: &Value) -> Dynamics {
         kind => panic!("no bundle {kind}"),
     };
     let dataset = embedded_example().unwrap().dataset;
-    let condition = dataset.conditions().iter().find(|condition| condition.id() == id).unwrap();
+    let condition = dataset.conditions().iter().find(|condition| condition.id() == ConditionId(id)).unwrap();
     condition.bundle(bundle).iter().find(|model| model.name == name).unwrap().dynamics.clone()
 }
 

@@ -1,5 +1,7 @@
 //! Properties of whole studies.
 
+use std::collections::BTreeSet;
+
 use super::*;
 use gdcm::app::Pool;
 use gdcm::study::{Cancelled, ConditionAnalysis, ConditionFailure, Progress};
@@ -17,7 +19,7 @@ fn short_study() -> Study {
 fn held_responses_have_their_delta_gain_as_net_gain_in_every_condition() {
     let analysis = analyze(&mut Engine::default(), &short_study());
     let mut held = 0;
-    for result in analysis.conditions.iter().map(|result| result.as_ref().unwrap()) {
+    for result in analysis.conditions.values().map(|result| result.as_ref().unwrap()) {
         assert!(result.gains.matched);
         for pair in result.held().marked() {
             let (net, wanted) = (result.correction.net_gain(pair), result.comparison.delta.gain[pair].unwrap());
@@ -47,9 +49,10 @@ fn holding_another_response_changes_neither_representatives_nor_bounds() {
     let pair = study.dataset.find_pair("NX", "LON").unwrap();
     study.apply(&Edit::Set(Setting::Constrained(pair, true))).unwrap();
     let after = analyze(&mut engine, &study);
-    assert_ne!(before.condition(0).unwrap().correction, after.condition(0).unwrap().correction);
-    for index in 0..before.conditions.len() {
-        let (before, after) = (before.condition(index).unwrap(), after.condition(index).unwrap());
+    let first = ConditionId(1);
+    assert_ne!(before.condition(first).unwrap().correction, after.condition(first).unwrap().correction);
+    for &id in before.conditions.keys() {
+        let (before, after) = (before.condition(id).unwrap(), after.condition(id).unwrap());
         assert_eq!(before.comparison, after.comparison);
         assert_eq!((before.gain_bounds(), before.delay_upper_s()), (after.gain_bounds(), after.delay_upper_s()));
     }
@@ -58,23 +61,23 @@ fn holding_another_response_changes_neither_representatives_nor_bounds() {
 #[test]
 fn a_condition_left_out_of_the_schedule_is_not_counted_in_it_but_is_still_assessed() {
     let (mut study, mut engine) = (short_study(), Engine::default());
-    for condition in [0, 1] {
+    for condition in [ConditionId(1), ConditionId(2)] {
         study.apply(&Edit::SetScheduled { condition, scheduled: false }).unwrap();
     }
     let analysis = analyze(&mut engine, &study);
     let schedule = analysis.schedule.as_ref().unwrap();
     assert_eq!(schedule.airspeeds.values_kt.len(), 9);
-    assert!(matches!(analysis.assessment[0], Assessed::Nominal(_)));
+    assert!(matches!(analysis.assessment[&ConditionId(1)], Assessed::Nominal(_)));
 }
 
 #[test]
 fn every_condition_out_of_the_schedule_leaves_corrections_without_one() {
     let (mut study, mut engine) = (short_study(), Engine::default());
-    for condition in 0..11 {
+    for condition in (1..=11).map(ConditionId) {
         study.apply(&Edit::SetScheduled { condition, scheduled: false }).unwrap();
     }
     let analysis = analyze(&mut engine, &study);
-    let written = Corrections::of(&analysis, "", &[0]);
+    let written = Corrections::of(&analysis, "", &BTreeSet::from([ConditionId(1)]));
     assert!(written.schedule.is_none());
     assert_eq!(written.assessment.left_out[0].why, "no schedule: no condition that could be solved is chosen for it");
 }
@@ -82,22 +85,22 @@ fn every_condition_out_of_the_schedule_leaves_corrections_without_one() {
 #[test]
 fn corrections_of_chosen_conditions_hold_those_and_the_schedule_of_all() {
     let analysis = analyze(&mut Engine::default(), &short_study());
-    let written = Corrections::of(&analysis, "hash", &[9, 2, 400]);
+    let written = Corrections::of(&analysis, "hash", &BTreeSet::from([10, 3, 400].map(ConditionId)));
     let ids: Vec<i64> = written.conditions.iter().map(|condition| condition.id).collect();
-    assert_eq!(ids, [10, 3], "in the order chosen, and an index that is not there passed over");
+    assert_eq!(ids, [3, 10], "in the order of the dataset, and an id that is not there passed over");
     assert_eq!(written.schedule.unwrap().airspeed_range_kt, [45.0, 140.0]);
 }
 
 /// Keeps the first result, and ends the analysis after so many steps.
 struct Onlooker {
-    first: usize,
+    first: ConditionId,
     steps: usize,
     seen: Mutex<Vec<Result<ConditionAnalysis, ConditionFailure>>>,
     heard: AtomicUsize,
 }
 
 impl Onlooker {
-    fn new(first: usize, steps: usize) -> Self {
+    fn new(first: ConditionId, steps: usize) -> Self {
         Self { first, steps, seen: Mutex::default(), heard: AtomicUsize::new(0) }
     }
 }
@@ -112,7 +115,7 @@ impl Progress for Onlooker {
         self.heard.store(done, Ordering::Relaxed);
     }
 
-    fn wanted_first(&self) -> Option<usize> {
+    fn wanted_first(&self) -> Option<ConditionId> {
         Some(self.first)
     }
 
@@ -137,9 +140,9 @@ fn results_have_the_same_bits_whatever_the_number_of_threads() {
 
 #[test]
 fn the_condition_wanted_first_is_told_first_and_as_the_whole_analysis_has_it() {
-    let (study, onlooker) = (short_study(), Onlooker::new(9, usize::MAX));
+    let (study, onlooker) = (short_study(), Onlooker::new(ConditionId(10), usize::MAX));
     let analysis = Engine::with_executor(Box::new(Pool)).analyze(&study, &onlooker).unwrap();
-    assert_eq!(onlooker.seen.into_inner().unwrap(), [analysis.conditions[9].clone()]);
+    assert_eq!(onlooker.seen.into_inner().unwrap(), [analysis.conditions[&ConditionId(10)].clone()]);
     let alone = analyze(&mut Engine::default(), &study);
     assert_eq!(analysis.conditions, alone.conditions, "the order of work is not the order of results");
 }
@@ -148,7 +151,7 @@ fn the_condition_wanted_first_is_told_first_and_as_the_whole_analysis_has_it() {
 fn an_analysis_that_is_stopped_halfway_goes_on_from_there_with_the_same_result() {
     let (study, mut engine) = (short_study(), Engine::default());
     for steps in [1, 100, 400] {
-        assert_eq!(engine.analyze(&study, &Onlooker::new(0, steps)), Err(Cancelled));
+        assert_eq!(engine.analyze(&study, &Onlooker::new(ConditionId(1), steps)), Err(Cancelled));
     }
     assert_eq!(analyze(&mut engine, &study), analyze(&mut Engine::default(), &study));
 }

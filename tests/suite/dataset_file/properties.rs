@@ -104,7 +104,7 @@ fn condition(id: i64, p: usize, m: usize) -> impl Strategy<Value = Condition> {
     (state_space(p, m), state_space(p, m), identified, perturbation, figures, identity).prop_map(
         move |(nominal, perturbed, identified, perturbation, (airspeed_kt, altitude_ft, altitude), (method, order))| {
             let flight_state = FlightState {
-                id,
+                id: gdcm::dataset::ConditionId(id),
                 name: format!("condition \"{id}\"\n"),
                 airspeed_kt,
                 altitude,
@@ -113,7 +113,7 @@ fn condition(id: i64, p: usize, m: usize) -> impl Strategy<Value = Condition> {
                 mass_kg: Some(6600.0),
             };
             let still: Option<BTreeMap<String, f64>> = None;
-            let model = |name: &str, origin, dynamics| Model { name: name.to_owned(), origin, dynamics };
+            let model = |name: &str, origin, dynamics| Model::new(name, origin, dynamics);
             let physics = vec![
                 model("a", Origin::Perturbed { perturbation }, perturbed),
                 model("b", Origin::Nominal { perturbation: still }, nominal),

@@ -93,11 +93,12 @@ proptest! {
         let loaded = desk.loaded();
         let mut study = Study::new(loaded.dataset.clone());
         decided(&mut study, &edits);
-        let id = |bundle, model| ModelId { condition: 0, bundle, model };
+        let first = loaded.dataset.conditions()[0].clone();
+        let id = |bundle, model: usize| ModelId::new(first.id(), bundle, &first.bundle(bundle)[model].name);
         decided(&mut study, &[
             Edit::Reject(id(BundleKind::Physics, rejected)),
             Edit::Pin(id(BundleKind::Identified, rejected)),
-            Edit::SetScheduled { condition: 1, scheduled },
+            Edit::SetScheduled { condition: loaded.dataset.conditions()[1].id(), scheduled },
         ]);
         save_study(&study, &loaded, &desk.study()).unwrap();
         let (opened, dataset) = open_study(&desk.study()).unwrap();

@@ -183,7 +183,7 @@ fn gains_that_the_answer_leaves_open_are_proven_beside_it() {
     let study = Study::new(embedded_example().unwrap().dataset);
     let open = engine().analyze(&study, &Unobserved).unwrap();
     let is_open = |outcome: Outcome| matches!(outcome, Outcome::NotProven { .. });
-    assert!(open.conditions.iter().flatten().any(|condition| is_open(condition.gains.outcome)), "nothing to prove");
+    assert!(open.conditions.values().flatten().any(|condition| is_open(condition.gains.outcome)), "nothing to prove");
 
     let mut window = window_with(example(), Setup { engine: Arc::new(engine), ..Setup::default() });
     wait_until(&mut window, "every proof", |window| !state(window).results.background.is_busy());
@@ -191,7 +191,7 @@ fn gains_that_the_answer_leaves_open_are_proven_beside_it() {
     window.get_by_label("proven");
     let proven = Engine::default().analyze(&study, &Unobserved).unwrap();
     let shown = state(&window).analysis().unwrap();
-    for (condition, (beside, alone)) in shown.conditions.iter().zip(&proven.conditions).enumerate() {
+    for (condition, (beside, alone)) in shown.conditions.values().zip(proven.conditions.values()).enumerate() {
         let (beside, alone) = (beside.as_ref().unwrap(), alone.as_ref().unwrap());
         assert!(!is_open(beside.gains.outcome), "condition {condition}");
         assert!(!is_open(alone.gains.outcome) && beside.correction == alone.correction, "condition {condition}");
@@ -203,6 +203,6 @@ fn gains_that_the_answer_leaves_open_are_proven_beside_it() {
 fn the_example_needs_no_proof_beside_the_answer() {
     let study = Study::new(embedded_example().unwrap().dataset);
     let analysis = Engine::default().with_proofs_within(LIVE_PROOF).analyze(&study, &Unobserved).unwrap();
-    let proven = analysis.conditions.iter().flatten().filter(|of| matches!(of.gains.outcome, Outcome::Proven { .. }));
+    let proven = analysis.conditions.values().flatten().filter(|of| matches!(of.gains.outcome, Outcome::Proven { .. }));
     assert_eq!(proven.count(), 11);
 }

@@ -10,8 +10,7 @@ fn from_the_example_to_exported_corrections() {
     let corrected_before = drawn(&window, CurveRole::Corrected);
 
     click(&mut window, "Reject 3 suggested");
-    let representative = &state(&window).shown().unwrap().comparison.physics;
-    assert_eq!(state(&window).condition().bundle(BundleKind::Physics)[representative.model].name, "ROLL-5deg");
+    assert_eq!(state(&window).shown().unwrap().representative_name(BundleKind::Physics), "ROLL-5deg");
     assert!(drawn(&window, CurveRole::Nominal).rejected, "the nominal model is one of the outliers");
     let corrected = drawn(&window, CurveRole::Corrected);
     assert_ne!(
@@ -97,17 +96,18 @@ fn at_least_one_model_stays_in_each_bundle() {
     let notice = state(&window).notice.clone().expect("the refusal is shown");
     assert_eq!(notice.kind, NoticeKind::Trouble);
     assert!(notice.text.contains("at least one must stay"), "{}", notice.text);
-    assert_eq!(state(&window).study.choices[0].identified.rejected.len(), models.len() - 1);
+    assert_eq!(state(&window).study.choice(ConditionId(1)).identified.rejected.len(), models.len() - 1);
 }
 
 #[test]
 fn a_pinned_model_represents_its_bundle() {
     let mut window = window();
     click(&mut window, "Pin physics model V+10kt");
-    let representative = state(&window).shown().unwrap().comparison.physics.model;
-    assert_eq!(state(&window).condition().bundle(BundleKind::Physics)[representative].name, "V+10kt");
+    let representative =
+        |window: &Window| state(window).shown().unwrap().representative_name(BundleKind::Physics).to_owned();
+    assert_eq!(representative(&window), "V+10kt");
     click(&mut window, "Pin physics model V+10kt");
-    assert_eq!(state(&window).shown().unwrap().comparison.physics.model, 0, "the medoid again");
+    assert_eq!(representative(&window), "nominal", "the medoid again");
 }
 
 #[test]
@@ -163,6 +163,6 @@ fn control_and_r_reject_the_suggested_outliers() {
     assert_eq!(suggested.len(), 3);
     window.key_press_modifiers(Modifiers::COMMAND, Key::R);
     settle(&mut window);
-    let rejected = &state(&window).study.choices[9].physics.rejected;
-    assert_eq!(rejected.iter().copied().collect::<Vec<_>>(), suggested);
+    let rejected = &state(&window).study.choice(ConditionId(10)).physics.rejected;
+    assert_eq!(*rejected, suggested.into_iter().collect());
 }

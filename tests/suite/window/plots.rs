@@ -16,16 +16,16 @@ fn a_click_on_a_curve_rejects_it_and_another_click_restores_it() {
     let mut window = window();
     choose_condition_10(&mut window);
     let place = place_on_nominal(&window);
-    let id = ModelId { condition: 9, bundle: BundleKind::Physics, model: 0 };
+    let id = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
     for rejected in [true, false] {
         window.hover_at(place);
         window.run_steps(2);
-        assert_eq!(state(&window).display.hovered, Some(id), "hovering points at the model");
+        assert_eq!(state(&window).display.hovered.as_ref(), Some(&id), "hovering points at the model");
         window.drag_at(place);
         window.run_steps(1);
         window.drop_at(place);
         settle(&mut window);
-        assert_eq!(state(&window).study.is_rejected(id), rejected);
+        assert_eq!(state(&window).study.is_rejected(&id), rejected);
         // A second click soon after would be a double click, which fits the plot.
         window.run_steps(4);
     }
@@ -59,14 +59,14 @@ fn a_double_click_on_a_curve_fits_the_plot_and_leaves_no_decision() {
 #[test]
 fn a_click_on_a_net_gain_dot_goes_to_its_condition() {
     let mut window = window();
-    let place = state(&window).display.net_gain.screen_position(0, 2).expect("condition 3 has a dot");
+    let place = state(&window).display.net_gain.screen_position(0, ConditionId(3)).expect("condition 3 has a dot");
     window.hover_at(place);
     window.run_steps(2);
     window.drag_at(place);
     window.run_steps(1);
     window.drop_at(place);
     settle(&mut window);
-    assert_eq!(state(&window).condition().id(), 3);
+    assert_eq!(state(&window).condition().id(), ConditionId(3));
 }
 
 #[test]

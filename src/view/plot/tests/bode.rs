@@ -58,7 +58,7 @@ fn empty_spot(harness: &Harness<'_, Model>) -> Pos2 {
 fn clicks(harness: &Harness<'_, Model>) -> Vec<BodeEvent> {
     let is_click =
         |event: &&BodeEvent| matches!(event, BodeEvent::Clicked(_) | BodeEvent::TakenBack(_) | BodeEvent::Isolated(_));
-    harness.state().events.iter().filter(is_click).copied().collect()
+    harness.state().events.iter().filter(is_click).cloned().collect()
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn a_click_names_the_nearest_curve() {
         // Clicks in one place within the time of a double click would be one.
         harness.run_steps(30);
         click(&mut harness, at);
-        assert_eq!(clicks(&harness).last(), Some(&BodeEvent::Clicked(CurveId(id))));
+        assert_eq!(clicks(&harness).last(), Some(&BodeEvent::Clicked(numbered(id))));
     }
 }
 
@@ -87,7 +87,7 @@ fn a_click_with_alt_isolates() {
     let at = point_on(&harness, 1, 60);
     harness.event(Event::ModifiersChanged(Modifiers::ALT));
     press(&mut harness, at, PointerButton::Primary, Modifiers::ALT);
-    assert_eq!(clicks(&harness), [BodeEvent::Isolated(CurveId(2))]);
+    assert_eq!(clicks(&harness), [BodeEvent::Isolated(numbered(2))]);
 }
 
 #[test]
@@ -99,7 +99,7 @@ fn hovering_is_told_once_when_it_begins_and_once_when_it_ends() {
     let away = empty_spot(&harness);
     harness.hover_at(away);
     harness.run();
-    let expected = [BodeEvent::Hovered(Some(CurveId(1))), BodeEvent::Hovered(None)];
+    let expected = [BodeEvent::Hovered(Some(numbered(1))), BodeEvent::Hovered(None)];
     assert_eq!(harness.state().events, expected);
 }
 
@@ -195,7 +195,7 @@ fn a_double_click_on_a_curve_fits_and_takes_its_first_click_back() {
     let at = point_on(&harness, 1, 60);
     click(&mut harness, at);
     click(&mut harness, at);
-    assert_eq!(clicks(&harness), [BodeEvent::Clicked(CurveId(2)), BodeEvent::TakenBack(CurveId(2))]);
+    assert_eq!(clicks(&harness), [BodeEvent::Clicked(numbered(2)), BodeEvent::TakenBack(numbered(2))]);
     assert_eq!(harness.state().view.omega_range(), fitted);
 }
 
@@ -210,7 +210,7 @@ fn values_that_are_not_finite_leave_gaps_and_nothing_panics() {
     let mut harness = harness(curves);
     let at = point_on(&harness, 0, 59);
     click(&mut harness, at);
-    assert_eq!(clicks(&harness), [BodeEvent::Clicked(CurveId(1))]);
+    assert_eq!(clicks(&harness), [BodeEvent::Clicked(numbered(1))]);
 }
 
 #[test]

@@ -11,15 +11,19 @@ struct Model {
     events: Vec<GainEvent>,
 }
 
-fn dot(condition: usize, airspeed_kt: f64, gain: f64) -> Dot {
+fn id(number: usize) -> ConditionId {
+    ConditionId(number as i64)
+}
+
+fn dot(number: usize, airspeed_kt: f64, gain: f64) -> Dot {
     Dot {
-        condition,
-        label: (condition + 1).to_string(),
+        condition: id(number),
+        label: (number + 1).to_string(),
         airspeed_kt,
         gain,
-        shape: DotShape::of_class(condition % 4),
-        filled: condition.is_multiple_of(2),
-        selected: condition == 2,
+        shape: DotShape::of_class(number % 4),
+        filled: number.is_multiple_of(2),
+        selected: number == 2,
         chosen: true,
         detail: String::new(),
     }
@@ -52,21 +56,21 @@ fn net_gain_harness(panels: Vec<GainPanel>) -> Harness<'static, Model> {
 #[test]
 fn a_click_on_a_dot_names_its_condition() {
     let mut harness = net_gain_harness(panels(5));
-    let at = harness.state().view.screen_position(4, 1).unwrap();
+    let at = harness.state().view.screen_position(4, id(1)).unwrap();
     click(&mut harness, at + vec2(3.0, 2.0));
     let events = &harness.state().events;
-    assert_eq!(events.first(), Some(&GainEvent::ConditionHovered(Some(1))));
-    assert!(events.contains(&GainEvent::ConditionClicked(1)));
+    assert_eq!(events.first(), Some(&GainEvent::ConditionHovered(Some(id(1)))));
+    assert!(events.contains(&GainEvent::ConditionClicked(id(1))));
 }
 
 #[test]
 fn of_two_dots_close_together_the_nearer_one_is_meant() {
     let mut harness = net_gain_harness(panels(5));
     for condition in [2, 3] {
-        let at = harness.state().view.screen_position(0, condition).unwrap();
+        let at = harness.state().view.screen_position(0, id(condition)).unwrap();
         let outward = if condition == 2 { vec2(0.0, -3.0) } else { vec2(0.0, 3.0) };
         click(&mut harness, at + outward);
-        assert!(harness.state().events.contains(&GainEvent::ConditionClicked(condition)));
+        assert!(harness.state().events.contains(&GainEvent::ConditionClicked(id(condition))));
     }
 }
 
@@ -111,7 +115,7 @@ fn a_channel_panel_answers_like_a_net_gain_panel() {
             model,
         );
     harness.run();
-    let at = harness.state().channels.outputs.screen_position(3, 0).unwrap();
+    let at = harness.state().channels.outputs.screen_position(3, id(0)).unwrap();
     click(&mut harness, at);
-    assert!(harness.state().events.contains(&GainEvent::ConditionClicked(0)));
+    assert!(harness.state().events.contains(&GainEvent::ConditionClicked(id(0))));
 }

@@ -9,7 +9,9 @@ use std::sync::Arc;
 use egui::{Event, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 
+use super::curve::numbered;
 use super::*;
+use crate::dataset::ConditionId;
 
 /// Presses and releases a button at `at`.
 fn press<State>(harness: &mut Harness<'_, State>, at: Pos2, button: PointerButton, modifiers: Modifiers) {
@@ -50,7 +52,7 @@ fn lag(id: u64, gain_db: f64, corner: f64, role: Role) -> BodeCurve {
     let magnitude_db = omega.iter().map(|w| gain_db - 10.0 * (1.0 + (w / corner).powi(2)).log10()).collect();
     let phase_deg = omega.iter().map(|w| -(w / corner).atan().to_degrees()).collect();
     BodeCurve {
-        id: CurveId(id),
+        id: numbered(id),
         label: format!("model {id}"),
         detail: "click to reject".to_owned(),
         role,

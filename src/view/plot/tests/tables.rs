@@ -76,12 +76,12 @@ fn an_overview_without_curves_has_a_message() {
     overview_harness(Vec::new()).get_by_label("Nothing to draw");
 }
 
-fn change(key: usize, magnitude: f64, phase: f64) -> AssessmentBar {
+fn change(id: i64, magnitude: f64, phase: f64) -> AssessmentBar {
     AssessmentBar {
-        key,
-        label: key.to_string(),
+        condition: ConditionId(id),
+        label: id.to_string(),
         value: BarValue::Change { magnitude, phase },
-        selected: key == 3,
+        selected: id == 3,
         detail: String::new(),
     }
 }
@@ -108,10 +108,10 @@ fn a_click_on_a_bar_names_it_and_its_panel() {
     let panel = AssessmentPanel { title: "LON → Q".to_owned(), axis_label: "Condition".to_owned(), bars };
     let other = AssessmentPanel { title: "LAT → P".to_owned(), ..panel.clone() };
     let mut harness = assessment_harness(vec![other, panel]);
-    for key in [3, 10] {
-        let at = harness.state().assessment.screen_position(1, key).unwrap();
+    for condition in [ConditionId(3), ConditionId(10)] {
+        let at = harness.state().assessment.screen_position(1, condition).unwrap();
         click(&mut harness, at);
-        assert_eq!(harness.state().bars.last(), Some(&AssessmentEvent::BarClicked { panel: 1, key }));
+        assert_eq!(harness.state().bars.last(), Some(&AssessmentEvent::BarClicked { panel: 1, condition }));
     }
     harness.get_by_label("Change of J, LON → Q: 1 −23.0, 3 3.0, 10 left out, 11 NaN");
 }

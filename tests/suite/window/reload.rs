@@ -53,7 +53,7 @@ fn a_file_that_changes_is_told_and_reloaded_and_undo_goes_back_across_it() {
     assert_eq!(state(&window).study.settings.alpha_gain, 12.5, "the decision still applies");
     assert!(state(&window).results.received > received && state(&window).shown().is_some());
     assert!(!is_told(&window));
-    window.get_by_label("Undo reload my-dataset.json");
+    window.get_by_label("↶ Undo reload my-dataset.json");
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     settle(&mut window);
     assert_eq!(state(&window).dataset().name(), before);

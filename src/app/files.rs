@@ -9,9 +9,9 @@ use egui::Context;
 use crate::dataset::ConditionId;
 use crate::io::{
     Corrections, DatasetOrigin, FileError, LoadedDataset, Opened, STUDY_EXTENSION, embedded_example, load_any,
-    make_directory, save_study, write_assessment_csv, write_corrections, write_corrections_csv,
+    make_directory, open_study_of, save_study, write_assessment_csv, write_corrections, write_corrections_csv,
 };
-use crate::study::{Analysis, Study};
+use crate::study::{Analysis, Difference, Study};
 use crate::view::command::FormKind;
 use crate::view::state::State;
 
@@ -43,11 +43,16 @@ impl Default for Readers {
 impl GdcmApp {
     /// What the window starts with when `opened` is shown.
     pub(super) fn parts_of(opened: Opened) -> (State, LoadedDataset, SavedStudy) {
-        let (study, loaded, path) = match opened {
-            Opened::Dataset(loaded) => (Study::new(loaded.dataset.clone()), loaded, None),
-            Opened::Study { study, loaded, path } => (study, loaded, Some(path)),
+        let path = match &opened {
+            Opened::Dataset(_) => None,
+            Opened::Study(opened) => Some(opened.path.clone()),
         };
-        let state = State::new(study.clone(), study_name(path.as_deref()), loaded.cautions.clone());
+        let (study, loaded, differences) = opened.into_study();
+        let mut state = State::new(study.clone(), study_name(path.as_deref()), loaded.cautions.clone());
+        // Saved now, the file would lose what does not apply.
+        state.unsaved = differences.iter().any(|difference| matches!(difference, Difference::NotApplied { .. }));
+        state.forms.shown = (!differences.is_empty()).then_some(FormKind::Differences);
+        state.differences = differences;
         (state, loaded, SavedStudy { path, study })
     }
 
@@ -65,14 +70,17 @@ impl GdcmApp {
         self.done(format!("opened {name}"));
     }
 
-    /// Reads a file in a thread of its own; what is open stays until it is read.
-    pub(super) fn open(&mut self, path: PathBuf, ctx: &Context) {
+    /// Reads a file in a thread of its own; what is open stays until it is read. The dataset of a study may have moved.
+    pub(super) fn open(&mut self, path: PathBuf, moved: Option<PathBuf>, ctx: &Context) {
         self.state.forms.shown = None;
         self.state.opening = Some(path.display().to_string());
         let (sender, wake) = (self.readers.sender.clone(), ctx.clone());
         let read = move || {
             // The window may be gone by now.
-            let _ = sender.send(load_any(&path));
+            let _ = sender.send(match moved {
+                Some(dataset) => open_study_of(&path, &dataset).map(Opened::Study),
+                None => load_any(&path),
+            });
             wake.request_repaint();
         };
         if let Err(error) = std::thread::Builder::new().name("reading".to_owned()).spawn(read) {
@@ -89,6 +97,10 @@ impl GdcmApp {
         self.state.opening = None;
         match opened {
             Ok(opened) => self.show(opened),
+            Err(FileError::StudyDataset { path, dataset }) => {
+                self.state.forms.lost_dataset = Some((path, dataset.to_string()));
+                self.state.forms.shown = Some(FormKind::FindDataset);
+            }
             Err(error) => self.trouble(error.to_string()),
         }
     }
@@ -100,7 +112,7 @@ impl GdcmApp {
         }
         while let Some(answer) = self.dialogs.answer() {
             match answer {
-                DialogAnswer::Chosen(DialogPurpose::Open, path) => self.open(path, ctx),
+                DialogAnswer::Chosen(DialogPurpose::Open, path) => self.open(path, None, ctx),
                 DialogAnswer::Chosen(DialogPurpose::SaveStudy, path) => self.save_as(path),
                 DialogAnswer::Chosen(DialogPurpose::ExportFolder, path) => {
                     self.state.forms.export.folder = path.display().to_string();

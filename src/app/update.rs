@@ -56,11 +56,14 @@ impl GdcmApp {
             Command::AskOpen => self.dialogs.ask(DialogPurpose::Open, String::new(), ctx),
             Command::AskSaveStudy => self.dialogs.ask(DialogPurpose::SaveStudy, self.proposed_name(), ctx),
             Command::AskExportFolder => self.dialogs.ask(DialogPurpose::ExportFolder, String::new(), ctx),
-            Command::Open(_) | Command::OpenExample | Command::Quit if self.state.unsaved && !self.closing => {
+            Command::Open(_) | Command::OpenStudyOf(..) | Command::OpenExample | Command::Quit
+                if self.state.unsaved && !self.closing =>
+            {
                 self.postponed = Some(command);
                 self.state.forms.shown = Some(FormKind::Unsaved);
             }
-            Command::Open(path) => self.open(path, ctx),
+            Command::Open(path) => self.open(path, None, ctx),
+            Command::OpenStudyOf(study, dataset) => self.open(study, Some(dataset), ctx),
             Command::OpenExample => self.open_example(),
             Command::Quit => self.quit(ctx),
             Command::SaveStudy => self.save(ctx),

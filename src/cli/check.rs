@@ -3,19 +3,21 @@
 use std::path::Path;
 
 use crate::dataset::{BundleKind, Channel, Condition, Dataset, Dynamics, Model};
-use crate::io::{LoadedDataset, Opened, load_any, plain};
+use crate::io::{LoadedDataset, Opened, plain};
 use crate::study::Study;
 
+use super::arguments::OpeningArguments;
 use super::failure::Failure;
+use super::opening::open;
 use super::summary::LABEL;
 use super::terminal::say;
 use super::text_table::{Side, TextTable, labelled};
 
 /// Says what a dataset or a study holds.
-pub(super) fn check(file: &Path) -> Result<(), Failure> {
-    let text = match load_any(file)? {
+pub(super) fn check(file: &Path, arguments: &OpeningArguments) -> Result<(), Failure> {
+    let text = match open(file, arguments)? {
         Opened::Dataset(loaded) => contents(&loaded),
-        Opened::Study { study, loaded, .. } => decisions(file, &study) + &contents(&loaded),
+        Opened::Study(opened) => decisions(file, &opened.study) + &contents(&opened.loaded),
     };
     say(&text)
 }

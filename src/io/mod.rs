@@ -36,4 +36,4 @@ pub use opened::{Opened, load_any};
 pub use place::{ConditionPlace, ModelPlace, Place};
 pub use plain::plain;
 pub use source::LARGEST_TEXT;
-pub use study_file::{STUDY_EXTENSION, open_study, save_study};
+pub use study_file::{OpenedStudy, STUDY_EXTENSION, open_study, open_study_of, save_study};

@@ -1,6 +1,7 @@
 //! What the engineer does: settings, rejections, pins; and the analysis of it all, in cached stages.
 
 mod analysis;
+mod carry_over;
 mod caution;
 mod comparison;
 mod condition_analysis;
@@ -13,6 +14,7 @@ mod edit;
 mod effort;
 mod engine;
 mod history;
+mod inventory;
 mod memo;
 mod setting;
 mod settings;
@@ -20,6 +22,7 @@ mod toggles;
 mod watch;
 
 pub use analysis::{Analysis, Assessed};
+pub use carry_over::{Decisions, Difference};
 pub use caution::Caution;
 pub use comparison::{BundleFigures, Comparison};
 pub use condition_analysis::{ConditionAnalysis, ConditionFailure};
@@ -31,6 +34,7 @@ pub use edit::{Edit, EditRefusal};
 pub use effort::Effort;
 pub use engine::Engine;
 pub use history::History;
+pub use inventory::{ConditionInventory, Inventory};
 pub use setting::Setting;
 pub use settings::{GREATEST_GAIN, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings};
 pub use toggles::Toggles;

@@ -1,10 +1,13 @@
 //! Everything the window shows.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::dataset::{Band, BundleKind, Condition, ConditionId, Dataset, ModelId, Pair};
-use crate::study::{Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, History, Study, Toggles};
+use crate::study::{
+    Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, Difference, History, Study, Toggles,
+};
 
 use super::bode_scene::CachedShapes;
 use super::command::FormKind;
@@ -174,6 +177,8 @@ pub struct Forms {
     pub shown: Option<FormKind>,
     /// The path in the open form, as typed.
     pub open_path: String,
+    /// The study whose dataset is not where it says, and what opening it said.
+    pub lost_dataset: Option<(PathBuf, String)>,
     /// The path in the save form, as typed.
     pub save_path: String,
     /// The export form.
@@ -197,6 +202,8 @@ pub struct State {
     pub results: Results,
     /// Cautions of the file.
     pub file_cautions: Vec<String>,
+    /// What the dataset was found to differ in from the one the study was made with.
+    pub differences: Vec<Difference>,
     /// The message shown.
     pub notice: Option<Notice>,
     /// Name of a file being read.
@@ -218,6 +225,7 @@ impl State {
             display,
             results: Results::default(),
             file_cautions,
+            differences: Vec::new(),
             notice: None,
             opening: None,
             forms: Forms::default(),

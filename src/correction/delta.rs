@@ -25,11 +25,15 @@ impl Delta {
     }
 }
 
-/// The mismatch of every response that both models have.
+/// Ratios beyond this (1e300 and 1e-300) are not finite or zero (M6).
+const LARGEST_DB: f64 = 6000.0;
+
+/// The mismatch of every response that both models have and whose ratio is finite and not zero.
 pub fn mismatch_table(simulated: &PolarResponse, reference: &PolarResponse) -> PairTable<Option<Mismatch>> {
-    simulated
-        .curves()
-        .map(|pair, simulated| Some(Mismatch::new(simulated.as_ref()?, reference.curves()[pair].as_ref()?)))
+    simulated.curves().map(|pair, simulated| {
+        let mismatch = Mismatch::new(simulated.as_ref()?, reference.curves()[pair].as_ref()?);
+        mismatch.magnitude_db.iter().all(|error| error.abs() < LARGEST_DB).then_some(mismatch)
+    })
 }
 
 /// `|H_ref| / |H_sim|` at each frequency.
@@ -37,7 +41,7 @@ pub(super) fn ratios(mismatch: &Mismatch) -> Vec<f64> {
     mismatch.magnitude_db.iter().map(|error| db_to_ratio(-error)).collect()
 }
 
-/// `Delta phi(H_sim, H_ref) / omega` \[s\] at each frequency.
+/// `Delta phi(H_sim, H_ref) / omega` \[s\] at each frequency, on the branch nearest to a pure delay (M6b).
 pub(super) fn delays(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
-    mismatch.phase_difference().iter().zip(omega).map(|(phase, omega)| phase / omega).collect()
+    mismatch.phase_difference(omega).iter().zip(omega).map(|(phase, omega)| phase / omega).collect()
 }

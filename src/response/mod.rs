@@ -24,6 +24,6 @@ pub use frequency_grid::FrequencyGrid;
 pub use frequency_response::FrequencyResponse;
 pub use phase::{centred_unwrap, nearest_turn_offset, unwrap, wrap};
 pub use polar::{PolarCurve, PolarResponse};
-pub use prepared_model::PreparedModel;
+pub use prepared_model::{LargeEntry, PreparedModel};
 pub use state_space_response::{evaluate, evaluate_on};
 pub use statistics::{mean, median, quantile};

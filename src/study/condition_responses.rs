@@ -17,6 +17,16 @@ pub struct ConditionResponses {
     pub identified: Vec<FrequencyResponse>,
 }
 
+impl ConditionResponses {
+    /// The responses of one bundle.
+    pub fn bundle(&self, kind: BundleKind) -> &[FrequencyResponse] {
+        match kind {
+            BundleKind::Physics => &self.physics,
+            BundleKind::Identified => &self.identified,
+        }
+    }
+}
+
 /// The models of a condition, each prepared the first time that it is asked for a response.
 #[derive(Debug)]
 pub struct PreparedCondition {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::dataset::{BundleKind, Channel, Condition, Dataset, Dynamics, Model};
 use crate::io::{LoadedDataset, Opened, load_any, plain};
-use crate::study::Study;
+use crate::study::{Effort, Study, Unwatched, cautions_of_models};
 
 use super::failure::Failure;
 use super::summary::LABEL;
@@ -14,8 +14,8 @@ use super::text_table::{Side, TextTable, labelled};
 /// Says what a dataset or a study holds.
 pub(super) fn check(file: &Path) -> Result<(), Failure> {
     let text = match load_any(file)? {
-        Opened::Dataset(loaded) => contents(&loaded),
-        Opened::Study { study, loaded, .. } => decisions(file, &study) + &contents(&loaded),
+        Opened::Dataset(loaded) => contents(&loaded) + &model_cautions(&Study::new(loaded.dataset))?,
+        Opened::Study { study, loaded, .. } => decisions(file, &study) + &contents(&loaded) + &model_cautions(&study)?,
     };
     say(&text)
 }
@@ -43,6 +43,18 @@ fn contents(loaded: &LoadedDataset) -> String {
         text.push_str(&labelled(0, "Caution", LABEL, &plain(caution)));
     }
     text
+}
+
+/// What an analysis would say of the models by themselves.
+fn model_cautions(study: &Study) -> Result<String, Failure> {
+    let effort = Effort::new(&crate::app::Pool, &Unwatched, 0);
+    let mut text = String::new();
+    for (index, caution) in cautions_of_models(study, &effort)? {
+        let id = study.dataset.conditions()[index].id();
+        let words = caution.words(|pair| study.dataset.pair_name(pair));
+        text.push_str(&labelled(0, "Caution", LABEL, &plain(&format!("condition {id}: {words}"))));
+    }
+    Ok(text)
 }
 
 fn channel_words(channels: &[Channel]) -> String {

@@ -3,7 +3,7 @@
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
 
-use super::vertex::{Vertex, Fit};
+use super::vertex::{Fit, Vertex};
 
 /// Why there is no fit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -32,7 +32,11 @@ pub enum FitError {
 ///
 /// The simplex method of Barrodale and Roberts (SIAM J. Numer. Anal. 10(5), 1973): exact, and the same on every machine.
 /// `x` and `y` must not be negative. It ends without a result at the first vertex at which it is `cancelled`.
-pub fn least_absolute_deviations(x: &[Vec<f64>], y: &[f64], cancelled: &dyn Fn() -> bool) -> Result<Vec<f64>, FitError> {
+pub fn least_absolute_deviations(
+    x: &[Vec<f64>],
+    y: &[f64],
+    cancelled: &dyn Fn() -> bool,
+) -> Result<Vec<f64>, FitError> {
     let unknowns = x.first().map_or(0, Vec::len);
     let scale = y.iter().copied().fold(0.0, f64::max);
     if scale == 0.0 {

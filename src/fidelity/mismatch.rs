@@ -121,7 +121,10 @@ mod tests {
             let mismatch = Mismatch::new(&curve(0.0, 0.0, &omega), &curve(0.0, delay_s, &omega));
             let phase = mismatch.phase_difference(&omega);
             // A handful of roundings of angles up to 0.6 * 24 rad.
-            assert!(phase.iter().zip(&omega).all(|(phase, omega)| (phase - delay_s * omega).abs() < 1e-13), "{delay_s}");
+            assert!(
+                phase.iter().zip(&omega).all(|(phase, omega)| (phase - delay_s * omega).abs() < 1e-13),
+                "{delay_s}"
+            );
         }
     }
 }

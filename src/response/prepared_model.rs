@@ -5,11 +5,10 @@ use pulp::Arch;
 
 use crate::dataset::{Dynamics, MeasuredResponse, PairTable, StateSpace};
 
+use super::elimination::{HessenbergForm, evaluate_reduced};
 use super::frequency_grid::FrequencyGrid;
 use super::frequency_response::FrequencyResponse;
-use super::hessenberg_form::HessenbergForm;
 use super::interpolation::interpolate;
-use super::state_space_response::evaluate_reduced;
 use super::structure::connected;
 
 /// What of a response does not depend on the grid: made once for each model, it serves every band and every drawing.
@@ -23,15 +22,23 @@ pub struct PreparedModel {
 
 #[derive(Clone, Debug)]
 enum Source {
-    StateSpace { form: Box<HessenbergForm>, connected: PairTable<bool> },
+    StateSpace {
+        form: Box<HessenbergForm>,
+        connected: PairTable<bool>,
+    },
     Measured(MeasuredResponse),
     /// No response can be computed.
-    TooLarge { outputs: usize, inputs: usize },
+    TooLarge {
+        outputs: usize,
+        inputs: usize,
+    },
 }
 
 /// An entry of a model's matrices beyond [`LARGEST_ENTRY`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("its matrix {matrix} has {value:e} in row {row}, column {column}, and nothing beyond {LARGEST_ENTRY:e} can be computed with")]
+#[error(
+    "its matrix {matrix} has {value:e} in row {row}, column {column}, and nothing beyond {LARGEST_ENTRY:e} can be computed with"
+)]
 pub struct LargeEntry {
     /// `A`, `B`, `C` or `D`.
     pub matrix: char,

@@ -137,9 +137,11 @@ impl NotFinite {
             NotFinite::Measured { min, max } => {
                 format!("it is measured from {min} to {max} rad/s only: narrow the band, or reject the model")
             }
-            NotFinite::Pole => "a pole lies on a frequency of the grid, or its numbers overflow: change the band or the \
+            NotFinite::Pole => {
+                "a pole lies on a frequency of the grid, or its numbers overflow: change the band or the \
                                 number of frequencies, or reject the model"
-                .to_owned(),
+                    .to_owned()
+            }
         }
     }
 }
@@ -151,6 +153,11 @@ impl Caution {
     /// The caution of a G that is fitted, if it is one.
     pub(super) fn of_gain(pair: Pair, gain: f64) -> Option<Self> {
         (!USUAL_GAINS.contains(&gain)).then_some(Caution::UnusualGain { pair, gain })
+    }
+
+    /// Whether it says that a model is set aside.
+    pub fn is_set_aside(&self, bundle: BundleKind, name: &str) -> bool {
+        matches!(self, Caution::SetAside { model, .. } if model.bundle == bundle && model.name == name)
     }
 
     /// The response that the engineer may want to ignore in the objective.

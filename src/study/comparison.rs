@@ -153,8 +153,17 @@ impl Comparison {
         choice: &ConditionChoice,
         average: CostAverage,
     ) -> Result<Self, ConditionFailure> {
-        let of_kind = |kind| caution::of_models(condition, choice.bundle(kind), kind, responses.bundle(kind), figures.bundle(kind).measured());
-        let mut cautions: Vec<Caution> = [BundleKind::Physics, BundleKind::Identified].into_iter().flat_map(of_kind).collect();
+        let of_kind = |kind| {
+            caution::of_models(
+                condition,
+                choice.bundle(kind),
+                kind,
+                responses.bundle(kind),
+                figures.bundle(kind).measured(),
+            )
+        };
+        let mut cautions: Vec<Caution> =
+            [BundleKind::Physics, BundleKind::Identified].into_iter().flat_map(of_kind).collect();
         let representative = |kind: BundleKind| {
             let BundleChoice { rejected, pinned } = choice.bundle(kind);
             let representative = Representative::of(figures.bundle(kind), rejected, *pinned);
@@ -163,11 +172,15 @@ impl Comparison {
         let (physics, identified) = (representative(BundleKind::Physics)?, representative(BundleKind::Identified)?);
         let reference = Compared::of(&responses.identified[identified.model]);
         let simulated = Compared::of(&responses.physics[physics.model]);
-        let against = |simulated: &Compared| ModelMismatch::of(&simulated.polar, &reference.polar, grid.omega(), average);
+        let against =
+            |simulated: &Compared| ModelMismatch::of(&simulated.polar, &reference.polar, grid.omega(), average);
         let representative = against(&simulated);
         let nominal = condition.nominal();
-        let nominal =
-            if physics.model == nominal { representative.clone() } else { against(&Compared::of(&responses.physics[nominal])) };
+        let nominal = if physics.model == nominal {
+            representative.clone()
+        } else {
+            against(&Compared::of(&responses.physics[nominal]))
+        };
         let delta = Delta::of(&representative.mismatch, grid.omega());
         let undefined = delta.gain.map(|pair, gain| match gain {
             Some(_) => None,
@@ -180,7 +193,8 @@ impl Comparison {
         {
             let responses: Vec<Pair> = compared.nothing.marked().collect();
             if !responses.is_empty() {
-                cautions.push(Caution::NumericallyNothing { model: BundleModel::of(condition, kind, model), responses });
+                cautions
+                    .push(Caution::NumericallyNothing { model: BundleModel::of(condition, kind, model), responses });
             }
         }
         Ok(Self { physics, identified, representative, nominal, delta, undefined, cautions })

@@ -78,7 +78,7 @@ fn schedule_of(text: &ScheduleText) -> Result<ScheduleSettings, Flaw> {
         QuantityText::LnGain => ScheduledQuantity::LnGain,
         QuantityText::Gain => ScheduledQuantity::Gain,
     };
-    Ok(ScheduleSettings { kind, quantity, delays: text.delays })
+    Ok(ScheduleSettings { kind, quantity, delays: text.delays, airspeed_tolerance_kt: text.airspeed_tolerance_kt })
 }
 
 /// Sets one setting of every pair: `setting(pair, whether it is listed)`.

@@ -93,20 +93,20 @@ fn clear_with_interchanges<S: Simd, const R: usize>(
     panel: usize,
     vectors: &mut [EliminatedRows<S, R>],
 ) -> Interchanged {
-    let mut wanted = [false; PANEL];
+    let mut required = [false; PANEL];
     'again: loop {
-        let mut asked = wanted;
+        let mut required_so_far = required;
         for (index, rows) in vectors.iter_mut().enumerate() {
-            let found = rows.clear_with_interchanges(simd, form, panel, asked);
-            let first_new = (0..PANEL).find(|&offset| found[offset] && !asked[offset]);
+            let found = rows.clear_with_interchanges(simd, form, panel, required_so_far);
+            let first_new = (0..PANEL).find(|&offset| found[offset] && !required_so_far[offset]);
             if let (1.., Some(first_new)) = (index, first_new) {
                 // The vectors before did without: all begin again, with what holds for the columns up to this one.
-                wanted = [false; PANEL];
-                wanted[..=first_new].copy_from_slice(&found[..=first_new]);
+                required = [false; PANEL];
+                required[..=first_new].copy_from_slice(&found[..=first_new]);
                 continue 'again;
             }
-            asked = found;
+            required_so_far = found;
         }
-        return asked;
+        return required_so_far;
     }
 }

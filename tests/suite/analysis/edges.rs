@@ -1,0 +1,253 @@
+//! Data that leave little to go by: what is compared all the same, what is not, and that it is said.
+
+use std::path::PathBuf;
+use std::process::Command;
+use std::sync::Arc;
+
+use gdcm::dataset::{Dataset, ModelId};
+use gdcm::io::{DatasetOrigin, load_dataset_bytes};
+use gdcm::schedule::{ScheduleCaution, ScheduleKind, ScheduleSettings};
+use gdcm::study::{Caution, ConditionAnalysis, ConditionFailure, NotFinite, Undefined};
+use serde_json::json;
+
+use super::*;
+
+const SHORT: &str = include_str!("../../data/edges/short-measurement.json");
+const NEAR: &str = include_str!("../../data/edges/near-airspeeds.json");
+
+fn dataset(value: &Value) -> Arc<Dataset> {
+    load_dataset_bytes(value.to_string().as_bytes(), DatasetOrigin::File(PathBuf::from("edge.json"))).unwrap().dataset
+}
+
+/// The analysis of the only condition of a file.
+fn only(value: &Value, edits: &[Edit]) -> Analysis {
+    let mut study = Study::new(dataset(value));
+    edits.iter().for_each(|edit| study.apply(edit).unwrap());
+    analyze(&mut Engine::default(), &study)
+}
+
+fn words(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<String> {
+    let name = |pair| analysis.study.dataset.pair_name(pair);
+    result.cautions.iter().map(|caution| caution.words(name)).collect()
+}
+
+/// The file with the measurement that ends at 11.9 rad/s at this place among the identified models; `None`: without it.
+fn with_short_measurement(place: Option<usize>) -> Value {
+    let mut value = json(SHORT);
+    let models = value["conditions"][0]["identified_models"].as_array_mut().unwrap();
+    let short = models.pop().unwrap();
+    assert!(short["frequency_response"].is_object());
+    if let Some(place) = place {
+        models.insert(place, short);
+    }
+    value
+}
+
+#[test]
+fn a_measurement_that_ends_just_short_of_the_band_changes_nothing_for_the_others() {
+    let without = only(&with_short_measurement(None), &[]);
+    let expected = without.condition(0).unwrap();
+    for place in [0, 2, 4] {
+        let analysis = only(&with_short_measurement(Some(place)), &[]);
+        let found = analysis.condition(0).unwrap();
+        assert_eq!(found.comparison.delta, expected.comparison.delta, "place {place}");
+        assert_eq!(found.correction, expected.correction);
+        let name = |analysis: &Analysis, model: usize| {
+            analysis.study.dataset.conditions()[0].bundle(BundleKind::Identified)[model].name.clone()
+        };
+        let representatives = (&found.comparison.identified, &expected.comparison.identified);
+        assert_eq!(name(&analysis, representatives.0.model), name(&without, representatives.1.model));
+        assert_eq!(representatives.0.scores[place], None);
+        assert_eq!(representatives.0.scores.iter().flatten().count(), 4);
+    }
+}
+
+#[test]
+fn a_model_set_aside_is_named_with_what_it_lacks_and_its_pin_does_not_count() {
+    let short = ModelId { condition: 0, bundle: BundleKind::Identified, model: 4 };
+    let value = with_short_measurement(Some(4));
+    let (free, pinned) = (only(&value, &[]), only(&value, &[Edit::Pin(short)]));
+    let found = pinned.condition(0).unwrap();
+    assert_eq!(found.comparison.delta, free.condition(0).unwrap().comparison.delta);
+    let caution = words(&pinned, found).concat();
+    for part in ["identified model \"i4\" is set aside", "I0 → O0, I1 → O1", "11.9", "pinned does not count"] {
+        assert!(caution.contains(part), "expected \"{part}\" in: {caution}");
+    }
+    let written = &Corrections::of(&pinned, "", &[0]).conditions[0];
+    assert_eq!(written.set_aside.len(), 1);
+    assert_eq!((written.set_aside[0].model.as_str(), &written.set_aside[0].why), ("i4", &caution));
+    assert!(Corrections::of(&only(&with_short_measurement(None), &[]), "", &[0]).conditions[0].set_aside.is_empty());
+}
+
+#[test]
+fn a_bundle_of_which_only_models_set_aside_are_kept_has_no_result_and_says_so() {
+    let reject = |model| Edit::Reject(ModelId { condition: 0, bundle: BundleKind::Identified, model });
+    let analysis = only(&with_short_measurement(Some(4)), &[0, 1, 2, 3].map(reject));
+    assert_eq!(analysis.conditions[0], Err(ConditionFailure::AllSetAside { bundle: "identified" }));
+}
+
+#[test]
+fn a_physics_model_without_a_measuring_response_is_set_aside_too() {
+    let mut value = with_short_measurement(None);
+    let model = &mut value["conditions"][0]["physics_models"][3];
+    for key in ["C", "D"] {
+        model[key][0].as_array_mut().unwrap().iter_mut().for_each(|entry| *entry = json!(0.0));
+    }
+    let name = model["name"].as_str().unwrap().to_owned();
+    let analysis = only(&value, &[]);
+    let found = analysis.condition(0).unwrap();
+    assert!(found.cautions.iter().any(|caution| caution.is_set_aside(BundleKind::Physics, &name)));
+    let ratios = &found.figures.discontinuity.as_ref().unwrap().ratios;
+    assert!(ratios[3].is_none() && ratios[0].is_some());
+    value["conditions"][0]["physics_models"].as_array_mut().unwrap().remove(3);
+    let mut without = found.figures.discontinuity.as_ref().unwrap().ratios.clone();
+    without.remove(3);
+    assert_eq!(only(&value, &[]).condition(0).unwrap().figures.discontinuity.as_ref().unwrap().ratios, without);
+}
+
+/// Two lags, `c` beside what each output sees of the other's, as one physics and one identified model.
+fn two_lags(physics: [[f64; 2]; 2], identified: [[f64; 2]; 2]) -> Value {
+    let lags = |c: [[f64; 2]; 2]| {
+        json!({"name": "model", "A": [[-1.0, 0.0], [0.0, -3.0]], "B": [[1.0, 0.0], [0.0, 1.0]], "C": c,
+            "D": [[0.0, 0.0], [0.0, 0.0]]})
+    };
+    let mut nominal = lags(physics);
+    nominal["role"] = json!("nominal");
+    json!({"format": "gdcm-dataset", "version": 1, "name": "two lags",
+        "inputs": [{"name": "I0", "unit": "%"}, {"name": "I1", "unit": "%"}],
+        "outputs": [{"name": "O0", "unit": "deg/s"}, {"name": "O1", "unit": "deg/s"}],
+        "on_axis": [["O0", "I0"], ["O1", "I1"]], "frequency_band": {"min": 0.5, "max": 12.0, "unit": "rad/s"},
+        "conditions": [{"id": 1, "name": "hover", "airspeed_kt": 0.0, "physics_models": [nominal],
+            "identified_models": [lags(identified)]}]})
+}
+
+#[test]
+fn residues_of_differencing_count_as_zero_and_are_named() {
+    let zeros = only(&two_lags([[1.0, 0.0], [0.0, 1.0]], [[1.2, 0.0], [0.0, 0.9]]), &[]);
+    for (physics, identified) in
+        [([1e-17, 1e-9], [1e-3, 0.5]), ([0.1, 0.1], [1e-17, 3e-8]), ([1e-17, 1e-16], [0.0, 1e-13])]
+    {
+        let of = |diagonal: [f64; 2], [upper, lower]: [f64; 2]| [[diagonal[0], upper], [lower, diagonal[1]]];
+        let value = two_lags(of([1.0, 1.0], physics), of([1.2, 0.9], identified));
+        let analysis = only(&value, &[]);
+        let found = analysis.condition(0).unwrap();
+        assert_eq!(found.comparison.delta, zeros.condition(0).unwrap().comparison.delta);
+        assert_eq!(found.correction, zeros.condition(0).unwrap().correction);
+        let named = words(&analysis, found).concat();
+        assert!(named.contains("I1 → O0, I0 → O1 are numerically nothing"), "{named}");
+        assert_eq!(Corrections::of(&analysis, "", &[0]).conditions[0].cautions.concat(), named);
+    }
+}
+
+#[test]
+fn a_response_that_is_numerically_nothing_is_not_held_for_that_reason() {
+    let value = two_lags([[1.0, 1e-17], [0.0, 1.0]], [[1.2, 0.1], [0.0, 0.9]]);
+    let pair = Pair::new(0, 1);
+    let analysis = only(&value, &[Edit::Set(Setting::Constrained(pair, true))]);
+    let found = analysis.condition(0).unwrap();
+    assert!(!found.held()[pair]);
+    let why = Undefined::NumericallyNothing(BundleKind::Physics);
+    assert!(found.cautions.contains(&Caution::HeldButUndefined { pair, why }));
+    assert_eq!(found.comparison.undefined[pair], Some(why));
+    assert_eq!(found.comparison.undefined[Pair::new(1, 0)], Some(Undefined::ZeroOrNotFinite));
+}
+
+#[test]
+fn an_unusual_gain_is_fitted_with_a_caution_that_ends_when_it_is_ignored() {
+    let value = two_lags([[1.0, 0.01], [0.0, 1.0]], [[1.2, 0.2], [0.0, 0.9]]);
+    let pair = Pair::new(0, 1);
+    let analysis = only(&value, &[]);
+    let found = analysis.condition(0).unwrap();
+    assert!((found.comparison.delta.gain[pair].unwrap() - 20.0).abs() < 1e-9);
+    let offered: Vec<Pair> = found.cautions.iter().filter_map(Caution::offers_to_ignore).collect();
+    assert_eq!(offered, [pair]);
+    assert!(words(&analysis, found).concat().contains("I1 → O0 has a G of 20.000, outside 0.1 to 10"));
+    let ignored = only(&value, &[Edit::Set(Setting::Fitted(pair, false))]);
+    assert_eq!(ignored.condition(0).unwrap().cautions.iter().filter_map(Caution::offers_to_ignore).count(), 0);
+}
+
+#[test]
+fn ratios_beyond_the_numbers_of_the_machine_are_no_gains() {
+    let value = two_lags([[1.0, 1e-60], [1e-70, 1e-70]], [[1e70, 1e72], [1e70, 1e70]]);
+    let found = only(&value, &[]);
+    for (pair, gain) in found.condition(0).unwrap().comparison.delta.gain.iter() {
+        assert!(gain.is_none_or(|gain| gain.is_normal()), "{pair:?} {gain:?}");
+    }
+}
+
+#[test]
+fn airspeeds_a_hair_apart_are_one_point_of_the_schedule() {
+    let analysis = only(&json(NEAR), &[]);
+    let schedule = analysis.schedule.as_ref().unwrap();
+    assert_eq!(schedule.airspeeds.clusters, [vec![0, 1], vec![2]]);
+    assert_eq!(schedule.cautions, [ScheduleCaution::DegreeLowered { asked: 2, clusters: 2 }]);
+    let gains = |of: &gdcm::correction::ChannelCorrection| [of.input_gains.clone(), of.output_gains.clone()].concat();
+    let own: Vec<Vec<f64>> = (0..3).map(|index| gains(&analysis.condition(index).unwrap().correction)).collect();
+    for step in 0..=60 {
+        for (channel, gain) in gains(&schedule.at(60.0 + f64::from(step))).into_iter().enumerate() {
+            let all = own.iter().map(|gains| gains[channel]);
+            let (least, most) = (all.clone().fold(f64::INFINITY, f64::min), all.fold(0.0, f64::max));
+            assert!((0.99 * least..=1.01 * most).contains(&gain), "channel {channel}: {gain}");
+        }
+    }
+    let written = Corrections::of(&analysis, "", &[0, 1, 2]).schedule.unwrap();
+    assert_eq!((written.degree, written.table.len(), written.airspeed_tolerance_kt), (Some(1), 2, 2.0));
+    assert!(written.cautions[0].contains("degree 2 takes 3 airspeeds, and there are 2"), "{:?}", written.cautions);
+}
+
+#[test]
+fn a_schedule_that_overshoots_says_where_and_the_assessment_claims_nothing_between() {
+    let wild = ScheduleSettings { airspeed_tolerance_kt: 0.0, ..ScheduleSettings::default() };
+    let study = &[Edit::Set(Setting::Schedule(wild))];
+    let analysis = only(&json(NEAR), study);
+    let schedule = analysis.schedule.as_ref().unwrap();
+    assert!(schedule.fails_between());
+    let said = schedule.cautions[0].words(&["I0".into(), "I1".into()], &["O0".into(), "O1".into()]);
+    assert!(said.contains("between 60.0 and 120.0 kt the gain of"), "{said}");
+    let table = ScheduleSettings { kind: ScheduleKind::Table, ..wild };
+    assert!(!only(&json(NEAR), &[Edit::Set(Setting::Schedule(table))]).schedule.unwrap().fails_between());
+}
+
+/// What the program says of a file in a command, and how it ends.
+fn run(file: &str, command: &str) -> (i32, String) {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data/edges").join(file);
+    let out = tempfile::tempdir().unwrap();
+    let mut program = Command::new(env!("CARGO_BIN_EXE_gdcm"));
+    program.arg(command).arg(path).current_dir(out.path());
+    if command == "analyze" {
+        program.args(["--out", "."]);
+    }
+    let output = program.output().unwrap();
+    // Long lines are broken and indented.
+    let text = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
+    (output.status.code().unwrap(), text.split_whitespace().collect::<Vec<_>>().join(" "))
+}
+
+#[test]
+fn a_model_that_cannot_be_computed_is_named_with_its_place_by_check_and_by_analyze() {
+    for (file, entry) in [
+        (
+            "large-entry.json",
+            "identified model \"i\" has no I → O over the whole band: its matrix A has 1e200 in row 1, column 2",
+        ),
+        ("overflowing-response.json", "its matrix B has -1.7976931348623157e308 in row 1, column 1"),
+    ] {
+        let (status, text) = run(file, "check");
+        assert!(status == 0 && text.contains(entry) && text.contains("Caution condition"), "{text}");
+        let (status, text) = run(file, "analyze");
+        assert!(status == 1 && text.contains(entry) && text.contains("condition"), "{text}");
+    }
+}
+
+#[test]
+fn a_pole_on_the_grid_is_named() {
+    let mut value = two_lags([[1.0, 0.2], [0.3, 1.0]], [[1.2, 0.2], [0.3, 0.9]]);
+    // An undamped pair at the first frequency of the band.
+    value["conditions"][0]["physics_models"][0]["A"] = json!([[0.0, 0.5], [-0.5, 0.0]]);
+    let analysis = only(&value, &[]);
+    let failure = analysis.conditions[0].as_ref().unwrap_err();
+    assert!(failure.to_string().contains("a pole lies on a frequency of the grid"), "{failure}");
+    assert!(!matches!(failure, ConditionFailure::AllSetAside { .. }));
+    let all = NotFinite::Pole;
+    assert_eq!(all, NotFinite::Pole);
+}

@@ -116,7 +116,7 @@ impl ScheduleCaution {
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         match self {
             ScheduleCaution::DegreeLowered { asked, clusters } => format!(
-                "degree {asked} takes {} airspeeds, and there are {clusters}: the schedule has degree {}",
+                "degree {asked} takes {} distinct airspeeds, the conditions have {clusters}: the schedule has degree {}",
                 asked + 1,
                 clusters - 1
             ),

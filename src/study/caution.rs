@@ -135,6 +135,9 @@ impl NotFinite {
         match self {
             NotFinite::Entry(entry) => format!("{entry}: correct the file, or reject the model"),
             NotFinite::Measured { min, max } => {
+                // Six decimals at most: what is lost is no reason to look for.
+                let round = |omega: f64| (omega * 1e6).round() / 1e6;
+                let (min, max) = (round(min), round(max));
                 format!("it is measured from {min} to {max} rad/s only: narrow the band, or reject the model")
             }
             NotFinite::Pole => {

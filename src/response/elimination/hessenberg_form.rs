@@ -16,8 +16,8 @@ pub const PANEL: usize = 3;
 /// Neighbouring entries of a row.
 pub type Entries = [f64; PANEL];
 
-/// Least `alpha` (2^-100 rad/s): the poles of a slower model are all in zero, as seen from any frequency in use.
-const LEAST_ALPHA: f64 = 1.0 / (1_u128 << 100) as f64;
+/// Least `alpha`, 2^-450 rad/s: the poles of a slower model are all in zero, as seen from any frequency in use.
+const LEAST_ALPHA: f64 = f64::from_bits((1023 - 450) << 52);
 
 /// Rows of zeros after those of a model, for tiles of up to four rows.
 const PADDING: usize = 3;

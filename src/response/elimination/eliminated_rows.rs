@@ -18,10 +18,6 @@ pub type Interchanged = [bool; PANEL];
 /// entry in G's columns, the last, and needs nothing before all others are clear: it takes no part, and the active row
 /// has its place, so that rows and responses are counted alike.
 ///
-/// Column k is cleared in all of them with the next row of `[G K]`, divided by its entry there and real but for its
-/// diagonal: row `w` becomes `w - w_k r`, `r = (G_(k+1) - j omega e_(k+1)) / h`, `h = G_(k+1,k)`. Where the active row is
-/// much larger than that, rows are interchanged ([`Interchange`]).
-///
 /// Only multipliers are written at every column. Entries are computed where they are needed, a panel of columns of `R`
 /// rows at a time in registers: 2 fused operations on real numbers for each entry and column before it, n (n + 2 p) a row
 /// in all. Rows beyond `R` are other tiles, which follow the first: that one has the active row.

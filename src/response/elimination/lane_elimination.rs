@@ -11,12 +11,9 @@ pub const GROUP: usize = 8;
 /// What elimination of the states makes of `[G - j omega I, K; L, D']`, one frequency to a lane: in place of D' stands the
 /// response.
 ///
-/// In each column one complex row of G is left beside the next, the *active* one: one of the two clears the column in all
-/// others. It is the next one, which is real and so takes half the operations, unless in some lane of the group the entry of
-/// the active row is more than tau times as large; then rows are interchanged in all lanes where it is larger at all,
-/// which for neighbouring frequencies are nearly always all. This is threshold pivoting (Duff, Erisman & Reid, "Direct
-/// Methods for Sparse Matrices", 2nd ed. 2017, 5.2): multipliers within G are at most tau, and since each row of G enters
-/// as it is, entries grow at most to `n tau` times the largest.
+/// The next row, which is real, takes half the operations of the active one: it clears a column unless in some lane of the
+/// group the entry of the active row is more than tau times as large. Multipliers within G are then at most tau, and since each
+/// row of G enters as it is, entries grow at most to `n tau` times the largest.
 pub struct Elimination<S: Simd, const R: usize> {
     vectors: Vec<EliminatedRows<S, R>>,
     /// How many of them are in use.

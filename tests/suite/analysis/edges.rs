@@ -3,9 +3,13 @@
 use std::path::PathBuf;
 use std::process::Command;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use gdcm::app::GdcmApp;
 use gdcm::dataset::{Dataset, ModelId};
-use gdcm::io::{DatasetOrigin, load_dataset_bytes};
+use gdcm::io::{DatasetOrigin, Opened, load_dataset_bytes};
 use gdcm::schedule::{ScheduleCaution, ScheduleKind, ScheduleSettings};
 use gdcm::study::{Caution, ConditionAnalysis, ConditionFailure, Undefined};
 use serde_json::json;
@@ -256,4 +260,49 @@ fn a_pole_on_the_grid_is_named() {
     let analysis = only(&value, &[]);
     let failure = analysis.conditions[0].as_ref().unwrap_err();
     assert!(failure.to_string().contains("a pole lies on a frequency of the grid"), "{failure}");
+}
+
+/// The window on a file, its results there.
+fn window_on(value: &Value) -> Harness<'static, GdcmApp> {
+    let origin = DatasetOrigin::File(PathBuf::from("edge.json"));
+    let loaded = load_dataset_bytes(value.to_string().as_bytes(), origin).unwrap();
+    let mut window = Harness::builder().with_size(egui::vec2(1600.0, 1000.0)).build_eframe(|creation| {
+        GdcmApp::new(&creation.egui_ctx, Opened::Dataset(loaded)).expect("a thread can be started")
+    });
+    settle(&mut window);
+    window
+}
+
+fn settle(window: &mut Harness<'static, GdcmApp>) {
+    // Far above what the slowest machine needs: only a hang gets here.
+    let limit = Instant::now() + Duration::from_secs(120);
+    window.run_steps(2);
+    while window.state().state().results.is_waiting() {
+        assert!(Instant::now() < limit, "the results never came");
+        std::thread::sleep(Duration::from_millis(5));
+        window.run_steps(2);
+    }
+    window.run_steps(2);
+}
+
+#[test]
+fn the_window_offers_to_ignore_an_unusual_gain() {
+    let mut window = window_on(&two_lags([[1.0, 0.01], [0.0, 1.0]], [[1.2, 0.2], [0.0, 0.9]]));
+    let pair = Pair::new(0, 1);
+    assert!(window.state().state().study.settings.fitted[pair]);
+    window.get_by_label("Ignore I1 → O0").click();
+    settle(&mut window);
+    assert!(!window.state().state().study.settings.fitted[pair]);
+    assert!(window.query_by_label("Ignore I1 → O0").is_none(), "what is ignored is no caution");
+}
+
+#[test]
+fn a_model_set_aside_cannot_be_pinned_in_the_window() {
+    let mut window = window_on(&with_short_measurement(Some(4)));
+    for model in ["i3", "i4"] {
+        window.get_by_label(&format!("Pin identified model {model}")).click();
+        settle(&mut window);
+        let pinned = window.state().state().study.choices[0].identified.pinned;
+        assert_eq!(pinned, Some(3), "after a click on the star of {model}");
+    }
 }

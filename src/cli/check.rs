@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use crate::dataset::{BundleKind, Channel, Condition, Dataset, Dynamics, Model};
-use crate::io::{LoadedDataset, Opened, plain};
-use crate::study::Study;
+use crate::io::{LoadedDataset, Opened, OpenedStudy, plain};
+use crate::study::{Effort, Study, Unwatched, cautions_of_models};
 
 use super::arguments::OpeningArguments;
 use super::failure::Failure;
@@ -16,8 +16,10 @@ use super::text_table::{Side, TextTable, labelled};
 /// Says what a dataset or a study holds.
 pub(super) fn check(file: &Path, arguments: &OpeningArguments) -> Result<(), Failure> {
     let text = match open(file, arguments)? {
-        Opened::Dataset(loaded) => contents(&loaded),
-        Opened::Study(opened) => decisions(file, &opened.study) + &contents(&opened.loaded),
+        Opened::Dataset(loaded) => contents(&loaded) + &model_cautions(&Study::new(loaded.dataset))?,
+        Opened::Study(OpenedStudy { study, loaded, .. }) => {
+            decisions(file, &study) + &contents(&loaded) + &model_cautions(&study)?
+        }
     };
     say(&text)
 }
@@ -45,6 +47,17 @@ fn contents(loaded: &LoadedDataset) -> String {
         text.push_str(&labelled(0, "Caution", LABEL, &plain(caution)));
     }
     text
+}
+
+/// What an analysis would say of the models by themselves.
+fn model_cautions(study: &Study) -> Result<String, Failure> {
+    let effort = Effort::new(&crate::app::Pool, &Unwatched, 0);
+    let mut text = String::new();
+    for (id, caution) in cautions_of_models(study, &effort)? {
+        let words = caution.words(|pair| study.dataset.pair_name(pair));
+        text.push_str(&labelled(0, "Caution", LABEL, &plain(&format!("condition {id}: {words}"))));
+    }
+    Ok(text)
 }
 
 fn channel_words(channels: &[Channel]) -> String {

@@ -24,8 +24,8 @@ pub use content_fault::ContentFault;
 pub use corrections_file::{
     Assessment, Channels, ConditionAssessment, ConditionCorrections, ConflictEntry, Corrections, CostTable, CostTables,
     DatasetLabel, DelayOutcome, Explanation, GainOutcome, NetGain, RemedyEntry, ScheduleUsed, ScheduledDelays,
-    ScheduledGains, SensitivityEntry, SettingsUsed, Table, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
-    read_corrections, write_assessment_csv, write_corrections, write_corrections_csv,
+    ScheduledGains, SensitivityEntry, SetAsideEntry, SettingsUsed, Table, UnmatchedDelayEntry, UnmatchedGainEntry,
+    WithoutResult, read_corrections, write_assessment_csv, write_corrections, write_corrections_csv,
 };
 pub use dataset_file::{
     DatasetOrigin, LoadedDataset, embedded_example, load_dataset, load_dataset_bytes, save_dataset, write_example,

@@ -23,8 +23,8 @@ mod watch;
 
 pub use analysis::{Analysis, Assessed};
 pub use carry_over::{Decisions, Difference};
-pub use caution::Caution;
-pub use comparison::{BundleFigures, Comparison};
+pub use caution::{BundleModel, Caution, NotFinite, Undefined};
+pub use comparison::{BundleFigures, Comparison, cautions_of_models};
 pub use condition_analysis::{ConditionAnalysis, ConditionFailure};
 pub use condition_responses::ConditionResponses;
 pub use crew::{Alone, Crew, Job};

@@ -96,5 +96,5 @@ fn schedule_of(text: &ScheduleText) -> Result<ScheduleSettings, Flaw> {
         QuantityText::LnGain => ScheduledQuantity::LnGain,
         QuantityText::Gain => ScheduledQuantity::Gain,
     };
-    Ok(ScheduleSettings { kind, quantity, delays: text.delays })
+    Ok(ScheduleSettings { kind, quantity, delays: text.delays, airspeed_tolerance_kt: text.airspeed_tolerance_kt })
 }

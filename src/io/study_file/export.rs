@@ -85,5 +85,5 @@ fn schedule_text(settings: ScheduleSettings) -> ScheduleText {
         ScheduledQuantity::LnGain => QuantityText::LnGain,
         ScheduledQuantity::Gain => QuantityText::Gain,
     };
-    ScheduleText { kind, degree, of, delays: settings.delays }
+    ScheduleText { kind, degree, of, delays: settings.delays, airspeed_tolerance_kt: settings.airspeed_tolerance_kt }
 }

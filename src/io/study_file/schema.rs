@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::io::json_text::Format;
+use crate::schedule::DEFAULT_TOLERANCE_KT;
 
 /// What a study file calls itself.
 pub(super) const FORMAT: Format = Format { name: "gdcm-study", version: 1 };
@@ -82,6 +83,12 @@ pub(super) struct ScheduleText {
     pub(super) degree: Option<usize>,
     pub(super) of: QuantityText,
     pub(super) delays: bool,
+    #[serde(default = "default_tolerance_kt")]
+    pub(super) airspeed_tolerance_kt: f64,
+}
+
+fn default_tolerance_kt() -> f64 {
+    DEFAULT_TOLERANCE_KT
 }
 
 #[derive(Clone, Copy, Deserialize, Serialize)]

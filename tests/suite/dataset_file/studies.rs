@@ -79,10 +79,10 @@ fn edits() -> impl Strategy<Value = Vec<Edit>> {
         (0.0..0.5_f64).prop_map(Setting::Quantile),
         (0.1..1.0_f64, 1.0..3.0_f64).prop_map(|(lower, upper)| Setting::GainBounds(Some(GainBounds { lower, upper }))),
         prop::option::of(number()).prop_map(Setting::DelayUpper),
-        (0_usize..=3, any::<bool>(), any::<bool>()).prop_map(|(degree, table, delays)| {
+        (0_usize..=3, any::<bool>(), any::<bool>(), 0.0..100.0_f64).prop_map(|(degree, table, delays, tolerance)| {
             let kind = if table { ScheduleKind::Table } else { ScheduleKind::Polynomial { degree } };
             let quantity = if delays { ScheduledQuantity::Gain } else { ScheduledQuantity::LnGain };
-            Setting::Schedule(ScheduleSettings { kind, quantity, delays })
+            Setting::Schedule(ScheduleSettings { kind, quantity, delays, airspeed_tolerance_kt: tolerance })
         }),
     ];
     prop::collection::vec(setting.prop_map(Edit::Set), 0..12)

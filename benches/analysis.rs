@@ -52,7 +52,7 @@ fn stages(criterion: &mut Criterion) {
         bencher.iter(|| BundleFigures::of(condition, &responses, &measuring, &alone));
     });
     group.bench_function("ratios", |bencher| {
-        bencher.iter(|| Discontinuity::of(&figures.physics, &perturbations, &|| true))
+        bencher.iter(|| Discontinuity::of(&figures.physics, &perturbations, &|| false))
     });
     group.bench_function("G and D", |bencher| bencher.iter(|| Delta::of(&mismatch, grid.omega())));
     group.bench_function("bounds", |bencher| {

@@ -9,9 +9,9 @@ use egui::Context;
 use crate::dataset::ConditionId;
 use crate::io::{
     Corrections, FileError, LoadedDataset, Opened, STUDY_EXTENSION, embedded_example, load_any, make_directory,
-    save_study, write_assessment_csv, write_corrections, write_corrections_csv,
+    open_study_of, save_study, write_assessment_csv, write_corrections, write_corrections_csv,
 };
-use crate::study::{Analysis, Study};
+use crate::study::{Analysis, Difference, Study};
 use crate::view::bars::Bar;
 use crate::view::command::FormKind;
 use crate::view::state::State;
@@ -59,12 +59,18 @@ impl Default for Readers {
 impl GdcmApp {
     /// What the window starts with when `opened` is shown.
     pub(super) fn parts_of(opened: Opened) -> (State, LoadedDataset, SavedStudy) {
-        let (study, loaded, path) = match opened {
-            Opened::Dataset(loaded) => (Study::new(loaded.dataset.clone()), loaded, None),
-            Opened::Study { study, loaded, path } => (study, loaded, Some(path)),
+        let path = match &opened {
+            Opened::Dataset(_) => None,
+            Opened::Study(opened) => Some(opened.path.clone()),
         };
-        let state = State::new(study.clone(), study_name(path.as_deref()), loaded.cautions.clone());
-        (state, loaded, SavedStudy { path, study: Some(study) })
+        let (study, loaded, differences) = opened.into_study();
+        let mut state = State::new(study.clone(), study_name(path.as_deref()), loaded.cautions.clone());
+        // Saved now, the file would lose what does not apply.
+        state.unsaved = differences.iter().any(|difference| matches!(difference, Difference::NotApplied { .. }));
+        state.forms.shown = (!differences.is_empty()).then_some(FormKind::Differences);
+        state.differences = differences;
+        let saved = SavedStudy { path, study: (!state.unsaved).then_some(study) };
+        (state, loaded, saved)
     }
 
     /// Shows what was opened in place of what is open.
@@ -95,10 +101,17 @@ impl GdcmApp {
         self.recent.look(self.saved.path.clone().or_else(dataset), ctx);
     }
 
-    /// Opens a dataset or a study; what is open stays until it is read.
-    pub(super) fn open(&mut self, path: PathBuf, ctx: &Context) {
+    /// Opens a dataset or a study; what is open stays until it is read. The dataset of a study may have moved.
+    pub(super) fn open(&mut self, path: PathBuf, moved: Option<PathBuf>, ctx: &Context) {
+        let lost = self.offers.iter().position(|lost| lost.as_ref().is_some_and(|lost| lost.path() == path));
+        let purpose = lost.map_or(ReadFor::Opening, ReadFor::Restoring);
         self.state.forms.shown = None;
-        self.read(ReadFor::Opening, path.display().to_string(), move || load_any(&path), ctx);
+        let name = path.display().to_string();
+        let read = move || match moved {
+            Some(dataset) => open_study_of(&path, &dataset).map(Opened::Study),
+            None => load_any(&path),
+        };
+        self.read(purpose, name, read, ctx);
     }
 
     /// Reads in a thread of its own.
@@ -132,12 +145,20 @@ impl GdcmApp {
             (ReadFor::Opening, Ok(opened)) => self.show(opened, ctx),
             (ReadFor::Reloading, Ok(opened)) => self.show_reloaded(opened.into_study().1),
             (ReadFor::Restoring(offer), Ok(opened)) => self.show_restored(offer, opened, ctx),
-            (_, Err(error)) => {
-                // What was to be lost is still open.
-                self.agreed_to_lose = false;
-                self.recent.look(None, ctx);
-                self.trouble(error.to_string());
+            (_, Err(error)) => self.open_failed(error, ctx),
+        }
+    }
+
+    /// Says why nothing was opened, or asks where a study's dataset is; what is open stays.
+    fn open_failed(&mut self, error: FileError, ctx: &Context) {
+        self.agreed_to_lose = false;
+        self.recent.look(None, ctx);
+        match error {
+            FileError::StudyDataset { path, dataset } => {
+                self.state.forms.lost_dataset = Some((path, dataset.to_string()));
+                self.state.forms.shown = Some(FormKind::FindDataset);
             }
+            error => self.trouble(error.to_string()),
         }
     }
 
@@ -155,7 +176,7 @@ impl GdcmApp {
         }
         while let Some(answer) = self.dialogs.answer() {
             match answer {
-                DialogAnswer::Chosen(DialogPurpose::Open, path) => self.open(path, ctx),
+                DialogAnswer::Chosen(DialogPurpose::Open, path) => self.open(path, None, ctx),
                 DialogAnswer::Chosen(DialogPurpose::SaveStudy, path) => self.save_as(path, ctx),
                 DialogAnswer::Chosen(DialogPurpose::ExportFolder, path) => {
                     self.state.forms.export.folder = path.display().to_string();

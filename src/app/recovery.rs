@@ -44,10 +44,7 @@ impl GdcmApp {
     pub(super) fn restore(&mut self, offer: usize, ctx: &Context) {
         if let Some(Some(lost)) = self.offers.get(offer) {
             let path = lost.path().to_owned();
-            let read = move || {
-                let (study, loaded) = open_study(&path)?;
-                Ok(Opened::Study { study, loaded, path })
-            };
+            let read = move || Ok(Opened::Study(open_study(&path)?));
             self.read(ReadFor::Restoring(offer), "decisions that were not saved".to_owned(), read, ctx);
         }
     }

@@ -56,13 +56,18 @@ impl GdcmApp {
             Command::AskOpen => self.dialogs.ask(DialogPurpose::Open, String::new(), ctx),
             Command::AskSaveStudy => self.dialogs.ask(DialogPurpose::SaveStudy, self.proposed_name(), ctx),
             Command::AskExportFolder => self.dialogs.ask(DialogPurpose::ExportFolder, String::new(), ctx),
-            Command::Open(_) | Command::OpenExample | Command::RestoreRecovery(_) | Command::Quit
+            Command::Open(_)
+            | Command::OpenStudyOf(..)
+            | Command::OpenExample
+            | Command::RestoreRecovery(_)
+            | Command::Quit
                 if self.state.unsaved && !self.agreed_to_lose && !self.closing =>
             {
                 self.postponed = Some(command);
                 self.state.forms.shown = Some(FormKind::Unsaved);
             }
-            Command::Open(path) => self.open(path, ctx),
+            Command::Open(path) => self.open(path, None, ctx),
+            Command::OpenStudyOf(study, dataset) => self.open(study, Some(dataset), ctx),
             Command::OpenExample => self.open_example(ctx),
             Command::RestoreRecovery(offer) => self.restore(offer, ctx),
             Command::DiscardRecovery(offer) => self.discard(offer),

@@ -256,7 +256,7 @@ fn right_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Co
     scrolled(ui, "right", |ui| {
         matrix_panel::matrix_ui(ui, state, palette, commands);
         settings_panel::settings_ui(ui, state, palette, commands);
-        result_panel::result_ui(ui, state, palette);
+        result_panel::result_ui(ui, state, palette, commands);
     });
 }
 

@@ -2,7 +2,7 @@
 
 use crate::dataset::{Band, BundleKind, Channel, ConditionId, ModelId};
 use crate::io::{
-    Corrections, LoadedDataset, embedded_example, load_any, make_directory, write_assessment_csv, write_corrections,
+    Corrections, LoadedDataset, embedded_example, make_directory, write_assessment_csv, write_corrections,
     write_corrections_csv,
 };
 use crate::schedule::{ScheduleKind, ScheduleSettings};
@@ -10,6 +10,7 @@ use crate::study::{Analysis, Edit, Engine, Setting, Study};
 
 use super::arguments::{AnalyzeArguments, PairList, Rejection};
 use super::failure::Failure;
+use super::opening::open as open_file;
 use super::progress::TerminalProgress;
 use super::summary::summary;
 use super::terminal::{say, say_error};
@@ -36,7 +37,10 @@ pub(super) fn analyze(arguments: &AnalyzeArguments) -> Result<(), Failure> {
 
 fn open(arguments: &AnalyzeArguments) -> Result<(Study, LoadedDataset), Failure> {
     match &arguments.file {
-        Some(file) => Ok(load_any(file)?.into_study()),
+        Some(file) => {
+            let (study, loaded, _) = open_file(file, &arguments.opening)?.into_study();
+            Ok((study, loaded))
+        }
         None => {
             let loaded = embedded_example()?;
             Ok((Study::new(loaded.dataset.clone()), loaded))

@@ -25,6 +25,9 @@ pub enum Command {
     Check {
         /// Dataset or study.
         file: PathBuf,
+        /// How a study is opened.
+        #[command(flatten)]
+        opening: OpeningArguments,
     },
     /// Write the embedded example (synthetic data) as a file to learn the format from.
     Example {
@@ -32,6 +35,17 @@ pub enum Command {
         #[arg(value_name = "DIR")]
         directory: PathBuf,
     },
+}
+
+/// How a study is opened whose dataset has moved or changed.
+#[derive(Debug, Args)]
+pub struct OpeningArguments {
+    /// The dataset of the study, where it is no longer where the study says.
+    #[arg(long, value_name = "FILE")]
+    pub dataset: Option<PathBuf>,
+    /// End with status 2 where the dataset is not the one that the study was made with.
+    #[arg(long)]
+    pub strict: bool,
 }
 
 /// What is to be analysed, and how.
@@ -60,6 +74,9 @@ pub struct AnalyzeArguments {
     /// Responses to hold, OUTPUT/INPUT, separated by commas (P/LAT,Q/LON); "none" holds none. Without it, the on-axis ones.
     #[arg(long, value_name = "PAIRS")]
     pub on: Option<PairList>,
+    /// How a study is opened.
+    #[command(flatten)]
+    pub opening: OpeningArguments,
     /// Reject every physics model that is suggested as an outlier.
     #[arg(long)]
     pub reject_suggested: bool,

@@ -3,19 +3,23 @@
 use std::path::Path;
 
 use crate::dataset::{BundleKind, Channel, Condition, Dataset, Dynamics, Model};
-use crate::io::{LoadedDataset, Opened, load_any, plain};
-use crate::study::Study;
+use crate::io::{LoadedDataset, Opened, OpenedStudy, plain};
+use crate::study::{Execution, Study, Unobserved, cautions_of_models};
 
+use super::arguments::OpeningArguments;
 use super::failure::Failure;
+use super::opening::open;
 use super::summary::LABEL;
 use super::terminal::say;
 use super::text_table::{Side, TextTable, labelled};
 
 /// Says what a dataset or a study holds.
-pub(super) fn check(file: &Path) -> Result<(), Failure> {
-    let text = match load_any(file)? {
-        Opened::Dataset(loaded) => contents(&loaded),
-        Opened::Study { study, loaded, .. } => decisions(file, &study) + &contents(&loaded),
+pub(super) fn check(file: &Path, arguments: &OpeningArguments) -> Result<(), Failure> {
+    let text = match open(file, arguments)? {
+        Opened::Dataset(loaded) => contents(&loaded) + &model_cautions(&Study::new(loaded.dataset))?,
+        Opened::Study(OpenedStudy { study, loaded, .. }) => {
+            decisions(file, &study) + &contents(&loaded) + &model_cautions(&study)?
+        }
     };
     say(&text)
 }
@@ -43,6 +47,17 @@ fn contents(loaded: &LoadedDataset) -> String {
         text.push_str(&labelled(0, "Caution", LABEL, &plain(caution)));
     }
     text
+}
+
+/// What an analysis would say of the models by themselves.
+fn model_cautions(study: &Study) -> Result<String, Failure> {
+    let execution = Execution::new(&crate::app::Pool, &Unobserved, 0);
+    let mut text = String::new();
+    for (id, caution) in cautions_of_models(study, &execution)? {
+        let words = caution.words(|pair| study.dataset.pair_name(pair));
+        text.push_str(&labelled(0, "Caution", LABEL, &plain(&format!("condition {id}: {words}"))));
+    }
+    Ok(text)
 }
 
 fn channel_words(channels: &[Channel]) -> String {

@@ -17,6 +17,9 @@ pub(super) enum Failure {
     /// An option's value is wrong for this dataset.
     #[error("{option}: {reason}")]
     Option { option: &'static str, reason: String },
+    /// The dataset of a study is not the one that it was made with.
+    #[error("{path}: {count} differences from what the study was made with, and --strict asks for none")]
+    Different { path: String, count: usize },
     /// No condition has a result.
     #[error("the analysis has no result: {reason}")]
     NoResult { reason: String },
@@ -40,7 +43,7 @@ impl Failure {
     /// The exit status.
     pub(super) fn status(&self) -> u8 {
         match self {
-            Failure::Input(_) | Failure::Option { .. } => WRONG_INPUT,
+            Failure::Input(_) | Failure::Option { .. } | Failure::Different { .. } => WRONG_INPUT,
             Failure::NoResult { .. } | Failure::Cancelled(_) | Failure::Output(_) | Failure::StandardOutput { .. } => {
                 NOT_DONE
             }

@@ -7,6 +7,7 @@ mod arguments;
 mod check;
 mod example;
 mod failure;
+mod opening;
 mod progress;
 mod sections;
 mod summary;
@@ -23,7 +24,7 @@ use arguments::Arguments;
 use failure::Failure;
 use terminal::{say, say_error};
 
-pub use arguments::{AnalyzeArguments, Command, PairList, Rejection};
+pub use arguments::{AnalyzeArguments, Command, OpeningArguments, PairList, Rejection};
 
 /// What the command line asks for.
 #[derive(Debug)]
@@ -51,7 +52,7 @@ pub fn request(arguments: impl IntoIterator<Item = OsString>) -> Result<Request,
 pub fn run(command: &Command) -> ExitCode {
     finish(match command {
         Command::Analyze(arguments) => analyze::analyze(arguments),
-        Command::Check { file } => check::check(file),
+        Command::Check { file, opening } => check::check(file, opening),
         Command::Example { directory } => example::example(directory),
     })
 }

@@ -1,9 +1,9 @@
 //! The sections of the summary.
 
 use crate::correction::{DelayConflict, Outcome};
-use crate::dataset::{BundleKind, Channel, Condition, Pair};
+use crate::dataset::{BundleKind, Channel, Condition, Dataset, Pair};
 use crate::io::plain;
-use crate::schedule::{Schedule, ScheduleKind, ScheduledQuantity};
+use crate::schedule::{Schedule, ScheduledQuantity};
 use crate::study::{Analysis, ConditionAnalysis, Study};
 use crate::units::s_to_ms;
 
@@ -112,11 +112,16 @@ fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     detail_list("gains", gains) + &detail_list("delays", delays.collect())
 }
 
+/// Names of the inputs and of the outputs.
+fn plain_names(dataset: &Dataset) -> (Vec<String>, Vec<String>) {
+    let names = |channels: &[Channel]| channels.iter().map(|channel| plain(&channel.name)).collect();
+    (names(dataset.inputs()), names(dataset.outputs()))
+}
+
 /// What could not be matched, what is not proven, and other cautions.
 fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let dataset = &analysis.study.dataset;
-    let names = |channels: &[Channel]| -> Vec<String> { channels.iter().map(|channel| plain(&channel.name)).collect() };
-    let (inputs, outputs) = (names(dataset.inputs()), names(dataset.outputs()));
+    let (inputs, outputs) = plain_names(dataset);
     let mut text = String::new();
     for entry in &result.gains.unmatched {
         let words = format!(
@@ -161,14 +166,15 @@ pub(super) fn schedule_section(analysis: &Analysis) -> String {
         ScheduledQuantity::LnGain => "ln k",
         ScheduledQuantity::Gain => "k",
     };
-    let kind = match schedule.settings.kind {
-        ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree} in airspeed, fitted to {of}"),
-        ScheduleKind::Table => format!("lookup table in airspeed, of {of}"),
+    let kind = match schedule.degree() {
+        Some(degree) => format!("polynomial of degree {degree} in airspeed, fitted to {of}"),
+        None => format!("lookup table in airspeed, of {of}"),
     };
     let range = format!("{} to {} kt", schedule.airspeeds.min_kt, schedule.airspeeds.max_kt);
     let mut text = labelled(0, "Schedule", LABEL, &format!("{kind}, {range}; net gains:"));
-    if schedule.has_non_positive_gain() {
-        text.push_str(&detail("caution", "a scheduled gain is not positive somewhere in this range"));
+    let (inputs, outputs) = plain_names(&analysis.study.dataset);
+    for caution in &schedule.cautions {
+        text.push_str(&detail("caution", &caution.words(&inputs, &outputs)));
     }
     text + &schedule_table(analysis, schedule)
 }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::io::{LoadedDataset, plain};
+use crate::schedule::Schedule;
 use crate::study::{Analysis, Assessed};
 
 use super::sections::{condition_section, schedule_section};
@@ -65,6 +66,14 @@ fn assessment_lines(analysis: &Analysis) -> String {
     let words = format!(
         "under the schedule J of the nominal models falls in {better} of {compared} {which}responses of {conditions} conditions"
     );
+    let fails_between = analysis.schedule.as_ref().is_ok_and(Schedule::fails_between);
+    let words = if fails_between {
+        format!(
+            "at the conditions' own airspeeds, {words}; between them the schedule must not be used (see its caution)"
+        )
+    } else {
+        words
+    };
     let mut text = labelled(0, "Assessment", LABEL, &words);
     for words in left_out {
         text.push_str(&labelled(0, "Left out", LABEL, &words));

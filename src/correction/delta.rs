@@ -1,9 +1,12 @@
-//! Delta gain and delta delay: what one gain and one delay of a response would have to be, eq. (5), (9).
+//! Delta gain and delta delay: what one gain and one delay of a response would have to be, eq. (5), (9); and the bounds that their
+//! spread over the band gives to the channels (M7).
 
-use crate::dataset::PairTable;
+use crate::dataset::{Pair, PairTable};
 use crate::fidelity::Mismatch;
-use crate::response::{PolarResponse, median};
+use crate::response::{PolarResponse, median, quantile};
 use crate::units::db_to_ratio;
+
+use super::GainBounds;
 
 /// `G = median |H_ref| / |H_sim|` and `D = median Delta phi(H_sim, H_ref) / omega` of every response (M6).
 ///
@@ -25,19 +28,52 @@ impl Delta {
     }
 }
 
-/// The mismatch of every response that both models have.
+/// A ratio beyond this (1e50 and 1e-50), of which the objective cannot take the square, counts as infinite or zero (M6).
+const LARGEST_DB: f64 = 1000.0;
+
+/// The mismatch of every response that both models have and whose ratio is finite and not zero.
 pub fn mismatch_table(simulated: &PolarResponse, reference: &PolarResponse) -> PairTable<Option<Mismatch>> {
-    simulated
-        .curves()
-        .map(|pair, simulated| Some(Mismatch::new(simulated.as_ref()?, reference.curves()[pair].as_ref()?)))
+    simulated.curves().map(|pair, simulated| {
+        let mismatch = Mismatch::new(simulated.as_ref()?, reference.curves()[pair].as_ref()?);
+        mismatch.magnitude_db.iter().all(|error| error.abs() < LARGEST_DB).then_some(mismatch)
+    })
 }
 
 /// `|H_ref| / |H_sim|` at each frequency.
-pub(super) fn ratios(mismatch: &Mismatch) -> Vec<f64> {
+fn ratios(mismatch: &Mismatch) -> Vec<f64> {
     mismatch.magnitude_db.iter().map(|error| db_to_ratio(-error)).collect()
 }
 
-/// `Delta phi(H_sim, H_ref) / omega` \[s\] at each frequency.
-pub(super) fn delays(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
-    mismatch.phase_difference().iter().zip(omega).map(|(phase, omega)| phase / omega).collect()
+/// `Delta phi(H_sim, H_ref) / omega` \[s\] at each frequency, on the branch nearest to a pure delay (M6b).
+fn delays(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
+    mismatch.phase_difference(omega).iter().zip(omega).map(|(phase, omega)| phase / omega).collect()
+}
+
+/// The mismatches that are pooled: those marked in `measuring`, or all where none of the marked is defined.
+fn pooled<'a>(
+    mismatch: &'a PairTable<Option<Mismatch>>,
+    measuring: &PairTable<bool>,
+) -> impl Iterator<Item = &'a Mismatch> + use<'a> {
+    let marked: Vec<Pair> = measuring.marked().filter(|&pair| mismatch[pair].is_some()).collect();
+    let pairs = if marked.is_empty() { mismatch.pairs().collect() } else { marked };
+    pairs.into_iter().filter_map(|pair| mismatch[pair].as_ref())
+}
+
+/// `LB = min(1, q-quantile)`, `UB = max(1, (1-q)-quantile)` of `|H_ref| / |H_sim|` pooled over frequency and pairs.
+pub fn gain_bounds(mismatch: &PairTable<Option<Mismatch>>, measuring: &PairTable<bool>, q: f64) -> GainBounds {
+    let mut pool: Vec<f64> = pooled(mismatch, measuring).flat_map(ratios).collect();
+    let lower = quantile(&mut pool, q).min(1.0);
+    let upper = quantile(&mut pool, 1.0 - q).max(1.0);
+    GainBounds { lower, upper }
+}
+
+/// `UB = max(0, (1-q)-quantile)` \[s\] of `Delta phi / omega` pooled over frequency and pairs.
+pub fn delay_upper_s(
+    mismatch: &PairTable<Option<Mismatch>>,
+    measuring: &PairTable<bool>,
+    omega: &[f64],
+    q: f64,
+) -> f64 {
+    let mut pool: Vec<f64> = pooled(mismatch, measuring).flat_map(|mismatch| delays(mismatch, omega)).collect();
+    quantile(&mut pool, 1.0 - q).max(0.0)
 }

@@ -4,7 +4,6 @@
 //! [`solve_delays`] the convex eq. (11). Both explain what cannot be held, what would help, and what each held entry costs.
 //! Tables are `[output, input]`, gains are ratios, delays are seconds.
 
-mod bounds;
 mod channel;
 mod channel_correction;
 mod components;
@@ -19,14 +18,13 @@ mod scales;
 mod three_digits;
 mod toggle;
 
-pub use bounds::{delay_upper_s, gain_bounds};
 pub use channel::Channel;
 pub use channel_correction::ChannelCorrection;
 pub use delays::{
     DelayConflict, DelayError, DelayProblem, DelayRemedy, DelayRestraint, DelaySensitivity, DelaySolution, DelayToggle,
     UnmatchedDelay, delay_sensitivities, delay_toggles, solve_delays,
 };
-pub use delta::{Delta, mismatch_table};
+pub use delta::{Delta, delay_upper_s, gain_bounds, mismatch_table};
 pub use gains::{
     GainBounds, GainConflict, GainError, GainObjective, GainProblem, GainRemedy, GainRestraint, GainSensitivity,
     GainSolution, GainToggle, LocalMinimum, Outcome, ProofBudget, UnmatchedGain, gain_sensitivities, gain_toggles,

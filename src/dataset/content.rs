@@ -1,7 +1,5 @@
 //! What the numbers of a model are told apart by.
 
-use std::fmt;
-
 use nalgebra::DMatrix;
 use sha2::{Digest, Sha256};
 
@@ -10,7 +8,7 @@ use super::model::Dynamics;
 use super::state_space::StateSpace;
 
 /// SHA-256 of every number that the response of a model depends on: models of one hash have one response.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ContentHash([u8; 32]);
 
 impl ContentHash {
@@ -23,18 +21,10 @@ impl ContentHash {
         }
         Self(hash.finalize().into())
     }
-}
 
-impl fmt::Display for ContentHash {
-    /// The first 16 hexadecimal digits: 64 bits, enough to tell the models of a dataset apart.
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0[..8].iter().try_for_each(|byte| write!(formatter, "{byte:02x}"))
-    }
-}
-
-impl fmt::Debug for ContentHash {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "ContentHash({self})")
+    /// The hash itself.
+    pub fn bytes(&self) -> &[u8; 32] {
+        &self.0
     }
 }
 

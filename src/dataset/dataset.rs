@@ -115,6 +115,18 @@ impl Dataset {
         Ok(Self { name, description, inputs, outputs, on_axis, band, conditions })
     }
 
+    /// What describes the dataset, besides its conditions.
+    pub fn header(&self) -> DatasetHeader {
+        DatasetHeader {
+            name: self.name.clone(),
+            description: self.description.clone(),
+            inputs: self.inputs.clone(),
+            outputs: self.outputs.clone(),
+            on_axis: self.on_axis.clone(),
+            band: self.band,
+        }
+    }
+
     /// Name for people.
     pub fn name(&self) -> &str {
         &self.name
@@ -163,6 +175,11 @@ impl Dataset {
     /// A response in words, input first: "LON → Q".
     pub fn pair_name(&self, pair: Pair) -> String {
         format!("{} → {}", self.inputs[pair.input].name, self.outputs[pair.output].name)
+    }
+
+    /// The names of a response's channels, output first.
+    pub fn channel_names(&self, pair: Pair) -> (String, String) {
+        (self.outputs[pair.output].name.clone(), self.inputs[pair.input].name.clone())
     }
 
     /// The response of the named output to the named input.

@@ -2,6 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use sha2::{Digest, Sha256};
+
+use super::content::ContentHash;
 use super::measured_response::MeasuredResponse;
 use super::state_space::StateSpace;
 
@@ -74,6 +77,18 @@ impl Model {
             Origin::Nominal { perturbation } | Origin::Perturbed { perturbation } => perturbation.as_ref(),
             Origin::Identified { .. } => None,
         }
+    }
+
+    /// What tells this model from another of its name: its numbers, its role and its trim, as 16 hexadecimal digits.
+    pub fn fingerprint(&self) -> String {
+        let mut hash = Sha256::new();
+        hash.update(ContentHash::of(&self.dynamics).bytes());
+        hash.update([u8::from(self.is_nominal())]);
+        for (coordinate, offset) in self.perturbation().into_iter().flatten() {
+            hash.update(coordinate.as_bytes());
+            hash.update(offset.to_le_bytes());
+        }
+        hash.finalize()[..8].iter().map(|byte| format!("{byte:02x}")).collect()
     }
 
     /// Number of states, or the order the identification reports; none for measured data without one.

@@ -3,7 +3,7 @@
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
 
-use super::corner::{Corner, Rows};
+use super::vertex::{Fit, Vertex};
 
 /// Why there is no fit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -14,63 +14,72 @@ pub enum FitError {
         /// The solver's own word.
         status: String,
     },
-    /// It was not wanted any more.
-    #[error("the fit of least absolute deviations was given up")]
-    GivenUp,
+    /// It was cancelled.
+    #[error("the fit of least absolute deviations was cancelled")]
+    Cancelled,
 }
 
-/// `argmin sum_i |x_i w - y_i|` over `w >= 0`; of equally good corners the one of least `sum_i (sqrt(x_i w) - sqrt(y_i))^2`.
+/// `argmin sum_i |x_i w - y_i|` over `w >= 0`; of equally good vertices the one of least `sum_i (sqrt(x_i w) - sqrt(y_i))^2`.
 ///
-/// The optimum is a corner, where as many deviations or weights are zero as there are unknowns, or, where offsets repeat, a
-/// whole edge or face between corners that are equally good. From the corner nearest to the fit of least squares the search
-/// goes along descending edges, each to where the deviations stop falling (the simplex method of Barrodale and Roberts),
-/// then over the corners that tie: exact, and the same on every machine. Only in a corner where more conditions meet than
-/// it takes can this end early; there the linear program is solved. `x` and `y` must not be negative. The search is given up
-/// at a corner at which it is not `wanted` any more.
-pub fn least_absolute_deviations(x: &[Vec<f64>], y: &[f64], wanted: &dyn Fn() -> bool) -> Result<Vec<f64>, FitError> {
+/// ```text
+/// 1  vertex <- that of the constraints x_i w = y_i, w_k = 0 which the fit of least squares meets best
+/// 2  an edge along which the sum falls: give up one constraint of the basis, go to where the sum stops falling,
+///    take in the constraint met there; again from 2
+/// 3  edges along which it stays the same: over all vertices that they lead to, again from 2
+/// 4  where more constraints meet than a basis holds, edges may hide a way down: the linear program
+///    min sum t,  -t <= x w - y <= t,  w >= 0  is solved, and 2 and 3 go on from the vertex nearest to its solution
+/// ```
+///
+/// The simplex method of Barrodale and Roberts (SIAM J. Numer. Anal. 10(5), 1973): exact, and the same on every machine.
+/// `x` and `y` must not be negative. It ends without a result at the first vertex at which it is `cancelled`.
+pub fn least_absolute_deviations(
+    x: &[Vec<f64>],
+    y: &[f64],
+    cancelled: &dyn Fn() -> bool,
+) -> Result<Vec<f64>, FitError> {
     let unknowns = x.first().map_or(0, Vec::len);
     let scale = y.iter().copied().fold(0.0, f64::max);
     if scale == 0.0 {
         return Ok(vec![0.0; unknowns]);
     }
     let scaled: Vec<f64> = y.iter().map(|y| y / scale).collect();
-    let rows = Rows::new(x, &scaled);
-    let start = Corner::nearest(&rows, &rows.least_squares()).unwrap_or_else(|| Corner::origin(&rows));
-    let mut best = best_corner(&rows, start, wanted)?;
-    if best.is_degenerate(&rows) {
+    let fit = Fit::new(x, &scaled);
+    let start = Vertex::nearest(&fit, &fit.least_squares()).unwrap_or_else(|| Vertex::origin(&fit));
+    let mut best = best_vertex(&fit, start, cancelled)?;
+    if best.is_degenerate(&fit) {
         let weights = solve_linear_program(x, &scaled, unknowns)?;
-        let other = Corner::nearest(&rows, &weights).map(|corner| best_corner(&rows, corner, wanted)).transpose()?;
-        let better = other.filter(|other| rows.deviations(&other.weights) < rows.deviations(&best.weights));
+        let other = Vertex::nearest(&fit, &weights).map(|vertex| best_vertex(&fit, vertex, cancelled)).transpose()?;
+        let better = other.filter(|other| fit.deviations(&other.weights) < fit.deviations(&best.weights));
         best = better.unwrap_or(best);
     }
     Ok(best.weights.iter().map(|weight| weight.max(0.0) * scale).collect())
 }
 
-/// Goes along descending edges to the optimum, then over all equally good corners.
-fn best_corner(rows: &Rows<'_>, start: Corner, wanted: &dyn Fn() -> bool) -> Result<Corner, FitError> {
-    /// Far more than the corners of a face in a few unknowns; only a bound on time.
-    const MOST_CORNERS: usize = 300;
-    let misfit = |corner: &Corner| rows.squared_root_deviations(&corner.weights);
+/// Goes along descending edges to the optimum, then over all equally good vertices.
+fn best_vertex(fit: &Fit<'_>, start: Vertex, cancelled: &dyn Fn() -> bool) -> Result<Vertex, FitError> {
+    /// Far more than the vertices of a face in a few unknowns; only a bound on time.
+    const MOST_VERTICES: usize = 300;
+    let misfit = |vertex: &Vertex| fit.squared_root_deviations(&vertex.weights);
     let mut best = start.clone();
     let mut equal = vec![start];
     let mut next = 0;
-    while next < equal.len() && equal.len() < MOST_CORNERS {
-        if !wanted() {
-            return Err(FitError::GivenUp);
+    while next < equal.len() && equal.len() < MOST_VERTICES {
+        if cancelled() {
+            return Err(FitError::Cancelled);
         }
-        let neighbours = equal[next].neighbours(rows);
+        let neighbours = equal[next].neighbours(fit);
         if let Some(better) = neighbours.better {
             best = better.clone();
             equal = vec![better];
             next = 0;
             continue;
         }
-        for corner in neighbours.equal {
-            if !equal.iter().any(|known| known.is_at(&corner)) {
-                if misfit(&corner) < misfit(&best) {
-                    best = corner.clone();
+        for vertex in neighbours.equal {
+            if !equal.iter().any(|known| known.is_at(&vertex)) {
+                if misfit(&vertex) < misfit(&best) {
+                    best = vertex.clone();
                 }
-                equal.push(corner);
+                equal.push(vertex);
             }
         }
         next += 1;
@@ -102,7 +111,7 @@ fn solve_linear_program(x: &[Vec<f64>], y: &[f64], unknowns: usize) -> Result<Ve
     let b: Vec<f64> = y.iter().copied().chain(y.iter().map(|y| -y)).chain(vec![0.0; unknowns]).collect();
     let q: Vec<f64> = vec![0.0; unknowns].into_iter().chain(vec![1.0; rows]).collect();
     let failed = |status: String| FitError::NotSolved { status };
-    // Close enough that the nearest corner is an optimal one, or one edge from it.
+    // Close enough that the nearest vertex is an optimal one, or one edge from it.
     let settings = DefaultSettingsBuilder::default()
         .verbose(false)
         .tol_gap_abs(1e-11)
@@ -131,8 +140,8 @@ mod tests {
         let x: Vec<Vec<f64>> = (0..9).map(|k| vec![f64::from(k % 3), f64::from(k / 3)]).collect();
         let mut y: Vec<f64> = x.iter().map(|x| 2.0 * x[0] + 3.0 * x[1]).collect();
         y[8] = 100.0;
-        let weights = least_absolute_deviations(&x, &y, &|| true).unwrap();
-        // A corner is solved for, not iterated to: a few roundings of numbers up to 100.
+        let weights = least_absolute_deviations(&x, &y, &|| false).unwrap();
+        // A vertex is solved for, not iterated to: a few roundings of numbers up to 100.
         assert!((weights[0] - 2.0).abs() < 1e-12 && (weights[1] - 3.0).abs() < 1e-12);
     }
 
@@ -152,35 +161,35 @@ mod tests {
             let largest = y.iter().copied().fold(0.0, f64::max);
             proptest::prop_assume!(largest > 0.0);
             let scaled: Vec<f64> = y.iter().map(|y| y / largest).collect();
-            let rows = Rows::new(&x, &scaled);
+            let fit = Fit::new(&x, &scaled);
             let weights = |weights: Vec<f64>| weights.iter().map(|weight| weight / largest).collect::<Vec<f64>>();
-            let found = rows.deviations(&weights(least_absolute_deviations(&x, &y, &|| true).unwrap()));
-            let program = rows.deviations(&solve_linear_program(&x, &scaled, 3).unwrap());
+            let found = fit.deviations(&weights(least_absolute_deviations(&x, &y, &|| false).unwrap()));
+            let program = fit.deviations(&solve_linear_program(&x, &scaled, 3).unwrap());
             // The program is solved to 1e-11 relative; the search is exact.
             proptest::prop_assert!(found <= program * (1.0 + 1e-9) + 1e-12, "{found} {program}");
         }
     }
 
     #[test]
-    fn a_fit_that_is_not_wanted_any_more_is_given_up() {
+    fn a_cancelled_fit_ends_without_a_result() {
         let x = vec![vec![1.0], vec![2.0], vec![3.0]];
-        assert_eq!(least_absolute_deviations(&x, &[1.0, 2.0, 4.0], &|| false), Err(FitError::GivenUp));
+        assert_eq!(least_absolute_deviations(&x, &[1.0, 2.0, 4.0], &|| true), Err(FitError::Cancelled));
     }
 
     #[test]
     fn weights_do_not_go_below_zero() {
         let x = vec![vec![1.0, 1.0], vec![1.0, 2.0], vec![1.0, 3.0]];
-        let weights = least_absolute_deviations(&x, &[3.0, 2.0, 1.0], &|| true).unwrap();
+        let weights = least_absolute_deviations(&x, &[3.0, 2.0, 1.0], &|| false).unwrap();
         assert!(weights.iter().all(|&weight| weight >= 0.0));
     }
 
     #[test]
-    fn of_equally_good_corners_the_one_nearest_in_square_roots_is_taken() {
+    fn of_equally_good_vertices_the_one_nearest_in_square_roots_is_taken() {
         // Every w from 4 to 9 is a median of these. Square roots 0, 2, 3, 4: from 2 the squares add to 9, from 3 to 11;
-        // square roots 1, 2, 3, 5: from 2 they add to 11, from 3 to 9. (A corner is solved for: a few roundings.)
+        // square roots 1, 2, 3, 5: from 2 they add to 11, from 3 to 9. (A vertex is solved for: a few roundings.)
         let fit = |y: &[f64]| {
             let x = [vec![1.0], vec![1.0], vec![1.0], vec![1.0]];
-            least_absolute_deviations(&x, y, &|| true).unwrap()[0]
+            least_absolute_deviations(&x, y, &|| false).unwrap()[0]
         };
         assert!((fit(&[0.0, 4.0, 9.0, 16.0]) - 4.0).abs() < 1e-13);
         assert!((fit(&[1.0, 4.0, 9.0, 25.0]) - 9.0).abs() < 1e-13);

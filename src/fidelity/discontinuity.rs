@@ -15,7 +15,7 @@ const LEAST_MODELS: usize = 5;
 /// How much faster than the perturbation explains each model of a physics bundle differs from the others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Discontinuity {
-    /// `r_a`, one for each model: near 1 in a smooth bundle. `None` where no pair has a fitted distance.
+    /// `r_a`, one for each model: near 1 in a smooth bundle. `None` for a model set aside, and where no pair has a fitted distance.
     pub ratios: Vec<Option<f64>>,
 }
 
@@ -43,32 +43,44 @@ pub enum DiscontinuityError {
 }
 
 impl Discontinuity {
-    /// Ratios of a whole bundle, whatever is rejected; `perturbations` are the models' names and trim offsets in bundle order.
+    /// Ratios of a whole bundle, whatever is rejected, as if the models set aside were not there; `perturbations` are the models'
+    /// names and trim offsets in bundle order.
     ///
     /// Each coordinate is divided by its largest magnitude. The fit `d(a,b)^2 ~ sum_k w_k (p_ak - p_bk)^2`, `w >= 0`, is the
     /// least in absolute deviations over all pairs (of equally good ones, the one whose fitted distances come nearest to the
     /// distances in least squares); `r_ab = d(a,b) / sqrt(fitted)`, `r_a = median over b of r_ab`, pairs of zero fitted
     /// distance skipped. A coordinate that a model does not name counts as zero. The fit, over half a million pairs of a thousand
-    /// models, is given up when it is not `wanted` any more.
+    /// models, ends without a result once it is `cancelled`.
     pub fn of(
         distance: &BundleDistance,
         perturbations: &[(&str, Option<&BTreeMap<String, f64>>)],
-        wanted: &dyn Fn() -> bool,
+        cancelled: &dyn Fn() -> bool,
     ) -> Result<Self, DiscontinuityError> {
-        if perturbations.len() < LEAST_MODELS {
-            return Err(DiscontinuityError::TooFewModels { found: perturbations.len() });
+        let models = distance.measured().compared_models();
+        if models.len() < LEAST_MODELS {
+            return Err(DiscontinuityError::TooFewModels { found: models.len() });
         }
-        let coordinates = scaled_coordinates(perturbations)?;
-        let pairs = model_pairs(perturbations.len());
-        let squares: Vec<f64> = pairs.iter().map(|&(a, b)| distance.between(a, b).powi(2)).collect();
-        let rows: Vec<Vec<f64>> =
-            pairs.iter().map(|&(a, b)| squared_offsets(&coordinates[a], &coordinates[b])).collect();
-        let weights = least_absolute_deviations(&rows, &squares, wanted)?;
-        let fitted = |a: usize, b: usize| -> f64 {
+        let perturbations: Vec<_> = models.iter().map(|&model| perturbations[model]).collect();
+        let coordinates = scaled_coordinates(&perturbations)?;
+        let (mut rows, mut squares) = (Vec::new(), Vec::new());
+        for (a, b) in model_pairs(models.len()) {
+            if let Some(distance) = distance.between(models[a], models[b]) {
+                squares.push(distance.powi(2));
+                rows.push(squared_offsets(&coordinates[a], &coordinates[b]));
+            }
+        }
+        let weights = least_absolute_deviations(&rows, &squares, cancelled)?;
+        let ratio = |a: usize, b: usize| {
             let offsets = squared_offsets(&coordinates[a], &coordinates[b]);
-            offsets.iter().zip(&weights).map(|(offset, weight)| offset * weight).sum()
+            let fitted: f64 = offsets.iter().zip(&weights).map(|(offset, weight)| offset * weight).sum();
+            let distance = distance.between(models[a], models[b])?;
+            (fitted > 0.0).then(|| distance / fitted.sqrt())
         };
-        let ratios = (0..perturbations.len()).map(|a| ratio_of(a, distance, fitted)).collect();
+        let mut ratios = vec![None; distance.measured().lacks.len()];
+        for (a, &model) in models.iter().enumerate() {
+            let mut others: Vec<f64> = (0..models.len()).filter(|&b| b != a).filter_map(|b| ratio(a, b)).collect();
+            ratios[model] = (!others.is_empty()).then(|| median(&mut others));
+        }
         Ok(Self { ratios })
     }
 
@@ -79,8 +91,8 @@ impl Discontinuity {
     }
 }
 
-fn model_pairs(models: usize) -> Vec<(usize, usize)> {
-    (0..models).flat_map(|a| (a + 1..models).map(move |b| (a, b))).collect()
+fn model_pairs(models: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..models).flat_map(move |a| (a + 1..models).map(move |b| (a, b)))
 }
 
 fn scaled_coordinates(
@@ -108,16 +120,6 @@ fn scaled_coordinates(
 
 fn squared_offsets(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).collect()
-}
-
-fn ratio_of(a: usize, distance: &BundleDistance, fitted: impl Fn(usize, usize) -> f64) -> Option<f64> {
-    let others = (0..distance.models()).filter(|&b| b != a);
-    let mut ratios: Vec<f64> = others
-        .map(|b| (distance.between(a, b), fitted(a, b)))
-        .filter(|(_, fitted)| *fitted > 0.0)
-        .map(|(distance, fitted)| distance / fitted.sqrt())
-        .collect();
-    (!ratios.is_empty()).then(|| median(&mut ratios))
 }
 
 #[cfg(test)]

@@ -1,5 +1,9 @@
 //! How one response differs from its reference, frequency by frequency.
 
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::Complex;
+
 use crate::response::{PolarCurve, centred_unwrap, wrap};
 
 use super::cost::{Cost, CostAverage};
@@ -24,26 +28,47 @@ impl Mismatch {
 
     /// J after a correction of `gain_db` \[dB\] and `delay_s` \[s\] of the simulated response (M4, M10).
     ///
-    /// The correction `k e^(-tau s)` adds `20 log10 k` to the magnitude and takes `omega tau` from the phase, which is
-    /// unwrapped anew: the phase difference is that of the corrected response, not the corrected phase difference.
+    /// The correction `k e^(-tau s)` adds `20 log10 k` to the magnitude and takes `omega tau` from the phase, of which the
+    /// principal value counts: a zero passed on the other side of the axis must not cost a whole turn.
     pub fn cost(&self, omega: &[f64], gain_db: f64, delay_s: f64, average: CostAverage) -> Cost {
-        let mut scratch = Vec::with_capacity(omega.len());
-        let mut phase: Vec<f64> = if delay_s == 0.0 {
-            self.phase.clone()
-        } else {
-            self.phase.iter().zip(omega).map(|(phase, omega)| wrap(phase - omega * delay_s)).collect()
-        };
-        centred_unwrap(&mut phase, &mut scratch);
+        let phase = self.phase.iter().zip(omega).map(|(phase, omega)| wrap(phase - omega * delay_s));
         let magnitude = self.magnitude_db.iter().map(|error| error + gain_db);
-        Cost::of(magnitude, phase.into_iter(), average, &mut scratch)
+        Cost::of(magnitude, phase, average, &mut Vec::with_capacity(omega.len()))
     }
 
-    /// The phase difference of M3, `Delta phi(sim, ref)` \[rad\].
-    pub fn phase_difference(&self) -> Vec<f64> {
+    /// `Delta phi(sim, ref)` \[rad\] as a delay takes it from `omega`: that of M3 where it stays within half a turn, else at
+    /// each frequency the turn nearest to the pure delay that fits best (M6b).
+    pub fn phase_difference(&self, omega: &[f64]) -> Vec<f64> {
         let mut phase = self.phase.clone();
         centred_unwrap(&mut phase, &mut Vec::new());
+        if phase.iter().any(|phase| phase.abs() > PI) {
+            let delay_s = nearest_pure_delay_s(&phase, omega);
+            for (phase, omega) in phase.iter_mut().zip(omega) {
+                *phase += TAU * ((omega * delay_s - *phase) / TAU).round();
+            }
+        }
         phase
     }
+}
+
+/// The delay \[s\] among -0.600, -0.599 ... 0.600 of the greatest `sum cos(phase - omega delay)`, the first if equal (M6b).
+fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
+    const STEPS: i32 = 600;
+    const STEP_S: f64 = 1e-3;
+    let mut best = (f64::NEG_INFINITY, 0.0);
+    // Turned on from one delay to the next: a sum of cosines takes a dozen times as long.
+    let mut left: Vec<Complex<f64>> = Vec::with_capacity(phase.len());
+    let first_s = STEP_S * f64::from(-STEPS);
+    left.extend(phase.iter().zip(omega).map(|(phase, omega)| Complex::from_polar(1.0, phase - omega * first_s)));
+    let turns: Vec<Complex<f64>> = omega.iter().map(|omega| Complex::from_polar(1.0, -omega * STEP_S)).collect();
+    for step in -STEPS..=STEPS {
+        let likeness: f64 = left.iter().map(|left| left.re).sum();
+        if likeness > best.0 {
+            best = (likeness, STEP_S * f64::from(step));
+        }
+        left.iter_mut().zip(&turns).for_each(|(left, turn)| *left *= turn);
+    }
+    best.1
 }
 
 #[cfg(test)]
@@ -70,8 +95,36 @@ mod tests {
     fn a_response_that_leads_has_a_positive_phase_difference() {
         let omega = [1.0, 2.0];
         let mismatch = Mismatch::new(&curve(0.0, 0.0, &omega), &curve(0.0, 0.1, &omega));
-        assert!(
-            mismatch.phase_difference().iter().zip(omega).all(|(phase, omega)| (phase - 0.1 * omega).abs() < 1e-15)
-        );
+        let phase = mismatch.phase_difference(&omega);
+        assert!(phase.iter().zip(omega).all(|(phase, omega)| (phase - 0.1 * omega).abs() < 1e-15));
+    }
+
+    #[test]
+    fn a_zero_passed_on_the_other_side_costs_no_turn_and_leaves_the_delay_of_the_others() {
+        // 70 ms of lag, and from 2 rad/s on a turn to the other side within a few frequencies.
+        let omega: Vec<f64> = (1..=120).map(|k| 0.1 * f64::from(k)).collect();
+        let turn = |omega: f64| TAU / (1.0 + (-40.0 * (omega - 2.0)).exp());
+        let phase = omega.iter().map(|omega| wrap(-0.07 * omega + turn(*omega))).collect();
+        let mismatch = Mismatch { magnitude_db: vec![0.0; 120], phase };
+        let cost = mismatch.cost(&omega, 0.0, -0.07, CostAverage::Median);
+        // Squares of what is left of the turn at 6 rad/s: e^-160.
+        assert!(cost.phase < 1e-20, "{cost:?}");
+        let delays = mismatch.phase_difference(&omega).into_iter().zip(&omega).map(|(phase, omega)| phase / omega);
+        let mut delays: Vec<f64> = delays.collect();
+        assert!((crate::response::median(&mut delays) + 0.07).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_long_pure_delay_is_found_whatever_turns_it_takes() {
+        let omega: Vec<f64> = (1..=240).map(|k| 0.1 * f64::from(k)).collect();
+        for delay_s in [-0.6, -0.4375, 0.31, 0.6] {
+            let mismatch = Mismatch::new(&curve(0.0, 0.0, &omega), &curve(0.0, delay_s, &omega));
+            let phase = mismatch.phase_difference(&omega);
+            // A handful of roundings of angles up to 0.6 * 24 rad.
+            assert!(
+                phase.iter().zip(&omega).all(|(phase, omega)| (phase - delay_s * omega).abs() < 1e-13),
+                "{delay_s}"
+            );
+        }
     }
 }

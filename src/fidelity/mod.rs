@@ -1,17 +1,15 @@
 //! How well models agree: the cost J, the distance of two models, the representative of a bundle, outliers (M4, M5).
 
 mod absolute_deviations;
-mod corner;
 mod cost;
 mod discontinuity;
 mod distance;
 mod mean_cost;
 mod mismatch;
-mod representative;
+mod vertex;
 
 pub use absolute_deviations::FitError;
 pub use cost::{ACCEPTABLE, Cost, CostAverage, INDISTINGUISHABLE, PHASE_WEIGHT};
 pub use discontinuity::{Discontinuity, DiscontinuityError, SUGGESTION_RATIO};
-pub use distance::{BundleDistance, compared_pairs, distances_from};
+pub use distance::{BundleDistance, MeasuredPairs, Representative, distances_from};
 pub use mismatch::Mismatch;
-pub use representative::Representative;

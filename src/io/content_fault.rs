@@ -124,23 +124,11 @@ pub enum ContentFault {
     /// The conditions are no dataset.
     #[error("{}", plain(&.0.to_string()))]
     Dataset(#[from] DatasetError),
-    /// A study has a condition that its dataset does not have.
-    #[error("the dataset has no condition {id}")]
-    UnknownCondition {
-        /// The id.
-        id: i64,
-    },
     /// A study has a condition twice.
     #[error("condition {id} stands twice; remove one")]
     DuplicateCondition {
         /// The id.
         id: i64,
-    },
-    /// A study names a model that the condition does not have.
-    #[error("the dataset's condition has no such model: {}", quoted(name))]
-    UnknownModel {
-        /// The name.
-        name: String,
     },
     /// A study holds a decision that cannot be taken.
     #[error("{}", plain(&.0.to_string()))]

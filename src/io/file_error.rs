@@ -111,27 +111,12 @@ pub enum FileError {
         fault: Box<ContentFault>,
     },
     /// The dataset of a study cannot be read.
-    #[error("{}: the study's dataset cannot be opened: {dataset}", path.display())]
+    #[error("{}: the study's dataset cannot be opened: {dataset}; say where it is now (--dataset FILE)", path.display())]
     StudyDataset {
         /// The study.
         path: PathBuf,
         /// Why not, with the dataset's path.
         dataset: Box<FileError>,
-    },
-    /// The dataset of a study is not the one the study was made with.
-    #[error(
-        "{}: the dataset {dataset} has changed since the study was saved: expected SHA-256 {expected}, found {found}",
-        path.display()
-    )]
-    DatasetChanged {
-        /// The study.
-        path: PathBuf,
-        /// The dataset's path, or "(embedded example)".
-        dataset: String,
-        /// SHA-256 when the study was saved.
-        expected: String,
-        /// SHA-256 now.
-        found: String,
     },
     /// The file could not be written; what was there before is still there.
     #[error("{}: cannot be written: {reason}", path.display())]

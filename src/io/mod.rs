@@ -27,8 +27,8 @@ pub use content_fault::ContentFault;
 pub use corrections_file::{
     Assessment, Channels, ConditionAssessment, ConditionCorrections, ConflictEntry, Corrections, CostTable, CostTables,
     DatasetLabel, DelayOutcome, Explanation, GainOutcome, NetGain, RemedyEntry, ScheduleUsed, ScheduledDelays,
-    ScheduledGains, SensitivityEntry, SettingsUsed, Table, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
-    read_corrections, write_assessment_csv, write_corrections, write_corrections_csv,
+    ScheduledGains, SensitivityEntry, SetAsideEntry, SettingsUsed, Table, UnmatchedDelayEntry, UnmatchedGainEntry,
+    WithoutResult, read_corrections, write_assessment_csv, write_corrections, write_corrections_csv,
 };
 pub use dataset_file::{
     DatasetOrigin, LoadedDataset, embedded_example, load_dataset, load_dataset_bytes, save_dataset, write_example,
@@ -42,4 +42,4 @@ pub use plain::plain;
 pub use recent_files::{add_recent_file, recent_files};
 pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
 pub use source::LARGEST_TEXT;
-pub use study_file::{STUDY_EXTENSION, open_study, save_study};
+pub use study_file::{OpenedStudy, STUDY_EXTENSION, open_study, open_study_of, save_study};

@@ -1,14 +1,14 @@
 //! Files of either kind that the program opens.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use crate::study::Study;
+use crate::study::{Difference, Study};
 
 use super::dataset_file::{DatasetOrigin, LoadedDataset, dataset_from};
 use super::file_error::FileError;
 use super::outline::Outline;
 use super::source::Source;
-use super::study_file::study_from;
+use super::study_file::{OpenedStudy, study_from};
 
 /// What a file turned out to be.
 #[derive(Clone, Debug)]
@@ -17,22 +17,15 @@ pub enum Opened {
     /// A dataset.
     Dataset(LoadedDataset),
     /// A study, with the dataset it is about.
-    Study {
-        /// The study.
-        study: Study,
-        /// Its dataset.
-        loaded: LoadedDataset,
-        /// The study's file.
-        path: PathBuf,
-    },
+    Study(OpenedStudy),
 }
 
 impl Opened {
-    /// The study: the one opened, or that of the dataset before any decision; and the dataset.
-    pub fn into_study(self) -> (Study, LoadedDataset) {
+    /// The study: the one opened, or that of the dataset before any decision; the dataset; and what is different in it.
+    pub fn into_study(self) -> (Study, LoadedDataset, Vec<Difference>) {
         match self {
-            Opened::Dataset(loaded) => (Study::new(loaded.dataset.clone()), loaded),
-            Opened::Study { study, loaded, .. } => (study, loaded),
+            Opened::Dataset(loaded) => (Study::new(loaded.dataset.clone()), loaded, Vec::new()),
+            Opened::Study(OpenedStudy { study, loaded, differences, .. }) => (study, loaded, differences),
         }
     }
 }
@@ -41,10 +34,7 @@ impl Opened {
 pub fn load_any(path: &Path) -> Result<Opened, FileError> {
     let source = Source::read(path)?;
     match Outline::format_of(source.text()).as_deref() {
-        Some("\"gdcm-study\"") => {
-            let (study, loaded) = study_from(&source, path)?;
-            Ok(Opened::Study { study, loaded, path: path.to_owned() })
-        }
+        Some("\"gdcm-study\"") => Ok(Opened::Study(study_from(&source, path, None)?)),
         Some("\"gdcm-dataset\"") | None => {
             Ok(Opened::Dataset(dataset_from(&source, DatasetOrigin::File(path.to_owned()))?))
         }

@@ -186,7 +186,7 @@ mod tests {
         assert_eq!(lost.len(), 1);
         assert_eq!(lost[0].dataset, "the embedded example");
         assert_eq!(lost[0].saved_as.as_deref(), Some(Path::new("/somewhere/mine.gdcm-study.json")));
-        assert_eq!(open_study(lost[0].path()).unwrap().0, example().0, "it opens by hand too");
+        assert_eq!(open_study(lost[0].path()).unwrap().study, example().0, "it opens by hand too");
         drop(mine);
     }
 

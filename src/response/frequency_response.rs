@@ -74,6 +74,15 @@ impl FrequencyResponse {
         self.places.map(|pair, _| self.curve(pair))
     }
 
+    /// The responses that are not finite at some frequency.
+    pub fn not_finite(&self) -> Vec<Pair> {
+        // Nearly always: one look at each value.
+        if self.values.iter().all(|value| value.is_finite()) {
+            return Vec::new();
+        }
+        self.places.pairs().filter(|pair| self.curve(*pair).iter().any(|value| !value.is_finite())).collect()
+    }
+
     /// Makes a response zero at every frequency.
     pub(super) fn clear(&mut self, pair: Pair) {
         let (first, block, stride) = (self.places[pair] * self.block, self.block, self.stride());

@@ -2,7 +2,7 @@
 
 use nalgebra::Complex;
 
-use crate::dataset::PairTable;
+use crate::dataset::{Pair, PairTable};
 use crate::units::ratio_to_db;
 
 use super::frequency_response::FrequencyResponse;
@@ -24,6 +24,10 @@ impl PolarCurve {
             return None;
         }
         Some(Self { magnitude_db, phase: values.iter().map(|value| value.arg()).collect() })
+    }
+
+    fn peak_db(&self) -> f64 {
+        self.magnitude_db.iter().copied().fold(f64::NEG_INFINITY, f64::max)
     }
 }
 
@@ -56,6 +60,26 @@ impl PolarResponse {
         Self { curves: PairTable::from_fn(response.outputs(), response.inputs(), curve) }
     }
 
+    /// The responses that are numerically nothing: their peak over the band, \[dB\], lies 120 dB (1e-6) below the greatest of
+    /// their output and below the greatest of their input (M6a). Differencing leaves such numbers where zero is meant.
+    pub fn numerically_nothing(&self) -> PairTable<bool> {
+        const LEAST_DB: f64 = -120.0;
+        let peaks = self.curves.map(|_, curve| curve.as_ref().map_or(f64::NEG_INFINITY, PolarCurve::peak_db));
+        let greatest = |of: &dyn Fn(Pair) -> bool| {
+            peaks.iter().filter(|(pair, _)| of(*pair)).map(|(_, peak)| *peak).fold(f64::NEG_INFINITY, f64::max)
+        };
+        self.curves.map(|pair, curve| {
+            let of_output = || greatest(&|other| other.output == pair.output);
+            let of_input = || greatest(&|other| other.input == pair.input);
+            curve.is_some() && peaks[pair] < of_output() + LEAST_DB && peaks[pair] < of_input() + LEAST_DB
+        })
+    }
+
+    /// Makes the marked responses undefined.
+    pub fn clear(&mut self, marked: &PairTable<bool>) {
+        marked.marked().for_each(|pair| self.curves[pair] = None);
+    }
+
     /// The curves, `[output, input]`.
     pub fn curves(&self) -> &PairTable<Option<PolarCurve>> {
         &self.curves
@@ -65,6 +89,25 @@ impl PolarResponse {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_response_is_nothing_only_beside_both_its_output_and_its_input() {
+        // Of 2 x 2: only the last is small beside both; the third belongs to an output in small units.
+        let values = [[1.0, 1.0], [1e-7, 0.99e-13]];
+        let curves = PairTable::from_fn(2, 2, |pair| vec![Complex::from(values[pair.output][pair.input]); 3]);
+        let mut polar = PolarResponse::of(&FrequencyResponse::from_curves(3, &curves));
+        let nothing = polar.numerically_nothing();
+        assert_eq!(nothing.marked().collect::<Vec<_>>(), [Pair::new(1, 1)]);
+        polar.clear(&nothing);
+        assert!(polar.curves()[Pair::new(1, 1)].is_none() && polar.curves()[Pair::new(1, 0)].is_some());
+    }
+
+    #[test]
+    fn the_only_response_of_an_output_is_never_nothing() {
+        let curves = PairTable::from_fn(2, 1, |pair| vec![Complex::from([1.0, 1e-20][pair.output]); 3]);
+        let polar = PolarResponse::of(&FrequencyResponse::from_curves(3, &curves));
+        assert_eq!(polar.numerically_nothing().marked().count(), 0);
+    }
 
     #[test]
     fn magnitudes_beyond_the_range_of_their_squares_are_right() {

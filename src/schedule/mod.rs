@@ -8,5 +8,6 @@ mod schedule;
 pub use assessment::{CostChange, assess};
 pub use regression::{Airspeeds, Regression};
 pub use schedule::{
-    HIGHEST_DEGREE, Schedule, ScheduleError, ScheduleKind, ScheduleSettings, ScheduledPoint, ScheduledQuantity,
+    DEFAULT_TOLERANCE_KT, HIGHEST_DEGREE, Schedule, ScheduleCaution, ScheduleError, ScheduleKind, ScheduleSettings,
+    ScheduledPoint, ScheduledQuantity,
 };

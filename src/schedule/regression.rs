@@ -15,18 +15,21 @@ pub struct Airspeeds {
     pub min_kt: f64,
     /// Largest airspeed \[kt\].
     pub max_kt: f64,
+    /// Conditions (by place) whose airspeeds lie within the tolerance of the next one, rising in airspeed (M11b).
+    pub clusters: Vec<Vec<usize>>,
 }
 
 impl Airspeeds {
-    /// The airspeeds \[kt\] of at least one condition.
-    pub fn new(values_kt: Vec<f64>) -> Option<Self> {
-        if values_kt.is_empty() {
-            return None;
-        }
-        let min_kt = values_kt.iter().copied().fold(f64::INFINITY, f64::min);
-        let max_kt = values_kt.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    /// The airspeeds \[kt\] of at least one condition, those within `tolerance_kt` of the next one taken together.
+    pub fn new(values_kt: Vec<f64>, tolerance_kt: f64) -> Option<Self> {
+        let mut rising: Vec<usize> = (0..values_kt.len()).collect();
+        rising.sort_by(|&a, &b| values_kt[a].total_cmp(&values_kt[b]));
+        let (min_kt, max_kt) = (values_kt[*rising.first()?], values_kt[*rising.last()?]);
+        let near = |a: &usize, b: &usize| values_kt[*b] - values_kt[*a] <= tolerance_kt;
+        let mut clusters: Vec<Vec<usize>> = rising.chunk_by(near).map(<[usize]>::to_vec).collect();
+        clusters.iter_mut().for_each(|cluster| cluster.sort_unstable());
         let mean_kt = values_kt.iter().sum::<f64>() / values_kt.len() as f64;
-        Some(Self { values_kt, mean_kt, half_range_kt: 0.5 * (max_kt - min_kt), min_kt, max_kt })
+        Some(Self { values_kt, mean_kt, half_range_kt: 0.5 * (max_kt - min_kt), min_kt, max_kt, clusters })
     }
 
     /// The scaled airspeed `v`; outside the conditions' range, that of the nearer end. Zero where there is no range.
@@ -37,12 +40,20 @@ impl Airspeeds {
         (airspeed_kt.clamp(self.min_kt, self.max_kt) - self.mean_kt) / self.half_range_kt
     }
 
-    /// The distinct airspeeds \[kt\], rising.
-    pub fn distinct_kt(&self) -> Vec<f64> {
-        let mut distinct = self.values_kt.clone();
-        distinct.sort_by(f64::total_cmp);
-        distinct.dedup();
-        distinct
+    /// The mean airspeed of each cluster \[kt\], rising.
+    pub fn clusters_kt(&self) -> Vec<f64> {
+        self.cluster_means(&self.values_kt)
+    }
+
+    /// The mean of the conditions' figures in each cluster.
+    fn cluster_means(&self, figures: &[f64]) -> Vec<f64> {
+        let mean = |cluster: &Vec<usize>| {
+            let first = figures[cluster[0]];
+            let same = cluster.iter().all(|&place| figures[place] == first);
+            // A sum would round it.
+            if same { first } else { cluster.iter().map(|&place| figures[place]).sum::<f64>() / cluster.len() as f64 }
+        };
+        self.clusters.iter().map(mean).collect()
     }
 }
 
@@ -54,38 +65,31 @@ pub enum Regression {
         /// Coefficients, lowest power first.
         coefficients: Vec<f64>,
     },
-    /// Linear between the means at each distinct airspeed, constant outside.
+    /// Linear between the means of each cluster of airspeeds, constant outside.
     Table {
-        /// Distinct airspeeds \[kt\], rising.
+        /// Mean airspeed of each cluster \[kt\], rising.
         airspeeds_kt: Vec<f64>,
-        /// Mean figure at each.
+        /// Mean figure of each.
         values: Vec<f64>,
     },
 }
 
 impl Regression {
-    /// The polynomial of least squares; its degree is at most the number of distinct airspeeds less one.
+    /// The polynomial of least squares; its degree is at most the number of clusters less one.
     pub fn polynomial(airspeeds: &Airspeeds, figures: &[f64], degree: usize) -> Self {
-        let degree = degree.min(airspeeds.distinct_kt().len().saturating_sub(1));
+        let degree = degree.min(airspeeds.clusters.len().saturating_sub(1));
         let v: Vec<f64> = airspeeds.values_kt.iter().map(|&airspeed| airspeeds.scaled(airspeed)).collect();
         let design = DMatrix::from_fn(v.len(), degree + 1, |row, power| v[row].powi(power as i32));
         let qr = design.qr();
-        // Full column rank: as many distinct v in [-1, 1] as there are columns, so R has no zero on its diagonal.
+        // Full column rank: at least as many distinct v in [-1, 1] as there are columns, so R has no zero on its diagonal.
         let projected = qr.q().transpose() * DVector::from_column_slice(figures);
         let coefficients = qr.r().solve_upper_triangular(&projected).unwrap_or(projected);
         Self::Polynomial { coefficients: coefficients.iter().copied().collect() }
     }
 
-    /// The mean figure at each distinct airspeed.
+    /// The mean figure of each cluster of airspeeds.
     pub fn table(airspeeds: &Airspeeds, figures: &[f64]) -> Self {
-        let airspeeds_kt = airspeeds.distinct_kt();
-        let mean_at = |airspeed: &f64| {
-            let at = airspeeds.values_kt.iter().zip(figures).filter(|(value, _)| *value == airspeed);
-            let (sum, count) = at.fold((0.0, 0.0), |(sum, count), (_, figure)| (sum + figure, count + 1.0));
-            sum / count
-        };
-        let values = airspeeds_kt.iter().map(mean_at).collect();
-        Self::Table { airspeeds_kt, values }
+        Self::Table { airspeeds_kt: airspeeds.clusters_kt(), values: airspeeds.cluster_means(figures) }
     }
 
     /// The figure at an airspeed \[kt\]; outside the conditions' range the end value holds.
@@ -117,7 +121,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn airspeeds() -> Airspeeds {
-        Airspeeds::new(vec![45.0, 60.0, 60.0, 90.0, 140.0]).unwrap()
+        Airspeeds::new(vec![45.0, 60.0, 60.0, 90.0, 140.0], 2.0).unwrap()
     }
 
     #[test]
@@ -134,9 +138,21 @@ mod tests {
 
     #[test]
     fn one_airspeed_leaves_the_mean() {
-        let airspeeds = Airspeeds::new(vec![80.0, 80.0]).unwrap();
+        let airspeeds = Airspeeds::new(vec![80.0, 80.0], 2.0).unwrap();
         let regression = Regression::polynomial(&airspeeds, &[1.0, 3.0], 2);
         assert!((regression.at(&airspeeds, 100.0) - 2.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn airspeeds_within_the_tolerance_of_the_next_are_one_cluster() {
+        let airspeeds = Airspeeds::new(vec![60.0, 90.1, 63.9, 62.0, 90.0], 2.0).unwrap();
+        assert_eq!(airspeeds.clusters, [vec![0, 2, 3], vec![1, 4]], "62 is within 2 kt of 60, and 63.9 of 62");
+        assert_eq!(airspeeds.clusters_kt(), [(60.0 + 63.9 + 62.0) / 3.0, (90.1 + 90.0) / 2.0]);
+        let Regression::Polynomial { coefficients } = Regression::polynomial(&airspeeds, &[1.0; 5], 3) else {
+            panic!("a polynomial was asked for");
+        };
+        assert_eq!(coefficients.len(), 2, "two clusters bear a straight line");
+        assert_eq!(Airspeeds::new(vec![60.0, 60.0 + 1e-9], 0.0).unwrap().clusters.len(), 2);
     }
 
     #[test]

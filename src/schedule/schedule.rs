@@ -1,11 +1,17 @@
 //! The correction scheduled with airspeed (M11).
 
-use crate::correction::ChannelCorrection;
+use crate::correction::{Channel, ChannelCorrection};
 
 use super::regression::{Airspeeds, Regression};
 
+/// Places between two airspeeds at which a schedule is looked at.
+const STEPS: u32 = 100;
+
 /// Highest degree of a polynomial schedule (M11).
 pub const HIGHEST_DEGREE: usize = 3;
+
+/// Tolerance of a cluster of airspeeds \[kt\] (M11b).
+pub const DEFAULT_TOLERANCE_KT: f64 = 2.0;
 
 /// The form of the schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -15,7 +21,7 @@ pub enum ScheduleKind {
         /// Degree, 0 to [`HIGHEST_DEGREE`].
         degree: usize,
     },
-    /// A lookup table: the mean at each distinct airspeed, linear between.
+    /// A lookup table: the mean of each cluster of airspeeds, linear between.
     Table,
 }
 
@@ -29,7 +35,7 @@ pub enum ScheduledQuantity {
 }
 
 /// How channel gains are scheduled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScheduleSettings {
     /// The form.
     pub kind: ScheduleKind,
@@ -37,11 +43,18 @@ pub struct ScheduleSettings {
     pub quantity: ScheduledQuantity,
     /// Whether delays are scheduled too.
     pub delays: bool,
+    /// Airspeeds this close to the next one are one cluster \[kt\] (M11b).
+    pub airspeed_tolerance_kt: f64,
 }
 
 impl Default for ScheduleSettings {
     fn default() -> Self {
-        Self { kind: ScheduleKind::Polynomial { degree: 2 }, quantity: ScheduledQuantity::LnGain, delays: false }
+        Self {
+            kind: ScheduleKind::Polynomial { degree: 2 },
+            quantity: ScheduledQuantity::LnGain,
+            delays: false,
+            airspeed_tolerance_kt: DEFAULT_TOLERANCE_KT,
+        }
     }
 }
 
@@ -67,6 +80,62 @@ pub struct Schedule {
     pub outputs: Vec<Regression>,
     /// Regression of each input's and each output's delay \[s\], where delays are scheduled.
     pub delays: Option<(Vec<Regression>, Vec<Regression>)>,
+    /// What has to be known about it.
+    pub cautions: Vec<ScheduleCaution>,
+}
+
+/// What has to be known about a schedule.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ScheduleCaution {
+    /// The degree asked for takes more airspeeds than there are (M11b).
+    DegreeLowered {
+        /// Degree asked for.
+        asked: usize,
+        /// Clusters of airspeeds.
+        clusters: usize,
+    },
+    /// A gain leaves the range of the conditions' gains by more than half its width, between two clusters (M11b).
+    Overshoot {
+        /// The channel.
+        channel: Channel,
+        /// Mean airspeeds of the clusters on either side \[kt\].
+        between_kt: [f64; 2],
+        /// Where it is farthest out \[kt\].
+        airspeed_kt: f64,
+        /// The gain there.
+        gain: f64,
+        /// Least and greatest of the conditions' gains.
+        range: [f64; 2],
+    },
+    /// A gain is not positive somewhere between, which only a regression of `k` itself can give.
+    NotPositive,
+}
+
+impl ScheduleCaution {
+    /// The caution in words; channels have these names.
+    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
+        match self {
+            ScheduleCaution::DegreeLowered { asked, clusters } => format!(
+                "degree {asked} takes {} distinct airspeeds, the conditions have {clusters}: the schedule has degree {}",
+                asked + 1,
+                clusters - 1
+            ),
+            ScheduleCaution::Overshoot {
+                channel,
+                between_kt: [low, high],
+                airspeed_kt,
+                gain,
+                range: [least, most],
+            } => {
+                let name = channel.name(inputs, outputs);
+                format!(
+                    "between {low:.1} and {high:.1} kt the gain of {name} overshoots: {gain:.3} at {airspeed_kt:.1} kt, \
+                     where the conditions' gains go from {least:.3} to {most:.3}; lower the degree or take a table"
+                )
+            }
+            ScheduleCaution::NotPositive => "a scheduled gain is not positive somewhere in this range".to_owned(),
+        }
+    }
 }
 
 /// Why there is no schedule.
@@ -80,7 +149,8 @@ pub enum ScheduleError {
 impl Schedule {
     /// The schedule of these conditions' corrections.
     pub fn of(points: &[ScheduledPoint<'_>], settings: ScheduleSettings) -> Result<Self, ScheduleError> {
-        let airspeeds = Airspeeds::new(points.iter().map(|point| point.airspeed_kt).collect());
+        let airspeeds =
+            Airspeeds::new(points.iter().map(|point| point.airspeed_kt).collect(), settings.airspeed_tolerance_kt);
         let airspeeds = airspeeds.ok_or(ScheduleError::NoCondition)?;
         let fit = |figures: &[f64]| match settings.kind {
             ScheduleKind::Polynomial { degree } => Regression::polynomial(&airspeeds, figures, degree),
@@ -106,7 +176,70 @@ impl Schedule {
             let inputs = fit_channels(|correction| &correction.input_delays_s, &same);
             (inputs, fit_channels(|correction| &correction.output_delays_s, &same))
         });
-        Ok(Self { settings, airspeeds, inputs, outputs, delays })
+        let mut schedule = Self { settings, airspeeds, inputs, outputs, delays, cautions: Vec::new() };
+        schedule.cautions = schedule.find_cautions(points);
+        Ok(schedule)
+    }
+
+    /// Degree of the polynomial, which may be less than was asked for; `None` for a table.
+    pub fn degree(&self) -> Option<usize> {
+        match self.settings.kind {
+            ScheduleKind::Polynomial { degree } => Some(degree.min(self.airspeeds.clusters.len().saturating_sub(1))),
+            ScheduleKind::Table => None,
+        }
+    }
+
+    /// Whether it is nothing to go by between the conditions: a gain overshoots there, or is not positive.
+    pub fn fails_between(&self) -> bool {
+        self.cautions.iter().any(|caution| !matches!(caution, ScheduleCaution::DegreeLowered { .. }))
+    }
+
+    fn find_cautions(&self, points: &[ScheduledPoint<'_>]) -> Vec<ScheduleCaution> {
+        let mut cautions = Vec::new();
+        let clusters = self.airspeeds.clusters.len();
+        if let ScheduleKind::Polynomial { degree: asked } = self.settings.kind
+            && asked >= clusters
+        {
+            cautions.push(ScheduleCaution::DegreeLowered { asked, clusters });
+        }
+        let channels = (0..self.inputs.len()).map(Channel::Input).chain((0..self.outputs.len()).map(Channel::Output));
+        cautions.extend(channels.filter_map(|channel| self.overshoot(points, channel)));
+        let span = self.airspeeds.max_kt - self.airspeeds.min_kt;
+        let is_positive = |step: u32| {
+            let correction = self.at(self.airspeeds.min_kt + span * f64::from(step) / f64::from(STEPS));
+            correction.input_gains.iter().chain(&correction.output_gains).all(|gain| *gain > 0.0)
+        };
+        if !(0..=STEPS).all(is_positive) {
+            cautions.push(ScheduleCaution::NotPositive);
+        }
+        cautions
+    }
+
+    /// Where a channel's gain is farthest outside the range of the conditions' gains, between two clusters.
+    fn overshoot(&self, points: &[ScheduledPoint<'_>], channel: Channel) -> Option<ScheduleCaution> {
+        let gain_of = |correction: &ChannelCorrection| match channel {
+            Channel::Input(input) => correction.input_gains[input],
+            Channel::Output(output) => correction.output_gains[output],
+        };
+        let gains = points.iter().map(|point| gain_of(point.correction));
+        let range =
+            gains.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], gain| [least.min(gain), most.max(gain)]);
+        // Where all gains are one, rounding is no overshoot.
+        let mut farthest = 0.5 * (range[1] - range[0]) + 1e-9 * range[1];
+        let (mut found, clusters) = (None, self.airspeeds.clusters_kt());
+        for between in clusters.windows(2) {
+            for step in 1..STEPS {
+                let airspeed_kt = between[0] + (between[1] - between[0]) * f64::from(step) / f64::from(STEPS);
+                let gain = gain_of(&self.at(airspeed_kt));
+                let outside = (range[0] - gain).max(gain - range[1]);
+                if outside > farthest {
+                    let between_kt = [between[0], between[1]];
+                    farthest = outside;
+                    found = Some(ScheduleCaution::Overshoot { channel, between_kt, airspeed_kt, gain, range });
+                }
+            }
+        }
+        found
     }
 
     /// The scheduled correction at an airspeed \[kt\]; outside the conditions' range the end value holds.
@@ -131,16 +264,6 @@ impl Schedule {
             input_delays_s,
             output_delays_s,
         }
-    }
-
-    /// Whether a gain is not positive somewhere in the range, which only a regression of `k` itself can give.
-    pub fn has_non_positive_gain(&self) -> bool {
-        const STEPS: u32 = 200;
-        let span = self.airspeeds.max_kt - self.airspeeds.min_kt;
-        (0..=STEPS).any(|step| {
-            let correction = self.at(self.airspeeds.min_kt + span * f64::from(step) / f64::from(STEPS));
-            correction.input_gains.iter().chain(&correction.output_gains).any(|gain| *gain <= 0.0)
-        })
     }
 }
 
@@ -180,6 +303,31 @@ mod tests {
     #[test]
     fn without_a_condition_there_is_no_schedule() {
         assert_eq!(Schedule::of(&[], ScheduleSettings::default()), Err(ScheduleError::NoCondition));
+    }
+
+    #[test]
+    fn a_parabola_through_two_near_airspeeds_and_a_far_one_is_cautioned_of_where_it_overshoots() {
+        let corrections: Vec<_> = [1.0, 1.1, 1.0].into_iter().map(correction).collect();
+        let of = |airspeeds_kt: [f64; 3], airspeed_tolerance_kt| {
+            let points: Vec<_> = corrections
+                .iter()
+                .zip(airspeeds_kt)
+                .map(|(correction, airspeed_kt)| ScheduledPoint { airspeed_kt, correction })
+                .collect();
+            Schedule::of(&points, ScheduleSettings { airspeed_tolerance_kt, ..ScheduleSettings::default() }).unwrap()
+        };
+        assert_eq!(of([60.0, 90.0, 120.0], 2.0).cautions, [], "through its points, in the range between");
+        // 1 at 60 and 120 kt, 1.1 at 63 kt: ln k = ln 1.1 (v^2 - 1) / (0.9^2 - 1), 1.65 at 90 kt.
+        let wild = of([60.0, 63.0, 120.0], 2.0);
+        let ScheduleCaution::Overshoot { channel, between_kt, airspeed_kt, gain, range } = &wild.cautions[0] else {
+            panic!("{:?}", wild.cautions);
+        };
+        assert_eq!((*channel, *between_kt, *range), (Channel::Input(0), [63.0, 120.0], [1.0, 1.1]));
+        assert!((airspeed_kt - 90.0).abs() < 1.0 && (gain / 1.1_f64.powf(1.0 / 0.19) - 1.0).abs() < 0.01);
+        assert!(wild.fails_between());
+        let lowered = of([60.0, 61.0, 120.0], 2.0);
+        assert_eq!(lowered.cautions, [ScheduleCaution::DegreeLowered { asked: 2, clusters: 2 }]);
+        assert_eq!((lowered.degree(), lowered.fails_between()), (Some(1), false));
     }
 
     #[test]

@@ -1,7 +1,12 @@
 //! What the engineer has to know about a result that could be had all the same.
 
-use crate::dataset::Pair;
-use crate::fidelity::DiscontinuityError;
+use std::sync::Arc;
+
+use crate::dataset::{BundleKind, Condition, Dynamics, Pair};
+use crate::fidelity::{DiscontinuityError, MeasuredPairs};
+use crate::response::{FrequencyResponse, LargeEntry};
+
+use super::document::BundleChoice;
 
 /// A caution that travels with a result.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,31 +15,221 @@ pub enum Caution {
     HeldButUndefined {
         /// The response.
         pair: Pair,
+        /// Why it has none.
+        why: Undefined,
     },
     /// No outliers could be suggested.
     NoSuggestions(DiscontinuityError),
-    /// Measured data do not reach over the whole band, and the model has no response there.
-    BandNotCovered {
-        /// The identified model.
-        model: String,
+    /// A model takes no part in distances, suggestions and representatives (M5b).
+    SetAside {
+        /// Which model.
+        model: BundleModel,
+        /// The measuring responses that it lacks and another model of its bundle has.
+        lacks: Vec<Pair>,
+        /// Why it lacks them, where they are not finite; otherwise they are zero.
+        why: Option<NotFinite>,
+        /// Whether it was pinned, in vain.
+        pinned: bool,
+    },
+    /// A model has responses that are not finite somewhere in the band.
+    NotFinite {
+        /// Which model.
+        model: BundleModel,
+        /// The responses.
+        responses: Vec<Pair>,
+        /// Why they are not.
+        why: NotFinite,
+    },
+    /// Responses of a representative that are treated as structurally zero (M6a).
+    NumericallyNothing {
+        /// Which model.
+        model: BundleModel,
+        /// The responses.
+        responses: Vec<Pair>,
+    },
+    /// A response is fitted whose G is far from one.
+    UnusualGain {
+        /// The response.
+        pair: Pair,
+        /// Its G.
+        gain: f64,
+    },
+}
+
+/// A model by its bundle and its name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BundleModel {
+    /// Which bundle.
+    pub bundle: BundleKind,
+    /// The model's name.
+    pub name: String,
+}
+
+impl BundleModel {
+    pub(super) fn of(condition: &Condition, bundle: BundleKind, model: usize) -> Self {
+        Self { bundle, name: condition.bundle(bundle)[model].name.clone() }
+    }
+
+    fn words(&self) -> String {
+        format!("{} model \"{}\"", self.bundle, self.name)
+    }
+}
+
+/// Why a response has no G and no D.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Undefined {
+    /// It is zero or not finite somewhere in the band, in one of the representatives.
+    ZeroOrNotFinite,
+    /// It is numerically nothing in the representative of this bundle (M6a).
+    NumericallyNothing(BundleKind),
+}
+
+impl Undefined {
+    /// The reason in words that begin with "its response".
+    pub fn words(self) -> String {
+        match self {
+            Undefined::ZeroOrNotFinite => "its response is zero or not finite somewhere in the band".to_owned(),
+            Undefined::NumericallyNothing(bundle) => format!(
+                "its response is numerically nothing in the {} model: over the band less than 1e-6 of the greatest of its \
+                 output and of its input",
+                bundle
+            ),
+        }
+    }
+}
+
+/// Why a model has responses that are not finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NotFinite {
+    /// An entry of its matrices is too large to compute with.
+    Entry(LargeEntry),
+    /// It is measured over a part of the band only.
+    Measured {
         /// First measured frequency \[rad/s\].
         min: f64,
         /// Last measured frequency \[rad/s\].
         max: f64,
     },
+    /// A pole on the imaginary axis, or an overflow.
+    Pole,
 }
 
+impl NotFinite {
+    /// Why a model of these dynamics has a response that is not finite.
+    fn of(dynamics: &Dynamics) -> Self {
+        match dynamics {
+            Dynamics::StateSpace(model) => LargeEntry::of(model).map_or(NotFinite::Pole, NotFinite::Entry),
+            Dynamics::Measured(response) => {
+                let omega = response.omega();
+                NotFinite::Measured { min: omega[0], max: omega[omega.len() - 1] }
+            }
+        }
+    }
+
+    fn words(self) -> String {
+        match self {
+            NotFinite::Entry(entry) => format!("{entry}: correct the file, or reject the model"),
+            NotFinite::Measured { min, max } => {
+                // Six decimals at most: what is lost is no reason to look for.
+                let round = |omega: f64| (omega * 1e6).round() / 1e6;
+                let (min, max) = (round(min), round(max));
+                format!("it is measured from {min} to {max} rad/s only: narrow the band, or reject the model")
+            }
+            NotFinite::Pole => {
+                "a pole lies on a frequency of the grid, or its numbers overflow: change the band or the \
+                                number of frequencies, or reject the model"
+                    .to_owned()
+            }
+        }
+    }
+}
+
+/// G outside these is unusual: a change of units, a sign of a response that means nothing.
+const USUAL_GAINS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
+
 impl Caution {
+    /// The caution of a G that is fitted, if it is one.
+    pub(super) fn of_gain(pair: Pair, gain: f64) -> Option<Self> {
+        (!USUAL_GAINS.contains(&gain)).then_some(Caution::UnusualGain { pair, gain })
+    }
+
+    /// Whether it says that a model is set aside.
+    pub fn is_set_aside(&self, bundle: BundleKind, name: &str) -> bool {
+        matches!(self, Caution::SetAside { model, .. } if model.bundle == bundle && model.name == name)
+    }
+
+    /// The response that the engineer may want to ignore in the objective.
+    pub fn offers_to_ignore(&self) -> Option<Pair> {
+        match self {
+            Caution::UnusualGain { pair, .. } => Some(*pair),
+            _ => None,
+        }
+    }
+
     /// The caution in words; `pair_name` names a response.
     pub fn words(&self, pair_name: impl Fn(Pair) -> String) -> String {
+        let names = |pairs: &[Pair]| pairs.iter().map(|pair| pair_name(*pair)).collect::<Vec<_>>().join(", ");
         match self {
-            Caution::HeldButUndefined { pair } => {
-                format!("{} is not held: its response is zero or not finite somewhere in the band", pair_name(*pair))
-            }
+            Caution::HeldButUndefined { pair, why } => format!("{} is not held: {}", pair_name(*pair), why.words()),
             Caution::NoSuggestions(error) => error.to_string(),
-            Caution::BandNotCovered { model, min, max } => format!(
-                "identified model \"{model}\" is measured from {min} to {max} rad/s only: narrow the band or reject it"
+            Caution::SetAside { model, lacks, why, pinned } => {
+                let why = why.map_or("zero somewhere in the band".to_owned(), NotFinite::words);
+                let pin = if *pinned { "; that it is pinned does not count" } else { "" };
+                let (model, lacks) = (model.words(), names(lacks));
+                format!("{model} is set aside: it has no {lacks}, which another model of its bundle has ({why}){pin}")
+            }
+            Caution::NotFinite { model, responses, why } => {
+                format!("{} has no {} over the whole band: {}", model.words(), names(responses), why.words())
+            }
+            Caution::NumericallyNothing { model, responses } => format!(
+                "of {}, {} are numerically nothing, less than 1e-6 of the greatest response of their output and of their \
+                 input: they have no G and no D, as if they were zero",
+                model.words(),
+                names(responses)
+            ),
+            Caution::UnusualGain { pair, gain } => format!(
+                "{} has a G of {}, outside {} to {}, and is fitted like the others: ignore it in the objective if it means \
+                 nothing (in a study file: \"ignored\")",
+                pair_name(*pair),
+                short(*gain),
+                USUAL_GAINS.start(),
+                USUAL_GAINS.end()
             ),
         }
     }
+}
+
+/// Three significant digits.
+fn short(gain: f64) -> String {
+    if (1e-3..1e4).contains(&gain) { format!("{gain:.3}") } else { format!("{gain:.2e}") }
+}
+
+/// What the kept models of a bundle lack: those set aside, and those that have responses which are not finite.
+pub(super) fn of_models(
+    condition: &Condition,
+    choice: &BundleChoice,
+    bundle: BundleKind,
+    responses: &[Arc<FrequencyResponse>],
+    measured: &MeasuredPairs,
+) -> Vec<Caution> {
+    let caution = |index: usize| {
+        let (lacks, not_finite) = (&measured.lacks[index], responses[index].not_finite());
+        let name = &condition.bundle(bundle)[index].name;
+        let model = BundleModel::of(condition, bundle, index);
+        let why = NotFinite::of(&condition.bundle(bundle)[index].dynamics);
+        if !lacks.is_empty() {
+            let why = lacks.iter().any(|pair| not_finite.contains(pair)).then_some(why);
+            return Some(Caution::SetAside {
+                model,
+                lacks: lacks.clone(),
+                why,
+                pinned: choice.pinned.as_ref() == Some(name),
+            });
+        }
+        (!not_finite.is_empty()).then_some(Caution::NotFinite { model, responses: not_finite, why })
+    };
+    (0..responses.len())
+        .filter(|&index| !choice.rejected.contains(&condition.bundle(bundle)[index].name))
+        .filter_map(caution)
+        .collect()
 }

@@ -4,15 +4,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use crate::correction::{Delta, mismatch_table};
-use crate::dataset::{BundleKind, Condition, PairTable};
+use crate::dataset::{BundleKind, Condition, ConditionId, Pair, PairTable};
 use crate::fidelity::{
-    BundleDistance, Cost, CostAverage, Discontinuity, DiscontinuityError, FitError, Mismatch, Representative,
-    compared_pairs, distances_from,
+    BundleDistance, Cost, CostAverage, Discontinuity, DiscontinuityError, FitError, MeasuredPairs, Mismatch,
+    Representative, distances_from,
 };
 use crate::response::{FrequencyGrid, FrequencyResponse, PolarResponse};
 
+use super::caution::{self, BundleModel, Caution, Undefined};
+use super::condition_analysis::ConditionFailure;
 use super::condition_responses::ConditionResponses;
-use super::document::ConditionChoice;
+use super::document::{BundleChoice, ConditionChoice, Study};
 use super::executor::Execution;
 use super::progress::Cancelled;
 
@@ -40,33 +42,70 @@ impl BundleFigures {
         let models = condition.bundle(BundleKind::Physics);
         let perturbations: Vec<(&str, Option<&BTreeMap<String, f64>>)> =
             models.iter().map(|model| (model.name.as_str(), model.perturbation())).collect();
-        let discontinuity = Discontinuity::of(&physics, &perturbations, &|| !execution.progress().cancelled());
-        if discontinuity == Err(DiscontinuityError::Fit(FitError::GivenUp)) {
+        let discontinuity = Discontinuity::of(&physics, &perturbations, &|| execution.progress().cancelled());
+        if discontinuity == Err(DiscontinuityError::Fit(FitError::Cancelled)) {
             return Err(Cancelled);
         }
         Ok(Self { physics, identified, discontinuity })
     }
+
+    /// Distances of one bundle.
+    pub fn bundle(&self, kind: BundleKind) -> &BundleDistance {
+        match kind {
+            BundleKind::Physics => &self.physics,
+            BundleKind::Identified => &self.identified,
+        }
+    }
 }
 
-/// Distances over the marked responses; over all where none of those can be compared.
+/// The marked responses of every model, or all where no model has one of those; and which model lacks which.
+fn measured_pairs(
+    responses: &[Arc<FrequencyResponse>],
+    measuring: &PairTable<bool>,
+    execution: &Execution<'_>,
+) -> Result<(Vec<PolarResponse>, MeasuredPairs), Cancelled> {
+    let polar = |marked: &PairTable<bool>, steps| {
+        execution.each(responses.len(), steps, |model| PolarResponse::of_marked(&responses[model], marked))
+    };
+    let marked = polar(measuring, 1)?;
+    let measured = MeasuredPairs::of(&marked, measuring);
+    if !measured.compared.is_empty() {
+        return Ok((marked, measured));
+    }
+    let all = measuring.map(|_, _| true);
+    let polar_responses = polar(&all, 0)?;
+    let measured = MeasuredPairs::of(&polar_responses, &all);
+    Ok((polar_responses, measured))
+}
+
 fn distances(
     responses: &[Arc<FrequencyResponse>],
     measuring: &PairTable<bool>,
     execution: &Execution<'_>,
 ) -> Result<BundleDistance, Cancelled> {
-    let polar = |marked: &PairTable<bool>, steps| {
-        execution.each(responses.len(), steps, |model| PolarResponse::of_marked(&responses[model], marked))
-    };
-    let references = |polar: &[PolarResponse]| compared_pairs(&polar.iter().collect::<Vec<_>>(), measuring);
-    let mut polar_responses = polar(measuring, 1)?;
-    let mut compared = references(&polar_responses);
-    if compared.is_empty() {
-        polar_responses = polar(&measuring.map(|_, _| true), 0)?;
-        compared = references(&polar_responses);
+    let (polar, measured) = measured_pairs(responses, measuring, execution)?;
+    let compared: Vec<&PolarResponse> = measured.compared_models().into_iter().map(|model| &polar[model]).collect();
+    let rows = execution.each(compared.len(), 1, |place| distances_from(place, &compared, &measured.compared))?;
+    execution.step(polar.len() - compared.len());
+    Ok(BundleDistance::from_rows(rows, measured))
+}
+
+/// What of a study's models cannot be computed or compared in its band, condition by condition: the cautions that an
+/// analysis gives of the models by themselves.
+pub fn cautions_of_models(study: &Study, execution: &Execution<'_>) -> Result<Vec<(ConditionId, Caution)>, Cancelled> {
+    let grid = (study.settings.band, study.settings.points);
+    let measuring = study.dataset.measuring_pairs();
+    let mut cautions = Vec::new();
+    for condition in study.dataset.conditions() {
+        let responses = ConditionResponses::of(condition, grid, execution)?;
+        for kind in BundleKind::BOTH {
+            let (_, measured) = measured_pairs(responses.bundle(kind), &measuring, execution)?;
+            let choice = study.choice(condition.id()).bundle(kind);
+            let of_bundle = caution::of_models(condition, choice, kind, responses.bundle(kind), &measured);
+            cautions.extend(of_bundle.into_iter().map(|caution| (condition.id(), caution)));
+        }
     }
-    let all: Vec<&PolarResponse> = polar_responses.iter().collect();
-    let rows = execution.each(all.len(), 1, |model| distances_from(model, &all, &compared))?;
-    Ok(BundleDistance::from_rows(rows, compared))
+    Ok(cautions)
 }
 
 /// Mismatch of a physics model and the identified representative, with the J it amounts to.
@@ -99,6 +138,10 @@ pub struct Comparison {
     pub nominal: ModelMismatch,
     /// G and D of the representatives.
     pub delta: Delta,
+    /// Why a response has no G and no D, where it has none.
+    pub undefined: PairTable<Option<Undefined>>,
+    /// What has to be known about the models, whatever is held.
+    pub cautions: Vec<Caution>,
 }
 
 impl Comparison {
@@ -110,23 +153,63 @@ impl Comparison {
         grid: &FrequencyGrid,
         choice: &ConditionChoice,
         average: CostAverage,
-    ) -> Self {
-        let represent = |kind, distance: &BundleDistance| {
+    ) -> Result<Self, ConditionFailure> {
+        let of_kind = |kind| {
+            let measured = figures.bundle(kind).measured();
+            caution::of_models(condition, choice.bundle(kind), kind, responses.bundle(kind), measured)
+        };
+        let mut cautions: Vec<Caution> = BundleKind::BOTH.into_iter().flat_map(of_kind).collect();
+        let representative = |kind: BundleKind| {
             let position = |name: &String| condition.position(kind, name);
-            let choice = choice.bundle(kind);
-            let rejected: BTreeSet<usize> = choice.rejected.iter().filter_map(position).collect();
-            Representative::of(distance, &rejected, choice.pinned.as_ref().and_then(position))
+            let BundleChoice { rejected, pinned } = choice.bundle(kind);
+            let rejected: BTreeSet<usize> = rejected.iter().filter_map(position).collect();
+            let representative =
+                Representative::of(figures.bundle(kind), &rejected, pinned.as_ref().and_then(position));
+            representative.ok_or(ConditionFailure::AllSetAside { bundle: kind })
         };
-        let physics = represent(BundleKind::Physics, &figures.physics);
-        let identified = represent(BundleKind::Identified, &figures.identified);
-        let reference = PolarResponse::of(&responses.identified[identified.model]);
-        let against = |model: usize| {
-            ModelMismatch::of(&PolarResponse::of(&responses.physics[model]), &reference, grid.omega(), average)
+        let (physics, identified) = (representative(BundleKind::Physics)?, representative(BundleKind::Identified)?);
+        let reference = Compared::of(&responses.identified[identified.model]);
+        let simulated = Compared::of(&responses.physics[physics.model]);
+        let against =
+            |simulated: &Compared| ModelMismatch::of(&simulated.polar, &reference.polar, grid.omega(), average);
+        let representative = against(&simulated);
+        let nominal = condition.nominal();
+        let nominal = if physics.model == nominal {
+            representative.clone()
+        } else {
+            against(&Compared::of(&responses.physics[nominal]))
         };
-        let representative = against(physics.model);
-        let nominal =
-            if physics.model == condition.nominal() { representative.clone() } else { against(condition.nominal()) };
         let delta = Delta::of(&representative.mismatch, grid.omega());
-        Self { physics, identified, representative, nominal, delta }
+        let undefined = delta.gain.map(|pair, gain| match gain {
+            Some(_) => None,
+            None if simulated.nothing[pair] => Some(Undefined::NumericallyNothing(BundleKind::Physics)),
+            None if reference.nothing[pair] => Some(Undefined::NumericallyNothing(BundleKind::Identified)),
+            None => Some(Undefined::ZeroOrNotFinite),
+        });
+        for (kind, model, compared) in
+            [(BundleKind::Physics, physics.model, &simulated), (BundleKind::Identified, identified.model, &reference)]
+        {
+            let responses: Vec<Pair> = compared.nothing.marked().collect();
+            if !responses.is_empty() {
+                cautions
+                    .push(Caution::NumericallyNothing { model: BundleModel::of(condition, kind, model), responses });
+            }
+        }
+        Ok(Self { physics, identified, representative, nominal, delta, undefined, cautions })
+    }
+}
+
+/// A model as it is compared: without the responses that are numerically nothing.
+struct Compared {
+    polar: PolarResponse,
+    nothing: PairTable<bool>,
+}
+
+impl Compared {
+    fn of(response: &FrequencyResponse) -> Self {
+        let mut polar = PolarResponse::of(response);
+        let nothing = polar.numerically_nothing();
+        polar.clear(&nothing);
+        Self { polar, nothing }
     }
 }

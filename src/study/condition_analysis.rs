@@ -91,13 +91,24 @@ pub enum ConditionFailure {
     /// The two representatives share no response that both have over the whole band.
     #[error(
         "no response of \"{physics}\" can be compared with \"{identified}\" over the whole band: each is zero or not \
-         finite somewhere; choose another representative, or another band"
+         finite somewhere; choose another representative, or another band{because}"
     )]
     NothingToCompare {
         /// Name of the physics representative.
         physics: String,
         /// Name of the identified representative.
         identified: String,
+        /// What is known of the models' responses, each after "; ".
+        because: String,
+    },
+    /// Every model kept is set aside (M5b).
+    #[error(
+        "no {bundle} model is left to compare: each one kept lacks a measuring response that another model of the bundle \
+         has; restore one that has them all, or narrow the band"
+    )]
+    AllSetAside {
+        /// Which.
+        bundle: BundleKind,
     },
     /// The gains could not be computed.
     #[error("the gains could not be computed: {0}")]

@@ -42,6 +42,14 @@ impl ConditionResponses {
         let grid = FrequencyGrid::logarithmic(band, points);
         models.responses(Purpose::Comparison, (band, points), &grid, execution)
     }
+
+    /// The responses of one bundle.
+    pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
+        match kind {
+            BundleKind::Physics => &self.physics,
+            BundleKind::Identified => &self.identified,
+        }
+    }
 }
 
 /// The last responses of one model, and what they start from.

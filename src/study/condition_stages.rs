@@ -6,7 +6,7 @@ use crate::correction::{
     ChannelCorrection, DelayError, DelayProblem, DelaySolution, GainBounds, GainError, GainProblem, GainSolution,
     ProofBudget, delay_upper_s, gain_bounds, solve_delays, solve_gains,
 };
-use crate::dataset::{BundleKind, Condition, Dynamics, PairTable};
+use crate::dataset::{BundleKind, Condition, Pair, PairTable};
 use crate::fidelity::CostAverage;
 use crate::response::FrequencyGrid;
 use crate::schedule::{CostChange, assess};
@@ -33,7 +33,7 @@ type BoundsKey = (ComparisonKey, f64, Option<GainBounds>, Option<f64>);
 pub(super) struct ConditionStages {
     models: ConditionModels,
     figures: Memo<FiguresKey, Arc<BundleFigures>>,
-    comparison: Memo<ComparisonKey, Arc<Comparison>>,
+    comparison: Memo<ComparisonKey, Result<Arc<Comparison>, ConditionFailure>>,
     bounds: Memo<BoundsKey, (GainBounds, f64)>,
     gains: Memo<Arc<GainProblem>, Result<Arc<GainSolution>, GainError>>,
     delays: Memo<Arc<DelayProblem>, Result<Arc<DelaySolution>, DelayError>>,
@@ -118,9 +118,10 @@ impl ConditionStages {
         let figures_key = ((settings.band, settings.points), measuring.clone());
         let key: ComparisonKey = (figures_key, choice.clone(), settings.cost_average);
         let comparison = self.comparison.get(key.clone(), |_| {
-            Arc::new(Comparison::of(condition, responses, &figures, grid, choice, settings.cost_average))
-        });
-        check_comparable(condition, &comparison)?;
+            let comparison = Comparison::of(condition, responses, &figures, grid, choice, settings.cost_average);
+            comparison.map(Arc::new)
+        })?;
+        check_comparable(condition, &comparison, |pair| study.dataset.pair_name(pair))?;
         let bounds_key = (key.clone(), settings.quantile, settings.gain_bounds, settings.delay_upper_s);
         let bounds = self.bounds.get(bounds_key, |_| bounds_of(&comparison, settings, &measuring, grid));
         let solved = self.solve(&comparison, settings, bounds, proofs)?;
@@ -129,7 +130,7 @@ impl ConditionStages {
             let models = &comparison.representative;
             Arc::new(assess(&models.mismatch, &models.cost, correction, grid.omega(), settings.cost_average))
         });
-        let cautions = cautions_of(condition, choice, settings, &comparison, &figures);
+        let cautions = cautions_of(settings, &comparison, &figures);
         let Solved { gain_problem, delay_problem, gains, delays } = solved;
         Ok(ConditionAnalysis {
             condition: Arc::clone(condition),
@@ -195,14 +196,20 @@ impl Solved {
     }
 }
 
-fn check_comparable(condition: &Condition, comparison: &Comparison) -> Result<(), ConditionFailure> {
+fn check_comparable(
+    condition: &Condition,
+    comparison: &Comparison,
+    pair_name: impl Fn(Pair) -> String,
+) -> Result<(), ConditionFailure> {
     if comparison.delta.gain.iter().any(|(_, gain)| gain.is_some()) {
         return Ok(());
     }
     let name = |kind, model: usize| condition.bundle(kind)[model].name.clone();
+    let because = comparison.cautions.iter().map(|caution| format!("; {}", caution.words(&pair_name))).collect();
     Err(ConditionFailure::NothingToCompare {
         physics: name(BundleKind::Physics, comparison.physics.model),
         identified: name(BundleKind::Identified, comparison.identified.model),
+        because,
     })
 }
 
@@ -219,26 +226,14 @@ fn bounds_of(
     (gains, delay)
 }
 
-fn cautions_of(
-    condition: &Condition,
-    choice: &ConditionChoice,
-    settings: &Settings,
-    comparison: &Comparison,
-    figures: &BundleFigures,
-) -> Vec<Caution> {
-    let undefined = settings.constrained.marked().filter(|&pair| comparison.delta.gain[pair].is_none());
-    let mut cautions: Vec<Caution> = undefined.map(|pair| Caution::HeldButUndefined { pair }).collect();
+fn cautions_of(settings: &Settings, comparison: &Comparison, figures: &BundleFigures) -> Vec<Caution> {
+    let held = settings.constrained.marked();
+    let undefined = held.filter_map(|pair| Some(Caution::HeldButUndefined { pair, why: comparison.undefined[pair]? }));
+    let mut cautions: Vec<Caution> = undefined.collect();
     cautions.extend(figures.discontinuity.as_ref().err().cloned().map(Caution::NoSuggestions));
-    for model in condition.bundle(BundleKind::Identified) {
-        let Dynamics::Measured(response) = &model.dynamics else {
-            continue;
-        };
-        let (min, max) = (response.omega()[0], response.omega()[response.omega().len() - 1]);
-        let covered = min <= settings.band.min() && settings.band.max() <= max;
-        if !covered && !choice.identified.rejected.contains(&model.name) {
-            cautions.push(Caution::BandNotCovered { model: model.name.clone(), min, max });
-        }
-    }
+    cautions.extend(comparison.cautions.iter().cloned());
+    let fitted = settings.fitted.marked();
+    cautions.extend(fitted.filter_map(|pair| Caution::of_gain(pair, comparison.delta.gain[pair]?)));
     cautions
 }
 

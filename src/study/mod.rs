@@ -1,7 +1,7 @@
 //! What the engineer does: settings, rejections, pins; and the analysis of it all, in cached stages.
 
 mod analysis;
-mod carried_over;
+mod carry_over;
 mod caution;
 mod comparison;
 mod condition_analysis;
@@ -13,6 +13,7 @@ mod edit;
 mod engine;
 mod executor;
 mod history;
+mod inventory;
 mod job;
 mod memo;
 mod progress;
@@ -21,9 +22,9 @@ mod settings;
 mod toggles;
 
 pub use analysis::{Analysis, Assessed};
-pub use carried_over::Difference;
-pub use caution::Caution;
-pub use comparison::{BundleFigures, Comparison};
+pub use carry_over::{Decisions, Difference};
+pub use caution::{BundleModel, Caution, NotFinite, Undefined};
+pub use comparison::{BundleFigures, Comparison, cautions_of_models};
 pub use condition_analysis::{ConditionAnalysis, ConditionFailure};
 pub use condition_responses::ConditionResponses;
 pub use curves::{ConditionCurves, display_band};
@@ -32,6 +33,7 @@ pub use edit::{Edit, EditRefusal};
 pub use engine::{Engine, LIVE_PROOF};
 pub use executor::{Execution, Executor, Sequential, Task};
 pub use history::History;
+pub use inventory::{ConditionInventory, Inventory};
 pub use job::{CurvesJob, Job, ProofJob, TogglesJob};
 pub use progress::{Cancelled, Progress, Unobserved};
 pub use setting::Setting;

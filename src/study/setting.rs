@@ -8,6 +8,9 @@ use crate::schedule::{HIGHEST_DEGREE, ScheduleKind, ScheduleSettings};
 use super::edit::EditRefusal;
 use super::settings::{GREATEST_GAIN, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings};
 
+/// Widest gap \[kt\] within which airspeeds may be taken as one.
+const LARGEST_TOLERANCE_KT: f64 = 100.0;
+
 /// The new value of one setting.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Setting {
@@ -88,8 +91,11 @@ impl Setting {
     fn check(&self) -> Result<(), EditRefusal> {
         match self {
             Setting::AlphaGain(alpha) | Setting::AlphaDelay(alpha) => self.check_range(*alpha, 0.0, LARGEST_ALPHA),
-            Setting::Schedule(ScheduleSettings { kind: ScheduleKind::Polynomial { degree }, .. }) => {
-                self.check_range(*degree as f64, 0.0, HIGHEST_DEGREE as f64)
+            Setting::Schedule(ScheduleSettings { kind, airspeed_tolerance_kt, .. }) => {
+                if let ScheduleKind::Polynomial { degree } = kind {
+                    self.check_range(*degree as f64, 0.0, HIGHEST_DEGREE as f64)?;
+                }
+                self.check_range(*airspeed_tolerance_kt, 0.0, LARGEST_TOLERANCE_KT)
             }
             Setting::Points(points) => self.check_range(*points as f64, LEAST_POINTS as f64, MOST_POINTS as f64),
             Setting::Quantile(quantile) => self.check_range(*quantile, 0.0, 0.5),

@@ -1,6 +1,6 @@
 //! The plots: the focused response above, net gain below, each one of several tabs.
 
-use egui::{Align, Button, Layout, Panel, RichText, Ui};
+use egui::{Align, Button, DragValue, Layout, Panel, RichText, Role, Ui, WidgetInfo};
 
 use crate::dataset::{Band, Pair};
 use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
@@ -159,9 +159,13 @@ fn schedule_ui(ui: &mut Ui, settings: ScheduleSettings) -> Option<Command> {
             (polynomial(1), "degree 1", "Polynomial of degree 1 in airspeed"),
             (polynomial(2), "degree 2", "Polynomial of degree 2 in airspeed"),
             (polynomial(3), "degree 3", "Polynomial of degree 3 in airspeed"),
-            (ScheduleKind::Table, "table", "Mean at each distinct airspeed, linear between"),
+            (ScheduleKind::Table, "table", "Mean of each cluster of airspeeds, linear between"),
         ],
     );
+    let tolerance = DragValue::new(&mut chosen.airspeed_tolerance_kt).range(0.0..=100.0).speed(0.1).suffix(" kt");
+    let tolerance = ui.add(tolerance);
+    tolerance.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, "Airspeed tolerance"));
+    tolerance.on_hover_text("Airspeeds this close to the next one [kt] count as one, for the table and for the degree");
     (chosen != settings).then(|| Edit::Set(Setting::Schedule(chosen)).into())
 }
 

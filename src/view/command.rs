@@ -44,6 +44,8 @@ pub enum Command {
     AskOpen,
     /// Open a dataset or a study.
     Open(PathBuf),
+    /// Open a study whose dataset has moved: the study, the dataset.
+    OpenStudyOf(PathBuf, PathBuf),
     /// Open the embedded example.
     OpenExample,
     /// Save the study where it was saved last.
@@ -89,12 +91,16 @@ pub enum Command {
 pub enum FormKind {
     /// Which file to open, by path.
     Open,
+    /// Where the dataset of a study is now, by path.
+    FindDataset,
     /// Where to save the study, by path.
     Save,
     /// What to export, and where.
     Export,
     /// Whether to lose unsaved decisions.
     Unsaved,
+    /// What is different in the dataset from the one the study was made with.
+    Differences,
     /// Keys and gestures.
     Shortcuts,
     /// What the program is.

@@ -27,21 +27,32 @@ pub struct Remark {
     pub kind: RemarkKind,
     /// One or two sentences.
     pub text: String,
+    /// The response that the engineer may want to ignore in the objective.
+    pub ignore: Option<Pair>,
 }
 
 impl Remark {
-    fn new(kind: RemarkKind, text: String) -> Self {
-        Self { kind, text }
+    /// A remark that offers nothing.
+    pub fn new(kind: RemarkKind, text: String) -> Self {
+        Self { kind, text, ignore: None }
     }
 }
 
-/// Which held gains and delays were matched, which were not and why, and the cautions of the condition.
+/// Which held gains and delays were matched, which were not and why, and the cautions of the condition and of the schedule.
 pub fn remarks(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
     let mut remarks = gain_remarks(state, shown);
     remarks.extend(delay_remarks(state, shown));
     let pair_name = |pair| state.dataset().pair_name(pair);
-    let cautions = shown.cautions.iter().map(|caution| caution.words(pair_name));
-    remarks.extend(cautions.map(|text| Remark::new(RemarkKind::Caution, text)));
+    remarks.extend(shown.cautions.iter().map(|caution| Remark {
+        kind: RemarkKind::Caution,
+        text: caution.words(pair_name),
+        ignore: caution.offers_to_ignore(),
+    }));
+    if let Some(Ok(schedule)) = state.analysis().map(|analysis| &analysis.schedule) {
+        let (inputs, outputs) = channel_names(state);
+        let words = schedule.cautions.iter().map(|caution| format!("Schedule: {}.", caution.words(&inputs, &outputs)));
+        remarks.extend(words.map(|text| Remark::new(RemarkKind::Caution, text)));
+    }
     remarks
 }
 

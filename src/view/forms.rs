@@ -3,6 +3,7 @@
 use egui::{Button, Context, Grid, Id, Key, Modal, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 use crate::dataset::ConditionId;
+use crate::study::Difference;
 
 use super::command::{Command, FormKind};
 use super::palette::Palette;
@@ -15,9 +16,11 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
         ui.set_width(460.0);
         match kind {
             FormKind::Open => open_ui(ui, &mut state.forms.open_path, commands),
+            FormKind::FindDataset => find_dataset_ui(ui, state, palette, commands),
             FormKind::Save => save_ui(ui, &mut state.forms.save_path, commands),
             FormKind::Export => export_ui(ui, state, palette, commands),
             FormKind::Unsaved => unsaved_ui(ui, commands),
+            FormKind::Differences => differences_ui(ui, state, palette, commands),
             FormKind::Shortcuts => shortcuts_ui(ui, palette),
             FormKind::About => about_ui(ui, palette),
         }
@@ -51,6 +54,24 @@ fn open_ui(ui: &mut Ui, path: &mut String, commands: &mut Vec<Command>) {
         let open = ui.add_enabled(!path.trim().is_empty(), Button::new("Open file"));
         if open.clicked() || (entered && !path.trim().is_empty()) {
             commands.push(Command::Open(path.trim().into()));
+        }
+        if ui.button("Cancel").clicked() {
+            commands.push(Command::ShowForm(None));
+        }
+    });
+}
+
+fn find_dataset_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    let Some((study, reason)) = &state.forms.lost_dataset else { return };
+    title(ui, "Where is the dataset of this study?");
+    ui.label(RichText::new(reason).color(palette.dim_text));
+    let path = &mut state.forms.open_path;
+    let entered = path_ui(ui, "Path of the dataset", path, "path of a .json or .json.gz file");
+    let path = path.trim();
+    ui.horizontal(|ui| {
+        let open = ui.add_enabled(!path.is_empty(), Button::new("Open with this dataset"));
+        if open.clicked() || (entered && !path.is_empty()) {
+            commands.push(Command::OpenStudyOf(study.clone(), path.into()));
         }
         if ui.button("Cancel").clicked() {
             commands.push(Command::ShowForm(None));
@@ -141,6 +162,28 @@ fn unsaved_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
         }
         if ui.button("Cancel").clicked() {
             commands.push(Command::ShowForm(None));
+        }
+    });
+}
+
+fn differences_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    title(ui, "The dataset is not the one the study was made with");
+    ui.label(RichText::new("Every decision that still applies was kept. What is different:").color(palette.dim_text));
+    ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
+        for difference in &state.differences {
+            let not_applied = matches!(difference, Difference::NotApplied { .. });
+            let color = if not_applied { palette.warning } else { palette.text };
+            ui.label(RichText::new(format!("• {difference}")).color(color));
+        }
+    });
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        if ui.button("Go on").clicked() {
+            commands.push(Command::ShowForm(None));
+        }
+        if ui.button("Copy the list").clicked() {
+            let lines: Vec<String> = state.differences.iter().map(|difference| difference.to_string()).collect();
+            ui.ctx().copy_text(lines.join("\n"));
         }
     });
 }

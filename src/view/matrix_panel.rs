@@ -8,7 +8,7 @@ use egui::{
 use crate::correction::Channel;
 use crate::dataset::Pair;
 use crate::fidelity::{ACCEPTABLE, INDISTINGUISHABLE};
-use crate::study::{ConditionAnalysis, Edit, Setting};
+use crate::study::{ConditionAnalysis, Edit, Setting, Undefined};
 use crate::units::s_to_ms;
 
 use super::command::Command;
@@ -98,8 +98,13 @@ impl<'a> Cell<'a> {
         self.shown?.comparison.delta.gain[self.pair]
     }
 
+    /// Why it has no G, once that is known.
+    fn undefined(&self) -> Option<Undefined> {
+        self.shown?.comparison.undefined[self.pair]
+    }
+
     fn is_undefined(&self) -> bool {
-        self.shown.is_some() && self.gain().is_none()
+        self.undefined().is_some()
     }
 
     fn ui(&self, ui: &mut Ui, rect: Rect, palette: &Palette, commands: &mut Vec<Command>) {
@@ -139,10 +144,10 @@ impl<'a> Cell<'a> {
         } else if !self.is_undefined() {
             ui.painter().rect_stroke(square, 2.0, Stroke::new(1.0, color), StrokeKind::Inside);
         }
-        let hint = match (self.is_undefined(), self.constrained) {
-            (true, _) => "This response is zero or not finite somewhere in the band: it cannot be held",
-            (_, true) => "Held exactly; click to free it",
-            (_, false) => "Free; click to hold it exactly",
+        let hint = match (self.undefined(), self.constrained) {
+            (Some(why), _) => format!("{} cannot be held: {}", self.name, why.words()),
+            (_, true) => "Held exactly; click to free it".to_owned(),
+            (_, false) => "Free; click to hold it exactly".to_owned(),
         };
         response.on_hover_text(hint)
     }
@@ -178,7 +183,8 @@ impl<'a> Cell<'a> {
         };
         let Some(shown) = self.shown else { return };
         let (Some(gain), Some(delay)) = (self.gain(), shown.comparison.delta.delay_s[self.pair]) else {
-            text(0.5 * CELL_HEIGHT, "no G", SMALL_SIZE, palette.dim_text);
+            let nothing = matches!(self.undefined(), Some(Undefined::NumericallyNothing(_)));
+            text(0.5 * CELL_HEIGHT, if nothing { "nothing" } else { "no G" }, SMALL_SIZE, palette.dim_text);
             return;
         };
         let strong = if self.fitted { palette.text } else { palette.rejected };
@@ -222,7 +228,8 @@ impl<'a> Cell<'a> {
         ui.label(words.join(" · "));
         let Some(shown) = self.shown else { return };
         let (Some(gain), Some(delay)) = (self.gain(), shown.comparison.delta.delay_s[self.pair]) else {
-            ui.label("The response is zero or not finite somewhere in the band: it has no G, no D and no J.");
+            let why = self.undefined().map(|why| format!("No G, no D and no J: {}", why.words()));
+            ui.label(why.unwrap_or_default());
             return;
         };
         ui.label(format!("G = {gain:.4}: the gain that would match the magnitude"));

@@ -64,6 +64,8 @@ struct ModelRow<'a> {
     pointed: bool,
     score: Option<f64>,
     ratio: Option<f64>,
+    /// Why it takes no part in the comparison, if it does not.
+    set_aside: Option<String>,
 }
 
 impl<'a> ModelRow<'a> {
@@ -78,6 +80,10 @@ impl<'a> ModelRow<'a> {
             pointed: state.display.hovered.as_ref() == Some(&id),
             score: shown.and_then(|shown| shown.score(kind, &id.name)),
             ratio: shown.filter(|_| kind == BundleKind::Physics).and_then(|shown| shown.discontinuity_ratio(&id.name)),
+            set_aside: shown.and_then(|shown| {
+                let caution = shown.cautions.iter().find(|caution| caution.is_set_aside(kind, &model.name))?;
+                Some(caution.words(|pair| state.dataset().pair_name(pair)))
+            }),
             id,
         }
     }
@@ -114,12 +120,13 @@ impl<'a> ModelRow<'a> {
     fn star_ui(&self, ui: &mut Ui, rect: Rect, palette: &Palette, commands: &mut Vec<Command>) {
         let place = Rect::from_min_size(pos2(rect.left() + 24.0, rect.top()), vec2(16.0, rect.height()));
         let id = ui.scope_id().with(("star", &self.id));
-        let sense = if self.kept { Sense::click() } else { Sense::hover() };
+        let can_represent = self.pinned || (self.kept && self.set_aside.is_none());
+        let sense = if can_represent { Sense::click() } else { Sense::hover() };
         let response = ui.interact(place, id, sense);
         let name = format!("Pin {} model {}", self.id.bundle, self.model.name);
-        response.widget_info(|| WidgetInfo::selected(Role::CheckBox, self.kept, self.pinned, &name));
+        response.widget_info(|| WidgetInfo::selected(Role::CheckBox, can_represent, self.pinned, &name));
         let visible = self.represents || response.hovered() || response.has_focus();
-        if visible && self.kept {
+        if visible && can_represent {
             let color = if self.represents { palette.accent } else { palette.dim_text };
             let symbol = if self.represents { "★" } else { "☆" };
             row_text(ui, rect, 25.0, symbol, BODY_SIZE, color);
@@ -133,6 +140,8 @@ impl<'a> ModelRow<'a> {
                 .push(if self.pinned { Edit::Unpin { condition, bundle } } else { Edit::Pin(self.id.clone()) }.into());
         }
         let hint = match (self.pinned, self.represents) {
+            _ if !can_represent => "Cannot represent the bundle: rejected or set aside",
+            (true, _) if self.set_aside.is_some() => "Pinned in vain, for it is set aside; click: unpin it",
             (true, _) => "Pinned by hand; click: the medoid represents again",
             (false, true) => "Represents the bundle (medoid); click: pin it",
             (false, false) => "Click: let this model represent the bundle",
@@ -143,6 +152,10 @@ impl<'a> ModelRow<'a> {
     /// The ratio with its bar, or the order; returns the width taken on the right.
     fn paint_figure(&self, ui: &Ui, rect: Rect, palette: &Palette) -> f32 {
         let dim = if self.kept { palette.text } else { palette.rejected };
+        if self.set_aside.is_some() {
+            row_text(ui, rect, -5.0, "set aside", SMALL_SIZE, palette.warning);
+            return 60.0;
+        }
         if let Some(ratio) = self.ratio {
             let suspect = ratio > SUGGESTION_RATIO;
             row_text(ui, rect, -5.0, &format!("{ratio:.2}"), BODY_SIZE, dim);
@@ -199,6 +212,9 @@ impl<'a> ModelRow<'a> {
         }
         if let Some(order) = self.model.order() {
             ui.label(format!("{order} states"));
+        }
+        if let Some(why) = &self.set_aside {
+            ui.label(why);
         }
         if let Some(ratio) = self.ratio {
             let verdict = if ratio > SUGGESTION_RATIO { ": suggested as an outlier" } else { "" };

@@ -1,10 +1,10 @@
 //! The result of the condition shown, in words and numbers.
 
-use egui::{Align, Button, CollapsingHeader, Color32, Grid, Layout, RichText, Ui, vec2};
+use egui::{Align, Button, CollapsingHeader, Color32, Grid, Layout, RichText, Role, Ui, WidgetInfo, vec2};
 
 use crate::correction::{GainObjective, Outcome};
-use crate::dataset::Channel;
-use crate::study::ConditionAnalysis;
+use crate::dataset::{Channel, Pair};
+use crate::study::{ConditionAnalysis, Edit, Setting};
 use crate::units::s_to_ms;
 
 use super::command::{Command, FormKind};
@@ -14,7 +14,7 @@ use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 use super::state::State;
 
 /// Outcome, channel gains and delays, objective, and what could not be matched and why.
-pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette) {
+pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     match state.outcome() {
         None => {
             heading_ui(ui, palette, "Result", "");
@@ -22,7 +22,7 @@ pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette) {
         }
         Some(Err(failure)) => {
             heading_ui(ui, palette, "Result", "none");
-            remark_ui(ui, palette, &Remark { kind: RemarkKind::Trouble, text: failure.to_string() });
+            remark_ui(ui, palette, &Remark::new(RemarkKind::Trouble, failure.to_string()));
         }
         Some(Ok(shown)) => {
             header_ui(ui, state, shown, palette);
@@ -30,6 +30,9 @@ pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette) {
             objective_ui(ui, shown, palette);
             for remark in remarks(state, shown) {
                 remark_ui(ui, palette, &remark);
+                if let Some(pair) = remark.ignore {
+                    ignore_ui(ui, state, pair, commands);
+                }
             }
             let header = RichText::new("In detail").size(SMALL_SIZE).color(palette.dim_text);
             CollapsingHeader::new(header).id_salt("details").show(ui, |ui| {
@@ -148,6 +151,16 @@ fn objective_ui(ui: &mut Ui, shown: &ConditionAnalysis, palette: &Palette) {
         "eq. (7): {}{unit}, lower bound {}{unit}\neq. (11): {} s²",
         shown.gains.objective, shown.gains.lower_bound, shown.delays.objective
     ));
+}
+
+/// The click that takes a response out of the objective.
+fn ignore_ui(ui: &mut Ui, state: &State, pair: Pair, commands: &mut Vec<Command>) {
+    let name = state.dataset().pair_name(pair);
+    let button = ui.small_button("Ignore it");
+    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Ignore {name}")));
+    if button.on_hover_text(format!("Give {name} no weight in the objective, in every condition")).clicked() {
+        commands.push(Edit::Set(Setting::Fitted(pair, false)).into());
+    }
 }
 
 fn remark_ui(ui: &mut Ui, palette: &Palette, remark: &Remark) {

@@ -7,7 +7,8 @@ use std::sync::Arc;
 use crate::correction::GainProblem;
 use crate::dataset::{Band, BundleKind, Condition, ConditionId, Dataset, ModelId, Pair};
 use crate::study::{
-    Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, CurvesJob, History, Study, Toggles, TogglesJob,
+    Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, CurvesJob, Difference, History, Study, Toggles,
+    TogglesJob,
 };
 
 use super::bars::Bar;
@@ -226,6 +227,8 @@ pub struct Forms {
     pub shown: Option<FormKind>,
     /// The path in the open form, as typed.
     pub open_path: String,
+    /// The study whose dataset is not where it says, and what opening it said.
+    pub lost_dataset: Option<(PathBuf, String)>,
     /// The path in the save form, as typed.
     pub save_path: String,
     /// The export form.
@@ -249,6 +252,8 @@ pub struct State {
     pub results: Results,
     /// Cautions of the file.
     pub file_cautions: Vec<String>,
+    /// What the dataset was found to differ in from the one the study was made with.
+    pub differences: Vec<Difference>,
     /// The message shown.
     pub notice: Option<Notice>,
     /// What is told until it is dealt with, in bars below the menu.
@@ -274,6 +279,7 @@ impl State {
             display,
             results: Results::default(),
             file_cautions,
+            differences: Vec::new(),
             notice: None,
             bars: Vec::new(),
             recent: Vec::new(),

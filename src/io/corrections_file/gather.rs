@@ -7,13 +7,13 @@ use crate::dataset::{BundleKind, Condition, ConditionId, PairTable};
 use crate::fidelity::{Cost, CostAverage};
 use crate::io::by_name::ByName;
 use crate::schedule::{Regression, Schedule, ScheduleKind, ScheduledQuantity};
-use crate::study::{Analysis, Assessed, ConditionAnalysis, Settings};
+use crate::study::{Analysis, Assessed, Caution, ConditionAnalysis, Settings};
 
 use super::channel_names::{ChannelNames, rows};
 use super::explanation;
 use super::schema::{
     Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
-    DelayOutcome, GainOutcome, NetGain, ScheduleUsed, ScheduledDelays, ScheduledGains, SettingsUsed,
+    DelayOutcome, GainOutcome, NetGain, ScheduleUsed, ScheduledDelays, ScheduledGains, SetAsideEntry, SettingsUsed,
     UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
 };
 use super::{NAME, VERSION};
@@ -109,6 +109,7 @@ impl Gather<'_> {
             rejected: study.rejected_names(condition.id()).into_iter().map(str::to_owned).collect(),
             suggested_outliers: result.suggested(),
             discontinuity: discontinuity_of(condition, result),
+            set_aside: self.set_aside(result),
             scheduled: study.choice(condition.id()).scheduled,
             held: names.marked(result.held()),
             delta_gain: rows(&result.comparison.delta.gain, |gain| *gain),
@@ -127,6 +128,17 @@ impl Gather<'_> {
                 .map(|caution| caution.words(|pair| study.dataset.pair_name(pair)))
                 .collect(),
         }
+    }
+
+    fn set_aside(&self, result: &ConditionAnalysis) -> Vec<SetAsideEntry> {
+        let entry = |caution: &Caution| match caution {
+            Caution::SetAside { model, .. } => {
+                let why = caution.words(|pair| self.analysis.study.dataset.pair_name(pair));
+                Some(SetAsideEntry { model: model.name.clone(), why })
+            }
+            _ => None,
+        };
+        result.cautions.iter().filter_map(entry).collect()
     }
 
     fn net_gains(&self, result: &ConditionAnalysis) -> Vec<NetGain> {
@@ -189,16 +201,16 @@ impl Gather<'_> {
     fn schedule(&self, schedule: &Schedule) -> ScheduleUsed {
         let names = &self.names;
         let airspeeds = &schedule.airspeeds;
-        let (kind, degree) = match schedule.settings.kind {
-            ScheduleKind::Polynomial { degree } => ("polynomial", Some(degree)),
-            ScheduleKind::Table => ("table", None),
+        let kind = match schedule.settings.kind {
+            ScheduleKind::Polynomial { .. } => "polynomial",
+            ScheduleKind::Table => "table",
         };
         let of = match schedule.settings.quantity {
             ScheduledQuantity::LnGain => "ln k",
             ScheduledQuantity::Gain => "k",
         };
         let figures = |regressions: &[Regression]| regressions.iter().map(figures_of).collect::<Vec<_>>();
-        let table = airspeeds.distinct_kt().into_iter().map(|airspeed_kt| {
+        let table = airspeeds.clusters_kt().into_iter().map(|airspeed_kt| {
             let Channels { inputs, outputs } = {
                 let correction = schedule.at(airspeed_kt);
                 names.channels(&correction.input_gains, &correction.output_gains)
@@ -208,7 +220,8 @@ impl Gather<'_> {
         ScheduleUsed {
             kind: kind.to_owned(),
             of: of.to_owned(),
-            degree,
+            degree: schedule.degree(),
+            airspeed_tolerance_kt: schedule.settings.airspeed_tolerance_kt,
             airspeed_mean_kt: airspeeds.mean_kt,
             airspeed_half_range_kt: airspeeds.half_range_kt,
             airspeed_range_kt: [airspeeds.min_kt, airspeeds.max_kt],
@@ -219,6 +232,7 @@ impl Gather<'_> {
                 outputs: names.by_output(figures(outputs)),
             }),
             table: table.collect(),
+            cautions: schedule.cautions.iter().map(|caution| caution.words(&names.inputs, &names.outputs)).collect(),
         }
     }
 }

@@ -19,8 +19,8 @@ pub use channel_table::write_corrections_csv;
 pub use explanation::{ConflictEntry, Explanation, RemedyEntry, SensitivityEntry};
 pub use schema::{
     Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
-    DelayOutcome, GainOutcome, NetGain, ScheduleUsed, ScheduledDelays, ScheduledGains, SettingsUsed, Table,
-    UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
+    DelayOutcome, GainOutcome, NetGain, ScheduleUsed, ScheduledDelays, ScheduledGains, SetAsideEntry, SettingsUsed,
+    Table, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
 };
 
 const NAME: &str = "gdcm-corrections";

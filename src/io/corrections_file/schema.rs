@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::io::by_name::ByName;
+use crate::schedule::DEFAULT_TOLERANCE_KT;
 
 use super::explanation::Explanation;
 
@@ -88,6 +89,9 @@ pub struct ConditionCorrections {
     pub suggested_outliers: Vec<String>,
     /// Discontinuity ratio of each physics model, where it has one.
     pub discontinuity: ByName<Option<f64>>,
+    /// Models that lack a measuring response which another model of their bundle has, and take no part.
+    #[serde(default)]
+    pub set_aside: Vec<SetAsideEntry>,
     /// Whether the condition enters the schedule.
     pub scheduled: bool,
     /// Responses held in this condition, `[output, input]`: the constrained ones that are defined here.
@@ -117,6 +121,15 @@ pub struct ConditionCorrections {
     pub cost: CostTables,
     /// What has to be known about the result.
     pub cautions: Vec<String>,
+}
+
+/// A model that takes no part in the comparison of its bundle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SetAsideEntry {
+    /// The model's name.
+    pub model: String,
+    /// Which model of which bundle lacks what.
+    pub why: String,
 }
 
 /// One figure for each channel.
@@ -241,8 +254,11 @@ pub struct ScheduleUsed {
     pub kind: String,
     /// `ln k` or `k`: what the figures of `inputs` and `outputs` give.
     pub of: String,
-    /// Degree of the polynomial; `None` for a table.
+    /// Degree of the polynomial, which may be less than was asked for; `None` for a table.
     pub degree: Option<usize>,
+    /// Airspeeds this close to the next one are one point of the table, and count as one for the degree \[kt\].
+    #[serde(default = "default_tolerance_kt")]
+    pub airspeed_tolerance_kt: f64,
     /// Mean airspeed of the scheduled conditions \[kt\].
     pub airspeed_mean_kt: f64,
     /// Half the range of their airspeeds \[kt\].
@@ -256,8 +272,15 @@ pub struct ScheduleUsed {
     pub outputs: ByName<Vec<f64>>,
     /// The same of the delays \[s\], where they are scheduled.
     pub delays_s: Option<ScheduledDelays>,
-    /// The scheduled gains at each distinct airspeed of the conditions.
+    /// The scheduled gains at the mean of each cluster of the conditions' airspeeds.
     pub table: Vec<ScheduledGains>,
+    /// What has to be known about the schedule.
+    #[serde(default)]
+    pub cautions: Vec<String>,
+}
+
+fn default_tolerance_kt() -> f64 {
+    DEFAULT_TOLERANCE_KT
 }
 
 /// Delays as functions of airspeed.

@@ -1,40 +1,58 @@
-//! From what a study file says to the study, each error with its place.
+//! From what a study file says to the decisions it holds, each error with its place.
 
-use std::collections::BTreeSet;
-use std::sync::Arc;
+use std::collections::BTreeMap;
 
 use crate::correction::{GainBounds, GainObjective};
-use crate::dataset::{Band, BundleKind, ConditionId, Dataset, ModelId, Pair};
+use crate::dataset::{Band, ConditionId};
 use crate::fidelity::CostAverage;
 use crate::io::content_fault::ContentFault;
 use crate::io::flaw::Flaw;
 use crate::io::place::Place;
 use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
-use crate::study::{Edit, Setting, Study};
+use crate::study::{BundleChoice, ConditionChoice, ConditionInventory, Decisions, Inventory, Setting, Settings};
 
 use super::schema::{
-    AverageText, BundleText, ConditionText, KindText, ObjectiveText, QuantityText, ScheduleText, SettingsText,
+    AverageText, BundleText, ConditionInventoryText, ConditionText, KindText, ObjectiveText, QuantityText,
+    ScheduleText, SettingsText,
 };
 
-/// The study of `dataset` with these settings and choices; every one goes the way of the engineer's own decisions, so that the
-/// file cannot hold what could not be decided.
-pub(super) fn study_of(
-    dataset: Arc<Dataset>,
-    settings: &SettingsText,
-    conditions: &[ConditionText],
-) -> Result<Study, Flaw> {
-    let mut study = Study::new(dataset);
-    take_settings(&mut study, settings)?;
-    take_pairs(&mut study, "constrained", &settings.constrained, Setting::Constrained)?;
-    take_pairs(&mut study, "ignored", &settings.ignored, |pair, listed| Setting::Fitted(pair, !listed))?;
-    let mut seen = BTreeSet::new();
-    for (index, text) in conditions.iter().enumerate() {
-        take_condition(&mut study, &Place::condition(index + 1, text.id), text, &mut seen)?;
+/// The decisions of a study file. `start` is what the settings are before any decision; each has to be within its range.
+pub(super) fn decisions_of(
+    start: Settings,
+    text: &SettingsText,
+    conditions: Vec<ConditionText>,
+) -> Result<Decisions, Flaw> {
+    let mut settings = start;
+    take_settings(&mut settings, text)?;
+    let mut choices = BTreeMap::new();
+    for (index, condition) in conditions.into_iter().enumerate() {
+        let id = condition.id;
+        let choice = ConditionChoice {
+            physics: bundle_choice(condition.physics),
+            identified: bundle_choice(condition.identified),
+            scheduled: condition.scheduled,
+        };
+        if choices.insert(ConditionId(id), choice).is_some() {
+            return Err(Flaw::new(Place::condition(index + 1, id), ContentFault::DuplicateCondition { id }));
+        }
     }
-    Ok(study)
+    Ok(Decisions { settings, constrained: text.constrained.clone(), ignored: text.ignored.clone(), choices })
 }
 
-fn take_settings(study: &mut Study, text: &SettingsText) -> Result<(), Flaw> {
+fn bundle_choice(text: BundleText) -> BundleChoice {
+    BundleChoice { rejected: text.rejected.into_iter().collect(), pinned: text.pinned }
+}
+
+/// What the study's dataset held when the study was saved.
+pub(super) fn inventory_of(conditions: Vec<ConditionInventoryText>) -> Inventory {
+    let of = |text: ConditionInventoryText| {
+        let ConditionInventoryText { id, airspeed_kt, physics, identified } = text;
+        (ConditionId(id), ConditionInventory { airspeed_kt, physics, identified })
+    };
+    Inventory { conditions: conditions.into_iter().map(of).collect() }
+}
+
+fn take_settings(settings: &mut Settings, text: &SettingsText) -> Result<(), Flaw> {
     let [min, max] = text.band_rad_s;
     let band = Band::new(min, max).map_err(|error| Flaw::new(Place::entry("settings, band_rad_s"), error))?;
     let average = match text.cost_average {
@@ -46,7 +64,7 @@ fn take_settings(study: &mut Study, text: &SettingsText) -> Result<(), Flaw> {
         ObjectiveText::Decibel => GainObjective::Decibel,
     };
     let bounds = text.gain_bounds.map(|[lower, upper]| GainBounds { lower, upper });
-    let settings = [
+    let decided = [
         ("band_rad_s", Setting::Band(band)),
         ("points", Setting::Points(text.points)),
         ("cost_average", Setting::CostAverage(average)),
@@ -58,9 +76,9 @@ fn take_settings(study: &mut Study, text: &SettingsText) -> Result<(), Flaw> {
         ("delay_upper_s", Setting::DelayUpper(text.delay_upper_s)),
         ("schedule", Setting::Schedule(schedule_of(&text.schedule)?)),
     ];
-    for (key, setting) in settings {
+    for (key, setting) in decided {
         let place = Place::entry(format!("settings, {key}"));
-        study.apply(&Edit::Set(setting)).map_err(|refusal| Flaw::new(place, refusal))?;
+        settings.apply(&setting).map_err(|refusal| Flaw::new(place, refusal))?;
     }
     Ok(())
 }
@@ -78,70 +96,5 @@ fn schedule_of(text: &ScheduleText) -> Result<ScheduleSettings, Flaw> {
         QuantityText::LnGain => ScheduledQuantity::LnGain,
         QuantityText::Gain => ScheduledQuantity::Gain,
     };
-    Ok(ScheduleSettings { kind, quantity, delays: text.delays })
-}
-
-/// Sets one setting of every pair: `setting(pair, whether it is listed)`.
-fn take_pairs(
-    study: &mut Study,
-    key: &str,
-    listed: &[(String, String)],
-    setting: impl Fn(Pair, bool) -> Setting,
-) -> Result<(), Flaw> {
-    let mut pairs = BTreeSet::new();
-    for (index, (output, input)) in listed.iter().enumerate() {
-        let pair = study.dataset.find_pair(output, input).ok_or_else(|| {
-            let unknown_output = !study.dataset.outputs().iter().any(|channel| channel.name == *output);
-            let (kind, name) = if unknown_output { ("output", output) } else { ("input", input) };
-            let place = Place::entry(format!("settings, {key}, entry {}", index + 1));
-            Flaw::new(place, ContentFault::UnknownChannel { kind, name: name.clone() })
-        })?;
-        pairs.insert(pair);
-    }
-    for pair in study.settings.constrained.pairs() {
-        let edit = Edit::Set(setting(pair, pairs.contains(&pair)));
-        study.apply(&edit).map_err(|refusal| Flaw::new(Place::entry(format!("settings, {key}")), refusal))?;
-    }
-    Ok(())
-}
-
-fn take_condition(
-    study: &mut Study,
-    place: &Place,
-    text: &ConditionText,
-    seen: &mut BTreeSet<i64>,
-) -> Result<(), Flaw> {
-    let id = text.id;
-    if !seen.insert(id) {
-        return Err(Flaw::new(place.clone(), ContentFault::DuplicateCondition { id }));
-    }
-    let id = ConditionId(id);
-    if study.dataset.condition(id).is_none() {
-        return Err(Flaw::new(place.clone(), ContentFault::UnknownCondition { id: id.0 }));
-    }
-    study
-        .apply(&Edit::SetScheduled { condition: id, scheduled: text.scheduled })
-        .map_err(|refusal| Flaw::new(place.at("scheduled"), refusal))?;
-    take_bundle(study, place, id, BundleKind::Physics, &text.physics)?;
-    take_bundle(study, place, id, BundleKind::Identified, &text.identified)
-}
-
-fn take_bundle(
-    study: &mut Study,
-    place: &Place,
-    condition: ConditionId,
-    bundle: BundleKind,
-    text: &BundleText,
-) -> Result<(), Flaw> {
-    let take = |study: &mut Study, entry: String, edit: fn(ModelId) -> Edit, name: &String| {
-        let id = ModelId::new(condition, bundle, name);
-        study.apply(&edit(id)).map_err(|refusal| Flaw::new(place.at(entry), refusal))
-    };
-    for (index, name) in text.rejected.iter().enumerate() {
-        take(study, format!("{bundle}, rejected, entry {}", index + 1), Edit::Reject, name)?;
-    }
-    match &text.pinned {
-        Some(name) => take(study, format!("{bundle}, pinned"), Edit::Pin, name),
-        None => Ok(()),
-    }
+    Ok(ScheduleSettings { kind, quantity, delays: text.delays, airspeed_tolerance_kt: text.airspeed_tolerance_kt })
 }

@@ -1,14 +1,14 @@
 //! From a study to what its file says.
 
 use crate::correction::GainObjective;
-use crate::dataset::{BundleKind, Dataset, Model, PairTable};
+use crate::dataset::{BundleKind, ConditionId, Dataset, Model, PairTable};
 use crate::fidelity::CostAverage;
 use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
-use crate::study::{BundleChoice, Settings, Study};
+use crate::study::{BundleChoice, ConditionInventory, Inventory, Settings, Study};
 
 use super::schema::{
-    AverageText, BundleText, ConditionText, DatasetReference, FORMAT, KindText, ObjectiveText, QuantityText,
-    ScheduleText, SettingsText, StudyText,
+    AverageText, BundleText, ConditionInventoryText, ConditionText, DatasetReference, FORMAT, KindText, ObjectiveText,
+    QuantityText, ScheduleText, SettingsText, StudyText,
 };
 
 /// The text of a study of the referenced dataset.
@@ -30,6 +30,17 @@ pub(super) fn text_of(study: &Study, dataset: DatasetReference) -> StudyText {
         settings: settings_text(&study.settings, &study.dataset),
         conditions: conditions.collect(),
     }
+}
+
+/// What a dataset holds, as a study's file says it.
+pub(super) fn inventory_text(inventory: &Inventory) -> Vec<ConditionInventoryText> {
+    let of = |(id, condition): (&ConditionId, &ConditionInventory)| ConditionInventoryText {
+        id: id.0,
+        airspeed_kt: condition.airspeed_kt,
+        physics: condition.physics.clone(),
+        identified: condition.identified.clone(),
+    };
+    inventory.conditions.iter().map(of).collect()
 }
 
 fn bundle_text(models: &[Model], choice: &BundleChoice) -> BundleText {
@@ -62,10 +73,7 @@ fn settings_text(settings: &Settings, dataset: &Dataset) -> SettingsText {
 }
 
 fn pair_names(table: &PairTable<bool>, dataset: &Dataset) -> Vec<(String, String)> {
-    let names = table
-        .marked()
-        .map(|pair| (dataset.outputs()[pair.output].name.clone(), dataset.inputs()[pair.input].name.clone()));
-    names.collect()
+    table.marked().map(|pair| dataset.channel_names(pair)).collect()
 }
 
 fn schedule_text(settings: ScheduleSettings) -> ScheduleText {
@@ -77,5 +85,5 @@ fn schedule_text(settings: ScheduleSettings) -> ScheduleText {
         ScheduledQuantity::LnGain => QuantityText::LnGain,
         ScheduledQuantity::Gain => QuantityText::Gain,
     };
-    ScheduleText { kind, degree, of, delays: settings.delays }
+    ScheduleText { kind, degree, of, delays: settings.delays, airspeed_tolerance_kt: settings.airspeed_tolerance_kt }
 }

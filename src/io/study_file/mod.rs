@@ -8,15 +8,15 @@ mod schema;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::study::Study;
+use crate::study::{Difference, Inventory, Settings, Study};
 
 use super::dataset_file::{DatasetOrigin, LoadedDataset, dataset_from, embedded_example};
 use super::file_error::FileError;
 use super::source::Source;
 use super::whole_file::write_whole;
 
-use build::study_of;
-use export::text_of;
+use build::{decisions_of, inventory_of};
+use export::{inventory_text, text_of};
 use relative_path::relative_path;
 use schema::{DatasetReference, FORMAT, StudyText};
 
@@ -24,6 +24,19 @@ use schema::{DatasetReference, FORMAT, StudyText};
 pub const STUDY_EXTENSION: &str = "gdcm-study.json";
 /// What stands for a path where a study is about the embedded example.
 const EMBEDDED: &str = "embedded example";
+
+/// A study with the dataset it is about, and what is different in that from when the study was saved.
+#[derive(Clone, Debug)]
+pub struct OpenedStudy {
+    /// The study, with every decision that still applies.
+    pub study: Study,
+    /// Its dataset.
+    pub loaded: LoadedDataset,
+    /// The study's file.
+    pub path: PathBuf,
+    /// What has changed in the dataset, and the decisions that no longer apply; none where it is the same.
+    pub differences: Vec<Difference>,
+}
 
 /// Saves a study of a loaded dataset; replaced whole, or not at all.
 pub fn save_study(study: &Study, loaded: &LoadedDataset, path: &Path) -> Result<(), FileError> {
@@ -44,11 +57,11 @@ fn save(
     path: &Path,
     path_text: impl FnOnce(&Path) -> Result<String, FileError>,
 ) -> Result<(), FileError> {
-    let sha256 = loaded.sha256.clone();
+    let (sha256, holds) = (loaded.sha256.clone(), Some(inventory_text(&Inventory::of(&study.dataset))));
     let reference = match &loaded.origin {
-        DatasetOrigin::EmbeddedExample => DatasetReference { path: None, name: EMBEDDED.to_owned(), sha256 },
+        DatasetOrigin::EmbeddedExample => DatasetReference { path: None, name: EMBEDDED.to_owned(), sha256, holds },
         DatasetOrigin::File(dataset) => {
-            DatasetReference { path: Some(path_text(dataset)?), name: study.dataset.name().to_owned(), sha256 }
+            DatasetReference { path: Some(path_text(dataset)?), name: study.dataset.name().to_owned(), sha256, holds }
         }
     };
     let text = text_of(study, reference);
@@ -68,43 +81,54 @@ pub(super) fn dataset_of_study(path: &Path) -> Option<String> {
     })
 }
 
-/// Opens a study, and the dataset it is about, which must still be the one the study was saved with.
-pub fn open_study(path: &Path) -> Result<(Study, LoadedDataset), FileError> {
-    study_from(&Source::read(path)?, path)
+/// Opens a study and the dataset it is about: where the study says, or else beside the study.
+pub fn open_study(path: &Path) -> Result<OpenedStudy, FileError> {
+    study_from(&Source::read(path)?, path, None)
 }
 
-/// The study that a source holds, with its dataset.
-pub(super) fn study_from(source: &Source<'_>, path: &Path) -> Result<(Study, LoadedDataset), FileError> {
+/// Opens a study whose dataset has moved to `dataset`.
+pub fn open_study_of(path: &Path, dataset: &Path) -> Result<OpenedStudy, FileError> {
+    study_from(&Source::read(path)?, path, Some(dataset))
+}
+
+/// The study that a source holds; its dataset is at `moved`, or where the study says.
+pub(super) fn study_from(source: &Source<'_>, path: &Path, moved: Option<&Path>) -> Result<OpenedStudy, FileError> {
     let (text, unknown) = FORMAT.decode::<StudyText>(source.text(), path)?;
     FORMAT.check_read(&text.format, text.version, path)?;
-    let mut loaded = load_referenced(&text.dataset, path)?;
-    let study = study_of(loaded.dataset.clone(), &text.settings, &text.conditions)
+    let mut loaded = load_referenced(&text.dataset, path, moved)?;
+    let decisions = decisions_of(Settings::of(&loaded.dataset), &text.settings, text.conditions)
         .map_err(|flaw| FileError::content(path, flaw))?;
+    let (study, not_applied) = decisions.applied_to(loaded.dataset.clone());
+    let mut differences = match text.dataset.holds {
+        _ if text.dataset.sha256 == loaded.sha256 => Vec::new(),
+        Some(held) => inventory_of(held).differences(&loaded.dataset),
+        None => vec![Difference::AnotherFile { expected: text.dataset.sha256, found: loaded.sha256.clone() }],
+    };
+    differences.extend(not_applied);
     loaded.cautions.extend(unknown);
-    Ok((study, loaded))
+    Ok(OpenedStudy { study, loaded, path: path.to_owned(), differences })
 }
 
-fn load_referenced(reference: &DatasetReference, study: &Path) -> Result<LoadedDataset, FileError> {
-    let wrapped = |error| FileError::StudyDataset { path: study.to_owned(), dataset: Box::new(error) };
-    let changed = |origin: &DatasetOrigin, found: &str| FileError::DatasetChanged {
-        path: study.to_owned(),
-        dataset: origin.to_string(),
-        expected: reference.sha256.clone(),
-        found: found.to_owned(),
+fn load_referenced(
+    reference: &DatasetReference,
+    study: &Path,
+    moved: Option<&Path>,
+) -> Result<LoadedDataset, FileError> {
+    let path = match (moved, &reference.path) {
+        (Some(moved), _) => moved.to_owned(),
+        (None, None) => return embedded_example(),
+        (None, Some(relative)) => referenced_path(study, relative),
     };
-    let Some(relative) = &reference.path else {
-        let loaded = embedded_example()?;
-        let same = loaded.sha256 == reference.sha256;
-        return if same { Ok(loaded) } else { Err(changed(&loaded.origin, &loaded.sha256)) };
-    };
-    let path = study.parent().unwrap_or(Path::new("")).join(relative);
-    let source = Source::read(&path).map_err(wrapped)?;
-    let origin = DatasetOrigin::File(path);
-    // Before anything in it is complained of: what is wrong with it may be that it has changed.
-    if source.sha256 != reference.sha256 {
-        return Err(changed(&origin, &source.sha256));
-    }
-    dataset_from(&source, origin).map_err(wrapped)
+    let load = |path: PathBuf| dataset_from(&Source::read(&path)?, DatasetOrigin::File(path));
+    load(path).map_err(|error| FileError::StudyDataset { path: study.to_owned(), dataset: Box::new(error) })
+}
+
+/// Where the study says that its dataset is, or beside the study if it is only there.
+fn referenced_path(study: &Path, relative: &str) -> PathBuf {
+    let directory = study.parent().unwrap_or(Path::new(""));
+    let said = directory.join(relative);
+    let beside = said.file_name().map(|name| directory.join(name));
+    beside.filter(|beside| !said.exists() && beside.exists()).unwrap_or(said)
 }
 
 /// The dataset's path as the study at `study` has to write it.

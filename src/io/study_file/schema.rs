@@ -1,8 +1,11 @@
 //! A study file, key by key.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 use crate::io::json_text::Format;
+use crate::schedule::DEFAULT_TOLERANCE_KT;
 
 /// What a study file calls itself.
 pub(super) const FORMAT: Format = Format { name: "gdcm-study", version: 1 };
@@ -25,6 +28,18 @@ pub(super) struct DatasetReference {
     /// The dataset's name, for people; "embedded example" for the embedded example.
     pub(super) name: String,
     pub(super) sha256: String,
+    /// What it held; absent in studies of older programs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) holds: Option<Vec<ConditionInventoryText>>,
+}
+
+/// What one condition held: each model's name and fingerprint.
+#[derive(Deserialize, Serialize)]
+pub(super) struct ConditionInventoryText {
+    pub(super) id: i64,
+    pub(super) airspeed_kt: f64,
+    pub(super) physics: BTreeMap<String, String>,
+    pub(super) identified: BTreeMap<String, String>,
 }
 
 #[derive(Deserialize, Serialize)]
@@ -68,6 +83,12 @@ pub(super) struct ScheduleText {
     pub(super) degree: Option<usize>,
     pub(super) of: QuantityText,
     pub(super) delays: bool,
+    #[serde(default = "default_tolerance_kt")]
+    pub(super) airspeed_tolerance_kt: f64,
+}
+
+fn default_tolerance_kt() -> f64 {
+    DEFAULT_TOLERANCE_KT
 }
 
 #[derive(Clone, Copy, Deserialize, Serialize)]

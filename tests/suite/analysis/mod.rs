@@ -9,6 +9,7 @@ use gdcm::study::{Analysis, Assessed, Edit, Engine, Setting, Study, Unobserved};
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 
+mod edges;
 mod example;
 mod known_answer;
 mod response_paths;

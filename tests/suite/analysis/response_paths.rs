@@ -238,3 +238,86 @@ fn a_static_gain_has_the_same_value_at_every_frequency() {
         assert_eq!(values, &vec![Complex::new(d[(pair.output, pair.input)], 0.0); 9]);
     }
 }
+
+/// A number of any size that a machine can hold, or zero.
+fn any_size() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        1 => Just(0.0),
+        9 => (-300.0..300.0_f64, any::<bool>()).prop_map(|(size, negative)| {
+            if negative { -10_f64.powf(size) } else { 10_f64.powf(size) }
+        }),
+    ]
+}
+
+/// The greatest entry that is computed with.
+const LARGEST_ENTRY: f64 = 1e75;
+
+proptest! {
+    #[test]
+    fn entries_of_any_size_end_quickly_in_numbers_or_in_none(
+        (n, m, p) in (1..9usize, 1..5usize, 1..5usize),
+        numbers in prop::collection::vec(any_size(), 12 * 12), cut in any::<bool>(),
+    ) {
+        let begun = std::time::Instant::now();
+        let entry = |row: usize, column: usize| {
+            let number: f64 = numbers[12 * row + column];
+            if cut { number.clamp(-LARGEST_ENTRY, LARGEST_ENTRY) } else { number }
+        };
+        let part = |row: usize, column: usize, rows, columns| {
+            DMatrix::from_fn(rows, columns, |r, c| entry(row + r, column + c))
+        };
+        let parts = [part(0, 0, n, n), part(0, n, n, m), part(n, 0, p, n), part(n, n, p, m)];
+        let computable = parts.iter().flat_map(|part| part.iter()).all(|entry| entry.abs() <= LARGEST_ENTRY);
+        let [a, b, c, d] = parts;
+        let response = FrequencyResponse::of(&Dynamics::StateSpace(StateSpace::new(a, b, c, d).unwrap()), &grid(0.5, 12.0, 20));
+        let none = response.not_finite();
+        prop_assert!(computable || none.len() == p * m, "what is too large is refused whole");
+        // A thousandth of that, on any machine.
+        prop_assert!(begun.elapsed().as_secs_f64() < 5.0);
+    }
+
+    #[test]
+    fn a_lag_of_any_size_is_computed_right_or_not_at_all(a in any_size(), b in any_size(), c in any_size(), d in any_size()) {
+        let one = |entry: f64| DMatrix::from_element(1, 1, entry.clamp(-LARGEST_ENTRY, LARGEST_ENTRY));
+        let lag = StateSpace::new(one(a), one(b), one(c), one(d)).unwrap();
+        let grid = grid(0.5, 12.0, 9);
+        for (omega, value) in grid.omega().iter().zip(&response(&lag, &grid)[Pair::new(0, 0)]) {
+            let through = lag.c()[0] * lag.b()[0] / Complex::new(-lag.a()[0], *omega);
+            let largest = through.norm().max(lag.d()[0].abs());
+            // Rounding of a handful of operations; below the normal numbers of the machine an absolute error.
+            let error = (value - (through + lag.d()[0])).norm();
+            prop_assert!(!value.is_finite() || error <= 1e-14 * largest + 1e-300, "{value} for {through} + {}", lag.d()[0]);
+        }
+    }
+
+    #[test]
+    fn units_of_time_states_inputs_and_outputs_do_not_matter_whatever_their_size(
+        model in random_model(), (time, input, output) in (-430..150i32, -240..240i32, -240..240i32),
+        units in prop::collection::vec(-10..10i32, 25),
+    ) {
+        let two = |power: i32| 2_f64.powi(power);
+        let n = model.order();
+        let a = DMatrix::from_fn(n, n, |row, column| {
+            // In two steps: a power of two below 2^-1022 is none.
+            model.a()[(row, column)] * two(time) * two(units[row] - units[column])
+        });
+        let b = DMatrix::from_fn(n, model.inputs(), |row, column| model.b()[(row, column)] * two(input) * two(units[row]));
+        let c = DMatrix::from_fn(model.outputs(), n, |row, column| model.c()[(row, column)] * two(output) * two(-units[column]));
+        let none = model.d() * 0.0;
+        prop_assume!([&a, &b, &c].iter().all(|part| part.iter().all(|entry| entry.abs() <= LARGEST_ENTRY)));
+        let plain = StateSpace::new(model.a().clone(), model.b().clone(), model.c().clone(), none.clone()).unwrap();
+        let scaled = StateSpace::new(a, b, c, none).unwrap();
+        for omega in [0.5, 3.0] {
+            let expected = dense(&plain, omega);
+            let largest = expected.iter().map(|value| value.norm()).fold(0.0, f64::max);
+            let found = response(&scaled, &grid(omega * two(time), 2.0 * omega * two(time), 2));
+            for (pair, values) in found.iter() {
+                // Back in two steps, for the same reason.
+                let half = (input + output - time) / 2;
+                let value = values[0] * two(-half) * two(half - (input + output - time));
+                let error = (value - expected[(pair.output, pair.input)]).norm();
+                prop_assert!(error <= 1e-9 * largest, "{pair:?}: {error:.1e} of {largest:.1e}");
+            }
+        }
+    }
+}

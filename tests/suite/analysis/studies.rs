@@ -4,9 +4,10 @@ use std::collections::BTreeSet;
 
 use super::*;
 use gdcm::app::Pool;
+use gdcm::dataset::{Condition, Dataset, Model, ModelId};
 use gdcm::study::{Cancelled, ConditionAnalysis, ConditionFailure, Progress};
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
 
 /// A study of the example on few frequencies: what these tests ask does not depend on how many.
 fn short_study() -> Study {
@@ -154,4 +155,65 @@ fn an_analysis_that_is_stopped_halfway_goes_on_from_there_with_the_same_result()
         assert_eq!(engine.analyze(&study, &Onlooker::new(ConditionId(1), steps)), Err(Cancelled));
     }
     assert_eq!(analyze(&mut engine, &study), analyze(&mut Engine::default(), &study));
+}
+
+/// The example with its conditions, and their models, in reverse order.
+fn reversed(dataset: &Dataset) -> Dataset {
+    let conditions = dataset.conditions().iter().rev().map(|condition| {
+        let bundle = |kind| condition.bundle(kind).iter().rev().cloned().collect();
+        let (physics, identified) = (bundle(BundleKind::Physics), bundle(BundleKind::Identified));
+        Condition::new(condition.flight_state().clone(), physics, identified).unwrap()
+    });
+    Dataset::new(dataset.header(), conditions.collect()).unwrap()
+}
+
+#[test]
+fn the_order_of_conditions_and_models_touches_no_decision_and_no_result() {
+    let (mut study, mut engine) = (short_study(), Engine::default());
+    let tenth = |kind, name: &str| ModelId::new(ConditionId(10), kind, name);
+    for edit in [
+        Edit::Reject(tenth(BundleKind::Physics, "nominal")),
+        Edit::Pin(tenth(BundleKind::Physics, "V+5kt")),
+        Edit::SetScheduled { condition: ConditionId(2), scheduled: false },
+    ] {
+        study.apply(&edit).unwrap();
+    }
+    let (carried, differences) = study.carried_over(Arc::new(reversed(&study.dataset)));
+    assert_eq!(differences, []);
+    assert_eq!((&carried.choices, &carried.settings), (&study.choices, &study.settings));
+    let (before, after) = (analyze(&mut engine, &study), analyze(&mut engine, &carried));
+    for (id, result) in &before.conditions {
+        let (before, after) = (result.as_ref().unwrap(), after.condition(*id).unwrap());
+        for kind in BundleKind::BOTH {
+            assert_eq!(before.representative_name(kind), after.representative_name(kind), "condition {id}");
+        }
+        assert_eq!(before.correction, after.correction, "condition {id}");
+    }
+}
+
+#[test]
+fn of_a_dataset_with_one_other_model_one_response_is_computed() {
+    let (study, mut engine) = (short_study(), Engine::default());
+    let (band, id) = (study.settings.band, ConditionId(3));
+    let mut curves = |study: &Study| engine.curves(&study.dataset, id, (band, 50), &Unobserved).unwrap().unwrap();
+    let before = curves(&study);
+    let conditions = study.dataset.conditions().iter().map(|condition| {
+        let bundle = |kind| condition.bundle(kind).to_vec();
+        let mut physics: Vec<Model> = bundle(BundleKind::Physics);
+        if condition.id() == id
+            && let Dynamics::StateSpace(model) = &physics[4].dynamics
+        {
+            let (a, b, c, d) = (model.a().clone(), 1.5 * model.b(), model.c().clone(), model.d().clone());
+            physics[4].dynamics = Dynamics::StateSpace(StateSpace::new(a, b, c, d).unwrap());
+        }
+        Condition::new(condition.flight_state().clone(), physics, bundle(BundleKind::Identified)).unwrap()
+    });
+    let replaced = Dataset::new(study.dataset.header(), conditions.collect()).unwrap();
+    let (carried, differences) = study.carried_over(Arc::new(replaced));
+    assert_eq!(differences.len(), 1);
+    let after = curves(&carried);
+    let kept: Vec<bool> = before.physics.iter().zip(&after.physics).map(|(a, b)| Arc::ptr_eq(a, b)).collect();
+    let expected: Vec<bool> = (0..kept.len()).map(|index| index != 4).collect();
+    assert_eq!(kept, expected, "every response but that of the model replaced is the one computed before");
+    assert!(before.identified.iter().zip(&after.identified).all(|(a, b)| Arc::ptr_eq(a, b)));
 }

@@ -75,7 +75,7 @@ fn a_panic_while_computing_is_told_with_what_to_send_and_the_study_stays() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mine.gdcm-study.json");
     save_as(&mut window, &path);
-    assert_eq!(open_study(&path).unwrap().0.settings.alpha_gain, 12.5, "the study can be saved");
+    assert_eq!(open_study(&path).unwrap().study.settings.alpha_gain, 12.5, "the study can be saved");
     set_alpha(&mut window, 3.0);
     settle(&mut window);
     assert_eq!(state(&window).analysis().unwrap().study.settings.alpha_gain, 3.0, "and edited, with a new engine");

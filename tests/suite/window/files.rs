@@ -60,7 +60,7 @@ fn a_study_is_saved_and_opens_with_the_same_result() {
     save_as(&mut window, &path);
     settle(&mut window);
     assert!(!state(&window).unsaved);
-    let (study, _) = open_study(&path).unwrap();
+    let study = open_study(&path).unwrap().study;
     assert_eq!(study.choices, state(&window).study.choices);
     let gain = net_gain(&window, "Q", "LON");
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);

@@ -49,7 +49,7 @@ fn decisions_that_were_not_saved_are_offered_at_the_next_start_and_restored() {
     let study = state(&lost).study.clone();
     drop(lost);
     let file = kept(directory.path()).remove(0);
-    assert_eq!(open_study(&file).unwrap().0, study, "it is a study, and opens by hand too");
+    assert_eq!(open_study(&file).unwrap().study, study, "it is a study, and opens by hand too");
 
     let mut window = next_window(directory.path());
     window.get_by_label_contains("for the embedded example were not saved");
@@ -81,7 +81,7 @@ fn a_study_that_was_saved_before_is_offered_by_its_name_and_saved_there_again() 
     window.key_press_modifiers(Modifiers::COMMAND, Key::S);
     settle(&mut window);
     assert!(!state(&window).unsaved);
-    assert_eq!(open_study(&path).unwrap().0.settings.alpha_gain, 12.5);
+    assert_eq!(open_study(&path).unwrap().study.settings.alpha_gain, 12.5);
 }
 
 #[test]

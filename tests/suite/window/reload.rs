@@ -78,7 +78,7 @@ fn a_study_saved_after_a_reload_is_one_of_the_file_as_it_is_now() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mine.gdcm-study.json");
     save_as(&mut window, &path);
-    let (study, loaded) = open_study(&path).unwrap();
+    let OpenedStudy { study, loaded, .. } = open_study(&path).unwrap();
     assert!(study.dataset.name().starts_with("renewed") && loaded.path().is_some());
 }
 

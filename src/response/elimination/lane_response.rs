@@ -6,10 +6,10 @@ use pulp::{Simd, WithSimd};
 use crate::dataset::PairTable;
 
 use super::complex_lanes::frequencies;
-use super::eliminated_rows::Panel;
-use super::frequency_response::FrequencyResponse;
 use super::hessenberg_form::{HessenbergForm, PANEL};
 use super::lane_elimination::{Elimination, GROUP};
+use super::panel::Panel;
+use crate::response::frequency_response::FrequencyResponse;
 
 /// `H(j omega)` of a reduced model, to be evaluated with the vectors of an instruction set.
 pub struct LaneResponse<'a> {
@@ -18,6 +18,9 @@ pub struct LaneResponse<'a> {
     /// The frequencies \[rad/s\].
     pub omega: &'a [f64],
 }
+
+/// Largest `omega / alpha`, of which squares are taken.
+const LARGEST_FREQUENCY: f64 = 1e150;
 
 /// A vector of values, in the order of the frequencies.
 type Values<S> = [<S as Simd>::f64s; 2];
@@ -29,7 +32,7 @@ impl WithSimd for LaneResponse<'_> {
     fn with_simd<S: Simd>(self, simd: S) -> FrequencyResponse {
         // In registers a panel takes six for each row.
         let most = if S::REGISTER_COUNT >= 32 { 4 } else { 2 };
-        match tile_of(self.form.sides(), most) {
+        match tile_of(self.form.inputs(), most) {
             1 => self.evaluate::<S, 1>(simd),
             3 if S::REGISTER_COUNT >= 32 => self.evaluate::<S, 3>(simd),
             4 if S::REGISTER_COUNT >= 32 => self.evaluate::<S, 4>(simd),
@@ -50,14 +53,17 @@ impl LaneResponse<'_> {
     fn evaluate<S: Simd, const R: usize>(&self, simd: S) -> FrequencyResponse {
         let form = self.form;
         let scale = simd.splat_f64s(form.frequency_scale());
-        let room = self.omega.len().div_ceil(S::F64_LANES) * form.outputs() * form.sides();
+        let room = self.omega.len().div_ceil(S::F64_LANES) * form.outputs() * form.inputs();
         let mut values: Vec<Values<S>> = Vec::with_capacity(room);
         let mut elimination = Elimination::<S, R>::with_room_for(simd, form);
         let mut lanes = [simd.splat_f64s(0.0); GROUP];
         for omega in self.omega.chunks(GROUP) {
             let vectors = omega.len().div_ceil(S::F64_LANES);
             for (lanes, omega) in lanes.iter_mut().zip(omega.chunks(S::F64_LANES)) {
-                *lanes = simd.mul_f64s(scale, frequencies(simd, omega));
+                let omega = simd.mul_f64s(scale, frequencies(simd, omega));
+                // What would overflow must not look like a number.
+                let overflows = simd.greater_than_f64s(omega, simd.splat_f64s(LARGEST_FREQUENCY));
+                *lanes = simd.select_f64s(overflows, simd.splat_f64s(f64::NAN), omega);
             }
             elimination.run(simd, form, &lanes[..vectors]);
             for rows in elimination.vectors_mut() {
@@ -74,7 +80,7 @@ impl LaneResponse<'_> {
     }
 }
 
-/// Appends the values of a tile: output by output, those of its sides.
+/// Appends the values of a tile: output by output, those of its inputs.
 #[inline(always)]
 fn append<S: Simd, const R: usize>(
     simd: S,
@@ -90,30 +96,30 @@ fn append<S: Simd, const R: usize>(
             interleaved[offset][row] = entries[offset][row].interleaved(simd);
         }
     }
-    let (sides, outputs) = of_tile(form, R, panel, tile);
+    let (inputs, outputs) = of_tile(form, R, panel, tile);
     for values_of_output in &interleaved[..outputs] {
-        values.extend_from_slice(&values_of_output[..sides]);
+        values.extend_from_slice(&values_of_output[..inputs]);
     }
 }
 
 /// Sides and outputs of a panel of a tile that the model has.
 #[inline(always)]
 fn of_tile(form: &HessenbergForm, rows: usize, panel: usize, tile: usize) -> (usize, usize) {
-    (rows.min(form.sides() - tile * rows), PANEL.min(form.outputs() - panel * PANEL))
+    (rows.min(form.inputs() - tile * rows), PANEL.min(form.outputs() - panel * PANEL))
 }
 
 /// The place of each response in the order in which tiles of so many rows are appended.
 fn places(form: &HessenbergForm, rows: usize) -> PairTable<usize> {
     let (outputs, inputs) =
-        if form.is_dual() { (form.sides(), form.outputs()) } else { (form.outputs(), form.sides()) };
+        if form.is_dual() { (form.inputs(), form.outputs()) } else { (form.outputs(), form.inputs()) };
     let mut places = PairTable::filled(outputs, inputs, 0);
     let mut place = 0;
     for panel in 0..form.output_panels() {
-        for tile in 0..form.sides().div_ceil(rows) {
-            let (sides, outputs) = of_tile(form, rows, panel, tile);
+        for tile in 0..form.inputs().div_ceil(rows) {
+            let (inputs, outputs) = of_tile(form, rows, panel, tile);
             for output in 0..outputs {
-                for side in 0..sides {
-                    places[form.pair(tile * rows + side, panel * PANEL + output)] = place;
+                for input in 0..inputs {
+                    places[form.pair(tile * rows + input, panel * PANEL + output)] = place;
                     place += 1;
                 }
             }

@@ -3,17 +3,11 @@
 use pulp::Simd;
 
 use super::complex_lanes::{ComplexLanes, any, filled};
-use super::hessenberg_form::{Entries, HessenbergForm, PANEL};
-use super::interchange::Interchange;
-
-/// A number of `R` rows, in each lane.
-pub type Rows<S, const R: usize> = [ComplexLanes<S>; R];
-
-/// Neighbouring columns of `R` rows.
-pub type Panel<S, const R: usize> = [Rows<S, R>; PANEL];
-
-/// The active row in neighbouring columns.
-type Pivots<S> = [ComplexLanes<S>; PANEL];
+use super::hessenberg_form::{HessenbergForm, PANEL};
+use super::panel::{
+    Panel, Pivots, Rows, real_panel, subtract_active, subtract_diagonal, subtract_multiples, subtract_pivots,
+};
+use super::pivoting::Interchange;
 
 /// In which columns of a panel rows were interchanged.
 pub type Interchanged = [bool; PANEL];
@@ -23,10 +17,6 @@ pub type Interchanged = [bool; PANEL];
 /// They are the *active* row, which begins as the first of `[G K]`, and all rows of `[L D']` but the first. That has one
 /// entry in G's columns, the last, and needs nothing before all others are clear: it takes no part, and the active row
 /// has its place, so that rows and responses are counted alike.
-///
-/// Column k is cleared in all of them with the next row of `[G K]`, divided by its entry there and real but for its
-/// diagonal: row `w` becomes `w - w_k r`, `r = (G_(k+1) - j omega e_(k+1)) / h`, `h = G_(k+1,k)`. Where the active row is
-/// much larger than that, rows are interchanged ([`Interchange`]).
 ///
 /// Only multipliers are written at every column. Entries are computed where they are needed, a panel of columns of `R`
 /// rows at a time in registers: 2 fused operations on real numbers for each entry and column before it, n (n + 2 p) a row
@@ -54,18 +44,20 @@ struct Tile<S: Simd, const R: usize> {
 }
 
 impl<S: Simd, const R: usize> EliminatedRows<S, R> {
-    /// Room for a model, and for an interchange in every column: a list that grows would cost the registers their contents.
+    /// Room for a model, and for an interchange in every column of its panels (one that is not a number asks for one even in
+    /// the columns that make the last panel whole): a list that grows would cost the registers their contents.
     #[inline(always)]
     pub fn with_room_for(simd: S, form: &HessenbergForm) -> Self {
         let zeros = [ComplexLanes::real(simd, 0.0); R];
-        let count = form.sides().div_ceil(R).max(1);
+        let count = form.inputs().div_ceil(R).max(1);
+        let columns = form.state_panels() * PANEL;
         let mut tiles = Vec::with_capacity(count);
         for _ in 0..count {
             let multipliers = filled([zeros; PANEL], form.state_panels());
-            tiles.push(Tile { multipliers, quotients: filled(zeros, form.order()), last: zeros });
+            tiles.push(Tile { multipliers, quotients: filled(zeros, columns), last: zeros });
         }
         let left = [zeros[0]; PANEL];
-        let (interchanges, pivots) = (filled(Interchange::none(simd), form.order()), filled(left, form.order()));
+        let (interchanges, pivots) = (filled(Interchange::none(simd), columns), filled(left, columns));
         Self { omega: left[0].re, tiles, interchanges, count: 0, pivots, left }
     }
 
@@ -86,14 +78,14 @@ impl<S: Simd, const R: usize> EliminatedRows<S, R> {
         // Their sum: not a number if one is none.
         let mut excess = simd.splat_f64s(0.0);
         for (entries, subdiagonal) in entries.iter().zip(form.subdiagonals(panel)) {
-            let sensitivity = simd.splat_f64s(subdiagonal.sensitivity);
-            excess = simd.mul_add_e_f64s(entries[0].square(simd), sensitivity, excess);
+            let inverse_square_threshold = simd.splat_f64s(subdiagonal.inverse_square_threshold);
+            excess = simd.mul_add_e_f64s(entries[0].square(simd), inverse_square_threshold, excess);
         }
         self.tiles[0].multipliers[panel] = entries;
         !exceeds(simd, excess)
     }
 
-    /// Clears a panel of the first tile column by column, with an interchange where one is asked for or `wanted`; returns
+    /// Clears a panel of the first tile column by column, with an interchange where one is asked for or `required`; returns
     /// where.
     #[inline(always)]
     pub fn clear_with_interchanges(
@@ -101,16 +93,16 @@ impl<S: Simd, const R: usize> EliminatedRows<S, R> {
         simd: S,
         form: &HessenbergForm,
         panel: usize,
-        wanted: Interchanged,
+        required: Interchanged,
     ) -> Interchanged {
         self.forget_from(panel);
         let mut entries = self.state_panel::<true>(simd, form, 0, panel);
         let mut multipliers = entries;
-        let mut interchanged = wanted;
+        let mut interchanged = required;
         // Written out: a loop has no constants.
-        (interchanged[0], multipliers[0]) = self.clear_one::<0>(simd, form, panel, wanted[0], &mut entries);
-        (interchanged[1], multipliers[1]) = self.clear_one::<1>(simd, form, panel, wanted[1], &mut entries);
-        (interchanged[2], multipliers[2]) = self.clear_one::<2>(simd, form, panel, wanted[2], &mut entries);
+        (interchanged[0], multipliers[0]) = self.clear_one::<0>(simd, form, panel, required[0], &mut entries);
+        (interchanged[1], multipliers[1]) = self.clear_one::<1>(simd, form, panel, required[1], &mut entries);
+        (interchanged[2], multipliers[2]) = self.clear_one::<2>(simd, form, panel, required[2], &mut entries);
         self.tiles[0].multipliers[panel] = multipliers;
         interchanged
     }
@@ -127,17 +119,17 @@ impl<S: Simd, const R: usize> EliminatedRows<S, R> {
         simd: S,
         form: &HessenbergForm,
         panel: usize,
-        wanted: bool,
+        required: bool,
         entries: &mut Panel<S, R>,
     ) -> (bool, Rows<S, R>) {
-        let sensitivity = simd.splat_f64s(form.subdiagonals(panel)[OFFSET].sensitivity);
-        let asked = exceeds(simd, simd.mul_f64s(entries[OFFSET][0].square(simd), sensitivity));
+        let inverse_square_threshold = simd.splat_f64s(form.subdiagonals(panel)[OFFSET].inverse_square_threshold);
+        let required_here = exceeds(simd, simd.mul_f64s(entries[OFFSET][0].square(simd), inverse_square_threshold));
         let mut multipliers = entries[OFFSET];
-        if asked || wanted {
+        if required_here || required {
             multipliers = self.interchange::<OFFSET>(simd, form, panel, entries);
         }
         self.subtract_next::<OFFSET>(simd, form, panel, multipliers, entries);
-        (asked || wanted, multipliers)
+        (required_here || required, multipliers)
     }
 
     /// Interchanges the active and the next row in a column; returns the multiples of the next row that are left to
@@ -334,91 +326,4 @@ impl<S: Simd, const R: usize> EliminatedRows<S, R> {
 #[inline(always)]
 fn exceeds<S: Simd>(simd: S, excess: S::f64s) -> bool {
     any(simd, simd.not_m64s(simd.less_than_or_equal_f64s(excess, simd.splat_f64s(1.0))))
-}
-
-/// A panel of rows before anything is eliminated.
-#[inline(always)]
-fn real_panel<S: Simd, const R: usize>(simd: S, rows: &[Entries; R]) -> Panel<S, R> {
-    let mut panel = [[ComplexLanes::real(simd, 0.0); R]; PANEL];
-    for offset in 0..PANEL {
-        for row in 0..R {
-            panel[offset][row].re = simd.splat_f64s(rows[row][offset]);
-        }
-    }
-    panel
-}
-
-/// Subtracts multiples of the imaginary part of a next row, `-shift` right of the column that it clears.
-#[inline(always)]
-fn subtract_diagonal<S: Simd, const R: usize>(
-    simd: S,
-    entries: &mut Rows<S, R>,
-    multipliers: Rows<S, R>,
-    shift: S::f64s,
-) {
-    for row in 0..R {
-        entries[row] = entries[row].plus_imaginary_product(simd, multipliers[row], shift);
-    }
-}
-
-/// `panel - sum of multipliers times next rows`: nearly all the work of an elimination.
-#[inline(always)]
-fn subtract_multiples<S: Simd, const R: usize>(
-    simd: S,
-    mut panel: Panel<S, R>,
-    multipliers: &[Rows<S, R>],
-    next: &[Entries],
-) -> Panel<S, R> {
-    for (next, multipliers) in next.iter().zip(multipliers) {
-        let (a, b, c) = (simd.splat_f64s(next[0]), simd.splat_f64s(next[1]), simd.splat_f64s(next[2]));
-        // In this order sixteen registers hold the panel of two rows, three entries and one part of a multiplier.
-        for row in 0..R {
-            let ComplexLanes { re, im } = multipliers[row];
-            panel[0][row].re = simd.negate_mul_add_e_f64s(re, a, panel[0][row].re);
-            panel[1][row].re = simd.negate_mul_add_e_f64s(re, b, panel[1][row].re);
-            panel[2][row].re = simd.negate_mul_add_e_f64s(re, c, panel[2][row].re);
-            panel[0][row].im = simd.negate_mul_add_e_f64s(im, a, panel[0][row].im);
-            panel[1][row].im = simd.negate_mul_add_e_f64s(im, b, panel[1][row].im);
-            panel[2][row].im = simd.negate_mul_add_e_f64s(im, c, panel[2][row].im);
-        }
-    }
-    panel
-}
-
-/// `panel - quotients pivots`: 4 fused operations on real numbers for each entry.
-#[inline(always)]
-fn subtract_pivots<S: Simd, const R: usize>(
-    simd: S,
-    mut panel: Panel<S, R>,
-    quotients: &Rows<S, R>,
-    pivots: &Pivots<S>,
-) -> Panel<S, R> {
-    for row in 0..R {
-        for offset in 0..PANEL {
-            panel[offset][row] = panel[offset][row].minus_product(simd, quotients[row], pivots[offset]);
-        }
-    }
-    panel
-}
-
-/// [`subtract_pivots`] of the tile whose first row is the active one: that is kept as `pivots`, and has zero in its place.
-#[inline(always)]
-fn subtract_active<S: Simd, const R: usize>(
-    simd: S,
-    mut panel: Panel<S, R>,
-    quotients: &Rows<S, R>,
-    pivots: &mut Pivots<S>,
-) -> Panel<S, R> {
-    let zero = ComplexLanes::real(simd, 0.0);
-    for row in 1..R {
-        for entries in &mut panel {
-            entries[row] = entries[row].minus_product(simd, quotients[row], entries[0]);
-        }
-    }
-    // The active row last, so that it need not be copied.
-    for (pivot, rows) in pivots.iter_mut().zip(&mut panel) {
-        *pivot = rows[0];
-        rows[0] = zero.minus_product(simd, quotients[0], rows[0]);
-    }
-    panel
 }

@@ -2,8 +2,7 @@
 
 use pulp::{Simd, WithSimd};
 
-use super::aligned_numbers::AlignedNumbers;
-use super::system_table::{BLOCK, Block, SystemTable};
+use super::system_table::{AlignedNumbers, BLOCK, Block, SystemTable};
 
 /// Blocks of a row that are summed up in registers at once.
 const TOGETHER: usize = 4;
@@ -12,7 +11,7 @@ const TOGETHER: usize = 4;
 /// column of `Q' B` zero below its first entry.
 ///
 /// One reflection `I - beta v v'` for that column, then one for each column of A (Golub & Van Loan, "Matrix
-/// Computations", 4th ed. 2013, 7.4.2), applied from both sides in one pass over the table T, as `T - y v' - v w'` with
+/// Computations", 4th ed. 2013, 7.4.2), applied from both inputs in one pass over the table T, as `T - y v' - v w'` with
 ///
 /// ```text
 /// y = beta T v,   w = beta T' v - gamma v,   gamma = beta v' y
@@ -28,9 +27,9 @@ impl WithSimd for HouseholderReduction<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let table = self.0;
-        let (states, first_side) = (table.states(), table.states());
+        let (states, first_input) = (table.states(), table.states());
         let mut reflector = Reflector::with_room_for(table);
-        reflector.clear(simd, table, first_side, 0);
+        reflector.clear(simd, table, first_input, 0);
         for column in 0..states.saturating_sub(2) {
             reflector.clear(simd, table, column, column + 1);
         }
@@ -53,7 +52,7 @@ impl Reflector {
         Self { beta: 0.0, v: zeros(table.width()), w: zeros(table.width()), y: zeros(table.rows().len()) }
     }
 
-    /// Clears a column below row `first` by a reflection of the states from `first` on, applied from both sides; the column
+    /// Clears a column below row `first` by a reflection of the states from `first` on, applied from both inputs; the column
     /// itself is not among those of these states.
     #[inline(always)]
     fn clear<S: Simd>(&mut self, simd: S, table: &mut SystemTable, column: usize, first: usize) {
@@ -80,7 +79,7 @@ impl Reflector {
         }
     }
 
-    /// Applies the reflection to the columns from `first` on, from both sides.
+    /// Applies the reflection to the columns from `first` on, from both inputs.
     #[inline(always)]
     fn apply<S: Simd>(&mut self, simd: S, table: &mut SystemTable, first: usize) {
         let (states, blocks) = (table.states(), first / BLOCK..table.blocks());
@@ -223,8 +222,8 @@ mod tests {
     }
 
     /// `C A^k B`, which a change of coordinates leaves alone.
-    fn markov_parameter(table: &SystemTable, power: usize, output: usize, side: usize) -> f64 {
-        let mut states: Vec<f64> = (0..STATES).map(|row| table.row(row)[STATES + side]).collect();
+    fn markov_parameter(table: &SystemTable, power: usize, output: usize, input: usize) -> f64 {
+        let mut states: Vec<f64> = (0..STATES).map(|row| table.row(row)[STATES + input]).collect();
         let product = |row: usize, states: &[f64]| table.row(row).iter().zip(states).map(|(a, x)| a * x).sum::<f64>();
         for _ in 0..power {
             states = (0..STATES).map(|row| product(row, &states)).collect();
@@ -241,8 +240,8 @@ mod tests {
     #[test]
     fn from_inputs_to_outputs_nothing_changes() {
         let (before, after) = (table(), reduced(Arch::new()));
-        for (power, output, side) in [(0, 0, 0), (1, 2, 1), (5, 1, 0)] {
-            let [before, after] = [&before, &after].map(|table| markov_parameter(table, power, output, side));
+        for (power, output, input) in [(0, 0, 0), (1, 2, 1), (5, 1, 0)] {
+            let [before, after] = [&before, &after].map(|table| markov_parameter(table, power, output, input));
             // Entries of A^5 grow to some thousand; eleven reflections with rounding errors of 1e-16 each.
             assert!((before - after).abs() < 1e-11, "C A^{power} B: {before} and {after}");
         }

@@ -1,24 +1,53 @@
-//! The frequency response of a state-space model.
+//! The frequency response of a state-space model: its states are eliminated from the system matrix.
+//!
+//! ```text
+//! 1  balance A; scale A and B to order 1; Householder reflections make A Hessenberg and B's first column b e_1; transpose
+//!    and reverse the states. What is left, the same for every frequency s = j omega / alpha, is
+//!        [ G - s I  K  ]      G: zero below its first subdiagonal h_k, real
+//!        [ L        D' ]      H' = D' - L (G - s I)^-1 K
+//! 2  u <- first row of [G - s I, K], the active row; w <- each row of [L D'] but the first
+//! 3  for k = 1 ... n - 1, with the next row r = [G - s I, K]_(k+1) / h_k, which is real but for -s / h_k:
+//! 4     if |u_k| > tau |h_k| in any of eight neighbouring frequencies, then in those with |u_k| > |h_k| interchange:
+//!          w <- w - (w_k / u_k) u;   u <- h_k r - (h_k / u_k) u
+//! 5     else: w <- w - w_k r;   u <- u - u_k r
+//! 6  the last column: w <- w - (w_n / u_n) u, and the first row of [L D'] in the same way; what is left is H'
+//! ```
+//!
+//! A frequency is a lane of a vector register. Hessenberg form: Laub, IEEE Trans. Automatic Control 26(2), 1981; tau is the
+//! pivot threshold of Duff, Erisman & Reid, "Direct Methods for Sparse Matrices", 2nd ed. 2017, 5.2. Steps 3 to 5 run over
+//! panels of three columns, so that only the multiples of the next rows are written to memory ([`eliminated_rows`]).
+
+mod balancing;
+mod complex_lanes;
+mod eliminated_rows;
+mod hessenberg_form;
+mod householder_reduction;
+mod lane_elimination;
+mod lane_response;
+mod panel;
+mod pivoting;
+mod system_table;
 
 use pulp::Arch;
 
 use crate::dataset::StateSpace;
 
 use super::frequency_response::FrequencyResponse;
-use super::hessenberg_form::HessenbergForm;
-use super::lane_response::LaneResponse;
+
+pub(super) use hessenberg_form::HessenbergForm;
+use lane_response::LaneResponse;
 
 /// `H(j omega) = C (j omega I - A)^-1 B + D` at each `omega` \[rad/s\]: a p x m table of `N` values.
 ///
 /// The model is balanced and reduced to Hessenberg form once; at each frequency its states are then eliminated from the
-/// system matrix, with pivoting, in O(n (n + 2 max(m, p)) min(m, p)) operations. Hessenberg form: Laub, "Efficient
-/// multivariable frequency response computations", IEEE Trans. Automatic Control 26(2), 1981. As many frequencies are
-/// solved at once as a vector of the processor holds: eight with AVX-512, four with AVX2, two with NEON, else one.
+/// system matrix, with pivoting, in O(n (n + 2 max(m, p)) min(m, p)) operations. As many frequencies are solved at once as a
+/// vector of the processor holds: eight with AVX-512, four with AVX2, two with NEON, else one.
 ///
 /// Eight neighbouring frequencies choose their pivots together: a value depends on those of its eight, by rounding
 /// only. It has the same bits wherever fused multiply-adds are (AVX2, AVX-512, NEON). Its error is that of a model whose
-/// entries are changed by less than 1e-10 of the largest of A, in practice by some 1e-13, so the relative error grows as
-/// `j omega` comes close to a pole; at a pole, where elimination meets a zero, the values are not finite.
+/// entries are changed by less than 1e-10 of the largest of the balanced A, in practice by some 1e-13, so the relative error
+/// grows as `j omega` comes close to a pole; at a pole, where elimination meets a zero, the values are not finite. Entries
+/// beyond [`super::LargeEntry`]'s limit may overflow.
 pub fn evaluate(model: &StateSpace, omega: &[f64]) -> FrequencyResponse {
     evaluate_on(Arch::new(), model, omega)
 }

@@ -11,12 +11,9 @@ pub const GROUP: usize = 8;
 /// What elimination of the states makes of `[G - j omega I, K; L, D']`, one frequency to a lane: in place of D' stands the
 /// response.
 ///
-/// In each column one complex row of G is left beside the next, the *active* one: one of the two clears the column in all
-/// others. It is the next one, which is real and so takes half the operations, unless in some lane of the group the entry of
-/// the active row is more than tau times as large; then rows are interchanged in all lanes where it is larger at all,
-/// which for neighbouring frequencies are nearly always all. This is threshold pivoting (Duff, Erisman & Reid, "Direct
-/// Methods for Sparse Matrices", 2nd ed. 2017, 5.2): multipliers within G are at most tau, and since each row of G enters
-/// as it is, entries grow at most to `n tau` times the largest.
+/// The next row, which is real, takes half the operations of the active one: it clears a column unless in some lane of the
+/// group the entry of the active row is more than tau times as large. Multipliers within G are then at most tau, and since each
+/// row of G enters as it is, entries grow at most to `n tau` times the largest.
 pub struct Elimination<S: Simd, const R: usize> {
     vectors: Vec<EliminatedRows<S, R>>,
     /// How many of them are in use.
@@ -93,20 +90,20 @@ fn clear_with_interchanges<S: Simd, const R: usize>(
     panel: usize,
     vectors: &mut [EliminatedRows<S, R>],
 ) -> Interchanged {
-    let mut wanted = [false; PANEL];
+    let mut required = [false; PANEL];
     'again: loop {
-        let mut asked = wanted;
+        let mut required_so_far = required;
         for (index, rows) in vectors.iter_mut().enumerate() {
-            let found = rows.clear_with_interchanges(simd, form, panel, asked);
-            let first_new = (0..PANEL).find(|&offset| found[offset] && !asked[offset]);
+            let found = rows.clear_with_interchanges(simd, form, panel, required_so_far);
+            let first_new = (0..PANEL).find(|&offset| found[offset] && !required_so_far[offset]);
             if let (1.., Some(first_new)) = (index, first_new) {
                 // The vectors before did without: all begin again, with what holds for the columns up to this one.
-                wanted = [false; PANEL];
-                wanted[..=first_new].copy_from_slice(&found[..=first_new]);
+                required = [false; PANEL];
+                required[..=first_new].copy_from_slice(&found[..=first_new]);
                 continue 'again;
             }
-            asked = found;
+            required_so_far = found;
         }
-        return asked;
+        return required_so_far;
     }
 }

@@ -1,13 +1,13 @@
 //! A state-space model in the coordinates in which one frequency costs O(n^2).
 
 use nalgebra::DMatrix;
-use nalgebra::linalg::balancing;
 use pulp::Arch;
 
 use crate::dataset::{Pair, StateSpace};
 
+use super::balancing::balance;
 use super::householder_reduction::HouseholderReduction;
-use super::subdiagonal::Subdiagonal;
+use super::pivoting::Subdiagonal;
 use super::system_table::{BLOCK, SystemTable};
 
 /// Columns that elimination computes at once.
@@ -15,6 +15,9 @@ pub const PANEL: usize = 3;
 
 /// Neighbouring entries of a row.
 pub type Entries = [f64; PANEL];
+
+/// Least `alpha`, 2^-450 rad/s: the poles of a slower model are all in zero, as seen from any frequency in use.
+const LEAST_ALPHA: f64 = f64::from_bits((1023 - 450) << 52);
 
 /// Rows of zeros after those of a model, for tiles of up to four rows.
 const PADDING: usize = 3;
@@ -33,15 +36,15 @@ const PADDING: usize = 3;
 /// system matrix is transposed, and the order of the states reversed, which makes it so again.
 ///
 /// The work at each frequency grows with the rows of L. A model with fewer outputs than inputs is therefore held as its
-/// dual `(A', C', B', D')`, whose response is the transpose.
+/// dual `(A', C', B', D')`, whose response is the transpose and whose inputs are the outputs of the model.
 #[derive(Clone, Debug)]
 pub struct HessenbergForm {
     order: usize,
-    sides: usize,
+    inputs: usize,
     outputs: usize,
     dual: bool,
-    /// The input that is the first row of L; the first is in its place.
-    first_side: usize,
+    /// The input that is the first row of L, the one of the largest column of B; the first is in its place.
+    first_input: usize,
     frequency_scale: f64,
     gain: f64,
     /// One for each column of G, those that make the last panel whole included.
@@ -66,29 +69,29 @@ impl HessenbergForm {
             matrices.map(DMatrix::clone)
         };
         balance(&mut a, &mut b, &mut c);
-        let frequency_scale = 1.0 / power_of_two_below(largest_magnitude(a.as_slice()));
-        let (first_side, largest) = largest_column(&b);
+        let frequency_scale = 1.0 / power_of_two_below(largest_magnitude(a.as_slice())).max(LEAST_ALPHA);
+        let (first_input, largest) = largest_column(&b);
         let input_scale = 1.0 / power_of_two_below(largest);
         a *= frequency_scale;
         b *= input_scale;
         c *= frequency_scale / input_scale;
-        if first_side > 0 {
-            b.swap_columns(0, first_side);
-            d.swap_columns(0, first_side);
+        if first_input > 0 {
+            b.swap_columns(0, first_input);
+            d.swap_columns(0, first_input);
         }
-        let (order, sides, outputs) = (a.nrows(), b.ncols(), c.nrows());
+        let (order, inputs, outputs) = (a.nrows(), b.ncols(), c.nrows());
         let mut table = table(&a, &b, &c, &d);
         arch.dispatch(HouseholderReduction(&mut table));
-        let gain = if order > 0 && sides > 0 { table.row(0)[order] } else { 0.0 };
+        let gain = if order > 0 && inputs > 0 { table.row(0)[order] } else { 0.0 };
         let subdiagonals = subdiagonals(&table);
-        let rows = RowsOfPanels::of(&table, &subdiagonals, sides, outputs);
+        let rows = RowsOfPanels::of(&table, &subdiagonals, inputs, outputs);
         let RowsOfPanels { complex_rows, next_rows, feed_through } = rows;
         Self {
             order,
-            sides,
+            inputs,
             outputs,
             dual,
-            first_side,
+            first_input,
             frequency_scale,
             gain,
             subdiagonals,
@@ -104,13 +107,13 @@ impl HessenbergForm {
         self.order
     }
 
-    /// Rows of L.
+    /// Rows of L: inputs of the model, or of its dual.
     #[inline(always)]
-    pub fn sides(&self) -> usize {
-        self.sides
+    pub fn inputs(&self) -> usize {
+        self.inputs
     }
 
-    /// Columns of K.
+    /// Columns of K: outputs of the model, or of its dual.
     #[inline(always)]
     pub fn outputs(&self) -> usize {
         self.outputs
@@ -122,12 +125,14 @@ impl HessenbergForm {
         self.dual
     }
 
-    /// The response of a row of L and a column of K.
-    pub fn pair(&self, side: usize, output: usize) -> Pair {
-        let input = match side {
-            0 => self.first_side,
-            side if side == self.first_side => 0,
-            side => side,
+    /// The model's response of a row of L and a column of K.
+    pub fn pair(&self, input: usize, output: usize) -> Pair {
+        let input = if input == 0 {
+            self.first_input
+        } else if input == self.first_input {
+            0
+        } else {
+            input
         };
         if self.dual { Pair::new(input, output) } else { Pair::new(output, input) }
     }
@@ -165,7 +170,7 @@ impl HessenbergForm {
     /// A panel of `R` of the rows that become complex: the first row of `[G K]` and all of `[L D']` but the first.
     #[inline(always)]
     pub fn complex_rows<const R: usize>(&self, panel: usize, tile: usize) -> &[Entries; R] {
-        let rows = self.sides.max(1) + PADDING;
+        let rows = self.inputs.max(1) + PADDING;
         &self.complex_rows[panel * rows + tile * R..].as_chunks().0[0]
     }
 
@@ -192,11 +197,11 @@ struct RowsOfPanels {
 
 impl RowsOfPanels {
     /// The rows of the transpose of a table, with its states in reversed order.
-    fn of(table: &SystemTable, subdiagonals: &[[Subdiagonal; PANEL]], sides: usize, outputs: usize) -> Self {
+    fn of(table: &SystemTable, subdiagonals: &[[Subdiagonal; PANEL]], inputs: usize, outputs: usize) -> Self {
         let (order, blocks, zeros) = (table.states(), subdiagonals.len(), vec![0.0; table.width()]);
         let panels = blocks + outputs.div_ceil(PANEL);
         let mut rows = Self {
-            complex_rows: Vec::with_capacity(panels * (sides.max(1) + PADDING)),
+            complex_rows: Vec::with_capacity(panels * (inputs.max(1) + PADDING)),
             next_rows: Vec::with_capacity(panels * blocks),
             feed_through: Vec::with_capacity(panels - blocks),
         };
@@ -210,19 +215,19 @@ impl RowsOfPanels {
                 };
                 row.map_or(&zeros[..], |row| table.row(row))
             });
-            rows.push(order, sides, columns, subdiagonals);
+            rows.push(order, inputs, columns, subdiagonals);
             if panel >= blocks {
-                rows.feed_through.push(columns.map(|column| if sides > 0 { column[order] } else { 0.0 }));
+                rows.feed_through.push(columns.map(|column| if inputs > 0 { column[order] } else { 0.0 }));
             }
         }
         rows
     }
 
     /// Appends the rows of a panel, whose columns are rows of the table.
-    fn push(&mut self, order: usize, sides: usize, columns: [&[f64]; PANEL], subdiagonals: &[[Subdiagonal; PANEL]]) {
+    fn push(&mut self, order: usize, inputs: usize, columns: [&[f64]; PANEL], subdiagonals: &[[Subdiagonal; PANEL]]) {
         let state = |state: Option<usize>| state.map_or([0.0; PANEL], |state| columns.map(|column| column[state]));
         self.complex_rows.push(state(order.checked_sub(1)));
-        self.complex_rows.extend((1..sides).map(|side| columns.map(|column| column[order + side])));
+        self.complex_rows.extend((1..inputs).map(|input| columns.map(|column| column[order + input])));
         self.complex_rows.extend([[0.0; PANEL]; PADDING]);
         for (block, subdiagonals) in subdiagonals.iter().enumerate() {
             self.next_rows.push(std::array::from_fn(|offset| {
@@ -265,18 +270,6 @@ fn table(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>, d: &DMatrix<f64>)
     table
 }
 
-/// Makes rows and columns of `a` alike in norm by a diagonal similarity of powers of two, so that nothing is rounded.
-fn balance(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, c: &mut DMatrix<f64>) {
-    if a.nrows() < 2 {
-        return;
-    }
-    let scale = balancing::balance_parlett_reinsch(a);
-    for (state, &scale) in scale.iter().enumerate() {
-        b.row_mut(state).scale_mut(1.0 / scale);
-        c.column_mut(state).scale_mut(scale);
-    }
-}
-
 /// The largest absolute value. Eight maxima of every eighth number each do not wait for one another.
 fn largest_magnitude(numbers: &[f64]) -> f64 {
     let (blocks, rest) = numbers.as_chunks::<BLOCK>();
@@ -309,13 +302,13 @@ mod tests {
     }
 
     #[test]
-    fn the_side_with_fewer_channels_is_solved_for() {
+    fn the_inputs_or_outputs_whichever_are_fewer_are_solved_for() {
         let model = |p, m| {
             let (a, b, c) = (dmatrix![-1.0], DMatrix::zeros(1, m), DMatrix::zeros(p, 1));
             HessenbergForm::of(Arch::new(), &StateSpace::new(a, b, c, DMatrix::zeros(p, m)).unwrap())
         };
-        assert_eq!((model(6, 4).sides(), model(6, 4).is_dual()), (4, false));
-        assert_eq!((model(1, 3).sides(), model(1, 3).is_dual()), (1, true));
+        assert_eq!((model(6, 4).inputs(), model(6, 4).is_dual()), (4, false));
+        assert_eq!((model(1, 3).inputs(), model(1, 3).is_dual()), (1, true));
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! One flight condition with its two bundles of models.
 
+use crate::units::number;
+
 use super::model::Model;
 
 /// Which of a condition's two bundles.
@@ -54,7 +56,7 @@ pub struct Condition {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConditionError {
     /// A figure of the flight state is not finite, or an airspeed is negative.
-    #[error("{field}: expected a finite number{bound}, found {value}")]
+    #[error("{field}: expected a finite number{bound}, found {}", number(*value))]
     FlightState {
         /// The field's name in the file.
         field: &'static str,

@@ -10,7 +10,7 @@ mod model;
 mod pair;
 mod state_space;
 
-pub use band::{Band, BandError};
+pub use band::{Band, BandError, GREATEST_OMEGA, LEAST_OMEGA};
 pub use channel::Channel;
 pub use condition::{BundleKind, Condition, ConditionError, FlightState, ModelId};
 pub use dataset::{Dataset, DatasetError, DatasetHeader};

@@ -76,17 +76,12 @@ impl Place {
         if let [Step::Key(key), Step::Entry(index), after @ ..] = rest
             && key == "conditions"
         {
-            let labels = outline.conditions.get(*index);
-            place.condition = Some(ConditionPlace { position: index + 1, id: labels.and_then(|labels| labels.id) });
+            place.condition = Some(ConditionPlace { position: index + 1, id: outline.id(*index) });
             rest = after;
             if let [Step::Key(key), Step::Entry(model), after @ ..] = rest
                 && let Some(bundle) = bundle_of(key)
             {
-                let names = labels.map(|labels| match bundle {
-                    BundleKind::Physics => &labels.physics,
-                    BundleKind::Identified => &labels.identified,
-                });
-                let name = names.and_then(|names| names.get(*model).cloned().flatten());
+                let name = outline.name(*index, key, *model);
                 place.model = Some(ModelPlace { bundle, position: model + 1, name });
                 rest = after;
             }

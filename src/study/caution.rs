@@ -2,6 +2,7 @@
 
 use crate::dataset::Pair;
 use crate::fidelity::DiscontinuityError;
+use crate::units::number;
 
 /// A caution that travels with a result.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,7 +34,9 @@ impl Caution {
             }
             Caution::NoSuggestions(error) => error.to_string(),
             Caution::BandNotCovered { model, min, max } => format!(
-                "identified model \"{model}\" is measured from {min} to {max} rad/s only: narrow the band or reject it"
+                "identified model \"{model}\" is measured from {} to {} rad/s only: narrow the band or reject it",
+                number(*min),
+                number(*max)
             ),
         }
     }

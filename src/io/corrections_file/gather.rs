@@ -3,12 +3,11 @@
 use crate::correction::{DelayConflict, GainObjective, Outcome, delay_sensitivities, gain_sensitivities};
 use crate::dataset::{BundleKind, Condition, PairTable};
 use crate::fidelity::{Cost, CostAverage};
-use crate::io::by_name::ByName;
 use crate::schedule::{Regression, Schedule, ScheduleKind, ScheduledQuantity};
 use crate::study::{Analysis, Assessed, ConditionAnalysis, ConditionFailure, Settings};
 
-use super::channel_names::{ChannelNames, rows};
 use super::explanation;
+use super::names::{ByName, ChannelNames, rows};
 use super::schema::{
     Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
     DelayOutcome, GainOutcome, NetGain, ScheduleUsed, ScheduledDelays, ScheduledGains, SettingsUsed,

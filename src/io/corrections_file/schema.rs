@@ -2,9 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::io::by_name::ByName;
-
 use super::explanation::Explanation;
+use super::names::ByName;
 
 /// A table `[output][input]` in the dataset's channel order; `None` (null) where a response has no such figure.
 pub type Table = Vec<Vec<Option<f64>>>;

@@ -15,8 +15,9 @@ use flate2::write::GzEncoder;
 use crate::dataset::Dataset;
 
 use super::file_error::FileError;
+use super::output_set::{Existing, OutputSet, make_directory, write_whole};
+use super::plain::plain_path;
 use super::source::Source;
-use super::whole_file::write_whole;
 
 use build::dataset_of;
 use export::text_of;
@@ -39,13 +40,21 @@ pub enum DatasetOrigin {
 impl fmt::Display for DatasetOrigin {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            DatasetOrigin::File(path) => write!(formatter, "{}", path.display()),
+            DatasetOrigin::File(path) => formatter.write_str(&plain_path(path)),
             DatasetOrigin::EmbeddedExample => formatter.write_str("(embedded example)"),
         }
     }
 }
 
 impl DatasetOrigin {
+    /// The file, if it comes from one.
+    pub fn file(&self) -> Option<PathBuf> {
+        match self {
+            DatasetOrigin::File(path) => Some(path.clone()),
+            DatasetOrigin::EmbeddedExample => None,
+        }
+    }
+
     /// The path, or what stands for it in an error.
     pub(super) fn path(&self) -> PathBuf {
         match self {
@@ -84,11 +93,14 @@ pub fn embedded_example() -> Result<LoadedDataset, FileError> {
 }
 
 /// Writes the example dataset, unpacked, into a directory (made where there is none), and returns the file's path.
-pub fn write_example(directory: &Path) -> Result<PathBuf, FileError> {
+pub fn write_example(directory: &Path, existing: Existing) -> Result<PathBuf, FileError> {
     let source = Source::of(EXAMPLE, &DatasetOrigin::EmbeddedExample.path())?;
-    super::directory::make_directory(directory)?;
     let path = directory.join(EXAMPLE_NAME);
-    write_whole(&path, |file| file.write_all(source.text()))?;
+    let mut outputs = OutputSet::new(existing, Vec::new());
+    outputs.check(&[&path])?;
+    make_directory(directory)?;
+    outputs.add(&path, |file| file.write_all(source.text()))?;
+    outputs.persist()?;
     Ok(path)
 }
 

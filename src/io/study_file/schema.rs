@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::io::json_text::Format;
+use crate::io::limits::{MOST_CONDITIONS, MOST_MODELS, MOST_PAIRS};
+use crate::io::list::list;
 
 /// What a study file calls itself.
 pub(super) const FORMAT: Format = Format { name: "gdcm-study", version: 1 };
@@ -14,6 +16,7 @@ pub(super) struct StudyText {
     pub(super) software: String,
     pub(super) dataset: DatasetReference,
     pub(super) settings: SettingsText,
+    #[serde(deserialize_with = "list::<MOST_CONDITIONS, _, _>")]
     pub(super) conditions: Vec<ConditionText>,
 }
 
@@ -36,8 +39,10 @@ pub(super) struct SettingsText {
     pub(super) alpha_delay: f64,
     pub(super) gain_objective: ObjectiveText,
     /// Pairs `[output, input]` to be held.
+    #[serde(deserialize_with = "list::<MOST_PAIRS, _, _>")]
     pub(super) constrained: Vec<(String, String)>,
     /// Pairs `[output, input]` that the objective ignores.
+    #[serde(deserialize_with = "list::<MOST_PAIRS, _, _>")]
     pub(super) ignored: Vec<(String, String)>,
     pub(super) quantile: f64,
     pub(super) gain_bounds: Option<[f64; 2]>,
@@ -98,6 +103,7 @@ pub(super) struct ConditionText {
 /// The choices in one bundle, by model name.
 #[derive(Deserialize, Serialize)]
 pub(super) struct BundleText {
+    #[serde(deserialize_with = "list::<MOST_MODELS, _, _>")]
     pub(super) rejected: Vec<String>,
     pub(super) pinned: Option<String>,
 }

@@ -169,12 +169,12 @@ fn a_study_that_holds_what_cannot_be_decided_is_refused_with_the_place() {
         (|file| file["settings"]["points"] = json!(1), "settings, points"),
         (
             |file| file["settings"]["band_rad_s"] = json!([2, 1]),
-            "settings, band_rad_s: the frequency band must be 0 < min < max",
+            "settings, band_rad_s: the frequency band must be 0.0001 <= min < max",
         ),
         (|file| file["settings"]["gain_bounds"] = json!([2, 1]), "settings, gain_bounds: gain bounds"),
         (
             |file| file["settings"]["schedule"]["degree"] = json!(4),
-            "settings, schedule: schedule: expected a number from 0 to 3",
+            "settings, schedule: schedule: expected a whole number from 0 to 3",
         ),
         (|file| file["settings"]["cost_average"] = json!("mode"), "settings, cost_average"),
         (

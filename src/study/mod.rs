@@ -36,6 +36,8 @@ pub use engine::Engine;
 pub use history::History;
 pub use inventory::{ConditionInventory, Inventory};
 pub use setting::Setting;
-pub use settings::{GREATEST_GAIN, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings};
+pub use settings::{
+    GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings,
+};
 pub use toggles::Toggles;
 pub use watch::{Stopped, Unwatched, Watch};

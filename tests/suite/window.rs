@@ -17,12 +17,12 @@ use gdcm::view::net_gain_scene::channel_panels;
 use gdcm::view::plot::{BodeCurve, Pane, Role as CurveRole};
 use gdcm::view::state::{NoticeKind, State};
 
-type Window = Harness<'static, GdcmApp>;
+pub(crate) type Window = Harness<'static, GdcmApp>;
 
 const CONDITION_10: &str = "Condition 10: 60 kt, low altitude, high weight";
 
 /// The window on the example, its first results there.
-fn window() -> Window {
+pub(crate) fn window() -> Window {
     let build = |creation: &mut eframe::CreationContext<'static>| {
         let example = embedded_example().expect("the embedded example is a dataset");
         GdcmApp::new(&creation.egui_ctx, Opened::Dataset(example)).expect("a thread can be started")
@@ -33,7 +33,7 @@ fn window() -> Window {
 }
 
 /// Draws frames until nothing is being computed or read, and the curves of the condition shown are there.
-fn settle(window: &mut Window) {
+pub(crate) fn settle(window: &mut Window) {
     // Far above what the slowest machine needs: only a hang gets here.
     let limit = Instant::now() + Duration::from_secs(120);
     loop {
@@ -50,12 +50,12 @@ fn settle(window: &mut Window) {
     window.run_steps(2);
 }
 
-fn click(window: &mut Window, label: &str) {
+pub(crate) fn click(window: &mut Window, label: &str) {
     window.get_by_label(label).click();
     settle(window);
 }
 
-fn state(window: &Window) -> &State {
+pub(crate) fn state(window: &Window) -> &State {
     window.state().state()
 }
 
@@ -127,14 +127,14 @@ fn from_the_example_to_exported_corrections() {
     assert!(folder.path().join("corrections.csv").exists() && folder.path().join("assessment.csv").exists());
 }
 
-fn fill(window: &mut Window, field: &str, path: &Path) {
+pub(crate) fn fill(window: &mut Window, field: &str, path: &Path) {
     window.get_by_label(field).focus();
     window.run_steps(2);
     window.get_by_label(field).type_text(path.to_str().unwrap());
     window.run_steps(2);
 }
 
-fn export_to(window: &mut Window, folder: &Path) {
+pub(crate) fn export_to(window: &mut Window, folder: &Path) {
     click(window, "Export corrections…");
     fill(window, "Export folder", folder);
     click(window, "Export");

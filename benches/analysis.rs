@@ -36,8 +36,8 @@ fn stages(criterion: &mut Criterion) {
     let condition = &dataset.conditions()[9];
     let grid = FrequencyGrid::logarithmic(dataset.band(), 200);
     let measuring = dataset.measuring_pairs();
-    let (prepared, alone) = (PreparedCondition::of(condition), Execution::sequential());
-    let responses = prepared.responses(condition, &grid, &alone).expect("nobody stops it");
+    let alone = Execution::sequential();
+    let responses = ConditionResponses::of(condition, (dataset.band(), 200), &alone).expect("nobody stops it");
     let figures = BundleFigures::of(condition, &responses, &measuring, &alone).expect("nobody stops it");
     let polar = PolarResponse::of;
     let mismatch = mismatch_table(&polar(&responses.physics[10]), &polar(&responses.identified[2]));
@@ -47,7 +47,6 @@ fn stages(criterion: &mut Criterion) {
     group.bench_function("responses of models not prepared", |bencher| {
         bencher.iter(|| ConditionResponses::of(condition, (dataset.band(), 200), &alone));
     });
-    group.bench_function("responses", |bencher| bencher.iter(|| prepared.responses(condition, &grid, &alone)));
     group.bench_function("distances and ratios", |bencher| {
         bencher.iter(|| BundleFigures::of(condition, &responses, &measuring, &alone));
     });

@@ -20,9 +20,33 @@ pub fn s_to_ms(seconds: f64) -> f64 {
     1e3 * seconds
 }
 
+/// A number as a message repeats it: the shortest text that reads back as the same number, with an exponent where the digits
+/// before or after the point would hide it (1e300, 2.5e-12).
+pub fn number(value: f64) -> String {
+    /// Longest text without an exponent, where one with it would be shorter.
+    const LONGEST: usize = 10;
+    let (plain, exponent) = (value.to_string(), format!("{value:e}"));
+    if plain.len() > LONGEST && exponent.len() < plain.len() { exponent } else { plain }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_number_in_a_message_is_short_and_never_another_number() {
+        for (value, text) in [
+            (1e6, "1000000"),
+            (1e-6, "0.000001"),
+            (-1.0, "-1"),
+            (1e300, "1e300"),
+            (f64::MIN_POSITIVE, "2.2250738585072014e-308"),
+            (0.1 + 0.2, "0.30000000000000004"),
+            (f64::NAN, "NaN"),
+        ] {
+            assert_eq!(number(value), text);
+        }
+    }
 
     #[test]
     fn decibels_and_ratios_are_inverse() {

@@ -1,19 +1,17 @@
 //! Opening, saving and exporting.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use egui::Context;
 
-use crate::dataset::ConditionId;
 use crate::io::{
-    Corrections, FileError, LoadedDataset, Opened, STUDY_EXTENSION, embedded_example, load_any, make_directory,
-    open_study_of, save_study, write_assessment_csv, write_corrections, write_corrections_csv,
+    Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, embedded_example, load_any, open_study_of,
+    plain, plain_path, save_study, write_results,
 };
-use crate::study::{Analysis, Difference, Study};
+use crate::study::{Difference, Study};
 use crate::view::bars::Bar;
-use crate::view::command::FormKind;
+use crate::view::command::{Command, FormKind};
 use crate::view::state::State;
 
 use super::dialogs::{DialogAnswer, DialogPurpose};
@@ -106,7 +104,7 @@ impl GdcmApp {
         let lost = self.offers.iter().position(|lost| lost.as_ref().is_some_and(|lost| lost.path() == path));
         let purpose = lost.map_or(ReadFor::Opening, ReadFor::Restoring);
         self.state.forms.shown = None;
-        let name = path.display().to_string();
+        let name = plain_path(&path);
         let read = move || match moved {
             Some(dataset) => open_study_of(&path, &dataset).map(Opened::Study),
             None => load_any(&path),
@@ -177,7 +175,11 @@ impl GdcmApp {
         while let Some(answer) = self.dialogs.answer() {
             match answer {
                 DialogAnswer::Chosen(DialogPurpose::Open, path) => self.open(path, None, ctx),
-                DialogAnswer::Chosen(DialogPurpose::SaveStudy, path) => self.save_as(path, ctx),
+                DialogAnswer::Chosen(DialogPurpose::SaveStudy, path) => {
+                    // The dialog has asked about the name as it was chosen.
+                    let is_asked = with_study_extension(path.clone()) == path;
+                    self.save_as(path, if is_asked { Existing::Replace } else { Existing::Keep }, ctx);
+                }
                 DialogAnswer::Chosen(DialogPurpose::ExportFolder, path) => {
                     self.state.forms.export.folder = path.display().to_string();
                 }
@@ -195,25 +197,39 @@ impl GdcmApp {
     /// Saves the study where it was saved last, or asks where.
     pub(super) fn save(&mut self, ctx: &Context) {
         match self.saved.path.clone() {
-            Some(path) => self.save_as(path, ctx),
+            Some(path) => self.save_as(path, Existing::Replace, ctx),
             None => self.dialogs.ask(DialogPurpose::SaveStudy, self.proposed_name(), ctx),
         }
     }
 
-    pub(super) fn save_as(&mut self, path: PathBuf, ctx: &Context) {
+    /// Saves the study to a file; asks before it overwrites one that is not the study's own, unless that was asked already.
+    pub(super) fn save_as(&mut self, path: PathBuf, existing: Existing, ctx: &Context) {
         let path = with_study_extension(path);
-        match save_study(&self.state.study, &self.loaded, &path) {
+        let is_own = self.saved.path.as_ref() == Some(&path);
+        let place = OutputSet::new(if is_own { Existing::Replace } else { existing }, Vec::new());
+        match place.check(&[&path]).and_then(|()| save_study(&self.state.study, &self.loaded, &path)) {
             Ok(()) => {
                 self.state.forms.shown = None;
                 self.state.study_name = study_name(Some(&path));
                 self.state.unsaved = false;
-                self.done(format!("saved {}", path.display()));
+                self.done(format!("saved {}", plain_path(&path)));
                 self.saved = SavedStudy { path: Some(path), study: Some(self.state.study.clone()) };
                 self.keep_unsaved();
                 self.look_for_recent(ctx);
             }
+            Err(FileError::Exists { paths }) => {
+                self.state.forms.save_path = path.display().to_string();
+                self.ask_to_overwrite(&paths, FormKind::Save, Command::SaveStudyAs(path));
+            }
             Err(error) => self.trouble(error.to_string()),
         }
+    }
+
+    /// Asks in a form whether to overwrite files, which `command` would do.
+    fn ask_to_overwrite(&mut self, paths: &[PathBuf], form: FormKind, command: Command) {
+        self.state.forms.existing = paths.iter().map(|path| plain_path(path)).collect();
+        self.state.forms.shown = Some(form);
+        self.postponed = Some(command);
     }
 
     /// A name for the study's file.
@@ -227,7 +243,7 @@ impl GdcmApp {
     }
 
     /// Writes the corrections of the conditions chosen in the form.
-    pub(super) fn export(&mut self) {
+    pub(super) fn export(&mut self, existing: Existing) {
         if self.state.results.stopped {
             let left = self.state.after_stop();
             return self.trouble(format!("{left}, for computing was stopped; compute first"));
@@ -244,30 +260,21 @@ impl GdcmApp {
         let form = &self.state.forms.export;
         let chosen = form.chosen.clone();
         let folder = PathBuf::from(form.folder.trim());
-        match write_results(&analysis, &self.loaded.sha256, &chosen, &folder) {
+        let inputs = self.saved.path.iter().cloned().chain(self.loaded.origin.file());
+        let outputs = OutputSet::new(existing, inputs.collect());
+        match write_results(&analysis, &self.loaded.sha256, &chosen, &folder, outputs) {
             Ok(()) => {
                 self.state.forms.shown = None;
-                self.done(format!("exported {} conditions to {}", chosen.len(), folder.display()));
+                self.done(format!("exported {} conditions to {}", chosen.len(), plain_path(&folder)));
             }
+            Err(FileError::Exists { paths }) => self.ask_to_overwrite(&paths, FormKind::Export, Command::Export),
             Err(error) => self.trouble(error.to_string()),
         }
     }
 }
 
-fn write_results(
-    analysis: &Analysis,
-    sha256: &str,
-    chosen: &BTreeSet<ConditionId>,
-    folder: &Path,
-) -> Result<(), FileError> {
-    make_directory(folder)?;
-    write_corrections(&Corrections::of(analysis, sha256, chosen), &folder.join("corrections.json"))?;
-    write_corrections_csv(analysis, chosen, &folder.join("corrections.csv"))?;
-    write_assessment_csv(analysis, chosen, &folder.join("assessment.csv"))
-}
-
 pub(super) fn study_name(path: Option<&Path>) -> String {
-    let name = path.and_then(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());
+    let name = path.and_then(|path| path.file_name()).map(|name| plain(&name.to_string_lossy()));
     name.unwrap_or_else(|| "untitled study".to_owned())
 }
 

@@ -6,7 +6,7 @@ use egui::Context;
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
-use crate::io::{LostStudy, Opened, open_study};
+use crate::io::{LostStudy, Opened, open_study, plain, plain_path};
 use crate::view::bars::Bar;
 
 use super::autosave::{Kept, Unsaved};
@@ -79,8 +79,8 @@ impl GdcmApp {
 /// "Decisions of 14:32 on 21 Nov 2026 for data.json.gz (study mine.gdcm-study.json) were not saved."
 fn offer_words(lost: &LostStudy, zone: &TimeZone) -> String {
     let study = lost.saved_as.as_ref().and_then(|path| path.file_name());
-    let study = study.map_or(String::new(), |name| format!(" (study {})", name.to_string_lossy()));
-    format!("Decisions of {} for {}{study} were not saved.", when(lost.kept_at, zone), lost.dataset)
+    let study = study.map_or(String::new(), |name| format!(" (study {})", plain(&name.to_string_lossy())));
+    format!("Decisions of {} for {}{study} were not saved.", when(lost.kept_at, zone), plain(&lost.dataset))
 }
 
 /// "14:32 on 21 Nov 2026", in the given zone.
@@ -95,7 +95,7 @@ pub(super) fn end_words(fault: &Fault, kept: &Result<Option<Kept>, String>) -> S
     match kept {
         Ok(Some(Kept { path, at })) => {
             let time = when(*at, &TimeZone::system());
-            format!("{fault}; your decisions up to {time} are in {}", path.display())
+            format!("{fault}; your decisions up to {time} are in {}", plain_path(path))
         }
         Ok(None) => format!("{fault}; every decision was saved"),
         Err(why) => format!("{fault}; the decisions that were not saved are lost: {why}"),

@@ -3,6 +3,7 @@
 use egui::{Context, ViewportCommand};
 
 use crate::dataset::ConditionId;
+use crate::io::{Existing, plain};
 use crate::study::Edit;
 use crate::view::command::{Command, FormKind};
 use crate::view::state::{Display, Notice, NoticeKind};
@@ -11,9 +12,9 @@ use super::dialogs::DialogPurpose;
 use super::window::GdcmApp;
 
 impl GdcmApp {
-    /// Saves the study to a file, as the menu does once a path is chosen.
+    /// Saves the study to a file, as the form does once a path is typed.
     pub fn save_study_as(&mut self, path: std::path::PathBuf, ctx: &Context) {
-        self.save_as(path, ctx);
+        self.save_as(path, Existing::Keep, ctx);
     }
 
     /// Carries out the commands of one frame.
@@ -78,8 +79,9 @@ impl GdcmApp {
             Command::CopyText(text) => ctx.copy_text(text),
             Command::Quit => self.quit(ctx),
             Command::SaveStudy => self.save(ctx),
-            Command::SaveStudyAs(path) => self.save_as(path, ctx),
-            Command::Export => self.export(),
+            Command::SaveStudyAs(path) => self.save_as(path, Existing::Keep, ctx),
+            Command::Export => self.export(Existing::Keep),
+            Command::Overwrite => self.overwrite(ctx),
             Command::DiscardAndGoOn => self.discard_and_go_on(ctx),
         }
     }
@@ -130,11 +132,20 @@ impl GdcmApp {
             let all = self.state.study.dataset.conditions().iter().map(|condition| condition.id());
             self.state.forms.export.chosen = all.collect();
         }
-        if form.is_none() {
-            self.postponed = None;
-            self.agreed_to_lose = false;
-        }
+        self.postponed = None;
+        self.agreed_to_lose = false;
+        self.state.forms.existing.clear();
         self.state.forms.shown = form;
+    }
+
+    /// Does what was asked whether to overwrite files.
+    fn overwrite(&mut self, ctx: &Context) {
+        self.state.forms.existing.clear();
+        match self.postponed.take() {
+            Some(Command::SaveStudyAs(path)) => self.save_as(path, Existing::Replace, ctx),
+            Some(Command::Export) => self.export(Existing::Replace),
+            _ => {}
+        }
     }
 
     fn discard_and_go_on(&mut self, ctx: &Context) {
@@ -154,12 +165,12 @@ impl GdcmApp {
 
     /// Tells the engineer that something was done.
     pub(super) fn done(&mut self, text: String) {
-        self.state.notice = Some(Notice { kind: NoticeKind::Done, text });
+        self.state.notice = Some(Notice { kind: NoticeKind::Done, text: plain(&text) });
     }
 
     /// Tells the engineer that something could not be done.
     pub(super) fn trouble(&mut self, text: String) {
-        self.state.notice = Some(Notice { kind: NoticeKind::Trouble, text });
+        self.state.notice = Some(Notice { kind: NoticeKind::Trouble, text: plain(&text) });
     }
 }
 

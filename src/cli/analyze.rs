@@ -1,14 +1,12 @@
 //! `gdcm analyze`.
 
 use crate::dataset::{Band, BundleKind, Channel, ConditionId, ModelId};
-use crate::io::{
-    Corrections, LoadedDataset, embedded_example, make_directory, write_assessment_csv, write_corrections,
-    write_corrections_csv,
-};
+use crate::io::{LoadedDataset, OutputSet, embedded_example, make_directory, result_paths, write_results};
 use crate::schedule::{ScheduleKind, ScheduleSettings};
 use crate::study::{Analysis, Edit, Engine, Setting, Study};
 
 use super::arguments::{AnalyzeArguments, PairList, Rejection};
+use super::existing;
 use super::failure::Failure;
 use super::opening::open as open_file;
 use super::progress::TerminalProgress;
@@ -22,6 +20,9 @@ pub(super) fn analyze(arguments: &AnalyzeArguments) -> Result<(), Failure> {
         say_error(&format!("{}: {caution}", loaded.origin));
     }
     take_options(&mut study, arguments)?;
+    let inputs = arguments.file.iter().cloned().chain(loaded.origin.file());
+    let outputs = OutputSet::new(existing(arguments.force), inputs.collect());
+    outputs.check(&result_paths(&arguments.out))?;
     make_directory(&arguments.out)?;
     let mut engine = Engine::with_executor(Box::new(crate::app::Pool));
     let progress = TerminalProgress::new();
@@ -31,7 +32,8 @@ pub(super) fn analyze(arguments: &AnalyzeArguments) -> Result<(), Failure> {
     }
     drop(progress);
     check_result(&analysis)?;
-    write(&analysis, &loaded, arguments)?;
+    let all = analysis.conditions.keys().copied().collect();
+    write_results(&analysis, &loaded.sha256, &all, &arguments.out, outputs)?;
     say(&summary(&analysis, &loaded, &arguments.out))
 }
 
@@ -140,13 +142,4 @@ fn check_result(analysis: &Analysis) -> Result<(), Failure> {
             Ok(())
         }
     }
-}
-
-fn write(analysis: &Analysis, loaded: &LoadedDataset, arguments: &AnalyzeArguments) -> Result<(), Failure> {
-    let out = &arguments.out;
-    let all = analysis.conditions.keys().copied().collect();
-    let corrections = Corrections::of(analysis, &loaded.sha256, &all);
-    write_corrections(&corrections, &out.join("corrections.json")).map_err(Failure::Output)?;
-    write_corrections_csv(analysis, &all, &out.join("corrections.csv")).map_err(Failure::Output)?;
-    write_assessment_csv(analysis, &all, &out.join("assessment.csv")).map_err(Failure::Output)
 }

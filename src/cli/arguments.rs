@@ -5,6 +5,9 @@ use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::schedule::HIGHEST_DEGREE;
+use crate::study::{LEAST_POINTS, MOST_POINTS};
+
 /// Gain-Delay Correction Method: matches physics-based helicopter models to flight.
 #[derive(Debug, Parser)]
 #[command(name = "gdcm", version, args_conflicts_with_subcommands = true)]
@@ -34,6 +37,9 @@ pub enum Command {
         /// Directory to write it into; made where there is none.
         #[arg(value_name = "DIR")]
         directory: PathBuf,
+        /// Overwrite a file that is there already.
+        #[arg(long)]
+        force: bool,
     },
 }
 
@@ -56,20 +62,23 @@ pub struct AnalyzeArguments {
     /// Directory for the results; made where there is none.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+    /// Overwrite results that are there already.
+    #[arg(long)]
+    pub force: bool,
     /// Weight of the regularisation of the gains, from 0.
-    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    #[arg(long, value_name = "A", value_parser = real_number, allow_negative_numbers = true)]
     pub alpha: Option<f64>,
     /// Weight of the regularisation of the delays, from 0.
-    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    #[arg(long, value_name = "A", value_parser = real_number, allow_negative_numbers = true)]
     pub alpha_delay: Option<f64>,
     /// Band of comparison, in rad/s.
-    #[arg(long, num_args = 2, value_names = ["LO", "HI"], allow_negative_numbers = true)]
+    #[arg(long, num_args = 2, value_names = ["LO", "HI"], value_parser = real_number, allow_negative_numbers = true)]
     pub band: Option<Vec<f64>>,
     /// Number of frequencies in the band.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole_number::<LEAST_POINTS, MOST_POINTS>, allow_negative_numbers = true)]
     pub points: Option<usize>,
     /// Degree of the schedule's polynomial, 0 to 3.
-    #[arg(long, value_name = "D")]
+    #[arg(long, value_name = "D", value_parser = whole_number::<0, HIGHEST_DEGREE>, allow_negative_numbers = true)]
     pub degree: Option<usize>,
     /// Responses to hold, OUTPUT/INPUT, separated by commas (P/LAT,Q/LON); "none" holds none. Without it, the on-axis ones.
     #[arg(long, value_name = "PAIRS")]
@@ -83,6 +92,15 @@ pub struct AnalyzeArguments {
     /// Reject a model of a condition; may be repeated.
     #[arg(long, value_name = "ID:NAME", allow_hyphen_values = true)]
     pub reject: Vec<Rejection>,
+}
+
+fn real_number(text: &str) -> Result<f64, String> {
+    text.trim().parse().map_err(|_| format!("expected a number, found {text}"))
+}
+
+fn whole_number<const LEAST: usize, const MOST: usize>(text: &str) -> Result<usize, String> {
+    let number = text.trim().parse().ok().filter(|number| (LEAST..=MOST).contains(number));
+    number.ok_or_else(|| format!("expected a whole number from {LEAST} to {MOST}, found {text}"))
 }
 
 /// Responses by the names of their channels.

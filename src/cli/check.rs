@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use crate::dataset::{BundleKind, Channel, Condition, Dataset, Dynamics, Model};
-use crate::io::{LoadedDataset, Opened, OpenedStudy, plain};
+use crate::io::{LoadedDataset, Opened, OpenedStudy, plain, plain_path};
 use crate::study::{Execution, Study, Unobserved, cautions_of_models};
+use crate::units::number;
 
 use super::arguments::OpeningArguments;
 use super::failure::Failure;
@@ -28,8 +29,8 @@ fn contents(loaded: &LoadedDataset) -> String {
     let dataset = &loaded.dataset;
     let on_axis: Vec<String> = dataset.on_axis().marked().map(|pair| plain(&dataset.pair_name(pair))).collect();
     let on_axis = if on_axis.is_empty() { "none given: every response counts".to_owned() } else { on_axis.join(", ") };
-    let band = format!("{} to {} rad/s", dataset.band().min(), dataset.band().max());
-    let name = format!("{}, {}", plain(dataset.name()), plain(&loaded.origin.to_string()));
+    let band = format!("{} to {} rad/s", number(dataset.band().min()), number(dataset.band().max()));
+    let name = format!("{}, {}", plain(dataset.name()), loaded.origin);
     let mut text = labelled(0, "Dataset", LABEL, &name);
     for (label, words) in [
         ("SHA-256", loaded.sha256.clone()),
@@ -86,11 +87,12 @@ fn condition_table(dataset: &Dataset) -> String {
 
 fn condition_row(condition: &Condition) -> [String; 9] {
     let state = condition.flight_state();
-    let with_unit = |value: Option<f64>, unit: &str| value.map_or("-".to_owned(), |value| format!("{value} {unit}"));
+    let with_unit =
+        |value: Option<f64>, unit: &str| value.map_or("-".to_owned(), |value| format!("{} {unit}", number(value)));
     let count = |kind| condition.bundle(kind).len().to_string();
     [
         state.id.to_string(),
-        format!("{} kt", state.airspeed_kt),
+        format!("{} kt", number(state.airspeed_kt)),
         with_unit(state.altitude_ft, "ft"),
         with_unit(state.mass_kg, "kg"),
         count(BundleKind::Physics),
@@ -119,7 +121,7 @@ fn order_words(models: &[Model]) -> String {
 
 /// What a study has decided.
 fn decisions(file: &Path, study: &Study) -> String {
-    let mut text = labelled(0, "Study", LABEL, &plain(&file.display().to_string()));
+    let mut text = labelled(0, "Study", LABEL, &plain_path(file));
     for condition in study.dataset.conditions() {
         let choice = study.choice(condition.id());
         let rejected: Vec<String> = study.rejected_names(condition.id()).into_iter().map(plain).collect();

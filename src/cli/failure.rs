@@ -11,9 +11,9 @@ pub(super) const WRONG_INPUT: u8 = 2;
 /// Why a command was not carried out.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum Failure {
-    /// A file cannot be read, or an output directory cannot be made.
-    #[error(transparent)]
-    Input(#[from] FileError),
+    /// A file cannot be read or written.
+    #[error("{0}{remedy}", remedy = if matches!(.0, FileError::Exists { .. }) { "; --force overwrites" } else { "" })]
+    File(#[from] FileError),
     /// An option's value is wrong for this dataset.
     #[error("{option}: {reason}")]
     Option { option: &'static str, reason: String },
@@ -26,9 +26,6 @@ pub(super) enum Failure {
     /// The analysis was stopped.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// A result cannot be written.
-    #[error(transparent)]
-    Output(FileError),
     /// Standard output cannot be written.
     #[error("standard output cannot be written: {reason}")]
     StandardOutput { reason: String },
@@ -43,10 +40,11 @@ impl Failure {
     /// The exit status.
     pub(super) fn status(&self) -> u8 {
         match self {
-            Failure::Input(_) | Failure::Option { .. } | Failure::Different { .. } => WRONG_INPUT,
-            Failure::NoResult { .. } | Failure::Cancelled(_) | Failure::Output(_) | Failure::StandardOutput { .. } => {
-                NOT_DONE
-            }
+            Failure::File(FileError::Unwritable { .. })
+            | Failure::NoResult { .. }
+            | Failure::Cancelled(_)
+            | Failure::StandardOutput { .. } => NOT_DONE,
+            Failure::File(_) | Failure::Option { .. } | Failure::Different { .. } => WRONG_INPUT,
         }
     }
 }

@@ -14,11 +14,15 @@ mod summary;
 mod terminal;
 mod text_table;
 
+use std::error::Error;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
+use clap::error::{ContextKind, ContextValue};
+
+use crate::io::Existing;
 
 use arguments::Arguments;
 use failure::Failure;
@@ -53,8 +57,12 @@ pub fn run(command: &Command) -> ExitCode {
     finish(match command {
         Command::Analyze(arguments) => analyze::analyze(arguments),
         Command::Check { file, opening } => check::check(file, opening),
-        Command::Example { directory } => example::example(directory),
+        Command::Example { directory, force } => example::example(directory, existing(*force)),
     })
+}
+
+fn existing(force: bool) -> Existing {
+    if force { Existing::Replace } else { Existing::Keep }
 }
 
 fn finish(result: Result<(), Failure>) -> ExitCode {
@@ -67,8 +75,11 @@ fn finish(result: Result<(), Failure>) -> ExitCode {
     }
 }
 
-/// clap's complaint on one line, without the usage that it repeats below.
+/// clap's complaint on one line, without the usage that it repeats below; of a value, the option and what is wrong with it.
 fn usage_words(error: &clap::Error) -> String {
+    if let (Some(ContextValue::String(option)), Some(reason)) = (error.get(ContextKind::InvalidArg), error.source()) {
+        return format!("{}: {reason}", option.split(' ').next().unwrap_or(option));
+    }
     let words = error.to_string();
     let complaint = words.split("\n\nUsage:").next().unwrap_or(&words);
     let paragraphs = complaint.split("\n\n").filter(|paragraph| !paragraph.starts_with("For more information"));

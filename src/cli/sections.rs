@@ -5,7 +5,7 @@ use crate::dataset::{BundleKind, Channel, Condition, Dataset, Pair};
 use crate::io::plain;
 use crate::schedule::{Schedule, ScheduledQuantity};
 use crate::study::{Analysis, ConditionAnalysis, Study};
-use crate::units::s_to_ms;
+use crate::units::{number, s_to_ms};
 
 use super::summary::LABEL;
 use super::text_table::{Side, TextTable, labelled, listed};
@@ -24,7 +24,7 @@ fn detail_list(label: &str, entries: Vec<String>) -> String {
 /// One condition: representatives, rejections, the on-axis and held responses, and what could not be matched.
 pub(super) fn condition_section(analysis: &Analysis, condition: &Condition) -> String {
     let state = condition.flight_state();
-    let title = format!("{} ({} kt)", plain(&state.name), state.airspeed_kt);
+    let title = format!("{} ({} kt)", plain(&state.name), number(state.airspeed_kt));
     let mut text = labelled(0, &format!("Condition {}", state.id), LABEL, &title);
     match analysis.conditions.get(&condition.id()) {
         None => {}
@@ -94,7 +94,10 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> TextTable<
 fn figure(value: Option<f64>, digits: usize) -> String {
     // Adding zero turns a rounded minus zero into zero.
     let rounded = |value: f64| (value * 10_f64.powi(digits as i32)).round() / 10_f64.powi(digits as i32) + 0.0;
-    value.map_or("-".to_owned(), |value| format!("{:.digits$}", rounded(value)))
+    value.map_or("-".to_owned(), |value| match value.abs() {
+        ..1e7 => format!("{:.digits$}", rounded(value)),
+        _ => format!("{value:.digits$e}"),
+    })
 }
 
 fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
@@ -125,10 +128,10 @@ fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let mut text = String::new();
     for entry in &result.gains.unmatched {
         let words = format!(
-            "gain of {}: {:.3} in place of {:.3} ({:+.1} dB)",
+            "gain of {}: {} in place of {} ({:+.1} dB)",
             plain(&dataset.pair_name(entry.pair)),
-            entry.target,
-            entry.wanted,
+            figure(Some(entry.target), 3),
+            figure(Some(entry.wanted), 3),
             entry.shortfall_db
         );
         text.push_str(&detail("not matched", &words));
@@ -170,7 +173,7 @@ pub(super) fn schedule_section(analysis: &Analysis) -> String {
         Some(degree) => format!("polynomial of degree {degree} in airspeed, fitted to {of}"),
         None => format!("lookup table in airspeed, of {of}"),
     };
-    let range = format!("{} to {} kt", schedule.airspeeds.min_kt, schedule.airspeeds.max_kt);
+    let range = format!("{} to {} kt", number(schedule.airspeeds.min_kt), number(schedule.airspeeds.max_kt));
     let mut text = labelled(0, "Schedule", LABEL, &format!("{kind}, {range}; net gains:"));
     let (inputs, outputs) = plain_names(&analysis.study.dataset);
     for caution in &schedule.cautions {
@@ -185,7 +188,7 @@ fn schedule_table(analysis: &Analysis, schedule: &Schedule) -> String {
     let dataset = &analysis.study.dataset;
     let (min, max) = (schedule.airspeeds.min_kt, schedule.airspeeds.max_kt);
     let at = SHOWN.map(|fraction| min + fraction * (max - min));
-    let heading = at.map(|airspeed| format!("{airspeed:.0} kt"));
+    let heading = at.map(|airspeed| format!("{} kt", figure(Some(airspeed), 0)));
     let [a, b, c, d, e] = heading.each_ref().map(|words| (words.as_str(), Side::Right));
     let mut table = TextTable::new([("response", Side::Left), a, b, c, d, e]);
     let corrections = at.map(|airspeed| schedule.at(airspeed));

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use crate::io::{LoadedDataset, plain};
+use crate::io::{LoadedDataset, RESULT_FILES, plain, plain_path};
 use crate::schedule::Schedule;
 use crate::study::{Analysis, Assessed};
+use crate::units::number;
 
 use super::sections::{condition_section, schedule_section};
 use super::text_table::labelled;
@@ -22,8 +23,7 @@ pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -
     text.push('\n');
     text.push_str(&schedule_section(analysis));
     text.push_str(&assessment_lines(analysis));
-    let files = "corrections.json, corrections.csv, assessment.csv";
-    text.push_str(&labelled(0, "Written", LABEL, &format!("{files} in {}", plain(&out.display().to_string()))));
+    text.push_str(&labelled(0, "Written", LABEL, &format!("{} in {}", RESULT_FILES.join(", "), plain_path(out))));
     text
 }
 
@@ -33,13 +33,13 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
     let held = if held.is_empty() { "none".to_owned() } else { held.join(", ") };
     let band = format!(
         "{} to {} rad/s, {} frequencies; alpha {} (gains), {} (delays)",
-        settings.band.min(),
-        settings.band.max(),
+        number(settings.band.min()),
+        number(settings.band.max()),
         settings.points,
-        settings.alpha_gain,
-        settings.alpha_delay
+        number(settings.alpha_gain),
+        number(settings.alpha_delay)
     );
-    let dataset = format!("{}, {}", plain(study.dataset.name()), plain(&loaded.origin.to_string()));
+    let dataset = format!("{}, {}", plain(study.dataset.name()), loaded.origin);
     labelled(0, "Dataset", LABEL, &dataset) + &labelled(0, "Band", LABEL, &band) + &labelled(0, "Held", LABEL, &held)
 }
 

@@ -2,7 +2,7 @@
 
 use std::io::{ErrorKind, Write};
 
-use crate::io::plain;
+use crate::io::{plain, system_words};
 
 use super::failure::Failure;
 
@@ -11,7 +11,7 @@ pub(super) fn say(text: &str) -> Result<(), Failure> {
     let mut output = std::io::stdout().lock();
     match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::StandardOutput { reason: error.to_string() })
+            Err(Failure::StandardOutput { reason: system_words(&error) })
         }
         _ => Ok(()),
     }

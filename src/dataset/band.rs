@@ -1,15 +1,25 @@
 //! The frequency band over which models are compared.
 
-/// A frequency band \[rad/s\], `0 < min < max`, both finite.
+use crate::units::number;
+
+/// Least lower end of a band \[rad/s\]: a period of 17 hours.
+pub const LEAST_OMEGA: f64 = 1e-4;
+/// Greatest upper end of a band \[rad/s\]: 16 kHz.
+pub const GREATEST_OMEGA: f64 = 1e5;
+
+/// A frequency band \[rad/s\], `LEAST_OMEGA <= min < max <= GREATEST_OMEGA`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Band {
     min: f64,
     max: f64,
 }
 
-/// A band that is not `0 < min < max` with finite ends.
+/// A band that is empty, or reaches beyond the least or the greatest frequency.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("the frequency band must be 0 < min < max (rad/s), found min {min}, max {max}")]
+#[error(
+    "the frequency band must be {} <= min < max <= {} (rad/s), found min {}, max {}",
+    number(LEAST_OMEGA), number(GREATEST_OMEGA), number(*min), number(*max)
+)]
 pub struct BandError {
     /// The lower end given \[rad/s\].
     pub min: f64,
@@ -20,7 +30,7 @@ pub struct BandError {
 impl Band {
     /// The band from `min` to `max` \[rad/s\].
     pub fn new(min: f64, max: f64) -> Result<Self, BandError> {
-        if min.is_finite() && max.is_finite() && 0.0 < min && min < max {
+        if LEAST_OMEGA <= min && min < max && max <= GREATEST_OMEGA {
             Ok(Self { min, max })
         } else {
             Err(BandError { min, max })
@@ -44,9 +54,10 @@ mod tests {
 
     #[test]
     fn a_reversed_empty_or_non_positive_band_is_refused() {
-        for (min, max) in [(12.0, 0.5), (1.0, 1.0), (0.0, 1.0), (-1.0, 1.0), (f64::NAN, 1.0), (1.0, f64::INFINITY)] {
+        let nan = f64::NAN;
+        for (min, max) in [(12.0, 0.5), (1.0, 1.0), (0.0, 1.0), (-1.0, 1.0), (nan, 1.0), (1.0, nan), (1.0, 1.1e5)] {
             assert!(Band::new(min, max).is_err(), "{min} .. {max}");
         }
-        assert!(Band::new(0.5, 12.0).is_ok());
+        assert!(Band::new(0.5, 12.0).is_ok() && Band::new(LEAST_OMEGA, GREATEST_OMEGA).is_ok());
     }
 }

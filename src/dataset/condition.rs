@@ -1,5 +1,7 @@
 //! One flight condition with its two bundles of models.
 
+use crate::units::number;
+
 use super::identity::{BundleKind, ConditionId};
 use super::model::Model;
 
@@ -35,9 +37,9 @@ pub struct Condition {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConditionError {
     /// A figure of the flight state is not finite, or an airspeed is negative.
-    #[error("{field}: expected a finite number{bound}, found {value}")]
+    #[error("{field}: expected a finite number{bound}, found {}", number(*value))]
     FlightState {
-        /// The field's name in the file.
+        /// The figure with its unit.
         field: &'static str,
         /// " not below zero" where that is required.
         bound: &'static str,
@@ -45,16 +47,16 @@ pub enum ConditionError {
         value: f64,
     },
     /// A bundle holds no model.
-    #[error("{list}: expected at least one model, found none")]
+    #[error("the {bundle} bundle: expected at least one model, found none")]
     EmptyBundle {
-        /// `physics_models` or `identified_models`.
-        list: &'static str,
+        /// Which.
+        bundle: BundleKind,
     },
     /// Two models of a bundle share a name.
-    #[error("{list}: the name \"{name}\" stands twice (models {first} and {second}); names must differ")]
+    #[error("the {bundle} bundle: the name \"{name}\" stands twice (models {first} and {second}); names must differ")]
     DuplicateName {
-        /// `physics_models` or `identified_models`.
-        list: &'static str,
+        /// Which.
+        bundle: BundleKind,
         /// The name.
         name: String,
         /// First model, counted from 1.
@@ -63,7 +65,7 @@ pub enum ConditionError {
         second: usize,
     },
     /// A bundle of physics models has no nominal model, or several.
-    #[error("physics_models: expected exactly one model of role \"nominal\", found {found}{names}")]
+    #[error("the physics bundle: expected exactly one nominal model, found {found}{names}")]
     Nominal {
         /// How many there are.
         found: usize,
@@ -76,8 +78,8 @@ impl Condition {
     /// The condition with these models, in file order.
     pub fn new(flight_state: FlightState, physics: Vec<Model>, identified: Vec<Model>) -> Result<Self, ConditionError> {
         check_flight_state(&flight_state)?;
-        check_bundle("physics_models", &physics)?;
-        check_bundle("identified_models", &identified)?;
+        check_bundle(BundleKind::Physics, &physics)?;
+        check_bundle(BundleKind::Identified, &identified)?;
         let nominal: Vec<usize> = (0..physics.len()).filter(|&index| physics[index].is_nominal()).collect();
         match nominal[..] {
             [nominal] => Ok(Self { flight_state, physics, identified, nominal }),
@@ -116,9 +118,9 @@ impl Condition {
 
 fn check_flight_state(state: &FlightState) -> Result<(), ConditionError> {
     let figures = [
-        ("airspeed_kt", Some(state.airspeed_kt), true),
-        ("altitude_ft", state.altitude_ft, false),
-        ("mass_kg", state.mass_kg, true),
+        ("airspeed [kt]", Some(state.airspeed_kt), true),
+        ("altitude [ft]", state.altitude_ft, false),
+        ("mass [kg]", state.mass_kg, true),
     ];
     for (field, value, not_negative) in figures {
         let Some(value) = value else { continue };
@@ -130,14 +132,14 @@ fn check_flight_state(state: &FlightState) -> Result<(), ConditionError> {
     Ok(())
 }
 
-fn check_bundle(list: &'static str, models: &[Model]) -> Result<(), ConditionError> {
+fn check_bundle(bundle: BundleKind, models: &[Model]) -> Result<(), ConditionError> {
     if models.is_empty() {
-        return Err(ConditionError::EmptyBundle { list });
+        return Err(ConditionError::EmptyBundle { bundle });
     }
     for (second, model) in models.iter().enumerate() {
         if let Some(first) = models[..second].iter().position(|earlier| earlier.name == model.name) {
             let name = model.name.clone();
-            return Err(ConditionError::DuplicateName { list, name, first: first + 1, second: second + 1 });
+            return Err(ConditionError::DuplicateName { bundle, name, first: first + 1, second: second + 1 });
         }
     }
     Ok(())

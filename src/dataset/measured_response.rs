@@ -2,6 +2,8 @@
 
 use nalgebra::Complex;
 
+use crate::units::number;
+
 use super::pair::PairTable;
 
 /// A frequency response measured (or exported) at `N` frequencies, in place of a state-space model.
@@ -24,7 +26,7 @@ pub enum MeasuredResponseError {
         found: usize,
     },
     /// A frequency is not finite, not positive, or not above the one before.
-    #[error("omega_rad_s, entry {entry}: expected finite, positive and rising frequencies, found {value}")]
+    #[error("omega_rad_s, entry {entry}: expected finite, positive and rising frequencies, found {}", number(*value))]
     Frequency {
         /// Entry, counted from 1.
         entry: usize,
@@ -46,7 +48,7 @@ pub enum MeasuredResponseError {
         found: usize,
     },
     /// A value is NaN or infinite, or a coherence lies outside 0 to 1.
-    #[error("{array}, output {output}, input {input}, entry {entry}: expected {expected}, found {value}")]
+    #[error("{array}, output {output}, input {input}, entry {entry}: expected {expected}, found {}", number(*value))]
     Value {
         /// `re`, `im` or `coherence`.
         array: &'static str,

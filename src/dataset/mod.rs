@@ -6,19 +6,26 @@ mod condition;
 mod content;
 #[expect(clippy::module_inception, reason = "the folder is named for its noun, and so is the file that holds it")]
 mod dataset;
+mod draft;
 mod identity;
+pub mod limits;
 mod measured_response;
 mod model;
 mod pair;
+mod place;
 mod state_space;
 
-pub use band::{Band, BandError};
+pub use band::{Band, BandError, GREATEST_OMEGA, LEAST_OMEGA};
 pub use channel::Channel;
 pub use condition::{Condition, ConditionError, FlightState};
 pub use content::ContentHash;
 pub use dataset::{Dataset, DatasetError, DatasetHeader};
+pub use draft::{
+    ConditionDraft, DatasetDraft, DraftError, DraftFault, ModelDraft, Oddity, ResponseArray, ResponseDraft,
+};
 pub use identity::{BundleKind, ConditionId, ModelId};
 pub use measured_response::{MeasuredResponse, MeasuredResponseError};
-pub use model::{Dynamics, Model, Origin};
+pub use model::{Dynamics, Model, Origin, Provenance};
 pub use pair::{Pair, PairTable};
+pub use place::{ConditionPlace, ModelPlace, Place};
 pub use state_space::{StateSpace, StateSpaceError};

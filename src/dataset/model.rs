@@ -49,6 +49,36 @@ pub enum Origin {
     },
 }
 
+/// Which file a model was made from, as far as whoever made it says.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Provenance {
+    /// The file, relative to the dataset's.
+    pub file: Option<String>,
+    /// SHA-256 of the file, in hexadecimal.
+    pub sha256: Option<String>,
+    /// The variable in it, or the flight record.
+    pub variable: Option<String>,
+    /// When the model was made, as the maker writes dates.
+    pub made: Option<String>,
+    /// What else the reader noted.
+    pub note: Option<String>,
+}
+
+impl Provenance {
+    /// The provenance in words: "models/roll+5.mat, variable sys, made 2026-03-01".
+    pub fn words(&self) -> String {
+        let named = |name: &str, value: &Option<String>| value.as_ref().map(|value| format!("{name}{value}"));
+        let parts = [
+            self.file.clone(),
+            named("variable ", &self.variable),
+            named("made ", &self.made),
+            named("SHA-256 ", &self.sha256),
+            self.note.clone(),
+        ];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    }
+}
+
 /// One model of a bundle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
@@ -58,12 +88,14 @@ pub struct Model {
     pub origin: Origin,
     /// How its response is known.
     pub dynamics: Dynamics,
+    /// Which file it was made from, where that is known.
+    pub source: Option<Provenance>,
 }
 
 impl Model {
     /// A model of this name.
     pub fn new(name: impl Into<String>, origin: Origin, dynamics: Dynamics) -> Self {
-        Self { name: name.into(), origin, dynamics }
+        Self { name: name.into(), origin, dynamics, source: None }
     }
 
     /// Whether this is the physics model at the condition's own trim.

@@ -1,6 +1,6 @@
 //! What can be wrong at a place in a file.
 
-use crate::dataset::{BandError, ConditionError, DatasetError, MeasuredResponseError, StateSpaceError};
+use crate::dataset::{BandError, DraftFault};
 use crate::study::EditRefusal;
 
 use super::plain::{plain, quoted};
@@ -76,54 +76,12 @@ pub enum ContentFault {
         /// What stands there.
         found: String,
     },
-    /// A table has another shape than the channels or the states require.
-    #[error("expected {expected}, found {found}")]
-    Shape {
-        /// The shape required, in words.
-        expected: String,
-        /// The shape found, in words.
-        found: String,
-    },
-    /// A pair names a channel that the dataset does not have.
-    #[error("the dataset has no {kind} {}; a pair is written [output, input]", quoted(name))]
-    UnknownChannel {
-        /// "output" or "input".
-        kind: &'static str,
-        /// The name.
-        name: String,
-    },
-    /// A pair stands twice in a list.
-    #[error("the pair [{}, {}] stands twice; remove one", quoted(output), quoted(input))]
-    DuplicatePair {
-        /// The output's name.
-        output: String,
-        /// The input's name.
-        input: String,
-    },
-    /// A model has both matrices and frequency data.
-    #[error("both matrices and a frequency_response are given; keep one of them")]
-    BothDynamics,
-    /// A model has neither matrices nor frequency data.
-    #[error("neither matrices A, B, C, D nor a frequency_response is given; add one of them")]
-    NoDynamics,
-    /// A physics model is given by frequency data.
-    #[error("a physics model needs matrices A, B, C, D; a frequency_response is for identified models")]
-    MeasuredPhysics,
     /// The ends of the band are wrong.
     #[error(transparent)]
     Band(#[from] BandError),
-    /// The matrices are no state-space model.
-    #[error(transparent)]
-    StateSpace(#[from] StateSpaceError),
-    /// The frequency data are no response.
-    #[error(transparent)]
-    MeasuredResponse(#[from] MeasuredResponseError),
-    /// The models are no condition.
+    /// What the file says is no dataset.
     #[error("{}", plain(&.0.to_string()))]
-    Condition(#[from] ConditionError),
-    /// The conditions are no dataset.
-    #[error("{}", plain(&.0.to_string()))]
-    Dataset(#[from] DatasetError),
+    Dataset(#[from] DraftFault),
     /// A study has a condition twice.
     #[error("condition {id} stands twice; remove one")]
     DuplicateCondition {

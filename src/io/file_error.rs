@@ -5,25 +5,27 @@ use std::path::{Path, PathBuf};
 
 use super::content_fault::ContentFault;
 use super::flaw::Flaw;
-use super::place::Place;
+use super::json_text::line_of;
+use super::plain::plain_path;
+use crate::dataset::Place;
 
 /// Why a file could not be read or written: one line that names the file, and the place in it.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// There is no file of this name.
-    #[error("{}: there is no such file", path.display())]
+    #[error("{}: there is no such file", plain_path(path))]
     Missing {
         /// The file.
         path: PathBuf,
     },
     /// The path is a directory.
-    #[error("{}: this is a directory; give the name of a file", path.display())]
+    #[error("{}: this is a directory; give the name of a file", plain_path(path))]
     Directory {
         /// The directory.
         path: PathBuf,
     },
     /// The system does not let the file be read.
-    #[error("{}: cannot be read: {reason}", path.display())]
+    #[error("{}: cannot be read: {reason}", plain_path(path))]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -31,7 +33,10 @@ pub enum FileError {
         reason: String,
     },
     /// The file, or what it unpacks to, is larger than the program takes.
-    #[error("{}: holds more than {most_mib} MiB of text, which is the most that is read; split the file", path.display())]
+    #[error(
+        "{}: holds more than {most_mib} MiB of text, which is the most that is read; split the file",
+        plain_path(path)
+    )]
     TooLarge {
         /// The file.
         path: PathBuf,
@@ -39,21 +44,19 @@ pub enum FileError {
         most_mib: u64,
     },
     /// The packed data are damaged.
-    #[error("{}: the gzip data are damaged ({reason}); pack or copy the file again", path.display())]
+    #[error("{}: the gzip data are damaged; pack or copy the file again", plain_path(path))]
     Gzip {
         /// The file.
         path: PathBuf,
-        /// What is wrong with them.
-        reason: String,
     },
     /// The packed data end too early.
-    #[error("{}: the gzip data end too early, the file is cut off; copy it again", path.display())]
+    #[error("{}: the gzip data end too early, the file is cut off; copy it again", plain_path(path))]
     GzipCutOff {
         /// The file.
         path: PathBuf,
     },
     /// The text ends before the JSON does.
-    #[error("{}: {}the JSON ends too early (line {line}, column {column}), the file is cut off; copy it again", path.display(), place.before())]
+    #[error("{}: {}the JSON ends too early (line {line}, column {column}), the file is cut off; copy it again", plain_path(path), place.before())]
     CutOff {
         /// The file.
         path: PathBuf,
@@ -65,7 +68,7 @@ pub enum FileError {
         column: usize,
     },
     /// The text is not JSON.
-    #[error("{}: {}this is not JSON (line {line}, column {column}: {reason})", path.display(), place.before())]
+    #[error("{}: {}this is not JSON (line {line}, column {column}: {reason})", plain_path(path), place.before())]
     NotJson {
         /// The file.
         path: PathBuf,
@@ -79,7 +82,7 @@ pub enum FileError {
         reason: String,
     },
     /// The file is of another kind.
-    #[error("{}: expected \"format\": \"{expected}\", found {found}", path.display())]
+    #[error("{}: expected \"format\": \"{expected}\", found {found}", plain_path(path))]
     Format {
         /// The file.
         path: PathBuf,
@@ -89,7 +92,10 @@ pub enum FileError {
         found: String,
     },
     /// The file is of a version this program does not know.
-    #[error("{}: expected version {newest} of {format}, found {found}; a newer gdcm may be able to read it", path.display())]
+    #[error(
+        "{}: expected version {newest} of {format}, found {found}; a newer gdcm may be able to read it",
+        plain_path(path)
+    )]
     Version {
         /// The file.
         path: PathBuf,
@@ -101,7 +107,7 @@ pub enum FileError {
         found: String,
     },
     /// Something in the file is not what it has to be.
-    #[error("{}: {}{fault}", path.display(), place.before())]
+    #[error("{}: {}{fault}{}", plain_path(path), place.before(), line.map(|line| format!(" (line {line})")).unwrap_or_default())]
     Content {
         /// The file.
         path: PathBuf,
@@ -109,17 +115,43 @@ pub enum FileError {
         place: Box<Place>,
         /// What is wrong there.
         fault: Box<ContentFault>,
+        /// Line at which the condition or the model begins, counted from 1; none where the fault names its own.
+        line: Option<usize>,
     },
     /// The dataset of a study cannot be read.
-    #[error("{}: the study's dataset cannot be opened: {dataset}; say where it is now (--dataset FILE)", path.display())]
+    #[error(
+        "{}: the study's dataset cannot be opened: {dataset}; say where it is now (--dataset FILE)",
+        plain_path(path)
+    )]
     StudyDataset {
         /// The study.
         path: PathBuf,
         /// Why not, with the dataset's path.
         dataset: Box<FileError>,
     },
+    /// A file stands where a directory has to be made.
+    #[error("{}: cannot be written: a file stands where this directory would have to be made", plain_path(path))]
+    NotADirectory {
+        /// The directory.
+        path: PathBuf,
+    },
+    /// Files are there already, and were not asked to be replaced.
+    #[error("{} {} already", listed(paths), if paths.len() == 1 { "exists" } else { "exist" })]
+    Exists {
+        /// The files.
+        paths: Vec<PathBuf>,
+    },
+    /// The file is what the program reads from.
+    #[error(
+        "{}: the data are read from this file, so it is not overwritten; choose another name or directory",
+        plain_path(path)
+    )]
+    Input {
+        /// The file.
+        path: PathBuf,
+    },
     /// The file could not be written; what was there before is still there.
-    #[error("{}: cannot be written: {reason}", path.display())]
+    #[error("{}: cannot be written: {reason}", plain_path(path))]
     Unwritable {
         /// The file.
         path: PathBuf,
@@ -134,16 +166,50 @@ impl FileError {
         match error.kind() {
             ErrorKind::NotFound => FileError::Missing { path },
             ErrorKind::IsADirectory => FileError::Directory { path },
-            _ => FileError::Unreadable { path, reason: error.to_string() },
+            _ => FileError::Unreadable { path, reason: system_words(error) },
         }
     }
 
-    pub(super) fn writing(path: &Path, reason: impl ToString) -> Self {
-        FileError::Unwritable { path: path.to_owned(), reason: reason.to_string() }
+    pub(super) fn writing(path: &Path, error: &std::io::Error) -> Self {
+        match error.kind() {
+            ErrorKind::NotFound => Self::unwritable(path, "its directory does not exist"),
+            _ => Self::unwritable(path, &system_words(error)),
+        }
+    }
+
+    pub(super) fn unwritable(path: &Path, reason: &str) -> Self {
+        FileError::Unwritable { path: path.to_owned(), reason: reason.to_owned() }
     }
 
     pub(super) fn content(path: &Path, flaw: Flaw) -> Self {
         let Flaw { place, fault } = flaw;
-        FileError::Content { path: path.to_owned(), place, fault }
+        FileError::Content { path: path.to_owned(), place, fault, line: None }
     }
+
+    /// As [`FileError::content`], with the line of the JSON text at which the condition or the model begins.
+    pub(super) fn content_of(path: &Path, flaw: Flaw, text: &[u8]) -> Self {
+        let Flaw { place, fault } = flaw;
+        let line = line_of(text, &place);
+        FileError::Content { path: path.to_owned(), place, fault, line }
+    }
+}
+
+fn listed(paths: &[PathBuf]) -> String {
+    paths.iter().map(|path| plain_path(path)).collect::<Vec<_>>().join(", ")
+}
+
+/// What the system says, without its numbers.
+pub fn system_words(error: &std::io::Error) -> String {
+    let words = match error.kind() {
+        ErrorKind::StorageFull => "the disk is full",
+        ErrorKind::QuotaExceeded => "the disk quota is used up",
+        ErrorKind::FileTooLarge => "it would be larger than the system allows (ulimit -f)",
+        ErrorKind::PermissionDenied => "permission denied",
+        ErrorKind::ReadOnlyFilesystem => "the file system is read-only",
+        _ => {
+            let text = error.to_string();
+            return text.split(" (os error").next().unwrap_or(&text).to_owned();
+        }
+    };
+    words.to_owned()
 }

@@ -1,13 +1,19 @@
 //! Something wrong in a file.
 
 use super::content_fault::ContentFault;
-use super::place::Place;
+use crate::dataset::{DraftError, Place};
 
 /// What is wrong in a file, and where. Boxed, so that results that are mostly right stay small.
 #[derive(Debug)]
 pub(super) struct Flaw {
     pub(super) place: Box<Place>,
     pub(super) fault: Box<ContentFault>,
+}
+
+impl From<DraftError> for Flaw {
+    fn from(error: DraftError) -> Self {
+        Self { place: error.place, fault: Box::new((*error.fault).into()) }
+    }
 }
 
 impl Flaw {

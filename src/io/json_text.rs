@@ -1,17 +1,22 @@
 //! JSON text to values, with the place of what is wrong and of what is not known.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 use serde_json::error::Category;
+use serde_json::value::RawValue;
 
 use super::content_fault::ContentFault;
 use super::file_error::FileError;
 use super::flaw::Flaw;
 use super::outline::Outline;
-use super::place::{Place, Step};
-use super::plain::shortened;
+use super::place::Step;
+use super::plain::{plain, shortened};
 use super::unknown_keys::UnknownKeys;
+use crate::dataset::{BundleKind, Place};
+use crate::units::number;
 
 /// A kind of file: what its "format" and "version" have to say.
 #[derive(Clone, Copy, Debug)]
@@ -99,8 +104,29 @@ fn json_error(text: &[u8], path: &Path, place: Place, error: &serde_json::Error)
         }
         _ => match token_at(text, line, column).filter(|token| is_number_like(token)) {
             Some(found) => FileError::content(path, Flaw::new(place, ContentFault::NotFinite { found, line, column })),
-            None => FileError::NotJson { path: path_owned, place: Box::new(place), line, column, reason },
+            // A word where the reader can tell at once that none of those it knows will stand there.
+            None if serde_json::from_slice::<IgnoredAny>(text).is_ok() => {
+                let (expected, found) = ("a text in quotation marks".to_owned(), "something else".to_owned());
+                FileError::content(path, Flaw::new(place, ContentFault::Type { expected, found, line, column }))
+            }
+            None => {
+                let reason = syntax_words(&reason);
+                FileError::NotJson { path: path_owned, place: Box::new(place), line, column, reason }
+            }
         },
+    }
+}
+
+/// serde_json's words for what is wrong with a text, where they speak of its own workings.
+fn syntax_words(reason: &str) -> String {
+    match reason {
+        "expected ident" => "a word that JSON does not know".to_owned(),
+        "expected value" => "expected a number, a text, a list or an object".to_owned(),
+        "invalid unicode code point" => "the text is not UTF-8".to_owned(),
+        _ if reason.starts_with("control character") => {
+            "a text in quotation marks goes over the end of a line".to_owned()
+        }
+        _ => reason.replace('`', "\""),
     }
 }
 
@@ -112,14 +138,19 @@ fn data_fault(reason: String, line: usize, column: usize) -> ContentFault {
     if let Some(key) = between("duplicate field `") {
         return ContentFault::DuplicateKey { key };
     }
+    if let Some((found, expected)) =
+        reason.strip_prefix("unknown variant `").and_then(|rest| rest.split_once("`, expected "))
+    {
+        return ContentFault::Word { expected: expected.replace('`', "\""), found: found.to_owned() };
+    }
     let mismatch = ["invalid type: ", "invalid value: ", "invalid length "].iter().find_map(|start| {
         let (found, expected) = reason.strip_prefix(start)?.rsplit_once(", expected ")?;
         let found = found_words(found, *start == "invalid length ");
-        Some((shortened(&found), expected_words(expected)))
+        Some((shortened(&plain(&found)), expected_words(expected)))
     });
     match mismatch {
         Some((found, expected)) => ContentFault::Type { expected, found, line, column },
-        None => ContentFault::Text { reason, line, column },
+        None => ContentFault::Text { reason: shortened(&plain(&reason)), line, column },
     }
 }
 
@@ -129,7 +160,11 @@ fn found_words(found: &str, is_length: bool) -> String {
         return format!("{found} entries");
     }
     let unquoted = found.replace('`', "");
-    let renamed = [("string ", "the text "), ("integer ", ""), ("floating point ", ""), ("boolean ", "")]
+    // serde writes every digit of a number out.
+    if let Some(Ok(value)) = unquoted.strip_prefix("floating point ").map(str::parse) {
+        return number(value);
+    }
+    let renamed = [("string ", "the text "), ("integer ", ""), ("boolean ", "")]
         .iter()
         .find_map(|(start, word)| unquoted.strip_prefix(start).map(|rest| format!("{word}{rest}")));
     renamed.unwrap_or_else(|| match unquoted.as_str() {
@@ -143,14 +178,36 @@ fn found_words(found: &str, is_length: bool) -> String {
 fn expected_words(expected: &str) -> String {
     match expected {
         "f64" => "a number (without quotation marks)".to_owned(),
-        "i64" | "u64" | "usize" => "a whole number".to_owned(),
+        "i64" => "a whole number".to_owned(),
+        "u64" | "usize" => "a whole number not below 0".to_owned(),
         "a string" => "a text in quotation marks".to_owned(),
         "a sequence" => "a list".to_owned(),
         "a map" => "an object".to_owned(),
-        "a tuple of size 2" => "a list of 2 entries".to_owned(),
+        "a tuple of size 2" | "an array of length 2" => "a list of 2 entries".to_owned(),
         _ if expected.starts_with("struct ") => "an object".to_owned(),
         _ => expected.to_owned(),
     }
+}
+
+/// The line at which the condition or the model of a place begins, counted from 1.
+pub(super) fn line_of(text: &[u8], place: &Place) -> Option<usize> {
+    let mut value = entry(serde_json::from_slice(text).ok()?, "conditions", place.condition.as_ref()?.position)?;
+    if let Some(model) = &place.model {
+        let key = match model.bundle {
+            BundleKind::Physics => "physics_models",
+            BundleKind::Identified => "identified_models",
+        };
+        value = entry(value, key, model.position)?;
+    }
+    let offset = value.get().as_ptr() as usize - text.as_ptr() as usize;
+    Some(1 + text[..offset].iter().filter(|byte| **byte == b'\n').count())
+}
+
+/// An entry of a list in an object, counted from 1: the part of the text that it is, not a copy.
+fn entry<'t>(object: &'t RawValue, key: &str, position: usize) -> Option<&'t RawValue> {
+    let object: BTreeMap<String, &RawValue> = serde_json::from_str(object.get()).ok()?;
+    let list: Vec<&RawValue> = serde_json::from_str(object.get(key)?.get()).ok()?;
+    list.get(position.checked_sub(1)?).copied()
 }
 
 /// The bare word around a column (counted from 1) of a line (counted from 1): `NaN`, `1e999`.

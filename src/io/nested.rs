@@ -6,9 +6,13 @@ use serde::de::{DeserializeSeed, Deserializer, Error, SeqAccess, Visitor};
 use serde::ser::{SerializeSeq, Serializer};
 use serde::{Deserialize, Serialize};
 
+use super::list::too_long;
+use crate::dataset::limits::{MOST_CHANNELS, MOST_FREQUENCIES, MOST_STATES};
+
 /// A rectangular array of `DEPTH` dimensions, the last one running fastest: `[[1, 2], [3, 4]]` has the shape 2 x 2.
 ///
-/// Read flat, so that a file of empty lists cannot take more memory than its own length.
+/// Read flat, so that a file of empty lists cannot take more memory than its own length; a matrix no further than the states of a
+/// model go, a table of responses no further than the channels and the frequencies.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Nested<const DEPTH: usize> {
     /// Entries along each dimension; 0 where a dimension before it is empty.
@@ -18,9 +22,13 @@ pub(super) struct Nested<const DEPTH: usize> {
 }
 
 impl<const DEPTH: usize> Nested<DEPTH> {
-    /// The shape in words: "6 x 4".
-    pub(super) fn shape_words(&self) -> String {
-        self.shape.map(|length| length.to_string()).join(" x ")
+    /// Most entries of a list at a depth, 0 the outermost.
+    const fn most(depth: usize) -> usize {
+        match (DEPTH, depth) {
+            (2, _) => MOST_STATES,
+            (_, 0 | 1) => MOST_CHANNELS,
+            _ => MOST_FREQUENCIES,
+        }
     }
 }
 
@@ -62,15 +70,17 @@ impl<'de, const DEPTH: usize> Visitor<'de> for List<'_, DEPTH> {
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> Result<(), A::Error> {
         let mut length = 0;
-        if self.depth + 1 == DEPTH {
-            while let Some(value) = entries.next_element::<f64>()? {
+        let depth = self.depth + 1;
+        loop {
+            if depth == DEPTH {
+                let Some(value) = entries.next_element::<f64>()? else { break };
                 self.filling.values.push(value);
-                length += 1;
+            } else if entries.next_element_seed(List { filling: &mut *self.filling, depth })?.is_none() {
+                break;
             }
-        } else {
-            let depth = self.depth + 1;
-            while entries.next_element_seed(List { filling: &mut *self.filling, depth })?.is_some() {
-                length += 1;
+            length += 1;
+            if length > Nested::<DEPTH>::most(self.depth) {
+                return Err(too_long(length - 1));
             }
         }
         match *self.filling.lengths[self.depth].get_or_insert(length) {

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::dataset::BundleKind;
+use crate::dataset::{BundleKind, ConditionPlace, ModelPlace, Place};
 
 use super::outline::Outline;
 use super::plain::{plain, quoted, shortened};
@@ -16,59 +16,7 @@ pub(super) enum Step {
     Entry(usize),
 }
 
-/// A condition of a file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ConditionPlace {
-    /// Its position in the file, counted from 1.
-    pub position: usize,
-    /// Its id, where that can be read.
-    pub id: Option<i64>,
-}
-
-/// A model of a file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ModelPlace {
-    /// Which bundle of the condition.
-    pub bundle: BundleKind,
-    /// Its position in the bundle, counted from 1.
-    pub position: usize,
-    /// Its name, where that can be read.
-    pub name: Option<String>,
-}
-
-/// Where in a file something stands: the condition, the model, and the entry (matrix, row, column), each where it applies.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Place {
-    /// The condition.
-    pub condition: Option<ConditionPlace>,
-    /// The model.
-    pub model: Option<ModelPlace>,
-    /// The entry, in words; empty for the whole.
-    pub entry: String,
-}
-
 impl Place {
-    /// A place named by its keys: "settings, alpha_gain".
-    pub(super) fn entry(words: impl Into<String>) -> Self {
-        Self { entry: words.into(), ..Self::default() }
-    }
-
-    /// A condition; `position` counts from 1.
-    pub(super) fn condition(position: usize, id: i64) -> Self {
-        Self { condition: Some(ConditionPlace { position, id: Some(id) }), ..Self::default() }
-    }
-
-    /// A model of this condition; `position` counts from 1.
-    pub(super) fn model(&self, bundle: BundleKind, position: usize, name: &str) -> Self {
-        let model = Some(ModelPlace { bundle, position, name: Some(name.to_owned()) });
-        Self { condition: self.condition.clone(), model, entry: String::new() }
-    }
-
-    /// An entry of this condition or model.
-    pub(super) fn at(&self, words: impl Into<String>) -> Self {
-        Self { entry: words.into(), ..self.clone() }
-    }
-
     /// The place that these steps lead to.
     pub(super) fn of(steps: &[Step], outline: &Outline) -> Self {
         let mut place = Self::default();
@@ -76,17 +24,12 @@ impl Place {
         if let [Step::Key(key), Step::Entry(index), after @ ..] = rest
             && key == "conditions"
         {
-            let labels = outline.conditions.get(*index);
-            place.condition = Some(ConditionPlace { position: index + 1, id: labels.and_then(|labels| labels.id) });
+            place.condition = Some(ConditionPlace { position: index + 1, id: outline.id(*index) });
             rest = after;
             if let [Step::Key(key), Step::Entry(model), after @ ..] = rest
                 && let Some(bundle) = bundle_of(key)
             {
-                let names = labels.map(|labels| match bundle {
-                    BundleKind::Physics => &labels.physics,
-                    BundleKind::Identified => &labels.identified,
-                });
-                let name = names.and_then(|names| names.get(*model).cloned().flatten());
+                let name = outline.name(*index, key, *model);
                 place.model = Some(ModelPlace { bundle, position: model + 1, name });
                 rest = after;
             }
@@ -108,15 +51,9 @@ impl fmt::Display for Place {
             Some(id) => format!("condition {id} (number {position} in the file)"),
             None => format!("condition number {position} in the file"),
         });
-        let model = self.model.as_ref().map(|ModelPlace { bundle, position, name }| {
-            let kind = match bundle {
-                BundleKind::Physics => "physics model",
-                BundleKind::Identified => "identified model",
-            };
-            match name {
-                Some(name) => format!("{kind} {} (number {position})", quoted(name)),
-                None => format!("{kind} number {position}"),
-            }
+        let model = self.model.as_ref().map(|ModelPlace { bundle, position, name }| match name {
+            Some(name) => format!("{bundle} model {} (number {position})", quoted(name)),
+            None => format!("{bundle} model number {position}"),
         });
         let entry = Some(self.entry.clone()).filter(|entry| !entry.is_empty());
         let words: Vec<String> = [condition, model, entry].into_iter().flatten().collect();

@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::directory::make_directory;
 use super::file_error::FileError;
 use super::json_text::Format;
+use super::output_set::{Existing, OutputSet, make_directory};
 use super::source::Source;
-use super::whole_file::write_whole;
 
 /// Most files that are listed.
 const MOST: usize = 10;
@@ -46,7 +45,9 @@ pub fn add_recent_file(directory: &Path, file: &Path) -> Result<(), FileError> {
     let files = std::iter::once(file.clone()).chain(others).take(MOST).collect();
     let text = RecentText { format: FORMAT.name.to_owned(), version: FORMAT.version, files };
     make_directory(directory)?;
-    write_whole(&directory.join(NAME), |writer| Ok(serde_json::to_writer_pretty(writer, &text)?))
+    let mut output = OutputSet::new(Existing::Replace, Vec::new());
+    output.add(&directory.join(NAME), |writer| Ok(serde_json::to_writer_pretty(writer, &text)?))?;
+    output.persist()
 }
 
 #[cfg(test)]

@@ -9,8 +9,8 @@ use std::time::{Duration, SystemTime};
 use crate::study::Study;
 
 use super::dataset_file::LoadedDataset;
-use super::directory::make_directory;
 use super::file_error::FileError;
+use super::output_set::make_directory;
 use super::study_file::{STUDY_EXTENSION, dataset_of_study, save_recovery};
 
 /// How the name of the file ends that shows by its lock whether the process lives.
@@ -44,8 +44,8 @@ impl RecoveryFile {
             if path.exists() || lock_path.exists() {
                 continue;
             }
-            let lock = File::create_new(&lock_path).map_err(|error| FileError::writing(&lock_path, error))?;
-            lock.lock().map_err(|error| FileError::writing(&lock_path, error))?;
+            let lock = File::create_new(&lock_path).map_err(|error| FileError::writing(&lock_path, &error))?;
+            lock.lock().map_err(|error| FileError::writing(&lock_path, &error))?;
             return Ok(Self { path, lock_path, lock });
         }
     }
@@ -60,7 +60,7 @@ impl RecoveryFile {
     /// # Errors
     /// Where it cannot be written.
     pub fn write(&mut self, study: &Study, loaded: &LoadedDataset, saved_as: Option<&Path>) -> Result<(), FileError> {
-        let failed = |error| FileError::writing(&self.lock_path, error);
+        let failed = |error| FileError::writing(&self.lock_path, &error);
         let name = saved_as.and_then(|path| std::path::absolute(path).ok()).unwrap_or_default();
         self.lock.set_len(0).and_then(|()| self.lock.rewind()).map_err(failed)?;
         self.lock.write_all(name.to_string_lossy().as_bytes()).map_err(failed)?;
@@ -154,7 +154,7 @@ fn lost_study(lock_path: &Path) -> Option<LostStudy> {
 
 fn remove(path: &Path) -> Result<(), FileError> {
     match fs::remove_file(path) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(FileError::writing(path, error)),
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(FileError::writing(path, &error)),
         _ => Ok(()),
     }
 }

@@ -5,15 +5,11 @@ use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-use flate2::read::MultiGzDecoder;
+use flate2::bufread::GzDecoder;
 use sha2::{Digest, Sha256};
 
 use super::file_error::FileError;
-
-/// Most bytes of text that a file may hold, packed or not: 128 MiB, some 500 conditions of the example's size.
-///
-/// It bounds what a hostile or mistaken file can make the program allocate.
-pub const LARGEST_TEXT: u64 = 128 << 20;
+use crate::dataset::limits::LARGEST_TEXT;
 
 /// The two bytes that every gzip file starts with (RFC 1952).
 const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
@@ -70,15 +66,22 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, FileError> {
 }
 
 /// Unpacks as it goes, and no further than the limit: a few kilobytes can unpack to gigabytes.
+///
+/// A file may have several members (RFC 1952), and zeros behind the last, with which tapes and copying programs fill their blocks.
 fn unpack(bytes: &[u8], path: &Path) -> Result<Vec<u8>, FileError> {
-    let mut text = Vec::new();
-    let unpacked = MultiGzDecoder::new(bytes).take(LARGEST_TEXT + 1).read_to_end(&mut text);
-    check_length(text.len() as u64, path)?;
-    match unpacked {
-        Ok(_) => Ok(text),
-        Err(error) if error.kind() == ErrorKind::UnexpectedEof => Err(FileError::GzipCutOff { path: path.to_owned() }),
-        Err(error) => Err(FileError::Gzip { path: path.to_owned(), reason: error.to_string() }),
+    let (mut text, mut rest) = (Vec::new(), bytes);
+    while rest.iter().any(|&byte| byte != 0) {
+        let mut member = GzDecoder::new(rest);
+        let left = (LARGEST_TEXT + 1).saturating_sub(text.len() as u64);
+        let unpacked = member.by_ref().take(left).read_to_end(&mut text);
+        check_length(text.len() as u64, path)?;
+        unpacked.map_err(|error| match error.kind() {
+            ErrorKind::UnexpectedEof => FileError::GzipCutOff { path: path.to_owned() },
+            _ => FileError::Gzip { path: path.to_owned() },
+        })?;
+        rest = member.into_inner();
     }
+    Ok(text)
 }
 
 fn check_length(length: u64, path: &Path) -> Result<(), FileError> {
@@ -100,6 +103,22 @@ mod tests {
     fn the_hash_is_that_of_the_published_example() {
         // FIPS 180-2, appendix B.1.
         assert_eq!(sha256_hex(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    }
+
+    #[test]
+    fn members_follow_one_another_and_zeros_behind_the_last_are_passed_over() {
+        use std::io::Write;
+        let member = |text: &[u8]| {
+            let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+            encoder.write_all(text).unwrap();
+            encoder.finish().unwrap()
+        };
+        let packed = [member(b"{"), member(b""), member(b"}"), vec![0; 700]].concat();
+        assert_eq!(Source::of(&packed, Path::new("x")).unwrap().text(), b"{}");
+        let strange = [member(b"{}"), b"\0\0more".to_vec()].concat();
+        assert!(matches!(Source::of(&strange, Path::new("x")), Err(FileError::Gzip { .. })));
+        let cut = [member(b"{"), member(b"}")[..12].to_vec()].concat();
+        assert!(matches!(Source::of(&cut, Path::new("x")), Err(FileError::GzipCutOff { .. })));
     }
 
     #[test]

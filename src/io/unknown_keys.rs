@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::outline::Outline;
-use super::place::{Place, Step};
+use super::place::Step;
 use super::plain::quoted;
+use crate::dataset::Place;
 
 /// Most keys told one by one; a file with more is not one of ours, or made to fill the memory.
 const MOST_KEYS: usize = 50;

@@ -1,6 +1,7 @@
 //! Every decision the engineer can take about a study, and the only code that carries one out.
 
 use crate::dataset::{BundleKind, Condition, ConditionId, ModelId, Pair};
+use crate::units::number;
 
 use super::document::{ConditionChoice, Study};
 use super::setting::Setting;
@@ -66,7 +67,7 @@ pub enum EditRefusal {
         model: String,
     },
     /// A setting lies outside its range.
-    #[error("{setting}: expected {expected}, found {found}")]
+    #[error("{setting}: expected {expected}, found {}", number(*found))]
     OutOfRange {
         /// The setting's name.
         setting: &'static str,

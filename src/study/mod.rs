@@ -37,5 +37,7 @@ pub use inventory::{ConditionInventory, Inventory};
 pub use job::{CurvesJob, Job, ProofJob, TogglesJob};
 pub use progress::{Cancelled, Progress, Unobserved};
 pub use setting::Setting;
-pub use settings::{GREATEST_GAIN, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings};
+pub use settings::{
+    GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings,
+};
 pub use toggles::Toggles;

@@ -4,9 +4,12 @@ use crate::correction::{GainBounds, GainObjective};
 use crate::dataset::{Band, Dataset, Pair, PairTable};
 use crate::fidelity::CostAverage;
 use crate::schedule::{HIGHEST_DEGREE, ScheduleKind, ScheduleSettings};
+use crate::units::number;
 
 use super::edit::EditRefusal;
-use super::settings::{GREATEST_GAIN, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings};
+use super::settings::{
+    GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings,
+};
 
 /// Widest gap \[kt\] within which airspeeds may be taken as one.
 const LARGEST_TOLERANCE_KT: f64 = 100.0;
@@ -76,36 +79,35 @@ impl Setting {
         slides && std::mem::discriminant(self) == std::mem::discriminant(earlier)
     }
 
-    fn refuse(&self, expected: impl Into<String>, found: f64) -> EditRefusal {
-        EditRefusal::OutOfRange { setting: self.name(), expected: expected.into(), found }
-    }
-
-    fn check_range(&self, value: f64, least: f64, most: f64) -> Result<(), EditRefusal> {
-        if (least..=most).contains(&value) {
-            Ok(())
-        } else {
-            Err(self.refuse(format!("a number from {least} to {most}"), value))
+    fn check_range(&self, what: &str, found: f64, least: f64, most: f64) -> Result<(), EditRefusal> {
+        if (least..=most).contains(&found) {
+            return Ok(());
         }
+        let expected = format!("{what} from {} to {}", number(least), number(most));
+        Err(EditRefusal::OutOfRange { setting: self.name(), expected, found })
     }
 
     fn check(&self) -> Result<(), EditRefusal> {
         match self {
-            Setting::AlphaGain(alpha) | Setting::AlphaDelay(alpha) => self.check_range(*alpha, 0.0, LARGEST_ALPHA),
+            Setting::AlphaGain(alpha) | Setting::AlphaDelay(alpha) => {
+                self.check_range("a number", *alpha, 0.0, LARGEST_ALPHA)
+            }
             Setting::Schedule(ScheduleSettings { kind, airspeed_tolerance_kt, .. }) => {
                 if let ScheduleKind::Polynomial { degree } = kind {
-                    self.check_range(*degree as f64, 0.0, HIGHEST_DEGREE as f64)?;
+                    self.check_range("a whole number", *degree as f64, 0.0, HIGHEST_DEGREE as f64)?;
                 }
-                self.check_range(*airspeed_tolerance_kt, 0.0, LARGEST_TOLERANCE_KT)
+                self.check_range("a number", *airspeed_tolerance_kt, 0.0, LARGEST_TOLERANCE_KT)
             }
-            Setting::Points(points) => self.check_range(*points as f64, LEAST_POINTS as f64, MOST_POINTS as f64),
-            Setting::Quantile(quantile) => self.check_range(*quantile, 0.0, 0.5),
+            Setting::Points(points) => {
+                self.check_range("a whole number", *points as f64, LEAST_POINTS as f64, MOST_POINTS as f64)
+            }
+            Setting::Quantile(quantile) => self.check_range("a number", *quantile, 0.0, GREATEST_QUANTILE),
             Setting::GainBounds(Some(GainBounds { lower, upper })) => {
-                self.check_range(*lower, LEAST_GAIN, GREATEST_GAIN)?;
-                self.check_range(*upper, *lower, GREATEST_GAIN)
+                self.check_range("a lower bound", *lower, LEAST_GAIN, GREATEST_GAIN)?;
+                self.check_range("an upper bound", *upper, *lower, GREATEST_GAIN)
             }
-            Setting::DelayUpper(Some(upper)) if !(upper.is_finite() && *upper >= 0.0) => {
-                Err(self.refuse("a number of seconds not below 0", *upper))
-            }
+            Setting::DelayUpper(Some(upper)) => self.check_range("a number of seconds", *upper, 0.0, GREATEST_DELAY_S),
+            // A band is checked where it is made.
             _ => Ok(()),
         }
     }

@@ -11,7 +11,10 @@ pub const LEAST_POINTS: usize = 2;
 pub const MOST_POINTS: usize = 5000;
 /// Largest weight of the regularisation; beyond it the optimum no longer moves.
 pub const LARGEST_ALPHA: f64 = 1e6;
-
+/// Greatest quantile of the bounds: the median.
+pub const GREATEST_QUANTILE: f64 = 0.5;
+/// Greatest upper bound of a channel delay \[s\].
+pub const GREATEST_DELAY_S: f64 = 1e3;
 /// Least lower bound of a channel gain (-120 dB).
 pub const LEAST_GAIN: f64 = 1e-6;
 /// Greatest upper bound of a channel gain (120 dB).

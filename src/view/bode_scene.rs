@@ -151,7 +151,7 @@ fn model_curves(state: &State, condition: &Condition, shapes: &CachedShapes, kin
         let rejected = state.study.is_rejected(&id);
         BodeCurve {
             label: model.name.clone(),
-            detail: detail(shown, &id, rejected),
+            detail: detail(shown, model, &id, rejected),
             role: role_of(kind, model.is_nominal(), representative == Some(&model.name)),
             rejected,
             highlighted: state.display.hovered.as_ref() == Some(&id),
@@ -176,15 +176,16 @@ fn role_of(kind: BundleKind, nominal: bool, represents: bool) -> Role {
 }
 
 /// "ratio 3.68, suggested as an outlier · click to reject".
-fn detail(shown: Option<&ConditionAnalysis>, id: &ModelId, rejected: bool) -> String {
+fn detail(shown: Option<&ConditionAnalysis>, model: &Model, id: &ModelId, rejected: bool) -> String {
     let ratio =
         shown.filter(|_| id.bundle == BundleKind::Physics).and_then(|shown| shown.discontinuity_ratio(&id.name));
     let action = if rejected { "click to restore" } else { "click to reject" };
-    match ratio {
-        Some(ratio) if ratio > SUGGESTION_RATIO => format!("ratio {ratio:.2}, suggested as an outlier · {action}"),
-        Some(ratio) => format!("ratio {ratio:.2} · {action}"),
-        None => action.to_owned(),
-    }
+    let ratio = ratio.map(|ratio| {
+        let verdict = if ratio > SUGGESTION_RATIO { ", suggested as an outlier" } else { "" };
+        format!("ratio {ratio:.2}{verdict}")
+    });
+    let source = model.source.as_ref().map(|source| format!("from {}", source.words()));
+    ratio.into_iter().chain(source).chain([action.to_owned()]).collect::<Vec<_>>().join(" · ")
 }
 
 fn corrected_curves(

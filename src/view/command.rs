@@ -60,6 +60,8 @@ pub enum Command {
     AskExportFolder,
     /// Write the corrections chosen in the export form.
     Export,
+    /// Write over the files that the form has named.
+    Overwrite,
     /// Go on with what would lose unsaved decisions.
     DiscardAndGoOn,
     /// Give up the computation under way.

@@ -15,6 +15,9 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
     let modal = Modal::new(Id::unique("form")).show(ctx, |ui| {
         ui.set_width(460.0);
         match kind {
+            FormKind::Save | FormKind::Export if !state.forms.existing.is_empty() => {
+                overwrite_ui(ui, kind, &state.forms.existing, commands);
+            }
             FormKind::Open => open_ui(ui, &mut state.forms.open_path, commands),
             FormKind::FindDataset => find_dataset_ui(ui, state, palette, commands),
             FormKind::Save => save_ui(ui, &mut state.forms.save_path, commands),
@@ -144,6 +147,23 @@ fn conditions_ui(ui: &mut Ui, form: &mut ExportForm, names: &[(ConditionId, Stri
             } else if response.changed() {
                 form.chosen.remove(id);
             }
+        }
+    });
+}
+
+/// Asks whether to overwrite files; a cancel goes back to the form that would.
+fn overwrite_ui(ui: &mut Ui, form: FormKind, existing: &[String], commands: &mut Vec<Command>) {
+    title(ui, if existing.len() == 1 { "This file exists already" } else { "These files exist already" });
+    for path in existing {
+        ui.label(path);
+    }
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        if ui.button("Overwrite").clicked() {
+            commands.push(Command::Overwrite);
+        }
+        if ui.button("Cancel").clicked() {
+            commands.push(Command::ShowForm(Some(form)));
         }
     });
 }

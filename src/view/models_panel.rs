@@ -216,6 +216,9 @@ impl<'a> ModelRow<'a> {
         if let Some(why) = &self.set_aside {
             ui.label(why);
         }
+        if let Some(source) = &self.model.source {
+            ui.label(format!("from {}", source.words()));
+        }
         if let Some(ratio) = self.ratio {
             let verdict = if ratio > SUGGESTION_RATIO { ": suggested as an outlier" } else { "" };
             ui.label(format!("discontinuity ratio {ratio:.3}{verdict}"));

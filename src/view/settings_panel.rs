@@ -5,9 +5,12 @@ use std::ops::RangeInclusive;
 use egui::{ComboBox, DragValue, Grid, Response, RichText, Role, Slider, Ui, WidgetInfo};
 
 use crate::correction::{GainBounds, GainObjective};
-use crate::dataset::Band;
+use crate::dataset::{Band, GREATEST_OMEGA, LEAST_OMEGA};
 use crate::fidelity::CostAverage;
-use crate::study::{Edit, GREATEST_GAIN, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Setting};
+use crate::study::{
+    Edit, GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS,
+    Setting,
+};
 use crate::units::s_to_ms;
 
 use super::command::Command;
@@ -106,9 +109,9 @@ impl Panel<'_, '_> {
         let (low, high) = self
             .ui
             .horizontal(|ui| {
-                let low = named(ui.add(frequency_value(&mut min, 1e-4..=0.999 * max)), Role::SpinButton, "Band from");
+                let low = named(ui.add(frequency_value(&mut min, LEAST_OMEGA..=max)), Role::SpinButton, "Band from");
                 Self::unit(ui, palette, "–");
-                let high = named(ui.add(frequency_value(&mut max, 1.001 * min..=1e5)), Role::SpinButton, "Band to");
+                let high = named(ui.add(frequency_value(&mut max, min..=GREATEST_OMEGA)), Role::SpinButton, "Band to");
                 Self::unit(ui, palette, "rad/s");
                 (low, high)
             })
@@ -136,7 +139,7 @@ impl Panel<'_, '_> {
                 let drag = DragValue::new(&mut points).range(LEAST_POINTS..=MOST_POINTS);
                 let count = named(ui.add(drag), Role::SpinButton, "Frequencies in the band");
                 Self::unit(ui, palette, "quantile");
-                let drag = DragValue::new(&mut percent).range(0.0..=50.0).speed(0.1).suffix(" %");
+                let drag = DragValue::new(&mut percent).range(0.0..=100.0 * GREATEST_QUANTILE).speed(0.1).suffix(" %");
                 let quantile = named(ui.add(drag), Role::SpinButton, "Quantile of the bounds");
                 (count, quantile)
             })
@@ -202,7 +205,11 @@ impl Panel<'_, '_> {
         let (typed, automatic) = self
             .ui
             .horizontal(|ui| {
-                let drag = DragValue::new(&mut upper_ms).range(0.0..=1e6).speed(0.2).max_decimals(1).suffix(" ms");
+                let drag = DragValue::new(&mut upper_ms)
+                    .range(0.0..=s_to_ms(GREATEST_DELAY_S))
+                    .speed(0.2)
+                    .max_decimals(1)
+                    .suffix(" ms");
                 let typed = named(ui.add(drag), Role::SpinButton, "Upper delay bound");
                 (typed, automatic_ui(ui, by_hand.is_some(), "Delay bound"))
             })

@@ -233,6 +233,8 @@ pub struct Forms {
     pub save_path: String,
     /// The export form.
     pub export: ExportForm,
+    /// Files that what the form asks for would overwrite: where there are any, it asks whether to.
+    pub existing: Vec<String>,
 }
 
 /// Everything the window shows.

@@ -9,36 +9,36 @@ use gdcm::io::{load_dataset, read_corrections, save_study};
 use gdcm::study::{Edit, Setting, Study};
 use serde_json::{Value, json};
 
-const SMALL: &str = include_str!("../data/small-dataset.json");
+pub(crate) const SMALL: &str = include_str!("../data/small-dataset.json");
 
 /// A directory with the small dataset in it, where commands are run.
-struct Desk {
-    directory: tempfile::TempDir,
+pub(crate) struct Desk {
+    pub(crate) directory: tempfile::TempDir,
 }
 
 impl Desk {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let directory = tempfile::tempdir().unwrap();
         fs::write(directory.path().join("small.json"), SMALL).unwrap();
         Self { directory }
     }
 
-    fn path(&self, name: &str) -> PathBuf {
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.directory.path().join(name)
     }
 
-    fn write(&self, name: &str, change: impl FnOnce(&mut Value)) {
+    pub(crate) fn write(&self, name: &str, change: impl FnOnce(&mut Value)) {
         let mut value: Value = serde_json::from_str(SMALL).unwrap();
         change(&mut value);
         fs::write(self.path(name), serde_json::to_vec(&value).unwrap()).unwrap();
     }
 
-    fn gdcm(&self, arguments: &[&str]) -> Ended {
+    pub(crate) fn gdcm(&self, arguments: &[&str]) -> Ended {
         let output = self.command(arguments).output().unwrap();
         Ended::of(&output)
     }
 
-    fn command<S: AsRef<OsStr>>(&self, arguments: &[S]) -> Command {
+    pub(crate) fn command<S: AsRef<OsStr>>(&self, arguments: &[S]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_gdcm"));
         command.args(arguments).current_dir(self.directory.path());
         command
@@ -47,21 +47,21 @@ impl Desk {
 
 /// How a command ended.
 #[derive(Debug)]
-struct Ended {
-    status: i32,
-    out: String,
-    error: String,
+pub(crate) struct Ended {
+    pub(crate) status: i32,
+    pub(crate) out: String,
+    pub(crate) error: String,
 }
 
 impl Ended {
-    fn of(output: &Output) -> Self {
+    pub(crate) fn of(output: &Output) -> Self {
         let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
         Self { status: output.status.code().unwrap(), out: text(&output.stdout), error: text(&output.stderr) }
     }
 
     /// Asserts a failure told in one or two lines of standard error that hold these words, and nothing on standard output.
     #[track_caller]
-    fn assert_failed(&self, status: i32, words: &[&str]) {
+    pub(crate) fn assert_failed(&self, status: i32, words: &[&str]) {
         assert_eq!((self.status, self.out.as_str()), (status, ""), "{self:?}");
         assert!((1..=2).contains(&self.error.lines().count()), "{}", self.error);
         for word in words {
@@ -70,7 +70,7 @@ impl Ended {
     }
 
     #[track_caller]
-    fn assert_done(&self) {
+    pub(crate) fn assert_done(&self) {
         assert_eq!((self.status, self.error.as_str()), (0, ""), "{self:?}");
     }
 }
@@ -230,9 +230,9 @@ fn a_wrong_command_line_is_status_2_with_the_option() {
     };
     analyze(&["--alpha", "-1"]).assert_failed(2, &["--alpha: ", "from 0", "found -1"]);
     analyze(&["--alpha", "NaN"]).assert_failed(2, &["--alpha: ", "found NaN"]);
-    analyze(&["--alpha", "much"]).assert_failed(2, &["'much'", "--alpha"]);
+    analyze(&["--alpha", "much"]).assert_failed(2, &["--alpha: expected a number, found much"]);
     analyze(&["--alpha-delay", "1e9"]).assert_failed(2, &["--alpha-delay: ", "found 1000000000"]);
-    analyze(&["--band", "8", "1"]).assert_failed(2, &["--band: ", "0 < min < max"]);
+    analyze(&["--band", "8", "1"]).assert_failed(2, &["--band: ", "0.0001 <= min < max <= 100000", "min 8, max 1"]);
     analyze(&["--band", "8"]).assert_failed(2, &["--band"]);
     analyze(&["--points", "1"]).assert_failed(2, &["--points: ", "from 2 to 5000"]);
     analyze(&["--degree", "4"]).assert_failed(2, &["--degree: ", "from 0 to 3"]);
@@ -255,15 +255,11 @@ fn an_output_directory_that_cannot_be_made_is_status_2_before_any_work() {
 }
 
 #[test]
-fn results_that_cannot_be_written_are_status_1_and_leave_no_half_of_a_file() {
+fn a_directory_where_a_result_has_to_stand_is_status_2_before_any_work() {
     let desk = Desk::new();
-    // A directory where the file has to stand cannot be replaced, whoever asks.
     fs::create_dir_all(desk.path("out/corrections.csv")).unwrap();
-    desk.gdcm(&["analyze", "small.json", "--out", "out"]).assert_failed(1, &["corrections.csv", "directory"]);
-    let names = fs::read_dir(desk.path("out")).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
-    let mut names: Vec<String> = names.collect();
-    names.sort();
-    assert_eq!(names, ["corrections.csv", "corrections.json"]);
+    desk.gdcm(&["analyze", "small.json", "--out", "out"]).assert_failed(2, &["corrections.csv", "directory"]);
+    assert_eq!(fs::read_dir(desk.path("out")).unwrap().count(), 1);
 }
 
 #[test]

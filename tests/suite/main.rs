@@ -4,6 +4,8 @@
 mod analysis;
 mod commands;
 mod dataset_file;
+mod messages;
 mod optimiser;
+mod outputs;
 mod structure;
 mod window;

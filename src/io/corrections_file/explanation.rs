@@ -7,7 +7,7 @@ use crate::correction::{
     GainSensitivity, GainSolution,
 };
 
-use super::channel_names::ChannelNames;
+use super::names::ChannelNames;
 
 /// What explains one optimum.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -3,18 +3,17 @@
 use std::collections::BTreeSet;
 
 use crate::correction::{DelayConflict, GainObjective, Outcome, delay_sensitivities, gain_sensitivities};
-use crate::dataset::{BundleKind, Condition, ConditionId, PairTable};
+use crate::dataset::{BundleKind, Condition, ConditionId, Model, PairTable, Provenance};
 use crate::fidelity::{Cost, CostAverage};
-use crate::io::by_name::ByName;
 use crate::schedule::{Regression, Schedule, ScheduleKind, ScheduledQuantity};
 use crate::study::{Analysis, Assessed, Caution, ConditionAnalysis, Settings};
 
-use super::channel_names::{ChannelNames, rows};
 use super::explanation;
+use super::names::{ByName, ChannelNames, rows};
 use super::schema::{
     Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
     DelayOutcome, GainOutcome, NetGain, ScheduleUsed, ScheduledDelays, ScheduledGains, SetAsideEntry, SettingsUsed,
-    UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
+    SourceEntry, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
 };
 use super::{NAME, VERSION};
 
@@ -110,6 +109,7 @@ impl Gather<'_> {
             suggested_outliers: result.suggested(),
             discontinuity: discontinuity_of(condition, result),
             set_aside: self.set_aside(result),
+            sources: sources_of(condition),
             scheduled: study.choice(condition.id()).scheduled,
             held: names.marked(result.held()),
             delta_gain: rows(&result.comparison.delta.gain, |gain| *gain),
@@ -235,6 +235,16 @@ impl Gather<'_> {
             cautions: schedule.cautions.iter().map(|caution| caution.words(&names.inputs, &names.outputs)).collect(),
         }
     }
+}
+
+/// Where the models come from, as far as their dataset says.
+fn sources_of(condition: &Condition) -> Vec<SourceEntry> {
+    let entry = |bundle: BundleKind, model: &Model| {
+        let Provenance { file, sha256, variable, made, note } = model.source.clone()?;
+        Some(SourceEntry { bundle: bundle.to_string(), model: model.name.clone(), file, sha256, variable, made, note })
+    };
+    let of_bundle = |kind| condition.bundle(kind).iter().filter_map(move |model| entry(kind, model));
+    BundleKind::BOTH.into_iter().flat_map(of_bundle).collect()
 }
 
 /// Discontinuity ratios by name, in file order; none where none could be computed.

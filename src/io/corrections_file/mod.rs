@@ -1,37 +1,61 @@
 //! Result files: `corrections.json`, `corrections.csv`, `assessment.csv`.
 
-mod assessment_table;
-mod channel_names;
-mod channel_table;
 mod explanation;
 mod gather;
+mod names;
 mod schema;
+mod tables;
 
-use std::path::Path;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use crate::dataset::ConditionId;
+use crate::study::Analysis;
 
 use super::file_error::FileError;
 use super::json_text::Format;
+use super::output_set::{OutputSet, make_directory};
 use super::source::Source;
-use super::whole_file::write_whole;
 
-pub use assessment_table::write_assessment_csv;
-pub use channel_table::write_corrections_csv;
 pub use explanation::{ConflictEntry, Explanation, RemedyEntry, SensitivityEntry};
+pub use names::ByName;
 pub use schema::{
     Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
     DelayOutcome, GainOutcome, NetGain, ScheduleUsed, ScheduledDelays, ScheduledGains, SetAsideEntry, SettingsUsed,
-    Table, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
+    SourceEntry, Table, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
 };
 
 const NAME: &str = "gdcm-corrections";
 const VERSION: u64 = 1;
 
-/// Writes `corrections.json`; replaced whole, or not at all.
-pub fn write_corrections(corrections: &Corrections, path: &Path) -> Result<(), FileError> {
-    write_whole(path, |file| {
-        serde_json::to_writer_pretty(&mut *file, corrections)?;
+/// The names of the files of results.
+pub const RESULT_FILES: [&str; 3] = ["corrections.json", "corrections.csv", "assessment.csv"];
+
+/// Where the files of results stand in a directory.
+pub fn result_paths(directory: &Path) -> [PathBuf; 3] {
+    RESULT_FILES.map(|name| directory.join(name))
+}
+
+/// Writes the results of the chosen conditions into a directory, made where there is none: all three files, or none.
+///
+/// `sha256` is that of the dataset's file.
+pub fn write_results(
+    analysis: &Analysis,
+    sha256: &str,
+    chosen: &BTreeSet<ConditionId>,
+    directory: &Path,
+    mut outputs: OutputSet,
+) -> Result<(), FileError> {
+    let [json, channels, responses] = result_paths(directory);
+    outputs.check(&[&json, &channels, &responses])?;
+    make_directory(directory)?;
+    outputs.add(&json, |file| {
+        serde_json::to_writer_pretty(&mut *file, &Corrections::of(analysis, sha256, chosen))?;
         file.write_all(b"\n")
-    })
+    })?;
+    outputs.add(&channels, |file| tables::channel_table(analysis, chosen, file))?;
+    outputs.add(&responses, |file| tables::response_table(analysis, chosen, file))?;
+    outputs.persist()
 }
 
 /// Reads a `corrections.json`.

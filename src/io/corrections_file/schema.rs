@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::io::by_name::ByName;
 use crate::schedule::DEFAULT_TOLERANCE_KT;
 
 use super::explanation::Explanation;
+use super::names::ByName;
 
 /// A table `[output][input]` in the dataset's channel order; `None` (null) where a response has no such figure.
 pub type Table = Vec<Vec<Option<f64>>>;
@@ -92,6 +92,9 @@ pub struct ConditionCorrections {
     /// Models that lack a measuring response which another model of their bundle has, and take no part.
     #[serde(default)]
     pub set_aside: Vec<SetAsideEntry>,
+    /// Which files the models were made from, of those of which that is known.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sources: Vec<SourceEntry>,
     /// Whether the condition enters the schedule.
     pub scheduled: bool,
     /// Responses held in this condition, `[output, input]`: the constrained ones that are defined here.
@@ -328,4 +331,23 @@ pub struct ConditionAssessment {
     /// Change of its phase part.
     #[serde(rename = "dJ_phase")]
     pub phase: Table,
+}
+
+/// Which file a model was made from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SourceEntry {
+    /// `physics` or `identified`.
+    pub bundle: String,
+    /// The model's name.
+    pub model: String,
+    /// The file, relative to the dataset's.
+    pub file: Option<String>,
+    /// SHA-256 of the file, in hexadecimal.
+    pub sha256: Option<String>,
+    /// The variable in it, or the flight record.
+    pub variable: Option<String>,
+    /// When the model was made.
+    pub made: Option<String>,
+    /// What else is known of it.
+    pub note: Option<String>,
 }

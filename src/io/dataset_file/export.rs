@@ -2,11 +2,13 @@
 
 use nalgebra::DMatrix;
 
-use crate::dataset::{BundleKind, Channel, Condition, Dataset, Dynamics, MeasuredResponse, Model, Origin, PairTable};
+use crate::dataset::{
+    BundleKind, Channel, Condition, Dataset, Dynamics, MeasuredResponse, Model, Origin, PairTable, Provenance,
+};
 use crate::io::nested::Nested;
 
 use super::schema::{
-    BandText, ChannelText, ConditionText, DatasetText, FORMAT, IdentifiedText, PhysicsText, ResponseText,
+    BandText, ChannelText, ConditionText, DatasetText, FORMAT, IdentifiedText, PhysicsText, ResponseText, SourceText,
 };
 
 /// The text of a dataset, entry by entry. Names of states, which the program does not keep, are not in it.
@@ -63,6 +65,7 @@ fn physics_text(model: &Model) -> PhysicsText {
         c,
         d,
         frequency_response: None,
+        source: model.source.as_ref().map(source_text),
     }
 }
 
@@ -76,7 +79,13 @@ fn identified_text(model: &Model) -> IdentifiedText {
         Dynamics::StateSpace(_) => None,
         Dynamics::Measured(response) => Some(response_text(response)),
     };
-    IdentifiedText { name: model.name.clone(), method, order, _states: None, a, b, c, d, frequency_response }
+    let source = model.source.as_ref().map(source_text);
+    IdentifiedText { name: model.name.clone(), method, order, _states: None, a, b, c, d, frequency_response, source }
+}
+
+fn source_text(provenance: &Provenance) -> SourceText {
+    let Provenance { file, sha256, variable, made, note } = provenance.clone();
+    SourceText { file, sha256, variable, made, note }
 }
 
 fn matrices(dynamics: &Dynamics) -> [Option<Nested<2>>; 4] {

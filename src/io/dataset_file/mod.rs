@@ -1,7 +1,6 @@
 //! Dataset files, `*.json` and `*.json.gz`.
 
 mod build;
-mod dynamics;
 mod export;
 mod schema;
 
@@ -15,10 +14,12 @@ use flate2::write::GzEncoder;
 use crate::dataset::Dataset;
 
 use super::file_error::FileError;
+use super::flaw::Flaw;
+use super::output_set::{Existing, OutputSet, make_directory, write_whole};
+use super::plain::plain_path;
 use super::source::Source;
-use super::whole_file::write_whole;
 
-use build::dataset_of;
+use build::draft_of;
 use export::text_of;
 use schema::{DatasetText, FORMAT};
 
@@ -39,13 +40,21 @@ pub enum DatasetOrigin {
 impl fmt::Display for DatasetOrigin {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            DatasetOrigin::File(path) => write!(formatter, "{}", path.display()),
+            DatasetOrigin::File(path) => formatter.write_str(&plain_path(path)),
             DatasetOrigin::EmbeddedExample => formatter.write_str("(embedded example)"),
         }
     }
 }
 
 impl DatasetOrigin {
+    /// The file, if it comes from one.
+    pub fn file(&self) -> Option<PathBuf> {
+        match self {
+            DatasetOrigin::File(path) => Some(path.clone()),
+            DatasetOrigin::EmbeddedExample => None,
+        }
+    }
+
     /// The path, or what stands for it in an error.
     pub(super) fn path(&self) -> PathBuf {
         match self {
@@ -100,11 +109,14 @@ pub fn embedded_example() -> Result<LoadedDataset, FileError> {
 }
 
 /// Writes the example dataset, unpacked, into a directory (made where there is none), and returns the file's path.
-pub fn write_example(directory: &Path) -> Result<PathBuf, FileError> {
+pub fn write_example(directory: &Path, existing: Existing) -> Result<PathBuf, FileError> {
     let source = Source::of(EXAMPLE, &DatasetOrigin::EmbeddedExample.path())?;
-    super::directory::make_directory(directory)?;
     let path = directory.join(EXAMPLE_NAME);
-    write_whole(&path, |file| file.write_all(source.text()))?;
+    let mut outputs = OutputSet::new(existing, Vec::new());
+    outputs.check(&[&path])?;
+    make_directory(directory)?;
+    outputs.add(&path, |file| file.write_all(source.text()))?;
+    outputs.persist()?;
     Ok(path)
 }
 
@@ -129,7 +141,9 @@ pub(super) fn dataset_from(source: &Source<'_>, origin: DatasetOrigin) -> Result
     let path = origin.path();
     let (text, mut cautions) = FORMAT.decode::<DatasetText>(source.text(), &path)?;
     FORMAT.check_read(&text.format, text.version, &path)?;
-    let (dataset, odd) = dataset_of(text).map_err(|flaw| FileError::content(&path, flaw))?;
-    cautions.extend(odd);
+    let draft = draft_of(text).map_err(|flaw| FileError::content_of(&path, flaw, source.text()))?;
+    let (dataset, odd) =
+        draft.checked().map_err(|error| FileError::content_of(&path, Flaw::from(error), source.text()))?;
+    cautions.extend(odd.into_iter().map(|odd| format!("{}{}", odd.place.before(), odd.words)));
     Ok(LoadedDataset { dataset: Arc::new(dataset), sha256: source.sha256.clone(), origin, cautions })
 }

@@ -3,10 +3,14 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use serde::de::{Deserializer, IgnoredAny, SeqAccess, Visitor};
+use serde::de::{Deserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 
+use crate::dataset::limits::{
+    MOST_CHANNELS, MOST_CONDITIONS, MOST_COORDINATES, MOST_FREQUENCIES, MOST_MODELS, MOST_MODELS_IN_ALL, MOST_PAIRS,
+};
 use crate::io::json_text::Format;
+use crate::io::list::{Numbers, list, list_while, optional_list};
 use crate::io::nested::Nested;
 
 /// What a dataset file calls itself.
@@ -19,12 +23,30 @@ pub(super) struct DatasetText {
     pub(super) name: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) description: Option<String>,
+    #[serde(deserialize_with = "list::<MOST_CHANNELS, _, _>")]
     pub(super) inputs: Vec<ChannelText>,
+    #[serde(deserialize_with = "list::<MOST_CHANNELS, _, _>")]
     pub(super) outputs: Vec<ChannelText>,
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "optional_list::<MOST_PAIRS, _, _>", skip_serializing_if = "Option::is_none")]
     pub(super) on_axis: Option<Vec<(String, String)>>,
     pub(super) frequency_band: BandText,
+    #[serde(deserialize_with = "conditions")]
     pub(super) conditions: Vec<ConditionText>,
+}
+
+/// Reads conditions as long as they and their models are not too many.
+fn conditions<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<ConditionText>, D::Error> {
+    let mut models = 0;
+    list_while(deserializer, MOST_CONDITIONS, |condition: &ConditionText| {
+        models += condition.physics_models.len() + condition.identified_models.len();
+        let few = models <= MOST_MODELS_IN_ALL;
+        if few { Ok(()) } else { Err(format!("expected at most {MOST_MODELS_IN_ALL} models in all, found more")) }
+    })
+}
+
+/// Reads the coordinates of a perturbation, or null.
+fn coordinates<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<BTreeMap<String, f64>>, D::Error> {
+    Ok(Option::<Numbers<MOST_COORDINATES>>::deserialize(deserializer)?.map(|numbers| numbers.0))
 }
 
 #[derive(Deserialize, Serialize)]
@@ -55,7 +77,9 @@ pub(super) struct ConditionText {
     pub(super) weight: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) mass_kg: Option<f64>,
+    #[serde(deserialize_with = "list::<MOST_MODELS, _, _>")]
     pub(super) physics_models: Vec<PhysicsText>,
+    #[serde(deserialize_with = "list::<MOST_MODELS, _, _>")]
     pub(super) identified_models: Vec<IdentifiedText>,
 }
 
@@ -64,7 +88,7 @@ pub(super) struct ConditionText {
 pub(super) struct PhysicsText {
     pub(super) name: String,
     pub(super) role: String,
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "coordinates", skip_serializing_if = "Option::is_none")]
     pub(super) perturbation: Option<BTreeMap<String, f64>>,
     /// Names of the states, for people: known, and not used.
     #[serde(default, skip_serializing, rename = "states")]
@@ -78,7 +102,9 @@ pub(super) struct PhysicsText {
     #[serde(rename = "D", skip_serializing_if = "Option::is_none")]
     pub(super) d: Option<Nested<2>>,
     #[serde(default, skip_serializing)]
-    pub(super) frequency_response: Option<IgnoredAny>,
+    pub(super) frequency_response: Option<ResponseText>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) source: Option<SourceText>,
 }
 
 /// An identified model.
@@ -102,11 +128,29 @@ pub(super) struct IdentifiedText {
     pub(super) d: Option<Nested<2>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) frequency_response: Option<ResponseText>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) source: Option<SourceText>,
+}
+
+/// Which file a model was made from.
+#[derive(Deserialize, Serialize)]
+pub(super) struct SourceText {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) file: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) sha256: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) variable: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) made: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) note: Option<String>,
 }
 
 /// A measured frequency response.
 #[derive(Deserialize, Serialize)]
 pub(super) struct ResponseText {
+    #[serde(deserialize_with = "list::<MOST_FREQUENCIES, _, _>")]
     pub(super) omega_rad_s: Vec<f64>,
     pub(super) re: Nested<3>,
     pub(super) im: Nested<3>,

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use crate::correction::{GainBounds, GainObjective};
+use crate::dataset::Place;
 use crate::dataset::{Band, ConditionId};
 use crate::fidelity::CostAverage;
 use crate::io::content_fault::ContentFault;
 use crate::io::flaw::Flaw;
-use crate::io::place::Place;
 use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
 use crate::study::{BundleChoice, ConditionChoice, ConditionInventory, Decisions, Inventory, Setting, Settings};
 

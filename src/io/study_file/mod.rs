@@ -2,7 +2,6 @@
 
 mod build;
 mod export;
-mod relative_path;
 mod schema;
 
 use std::fs;
@@ -12,12 +11,11 @@ use crate::study::{Difference, Inventory, Settings, Study};
 
 use super::dataset_file::{DatasetOrigin, LoadedDataset, dataset_from, embedded_example};
 use super::file_error::FileError;
+use super::output_set::{Existing, OutputSet};
 use super::source::Source;
-use super::whole_file::write_whole;
 
 use build::{decisions_of, inventory_of};
 use export::{inventory_text, text_of};
-use relative_path::relative_path;
 use schema::{DatasetReference, FORMAT, StudyText};
 
 /// How the name of a study file ends.
@@ -38,7 +36,7 @@ pub struct OpenedStudy {
     pub differences: Vec<Difference>,
 }
 
-/// Saves a study of a loaded dataset; replaced whole, or not at all.
+/// Saves a study of a loaded dataset, in place of what is there; whole, or not at all. The dataset itself is never replaced.
 pub fn save_study(study: &Study, loaded: &LoadedDataset, path: &Path) -> Result<(), FileError> {
     save(study, loaded, path, |dataset| path_text(dataset, path))
 }
@@ -65,10 +63,12 @@ fn save(
         }
     };
     let text = text_of(study, reference);
-    write_whole(path, |file| {
+    let mut output = OutputSet::new(Existing::Replace, loaded.origin.file().into_iter().collect());
+    output.add(path, |file| {
         serde_json::to_writer_pretty(&mut *file, &text)?;
         file.write_all(b"\n")
-    })
+    })?;
+    output.persist()
 }
 
 /// What a study file says its dataset is, in words: the name of its file. None where the study cannot be read.
@@ -133,21 +133,26 @@ fn referenced_path(study: &Path, relative: &str) -> PathBuf {
 
 /// The dataset's path as the study at `study` has to write it.
 fn path_text(dataset: &Path, study: &Path) -> Result<String, FileError> {
-    slashed(&relative_path(&settled(dataset)?, settled(study)?.parent().unwrap_or(Path::new("/"))), study)
+    let (dataset, directory) = (settled(dataset)?, settled(study)?);
+    // No way leads to another drive: there the path is the dataset's own.
+    let relative =
+        directory.parent().and_then(|directory| pathdiff::diff_paths(&dataset, directory)).unwrap_or(dataset);
+    slashed(&relative, study)
 }
 
 /// A path with `/` between its parts.
 fn slashed(path: &Path, study: &Path) -> Result<String, FileError> {
-    let text = path.to_str().ok_or_else(|| FileError::writing(study, "the dataset's path is not valid Unicode"))?;
+    let unreadable = || FileError::unwritable(study, "the dataset's path is not valid Unicode");
+    let text = path.to_str().ok_or_else(unreadable)?;
     Ok(if std::path::MAIN_SEPARATOR == '/' { text.to_owned() } else { text.replace(std::path::MAIN_SEPARATOR, "/") })
 }
 
 /// The absolute path of a file, its directory's links followed: `..` after a link would lead elsewhere.
 fn settled(path: &Path) -> Result<PathBuf, FileError> {
-    let failed = |error: std::io::Error| FileError::writing(path, error);
+    let failed = |error: std::io::Error| FileError::writing(path, &error);
     let absolute = std::path::absolute(path).map_err(failed)?;
     match (absolute.parent(), absolute.file_name()) {
         (Some(directory), Some(name)) => Ok(fs::canonicalize(directory).map_err(failed)?.join(name)),
-        _ => Err(FileError::writing(path, "this is not the name of a file")),
+        _ => Err(FileError::unwritable(path, "this is not the name of a file")),
     }
 }

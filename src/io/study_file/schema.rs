@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::dataset::limits::{MOST_CONDITIONS, MOST_MODELS, MOST_PAIRS};
 use crate::io::json_text::Format;
+use crate::io::list::list;
 use crate::schedule::DEFAULT_TOLERANCE_KT;
 
 /// What a study file calls itself.
@@ -17,6 +19,7 @@ pub(super) struct StudyText {
     pub(super) software: String,
     pub(super) dataset: DatasetReference,
     pub(super) settings: SettingsText,
+    #[serde(deserialize_with = "list::<MOST_CONDITIONS, _, _>")]
     pub(super) conditions: Vec<ConditionText>,
 }
 
@@ -51,8 +54,10 @@ pub(super) struct SettingsText {
     pub(super) alpha_delay: f64,
     pub(super) gain_objective: ObjectiveText,
     /// Pairs `[output, input]` to be held.
+    #[serde(deserialize_with = "list::<MOST_PAIRS, _, _>")]
     pub(super) constrained: Vec<(String, String)>,
     /// Pairs `[output, input]` that the objective ignores.
+    #[serde(deserialize_with = "list::<MOST_PAIRS, _, _>")]
     pub(super) ignored: Vec<(String, String)>,
     pub(super) quantile: f64,
     pub(super) gain_bounds: Option<[f64; 2]>,
@@ -119,6 +124,7 @@ pub(super) struct ConditionText {
 /// The choices in one bundle, by model name.
 #[derive(Deserialize, Serialize)]
 pub(super) struct BundleText {
+    #[serde(deserialize_with = "list::<MOST_MODELS, _, _>")]
     pub(super) rejected: Vec<String>,
     pub(super) pinned: Option<String>,
 }

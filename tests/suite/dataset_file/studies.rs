@@ -235,12 +235,12 @@ fn a_study_that_holds_what_cannot_be_decided_is_refused_with_the_place() {
         (|file| file["settings"]["points"] = json!(1), "settings, points"),
         (
             |file| file["settings"]["band_rad_s"] = json!([2, 1]),
-            "settings, band_rad_s: the frequency band must be 0 < min < max",
+            "settings, band_rad_s: the frequency band must be 0.0001 <= min < max",
         ),
         (|file| file["settings"]["gain_bounds"] = json!([2, 1]), "settings, gain_bounds: gain bounds"),
         (
             |file| file["settings"]["schedule"]["degree"] = json!(4),
-            "settings, schedule: schedule: expected a number from 0 to 3",
+            "settings, schedule: schedule: expected a whole number from 0 to 3",
         ),
         (|file| file["settings"]["cost_average"] = json!("mode"), "settings, cost_average"),
         (|file| file["conditions"][1]["id"] = json!(7), "condition 7 (number 2 in the file): condition 7 stands twice"),
@@ -264,4 +264,24 @@ fn a_study_beside_its_dataset_names_it_plainly() {
     let text: Value = serde_json::from_slice(&fs::read(&beside).unwrap()).unwrap();
     assert_eq!(text["dataset"]["path"], json!("small.json"));
     assert!(matches!(load_any(Path::new(&beside)).unwrap(), Opened::Study(_)));
+}
+
+#[test]
+fn a_model_keeps_the_file_it_was_made_from_through_saving_and_into_the_corrections() {
+    let mut value: Value = serde_json::from_str(SMALL).unwrap();
+    let source = json!({"file": "models/roll+5.mat", "sha256": "ab12", "variable": "sys", "made": "2026-03-01", "note": "trim 3"});
+    value["conditions"][0]["physics_models"][1]["source"] = source.clone();
+    let loaded = super::load(&serde_json::to_vec(&value).unwrap()).unwrap();
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("again.json");
+    gdcm::io::save_dataset(&loaded.dataset, &path).unwrap();
+    let again: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    assert_eq!(again["conditions"][0]["physics_models"][1]["source"], source);
+    assert_eq!(again["conditions"][0]["physics_models"][0].get("source"), None);
+    let study = Study::new(load_dataset(&path).unwrap().dataset);
+    let analysis = gdcm::study::Engine::default().analyze(&study, &gdcm::study::Unwatched).unwrap();
+    let written = gdcm::io::Corrections::of(&analysis, "", &analysis.conditions.keys().copied().collect());
+    let entry = &written.conditions[0].sources[0];
+    assert_eq!((entry.bundle.as_str(), entry.file.as_deref()), ("physics", Some("models/roll+5.mat")));
+    assert_eq!(written.conditions[0].sources.len(), 1);
 }

@@ -139,7 +139,7 @@ fn on_axis_pairs_are_known_channels_once_and_output_first() {
 fn a_band_is_positive_rising_and_in_radians_per_second() {
     for (min, max) in [(12.0, 0.5), (0.0, 12.0), (-1.0, 12.0), (2.0, 2.0)] {
         let band = json!({"min": min, "max": max, "unit": "rad/s"});
-        assert_refused(|file| file["frequency_band"] = band, &["frequency_band", "0 < min < max"]);
+        assert_refused(|file| file["frequency_band"] = band, &["frequency_band", "0.0001 <= min < max <= 100000"]);
     }
     assert_refused(
         |file| file["frequency_band"]["unit"] = json!("Hz"),
@@ -195,7 +195,7 @@ fn lists_too_long_to_work_with_are_refused() {
     let channels = |file: &mut Value| {
         file["inputs"] = (0..201).map(|index| json!({"name": index.to_string(), "unit": ""})).collect();
     };
-    assert_refused(channels, &["inputs: expected at most 200 entries, found 201"]);
+    assert_refused(channels, &["inputs: expected at most 200 entries, found more"]);
 }
 
 #[test]

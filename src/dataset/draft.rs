@@ -1,0 +1,318 @@
+//! A dataset before it is checked: what any reader fills, whatever the file.
+
+use nalgebra::DMatrix;
+
+use super::band::{Band, BandError};
+use super::channel::Channel;
+use super::condition::{Condition, ConditionError, FlightState};
+use super::dataset::{Dataset, DatasetError, DatasetHeader};
+use super::identity::BundleKind;
+use super::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS};
+use super::measured_response::{MeasuredResponse, MeasuredResponseError};
+use super::model::{Dynamics, Model, Origin, Provenance};
+use super::pair::{Pair, PairTable};
+use super::place::Place;
+use super::state_space::{StateSpace, StateSpaceError};
+
+/// A table of numbers for each response and frequency, `[output][input][frequency]`, the last index running fastest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResponseArray {
+    /// Number of outputs, inputs and frequencies.
+    pub shape: [usize; 3],
+    /// The numbers.
+    pub values: Vec<f64>,
+}
+
+/// A measured frequency response, unchecked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResponseDraft {
+    /// Frequencies \[rad/s\].
+    pub omega: Vec<f64>,
+    /// Real parts.
+    pub re: ResponseArray,
+    /// Imaginary parts.
+    pub im: ResponseArray,
+    /// Coherence, where it is given.
+    pub coherence: Option<ResponseArray>,
+}
+
+/// One model, unchecked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelDraft {
+    /// Name.
+    pub name: String,
+    /// What it is of.
+    pub origin: Origin,
+    /// Matrices A, B, C, D, each where it is given.
+    pub matrices: [Option<DMatrix<f64>>; 4],
+    /// Measured response, where it is given.
+    pub response: Option<ResponseDraft>,
+    /// Which file it comes from.
+    pub source: Option<Provenance>,
+}
+
+/// One flight condition, unchecked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConditionDraft {
+    /// What describes it besides its models.
+    pub flight_state: FlightState,
+    /// Physics models.
+    pub physics: Vec<ModelDraft>,
+    /// Identified models.
+    pub identified: Vec<ModelDraft>,
+}
+
+/// A dataset, unchecked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DatasetDraft {
+    /// Name for people.
+    pub name: String,
+    /// What the data are and where they come from.
+    pub description: String,
+    /// Input channels.
+    pub inputs: Vec<Channel>,
+    /// Output channels.
+    pub outputs: Vec<Channel>,
+    /// On-axis responses: output, input.
+    pub on_axis: Vec<(String, String)>,
+    /// Lower and upper end of the default band \[rad/s\].
+    pub band: (f64, f64),
+    /// Flight conditions.
+    pub conditions: Vec<ConditionDraft>,
+}
+
+/// What is wrong in a draft.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DraftFault {
+    /// A list has more entries than the program takes.
+    #[error("expected at most {most} entries, found {found}")]
+    TooMany {
+        /// The limit.
+        most: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// A table has another shape than the channels or the states require.
+    #[error("expected {expected}, found {found}")]
+    Shape {
+        /// The shape required, in words.
+        expected: String,
+        /// The shape found, in words.
+        found: String,
+    },
+    /// A pair names a channel that the dataset does not have.
+    #[error("the dataset has no {kind} \"{name}\"; a pair is written [output, input]")]
+    UnknownChannel {
+        /// "output" or "input".
+        kind: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// A pair stands twice in a list.
+    #[error("the pair [\"{output}\", \"{input}\"] stands twice; remove one")]
+    DuplicatePair {
+        /// The output's name.
+        output: String,
+        /// The input's name.
+        input: String,
+    },
+    /// A model has some matrices, but not all four.
+    #[error("matrix {matrix} is missing; a model needs A, B, C and D")]
+    MissingMatrix {
+        /// `A`, `B`, `C` or `D`.
+        matrix: char,
+    },
+    /// A model has both matrices and frequency data.
+    #[error("both matrices and a measured response are given; keep one of them")]
+    BothDynamics,
+    /// A model has neither matrices nor frequency data.
+    #[error("neither matrices A, B, C, D nor a measured response is given; add one of them")]
+    NoDynamics,
+    /// A physics model is given by frequency data.
+    #[error("a physics model needs matrices A, B, C, D; a measured response is for identified models")]
+    MeasuredPhysics,
+    /// The ends of the band are wrong.
+    #[error(transparent)]
+    Band(#[from] BandError),
+    /// The matrices are no state-space model.
+    #[error(transparent)]
+    StateSpace(#[from] StateSpaceError),
+    /// The frequency data are no response.
+    #[error(transparent)]
+    MeasuredResponse(#[from] MeasuredResponseError),
+    /// The models are no condition.
+    #[error(transparent)]
+    Condition(#[from] ConditionError),
+    /// The conditions are no dataset.
+    #[error(transparent)]
+    Dataset(#[from] DatasetError),
+}
+
+/// What is wrong in a draft, and where. Boxed, so that results that are mostly right stay small.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DraftError {
+    /// Where.
+    pub place: Box<Place>,
+    /// What.
+    pub fault: Box<DraftFault>,
+}
+
+impl DraftError {
+    fn new(place: Place, fault: impl Into<DraftFault>) -> Self {
+        Self { place: Box::new(place), fault: Box::new(fault.into()) }
+    }
+}
+
+/// Something odd but harmless in a draft.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Oddity {
+    /// Where.
+    pub place: Place,
+    /// What, in words.
+    pub words: String,
+}
+
+impl DatasetDraft {
+    /// The dataset, with what is odd about it: every check there is, in this one place.
+    pub fn checked(self) -> Result<(Dataset, Vec<Oddity>), DraftError> {
+        check_count("inputs", self.inputs.len(), MOST_CHANNELS)?;
+        check_count("outputs", self.outputs.len(), MOST_CHANNELS)?;
+        check_count("conditions", self.conditions.len(), MOST_CONDITIONS)?;
+        let band = Band::new(self.band.0, self.band.1);
+        let band = band.map_err(|error| DraftError::new(Place::entry("frequency band"), error))?;
+        let on_axis = on_axis_table(&self.outputs, &self.inputs, &self.on_axis)?;
+        let mut checker = Checker { outputs: self.outputs.len(), inputs: self.inputs.len(), oddities: Vec::new() };
+        let conditions = self.conditions.into_iter().enumerate();
+        let conditions =
+            conditions.map(|(index, draft)| checker.condition(index + 1, draft)).collect::<Result<_, _>>()?;
+        let Self { name, description, inputs, outputs, .. } = self;
+        let header = DatasetHeader { name, description, inputs, outputs, on_axis, band };
+        // These errors name the list or the condition themselves.
+        let dataset = Dataset::new(header, conditions).map_err(|error| DraftError::new(Place::default(), error))?;
+        Ok((dataset, checker.oddities))
+    }
+}
+
+fn check_count(list: &str, found: usize, most: usize) -> Result<(), DraftError> {
+    let fault = DraftFault::TooMany { most, found };
+    if found > most { Err(DraftError::new(Place::entry(list), fault)) } else { Ok(()) }
+}
+
+fn on_axis_table(
+    outputs: &[Channel],
+    inputs: &[Channel],
+    pairs: &[(String, String)],
+) -> Result<PairTable<bool>, DraftError> {
+    let mut table = PairTable::filled(outputs.len(), inputs.len(), false);
+    for (index, (output, input)) in pairs.iter().enumerate() {
+        let wrong = |fault| DraftError::new(Place::entry(format!("on-axis pair {}", index + 1)), fault);
+        let find = |channels: &[Channel], kind: &'static str, name: &String| {
+            let found = channels.iter().position(|channel| channel.name == *name);
+            found.ok_or_else(|| wrong(DraftFault::UnknownChannel { kind, name: name.clone() }))
+        };
+        let pair = Pair::new(find(outputs, "output", output)?, find(inputs, "input", input)?);
+        if std::mem::replace(&mut table[pair], true) {
+            return Err(wrong(DraftFault::DuplicatePair { output: output.clone(), input: input.clone() }));
+        }
+    }
+    Ok(table)
+}
+
+/// What the checks of models need to know, and note.
+struct Checker {
+    outputs: usize,
+    inputs: usize,
+    oddities: Vec<Oddity>,
+}
+
+impl Checker {
+    fn condition(&mut self, position: usize, draft: ConditionDraft) -> Result<Condition, DraftError> {
+        let place = Place::condition(position, draft.flight_state.id.0);
+        let physics = self.bundle(&place, BundleKind::Physics, draft.physics)?;
+        let identified = self.bundle(&place, BundleKind::Identified, draft.identified)?;
+        Condition::new(draft.flight_state, physics, identified).map_err(|error| DraftError::new(place, error))
+    }
+
+    fn bundle(
+        &mut self,
+        condition: &Place,
+        kind: BundleKind,
+        drafts: Vec<ModelDraft>,
+    ) -> Result<Vec<Model>, DraftError> {
+        if drafts.len() > MOST_MODELS {
+            let fault = DraftFault::TooMany { most: MOST_MODELS, found: drafts.len() };
+            return Err(DraftError::new(condition.at(format!("{kind} models")), fault));
+        }
+        let drafts = drafts.into_iter().enumerate();
+        drafts.map(|(index, draft)| self.model(condition.model(kind, index + 1, &draft.name), kind, draft)).collect()
+    }
+
+    fn model(&mut self, place: Place, kind: BundleKind, draft: ModelDraft) -> Result<Model, DraftError> {
+        let has_matrices = draft.matrices.iter().any(Option::is_some);
+        let dynamics = match (has_matrices, draft.response) {
+            (_, Some(_)) if kind == BundleKind::Physics => {
+                return Err(DraftError::new(place, DraftFault::MeasuredPhysics));
+            }
+            (true, Some(_)) => return Err(DraftError::new(place, DraftFault::BothDynamics)),
+            (false, None) => return Err(DraftError::new(place, DraftFault::NoDynamics)),
+            (true, None) => Dynamics::StateSpace(self.state_space(&place, draft.matrices)?),
+            (false, Some(response)) => Dynamics::Measured(self.measured(&place, response)?),
+        };
+        if let (Dynamics::StateSpace(model), Origin::Identified { order: Some(order), .. }) = (&dynamics, &draft.origin)
+            && model.order() != *order
+        {
+            let words = format!("order says {order}, the matrices have {} states", model.order());
+            self.oddities.push(Oddity { place, words });
+        }
+        Ok(Model { name: draft.name, origin: draft.origin, dynamics, source: draft.source })
+    }
+
+    /// The model of four matrices, with `p` outputs and `m` inputs.
+    fn state_space(&self, place: &Place, matrices: [Option<DMatrix<f64>>; 4]) -> Result<StateSpace, DraftError> {
+        let (p, m) = (self.outputs, self.inputs);
+        let [a, b, c, d] = matrices;
+        let given = |matrix: char, of: Option<DMatrix<f64>>| {
+            of.ok_or_else(|| DraftError::new(place.clone(), DraftFault::MissingMatrix { matrix }))
+        };
+        let (a, b, c, d) = (given('A', a)?, given('B', b)?, given('C', c)?, given('D', d)?);
+        // Checked before the others are checked against it, so that they are not blamed for it.
+        if d.shape() != (p, m) {
+            let fault = DraftFault::Shape {
+                expected: format!("{p} x {m} (outputs x inputs)"),
+                found: format!("{} x {}", d.nrows(), d.ncols()),
+            };
+            return Err(DraftError::new(place.at("matrix D"), fault));
+        }
+        // A list without entries does not say how long its lists would be.
+        let stateless = a.nrows() == 0;
+        let b = if stateless && b.nrows() == 0 { DMatrix::zeros(0, m) } else { b };
+        let c = if stateless && c.is_empty() { DMatrix::zeros(p, 0) } else { c };
+        StateSpace::new(a, b, c, d).map_err(|error| DraftError::new(place.clone(), error))
+    }
+
+    fn measured(&self, place: &Place, draft: ResponseDraft) -> Result<MeasuredResponse, DraftError> {
+        let count = draft.omega.len();
+        let shape = [self.outputs, self.inputs, count];
+        let table = |array: &ResponseArray, part: &str| {
+            if array.shape != shape {
+                let fault = DraftFault::Shape {
+                    expected: format!("{} (outputs x inputs x frequencies)", dimensions(shape)),
+                    found: dimensions(array.shape),
+                };
+                return Err(DraftError::new(place.at(format!("measured response, {part}")), fault));
+            }
+            Ok(PairTable::from_fn(self.outputs, self.inputs, |Pair { output, input }| {
+                let start = (output * self.inputs + input) * count;
+                array.values[start..start + count].to_vec()
+            }))
+        };
+        let (re, im) = (table(&draft.re, "re")?, table(&draft.im, "im")?);
+        let coherence = draft.coherence.as_ref().map(|array| table(array, "coherence")).transpose()?;
+        MeasuredResponse::new(draft.omega, &re, &im, coherence)
+            .map_err(|error| DraftError::new(place.at("measured response"), error))
+    }
+}
+
+fn dimensions(shape: [usize; 3]) -> String {
+    shape.map(|length| length.to_string()).join(" x ")
+}

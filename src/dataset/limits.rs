@@ -1,0 +1,20 @@
+//! The most that is read of anything: what a mistaken or hostile file can make the program allocate, and how long it can work.
+
+/// Bytes of text in a file, packed or not: 128 MiB, some 500 conditions of the example's size.
+pub const LARGEST_TEXT: u64 = 128 << 20;
+/// Inputs, and outputs: tables of pairs grow with their product.
+pub const MOST_CHANNELS: usize = 200;
+/// On-axis, held or ignored responses.
+pub const MOST_PAIRS: usize = MOST_CHANNELS * MOST_CHANNELS;
+/// Conditions: comparing their ids takes time that grows with the square.
+pub const MOST_CONDITIONS: usize = 5000;
+/// Models of a bundle: comparing their names takes time that grows with the square.
+pub const MOST_MODELS: usize = 5000;
+/// Models of all conditions together.
+pub const MOST_MODELS_IN_ALL: usize = 50_000;
+/// States of a model: the time of a response grows with the third power.
+pub const MOST_STATES: usize = 1000;
+/// Frequencies of a measured response.
+pub const MOST_FREQUENCIES: usize = 100_000;
+/// Coordinates of a perturbation.
+pub const MOST_COORDINATES: usize = 50;

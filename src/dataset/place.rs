@@ -1,0 +1,57 @@
+//! Where in a dataset something stands.
+
+use super::identity::BundleKind;
+
+/// A condition of a dataset that is being read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ConditionPlace {
+    /// Its position, counted from 1.
+    pub position: usize,
+    /// Its id, where that can be read.
+    pub id: Option<i64>,
+}
+
+/// A model of a dataset that is being read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ModelPlace {
+    /// Which bundle of the condition.
+    pub bundle: BundleKind,
+    /// Its position in the bundle, counted from 1.
+    pub position: usize,
+    /// Its name, where that can be read.
+    pub name: Option<String>,
+}
+
+/// Where something stands: the condition, the model, and the entry (matrix, row, column), each where it applies.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    /// The condition.
+    pub condition: Option<ConditionPlace>,
+    /// The model.
+    pub model: Option<ModelPlace>,
+    /// The entry, in words; empty for the whole.
+    pub entry: String,
+}
+
+impl Place {
+    /// A place in words: "on-axis pair 3".
+    pub fn entry(words: impl Into<String>) -> Self {
+        Self { entry: words.into(), ..Self::default() }
+    }
+
+    /// A condition; `position` counts from 1.
+    pub fn condition(position: usize, id: i64) -> Self {
+        Self { condition: Some(ConditionPlace { position, id: Some(id) }), ..Self::default() }
+    }
+
+    /// A model of this condition; `position` counts from 1.
+    pub fn model(&self, bundle: BundleKind, position: usize, name: &str) -> Self {
+        let model = Some(ModelPlace { bundle, position, name: Some(name.to_owned()) });
+        Self { condition: self.condition.clone(), model, entry: String::new() }
+    }
+
+    /// An entry of this condition or model.
+    pub fn at(&self, words: impl Into<String>) -> Self {
+        Self { entry: words.into(), ..self.clone() }
+    }
+}

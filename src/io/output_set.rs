@@ -1,0 +1,348 @@
+//! Files that are written whole, or not at all; several of them together.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+#[cfg(unix)]
+use std::sync::{Arc, atomic::AtomicBool};
+
+use tempfile::NamedTempFile;
+
+use super::file_error::FileError;
+
+/// What becomes of a file that stands where another is to be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Existing {
+    /// It stays, and nothing is written.
+    Keep,
+    /// The new one takes its place.
+    Replace,
+}
+
+/// Files that take their places together.
+///
+/// ```text
+/// check    nothing stands in the way                                   (before any work)
+/// add      write each beside its place, to the disk                    (a full disk shows here)
+/// persist  keep what each replaces aside; rename; on an error rename back what was kept aside
+/// ```
+///
+/// Dropped before it is persisted, a set leaves everything as it was. What a killed run left behind is removed when something is
+/// next written into its directory.
+#[derive(Debug)]
+pub struct OutputSet {
+    existing: Existing,
+    inputs: Vec<PathBuf>,
+    staged: Vec<Staged>,
+}
+
+/// A file that is written, but not in its place.
+#[derive(Debug)]
+struct Staged {
+    /// Its place, as it was asked for.
+    path: PathBuf,
+    /// The file that a link there leads to, or the place itself.
+    target: PathBuf,
+    temporary: NamedTempFile,
+}
+
+impl OutputSet {
+    /// A set without files; `inputs`, what the program reads from, are never replaced.
+    pub fn new(existing: Existing, inputs: Vec<PathBuf>) -> Self {
+        Self { existing, inputs, staged: Vec::new() }
+    }
+
+    /// Refuses places that cannot be written to, or may not be: a question for before the work.
+    pub fn check<P: AsRef<Path>>(&self, places: &[P]) -> Result<(), FileError> {
+        let mut there = Vec::new();
+        for path in places.iter().map(AsRef::as_ref) {
+            if self.inputs.iter().any(|input| same_file::is_same_file(path, input).unwrap_or(false)) {
+                return Err(FileError::Input { path: path.to_owned() });
+            }
+            match fs::metadata(path) {
+                Ok(found) if found.is_dir() => return Err(FileError::Directory { path: path.to_owned() }),
+                Ok(found) if found.permissions().readonly() => {
+                    return Err(FileError::unwritable(path, "it is read-only"));
+                }
+                // Replacing a device or a pipe by a file would break what others use it for.
+                Ok(found) if !found.is_file() => {
+                    return Err(FileError::unwritable(path, "this is not an ordinary file"));
+                }
+                Ok(_) => there.push(path.to_owned()),
+                Err(_) => {}
+            }
+        }
+        if there.is_empty() || self.existing == Existing::Replace {
+            Ok(())
+        } else {
+            Err(FileError::Exists { paths: there })
+        }
+    }
+
+    /// Writes a file beside its place, down to the disk.
+    pub fn add(&mut self, path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
+        self.check(&[path])?;
+        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let directory = directory_of(&target);
+        remove_leftovers(directory);
+        let stage = || -> io::Result<NamedTempFile> {
+            let mut temporary = temporary_file(&target, directory)?;
+            let mut buffered = BufWriter::new(temporary.as_file_mut());
+            write(&mut buffered)?;
+            buffered.flush()?;
+            drop(buffered);
+            temporary.as_file().sync_all()?;
+            Ok(temporary)
+        };
+        let temporary = stage().map_err(|error| FileError::writing(path, &error))?;
+        self.staged.push(Staged { path: path.to_owned(), target, temporary });
+        Ok(())
+    }
+
+    /// Puts every file in its place, or none.
+    pub fn persist(self) -> Result<(), FileError> {
+        let mut placed: Vec<Placed> = Vec::new();
+        for Staged { path, target, temporary } in self.staged {
+            match Placed::at(target, temporary, self.existing) {
+                Ok(file) => placed.push(file),
+                Err(error) => {
+                    placed.into_iter().rev().for_each(Placed::take_back);
+                    return Err(match error.kind() {
+                        ErrorKind::AlreadyExists => FileError::Exists { paths: vec![path] },
+                        _ => FileError::writing(&path, &error),
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A file in its place.
+struct Placed {
+    target: PathBuf,
+    /// What stood there before, under a second name.
+    earlier: Option<NamedTempFile>,
+}
+
+impl Placed {
+    fn at(target: PathBuf, temporary: NamedTempFile, existing: Existing) -> io::Result<Self> {
+        if existing == Existing::Keep {
+            temporary.persist_noclobber(&target)?;
+            return Ok(Self { target, earlier: None });
+        }
+        let earlier = if target.exists() { Some(kept_aside(&target)?) } else { None };
+        temporary.persist(&target)?;
+        Ok(Self { target, earlier })
+    }
+
+    /// Restores what was there; there is nothing left to do about a failure to.
+    fn take_back(self) {
+        match self.earlier {
+            Some(earlier) => drop(earlier.persist(&self.target)),
+            None => drop(fs::remove_file(&self.target)),
+        }
+    }
+}
+
+/// A second name for a file, or a copy of it where the file system knows no second names; removed when dropped.
+fn kept_aside(target: &Path) -> io::Result<NamedTempFile> {
+    named().make_in(directory_of(target), |path| {
+        match fs::hard_link(target, path) {
+            Err(error) if error.kind() != ErrorKind::AlreadyExists => drop(fs::copy(target, path)?),
+            linked => linked?,
+        }
+        let file = File::open(path)?;
+        let _ = file.try_lock();
+        Ok(file)
+    })
+}
+
+/// Writes one file, in place of what is there; on an error that is untouched. A link is followed: what it leads to is replaced.
+pub(super) fn write_whole(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
+    let mut set = OutputSet::new(Existing::Replace, Vec::new());
+    set.add(path, write)?;
+    set.persist()
+}
+
+/// Makes a directory and those above it, where they are not there yet.
+pub fn make_directory(path: &Path) -> Result<(), FileError> {
+    fs::create_dir_all(path).map_err(|error| match error.kind() {
+        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => FileError::NotADirectory { path: path.to_owned() },
+        _ => FileError::writing(path, &error),
+    })
+}
+
+/// Makes a file that grows beyond what the system allows (`ulimit -f`) an error like any other, in place of the program's end.
+pub fn report_size_limit() {
+    // Where that fails, the program ends as before, and still leaves no half of a file.
+    #[cfg(unix)]
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::<AtomicBool>::default());
+}
+
+const PREFIX: &str = ".gdcm-";
+const SUFFIX: &str = ".tmp";
+
+fn named() -> tempfile::Builder<'static, 'static> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(PREFIX).suffix(SUFFIX);
+    builder
+}
+
+fn directory_of(file: &Path) -> &Path {
+    file.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// A temporary file, locked as long as it is open: the lock ends with its process, however that ends, and on whatever machine.
+fn temporary_file(target: &Path, directory: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = named();
+    // That of the file it replaces, or what the process's mask leaves of reading and writing for all.
+    #[cfg(unix)]
+    builder.permissions(fs::metadata(target).map(|found| found.permissions()).unwrap_or_else(|_| {
+        use std::os::unix::fs::PermissionsExt;
+        fs::Permissions::from_mode(0o666)
+    }));
+    loop {
+        // Its own words would name the temporary file.
+        let temporary = builder.tempfile_in(directory).map_err(|error| io::Error::from(error.kind()))?;
+        // A file system without locks has no leftovers removed, see below.
+        let _ = temporary.as_file().lock();
+        // Another process may have taken it for a leftover before the lock.
+        if temporary.path().exists() {
+            return Ok(temporary);
+        }
+    }
+}
+
+/// Removes the temporary files of runs that were killed: those that nobody has locked.
+fn remove_leftovers(directory: &Path) {
+    for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
+        let is_ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX));
+        if is_ours
+            && entry.file_type().is_ok_and(|kind| kind.is_file())
+            && let Ok(file) = File::options().write(true).open(entry.path())
+            && file.try_lock().is_ok()
+        {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(directory: &Path) -> Vec<String> {
+        let names = fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<String> = names.collect();
+        names.sort();
+        names
+    }
+
+    fn set_of(existing: Existing, files: &[(&Path, &str)]) -> Result<OutputSet, FileError> {
+        let mut set = OutputSet::new(existing, Vec::new());
+        for (path, text) in files {
+            set.add(path, |file| file.write_all(text.as_bytes()))?;
+        }
+        Ok(set)
+    }
+
+    #[test]
+    fn a_failed_write_leaves_the_file_as_it_was_and_nothing_beside_it() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("corrections.json");
+        fs::write(&path, "before").unwrap();
+        let result = write_whole(&path, |file| {
+            file.write_all(b"half of it")?;
+            Err(io::Error::from(ErrorKind::StorageFull))
+        });
+        assert!(result.unwrap_err().to_string().ends_with("corrections.json: cannot be written: the disk is full"));
+        assert_eq!(fs::read_to_string(&path).unwrap(), "before");
+        assert_eq!(names(directory.path()), ["corrections.json"]);
+    }
+
+    #[test]
+    fn a_set_of_which_one_file_cannot_take_its_place_leaves_what_was_there() {
+        let directory = tempfile::tempdir().unwrap();
+        let [old, new, blocked] = ["old", "new", "blocked"].map(|name| directory.path().join(name));
+        fs::write(&old, "before").unwrap();
+        let set = set_of(Existing::Replace, &[(&old, "after"), (&new, "after"), (&blocked, "after")]).unwrap();
+        fs::create_dir(&blocked).unwrap();
+        let message = set.persist().unwrap_err().to_string();
+        assert!(message.contains("blocked: ") && !message.contains(".tmp"), "{message}");
+        assert_eq!(fs::read_to_string(&old).unwrap(), "before");
+        assert_eq!(names(directory.path()), ["blocked", "old"]);
+    }
+
+    #[test]
+    fn a_file_that_appears_while_the_others_are_written_stays_as_it_is() {
+        let directory = tempfile::tempdir().unwrap();
+        let [first, second] = ["first", "second"].map(|name| directory.path().join(name));
+        let set = set_of(Existing::Keep, &[(&first, "ours"), (&second, "ours")]).unwrap();
+        fs::write(&second, "theirs").unwrap();
+        assert!(matches!(set.persist(), Err(FileError::Exists { paths }) if paths == [second.clone()]));
+        assert_eq!(fs::read_to_string(&second).unwrap(), "theirs");
+        assert_eq!(names(directory.path()), ["second"]);
+    }
+
+    #[test]
+    fn every_existing_file_is_named_and_none_is_written_unasked() {
+        let directory = tempfile::tempdir().unwrap();
+        let paths = ["a", "b", "c"].map(|name| directory.path().join(name));
+        fs::write(&paths[0], "").unwrap();
+        fs::write(&paths[2], "").unwrap();
+        let there = [paths[0].clone(), paths[2].clone()];
+        let refused = OutputSet::new(Existing::Keep, Vec::new()).check(&paths);
+        assert!(matches!(refused, Err(FileError::Exists { paths }) if paths == there));
+        assert!(OutputSet::new(Existing::Replace, Vec::new()).check(&paths).is_ok());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn an_input_is_never_replaced_by_whatever_name_it_is_called() {
+        let directory = tempfile::tempdir().unwrap();
+        let input = directory.path().join("data.json");
+        fs::write(&input, "data").unwrap();
+        let link = directory.path().join("link");
+        std::os::unix::fs::symlink(&input, &link).unwrap();
+        let around = directory.path().join("..").join(directory.path().file_name().unwrap()).join("data.json");
+        for path in [&input, &link, &around] {
+            let set = OutputSet::new(Existing::Replace, vec![input.clone()]);
+            assert!(matches!(set.check(&[path]), Err(FileError::Input { .. })), "{}", path.display());
+        }
+    }
+
+    #[test]
+    fn what_a_killed_run_left_is_removed_and_what_is_being_written_is_not() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        fs::write(at(".gdcm-x1y2z3.tmp"), "half of it").unwrap();
+        fs::write(at(".gdcm-notes.txt"), "somebody's own").unwrap();
+        let underway = set_of(Existing::Keep, &[(&at("underway"), "text")]).unwrap();
+        write_whole(&at("next"), |_| Ok(())).unwrap();
+        underway.persist().unwrap();
+        assert_eq!(names(directory.path()), [".gdcm-notes.txt", "next", "underway"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn the_mode_of_a_replaced_file_stays_and_a_link_still_leads_to_it() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let directory = tempfile::tempdir().unwrap();
+        let (path, link) = (directory.path().join("a"), directory.path().join("link"));
+        fs::write(&path, "before").unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).unwrap();
+        symlink(&path, &link).unwrap();
+        write_whole(&link, |file| file.write_all(b"after")).unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "after");
+        assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o640);
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    }
+
+    #[test]
+    fn a_directory_that_is_not_there_is_told() {
+        let directory = tempfile::tempdir().unwrap();
+        let error = write_whole(&directory.path().join("no/such/file"), |_| Ok(())).unwrap_err();
+        assert!(error.to_string().ends_with("file: cannot be written: its directory does not exist"));
+    }
+}

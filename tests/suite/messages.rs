@@ -1,0 +1,305 @@
+//! What messages say, whatever the names, the numbers and the mistakes.
+
+use std::io::Write;
+use std::path::Path;
+
+use gdcm::correction::GainBounds;
+use gdcm::dataset::{Band, GREATEST_OMEGA, LEAST_OMEGA};
+use gdcm::io::{DatasetOrigin, load_dataset, load_dataset_bytes, open_study, plain, save_study};
+use gdcm::schedule::{ScheduleKind, ScheduleSettings};
+use gdcm::study::{Edit, GREATEST_DELAY_S, GREATEST_GAIN, LARGEST_ALPHA, LEAST_GAIN, Setting, Study};
+use gdcm::units::number;
+use proptest::prelude::*;
+use serde_json::{Value, json};
+
+use crate::commands::{Desk, SMALL};
+
+/// Turns the writing direction, parts letters, ends a line and a paragraph, clears the screen.
+const NASTY: &str = "a\u{202e}b\u{200b}c\u{2028}d\u{2066}e\u{1b}[2Jf\ng";
+
+fn is_plain(text: &str) -> bool {
+    text.lines().all(|line| plain(line) == line)
+}
+
+#[test]
+fn invisible_characters_of_file_names_are_spelt_out() {
+    let message = load_dataset(Path::new(NASTY)).unwrap_err().to_string();
+    assert!(is_plain(&message) && message.lines().count() == 1, "{message:?}");
+    assert!(message.starts_with("a\\u{202e}b\\u{200b}c\\u{2028}d\\u{2066}e\\u{1b}[2Jf\\ng: "), "{message}");
+    let desk = Desk::new();
+    let name = NASTY.replace('\n', "");
+    std::fs::write(desk.path(&name), SMALL).unwrap();
+    let ended = desk.gdcm(&["check", &name]);
+    ended.assert_done();
+    assert!(is_plain(&ended.out) && ended.out.contains("\\u{202e}b"), "{:?}", ended.out);
+}
+
+#[test]
+fn invisible_characters_of_what_a_file_says_are_spelt_out() {
+    let desk = Desk::new();
+    desk.write("nasty.json", |file| {
+        file["name"] = json!(NASTY);
+        file[NASTY] = json!(1);
+        file["conditions"][0]["name"] = json!(NASTY);
+        file["conditions"][0]["physics_models"][1]["name"] = json!(NASTY);
+        file["conditions"][0]["identified_models"][0]["name"] = json!(NASTY);
+        file["inputs"][0]["unit"] = json!(NASTY);
+    });
+    for arguments in [["check", "nasty.json"].as_slice(), &["analyze", "nasty.json", "--out", "out"]] {
+        let ended = desk.gdcm(arguments);
+        assert!(ended.status == 0 && is_plain(&ended.out) && is_plain(&ended.error), "{ended:?}");
+        assert!(ended.out.contains("a\\u{202e}b"), "{}", ended.out);
+    }
+}
+
+#[test]
+fn a_number_of_three_hundred_digits_is_written_with_an_exponent() {
+    let desk = Desk::new();
+    desk.write("large.json", |file| {
+        file["conditions"][0]["airspeed_kt"] = json!(1e300);
+        file["conditions"][0]["mass_kg"] = json!(1e-300);
+    });
+    let checked = desk.gdcm(&["check", "large.json"]);
+    checked.assert_done();
+    assert!(checked.out.contains("1e300 kt") && checked.out.contains("1e-300 kg"), "{}", checked.out);
+    assert!(!checked.out.contains("00000000000"), "{}", checked.out);
+    desk.write("id.json", |file| file["conditions"][0]["id"] = json!(1e300));
+    desk.gdcm(&["check", "id.json"]).assert_failed(2, &["expected a whole number, found 1e300"]);
+    desk.write("negative.json", |file| file["conditions"][0]["airspeed_kt"] = json!(-1e300));
+    desk.gdcm(&["check", "negative.json"]).assert_failed(2, &["airspeed_kt", "found -1e300"]);
+    desk.gdcm(&["analyze", "--out", "out", "--alpha", "1e300"])
+        .assert_failed(2, &["--alpha: ", "a number from 0 to 1000000, found 1e300"]);
+    desk.gdcm(&["analyze", "--out", "out", "--band", "1e-300", "1e300"])
+        .assert_failed(2, &["--band: ", "found min 1e-300, max 1e300"]);
+}
+
+#[test]
+fn the_bounds_that_a_message_names_are_those_that_are_refused() {
+    let schedule = |degree: f64| {
+        let kind = ScheduleKind::Polynomial { degree: degree as usize };
+        Setting::Schedule(ScheduleSettings { kind, ..ScheduleSettings::default() })
+    };
+    let lower = |lower| Setting::GainBounds(Some(GainBounds { lower, upper: GREATEST_GAIN }));
+    let upper = |upper| Setting::GainBounds(Some(GainBounds { lower: 0.5, upper }));
+    type Of<'a> = &'a dyn Fn(f64) -> Setting;
+    let ranges: [(Of, f64, f64); 8] = [
+        (&Setting::AlphaGain, 0.0, LARGEST_ALPHA),
+        (&Setting::AlphaDelay, 0.0, LARGEST_ALPHA),
+        (&Setting::Quantile, 0.0, 0.5),
+        (&lower, LEAST_GAIN, GREATEST_GAIN),
+        (&upper, 0.5, GREATEST_GAIN),
+        (&|upper| Setting::DelayUpper(Some(upper)), 0.0, GREATEST_DELAY_S),
+        (&|points| Setting::Points(points as usize), 2.0, 5000.0),
+        (&schedule, 0.0, 3.0),
+    ];
+    let loaded = gdcm::io::embedded_example().unwrap();
+    for (setting, least, greatest) in ranges {
+        let mut study = Study::new(loaded.dataset.clone());
+        let mut apply = |value| study.apply(&Edit::Set(setting(value)));
+        for value in [least, greatest] {
+            assert_eq!(apply(value), Ok(()), "{:?}", setting(value));
+        }
+        let is_whole = matches!(setting(least), Setting::Points(_) | Setting::Schedule(_));
+        let (below, above) =
+            if is_whole { (least - 1.0, greatest + 1.0) } else { (least.next_down(), greatest.next_up()) };
+        let expected = format!("from {} to {}, found ", number(least), number(greatest));
+        // A negative count is refused where it is read.
+        for value in [below, above].into_iter().filter(|value| !is_whole || *value >= 0.0) {
+            let message = apply(value).unwrap_err().to_string();
+            assert!(message.ends_with(&format!("{expected}{}", number(value))), "{message}");
+        }
+    }
+    assert!(Band::new(LEAST_OMEGA, GREATEST_OMEGA).is_ok());
+    for (min, max) in [(LEAST_OMEGA.next_down(), 1.0), (1.0, GREATEST_OMEGA.next_up())] {
+        let message = Band::new(min, max).unwrap_err().to_string();
+        assert!(message.contains("0.0001 <= min < max <= 100000 (rad/s), found"), "{message}");
+    }
+}
+
+#[test]
+fn a_number_on_the_command_line_is_refused_with_its_option_and_its_range() {
+    let desk = Desk::new();
+    for (options, message) in [
+        (["--degree", "-1"].as_slice(), "gdcm: --degree: expected a whole number from 0 to 3, found -1\n"),
+        (&["--degree", "2.5"], "gdcm: --degree: expected a whole number from 0 to 3, found 2.5\n"),
+        (&["--points", "-5"], "gdcm: --points: expected a whole number from 2 to 5000, found -5\n"),
+        (&["--points", "1e3"], "gdcm: --points: expected a whole number from 2 to 5000, found 1e3\n"),
+        (&["--alpha", "-1"], "gdcm: --alpha: α of the gains: expected a number from 0 to 1000000, found -1\n"),
+        (&["--alpha", "one"], "gdcm: --alpha: expected a number, found one\n"),
+        (&["--alpha-delay", "\u{202e}1"], "gdcm: --alpha-delay: expected a number, found \\u{202e}1\n"),
+        (&["--band", "12", "x"], "gdcm: --band: expected a number, found x\n"),
+        (
+            &["--band", "12", "0.5"],
+            "gdcm: --band: the frequency band must be 0.0001 <= min < max <= 100000 (rad/s), found min 12, max 0.5\n",
+        ),
+        (&["--on", "P"], "gdcm: --on: expected OUTPUT/INPUT, as P/LAT, found \"P\"\n"),
+        (&["--reject", "x"], "gdcm: --reject: expected ID:NAME, as 10:nominal, found \"x\"\n"),
+    ] {
+        let ended = desk.gdcm(&[["analyze", "small.json", "--out", "out"].as_slice(), options].concat());
+        assert_eq!((ended.status, ended.error.as_str()), (2, message));
+    }
+}
+
+/// Every value of a JSON text, by its pointer.
+fn pointers(value: &Value, at: &str, found: &mut Vec<String>) {
+    found.push(at.to_owned());
+    match value {
+        Value::Object(entries) => {
+            entries.iter().for_each(|(key, value)| pointers(value, &format!("{at}/{key}"), found))
+        }
+        Value::Array(entries) => {
+            entries.iter().enumerate().for_each(|(index, value)| pointers(value, &format!("{at}/{index}"), found));
+        }
+        _ => {}
+    }
+}
+
+/// Values, each of which is wrong in most places.
+fn wrong_values() -> impl Strategy<Value = Value> {
+    prop::sample::select(vec![
+        json!(null),
+        json!(true),
+        json!(-1),
+        json!(1.5),
+        json!(1e300),
+        json!(u64::MAX),
+        json!("mode"),
+        json!(NASTY),
+        json!([]),
+        json!([[[]]]),
+        json!([1, 2, 3]),
+        json!({}),
+        json!({"deep": [{}]}),
+    ])
+}
+
+proptest! {
+    #[test]
+    fn no_message_speaks_of_the_programs_own_workings(at in any::<prop::sample::Index>(), value in wrong_values(), in_study in any::<bool>()) {
+        let desk = Desk::new();
+        let path = desk.path("study.json");
+        let loaded = load_dataset(&desk.path("small.json")).unwrap();
+        save_study(&Study::new(loaded.dataset.clone()), &loaded, &path).unwrap();
+        let text = if in_study { std::fs::read_to_string(&path).unwrap() } else { SMALL.to_owned() };
+        let mut text: Value = serde_json::from_str(&text).unwrap();
+        let mut places = Vec::new();
+        pointers(&text, "", &mut places);
+        *text.pointer_mut(at.get(&places).as_str()).unwrap() = value;
+        let refused = if in_study {
+            std::fs::write(&path, text.to_string()).unwrap();
+            open_study(&path).err()
+        } else {
+            load_dataset_bytes(text.to_string().as_bytes(), DatasetOrigin::File("small.json".into())).err()
+        };
+        let message = refused.map(|error| error.to_string()).unwrap_or_default();
+        prop_assert!(is_plain(&message) && message.lines().count() <= 1, "{}", message);
+        prop_assert!(message.chars().count() < 500, "{}", message);
+        for word in ["`", "struct", "variant", "tuple", "usize", "u64", "i64", "f64", "ident", "invalid", "map", "sequence", "this is not JSON"] {
+            prop_assert!(!message.contains(word), "{}", message);
+        }
+    }
+}
+
+#[test]
+fn a_choice_of_words_is_refused_with_the_words_that_may_stand_there() {
+    let desk = Desk::new();
+    let loaded = load_dataset(&desk.path("small.json")).unwrap();
+    let path = desk.path("study.json");
+    save_study(&Study::new(loaded.dataset.clone()), &loaded, &path).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    for (from, to, words) in [
+        ("\"median\"", "\"mode\"", "settings, cost_average: expected \"median\" or \"mean\", found \"mode\""),
+        ("\"median\"", "5", "settings, cost_average: expected a text in quotation marks, found"),
+        ("\"points\": 200", "\"points\": -1", "settings, points: expected a whole number not below 0, found -1"),
+        ("0.5,\n      12.0", "0.5", "settings, band_rad_s: expected a list of 2 entries, found 1 entries"),
+    ] {
+        assert!(text.contains(from), "{from} in {text}");
+        std::fs::write(&path, text.replacen(from, to, 1)).unwrap();
+        let message = open_study(&path).unwrap_err().to_string();
+        assert!(message.contains(words), "expected {words} in: {message}");
+    }
+}
+
+fn dataset_refusal(text: &str) -> String {
+    load_dataset_bytes(text.as_bytes(), DatasetOrigin::File("small.json".into())).unwrap_err().to_string()
+}
+
+#[test]
+fn lists_beyond_their_limits_are_refused_with_their_place() {
+    let many = |entry: &str, count: usize| vec![entry; count].join(",");
+    let small: Value = serde_json::from_str(SMALL).unwrap();
+    let identified = "\"identified_models\": [";
+    let numbers = many("0", 1001);
+    for (from, to, words) in [
+        ("\"conditions\": [", "\"conditions\": [{},".to_owned(), "condition number 1 in the file: the key \"id\""),
+        (
+            identified,
+            format!("{identified}{},", many("{\"name\":\"\"}", 5000)),
+            "condition 7 (number 1 in the file), identified_models: expected at most 5000 entries, found more",
+        ),
+        (
+            "\"on_axis\": [",
+            format!("\"on_axis\": [{},", many("[\"P\",\"LAT\"]", 40_000)),
+            "on_axis: expected at most 40000",
+        ),
+        (
+            "\"outputs\": [",
+            format!("\"outputs\": [{},", many("{\"name\":\"\",\"unit\":\"\"}", 200)),
+            "outputs: expected at most 200",
+        ),
+        ("\"A\": [[", format!("\"A\": [[{numbers}],["), "matrix A, row 1: expected at most 1000 entries, found more"),
+        (
+            "\"omega_rad_s\": [",
+            format!("\"omega_rad_s\": [{},", many("1", 100_000)),
+            "omega_rad_s: expected at most 100000",
+        ),
+        (
+            "\"perturbation\": {",
+            format!("\"perturbation\": {{{},", (0..50).map(|at| format!("\"p{at}\":0")).collect::<Vec<_>>().join(",")),
+            "physics model \"nominal\" (number 1), perturbation: expected at most 50 entries, found more",
+        ),
+    ] {
+        assert!(SMALL.contains(from), "{from}");
+        let message = dataset_refusal(&SMALL.replacen(from, &to, 1));
+        assert!(message.contains(words), "expected {words} in: {}", &message[..message.len().min(400)]);
+    }
+    // Each bundle is within its limit, all together are not.
+    let mut text = small;
+    let condition = text["conditions"][0].clone();
+    let models: Vec<Value> = (0..5000).map(|index| json!({"name": index.to_string()})).collect();
+    text["conditions"] = (0..11)
+        .map(|id| {
+            let mut condition = condition.clone();
+            condition["id"] = json!(id);
+            condition["identified_models"] = json!(models);
+            condition
+        })
+        .collect();
+    let message = dataset_refusal(&text.to_string());
+    assert!(message.contains("conditions: expected at most 50000 models in all, found more"), "{message}");
+    let conditions =
+        many("{\"id\":1,\"name\":\"\",\"airspeed_kt\":1,\"physics_models\":[],\"identified_models\":[]}", 5001);
+    let message = dataset_refusal(&SMALL.replacen("\"conditions\": [", &format!("\"conditions\": [{conditions},"), 1));
+    assert!(message.contains("conditions: expected at most 5000 entries, found more"), "{message}");
+}
+
+/// Three million models without anything in them, in 36 MB of text and far less when packed: held in memory they would be a gigabyte.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_that_is_refused_for_its_length_takes_memory_for_its_text_only() {
+    let desk = Desk::new();
+    let (before, after) = SMALL.split_once("\"identified_models\": [").unwrap();
+    let file = std::fs::File::create(desk.path("bomb.json.gz")).unwrap();
+    let mut packed = flate2::write::GzEncoder::new(file, flate2::Compression::fast());
+    write!(packed, "{before}\"identified_models\": [").unwrap();
+    let some = b"{\"name\":\"\"},".repeat(10_000);
+    (0..300).for_each(|_| packed.write_all(&some).unwrap());
+    packed.write_all(after.as_bytes()).unwrap();
+    packed.finish().unwrap();
+    // KiB of addresses: the program itself, the text while it grows, and the models that are read.
+    let line = "ulimit -v 400000; exec \"$0\" check bomb.json.gz";
+    let mut command = std::process::Command::new("sh");
+    command.args(["-c", line, env!("CARGO_BIN_EXE_gdcm")]).current_dir(desk.directory.path());
+    let ended = crate::commands::Ended::of(&command.output().unwrap());
+    ended.assert_failed(2, &["condition 7", "identified_models: expected at most 5000 entries, found more"]);
+}

@@ -1,0 +1,188 @@
+//! What is written: nothing over what is there unasked, never over an input, and never the half of anything.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::Path;
+
+use egui_kittest::kittest::Queryable;
+use gdcm::io::{load_dataset, read_corrections, save_study};
+use gdcm::study::Study;
+use gdcm::view::state::NoticeKind;
+
+use crate::commands::{Desk, Ended, SMALL};
+use crate::window::{Window, click, export_to, settle, state, window};
+
+const RESULTS: [&str; 3] = ["assessment.csv", "corrections.csv", "corrections.json"];
+
+fn names(directory: &Path) -> Vec<String> {
+    let names = fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<String> = names.collect();
+    names.sort();
+    names
+}
+
+/// Runs a line of shell in which `gdcm` is the program.
+#[cfg(unix)]
+fn shell(desk: &Desk, line: &str) -> Ended {
+    let mut command = std::process::Command::new("sh");
+    let line = line.replace("gdcm ", "exec \"$0\" ");
+    command.args(["-c", &line, env!("CARGO_BIN_EXE_gdcm")]).current_dir(desk.directory.path());
+    Ended::of(&command.output().unwrap())
+}
+
+#[test]
+fn results_that_are_there_are_named_and_only_overwritten_by_force() {
+    let desk = Desk::new();
+    let analyze = ["analyze", "small.json", "--out", "out"];
+    desk.gdcm(&analyze).assert_done();
+    fs::write(desk.path("out/corrections.csv"), "mine").unwrap();
+    let words = ["out/corrections.json, out/corrections.csv, out/assessment.csv exist already; --force overwrites"];
+    desk.gdcm(&analyze).assert_failed(2, &words);
+    fs::remove_file(desk.path("out/corrections.json")).unwrap();
+    fs::remove_file(desk.path("out/assessment.csv")).unwrap();
+    desk.gdcm(&analyze).assert_failed(2, &["gdcm: out/corrections.csv exists already; --force overwrites"]);
+    assert_eq!(names(&desk.path("out")), ["corrections.csv"]);
+    assert_eq!(fs::read_to_string(desk.path("out/corrections.csv")).unwrap(), "mine");
+    desk.gdcm(&[&analyze[..], &["--force"]].concat()).assert_done();
+    assert_eq!(names(&desk.path("out")), RESULTS);
+    assert!(fs::read_to_string(desk.path("out/corrections.csv")).unwrap().starts_with("condition,"));
+}
+
+#[test]
+fn the_example_is_overwritten_only_by_force() {
+    let desk = Desk::new();
+    fs::write(desk.path("example-dataset.json"), "mine").unwrap();
+    desk.gdcm(&["example", "."]).assert_failed(2, &["./example-dataset.json exists already; --force overwrites"]);
+    assert_eq!(fs::read_to_string(desk.path("example-dataset.json")).unwrap(), "mine");
+    desk.gdcm(&["example", ".", "--force"]).assert_done();
+    assert!(load_dataset(&desk.path("example-dataset.json")).is_ok());
+}
+
+#[test]
+fn an_input_is_not_overwritten_even_by_force() {
+    let desk = Desk::new();
+    let refused = ["the data are read from this file"];
+    fs::write(desk.path("corrections.json"), SMALL).unwrap();
+    desk.gdcm(&["analyze", "corrections.json", "--out", ".", "--force"]).assert_failed(2, &refused);
+
+    let loaded = load_dataset(&desk.path("small.json")).unwrap();
+    let study = desk.path("study/corrections.csv");
+    fs::create_dir(desk.path("study")).unwrap();
+    save_study(&Study::new(loaded.dataset.clone()), &loaded, &study).unwrap();
+    let study = study.to_str().unwrap();
+    desk.gdcm(&["analyze", study, "--out", "study", "--force"]).assert_failed(2, &refused);
+
+    // The dataset of a study, through a link.
+    #[cfg(unix)]
+    {
+        fs::create_dir(desk.path("linked")).unwrap();
+        std::os::unix::fs::symlink("../small.json", desk.path("linked/assessment.csv")).unwrap();
+        desk.gdcm(&["analyze", study, "--out", "linked", "--force"]).assert_failed(2, &refused);
+    }
+    assert_eq!(fs::read_to_string(desk.path("small.json")).unwrap(), SMALL);
+    assert_eq!(fs::read_to_string(desk.path("corrections.json")).unwrap(), SMALL);
+}
+
+#[test]
+fn a_study_is_not_saved_over_its_dataset() {
+    let desk = Desk::new();
+    let loaded = load_dataset(&desk.path("small.json")).unwrap();
+    let error = save_study(&Study::new(loaded.dataset.clone()), &loaded, &desk.path("small.json")).unwrap_err();
+    assert!(error.to_string().contains("the data are read from this file"), "{error}");
+    assert_eq!(fs::read_to_string(desk.path("small.json")).unwrap(), SMALL);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_larger_than_the_system_allows_is_status_1_and_leaves_what_was_there() {
+    let desk = Desk::new();
+    let limited = "ulimit -f 1; gdcm analyze small.json --out out --force";
+    let words = ["out/corrections.json: cannot be written: it would be larger than the system allows (ulimit -f)"];
+    shell(&desk, limited).assert_failed(1, &words);
+    assert_eq!(names(&desk.path("out")), [""; 0]);
+    for name in RESULTS {
+        fs::write(desk.path("out").join(name), "before").unwrap();
+    }
+    shell(&desk, limited).assert_failed(1, &words);
+    assert_eq!(names(&desk.path("out")), RESULTS);
+    for name in RESULTS {
+        assert_eq!(fs::read_to_string(desk.path("out").join(name)).unwrap(), "before", "{name}");
+    }
+    let ended = shell(&desk, "ulimit -f 0; gdcm check small.json > printed");
+    ended.assert_failed(1, &["standard output cannot be written: it would be larger than the system allows"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_closed_standard_output_costs_the_summary_and_nothing_else() {
+    let desk = Desk::new();
+    shell(&desk, "gdcm analyze small.json --out out >&-").assert_done();
+    assert_eq!(names(&desk.path("out")), RESULTS);
+    assert_eq!(read_corrections(&desk.path("out/corrections.json")).unwrap().conditions.len(), 2);
+    assert_eq!(fs::read_to_string(desk.path("small.json")).unwrap(), SMALL);
+}
+
+#[test]
+fn what_a_killed_run_left_is_removed_by_the_next() {
+    let desk = Desk::new();
+    fs::create_dir(desk.path("out")).unwrap();
+    fs::write(desk.path("out/.gdcm-Ab3xYz.tmp"), "half of a file").unwrap();
+    desk.gdcm(&["analyze", "small.json", "--out", "out"]).assert_done();
+    assert_eq!(names(&desk.path("out")), RESULTS);
+}
+
+#[test]
+fn an_export_over_existing_files_asks_first() {
+    let mut window = window();
+    let folder = tempfile::tempdir().unwrap();
+    export_to(&mut window, folder.path());
+    let csv = folder.path().join("corrections.csv");
+    fs::write(&csv, "mine").unwrap();
+    click(&mut window, "Export corrections…");
+    click(&mut window, "Export");
+    let existing = state(&window).forms.existing.clone();
+    assert!(existing.len() == 3 && existing[1].ends_with("corrections.csv"), "{existing:?}");
+    let shown = |window: &Window, label: &str| window.query_by_label(label).is_some();
+    assert!(shown(&window, "These files exist already") && shown(&window, &existing[1]));
+    assert_eq!(fs::read_to_string(&csv).unwrap(), "mine");
+
+    click(&mut window, "Cancel");
+    assert!(!shown(&window, "Overwrite") && shown(&window, "Export folder"), "back at what was being asked for");
+    assert_eq!(fs::read_to_string(&csv).unwrap(), "mine");
+
+    click(&mut window, "Export");
+    click(&mut window, "Overwrite");
+    assert_eq!(state(&window).notice.as_ref().map(|notice| notice.kind), Some(NoticeKind::Done));
+    assert!(state(&window).forms.shown.is_none());
+    assert!(fs::read_to_string(&csv).unwrap().starts_with("condition,"));
+}
+
+#[test]
+fn a_study_saved_to_a_typed_path_asks_before_it_overwrites_a_file_that_is_not_its_own() {
+    let mut window = window();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("other.json");
+    fs::write(&path, "mine").unwrap();
+    window.state_mut().save_study_as(path.clone());
+    settle(&mut window);
+    assert_eq!(fs::read_to_string(&path).unwrap(), "mine");
+    assert!(window.query_by_label("This file exists already").is_some());
+    click(&mut window, "Overwrite");
+    assert!(fs::read_to_string(&path).unwrap().contains("gdcm-study"));
+    // Now it is the study's own.
+    window.state_mut().save_study_as(path.clone());
+    settle(&mut window);
+    assert!(state(&window).forms.existing.is_empty());
+    assert_eq!(state(&window).notice.as_ref().map(|notice| notice.kind), Some(NoticeKind::Done));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_directory_that_may_not_be_written_to_is_status_1_without_the_name_of_a_temporary_file() {
+    // Nobody can make a file here, the superuser included.
+    let desk = Desk::new();
+    let ended = Ended::of(&desk.command(&[OsStr::new("example"), OsStr::new("/proc/self")]).output().unwrap());
+    assert_eq!(ended.status, 1, "{ended:?}");
+    assert!(ended.error.starts_with("gdcm: /proc/self/example-dataset.json: cannot be written: "), "{}", ended.error);
+    assert!(!ended.error.contains(".tmp") && !ended.error.contains("os error"), "{}", ended.error);
+}

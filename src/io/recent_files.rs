@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::file_error::FileError;
 use super::json_text::Format;
-use super::output_set::{Existing, OutputSet, make_directory};
+use super::output_set::{make_directory, write_whole};
 use super::source::Source;
 
 /// Most files that are listed.
@@ -45,9 +45,7 @@ pub fn add_recent_file(directory: &Path, file: &Path) -> Result<(), FileError> {
     let files = std::iter::once(file.clone()).chain(others).take(MOST).collect();
     let text = RecentText { format: FORMAT.name.to_owned(), version: FORMAT.version, files };
     make_directory(directory)?;
-    let mut output = OutputSet::new(Existing::Replace, Vec::new());
-    output.add(&directory.join(NAME), |writer| Ok(serde_json::to_writer_pretty(writer, &text)?))?;
-    output.persist()
+    write_whole(&directory.join(NAME), |writer| Ok(serde_json::to_writer_pretty(writer, &text)?))
 }
 
 #[cfg(test)]

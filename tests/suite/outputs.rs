@@ -10,7 +10,7 @@ use gdcm::study::Study;
 use gdcm::view::state::NoticeKind;
 
 use crate::commands::{Desk, Ended, SMALL};
-use crate::window::{Window, click, export_to, settle, state, window};
+use crate::window::{Window, click, export_to, save_as, settle, state, window};
 
 const RESULTS: [&str; 3] = ["assessment.csv", "corrections.csv", "corrections.json"];
 
@@ -163,14 +163,14 @@ fn a_study_saved_to_a_typed_path_asks_before_it_overwrites_a_file_that_is_not_it
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("other.json");
     fs::write(&path, "mine").unwrap();
-    window.state_mut().save_study_as(path.clone());
+    save_as(&mut window, &path);
     settle(&mut window);
     assert_eq!(fs::read_to_string(&path).unwrap(), "mine");
     assert!(window.query_by_label("This file exists already").is_some());
     click(&mut window, "Overwrite");
     assert!(fs::read_to_string(&path).unwrap().contains("gdcm-study"));
     // Now it is the study's own.
-    window.state_mut().save_study_as(path.clone());
+    save_as(&mut window, &path);
     settle(&mut window);
     assert!(state(&window).forms.existing.is_empty());
     assert_eq!(state(&window).notice.as_ref().map(|notice| notice.kind), Some(NoticeKind::Done));

@@ -25,7 +25,7 @@ use gdcm::view::net_gain_scene::channel_panels;
 use gdcm::view::plot::{BodeCurve, Pane, Role as CurveRole};
 use gdcm::view::state::{NoticeKind, State};
 
-type Window = Harness<'static, GdcmApp>;
+pub(crate) type Window = Harness<'static, GdcmApp>;
 
 /// Far above what the slowest machine needs: only a hang gets there.
 const LIMIT: Duration = Duration::from_secs(120);
@@ -33,7 +33,7 @@ const LIMIT: Duration = Duration::from_secs(120);
 const CONDITION_10: &str = "Condition 10: 60 kt, low altitude, high weight";
 
 /// The window on the example, its first results there.
-fn window() -> Window {
+pub(crate) fn window() -> Window {
     window_with(example(), Setup::default())
 }
 
@@ -62,7 +62,7 @@ fn wait_until(window: &mut Window, what: &str, is_so: impl Fn(&Window) -> bool) 
 }
 
 /// Draws frames until nothing is being computed or read, and the curves of the condition shown are there.
-fn settle(window: &mut Window) {
+pub(crate) fn settle(window: &mut Window) {
     window.run_steps(2);
     wait_until(window, "the results", |window| {
         let state = state(window);
@@ -72,12 +72,12 @@ fn settle(window: &mut Window) {
     window.run_steps(2);
 }
 
-fn click(window: &mut Window, label: &str) {
+pub(crate) fn click(window: &mut Window, label: &str) {
     window.get_by_label(label).click();
     settle(window);
 }
 
-fn state(window: &Window) -> &State {
+pub(crate) fn state(window: &Window) -> &State {
     window.state().state()
 }
 
@@ -114,7 +114,7 @@ fn open_by_path(window: &mut Window, path: &Path) {
     click(window, "Open file");
 }
 
-fn export_to(window: &mut Window, folder: &Path) {
+pub(crate) fn export_to(window: &mut Window, folder: &Path) {
     click(window, "Export corrections…");
     fill(window, "Export folder", folder);
     click(window, "Export");
@@ -127,7 +127,7 @@ fn wait_for_toggles(window: &mut Window) {
 }
 
 /// Saves the study as the form does.
-fn save_as(window: &mut Window, path: &Path) {
+pub(crate) fn save_as(window: &mut Window, path: &Path) {
     let ctx = window.ctx.clone();
     window.state_mut().save_study_as(path.to_owned(), &ctx);
     settle(window);

@@ -53,10 +53,11 @@ pub fn open(path: Option<PathBuf>) -> ExitCode {
 fn ending(run: Result<eframe::Result, Fault>, kept: Option<&Autosave>) -> Result<(), String> {
     match (run, kept) {
         (Ok(Ok(())), _) => Ok(()),
-        (Ok(Err(error)), _) => Err(no_window(&error.to_string())),
         // A missing system library is a panic inside the window library's start-up, not an error.
+        (Ok(Err(error)), None) => Err(no_window(&error.to_string())),
         (Err(fault), None) => Err(no_window(&fault.message)),
-        (Err(fault), Some(autosave)) => Err(end_words(&fault, &autosave.flush(LAST_WAIT))),
+        (Ok(Err(error)), Some(autosave)) => Err(end_words(&error.to_string(), &autosave.flush(LAST_WAIT))),
+        (Err(fault), Some(autosave)) => Err(end_words(&fault.words(), &autosave.flush(LAST_WAIT))),
     }
 }
 
@@ -126,7 +127,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let autosave = Autosave::start(Some(folder.path()), Duration::from_secs(3), || ()).unwrap();
         let words = ending(fault(), Some(&autosave)).unwrap_err();
-        assert!(words.starts_with("gdcm stopped by a fault in its window: no libxkbcommon"), "{words}");
+        assert!(words.starts_with("stopped by a fault in its window: no libxkbcommon"), "{words}");
         assert!(words.ends_with("every decision was saved"), "{words}");
     }
 }

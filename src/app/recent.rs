@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use egui::Context;
 
-use crate::io::{FileError, add_recent_file, file_exists, recent_files};
+use crate::io::{FileError, add_recent_file, file_exists, plain, plain_path, recent_files};
 use crate::view::state::RecentFile;
 
 use super::window::GdcmApp;
@@ -33,15 +33,19 @@ impl Recent {
         let (sender, wake) = (self.sender.clone(), ctx.clone());
         let look = move || {
             let added = newest.map_or(Ok(()), |newest| add_recent_file(&directory, &newest));
-            let files =
-                || recent_files(&directory).into_iter().map(|path| RecentFile { missing: !file_exists(&path), path });
             // The window may be gone by now.
-            let _ = sender.send(added.map(|()| files().collect()));
+            let _ = sender.send(added.map(|()| recent_files(&directory).into_iter().map(seen).collect()));
             wake.request_repaint();
         };
         // Without a thread the list stays as it was.
         let _ = std::thread::Builder::new().name("recent files".to_owned()).spawn(look);
     }
+}
+
+fn seen(path: PathBuf) -> RecentFile {
+    let name = path.file_name().map(|name| plain(&name.to_string_lossy())).unwrap_or_default();
+    let folder = path.parent().map(plain_path).unwrap_or_default();
+    RecentFile { missing: !file_exists(&path), path, name, folder }
 }
 
 impl GdcmApp {

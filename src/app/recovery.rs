@@ -10,7 +10,6 @@ use crate::io::{LostStudy, Opened, open_study, plain, plain_path};
 use crate::view::bars::Bar;
 
 use super::autosave::{Kept, Unsaved};
-use super::fault::Fault;
 use super::files::ReadFor;
 use super::window::GdcmApp;
 
@@ -89,9 +88,9 @@ fn when(at: SystemTime, zone: &TimeZone) -> String {
     at.to_zoned(zone.clone()).strftime("%H:%M on %-d %b %Y").to_string()
 }
 
-/// What is said on standard error when the window itself panics.
-pub(super) fn end_words(fault: &Fault, kept: &Result<Option<Kept>, String>) -> String {
-    let fault = format!("gdcm stopped by a fault in its window: {}", fault.words());
+/// What is said on standard error when the window itself fails.
+pub(super) fn end_words(fault: &str, kept: &Result<Option<Kept>, String>) -> String {
+    let fault = format!("stopped by a fault in its window: {fault}");
     match kept {
         Ok(Some(Kept { path, at })) => {
             let time = when(*at, &TimeZone::system());
@@ -115,14 +114,14 @@ mod tests {
 
     #[test]
     fn the_last_words_name_the_fault_its_place_and_the_recovery_file() {
-        let fault = Fault { message: "out of range".to_owned(), place: Some("src/view/centre.rs:7".to_owned()) };
+        let fault = "out of range at src/view/centre.rs:7";
         let kept = Kept { path: "/data/recovery/7-1.gdcm-study.json".into(), at: SystemTime::UNIX_EPOCH };
-        let words = end_words(&fault, &Ok(Some(kept)));
+        let words = end_words(fault, &Ok(Some(kept)));
         assert!(
-            words.starts_with("gdcm stopped by a fault in its window: out of range at src/view/centre.rs:7;"),
+            words.starts_with("stopped by a fault in its window: out of range at src/view/centre.rs:7;"),
             "{words}"
         );
         assert!(words.ends_with("1970 are in /data/recovery/7-1.gdcm-study.json"), "{words}");
-        assert!(end_words(&fault, &Ok(None)).ends_with("; every decision was saved"));
+        assert!(end_words(fault, &Ok(None)).ends_with("; every decision was saved"));
     }
 }

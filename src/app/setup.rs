@@ -26,7 +26,7 @@ impl Default for Setup {
         Self {
             engine: Arc::new(|| Engine::with_executor(Box::new(Pool)).with_proofs_within(LIVE_PROOF)),
             directory: None,
-            keep_after: Duration::from_secs(3),
+            keep_after: Duration::from_secs(2),
             look_every: Duration::from_millis(1500),
         }
     }

@@ -56,11 +56,9 @@ fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
 
 /// The newest first; what is not there any more cannot be chosen.
 fn recent_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    for RecentFile { path, missing } in &state.recent {
-        let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        let folder = path.parent().map(|folder| folder.display().to_string()).unwrap_or_default();
-        let button = Button::new(name).right_text(if *missing { "missing" } else { "" });
-        let response = ui.add_enabled(!missing, button).on_hover_text(&folder);
+    for RecentFile { path, name, folder, missing } in &state.recent {
+        let button = Button::new(name.as_str()).right_text(if *missing { "missing" } else { "" });
+        let response = ui.add_enabled(!missing, button).on_hover_text(folder);
         if response.on_disabled_hover_text(format!("It is not in {folder} any more")).clicked() {
             commands.push(Command::Open(path.clone()));
             ui.close();

@@ -207,6 +207,10 @@ pub struct Notice {
 pub struct RecentFile {
     /// Where it is, or was.
     pub path: PathBuf,
+    /// Its name, to be shown.
+    pub name: String,
+    /// Its folder, to be shown.
+    pub folder: String,
     /// Whether it was not there when it was looked for last.
     pub missing: bool,
 }

@@ -16,7 +16,7 @@ use crate::dataset::Dataset;
 use super::file_error::FileError;
 use super::flaw::Flaw;
 use super::output_set::{Existing, OutputSet, make_directory, write_whole};
-use super::plain::plain_path;
+use super::plain::{plain, plain_path};
 use super::source::Source;
 
 use build::draft_of;
@@ -89,7 +89,7 @@ impl LoadedDataset {
     /// The name of the dataset's file, or what stands for it.
     pub fn file_name(&self) -> String {
         let name = self.path().and_then(Path::file_name);
-        name.map_or_else(|| self.origin.to_string(), |name| name.to_string_lossy().into_owned())
+        name.map_or_else(|| self.origin.to_string(), |name| plain(&name.to_string_lossy()))
     }
 }
 

@@ -74,7 +74,9 @@ impl HessenbergForm {
         let input_scale = 1.0 / power_of_two_below(largest);
         a *= frequency_scale;
         b *= input_scale;
-        c *= frequency_scale / input_scale;
+        c *= frequency_scale;
+        // Not by the ratio of both, which may underflow where the product does not.
+        c /= input_scale;
         if first_input > 0 {
             b.swap_columns(0, first_input);
             d.swap_columns(0, first_input);

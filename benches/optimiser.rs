@@ -12,7 +12,7 @@ use std::time::Duration;
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use gdcm::correction::{ProofBudget, solve_delays, solve_gains};
 
-#[path = "../tests/optimiser/instances.rs"]
+#[path = "../tests/suite/optimiser/instances.rs"]
 // The tests use more of it.
 #[allow(dead_code)]
 mod instances;

@@ -12,7 +12,7 @@ pub(super) const WRONG_INPUT: u8 = 2;
 #[derive(Debug, thiserror::Error)]
 pub(super) enum Failure {
     /// A file cannot be read or written.
-    #[error("{0}{}", if matches!(.0, FileError::Exists { .. }) { "; --force overwrites" } else { "" })]
+    #[error("{0}{remedy}", remedy = if matches!(.0, FileError::Exists { .. }) { "; --force overwrites" } else { "" })]
     File(#[from] FileError),
     /// An option's value is wrong for this dataset.
     #[error("{option}: {reason}")]

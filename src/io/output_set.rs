@@ -3,6 +3,8 @@
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+#[cfg(unix)]
+use std::sync::{Arc, atomic::AtomicBool};
 
 use tempfile::NamedTempFile;
 
@@ -175,7 +177,7 @@ pub fn make_directory(path: &Path) -> Result<(), FileError> {
 pub fn report_size_limit() {
     // Where that fails, the program ends as before, and still leaves no half of a file.
     #[cfg(unix)]
-    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Default::default());
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::<AtomicBool>::default());
 }
 
 const PREFIX: &str = ".gdcm-";

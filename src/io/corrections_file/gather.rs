@@ -2,18 +2,19 @@
 
 use std::collections::BTreeSet;
 
-use crate::correction::{DelayConflict, GainObjective, Outcome, delay_sensitivities, gain_sensitivities};
+use crate::correction::{DelayConflict, Outcome, delay_sensitivities, gain_sensitivities};
 use crate::dataset::{BundleKind, Condition, ConditionId, Model, PairTable, Provenance};
-use crate::fidelity::{Cost, CostAverage};
+use crate::fidelity::Cost;
+use crate::io::settings_entry::SettingsEntry;
 use crate::schedule::{Regression, Schedule, ScheduleKind, ScheduledQuantity};
-use crate::study::{Analysis, Assessed, Caution, ConditionAnalysis, Settings};
+use crate::study::{Analysis, Assessed, Caution, ConditionAnalysis};
 
 use super::explanation;
 use super::names::{ByName, ChannelNames, rows};
 use super::schema::{
     Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
-    DelayOutcome, GainOutcome, NetGain, ScheduleUsed, ScheduledDelays, ScheduledGains, SetAsideEntry, SettingsUsed,
-    SourceEntry, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
+    DelayOutcome, GainOutcome, NetGain, ScheduleUsed, ScheduledDelays, ScheduledGains, SetAsideEntry, SourceEntry,
+    UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
 };
 use super::{NAME, VERSION};
 
@@ -29,7 +30,7 @@ impl Corrections {
             version: VERSION,
             software: concat!("gdcm ", env!("CARGO_PKG_VERSION")).to_owned(),
             dataset: DatasetLabel { name: dataset.name().to_owned(), sha256: sha256.to_owned() },
-            settings: gather.settings(&analysis.study.settings),
+            settings: SettingsEntry::of(&analysis.study.settings, dataset),
             conditions: Vec::new(),
             failed: Vec::new(),
             schedule: analysis.schedule.as_ref().ok().map(|schedule| gather.schedule(schedule)),
@@ -67,31 +68,6 @@ impl Gather<'_> {
                 magnitude: rows(changes, |change| change.magnitude()),
                 phase: rows(changes, |change| change.phase()),
             }),
-        }
-    }
-
-    fn settings(&self, settings: &Settings) -> SettingsUsed {
-        let ignored = settings.fitted.map(|_, fitted| !fitted);
-        SettingsUsed {
-            band_rad_s: [settings.band.min(), settings.band.max()],
-            points: settings.points,
-            alpha_gain: settings.alpha_gain,
-            alpha_delay: settings.alpha_delay,
-            quantile: settings.quantile,
-            constrained: self.names.marked(&settings.constrained),
-            ignored: self.names.marked(&ignored),
-            cost_average: match settings.cost_average {
-                CostAverage::Median => "median",
-                CostAverage::Mean => "mean",
-            }
-            .to_owned(),
-            gain_objective: match settings.gain_objective {
-                GainObjective::Ratio => "ratio",
-                GainObjective::Decibel => "dB",
-            }
-            .to_owned(),
-            gain_bounds: settings.gain_bounds.map(|bounds| [bounds.lower, bounds.upper]),
-            delay_upper_s: settings.delay_upper_s,
         }
     }
 

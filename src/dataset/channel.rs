@@ -1,5 +1,9 @@
 //! One input or output of the helicopter.
 
+/// Most inputs, and most outputs, of a dataset: as many as the gains and delays are tested with. Tables of pairs grow with the
+/// product, the search for the best gains faster.
+pub const MOST_CHANNELS: usize = 32;
+
 /// An input (a control position) or an output (a measured motion), as the dataset names it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Channel {

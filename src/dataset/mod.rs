@@ -11,7 +11,7 @@ mod pair;
 mod state_space;
 
 pub use band::{Band, BandError};
-pub use channel::Channel;
+pub use channel::{Channel, MOST_CHANNELS};
 pub use condition::{BundleKind, Condition, ConditionError, FlightState, ModelId};
 pub use dataset::{Dataset, DatasetError, DatasetHeader};
 pub use measured_response::{MeasuredResponse, MeasuredResponseError};

@@ -1,6 +1,6 @@
 //! How one response differs from its reference, frequency by frequency.
 
-use crate::response::{PolarCurve, centred_unwrap, wrap};
+use crate::response::{GainDelay, PolarCurve, centred_unwrap, wrap};
 
 use super::cost::{Cost, CostAverage};
 
@@ -22,20 +22,13 @@ impl Mismatch {
         Self { magnitude_db: difference(&simulated.magnitude_db, &reference.magnitude_db), phase }
     }
 
-    /// J after a correction of `gain_db` \[dB\] and `delay_s` \[s\] of the simulated response (M4, M10).
-    ///
-    /// The correction `k e^(-tau s)` adds `20 log10 k` to the magnitude and takes `omega tau` from the phase, which is
-    /// unwrapped anew: the phase difference is that of the corrected response, not the corrected phase difference.
-    pub fn cost(&self, omega: &[f64], gain_db: f64, delay_s: f64, average: CostAverage) -> Cost {
+    /// J after a correction of the simulated response (M4, M10). Its phase is unwrapped anew: the phase difference is that of the
+    /// corrected response, not the corrected phase difference.
+    pub fn cost(&self, omega: &[f64], correction: GainDelay, average: CostAverage) -> Cost {
         let mut scratch = Vec::with_capacity(omega.len());
-        let mut phase: Vec<f64> = if delay_s == 0.0 {
-            self.phase.clone()
-        } else {
-            self.phase.iter().zip(omega).map(|(phase, omega)| wrap(phase - omega * delay_s)).collect()
-        };
+        let mut phase: Vec<f64> = correction.phases(&self.phase, omega).map(wrap).collect();
         centred_unwrap(&mut phase, &mut scratch);
-        let magnitude = self.magnitude_db.iter().map(|error| error + gain_db);
-        Cost::of(magnitude, phase.into_iter(), average, &mut scratch)
+        Cost::of(correction.magnitudes_db(&self.magnitude_db), phase.into_iter(), average, &mut scratch)
     }
 
     /// The phase difference of M3, `Delta phi(sim, ref)` \[rad\].
@@ -49,6 +42,7 @@ impl Mismatch {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::units::db_to_ratio;
 
     fn curve(gain_db: f64, delay_s: f64, omega: &[f64]) -> PolarCurve {
         PolarCurve {
@@ -61,9 +55,9 @@ mod tests {
     fn the_right_gain_and_delay_leave_no_cost() {
         let omega: Vec<f64> = (1..60).map(|k| 0.2 * f64::from(k)).collect();
         let mismatch = Mismatch::new(&curve(0.0, 0.0, &omega), &curve(2.0, 0.4, &omega));
-        assert!(mismatch.cost(&omega, 0.0, 0.0, CostAverage::Mean).total() > 100.0);
+        assert!(mismatch.cost(&omega, GainDelay::NONE, CostAverage::Mean).total() > 100.0);
         // Squares of rounding errors of angles up to 12 * 0.4 rad.
-        assert!(mismatch.cost(&omega, 2.0, 0.4, CostAverage::Mean).total() < 1e-20);
+        assert!(mismatch.cost(&omega, GainDelay::new(db_to_ratio(2.0), 0.4), CostAverage::Mean).total() < 1e-20);
     }
 
     #[test]

@@ -5,6 +5,7 @@ mod complex_lanes;
 mod eliminated_rows;
 mod frequency_grid;
 mod frequency_response;
+mod gain_delay;
 mod hessenberg_form;
 mod householder_reduction;
 mod interchange;
@@ -22,6 +23,7 @@ mod system_table;
 
 pub use frequency_grid::FrequencyGrid;
 pub use frequency_response::FrequencyResponse;
+pub use gain_delay::GainDelay;
 pub use phase::{centred_unwrap, nearest_turn_offset, unwrap, wrap};
 pub use polar::{PolarCurve, PolarResponse};
 pub use prepared_model::PreparedModel;

@@ -8,7 +8,7 @@ use crate::fidelity::{
     BundleDistance, Cost, CostAverage, Discontinuity, DiscontinuityError, FitError, Mismatch, Representative,
     compared_pairs, distances_from,
 };
-use crate::response::{FrequencyGrid, FrequencyResponse, PolarResponse};
+use crate::response::{FrequencyGrid, FrequencyResponse, GainDelay, PolarResponse};
 
 use super::condition_responses::ConditionResponses;
 use super::document::ConditionChoice;
@@ -80,7 +80,7 @@ pub struct ModelMismatch {
 impl ModelMismatch {
     fn of(simulated: &PolarResponse, reference: &PolarResponse, omega: &[f64], average: CostAverage) -> Self {
         let mismatch = mismatch_table(simulated, reference);
-        let cost = mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.cost(omega, 0.0, 0.0, average)));
+        let cost = mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.cost(omega, GainDelay::NONE, average)));
         Self { mismatch, cost }
     }
 }

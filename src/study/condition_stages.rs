@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::correction::{
-    ChannelCorrection, DelayError, DelayProblem, DelaySolution, GainBounds, GainError, GainProblem, GainSolution,
-    ProofBudget, delay_upper_s, gain_bounds, solve_delays, solve_gains,
+    Bounds, ChannelCorrection, GainBounds, Problem, ProblemError, ProofBudget, Quantity, Solution, delay_upper_s,
+    gain_bounds, solve,
 };
 use crate::dataset::{Band, BundleKind, Condition, Dynamics, PairTable};
 use crate::fidelity::CostAverage;
@@ -36,8 +36,8 @@ pub(super) struct ConditionStages {
     figures: Memo<GridKey, Arc<BundleFigures>>,
     comparison: Memo<ComparisonKey, Arc<Comparison>>,
     bounds: Memo<BoundsKey, (GainBounds, f64)>,
-    gains: Memo<Arc<GainProblem>, Result<Arc<GainSolution>, GainError>>,
-    delays: Memo<Arc<DelayProblem>, Result<Arc<DelaySolution>, DelayError>>,
+    gains: Memo<Arc<Problem>, Solved>,
+    delays: Memo<Arc<Problem>, Solved>,
     cost: Memo<(ComparisonKey, ChannelCorrection), Arc<PairTable<Option<CostChange>>>>,
 }
 
@@ -87,7 +87,7 @@ impl ConditionStages {
             let figures = BundleFigures::of(condition, &responses, &study.dataset.measuring_pairs(), effort);
             figures.map(Arc::new)
         })?;
-        let outcome = self.compare_and_solve(study, index, grid, &responses, figures);
+        let outcome = self.compare_and_solve(study, index, grid, &responses, figures, effort)?;
         effort.step(1);
         Ok(outcome)
     }
@@ -99,7 +99,8 @@ impl ConditionStages {
         grid: &FrequencyGrid,
         responses: &ConditionResponses,
         figures: Arc<BundleFigures>,
-    ) -> Result<ConditionAnalysis, ConditionFailure> {
+        effort: &Effort<'_>,
+    ) -> Result<Result<ConditionAnalysis, ConditionFailure>, Stopped> {
         let (settings, condition) = (&study.settings, &study.dataset.conditions()[index]);
         let measuring = study.dataset.measuring_pairs();
         let grid_key = (settings.band, settings.points);
@@ -108,18 +109,23 @@ impl ConditionStages {
         let comparison = self.comparison.get(key.clone(), |_| {
             Arc::new(Comparison::of(condition, responses, &figures, grid, choice, settings.cost_average))
         });
-        check_comparable(condition, &comparison)?;
+        if let Err(failure) = check_comparable(condition, &comparison) {
+            return Ok(Err(failure));
+        }
         let bounds_key = (key.clone(), settings.quantile, settings.gain_bounds, settings.delay_upper_s);
         let bounds = self.bounds.get(bounds_key, |_| bounds_of(&comparison, settings, &measuring, grid));
-        let solved = self.solve(&comparison, settings, bounds)?;
+        let solved = match self.solve(&comparison, settings, bounds, effort)? {
+            Ok(solved) => solved,
+            Err(failure) => return Ok(Err(failure)),
+        };
         let correction = solved.correction();
         let cost = self.cost.get((key, correction.clone()), |(_, correction)| {
             let models = &comparison.representative;
             Arc::new(assess(&models.mismatch, &models.cost, correction, grid.omega(), settings.cost_average))
         });
         let cautions = cautions_of(condition, choice, settings, &comparison, &figures);
-        let Solved { gain_problem, delay_problem, gains, delays } = solved;
-        Ok(ConditionAnalysis {
+        let Optima { gain_problem, delay_problem, gains, delays } = solved;
+        Ok(Ok(ConditionAnalysis {
             figures,
             comparison,
             gain_problem,
@@ -129,7 +135,7 @@ impl ConditionStages {
             correction,
             cost,
             cautions,
-        })
+        }))
     }
 
     fn solve(
@@ -137,46 +143,58 @@ impl ConditionStages {
         comparison: &Comparison,
         settings: &Settings,
         (bounds, upper_s): (GainBounds, f64),
-    ) -> Result<Solved, ConditionFailure> {
+        effort: &Effort<'_>,
+    ) -> Result<Result<Optima, ConditionFailure>, Stopped> {
         let delta = &comparison.delta;
         let held = settings.constrained.map(|pair, constrained| *constrained && delta.gain[pair].is_some());
-        let gain_problem = Arc::new(GainProblem {
-            wanted: delta.gain.clone(),
-            constrained: held.clone(),
+        let gain_problem = Arc::new(Problem {
+            quantity: Quantity::Gain(settings.gain_objective),
+            delta: delta.gain.clone(),
+            constrained: held,
             fitted: settings.fitted.clone(),
             bounds,
             alpha: settings.alpha_gain,
-            objective: settings.gain_objective,
         });
-        let delay_problem = Arc::new(DelayProblem {
-            wanted_s: delta.delay_s.clone(),
-            constrained: held,
-            fitted: settings.fitted.clone(),
-            upper_s,
+        let delay_problem = Arc::new(Problem {
+            quantity: Quantity::Delay,
+            delta: delta.delay_s.clone(),
+            bounds: Bounds { lower: 0.0, upper: upper_s },
             alpha: settings.alpha_delay,
+            ..Problem::clone(&gain_problem)
         });
-        let solve = |problem: &Arc<GainProblem>| solve_gains(problem, ProofBudget::default()).map(Arc::new);
-        let gains = self.gains.get(Arc::clone(&gain_problem), solve)?;
-        let delays = self.delays.get(Arc::clone(&delay_problem), |problem| solve_delays(problem).map(Arc::new))?;
-        Ok(Solved { gain_problem, delay_problem, gains, delays })
+        let stop = || effort.watch().stopped();
+        let solve = |problem: &Arc<Problem>| match solve(problem, ProofBudget::default(), &stop) {
+            Err(ProblemError::Stopped) => Err(Stopped),
+            solved => Ok(solved.map(Arc::new)),
+        };
+        let gains = self.gains.get_or_fail(Arc::clone(&gain_problem), solve)?;
+        let delays = self.delays.get_or_fail(Arc::clone(&delay_problem), solve)?;
+        Ok(match (gains, delays) {
+            (Ok(gains), Ok(delays)) => Ok(Optima { gain_problem, delay_problem, gains, delays }),
+            (Err(error), _) => Err(ConditionFailure::Gains(error)),
+            (_, Err(error)) => Err(ConditionFailure::Delays(error)),
+        })
     }
 }
 
+/// What came of one problem.
+type Solved = Result<Arc<Solution>, ProblemError>;
+
 /// The two optima of a condition with what they are the optima of.
-struct Solved {
-    gain_problem: Arc<GainProblem>,
-    delay_problem: Arc<DelayProblem>,
-    gains: Arc<GainSolution>,
-    delays: Arc<DelaySolution>,
+struct Optima {
+    gain_problem: Arc<Problem>,
+    delay_problem: Arc<Problem>,
+    gains: Arc<Solution>,
+    delays: Arc<Solution>,
 }
 
-impl Solved {
+impl Optima {
     fn correction(&self) -> ChannelCorrection {
         ChannelCorrection {
             input_gains: self.gains.inputs.clone(),
             output_gains: self.gains.outputs.clone(),
-            input_delays_s: self.delays.inputs_s.clone(),
-            output_delays_s: self.delays.outputs_s.clone(),
+            input_delays_s: self.delays.inputs.clone(),
+            output_delays_s: self.delays.outputs.clone(),
         }
     }
 }

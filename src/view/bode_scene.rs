@@ -8,7 +8,7 @@ use nalgebra::Complex;
 use crate::correction::ChannelCorrection;
 use crate::dataset::{BundleKind, ModelId, Pair};
 use crate::fidelity::SUGGESTION_RATIO;
-use crate::response::{FrequencyResponse, nearest_turn_offset, unwrap};
+use crate::response::{FrequencyResponse, GainDelay, nearest_turn_offset, unwrap};
 use crate::study::{ConditionAnalysis, ConditionCurves};
 use crate::units::{ratio_to_db, s_to_ms};
 
@@ -82,13 +82,12 @@ impl Shape {
         Self { phase_deg: self.phase_deg.iter().map(|phase| phase + offset).collect(), ..self }
     }
 
-    /// The shape after a gain and a delay: exact in frequency, no Pade (M10).
-    fn corrected(&self, omega: &[f64], treatment: Treatment) -> Self {
-        let gain_db = ratio_to_db(treatment.net_gain);
-        let lag = |omega: &f64| (omega * treatment.net_delay_s).to_degrees();
+    /// The shape after a gain and a delay (M10).
+    fn corrected(&self, omega: &[f64], correction: GainDelay) -> Self {
+        let phase: Vec<f64> = self.phase_deg.iter().map(|degrees| degrees.to_radians()).collect();
         Self {
-            magnitude_db: self.magnitude_db.iter().map(|magnitude| magnitude + gain_db).collect(),
-            phase_deg: self.phase_deg.iter().zip(omega).map(|(phase, omega)| phase - lag(omega)).collect(),
+            magnitude_db: correction.magnitudes_db(&self.magnitude_db).collect(),
+            phase_deg: correction.phases(&phase, omega).map(f64::to_degrees).collect(),
         }
     }
 }
@@ -109,8 +108,7 @@ pub struct CachedShapes {
 struct Treatment {
     /// Index of the physics model.
     model: usize,
-    net_gain: f64,
-    net_delay_s: f64,
+    correction: GainDelay,
 }
 
 impl CachedShapes {
@@ -139,7 +137,7 @@ impl CachedShapes {
         match self.corrected.get(&id) {
             Some((with, shape)) if *with == treatment => shape.clone(),
             _ => {
-                let shape = self.physics[treatment.model].corrected(&self.omega, treatment);
+                let shape = self.physics[treatment.model].corrected(&self.omega, treatment.correction);
                 self.corrected.insert(id, (treatment, shape.clone()));
                 shape
             }
@@ -236,10 +234,9 @@ fn corrected_curves(state: &State, shapes: &mut CachedShapes, shown: &ConditionA
     let name = &state.condition().bundle(BundleKind::Physics)[model].name;
     let airspeed_kt = state.condition().flight_state().airspeed_kt;
     let mut curve = |id: u64, label: String, role: Role, correction: &ChannelCorrection| {
-        let (net_gain, net_delay_s) = (correction.net_gain(pair), correction.net_delay_s(pair));
-        let shape = shapes.corrected(id, Treatment { model, net_gain, net_delay_s });
-        let delay_ms = s_to_ms(net_delay_s);
-        BodeCurve {
+        let shape = shapes.corrected(id, Treatment { model, correction: correction.on(pair)? });
+        let (net_gain, delay_ms) = (correction.net_gain(pair).value(), s_to_ms(correction.net_delay(pair).value_s()));
+        Some(BodeCurve {
             id: CurveId(id),
             label,
             detail: format!("net gain {net_gain:.3}, net delay {delay_ms:.1} ms"),
@@ -249,14 +246,12 @@ fn corrected_curves(state: &State, shapes: &mut CachedShapes, shown: &ConditionA
             omega: Arc::clone(&shapes.omega),
             magnitude_db: shape.magnitude_db,
             phase_deg: shape.phase_deg,
-        }
+        })
     };
-    let mut curves = vec![curve(CORRECTED, format!("{name}, corrected"), Role::Corrected, &shown.correction)];
+    let own = curve(CORRECTED, format!("{name}, corrected"), Role::Corrected, &shown.correction);
+    let mut curves: Vec<BodeCurve> = own.into_iter().collect();
     if let Some(Ok(schedule)) = state.analysis().map(|analysis| &analysis.schedule) {
-        let scheduled = schedule.at(airspeed_kt);
-        if scheduled.net_gain(pair) > 0.0 {
-            curves.push(curve(SCHEDULED, format!("{name}, scheduled"), Role::Scheduled, &scheduled));
-        }
+        curves.extend(curve(SCHEDULED, format!("{name}, scheduled"), Role::Scheduled, &schedule.at(airspeed_kt)));
     }
     curves
 }

@@ -1,7 +1,8 @@
 //! From what a dataset file says to the dataset, each error with its place.
 
 use crate::dataset::{
-    Band, BundleKind, Channel, Condition, Dataset, DatasetHeader, Dynamics, FlightState, Model, Origin, Pair, PairTable,
+    Band, BundleKind, Channel, Condition, Dataset, DatasetHeader, Dynamics, FlightState, MOST_CHANNELS, Model, Origin,
+    Pair, PairTable,
 };
 use crate::io::content_fault::ContentFault;
 use crate::io::flaw::Flaw;
@@ -10,8 +11,6 @@ use crate::io::place::Place;
 use super::dynamics::{Matrices, state_space_or_response};
 use super::schema::{BandText, ChannelText, ConditionText, DatasetText, IdentifiedText, PhysicsText};
 
-/// Most inputs, and most outputs: tables of pairs grow with their product.
-const MOST_CHANNELS: usize = 200;
 /// Most conditions, and most models of a bundle: comparing names takes time that grows with the square.
 const MOST_ENTRIES: usize = 5000;
 

@@ -4,7 +4,7 @@ use crate::correction::Outcome;
 use crate::dataset::{BundleKind, Channel, Condition, Dataset, Pair};
 use crate::io::plain;
 use crate::schedule::{Schedule, ScheduledQuantity};
-use crate::study::{Analysis, ConditionAnalysis, Study};
+use crate::study::{Analysis, ConditionAnalysis, RemarkKind, Study, remarks};
 use crate::units::{number, s_to_ms};
 
 use super::summary::LABEL;
@@ -115,44 +115,20 @@ fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     detail_list("gains", gains) + &detail_list("delays", delays.collect())
 }
 
-/// Names of the inputs and of the outputs.
-fn plain_names(dataset: &Dataset) -> (Vec<String>, Vec<String>) {
-    let names = |channels: &[Channel]| channels.iter().map(|channel| plain(&channel.name)).collect();
-    (names(dataset.inputs()), names(dataset.outputs()))
-}
-
-/// What could not be matched, what is not proven, and other cautions.
+/// What could not be matched and why, entry by entry, what is not proven, and the other cautions.
 fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
-    let dataset = &analysis.study.dataset;
-    let (inputs, outputs) = plain_names(dataset);
+    let line = |label: &str, words: &str| detail(label, &plain(words));
+    let said = remarks(&analysis.study, result, None);
     let mut text = String::new();
-    for entry in &result.gains.unmatched {
-        let words = format!(
-            "gain of {}: {} in place of {} ({:+.1} dB)",
-            plain(&dataset.pair_name(entry.pair)),
-            number(entry.target),
-            number(entry.delta),
-            entry.excess
-        );
-        text.push_str(&detail("not matched", &words));
+    for remark in &said {
+        match remark.kind {
+            RemarkKind::Good => {}
+            RemarkKind::Trouble => text.push_str(&line("not matched", &remark.text)),
+            RemarkKind::Caution => text.push_str(&line("caution", &remark.text)),
+        }
     }
-    for conflict in &result.gains.conflicts {
-        text.push_str(&detail("why", &conflict.words(&inputs, &outputs)));
-    }
-    let top = analysis.study.settings.band.max();
-    for entry in &result.delays.unmatched {
-        text.push_str(&detail("not matched", &entry.words(top, &inputs, &outputs)));
-    }
-    // A lone response that needs lead has said so already.
-    for conflict in result.delays.conflicts.iter().filter(|conflict| !conflict.is_lone_lead()) {
-        text.push_str(&detail("why", &conflict.words(&inputs, &outputs)));
-    }
-    if let Outcome::NotProven { gap, .. } = result.gains.proof.outcome {
-        let words = format!("better gains may exist, by at most {gap:.1e} of the objective");
-        text.push_str(&detail("not proven", &words));
-    }
-    for caution in &result.cautions {
-        text.push_str(&detail("caution", &plain(&caution.words(|pair| dataset.pair_name(pair)))));
+    if matches!(result.gains.proof.outcome, Outcome::NotProven { .. }) {
+        text.push_str(&line("not proven", &result.gains.proof.outcome.words()));
     }
     text
 }
@@ -173,9 +149,9 @@ pub(super) fn schedule_section(analysis: &Analysis) -> String {
     };
     let range = format!("{} to {} kt", number(schedule.airspeeds.min_kt), number(schedule.airspeeds.max_kt));
     let mut text = labelled(0, "Schedule", LABEL, &format!("{kind}, {range}; net gains:"));
-    let (inputs, outputs) = plain_names(&analysis.study.dataset);
+    let (inputs, outputs) = analysis.study.dataset.names_of_channels();
     for caution in &schedule.cautions {
-        text.push_str(&detail("caution", &caution.words(&inputs, &outputs)));
+        text.push_str(&detail("caution", &plain(&caution.words(&inputs, &outputs))));
     }
     text + &schedule_table(analysis, schedule)
 }

@@ -177,6 +177,12 @@ impl Dataset {
         format!("{} → {}", self.inputs[pair.input].name, self.outputs[pair.output].name)
     }
 
+    /// Names of the inputs and of the outputs.
+    pub fn names_of_channels(&self) -> (Vec<String>, Vec<String>) {
+        let names = |channels: &[Channel]| channels.iter().map(|channel| channel.name.clone()).collect();
+        (names(&self.inputs), names(&self.outputs))
+    }
+
     /// The names of a response's channels, output first.
     pub fn channel_names(&self, pair: Pair) -> (String, String) {
         (self.outputs[pair.output].name.clone(), self.inputs[pair.input].name.clone())

@@ -17,6 +17,7 @@ mod inventory;
 mod job;
 mod memo;
 mod progress;
+mod remark;
 mod setting;
 mod settings;
 mod toggles;
@@ -36,6 +37,7 @@ pub use history::History;
 pub use inventory::{ConditionInventory, Inventory};
 pub use job::{CurvesJob, Job, ProofJob, TogglesJob};
 pub use progress::{Cancelled, Progress, Unobserved};
+pub use remark::{Remark, RemarkKind, details, remarks};
 pub use setting::Setting;
 pub use settings::{
     GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings,

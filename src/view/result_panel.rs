@@ -4,11 +4,11 @@ use egui::{Align, Button, CollapsingHeader, Color32, Grid, Layout, RichText, Rol
 
 use crate::correction::{GainObjective, Outcome, Quantity};
 use crate::dataset::{Channel, Pair};
-use crate::study::{ConditionAnalysis, Edit, Setting};
+use crate::study::{ConditionAnalysis, Edit, Remark, RemarkKind, Setting};
 use crate::units::s_to_ms;
 
 use super::command::{Command, FormKind};
-use super::explanation::{Remark, RemarkKind, details, remarks};
+use super::explanation::{details_shown, remarks_shown};
 use super::heading::heading_ui;
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 use super::state::State;
@@ -28,7 +28,7 @@ pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
             header_ui(ui, state, shown, palette);
             ui.scope(|ui| channels_ui(ui, state, shown, palette));
             objective_ui(ui, shown, palette);
-            for remark in remarks(state, shown) {
+            for remark in remarks_shown(state, shown) {
                 remark_ui(ui, palette, &remark);
                 if let Some(pair) = remark.ignore {
                     ignore_ui(ui, state, pair, commands);
@@ -36,7 +36,7 @@ pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
             }
             let header = RichText::new("In detail").size(SMALL_SIZE).color(palette.dim_text);
             CollapsingHeader::new(header).id_salt("details").show(ui, |ui| {
-                for sentence in details(state, shown) {
+                for sentence in details_shown(state, shown) {
                     ui.label(RichText::new(sentence).size(SMALL_SIZE));
                 }
             });

@@ -128,7 +128,7 @@ fn held_gains_out_of_reach_are_explained_and_the_explanation_is_exported() {
     settle(&mut window);
     window.get_by_label("not matched");
     let shown = state(&window).shown().unwrap();
-    let texts: Vec<String> = remarks(state(&window), shown).into_iter().map(|remark| remark.text).collect();
+    let texts: Vec<String> = remarks_shown(state(&window), shown).into_iter().map(|remark| remark.text).collect();
     assert!(texts.iter().any(|text| text.contains("LON → Q cannot be held")), "{texts:?}");
     let (marked, _) = gain_conflict_marks(shown);
     assert!(marked.contains(&pair(&window, "Q", "LON")));

@@ -20,7 +20,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use gdcm::app::{GdcmApp, Setup};
 use gdcm::dataset::{BundleKind, ConditionId, ModelId, Pair};
 use gdcm::io::{Opened, OpenedStudy, embedded_example, load_any, open_study, read_corrections};
-use gdcm::view::explanation::{gain_conflict_marks, remarks, toggle_costs};
+use gdcm::view::explanation::{gain_conflict_marks, remarks_shown, toggle_costs};
 use gdcm::view::net_gain_scene::channel_panels;
 use gdcm::view::plot::{BodeCurve, Pane, Role as CurveRole};
 use gdcm::view::state::{NoticeKind, State};

@@ -1,0 +1,130 @@
+//! What the result of a condition says, in the engineer's words: the same in the window and in a terminal.
+
+use crate::correction::{Sensitivity, sensitivities};
+use crate::dataset::Pair;
+use crate::schedule::Schedule;
+use crate::units::s_to_ms;
+
+use super::condition_analysis::ConditionAnalysis;
+use super::document::Study;
+
+/// How a remark is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RemarkKind {
+    /// What was asked for was done.
+    Good,
+    /// It was done, but the engineer has to know something.
+    Caution,
+    /// It could not be done.
+    Trouble,
+}
+
+/// One remark on the result.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Remark {
+    /// How it is meant.
+    pub kind: RemarkKind,
+    /// One or two sentences.
+    pub text: String,
+    /// The response that the engineer may want to ignore in the objective.
+    pub ignore: Option<Pair>,
+}
+
+impl Remark {
+    /// A remark that offers nothing.
+    pub fn new(kind: RemarkKind, text: String) -> Self {
+        Self { kind, text, ignore: None }
+    }
+}
+
+/// Which held gains and delays were matched, which were not and why, and the cautions of the condition and of the schedule.
+pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Schedule>) -> Vec<Remark> {
+    let mut remarks = gain_remarks(study, result);
+    remarks.extend(delay_remarks(study, result));
+    let pair_name = |pair| study.dataset.pair_name(pair);
+    remarks.extend(result.cautions.iter().map(|caution| Remark {
+        kind: RemarkKind::Caution,
+        text: caution.words(pair_name),
+        ignore: caution.offers_to_ignore(),
+    }));
+    if let Some(schedule) = schedule {
+        let (inputs, outputs) = study.dataset.names_of_channels();
+        let words = schedule.cautions.iter().map(|caution| format!("Schedule: {}.", caution.words(&inputs, &outputs)));
+        remarks.extend(words.map(|text| Remark::new(RemarkKind::Caution, text)));
+    }
+    remarks
+}
+
+fn gain_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
+    let held = result.held().marked().count();
+    if result.gains.matched {
+        let text = match held {
+            0 => "No gain is held.".to_owned(),
+            1 => "The held gain is matched exactly.".to_owned(),
+            count => format!("All {count} held gains are matched exactly."),
+        };
+        return vec![Remark::new(RemarkKind::Good, text)];
+    }
+    let (inputs, outputs) = study.dataset.names_of_channels();
+    let gains = &result.gains;
+    let top = study.settings.band.max();
+    let misses: Vec<String> = gains.unmatched.iter().map(|unmatched| unmatched.words(top, &inputs, &outputs)).collect();
+    let conflicts = gains.conflicts.iter().map(|conflict| conflict.words(&inputs, &outputs));
+    let remedy = gains.remedy.iter().map(|remedy| remedy.words(&inputs, &outputs)).filter(|words| !words.is_empty());
+    let texts = std::iter::once(misses.join(" ")).chain(conflicts).chain(remedy);
+    texts.map(|text| Remark::new(RemarkKind::Trouble, text)).collect()
+}
+
+fn delay_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
+    let (held, unmatched) = (result.held().marked().count(), &result.delays.unmatched);
+    if unmatched.is_empty() {
+        let text = format!("All {held} held delays are matched exactly.");
+        return if held == 0 { Vec::new() } else { vec![Remark::new(RemarkKind::Good, text)] };
+    }
+    let lead: Vec<String> = unmatched
+        .iter()
+        .filter(|unmatched| unmatched.delta < 0.0)
+        .map(|unmatched| format!("{} {:.0} ms", study.dataset.pair_name(unmatched.pair), -s_to_ms(unmatched.delta)))
+        .collect();
+    let mut remarks = Vec::new();
+    if !lead.is_empty() {
+        let who = match (lead.len(), held) {
+            (1, 1) => "The held response needs".to_owned(),
+            (1, _) => format!("1 of {held} held responses needs"),
+            (count, _) if count == held => format!("All {held} held responses need"),
+            (count, _) => format!("{count} of {held} held responses need"),
+        };
+        let text = format!("{who} lead, because the physics model lags: {}. A delay cannot give it.", lead.join(", "));
+        remarks.push(Remark::new(RemarkKind::Caution, text));
+    }
+    let (inputs, outputs) = study.dataset.names_of_channels();
+    let top = study.settings.band.max();
+    let others = unmatched.iter().filter(|unmatched| unmatched.delta >= 0.0);
+    remarks.extend(others.map(|unmatched| Remark::new(RemarkKind::Caution, unmatched.words(top, &inputs, &outputs))));
+    remarks
+}
+
+/// What the outcome leaves to say, entry by entry: other minima, what each missed delay leaves at the top of the band, and what
+/// the held responses and the active bounds cost.
+pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
+    /// A share of the objective below which a restraint costs nothing worth reading.
+    const NOTABLE: f64 = 1e-3;
+    let (inputs, outputs) = study.dataset.names_of_channels();
+    let mut details = vec![result.gains.proof.outcome.words()];
+    details.extend(result.gains.proof.local_minima.iter().skip(1).map(|other| {
+        let worse = 100.0 * (other.objective / result.gains.objective - 1.0);
+        let figures = |names: &[String], gains: &[f64]| {
+            names.iter().zip(gains).map(|(name, gain)| format!("{name} {gain:.3}")).collect::<Vec<_>>().join(", ")
+        };
+        let (of_inputs, of_outputs) = (figures(&inputs, &other.inputs), figures(&outputs, &other.outputs));
+        format!("Another set of gains is only {worse:.2} % worse: {of_inputs}; {of_outputs}.")
+    }));
+    let top = study.settings.band.max();
+    details.extend(result.delays.unmatched.iter().map(|unmatched| unmatched.words(top, &inputs, &outputs)));
+    let notable = |sensitivity: &Sensitivity| sensitivity.share_per_unit.abs() > NOTABLE;
+    for (problem, solution) in [(&result.gain_problem, &result.gains), (&result.delay_problem, &result.delays)] {
+        let all = sensitivities(problem, solution).into_iter().filter(notable);
+        details.extend(all.map(|sensitivity| sensitivity.words(&inputs, &outputs)));
+    }
+    details
+}

@@ -269,7 +269,7 @@ mod tests {
         let set = set_of(Existing::Replace, &[(&old, "after"), (&new, "after"), (&blocked, "after")]).unwrap();
         fs::create_dir(&blocked).unwrap();
         let message = set.persist().unwrap_err().to_string();
-        assert!(message.contains("blocked: ") && !message.contains(".tmp"), "{message}");
+        assert!(message.contains("blocked: ") && !message.contains(PREFIX), "{message}");
         assert_eq!(fs::read_to_string(&old).unwrap(), "before");
         assert_eq!(names(directory.path()), ["blocked", "old"]);
     }

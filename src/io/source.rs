@@ -115,7 +115,7 @@ mod tests {
         };
         let packed = [member(b"{"), member(b""), member(b"}"), vec![0; 700]].concat();
         assert_eq!(Source::of(&packed, Path::new("x")).unwrap().text(), b"{}");
-        let strange = [member(b"{}"), b"\0\0more".to_vec()].concat();
+        let strange = [member(b"{}"), b"\0\0something else".to_vec()].concat();
         assert!(matches!(Source::of(&strange, Path::new("x")), Err(FileError::Gzip { .. })));
         let cut = [member(b"{"), member(b"}")[..12].to_vec()].concat();
         assert!(matches!(Source::of(&cut, Path::new("x")), Err(FileError::GzipCutOff { .. })));

@@ -194,9 +194,10 @@ proptest! {
         let message = refused.map(|error| error.to_string()).unwrap_or_default();
         prop_assert!(is_plain(&message) && message.lines().count() <= 1, "{}", message);
         prop_assert!(message.chars().count() < 500, "{}", message);
-        for word in ["`", "struct", "variant", "tuple", "usize", "u64", "i64", "f64", "ident", "invalid", "map", "sequence", "this is not JSON"] {
-            prop_assert!(!message.contains(word), "{}", message);
-        }
+        prop_assert!(!message.contains('`') && !message.contains("this is not JSON"), "{}", message);
+        let own = ["struct", "variant", "tuple", "usize", "u64", "i64", "f64", "ident", "invalid", "map", "sequence"];
+        let mut words = message.split(|letter: char| !letter.is_ascii_alphanumeric());
+        prop_assert!(!words.any(|word| own.contains(&word)), "{}", message);
     }
 }
 
@@ -247,7 +248,7 @@ fn lists_beyond_their_limits_are_refused_with_their_place() {
             format!("\"outputs\": [{},", many("{\"name\":\"\",\"unit\":\"\"}", 200)),
             "outputs: expected at most 200",
         ),
-        ("\"A\": [[", format!("\"A\": [[{numbers}],["), "matrix A, row 1: expected at most 1000 entries, found more"),
+        ("\"A\": [", format!("\"A\": [[{numbers}],"), "matrix A, row 1: expected at most 1000 entries, found more"),
         (
             "\"omega_rad_s\": [",
             format!("\"omega_rad_s\": [{},", many("1", 100_000)),

@@ -151,6 +151,9 @@ fn an_export_over_existing_files_asks_first() {
     assert_eq!(fs::read_to_string(&csv).unwrap(), "mine");
 
     click(&mut window, "Export");
+    eprintln!("{:?} {:?}", state(&window).notice, state(&window).forms);
+    window.run_steps(8);
+    eprintln!("{:?} {:?}", state(&window).notice, state(&window).forms);
     click(&mut window, "Overwrite");
     assert_eq!(state(&window).notice.as_ref().map(|notice| notice.kind), Some(NoticeKind::Done));
     assert!(state(&window).forms.shown.is_none());

@@ -6,12 +6,13 @@
 
 use std::hint::black_box;
 use std::sync::Arc;
+use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 
 use gdcm::app::Pool;
 use gdcm::correction::{Delta, delay_upper_s, gain_bounds, mismatch_table};
-use gdcm::dataset::{Band, BundleKind, ConditionId, Dataset, Dynamics, ModelId};
+use gdcm::dataset::{Band, BundleKind, Condition, ConditionId, Dataset, Dynamics, Model, ModelId, Origin, StateSpace};
 use gdcm::fidelity::Discontinuity;
 use gdcm::io::embedded_example;
 use gdcm::response::{FrequencyGrid, PolarResponse};
@@ -131,5 +132,49 @@ fn ratios(_: &mut Criterion) {
     println!("alpha dragged: everything anew would take {:.0} times as long", anew.div_duration_f64(drag));
 }
 
-criterion_group!(benches, stages, live_loop, ratios);
+/// One model of two hundred replaced by another of its name: what is computed is its response, and what rests on it.
+fn replaced_model(_: &mut Criterion) {
+    const MODELS: usize = 200;
+    let example = example();
+    let first = &example.conditions()[0];
+    let Dynamics::StateSpace(base) = &first.bundle(BundleKind::Physics)[0].dynamics else { return };
+    let study = |scale: f64| {
+        let physics = (0..MODELS).map(|index| {
+            let factor = if index == 7 { scale } else { 1.0 + 1e-4 * index as f64 };
+            let (a, b, c, d) = (base.a().clone(), factor * base.b(), base.c().clone(), base.d().clone());
+            let dynamics = Dynamics::StateSpace(StateSpace::new(a, b, c, d).expect("the shapes agree"));
+            let perturbation = None;
+            let origin = if index == 0 { Origin::Nominal { perturbation } } else { Origin::Perturbed { perturbation } };
+            Model::new(format!("model {index}"), origin, dynamics)
+        });
+        let identified = first.bundle(BundleKind::Identified).to_vec();
+        let condition = Condition::new(first.flight_state().clone(), physics.collect(), identified);
+        let dataset = Dataset::new(example.header(), vec![condition.expect("names differ")]);
+        Study::new(Arc::new(dataset.expect("the shapes agree")))
+    };
+    let before = study(1.0);
+    let anew = shortest(5, || Engine::default().analyze(&before, &Unobserved));
+    let mut engine = Engine::default();
+    let curves = |engine: &mut Engine, study: &Study| {
+        engine.curves(&study.dataset, first.id(), (study.settings.band, 500), &Unobserved)
+    };
+    let drawn_anew = shortest(5, || curves(&mut Engine::default(), &before));
+    let _ = (engine.analyze(&before, &Unobserved), curves(&mut engine, &before));
+    let mut scale = 1.0;
+    let (mut replaced, mut drawn) = (Duration::MAX, Duration::MAX);
+    for _ in 0..20 {
+        scale += 1e-6;
+        let after = study(scale);
+        drawn = drawn.min(shortest(1, || curves(&mut engine, &after)));
+        replaced = replaced.min(shortest(1, || engine.analyze(&after, &Unobserved)));
+    }
+    println!(
+        "one of {MODELS} models replaced, one core: analysis {replaced:.2?}, of which everything anew takes {:.1} times as \
+         long; curves for drawing (with the hashes of all models) {drawn:.2?}, anew {:.1} times as long",
+        anew.div_duration_f64(replaced),
+        drawn_anew.div_duration_f64(drawn)
+    );
+}
+
+criterion_group!(benches, stages, live_loop, ratios, replaced_model);
 criterion_main!(benches);

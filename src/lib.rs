@@ -50,7 +50,7 @@
 //! | `G`, `D` | `Delta::gain`, `Delta::delay_s` | delta gain \[-\], delta delay \[s\] |
 //! | `k_o`, `k_i` | `output_gains`, `input_gains` | channel gains \[-\] |
 //! | `tau_o`, `tau_i` | `output_delays_s`, `input_delays_s` | channel delays \[s\] |
-//! | `LB`, `UB` | `GainBounds`, `delay_upper_s` | bounds of the channels |
+//! | `LB`, `UB` | `Bounds` | bounds of the channels |
 //! | `alpha` | `alpha_gain`, `alpha_delay` | weight of the regularisation |
 //! | `J`, `Delta J` | `Cost`, `CostChange` | cost, its change; negative is better |
 //! | `d(a, b)`, `s_a`, `r_a` | `BundleDistance`, `Representative::scores`, `Discontinuity::ratios` | distance, score, discontinuity ratio |
@@ -85,8 +85,8 @@
 //! let study = Study::new(example.dataset);
 //! let analysis = Engine::default().analyze(&study, &Unobserved)?;
 //! let pair = study.dataset.find_pair("Q", "LON").ok_or("the example has this response")?;
-//! let condition = analysis.condition(0).ok_or("the first condition has a result")?;
-//! assert!((condition.correction.net_gain(pair) - 1.15).abs() < 0.005);
+//! let condition = analysis.condition(ConditionId(1)).ok_or("the first condition has a result")?;
+//! assert!((condition.correction.net_gain(pair).value() - 1.15).abs() < 0.005);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

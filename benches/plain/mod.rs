@@ -1,6 +1,6 @@
 //! What a plain method costs: projected gradient on the channel gains or delays with the held entries as a penalty, no proof.
 
-use gdcm::correction::{DelayProblem, GainProblem};
+use gdcm::correction::Problem;
 
 /// Steps after which the plain method gives up.
 const STEPS: usize = 400;
@@ -9,17 +9,17 @@ const STEPS: usize = 400;
 const PENALTY: f64 = 100.0;
 
 /// Objective of the gains that a projected gradient with a penalty for the held entries reaches.
-pub fn projected_gradient(problem: &GainProblem) -> f64 {
-    let (outputs, inputs) = (problem.wanted.outputs(), problem.wanted.inputs());
+pub fn projected_gradient(problem: &Problem) -> f64 {
+    let (outputs, inputs) = (problem.delta.outputs(), problem.delta.inputs());
     let slope = |point: &[f64], gradient: &mut [f64]| {
         gradient.fill(0.0);
         let mut value = 0.0;
-        for (pair, wanted) in problem.wanted.iter() {
-            let Some(wanted) = wanted else { continue };
+        for (pair, delta) in problem.delta.iter() {
+            let Some(delta) = delta else { continue };
             let weight =
                 f64::from(u8::from(problem.fitted[pair])) + PENALTY * f64::from(u8::from(problem.constrained[pair]));
             let (input, output) = (point[pair.input], point[inputs + pair.output]);
-            let error = input * output - wanted;
+            let error = input * output - delta;
             value += weight * error * error;
             gradient[pair.input] += 2.0 * weight * error * output;
             gradient[inputs + pair.output] += 2.0 * weight * error * input;
@@ -35,16 +35,16 @@ pub fn projected_gradient(problem: &GainProblem) -> f64 {
 }
 
 /// Objective of the delays that the same method reaches, in units of 0.1 s.
-pub fn delay_gradient(problem: &DelayProblem) -> f64 {
-    let (outputs, inputs) = (problem.wanted_s.outputs(), problem.wanted_s.inputs());
+pub fn delay_gradient(problem: &Problem) -> f64 {
+    let (outputs, inputs) = (problem.delta.outputs(), problem.delta.inputs());
     let slope = |point: &[f64], gradient: &mut [f64]| {
         gradient.fill(0.0);
         let mut value = 0.0;
-        for (pair, wanted) in problem.wanted_s.iter() {
-            let Some(wanted) = wanted else { continue };
+        for (pair, delta) in problem.delta.iter() {
+            let Some(delta) = delta else { continue };
             let weight =
                 f64::from(u8::from(problem.fitted[pair])) + PENALTY * f64::from(u8::from(problem.constrained[pair]));
-            let error = point[pair.input] + point[inputs + pair.output] - 10.0 * wanted;
+            let error = point[pair.input] + point[inputs + pair.output] - 10.0 * delta;
             value += weight * error * error;
             gradient[pair.input] += 2.0 * weight * error;
             gradient[inputs + pair.output] += 2.0 * weight * error;
@@ -55,7 +55,7 @@ pub fn delay_gradient(problem: &DelayProblem) -> f64 {
         }
         value
     };
-    let point = descend(vec![0.0; inputs + outputs], (0.0, 10.0 * problem.upper_s), slope);
+    let point = descend(vec![0.0; inputs + outputs], (0.0, 10.0 * problem.bounds.upper), slope);
     problem.objective_at(&point[..inputs], &point[inputs..])
 }
 

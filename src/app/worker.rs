@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use super::fault::{Fault, caught};
 use super::lane::{Ending, Lane, PATIENCE};
-use crate::correction::{GainProblem, GainSolution, Outcome};
+use crate::correction::{Outcome, Problem, Solution};
 use crate::dataset::ConditionId;
 use crate::study::{
     Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, CurvesJob, Engine, Job, Progress, ProofJob, Study,
@@ -83,7 +83,7 @@ pub(super) type Wake = Arc<dyn Fn() + Send + Sync>;
 pub type EngineMaker = Arc<dyn Fn() -> Engine + Send + Sync>;
 
 /// A proof that a job has completed.
-type Proof = (Arc<GainProblem>, Arc<GainSolution>);
+type Proof = (Arc<Problem>, Arc<Solution>);
 
 #[derive(Default)]
 struct Mailbox {
@@ -306,7 +306,8 @@ impl Desk {
             .toggles
             .want(shown.map(|condition| TogglesJob { condition: condition.clone() }).into_iter().collect());
         let others = analysis.conditions.values().filter_map(|outcome| outcome.as_ref().ok());
-        let open = shown.into_iter().chain(others).filter(|of| matches!(of.gains.outcome, Outcome::NotProven { .. }));
+        let open =
+            shown.into_iter().chain(others).filter(|of| matches!(of.gains.proof.outcome, Outcome::NotProven { .. }));
         let mut proofs: Vec<ProofJob> = Vec::new();
         for condition in open {
             let job = ProofJob { problem: Arc::clone(&condition.gain_problem) };

@@ -5,7 +5,6 @@
 mod analyze;
 mod arguments;
 mod check;
-mod example;
 mod failure;
 mod opening;
 mod progress;
@@ -16,13 +15,13 @@ mod text_table;
 
 use std::error::Error;
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
 use clap::error::{ContextKind, ContextValue};
 
-use crate::io::Existing;
+use crate::io::{Existing, plain_path, write_example};
 
 use arguments::Arguments;
 use failure::Failure;
@@ -57,8 +56,14 @@ pub fn run(command: &Command) -> ExitCode {
     finish(match command {
         Command::Analyze(arguments) => analyze::analyze(arguments),
         Command::Check { file, opening } => check::check(file, opening),
-        Command::Example { directory, force } => example::example(directory, existing(*force)),
+        Command::Example { directory, force } => example(directory, existing(*force)),
     })
+}
+
+/// Writes the embedded example into a directory and says where.
+fn example(directory: &Path, existing: Existing) -> Result<(), Failure> {
+    let path = write_example(directory, existing)?;
+    say(&format!("{}: the example dataset (synthetic data)\n", plain_path(&path)))
 }
 
 fn existing(force: bool) -> Existing {

@@ -1,6 +1,6 @@
 //! The sections of the summary.
 
-use crate::correction::{DelayConflict, Outcome};
+use crate::correction::Outcome;
 use crate::dataset::{BundleKind, Channel, Condition, Dataset, Pair};
 use crate::io::plain;
 use crate::schedule::{Schedule, ScheduledQuantity};
@@ -81,9 +81,9 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> TextTable<
             plain(&dataset.pair_name(pair)),
             if result.held()[pair] { "yes" } else { "no" }.to_owned(),
             figure(delta.gain[pair], 3),
-            figure(Some(result.correction.net_gain(pair)), 3),
+            figure(Some(result.correction.net_gain(pair).value()), 3),
             figure(delta.delay_s[pair].map(s_to_ms), 1),
-            figure(Some(s_to_ms(result.correction.net_delay_s(pair))), 1),
+            figure(Some(s_to_ms(result.correction.net_delay(pair).value_s())), 1),
             figure(cost.map(|cost| cost.uncorrected.total()), 1),
             figure(cost.map(|cost| cost.corrected.total()), 1),
         ]);
@@ -130,9 +130,9 @@ fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
         let words = format!(
             "gain of {}: {} in place of {} ({:+.1} dB)",
             plain(&dataset.pair_name(entry.pair)),
-            figure(Some(entry.target), 3),
-            figure(Some(entry.wanted), 3),
-            entry.shortfall_db
+            number(entry.target),
+            number(entry.delta),
+            entry.excess
         );
         text.push_str(&detail("not matched", &words));
     }
@@ -144,12 +144,10 @@ fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
         text.push_str(&detail("not matched", &entry.words(top, &inputs, &outputs)));
     }
     // A lone response that needs lead has said so already.
-    let is_told =
-        |conflict: &DelayConflict| matches!(conflict, DelayConflict::NeedsLead { entries, .. } if entries.len() == 1);
-    for conflict in result.delays.conflicts.iter().filter(|conflict| !is_told(conflict)) {
+    for conflict in result.delays.conflicts.iter().filter(|conflict| !conflict.is_lone_lead()) {
         text.push_str(&detail("why", &conflict.words(&inputs, &outputs)));
     }
-    if let Outcome::NotProven { gap } = result.gains.outcome {
+    if let Outcome::NotProven { gap, .. } = result.gains.proof.outcome {
         let words = format!("better gains may exist, by at most {gap:.1e} of the objective");
         text.push_str(&detail("not proven", &words));
     }
@@ -193,7 +191,8 @@ fn schedule_table(analysis: &Analysis, schedule: &Schedule) -> String {
     let mut table = TextTable::new([("response", Side::Left), a, b, c, d, e]);
     let corrections = at.map(|airspeed| schedule.at(airspeed));
     for pair in shown_pairs(&analysis.study) {
-        let [a, b, c, d, e] = corrections.each_ref().map(|correction| figure(Some(correction.net_gain(pair)), 3));
+        let [a, b, c, d, e] =
+            corrections.each_ref().map(|correction| figure(Some(correction.net_gain(pair).value()), 3));
         table.row([plain(&dataset.pair_name(pair)), a, b, c, d, e]);
     }
     table.lines(2)

@@ -1,8 +1,7 @@
-//! One gain and one delay for each channel, and what they do to a response (M10).
+//! One gain and one delay for each channel, and what they make of a response (M10, M11).
 
-use nalgebra::Complex;
-
-use crate::dataset::{Pair, PairTable};
+use crate::dataset::Pair;
+use crate::response::GainDelay;
 
 /// The correction `M_O H M_I`, each channel `k e^(-tau s)`, eq. (12).
 #[derive(Clone, Debug, PartialEq)]
@@ -17,40 +16,53 @@ pub struct ChannelCorrection {
     pub output_delays_s: Vec<f64>,
 }
 
-impl ChannelCorrection {
-    /// Net gain of a response, `k_o k_i` (M11).
-    pub fn net_gain(&self, pair: Pair) -> f64 {
-        self.output_gains[pair.output] * self.input_gains[pair.input]
-    }
+/// The gain of a response with its parts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NetGain {
+    /// Gain of the output channel, `k_o`.
+    pub output: f64,
+    /// Gain of the input channel, `k_i`.
+    pub input: f64,
+}
 
-    /// Net delay of a response, `tau_o + tau_i` \[s\].
-    pub fn net_delay_s(&self, pair: Pair) -> f64 {
-        self.output_delays_s[pair.output] + self.input_delays_s[pair.input]
-    }
-
-    /// The corrected responses `k_o k_i e^(-j omega (tau_o + tau_i)) H(j omega)`: exact in frequency, no Pade.
-    pub fn apply(&self, values: &PairTable<Vec<Complex<f64>>>, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
-        values.map(|pair, values| {
-            let (gain, delay) = (self.net_gain(pair), self.net_delay_s(pair));
-            values.iter().zip(omega).map(|(value, omega)| value * Complex::from_polar(gain, -omega * delay)).collect()
-        })
+impl NetGain {
+    /// `k_o k_i` (M11).
+    pub fn value(self) -> f64 {
+        self.output * self.input
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// The delay of a response with its parts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NetDelay {
+    /// Delay of the output channel, `tau_o` \[s\].
+    pub output_s: f64,
+    /// Delay of the input channel, `tau_i` \[s\].
+    pub input_s: f64,
+}
 
-    #[test]
-    fn a_correction_multiplies_the_magnitude_and_delays_the_phase() {
-        let correction = ChannelCorrection {
-            input_gains: vec![2.0],
-            output_gains: vec![1.5],
-            input_delays_s: vec![0.01],
-            output_delays_s: vec![0.04],
-        };
-        let values = PairTable::filled(1, 1, vec![Complex::new(1.0, 0.0)]);
-        let corrected = &correction.apply(&values, &[10.0])[Pair::new(0, 0)][0];
-        assert!((corrected.norm() - 3.0).abs() < 1e-15 && (corrected.arg() + 0.5).abs() < 1e-15);
+impl NetDelay {
+    /// `tau_o + tau_i` \[s\].
+    pub fn value_s(self) -> f64 {
+        self.output_s + self.input_s
+    }
+}
+
+impl ChannelCorrection {
+    /// Net gain of a response.
+    pub fn net_gain(&self, pair: Pair) -> NetGain {
+        NetGain { output: self.output_gains[pair.output], input: self.input_gains[pair.input] }
+    }
+
+    /// Net delay of a response.
+    pub fn net_delay(&self, pair: Pair) -> NetDelay {
+        NetDelay { output_s: self.output_delays_s[pair.output], input_s: self.input_delays_s[pair.input] }
+    }
+
+    /// What the correction multiplies a response by; `None` where its net gain is not positive (a schedule of `k` itself can give
+    /// that).
+    pub fn on(&self, pair: Pair) -> Option<GainDelay> {
+        let gain = self.net_gain(pair).value();
+        (gain > 0.0).then(|| GainDelay::new(gain, self.net_delay(pair).value_s()))
     }
 }

@@ -1,5 +1,6 @@
 //! The channels that held products tie together.
 
+use super::branch_and_bound::Rounded;
 use crate::dataset::Pair;
 
 /// Where a channel sits in its component.
@@ -7,8 +8,19 @@ use crate::dataset::Pair;
 pub(crate) struct Placement {
     /// Index of the component.
     pub(crate) component: usize,
-    /// Logarithm of the gain (or the delay) where the component's scale is 0.
-    pub(crate) offset: f64,
+    /// Logarithm of the gain (or the delay) where the component's scale is 0. Its rounding is that of the held sums on the way
+    /// from the component's first channel, and of the ends of the component's scale.
+    pub(crate) offset: Rounded,
+}
+
+impl Placement {
+    /// Where the channel at the other end of a held entry sits.
+    fn across(self, sum: f64) -> Self {
+        // A logarithm, or a time in another unit, is rounded once.
+        let mut offset = Rounded { value: sum, error: f64::EPSILON * sum.abs() };
+        offset.add(Rounded { value: -self.offset.value, error: self.offset.error });
+        Self { offset, ..self }
+    }
 }
 
 /// The connected components of the bipartite graph of the held entries, one free scale each (M8, structure).
@@ -47,11 +59,11 @@ impl Components {
             strain: vec![0.0; count],
         };
         components.close_box(low, high);
-        components.centre();
+        components.centre(low, high);
         components.close_box(low, high);
         for (pair, sum) in held {
             let strain = &mut components.strain[components.inputs[pair.input].component];
-            let reached = components.inputs[pair.input].offset + components.outputs[pair.output].offset;
+            let reached = components.inputs[pair.input].offset.value + components.outputs[pair.output].offset.value;
             *strain = strain.max((reached - sum).abs());
         }
         components
@@ -64,19 +76,21 @@ impl Components {
 
     /// Logarithm (or delay) of each input and of each output at these scales.
     pub(crate) fn channels(&self, scales: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let inputs = self.inputs.iter().map(|channel| channel.offset + scales[channel.component]).collect();
-        let outputs = self.outputs.iter().map(|channel| channel.offset - scales[channel.component]).collect();
+        let inputs = self.inputs.iter().map(|channel| channel.offset.value + scales[channel.component]).collect();
+        let outputs = self.outputs.iter().map(|channel| channel.offset.value - scales[channel.component]).collect();
         (inputs, outputs)
     }
 
     /// Moves every scale's zero to the middle of its interval: no channel is then far outside the box at scale 0.
-    fn centre(&mut self) {
+    fn centre(&mut self, low: f64, high: f64) {
         let middle = |component: usize| 0.5 * (self.lower[component] + self.upper[component]);
+        // A scale at its end differs from the exact one by the rounding of `low` or `high`, and of what is taken from it.
+        let ends = 2.0 * f64::EPSILON * low.abs().max(high.abs());
         for channel in &mut self.inputs {
-            channel.offset += middle(channel.component);
+            channel.offset.add(Rounded { value: middle(channel.component), error: ends });
         }
         for channel in &mut self.outputs {
-            channel.offset -= middle(channel.component);
+            channel.offset.add(Rounded { value: -middle(channel.component), error: ends });
         }
     }
 
@@ -84,9 +98,14 @@ impl Components {
     fn close_box(&mut self, low: f64, high: f64) {
         self.lower.fill(f64::NEG_INFINITY);
         self.upper.fill(f64::INFINITY);
-        let inputs = self.inputs.iter().map(|channel| (channel.component, low - channel.offset, high - channel.offset));
-        let outputs =
-            self.outputs.iter().map(|channel| (channel.component, channel.offset - high, channel.offset - low));
+        let inputs = self
+            .inputs
+            .iter()
+            .map(|channel| (channel.component, low - channel.offset.value, high - channel.offset.value));
+        let outputs = self
+            .outputs
+            .iter()
+            .map(|channel| (channel.component, channel.offset.value - high, channel.offset.value - low));
         for (component, least, most) in inputs.chain(outputs) {
             self.lower[component] = self.lower[component].max(least);
             self.upper[component] = self.upper[component].min(most);
@@ -113,20 +132,18 @@ impl Placed {
     fn spread(&mut self, input: usize, held: &[(Pair, f64)]) {
         let component = self.count;
         self.count += 1;
-        self.inputs[input] = Some(Placement { component, offset: 0.0 });
+        self.inputs[input] = Some(Placement { component, offset: Rounded::default() });
         let mut grown = true;
         while grown {
             grown = false;
             for (pair, sum) in held {
                 match (self.inputs[pair.input], self.outputs[pair.output]) {
                     (Some(known), None) => {
-                        self.outputs[pair.output] =
-                            Some(Placement { component: known.component, offset: sum - known.offset });
+                        self.outputs[pair.output] = Some(known.across(*sum));
                         grown = true;
                     }
                     (None, Some(known)) => {
-                        self.inputs[pair.input] =
-                            Some(Placement { component: known.component, offset: sum - known.offset });
+                        self.inputs[pair.input] = Some(known.across(*sum));
                         grown = true;
                     }
                     _ => {}
@@ -140,7 +157,7 @@ impl Placed {
         let mut count = self.count;
         let mut alone = || {
             count += 1;
-            Placement { component: count - 1, offset: 0.0 }
+            Placement { component: count - 1, offset: Rounded::default() }
         };
         let outputs = self.outputs.into_iter().map(|placement| placement.unwrap_or_else(&mut alone)).collect();
         let inputs = self.inputs.into_iter().map(|placement| placement.unwrap_or_else(&mut alone)).collect();

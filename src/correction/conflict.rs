@@ -1,205 +1,195 @@
-//! Which held entries and bounds are in each other's way.
+//! Why held entries cannot all be held, and what would help.
 
-use std::collections::VecDeque;
-
-use super::channel::Channel;
-use super::reach::{Held, Reached, STRAIN};
+use super::channel::{Channel, pair_names};
+use super::clash::{Clash, ClashKind};
+use super::problem::{Bounds, Problem};
+use super::quantity::{Quantity, three_digits_down, three_digits_up};
 use crate::dataset::Pair;
 
-/// An irreducible set of held entries, with at most two bounds, that cannot hold together, in sums of logarithms or of delays.
+/// A smallest set of held entries and bounds that cannot hold together: without any one of them the rest can.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Clash {
-    /// The entries of the set, along the path or round the loop.
-    pub(crate) entries: Vec<Pair>,
-    /// What makes them impossible.
-    pub(crate) kind: ClashKind,
+pub struct Conflict {
+    /// What is held: gains, or delays in seconds.
+    pub quantity: Quantity,
+    /// The held entries: freeing any one of them resolves the conflict.
+    pub entries: Vec<Pair>,
+    /// The bounds as they are.
+    pub bounds: Bounds,
+    /// What is in the way.
+    pub kind: ConflictKind,
 }
 
-/// How the entries of a [`Clash`] exclude one another.
+/// How held entries and bounds exclude one another. Bounds that would do are rounded to three digits so that they still do.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum ClashKind {
-    /// The entries fix the sum of two channels, and it is above what the upper bound allows.
-    SumAbove { channels: (Channel, Channel), sum: f64 },
-    /// The entries fix the sum of two channels, and it is below what the lower bound allows.
-    SumBelow { channels: (Channel, Channel), sum: f64 },
-    /// The entries fix how far `greater` is above `lesser`, and the box is narrower.
-    Apart { greater: Channel, lesser: Channel, difference: f64 },
-    /// The entries form a loop, and going round it does not lead back.
-    Loop { mismatch: f64 },
+pub enum ConflictKind {
+    /// The entries fix what two channels have together above what the upper bound allows both.
+    AboveUpper {
+        /// The two channels.
+        channels: (Channel, Channel),
+        /// The product of gains, or the sum of delays, that the entries ask for.
+        asked: f64,
+        /// Least upper bound that would do.
+        upper: f64,
+    },
+    /// The entries fix what two channels have together below what the lower bound allows both: of delays, phase lead.
+    BelowLower {
+        /// The two channels.
+        channels: (Channel, Channel),
+        /// The product of gains, or the (negative) sum of delays, that the entries ask for.
+        asked: f64,
+        /// Greatest lower bound that would do; none for delays.
+        lower: Option<f64>,
+    },
+    /// The entries fix the ratio of two gains, or the difference of two delays, above what the bounds allow.
+    TooFarApart {
+        /// The channel with the greater value.
+        greater: Channel,
+        /// The channel with the lesser value.
+        lesser: Channel,
+        /// The ratio or the difference that the entries ask for.
+        asked: f64,
+        /// Least upper bound that would do with the lower bound as it is.
+        upper: f64,
+        /// Greatest lower bound that would do with the upper bound as it is; none for delays.
+        lower: Option<f64>,
+    },
+    /// The entries form a loop, and what they ask for disagrees: no bound helps.
+    Loop {
+        /// By how many dB the product round the loop misses 1, or by how many seconds the sum misses 0.
+        mismatch: f64,
+    },
+    /// The entries cannot all be held; rounding hides which of them are to blame.
+    Unclear,
 }
 
-/// One held entry that stage 1 had to pull: it asks that `s_to - s_from` be at least `weight`, and gets less.
-#[derive(Clone, Copy)]
-struct Pull {
-    from: usize,
-    to: usize,
-    weight: f64,
-    pair: Pair,
-}
-
-impl Pull {
-    /// The same entry asked the other way round: it is an equation.
-    fn reversed(&self) -> Self {
-        Self { from: self.to, to: self.from, weight: -self.weight, pair: self.pair }
-    }
-}
-
-/// The smallest clash behind each entry that stage 1 missed by more than `tolerance`, with repeats.
-///
-/// Stage 1 is a least squares problem, so the misses are a flow: what pulls at a channel is passed on by another missed entry or
-/// is stopped by an active bound. Every path of the flow from bound to bound, and every loop of it, is a set that
-/// cannot hold, and every missed entry is on one (Farkas). Where a part of that set cannot hold by itself, that part is the
-/// clash, and the entry's own miss is the compromise with it.
-pub(crate) fn clashes(held: &Held, reached: &Reached, tolerance: f64) -> Vec<(Pair, Clash)> {
-    let Some(point) = &reached.point else { return Vec::new() };
-    let flow = Flow::new(held, reached, point);
-    let missed = |pull: &&Pull| {
-        let lacking = pull.weight - (point[pull.to] - point[pull.from]);
-        lacking > tolerance
-    };
-    flow.pulls.iter().filter(missed).filter_map(|pull| Some((pull.pair, flow.smallest_through(pull)?))).collect()
-}
-
-struct Flow {
-    inputs: usize,
-    range: (f64, f64),
-    pulls: Vec<Pull>,
-    at_lower: Vec<bool>,
-    at_upper: Vec<bool>,
-}
-
-impl Flow {
-    fn new(held: &Held, reached: &Reached, point: &[f64]) -> Self {
-        let nodes = held.inputs + held.outputs;
-        let mut flow =
-            Self { inputs: held.inputs, range: held.range, pulls: Vec::new(), at_lower: vec![], at_upper: vec![] };
-        let mut net = vec![0.0; nodes];
-        for ((pair, wanted), (_, target)) in held.entries.iter().zip(&reached.targets) {
-            let (input, output) = (pair.input, held.inputs + pair.output);
-            let missing = wanted - target;
-            // Below this a miss is the rounding of stage 1.
-            if missing.abs() <= 1e-11 * (1.0 + wanted.abs()) {
-                continue;
+impl Conflict {
+    /// The conflict of `problem` behind a clash of its held entries in its coordinate.
+    pub(crate) fn new(clash: Clash, problem: &Problem) -> Self {
+        let (quantity, bounds, coordinate) = (problem.quantity, problem.bounds, problem.coordinate());
+        let of_gains = |lower: f64| matches!(quantity, Quantity::Gain(_)).then(|| three_digits_down(lower));
+        let kind = match clash.kind {
+            ClashKind::SumAbove { channels, sum } => {
+                let upper = three_digits_up(coordinate.value(0.5 * sum));
+                ConflictKind::AboveUpper { channels, asked: coordinate.value(sum), upper }
             }
-            let (from, to, weight) = if missing > 0.0 { (output, input, *wanted) } else { (input, output, -wanted) };
-            net[from] -= missing.abs();
-            net[to] += missing.abs();
-            flow.pulls.push(Pull { from, to, weight, pair: *pair });
-        }
-        flow.at_lower = (0..nodes).map(|node| point[node] <= flow.ends(node).0 && net[node] < 0.0).collect();
-        flow.at_upper = (0..nodes).map(|node| point[node] >= flow.ends(node).1 && net[node] > 0.0).collect();
-        flow
-    }
-
-    /// The shorter of the shortest loop and the shortest path from bound to bound through `pull`; a bound counts like an entry.
-    fn smallest_through(&self, pull: &Pull) -> Option<Clash> {
-        let around = self.shortest(pull.to, |node| node == pull.from, false);
-        let onward = self.shortest(pull.to, |node| self.at_upper[node], false);
-        let back = self.shortest(pull.from, |node| self.at_lower[node], true);
-        let path = back.zip(onward).map(|(back, onward)| {
-            let before = back.into_iter().rev();
-            before.chain([*pull]).chain(onward).collect::<Vec<Pull>>()
-        });
-        match (around, path) {
-            (Some(around), Some(path)) if around.len() < path.len() + 2 => Some(self.round(pull, around)),
-            (_, Some(path)) => Some(self.stretched(&path)),
-            (Some(around), None) => Some(self.round(pull, around)),
-            (None, None) => None,
-        }
-    }
-
-    fn round(&self, pull: &Pull, around: Vec<Pull>) -> Clash {
-        let pulls: Vec<Pull> = std::iter::once(*pull).chain(around).collect();
-        if let Some(clash) = self.smallest_part(&pulls, pulls.len()) {
-            return clash;
-        }
-        let mismatch = pulls.iter().map(|pull| pull.weight).sum();
-        Clash { entries: pulls.iter().map(|pull| pull.pair).collect(), kind: ClashKind::Loop { mismatch } }
-    }
-
-    /// The clash of a path from a node at its least value to one at its greatest, or of the shortest part of it that the bounds
-    /// do not allow either.
-    fn stretched(&self, path: &[Pull]) -> Clash {
-        self.smallest_part(path, 0).unwrap_or_else(|| self.clash(path))
-    }
-
-    /// The shortest run of the pulls, less than all of them, that the bounds of its two ends do not allow. Runs may begin at the
-    /// first `round` pulls and go on past the last into the first ones again.
-    fn smallest_part(&self, pulls: &[Pull], round: usize) -> Option<Clash> {
-        let count = pulls.len();
-        (1..count).find_map(|length| {
-            let begins = if round > 0 { round } else { count - length + 1 };
-            (0..begins).find_map(|begin| {
-                let run: Vec<Pull> = (begin..begin + length).map(|index| pulls[index % count]).collect();
-                let back: Vec<Pull> = run.iter().rev().map(Pull::reversed).collect();
-                [run, back].iter().find(|run| self.is_impossible(run)).map(|run| self.clash(run))
-            })
-        })
-    }
-
-    /// Whether the run needs more than there is between the least value of its first node and the greatest of its last.
-    fn is_impossible(&self, run: &[Pull]) -> bool {
-        let (Some(first), Some(last)) = (run.first(), run.last()) else {
-            return false;
+            ClashKind::SumBelow { channels, sum } => {
+                let lower = of_gains(coordinate.value(0.5 * sum));
+                ConflictKind::BelowLower { channels, asked: coordinate.value(sum), lower }
+            }
+            ClashKind::Apart { greater, lesser, difference } => {
+                let asked = coordinate.value(difference);
+                let upper = three_digits_up(quantity.net(bounds.lower, asked));
+                ConflictKind::TooFarApart { greater, lesser, asked, upper, lower: of_gains(bounds.upper / asked) }
+            }
+            ClashKind::Loop { mismatch } => ConflictKind::Loop { mismatch: quantity.difference(mismatch, coordinate) },
         };
-        let needed: f64 = run.iter().map(|pull| pull.weight).sum();
-        needed - (self.ends(last.to).1 - self.ends(first.from).0) > STRAIN
+        Self { quantity, entries: clash.entries, bounds, kind }
     }
 
-    /// Least and greatest value of a node: an output's is minus its channel's.
-    fn ends(&self, node: usize) -> (f64, f64) {
-        let (low, high) = self.range;
-        if node < self.inputs { (low, high) } else { (-high, -low) }
-    }
-
-    /// The clash of a path from a node at its least value to one at its greatest.
-    fn clash(&self, path: &[Pull]) -> Clash {
-        let needed: f64 = path.iter().map(|pull| pull.weight).sum();
-        let mut entries: Vec<Pair> = path.iter().map(|pull| pull.pair).collect();
-        let (start, end) = (path.first().map_or(0, |pull| pull.from), path.last().map_or(0, |pull| pull.to));
-        let kind = match (self.channel(start), self.channel(end)) {
-            (first @ Channel::Output(_), last @ Channel::Input(_)) => {
-                ClashKind::SumAbove { channels: (last, first), sum: needed }
+    /// The channels whose bounds are in the way; none of a loop.
+    pub fn channels(&self) -> Vec<Channel> {
+        match self.kind {
+            ConflictKind::AboveUpper { channels, .. } | ConflictKind::BelowLower { channels, .. } => {
+                vec![channels.0, channels.1]
             }
-            (first @ Channel::Input(_), last @ Channel::Output(_)) => {
-                ClashKind::SumBelow { channels: (first, last), sum: -needed }
-            }
-            (lesser @ Channel::Input(_), greater @ Channel::Input(_)) | (greater, lesser) => {
-                ClashKind::Apart { greater, lesser, difference: needed }
-            }
-        };
-        entries.sort();
-        Clash { entries, kind }
-    }
-
-    fn channel(&self, node: usize) -> Channel {
-        if node < self.inputs { Channel::Input(node) } else { Channel::Output(node - self.inputs) }
-    }
-
-    /// Fewest pulls from `start` along (or against) their direction to a node that `ends`, in the order walked.
-    fn shortest(&self, start: usize, ends: impl Fn(usize) -> bool, against: bool) -> Option<Vec<Pull>> {
-        let mut came_by: Vec<Option<Pull>> = vec![None; self.at_lower.len()];
-        let mut queue = VecDeque::from([start]);
-        while let Some(node) = queue.pop_front() {
-            if ends(node) {
-                let mut walked = Vec::new();
-                let mut at = node;
-                while at != start {
-                    let pull = came_by[at]?;
-                    at = if against { pull.to } else { pull.from };
-                    walked.push(pull);
-                }
-                walked.reverse();
-                return Some(walked);
-            }
-            for pull in &self.pulls {
-                let (leaves, enters) = if against { (pull.to, pull.from) } else { (pull.from, pull.to) };
-                if leaves == node && enters != start && came_by[enters].is_none() {
-                    came_by[enters] = Some(*pull);
-                    queue.push_back(enters);
-                }
-            }
+            ConflictKind::TooFarApart { greater, lesser, .. } => vec![greater, lesser],
+            ConflictKind::Loop { .. } | ConflictKind::Unclear => Vec::new(),
         }
-        None
+    }
+
+    /// Whether a lone entry asks for phase lead, which says everything.
+    pub fn is_lone_lead(&self) -> bool {
+        self.quantity == Quantity::Delay
+            && self.entries.len() == 1
+            && matches!(self.kind, ConflictKind::BelowLower { .. })
+    }
+
+    /// The conflict and what would resolve it, in words.
+    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
+        let names = |channels: (Channel, Channel)| {
+            let name = |channel: Channel| format!("{}_{}", self.quantity.symbol(), channel.name(inputs, outputs));
+            (name(channels.0), name(channels.1))
+        };
+        let entries = pair_names(&self.entries, inputs, outputs);
+        let (cannot, free) = match self.entries.len() {
+            1 => (format!("{entries} cannot be held"), "free it"),
+            2 => (format!("{entries} cannot both be held"), "free one of them"),
+            _ => (format!("{entries} cannot all be held"), "free one of them"),
+        };
+        let sentence = match self.quantity {
+            Quantity::Gain(_) => self.gain_sentence(&entries, names),
+            Quantity::Delay => self.delay_sentence(&entries, names),
+        };
+        match self.kind {
+            ConflictKind::Loop { .. } => format!("{sentence}; free one of them."),
+            ConflictKind::Unclear => format!("{cannot}; free one of them."),
+            _ if self.is_lone_lead() => format!("{sentence}; {free}."),
+            ConflictKind::BelowLower { lower: None, .. } => format!("{cannot}: {sentence}; {free}."),
+            ConflictKind::TooFarApart { lower: Some(_), .. } => format!("{cannot}: {sentence}, or {free}."),
+            _ => format!("{cannot}: {sentence} or {free}."),
+        }
+    }
+
+    fn gain_sentence(&self, entries: &str, names: impl Fn((Channel, Channel)) -> (String, String)) -> String {
+        let Bounds { lower: low, upper: high } = self.bounds;
+        match self.kind {
+            ConflictKind::AboveUpper { channels, asked, upper } => {
+                let (first, second) = names(channels);
+                let most = high.powi(2);
+                format!(
+                    "with gains <= {high:.3} the product {first} {second} is at most {most:.3}, not {asked:.3}; set the upper \
+                     bound to {upper}"
+                )
+            }
+            ConflictKind::BelowLower { channels, asked, lower } => {
+                let (first, second) = names(channels);
+                let (least, lower) = (low.powi(2), lower.unwrap_or(low));
+                format!(
+                    "with gains >= {low:.3} the product {first} {second} is at least {least:.3}, not {asked:.3}; set the lower \
+                     bound to {lower}"
+                )
+            }
+            ConflictKind::TooFarApart { greater, lesser, asked, upper, lower } => {
+                let (greater, lesser) = names((greater, lesser));
+                let (most, lower) = (high / low, lower.unwrap_or(low));
+                format!(
+                    "with {greater} <= {high:.3} and {lesser} >= {low:.3} their ratio is at most {most:.3}, not {asked:.3}; set \
+                     the upper bound to {upper}, or the lower bound to {lower}"
+                )
+            }
+            ConflictKind::Loop { mismatch } => {
+                format!("{entries} form a loop: their ratios disagree by {:.1} dB", mismatch.abs())
+            }
+            ConflictKind::Unclear => String::new(),
+        }
+    }
+
+    fn delay_sentence(&self, entries: &str, names: impl Fn((Channel, Channel)) -> (String, String)) -> String {
+        let ms = |seconds: f64| format!("{:.1}", 1e3 * seconds);
+        match self.kind {
+            ConflictKind::BelowLower { asked, .. } if self.entries.len() == 1 => {
+                format!("{entries} needs {} ms of lead: a delay cannot give it", ms(-asked))
+            }
+            ConflictKind::BelowLower { channels, asked, .. } => {
+                let ((first, second), lead) = (names(channels), ms(-asked));
+                format!("{first} and {second} would have to give {lead} ms of lead together, and a delay cannot")
+            }
+            ConflictKind::AboveUpper { channels, asked, upper } => {
+                let ((first, second), most, asked) = (names(channels), ms(2.0 * self.bounds.upper), ms(asked));
+                format!(
+                    "{first} and {second} give at most {most} ms together, not {asked}; set the upper bound to {upper} s"
+                )
+            }
+            ConflictKind::TooFarApart { greater, lesser, asked, upper, .. } => {
+                let ((greater, lesser), most, asked) = (names((greater, lesser)), ms(self.bounds.upper), ms(asked));
+                format!(
+                    "{greater} cannot be {asked} ms above {lesser} with delays <= {most} ms; set the upper bound to {upper} s"
+                )
+            }
+            ConflictKind::Loop { mismatch } => {
+                format!("{entries} form a loop: their delays disagree by {} ms", ms(mismatch.abs()))
+            }
+            ConflictKind::Unclear => String::new(),
+        }
     }
 }

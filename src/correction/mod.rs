@@ -1,32 +1,39 @@
 //! From two models to one gain and one delay for each channel (M6 to M10).
 //!
-//! [`Delta`] says what each response would want; [`solve_gains`] minimises eq. (7) with a proof of the global minimum,
-//! [`solve_delays`] the convex eq. (11). Both explain what cannot be held, what would help, and what each held entry costs.
-//! Tables are `[output, input]`, gains are ratios, delays are seconds.
+//! [`Delta`] says what each response would want; [`solve`] minimises eq. (7) or the convex eq. (11), in logarithms of gains or in
+//! seconds, with a proof of the global minimum. It explains what cannot be held and what would help; [`sensitivities`] and
+//! [`toggles`] tell what each held entry costs. Tables are `[output, input]`, gains are ratios, delays are seconds.
 
+mod branch_and_bound;
 mod channel;
 mod channel_correction;
+mod clash;
 mod components;
 mod conflict;
-mod delays;
 mod delta;
-mod gains;
-mod multipliers;
+mod interior_point;
+mod objective;
+mod problem;
+mod quantity;
 mod reach;
 mod remedy;
-mod scales;
-mod three_digits;
+mod sensitivity;
+mod solution;
+mod solve;
 mod toggle;
 
+pub use branch_and_bound::{Limit, ProofBudget};
 pub use channel::Channel;
-pub use channel_correction::ChannelCorrection;
-pub use delays::{
-    DelayConflict, DelayError, DelayProblem, DelayRemedy, DelayRestraint, DelaySensitivity, DelaySolution, DelayToggle,
-    UnmatchedDelay, delay_sensitivities, delay_toggles, solve_delays,
-};
+pub use channel_correction::{ChannelCorrection, NetDelay, NetGain};
+pub use conflict::{Conflict, ConflictKind};
 pub use delta::{Delta, delay_upper_s, gain_bounds, mismatch_table};
-pub use gains::{
-    GainBounds, GainConflict, GainError, GainObjective, GainProblem, GainRemedy, GainRestraint, GainSensitivity,
-    GainSolution, GainToggle, LocalMinimum, Outcome, ProofBudget, UnmatchedGain, gain_sensitivities, gain_toggles,
-    solve_gains, solve_gains_until,
-};
+pub use problem::{Bounds, Problem, ProblemError};
+pub use quantity::{GainObjective, Quantity};
+pub use remedy::Remedy;
+pub use sensitivity::{Restraint, Sensitivity, sensitivities};
+pub use solution::{LocalMinimum, Outcome, Proof, Solution, Unmatched};
+pub use solve::solve;
+pub use toggle::{Toggle, toggles};
+
+/// Bounds of the channel gains.
+pub type GainBounds = Bounds;

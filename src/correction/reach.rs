@@ -1,23 +1,23 @@
 //! Stage 1: what the held entries can be held at.
 
+use super::branch_and_bound::{Function, Objective, Rounded, Term};
 use super::components::Components;
-use super::scales::{Landscape, Link, Shape, Sum};
 use crate::dataset::Pair;
 
-/// What is asked of the channels: sums of logarithms (or delays) over the held entries, in a box.
+/// What is asked of the channels: sums of coordinates over the held entries, in a box.
 #[derive(Clone, Debug)]
 pub(crate) struct Held {
     /// Number of output channels.
     pub(crate) outputs: usize,
     /// Number of input channels.
     pub(crate) inputs: usize,
-    /// Each held entry with the sum that is wanted.
+    /// Each held entry with the sum of its delta.
     pub(crate) entries: Vec<(Pair, f64)>,
     /// Least and greatest value of every channel.
     pub(crate) range: (f64, f64),
 }
 
-/// The sums nearest to the wanted ones that the box and the loops allow.
+/// The sums nearest to those asked for that the box and the loops allow.
 #[derive(Clone, Debug)]
 pub(crate) struct Reached {
     /// Each held entry with its target, in the order asked.
@@ -32,21 +32,21 @@ pub(crate) struct Reached {
 /// below 1e-9.
 pub(crate) const STRAIN: f64 = 1e-9;
 
-/// Finds the targets: `min sum (x_o + y_i - wanted)^2` over the held entries, in the box (M8, reachability; M9).
+/// Finds the targets: `min sum (x_o + y_i - delta)^2` over the held entries, in the box (M8, reachability; M9).
 ///
-/// Components that are possible as asked keep what is asked, exactly. `minimise` returns the minimum of a sum of parabolas over
+/// Components that are possible as asked keep what is asked, exactly. `minimise` returns the minimum of a sum of squares over
 /// a box; it is only called where something is out of reach.
-pub(crate) fn reach<E>(held: &Held, minimise: impl FnOnce(&Landscape) -> Result<Vec<f64>, E>) -> Result<Reached, E> {
+pub(crate) fn reach<E>(held: &Held, minimise: impl FnOnce(&Objective) -> Result<Vec<f64>, E>) -> Result<Reached, E> {
     let asked = Components::new(held.outputs, held.inputs, &held.entries, held.range);
     if asked.strain.iter().all(|strain| *strain <= STRAIN) {
         return Ok(Reached { targets: held.entries.clone(), components: asked, point: None });
     }
     let strained = |pair: &Pair| asked.strain[asked.inputs[pair.input].component] > STRAIN;
-    let landscape = nearest(held, strained);
-    let point = minimise(&landscape)?;
-    let target = |(pair, wanted): &(Pair, f64)| {
+    let objective = nearest(held, strained);
+    let point = minimise(&objective)?;
+    let target = |(pair, delta): &(Pair, f64)| {
         let reached = point[pair.input] - point[held.inputs + pair.output];
-        (*pair, if strained(pair) { reached } else { *wanted })
+        (*pair, if strained(pair) { reached } else { *delta })
     };
     let targets: Vec<(Pair, f64)> = held.entries.iter().map(target).collect();
     let components = Components::new(held.outputs, held.inputs, &targets, held.range);
@@ -59,17 +59,17 @@ pub(crate) fn is_reachable(held: &Held) -> bool {
     asked.strain.iter().all(|strain| *strain <= STRAIN)
 }
 
-/// The least squares problem of stage 1: one node for each input and (with its sign turned) each output.
-fn nearest(held: &Held, strained: impl Fn(&Pair) -> bool) -> Landscape {
+/// The least squares problem of stage 1: one scale for each input and (with its sign turned) each output.
+fn nearest(held: &Held, strained: impl Fn(&Pair) -> bool) -> Objective {
     let (low, high) = held.range;
     let mut lower = vec![low; held.inputs];
     let mut upper = vec![high; held.inputs];
     lower.extend(std::iter::repeat_n(-high, held.outputs).chain([0.0]));
     upper.extend(std::iter::repeat_n(-low, held.outputs).chain([0.0]));
-    let links = held.entries.iter().filter(|(pair, _)| strained(pair)).map(|(pair, wanted)| Link {
+    let terms = held.entries.iter().filter(|(pair, _)| strained(pair)).map(|(pair, delta)| Term {
         from: held.inputs + pair.output,
         to: pair.input,
-        shape: Shape::Parabola { weight: 1.0, centre: *wanted, size: wanted.abs() },
+        function: Function::Quadratic { weight: 1.0, centre: Rounded { value: *delta, error: 0.0 }, relative: 0.0 },
     });
-    Landscape { lower, upper, links: links.collect(), constant: Sum::default() }
+    Objective { lower, upper, terms: terms.collect(), constant: Rounded::default() }
 }

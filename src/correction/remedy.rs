@@ -1,18 +1,52 @@
 //! What would let every held entry be held.
 
+use super::channel::pair_name;
 use super::components::Components;
+use super::problem::Problem;
+use super::quantity::{Quantity, three_digits_down, three_digits_up};
 use super::reach::{Held, is_reachable};
 use crate::dataset::Pair;
 
-/// Single changes that would do, in sums of logarithms or of delays.
+/// Single changes after which every held entry can be held at its delta; empty where it takes several.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Remedy {
-    /// Least upper bound that would do, the lower one as it is.
-    pub(crate) upper: Option<f64>,
-    /// Greatest lower bound that would do, the upper one as it is.
-    pub(crate) lower: Option<f64>,
-    /// The entries of which each, freed alone, would do.
-    pub(crate) free: Vec<Pair>,
+pub struct Remedy {
+    /// What is held: gains, or delays in seconds.
+    pub quantity: Quantity,
+    /// Least upper bound that does, the lower one as it is, rounded up to three digits.
+    pub upper: Option<f64>,
+    /// Greatest lower bound that does, the upper one as it is, rounded down to three digits; none for delays.
+    pub lower: Option<f64>,
+    /// The held entries of which each, freed alone, does.
+    pub free: Vec<Pair>,
+}
+
+impl Remedy {
+    /// The remedy for `held`, the held entries of `problem`; `suspects` are the entries of its conflicts.
+    pub(crate) fn new(problem: &Problem, held: &Held, suspects: &[Pair]) -> Self {
+        let (quantity, coordinate) = (problem.quantity, problem.coordinate());
+        let Changes { upper, lower, free } = changes(held, suspects);
+        // A bound that is not the obstacle stays as it is.
+        let upper = upper.map(|upper| three_digits_up(coordinate.value(upper)).max(problem.bounds.upper));
+        let lower = lower.map(|lower| three_digits_down(coordinate.value(lower)).min(problem.bounds.lower));
+        Self { quantity, upper, lower: lower.filter(|_| quantity != Quantity::Delay), free }
+    }
+
+    /// The remedies in words; empty where there is none.
+    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
+        let unit = self.quantity.unit();
+        let upper = self.upper.map(|upper| format!("an upper bound of {upper}{unit}"));
+        let lower = self.lower.map(|lower| format!("a lower bound of {lower}{unit}"));
+        let free = self.free.iter().map(|&pair| format!("freeing {}", pair_name(pair, inputs, outputs)));
+        let ways: Vec<String> = upper.into_iter().chain(lower).chain(free).collect();
+        if ways.is_empty() { String::new() } else { format!("Any one of these lets all be held: {}.", ways.join("; ")) }
+    }
+}
+
+/// Single changes that would do, in sums of coordinates.
+struct Changes {
+    upper: Option<f64>,
+    lower: Option<f64>,
+    free: Vec<Pair>,
 }
 
 /// Least and greatest offset of the channels of one component.
@@ -21,8 +55,7 @@ struct Spread {
     outputs: (f64, f64),
 }
 
-/// The single changes that let everything in `held` be held; `suspects` are the entries of its conflicts.
-pub(crate) fn remedy(held: &Held, suspects: &[Pair]) -> Remedy {
+fn changes(held: &Held, suspects: &[Pair]) -> Changes {
     let (low, high) = held.range;
     let components = Components::new(held.outputs, held.inputs, &held.entries, held.range);
     let without = |freed: &Pair| Held {
@@ -31,7 +64,7 @@ pub(crate) fn remedy(held: &Held, suspects: &[Pair]) -> Remedy {
     };
     let free = suspects.iter().filter(|pair| is_reachable(&without(pair))).copied().collect();
     if !loops_agree(&components, held) {
-        return Remedy { upper: None, lower: None, free };
+        return Changes { upper: None, lower: None, free };
     }
     let spreads: Vec<Spread> = (0..components.count()).filter_map(|component| spread(&components, component)).collect();
     let widest =
@@ -41,7 +74,7 @@ pub(crate) fn remedy(held: &Held, suspects: &[Pair]) -> Remedy {
     let highest = half_sum(|spread| spread.inputs.1 + spread.outputs.1).fold(f64::NEG_INFINITY, f64::max);
     let lowest = half_sum(|spread| spread.inputs.0 + spread.outputs.0).fold(f64::INFINITY, f64::min);
     let rounding = 1e-12 * (1.0 + low.abs() + high.abs());
-    Remedy {
+    Changes {
         upper: (lowest >= low - rounding).then(|| high.max(low + widest).max(highest)),
         lower: (highest <= high + rounding).then(|| low.min(high - widest).min(lowest)),
         free,
@@ -51,7 +84,7 @@ pub(crate) fn remedy(held: &Held, suspects: &[Pair]) -> Remedy {
 /// Whether every loop of held entries leads back to where it began.
 fn loops_agree(components: &Components, held: &Held) -> bool {
     held.entries.iter().all(|(pair, sum)| {
-        let reached = components.inputs[pair.input].offset + components.outputs[pair.output].offset;
+        let reached = components.inputs[pair.input].offset.value + components.outputs[pair.output].offset.value;
         (reached - sum).abs() <= super::reach::STRAIN
     })
 }
@@ -59,7 +92,8 @@ fn loops_agree(components: &Components, held: &Held) -> bool {
 /// The spread of a component with both inputs and outputs; a single channel is always possible.
 fn spread(components: &Components, component: usize) -> Option<Spread> {
     let ends = |channels: &[super::components::Placement]| {
-        let offsets = channels.iter().filter(|channel| channel.component == component).map(|channel| channel.offset);
+        let offsets =
+            channels.iter().filter(|channel| channel.component == component).map(|channel| channel.offset.value);
         offsets.fold(None, |ends: Option<(f64, f64)>, offset| match ends {
             Some((least, most)) => Some((least.min(offset), most.max(offset))),
             None => Some((offset, offset)),

@@ -2,8 +2,9 @@
 
 /// Bytes of text in a file, packed or not: 128 MiB, some 500 conditions of the example's size.
 pub const LARGEST_TEXT: u64 = 128 << 20;
-/// Inputs, and outputs: tables of pairs grow with their product.
-pub const MOST_CHANNELS: usize = 200;
+/// Inputs, and outputs: as many as gains and delays are tested with. Tables of pairs grow with the product, the search for the
+/// best gains faster.
+pub const MOST_CHANNELS: usize = 32;
 /// On-axis, held or ignored responses.
 pub const MOST_PAIRS: usize = MOST_CHANNELS * MOST_CHANNELS;
 /// Conditions: comparing their ids takes time that grows with the square.

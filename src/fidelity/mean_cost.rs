@@ -60,7 +60,7 @@ fn principal<S: Simd>(simd: S, difference: S::f64s) -> S::f64s {
 mod tests {
     use super::*;
     use crate::fidelity::{CostAverage, Mismatch};
-    use crate::response::wrap;
+    use crate::response::{GainDelay, wrap};
 
     #[test]
     fn it_is_the_cost_of_the_mismatch_with_the_mean() {
@@ -69,7 +69,7 @@ mod tests {
             phase: (0..53).map(|k| wrap(seed - 0.4 * seed * f64::from(k))).collect(),
         };
         for (a, b) in [(0.1, 0.2), (-3.0, 2.0), (1.0, 1.0), (3.1, -3.1)].map(|(a, b)| (curve(a), curve(b))) {
-            let expected = Mismatch::new(&a, &b).cost(&[0.0; 53], 0.0, 0.0, CostAverage::Mean).total();
+            let expected = Mismatch::new(&a, &b).cost(&[0.0; 53], GainDelay::NONE, CostAverage::Mean).total();
             let found = mean_cost(&a, &b);
             // The same sums of 53 squares in another order.
             assert!((found - expected).abs() <= 1e-13 * expected, "{found} {expected}");

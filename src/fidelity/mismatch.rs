@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Complex;
 
-use crate::response::{PolarCurve, centred_unwrap, wrap};
+use crate::response::{GainDelay, PolarCurve, centred_unwrap, wrap};
 
 use super::cost::{Cost, CostAverage};
 
@@ -26,13 +26,11 @@ impl Mismatch {
         Self { magnitude_db: difference(&simulated.magnitude_db, &reference.magnitude_db), phase }
     }
 
-    /// J after a correction of `gain_db` \[dB\] and `delay_s` \[s\] of the simulated response (M4, M10).
-    ///
-    /// The correction `k e^(-tau s)` adds `20 log10 k` to the magnitude and takes `omega tau` from the phase, of which the
+    /// J after a correction of the simulated response (M4, M10). The correction takes `omega tau` from the phase, of which the
     /// principal value counts: a zero passed on the other side of the axis must not cost a whole turn.
-    pub fn cost(&self, omega: &[f64], gain_db: f64, delay_s: f64, average: CostAverage) -> Cost {
-        let phase = self.phase.iter().zip(omega).map(|(phase, omega)| wrap(phase - omega * delay_s));
-        let magnitude = self.magnitude_db.iter().map(|error| error + gain_db);
+    pub fn cost(&self, omega: &[f64], correction: GainDelay, average: CostAverage) -> Cost {
+        let phase = correction.phases(&self.phase, omega).map(wrap);
+        let magnitude = correction.magnitudes_db(&self.magnitude_db);
         Cost::of(magnitude, phase, average, &mut Vec::with_capacity(omega.len()))
     }
 
@@ -74,6 +72,7 @@ fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::units::db_to_ratio;
 
     fn curve(gain_db: f64, delay_s: f64, omega: &[f64]) -> PolarCurve {
         PolarCurve {
@@ -86,9 +85,9 @@ mod tests {
     fn the_right_gain_and_delay_leave_no_cost() {
         let omega: Vec<f64> = (1..60).map(|k| 0.2 * f64::from(k)).collect();
         let mismatch = Mismatch::new(&curve(0.0, 0.0, &omega), &curve(2.0, 0.4, &omega));
-        assert!(mismatch.cost(&omega, 0.0, 0.0, CostAverage::Mean).total() > 100.0);
+        assert!(mismatch.cost(&omega, GainDelay::NONE, CostAverage::Mean).total() > 100.0);
         // Squares of rounding errors of angles up to 12 * 0.4 rad.
-        assert!(mismatch.cost(&omega, 2.0, 0.4, CostAverage::Mean).total() < 1e-20);
+        assert!(mismatch.cost(&omega, GainDelay::new(db_to_ratio(2.0), 0.4), CostAverage::Mean).total() < 1e-20);
     }
 
     #[test]
@@ -106,7 +105,7 @@ mod tests {
         let turn = |omega: f64| TAU / (1.0 + (-40.0 * (omega - 2.0)).exp());
         let phase = omega.iter().map(|omega| wrap(-0.07 * omega + turn(*omega))).collect();
         let mismatch = Mismatch { magnitude_db: vec![0.0; 120], phase };
-        let cost = mismatch.cost(&omega, 0.0, -0.07, CostAverage::Median);
+        let cost = mismatch.cost(&omega, GainDelay::new(1.0, -0.07), CostAverage::Median);
         // Squares of what is left of the turn at 6 rad/s: e^-160.
         assert!(cost.phase < 1e-20, "{cost:?}");
         let delays = mismatch.phase_difference(&omega).into_iter().zip(&omega).map(|(phase, omega)| phase / omega);

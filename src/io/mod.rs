@@ -16,6 +16,7 @@ mod place;
 mod plain;
 mod recent_files;
 mod recovery_file;
+mod settings_entry;
 mod source;
 mod study_file;
 mod unknown_keys;
@@ -25,8 +26,8 @@ pub use content_fault::ContentFault;
 pub use corrections_file::{
     Assessment, ByName, Channels, ConditionAssessment, ConditionCorrections, ConflictEntry, Corrections, CostTable,
     CostTables, DatasetLabel, DelayOutcome, Explanation, GainOutcome, NetGain, RESULT_FILES, RemedyEntry, ScheduleUsed,
-    ScheduledDelays, ScheduledGains, SensitivityEntry, SetAsideEntry, SettingsUsed, SourceEntry, Table,
-    UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult, read_corrections, result_paths, write_results,
+    ScheduledDelays, ScheduledGains, SensitivityEntry, SetAsideEntry, SourceEntry, Table, UnmatchedDelayEntry,
+    UnmatchedGainEntry, WithoutResult, read_corrections, result_paths, write_results,
 };
 pub use dataset_file::{
     DatasetOrigin, LoadedDataset, embedded_example, load_dataset, load_dataset_bytes, save_dataset, write_example,
@@ -38,4 +39,5 @@ pub use output_set::{Existing, OutputSet, make_directory, report_size_limit};
 pub use plain::{plain, plain_path};
 pub use recent_files::{add_recent_file, recent_files};
 pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
+pub use settings_entry::{KindWord, ScheduleEntry, SettingsEntry};
 pub use study_file::{OpenedStudy, STUDY_EXTENSION, open_study, open_study_of, save_study};

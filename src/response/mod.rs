@@ -3,6 +3,7 @@
 mod elimination;
 mod frequency_grid;
 mod frequency_response;
+mod gain_delay;
 mod interpolation;
 mod phase;
 mod polar;
@@ -13,6 +14,7 @@ mod structure;
 pub use elimination::{evaluate, evaluate_on};
 pub use frequency_grid::FrequencyGrid;
 pub use frequency_response::FrequencyResponse;
+pub use gain_delay::GainDelay;
 pub use phase::{centred_unwrap, nearest_turn_offset, unwrap, wrap};
 pub use polar::{PolarCurve, PolarResponse};
 pub use prepared_model::{LargeEntry, PreparedModel};

@@ -3,7 +3,6 @@
 use crate::correction::ChannelCorrection;
 use crate::dataset::PairTable;
 use crate::fidelity::{Cost, CostAverage, Mismatch};
-use crate::units::ratio_to_db;
 
 /// J of one response before and after a correction; negative changes are better.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,11 +41,7 @@ pub fn assess(
     average: CostAverage,
 ) -> PairTable<Option<CostChange>> {
     mismatch.map(|pair, mismatch| {
-        let gain = correction.net_gain(pair);
-        if gain <= 0.0 {
-            return None;
-        }
-        let corrected = mismatch.as_ref()?.cost(omega, ratio_to_db(gain), correction.net_delay_s(pair), average);
+        let corrected = mismatch.as_ref()?.cost(omega, correction.on(pair)?, average);
         Some(CostChange { uncorrected: uncorrected[pair]?, corrected })
     })
 }

@@ -291,10 +291,10 @@ mod tests {
             .map(|(correction, airspeed_kt)| ScheduledPoint { airspeed_kt, correction })
             .collect();
         let schedule = Schedule::of(&points, ScheduleSettings::default()).unwrap();
-        let products: Vec<f64> = corrections.iter().map(|c| c.net_gain(Pair::new(0, 0)).ln()).collect();
+        let products: Vec<f64> = corrections.iter().map(|c| c.net_gain(Pair::new(0, 0)).value().ln()).collect();
         let direct = Regression::polynomial(&schedule.airspeeds, &products, 2);
         for airspeed in [40.0, 88.0, 140.0] {
-            let product = schedule.at(airspeed).net_gain(Pair::new(0, 0));
+            let product = schedule.at(airspeed).net_gain(Pair::new(0, 0)).value();
             // Linear least squares in different order of rounding.
             assert!((product / direct.at(&schedule.airspeeds, airspeed).exp() - 1.0).abs() < 1e-13);
         }

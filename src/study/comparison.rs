@@ -9,7 +9,7 @@ use crate::fidelity::{
     BundleDistance, Cost, CostAverage, Discontinuity, DiscontinuityError, FitError, MeasuredPairs, Mismatch,
     Representative, distances_from,
 };
-use crate::response::{FrequencyGrid, FrequencyResponse, PolarResponse};
+use crate::response::{FrequencyGrid, FrequencyResponse, GainDelay, PolarResponse};
 
 use super::caution::{self, BundleModel, Caution, Undefined};
 use super::condition_analysis::ConditionFailure;
@@ -120,7 +120,7 @@ pub struct ModelMismatch {
 impl ModelMismatch {
     fn of(simulated: &PolarResponse, reference: &PolarResponse, omega: &[f64], average: CostAverage) -> Self {
         let mismatch = mismatch_table(simulated, reference);
-        let cost = mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.cost(omega, 0.0, 0.0, average)));
+        let cost = mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.cost(omega, GainDelay::NONE, average)));
         Self { mismatch, cost }
     }
 }

@@ -2,9 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::correction::{
-    ChannelCorrection, DelayError, DelayProblem, DelaySolution, GainBounds, GainError, GainProblem, GainSolution,
-};
+use crate::correction::{ChannelCorrection, GainBounds, Problem, ProblemError, Solution};
 use crate::dataset::{BundleKind, Condition, PairTable};
 use crate::fidelity::{Discontinuity, Representative};
 use crate::schedule::CostChange;
@@ -22,13 +20,13 @@ pub struct ConditionAnalysis {
     /// Representatives, G and D.
     pub comparison: Arc<Comparison>,
     /// What the gains were asked to do.
-    pub gain_problem: Arc<GainProblem>,
+    pub gain_problem: Arc<Problem>,
     /// What the delays were asked to do.
-    pub delay_problem: Arc<DelayProblem>,
+    pub delay_problem: Arc<Problem>,
     /// Optimal gains, eq. (7).
-    pub gains: Arc<GainSolution>,
+    pub gains: Arc<Solution>,
     /// Optimal delays, eq. (11).
-    pub delays: Arc<DelaySolution>,
+    pub delays: Arc<Solution>,
     /// Both as one correction.
     pub correction: ChannelCorrection,
     /// J of the physics representative before and after this correction.
@@ -50,7 +48,7 @@ impl ConditionAnalysis {
 
     /// Upper bound of every channel delay \[s\].
     pub fn delay_upper_s(&self) -> f64 {
-        self.delay_problem.upper_s
+        self.delay_problem.bounds.upper
     }
 
     /// Names of the physics models suggested as outliers, whatever is rejected.
@@ -112,8 +110,8 @@ pub enum ConditionFailure {
     },
     /// The gains could not be computed.
     #[error("the gains could not be computed: {0}")]
-    Gains(#[from] GainError),
+    Gains(ProblemError),
     /// The delays could not be computed.
     #[error("the delays could not be computed: {0}")]
-    Delays(#[from] DelayError),
+    Delays(ProblemError),
 }

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::correction::{
-    ChannelCorrection, DelayError, DelayProblem, DelaySolution, GainBounds, GainError, GainProblem, GainSolution,
-    ProofBudget, delay_upper_s, gain_bounds, solve_delays, solve_gains,
+    Bounds, ChannelCorrection, GainBounds, Problem, ProblemError, ProofBudget, Quantity, Solution, delay_upper_s,
+    gain_bounds, solve,
 };
 use crate::dataset::{BundleKind, Condition, Pair, PairTable};
 use crate::fidelity::CostAverage;
@@ -35,8 +35,8 @@ pub(super) struct ConditionStages {
     figures: Memo<FiguresKey, Arc<BundleFigures>>,
     comparison: Memo<ComparisonKey, Result<Arc<Comparison>, ConditionFailure>>,
     bounds: Memo<BoundsKey, (GainBounds, f64)>,
-    gains: Memo<Arc<GainProblem>, Result<Arc<GainSolution>, GainError>>,
-    delays: Memo<Arc<DelayProblem>, Result<Arc<DelaySolution>, DelayError>>,
+    gains: Memo<Arc<Problem>, Solved>,
+    delays: Memo<Arc<Problem>, Solved>,
     cost: Memo<(ComparisonKey, ChannelCorrection), Arc<PairTable<Option<CostChange>>>>,
 }
 
@@ -74,7 +74,7 @@ impl ConditionStages {
     }
 
     /// Takes gains of the same problem in place of those kept.
-    pub(super) fn take_gains(&mut self, problem: &Arc<GainProblem>, solution: &Arc<GainSolution>) {
+    pub(super) fn take_gains(&mut self, problem: &Arc<Problem>, solution: &Arc<Solution>) {
         if self.gains.holds(problem) {
             self.gains = Memo::of(Arc::clone(problem), Ok(Arc::clone(solution)));
         }
@@ -98,7 +98,7 @@ impl ConditionStages {
         let figures = self.figures.get_or_fail(figures_key, |(_, measuring)| {
             BundleFigures::of(&condition, &responses, measuring, execution).map(Arc::new)
         })?;
-        let outcome = self.compare_and_solve(study, &condition, grid, proofs, &responses, figures);
+        let outcome = self.compare_and_solve(study, &condition, grid, &responses, figures, (proofs, execution))?;
         execution.step(1);
         Ok(outcome)
     }
@@ -108,10 +108,10 @@ impl ConditionStages {
         study: &Study,
         condition: &Arc<Condition>,
         grid: &FrequencyGrid,
-        proofs: ProofBudget,
         responses: &ConditionResponses,
         figures: Arc<BundleFigures>,
-    ) -> Result<ConditionAnalysis, ConditionFailure> {
+        (proofs, execution): (ProofBudget, &Execution<'_>),
+    ) -> Result<Result<ConditionAnalysis, ConditionFailure>, Cancelled> {
         let settings = &study.settings;
         let measuring = study.dataset.measuring_pairs();
         let choice = study.choice(condition.id());
@@ -120,19 +120,29 @@ impl ConditionStages {
         let comparison = self.comparison.get(key.clone(), |_| {
             let comparison = Comparison::of(condition, responses, &figures, grid, choice, settings.cost_average);
             comparison.map(Arc::new)
-        })?;
-        check_comparable(condition, &comparison, |pair| study.dataset.pair_name(pair))?;
+        });
+        let compared = comparison.and_then(|comparison| {
+            check_comparable(condition, &comparison, |pair| study.dataset.pair_name(pair))?;
+            Ok(comparison)
+        });
+        let comparison = match compared {
+            Ok(comparison) => comparison,
+            Err(failure) => return Ok(Err(failure)),
+        };
         let bounds_key = (key.clone(), settings.quantile, settings.gain_bounds, settings.delay_upper_s);
         let bounds = self.bounds.get(bounds_key, |_| bounds_of(&comparison, settings, &measuring, grid));
-        let solved = self.solve(&comparison, settings, bounds, proofs)?;
+        let solved = match self.solve(&comparison, settings, bounds, proofs, execution)? {
+            Ok(solved) => solved,
+            Err(failure) => return Ok(Err(failure)),
+        };
         let correction = solved.correction();
         let cost = self.cost.get((key, correction.clone()), |(_, correction)| {
             let models = &comparison.representative;
             Arc::new(assess(&models.mismatch, &models.cost, correction, grid.omega(), settings.cost_average))
         });
         let cautions = cautions_of(settings, &comparison, &figures);
-        let Solved { gain_problem, delay_problem, gains, delays } = solved;
-        Ok(ConditionAnalysis {
+        let Optima { gain_problem, delay_problem, gains, delays } = solved;
+        Ok(Ok(ConditionAnalysis {
             condition: Arc::clone(condition),
             figures,
             comparison,
@@ -143,7 +153,7 @@ impl ConditionStages {
             correction,
             cost,
             cautions,
-        })
+        }))
     }
 
     fn solve(
@@ -152,46 +162,58 @@ impl ConditionStages {
         settings: &Settings,
         (bounds, upper_s): (GainBounds, f64),
         proofs: ProofBudget,
-    ) -> Result<Solved, ConditionFailure> {
+        execution: &Execution<'_>,
+    ) -> Result<Result<Optima, ConditionFailure>, Cancelled> {
         let delta = &comparison.delta;
         let held = settings.constrained.map(|pair, constrained| *constrained && delta.gain[pair].is_some());
-        let gain_problem = Arc::new(GainProblem {
-            wanted: delta.gain.clone(),
-            constrained: held.clone(),
+        let gain_problem = Arc::new(Problem {
+            quantity: Quantity::Gain(settings.gain_objective),
+            delta: delta.gain.clone(),
+            constrained: held,
             fitted: settings.fitted.clone(),
             bounds,
             alpha: settings.alpha_gain,
-            objective: settings.gain_objective,
         });
-        let delay_problem = Arc::new(DelayProblem {
-            wanted_s: delta.delay_s.clone(),
-            constrained: held,
-            fitted: settings.fitted.clone(),
-            upper_s,
+        let delay_problem = Arc::new(Problem {
+            quantity: Quantity::Delay,
+            delta: delta.delay_s.clone(),
+            bounds: Bounds { lower: 0.0, upper: upper_s },
             alpha: settings.alpha_delay,
+            ..Problem::clone(&gain_problem)
         });
-        let solve = |problem: &Arc<GainProblem>| solve_gains(problem, proofs).map(Arc::new);
-        let gains = self.gains.get(Arc::clone(&gain_problem), solve)?;
-        let delays = self.delays.get(Arc::clone(&delay_problem), |problem| solve_delays(problem).map(Arc::new))?;
-        Ok(Solved { gain_problem, delay_problem, gains, delays })
+        let stop = || execution.progress().cancelled();
+        let solve = |problem: &Arc<Problem>| match solve(problem, proofs, &stop) {
+            Err(ProblemError::Stopped) => Err(Cancelled),
+            solved => Ok(solved.map(Arc::new)),
+        };
+        let gains = self.gains.get_or_fail(Arc::clone(&gain_problem), solve)?;
+        let delays = self.delays.get_or_fail(Arc::clone(&delay_problem), solve)?;
+        Ok(match (gains, delays) {
+            (Ok(gains), Ok(delays)) => Ok(Optima { gain_problem, delay_problem, gains, delays }),
+            (Err(error), _) => Err(ConditionFailure::Gains(error)),
+            (_, Err(error)) => Err(ConditionFailure::Delays(error)),
+        })
     }
 }
 
+/// What came of one problem.
+type Solved = Result<Arc<Solution>, ProblemError>;
+
 /// The two optima of a condition with what they are the optima of.
-struct Solved {
-    gain_problem: Arc<GainProblem>,
-    delay_problem: Arc<DelayProblem>,
-    gains: Arc<GainSolution>,
-    delays: Arc<DelaySolution>,
+struct Optima {
+    gain_problem: Arc<Problem>,
+    delay_problem: Arc<Problem>,
+    gains: Arc<Solution>,
+    delays: Arc<Solution>,
 }
 
-impl Solved {
+impl Optima {
     fn correction(&self) -> ChannelCorrection {
         ChannelCorrection {
             input_gains: self.gains.inputs.clone(),
             output_gains: self.gains.outputs.clone(),
-            input_delays_s: self.delays.inputs_s.clone(),
-            output_delays_s: self.delays.outputs_s.clone(),
+            input_delays_s: self.delays.inputs.clone(),
+            output_delays_s: self.delays.outputs.clone(),
         }
     }
 }

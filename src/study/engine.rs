@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::correction::{GainProblem, GainSolution, ProofBudget};
+use crate::correction::{Problem, ProofBudget, Solution};
 use crate::dataset::{Band, BundleKind, Condition, ConditionId, Dataset};
 use crate::response::FrequencyGrid;
 use crate::schedule::{Schedule, ScheduleError, ScheduledPoint, assess};
@@ -38,7 +38,7 @@ pub struct Engine {
 }
 
 /// The budget of a proof that an answer may wait for; what needs more of it is proven beside the answer ([`super::ProofJob`]).
-pub const LIVE_PROOF: ProofBudget = ProofBudget { boxes: 1_000, minima: 300 };
+pub const LIVE_PROOF: ProofBudget = ProofBudget { work: 1_000_000, listing: 100_000, bytes: 64_000_000 };
 
 impl Default for Engine {
     fn default() -> Self {
@@ -69,7 +69,7 @@ impl Engine {
     }
 
     /// Takes gains that were proven elsewhere, with a larger budget, in place of its own for the same problem.
-    pub fn take_gains(&mut self, problem: &Arc<GainProblem>, solution: &Arc<GainSolution>) {
+    pub fn take_gains(&mut self, problem: &Arc<Problem>, solution: &Arc<Solution>) {
         self.conditions.values_mut().for_each(|stages| stages.take_gains(problem, solution));
     }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::correction::{GainError, GainProblem, GainSolution, ProofBudget, solve_gains_until};
+use crate::correction::{Problem, ProblemError, ProofBudget, Solution, solve};
 use crate::dataset::{Band, ConditionId, Dataset};
 
 use super::condition_analysis::ConditionAnalysis;
@@ -31,16 +31,18 @@ pub trait Job: Clone + PartialEq + Send + 'static {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProofJob {
     /// What the gains are asked to do.
-    pub problem: Arc<GainProblem>,
+    pub problem: Arc<Problem>,
 }
 
 impl Job for ProofJob {
     type Tools = ();
-    type Output = Result<Arc<GainSolution>, GainError>;
+    type Output = Result<Arc<Solution>, ProblemError>;
 
     fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        let solution = solve_gains_until(&self.problem, ProofBudget::default(), &|| progress.cancelled());
-        if progress.cancelled() { Err(Cancelled) } else { Ok(solution.map(Arc::new)) }
+        match solve(&self.problem, ProofBudget::default(), &|| progress.cancelled()) {
+            Err(ProblemError::Stopped) => Err(Cancelled),
+            solved => Ok(solved.map(Arc::new)),
+        }
     }
 }
 

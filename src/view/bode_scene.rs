@@ -8,7 +8,7 @@ use nalgebra::Complex;
 use crate::correction::ChannelCorrection;
 use crate::dataset::{BundleKind, Condition, Model, ModelId, Pair};
 use crate::fidelity::SUGGESTION_RATIO;
-use crate::response::{FrequencyResponse, nearest_turn_offset, unwrap};
+use crate::response::{FrequencyResponse, GainDelay, nearest_turn_offset, unwrap};
 use crate::study::{ConditionAnalysis, ConditionCurves};
 use crate::units::{ratio_to_db, s_to_ms};
 
@@ -47,13 +47,12 @@ impl Shape {
         Self { phase_deg: self.phase_deg.iter().map(|phase| phase + offset).collect(), ..self }
     }
 
-    /// The shape after a gain and a delay: exact in frequency, no Pade (M10).
-    fn corrected(&self, omega: &[f64], treatment: Treatment) -> Self {
-        let gain_db = ratio_to_db(treatment.net_gain);
-        let lag = |omega: &f64| (omega * treatment.net_delay_s).to_degrees();
+    /// The shape after a gain and a delay (M10).
+    fn corrected(&self, omega: &[f64], correction: GainDelay) -> Self {
+        let phase: Vec<f64> = self.phase_deg.iter().map(|degrees| degrees.to_radians()).collect();
         Self {
-            magnitude_db: self.magnitude_db.iter().map(|magnitude| magnitude + gain_db).collect(),
-            phase_deg: self.phase_deg.iter().zip(omega).map(|(phase, omega)| phase - lag(omega)).collect(),
+            magnitude_db: correction.magnitudes_db(&self.magnitude_db).collect(),
+            phase_deg: correction.phases(&phase, omega).map(f64::to_degrees).collect(),
         }
     }
 }
@@ -74,8 +73,7 @@ pub struct CachedShapes {
 struct Treatment {
     /// Index of the physics model.
     model: usize,
-    net_gain: f64,
-    net_delay_s: f64,
+    correction: GainDelay,
 }
 
 impl CachedShapes {
@@ -104,7 +102,7 @@ impl CachedShapes {
         match self.corrected.get(id) {
             Some((with, shape)) if *with == treatment => shape.clone(),
             _ => {
-                let shape = self.physics[treatment.model].corrected(&self.omega, treatment);
+                let shape = self.physics[treatment.model].corrected(&self.omega, treatment.correction);
                 self.corrected.insert(id.clone(), (treatment, shape.clone()));
                 shape
             }
@@ -201,10 +199,9 @@ fn corrected_curves(
     };
     let airspeed_kt = state.condition().flight_state().airspeed_kt;
     let mut curve = |id: CurveId, label: String, role: Role, correction: &ChannelCorrection| {
-        let (net_gain, net_delay_s) = (correction.net_gain(pair), correction.net_delay_s(pair));
-        let shape = shapes.corrected(&id, Treatment { model, net_gain, net_delay_s });
-        let delay_ms = s_to_ms(net_delay_s);
-        BodeCurve {
+        let shape = shapes.corrected(&id, Treatment { model, correction: correction.on(pair)? });
+        let (net_gain, delay_ms) = (correction.net_gain(pair).value(), s_to_ms(correction.net_delay(pair).value_s()));
+        Some(BodeCurve {
             id,
             label,
             detail: format!("net gain {net_gain:.3}, net delay {delay_ms:.1} ms"),
@@ -214,16 +211,14 @@ fn corrected_curves(
             omega: Arc::clone(&shapes.omega),
             magnitude_db: shape.magnitude_db,
             phase_deg: shape.phase_deg,
-        }
+        })
     };
     let own = curve(CurveId::Corrected, format!("{name}, corrected"), Role::Corrected, &shown.correction);
-    let mut curves = vec![own];
+    let mut curves: Vec<BodeCurve> = own.into_iter().collect();
     if let Some(Ok(schedule)) = state.analysis().map(|analysis| &analysis.schedule) {
-        let scheduled = schedule.at(airspeed_kt);
-        if scheduled.net_gain(pair) > 0.0 {
-            let older = if state.others_are_older() { " of older settings" } else { "" };
-            curves.push(curve(CurveId::Scheduled, format!("{name}, scheduled{older}"), Role::Scheduled, &scheduled));
-        }
+        let older = if state.others_are_older() { " of older settings" } else { "" };
+        let label = format!("{name}, scheduled{older}");
+        curves.extend(curve(CurveId::Scheduled, label, Role::Scheduled, &schedule.at(airspeed_kt)));
     }
     curves
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::correction::{Channel, delay_sensitivities, gain_sensitivities};
+use crate::correction::{Channel, Sensitivity, sensitivities};
 use crate::dataset::Pair;
 use crate::study::ConditionAnalysis;
 use crate::units::s_to_ms;
@@ -68,7 +68,8 @@ fn gain_remarks(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
     }
     let (inputs, outputs) = channel_names(state);
     let gains = &shown.gains;
-    let misses: Vec<String> = gains.unmatched.iter().map(|unmatched| unmatched.words(&inputs, &outputs)).collect();
+    let top = state.study.settings.band.max();
+    let misses: Vec<String> = gains.unmatched.iter().map(|unmatched| unmatched.words(top, &inputs, &outputs)).collect();
     let conflicts = gains.conflicts.iter().map(|conflict| conflict.words(&inputs, &outputs));
     let remedy = gains.remedy.iter().map(|remedy| remedy.words(&inputs, &outputs)).filter(|words| !words.is_empty());
     let texts = std::iter::once(misses.join(" ")).chain(conflicts).chain(remedy);
@@ -83,10 +84,8 @@ fn delay_remarks(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
     }
     let lead: Vec<String> = unmatched
         .iter()
-        .filter(|unmatched| unmatched.wanted_s < 0.0)
-        .map(|unmatched| {
-            format!("{} {:.0} ms", state.dataset().pair_name(unmatched.pair), -s_to_ms(unmatched.wanted_s))
-        })
+        .filter(|unmatched| unmatched.delta < 0.0)
+        .map(|unmatched| format!("{} {:.0} ms", state.dataset().pair_name(unmatched.pair), -s_to_ms(unmatched.delta)))
         .collect();
     let mut remarks = Vec::new();
     if !lead.is_empty() {
@@ -101,7 +100,7 @@ fn delay_remarks(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
     }
     let (inputs, outputs) = channel_names(state);
     let top = state.study.settings.band.max();
-    let others = unmatched.iter().filter(|unmatched| unmatched.wanted_s >= 0.0);
+    let others = unmatched.iter().filter(|unmatched| unmatched.delta >= 0.0);
     remarks.extend(others.map(|unmatched| Remark::new(RemarkKind::Caution, unmatched.words(top, &inputs, &outputs))));
     remarks
 }
@@ -112,8 +111,8 @@ pub fn details(state: &State, shown: &ConditionAnalysis) -> Vec<String> {
     /// A share of the objective below which a restraint costs nothing worth reading.
     const NOTABLE: f64 = 1e-3;
     let (inputs, outputs) = channel_names(state);
-    let mut details = vec![shown.gains.outcome.words()];
-    details.extend(shown.gains.local_minima.iter().skip(1).map(|other| {
+    let mut details = vec![shown.gains.proof.outcome.words()];
+    details.extend(shown.gains.proof.local_minima.iter().skip(1).map(|other| {
         let worse = 100.0 * (other.objective / shown.gains.objective - 1.0);
         let figures = |names: &[String], gains: &[f64]| {
             names.iter().zip(gains).map(|(name, gain)| format!("{name} {gain:.3}")).collect::<Vec<_>>().join(", ")
@@ -123,19 +122,18 @@ pub fn details(state: &State, shown: &ConditionAnalysis) -> Vec<String> {
     }));
     let top = state.study.settings.band.max();
     details.extend(shown.delays.unmatched.iter().map(|unmatched| unmatched.words(top, &inputs, &outputs)));
-    let gains = gain_sensitivities(&shown.gain_problem, &shown.gains);
-    let notable = gains.iter().filter(|sensitivity| sensitivity.share_per_db.abs() > NOTABLE);
-    details.extend(notable.map(|sensitivity| sensitivity.words(&inputs, &outputs)));
-    let delays = delay_sensitivities(&shown.delay_problem, &shown.delays);
-    let notable = delays.iter().filter(|sensitivity| sensitivity.share_per_ms.abs() > NOTABLE);
-    details.extend(notable.map(|sensitivity| sensitivity.words(&inputs, &outputs)));
+    let notable = |sensitivity: &Sensitivity| sensitivity.share_per_unit.abs() > NOTABLE;
+    for (problem, solution) in [(&shown.gain_problem, &shown.gains), (&shown.delay_problem, &shown.delays)] {
+        let all = sensitivities(problem, solution).into_iter().filter(notable);
+        details.extend(all.map(|sensitivity| sensitivity.words(&inputs, &outputs)));
+    }
     details
 }
 
 /// The responses and the channels that are in each other's way, of the gains.
 pub fn gain_conflict_marks(shown: &ConditionAnalysis) -> (BTreeSet<Pair>, BTreeSet<Channel>) {
     let conflicts = &shown.gains.conflicts;
-    let pairs = conflicts.iter().flat_map(|conflict| conflict.entries().iter().copied()).collect();
+    let pairs = conflicts.iter().flat_map(|conflict| conflict.entries.iter().copied()).collect();
     (pairs, conflicts.iter().flat_map(|conflict| conflict.channels()).collect())
 }
 

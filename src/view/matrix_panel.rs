@@ -234,8 +234,8 @@ impl<'a> Cell<'a> {
         };
         ui.label(format!("G = {gain:.4}: the gain that would match the magnitude"));
         ui.label(format!("D = {:.1} ms: the delay that would match the phase (negative: lead)", s_to_ms(delay)));
-        ui.label(format!("net gain k_o k_i = {:.4}", shown.correction.net_gain(self.pair)));
-        ui.label(format!("net delay τ_o + τ_i = {:.1} ms", s_to_ms(shown.correction.net_delay_s(self.pair))));
+        ui.label(format!("net gain k_o k_i = {:.4}", shown.correction.net_gain(self.pair).value()));
+        ui.label(format!("net delay τ_o + τ_i = {:.1} ms", s_to_ms(shown.correction.net_delay(self.pair).value_s())));
         for sentence in &self.toggle_costs {
             ui.label(sentence);
         }

@@ -23,7 +23,9 @@ pub fn net_gain_panels(state: &State) -> Vec<GainPanel> {
         .settings
         .constrained
         .marked()
-        .map(|pair| panel(state, analysis, state.dataset().pair_name(pair), |correction| correction.net_gain(pair)))
+        .map(|pair| {
+            panel(state, analysis, state.dataset().pair_name(pair), |correction| correction.net_gain(pair).value())
+        })
         .collect()
 }
 

@@ -2,7 +2,7 @@
 
 use egui::{Align, Button, CollapsingHeader, Color32, Grid, Layout, RichText, Role, Ui, WidgetInfo, vec2};
 
-use crate::correction::{GainObjective, Outcome};
+use crate::correction::{GainObjective, Outcome, Quantity};
 use crate::dataset::{Channel, Pair};
 use crate::study::{ConditionAnalysis, Edit, Setting};
 use crate::units::s_to_ms;
@@ -66,20 +66,24 @@ fn header_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Pa
     });
 }
 
-fn outcome(shown: &ConditionAnalysis, proving: bool, palette: &Palette) -> (&'static str, Color32, f64, &'static str) {
-    let (gap, proven) = (shown.gains.outcome.gap(), matches!(shown.gains.outcome, Outcome::Proven { .. }));
-    match (shown.gains.matched, proven) {
+fn outcome(shown: &ConditionAnalysis, proving: bool, palette: &Palette) -> (&'static str, Color32, f64, String) {
+    let outcome = shown.gains.proof.outcome;
+    let (word, color, hint) = match (shown.gains.matched, outcome) {
         (false, _) => {
-            ("not matched", palette.warning, gap, "Not every held gain can be reached; the reasons stand below")
+            let hint = "Not every held gain can be reached; the reasons stand below".to_owned();
+            ("not matched", palette.warning, hint)
         }
-        (true, true) => ("proven", palette.good, gap, "No gains inside the bounds are better: a lower bound proves it"),
-        (true, false) if proving => {
-            ("proving …", palette.warning, gap, "Whether better gains exist is being searched beside the live answer")
+        (true, Outcome::NotProven { .. }) if proving => {
+            let hint = "Whether better gains exist is being searched beside the live answer";
+            ("proving …", palette.warning, hint.to_owned())
         }
-        (true, false) => {
-            ("not proven", palette.warning, gap, "A better answer may exist; none is better by more than the gap")
+        (true, Outcome::Proven { .. }) => {
+            let hint = "No gains within the bounds that hold the held responses are better: a lower bound proves it";
+            ("proven", palette.good, hint.to_owned())
         }
-    }
+        (true, Outcome::NotProven { .. }) => ("not proven", palette.warning, outcome.words()),
+    };
+    (word, color, outcome.gap(), hint)
 }
 
 fn badge_ui(ui: &mut Ui, word: &str, color: Color32, palette: &Palette) -> egui::Response {
@@ -97,8 +101,8 @@ fn channels_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &
     let (gains, delays) = (&shown.gains, &shown.delays);
     let dataset = state.dataset();
     let sides = [
-        ("input", dataset.inputs(), &gains.inputs, &delays.inputs_s),
-        ("output", dataset.outputs(), &gains.outputs, &delays.outputs_s),
+        ("input", dataset.inputs(), &gains.inputs, &delays.inputs),
+        ("output", dataset.outputs(), &gains.outputs, &delays.outputs),
     ];
     ui.spacing_mut().item_spacing.x = 18.0;
     ui.columns(2, |columns| {
@@ -140,16 +144,13 @@ fn right<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
 }
 
 fn objective_ui(ui: &mut Ui, shown: &ConditionAnalysis, palette: &Palette) {
-    let unit = match shown.gains.minimised {
-        GainObjective::Ratio => "",
-        GainObjective::Decibel => " dB²",
-    };
+    let unit = if shown.gains.quantity == Quantity::Gain(GainObjective::Decibel) { " dB²" } else { "" };
     let gains = format!("objective {:.4}{unit}", shown.gains.objective);
     let delays = format!("delays {:.4} s²", shown.delays.objective);
     let label = ui.label(RichText::new(format!("{gains} · {delays}")).size(SMALL_SIZE).color(palette.dim_text));
     label.on_hover_text(format!(
         "eq. (7): {}{unit}, lower bound {}{unit}\neq. (11): {} s²",
-        shown.gains.objective, shown.gains.lower_bound, shown.delays.objective
+        shown.gains.objective, shown.gains.proof.lower_bound, shown.delays.objective
     ));
 }
 

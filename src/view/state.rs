@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::correction::GainProblem;
+use crate::correction::Problem;
 use crate::dataset::{Band, BundleKind, Condition, ConditionId, Dataset, ModelId, Pair};
 use crate::study::{
     Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, CurvesJob, Difference, History, Study, Toggles,
@@ -102,7 +102,7 @@ pub struct FirstResult {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Background {
     /// The problems whose gains are being proven, or are to be.
-    pub proofs: Vec<Arc<GainProblem>>,
+    pub proofs: Vec<Arc<Problem>>,
     /// Whether the costs of holding and freeing are being computed.
     pub toggles: bool,
     /// Whether curves are being computed: models done, of how many.

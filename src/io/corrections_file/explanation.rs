@@ -2,10 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::correction::{
-    Channel, DelayConflict, DelayRestraint, DelaySensitivity, DelaySolution, GainConflict, GainRestraint,
-    GainSensitivity, GainSolution,
-};
+use crate::correction::{Conflict, ConflictKind, Problem, Restraint, Sensitivity, Solution, sensitivities};
 
 use super::names::ChannelNames;
 
@@ -65,108 +62,57 @@ pub struct SensitivityEntry {
     pub share_per_unit: f64,
 }
 
-/// The explanation of the gains.
-pub(super) fn of_gains(gains: &GainSolution, sensitivities: &[GainSensitivity], names: &ChannelNames) -> Explanation {
-    Explanation {
-        conflicts: gains.conflicts.iter().map(|conflict| gain_conflict(conflict, names)).collect(),
-        remedy: gains.remedy.as_ref().map(|remedy| RemedyEntry {
-            upper: remedy.upper,
-            lower: remedy.lower,
-            free: remedy.free.iter().map(|&pair| names.pair(pair)).collect(),
-        }),
-        sensitivities: sensitivities.iter().map(|sensitivity| gain_sensitivity(sensitivity, names)).collect(),
-    }
-}
-
-/// The explanation of the delays.
-pub(super) fn of_delays(
-    delays: &DelaySolution,
-    sensitivities: &[DelaySensitivity],
-    names: &ChannelNames,
-) -> Explanation {
-    Explanation {
-        conflicts: delays.conflicts.iter().map(|conflict| delay_conflict(conflict, names)).collect(),
-        remedy: delays.remedy.as_ref().map(|remedy| RemedyEntry {
-            upper: remedy.upper_s,
-            lower: None,
-            free: remedy.free.iter().map(|&pair| names.pair(pair)).collect(),
-        }),
-        sensitivities: sensitivities.iter().map(|sensitivity| delay_sensitivity(sensitivity, names)).collect(),
-    }
-}
-
-fn gain_conflict(conflict: &GainConflict, names: &ChannelNames) -> ConflictEntry {
-    let (kind, figure, upper, lower) = match *conflict {
-        GainConflict::ProductTooGreat { product, upper, .. } => ("upper_bound", Some(product), Some(upper), None),
-        GainConflict::ProductTooSmall { product, lower, .. } => ("lower_bound", Some(product), None, Some(lower)),
-        GainConflict::RatioTooGreat { ratio, upper, lower, .. } => {
-            ("both_bounds", Some(ratio), Some(upper), Some(lower))
+impl Explanation {
+    /// The explanation of the gains or of the delays.
+    pub(super) fn of(problem: &Problem, solution: &Solution, names: &ChannelNames) -> Self {
+        let sensitivities = sensitivities(problem, solution);
+        Self {
+            conflicts: solution.conflicts.iter().map(|conflict| ConflictEntry::of(conflict, names)).collect(),
+            remedy: solution.remedy.as_ref().map(|remedy| RemedyEntry {
+                upper: remedy.upper,
+                lower: remedy.lower,
+                free: remedy.free.iter().map(|&pair| names.pair(pair)).collect(),
+            }),
+            sensitivities: sensitivities.iter().map(|sensitivity| SensitivityEntry::of(sensitivity, names)).collect(),
         }
-        GainConflict::Loop { mismatch_db, .. } => ("loop", Some(mismatch_db), None, None),
-        GainConflict::Unclear { .. } => ("unclear", None, None, None),
-    };
-    ConflictEntry {
-        kind: kind.to_owned(),
-        entries: conflict.entries().iter().map(|&pair| names.pair(pair)).collect(),
-        channels: conflict.channels().into_iter().map(|channel| names.channel(channel)).collect(),
-        figure,
-        upper,
-        lower,
-        words: conflict.words(&names.inputs, &names.outputs),
     }
 }
 
-fn delay_conflict(conflict: &DelayConflict, names: &ChannelNames) -> ConflictEntry {
-    let (kind, figure, upper) = match *conflict {
-        DelayConflict::NeedsLead { lead_s, .. } => ("lead", Some(lead_s), None),
-        DelayConflict::SumTooGreat { sum_s, upper_s, .. } => ("upper_bound", Some(sum_s), Some(upper_s)),
-        DelayConflict::DifferenceTooGreat { difference_s, upper_s, .. } => {
-            ("both_bounds", Some(difference_s), Some(upper_s))
+impl ConflictEntry {
+    fn of(conflict: &Conflict, names: &ChannelNames) -> Self {
+        let (kind, figure, upper, lower) = match conflict.kind {
+            ConflictKind::AboveUpper { asked, upper, .. } => ("upper_bound", Some(asked), Some(upper), None),
+            ConflictKind::BelowLower { asked, lower: None, .. } => ("lead", Some(-asked), None, None),
+            ConflictKind::BelowLower { asked, lower, .. } => ("lower_bound", Some(asked), None, lower),
+            ConflictKind::TooFarApart { asked, upper, lower, .. } => ("both_bounds", Some(asked), Some(upper), lower),
+            ConflictKind::Loop { mismatch } => ("loop", Some(mismatch), None, None),
+            ConflictKind::Unclear => ("unclear", None, None, None),
+        };
+        Self {
+            kind: kind.to_owned(),
+            entries: conflict.entries.iter().map(|&pair| names.pair(pair)).collect(),
+            channels: conflict.channels().into_iter().map(|channel| names.channel(channel)).collect(),
+            figure,
+            upper,
+            lower,
+            words: conflict.words(&names.inputs, &names.outputs),
         }
-        DelayConflict::Loop { mismatch_s, .. } => ("loop", Some(mismatch_s), None),
-        DelayConflict::Unclear { .. } => ("unclear", None, None),
-    };
-    ConflictEntry {
-        kind: kind.to_owned(),
-        entries: conflict.entries().iter().map(|&pair| names.pair(pair)).collect(),
-        channels: conflict.channels().into_iter().map(|channel| names.channel(channel)).collect(),
-        figure,
-        upper,
-        lower: None,
-        words: conflict.words(&names.inputs, &names.outputs),
     }
 }
 
-fn gain_sensitivity(sensitivity: &GainSensitivity, names: &ChannelNames) -> SensitivityEntry {
-    let (restraint, entry, channel) = match sensitivity.restraint {
-        GainRestraint::Held(pair) => ("held", Some(names.pair(pair)), None),
-        GainRestraint::LowerBound(channel) => ("lower_bound", None, Some(channel)),
-        GainRestraint::UpperBound(channel) => ("upper_bound", None, Some(channel)),
-    };
-    sensitivity_entry(restraint, entry, channel, (sensitivity.per_db, sensitivity.share_per_db), names)
-}
-
-fn delay_sensitivity(sensitivity: &DelaySensitivity, names: &ChannelNames) -> SensitivityEntry {
-    let (restraint, entry, channel) = match sensitivity.restraint {
-        DelayRestraint::Held(pair) => ("held", Some(names.pair(pair)), None),
-        DelayRestraint::Zero(channel) => ("lower_bound", None, Some(channel)),
-        DelayRestraint::UpperBound(channel) => ("upper_bound", None, Some(channel)),
-    };
-    sensitivity_entry(restraint, entry, channel, (sensitivity.per_ms, sensitivity.share_per_ms), names)
-}
-
-fn sensitivity_entry(
-    restraint: &str,
-    entry: Option<(String, String)>,
-    channel: Option<Channel>,
-    (per_unit, share_per_unit): (f64, f64),
-    names: &ChannelNames,
-) -> SensitivityEntry {
-    SensitivityEntry {
-        restraint: restraint.to_owned(),
-        entry,
-        channel: channel.map(|channel| names.channel(channel)),
-        per_unit,
-        share_per_unit,
+impl SensitivityEntry {
+    fn of(sensitivity: &Sensitivity, names: &ChannelNames) -> Self {
+        let (restraint, entry, channel) = match sensitivity.restraint {
+            Restraint::Held(pair) => ("held", Some(names.pair(pair)), None),
+            Restraint::LowerBound(channel) => ("lower_bound", None, Some(names.channel(channel))),
+            Restraint::UpperBound(channel) => ("upper_bound", None, Some(names.channel(channel))),
+        };
+        Self {
+            restraint: restraint.to_owned(),
+            entry,
+            channel,
+            per_unit: sensitivity.per_unit,
+            share_per_unit: sensitivity.share_per_unit,
+        }
     }
 }

@@ -2,18 +2,19 @@
 
 use std::collections::BTreeSet;
 
-use crate::correction::{DelayConflict, GainObjective, Outcome, delay_sensitivities, gain_sensitivities};
+use crate::correction::Outcome;
 use crate::dataset::{BundleKind, Condition, ConditionId, Model, PairTable, Provenance};
-use crate::fidelity::{Cost, CostAverage};
+use crate::fidelity::Cost;
+use crate::io::settings_entry::SettingsEntry;
 use crate::schedule::{Regression, Schedule, ScheduleKind, ScheduledQuantity};
-use crate::study::{Analysis, Assessed, Caution, ConditionAnalysis, Settings};
+use crate::study::{Analysis, Assessed, Caution, ConditionAnalysis};
 
-use super::explanation;
+use super::explanation::Explanation;
 use super::names::{ByName, ChannelNames, rows};
 use super::schema::{
     Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
-    DelayOutcome, GainOutcome, NetGain, ScheduleUsed, ScheduledDelays, ScheduledGains, SetAsideEntry, SettingsUsed,
-    SourceEntry, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
+    DelayOutcome, GainOutcome, NetGain, ScheduleUsed, ScheduledDelays, ScheduledGains, SetAsideEntry, SourceEntry,
+    UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
 };
 use super::{NAME, VERSION};
 
@@ -29,7 +30,7 @@ impl Corrections {
             version: VERSION,
             software: concat!("gdcm ", env!("CARGO_PKG_VERSION")).to_owned(),
             dataset: DatasetLabel { name: dataset.name().to_owned(), sha256: sha256.to_owned() },
-            settings: gather.settings(&analysis.study.settings),
+            settings: SettingsEntry::of(&analysis.study.settings, dataset),
             conditions: Vec::new(),
             failed: Vec::new(),
             schedule: analysis.schedule.as_ref().ok().map(|schedule| gather.schedule(schedule)),
@@ -67,31 +68,6 @@ impl Gather<'_> {
                 magnitude: rows(changes, |change| change.magnitude()),
                 phase: rows(changes, |change| change.phase()),
             }),
-        }
-    }
-
-    fn settings(&self, settings: &Settings) -> SettingsUsed {
-        let ignored = settings.fitted.map(|_, fitted| !fitted);
-        SettingsUsed {
-            band_rad_s: [settings.band.min(), settings.band.max()],
-            points: settings.points,
-            alpha_gain: settings.alpha_gain,
-            alpha_delay: settings.alpha_delay,
-            quantile: settings.quantile,
-            constrained: self.names.marked(&settings.constrained),
-            ignored: self.names.marked(&ignored),
-            cost_average: match settings.cost_average {
-                CostAverage::Median => "median",
-                CostAverage::Mean => "mean",
-            }
-            .to_owned(),
-            gain_objective: match settings.gain_objective {
-                GainObjective::Ratio => "ratio",
-                GainObjective::Decibel => "dB",
-            }
-            .to_owned(),
-            gain_bounds: settings.gain_bounds.map(|bounds| [bounds.lower, bounds.upper]),
-            delay_upper_s: settings.delay_upper_s,
         }
     }
 
@@ -146,7 +122,7 @@ impl Gather<'_> {
         pairs
             .map(|pair| {
                 let (output, input) = self.names.pair(pair);
-                NetGain { output, input, gain: result.correction.net_gain(pair) }
+                NetGain { output, input, gain: result.correction.net_gain(pair).value() }
             })
             .collect()
     }
@@ -156,18 +132,18 @@ impl Gather<'_> {
         let unmatched = gains.unmatched.iter().map(|entry| {
             let (output, input) = names.pair(entry.pair);
             let why = entry.why.words(&names.inputs, &names.outputs);
-            let (target, wanted, short_db) = (entry.target, entry.wanted, entry.shortfall_db);
+            let (target, wanted, short_db) = (entry.target, entry.delta, entry.excess);
             UnmatchedGainEntry { output, input, target, wanted, short_db, why }
         });
         GainOutcome {
             objective: gains.objective,
-            lower_bound: Some(gains.lower_bound).filter(|bound| bound.is_finite()),
-            proven: matches!(gains.outcome, Outcome::Proven { .. }),
-            gap: gains.outcome.gap(),
-            local_minima: gains.local_minima.len(),
+            lower_bound: Some(gains.proof.lower_bound).filter(|bound| bound.is_finite()),
+            proven: matches!(gains.proof.outcome, Outcome::Proven { .. }),
+            gap: gains.proof.outcome.gap(),
+            local_minima: gains.proof.local_minima.len(),
             matched: gains.matched,
             unmatched: unmatched.collect(),
-            explanation: explanation::of_gains(gains, &gain_sensitivities(&result.gain_problem, gains), names),
+            explanation: Explanation::of(&result.gain_problem, gains, names),
         }
     }
 
@@ -178,14 +154,14 @@ impl Gather<'_> {
             let (output, input) = names.pair(entry.pair);
             let mut why = entry.words(top, &names.inputs, &names.outputs);
             // A lone response that needs lead has said so already.
-            if !matches!(&entry.why, DelayConflict::NeedsLead { entries, .. } if entries.len() == 1) {
+            if !entry.why.is_lone_lead() {
                 why = format!("{why} {}", entry.why.words(&names.inputs, &names.outputs));
             }
             UnmatchedDelayEntry {
                 output,
                 input,
-                target_s: entry.target_s,
-                wanted_s: entry.wanted_s,
+                target_s: entry.target,
+                wanted_s: entry.delta,
                 phase_left_deg: entry.phase_left_deg(top),
                 why,
             }
@@ -194,7 +170,7 @@ impl Gather<'_> {
             objective: delays.objective,
             matched: delays.matched,
             unmatched: unmatched.collect(),
-            explanation: explanation::of_delays(delays, &delay_sensitivities(&result.delay_problem, delays), names),
+            explanation: Explanation::of(&result.delay_problem, delays, names),
         }
     }
 

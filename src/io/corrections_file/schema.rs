@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::io::settings_entry::SettingsEntry;
 use crate::schedule::DEFAULT_TOLERANCE_KT;
 
 use super::explanation::Explanation;
@@ -22,7 +23,7 @@ pub struct Corrections {
     /// The dataset analysed.
     pub dataset: DatasetLabel,
     /// Every setting that changes a result.
-    pub settings: SettingsUsed,
+    pub settings: SettingsEntry,
     /// Result of each condition that has one.
     pub conditions: Vec<ConditionCorrections>,
     /// Conditions without a result.
@@ -41,33 +42,6 @@ pub struct DatasetLabel {
     pub name: String,
     /// SHA-256 of its file, in hexadecimal.
     pub sha256: String,
-}
-
-/// The settings of the analysis.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SettingsUsed {
-    /// Band of comparison \[rad/s\].
-    pub band_rad_s: [f64; 2],
-    /// Number of frequencies.
-    pub points: usize,
-    /// Weight of the regularisation of the gains.
-    pub alpha_gain: f64,
-    /// Weight of the regularisation of the delays.
-    pub alpha_delay: f64,
-    /// Quantile that sets the bounds.
-    pub quantile: f64,
-    /// Responses to be held, `[output, input]`.
-    pub constrained: Vec<(String, String)>,
-    /// Responses that the objective ignores, `[output, input]`.
-    pub ignored: Vec<(String, String)>,
-    /// `median` or `mean`: the average over frequency in J.
-    pub cost_average: String,
-    /// `ratio` or `dB`: what the gains minimise.
-    pub gain_objective: String,
-    /// Gain bounds set by hand.
-    pub gain_bounds: Option<[f64; 2]>,
-    /// Upper bound of the delays set by hand \[s\].
-    pub delay_upper_s: Option<f64>,
 }
 
 /// The result of one condition.

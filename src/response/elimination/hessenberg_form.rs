@@ -74,7 +74,10 @@ impl HessenbergForm {
         let input_scale = 1.0 / power_of_two_below(largest);
         a *= frequency_scale;
         b *= input_scale;
-        c *= frequency_scale / input_scale;
+        // One after the other, the larger first: what both leave in range must not underflow between them.
+        let (one, other) = (frequency_scale, 1.0 / input_scale);
+        c *= one.max(other);
+        c *= one.min(other);
         if first_input > 0 {
             b.swap_columns(0, first_input);
             d.swap_columns(0, first_input);

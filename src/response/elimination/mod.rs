@@ -15,7 +15,7 @@
 //!
 //! A frequency is a lane of a vector register. Hessenberg form: Laub, IEEE Trans. Automatic Control 26(2), 1981; tau is the
 //! pivot threshold of Duff, Erisman & Reid, "Direct Methods for Sparse Matrices", 2nd ed. 2017, 5.2. Steps 3 to 5 run over
-//! panels of three columns, so that only the multiples of the next rows are written to memory ([`eliminated_rows`]).
+//! panels of three columns, so that only the multiples of the next rows are written to memory (`eliminated_rows`).
 
 mod balancing;
 mod complex_lanes;

@@ -279,7 +279,7 @@ fn a_model_keeps_the_file_it_was_made_from_through_saving_and_into_the_correctio
     assert_eq!(again["conditions"][0]["physics_models"][1]["source"], source);
     assert_eq!(again["conditions"][0]["physics_models"][0].get("source"), None);
     let study = Study::new(load_dataset(&path).unwrap().dataset);
-    let analysis = gdcm::study::Engine::default().analyze(&study, &gdcm::study::Unwatched).unwrap();
+    let analysis = gdcm::study::Engine::default().analyze(&study, &gdcm::study::Unobserved).unwrap();
     let written = gdcm::io::Corrections::of(&analysis, "", &analysis.conditions.keys().copied().collect());
     let entry = &written.conditions[0].sources[0];
     assert_eq!((entry.bundle.as_str(), entry.file.as_deref()), ("physics", Some("models/roll+5.mat")));

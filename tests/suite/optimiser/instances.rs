@@ -1,6 +1,6 @@
 //! The reference instances under `tests/data`.
 
-use gdcm::correction::{DelayProblem, GainBounds, GainObjective, GainProblem};
+use gdcm::correction::{Bounds, Problem};
 use gdcm::dataset::{Pair, PairTable};
 use serde_json::Value;
 
@@ -8,7 +8,7 @@ use serde_json::Value;
 pub struct GainInstance {
     pub id: u64,
     pub kind: String,
-    pub problem: GainProblem,
+    pub problem: Problem,
     pub objective: f64,
     pub matched: bool,
     /// Greatest miss of a held entry, in natural logarithms; 0 where matched.
@@ -37,16 +37,10 @@ pub fn gain_instances() -> Vec<GainInstance> {
 fn gain_instance(instance: &Value) -> GainInstance {
     let matched = instance["two_stage"].is_null();
     let answer = if matched { instance } else { &instance["two_stage"] };
+    let bounds = Bounds { lower: instance["lb"].as_f64().unwrap(), upper: instance["ub"].as_f64().unwrap() };
     let constrained = table(&instance["on_axis"], |mark| mark != 0.0);
-    let wanted = table(&instance["G"], Some);
-    let problem = GainProblem {
-        fitted: PairTable::filled(wanted.outputs(), wanted.inputs(), true),
-        wanted,
-        constrained,
-        bounds: GainBounds { lower: instance["lb"].as_f64().unwrap(), upper: instance["ub"].as_f64().unwrap() },
-        alpha: instance["alpha"].as_f64().unwrap(),
-        objective: GainObjective::Ratio,
-    };
+    let alpha = instance["alpha"].as_f64().unwrap();
+    let problem = Problem { alpha, ..Problem::gains(table(&instance["G"], Some), constrained, bounds) };
     GainInstance {
         id: instance["id"].as_u64().unwrap(),
         kind: instance["kind"].as_str().unwrap().to_owned(),
@@ -63,11 +57,11 @@ fn gain_instance(instance: &Value) -> GainInstance {
 /// One instance of equation (11) with its minimum.
 pub struct DelayInstance {
     pub id: u64,
-    pub problem: DelayProblem,
+    pub problem: Problem,
     pub objective: f64,
     pub matched: bool,
-    pub inputs_s: Vec<f64>,
-    pub outputs_s: Vec<f64>,
+    pub inputs: Vec<f64>,
+    pub outputs: Vec<f64>,
 }
 
 /// The five on-axis entries of Table 2, [output, input].
@@ -84,29 +78,24 @@ pub fn delay_instances() -> Vec<DelayInstance> {
 }
 
 fn delay_instance(instance: &Value) -> DelayInstance {
-    let problem = DelayProblem {
-        wanted_s: table(&instance["D"], Some),
-        constrained: on_axis(),
-        fitted: PairTable::filled(6, 4, true),
-        upper_s: instance["ub"].as_f64().unwrap(),
-        alpha: instance["alpha"].as_f64().unwrap(),
-    };
+    let problem = Problem::delays(table(&instance["D"], Some), on_axis(), instance["ub"].as_f64().unwrap());
+    let problem = Problem { alpha: instance["alpha"].as_f64().unwrap(), ..problem };
     DelayInstance {
         id: instance["id"].as_u64().unwrap(),
         problem,
         objective: instance["objective"].as_f64().unwrap(),
         matched: instance["matched"].as_bool().unwrap(),
-        inputs_s: numbers(&instance["tau_in"]),
-        outputs_s: numbers(&instance["tau_out"]),
+        inputs: numbers(&instance["tau_in"]),
+        outputs: numbers(&instance["tau_out"]),
     }
 }
 
 /// The gains and delays of one condition of the example, with their least objectives.
 pub struct ExampleCondition {
     pub id: u64,
-    pub gains: GainProblem,
+    pub gains: Problem,
     pub gain_objective: f64,
-    pub delays: DelayProblem,
+    pub delays: Problem,
     pub delay_objective: f64,
 }
 
@@ -117,12 +106,12 @@ pub fn example_conditions() -> Vec<ExampleCondition> {
 
 fn example_condition(condition: &Value) -> ExampleCondition {
     let number = |name: &str| condition[name].as_f64().unwrap();
-    let bounds = GainBounds { lower: number("lb"), upper: number("ub") };
+    let bounds = Bounds { lower: number("lb"), upper: number("ub") };
     ExampleCondition {
         id: condition["id"].as_u64().unwrap(),
-        gains: GainProblem::new(table(&condition["G"], Some), on_axis(), bounds),
+        gains: Problem::gains(table(&condition["G"], Some), on_axis(), bounds),
         gain_objective: number("gain_objective"),
-        delays: DelayProblem::new(table(&condition["D"], Some), on_axis(), number("tau_ub")),
+        delays: Problem::delays(table(&condition["D"], Some), on_axis(), number("tau_ub")),
         delay_objective: number("delay_objective"),
     }
 }

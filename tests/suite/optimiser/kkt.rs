@@ -1,6 +1,6 @@
 //! How far an answer is from the conditions of a minimum, computed from the channels alone.
 
-use gdcm::correction::{DelayProblem, DelaySolution, GainObjective, GainProblem, GainSolution};
+use gdcm::correction::{GainObjective, Problem, Quantity, Solution};
 use gdcm::dataset::Pair;
 
 /// A minimisation over channel values (inputs, then outputs), seen at one point.
@@ -15,25 +15,27 @@ struct Point {
 }
 
 /// Residual of the gains in logarithms, relative to the size of the terms of each channel.
-pub fn gain_residual(problem: &GainProblem, solution: &GainSolution) -> f64 {
-    let (inputs, outputs) = (problem.wanted.inputs(), problem.wanted.outputs());
+pub fn gain_residual(problem: &Problem, solution: &Solution) -> f64 {
+    let (inputs, outputs) = (problem.delta.inputs(), problem.delta.outputs());
     let mut gradient = vec![0.0; inputs + outputs];
     let mut sizes = vec![1e-300; inputs + outputs];
-    let mut add = |channels: &[usize], wanted: f64, gain: f64, weight: f64| {
+    let mut add = |channels: &[usize], delta: f64, gain: f64, weight: f64| {
         let decibel = 2.0 * weight * (20.0 / std::f64::consts::LN_10).powi(2);
-        let (slope, size) = match problem.objective {
-            GainObjective::Ratio => (2.0 * weight * gain * (gain - wanted), 2.0 * weight * gain * (gain + wanted)),
-            GainObjective::Decibel => (decibel * (gain / wanted).ln(), decibel),
+        let (slope, size) = match problem.quantity {
+            Quantity::Gain(GainObjective::Ratio) => {
+                (2.0 * weight * gain * (gain - delta), 2.0 * weight * gain * (gain + delta))
+            }
+            _ => (decibel * (gain / delta).ln(), decibel),
         };
         for &channel in channels {
             gradient[channel] += slope;
             sizes[channel] += size;
         }
     };
-    for (pair, wanted) in problem.wanted.iter() {
-        if let (Some(wanted), true) = (wanted, problem.fitted[pair]) {
+    for (pair, delta) in problem.delta.iter() {
+        if let (Some(delta), true) = (delta, problem.fitted[pair]) {
             let gain = solution.inputs[pair.input] * solution.outputs[pair.output];
-            add(&[pair.input, inputs + pair.output], *wanted, gain, 1.0);
+            add(&[pair.input, inputs + pair.output], *delta, gain, 1.0);
         }
     }
     for (output, gain) in solution.outputs.iter().enumerate() {
@@ -46,26 +48,26 @@ pub fn gain_residual(problem: &GainProblem, solution: &GainSolution) -> f64 {
 }
 
 /// Residual of the delays, relative to the size of the terms of each channel.
-pub fn delay_residual(problem: &DelayProblem, solution: &DelaySolution) -> f64 {
-    let (inputs, outputs) = (problem.wanted_s.inputs(), problem.wanted_s.outputs());
+pub fn delay_residual(problem: &Problem, solution: &Solution) -> f64 {
+    let (inputs, outputs) = (problem.delta.inputs(), problem.delta.outputs());
     let mut gradient = vec![0.0; inputs + outputs];
     let mut sizes = vec![1e-300; inputs + outputs];
-    for (pair, wanted) in problem.wanted_s.iter() {
-        if let (Some(wanted), true) = (wanted, problem.fitted[pair]) {
-            let sum = solution.inputs_s[pair.input] + solution.outputs_s[pair.output];
+    for (pair, delta) in problem.delta.iter() {
+        if let (Some(delta), true) = (delta, problem.fitted[pair]) {
+            let sum = solution.inputs[pair.input] + solution.outputs[pair.output];
             for channel in [pair.input, inputs + pair.output] {
-                gradient[channel] += 2.0 * (sum - wanted);
-                sizes[channel] += 2.0 * (sum + wanted.abs());
+                gradient[channel] += 2.0 * (sum - delta);
+                sizes[channel] += 2.0 * (sum + delta.abs());
             }
         }
     }
-    for (output, delay) in solution.outputs_s.iter().enumerate() {
+    for (output, delay) in solution.outputs.iter().enumerate() {
         gradient[inputs + output] += 2.0 * problem.alpha * delay;
         // Delays of a tenth of a second.
         sizes[inputs + output] += 0.2 * problem.alpha;
     }
-    let on = |delay: &f64| (*delay == 0.0, *delay == problem.upper_s);
-    let bounds = solution.inputs_s.iter().chain(&solution.outputs_s).map(on).collect();
+    let on = |delay: &f64| (*delay == 0.0, *delay == problem.bounds.upper);
+    let bounds = solution.inputs.iter().chain(&solution.outputs).map(on).collect();
     residual(&Point { inputs, gradient, bounds, held: problem.constrained.marked().collect(), sizes })
 }
 

@@ -1,6 +1,6 @@
 //! Random problems of every shape that the optimiser must take.
 
-use gdcm::correction::{DelayProblem, GainBounds, GainObjective, GainProblem};
+use gdcm::correction::{Bounds, GainObjective, Problem, Quantity};
 use gdcm::dataset::{Pair, PairTable};
 use proptest::prelude::*;
 
@@ -43,55 +43,45 @@ pub fn alphas() -> impl Strategy<Value = f64> {
     prop_oneof![Just(0.0), Just(1e-6), Just(0.1), Just(1.0), Just(10.0), Just(1e6)]
 }
 
-/// Gain problems of up to `most` outputs and inputs; delta gains within `spread` (natural logarithm) of 1.
-pub fn gain_problems(most: (usize, usize), spread: f64, pattern: Pattern) -> impl Strategy<Value = GainProblem> {
-    let problem = move |shape: (usize, usize)| {
-        let wanted = entries(shape, prop::option::weighted(0.95, (-spread..spread).prop_map(f64::exp)));
+/// The delta, held and fitted entries of a problem of up to `most` outputs and inputs.
+fn tables(
+    most: (usize, usize),
+    pattern: Pattern,
+    deltas: impl Strategy<Value = f64> + Clone + 'static,
+) -> impl Strategy<Value = (PairTable<Option<f64>>, PairTable<bool>, PairTable<bool>)> {
+    shapes(most).prop_flat_map(move |shape| {
+        let deltas = entries(shape, prop::option::weighted(0.95, deltas.clone()));
         let constrained = entries(shape, prop::bool::weighted(0.25));
         let fitted = entries(shape, prop::bool::weighted(0.9));
-        let bounds = (0.2..1.0_f64, 1.0..5.0_f64, prop::bool::weighted(0.05));
-        (wanted, constrained, fitted, bounds, alphas(), objectives()).prop_map(
-            move |(wanted, constrained, fitted, (lower, upper, fixed), alpha, objective)| {
-                let wanted = fill(shape, &wanted);
-                let marks = match pattern {
-                    Pattern::Forest => one_each(shape, &constrained),
-                    Pattern::Any => fill(shape, &constrained),
-                };
-                GainProblem {
-                    constrained: marks.map(|pair, mark| *mark && wanted[pair].is_some()),
-                    wanted,
-                    fitted: fill(shape, &fitted),
-                    bounds: GainBounds { lower, upper: if fixed { lower } else { upper } },
-                    alpha,
-                    objective,
-                }
-            },
-        )
-    };
-    shapes(most).prop_flat_map(problem)
-}
-
-/// Delay problems of up to `most` outputs and inputs; delta delays of up to a tenth of a second either way.
-pub fn delay_problems(most: (usize, usize), pattern: Pattern) -> impl Strategy<Value = DelayProblem> {
-    let problem = move |shape: (usize, usize)| {
-        let wanted = entries(shape, prop::option::weighted(0.95, -0.1..0.1_f64));
-        let constrained = entries(shape, prop::bool::weighted(0.25));
-        let fitted = entries(shape, prop::bool::weighted(0.9));
-        let upper = prop_oneof![1 => Just(0.0), 9 => 0.0..0.2_f64];
-        (wanted, constrained, fitted, upper, alphas()).prop_map(move |(wanted, constrained, fitted, upper_s, alpha)| {
-            let wanted_s = fill(shape, &wanted);
+        (deltas, constrained, fitted).prop_map(move |(deltas, constrained, fitted)| {
+            let delta = fill(shape, &deltas);
             let marks = match pattern {
                 Pattern::Forest => one_each(shape, &constrained),
                 Pattern::Any => fill(shape, &constrained),
             };
-            DelayProblem {
-                constrained: marks.map(|pair, mark| *mark && wanted_s[pair].is_some()),
-                wanted_s,
-                fitted: fill(shape, &fitted),
-                upper_s,
-                alpha,
-            }
+            let constrained = marks.map(|pair, mark| *mark && delta[pair].is_some());
+            (delta, constrained, fill(shape, &fitted))
         })
-    };
-    shapes(most).prop_flat_map(problem)
+    })
+}
+
+/// Gain problems of up to `most` outputs and inputs; delta gains within `spread` (natural logarithm) of 1.
+pub fn gain_problems(most: (usize, usize), spread: f64, pattern: Pattern) -> impl Strategy<Value = Problem> {
+    let deltas = (-spread..spread).prop_map(f64::exp as fn(f64) -> f64).boxed();
+    let bounds = (0.2..1.0_f64, 1.0..5.0_f64, prop::bool::weighted(0.05));
+    (tables(most, pattern, deltas), bounds, alphas(), objectives()).prop_map(
+        |((delta, constrained, fitted), (lower, upper, fixed), alpha, objective)| {
+            let bounds = Bounds { lower, upper: if fixed { lower } else { upper } };
+            Problem { quantity: Quantity::Gain(objective), delta, constrained, fitted, bounds, alpha }
+        },
+    )
+}
+
+/// Delay problems of up to `most` outputs and inputs; delta delays of up to a tenth of a second either way.
+pub fn delay_problems(most: (usize, usize), pattern: Pattern) -> impl Strategy<Value = Problem> {
+    let upper = prop_oneof![1 => Just(0.0), 9 => 0.0..0.2_f64];
+    (tables(most, pattern, -0.1..0.1_f64), upper, alphas()).prop_map(|((delta, constrained, fitted), upper, alpha)| {
+        let bounds = Bounds { lower: 0.0, upper };
+        Problem { quantity: Quantity::Delay, delta, constrained, fitted, bounds, alpha }
+    })
 }

@@ -1,13 +1,12 @@
 //! The minima of equation (11).
 
-use gdcm::correction::solve_delays;
-
 use super::instances::delay_instances;
+use super::solved;
 
 #[test]
 fn every_minimum_is_reached() {
     for instance in delay_instances() {
-        let solution = solve_delays(&instance.problem).unwrap();
+        let solution = solved(&instance.problem);
         assert_eq!(solution.matched, instance.matched, "{}", instance.id);
         // The reference is an interior point's; the program is convex.
         assert!(
@@ -23,14 +22,14 @@ fn every_minimum_is_reached() {
 #[test]
 fn held_sums_are_held_and_delays_stay_inside_their_bounds() {
     for instance in delay_instances() {
-        let solution = solve_delays(&instance.problem).unwrap();
+        let solution = solved(&instance.problem);
         for pair in instance.problem.constrained.marked() {
-            let sum = solution.inputs_s[pair.input] + solution.outputs_s[pair.output];
+            let sum = solution.inputs[pair.input] + solution.outputs[pair.output];
             // A few roundings of delays of a tenth of a second.
-            assert!((sum - solution.targets_s[pair].unwrap()).abs() <= 1e-15, "{}: {pair:?}", instance.id);
+            assert!((sum - solution.targets[pair].unwrap()).abs() <= 1e-15, "{}: {pair:?}", instance.id);
         }
-        for delay in solution.inputs_s.iter().chain(&solution.outputs_s) {
-            assert!((0.0..=instance.problem.upper_s).contains(delay), "{}: {delay}", instance.id);
+        for delay in solution.inputs.iter().chain(&solution.outputs) {
+            assert!((0.0..=instance.problem.bounds.upper).contains(delay), "{}: {delay}", instance.id);
         }
     }
 }
@@ -38,12 +37,12 @@ fn held_sums_are_held_and_delays_stay_inside_their_bounds() {
 #[test]
 fn delays_on_a_bound_are_exactly_on_it() {
     for instance in delay_instances() {
-        let solution = solve_delays(&instance.problem).unwrap();
-        for delay in solution.inputs_s.iter().chain(&solution.outputs_s) {
+        let solution = solved(&instance.problem);
+        for delay in solution.inputs.iter().chain(&solution.outputs) {
             // A nanosecond: anything this near to a bound is meant to be on it.
             assert!(*delay == 0.0 || *delay > 1e-9, "{}: {delay:e}", instance.id);
             assert!(
-                *delay == instance.problem.upper_s || instance.problem.upper_s - delay > 1e-9,
+                *delay == instance.problem.bounds.upper || instance.problem.bounds.upper - delay > 1e-9,
                 "{}: {delay:e}",
                 instance.id
             );
@@ -54,10 +53,10 @@ fn delays_on_a_bound_are_exactly_on_it() {
 #[test]
 fn sums_equal_the_reference() {
     for instance in delay_instances() {
-        let solution = solve_delays(&instance.problem).unwrap();
-        for pair in instance.problem.wanted_s.pairs() {
-            let sum = solution.inputs_s[pair.input] + solution.outputs_s[pair.output];
-            let reference = instance.inputs_s[pair.input] + instance.outputs_s[pair.output];
+        let solution = solved(&instance.problem);
+        for pair in instance.problem.delta.pairs() {
+            let sum = solution.inputs[pair.input] + solution.outputs[pair.output];
+            let reference = instance.inputs[pair.input] + instance.outputs[pair.output];
             // An objective known to 1e-8 fixes its minimum to about the root of that, of delays of a tenth of a second.
             assert!((sum - reference).abs() <= 2e-5, "{}: {pair:?} {sum} {reference}", instance.id);
         }

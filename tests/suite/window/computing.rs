@@ -179,12 +179,15 @@ fn a_long_computation_can_be_stopped_and_taken_up_again() {
 
 #[test]
 fn gains_that_the_answer_leaves_open_are_proven_beside_it() {
-    let hasty = ProofBudget { boxes: 0, minima: 0 };
+    let hasty = ProofBudget { work: 0, listing: 0, ..ProofBudget::default() };
     let engine = move || Engine::default().with_proofs_within(hasty);
     let study = Study::new(embedded_example().unwrap().dataset);
     let open = engine().analyze(&study, &Unobserved).unwrap();
     let is_open = |outcome: Outcome| matches!(outcome, Outcome::NotProven { .. });
-    assert!(open.conditions.values().flatten().any(|condition| is_open(condition.gains.outcome)), "nothing to prove");
+    assert!(
+        open.conditions.values().flatten().any(|condition| is_open(condition.gains.proof.outcome)),
+        "nothing to prove"
+    );
 
     let mut window = window_with(example(), Setup { engine: Arc::new(engine), ..Setup::default() });
     wait_until(&mut window, "every proof", |window| !state(window).results.background.is_busy());
@@ -194,8 +197,8 @@ fn gains_that_the_answer_leaves_open_are_proven_beside_it() {
     let shown = state(&window).analysis().unwrap();
     for (condition, (beside, alone)) in shown.conditions.values().zip(proven.conditions.values()).enumerate() {
         let (beside, alone) = (beside.as_ref().unwrap(), alone.as_ref().unwrap());
-        assert!(!is_open(beside.gains.outcome), "condition {condition}");
-        assert!(!is_open(alone.gains.outcome) && beside.correction == alone.correction, "condition {condition}");
+        assert!(!is_open(beside.gains.proof.outcome), "condition {condition}");
+        assert!(!is_open(alone.gains.proof.outcome) && beside.correction == alone.correction, "condition {condition}");
     }
     assert_eq!(shown.schedule, proven.schedule, "what is made from the gains follows them");
 }
@@ -204,6 +207,7 @@ fn gains_that_the_answer_leaves_open_are_proven_beside_it() {
 fn the_example_needs_no_proof_beside_the_answer() {
     let study = Study::new(embedded_example().unwrap().dataset);
     let analysis = Engine::default().with_proofs_within(LIVE_PROOF).analyze(&study, &Unobserved).unwrap();
-    let proven = analysis.conditions.values().flatten().filter(|of| matches!(of.gains.outcome, Outcome::Proven { .. }));
+    let proven =
+        analysis.conditions.values().flatten().filter(|of| matches!(of.gains.proof.outcome, Outcome::Proven { .. }));
     assert_eq!(proven.count(), 11);
 }

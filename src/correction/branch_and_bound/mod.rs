@@ -1,0 +1,54 @@
+//! The least objective over the scales that the held products leave free, with a proof.
+//!
+//! Holding `k_o k_i` ties the logarithms of a connected piece of channels together up to one *scale* `s` (M8, structure). With the
+//! ground, scale 0, the objective is a sum of functions of one difference each,
+//!
+//! ```text
+//! F(s) = c + sum over terms f_t(s_j - s_i),     f_t(u) = R1 (e^u - c1)^2 + R2 (e^-u - c2)^2   or   w (u - c)^2:
+//! ```
+//!
+//! each exponential is convex where `e^u >= c / 2`, a term concave on one interval at most. A *node* is a part of the box given by
+//! *difference bounds* `s_j - s_i <= b_ij`. Spatial (interval) branch and bound:
+//!
+//! ```text
+//!  1  best <- local minimum of F from where it is told to start (projected Newton)
+//!  2  open <- { the whole box }
+//!  3  while the least bound of the open nodes < (1 - 2e-10) best (proof), then < 1.01 best (listing), and the budget lasts
+//!  4     node <- the open node of least bound;  listing: monotonicity test, convexity test: without an unknown minimum, close it
+//!  5     node.bound <- tangent plane of its underestimator (each term's convex envelope) at its minimum, less the rounding
+//!  6     best <- local minimum of F from there, where that may be a new one worth listing
+//!  7     if node.bound >= 1.01 best, close it; if only >= best, keep it for the listing
+//!  8     if F is convex over the hull of node and best (convexity test), close it with the bound from best's gradient and Hessian
+//!  9     branch: at the difference whose term lies furthest above its envelope, or at the end of a concave interval
+//! 10  lower bound <- least bound of closed and open nodes
+//! ```
+//!
+//! Hansen and Walster, *Global Optimization Using Interval Analysis* (2004): branching, monotonicity and convexity tests. Horst
+//! and Tuy, *Global Optimization* (1996): best-first branch and bound, convergence. McCormick (1976), *Mathematical Programming*
+//! 10: convex envelopes term by term. The tangent plane bounds the convex underestimator wherever Newton's method has come to, so
+//! the bound needs no convergence; its rounding is counted term by term ([`Rounded`]).
+
+mod budget;
+mod differences;
+mod envelope;
+mod exponential;
+mod newton;
+mod node;
+mod node_tests;
+mod objective;
+mod rounded;
+mod search;
+mod term;
+#[cfg(test)]
+mod tests;
+mod underestimator;
+
+pub use budget::{Limit, ProofBudget};
+
+pub(crate) use budget::{Effort, SearchStopped};
+pub(crate) use exponential::{Group, fixed_square, product};
+pub(crate) use newton::Newton;
+pub(crate) use objective::Objective;
+pub(crate) use rounded::Rounded;
+pub(crate) use search::{Minima, search};
+pub(crate) use term::{Function, SquareEntry, Term, quadratic_terms};

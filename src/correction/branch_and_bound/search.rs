@@ -1,0 +1,345 @@
+//! The branch and bound itself.
+
+use super::budget::{Effort, Limit, PROOF, ProofBudget, SearchStopped};
+use super::differences::DifferenceBounds;
+use super::newton::Newton;
+use super::node::{Node, OpenNodes};
+use super::node_tests::NodeTests;
+use super::objective::{Curvature, Differentiable, Expansion, Objective};
+use super::underestimator::{Underestimator, tangent_bound};
+
+/// Minima within this factor of the best are listed.
+const NEAR: f64 = 1.01;
+
+/// The search stops branching at this gap, to end safely below [`PROOF`].
+const AIM: f64 = 2e-10;
+
+/// What a search found.
+#[derive(Clone, Debug)]
+pub(crate) struct Minima {
+    /// Distinct local minima within 1 % of the best, best first, each with its value.
+    pub(crate) minima: Vec<(Vec<f64>, f64)>,
+    /// No point of the box is below this.
+    pub(crate) lower_bound: f64,
+    /// `(best - lower_bound) / max(best, floor)`.
+    pub(crate) gap: f64,
+    /// What ended the search, where the gap is not a proof.
+    pub(crate) limit: Option<Limit>,
+    /// Nodes visited.
+    pub(crate) nodes: usize,
+    /// Whether there can be no other local minimum within 1 %.
+    pub(crate) all_minima: bool,
+}
+
+/// Finds the global minimum of `objective` over its box, with a rigorous lower bound ([`super`] has the algorithm).
+///
+/// Newton's method begins at `start`; `floor` is the objective below which the gap is no longer relative: what rounding allows.
+///
+/// # Errors
+/// [`SearchStopped`] where the effort was told to stop.
+pub(crate) fn search(
+    objective: &Objective,
+    start: &[f64],
+    budget: ProofBudget,
+    floor: f64,
+    effort: &Effort<'_>,
+) -> Result<Minima, SearchStopped> {
+    let mut search = Search::new(objective, budget, floor, effort);
+    search.run(start)?;
+    Ok(search.found())
+}
+
+struct Search<'a> {
+    objective: &'a Objective,
+    tests: NodeTests<'a>,
+    budget: ProofBudget,
+    floor: f64,
+    effort: &'a Effort<'a>,
+    newton: Newton,
+    minima: Vec<(Vec<f64>, f64)>,
+    best: f64,
+    open: OpenNodes,
+    /// Least bound of the nodes that are closed.
+    closed: f64,
+    nodes: usize,
+    /// Work when the best was proven.
+    proven_at: Option<u64>,
+    /// Whether no node was closed that may hold an unknown local minimum.
+    all_minima: bool,
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    /// Curvature of an underestimator beyond its node: well above the objective's own, so that the part of the box next to a
+    /// minimum is bounded by its own edge.
+    beyond: f64,
+}
+
+impl<'a> Search<'a> {
+    fn new(objective: &'a Objective, budget: ProofBudget, floor: f64, effort: &'a Effort<'a>) -> Self {
+        let scales = objective.scales();
+        Self {
+            objective,
+            tests: NodeTests::new(objective),
+            budget,
+            floor,
+            effort,
+            newton: Newton::new(scales),
+            minima: Vec::new(),
+            best: f64::INFINITY,
+            open: OpenNodes::new(scales, budget.bytes),
+            closed: f64::INFINITY,
+            nodes: 0,
+            proven_at: None,
+            all_minima: true,
+            lower: objective.lower.clone(),
+            upper: objective.upper.clone(),
+            beyond: 0.0,
+        }
+    }
+
+    /// Lines 1 to 3: best-first, until the best is proven and then until the other minima are listed.
+    fn run(&mut self, start: &[f64]) -> Result<(), SearchStopped> {
+        self.descend(start);
+        let region = DifferenceBounds::of_box(&self.objective.lower, &self.objective.upper);
+        self.open.push(Node { bound: 0.0, region, start: self.minima[0].0.clone() });
+        loop {
+            self.effort.check()?;
+            let bound = self.open.least_bound();
+            if bound >= self.aim() {
+                self.proven_at.get_or_insert(self.effort.spent());
+            }
+            if bound >= self.cutoff() || self.is_spent() {
+                return Ok(());
+            }
+            let Some(node) = self.open.pop() else { return Ok(()) };
+            self.visit(node);
+        }
+    }
+
+    fn is_spent(&self) -> bool {
+        let spent = self.effort.spent();
+        let listed = self.proven_at.is_some_and(|proven_at| spent - proven_at >= self.budget.listing);
+        listed || spent >= self.budget.work || self.open.is_full()
+    }
+
+    fn denominator(&self) -> f64 {
+        self.best.max(self.floor)
+    }
+
+    /// A bound this high proves the best.
+    fn aim(&self) -> f64 {
+        self.best - AIM * self.denominator()
+    }
+
+    /// A bound this high leaves no minimum worth listing.
+    fn cutoff(&self) -> f64 {
+        NEAR * self.best + AIM * self.denominator()
+    }
+
+    /// Lines 4 to 9.
+    fn visit(&mut self, node: Node) {
+        self.nodes += 1;
+        let Node { bound, region, mut start } = node;
+        let listing = self.proven_at.is_some();
+        if listing && self.is_searched(&region) {
+            return self.close(bound);
+        }
+        self.effort.spend(Underestimator::WORK_PER_TERM * self.objective.work());
+        let underestimator = Underestimator::new(self.objective, &region, self.beyond);
+        let goal = if listing { self.cutoff() } else { self.aim() };
+        let bound = bound.max(self.lower_bound(&underestimator, &region, &mut start, goal));
+        if bound >= self.cutoff() {
+            return self.close(bound);
+        }
+        let known = self.minima.len();
+        let value = self.objective.value(&start);
+        // A minimum that is worth listing is below the cutoff, and so is a start near it.
+        if value < self.best || (value < NEAR * self.cutoff() && self.minimum_in(&region).is_none()) {
+            self.descend(&start);
+        }
+        if bound >= self.aim() {
+            if underestimator.is_exact() || (listing && self.minima.len() > known && self.is_searched(&region)) {
+                return self.close(bound);
+            }
+            if !listing {
+                return self.open.push(Node { bound, region, start });
+            }
+        } else if let Some(convex) =
+            self.convex_bound(&region, underestimator.is_exact()).filter(|convex| *convex >= self.aim())
+        {
+            return self.close(bound.max(convex));
+        }
+        self.branch(&underestimator, &region, bound, &start);
+    }
+
+    fn close(&mut self, bound: f64) {
+        self.closed = self.closed.min(bound);
+    }
+
+    /// The best lower bound that Newton's method on the underestimator gives; `start` ends at its minimum.
+    fn lower_bound(
+        &mut self,
+        underestimator: &Underestimator<'_>,
+        region: &DifferenceBounds,
+        start: &mut [f64],
+        goal: f64,
+    ) -> f64 {
+        region.write_box(&mut self.lower, &mut self.upper);
+        for (index, scale) in start.iter_mut().enumerate() {
+            *scale = scale.clamp(self.lower[index], self.upper[index]);
+        }
+        let (cutoff, tolerance) = (self.cutoff(), 0.05 * AIM * self.denominator());
+        let (effort, most) = (self.effort, self.budget.work);
+        let bounds = (self.lower.as_slice(), self.upper.as_slice());
+        let exact = underestimator.is_exact();
+        let mut best = f64::NEG_INFINITY;
+        self.newton.minimise(underestimator, bounds, start, effort, |scales, at| {
+            best = best.max(tangent_bound(scales, at, bounds));
+            let loss = at.value.value - best;
+            // A node that will be branched anyway needs no sharper bound than its distance from the goal.
+            let branched_anyway = !exact && loss <= 0.05 * (goal - at.value.value);
+            let sharp = loss <= tolerance.max(2.0 * at.value.error);
+            best >= cutoff || branched_anyway || sharp || effort.spent() >= most
+        });
+        best
+    }
+
+    /// Follows the objective down from `start` over the whole box, and keeps the minimum if it is new.
+    fn descend(&mut self, start: &[f64]) {
+        let mut scales = start.to_vec();
+        let bounds = (self.objective.lower.as_slice(), self.objective.upper.as_slice());
+        self.newton.minimise(self.objective, bounds, &mut scales, self.effort, |_, _| false);
+        let value = self.newton.reached.value.value;
+        if value < self.best {
+            let curvature = self.newton.reached.hessian.iter().fold(0.0_f64, |most, entry| most.max(entry.abs()));
+            self.beyond = 8.0 * curvature;
+        }
+        self.effort.spend((self.minima.len() * self.objective.terms.len()) as u64);
+        let same = |(known, _): &(Vec<f64>, f64)| self.is_same(known, &scales);
+        match self.minima.iter().position(same) {
+            Some(position) if value < self.minima[position].1 => self.minima[position] = (scales, value),
+            Some(_) => {}
+            None => self.minima.push((scales, value)),
+        }
+        self.best = self.best.min(value);
+    }
+
+    /// Whether two minima are one, found twice: nothing lies between them, as the curvature of the terms measures it.
+    fn is_same(&self, known: &[f64], found: &[f64]) -> bool {
+        let changes = self.objective.terms.iter().map(|term| {
+            let (here, there) = (known[term.to] - known[term.from], found[term.to] - found[term.from]);
+            (term, here, (there - here).abs())
+        });
+        let (mut longest, mut rise) = (0.0_f64, 0.0);
+        for (term, here, change) in changes {
+            longest = longest.max(change);
+            rise += 0.5 * term.function.at(here).curvature.abs() * change * change;
+        }
+        longest <= 1e-6 || rise <= AIM * self.denominator()
+    }
+
+    fn minimum_in(&self, region: &DifferenceBounds) -> Option<usize> {
+        let scales = self.objective.scales();
+        self.effort.spend((self.minima.len() * scales * scales) as u64 / 16);
+        self.minima.iter().position(|(scales, _)| region.holds(scales))
+    }
+
+    /// The bound of a node that, with the best minimum, lies where the objective is convex (`exact`: every term of it is, over
+    /// the node): from the gradient and the Hessian at that minimum.
+    fn convex_bound(&mut self, region: &DifferenceBounds, exact: bool) -> Option<f64> {
+        let (scales, _) = self.minima.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let hull = region.hull(scales);
+        self.effort.spend(2 * self.tests.work());
+        if !(exact && region.holds(scales) || self.tests.is_convex(&hull)) {
+            return None;
+        }
+        let mut at = Expansion::zero(scales.len());
+        self.objective.expand(scales, Curvature::True, &mut at);
+        hull.write_box(&mut self.lower, &mut self.upper);
+        let tangent = tangent_bound(scales, &at, (&self.lower, &self.upper));
+        Some(self.tests.bound_at(scales, &at).map_or(tangent, |quadratic| quadratic.max(tangent)))
+    }
+
+    /// Whether the node holds no local minimum, or none but a known one.
+    fn is_searched(&self, region: &DifferenceBounds) -> bool {
+        self.effort.spend(self.tests.work());
+        let holds_only = |(scales, _): &(Vec<f64>, f64)| {
+            self.effort.spend(2 * self.tests.work());
+            self.tests.has_only(region, scales)
+        };
+        self.tests.has_no_minimum(region) || self.minima.iter().any(holds_only)
+    }
+
+    /// Branches where the node's bound loses most or, where nothing is lost or the best is already proven, so that what is
+    /// convex comes apart from what is not, and then so that the slopes vary less.
+    fn branch(&mut self, underestimator: &Underestimator<'_>, region: &DifferenceBounds, bound: f64, start: &[f64]) {
+        self.effort.spend(4 * self.objective.work() + (start.len() * start.len()) as u64 / 4);
+        let listing = self.proven_at.is_some();
+        let least_gap = 1e-13 * self.denominator();
+        let gap =
+            underestimator.widest_gap(start).filter(|(_, gap)| !listing && *gap > least_gap).map(|(term, _)| term);
+        let ends = if gap.is_none() { underestimator.concave_ends(start) } else { Vec::new() };
+        if !ends.is_empty() {
+            let count = if listing { ends.len() } else { 1 };
+            return self.peel(&ends[..count], region, bound, start);
+        }
+        let widest = gap.or_else(|| underestimator.widest_slope()).map(|term| (term, region.range(term.from, term.to)));
+        let Some((term, (low, high))) = widest.filter(|(_, (low, high))| high - low > 1e-11) else {
+            // The bound is as sharp as rounding allows.
+            self.all_minima &= !listing;
+            return self.close(bound);
+        };
+        let margin = 0.15 * (high - low);
+        let at = (start[term.to] - start[term.from]).clamp(low + margin, high - margin);
+        self.push(region.below(term.from, term.to, at), bound, start);
+        self.push(region.above(term.from, term.to, at), bound, start);
+    }
+
+    /// Takes off what lies beyond each end of a concave interval, seen from `start`, and keeps the rest as one node.
+    fn peel(&mut self, ends: &[(usize, usize, f64)], region: &DifferenceBounds, bound: f64, start: &[f64]) {
+        let mut rest = Some(region.clone());
+        for &(from, to, at) in ends {
+            let Some(region) = rest else { return };
+            self.effort.spend((start.len() * start.len()) as u64 / 4);
+            let (below, above) = (region.below(from, to, at), region.above(from, to, at));
+            let (inner, outer) = if start[to] - start[from] < at { (below, above) } else { (above, below) };
+            self.push(outer, bound, start);
+            rest = inner;
+        }
+        self.push(rest, bound, start);
+    }
+
+    fn push(&mut self, region: Option<DifferenceBounds>, bound: f64, start: &[f64]) {
+        if let Some(region) = region {
+            self.open.push(Node { bound, region, start: start.to_vec() });
+        }
+    }
+
+    /// Line 10.
+    fn found(mut self) -> Minima {
+        let (left, cutoff) = (self.open.least_bound(), self.cutoff());
+        // A sum of squares is never negative, and no bound can be above a value that was reached.
+        let lower_bound = self.closed.min(left).max(0.0).min(self.best);
+        let gap = (self.best - lower_bound) / self.denominator();
+        let limit = if gap <= PROOF {
+            None
+        } else if self.open.is_full() {
+            Some(Limit::Memory)
+        } else if left < self.closed {
+            Some(Limit::Work)
+        } else {
+            Some(Limit::Rounding)
+        };
+        self.minima.sort_by(|a, b| a.1.total_cmp(&b.1));
+        // The best itself always stays.
+        let kept = self.minima.iter().take_while(|(_, value)| *value <= cutoff).count().max(1);
+        self.minima.truncate(kept);
+        Minima {
+            minima: self.minima,
+            lower_bound,
+            gap,
+            limit,
+            nodes: self.nodes,
+            all_minima: self.all_minima && left >= cutoff,
+        }
+    }
+}

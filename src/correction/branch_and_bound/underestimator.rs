@@ -1,0 +1,270 @@
+//! A convex function below the objective, over one node, and the lower bounds that it gives.
+
+use super::differences::DifferenceBounds;
+use super::envelope::{Line, envelope, enveloped};
+use super::exponential::Derivatives;
+use super::objective::{Curvature, Differentiable, Expansion, Objective};
+use super::rounded::Rounded;
+use super::term::{Function, Term, both};
+
+/// What stands for a term over the node: the term itself where it is convex, else the convex envelopes of its exponentials.
+#[derive(Clone, Copy, Debug)]
+enum Under {
+    Itself,
+    Envelopes { forward: Option<Line>, backward: Option<Line> },
+}
+
+/// A term's underestimator with the range of its difference. Newton's method keeps to the box of the node only, so beyond the range
+/// the underestimator goes on along its tangent and bends up: anything convex is right there, and this keeps the minimum near.
+#[derive(Clone, Copy, Debug)]
+struct TermUnder {
+    under: Under,
+    range: (f64, f64),
+}
+
+impl TermUnder {
+    fn of(term: &Term, region: &DifferenceBounds) -> Self {
+        let (low, high) = region.range(term.from, term.to);
+        let range = (low, high.max(low));
+        let under = match &term.function {
+            Function::Exponential { forward, backward, .. } if !term.function.is_convex_over(range) => {
+                Under::Envelopes {
+                    forward: envelope(forward, range),
+                    backward: envelope(backward, (-range.1, -range.0)),
+                }
+            }
+            _ => Under::Itself,
+        };
+        Self { under, range }
+    }
+
+    fn is_exact(&self) -> bool {
+        matches!(self.under, Under::Itself)
+    }
+
+    /// The term's difference at `scales`, kept inside the range.
+    fn difference(&self, term: &Term, scales: &[f64]) -> f64 {
+        (scales[term.to] - scales[term.from]).clamp(self.range.0, self.range.1)
+    }
+
+    /// The underestimator of `function` at `u` in the range.
+    fn inside(&self, function: &Function, u: f64) -> Derivatives {
+        match (function, &self.under) {
+            (
+                Function::Exponential { forward, backward, .. },
+                Under::Envelopes { forward: ahead, backward: behind },
+            ) => both(enveloped(forward, ahead.as_ref(), u), enveloped(backward, behind.as_ref(), -u)),
+            _ => function.at(u),
+        }
+    }
+}
+
+/// Convex function of the scales that is nowhere in the node above the objective.
+pub(crate) struct Underestimator<'a> {
+    objective: &'a Objective,
+    unders: Vec<TermUnder>,
+    beyond: f64,
+}
+
+impl<'a> Underestimator<'a> {
+    /// Work of making one, of each term: up to fourteen steps to a tangent.
+    pub(crate) const WORK_PER_TERM: u64 = 12;
+
+    /// The underestimator of `objective` over `region`, with curvature `beyond` outside of the ranges of the differences.
+    pub(crate) fn new(objective: &'a Objective, region: &DifferenceBounds, beyond: f64) -> Self {
+        let unders = objective.terms.iter().map(|term| TermUnder::of(term, region)).collect();
+        Self { objective, unders, beyond }
+    }
+
+    /// Whether it is the objective itself: every term is convex over the node.
+    pub(crate) fn is_exact(&self) -> bool {
+        self.unders.iter().all(TermUnder::is_exact)
+    }
+
+    /// The terms that are not convex over the node.
+    fn nonconvex(&self) -> impl Iterator<Item = (&'a Term, &TermUnder)> {
+        self.objective.terms.iter().zip(&self.unders).filter(|(_, under)| !under.is_exact())
+    }
+
+    /// The term that lies furthest above its envelope at `scales` (kept inside the node's ranges), with that distance less the
+    /// rounding of it.
+    pub(crate) fn widest_gap(&self, scales: &[f64]) -> Option<(&'a Term, f64)> {
+        let gap = |(term, under): (&'a Term, &TermUnder)| {
+            let u = under.difference(term, scales);
+            let (above, below) = (term.function.at(u).value, under.inside(&term.function, u).value);
+            (term, above.value - below.value - above.error - below.error)
+        };
+        self.nonconvex().map(gap).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Each term (from, to) that is not convex over the node but is at `scales`, with the end of the interval where it is concave:
+    /// what lies beyond the ends is easily bounded, and what is left is convex in these terms. The furthest end comes first.
+    pub(crate) fn concave_ends(&self, scales: &[f64]) -> Vec<(usize, usize, f64)> {
+        let end = |(term, under): (&'a Term, &TermUnder)| {
+            let u = under.difference(term, scales);
+            let end = term.function.concave_end(u, under.range)?;
+            Some((term, end, (end - u).abs()))
+        };
+        let mut ends: Vec<(&Term, f64, f64)> = self.nonconvex().filter_map(end).collect();
+        ends.sort_by(|a, b| b.2.total_cmp(&a.2));
+        ends.into_iter().map(|(term, end, _)| (term.from, term.to, end)).collect()
+    }
+
+    /// The term whose slope varies most over the node, weighed with its range: what hides the sign of a scale's slope, or that
+    /// there is but one minimum.
+    pub(crate) fn widest_slope(&self) -> Option<&'a Term> {
+        let variation = |(term, under): (&'a Term, &TermUnder)| {
+            let slopes = term.function.slopes(under.range);
+            (term, (slopes.most - slopes.least) * (under.range.1 - under.range.0))
+        };
+        let terms = self.objective.terms.iter().zip(&self.unders).map(variation);
+        terms.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(term, _)| term)
+    }
+
+    fn at(&self, term: &Term, under: &TermUnder, scales: &[f64]) -> Derivatives {
+        let u = scales[term.to] - scales[term.from];
+        let end = u.clamp(under.range.0, under.range.1);
+        let mut at = under.inside(&term.function, end);
+        let beyond = u - end;
+        if beyond != 0.0 {
+            let bend = self.beyond * beyond;
+            let rise = (at.slope.value + 0.5 * bend) * beyond;
+            let moved = at.slope.error * beyond.abs() + 4.0 * f64::EPSILON * (rise.abs() + (at.slope.value * u).abs());
+            at.value.add(Rounded { value: rise, error: moved });
+            at.slope.add(Rounded { value: bend, error: 2.0 * f64::EPSILON * (bend.abs() + self.beyond * u.abs()) });
+            at.curvature = self.beyond;
+        }
+        at
+    }
+}
+
+impl Differentiable for Underestimator<'_> {
+    fn expand(&self, scales: &[f64], _curvature: Curvature, into: &mut Expansion) {
+        into.clear(self.objective.constant);
+        for (term, under) in self.objective.terms.iter().zip(&self.unders) {
+            let at = self.at(term, under, scales);
+            into.value.add(at.value);
+            // Convex up to the rounding of the interval's ends.
+            into.add(term, at.slope, at.curvature.max(0.0));
+        }
+    }
+
+    fn work(&self) -> u64 {
+        2 * self.objective.terms.len() as u64
+    }
+}
+
+/// A lower bound over a box of a function that is convex there, from its tangent plane at `scales` (inside the box), less the
+/// rounding of the value, of every slope and of their sum.
+pub(super) fn tangent_bound(scales: &[f64], at: &Expansion, (lower, upper): (&[f64], &[f64])) -> f64 {
+    let mut bound = at.value.value - at.value.error;
+    for scale in 0..scales.len() {
+        let (slope, error) = (at.gradient[scale], at.gradient_error[scale]);
+        let down = (slope + error).max(0.0) * (scales[scale] - lower[scale]).max(0.0);
+        let up = (error - slope).max(0.0) * (upper[scale] - scales[scale]).max(0.0);
+        bound -= down.max(up);
+    }
+    // Each of the n + 1 differences rounds a figure between the value and the bound; each product four times, of their sum.
+    bound - (scales.len() as f64 + 5.0) * f64::EPSILON * at.value.value.abs().max(bound.abs())
+}
+
+/// The same from the tangent plane and the Hessian next to `scales`, where the slopes are next to nothing.
+///
+/// `reach` is `sqrt(diagonal of H^-1)` for a Hessian `H` that the function's own does not fall below while no scale is further
+/// than `within` from `scales`; 0 for a scale that cannot move. With the gradient `g` known to `e`, and
+/// `r = sum (|g| + e) reach`, the parabola `g d + d' H d / 2` is nowhere below `-r^2 / 2` and turns before any scale has moved by
+/// `r reach`; beyond, a convex function goes on rising. A scale that its slope has `pushed` against its bound can only raise
+/// the function.
+pub(super) fn quadratic_bound(
+    at: &Expansion,
+    reach: &[f64],
+    within: f64,
+    pushed: impl Fn(usize) -> bool,
+) -> Option<f64> {
+    let mut sum = 0.0;
+    for (scale, reach) in reach.iter().enumerate() {
+        if !pushed(scale) {
+            sum += (at.gradient[scale].abs() + at.gradient_error[scale]) * reach;
+        }
+    }
+    let farthest = sum * reach.iter().fold(0.0_f64, |most, reach| most.max(*reach));
+    // A millionth more than the parabola's depth covers the rounding of the sum and of the inverse.
+    let bound = at.value.value - at.value.error - 0.5 * sum * sum * (1.0 + 1e-6);
+    (farthest <= within).then_some(bound - 4.0 * f64::EPSILON * bound.abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::exponential::{Exponential, Group};
+    use super::*;
+
+    fn exponential(weight: f64, centre: f64) -> Exponential {
+        let mut group = Group::default();
+        group.add(weight, centre, 0.0, 0.0);
+        group.exponential().0
+    }
+
+    fn objective(forward: (f64, f64), backward: (f64, f64), range: (f64, f64)) -> Objective {
+        let function = Function::exponential(exponential(forward.0, forward.1), exponential(backward.0, backward.1));
+        let terms = vec![Term { from: 0, to: 1, function }];
+        Objective { lower: vec![range.0, 0.0], upper: vec![range.1, 0.0], terms, constant: Rounded::default() }
+    }
+
+    proptest! {
+        #[test]
+        fn the_underestimator_is_convex_and_nowhere_above_the_objective(
+            forward in (0.01..10.0_f64, 0.05..20.0_f64),
+            backward in (prop_oneof![Just(0.0), 0.01..10.0_f64], 0.05..20.0_f64),
+            low in -3.0..1.0_f64,
+            width in 0.01..4.0_f64,
+        ) {
+            let objective = objective(forward, backward, (low, low + width));
+            let region = DifferenceBounds::of_box(&objective.lower, &objective.upper);
+            let underestimator = Underestimator::new(&objective, &region, 1.0);
+            let mut at = Expansion::zero(2);
+            let mut steepness = f64::INFINITY;
+            for step in 0..=200 {
+                let scales = [low + width * f64::from(step) / 200.0, 0.0];
+                underestimator.expand(&scales, Curvature::True, &mut at);
+                let value = objective.value(&scales);
+                prop_assert!(at.value.value - at.value.error <= value, "{} is above {}", at.value.value, value);
+                // The difference is measured from node 0 to node 1: the slope of node 1 falls as the scale of node 0 rises.
+                let rounding = 1e-9 * (1.0 + steepness.abs().min(1e9));
+                prop_assert!(at.gradient[1] <= steepness + rounding, "{} after {}", at.gradient[1], steepness);
+                steepness = at.gradient[1];
+            }
+        }
+
+        #[test]
+        fn two_exponentials_are_convex_wherever_they_say_so(
+            forward in (0.01..10.0_f64, 0.05..20.0_f64),
+            backward in (0.01..10.0_f64, 0.05..20.0_f64),
+            at in -3.0..3.0_f64,
+        ) {
+            let function = Function::exponential(exponential(forward.0, forward.1), exponential(backward.0, backward.1));
+            let convex = function.is_convex_over((at, at));
+            let curvature = function.at(at).curvature;
+            // The interval is widened by 1e-11; the curvature there is as small as that times its own slope.
+            prop_assert!(convex == (curvature > 0.0) || curvature.abs() <= 1e-6, "{} {}", convex, curvature);
+        }
+
+        #[test]
+        fn bounds_on_slope_and_curvature_hold_over_the_range(
+            forward in (0.01..10.0_f64, 0.05..20.0_f64),
+            backward in (0.01..10.0_f64, 0.05..20.0_f64),
+            low in -3.0..1.0_f64,
+            width in 0.01..4.0_f64,
+            share in 0.0..1.0_f64,
+        ) {
+            let function = Function::exponential(exponential(forward.0, forward.1), exponential(backward.0, backward.1));
+            let range = (low, low + width);
+            let at = function.at(low + share * width);
+            let (slopes, curvatures) = (function.slopes(range), function.curvatures(range));
+            prop_assert!(slopes.least <= at.slope.value + at.slope.error && at.slope.value - at.slope.error <= slopes.most);
+            // The rounding of figures of up to 1e4.
+            prop_assert!(curvatures.least <= at.curvature + 1e-9 && at.curvature - 1e-9 <= curvatures.most);
+        }
+    }
+}

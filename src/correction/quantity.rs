@@ -1,0 +1,183 @@
+//! What a channel has of each: a gain or a delay.
+
+use std::fmt;
+
+/// What "close to G" means.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GainObjective {
+    /// `sum w (G - k_o k_i)^2 + alpha sum (k_o - 1)^2`, equation (7) of the paper.
+    #[default]
+    Ratio,
+    /// `sum w (20 log10 G - 20 log10 k_o k_i)^2 + alpha sum (20 log10 k_o)^2`: errors up and down count alike, and an entry with
+    /// a large `G` counts no more than another. Convex.
+    Decibel,
+}
+
+/// What is asked of the channels. Of two channels gains multiply and delays add.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Gains, dimensionless, compared as the objective says (equation (7), M8).
+    Gain(GainObjective),
+    /// Delays in seconds (equation (11), M9).
+    Delay,
+}
+
+/// dB in a natural logarithm.
+const DECIBEL: f64 = 20.0 / std::f64::consts::LN_10;
+
+/// `(20 / ln 10)^2`: squared dB in a squared natural logarithm.
+pub(crate) const SQUARED_DECIBEL: f64 = DECIBEL * DECIBEL;
+
+impl Quantity {
+    /// The value of a channel that changes nothing: a gain of 1, a delay of 0.
+    pub(crate) fn neutral(self) -> f64 {
+        match self {
+            Quantity::Gain(_) => 1.0,
+            Quantity::Delay => 0.0,
+        }
+    }
+
+    /// `k_o k_i` or `tau_o + tau_i`.
+    pub(crate) fn net(self, output: f64, input: f64) -> f64 {
+        match self {
+            Quantity::Gain(_) => output * input,
+            Quantity::Delay => output + input,
+        }
+    }
+
+    /// What an entry misses, whose square the objective sums: a ratio, dB or seconds.
+    pub(crate) fn miss(self, delta: f64, output: f64, input: f64) -> f64 {
+        match self {
+            Quantity::Gain(GainObjective::Ratio) => delta - output * input,
+            Quantity::Gain(GainObjective::Decibel) => 20.0 * (delta / (output * input)).log10(),
+            Quantity::Delay => delta - output - input,
+        }
+    }
+
+    /// Slope of the squared miss in the logarithm of a gain or in a delay.
+    pub(crate) fn slope(self, delta: f64, output: f64, input: f64) -> f64 {
+        let net = self.net(output, input);
+        match self {
+            Quantity::Gain(GainObjective::Ratio) => 2.0 * net * (net - delta),
+            Quantity::Gain(GainObjective::Decibel) => 2.0 * SQUARED_DECIBEL * (net / delta).ln(),
+            Quantity::Delay => 2.0 * (net - delta),
+        }
+    }
+
+    /// A difference of logarithms in dB, of delays in seconds.
+    pub(crate) fn difference(self, difference: f64, coordinate: Coordinate) -> f64 {
+        match self {
+            Quantity::Gain(_) => difference * DECIBEL,
+            Quantity::Delay => coordinate.value(difference),
+        }
+    }
+
+    /// A slope for each dB or for each millisecond, from one for each unit of the logarithm or each second.
+    pub(crate) fn per_unit(self, slope: f64) -> f64 {
+        match self {
+            Quantity::Gain(_) => slope / DECIBEL,
+            Quantity::Delay => 1e-3 * slope,
+        }
+    }
+
+    /// The symbol of a channel's value.
+    pub(crate) fn symbol(self) -> &'static str {
+        match self {
+            Quantity::Gain(_) => "k",
+            Quantity::Delay => "tau",
+        }
+    }
+
+    /// What follows a bound in words.
+    pub(crate) fn unit(self) -> &'static str {
+        match self {
+            Quantity::Gain(_) => "",
+            Quantity::Delay => " s",
+        }
+    }
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Quantity::Gain(_) => "gain",
+            Quantity::Delay => "delay",
+        })
+    }
+}
+
+/// The coordinate in which what two channels have together is a sum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Coordinate {
+    /// The natural logarithm of a gain.
+    Logarithm,
+    /// A delay in this unit.
+    Time { unit_s: f64 },
+}
+
+impl Coordinate {
+    /// The coordinate of a gain or of a delay in seconds.
+    pub(crate) fn of(self, value: f64) -> f64 {
+        match self {
+            Coordinate::Logarithm => value.ln(),
+            Coordinate::Time { unit_s } => value / unit_s,
+        }
+    }
+
+    /// The gain or the delay in seconds at a coordinate.
+    pub(crate) fn value(self, coordinate: f64) -> f64 {
+        match self {
+            Coordinate::Logarithm => coordinate.exp(),
+            Coordinate::Time { unit_s } => coordinate * unit_s,
+        }
+    }
+
+    /// An objective in this coordinate as one of gains, or in s².
+    pub(crate) fn objective(self, objective: f64) -> f64 {
+        match self {
+            Coordinate::Logarithm => objective,
+            Coordinate::Time { unit_s } => objective * unit_s * unit_s,
+        }
+    }
+}
+
+/// The least number of three significant digits that is not below `value`.
+pub(crate) fn three_digits_up(value: f64) -> f64 {
+    three_digits(value, f64::ceil)
+}
+
+/// The greatest number of three significant digits that is not above `value`.
+pub(crate) fn three_digits_down(value: f64) -> f64 {
+    three_digits(value, f64::floor)
+}
+
+fn three_digits(value: f64, round: impl Fn(f64) -> f64) -> f64 {
+    if value == 0.0 || !value.is_finite() {
+        return value;
+    }
+    let exponent = value.abs().log10().floor() as i32 - 2;
+    // A value that is three digits up to rounding stays as it is. Negative powers are divided by: 1.87 is 187 / 100 exactly.
+    let digits = if exponent < 0 { value * 10f64.powi(-exponent) } else { value / 10f64.powi(exponent) };
+    let nearest = digits.round();
+    let digits = if (digits - nearest).abs() <= 1e-9 * nearest.abs() { nearest } else { round(digits) };
+    if exponent < 0 { digits / 10f64.powi(-exponent) } else { digits * 10f64.powi(exponent) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_figure_is_rounded_to_three_digits_so_that_it_still_suffices() {
+        assert_eq!((three_digits_up(1.8681), three_digits_down(1.8681)), (1.87, 1.86));
+        assert_eq!((three_digits_up(0.060_801), three_digits_down(0.060_801)), (0.0609, 0.0608));
+        assert_eq!((three_digits_up(1234.0), three_digits_down(1234.0)), (1240.0, 1230.0));
+        assert_eq!((three_digits_up(0.999_7), three_digits_down(0.999_7)), (1.0, 0.999));
+    }
+
+    #[test]
+    fn a_figure_of_three_digits_up_to_rounding_stays() {
+        assert_eq!((three_digits_up(0.7 * 2.5), three_digits_down(1.4 / 2.5)), (1.75, 0.56));
+        assert_eq!((three_digits_up(0.0), three_digits_down(0.0)), (0.0, 0.0));
+    }
+}

@@ -1,0 +1,184 @@
+//! What each held entry and each active bound costs at the answer: its multiplier.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::channel::{Channel, pair_name};
+use super::problem::Problem;
+use super::quantity::Quantity;
+use super::solution::Solution;
+use crate::dataset::Pair;
+
+/// Something that keeps the channels from a lower objective.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Restraint {
+    /// An entry held at its target.
+    Held(Pair),
+    /// A channel on its lower bound; a delay that would have to be negative.
+    LowerBound(Channel),
+    /// A channel on its upper bound.
+    UpperBound(Channel),
+}
+
+/// The multiplier of one restraint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensitivity {
+    /// What is restrained.
+    pub quantity: Quantity,
+    /// The restraint.
+    pub restraint: Restraint,
+    /// Change of the least objective for each dB or ms by which what is held, or the bound, is raised (to first order).
+    pub per_unit: f64,
+    /// The same as a share of the objective; 0 where the objective is 0.
+    pub share_per_unit: f64,
+}
+
+impl Sensitivity {
+    /// The sensitivity in words.
+    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
+        let percent = 100.0 * self.share_per_unit.abs();
+        let effect = format!("would lower the objective by about {percent:.2} %");
+        let is_dear = self.per_unit > 0.0;
+        match (self.quantity, self.restraint) {
+            (Quantity::Gain(_), restraint) => {
+                let what = match restraint {
+                    Restraint::Held(pair) => (pair_name(pair, inputs, outputs), "held", "its gain"),
+                    Restraint::LowerBound(channel) => {
+                        (gain_name(channel, inputs, outputs), "on its lower bound", "the bound")
+                    }
+                    Restraint::UpperBound(channel) => {
+                        (gain_name(channel, inputs, outputs), "on its upper bound", "the bound")
+                    }
+                };
+                let change = if is_dear { "lowering" } else { "raising" };
+                format!("{} is {}: {change} {} by 1 dB {effect}.", what.0, what.1, what.2)
+            }
+            (Quantity::Delay, Restraint::Held(pair)) => {
+                let change = if is_dear { "less" } else { "more" };
+                format!("{} is held: 1 ms {change} delay {effect}.", pair_name(pair, inputs, outputs))
+            }
+            (Quantity::Delay, Restraint::LowerBound(channel)) => {
+                format!("tau_{} is 0: 1 ms of lead {effect}.", channel.name(inputs, outputs))
+            }
+            (Quantity::Delay, Restraint::UpperBound(channel)) => {
+                let channel = channel.name(inputs, outputs);
+                format!("tau_{channel} is on its upper bound: raising the bound by 1 ms {effect}.")
+            }
+        }
+    }
+}
+
+fn gain_name(channel: Channel, inputs: &[String], outputs: &[String]) -> String {
+    format!("k_{}", channel.name(inputs, outputs))
+}
+
+/// The sensitivity of every held entry and of every bound that acts, the most expensive first.
+///
+/// `solution` is the solution of `problem` ([`super::solve`]).
+pub fn sensitivities(problem: &Problem, solution: &Solution) -> Vec<Sensitivity> {
+    let held: Vec<Pair> = problem.held_entries().map(|(pair, _)| pair).collect();
+    let inputs = solution.inputs.len();
+    let on = |value: &f64| (*value == problem.bounds.lower, *value == problem.bounds.upper);
+    let at_bounds = solution.inputs.iter().chain(&solution.outputs).map(on).collect();
+    let found = multipliers(&Restrained { inputs, slopes: slopes(problem, solution), at_bounds, held: &held });
+    let sensitivity = |restraint: Restraint, slope: f64| {
+        let per_unit = problem.quantity.per_unit(slope);
+        let share_per_unit = if solution.objective > 0.0 { per_unit / solution.objective } else { 0.0 };
+        Sensitivity { quantity: problem.quantity, restraint, per_unit, share_per_unit }
+    };
+    let of_held = held.iter().zip(&found.held).map(|(pair, slope)| sensitivity(Restraint::Held(*pair), *slope));
+    let of_bounds = found.bounds.iter().enumerate().filter(|(_, slope)| **slope != 0.0).map(|(index, slope)| {
+        let channel = if index < inputs { Channel::Input(index) } else { Channel::Output(index - inputs) };
+        // The objective falls as the upper bound is raised, or the lower one lowered.
+        let upper = *slope < 0.0;
+        sensitivity(if upper { Restraint::UpperBound(channel) } else { Restraint::LowerBound(channel) }, *slope)
+    });
+    let mut all: Vec<Sensitivity> = of_held.chain(of_bounds).collect();
+    all.sort_by(|a, b| b.per_unit.abs().total_cmp(&a.per_unit.abs()));
+    all
+}
+
+/// Slope of the objective in the logarithm of each channel gain, or in each delay; inputs first.
+fn slopes(problem: &Problem, solution: &Solution) -> Vec<f64> {
+    let (quantity, inputs) = (problem.quantity, solution.inputs.len());
+    let mut slopes = vec![0.0; inputs + solution.outputs.len()];
+    for (pair, delta) in problem.fit_entries() {
+        let slope = quantity.slope(delta, solution.outputs[pair.output], solution.inputs[pair.input]);
+        slopes[pair.input] += slope;
+        slopes[inputs + pair.output] += slope;
+    }
+    let neutral = quantity.neutral();
+    for (output, value) in solution.outputs.iter().enumerate() {
+        slopes[inputs + output] += problem.alpha * quantity.slope(neutral, *value, neutral);
+    }
+    slopes
+}
+
+/// A minimum seen from its channels: inputs first, then outputs.
+struct Restrained<'a> {
+    /// Number of input channels.
+    inputs: usize,
+    /// Slope of the objective in each channel's value.
+    slopes: Vec<f64>,
+    /// Whether each channel is on its lower and on its upper bound.
+    at_bounds: Vec<(bool, bool)>,
+    /// The held entries: sums of an input's and an output's value.
+    held: &'a [Pair],
+}
+
+/// Change of the least objective with each restraint's value.
+struct Multipliers {
+    /// By the sum at which each held entry is held.
+    held: Vec<f64>,
+    /// By the bound that each channel is on; 0 where none acts.
+    bounds: Vec<f64>,
+}
+
+/// Solves `slopes + sum of multipliers = 0`: what pushes a piece of tied channels against a bound is borne by the channels that
+/// are on that bound, in equal parts; the held entries carry the rest, in a loop with the least squares.
+fn multipliers(minimum: &Restrained<'_>) -> Multipliers {
+    let channels = minimum.slopes.len();
+    let sign = |channel: usize| if channel < minimum.inputs { 1.0 } else { -1.0 };
+    let mut bounds = vec![0.0; channels];
+    for piece in pieces(minimum) {
+        let push: f64 = piece.iter().map(|&channel| sign(channel) * minimum.slopes[channel]).sum();
+        // The piece would move against the slope: an input on its upper bound stops a rise, an output on its lower one too.
+        let stops = |channel: &&usize| {
+            let rises = sign(**channel) * push < 0.0;
+            if rises { minimum.at_bounds[**channel].1 } else { minimum.at_bounds[**channel].0 }
+        };
+        let stopping: Vec<usize> = piece.iter().filter(stops).copied().collect();
+        for &channel in &stopping {
+            bounds[channel] = sign(channel) * push / stopping.len() as f64;
+        }
+    }
+    let left = DVector::from_fn(channels, |channel, _| minimum.slopes[channel] - bounds[channel]);
+    let ties = DMatrix::from_fn(channels, minimum.held.len(), |channel, entry| {
+        let pair = minimum.held[entry];
+        if channel == pair.input || channel == minimum.inputs + pair.output { 1.0 } else { 0.0 }
+    });
+    let held = if minimum.held.is_empty() {
+        Vec::new()
+    } else {
+        // Squared, the singular values are the Laplacian's of a bipartite graph of n channels: 0, or at least 4 / n^2 (Mohar,
+        // "Eigenvalues, diameter and mean distance in graphs", 1991). This is half of that root.
+        let solved = ties.svd(true, true).solve(&left, 1.0 / channels as f64);
+        solved.map(|held| held.iter().copied().collect()).unwrap_or_default()
+    };
+    Multipliers { held, bounds }
+}
+
+/// The channels that held entries tie together.
+fn pieces(minimum: &Restrained<'_>) -> Vec<Vec<usize>> {
+    let channels = minimum.slopes.len();
+    let mut piece: Vec<usize> = (0..channels).collect();
+    for pair in minimum.held {
+        let (kept, merged) = (piece[pair.input], piece[minimum.inputs + pair.output]);
+        for piece in &mut piece {
+            if *piece == merged {
+                *piece = kept;
+            }
+        }
+    }
+    let members = |name: usize| (0..channels).filter(|&channel| piece[channel] == name).collect::<Vec<_>>();
+    (0..channels).map(members).filter(|piece| !piece.is_empty()).collect()
+}

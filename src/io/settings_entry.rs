@@ -1,0 +1,179 @@
+//! Settings as the files of studies and of results say them.
+
+use serde::{Deserialize, Serialize};
+
+use crate::correction::{GainBounds, GainObjective};
+use crate::dataset::limits::MOST_PAIRS;
+use crate::dataset::{Band, Dataset, PairTable, Place};
+use crate::fidelity::CostAverage;
+use crate::schedule::{DEFAULT_TOLERANCE_KT, ScheduleKind, ScheduleSettings, ScheduledQuantity};
+use crate::study::{Setting, Settings};
+
+use super::content_fault::ContentFault;
+use super::flaw::Flaw;
+use super::list::list;
+
+/// Every setting that changes a result.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SettingsEntry {
+    /// Band of comparison \[rad/s\].
+    pub band_rad_s: [f64; 2],
+    /// Number of frequencies.
+    pub points: usize,
+    /// Weight of the regularisation of the gains.
+    pub alpha_gain: f64,
+    /// Weight of the regularisation of the delays.
+    pub alpha_delay: f64,
+    /// Quantile that sets the bounds.
+    pub quantile: f64,
+    /// Responses to be held, `[output, input]`.
+    #[serde(deserialize_with = "list::<MOST_PAIRS, _, _>")]
+    pub constrained: Vec<(String, String)>,
+    /// Responses that the objective ignores, `[output, input]`.
+    #[serde(deserialize_with = "list::<MOST_PAIRS, _, _>")]
+    pub ignored: Vec<(String, String)>,
+    /// `median` or `mean`: the average over frequency in J.
+    #[serde(with = "CostAverageWord")]
+    pub cost_average: CostAverage,
+    /// `ratio` or `dB`: what the gains minimise.
+    #[serde(with = "GainObjectiveWord")]
+    pub gain_objective: GainObjective,
+    /// Gain bounds set by hand.
+    pub gain_bounds: Option<[f64; 2]>,
+    /// Upper bound of the delays set by hand \[s\].
+    pub delay_upper_s: Option<f64>,
+    /// How gains are scheduled; results of older programs do not say it.
+    #[serde(default)]
+    pub schedule: ScheduleEntry,
+}
+
+/// How gains are scheduled with airspeed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ScheduleEntry {
+    /// `polynomial` or `table`.
+    pub kind: KindWord,
+    /// Degree of the polynomial; none for a table.
+    pub degree: Option<usize>,
+    /// `ln k` or `k`.
+    #[serde(with = "QuantityWord")]
+    pub of: ScheduledQuantity,
+    /// Whether delays are scheduled too.
+    pub delays: bool,
+    /// Airspeeds nearer to one another are one \[kt\].
+    #[serde(default = "default_tolerance_kt")]
+    pub airspeed_tolerance_kt: f64,
+}
+
+impl Default for ScheduleEntry {
+    fn default() -> Self {
+        Self::of(ScheduleSettings::default())
+    }
+}
+
+fn default_tolerance_kt() -> f64 {
+    DEFAULT_TOLERANCE_KT
+}
+
+/// The form of a schedule.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum KindWord {
+    /// A polynomial in airspeed.
+    Polynomial,
+    /// A lookup table.
+    Table,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "CostAverage", rename_all = "lowercase")]
+enum CostAverageWord {
+    Median,
+    Mean,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "GainObjective")]
+enum GainObjectiveWord {
+    #[serde(rename = "ratio")]
+    Ratio,
+    #[serde(rename = "dB")]
+    Decibel,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "ScheduledQuantity")]
+enum QuantityWord {
+    #[serde(rename = "ln k")]
+    LnGain,
+    #[serde(rename = "k")]
+    Gain,
+}
+
+impl SettingsEntry {
+    /// The settings of a study of `dataset`, responses by the names of their channels.
+    pub(super) fn of(settings: &Settings, dataset: &Dataset) -> Self {
+        let names = |table: &PairTable<bool>| table.marked().map(|pair| dataset.channel_names(pair)).collect();
+        Self {
+            band_rad_s: [settings.band.min(), settings.band.max()],
+            points: settings.points,
+            alpha_gain: settings.alpha_gain,
+            alpha_delay: settings.alpha_delay,
+            quantile: settings.quantile,
+            constrained: names(&settings.constrained),
+            ignored: names(&settings.fitted.map(|_, fitted| !fitted)),
+            cost_average: settings.cost_average,
+            gain_objective: settings.gain_objective,
+            gain_bounds: settings.gain_bounds.map(|bounds| [bounds.lower, bounds.upper]),
+            delay_upper_s: settings.delay_upper_s,
+            schedule: ScheduleEntry::of(settings.schedule),
+        }
+    }
+
+    /// Takes everything but the two lists of responses into `settings`; each value has to be within its range.
+    pub(super) fn take_into(&self, settings: &mut Settings) -> Result<(), Flaw> {
+        let place = |key: &str| Place::entry(format!("settings, {key}"));
+        let [min, max] = self.band_rad_s;
+        let band = Band::new(min, max).map_err(|error| Flaw::new(place("band_rad_s"), error))?;
+        let bounds = self.gain_bounds.map(|[lower, upper]| GainBounds { lower, upper });
+        let decided = [
+            ("band_rad_s", Setting::Band(band)),
+            ("points", Setting::Points(self.points)),
+            ("cost_average", Setting::CostAverage(self.cost_average)),
+            ("alpha_gain", Setting::AlphaGain(self.alpha_gain)),
+            ("alpha_delay", Setting::AlphaDelay(self.alpha_delay)),
+            ("gain_objective", Setting::GainObjective(self.gain_objective)),
+            ("quantile", Setting::Quantile(self.quantile)),
+            ("gain_bounds", Setting::GainBounds(bounds)),
+            ("delay_upper_s", Setting::DelayUpper(self.delay_upper_s)),
+            ("schedule", Setting::Schedule(self.schedule.settings()?)),
+        ];
+        for (key, setting) in decided {
+            settings.apply(&setting).map_err(|refusal| Flaw::new(place(key), refusal))?;
+        }
+        Ok(())
+    }
+}
+
+impl ScheduleEntry {
+    fn of(settings: ScheduleSettings) -> Self {
+        let (kind, degree) = match settings.kind {
+            ScheduleKind::Polynomial { degree } => (KindWord::Polynomial, Some(degree)),
+            ScheduleKind::Table => (KindWord::Table, None),
+        };
+        let ScheduleSettings { quantity: of, delays, airspeed_tolerance_kt, .. } = settings;
+        Self { kind, degree, of, delays, airspeed_tolerance_kt }
+    }
+
+    fn settings(&self) -> Result<ScheduleSettings, Flaw> {
+        let kind = match (self.kind, self.degree) {
+            (KindWord::Table, _) => ScheduleKind::Table,
+            (KindWord::Polynomial, Some(degree)) => ScheduleKind::Polynomial { degree },
+            (KindWord::Polynomial, None) => {
+                let fault = ContentFault::MissingKey { key: "degree".to_owned() };
+                return Err(Flaw::new(Place::entry("settings, schedule"), fault));
+            }
+        };
+        let (quantity, delays, airspeed_tolerance_kt) = (self.of, self.delays, self.airspeed_tolerance_kt);
+        Ok(ScheduleSettings { kind, quantity, delays, airspeed_tolerance_kt })
+    }
+}

@@ -22,9 +22,13 @@ impl Copy {
 
     /// Writes another name of the dataset into the file: the figures stay.
     fn rename(&self, name: &str) {
-        let text = self.text.replacen("\"name\": \"", &format!("\"name\": \"{name} "), 1);
-        assert_ne!(text, self.text);
-        std::fs::write(&self.path, text).unwrap();
+        self.change("\"name\": \"two", &format!("\"name\": \"{name} two"));
+    }
+
+    /// Writes one thing differently into the file.
+    fn change(&self, before: &str, after: &str) {
+        assert!(self.text.contains(before), "{before}");
+        std::fs::write(&self.path, self.text.replacen(before, after, 1)).unwrap();
     }
 
     fn window(&self) -> Window {
@@ -109,4 +113,23 @@ fn a_changed_file_that_is_wrong_leaves_what_is_open() {
     assert!(notice.kind == NoticeKind::Trouble && notice.text.contains("my-dataset.json"), "{}", notice.text);
     assert_eq!(state(&window).study, before);
     assert!(is_told(&window), "it can be tried again");
+}
+
+#[test]
+fn what_is_different_after_a_reload_is_listed() {
+    let copy = Copy::new();
+    let mut window = copy.window();
+    click(&mut window, "Keep physics model V+5kt");
+    copy.change("\"V+5kt\"", "\"V+6kt\"");
+    wait_until(&mut window, "the change is told", is_told);
+    click(&mut window, "Reload");
+    window.get_by_label_contains("my-dataset.json was reloaded");
+    assert!(window.query_all_by_label_contains("V+5kt").count() >= 1, "the model that is gone is named");
+    window.get_by_label("Keep physics model V+6kt");
+    assert!(state(&window).unsaved);
+    click(&mut window, "Put the list away");
+    assert!(window.query_by_label_contains("was reloaded").is_none());
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(&mut window);
+    window.get_by_label("Keep physics model V+5kt");
 }

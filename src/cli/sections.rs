@@ -1,7 +1,7 @@
 //! The sections of the summary.
 
 use crate::correction::Outcome;
-use crate::dataset::{BundleKind, Channel, Condition, Dataset, Pair};
+use crate::dataset::{BundleKind, Condition, Pair};
 use crate::io::plain;
 use crate::schedule::{Schedule, ScheduledQuantity};
 use crate::study::{Analysis, ConditionAnalysis, RemarkKind, Study, remarks};

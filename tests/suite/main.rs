@@ -1,6 +1,10 @@
 //! Every test that is not beside the code it tests, as one program: linking the window library is what building tests spends
 //! its time on.
 
+use std::sync::LazyLock;
+
+use gdcm::io::{LoadedDataset, embedded_example};
+
 mod analysis;
 mod commands;
 mod dataset_file;
@@ -9,3 +13,7 @@ mod optimiser;
 mod outputs;
 mod structure;
 mod window;
+
+/// The embedded example, read once: most tests of the window and of whole studies start from it.
+static EXAMPLE: LazyLock<LoadedDataset> =
+    LazyLock::new(|| embedded_example().expect("the embedded example is a dataset"));

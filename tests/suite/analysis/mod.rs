@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use gdcm::dataset::{BundleKind, ConditionId, Dynamics, Pair, PairTable, StateSpace};
-use gdcm::io::{Corrections, embedded_example};
+use gdcm::io::Corrections;
 use gdcm::response::{FrequencyGrid, FrequencyResponse};
 use gdcm::study::{Analysis, Assessed, Edit, Engine, Setting, Study, Unobserved};
 use nalgebra::{Complex, DMatrix};
@@ -41,7 +41,7 @@ fn analyze(engine: &mut Engine, study: &Study) -> Analysis {
 }
 
 fn study_of_example() -> Study {
-    Study::new(embedded_example().unwrap().dataset)
+    Study::new(crate::EXAMPLE.dataset.clone())
 }
 
 /// The example analysed, its suggested outliers rejected, and analysed again.

@@ -181,7 +181,7 @@ fn a_long_computation_can_be_stopped_and_taken_up_again() {
 fn gains_that_the_answer_leaves_open_are_proven_beside_it() {
     let hasty = ProofBudget { work: 0, listing: 0, ..ProofBudget::default() };
     let engine = move || Engine::default().with_proofs_within(hasty);
-    let study = Study::new(embedded_example().unwrap().dataset);
+    let study = Study::new(crate::EXAMPLE.dataset.clone());
     let open = engine().analyze(&study, &Unobserved).unwrap();
     let is_open = |outcome: Outcome| matches!(outcome, Outcome::NotProven { .. });
     assert!(
@@ -205,7 +205,7 @@ fn gains_that_the_answer_leaves_open_are_proven_beside_it() {
 
 #[test]
 fn the_example_needs_no_proof_beside_the_answer() {
-    let study = Study::new(embedded_example().unwrap().dataset);
+    let study = Study::new(crate::EXAMPLE.dataset.clone());
     let analysis = Engine::default().with_proofs_within(LIVE_PROOF).analyze(&study, &Unobserved).unwrap();
     let proven =
         analysis.conditions.values().flatten().filter(|of| matches!(of.gains.proof.outcome, Outcome::Proven { .. }));

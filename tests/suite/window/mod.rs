@@ -19,7 +19,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 
 use gdcm::app::{GdcmApp, Setup};
 use gdcm::dataset::{BundleKind, ConditionId, ModelId, Pair};
-use gdcm::io::{Opened, OpenedStudy, embedded_example, load_any, open_study, read_corrections};
+use gdcm::io::{Opened, OpenedStudy, load_any, open_study, read_corrections};
 use gdcm::view::explanation::{gain_conflict_marks, remarks_shown, toggle_costs};
 use gdcm::view::net_gain_scene::channel_panels;
 use gdcm::view::plot::{BodeCurve, Pane, Role as CurveRole};
@@ -38,7 +38,7 @@ pub(crate) fn window() -> Window {
 }
 
 fn example() -> Opened {
-    Opened::Dataset(embedded_example().expect("the embedded example is a dataset"))
+    Opened::Dataset(crate::EXAMPLE.clone())
 }
 
 fn window_with(opened: Opened, setup: Setup) -> Window {

@@ -78,6 +78,7 @@
 //! # Example
 //!
 //! ```
+//! use gdcm::dataset::ConditionId;
 //! use gdcm::io::embedded_example;
 //! use gdcm::study::{Engine, Study, Unobserved};
 //!

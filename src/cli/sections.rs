@@ -1,7 +1,7 @@
 //! The sections of the summary.
 
 use crate::correction::Outcome;
-use crate::dataset::{BundleKind, Channel, Condition, Dataset, Pair};
+use crate::dataset::{BundleKind, Condition, Pair};
 use crate::io::plain;
 use crate::schedule::{Schedule, ScheduledQuantity};
 use crate::study::{Analysis, ConditionAnalysis, RemarkKind, Study, remarks};
@@ -119,11 +119,12 @@ fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
 fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let line = |label: &str, words: &str| detail(label, &plain(words));
     let said = remarks(&analysis.study, result, None);
-    let mut text = String::new();
+    let (mut text, mut trouble) = (String::new(), "not matched");
     for remark in &said {
         match remark.kind {
             RemarkKind::Good => {}
-            RemarkKind::Trouble => text.push_str(&line("not matched", &remark.text)),
+            // What is missed comes first, then the reasons and the ways out.
+            RemarkKind::Trouble => text.push_str(&line(std::mem::replace(&mut trouble, "why"), &remark.text)),
             RemarkKind::Caution => text.push_str(&line("caution", &remark.text)),
         }
     }

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use super::branch_and_bound::{Effort, SearchStopped};
 use super::channel::Channel;
 use super::reach::{Held, Reached, STRAIN};
 use crate::dataset::Pair;
@@ -50,14 +51,26 @@ impl Pull {
 /// is stopped by an active bound. Every path of the flow from bound to bound, and every loop of it, is a set that
 /// cannot hold, and every missed entry is on one (Farkas). Where a part of that set cannot hold by itself, that part is the
 /// clash, and the entry's own miss is the compromise with it.
-pub(crate) fn clashes(held: &Held, reached: &Reached, tolerance: f64) -> Vec<(Pair, Clash)> {
-    let Some(point) = &reached.point else { return Vec::new() };
+pub(crate) fn clashes(
+    held: &Held,
+    reached: &Reached,
+    tolerance: f64,
+    effort: &Effort<'_>,
+) -> Result<Vec<(Pair, Clash)>, SearchStopped> {
+    let Some(point) = &reached.point else { return Ok(Vec::new()) };
     let flow = Flow::new(held, reached, point);
     let missed = |pull: &&Pull| {
         let lacking = pull.weight - (point[pull.to] - point[pull.from]);
         lacking > tolerance
     };
-    flow.pulls.iter().filter(missed).filter_map(|pull| Some((pull.pair, flow.smallest_through(pull)?))).collect()
+    let mut clashes = Vec::new();
+    for pull in flow.pulls.iter().filter(missed) {
+        // Three searches over every pull of every channel.
+        effort.spend((flow.pulls.len() * flow.at_lower.len()) as u64 / 8);
+        effort.check()?;
+        clashes.extend(flow.smallest_through(pull).map(|clash| (pull.pair, clash)));
+    }
+    Ok(clashes)
 }
 
 struct Flow {

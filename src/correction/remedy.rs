@@ -1,5 +1,6 @@
 //! What would let every held entry be held.
 
+use super::branch_and_bound::{Effort, SearchStopped};
 use super::channel::pair_name;
 use super::components::Components;
 use super::problem::Problem;
@@ -22,13 +23,18 @@ pub struct Remedy {
 
 impl Remedy {
     /// The remedy for `held`, the held entries of `problem`; `suspects` are the entries of its conflicts.
-    pub(crate) fn new(problem: &Problem, held: &Held, suspects: &[Pair]) -> Self {
+    pub(crate) fn new(
+        problem: &Problem,
+        held: &Held,
+        suspects: &[Pair],
+        effort: &Effort<'_>,
+    ) -> Result<Self, SearchStopped> {
         let (quantity, coordinate) = (problem.quantity, problem.coordinate());
-        let Changes { upper, lower, free } = changes(held, suspects);
+        let Changes { upper, lower, free } = changes(held, suspects, effort)?;
         // A bound that is not the obstacle stays as it is.
         let upper = upper.map(|upper| three_digits_up(coordinate.value(upper)).max(problem.bounds.upper));
         let lower = lower.map(|lower| three_digits_down(coordinate.value(lower)).min(problem.bounds.lower));
-        Self { quantity, upper, lower: lower.filter(|_| quantity != Quantity::Delay), free }
+        Ok(Self { quantity, upper, lower: lower.filter(|_| quantity != Quantity::Delay), free })
     }
 
     /// The remedies in words; empty where there is none.
@@ -55,16 +61,24 @@ struct Spread {
     outputs: (f64, f64),
 }
 
-fn changes(held: &Held, suspects: &[Pair]) -> Changes {
+fn changes(held: &Held, suspects: &[Pair], effort: &Effort<'_>) -> Result<Changes, SearchStopped> {
     let (low, high) = held.range;
     let components = Components::new(held.outputs, held.inputs, &held.entries, held.range);
     let without = |freed: &Pair| Held {
         entries: held.entries.iter().filter(|(pair, _)| pair != freed).copied().collect(),
         ..held.clone()
     };
-    let free = suspects.iter().filter(|pair| is_reachable(&without(pair))).copied().collect();
+    let mut free = Vec::new();
+    for pair in suspects {
+        // Each channel is placed by a walk along the held entries.
+        effort.spend(((held.inputs + held.outputs) * held.entries.len()) as u64 / 8);
+        effort.check()?;
+        if is_reachable(&without(pair)) {
+            free.push(*pair);
+        }
+    }
     if !loops_agree(&components, held) {
-        return Changes { upper: None, lower: None, free };
+        return Ok(Changes { upper: None, lower: None, free });
     }
     let spreads: Vec<Spread> = (0..components.count()).filter_map(|component| spread(&components, component)).collect();
     let widest =
@@ -74,11 +88,11 @@ fn changes(held: &Held, suspects: &[Pair]) -> Changes {
     let highest = half_sum(|spread| spread.inputs.1 + spread.outputs.1).fold(f64::NEG_INFINITY, f64::max);
     let lowest = half_sum(|spread| spread.inputs.0 + spread.outputs.0).fold(f64::INFINITY, f64::min);
     let rounding = 1e-12 * (1.0 + low.abs() + high.abs());
-    Changes {
+    Ok(Changes {
         upper: (lowest >= low - rounding).then(|| high.max(low + widest).max(highest)),
         lower: (highest <= high + rounding).then(|| low.min(high - widest).min(lowest)),
         free,
-    }
+    })
 }
 
 /// Whether every loop of held entries leads back to where it began.

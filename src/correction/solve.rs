@@ -1,13 +1,13 @@
 //! The solution of equations (7) and (11).
 
-use super::branch_and_bound::{Effort, Minima, Newton, Objective, ProofBudget, search};
+use super::branch_and_bound::{Effort, Minima, Newton, Objective, ProofBudget, SearchStopped, search};
 use super::clash::clashes;
 use super::components::{Components, Placement};
 use super::conflict::{Conflict, ConflictKind};
 use super::interior_point::interior_point;
 use super::objective::{floor, objective};
 use super::problem::{Problem, ProblemError};
-use super::quantity::{Coordinate, GainObjective, Quantity};
+use super::quantity::{GainObjective, Quantity};
 use super::reach::{Held, Reached, reach};
 use super::remedy::Remedy;
 use super::solution::{LocalMinimum, Outcome, Proof, Solution, Unmatched};
@@ -57,7 +57,7 @@ pub fn solve(problem: &Problem, budget: ProofBudget, stop: &dyn Fn() -> bool) ->
     for (scales, _) in &mut found.minima {
         settle(problem.quantity, &reached.components, &objective, scales);
     }
-    Ok(assemble(problem, &held, &reached, &found))
+    Ok(assemble(problem, &held, &reached, &found, &effort)?)
 }
 
 /// Where Newton's method begins: of delays next to the minimum, which it then reaches exactly, bounds and all.
@@ -120,7 +120,13 @@ fn channels_at(problem: &Problem, components: &Components, scales: &[f64]) -> (V
     (inputs.iter().map(value).collect(), outputs.iter().map(value).collect())
 }
 
-fn assemble(problem: &Problem, held: &Held, reached: &Reached, found: &Minima) -> Solution {
+fn assemble(
+    problem: &Problem,
+    held: &Held,
+    reached: &Reached,
+    found: &Minima,
+    effort: &Effort<'_>,
+) -> Result<Solution, SearchStopped> {
     let coordinate = problem.coordinate();
     let minimum = |(scales, _): &(Vec<f64>, f64)| {
         let (inputs, outputs) = channels_at(problem, &reached.components, scales);
@@ -144,9 +150,10 @@ fn assemble(problem: &Problem, held: &Held, reached: &Reached, found: &Minima) -
     for (pair, target) in &reached.targets {
         targets[*pair] = Some(coordinate.value(*target));
     }
-    let unmatched = misses(problem, coordinate, held, reached);
+    let unmatched = misses(problem, held, reached, effort)?;
     let conflicts = conflicts_of(&unmatched);
-    Solution {
+    let remedy = remedy_of(problem, held, &conflicts, effort)?;
+    Ok(Solution {
         quantity: problem.quantity,
         inputs,
         outputs,
@@ -154,16 +161,21 @@ fn assemble(problem: &Problem, held: &Held, reached: &Reached, found: &Minima) -
         proof,
         targets,
         matched: unmatched.is_empty(),
-        remedy: remedy_of(problem, held, &conflicts),
+        remedy,
         unmatched,
         conflicts,
-    }
+    })
 }
 
 /// The held entries that stage 1 could not match, each with what is in the way.
-fn misses(problem: &Problem, coordinate: Coordinate, held: &Held, reached: &Reached) -> Vec<Unmatched> {
-    let quantity = problem.quantity;
-    let clashes = clashes(held, reached, MATCHED);
+fn misses(
+    problem: &Problem,
+    held: &Held,
+    reached: &Reached,
+    effort: &Effort<'_>,
+) -> Result<Vec<Unmatched>, SearchStopped> {
+    let (quantity, coordinate) = (problem.quantity, problem.coordinate());
+    let clashes = clashes(held, reached, MATCHED, effort)?;
     let why = |pair: Pair| match clashes.iter().find(|(missed, _)| *missed == pair) {
         Some((_, clash)) => Conflict::new(clash.clone(), problem),
         None => Conflict {
@@ -175,16 +187,15 @@ fn misses(problem: &Problem, coordinate: Coordinate, held: &Held, reached: &Reac
     };
     let entries = held.entries.iter().zip(&reached.targets);
     let missed = entries.filter(|((_, delta), (_, target))| (target - delta).abs() > MATCHED);
-    missed
-        .map(|((pair, delta_at), (_, target_at))| {
-            let (delta, target) = (coordinate.value(*delta_at), coordinate.value(*target_at));
-            let excess = match quantity {
-                Quantity::Gain(_) => quantity.difference(target_at - delta_at, coordinate),
-                Quantity::Delay => target - delta,
-            };
-            Unmatched { quantity, pair: *pair, delta, target, excess, why: why(*pair) }
-        })
-        .collect()
+    let missed = missed.map(|((pair, delta_at), (_, target_at))| {
+        let (delta, target) = (coordinate.value(*delta_at), coordinate.value(*target_at));
+        let excess = match quantity {
+            Quantity::Gain(_) => quantity.difference(target_at - delta_at, coordinate),
+            Quantity::Delay => target - delta,
+        };
+        Unmatched { quantity, pair: *pair, delta, target, excess, why: why(*pair) }
+    });
+    Ok(missed.collect())
 }
 
 /// The distinct conflicts behind the misses.
@@ -204,9 +215,14 @@ fn conflicts_of(unmatched: &[Unmatched]) -> Vec<Conflict> {
 }
 
 /// What would let everything be held, where something cannot.
-fn remedy_of(problem: &Problem, held: &Held, conflicts: &[Conflict]) -> Option<Remedy> {
+fn remedy_of(
+    problem: &Problem,
+    held: &Held,
+    conflicts: &[Conflict],
+    effort: &Effort<'_>,
+) -> Result<Option<Remedy>, SearchStopped> {
     let mut suspects: Vec<Pair> = conflicts.iter().flat_map(|conflict| conflict.entries.iter().copied()).collect();
     suspects.sort();
     suspects.dedup();
-    (!suspects.is_empty()).then(|| Remedy::new(problem, held, &suspects))
+    (!suspects.is_empty()).then(|| Remedy::new(problem, held, &suspects, effort)).transpose()
 }

@@ -37,6 +37,11 @@ impl Band {
         }
     }
 
+    /// A band that may reach beyond the limits of comparison, `0 < min < max`: the one drawn around such a band does.
+    pub fn beyond(min: f64, max: f64) -> Result<Self, BandError> {
+        if 0.0 < min && min < max && max.is_finite() { Ok(Self { min, max }) } else { Err(BandError { min, max }) }
+    }
+
     /// Lower end \[rad/s\].
     pub fn min(self) -> f64 {
         self.min
@@ -59,5 +64,6 @@ mod tests {
             assert!(Band::new(min, max).is_err(), "{min} .. {max}");
         }
         assert!(Band::new(0.5, 12.0).is_ok() && Band::new(LEAST_OMEGA, GREATEST_OMEGA).is_ok());
+        assert!(Band::beyond(1e-300, 1e300).is_ok() && Band::beyond(0.0, 1.0).is_err());
     }
 }

@@ -179,7 +179,8 @@ impl DatasetDraft {
         check_count("outputs", self.outputs.len(), MOST_CHANNELS)?;
         check_count("conditions", self.conditions.len(), MOST_CONDITIONS)?;
         let band = Band::new(self.band.0, self.band.1);
-        let band = band.map_err(|error| DraftError::new(Place::entry("frequency band"), error))?;
+        // It names itself.
+        let band = band.map_err(|error| DraftError::new(Place::default(), error))?;
         let on_axis = on_axis_table(&self.outputs, &self.inputs, &self.on_axis)?;
         let mut checker = Checker { outputs: self.outputs.len(), inputs: self.inputs.len(), oddities: Vec::new() };
         let conditions = self.conditions.into_iter().enumerate();

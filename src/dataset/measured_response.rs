@@ -20,13 +20,13 @@ pub struct MeasuredResponse {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeasuredResponseError {
     /// Fewer than two frequencies.
-    #[error("omega_rad_s: expected at least 2 frequencies, found {found}")]
+    #[error("expected at least 2 frequencies, found {found}")]
     TooFewFrequencies {
         /// How many there are.
         found: usize,
     },
     /// A frequency is not finite, not positive, or not above the one before.
-    #[error("omega_rad_s, entry {entry}: expected finite, positive and rising frequencies, found {}", number(*value))]
+    #[error("frequency {entry}: expected finite, positive and rising frequencies, found {}", number(*value))]
     Frequency {
         /// Entry, counted from 1.
         entry: usize,

@@ -37,5 +37,5 @@ impl ConditionCurves {
 /// The band drawn around a band of comparison: a little more than half a decade's third on either side.
 pub fn display_band(band: Band) -> Band {
     const MARGIN: f64 = 1.7;
-    Band::new(band.min() / MARGIN, band.max() * MARGIN).unwrap_or(band)
+    Band::beyond(band.min() / MARGIN, band.max() * MARGIN).unwrap_or(band)
 }

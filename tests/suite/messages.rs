@@ -66,7 +66,7 @@ fn a_number_of_three_hundred_digits_is_written_with_an_exponent() {
     desk.write("id.json", |file| file["conditions"][0]["id"] = json!(1e300));
     desk.gdcm(&["check", "id.json"]).assert_failed(2, &["expected a whole number, found 1e300"]);
     desk.write("negative.json", |file| file["conditions"][0]["airspeed_kt"] = json!(-1e300));
-    desk.gdcm(&["check", "negative.json"]).assert_failed(2, &["airspeed_kt", "found -1e300"]);
+    desk.gdcm(&["check", "negative.json"]).assert_failed(2, &["airspeed [kt]", "found -1e300"]);
     desk.gdcm(&["analyze", "--out", "out", "--alpha", "1e300"])
         .assert_failed(2, &["--alpha: ", "a number from 0 to 1000000, found 1e300"]);
     desk.gdcm(&["analyze", "--out", "out", "--band", "1e-300", "1e300"])
@@ -240,13 +240,13 @@ fn lists_beyond_their_limits_are_refused_with_their_place() {
         ),
         (
             "\"on_axis\": [",
-            format!("\"on_axis\": [{},", many("[\"P\",\"LAT\"]", 40_000)),
-            "on_axis: expected at most 40000",
+            format!("\"on_axis\": [{},", many("[\"P\",\"LAT\"]", 1024)),
+            "on_axis: expected at most 1024",
         ),
         (
             "\"outputs\": [",
-            format!("\"outputs\": [{},", many("{\"name\":\"\",\"unit\":\"\"}", 200)),
-            "outputs: expected at most 200",
+            format!("\"outputs\": [{},", many("{\"name\":\"\",\"unit\":\"\"}", 32)),
+            "outputs: expected at most 32",
         ),
         ("\"A\": [", format!("\"A\": [[{numbers}],"), "matrix A, row 1: expected at most 1000 entries, found more"),
         (

@@ -150,10 +150,9 @@ fn an_export_over_existing_files_asks_first() {
     assert!(!shown(&window, "Overwrite") && shown(&window, "Export folder"), "back at what was being asked for");
     assert_eq!(fs::read_to_string(&csv).unwrap(), "mine");
 
+    // The form is larger than the question, and takes some frames to find its place.
+    window.run_steps(10);
     click(&mut window, "Export");
-    eprintln!("{:?} {:?}", state(&window).notice, state(&window).forms);
-    window.run_steps(8);
-    eprintln!("{:?} {:?}", state(&window).notice, state(&window).forms);
     click(&mut window, "Overwrite");
     assert_eq!(state(&window).notice.as_ref().map(|notice| notice.kind), Some(NoticeKind::Done));
     assert!(state(&window).forms.shown.is_none());

@@ -20,7 +20,7 @@ impl Default for ProofBudget {
     /// About two seconds of one core and 64 MB: far more than a condition with its on-axis responses held needs. Of that at most
     /// some milliseconds for the other minima.
     fn default() -> Self {
-        Self { work: 50_000_000, listing: 200_000, bytes: 64_000_000 }
+        Self { work: 80_000_000, listing: 200_000, bytes: 64_000_000 }
     }
 }
 

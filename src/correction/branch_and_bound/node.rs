@@ -75,3 +75,24 @@ impl OpenNodes {
         self.heap.peek().map_or(f64::INFINITY, |node| node.bound).min(self.refused)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nodes_beyond_the_memory_leave_their_bound_only() {
+        let node =
+            |bound: f64| Node { bound, region: DifferenceBounds::of_box(&[0.0; 20], &[0.0; 20]), start: vec![0.0; 20] };
+        let mut open = OpenNodes::new(20, 40_000);
+        let kept = (0..100).take_while(|&index| {
+            open.push(node(100.0 - f64::from(index)));
+            !open.is_full()
+        });
+        // 400 differences of 8 bytes, and the rest of a node.
+        let kept = kept.count();
+        assert!((9..=12).contains(&kept), "{kept}");
+        assert_eq!(open.least_bound(), 100.0 - kept as f64);
+        assert_eq!(open.pop().map(|node| node.bound), Some(101.0 - kept as f64));
+    }
+}

@@ -11,7 +11,7 @@ use pulp::Arch;
 type Values = PairTable<Vec<Complex<f64>>>;
 
 fn grid(low: f64, high: f64, points: usize) -> FrequencyGrid {
-    FrequencyGrid::logarithmic(Band::new(low, high).unwrap(), points)
+    FrequencyGrid::logarithmic(Band::beyond(low, high).unwrap(), points)
 }
 
 fn response(model: &StateSpace, grid: &FrequencyGrid) -> Values {

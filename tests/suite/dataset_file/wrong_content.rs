@@ -14,7 +14,7 @@ fn a_key_that_is_missing_is_named_with_its_place() {
         ("/conditions/1", "airspeed_kt", "condition 10 (number 2 in the file): the key \"airspeed_kt\""),
         ("/conditions/1", "id", "condition number 2 in the file: the key \"id\""),
         ("/conditions/0/physics_models/1", "role", "physics model \"V+5kt\" (number 2): the key \"role\""),
-        ("/conditions/0/physics_models/1", "B", "physics model \"V+5kt\" (number 2): the key \"B\""),
+        ("/conditions/0/physics_models/1", "B", "physics model \"V+5kt\" (number 2): matrix B is missing"),
         ("/conditions/0/identified_models/0", "C", "identified model \"sweeps\" (number 1): the key \"C\""),
         (
             "/conditions/0/identified_models/1/frequency_response",
@@ -81,7 +81,7 @@ fn a_bundle_needs_exactly_one_nominal_model() {
     };
     assert_refused(
         |file| role(file, 0, "perturbed"),
-        &["condition 7", "exactly one model of role \"nominal\", found 0"],
+        &["condition 7", "exactly one nominal model, found 0"],
     );
     assert_refused(|file| role(file, 1, "nominal"), &["condition 7", "found 2 (nominal, V+5kt)"]);
     assert_refused(
@@ -92,10 +92,10 @@ fn a_bundle_needs_exactly_one_nominal_model() {
 
 #[test]
 fn empty_lists_are_refused() {
-    for list in ["physics_models", "identified_models"] {
+    for (list, bundle) in [("physics_models", "the physics bundle"), ("identified_models", "the identified bundle")] {
         assert_refused(
             |file| file["conditions"][1][list] = json!([]),
-            &["condition 10 (number 2 in the file)", list, "at least one model"],
+            &["condition 10 (number 2 in the file)", bundle, "at least one model"],
         );
     }
     assert_refused(|file| file["conditions"] = json!([]), &["conditions: expected at least one entry"]);
@@ -114,7 +114,7 @@ fn ids_and_names_that_stand_twice_are_refused() {
     assert_refused(two_of_a_name, &["inputs: the name \"LON\" stands twice"]);
     assert_refused(
         |file| file["conditions"][0]["identified_models"][1]["name"] = json!("sweeps"),
-        &["condition 7", "identified_models: the name \"sweeps\" stands twice (models 1 and 2)"],
+        &["condition 7", "the identified bundle: the name \"sweeps\" stands twice (models 1 and 2)"],
     );
     assert_text_refused("\"id\": 7", "\"id\": 7, \"id\": 8", &["condition", "the key \"id\" stands twice"]);
 }
@@ -122,12 +122,12 @@ fn ids_and_names_that_stand_twice_are_refused() {
 #[test]
 fn on_axis_pairs_are_known_channels_once_and_output_first() {
     for (pairs, words) in [
-        (json!([["P", "LAT"], ["P", "PED"]]), "on_axis, entry 2: the dataset has no input \"PED\""),
+        (json!([["P", "LAT"], ["P", "PED"]]), "on-axis pair 2: the dataset has no input \"PED\""),
         (
             json!([["LAT", "P"]]),
-            "on_axis, entry 1: the dataset has no output \"LAT\"; a pair is written [output, input]",
+            "on-axis pair 1: the dataset has no output \"LAT\"; a pair is written [output, input]",
         ),
-        (json!([["P", "LAT"], ["P", "LAT"]]), "on_axis, entry 2: the pair [\"P\", \"LAT\"] stands twice"),
+        (json!([["P", "LAT"], ["P", "LAT"]]), "on-axis pair 2: the pair [\"P\", \"LAT\"] stands twice"),
         (json!([["P", "LAT", "Q"]]), "on_axis, entry 1"),
         (json!([["P"]]), "on_axis, entry 1: expected a list of 2 entries, found 1 entries"),
     ] {
@@ -139,7 +139,7 @@ fn on_axis_pairs_are_known_channels_once_and_output_first() {
 fn a_band_is_positive_rising_and_in_radians_per_second() {
     for (min, max) in [(12.0, 0.5), (0.0, 12.0), (-1.0, 12.0), (2.0, 2.0)] {
         let band = json!({"min": min, "max": max, "unit": "rad/s"});
-        assert_refused(|file| file["frequency_band"] = band, &["frequency_band", "0.0001 <= min < max <= 100000"]);
+        assert_refused(|file| file["frequency_band"] = band, &["frequency band", "0.0001 <= min < max <= 100000"]);
     }
     assert_refused(
         |file| file["frequency_band"]["unit"] = json!("Hz"),
@@ -153,7 +153,7 @@ fn a_model_has_matrices_or_a_frequency_response() {
     let both = |file: &mut Value| {
         file["conditions"][0]["identified_models"][0]["frequency_response"] = response(file);
     };
-    assert_refused(both, &["identified model \"sweeps\" (number 1)", "both matrices and a frequency_response"]);
+    assert_refused(both, &["identified model \"sweeps\" (number 1)", "both matrices and a measured response"]);
     let neither = |file: &mut Value| file["conditions"][0]["identified_models"][1] = json!({"name": "empty"});
     assert_refused(neither, &["identified model \"empty\" (number 2)", "neither matrices A, B, C, D nor"]);
     let physics = |file: &mut Value| file["conditions"][0]["physics_models"][0]["frequency_response"] = response(file);
@@ -162,11 +162,11 @@ fn a_model_has_matrices_or_a_frequency_response() {
 
 #[test]
 fn frequency_data_have_the_shape_of_the_channels_and_rising_frequencies() {
-    let place = "condition 7 (number 1 in the file), identified model \"measured\" (number 2), frequency_response";
+    let place = "condition 7 (number 1 in the file), identified model \"measured\" (number 2), ";
     for (key, value, words) in [
         ("omega_rad_s", json!([0.4, 2.0]), "re: expected 2 x 2 x 2 (outputs x inputs x frequencies), found 2 x 2 x 3"),
-        ("omega_rad_s", json!([0.4, 0.4, 14.0]), "omega_rad_s, entry 2: expected finite, positive and rising"),
-        ("omega_rad_s", json!([-0.4, 2.0, 14.0]), "omega_rad_s, entry 1"),
+        ("omega_rad_s", json!([0.4, 0.4, 14.0]), "frequency 2: expected finite, positive and rising"),
+        ("omega_rad_s", json!([-0.4, 2.0, 14.0]), "frequency 1: expected finite"),
         ("re", json!([[[1, 2, 3], [1, 2, 3]]]), "re: expected 2 x 2 x 3"),
         ("im", json!([[[1, 2, 3], [1, 2]], [[1, 2, 3], [1, 2, 3]]]), "im, output 1, input 2: expected 3 entries"),
         (
@@ -186,7 +186,7 @@ fn frequency_data_have_the_shape_of_the_channels_and_rising_frequencies() {
 fn figures_of_the_flight_state_are_possible_ones() {
     assert_refused(
         |file| file["conditions"][0]["airspeed_kt"] = json!(-5),
-        &["condition 7 (number 1 in the file)", "airspeed_kt: expected a finite number not below zero, found -5"],
+        &["condition 7 (number 1 in the file)", "airspeed [kt]: expected a finite number not below zero, found -5"],
     );
 }
 

@@ -92,9 +92,14 @@ fn the_embedded_example_is_analysed_without_a_file() {
     assert_eq!(corrections.assessment.left_out[0].id, 10);
     assert_eq!(rows(&desk.path("results/of/today/corrections.csv")).len(), 11 * 10);
     assert_eq!(rows(&desk.path("results/of/today/assessment.csv")).len(), 11 * 24);
-    for words in
-        ["Condition 10", "rejected    nominal, ROLL+5deg", "LON → Q", "held responses need lead", "Schedule", "Left out      condition 10"]
-    {
+    for words in [
+        "Condition 10",
+        "rejected    nominal, ROLL+5deg",
+        "LON → Q",
+        "held responses need lead",
+        "Schedule",
+        "Left out      condition 10",
+    ] {
         assert!(ended.out.contains(words), "expected \"{words}\" in:\n{}", ended.out);
     }
     let widest = ended.out.lines().map(|line| line.chars().count()).max().unwrap();

@@ -79,10 +79,7 @@ fn a_bundle_needs_exactly_one_nominal_model() {
     let role = |file: &mut Value, model: usize, role: &str| {
         file["conditions"][0]["physics_models"][model]["role"] = json!(role);
     };
-    assert_refused(
-        |file| role(file, 0, "perturbed"),
-        &["condition 7", "exactly one nominal model, found 0"],
-    );
+    assert_refused(|file| role(file, 0, "perturbed"), &["condition 7", "exactly one nominal model, found 0"]);
     assert_refused(|file| role(file, 1, "nominal"), &["condition 7", "found 2 (nominal, V+5kt)"]);
     assert_refused(
         |file| role(file, 1, "trim"),
@@ -123,10 +120,7 @@ fn ids_and_names_that_stand_twice_are_refused() {
 fn on_axis_pairs_are_known_channels_once_and_output_first() {
     for (pairs, words) in [
         (json!([["P", "LAT"], ["P", "PED"]]), "on-axis pair 2: the dataset has no input \"PED\""),
-        (
-            json!([["LAT", "P"]]),
-            "on-axis pair 1: the dataset has no output \"LAT\"; a pair is written [output, input]",
-        ),
+        (json!([["LAT", "P"]]), "on-axis pair 1: the dataset has no output \"LAT\"; a pair is written [output, input]"),
         (json!([["P", "LAT"], ["P", "LAT"]]), "on-axis pair 2: the pair [\"P\", \"LAT\"] stands twice"),
         (json!([["P", "LAT", "Q"]]), "on_axis, entry 1"),
         (json!([["P"]]), "on_axis, entry 1: expected a list of 2 entries, found 1 entries"),

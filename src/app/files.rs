@@ -72,7 +72,7 @@ impl GdcmApp {
     }
 
     /// Shows what was opened in place of what is open.
-    pub(super) fn show(&mut self, opened: Opened, ctx: &Context) {
+    pub(super) fn show(&mut self, opened: Opened) {
         let (mut state, loaded, saved) = Self::parts_of(opened);
         let requested = self.state.results.requested;
         let name = loaded.origin.to_string();
@@ -89,7 +89,6 @@ impl GdcmApp {
         self.saved = saved;
         self.agreed_to_lose = false;
         self.keep_unsaved();
-        self.look_for_recent(ctx);
         self.done(format!("opened {name}"));
     }
 
@@ -140,7 +139,10 @@ impl GdcmApp {
     fn answer_opened(&mut self, purpose: ReadFor, opened: Result<Opened, FileError>, ctx: &Context) {
         self.state.opening = None;
         match (purpose, opened) {
-            (ReadFor::Opening, Ok(opened)) => self.show(opened, ctx),
+            (ReadFor::Opening, Ok(opened)) => {
+                self.show(opened);
+                self.look_for_recent(ctx);
+            }
             (ReadFor::Reloading, Ok(opened)) => self.show_reloaded(opened.into_study().1),
             (ReadFor::Restoring(offer), Ok(opened)) => self.show_restored(offer, opened, ctx),
             (_, Err(error)) => self.open_failed(error, ctx),

@@ -53,12 +53,13 @@ impl GdcmApp {
         let Some(lost) = self.offers.get_mut(offer).and_then(Option::take) else { return };
         let words = format!("restored the decisions of {}", when(lost.kept_at, &TimeZone::system()));
         let saved_as = lost.saved_as.clone();
-        self.show(opened, ctx);
+        self.show(opened);
         self.state.study_name = super::files::study_name(saved_as.as_deref());
         self.saved.path = saved_as;
         self.saved.study = None;
         self.autosave.restored(lost);
         self.close_offer(offer);
+        self.look_for_recent(ctx);
         self.study_changed();
         self.done(words);
     }

@@ -81,6 +81,9 @@ fn a_study_that_was_saved_before_is_offered_by_its_name_and_saved_there_again() 
     window.key_press_modifiers(Modifiers::COMMAND, Key::S);
     settle(&mut window);
     assert!(!state(&window).unsaved);
+    wait_until(&mut window, "the list is read", |window| !state(window).recent.is_empty());
+    let recent: Vec<&str> = state(&window).recent.iter().map(|file| file.name.as_str()).collect();
+    assert_eq!(recent, ["mine.gdcm-study.json", "data.json"], "the recovery file is none of them");
     assert_eq!(open_study(&path).unwrap().study.settings.alpha_gain, 12.5);
 }
 

@@ -34,7 +34,7 @@ enum Source {
     },
 }
 
-/// An entry of a model's matrices beyond [`LARGEST_ENTRY`].
+/// An entry of a model's matrices beyond `LARGEST_ENTRY`.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "its matrix {matrix} has {value:e} in row {row}, column {column}, and nothing beyond {LARGEST_ENTRY:e} can be computed with"

@@ -367,3 +367,20 @@ fn a_path_that_is_not_unicode_is_read_all_the_same() {
     let output = desk.command(&[OsStr::new("check"), name]).output().unwrap();
     assert_eq!(output.status.code(), Some(0));
 }
+
+#[test]
+fn a_study_whose_dataset_has_changed_or_moved_is_used_and_told_about_unless_it_has_to_be_the_same() {
+    let desk = Desk::new();
+    let (study, dataset) = (desk.path("a.gdcm-study.json"), desk.path("small.json"));
+    let loaded = load_dataset(&dataset).unwrap();
+    save_study(&Study::new(loaded.dataset.clone()), &loaded, &study).unwrap();
+    desk.write("small.json", |file| file["conditions"][0]["airspeed_kt"] = json!(61));
+    let told = desk.gdcm(&["check", "a.gdcm-study.json"]);
+    assert!(told.status == 0 && told.error.contains("condition 7 is flown at 61 kt"), "{told:?}");
+    let strict = desk.gdcm(&["check", "a.gdcm-study.json", "--strict"]);
+    assert!(strict.status == 2 && strict.error.contains("--strict asks for none"), "{strict:?}");
+    fs::rename(&dataset, desk.path("moved.json")).unwrap();
+    desk.gdcm(&["check", "a.gdcm-study.json"])
+        .assert_failed(2, &["small.json: there is no such file", "--dataset FILE"]);
+    assert_eq!(desk.gdcm(&["check", "a.gdcm-study.json", "--dataset", "moved.json"]).status, 0);
+}

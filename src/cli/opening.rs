@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::io::{Opened, load_any, open_study_of};
+use crate::io::{Opened, load_any, open_study_of, plain, plain_path};
 
 use super::arguments::OpeningArguments;
 use super::failure::Failure;
@@ -16,10 +16,10 @@ pub(super) fn open(file: &Path, arguments: &OpeningArguments) -> Result<Opened, 
     };
     if let Opened::Study(study) = &opened {
         for difference in &study.differences {
-            say_error(&format!("{}: {difference}", file.display()));
+            say_error(&format!("{}: {}", plain_path(file), plain(&difference.to_string())));
         }
         if arguments.strict && !study.differences.is_empty() {
-            return Err(Failure::Different { path: file.display().to_string(), count: study.differences.len() });
+            return Err(Failure::Different { path: plain_path(file), count: study.differences.len() });
         }
     }
     Ok(opened)

@@ -185,13 +185,17 @@ impl Gather<'_> {
             ScheduledQuantity::LnGain => "ln k",
             ScheduledQuantity::Gain => "k",
         };
-        let figures = |regressions: &[Regression]| regressions.iter().map(figures_of).collect::<Vec<_>>();
+        let figures = |regressions: &[Regression]| {
+            regressions.iter().map(|regression| regression.figures().to_vec()).collect::<Vec<_>>()
+        };
         let table = airspeeds.clusters_kt().into_iter().map(|airspeed_kt| {
-            let Channels { inputs, outputs } = {
-                let correction = schedule.at(airspeed_kt);
-                names.channels(&correction.input_gains, &correction.output_gains)
-            };
-            ScheduledGains { airspeed_kt, inputs, outputs }
+            let correction = schedule.at(airspeed_kt);
+            let Channels { inputs, outputs } = names.channels(&correction.input_gains, &correction.output_gains);
+            let delays_s = schedule
+                .delays
+                .as_ref()
+                .map(|_| names.channels(&correction.input_delays_s, &correction.output_delays_s));
+            ScheduledGains { airspeed_kt, inputs, outputs, delays_s }
         });
         ScheduleUsed {
             kind: kind.to_owned(),
@@ -203,9 +207,10 @@ impl Gather<'_> {
             airspeed_range_kt: [airspeeds.min_kt, airspeeds.max_kt],
             inputs: names.by_input(figures(&schedule.inputs)),
             outputs: names.by_output(figures(&schedule.outputs)),
-            delays_s: schedule.delays.as_ref().map(|(inputs, outputs)| ScheduledDelays {
-                inputs: names.by_input(figures(inputs)),
-                outputs: names.by_output(figures(outputs)),
+            delays_s: schedule.delays.as_ref().map(|delays| ScheduledDelays {
+                inputs: names.by_input(figures(&delays.inputs)),
+                outputs: names.by_output(figures(&delays.outputs)),
+                upper_s: Some(delays.upper_s.figures().to_vec()),
             }),
             table: table.collect(),
             cautions: schedule.cautions.iter().map(|caution| caution.words(&names.inputs, &names.outputs)).collect(),
@@ -228,13 +233,6 @@ fn discontinuity_of(condition: &Condition, result: &ConditionAnalysis) -> ByName
     let ratios = result.figures.discontinuity.as_ref().map(|found| found.ratios.clone()).unwrap_or_default();
     let names = condition.bundle(BundleKind::Physics).iter().map(|model| model.name.clone());
     ByName(names.zip(ratios).collect())
-}
-
-fn figures_of(regression: &Regression) -> Vec<f64> {
-    match regression {
-        Regression::Polynomial { coefficients } => coefficients.clone(),
-        Regression::Table { values, .. } => values.clone(),
-    }
 }
 
 fn cost_tables(result: &ConditionAnalysis) -> CostTables {

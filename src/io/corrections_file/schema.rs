@@ -267,6 +267,10 @@ pub struct ScheduledDelays {
     pub inputs: ByName<Vec<f64>>,
     /// Of each output.
     pub outputs: ByName<Vec<f64>>,
+    /// Upper bound of every delay at each airspeed of `table`, linear between \[s\]: scheduled delays are cut to 0 and to
+    /// this. Results of older programs do not say it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper_s: Option<Vec<f64>>,
 }
 
 /// The scheduled gains at one airspeed.
@@ -278,6 +282,9 @@ pub struct ScheduledGains {
     pub inputs: ByName<f64>,
     /// Of each output.
     pub outputs: ByName<f64>,
+    /// The scheduled delays \[s\], where they are scheduled.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub delays_s: Option<Channels>,
 }
 
 /// What the scheduled correction is worth.

@@ -25,9 +25,9 @@ pub use crate::dataset::limits::LARGEST_TEXT;
 pub use content_fault::ContentFault;
 pub use corrections_file::{
     Assessment, ByName, Channels, ConditionAssessment, ConditionCorrections, ConflictEntry, Corrections, CostTable,
-    CostTables, DatasetLabel, DelayOutcome, Explanation, GainOutcome, NetGain, RESULT_FILES, RemedyEntry, ScheduleUsed,
-    ScheduledDelays, ScheduledGains, SensitivityEntry, SetAsideEntry, SourceEntry, Table, UnmatchedDelayEntry,
-    UnmatchedGainEntry, WithoutResult, read_corrections, result_paths, write_results,
+    CostTables, DatasetLabel, DelayOutcome, Explanation, GainOutcome, NetGain, RESULT_FILES, ReasonEntry, RemedyEntry,
+    ScheduleUsed, ScheduledDelays, ScheduledGains, SensitivityEntry, SetAsideEntry, SourceEntry, Table,
+    UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult, read_corrections, result_paths, write_results,
 };
 pub use dataset_file::{
     DatasetOrigin, LoadedDataset, embedded_example, load_dataset, load_dataset_bytes, save_dataset, write_example,

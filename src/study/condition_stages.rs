@@ -116,7 +116,7 @@ impl ConditionStages {
         let measuring = study.dataset.measuring_pairs();
         let choice = study.choice(condition.id());
         let figures_key = ((settings.band, settings.points), measuring.clone());
-        let key: ComparisonKey = (figures_key, choice.clone(), settings.cost_average);
+        let key: ComparisonKey = (figures_key, choice.without_reasons(), settings.cost_average);
         let comparison = self.comparison.get(key.clone(), |_| {
             let comparison = Comparison::of(condition, responses, &figures, grid, choice, settings.cost_average);
             comparison.map(Arc::new)

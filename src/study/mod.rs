@@ -10,6 +10,7 @@ mod condition_modes;
 mod condition_responses;
 mod condition_stages;
 mod curves;
+mod decision_difference;
 mod document;
 mod edit;
 mod engine;
@@ -23,6 +24,8 @@ mod remark;
 mod setting;
 mod settings;
 mod toggles;
+mod variant;
+mod variant_job;
 
 pub use analysis::{Analysis, Assessed};
 pub use assessment_table::{
@@ -36,8 +39,9 @@ pub use condition_analysis::{ConditionAnalysis, ConditionFailure};
 pub use condition_modes::{ConditionModes, ModelModes};
 pub use condition_responses::ConditionResponses;
 pub use curves::{ConditionCurves, display_band};
+pub use decision_difference::{DecisionDifference, decision_differences};
 pub use document::{BundleChoice, ConditionChoice, Study};
-pub use edit::{Edit, EditRefusal};
+pub use edit::{Edit, EditRefusal, LONGEST_REASON};
 pub use engine::{Engine, LIVE_PROOF};
 pub use executor::{Execution, Executor, Sequential, Task};
 pub use history::History;
@@ -51,3 +55,5 @@ pub use settings::{
     LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings,
 };
 pub use toggles::Toggles;
+pub use variant::{LONGEST_VARIANT_NAME, Variant};
+pub use variant_job::VariantJob;

@@ -7,14 +7,14 @@ use crate::dataset::{BundleKind, Condition, ConditionId, Model, PairTable, Prove
 use crate::fidelity::Cost;
 use crate::io::settings_entry::SettingsEntry;
 use crate::schedule::{Regression, Schedule, ScheduleKind, ScheduledQuantity};
-use crate::study::{Analysis, Assessed, Caution, ConditionAnalysis};
+use crate::study::{Analysis, Assessed, Caution, ConditionAnalysis, ConditionChoice};
 
 use super::explanation::Explanation;
 use super::names::{ByName, ChannelNames, rows};
 use super::schema::{
     Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
-    DelayOutcome, GainOutcome, NetGain, ScheduleUsed, ScheduledDelays, ScheduledGains, SetAsideEntry, SourceEntry,
-    UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
+    DelayOutcome, GainOutcome, NetGain, ReasonEntry, ScheduleUsed, ScheduledDelays, ScheduledGains, SetAsideEntry,
+    SourceEntry, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
 };
 use super::{NAME, VERSION};
 
@@ -82,6 +82,7 @@ impl Gather<'_> {
             physics_representative: representative(BundleKind::Physics),
             identified_representative: representative(BundleKind::Identified),
             rejected: study.rejected_names(condition.id()).into_iter().map(str::to_owned).collect(),
+            reasons: reasons_of(study.choice(condition.id())),
             suggested_outliers: result.suggested(),
             discontinuity: discontinuity_of(condition, result),
             set_aside: self.set_aside(result),
@@ -216,6 +217,19 @@ impl Gather<'_> {
             cautions: schedule.cautions.iter().map(|caution| caution.words(&names.inputs, &names.outputs)).collect(),
         }
     }
+}
+
+/// Why models are rejected, the physics bundle first.
+fn reasons_of(choice: &ConditionChoice) -> Vec<ReasonEntry> {
+    let of_bundle = |kind: BundleKind| {
+        let reasons = choice.bundle(kind).reasons.iter();
+        reasons.map(move |(model, why)| ReasonEntry {
+            bundle: kind.to_string(),
+            model: model.clone(),
+            why: why.clone(),
+        })
+    };
+    BundleKind::BOTH.into_iter().flat_map(of_bundle).collect()
 }
 
 /// Where the models come from, as far as their dataset says.

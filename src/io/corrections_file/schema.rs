@@ -59,6 +59,9 @@ pub struct ConditionCorrections {
     pub identified_representative: String,
     /// Rejected models, physics first.
     pub rejected: Vec<String>,
+    /// Why models are rejected, where the engineer has said so.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub reasons: Vec<ReasonEntry>,
     /// Physics models suggested as outliers, whatever is rejected.
     pub suggested_outliers: Vec<String>,
     /// Discontinuity ratio of each physics model, where it has one.
@@ -98,6 +101,17 @@ pub struct ConditionCorrections {
     pub cost: CostTables,
     /// What has to be known about the result.
     pub cautions: Vec<String>,
+}
+
+/// Why a model is rejected, in the engineer's words.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReasonEntry {
+    /// `physics` or `identified`.
+    pub bundle: String,
+    /// The model's name.
+    pub model: String,
+    /// The reason.
+    pub why: String,
 }
 
 /// A model that takes no part in the comparison of its bundle.

@@ -14,7 +14,7 @@ mod vertex;
 
 pub use absolute_deviations::FitError;
 pub use cost::{ACCEPTABLE, Cost, CostAverage, INDISTINGUISHABLE, PHASE_WEIGHT};
-pub use discontinuity::{Discontinuity, DiscontinuityError, SUGGESTION_RATIO};
+pub use discontinuity::{CoordinateWeight, Discontinuity, DiscontinuityError, SUGGESTION_RATIO};
 pub use distance::{BundleDistance, MeasuredPairs, Representative, distances_from};
 pub use mismatch::Mismatch;
 pub use mode_tracks::{ModeTrack, mode_tracks};

@@ -141,7 +141,11 @@ impl AssessmentSummary {
 }
 
 /// One condition's part, or why it has none.
-fn assessed(analysis: &Analysis, id: ConditionId, choice: AssessmentChoice) -> Result<AssessedCondition, String> {
+pub(super) fn assessed(
+    analysis: &Analysis,
+    id: ConditionId,
+    choice: AssessmentChoice,
+) -> Result<AssessedCondition, String> {
     let outcome = analysis.conditions.get(&id).ok_or_else(|| "it was not analysed".to_owned())?;
     let condition = analysis.study.dataset.condition(id).ok_or_else(|| "it was not analysed".to_owned())?;
     let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()].name;

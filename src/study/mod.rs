@@ -24,6 +24,7 @@ mod progress;
 mod remark;
 mod setting;
 mod settings;
+mod table;
 mod toggles;
 mod variant;
 mod variant_job;
@@ -56,6 +57,7 @@ pub use settings::{
     DEFAULT_AGREEMENT_DB, GREATEST_AGREEMENT_DB, GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE, LARGEST_ALPHA,
     LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings,
 };
+pub use table::Table;
 pub use toggles::Toggles;
 pub use variant::{LONGEST_VARIANT_NAME, Variant};
 pub use variant_job::VariantJob;

@@ -10,8 +10,8 @@ use super::plot::FrequencyUnit;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
-    /// How the plots share the middle of the window, see [`Arrangement::to_text`].
-    pub arrangement: Option<String>,
+    /// How the plots share the middle of the window.
+    pub arrangement: Option<Arrangement>,
     /// Unit of frequencies.
     pub frequency_unit: FrequencyUnit,
 }
@@ -19,12 +19,12 @@ pub struct Preferences {
 impl Preferences {
     /// Those that the window has now.
     pub fn of(display: &Display) -> Self {
-        Self { arrangement: display.arrangement.to_text(), frequency_unit: display.unit }
+        Self { arrangement: Some(display.arrangement.clone()), frequency_unit: display.unit }
     }
 
     /// Gives a window these preferences.
     pub fn apply(&self, display: &mut Display) {
-        display.arrangement = self.arrangement.as_deref().and_then(Arrangement::from_text).unwrap_or_default();
+        display.arrangement = self.arrangement.clone().and_then(Arrangement::if_whole).unwrap_or_default();
         display.unit = self.frequency_unit;
     }
 }

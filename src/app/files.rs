@@ -76,6 +76,7 @@ impl GdcmApp {
         let (mut state, loaded, saved) = Self::parts_of(opened);
         let requested = self.state.results.requested;
         let name = loaded.origin.to_string();
+        state.display.looks = self.state.display.looks;
         state.recent = std::mem::take(&mut self.state.recent);
         // What was lost is offered still; the other bars are about what was open.
         state.bars = std::mem::take(&mut self.state.bars);

@@ -39,7 +39,7 @@ impl GdcmApp {
             Command::SelectCondition(condition) => select_condition(display, condition),
             Command::FocusPair(pair) if display.pair != pair => {
                 display.pair = pair;
-                display.bode.request_fit();
+                display.bode.request_refit();
             }
             Command::FocusPair(_) => {}
             Command::Hover(model) => display.hovered = Some(model),
@@ -48,6 +48,7 @@ impl GdcmApp {
             }
             Command::ShowTab(tab) => display.tab = tab,
             Command::SetFrequencyUnit(unit) => display.unit = unit,
+            Command::SetLooks(looks) => display.looks = looks,
             Command::FitPlots => display.bode.request_fit(),
             Command::SetTheme(theme) => ctx.set_theme(theme),
             Command::ShowForm(form) => self.show_form(form),
@@ -178,6 +179,6 @@ fn select_condition(display: &mut Display, condition: ConditionId) {
     if display.condition != condition {
         display.condition = condition;
         display.isolated = None;
-        display.bode.request_fit();
+        display.bode.request_refit();
     }
 }

@@ -8,6 +8,7 @@ use crate::dataset::{ConditionId, ModelId, Pair};
 use crate::study::Edit;
 
 use super::bars::Bar;
+use super::looks::Looks;
 use super::plot::FrequencyUnit;
 use super::state::Tab;
 
@@ -36,6 +37,8 @@ pub enum Command {
     ShowTab(Tab),
     /// Read frequencies in another unit.
     SetFrequencyUnit(FrequencyUnit),
+    /// Draw curves in another way.
+    SetLooks(Looks),
     /// Bring every curve back into view.
     FitPlots,
     /// Follow the desktop's theme, or not.

@@ -5,6 +5,7 @@ use egui::{Align, Button, Layout, MenuBar, RichText, ThemePreference, Ui};
 use crate::study::Edit;
 
 use super::command::{Command, FormKind};
+use super::looks_menu::looks_menu_ui;
 use super::palette::Palette;
 use super::plot::FrequencyUnit;
 use super::state::{RecentFile, State};
@@ -88,6 +89,7 @@ fn view_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         FrequencyUnit::Hertz => ("Frequencies in rad/s", FrequencyUnit::RadPerSecond),
     };
     entry(ui, text, "", Command::SetFrequencyUnit(unit), commands);
+    ui.menu_button("Curves", |ui| looks_menu_ui(ui, state.display.looks, commands));
     ui.separator();
     entry(ui, "Theme of the desktop", "", Command::SetTheme(ThemePreference::System), commands);
     entry(ui, "Dark theme", "", Command::SetTheme(ThemePreference::Dark), commands);

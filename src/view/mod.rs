@@ -9,6 +9,8 @@ pub mod conditions_panel;
 pub mod explanation;
 pub mod forms;
 mod heading;
+pub mod looks;
+mod looks_menu;
 pub mod matrix_panel;
 pub mod menu_bar;
 pub mod models_panel;

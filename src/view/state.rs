@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::correction::Problem;
-use crate::dataset::{Band, BundleKind, Condition, ConditionId, Dataset, ModelId, Pair};
+use crate::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId, Pair};
 use crate::study::{
     Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, CurvesJob, Difference, History, Study, Toggles,
     TogglesJob,
@@ -14,6 +14,7 @@ use crate::study::{
 use super::bars::Bar;
 use super::bode_scene::CachedShapes;
 use super::command::FormKind;
+use super::looks::Looks;
 use super::plot::{AssessmentView, BodeCurve, BodeView, ChannelsView, FrequencyUnit, GainView, OverviewView};
 
 /// The large plots.
@@ -45,6 +46,8 @@ pub struct Display {
     pub tab: Tab,
     /// Unit of frequencies.
     pub unit: FrequencyUnit,
+    /// How curves are drawn.
+    pub looks: Looks,
     /// Ranges and transforms of the large plot.
     pub bode: BodeView,
     /// Transforms of the net-gain plots.
@@ -55,8 +58,6 @@ pub struct Display {
     pub overview: OverviewView,
     /// Transforms of the assessment.
     pub assessment: AssessmentView,
-    /// Band for which the large plot was fitted last.
-    pub bode_band: Option<Band>,
     /// Shapes of the responses drawn, kept from frame to frame.
     pub shapes: BTreeMap<Pair, CachedShapes>,
     /// The curves that the large plot shows.
@@ -73,12 +74,12 @@ impl Display {
             isolated: None,
             tab: Tab::default(),
             unit: FrequencyUnit::default(),
+            looks: Looks::default(),
             bode: BodeView::default(),
             net_gain: GainView::default(),
             channels: ChannelsView::default(),
             overview: OverviewView::default(),
             assessment: AssessmentView::default(),
-            bode_band: None,
             shapes: BTreeMap::new(),
             drawn: Vec::new(),
         }

@@ -46,7 +46,7 @@ pub enum BodeEvent {
     Hovered(Option<CurveId>),
     /// A curve was clicked.
     Clicked(CurveId),
-    /// The last click was the first of a double click, which means something else.
+    /// The last click was the first of a double click: it is to be as if it had not been.
     TakenBack(CurveId),
     /// A curve was clicked with Alt held.
     Isolated(CurveId),
@@ -156,20 +156,28 @@ fn set_hovered(view: &mut BodeView, hovered: Option<CurveId>, events: &mut Vec<B
     }
 }
 
+/// A click means the nearest curve. The second of a double click takes the first one back where that meant a curve, and fits the
+/// plot on empty ground.
 fn click(pane: Pane, scene: &BodeScene<'_>, response: &Response, view: &mut BodeView, events: &mut Vec<BodeEvent>) {
-    if response.double_clicked() {
-        view.request_fit();
-        response.ctx.request_repaint();
-        // The first click of the two was taken at once, for it to answer at once; fitting takes it back.
-        events.extend(view.last_clicked.take().map(BodeEvent::TakenBack));
-    } else if response.clicked() {
-        let alt = response.ctx.input(|input| input.modifiers.alt);
-        let pointer = response.interact_pointer_pos();
-        let hit =
-            pointer.zip(view.transform(pane)).and_then(|(at, transform)| nearest(scene.curves, pane, at, transform));
-        let id = hit.map(|hit| scene.curves[hit.curve].id.clone());
-        view.last_clicked = if alt { None } else { id.clone() };
-        events.extend(id.map(|id| if alt { BodeEvent::Isolated(id) } else { BodeEvent::Clicked(id) }));
+    if !response.clicked() {
+        return;
+    }
+    let pointer = response.interact_pointer_pos();
+    let hit = pointer.zip(view.transform(pane)).and_then(|(at, transform)| nearest(scene.curves, pane, at, transform));
+    let id = hit.map(|hit| scene.curves[hit.curve].id.clone());
+    let before = view.last_clicked.take();
+    match (response.double_clicked(), before, id) {
+        (true, Some(before), _) => events.push(BodeEvent::TakenBack(before)),
+        (true, None, None) => {
+            view.request_fit();
+            response.ctx.request_repaint();
+        }
+        (true, None, Some(_)) | (false, _, None) => {}
+        (false, _, Some(id)) if response.ctx.input(|input| input.modifiers.alt) => events.push(BodeEvent::Isolated(id)),
+        (false, _, Some(id)) => {
+            view.last_clicked = Some(id.clone());
+            events.push(BodeEvent::Clicked(id));
+        }
     }
 }
 

@@ -8,6 +8,7 @@ use crate::dataset::ConditionId;
 use super::axes::{LABELLED_HEIGHT, axis_hints, caption_font, quiet_plot};
 use super::dot::{DOT_RADIUS, Dot};
 use super::dot_label::{LabelledDot, PlacedLabels, Surroundings};
+use super::line_look::LinePattern;
 use super::linear_axis::{Ladder, tick_text};
 use super::range::Range;
 use super::role::Role;
@@ -156,7 +157,11 @@ fn draw_lines(plot: &mut PlotUi<'_>, panel: &GainPanel, palette: &Palette) {
     plot.hline(HLine::new("", 1.0).color(reference).width(1.0).style(LineStyle::Dashed { length: 3.0 }));
     let look = Role::Scheduled.look(false, palette);
     let schedule: Vec<[f64; 2]> = panel.drawable_schedule().collect();
-    plot.line(Line::new("", schedule).color(look.color).width(look.width).style(look.style));
+    let style = match look.pattern {
+        LinePattern::Dashed { length } => LineStyle::Dashed { length },
+        _ => LineStyle::Solid,
+    };
+    plot.line(Line::new("", schedule).color(look.color).width(look.width).style(style));
 }
 
 fn paint_labels(

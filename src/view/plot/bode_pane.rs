@@ -3,43 +3,21 @@
 use egui::{Id, PointerButton, Rect, Response, Ui, UiBuilder, Vec2, WidgetInfo};
 use egui_plot::{Axis, LineStyle, PlotTransform, PlotUi, Span, VLine};
 
-use super::axes::{LABELLED_HEIGHT, TICKS_HEIGHT, VERTICAL_TICK_GAP, axis_hints, quiet_plot};
+use super::axes::{LABELLED_HEIGHT, TICKS_HEIGHT, axis_hints, quiet_plot};
 use super::bode::BodeScene;
 use super::bode_view::BodeView;
 use super::box_zoom::box_zoom_ui;
 use super::curve::{BodeCurve, CurveId, Pane};
 use super::curve_item::CurveItem;
 use super::drawn_curves::DrawnCurves;
-use super::linear_axis::{Ladder, tick_text};
 use super::pixel::Pixel;
+use super::rule::rules_ui;
 use crate::view::palette::Palette;
 
 /// Width of the vertical axes \[pt\]: the same above and below, so that the frequencies stand under one another.
 const VALUE_AXIS_WIDTH: f32 = 52.0;
 /// How far from a curve its drawn line may be \[pt\].
 const TOLERANCE: f64 = 0.1;
-impl Pane {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Magnitude => "Magnitude",
-            Self::Phase => "Phase",
-        }
-    }
-
-    fn axis_label(self) -> &'static str {
-        match self {
-            Self::Magnitude => "Magnitude [dB]",
-            Self::Phase => "Phase [deg]",
-        }
-    }
-
-    fn ladder(self) -> Ladder {
-        match self {
-            Self::Magnitude => Ladder::Decimal,
-            Self::Phase => Ladder::Degrees,
-        }
-    }
-}
 
 /// What the panes draw beside the scene's own.
 pub(super) struct Emphasis {
@@ -58,8 +36,9 @@ pub(super) fn pane_ui(
     emphasis: &Emphasis,
     palette: &Palette,
 ) -> Response {
-    let id = ui.make_persistent_id(pane.name());
-    let builder = UiBuilder::new().id_salt(pane.name()).max_rect(rect);
+    let name = scene.quantity.name(pane);
+    let id = ui.make_persistent_id(name);
+    let builder = UiBuilder::new().id_salt(name).max_rect(rect);
     let mut kept = std::mem::take(view.drawn_curves(pane));
     let drawn = &mut kept;
     let shown = ui.scope_builder(builder, |ui| {
@@ -87,7 +66,8 @@ pub(super) fn pane_ui(
         ui.ctx().request_repaint();
     }
     zoom_by_scrolling(ui, pane, &shown.response, view);
-    let description = format!("{} of {}, {} curves", pane.name(), scene.pair_title, scene.curves.len());
+    rules_ui(ui, scene.rules, pane, &shown.transform, palette);
+    let description = format!("{name} of {}, {} curves", scene.pair_title, scene.curves.len());
     shown.response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, description.clone()));
     shown.response
 }
@@ -99,13 +79,15 @@ fn pane_plot<'a>(id: Id, pane: Pane, rect: Rect, scene: &BodeScene<'_>, palette:
         Pane::Phase => (unit.axis_label(), LABELLED_HEIGHT),
     };
     let frequency_text = move |mark| unit.tick_text(mark);
+    let (values, value_label) = (scene.quantity.unit(pane), scene.quantity.axis_label(pane));
+    let value_text = move |mark| values.tick_text(mark);
     quiet_plot(id, palette)
         .width(rect.width())
         .height(rect.height())
         .x_grid_spacer(unit.spacer())
-        .y_grid_spacer(pane.ladder().spacer(VERTICAL_TICK_GAP))
+        .y_grid_spacer(values.spacer())
         .custom_x_axes(vec![axis_hints(Axis::X, &frequency_label, frequency_height, palette, frequency_text)])
-        .custom_y_axes(vec![axis_hints(Axis::Y, pane.axis_label(), VALUE_AXIS_WIDTH, palette, tick_text)])
+        .custom_y_axes(vec![axis_hints(Axis::Y, &value_label, VALUE_AXIS_WIDTH, palette, value_text)])
 }
 
 fn band_shade(plot: &mut PlotUi<'_>, (min, max): (f64, f64), palette: &Palette) {

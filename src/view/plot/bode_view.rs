@@ -3,20 +3,18 @@
 use egui::{Pos2, Rect, Vec2};
 use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
 
+use super::bode::BodeScene;
 use super::curve::{BodeCurve, CurveId, Pane};
 use super::drawn_curves::DrawnCurves;
 use super::legend::LegendState;
 use super::range::Range;
+use super::value_unit::ValueUnit;
 use super::viewed_range::ViewedRange;
 
 /// Decades that can be in view.
 const DECADES: Range = Range { min: 1e-3, max: 12.0 };
 /// Values of `log10 omega` that can be in view: far inside what a float holds.
 const LOG_OMEGA: Range = Range { min: -30.0, max: 30.0 };
-/// Decibels that can be in view.
-const DECIBELS: Range = Range { min: 1e-3, max: 5e3 };
-/// Degrees that can be in view.
-const DEGREES: Range = Range { min: 1e-2, max: 1e5 };
 /// Space above and below the curves after fitting, as a part of their height.
 const FIT_MARGIN: f64 = 0.04;
 /// Height that fitting gives to values outside the band on either side, as a part of the height within it.
@@ -33,6 +31,8 @@ pub struct BodeView {
     phase_deg: ViewedRange,
     pub(super) legend: LegendState,
     pub(super) hovered: Option<CurveId>,
+    /// The frequency under the pointer \[rad/s\].
+    pub(super) pointed_omega: Option<f64>,
     pub(super) last_clicked: Option<CurveId>,
     must_fit_frequencies: bool,
     must_fit_values: bool,
@@ -46,10 +46,11 @@ impl Default for BodeView {
     fn default() -> Self {
         Self {
             log_omega: ViewedRange::new(Range { min: -1.0, max: 2.0 }, DECADES, LOG_OMEGA),
-            magnitude_db: ViewedRange::new(Range { min: -40.0, max: 20.0 }, DECIBELS, Range::ALL),
-            phase_deg: ViewedRange::new(Range { min: -360.0, max: 90.0 }, DEGREES, Range::ALL),
+            magnitude_db: ViewedRange::new(Range { min: -40.0, max: 20.0 }, ValueUnit::Decibel.widths(), Range::ALL),
+            phase_deg: ViewedRange::new(Range { min: -360.0, max: 90.0 }, ValueUnit::Degree.widths(), Range::ALL),
             legend: LegendState { is_open: true, corner: None, rect: None },
             hovered: None,
+            pointed_omega: None,
             last_clicked: None,
             must_fit_frequencies: true,
             must_fit_values: true,
@@ -94,6 +95,17 @@ impl BodeView {
     /// The curve under the pointer.
     pub fn hovered(&self) -> Option<&CurveId> {
         self.hovered.as_ref()
+    }
+
+    /// The frequency under the pointer \[rad/s\].
+    pub fn pointed_omega(&self) -> Option<f64> {
+        self.pointed_omega
+    }
+
+    /// Shows the frequencies that another plot shows.
+    pub fn share_frequencies(&mut self, other: &Self) {
+        self.log_omega = other.log_omega;
+        self.must_fit_frequencies = other.must_fit_frequencies;
     }
 
     /// The frequencies in view \[rad/s\].
@@ -189,24 +201,25 @@ impl BodeView {
         self.values(pane).choose(Range::new(a.y, b.y));
     }
 
-    /// Shows all of `curves`, rejected ones included, where that was asked for. Without data the request stays.
-    pub(super) fn fit_if_requested(&mut self, curves: &[BodeCurve], band: (f64, f64)) {
+    /// Shows all curves of `scene`, rejected ones included, where that was asked for. Without data the request stays.
+    pub(super) fn fit_if_requested(&mut self, scene: &BodeScene<'_>) {
         if !(self.must_fit_frequencies || self.must_fit_values) {
             return;
         }
-        let omega = curves.iter().flat_map(|curve| curve.omega.iter());
-        let Some(log_omega) = Range::of(omega.map(|omega| omega.log10())) else {
+        let ends = scene.omega_range.map(|(min, max)| Range::new(min, max));
+        let omega = || scene.curves.iter().flat_map(|curve| curve.omega.iter().copied());
+        let Some(omega) = ends.or_else(|| Range::of(omega())) else {
             return;
         };
         if std::mem::take(&mut self.must_fit_frequencies) {
-            self.log_omega.fit(log_omega);
+            self.log_omega.fit(Range::new(omega.min.log10(), omega.max.log10()));
         }
         if std::mem::take(&mut self.must_fit_values) {
             // The legend stays where it is while zooming, but makes room for new curves.
             self.legend.corner = None;
-            for (pane, least) in [(Pane::Magnitude, 4.0), (Pane::Phase, 20.0)] {
-                if let Some(values) = fitted_values(curves, pane, band) {
-                    self.values(pane).fit(values.with_margin(FIT_MARGIN, least));
+            for pane in [Pane::Magnitude, Pane::Phase] {
+                if let Some(values) = fitted_values(scene.curves, pane, scene.band) {
+                    self.values(pane).fit(values.with_margin(FIT_MARGIN, scene.quantity.least_height(pane)));
                 }
             }
         }

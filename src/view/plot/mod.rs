@@ -29,15 +29,18 @@ mod number;
 mod overview;
 mod picking;
 mod pixel;
+mod quantity;
 mod range;
 mod readout;
 mod role;
+mod rule;
 mod sketch;
 mod sparkline;
 #[cfg(test)]
 mod tests;
 mod thinning;
 mod tiles;
+mod value_unit;
 mod viewed_range;
 
 pub use assessment::{AssessmentEvent, AssessmentScene, AssessmentView, assessment_ui};
@@ -53,5 +56,8 @@ pub use line_look::{LineLook, LinePattern};
 pub use log_axis::FrequencyUnit;
 pub use net_gain::{NetGainScene, net_gain_ui};
 pub use overview::{OverviewCell, OverviewEvent, OverviewScene, OverviewView, overview_ui};
+pub use quantity::{BodeQuantity, MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 pub use range::Range;
 pub use role::Role;
+pub use rule::{Level, Rule, RuleKind};
+pub use value_unit::ValueUnit;

@@ -18,14 +18,7 @@ fn harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
         .with_context_setup(palette::apply)
         .build_ui_state(
             |ui, model: &mut Model| {
-                let scene = BodeScene {
-                    pair_title: "LON → Q",
-                    curves: &model.curves,
-                    band: model.band,
-                    unit: FrequencyUnit::RadPerSecond,
-                    stale: false,
-                    message: None,
-                };
+                let scene = BodeScene::of("LON → Q", &model.curves, model.band);
                 let palette = Palette::of(ui.visuals());
                 for event in bode_ui(ui, &scene, &mut model.view, &palette) {
                     if let BodeEvent::BandDragged { min, max } = event {

@@ -5,8 +5,12 @@ use egui::{Context, ViewportCommand};
 use crate::dataset::ConditionId;
 use crate::io::{Existing, plain};
 use crate::study::Edit;
+use crate::view::arrangement::Arrangement;
 use crate::view::command::{Command, FormKind};
-use crate::view::state::{Display, Notice, NoticeKind};
+use crate::view::display::Display;
+use crate::view::net_gain_scene::PairSet;
+use crate::view::plot::Pane;
+use crate::view::state::{Notice, NoticeKind};
 
 use super::dialogs::DialogPurpose;
 use super::window::GdcmApp;
@@ -39,17 +43,34 @@ impl GdcmApp {
             Command::SelectCondition(condition) => select_condition(display, condition),
             Command::FocusPair(pair) if display.pair != pair => {
                 display.pair = pair;
-                display.bode.request_refit();
+                display.refit_frequency_plots();
             }
             Command::FocusPair(_) => {}
             Command::Hover(model) => display.hovered = Some(model),
             Command::Isolate(model) => {
                 display.isolated = if display.isolated.as_ref() == Some(&model) { None } else { Some(model) };
             }
-            Command::ShowTab(tab) => display.tab = tab,
+            Command::ShowView(view) => display.arrangement.show(view),
+            Command::SplitView(view, direction) => display.arrangement.split_off(view, direction),
+            Command::Arrange(preset) => display.arrangement = Arrangement::of(preset),
+            Command::ShowNetGains(pairs) => display.net_gain_pairs = pairs,
+            Command::PickPair(pair) => {
+                display.net_gain_pairs = PairSet::Picked;
+                if !display.picked_pairs.remove(&pair) {
+                    display.picked_pairs.insert(pair);
+                }
+            }
+            Command::ShowChannels(measure, across) => display.channel_figure = (measure, across),
             Command::SetFrequencyUnit(unit) => display.unit = unit,
+            Command::SetPhaseErrorUnit(unit) => {
+                display.phase_error = unit;
+                display.error.release_values(Pane::Phase);
+            }
             Command::SetLooks(looks) => display.looks = looks,
-            Command::FitPlots => display.bode.request_fit(),
+            Command::FitPlots => {
+                display.fit_frequency_plots();
+                display.poles.request_fit();
+            }
             Command::SetTheme(theme) => ctx.set_theme(theme),
             Command::ShowForm(form) => self.show_form(form),
             Command::StopComputing => self.stop_computing(),
@@ -123,6 +144,7 @@ impl GdcmApp {
     /// Says what is true of the study now: saved or not.
     pub(super) fn study_changed(&mut self) {
         self.state.notice = None;
+        self.state.display.once_held.extend(self.state.study.settings.constrained.marked());
         self.state.unsaved = self.saved.study.as_ref() != Some(&self.state.study);
         self.follow_dataset();
         self.keep_unsaved();
@@ -179,6 +201,6 @@ fn select_condition(display: &mut Display, condition: ConditionId) {
     if display.condition != condition {
         display.condition = condition;
         display.isolated = None;
-        display.bode.request_refit();
+        display.refit_frequency_plots();
     }
 }

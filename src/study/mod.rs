@@ -20,6 +20,7 @@ mod progress;
 mod remark;
 mod setting;
 mod settings;
+mod table;
 mod toggles;
 
 pub use analysis::{Analysis, Assessed};
@@ -42,4 +43,5 @@ pub use setting::Setting;
 pub use settings::{
     GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings,
 };
+pub use table::Table;
 pub use toggles::Toggles;

@@ -1,11 +1,12 @@
 //! How curves are drawn, apart from the theme.
 
 use egui::Color32;
+use serde::{Deserialize, Serialize};
 
 use super::palette::hex;
 
 /// The colours of the roles of curves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum CurveColors {
     /// Red, blue, amber, green.
     #[default]
@@ -28,7 +29,8 @@ impl CurveColors {
 }
 
 /// How the engineer wants curves to be drawn.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Looks {
     /// The colours of their roles.
     pub curve_colors: CurveColors,
@@ -39,6 +41,12 @@ pub struct Looks {
 impl Looks {
     /// What widths can be multiplied by.
     pub const LINE_WIDTHS: [f32; 6] = [0.5, 0.75, 1.0, 1.5, 2.0, 3.0];
+
+    /// These looks where the widths are some that can be seen; a preference may have been written by another version.
+    pub fn within_limits(self) -> Self {
+        let line_width = if self.line_width.is_finite() { self.line_width.clamp(0.5, 3.0) } else { 1.0 };
+        Self { line_width, ..self }
+    }
 }
 
 impl Default for Looks {

@@ -4,6 +4,7 @@ use egui::{Align, Button, Layout, MenuBar, RichText, ThemePreference, Ui};
 
 use crate::study::Edit;
 
+use super::arrangement::{Preset, View};
 use super::command::{Command, FormKind};
 use super::looks_menu::looks_menu_ui;
 use super::palette::Palette;
@@ -90,6 +91,14 @@ fn view_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     };
     entry(ui, text, "", Command::SetFrequencyUnit(unit), commands);
     ui.menu_button("Curves", |ui| looks_menu_ui(ui, state.display.looks, commands));
+    ui.separator();
+    for view in View::ALL {
+        entry(ui, &format!("Show {}", view.name()), "", Command::ShowView(view), commands);
+    }
+    ui.separator();
+    for preset in Preset::ALL {
+        entry(ui, preset.name(), "", Command::Arrange(preset), commands);
+    }
     ui.separator();
     entry(ui, "Theme of the desktop", "", Command::SetTheme(ThemePreference::System), commands);
     entry(ui, "Dark theme", "", Command::SetTheme(ThemePreference::Dark), commands);

@@ -1,11 +1,15 @@
 //! What the window shows: functions that draw the state and say what the engineer asks for.
 
+pub mod arrangement;
 mod assessment_scene;
 pub mod bars;
 pub mod bode_scene;
 pub mod centre;
 pub mod command;
 pub mod conditions_panel;
+mod curve_face;
+pub mod display;
+pub mod error_scene;
 pub mod explanation;
 pub mod forms;
 mod heading;
@@ -17,8 +21,11 @@ pub mod models_panel;
 pub mod net_gain_scene;
 pub mod palette;
 pub mod plot;
+pub mod preferences;
 pub mod result_panel;
+pub mod results;
 mod row;
 pub mod settings_panel;
 pub mod state;
 pub mod status_bar;
+mod views;

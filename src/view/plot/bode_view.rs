@@ -77,6 +77,12 @@ impl BodeView {
         self.must_fit_values = true;
     }
 
+    /// Shows all values of a pane at the next frame: they are in another unit.
+    pub fn release_values(&mut self, pane: Pane) {
+        self.values(pane).release();
+        self.must_fit_values = true;
+    }
+
     /// Shows all frequencies again where a band \[rad/s\] that was set reaches out of what is in view, unless the engineer chose
     /// that. A band that is dragged never does.
     pub fn follow_band(&mut self, (min, max): (f64, f64)) {

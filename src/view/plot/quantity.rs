@@ -1,10 +1,12 @@
 //! What the two stacked panes show, and in which units.
 
+use serde::{Deserialize, Serialize};
+
 use super::curve::Pane;
 use super::value_unit::ValueUnit;
 
 /// How the magnitude of a response is read.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MagnitudeUnit {
     /// Decibels.
     #[default]
@@ -14,7 +16,7 @@ pub enum MagnitudeUnit {
 }
 
 /// How the phase of a response is drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PhaseUnit {
     /// Continuous over frequency (M2).
     #[default]
@@ -24,7 +26,7 @@ pub enum PhaseUnit {
 }
 
 /// How a difference of phases is drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PhaseErrorUnit {
     /// Δφ.
     #[default]

@@ -19,8 +19,10 @@ fn dot(number: usize, airspeed_kt: f64, gain: f64) -> Dot {
     Dot {
         condition: id(number),
         label: (number + 1).to_string(),
+        x: airspeed_kt,
         airspeed_kt,
-        gain,
+        value: gain,
+        bounds: None,
         shape: DotShape::of_class(number % 4),
         filled: number.is_multiple_of(2),
         selected: number == 2,
@@ -34,6 +36,7 @@ fn panels(count: usize) -> Vec<GainPanel> {
         title: format!("PED → {k}"),
         dots: vec![dot(0, 45.0, 1.3), dot(1, 60.0, 0.9), dot(2, 120.0, 1.02), dot(3, 120.0, 1.0)],
         schedule: vec![[45.0, 1.2], [90.0, 1.0], [120.0, 0.95]],
+        ..GainPanel::default()
     };
     (0..count).map(panel).collect()
 }
@@ -77,7 +80,7 @@ fn of_two_dots_close_together_the_nearer_one_is_meant() {
 #[test]
 fn every_panel_has_the_same_gain_axis() {
     let mut uneven = panels(3);
-    uneven[1].dots[0].gain = 2.0;
+    uneven[1].dots[0].value = 2.0;
     let harness = net_gain_harness(uneven);
     let bounds = |panel| *harness.state().view.transform(panel).unwrap().bounds();
     assert_eq!(bounds(0), bounds(1));
@@ -87,7 +90,7 @@ fn every_panel_has_the_same_gain_axis() {
 #[test]
 fn dots_without_a_gain_are_left_out() {
     let mut broken = panels(2);
-    broken[0].dots[1].gain = f64::NAN;
+    broken[0].dots[1].value = f64::NAN;
     broken[1].schedule[1][1] = f64::NAN;
     net_gain_harness(broken);
     net_gain_harness(vec![GainPanel::default()]);

@@ -9,6 +9,7 @@ use crate::view::arrangement::Arrangement;
 use crate::view::command::{Command, FormKind};
 use crate::view::display::Display;
 use crate::view::net_gain_scene::PairSet;
+use crate::view::plot::Pane;
 use crate::view::state::{Notice, NoticeKind};
 
 use super::dialogs::DialogPurpose;
@@ -42,7 +43,7 @@ impl GdcmApp {
             Command::SelectCondition(condition) => select_condition(display, condition),
             Command::FocusPair(pair) if display.pair != pair => {
                 display.pair = pair;
-                display.bode.request_fit();
+                display.refit_frequency_plots();
             }
             Command::FocusPair(_) => {}
             Command::Hover(model) => display.hovered = Some(model),
@@ -61,8 +62,13 @@ impl GdcmApp {
             }
             Command::ShowChannels(measure, across) => display.channel_figure = (measure, across),
             Command::SetFrequencyUnit(unit) => display.unit = unit,
+            Command::SetPhaseErrorUnit(unit) => {
+                display.phase_error = unit;
+                display.error.release_values(Pane::Phase);
+            }
+            Command::SetLooks(looks) => display.looks = looks,
             Command::FitPlots => {
-                display.bode.request_fit();
+                display.fit_frequency_plots();
                 display.poles.request_fit();
             }
             Command::SetTheme(theme) => ctx.set_theme(theme),
@@ -195,6 +201,6 @@ fn select_condition(display: &mut Display, condition: ConditionId) {
     if display.condition != condition {
         display.condition = condition;
         display.isolated = None;
-        display.bode.request_fit();
+        display.refit_frequency_plots();
     }
 }

@@ -6,7 +6,7 @@ use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, Viewport
 
 use crate::dataset::ConditionId;
 use crate::io::{LoadedDataset, LostStudy, Opened};
-use crate::study::{Study, display_band};
+use crate::study::Study;
 use crate::view::bars::Bar;
 use crate::view::command::{Command, FormKind};
 use crate::view::palette::{self, Palette};
@@ -155,13 +155,9 @@ impl GdcmApp {
                 Reply::Curves(job, curves)
                     if Arc::ptr_eq(&job.dataset, &self.state.study.dataset) && job.condition == condition =>
                 {
-                    let band = display_band(self.state.study.settings.band);
-                    let first = results.curves.is_none();
                     results.curves = Some((job, curves));
-                    if first || self.state.display.bode_band != Some(band) {
-                        self.state.display.bode.request_fit();
-                        self.state.display.bode_band = Some(band);
-                    }
+                    let band = self.state.study.settings.band;
+                    self.state.display.bode.follow_band((band.min(), band.max()));
                 }
                 Reply::Toggles(job, toggles) => results.toggles = Some((job, toggles)),
                 Reply::Fault { generation, fault } => self.computing_failed(generation, &fault),
@@ -291,7 +287,7 @@ impl eframe::App for GdcmApp {
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
-        let palette = Palette::of(ui.visuals());
+        let palette = Palette::of(ui.visuals()).with_looks(self.state.display.looks);
         let mut commands = shortcuts::pressed(&ctx, &self.state);
         self.take_dropped_files(&ctx, &mut commands);
         self.panels_ui(ui, &palette, &mut commands);

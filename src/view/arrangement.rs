@@ -9,6 +9,8 @@ use serde::{Deserialize, Serialize};
 pub enum View {
     /// The focused response: magnitude and phase.
     Bode,
+    /// What the fit sees of it.
+    Error,
     /// Every response, small.
     Overview,
     /// Channel gains against airspeed (Figures 3 and 4).
@@ -21,12 +23,14 @@ pub enum View {
 
 impl View {
     /// Every view, in the order of the menu.
-    pub const ALL: [Self; 5] = [Self::Bode, Self::Overview, Self::Channels, Self::Assessment, Self::NetGain];
+    pub const ALL: [Self; 6] =
+        [Self::Bode, Self::Error, Self::Overview, Self::Channels, Self::Assessment, Self::NetGain];
 
     /// What its tab says.
     pub fn name(self) -> &'static str {
         match self {
             Self::Bode => "Bode",
+            Self::Error => "Error",
             Self::Overview => "Overview",
             Self::Channels => "Channels",
             Self::Assessment => "Assessment",
@@ -38,6 +42,9 @@ impl View {
     pub fn purpose(self) -> &'static str {
         match self {
             Self::Bode => "Magnitude and phase of the response in focus",
+            Self::Error => {
+                "What the fit sees: the ratio and the phase difference of the response in focus, and G, D and bounds"
+            }
             Self::Overview => "Every response of the condition, small",
             Self::Channels => "Gain of every channel against airspeed",
             Self::Assessment => "What the correction is worth, condition by condition",
@@ -85,7 +92,7 @@ impl Default for Arrangement {
 }
 
 /// Views that stand in the first group of tabs; the others stand in the second.
-const UPPER: [View; 4] = [View::Bode, View::Overview, View::Channels, View::Assessment];
+const UPPER: [View; 5] = [View::Bode, View::Error, View::Overview, View::Channels, View::Assessment];
 /// Part of the room that the first group gets.
 const UPPER_PART: f32 = 0.66;
 

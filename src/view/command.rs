@@ -10,8 +10,9 @@ use crate::study::Edit;
 
 use super::arrangement::{Preset, View};
 use super::bars::Bar;
+use super::looks::Looks;
 use super::net_gain_scene::PairSet;
-use super::plot::{Across, FrequencyUnit, Measure};
+use super::plot::{Across, FrequencyUnit, Measure, PhaseErrorUnit};
 
 /// One wish of the engineer: what a click, a key or a menu entry stands for. Views push them; the window carries them out.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +49,10 @@ pub enum Command {
     ShowChannels(Measure, Across),
     /// Read frequencies in another unit.
     SetFrequencyUnit(FrequencyUnit),
+    /// Draw differences of phases in another way.
+    SetPhaseErrorUnit(PhaseErrorUnit),
+    /// Draw curves in another way.
+    SetLooks(Looks),
     /// Bring every curve back into view.
     FitPlots,
     /// Follow the desktop's theme, or not.

@@ -213,7 +213,7 @@ impl State {
         self.display.hovered = None;
         self.display.isolated = None;
         self.display.shapes.clear();
-        self.display.bode.request_fit();
+        self.display.fit_frequency_plots();
     }
 
     /// A model of the condition shown.

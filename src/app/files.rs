@@ -38,6 +38,15 @@ pub(super) enum ReadFor {
     Restoring(usize),
 }
 
+/// What waits for the answer whether the decisions that are not saved may be lost.
+#[derive(Debug)]
+pub(super) enum Postponed {
+    /// To show what was read, which is good.
+    Show(ReadFor, Box<Opened>),
+    /// To close the window.
+    Quit,
+}
+
 /// What was read, or why not; a fault where reading panicked.
 type Answer = (ReadFor, Result<Result<Opened, FileError>, Fault>);
 
@@ -87,7 +96,6 @@ impl GdcmApp {
         self.loaded = loaded;
         self.earlier.clear();
         self.saved = saved;
-        self.agreed_to_lose = false;
         self.keep_unsaved();
         self.done(format!("opened {name}"));
     }
@@ -138,20 +146,52 @@ impl GdcmApp {
 
     fn answer_opened(&mut self, purpose: ReadFor, opened: Result<Opened, FileError>, ctx: &Context) {
         self.state.opening = None;
-        match (purpose, opened) {
-            (ReadFor::Opening, Ok(opened)) => {
+        match opened {
+            Ok(opened) if purpose != ReadFor::Reloading && self.state.unsaved => {
+                self.ask_to_lose(Postponed::Show(purpose, Box::new(opened)));
+            }
+            Ok(opened) => self.show_read(purpose, opened, ctx),
+            Err(error) => self.open_failed(error, ctx),
+        }
+    }
+
+    fn show_read(&mut self, purpose: ReadFor, opened: Opened, ctx: &Context) {
+        match purpose {
+            ReadFor::Opening => {
                 self.show(opened);
                 self.look_for_recent(ctx);
             }
-            (ReadFor::Reloading, Ok(opened)) => self.show_reloaded(opened.into_study().1),
-            (ReadFor::Restoring(offer), Ok(opened)) => self.show_restored(offer, opened, ctx),
-            (_, Err(error)) => self.open_failed(error, ctx),
+            ReadFor::Reloading => self.show_reloaded(opened.into_study().1),
+            ReadFor::Restoring(offer) => self.show_restored(offer, opened, ctx),
+        }
+    }
+
+    /// Asks whether the decisions that are not saved may be lost to what is to be done.
+    pub(super) fn ask_to_lose(&mut self, postponed: Postponed) {
+        self.postponed = Some(postponed);
+        self.goes_on_once_saved = false;
+        self.state.forms.shown = Some(FormKind::Unsaved);
+    }
+
+    /// Saves the study, and does what waits for it once it is saved.
+    pub(super) fn save_and_go_on(&mut self, ctx: &Context) {
+        self.state.forms.shown = None;
+        self.goes_on_once_saved = true;
+        self.save(ctx);
+    }
+
+    /// Does what the decisions that are not saved kept waiting.
+    pub(super) fn go_on(&mut self, ctx: &Context) {
+        self.goes_on_once_saved = false;
+        match self.postponed.take() {
+            Some(Postponed::Show(purpose, opened)) => self.show_read(purpose, *opened, ctx),
+            Some(Postponed::Quit) => self.quit(ctx),
+            None => {}
         }
     }
 
     /// Says why nothing was opened, or asks where a study's dataset is; what is open stays.
     fn open_failed(&mut self, error: FileError, ctx: &Context) {
-        self.agreed_to_lose = false;
         self.recent.look(None, ctx);
         match error {
             FileError::StudyDataset { path, dataset } => {
@@ -169,7 +209,6 @@ impl GdcmApp {
                 Ok(opened) => self.answer_opened(purpose, opened, ctx),
                 Err(fault) => {
                     self.state.opening = None;
-                    self.agreed_to_lose = false;
                     self.tell_fault("the reading of a file", &fault);
                 }
             }
@@ -218,12 +257,19 @@ impl GdcmApp {
                 self.saved = SavedStudy { path: Some(path), study: Some(self.state.study.clone()) };
                 self.keep_unsaved();
                 self.look_for_recent(ctx);
+                if self.goes_on_once_saved {
+                    self.go_on(ctx);
+                }
             }
             Err(FileError::Exists { paths }) => {
                 self.state.forms.save_path = path.display().to_string();
                 self.ask_to_overwrite(&paths, FormKind::Save, Command::SaveStudyAs(path));
             }
-            Err(error) => self.trouble(error.to_string()),
+            Err(error) => {
+                self.goes_on_once_saved = false;
+                self.postponed = None;
+                self.trouble(error.to_string());
+            }
         }
     }
 
@@ -231,7 +277,7 @@ impl GdcmApp {
     fn ask_to_overwrite(&mut self, paths: &[PathBuf], form: FormKind, command: Command) {
         self.state.forms.existing = paths.iter().map(|path| plain_path(path)).collect();
         self.state.forms.shown = Some(form);
-        self.postponed = Some(command);
+        self.overwriting = Some(command);
     }
 
     /// A name for the study's file.

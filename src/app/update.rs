@@ -9,6 +9,7 @@ use crate::view::command::{Command, FormKind};
 use crate::view::state::{Display, Notice, NoticeKind};
 
 use super::dialogs::DialogPurpose;
+use super::files::Postponed;
 use super::window::GdcmApp;
 
 impl GdcmApp {
@@ -57,16 +58,6 @@ impl GdcmApp {
             Command::AskOpen => self.dialogs.ask(DialogPurpose::Open, String::new(), ctx),
             Command::AskSaveStudy => self.dialogs.ask(DialogPurpose::SaveStudy, self.proposed_name(), ctx),
             Command::AskExportFolder => self.dialogs.ask(DialogPurpose::ExportFolder, String::new(), ctx),
-            Command::Open(_)
-            | Command::OpenStudyOf(..)
-            | Command::OpenExample
-            | Command::RestoreRecovery(_)
-            | Command::Quit
-                if self.state.unsaved && !self.agreed_to_lose && !self.closing =>
-            {
-                self.postponed = Some(command);
-                self.state.forms.shown = Some(FormKind::Unsaved);
-            }
             Command::Open(path) => self.open(path, None, ctx),
             Command::OpenStudyOf(study, dataset) => self.open(study, Some(dataset), ctx),
             Command::OpenExample => self.open_example(ctx),
@@ -77,12 +68,17 @@ impl GdcmApp {
             Command::LookForRecent => self.recent.look(None, ctx),
             Command::CloseBar(bar) => self.state.bars.retain(|shown| *shown != bar),
             Command::CopyText(text) => ctx.copy_text(text),
+            Command::Quit if self.state.unsaved && !self.closing => self.ask_to_lose(Postponed::Quit),
             Command::Quit => self.quit(ctx),
             Command::SaveStudy => self.save(ctx),
             Command::SaveStudyAs(path) => self.save_as(path, Existing::Keep, ctx),
             Command::Export => self.export(Existing::Keep),
             Command::Overwrite => self.overwrite(ctx),
-            Command::DiscardAndGoOn => self.discard_and_go_on(ctx),
+            Command::SaveAndGoOn => self.save_and_go_on(ctx),
+            Command::DiscardAndGoOn => {
+                self.state.forms.shown = None;
+                self.go_on(ctx);
+            }
         }
     }
 
@@ -132,8 +128,12 @@ impl GdcmApp {
             let all = self.state.study.dataset.conditions().iter().map(|condition| condition.id());
             self.state.forms.export.chosen = all.collect();
         }
-        self.postponed = None;
-        self.agreed_to_lose = false;
+        // A form that asks where to save goes on with what waits for that.
+        if !(self.goes_on_once_saved && form == Some(FormKind::Save)) {
+            self.postponed = None;
+            self.goes_on_once_saved = false;
+        }
+        self.overwriting = None;
         self.state.forms.existing.clear();
         self.state.forms.shown = form;
     }
@@ -141,22 +141,14 @@ impl GdcmApp {
     /// Does what was asked whether to overwrite files.
     fn overwrite(&mut self, ctx: &Context) {
         self.state.forms.existing.clear();
-        match self.postponed.take() {
+        match self.overwriting.take() {
             Some(Command::SaveStudyAs(path)) => self.save_as(path, Existing::Replace, ctx),
             Some(Command::Export) => self.export(Existing::Replace),
             _ => {}
         }
     }
 
-    fn discard_and_go_on(&mut self, ctx: &Context) {
-        self.state.forms.shown = None;
-        self.agreed_to_lose = true;
-        if let Some(command) = self.postponed.take() {
-            self.carry_out_one(command, ctx);
-        }
-    }
-
-    fn quit(&mut self, ctx: &Context) {
+    pub(super) fn quit(&mut self, ctx: &Context) {
         self.closing = true;
         // Saved, or agreed to be lost.
         self.autosave.clear();

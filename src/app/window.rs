@@ -8,7 +8,7 @@ use crate::dataset::ConditionId;
 use crate::io::{LoadedDataset, LostStudy, Opened};
 use crate::study::{Study, display_band};
 use crate::view::bars::Bar;
-use crate::view::command::{Command, FormKind};
+use crate::view::command::Command;
 use crate::view::palette::{self, Palette};
 use crate::view::state::State;
 use crate::view::{
@@ -20,7 +20,7 @@ use super::autosave::Autosave;
 use super::dialogs::Dialogs;
 use super::disk_watch::DiskWatch;
 use super::fault::Fault;
-use super::files::{Readers, SavedStudy};
+use super::files::{Postponed, Readers, SavedStudy};
 use super::recent::Recent;
 use super::recovery::LAST_WAIT;
 use super::setup::Setup;
@@ -35,10 +35,12 @@ pub struct GdcmApp {
     pub(super) worker: Worker,
     pub(super) dialogs: Dialogs,
     pub(super) readers: Readers,
-    /// What waits for the answer whether to lose unsaved decisions.
-    pub(super) postponed: Option<Command>,
-    /// Whether the decisions that are not saved may be lost to what is being opened.
-    pub(super) agreed_to_lose: bool,
+    /// What waits for the answer whether to lose decisions that are not saved.
+    pub(super) postponed: Option<Postponed>,
+    /// Whether that is done once they are saved.
+    pub(super) goes_on_once_saved: bool,
+    /// What waits for the answer whether to write over files.
+    pub(super) overwriting: Option<Command>,
     pub(super) closing: bool,
     /// Datasets that were open before a reload, or after one that was undone.
     pub(super) earlier: Vec<LoadedDataset>,
@@ -75,7 +77,8 @@ impl GdcmApp {
             dialogs: Dialogs::new(),
             readers: Readers::default(),
             postponed: None,
-            agreed_to_lose: false,
+            goes_on_once_saved: false,
+            overwriting: None,
             closing: false,
             earlier: Vec::new(),
             autosave,
@@ -203,8 +206,7 @@ impl GdcmApp {
     fn guard_closing(&mut self, ctx: &Context) {
         if ctx.input(|input| input.viewport().close_requested()) && self.state.unsaved && !self.closing {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
-            self.postponed = Some(Command::Quit);
-            self.state.forms.shown = Some(FormKind::Unsaved);
+            self.ask_to_lose(Postponed::Quit);
         }
     }
 

@@ -62,7 +62,9 @@ pub enum Command {
     Export,
     /// Write over the files that the form has named.
     Overwrite,
-    /// Go on with what would lose unsaved decisions.
+    /// Save the study, then go on with what would lose decisions that are not saved.
+    SaveAndGoOn,
+    /// Go on with what loses decisions that are not saved.
     DiscardAndGoOn,
     /// Give up the computation under way.
     StopComputing,

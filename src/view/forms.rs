@@ -68,7 +68,7 @@ fn find_dataset_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: 
     let Some((study, reason)) = &state.forms.lost_dataset else { return };
     title(ui, "Where is the dataset of this study?");
     ui.label(RichText::new(reason).color(palette.dim_text));
-    let path = &mut state.forms.open_path;
+    let path = &mut state.forms.dataset_path;
     let entered = path_ui(ui, "Path of the dataset", path, "path of a .json or .json.gz file");
     let path = path.trim();
     ui.horizontal(|ui| {
@@ -174,8 +174,7 @@ fn unsaved_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         if ui.button("Save study first").clicked() {
-            commands.push(Command::ShowForm(None));
-            commands.push(Command::SaveStudy);
+            commands.push(Command::SaveAndGoOn);
         }
         if ui.button("Lose them").clicked() {
             commands.push(Command::DiscardAndGoOn);

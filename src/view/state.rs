@@ -233,6 +233,8 @@ pub struct Forms {
     pub open_path: String,
     /// The study whose dataset is not where it says, and what opening it said.
     pub lost_dataset: Option<(PathBuf, String)>,
+    /// The path of that dataset, as typed.
+    pub dataset_path: String,
     /// The path in the save form, as typed.
     pub save_path: String,
     /// The export form.

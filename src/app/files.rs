@@ -6,8 +6,8 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use egui::Context;
 
 use crate::io::{
-    Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, embedded_example, load_any, open_study_of,
-    plain, plain_path, save_study, write_results,
+    Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, at_home, embedded_example, load_any,
+    open_study_of, plain, plain_path, save_study, write_results,
 };
 use crate::study::{Difference, Study};
 use crate::view::bars::Bar;
@@ -108,6 +108,7 @@ impl GdcmApp {
 
     /// Opens a dataset or a study; what is open stays until it is read. The dataset of a study may have moved.
     pub(super) fn open(&mut self, path: PathBuf, moved: Option<PathBuf>, ctx: &Context) {
+        let (path, moved) = (self.at_home(path), moved.map(|dataset| self.at_home(dataset)));
         let lost = self.offers.iter().position(|lost| lost.as_ref().is_some_and(|lost| lost.path() == path));
         let purpose = lost.map_or(ReadFor::Opening, ReadFor::Restoring);
         self.state.forms.shown = None;
@@ -245,7 +246,7 @@ impl GdcmApp {
 
     /// Saves the study to a file; asks before it overwrites one that is not the study's own, unless that was asked already.
     pub(super) fn save_as(&mut self, path: PathBuf, existing: Existing, ctx: &Context) {
-        let path = with_study_extension(path);
+        let path = with_study_extension(self.at_home(path));
         let is_own = self.saved.path.as_ref() == Some(&path);
         let place = OutputSet::new(if is_own { Existing::Replace } else { existing }, Vec::new());
         match place.check(&[&path]).and_then(|()| save_study(&self.state.study, &self.loaded, &path)) {
@@ -280,6 +281,11 @@ impl GdcmApp {
         self.overwriting = Some(command);
     }
 
+    /// A path as it is typed, with the home directory in the place of `~`.
+    fn at_home(&self, typed: PathBuf) -> PathBuf {
+        at_home(&typed, self.home.as_deref())
+    }
+
     /// A name for the study's file.
     pub(super) fn proposed_name(&self) -> String {
         if let Some(path) = &self.saved.path {
@@ -307,7 +313,7 @@ impl GdcmApp {
         };
         let form = &self.state.forms.export;
         let chosen = form.chosen.clone();
-        let folder = PathBuf::from(form.folder.trim());
+        let folder = self.at_home(PathBuf::from(form.folder.trim()));
         let inputs = self.saved.path.iter().cloned().chain(self.loaded.origin.file());
         let outputs = OutputSet::new(existing, inputs.collect());
         match write_results(&analysis, &self.loaded.sha256, &chosen, &folder, outputs) {

@@ -3,8 +3,9 @@
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use crate::dataset::Pair;
-use crate::study::Edit;
+use crate::study::{Edit, Setting};
 use crate::view::command::{Command, FormKind};
+use crate::view::region::leave_region;
 use crate::view::state::State;
 
 const CTRL: Modifiers = Modifiers::COMMAND;
@@ -34,6 +35,13 @@ pub fn pressed(ctx: &Context, state: &State) -> Vec<Command> {
     if ctx.input_mut(|input| input.consume_key(CTRL, Key::R)) {
         commands.extend(reject_suggested(state));
     }
+    if state.forms.shown.is_none() {
+        for (modifiers, forward) in [(Modifiers::SHIFT, false), (Modifiers::NONE, true)] {
+            if ctx.input_mut(|input| input.consume_key(modifiers, Key::F6)) {
+                leave_region(ctx, forward);
+            }
+        }
+    }
     if !ctx.egui_wants_keyboard_input() && state.forms.shown.is_none() {
         commands.extend(navigation(ctx, state));
     }
@@ -48,7 +56,15 @@ fn reject_suggested(state: &State) -> Option<Command> {
     (!models.is_empty()).then(|| Edit::RejectAll { condition, models }.into())
 }
 
-/// Arrows go through conditions and responses; F fits. Only while nothing else has the keyboard.
+/// Holds the response in focus, or frees it; nothing where it is free and has no G to be held at.
+fn hold_or_free(state: &State) -> Option<Command> {
+    let pair = state.display.pair;
+    let held = state.study.settings.constrained[pair];
+    let is_undefined = state.shown().is_some_and(|shown| shown.comparison.undefined[pair].is_some());
+    (held || !is_undefined).then(|| Edit::Set(Setting::Constrained(pair, !held)).into())
+}
+
+/// Arrows go through conditions and responses, the space bar holds or frees, F fits. Only while nothing else has the keyboard.
 fn navigation(ctx: &Context, state: &State) -> Vec<Command> {
     let mut commands = Vec::new();
     let pressed = |key| ctx.input_mut(|input| input.consume_key(Modifiers::NONE, key));
@@ -70,6 +86,9 @@ fn navigation(ctx: &Context, state: &State) -> Vec<Command> {
     }
     if pressed(Key::ArrowLeft) && place > 0 {
         commands.push(Command::FocusPair(Pair::new((place - 1) / inputs, (place - 1) % inputs)));
+    }
+    if pressed(Key::Space) {
+        commands.extend(hold_or_free(state));
     }
     if pressed(Key::F) {
         commands.push(Command::FitPlots);

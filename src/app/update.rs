@@ -54,6 +54,7 @@ impl GdcmApp {
             Command::ShowForm(form) => self.show_form(form),
             Command::StopComputing => self.stop_computing(),
             Command::Compute => self.compute_again(),
+            Command::Refuse(why) => self.trouble(why),
             Command::DismissNotice => self.state.notice = None,
             Command::AskOpen => self.dialogs.ask(DialogPurpose::Open, String::new(), ctx),
             Command::AskSaveStudy => self.dialogs.ask(DialogPurpose::SaveStudy, self.proposed_name(), ctx),

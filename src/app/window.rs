@@ -1,5 +1,6 @@
 //! The window: state, the thread that computes, the dialogs.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, ViewportCommand};
@@ -12,8 +13,8 @@ use crate::view::command::Command;
 use crate::view::palette::{self, Palette};
 use crate::view::state::State;
 use crate::view::{
-    bars, centre, conditions_panel, forms, matrix_panel, menu_bar, models_panel, result_panel, settings_panel,
-    status_bar,
+    bars, centre, conditions_panel, focus_ring, forms, matrix_panel, menu_bar, models_panel, result_panel,
+    settings_panel, status_bar,
 };
 
 use super::autosave::Autosave;
@@ -21,6 +22,7 @@ use super::dialogs::Dialogs;
 use super::disk_watch::DiskWatch;
 use super::fault::Fault;
 use super::files::{Postponed, Readers, SavedStudy};
+use super::key_order::KeyOrder;
 use super::recent::Recent;
 use super::recovery::LAST_WAIT;
 use super::setup::Setup;
@@ -49,6 +51,8 @@ pub struct GdcmApp {
     pub(super) offers: Vec<Option<LostStudy>>,
     pub(super) disk: DiskWatch,
     pub(super) recent: Recent,
+    /// What `~` stands for in a path that is typed.
+    pub(super) home: Option<PathBuf>,
     /// What the newest request was made from.
     requested: Option<(Study, ConditionId)>,
 }
@@ -62,6 +66,7 @@ impl GdcmApp {
     /// The window on a dataset or a study. Starts the threads that compute, and those that look at the disk.
     pub fn with(ctx: &Context, opened: Opened, setup: Setup) -> std::io::Result<Self> {
         palette::apply(ctx);
+        ctx.add_plugin(KeyOrder::default());
         let waker = || {
             let ctx = ctx.clone();
             move || ctx.request_repaint()
@@ -85,6 +90,7 @@ impl GdcmApp {
             offers: Vec::new(),
             disk: DiskWatch::start(setup.look_every, waker())?,
             recent: Recent::new(setup.directory),
+            home: setup.home,
             requested: None,
         };
         app.look_for_recent(ctx);
@@ -289,6 +295,7 @@ impl eframe::App for GdcmApp {
         self.take_dropped_files(&ctx, &mut commands);
         self.panels_ui(ui, &palette, &mut commands);
         forms::forms_ui(&ctx, &mut self.state, &palette, &mut commands);
+        focus_ring::focus_ring_ui(&ctx, &palette);
         self.carry_out(commands, &ctx);
         let now = ctx.input(|input| input.time);
         self.request(now);

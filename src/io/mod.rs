@@ -6,6 +6,7 @@ mod dataset_file;
 mod file_error;
 mod file_stamp;
 mod flaw;
+mod home;
 mod json_text;
 mod list;
 mod nested;
@@ -34,6 +35,7 @@ pub use dataset_file::{
 };
 pub use file_error::{FileError, system_words};
 pub use file_stamp::{FileStamp, file_exists, file_sha256};
+pub use home::at_home;
 pub use opened::{Opened, load_any};
 pub use output_set::{Existing, OutputSet, make_directory, report_size_limit};
 pub use plain::{plain, plain_path};

@@ -16,6 +16,7 @@ use super::plot::{
     AssessmentEvent, AssessmentScene, BodeCurve, BodeEvent, BodeScene, ChannelsScene, CurveId, GainEvent, NetGainScene,
     OverviewCell, OverviewEvent, OverviewScene, assessment_ui, bode_ui, channels_ui, net_gain_ui, overview_ui,
 };
+use super::region::{Region, region_ui};
 use super::settings_panel::choice_ui;
 use super::state::{State, Tab};
 
@@ -24,6 +25,10 @@ const TABS: [(&str, Tab); 4] =
 
 /// Everything between the side panels.
 pub fn centre_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    region_ui(ui, Region::Plots, |ui| plots_ui(ui, state, palette, commands));
+}
+
+fn plots_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let height = ui.available_height();
     let lower = egui::Frame::new().inner_margin(egui::Margin { top: 4, ..egui::Margin::ZERO });
     Panel::bottom("net gain").frame(lower).resizable(true).default_size(0.34 * height).min_size(150.0).show(ui, |ui| {

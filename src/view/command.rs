@@ -84,6 +84,8 @@ pub enum Command {
     CloseBar(Bar),
     /// Put a text on the clipboard.
     CopyText(String),
+    /// Say why what was typed is not taken.
+    Refuse(String),
     /// Put the message away.
     DismissNotice,
     /// Close the window.

@@ -8,11 +8,16 @@ use crate::study::{Analysis, ConditionAnalysis};
 use super::command::Command;
 use super::heading::heading_ui;
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
+use super::region::{Region, region_ui};
 use super::row::{row_text, row_ui};
 use super::state::State;
 
 /// Every condition with speed, altitude, weight and its marks; a click shows it.
 pub fn conditions_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    region_ui(ui, Region::Conditions, |ui| list_ui(ui, state, palette, commands));
+}
+
+fn list_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let conditions = state.dataset().conditions();
     let older = if state.others_are_older() { " · marks of older settings" } else { "" };
     heading_ui(ui, palette, "Conditions", &format!("{}{older}", conditions.len()));

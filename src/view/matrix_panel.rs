@@ -15,6 +15,7 @@ use super::command::Command;
 use super::explanation::{gain_conflict_marks, toggle_costs};
 use super::heading::heading_ui;
 use super::palette::{Palette, SMALL_SIZE};
+use super::region::{Region, region_ui};
 use super::state::State;
 
 const CELL_HEIGHT: f32 = 50.0;
@@ -27,6 +28,10 @@ const LOCK_SIZE: f32 = 15.0;
 /// the space bar holds or frees it; the secondary button offers more.
 pub fn matrix_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     heading_ui(ui, palette, "Constraints", "G · delay · J before→after");
+    region_ui(ui, Region::Matrix, |ui| cells_ui(ui, state, palette, commands));
+}
+
+fn cells_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let (outputs, inputs) = (state.dataset().outputs(), state.dataset().inputs());
     let room = (ui.available_width() - ROW_LABEL_WIDTH) / inputs.len() as f32;
     let width = room.max(LEAST_CELL_WIDTH);
@@ -111,6 +116,9 @@ impl<'a> Cell<'a> {
         let response = ui.interact(rect, ui.scope_id().with(("cell", self.pair)), Sense::click());
         response
             .widget_info(|| WidgetInfo::selected(Role::Button, true, self.focused, format!("Response {}", self.name)));
+        if response.gained_focus() {
+            response.scroll_to_me(None);
+        }
         self.paint(ui, rect, &response, palette);
         let lock = self.lock_ui(ui, rect, palette);
         let space = response.has_focus() && ui.input(|input| input.key_pressed(Key::Space));
@@ -168,7 +176,7 @@ impl<'a> Cell<'a> {
         if self.in_conflict {
             painter.rect_stroke(rect.shrink(2.0), 2.0, Stroke::new(2.0, palette.warning), StrokeKind::Inside);
         }
-        if self.focused || response.has_focus() {
+        if self.focused {
             painter.rect_stroke(rect, 1.0, Stroke::new(2.0, palette.accent), StrokeKind::Inside);
         }
         self.paint_figures(ui, rect, palette);

@@ -9,12 +9,20 @@ use crate::study::Edit;
 use super::command::Command;
 use super::heading::heading_ui;
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
+use super::region::{Region, region_ui};
 use super::row::{ROW_HEIGHT, row_text};
 use super::state::State;
 
 /// The physics models with discontinuity ratios, and what may be done with all of them at once.
 pub fn physics_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    bundle_ui(ui, state, palette, BundleKind::Physics, commands);
+    region_ui(ui, Region::Models, |ui| {
+        bundle_ui(ui, state, palette, BundleKind::Physics, commands);
+        at_once_ui(ui, state, commands);
+    });
+}
+
+/// What may be done with all of them at once.
+fn at_once_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let condition = state.condition().id();
     let choice = state.study.choice(condition);
     let rejected = &choice.physics.rejected;
@@ -38,7 +46,7 @@ pub fn physics_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands
 
 /// The identified models with their orders.
 pub fn identified_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    bundle_ui(ui, state, palette, BundleKind::Identified, commands);
+    region_ui(ui, Region::Models, |ui| bundle_ui(ui, state, palette, BundleKind::Identified, commands));
 }
 
 fn bundle_ui(ui: &mut Ui, state: &State, palette: &Palette, kind: BundleKind, commands: &mut Vec<Command>) {

@@ -11,10 +11,15 @@ use super::command::{Command, FormKind};
 use super::explanation::{details_shown, remarks_shown};
 use super::heading::heading_ui;
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
+use super::region::{Region, region_ui};
 use super::state::State;
 
 /// Outcome, channel gains and delays, objective, and what could not be matched and why.
 pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    region_ui(ui, Region::Result, |ui| outcome_ui(ui, state, palette, commands));
+}
+
+fn outcome_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     match state.outcome() {
         None => {
             heading_ui(ui, palette, "Result", "");
@@ -48,7 +53,8 @@ pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
 pub fn export_button_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let ready = state.analysis().is_some();
     let label = RichText::new("Export corrections…").strong().color(palette.on_accent());
-    let export = ui.add_enabled(ready, Button::new(label).fill(palette.accent));
+    let button = Button::new(label).fill(palette.accent);
+    let export = region_ui(ui, Region::Result, |ui| ui.add_enabled(ready, button));
     if export.on_hover_text("Write corrections.json, corrections.csv and assessment.csv (Ctrl+E)").clicked() {
         commands.push(Command::ShowForm(Some(FormKind::Export)));
     }

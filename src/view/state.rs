@@ -229,6 +229,8 @@ pub struct ExportForm {
 pub struct Forms {
     /// The form shown.
     pub shown: Option<FormKind>,
+    /// The form drawn last, and whether it asked to overwrite files: another one opens.
+    pub drawn: Option<(FormKind, bool)>,
     /// The path in the open form, as typed.
     pub open_path: String,
     /// The study whose dataset is not where it says, and what opening it said.

@@ -4,6 +4,8 @@ mod computing;
 mod controls;
 mod decisions;
 mod files;
+mod forms;
+mod keyboard;
 mod plots;
 mod recovery;
 mod reload;

@@ -12,6 +12,7 @@ use crate::io::{
 use crate::study::{Difference, Study};
 use crate::view::bars::Bar;
 use crate::view::command::{Command, FormKind};
+use crate::view::preferences::Preferences;
 use crate::view::state::State;
 
 use super::dialogs::{DialogAnswer, DialogPurpose};
@@ -86,6 +87,7 @@ impl GdcmApp {
         let requested = self.state.results.requested;
         let name = loaded.origin.to_string();
         state.recent = std::mem::take(&mut self.state.recent);
+        Preferences::of(&self.state.display).apply(&mut state.display);
         // What was lost is offered still; the other bars are about what was open.
         state.bars = std::mem::take(&mut self.state.bars);
         state.bars.retain(|bar| matches!(bar, Bar::Recovery { .. }));

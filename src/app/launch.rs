@@ -14,7 +14,7 @@ use super::autosave::Autosave;
 use super::fault::{self, Fault, caught};
 use super::recovery::{LAST_WAIT, end_words};
 use super::setup::Setup;
-use super::window::GdcmApp;
+use super::window::{GdcmApp, PREFERENCES};
 
 /// What the desktop knows the program by; also the name of the directory for its data.
 pub(super) const APP_ID: &str = "gdcm";
@@ -77,6 +77,8 @@ fn run(opened: Opened, setup: Setup, opening: &Arc<OnceLock<Autosave>>) -> efram
     let options = NativeOptions { viewport, ..NativeOptions::default() };
     let opening = Arc::clone(opening);
     let build = move |creation: &eframe::CreationContext<'_>| -> Result<Box<dyn App>, Box<dyn Error + Send + Sync>> {
+        let kept = creation.storage.and_then(|storage| eframe::get_value(storage, PREFERENCES));
+        let setup = Setup { preferences: kept.unwrap_or_default(), ..setup };
         Ok(Box::new(Guarded { app: GdcmApp::with(&creation.egui_ctx, opened, setup)?, opening }))
     };
     eframe::run_native(APP_ID, options, Box::new(build))
@@ -96,6 +98,10 @@ impl App for Guarded {
     fn ui(&mut self, ui: &mut Ui, frame: &mut Frame) {
         self.app.ui(ui, frame);
         self.opening.get_or_init(|| self.app.autosave());
+    }
+
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        App::save(&mut self.app, storage);
     }
 }
 

@@ -7,6 +7,7 @@ use std::time::Duration;
 use super::pool::Pool;
 use super::worker::EngineMaker;
 use crate::study::{Engine, LIVE_PROOF};
+use crate::view::preferences::Preferences;
 
 /// What a window is given besides what it shows; a test gives other things than the program does.
 #[derive(Clone)]
@@ -21,6 +22,8 @@ pub struct Setup {
     pub keep_after: Duration,
     /// How often the dataset's file is looked at.
     pub look_every: Duration,
+    /// How the engineer likes the window.
+    pub preferences: Preferences,
 }
 
 impl Default for Setup {
@@ -31,6 +34,7 @@ impl Default for Setup {
             home: None,
             keep_after: Duration::from_secs(2),
             look_every: Duration::from_millis(1500),
+            preferences: Preferences::default(),
         }
     }
 }

@@ -5,8 +5,11 @@ use egui::{Context, ViewportCommand};
 use crate::dataset::ConditionId;
 use crate::io::{Existing, plain};
 use crate::study::Edit;
+use crate::view::arrangement::Arrangement;
 use crate::view::command::{Command, FormKind};
-use crate::view::state::{Display, Notice, NoticeKind};
+use crate::view::display::Display;
+use crate::view::net_gain_scene::PairSet;
+use crate::view::state::{Notice, NoticeKind};
 
 use super::dialogs::DialogPurpose;
 use super::files::Postponed;
@@ -47,9 +50,22 @@ impl GdcmApp {
             Command::Isolate(model) => {
                 display.isolated = if display.isolated.as_ref() == Some(&model) { None } else { Some(model) };
             }
-            Command::ShowTab(tab) => display.tab = tab,
+            Command::ShowView(view) => display.arrangement.show(view),
+            Command::SplitView(view, direction) => display.arrangement.split_off(view, direction),
+            Command::Arrange(preset) => display.arrangement = Arrangement::of(preset),
+            Command::ShowNetGains(pairs) => display.net_gain_pairs = pairs,
+            Command::PickPair(pair) => {
+                display.net_gain_pairs = PairSet::Picked;
+                if !display.picked_pairs.remove(&pair) {
+                    display.picked_pairs.insert(pair);
+                }
+            }
+            Command::ShowChannels(measure, across) => display.channel_figure = (measure, across),
             Command::SetFrequencyUnit(unit) => display.unit = unit,
-            Command::FitPlots => display.bode.request_fit(),
+            Command::FitPlots => {
+                display.bode.request_fit();
+                display.poles.request_fit();
+            }
             Command::SetTheme(theme) => ctx.set_theme(theme),
             Command::ShowForm(form) => self.show_form(form),
             Command::StopComputing => self.stop_computing(),
@@ -119,6 +135,7 @@ impl GdcmApp {
     /// Says what is true of the study now: saved or not.
     pub(super) fn study_changed(&mut self) {
         self.state.notice = None;
+        self.state.display.once_held.extend(self.state.study.settings.constrained.marked());
         self.state.unsaved = self.saved.study.as_ref() != Some(&self.state.study);
         self.follow_dataset();
         self.keep_unsaved();

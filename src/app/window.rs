@@ -11,6 +11,7 @@ use crate::study::{Study, display_band};
 use crate::view::bars::Bar;
 use crate::view::command::Command;
 use crate::view::palette::{self, Palette};
+use crate::view::preferences::Preferences;
 use crate::view::state::State;
 use crate::view::{
     bars, centre, conditions_panel, focus_ring, forms, matrix_panel, menu_bar, models_panel, result_panel,
@@ -73,7 +74,8 @@ impl GdcmApp {
         };
         let worker = Worker::start(setup.engine, Arc::new(waker()))?;
         let autosave = Autosave::start(setup.directory.as_deref(), setup.keep_after, waker())?;
-        let (state, loaded, saved) = Self::parts_of(opened);
+        let (mut state, loaded, saved) = Self::parts_of(opened);
+        setup.preferences.apply(&mut state.display);
         let app = Self {
             state,
             loaded,
@@ -278,7 +280,14 @@ fn scrolled(ui: &mut Ui, id: &str, add: impl FnOnce(&mut Ui)) {
     });
 }
 
+/// The name that the preferences are kept by.
+pub(super) const PREFERENCES: &str = "preferences";
+
 impl eframe::App for GdcmApp {
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        eframe::set_value(storage, PREFERENCES, &Preferences::of(&self.state.display));
+    }
+
     fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
         self.receive(ctx.input(|input| input.time));
         self.receive_files(ctx);

@@ -13,7 +13,7 @@ use crate::study::{
     Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, CurvesJob, Engine, Job, Progress, ProofJob, Study,
     Toggles, TogglesJob, display_band,
 };
-use crate::view::state::{Background, FirstResult};
+use crate::view::results::{Background, FirstResult};
 
 /// Frequencies of the curves that are drawn.
 const CURVE_POINTS: usize = 500;

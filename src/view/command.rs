@@ -3,13 +3,15 @@
 use std::path::PathBuf;
 
 use egui::ThemePreference;
+use egui_tiles::LinearDir;
 
 use crate::dataset::{ConditionId, ModelId, Pair};
 use crate::study::Edit;
 
+use super::arrangement::{Preset, View};
 use super::bars::Bar;
-use super::plot::FrequencyUnit;
-use super::state::Tab;
+use super::net_gain_scene::PairSet;
+use super::plot::{Across, FrequencyUnit, Measure};
 
 /// One wish of the engineer: what a click, a key or a menu entry stands for. Views push them; the window carries them out.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,8 +34,18 @@ pub enum Command {
     Hover(ModelId),
     /// Show only this model beside the representatives; the same model again shows all.
     Isolate(ModelId),
-    /// Show another plot above.
-    ShowTab(Tab),
+    /// Bring a plot to the front.
+    ShowView(View),
+    /// Give a plot a place of its own: beside the others, or below them.
+    SplitView(View, LinearDir),
+    /// Arrange the plots.
+    Arrange(Preset),
+    /// Show the net gains of other responses.
+    ShowNetGains(PairSet),
+    /// Pick a response for the net-gain plots, or let it go.
+    PickPair(Pair),
+    /// Show gains or delays of the channels, over airspeed or over conditions.
+    ShowChannels(Measure, Across),
     /// Read frequencies in another unit.
     SetFrequencyUnit(FrequencyUnit),
     /// Bring every curve back into view.

@@ -4,6 +4,7 @@ use egui::{Align, Button, Layout, MenuBar, RichText, ThemePreference, Ui};
 
 use crate::study::Edit;
 
+use super::arrangement::{Preset, View};
 use super::command::{Command, FormKind};
 use super::palette::Palette;
 use super::plot::FrequencyUnit;
@@ -88,6 +89,14 @@ fn view_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         FrequencyUnit::Hertz => ("Frequencies in rad/s", FrequencyUnit::RadPerSecond),
     };
     entry(ui, text, "", Command::SetFrequencyUnit(unit), commands);
+    ui.separator();
+    for view in View::ALL {
+        entry(ui, &format!("Show {}", view.name()), "", Command::ShowView(view), commands);
+    }
+    ui.separator();
+    for preset in Preset::ALL {
+        entry(ui, preset.name(), "", Command::Arrange(preset), commands);
+    }
     ui.separator();
     entry(ui, "Theme of the desktop", "", Command::SetTheme(ThemePreference::System), commands);
     entry(ui, "Dark theme", "", Command::SetTheme(ThemePreference::Dark), commands);

@@ -1,11 +1,13 @@
 //! What the window shows: functions that draw the state and say what the engineer asks for.
 
+pub mod arrangement;
 mod assessment_scene;
 pub mod bars;
 pub mod bode_scene;
 pub mod centre;
 pub mod command;
 pub mod conditions_panel;
+pub mod display;
 pub mod explanation;
 pub mod focus_ring;
 pub mod forms;
@@ -17,9 +19,12 @@ pub mod net_gain_scene;
 pub mod number_field;
 pub mod palette;
 pub mod plot;
+pub mod preferences;
 pub mod region;
 pub mod result_panel;
+pub mod results;
 mod row;
 pub mod settings_panel;
 pub mod state;
 pub mod status_bar;
+mod views;

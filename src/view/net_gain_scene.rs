@@ -1,79 +1,177 @@
-//! Gains against airspeed, made of what was computed.
+//! Gains and delays against airspeed or over conditions, made of what was computed.
 
 use std::collections::BTreeSet;
 
-use crate::correction::ChannelCorrection;
-use crate::dataset::FlightState;
-use crate::schedule::Schedule;
-use crate::study::Analysis;
+use serde::{Deserialize, Serialize};
 
-use super::plot::{Dot, DotShape, GainPanel};
+use crate::correction::ChannelCorrection;
+use crate::dataset::{Channel, FlightState, Pair};
+use crate::schedule::Schedule;
+use crate::study::{Analysis, ConditionAnalysis};
+use crate::units::s_to_ms;
+
+use super::plot::{Across, Dot, DotShape, GainPanel, Measure};
 use super::state::State;
 
 /// Samples of a schedule between its ends.
 const SAMPLES: usize = 120;
 
-/// One panel for each held response: the net gain of each condition's optimum, and the schedule.
+/// Which responses the plots of net gain show.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PairSet {
+    /// Those held, and those that were held since the window was opened: freeing one does not take its plot away.
+    #[default]
+    Held,
+    /// The response in focus.
+    Focused,
+    /// The dataset's on-axis responses.
+    OnAxis,
+    /// Every response.
+    All,
+    /// Those that the engineer picked.
+    Picked,
+}
+
+impl PairSet {
+    /// Every set, in the order of its list.
+    pub const ALL: [Self; 5] = [Self::Held, Self::Focused, Self::OnAxis, Self::All, Self::Picked];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Held => "held",
+            Self::Focused => "in focus",
+            Self::OnAxis => "on-axis",
+            Self::All => "all",
+            Self::Picked => "picked",
+        }
+    }
+
+    /// What is in it, in a sentence.
+    pub fn purpose(self) -> &'static str {
+        match self {
+            Self::Held => "The responses held, and those held before",
+            Self::Focused => "The response chosen in the matrix",
+            Self::OnAxis => "The on-axis responses of the dataset",
+            Self::All => "Every response that has a gain",
+            Self::Picked => "Those picked with the button beside this list",
+        }
+    }
+}
+
+/// The responses of the plots of net gain, in the order of the matrix.
+pub fn net_gain_pairs(state: &State) -> Vec<Pair> {
+    let (display, constrained) = (&state.display, &state.study.settings.constrained);
+    let is_in = |pair: &Pair| match display.net_gain_pairs {
+        PairSet::Held => constrained[*pair] || display.once_held.contains(pair),
+        PairSet::Focused => display.pair == *pair,
+        PairSet::OnAxis => state.dataset().measuring_pairs()[*pair],
+        PairSet::All => true,
+        PairSet::Picked => display.picked_pairs.contains(pair),
+    };
+    constrained.pairs().filter(is_in).collect()
+}
+
+/// One panel for each response of the set shown: the net gain of each condition's optimum, and the schedule.
 pub fn net_gain_panels(state: &State) -> Vec<GainPanel> {
     let Some(analysis) = state.analysis() else {
         return Vec::new();
     };
-    state
-        .study
-        .settings
-        .constrained
-        .marked()
-        .map(|pair| {
-            panel(state, analysis, state.dataset().pair_name(pair), |correction| correction.net_gain(pair).value())
-        })
-        .collect()
+    let panel = |pair: Pair| {
+        let free = if state.study.settings.constrained[pair] { "" } else { " (free)" };
+        let figure = Figure {
+            title: format!("{}{free}", state.dataset().pair_name(pair)),
+            measure: Measure::Gain,
+            of: Box::new(move |correction: &ChannelCorrection| correction.net_gain(pair).value()),
+            bounds: None,
+        };
+        figure.panel(state, analysis, Across::Airspeed)
+    };
+    net_gain_pairs(state).into_iter().map(panel).collect()
 }
 
-/// One panel for each input and one for each output: the channel's gain in each condition's optimum, and the schedule.
-pub fn channel_panels(state: &State) -> (Vec<GainPanel>, Vec<GainPanel>) {
+/// One panel for each input and one for each output: the channel's gain or delay in each condition's optimum, and the schedule.
+pub fn channel_panels(state: &State, measure: Measure, across: Across) -> (Vec<GainPanel>, Vec<GainPanel>) {
     let Some(analysis) = state.analysis() else {
         return (Vec::new(), Vec::new());
     };
-    let inputs = state.dataset().inputs().iter().enumerate().map(|(index, channel)| {
-        panel(state, analysis, channel.name.clone(), move |correction| correction.input_gains[index])
-    });
-    let outputs = state.dataset().outputs().iter().enumerate().map(|(index, channel)| {
-        panel(state, analysis, channel.name.clone(), move |correction| correction.output_gains[index])
-    });
-    (inputs.collect(), outputs.collect())
+    let of_input = |index: usize| -> FigureOf {
+        match measure {
+            Measure::Gain => Box::new(move |correction| correction.input_gains[index]),
+            Measure::Delay => Box::new(move |correction| s_to_ms(correction.input_delays_s[index])),
+        }
+    };
+    let of_output = |index: usize| -> FigureOf {
+        match measure {
+            Measure::Gain => Box::new(move |correction| correction.output_gains[index]),
+            Measure::Delay => Box::new(move |correction| s_to_ms(correction.output_delays_s[index])),
+        }
+    };
+    let panels = |channels: &[Channel], of: &dyn Fn(usize) -> FigureOf| {
+        let figure = |(index, channel): (usize, &Channel)| {
+            let bounds: Option<BoundsOf> = Some(Box::new(move |result| match measure {
+                Measure::Gain => [result.gain_bounds().lower, result.gain_bounds().upper],
+                Measure::Delay => [0.0, s_to_ms(result.delay_upper_s())],
+            }));
+            Figure { title: channel.name.clone(), measure, of: of(index), bounds }.panel(state, analysis, across)
+        };
+        channels.iter().enumerate().map(figure).collect()
+    };
+    (panels(state.dataset().inputs(), &of_input), panels(state.dataset().outputs(), &of_output))
 }
 
-fn panel(
-    state: &State,
-    analysis: &Analysis,
+/// A figure of a correction.
+type FigureOf = Box<dyn Fn(&ChannelCorrection) -> f64>;
+/// Between which values it was looked for.
+type BoundsOf = Box<dyn Fn(&ConditionAnalysis) -> [f64; 2]>;
+
+/// A figure of every condition's correction, and of the schedule.
+struct Figure {
     title: String,
-    gain: impl Fn(&ChannelCorrection) -> f64 + Copy,
-) -> GainPanel {
-    let classes = Classes::of(state);
-    let dots = state.dataset().conditions().iter().filter_map(|condition| {
-        let id = condition.id();
-        let result = analysis.condition(id)?;
-        let flight_state = condition.flight_state();
-        Some(Dot {
-            condition: id,
-            label: id.to_string(),
-            airspeed_kt: flight_state.airspeed_kt,
-            gain: gain(&result.correction),
-            shape: if classes.is_first_altitude(flight_state) { DotShape::Circle } else { DotShape::Diamond },
-            filled: classes.is_first_weight(flight_state),
-            selected: id == state.condition().id(),
-            chosen: analysis.study.choice(id).scheduled,
-            detail: flight_state.name.clone(),
-        })
-    });
-    let schedule = analysis.schedule.as_ref().map(|schedule| samples(schedule, gain)).unwrap_or_default();
-    GainPanel { title, dots: dots.collect(), schedule }
+    measure: Measure,
+    of: FigureOf,
+    bounds: Option<BoundsOf>,
 }
 
-fn samples(schedule: &Schedule, gain: impl Fn(&ChannelCorrection) -> f64) -> Vec<[f64; 2]> {
+impl Figure {
+    fn panel(self, state: &State, analysis: &Analysis, across: Across) -> GainPanel {
+        let classes = Classes::of(state);
+        let place = |index: usize, flight_state: &FlightState| match across {
+            Across::Airspeed => flight_state.airspeed_kt,
+            Across::Conditions => index as f64,
+        };
+        let dots = state.dataset().conditions().iter().enumerate().filter_map(|(index, condition)| {
+            let id = condition.id();
+            let result = analysis.condition(id)?;
+            let flight_state = condition.flight_state();
+            Some(Dot {
+                condition: id,
+                label: id.to_string(),
+                x: place(index, flight_state),
+                airspeed_kt: flight_state.airspeed_kt,
+                value: (self.of)(&result.correction),
+                bounds: self.bounds.as_ref().map(|bounds| bounds(result)),
+                shape: if classes.is_first_altitude(flight_state) { DotShape::Circle } else { DotShape::Diamond },
+                filled: classes.is_first_weight(flight_state),
+                selected: id == state.condition().id(),
+                chosen: analysis.study.choice(id).scheduled,
+                detail: flight_state.name.clone(),
+            })
+        });
+        let schedule = analysis.schedule.as_ref().ok().filter(|schedule| self.is_scheduled(schedule, across));
+        let schedule = schedule.map(|schedule| samples(schedule, &self.of)).unwrap_or_default();
+        GainPanel { title: self.title, measure: self.measure, across, dots: dots.collect(), schedule }
+    }
+
+    fn is_scheduled(&self, schedule: &Schedule, across: Across) -> bool {
+        across == Across::Airspeed && (self.measure == Measure::Gain || schedule.settings.delays)
+    }
+}
+
+fn samples(schedule: &Schedule, figure: &FigureOf) -> Vec<[f64; 2]> {
     let (from, to) = (schedule.airspeeds.min_kt, schedule.airspeeds.max_kt);
     let airspeed = |sample: usize| from + (to - from) * sample as f64 / SAMPLES as f64;
-    (0..=SAMPLES).map(|sample| [airspeed(sample), gain(&schedule.at(airspeed(sample)))]).collect()
+    (0..=SAMPLES).map(|sample| [airspeed(sample), figure(&schedule.at(airspeed(sample)))]).collect()
 }
 
 /// The altitude class drawn as circles and the weight class drawn filled: "low", or the first of the names.

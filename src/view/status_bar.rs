@@ -7,7 +7,8 @@ use crate::study::Assessed;
 
 use super::command::Command;
 use super::palette::{Palette, SMALL_SIZE};
-use super::state::{Background, NoticeKind, State};
+use super::results::Background;
+use super::state::{NoticeKind, State};
 
 /// State of the computation on the left, message or standing remark on the right.
 pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {

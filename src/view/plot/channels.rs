@@ -1,10 +1,10 @@
-//! Gains of the channels over airspeed: one small plot for each input and each output, with the schedule.
+//! Gains or delays of the channels: one small plot for each input and each output, with the schedule.
 
 use egui::{Align2, Rect, Ui, Vec2, pos2, vec2};
 
 use super::axes::caption_font;
 use super::gain_group::{GainEvent, GainView, gain_group_ui, group_rows};
-use super::gain_panel::{GainPanel, SharedRanges};
+use super::gain_panel::{GainPanel, Measure, SharedRanges};
 use super::message::message_ui;
 use crate::view::palette::Palette;
 
@@ -50,12 +50,16 @@ pub fn channels_ui(
         ("Input channels", upper, scene.inputs, &mut view.inputs),
         ("Output channels", lower, scene.outputs, &mut view.outputs),
     ];
+    let label = match scene.inputs.iter().chain(scene.outputs).next().map(|panel| panel.measure) {
+        Some(Measure::Delay) => "Delay [ms]",
+        _ => "Gain [-]",
+    };
     let mut events = Vec::new();
     for (name, rect, panels, view) in groups.into_iter().filter(|(_, _, panels, _)| !panels.is_empty()) {
         let place = pos2(rect.left() + 2.0, rect.top() + 0.5 * HEADING_HEIGHT);
         ui.painter().text(place, Align2::LEFT_CENTER, name, caption_font(), palette.dim_text);
         let rect = Rect::from_min_max(rect.min + vec2(0.0, HEADING_HEIGHT), rect.max - vec2(0.0, GAP));
-        events.extend(gain_group_ui(ui, (name, rect), panels, (ranges, "Gain [-]"), view, palette));
+        events.extend(gain_group_ui(ui, (name, rect), panels, (ranges, label), view, palette));
     }
     ui.advance_cursor_after_rect(rect);
     events

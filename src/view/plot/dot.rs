@@ -67,10 +67,14 @@ pub struct Dot {
     pub condition: ConditionId,
     /// The short text beside the dot: the condition's number.
     pub label: String,
+    /// Where it stands on the horizontal axis, see [`super::Across`].
+    pub x: f64,
     /// Airspeed \[kt\].
     pub airspeed_kt: f64,
-    /// The gain, a ratio: net gain of a pair, or gain of a channel.
-    pub gain: f64,
+    /// The figure, in the unit of its panel: net gain of a pair, gain or delay of a channel.
+    pub value: f64,
+    /// Between which values the optimum was looked for, in the same unit.
+    pub bounds: Option<[f64; 2]>,
     /// Outline: the class of a first property.
     pub shape: DotShape,
     /// Filled or open: the class of a second property.

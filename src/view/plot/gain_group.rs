@@ -9,7 +9,6 @@ use super::axes::use_frame_colors;
 use super::dot::Dot;
 use super::dot_label::PlacedLabels;
 use super::gain_panel::{GainPanel, PanelAnswer, SharedRanges, gain_panel_ui};
-use super::number::decimals;
 use super::readout::tooltip_ui;
 use super::tiles::{Tiles, tiles_ui};
 use crate::view::palette::{Palette, SMALL_SIZE};
@@ -26,6 +25,8 @@ pub enum GainEvent {
     ConditionHovered(Option<ConditionId>),
     /// A condition's dot was clicked.
     ConditionClicked(ConditionId),
+    /// A condition's dot was clicked with the key for commands held: into the schedule, or out of it.
+    ScheduleToggled(ConditionId),
 }
 
 /// What the plots of gains over airspeed remember between frames.
@@ -53,15 +54,15 @@ impl GainView {
         self.hovered.or(self.highlighted)
     }
 
-    /// Where a panel was drawn last: x is in knots, y is the gain.
+    /// Where a panel was drawn last: x as its [`super::Across`] says, y as its [`super::Measure`] does.
     pub fn transform(&self, panel: usize) -> Option<&PlotTransform> {
         self.transforms.get(panel)?.as_ref()
     }
 
     /// Where the dot of a condition is on the screen.
     pub fn screen_position(&self, panel: usize, condition: ConditionId) -> Option<Pos2> {
-        let (_, [airspeed_kt, gain]) = self.dots.get(panel)?.iter().find(|(id, _)| *id == condition)?;
-        Some(self.transform(panel)?.position_from_point(&PlotPoint::new(*airspeed_kt, *gain)))
+        let (_, [x, value]) = self.dots.get(panel)?.iter().find(|(id, _)| *id == condition)?;
+        Some(self.transform(panel)?.position_from_point(&PlotPoint::new(*x, *value)))
     }
 
     fn remember(&mut self, index: usize, panel: &GainPanel, answer: &PanelAnswer) {
@@ -69,7 +70,7 @@ impl GainView {
             *transform = Some(answer.transform);
         }
         if let Some(dots) = self.dots.get_mut(index) {
-            *dots = panel.dots.iter().map(|dot| (dot.condition, [dot.airspeed_kt, dot.gain])).collect();
+            *dots = panel.dots.iter().map(|dot| (dot.condition, [dot.x, dot.value])).collect();
         }
     }
 }
@@ -120,24 +121,31 @@ fn panel_event(panel: &GainPanel, answer: PanelAnswer, palette: &Palette) -> Opt
         dot_tooltip_ui(&answer, panel, dot, palette);
         answer.response.on_hover_cursor(egui::CursorIcon::PointingHand);
     }
-    answer.clicked.map(GainEvent::ConditionClicked)
+    answer.clicked.map(|(condition, with_command)| match with_command {
+        true => GainEvent::ScheduleToggled(condition),
+        false => GainEvent::ConditionClicked(condition),
+    })
 }
 
 fn dot_tooltip_ui(answer: &PanelAnswer, panel: &GainPanel, dot: &Dot, palette: &Palette) {
     tooltip_ui(&answer.response, |ui| {
         let dim = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
         ui.label(dim(format!("condition {} · {:.0} kt", dot.label, dot.airspeed_kt)));
-        let scheduled = match panel.scheduled(dot.airspeed_kt) {
-            Some(gain) => format!(" · scheduled {}", decimals(gain, 3)),
+        let scheduled = match panel.scheduled(dot.x) {
+            Some(value) => format!(" · scheduled {}", panel.measure.text(value)),
             None => String::new(),
         };
-        ui.label(format!("{} {}{scheduled}", panel.title, decimals(dot.gain, 3)));
+        ui.label(format!("{} {}{scheduled}", panel.title, panel.measure.text(dot.value)));
+        if let Some([lower, upper]) = dot.bounds {
+            ui.label(dim(format!("bounds {} to {}", panel.measure.text(lower), panel.measure.text(upper))));
+        }
         if !dot.chosen {
             ui.label(dim("not in the schedule".to_owned()));
         }
         if !dot.detail.is_empty() {
             ui.label(dim(dot.detail.clone()));
         }
+        ui.label(dim("click: show the condition · Ctrl+click: into the schedule, or out of it".to_owned()));
     });
 }
 

@@ -1,6 +1,8 @@
-//! One small plot of gains over airspeed: the optimum of each condition as a dot, and the schedule as a line.
+//! One small plot of gains or delays: the optimum of each condition as a dot, and the schedule as a line.
 
-use egui::{Align2, FontId, Id, Pos2, Rect, Response, Sense, Stroke, Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2};
+use egui::{
+    Align2, FontId, Id, Painter, Pos2, Rect, Response, Sense, Stroke, Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
+};
 use egui_plot::{Axis, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotTransform, PlotUi};
 
 use crate::dataset::ConditionId;
@@ -9,6 +11,7 @@ use super::axes::{LABELLED_HEIGHT, axis_hints, caption_font, quiet_plot};
 use super::dot::{DOT_RADIUS, Dot};
 use super::dot_label::{LabelledDot, PlacedLabels, Surroundings};
 use super::linear_axis::{Ladder, tick_text};
+use super::number::decimals;
 use super::range::Range;
 use super::role::Role;
 use crate::view::palette::Palette;
@@ -24,23 +27,73 @@ const LABEL_FONT: FontId = FontId::proportional(10.5);
 /// Height that a row of label text has above and below its figures \[pt\].
 const LABEL_LEADING: f32 = 4.0;
 
-/// One small plot: dots over airspeed, with the schedule.
+/// What the dots of a panel measure.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Measure {
+    /// A gain, a ratio; no correction is 1.
+    #[default]
+    Gain,
+    /// A delay \[ms\]; no correction is 0.
+    Delay,
+}
+
+impl Measure {
+    /// The value that corrects nothing.
+    pub fn null(self) -> f64 {
+        match self {
+            Self::Gain => 1.0,
+            Self::Delay => 0.0,
+        }
+    }
+
+    /// A value with its unit.
+    pub fn text(self, value: f64) -> String {
+        match self {
+            Self::Gain => decimals(value, 3),
+            Self::Delay => format!("{} ms", decimals(value, 1)),
+        }
+    }
+
+    /// Least height of a plot, in its unit.
+    fn least_height(self) -> f64 {
+        match self {
+            Self::Gain => 0.1,
+            Self::Delay => 10.0,
+        }
+    }
+}
+
+/// What the horizontal axis stands for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Across {
+    /// True airspeed \[kt\].
+    #[default]
+    Airspeed,
+    /// Conditions in file order, each at its place from 0 on; the axis has no numbers, dots have their labels.
+    Conditions,
+}
+
+/// One small plot: dots over airspeed or over conditions, with the schedule.
 #[derive(Clone, Debug, Default)]
 pub struct GainPanel {
-    /// What the gain is of: "LAT → P", "LON".
+    /// What the figure is of: "LAT → P", "LON".
     pub title: String,
-    /// One dot for each condition; one whose airspeed or gain is not finite is left out.
+    /// What the dots measure.
+    pub measure: Measure,
+    /// What the horizontal axis stands for.
+    pub across: Across,
+    /// One dot for each condition; one whose place or value is not finite is left out.
     pub dots: Vec<Dot>,
-    /// The schedule, sampled: airspeed \[kt\] and gain. Empty where there is none.
+    /// The schedule, sampled: place on the horizontal axis, and value. Empty where there is none.
     pub schedule: Vec<[f64; 2]>,
 }
 
 impl GainPanel {
-    /// The scheduled gain at an airspeed, linear between samples; nothing outside them.
-    pub fn scheduled(&self, airspeed_kt: f64) -> Option<f64> {
+    /// The scheduled value at a place of the horizontal axis, linear between samples; nothing outside them.
+    pub fn scheduled(&self, x: f64) -> Option<f64> {
         let value = |pair: &[[f64; 2]]| {
-            let ([from_kt, from], [to_kt, to]) = (pair[0], pair[1]);
-            let fraction = (airspeed_kt - from_kt) / (to_kt - from_kt);
+            let ([from_x, from], [to_x, to]) = (pair[0], pair[1]);
+            let fraction = (x - from_x) / (to_x - from_x);
             (0.0..=1.0).contains(&fraction).then_some(from + fraction * (to - from))
         };
         self.schedule.windows(2).find_map(value)
@@ -51,31 +104,37 @@ impl GainPanel {
     }
 
     fn drawable_dots(&self) -> impl Iterator<Item = &Dot> {
-        self.dots.iter().filter(|dot| dot.airspeed_kt.is_finite() && dot.gain.is_finite())
+        self.dots.iter().filter(|dot| dot.x.is_finite() && dot.value.is_finite())
     }
 }
 
 /// The ranges that all panels of a group share, so that they can be compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SharedRanges {
-    pub(super) airspeed_kt: Range,
-    pub(super) gain: Range,
+    pub(super) x: Range,
+    pub(super) value: Range,
 }
 
 impl SharedRanges {
-    /// What holds all dots and schedules of `panels`, and the gain 1; nothing where there is no dot.
+    /// What holds all dots and schedules of `panels`, and no correction; nothing where there is no dot.
     pub(super) fn of(panels: &[GainPanel]) -> Option<Self> {
+        let first = panels.first()?;
         let dots = || panels.iter().flat_map(GainPanel::drawable_dots);
         let scheduled = panels.iter().flat_map(|panel| panel.schedule.iter().map(|point| point[1]));
-        let airspeed_kt = Range::of(dots().map(|dot| dot.airspeed_kt))?.with_margin(0.07, 10.0);
-        let gain = Range::of(dots().map(|dot| dot.gain).chain(scheduled))?.including(1.0).with_margin(0.09, 0.1);
-        Some(Self { airspeed_kt, gain })
+        let x = Range::of(dots().map(|dot| dot.x))?;
+        let x = match first.across {
+            Across::Airspeed => x.with_margin(0.07, 10.0),
+            Across::Conditions => Range::new(x.min - 0.6, x.max + 0.6),
+        };
+        let value = Range::of(dots().map(|dot| dot.value).chain(scheduled))?;
+        let value = value.including(first.measure.null()).with_margin(0.09, first.measure.least_height());
+        Some(Self { x, value })
     }
 
     /// The least ranges that hold both.
     pub(super) fn union(self, other: Self) -> Self {
         let union = |a: Range, b: Range| a.including(b.min).including(b.max);
-        Self { airspeed_kt: union(self.airspeed_kt, other.airspeed_kt), gain: union(self.gain, other.gain) }
+        Self { x: union(self.x, other.x), value: union(self.value, other.value) }
     }
 }
 
@@ -85,8 +144,8 @@ pub(super) struct PanelAnswer {
     pub(super) transform: PlotTransform,
     /// The condition under the pointer.
     pub(super) hovered: Option<ConditionId>,
-    /// The condition that was clicked.
-    pub(super) clicked: Option<ConditionId>,
+    /// The condition that was clicked, and whether with the key for commands held.
+    pub(super) clicked: Option<(ConditionId, bool)>,
 }
 
 /// Draws a panel into `rect`; `hovered` is the condition to emphasise, whichever panel the pointer is in, and `labels` are those of
@@ -104,10 +163,11 @@ pub(super) fn gain_panel_ui(
     let frame = *transform.frame();
     let title_place = pos2(frame.center().x, rect.top() + 0.5 * TITLE_HEIGHT);
     ui.painter().text(title_place, Align2::CENTER_CENTER, &panel.title, caption_font(), palette.text);
-    let position = |dot: &Dot| transform.position_from_point(&PlotPoint::new(dot.airspeed_kt, dot.gain));
+    let position = |dot: &Dot| transform.position_from_point(&PlotPoint::new(dot.x, dot.value));
     let placed: Vec<(&Dot, Pos2)> = panel.drawable_dots().map(|dot| (dot, position(dot))).collect();
     paint_labels(ui, &placed, panel, (&transform, labels), palette);
     let painter = ui.painter().with_clip_rect(frame.expand(DOT_RADIUS));
+    paint_bounds(&painter.with_clip_rect(frame), &placed, &transform, palette);
     for (dot, center) in &placed {
         dot.paint(&painter, *center, hovered == Some(dot.condition), palette);
         name_dot(ui, id, panel, dot, *center);
@@ -115,10 +175,22 @@ pub(super) fn gain_panel_ui(
     let condition_at = |pointer: Pos2| Some(nearest_dot(&placed, pointer)?.condition);
     let hovered = response.hover_pos().and_then(condition_at);
     let clicked = response.interact_pointer_pos().filter(|_| response.clicked()).and_then(condition_at);
+    let clicked = clicked.map(|condition| (condition, ui.input(|input| input.modifiers.command)));
     PanelAnswer { response, transform, hovered, clicked }
 }
 
-/// The axes, the line at 1 and the schedule.
+/// Where each optimum was looked for, as a faint bar behind its dot.
+fn paint_bounds(painter: &Painter, placed: &[(&Dot, Pos2)], transform: &PlotTransform, palette: &Palette) {
+    for (dot, center) in placed {
+        if let Some([lower, upper]) = dot.bounds {
+            let [y0, y1] = [lower, upper].map(|value| transform.position_from_point_y(value));
+            let bar = Rect::from_x_y_ranges(center.x - 3.0..=center.x + 3.0, y1.min(y0)..=y0.max(y1));
+            painter.rect_filled(bar, 2.0, palette.accent.gamma_multiply(0.16));
+        }
+    }
+}
+
+/// The axes, the line of no correction and the schedule.
 fn frame_ui(
     ui: &mut Ui,
     (id, rect): (Id, Rect),
@@ -126,10 +198,10 @@ fn frame_ui(
     ranges: SharedRanges,
     palette: &Palette,
 ) -> (Response, PlotTransform) {
-    let (airspeed, gain) = (ranges.airspeed_kt, ranges.gain);
-    let bounds = PlotBounds::from_min_max([airspeed.min, gain.min], [airspeed.max, gain.max]);
+    let (x, value) = (ranges.x, ranges.value);
+    let bounds = PlotBounds::from_min_max([x.min, value.min], [x.max, value.max]);
     let shown = ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(rect), |ui| {
-        gain_plot(id, rect.size(), palette).show(ui, |plot| {
+        gain_plot(id, rect.size(), panel.across, palette).show(ui, |plot| {
             plot.set_plot_bounds(bounds);
             draw_lines(plot, panel, palette);
         })
@@ -140,20 +212,30 @@ fn frame_ui(
     (response, shown.inner.transform)
 }
 
-fn gain_plot<'a>(id: Id, size: Vec2, palette: &Palette) -> Plot<'a> {
+fn gain_plot<'a>(id: Id, size: Vec2, across: Across, palette: &Palette) -> Plot<'a> {
+    let (label, gap) = match across {
+        Across::Airspeed => ("Airspeed [kt]", AIRSPEED_TICK_GAP),
+        Across::Conditions => ("Condition", f64::INFINITY),
+    };
+    let horizontal = move |input: egui_plot::GridInput| match across {
+        Across::Airspeed => Ladder::Decimal.marks(input.bounds, input.base_step_size, gap),
+        Across::Conditions => Vec::new(),
+    };
     quiet_plot(id, palette)
         .sense(Sense::click())
         .width(size.x)
         .height(size.y)
-        .x_grid_spacer(Ladder::Decimal.spacer(AIRSPEED_TICK_GAP))
+        .x_grid_spacer(horizontal)
         .y_grid_spacer(Ladder::Decimal.spacer(GAIN_TICK_GAP))
-        .custom_x_axes(vec![axis_hints(Axis::X, "Airspeed [kt]", LABELLED_HEIGHT, palette, tick_text)])
+        .custom_x_axes(vec![axis_hints(Axis::X, label, LABELLED_HEIGHT, palette, tick_text)])
         .custom_y_axes(vec![axis_hints(Axis::Y, "", GAIN_AXIS_WIDTH, palette, tick_text)])
 }
 
 fn draw_lines(plot: &mut PlotUi<'_>, panel: &GainPanel, palette: &Palette) {
     let reference = palette.dim_text.gamma_multiply(0.8);
-    plot.hline(HLine::new("", 1.0).color(reference).width(1.0).style(LineStyle::Dashed { length: 3.0 }));
+    plot.hline(
+        HLine::new("", panel.measure.null()).color(reference).width(1.0).style(LineStyle::Dashed { length: 3.0 }),
+    );
     let look = Role::Scheduled.look(false, palette);
     let schedule: Vec<[f64; 2]> = panel.drawable_schedule().collect();
     plot.line(Line::new("", schedule).color(look.color).width(look.width).style(look.style));
@@ -197,7 +279,11 @@ fn paint_labels(
 fn name_dot(ui: &Ui, id: Id, panel: &GainPanel, dot: &Dot, center: Pos2) {
     let place = Rect::from_center_size(center, vec2(2.0, 2.0) * DOT_RADIUS);
     let response = ui.interact(place, id.with(("dot", dot.condition)), Sense::hover());
-    let text = format!("{}, condition {}: {:.3} at {:.0} kt", panel.title, dot.label, dot.gain, dot.airspeed_kt);
+    let value = match panel.measure {
+        Measure::Gain => format!("{:.3}", dot.value),
+        Measure::Delay => format!("{:.1} ms", dot.value),
+    };
+    let text = format!("{}, condition {}: {value} at {:.0} kt", panel.title, dot.label, dot.airspeed_kt);
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, text.clone()));
 }
 
@@ -224,8 +310,10 @@ mod tests {
         let dot = Dot {
             condition: ConditionId(0),
             label: "1".into(),
+            x: 60.0,
             airspeed_kt: 60.0,
-            gain: 1.4,
+            value: 1.4,
+            bounds: None,
             shape: Default::default(),
             filled: true,
             selected: false,
@@ -234,7 +322,7 @@ mod tests {
         };
         let panel = GainPanel { dots: vec![dot], ..GainPanel::default() };
         assert!(
-            SharedRanges::of(&[panel]).is_some_and(|ranges| ranges.gain.contains(1.0) && ranges.gain.contains(1.4))
+            SharedRanges::of(&[panel]).is_some_and(|ranges| ranges.value.contains(1.0) && ranges.value.contains(1.4))
         );
         assert_eq!(SharedRanges::of(&[GainPanel::default()]), None);
     }

@@ -1,6 +1,7 @@
 //! The logarithmic frequency axis: everything that knows that a plot's x is `log10(omega)`.
 
 use egui_plot::{GridInput, GridMark};
+use serde::{Deserialize, Serialize};
 
 use super::grid_strength::{is_labelled, labelled_mark, minor_mark};
 use super::number::compact;
@@ -19,7 +20,7 @@ const LINEAR_BELOW: f64 = 0.9;
 const NINE_TO_TEN: f64 = 0.045_757_490_560_675_115;
 
 /// The unit frequencies are shown in; inside they are always rad/s.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FrequencyUnit {
     /// Angular frequency.
     #[default]

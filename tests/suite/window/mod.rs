@@ -24,7 +24,7 @@ use gdcm::dataset::{BundleKind, ConditionId, ModelId, Pair};
 use gdcm::io::{Opened, OpenedStudy, load_any, open_study, read_corrections};
 use gdcm::view::explanation::{gain_conflict_marks, remarks_shown, toggle_costs};
 use gdcm::view::net_gain_scene::channel_panels;
-use gdcm::view::plot::{BodeCurve, Pane, Role as CurveRole};
+use gdcm::view::plot::{Across, BodeCurve, Measure, Pane, Role as CurveRole};
 use gdcm::view::state::{NoticeKind, State};
 
 pub(crate) type Window = Harness<'static, GdcmApp>;

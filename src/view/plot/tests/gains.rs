@@ -19,8 +19,10 @@ fn dot(number: usize, airspeed_kt: f64, gain: f64) -> Dot {
     Dot {
         condition: id(number),
         label: (number + 1).to_string(),
+        x: airspeed_kt,
         airspeed_kt,
-        gain,
+        value: gain,
+        bounds: None,
         shape: DotShape::of_class(number % 4),
         filled: number.is_multiple_of(2),
         selected: number == 2,
@@ -34,6 +36,7 @@ fn panels(count: usize) -> Vec<GainPanel> {
         title: format!("PED → {k}"),
         dots: vec![dot(0, 45.0, 1.3), dot(1, 60.0, 0.9), dot(2, 120.0, 1.02), dot(3, 120.0, 1.0)],
         schedule: vec![[45.0, 1.2], [90.0, 1.0], [120.0, 0.95]],
+        ..GainPanel::default()
     };
     (0..count).map(panel).collect()
 }

@@ -1,0 +1,83 @@
+//! What is shown, and how: nothing of it changes a result.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::dataset::{Band, ConditionId, ModelId, Pair};
+
+use super::arrangement::Arrangement;
+use super::bode_scene::CachedShapes;
+use super::net_gain_scene::PairSet;
+use super::plot::{
+    Across, AssessmentView, BodeCurve, BodeView, ChannelsView, FrequencyUnit, GainView, Measure, OverviewView,
+    PolesView,
+};
+
+/// What is shown, none of which changes a result.
+#[derive(Debug)]
+pub struct Display {
+    /// The condition shown.
+    pub condition: ConditionId,
+    /// The response in the large plot.
+    pub pair: Pair,
+    /// The model pointed at.
+    pub hovered: Option<ModelId>,
+    /// The only model shown beside the representatives.
+    pub isolated: Option<ModelId>,
+    /// How the plots share the middle of the window.
+    pub arrangement: Arrangement,
+    /// Unit of frequencies.
+    pub unit: FrequencyUnit,
+    /// Ranges and transforms of the large plot.
+    pub bode: BodeView,
+    /// Which responses the net-gain plots show.
+    pub net_gain_pairs: PairSet,
+    /// Responses held since the dataset was opened.
+    pub once_held: BTreeSet<Pair>,
+    /// Responses that the engineer picked for the net-gain plots.
+    pub picked_pairs: BTreeSet<Pair>,
+    /// Transforms of the net-gain plots.
+    pub net_gain: GainView,
+    /// What the channel plots measure, and over what.
+    pub channel_figure: (Measure, Across),
+    /// Transforms of the channel plots.
+    pub channels: ChannelsView,
+    /// Ranges and transforms of the plots of poles.
+    pub poles: PolesView,
+    /// Cells of the overview.
+    pub overview: OverviewView,
+    /// Transforms of the assessment.
+    pub assessment: AssessmentView,
+    /// Band for which the large plot was fitted last.
+    pub bode_band: Option<Band>,
+    /// Shapes of the responses drawn, kept from frame to frame.
+    pub shapes: BTreeMap<Pair, CachedShapes>,
+    /// The curves that the large plot shows.
+    pub drawn: Vec<BodeCurve>,
+}
+
+impl Display {
+    /// A condition and a response, in plots that fit what they show.
+    pub(super) fn of(condition: ConditionId, pair: Pair) -> Self {
+        Self {
+            condition,
+            pair,
+            hovered: None,
+            isolated: None,
+            arrangement: Arrangement::default(),
+            unit: FrequencyUnit::default(),
+            bode: BodeView::default(),
+            net_gain_pairs: PairSet::default(),
+            once_held: BTreeSet::new(),
+            picked_pairs: BTreeSet::new(),
+            net_gain: GainView::default(),
+            channel_figure: (Measure::default(), Across::default()),
+            channels: ChannelsView::default(),
+            poles: PolesView::default(),
+            overview: OverviewView::default(),
+            assessment: AssessmentView::default(),
+            bode_band: None,
+            shapes: BTreeMap::new(),
+            drawn: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! What was computed, and what is being computed.
+
+use std::sync::Arc;
+
+use crate::correction::Problem;
+use crate::dataset::{ConditionId, Dataset};
+use crate::study::{Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, CurvesJob, Toggles, TogglesJob};
+
+/// The result of the condition shown, ahead of the others'.
+#[derive(Clone, Debug)]
+pub struct FirstResult {
+    /// Number of the request it answers.
+    pub generation: u64,
+    /// The dataset it belongs to.
+    pub dataset: Arc<Dataset>,
+    /// The condition.
+    pub condition: ConditionId,
+    /// The result.
+    pub outcome: Result<ConditionAnalysis, ConditionFailure>,
+}
+
+/// What is under way beside the live answer.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Background {
+    /// The problems whose gains are being proven, or are to be.
+    pub proofs: Vec<Arc<Problem>>,
+    /// Whether the costs of holding and freeing are being computed.
+    pub toggles: bool,
+    /// Whether curves are being computed: models done, of how many.
+    pub curves: Option<(usize, usize)>,
+    /// Whether something of it was stopped, by hand or by a fault.
+    pub stopped: bool,
+}
+
+impl Background {
+    /// Whether anything is under way.
+    pub fn is_busy(&self) -> bool {
+        !self.proofs.is_empty() || self.toggles || self.curves.is_some()
+    }
+}
+
+/// What was computed; never saved.
+#[derive(Debug, Default)]
+pub struct Results {
+    /// The newest analysis.
+    pub analysis: Option<Arc<Analysis>>,
+    /// The condition shown, where it is ahead of that analysis.
+    pub first: Option<FirstResult>,
+    /// What holding or freeing each response of a condition would cost, and of which; see [`State::toggles`].
+    pub toggles: Option<(TogglesJob, Arc<Toggles>)>,
+    /// Responses for drawing, and of what; see [`State::curves`].
+    pub curves: Option<(CurvesJob, Arc<ConditionCurves>)>,
+    /// What is under way beside the live answer.
+    pub background: Background,
+    /// Since when something has been \[s of the window's clock\].
+    pub background_since: Option<f64>,
+    /// Number of the newest request.
+    pub requested: u64,
+    /// Number of the request the analysis answers.
+    pub received: u64,
+    /// When the oldest request without an answer was made \[s of the window's clock\].
+    pub waiting_since: Option<f64>,
+    /// How long the newest analysis took \[ms\].
+    pub elapsed_ms: f64,
+    /// Whether the newest request was given up, by hand or by a fault: what is shown stays older than the settings.
+    pub stopped: bool,
+    /// How far the analysis under way is: steps done, of how many.
+    pub progress: Option<(usize, usize)>,
+}
+
+/// Age \[s\] from which shown results that no longer fit the settings are marked as stale.
+const STALE_AFTER_S: f64 = 0.15;
+/// Time \[s\] from which work beside the live answer is told: most of it is over before it could be read.
+const BACKGROUND_AFTER_S: f64 = 0.5;
+
+impl Results {
+    /// Whether an answer is still to come.
+    pub fn is_waiting(&self) -> bool {
+        self.is_behind() && !self.stopped
+    }
+
+    /// What stands in the place of a result that is not there.
+    pub fn absence(&self) -> &'static str {
+        if self.stopped { "not computed" } else { "computing …" }
+    }
+
+    /// Whether what is shown is older than the settings.
+    pub fn is_behind(&self) -> bool {
+        self.requested > self.received
+    }
+
+    /// Whether the condition shown is of newer settings than the analysis of all of them.
+    pub fn first_is_ahead(&self) -> bool {
+        self.analysis.is_some() && self.first.as_ref().is_some_and(|first| first.generation > self.received)
+    }
+
+    /// Whether something has been under way beside the live answer for so long that it should be told at `now`.
+    pub fn is_background_told(&self, now: f64) -> bool {
+        self.background_since.is_some_and(|since| now - since > BACKGROUND_AFTER_S)
+    }
+
+    /// Whether what is shown should be marked as stale at `now` \[s of the window's clock\].
+    pub fn is_stale(&self, now: f64) -> bool {
+        self.stopped || self.waiting_since.is_some_and(|since| now - since > STALE_AFTER_S)
+    }
+}

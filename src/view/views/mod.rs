@@ -1,0 +1,13 @@
+//! The plots between the side panels, each with its header: what is drawn, and which commands its events stand for.
+
+mod assessment;
+mod bode;
+mod channels;
+mod net_gain;
+mod overview;
+
+pub use assessment::assessment_view_ui;
+pub use bode::bode_view_ui;
+pub use channels::{channels_header_ui, channels_view_ui};
+pub use net_gain::{net_gain_header_ui, net_gain_view_ui};
+pub use overview::overview_view_ui;

@@ -1,0 +1,48 @@
+//! Every response, small.
+
+use egui::Ui;
+
+use crate::dataset::Pair;
+use crate::view::arrangement::View;
+use crate::view::bode_scene::bode_curves;
+use crate::view::command::Command;
+use crate::view::explanation::channel_names;
+use crate::view::palette::Palette;
+use crate::view::plot::{BodeCurve, OverviewCell, OverviewEvent, OverviewScene, overview_ui};
+use crate::view::state::State;
+
+/// Every response of the condition shown; a click brings it into focus.
+pub fn overview_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    let pairs: Vec<Pair> = state.dataset().on_axis().pairs().collect();
+    let curves: Vec<Vec<BodeCurve>> = pairs.iter().map(|&pair| bode_curves(state, pair)).collect();
+    let cells: Vec<OverviewCell<'_>> = pairs
+        .iter()
+        .zip(&curves)
+        .map(|(&pair, curves)| OverviewCell {
+            pair,
+            curves,
+            constrained: state.study.settings.constrained[pair],
+            selected: pair == state.display.pair,
+            note: cost_note(state, pair),
+        })
+        .collect();
+    let (inputs, outputs) = channel_names(state);
+    let band = state.study.settings.band;
+    let scene = OverviewScene {
+        inputs: &inputs,
+        outputs: &outputs,
+        cells: &cells,
+        band: (band.min(), band.max()),
+        message: Some(state.results.absence()),
+    };
+    for OverviewEvent::PairClicked(pair) in overview_ui(ui, &scene, &mut state.display.overview, palette) {
+        commands.push(Command::FocusPair(pair));
+        commands.push(Command::ShowView(View::Bode));
+    }
+}
+
+/// "J 75→61".
+fn cost_note(state: &State, pair: Pair) -> String {
+    let cost = state.shown().and_then(|shown| shown.cost[pair]);
+    cost.map_or(String::new(), |cost| format!("J {:.0}→{:.0}", cost.uncorrected.total(), cost.corrected.total()))
+}

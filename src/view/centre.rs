@@ -1,7 +1,7 @@
 //! The middle of the window: the views in tabs that can be dragged, split and resized.
 
 use egui::{
-    Align, Button, Color32, FontId, Frame, Layout, Margin, Response, RichText, Stroke, Ui, Visuals, WidgetText,
+    Align, Button, Color32, FontId, Frame, Id, Layout, Margin, Response, RichText, Stroke, Ui, Visuals, WidgetText,
 };
 use egui_tiles::{
     Behavior, Container, LinearDir, SimplificationOptions, TabState, Tabs, Tile, TileId, Tiles, Tree, UiResponse,

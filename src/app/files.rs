@@ -7,13 +7,14 @@ use egui::Context;
 
 use crate::io::{
     Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, at_home, embedded_example, load_any,
-    open_study_of, plain, plain_path, save_study, write_results,
+    open_study_of, plain, plain_path, save_study, save_table, write_results,
 };
 use crate::study::{Difference, Study};
 use crate::view::bars::Bar;
 use crate::view::command::{Command, FormKind};
 use crate::view::preferences::Preferences;
 use crate::view::state::State;
+use crate::view::tables::{TableKind, table_of};
 
 use super::dialogs::{DialogAnswer, DialogPurpose};
 use super::fault::{Fault, caught};
@@ -296,6 +297,29 @@ impl GdcmApp {
         let stem = self.loaded.path().and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
         let stem = stem.unwrap_or_else(|| "example".to_owned());
         format!("{}.{STUDY_EXTENSION}", stem.trim_end_matches(".json"))
+    }
+
+    pub(super) fn ask_save_table(&mut self, kind: TableKind) {
+        let name: String = kind.name().chars().filter(|letter| letter.is_alphanumeric() || *letter == ' ').collect();
+        self.state.forms.table = Some(kind);
+        self.state.forms.table_path = format!("{}.csv", name.replace(' ', "-"));
+        self.state.forms.shown = Some(FormKind::SaveTable);
+    }
+
+    /// Saves a table of the window as CSV.
+    pub(super) fn save_table(&mut self, kind: TableKind, path: PathBuf, existing: Existing) {
+        let path = self.at_home(path);
+        let inputs = self.saved.path.iter().cloned().chain(self.loaded.origin.file());
+        match save_table(&table_of(&self.state, kind), &path, OutputSet::new(existing, inputs.collect())) {
+            Ok(()) => {
+                self.state.forms.shown = None;
+                self.done(format!("saved {}", plain_path(&path)));
+            }
+            Err(FileError::Exists { paths }) => {
+                self.ask_to_overwrite(&paths, FormKind::SaveTable, Command::SaveTable(kind, path));
+            }
+            Err(error) => self.trouble(error.to_string()),
+        }
     }
 
     /// Writes the corrections of the conditions chosen in the form.

@@ -9,11 +9,23 @@ use crate::view::arrangement::Arrangement;
 use crate::view::command::{Command, FormKind};
 use crate::view::display::Display;
 use crate::view::net_gain_scene::PairSet;
+use crate::view::number_field::focus_field;
+use crate::view::region::leave_region;
 use crate::view::state::{Notice, NoticeKind};
+use crate::view::tables::table_of;
 
 use super::dialogs::DialogPurpose;
 use super::files::Postponed;
 use super::window::GdcmApp;
+
+/// What the focus is to go to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum NextFocus {
+    /// The field of this name.
+    Field(&'static str),
+    /// The next part of the window, or the one before.
+    Region { forward: bool },
+}
 
 impl GdcmApp {
     /// Saves the study to a file, as the form does once a path is typed.
@@ -70,6 +82,16 @@ impl GdcmApp {
             Command::ShowForm(form) => self.show_form(form),
             Command::StopComputing => self.stop_computing(),
             Command::Compute => self.compute_again(),
+            Command::CopyTable(kind) => {
+                ctx.copy_text(table_of(&self.state, kind).text());
+                self.done(format!("copied the table of {}", kind.name()));
+            }
+            Command::AskSaveTable(kind) => self.ask_save_table(kind),
+            Command::SaveTable(kind, path) => self.save_table(kind, path, Existing::Keep),
+            Command::FocusField(name) => self.focus_next(NextFocus::Field(name), ctx),
+            Command::LeaveRegion { forward } => self.focus_next(NextFocus::Region { forward }, ctx),
+            Command::StartTour => self.state.tour = Some(0),
+            Command::ShowTourStep(step) => self.state.tour = step,
             Command::Refuse(why) => self.trouble(why),
             Command::DismissNotice => self.state.notice = None,
             Command::AskOpen => self.dialogs.ask(DialogPurpose::Open, String::new(), ctx),
@@ -141,6 +163,24 @@ impl GdcmApp {
         self.keep_unsaved();
     }
 
+    /// Moves the focus before the next frame is drawn: what gets it then knows that it is new.
+    fn focus_next(&mut self, next: NextFocus, ctx: &Context) {
+        self.next_focus = Some(next);
+        ctx.request_repaint();
+    }
+
+    /// Gives the focus to what was asked for, once no form is in front of it.
+    pub(super) fn move_focus(&mut self, ctx: &Context) {
+        if self.state.forms.shown.is_some() || ctx.memory(|memory| memory.top_modal_layer().is_some()) {
+            return;
+        }
+        match self.next_focus.take() {
+            Some(NextFocus::Field(name)) => focus_field(ctx, name),
+            Some(NextFocus::Region { forward }) => leave_region(ctx, forward),
+            None => {}
+        }
+    }
+
     fn show_form(&mut self, form: Option<FormKind>) {
         if form == Some(FormKind::Export) {
             let all = self.state.study.dataset.conditions().iter().map(|condition| condition.id());
@@ -162,6 +202,7 @@ impl GdcmApp {
         match self.overwriting.take() {
             Some(Command::SaveStudyAs(path)) => self.save_as(path, Existing::Replace, ctx),
             Some(Command::Export) => self.export(Existing::Replace),
+            Some(Command::SaveTable(kind, path)) => self.save_table(kind, path, Existing::Replace),
             _ => {}
         }
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, ViewportCommand};
 
 use crate::dataset::ConditionId;
-use crate::io::{LoadedDataset, LostStudy, Opened};
+use crate::io::{LoadedDataset, LostStudy, Opened, is_first_start};
 use crate::study::{Study, display_band};
 use crate::view::bars::Bar;
 use crate::view::command::Command;
@@ -15,7 +15,7 @@ use crate::view::preferences::Preferences;
 use crate::view::state::State;
 use crate::view::{
     bars, centre, conditions_panel, focus_ring, forms, matrix_panel, menu_bar, models_panel, result_panel,
-    settings_panel, status_bar,
+    settings_panel, status_bar, tour,
 };
 
 use super::autosave::Autosave;
@@ -28,6 +28,7 @@ use super::recent::Recent;
 use super::recovery::LAST_WAIT;
 use super::setup::Setup;
 use super::shortcuts;
+use super::update::NextFocus;
 use super::worker::{Reply, Request, Worker};
 
 /// The program's window.
@@ -54,6 +55,10 @@ pub struct GdcmApp {
     pub(super) recent: Recent,
     /// What `~` stands for in a path that is typed.
     pub(super) home: Option<PathBuf>,
+    /// What the focus goes to in the next frame.
+    pub(super) next_focus: Option<NextFocus>,
+    /// The window's title as it was set last.
+    title: String,
     /// What the newest request was made from.
     requested: Option<(Study, ConditionId)>,
 }
@@ -76,7 +81,7 @@ impl GdcmApp {
         let autosave = Autosave::start(setup.directory.as_deref(), setup.keep_after, waker())?;
         let (mut state, loaded, saved) = Self::parts_of(opened);
         setup.preferences.apply(&mut state.display);
-        let app = Self {
+        let mut app = Self {
             state,
             loaded,
             saved,
@@ -93,8 +98,11 @@ impl GdcmApp {
             disk: DiskWatch::start(setup.look_every, waker())?,
             recent: Recent::new(setup.directory),
             home: setup.home,
+            next_focus: None,
+            title: String::new(),
             requested: None,
         };
+        app.offer_tour(setup.offers_tour);
         app.look_for_recent(ctx);
         Ok(app)
     }
@@ -218,6 +226,23 @@ impl GdcmApp {
         }
     }
 
+    /// Shows the guided tour at the first start.
+    fn offer_tour(&mut self, is_asked: bool) {
+        let Some(directory) = self.recent.directory().filter(|_| is_asked) else { return };
+        if is_first_start(directory) {
+            self.state.tour = Some(0);
+        }
+    }
+
+    /// Sets the window's title where it changed.
+    fn name_window(&mut self, ctx: &Context) {
+        let title = self.state.window_title();
+        if title != self.title {
+            ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
+    }
+
     fn panels_ui(&mut self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
         let bar = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(10, 4));
         let state = &mut self.state;
@@ -300,12 +325,15 @@ impl eframe::App for GdcmApp {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         let palette = Palette::of(ui.visuals());
+        self.move_focus(&ctx);
         let mut commands = shortcuts::pressed(&ctx, &self.state);
         self.take_dropped_files(&ctx, &mut commands);
         self.panels_ui(ui, &palette, &mut commands);
         forms::forms_ui(&ctx, &mut self.state, &palette, &mut commands);
+        tour::tour_ui(&ctx, &self.state, &palette, &mut commands);
         focus_ring::focus_ring_ui(&ctx, &palette);
         self.carry_out(commands, &ctx);
+        self.name_window(&ctx);
         let now = ctx.input(|input| input.time);
         self.request(now);
         if self.state.results.is_waiting() || self.state.results.background_since.is_some() {

@@ -5,6 +5,7 @@ mod corrections_file;
 mod dataset_file;
 mod file_error;
 mod file_stamp;
+mod first_start;
 mod flaw;
 mod home;
 mod json_text;
@@ -20,6 +21,7 @@ mod recovery_file;
 mod settings_entry;
 mod source;
 mod study_file;
+mod table_file;
 mod unknown_keys;
 
 pub use crate::dataset::limits::LARGEST_TEXT;
@@ -35,6 +37,7 @@ pub use dataset_file::{
 };
 pub use file_error::{FileError, system_words};
 pub use file_stamp::{FileStamp, file_exists, file_sha256};
+pub use first_start::is_first_start;
 pub use home::at_home;
 pub use opened::{Opened, load_any};
 pub use output_set::{Existing, OutputSet, make_directory, report_size_limit};
@@ -43,3 +46,4 @@ pub use recent_files::{add_recent_file, recent_files};
 pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
 pub use settings_entry::{KindWord, ScheduleEntry, SettingsEntry};
 pub use study_file::{OpenedStudy, STUDY_EXTENSION, open_study, open_study_of, save_study};
+pub use table_file::save_table;

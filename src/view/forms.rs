@@ -1,12 +1,14 @@
 //! The forms in front of the window: paths, export, questions, help.
 
 use egui::text::{CCursor, CCursorRange};
-use egui::{Button, Context, Grid, Id, Key, Modal, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
+use egui::{Button, Context, Id, Key, Modal, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 use crate::dataset::ConditionId;
 use crate::study::Difference;
 
 use super::command::{Command, FormKind};
+use super::command_palette::command_palette_ui;
+use super::keys_page::keys_page_ui;
 use super::palette::Palette;
 use super::state::{ExportForm, State};
 
@@ -17,20 +19,23 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
         state.forms.drawn = None;
         return;
     };
-    let asks_to_overwrite = matches!(kind, FormKind::Save | FormKind::Export) && !state.forms.existing.is_empty();
+    let asks_to_overwrite =
+        matches!(kind, FormKind::Save | FormKind::Export | FormKind::SaveTable) && !state.forms.existing.is_empty();
     let opens = state.forms.drawn.replace((kind, asks_to_overwrite)) != Some((kind, asks_to_overwrite));
     let modal = Modal::new(Id::unique("form")).show(ctx, |ui| {
         ui.set_width(460.0);
         let form = &mut Form { ui, opens, commands };
         match kind {
-            FormKind::Save | FormKind::Export if asks_to_overwrite => overwrite_ui(form, kind, &state.forms.existing),
+            _ if asks_to_overwrite => overwrite_ui(form, kind, &state.forms.existing),
             FormKind::Open => open_ui(form, &mut state.forms.open_path),
             FormKind::FindDataset => find_dataset_ui(form, state, palette),
             FormKind::Save => save_ui(form, &mut state.forms.save_path),
             FormKind::Export => export_ui(form, state, palette),
             FormKind::Unsaved => unsaved_ui(form),
             FormKind::Differences => differences_ui(form, state, palette),
-            FormKind::Shortcuts => shortcuts_ui(form, palette),
+            FormKind::Shortcuts => shortcuts_ui(form, state, palette),
+            FormKind::Palette => command_palette_ui(form.ui, state, opens, palette, form.commands),
+            FormKind::SaveTable => save_table_ui(form, state),
             FormKind::About => about_ui(form, palette),
         }
     });
@@ -133,6 +138,18 @@ fn save_ui(form: &mut Form<'_, '_>, path: &mut String) {
     });
 }
 
+fn save_table_ui(form: &mut Form<'_, '_>, state: &mut State) {
+    let Some(kind) = state.forms.table else { return };
+    form.title(&format!("Save the table of {}", kind.name()));
+    let path = &mut state.forms.table_path;
+    let entered = form.path_ui("Path of the table", path, "path of a .csv file");
+    let path = path.trim();
+    form.line(|form| {
+        form.submit_ui("Save table", !path.is_empty(), entered, || Command::SaveTable(kind, path.into()));
+        form.button_ui("Cancel", false, Command::ShowForm(None));
+    });
+}
+
 fn export_ui(form: &mut Form<'_, '_>, state: &mut State, palette: &Palette) {
     form.title("Export corrections");
     let dim = |text: &str| RichText::new(text.to_owned()).color(palette.dim_text);
@@ -227,33 +244,9 @@ fn differences_ui(form: &mut Form<'_, '_>, state: &State, palette: &Palette) {
     });
 }
 
-const KEYS: &[(&str, &str)] = &[
-    ("Up, Down", "previous, next condition"),
-    ("Left, Right", "previous, next response"),
-    ("Space", "hold or free the response in focus"),
-    ("F6, Shift+F6", "next, previous part of the window: conditions, models, plots, matrix, settings, result"),
-    ("Tab, Shift+Tab", "next, previous control"),
-    ("Ctrl+R", "reject the suggested outliers of this condition"),
-    ("Ctrl+Z, Ctrl+Shift+Z", "undo, redo"),
-    ("Ctrl+O, Ctrl+S, Ctrl+E", "open, save the study, export"),
-    ("F", "fit the plots"),
-    ("click on a curve", "reject or restore its model"),
-    ("Alt+click on a curve", "show it alone; again: show all"),
-    ("drag, wheel", "move, zoom a plot"),
-    ("drag with the secondary button", "zoom to a box"),
-    ("double click in a plot", "fit it"),
-    ("drag an end of the band", "move the band of comparison"),
-];
-
-fn shortcuts_ui(form: &mut Form<'_, '_>, palette: &Palette) {
+fn shortcuts_ui(form: &mut Form<'_, '_>, state: &State, palette: &Palette) {
     form.title("Keys and gestures");
-    Grid::new("keys").num_columns(2).spacing([16.0, 4.0]).show(form.ui, |ui| {
-        for (keys, meaning) in KEYS {
-            ui.label(RichText::new(*keys).strong());
-            ui.label(RichText::new(*meaning).color(palette.dim_text));
-            ui.end_row();
-        }
-    });
+    keys_page_ui(form.ui, state, palette);
     form.button_ui("Close", true, Command::ShowForm(None));
 }
 

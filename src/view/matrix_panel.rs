@@ -13,10 +13,11 @@ use crate::units::s_to_ms;
 
 use super::command::Command;
 use super::explanation::{gain_conflict_marks, toggle_costs};
-use super::heading::heading_ui;
+use super::heading::table_heading_ui;
 use super::palette::{Palette, SMALL_SIZE};
 use super::region::{Region, region_ui};
 use super::state::State;
+use super::tables::TableKind;
 
 const CELL_HEIGHT: f32 = 50.0;
 const LEAST_CELL_WIDTH: f32 = 58.0;
@@ -27,7 +28,8 @@ const LOCK_SIZE: f32 = 15.0;
 /// Every response as a cell. A click on the cell chooses the response for the large plot; a click on its box, a double click or
 /// the space bar holds or frees it; the secondary button offers more.
 pub fn matrix_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    heading_ui(ui, palette, "Constraints", "G · delay · J before→after");
+    let heading = ("Constraints", "G · delay · J before→after");
+    table_heading_ui(ui, palette, heading, TableKind::Matrix, commands);
     region_ui(ui, Region::Matrix, |ui| cells_ui(ui, state, palette, commands));
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use egui::{Context, Id, Ui};
+use egui::{Context, Id, Rect, Ui, pos2};
 
 /// A part of the window, in the order of the F6 key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -35,6 +35,8 @@ struct Part {
     controls: Vec<Id>,
     /// What had the focus last.
     visited: Option<Id>,
+    /// Where it is, as far as it is in view.
+    place: Option<Rect>,
 }
 
 fn key() -> Id {
@@ -47,7 +49,10 @@ pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R)
     let layer = ui.layer_id();
     let ctx = ui.ctx().clone();
     let before = ctx.viewport(|viewport| viewport.this_pass.widgets.get_layer(layer).count());
+    let top = ui.cursor().top();
     let inner = add(ui);
+    let drawn = ui.min_rect();
+    let place = Rect::from_min_max(pos2(drawn.left(), top), drawn.max).intersect(ui.clip_rect());
     let controls: Vec<Id> = ctx.viewport(|viewport| {
         let drawn = viewport.this_pass.widgets.get_layer(layer).skip(before);
         drawn.filter(|widget| widget.enabled && widget.sense.is_focusable()).map(|widget| widget.id).collect()
@@ -58,9 +63,11 @@ pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R)
         let part = data.get_temp_mut_or_default::<Regions>(key()).parts.entry(region).or_default();
         if part.pass != pass {
             part.controls.clear();
+            part.place = None;
         }
         part.pass = pass;
         part.controls.extend(controls);
+        part.place = part.place.map_or(Some(place), |others| Some(others.union(place)));
         part.visited = focused.or(part.visited);
     });
     let arrived = focused.and_then(|focused| ctx.read_response(focused)).filter(|response| response.gained_focus());
@@ -68,6 +75,12 @@ pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R)
         ui.scroll_to_rect(response.rect, None);
     }
     inner
+}
+
+/// Where a region is in the window, as far as it is in view.
+pub fn region_place(ctx: &Context, region: Region) -> Option<Rect> {
+    let place = ctx.data_mut(|data| data.get_temp_mut_or_default::<Regions>(key()).parts.get(&region)?.place);
+    place.filter(|place| place.is_positive())
 }
 
 /// Gives the focus to the next region that has a control, or to the one before: to the control that had it last there, or else to

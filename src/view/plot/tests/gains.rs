@@ -80,7 +80,7 @@ fn of_two_dots_close_together_the_nearer_one_is_meant() {
 #[test]
 fn every_panel_has_the_same_gain_axis() {
     let mut uneven = panels(3);
-    uneven[1].dots[0].gain = 2.0;
+    uneven[1].dots[0].value = 2.0;
     let harness = net_gain_harness(uneven);
     let bounds = |panel| *harness.state().view.transform(panel).unwrap().bounds();
     assert_eq!(bounds(0), bounds(1));
@@ -90,7 +90,7 @@ fn every_panel_has_the_same_gain_axis() {
 #[test]
 fn dots_without_a_gain_are_left_out() {
     let mut broken = panels(2);
-    broken[0].dots[1].gain = f64::NAN;
+    broken[0].dots[1].value = f64::NAN;
     broken[1].schedule[1][1] = f64::NAN;
     net_gain_harness(broken);
     net_gain_harness(vec![GainPanel::default()]);

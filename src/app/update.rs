@@ -74,6 +74,13 @@ impl GdcmApp {
                 }
             }
             Command::ShowChannels(measure, across) => display.channel_figure = (measure, across),
+            Command::ShowZeros(shown) => display.show_zeros = shown,
+            Command::ShowEvidence(shown) => display.show_evidence = shown,
+            Command::ShowAcross(role) => {
+                display.across_role = role;
+                display.across.request_refit();
+            }
+            Command::Assess(figures) => display.assessed = figures,
             Command::SetFrequencyUnit(unit) => display.unit = unit,
             Command::SetPhaseErrorUnit(unit) => {
                 display.phase_error = unit;

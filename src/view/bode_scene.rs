@@ -16,14 +16,14 @@ use super::state::State;
 
 /// Magnitude \[dB\] and unwrapped phase \[deg\] of one response.
 #[derive(Clone, Debug)]
-struct Shape {
-    magnitude_db: Arc<[f64]>,
-    phase_deg: Arc<[f64]>,
+pub(super) struct Shape {
+    pub(super) magnitude_db: Arc<[f64]>,
+    pub(super) phase_deg: Arc<[f64]>,
 }
 
 impl Shape {
     /// The phase is principal at the first finite value, then unwrapped; a value that is not finite leaves a gap (M2).
-    fn of(values: &[Complex<f64>]) -> Self {
+    pub(super) fn of(values: &[Complex<f64>]) -> Self {
         let finite: Vec<usize> =
             (0..values.len()).filter(|&k| values[k].is_finite() && values[k].norm() > 0.0).collect();
         let mut phase: Vec<f64> = finite.iter().map(|&k| values[k].arg()).collect();
@@ -37,7 +37,7 @@ impl Shape {
     }
 
     /// The shape moved by whole turns as near to `reference` as they bring it (M2).
-    fn laid_on(self, reference: &Shape) -> Self {
+    pub(super) fn laid_on(self, reference: &Shape) -> Self {
         let radians = |phase: &[f64]| phase.iter().map(|degrees| degrees.to_radians()).collect::<Vec<f64>>();
         let offset = nearest_turn_offset(&radians(&self.phase_deg), &radians(&reference.phase_deg)).to_degrees();
         if offset == 0.0 {
@@ -47,7 +47,7 @@ impl Shape {
     }
 
     /// The shape after a gain and a delay (M10).
-    fn corrected(&self, omega: &[f64], correction: GainDelay) -> Self {
+    pub(super) fn corrected(&self, omega: &[f64], correction: GainDelay) -> Self {
         let phase: Vec<f64> = self.phase_deg.iter().map(|degrees| degrees.to_radians()).collect();
         Self {
             magnitude_db: correction.magnitudes_db(&self.magnitude_db).collect(),

@@ -8,7 +8,9 @@ use egui_tiles::LinearDir;
 use crate::dataset::{ConditionId, ModelId, Pair};
 use crate::study::Edit;
 
+use super::across_scene::AcrossRole;
 use super::arrangement::{Preset, View};
+use super::assessment_scene::AssessedFigures;
 use super::bars::Bar;
 use super::looks::Looks;
 use super::net_gain_scene::PairSet;
@@ -48,6 +50,14 @@ pub enum Command {
     PickPair(Pair),
     /// Show gains or delays of the channels, over airspeed or over conditions.
     ShowChannels(Measure, Across),
+    /// Show zeros among the poles, or not.
+    ShowZeros(bool),
+    /// Show the evidence for the schedule beside the net gains, or not.
+    ShowEvidence(bool),
+    /// Lay other models of the conditions over one another.
+    ShowAcross(AcrossRole),
+    /// Assess something else, or show it in another form.
+    Assess(AssessedFigures),
     /// Read frequencies in another unit.
     SetFrequencyUnit(FrequencyUnit),
     /// Draw differences of phases in another way.

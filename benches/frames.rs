@@ -14,7 +14,7 @@ use egui_plot::{Line, Plot};
 
 use gdcm::dataset::{BundleKind, ConditionId, ModelId};
 use gdcm::view::palette::Palette;
-use gdcm::view::plot::{BodeCurve, BodeScene, BodeView, CurveId, FrequencyUnit, Role, bode_ui};
+use gdcm::view::plot::{BodeCurve, BodeScene, BodeView, CurveId, Role, bode_ui};
 
 use window::Window;
 
@@ -119,14 +119,7 @@ fn curve(number: usize, points: usize) -> BodeCurve {
 fn bode(curves: &[BodeCurve]) -> Screen<'_> {
     let (mut view, palette) = (BodeView::default(), Palette::dark());
     Screen::new(Context::default(), Doing::Nothing, move |ui| {
-        let scene = BodeScene {
-            pair_title: "LON → Q",
-            curves,
-            band: (0.5, 12.0),
-            unit: FrequencyUnit::RadPerSecond,
-            stale: false,
-            message: None,
-        };
+        let scene = BodeScene::of("LON → Q", curves, (0.5, 12.0));
         bode_ui(ui, &scene, &mut view, &palette);
     })
 }

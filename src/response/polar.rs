@@ -18,7 +18,7 @@ pub struct PolarCurve {
 
 impl PolarCurve {
     /// Magnitude and phase of one response, where it is finite and not zero at every frequency.
-    fn of(values: &[Complex<f64>]) -> Option<Self> {
+    pub fn of(values: &[Complex<f64>]) -> Option<Self> {
         let magnitude_db: Vec<f64> = values.iter().map(magnitude_db).collect();
         if magnitude_db.iter().any(|magnitude| !magnitude.is_finite()) {
             return None;

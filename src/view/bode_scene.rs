@@ -5,14 +5,13 @@ use std::sync::Arc;
 
 use nalgebra::Complex;
 
-use crate::correction::ChannelCorrection;
-use crate::dataset::{BundleKind, Condition, Model, ModelId, Pair};
-use crate::fidelity::SUGGESTION_RATIO;
+use crate::dataset::{BundleKind, Pair};
 use crate::response::{FrequencyResponse, GainDelay, nearest_turn_offset, unwrap};
-use crate::study::{ConditionAnalysis, ConditionCurves};
-use crate::units::{ratio_to_db, s_to_ms};
+use crate::study::ConditionCurves;
+use crate::units::ratio_to_db;
 
-use super::plot::{BodeCurve, CurveId, Role};
+use super::curve_face::{CorrectedFace, CurveFace, corrected_faces, model_faces, reference_of};
+use super::plot::{BodeCurve, CurveId};
 use super::state::State;
 
 /// Magnitude \[dB\] and unwrapped phase \[deg\] of one response.
@@ -122,103 +121,21 @@ pub fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
     let Some(curves) = state.curves().cloned() else {
         return Vec::new();
     };
-    let position = |name| curves.condition.position(BundleKind::Identified, name);
-    let reference =
-        state.shown().and_then(|shown| position(shown.representative_name(BundleKind::Identified))).unwrap_or(0);
+    let reference = reference_of(state, &curves.condition);
     let mut shapes = state.display.shapes.remove(&pair).unwrap_or_default();
     shapes.refresh(&curves, pair, reference);
-    let mut drawn = model_curves(state, &curves.condition, &shapes, BundleKind::Physics);
-    drawn.extend(model_curves(state, &curves.condition, &shapes, BundleKind::Identified));
-    if let Some(shown) = state.shown() {
-        drawn.extend(corrected_curves(state, &curves.condition, &mut shapes, shown, pair));
+    let mut drawn = Vec::new();
+    for kind in BundleKind::BOTH {
+        let with_shape = |(index, face): (usize, CurveFace)| {
+            let shape = &shapes.of_bundle(kind)[index];
+            face.with(&shapes.omega, &shape.magnitude_db, &shape.phase_deg)
+        };
+        drawn.extend(model_faces(state, &curves.condition, kind).map(with_shape));
+    }
+    for CorrectedFace { face, model, correction } in corrected_faces(state, &curves.condition, pair) {
+        let shape = shapes.corrected(&face.id, Treatment { model, correction });
+        drawn.push(face.with(&shapes.omega, &shape.magnitude_db, &shape.phase_deg));
     }
     state.display.shapes.insert(pair, shapes);
     drawn
-}
-
-/// The models of the condition that the shapes were computed of.
-fn model_curves(state: &State, condition: &Condition, shapes: &CachedShapes, kind: BundleKind) -> Vec<BodeCurve> {
-    let shown = state.shown();
-    let representative = shown.map(|shown| shown.representative_name(kind));
-    let models = condition.bundle(kind);
-    let isolated = state.display.isolated.as_ref().filter(|id| id.condition == condition.id());
-    let is_visible =
-        |name: &str| isolated.is_none_or(|id| (id.bundle == kind && id.name == name) || representative == Some(name));
-    let curve = |(model, shape): (&Model, &Shape)| {
-        let id = ModelId::new(condition.id(), kind, &model.name);
-        let rejected = state.study.is_rejected(&id);
-        BodeCurve {
-            label: model.name.clone(),
-            detail: detail(shown, model, &id, rejected),
-            role: role_of(kind, model.is_nominal(), representative == Some(&model.name)),
-            rejected,
-            highlighted: state.display.hovered.as_ref() == Some(&id),
-            id: CurveId::Model(id),
-            omega: Arc::clone(&shapes.omega),
-            magnitude_db: Arc::clone(&shape.magnitude_db),
-            phase_deg: Arc::clone(&shape.phase_deg),
-        }
-    };
-    let shapes_of = shapes.of_bundle(kind);
-    models.iter().zip(shapes_of).filter(|(model, _)| is_visible(&model.name)).map(curve).collect()
-}
-
-fn role_of(kind: BundleKind, nominal: bool, represents: bool) -> Role {
-    match (kind, nominal, represents) {
-        (BundleKind::Physics, true, _) => Role::Nominal,
-        (BundleKind::Physics, false, true) => Role::Representative,
-        (BundleKind::Physics, false, false) => Role::Perturbed,
-        (BundleKind::Identified, _, true) => Role::IdentifiedRepresentative,
-        (BundleKind::Identified, _, false) => Role::Identified,
-    }
-}
-
-/// "ratio 3.68, suggested as an outlier · click to reject".
-fn detail(shown: Option<&ConditionAnalysis>, model: &Model, id: &ModelId, rejected: bool) -> String {
-    let ratio =
-        shown.filter(|_| id.bundle == BundleKind::Physics).and_then(|shown| shown.discontinuity_ratio(&id.name));
-    let action = if rejected { "click to restore" } else { "click to reject" };
-    let ratio = ratio.map(|ratio| {
-        let verdict = if ratio > SUGGESTION_RATIO { ", suggested as an outlier" } else { "" };
-        format!("ratio {ratio:.2}{verdict}")
-    });
-    let source = model.source.as_ref().map(|source| format!("from {}", source.words()));
-    ratio.into_iter().chain(source).chain([action.to_owned()]).collect::<Vec<_>>().join(" · ")
-}
-
-fn corrected_curves(
-    state: &State,
-    condition: &Condition,
-    shapes: &mut CachedShapes,
-    shown: &ConditionAnalysis,
-    pair: Pair,
-) -> Vec<BodeCurve> {
-    let name = shown.representative_name(BundleKind::Physics);
-    let Some(model) = condition.position(BundleKind::Physics, name) else {
-        return Vec::new();
-    };
-    let airspeed_kt = state.condition().flight_state().airspeed_kt;
-    let mut curve = |id: CurveId, label: String, role: Role, correction: &ChannelCorrection| {
-        let shape = shapes.corrected(&id, Treatment { model, correction: correction.on(pair)? });
-        let (net_gain, delay_ms) = (correction.net_gain(pair).value(), s_to_ms(correction.net_delay(pair).value_s()));
-        Some(BodeCurve {
-            id,
-            label,
-            detail: format!("net gain {net_gain:.3}, net delay {delay_ms:.1} ms"),
-            role,
-            rejected: false,
-            highlighted: false,
-            omega: Arc::clone(&shapes.omega),
-            magnitude_db: shape.magnitude_db,
-            phase_deg: shape.phase_deg,
-        })
-    };
-    let own = curve(CurveId::Corrected, format!("{name}, corrected"), Role::Corrected, &shown.correction);
-    let mut curves: Vec<BodeCurve> = own.into_iter().collect();
-    if let Some(Ok(schedule)) = state.analysis().map(|analysis| &analysis.schedule) {
-        let older = if state.others_are_older() { " of older settings" } else { "" };
-        let label = format!("{name}, scheduled{older}");
-        curves.extend(curve(CurveId::Scheduled, label, Role::Scheduled, &schedule.at(airspeed_kt)));
-    }
-    curves
 }

@@ -1,7 +1,8 @@
 //! The middle of the window: the views in tabs that can be dragged, split and resized.
 
 use egui::{
-    Align, Button, Color32, FontId, Frame, Id, Layout, Margin, Response, RichText, Stroke, Ui, Visuals, WidgetText,
+    Align, Button, Color32, FontId, Frame, Id, Layout, Margin, Response, RichText, Role, Stroke, Ui, Visuals,
+    WidgetInfo, WidgetText,
 };
 use egui_tiles::{
     Behavior, Container, LinearDir, SimplificationOptions, TabState, Tabs, Tile, TileId, Tiles, Tree, UiResponse,
@@ -10,6 +11,7 @@ use egui_tiles::{
 use super::arrangement::View;
 use super::command::Command;
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
+use super::region::{Region, region_ui};
 use super::state::State;
 use super::views;
 
@@ -40,9 +42,12 @@ impl Views<'_> {
         match view {
             View::NetGain => views::net_gain_header_ui(ui, state, palette, self.commands),
             View::Channels => views::channels_header_ui(ui, state, self.commands),
-            View::Bode | View::Overview | View::Assessment => {
-                if view == View::Bode {
-                    fit_ui(ui, self.commands);
+            View::Bode | View::Error | View::Overview | View::Assessment => {
+                if matches!(view, View::Bode | View::Error) {
+                    fit_ui(ui, view, self.commands);
+                }
+                if view == View::Error {
+                    views::error_header_ui(ui, state, self.commands);
                 }
                 condition_ui(ui, state, view, palette);
             }
@@ -53,9 +58,14 @@ impl Views<'_> {
     }
 }
 
-fn fit_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
+fn fit_ui(ui: &mut Ui, view: View, commands: &mut Vec<Command>) {
     let hint = "Bring every curve into view (F, or double click)";
-    if ui.add(Button::new("Fit").small()).on_hover_text(hint).clicked() {
+    let fit = ui.add(Button::new("Fit").small());
+    if view == View::Error {
+        let enabled = ui.is_enabled();
+        fit.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, "Fit the errors"));
+    }
+    if fit.on_hover_text(hint).clicked() {
         commands.push(Command::FitPlots);
     }
 }
@@ -65,7 +75,7 @@ fn condition_ui(ui: &mut Ui, state: &State, view: View, palette: &Palette) {
     let condition = state.condition();
     let of_condition = format!("condition {} · {}", condition.id(), condition.flight_state().name);
     let title = match view {
-        View::Bode => format!("{} · {of_condition}", state.dataset().pair_name(state.display.pair)),
+        View::Bode | View::Error => format!("{} · {of_condition}", state.dataset().pair_name(state.display.pair)),
         View::Overview => of_condition,
         View::NetGain | View::Channels | View::Assessment => return,
     };
@@ -92,13 +102,15 @@ impl Behavior<View> for Views<'_> {
         let frame = Frame::new().fill(self.palette.background).inner_margin(Margin { top: 4, ..Margin::ZERO });
         let (state, palette) = (&mut *self.state, self.palette);
         let commands = &mut *self.commands;
-        frame.show(ui, |ui| match view {
+        let view_ui = |ui: &mut Ui| match view {
             View::Bode => views::bode_view_ui(ui, state, palette, commands),
+            View::Error => views::error_view_ui(ui, state, palette, commands),
             View::Overview => views::overview_view_ui(ui, state, palette, commands),
             View::Channels => views::channels_view_ui(ui, state, palette, commands),
             View::Assessment => views::assessment_view_ui(ui, state, palette, commands),
             View::NetGain => views::net_gain_view_ui(ui, state, palette, commands),
-        });
+        };
+        frame.show(ui, |ui| region_ui(ui, Region::Plots, view_ui));
         UiResponse::None
     }
 

@@ -2,14 +2,16 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::dataset::{Band, ConditionId, ModelId, Pair};
+use crate::dataset::{ConditionId, ModelId, Pair};
 
 use super::arrangement::Arrangement;
 use super::bode_scene::CachedShapes;
+use super::error_scene::CachedErrors;
+use super::looks::Looks;
 use super::net_gain_scene::PairSet;
 use super::plot::{
     Across, AssessmentView, BodeCurve, BodeView, ChannelsView, FrequencyUnit, GainView, Measure, OverviewView,
-    PolesView,
+    PhaseErrorUnit, PolesView,
 };
 
 /// What is shown, none of which changes a result.
@@ -27,8 +29,14 @@ pub struct Display {
     pub arrangement: Arrangement,
     /// Unit of frequencies.
     pub unit: FrequencyUnit,
-    /// Ranges and transforms of the large plot.
+    /// How curves are drawn.
+    pub looks: Looks,
+    /// How differences of phases are drawn.
+    pub phase_error: PhaseErrorUnit,
+    /// Ranges and transforms of the Bode plot.
     pub bode: BodeView,
+    /// Ranges and transforms of the plot of errors.
+    pub error: BodeView,
     /// Which responses the net-gain plots show.
     pub net_gain_pairs: PairSet,
     /// Responses held since the dataset was opened.
@@ -47,12 +55,14 @@ pub struct Display {
     pub overview: OverviewView,
     /// Transforms of the assessment.
     pub assessment: AssessmentView,
-    /// Band for which the large plot was fitted last.
-    pub bode_band: Option<Band>,
     /// Shapes of the responses drawn, kept from frame to frame.
     pub shapes: BTreeMap<Pair, CachedShapes>,
-    /// The curves that the large plot shows.
+    /// The curves that the Bode plot shows.
     pub drawn: Vec<BodeCurve>,
+    /// Errors drawn, kept from frame to frame.
+    pub errors: CachedErrors,
+    /// The curves that the plot of errors shows.
+    pub drawn_errors: Vec<BodeCurve>,
 }
 
 impl Display {
@@ -65,7 +75,10 @@ impl Display {
             isolated: None,
             arrangement: Arrangement::default(),
             unit: FrequencyUnit::default(),
+            looks: Looks::default(),
+            phase_error: PhaseErrorUnit::default(),
             bode: BodeView::default(),
+            error: BodeView::default(),
             net_gain_pairs: PairSet::default(),
             once_held: BTreeSet::new(),
             picked_pairs: BTreeSet::new(),
@@ -75,9 +88,22 @@ impl Display {
             poles: PolesView::default(),
             overview: OverviewView::default(),
             assessment: AssessmentView::default(),
-            bode_band: None,
             shapes: BTreeMap::new(),
             drawn: Vec::new(),
+            errors: CachedErrors::default(),
+            drawn_errors: Vec::new(),
         }
+    }
+
+    /// Shows all of the curves in the plots over frequency.
+    pub fn fit_frequency_plots(&mut self) {
+        self.bode.request_fit();
+        self.error.request_fit();
+    }
+
+    /// Shows other curves in the plots over frequency: what nobody has zoomed is fitted to them.
+    pub fn refit_frequency_plots(&mut self) {
+        self.bode.request_refit();
+        self.error.request_refit();
     }
 }

@@ -7,17 +7,19 @@ use egui::{
     Visuals, vec2,
 };
 
+use super::looks::{self, CurveColors, Looks};
+
 /// Size of running text \[pt\].
 pub const BODY_SIZE: f32 = 13.0;
 /// Size of secondary text: captions, tooltips, badges \[pt\].
 pub const SMALL_SIZE: f32 = 11.5;
 
-const fn hex(rgb: u32) -> Color32 {
+pub(super) const fn hex(rgb: u32) -> Color32 {
     Color32::from_rgb((rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8)
 }
 
 /// The design tokens of one theme: each colour has one meaning everywhere.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Palette {
     /// Whether text is light on dark.
     pub is_dark: bool,
@@ -53,6 +55,8 @@ pub struct Palette {
     pub warning: Color32,
     /// Proofs, and what got better.
     pub good: Color32,
+    /// What the widths of curves are multiplied by.
+    pub line_width: f32,
 }
 
 impl Palette {
@@ -66,16 +70,17 @@ impl Palette {
             line: hex(0x343a44),
             grid: hex(0x2a2f37),
             text: hex(0xd7dae0),
-            dim_text: hex(0x8b93a1),
-            selected: hex(0x274b6d),
+            dim_text: hex(0xa4acb9),
+            selected: hex(0x21405f),
             nominal: hex(0xef5b5b),
             perturbed: hex(0x5b8def),
             identified: hex(0xe9b949),
             corrected: hex(0x5fcf80),
-            rejected: hex(0x6b7280),
+            rejected: hex(0x878f9c),
             accent: hex(0x5aa9e6),
             warning: hex(0xe0a03a),
-            good: hex(0x4cb782),
+            good: hex(0x56c08c),
+            line_width: 1.0,
         }
     }
 
@@ -89,22 +94,35 @@ impl Palette {
             line: hex(0xd4d8de),
             grid: hex(0xe7e9ed),
             text: hex(0x22262e),
-            dim_text: hex(0x6a7280),
+            dim_text: hex(0x586070),
             selected: hex(0xd3e5f6),
             nominal: hex(0xc62f2f),
             perturbed: hex(0x3566c8),
             identified: hex(0xb57a00),
             corrected: hex(0x1d8a47),
-            rejected: hex(0x9aa1ab),
-            accent: hex(0x1f6fb2),
-            warning: hex(0xa86400),
-            good: hex(0x1d7f55),
+            rejected: hex(0x646c79),
+            accent: hex(0x1b67a6),
+            warning: hex(0x8f5400),
+            good: hex(0x187049),
+            line_width: 1.0,
         }
     }
 
     /// The palette that goes with `visuals`.
     pub fn of(visuals: &Visuals) -> Self {
         if visuals.dark_mode { Self::dark() } else { Self::light() }
+    }
+
+    /// This palette with curves as the engineer wants them.
+    pub fn with_looks(self, looks: Looks) -> Self {
+        let line_width = looks.line_width;
+        match looks.curve_colors {
+            CurveColors::Standard => Self { line_width, ..self },
+            CurveColors::ForAllEyes => {
+                let [nominal, perturbed, identified, corrected] = looks::for_all_eyes(self.is_dark);
+                Self { nominal, perturbed, identified, corrected, line_width, ..self }
+            }
+        }
     }
 
     /// The palette of an egui theme.
@@ -238,23 +256,35 @@ mod tests {
         (a.max(b) + 0.05) / (a.min(b) + 0.05)
     }
 
+    /// What the guidelines ask of text, and of lines that mean something.
+    const OF_TEXT: f32 = 4.5;
+    const OF_LINES: f32 = 3.0;
+
     #[test]
     fn text_is_readable_on_every_surface_of_both_themes() {
         for palette in [Palette::dark(), Palette::light()] {
             for surface in [palette.background, palette.panel, palette.raised, palette.selected] {
                 assert!(contrast(palette.text, surface) > 6.0, "{palette:?}");
+                for text in [palette.dim_text, palette.warning, palette.good] {
+                    assert!(contrast(text, surface) >= OF_TEXT, "{text:?} on {surface:?} of {palette:?}");
+                }
             }
-            for surface in [palette.background, palette.panel] {
-                assert!(contrast(palette.dim_text, surface) > 4.3, "{palette:?}");
+            // Names of rejected models, links and errors stand on panels.
+            for text in [palette.rejected, palette.accent, palette.nominal] {
+                assert!(contrast(text, palette.panel) >= OF_TEXT, "{text:?} of {palette:?}");
             }
         }
     }
 
     #[test]
     fn curves_stand_out_from_the_background_of_both_themes() {
-        for palette in [Palette::dark(), Palette::light()] {
-            for color in [palette.nominal, palette.perturbed, palette.identified, palette.corrected] {
-                assert!(contrast(color, palette.background) > 3.0, "{color:?} of {palette:?}");
+        for theme in [Palette::dark(), Palette::light()] {
+            for curve_colors in CurveColors::ALL {
+                let palette = theme.with_looks(Looks { curve_colors, ..Looks::default() });
+                let Palette { nominal, perturbed, identified, corrected, rejected, .. } = palette;
+                for color in [nominal, perturbed, identified, corrected, rejected] {
+                    assert!(contrast(color, palette.background) > OF_LINES, "{color:?} of {palette:?}");
+                }
             }
         }
     }

@@ -1,4 +1,4 @@
-//! The Bode plot: magnitude over phase, of every model of a condition, for one pair.
+//! The Bode plot, magnitude over phase of every model of a condition for one pair; and the same of what the fit sees of them.
 
 use egui::{Align2, CursorIcon, Rect, Response, Ui, UiBuilder, pos2, vec2};
 use egui_plot::PlotPoint;
@@ -12,7 +12,9 @@ use super::legend;
 use super::log_axis::FrequencyUnit;
 use super::message::message_ui;
 use super::picking::{Hit, nearest};
+use super::quantity::BodeQuantity;
 use super::readout::curve_tooltip_ui;
+use super::rule::Rule;
 use crate::view::palette::Palette;
 
 /// Part of the height that the magnitude plot gets.
@@ -22,13 +24,21 @@ const EDGE: f32 = 8.0;
 /// Below this, there is no room for two plots \[pt\].
 const LEAST_SIZE: egui::Vec2 = vec2(140.0, 130.0);
 
-/// What the Bode plot shows.
+/// What a Bode plot shows.
 #[derive(Clone, Copy, Debug)]
 pub struct BodeScene<'a> {
+    /// Responses, or what the fit sees of them.
+    pub quantity: BodeQuantity<'a>,
     /// The pair, as a title: "LON → Q".
     pub pair_title: &'a str,
     /// The curves, in any order.
     pub curves: &'a [BodeCurve],
+    /// Labelled lines across the panes.
+    pub rules: &'a [Rule],
+    /// The frequencies that fitting shows \[rad/s\]; those of the curves where there are none.
+    pub omega_range: Option<(f64, f64)>,
+    /// Where a cursor stands that is led elsewhere \[rad/s\].
+    pub cursor: Option<f64>,
     /// The band of comparison: lower and upper end \[rad/s\].
     pub band: (f64, f64),
     /// The unit of the frequency axis.
@@ -39,14 +49,32 @@ pub struct BodeScene<'a> {
     pub message: Option<&'a str>,
 }
 
-/// What the engineer did in the Bode plot.
+impl<'a> BodeScene<'a> {
+    /// Responses of a pair in decibels, degrees and rad/s, and nothing else.
+    pub fn of(pair_title: &'a str, curves: &'a [BodeCurve], band: (f64, f64)) -> Self {
+        Self {
+            quantity: BodeQuantity::RESPONSE,
+            pair_title,
+            curves,
+            rules: &[],
+            omega_range: None,
+            cursor: None,
+            band,
+            unit: FrequencyUnit::RadPerSecond,
+            stale: false,
+            message: None,
+        }
+    }
+}
+
+/// What the engineer did in a Bode plot.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BodeEvent {
     /// The pointer came to mean another curve, or none.
     Hovered(Option<CurveId>),
     /// A curve was clicked.
     Clicked(CurveId),
-    /// The last click was the first of a double click, which means something else.
+    /// The last click was the first of a double click: it is to be as if it had not been.
     TakenBack(CurveId),
     /// A curve was clicked with Alt held.
     Isolated(CurveId),
@@ -61,7 +89,7 @@ pub enum BodeEvent {
     BandReleased,
 }
 
-/// Draws the Bode plot into the space that is left in `ui`.
+/// Draws a Bode plot into the space that is left in `ui`.
 pub fn bode_ui(ui: &mut Ui, scene: &BodeScene<'_>, view: &mut BodeView, palette: &Palette) -> Vec<BodeEvent> {
     let rect = ui.available_rect_before_wrap();
     let mut events = Vec::new();
@@ -71,10 +99,11 @@ pub fn bode_ui(ui: &mut Ui, scene: &BodeScene<'_>, view: &mut BodeView, palette:
     if !has_data(scene.curves) {
         message_ui(ui, rect, scene.message.unwrap_or("Nothing to draw"), palette);
         set_hovered(view, None, &mut events);
+        view.pointed_omega = None;
         return events;
     }
-    view.fit_if_requested(scene.curves, scene.band);
-    ui.scope_builder(UiBuilder::new().id_salt("bode").max_rect(rect), |ui| {
+    view.fit_if_requested(scene);
+    ui.scope_builder(UiBuilder::new().id_salt(scene.quantity.salt()).max_rect(rect), |ui| {
         use_frame_colors(ui, palette);
         panes_ui(ui, rect, scene, view, palette, &mut events);
     });
@@ -99,7 +128,9 @@ fn panes_ui(
     let hit = pointing.and_then(|pointing| pointing.hit);
     let meant = hit.map(|hit| scene.curves[hit.curve].id.clone());
     set_hovered(view, meant.clone(), events);
-    let emphasis = Emphasis { curve: meant, cursor: pointing.map(|pointing| pointing.log_omega) };
+    view.pointed_omega = pointing.map(|pointing| 10f64.powf(pointing.log_omega));
+    let cursor = pointing.map(|pointing| pointing.log_omega).or(scene.cursor.map(f64::log10));
+    let emphasis = Emphasis { curve: meant, cursor };
     for (pane, rect) in pane_rects(rect) {
         let response = pane_ui(ui, (pane, rect), scene, view, &emphasis, palette);
         click(pane, scene, &response, view, events);
@@ -107,7 +138,7 @@ fn panes_ui(
         if let Some(Pointing { pane: pointed, hit: Some(hit), .. }) = pointing
             && pointed == pane
         {
-            curve_tooltip_ui(&response, &scene.curves[hit.curve], hit.omega, scene.unit, palette);
+            curve_tooltip_ui(&response, scene, &scene.curves[hit.curve], hit.omega, palette);
         }
         set_cursor_icon(response, hit);
     }
@@ -156,20 +187,28 @@ fn set_hovered(view: &mut BodeView, hovered: Option<CurveId>, events: &mut Vec<B
     }
 }
 
+/// A click means the nearest curve. The second of a double click takes the first one back where that meant a curve, and fits the
+/// plot on empty ground.
 fn click(pane: Pane, scene: &BodeScene<'_>, response: &Response, view: &mut BodeView, events: &mut Vec<BodeEvent>) {
-    if response.double_clicked() {
-        view.request_fit();
-        response.ctx.request_repaint();
-        // The first click of the two was taken at once, for it to answer at once; fitting takes it back.
-        events.extend(view.last_clicked.take().map(BodeEvent::TakenBack));
-    } else if response.clicked() {
-        let alt = response.ctx.input(|input| input.modifiers.alt);
-        let pointer = response.interact_pointer_pos();
-        let hit =
-            pointer.zip(view.transform(pane)).and_then(|(at, transform)| nearest(scene.curves, pane, at, transform));
-        let id = hit.map(|hit| scene.curves[hit.curve].id.clone());
-        view.last_clicked = if alt { None } else { id.clone() };
-        events.extend(id.map(|id| if alt { BodeEvent::Isolated(id) } else { BodeEvent::Clicked(id) }));
+    if !response.clicked() {
+        return;
+    }
+    let pointer = response.interact_pointer_pos();
+    let hit = pointer.zip(view.transform(pane)).and_then(|(at, transform)| nearest(scene.curves, pane, at, transform));
+    let id = hit.map(|hit| scene.curves[hit.curve].id.clone());
+    let before = view.last_clicked.take();
+    match (response.double_clicked(), before, id) {
+        (true, Some(before), _) => events.push(BodeEvent::TakenBack(before)),
+        (true, None, None) => {
+            view.request_fit();
+            response.ctx.request_repaint();
+        }
+        (true, None, Some(_)) | (false, _, None) => {}
+        (false, _, Some(id)) if response.ctx.input(|input| input.modifiers.alt) => events.push(BodeEvent::Isolated(id)),
+        (false, _, Some(id)) => {
+            view.last_clicked = Some(id.clone());
+            events.push(BodeEvent::Clicked(id));
+        }
     }
 }
 
@@ -182,10 +221,7 @@ fn drag_band(
     events: &mut Vec<BodeEvent>,
 ) {
     let Some(transform) = view.transform(pane) else { return };
-    let place = match pane {
-        Pane::Magnitude => "magnitude plot",
-        Pane::Phase => "phase plot",
-    };
+    let place = scene.quantity.place(pane);
     events.extend(band_handles_ui(ui, place, scene.band, transform, scene.unit, palette).map(|change| match change {
         BandChange::Dragged { min, max } => BodeEvent::BandDragged { min, max },
         BandChange::Released => BodeEvent::BandReleased,

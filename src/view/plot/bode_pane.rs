@@ -1,44 +1,23 @@
 //! One of the two stacked plots: axes, band, curves and cursor.
 
-use egui::{Id, Rect, Response, Ui, UiBuilder, WidgetInfo};
-use egui_plot::{Axis, Line, LineStyle, PlotPoints, PlotTransform, PlotUi, Span, VLine};
+use egui::{Id, PointerButton, Rect, Response, Ui, UiBuilder, Vec2, WidgetInfo};
+use egui_plot::{Axis, LineStyle, PlotTransform, PlotUi, Span, VLine};
 
-use super::axes::{LABELLED_HEIGHT, TICKS_HEIGHT, VERTICAL_TICK_GAP, axis_hints, quiet_plot};
+use super::axes::{LABELLED_HEIGHT, TICKS_HEIGHT, axis_hints, quiet_plot};
 use super::bode::BodeScene;
 use super::bode_view::BodeView;
 use super::box_zoom::box_zoom_ui;
 use super::curve::{BodeCurve, CurveId, Pane};
+use super::curve_item::CurveItem;
 use super::drawn_curves::DrawnCurves;
-use super::linear_axis::{Ladder, tick_text};
 use super::pixel::Pixel;
+use super::rule::rules_ui;
 use crate::view::palette::Palette;
 
 /// Width of the vertical axes \[pt\]: the same above and below, so that the frequencies stand under one another.
 const VALUE_AXIS_WIDTH: f32 = 52.0;
 /// How far from a curve its drawn line may be \[pt\].
 const TOLERANCE: f64 = 0.1;
-impl Pane {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Magnitude => "Magnitude",
-            Self::Phase => "Phase",
-        }
-    }
-
-    fn axis_label(self) -> &'static str {
-        match self {
-            Self::Magnitude => "Magnitude [dB]",
-            Self::Phase => "Phase [deg]",
-        }
-    }
-
-    fn ladder(self) -> Ladder {
-        match self {
-            Self::Magnitude => Ladder::Decimal,
-            Self::Phase => Ladder::Degrees,
-        }
-    }
-}
 
 /// What the panes draw beside the scene's own.
 pub(super) struct Emphasis {
@@ -48,7 +27,7 @@ pub(super) struct Emphasis {
     pub(super) cursor: Option<f64>,
 }
 
-/// Draws a pane into `rect` and takes over what panning and zooming made of its ranges.
+/// Draws a pane into `rect`, and pans and zooms it as the pointer says.
 pub(super) fn pane_ui(
     ui: &mut Ui,
     (pane, rect): (Pane, Rect),
@@ -57,8 +36,9 @@ pub(super) fn pane_ui(
     emphasis: &Emphasis,
     palette: &Palette,
 ) -> Response {
-    let id = ui.make_persistent_id(pane.name());
-    let builder = UiBuilder::new().id_salt(pane.name()).max_rect(rect);
+    let name = scene.quantity.name(pane);
+    let id = ui.make_persistent_id(name);
+    let builder = UiBuilder::new().id_salt(name).max_rect(rect);
     let mut kept = std::mem::take(view.drawn_curves(pane));
     let drawn = &mut kept;
     let shown = ui.scope_builder(builder, |ui| {
@@ -76,13 +56,18 @@ pub(super) fn pane_ui(
     });
     let shown = shown.inner;
     *view.drawn_curves(pane) = kept;
-    view.take_over(pane, shown.transform);
+    view.remember(pane, shown.transform);
+    if shown.response.dragged_by(PointerButton::Primary) {
+        view.pan(pane, shown.response.drag_delta());
+        ui.ctx().request_repaint();
+    }
     if let Some(area) = box_zoom_ui(ui, &shown.response, *shown.transform.frame(), palette) {
         view.zoom_to(pane, area);
         ui.ctx().request_repaint();
     }
     zoom_by_scrolling(ui, pane, &shown.response, view);
-    let description = format!("{} of {}, {} curves", pane.name(), scene.pair_title, scene.curves.len());
+    rules_ui(ui, scene.rules, pane, &shown.transform, palette);
+    let description = format!("{name} of {}, {} curves", scene.pair_title, scene.curves.len());
     shown.response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, description.clone()));
     shown.response
 }
@@ -94,16 +79,15 @@ fn pane_plot<'a>(id: Id, pane: Pane, rect: Rect, scene: &BodeScene<'_>, palette:
         Pane::Phase => (unit.axis_label(), LABELLED_HEIGHT),
     };
     let frequency_text = move |mark| unit.tick_text(mark);
+    let (values, value_label) = (scene.quantity.unit(pane), scene.quantity.axis_label(pane));
+    let value_text = move |mark| values.tick_text(mark);
     quiet_plot(id, palette)
         .width(rect.width())
         .height(rect.height())
-        .allow_drag(true)
-        .allow_zoom(true)
-        .allow_axis_zoom_drag(true)
         .x_grid_spacer(unit.spacer())
-        .y_grid_spacer(pane.ladder().spacer(VERTICAL_TICK_GAP))
+        .y_grid_spacer(values.spacer())
         .custom_x_axes(vec![axis_hints(Axis::X, &frequency_label, frequency_height, palette, frequency_text)])
-        .custom_y_axes(vec![axis_hints(Axis::Y, pane.axis_label(), VALUE_AXIS_WIDTH, palette, tick_text)])
+        .custom_y_axes(vec![axis_hints(Axis::Y, &value_label, VALUE_AXIS_WIDTH, palette, value_text)])
 }
 
 fn band_shade(plot: &mut PlotUi<'_>, (min, max): (f64, f64), palette: &Palette) {
@@ -136,10 +120,7 @@ fn draw_curves<'a>(
         } else if scene.stale {
             look.color = look.color.gamma_multiply(0.5);
         }
-        for run in drawn.runs(index) {
-            let line = Line::new("", PlotPoints::Borrowed(run)).color(look.color).width(look.width).style(look.style);
-            plot.line(line.allow_hover(false));
-        }
+        plot.add(CurveItem::new(drawn.runs(index), look));
     }
 }
 
@@ -150,17 +131,18 @@ fn draw_cursor(plot: &mut PlotUi<'_>, cursor: Option<f64>, palette: &Palette) {
     }
 }
 
-/// The wheel zooms about the pointer; with Shift (which makes it a sideways wheel) only along the frequency axis.
+/// The wheel zooms about the pointer, and so do two fingers; with Shift (which makes it a sideways wheel) only along the frequency
+/// axis.
 fn zoom_by_scrolling(ui: &Ui, pane: Pane, response: &Response, view: &mut BodeView) {
     /// Scrolled points that make a factor of e: about four clicks of a wheel.
     const POINTS_PER_E: f32 = 200.0;
     let Some(pointer) = response.hover_pos() else { return };
-    let scrolled = ui.input(|input| input.smooth_scroll_delta());
-    if scrolled == egui::Vec2::ZERO {
+    let (scrolled, pinched) = ui.input(|input| (input.smooth_scroll_delta(), input.zoom_delta_2d()));
+    if scrolled == Vec2::ZERO && pinched == Vec2::splat(1.0) {
         return;
     }
-    let both = f64::from((scrolled.y / POINTS_PER_E).exp());
-    let sideways = f64::from((scrolled.x / POINTS_PER_E).exp());
-    view.zoom(pane, pointer, both * sideways, both);
+    let both = (scrolled.y / POINTS_PER_E).exp();
+    let sideways = (scrolled.x / POINTS_PER_E).exp();
+    view.zoom(pane, pointer, f64::from(both * sideways * pinched.x), f64::from(both * pinched.y));
     ui.ctx().request_repaint();
 }

@@ -1,36 +1,41 @@
 //! What the Bode plot remembers between frames: the part in view, and where things are on the screen.
 
-use egui::{Pos2, Rect};
+use egui::{Pos2, Rect, Vec2};
 use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
 
+use super::bode::BodeScene;
 use super::curve::{BodeCurve, CurveId, Pane};
 use super::drawn_curves::DrawnCurves;
 use super::legend::LegendState;
 use super::range::Range;
+use super::value_unit::ValueUnit;
+use super::viewed_range::ViewedRange;
 
 /// Decades that can be in view.
 const DECADES: Range = Range { min: 1e-3, max: 12.0 };
 /// Values of `log10 omega` that can be in view: far inside what a float holds.
 const LOG_OMEGA: Range = Range { min: -30.0, max: 30.0 };
-/// Decibels that can be in view.
-const DECIBELS: Range = Range { min: 1e-3, max: 5e3 };
-/// Degrees that can be in view.
-const DEGREES: Range = Range { min: 1e-2, max: 1e5 };
 /// Space above and below the curves after fitting, as a part of their height.
 const FIT_MARGIN: f64 = 0.04;
 /// Height that fitting gives to values outside the band on either side, as a part of the height within it.
 const OUTSIDE_PART: f64 = 0.4;
 
-/// What the Bode plot remembers between frames. The ranges stay when the data change; fitting is asked for.
+/// What the Bode plot remembers between frames.
+///
+/// The view stands still: whatever is computed anew, only what the engineer does moves it. Values that nobody has zoomed into
+/// are fitted once to another response or condition.
 #[derive(Clone, Debug)]
 pub struct BodeView {
-    pub(super) log_omega: Range,
-    pub(super) magnitude_db: Range,
-    pub(super) phase_deg: Range,
+    log_omega: ViewedRange,
+    magnitude_db: ViewedRange,
+    phase_deg: ViewedRange,
     pub(super) legend: LegendState,
     pub(super) hovered: Option<CurveId>,
+    /// The frequency under the pointer \[rad/s\].
+    pub(super) pointed_omega: Option<f64>,
     pub(super) last_clicked: Option<CurveId>,
-    must_fit: bool,
+    must_fit_frequencies: bool,
+    must_fit_values: bool,
     magnitude_transform: Option<PlotTransform>,
     phase_transform: Option<PlotTransform>,
     magnitude_curves: DrawnCurves,
@@ -40,13 +45,15 @@ pub struct BodeView {
 impl Default for BodeView {
     fn default() -> Self {
         Self {
-            log_omega: Range { min: -1.0, max: 2.0 },
-            magnitude_db: Range { min: -40.0, max: 20.0 },
-            phase_deg: Range { min: -360.0, max: 90.0 },
+            log_omega: ViewedRange::new(Range { min: -1.0, max: 2.0 }, DECADES, LOG_OMEGA),
+            magnitude_db: ViewedRange::new(Range { min: -40.0, max: 20.0 }, ValueUnit::Decibel.widths(), Range::ALL),
+            phase_deg: ViewedRange::new(Range { min: -360.0, max: 90.0 }, ValueUnit::Degree.widths(), Range::ALL),
             legend: LegendState { is_open: true, corner: None, rect: None },
             hovered: None,
+            pointed_omega: None,
             last_clicked: None,
-            must_fit: true,
+            must_fit_frequencies: true,
+            must_fit_values: true,
             magnitude_transform: None,
             phase_transform: None,
             magnitude_curves: DrawnCurves::default(),
@@ -56,9 +63,34 @@ impl Default for BodeView {
 }
 
 impl BodeView {
-    /// Shows all of the data at the next frame.
+    /// Shows all of the data at the next frame, whatever the engineer has zoomed into.
     pub fn request_fit(&mut self) {
-        self.must_fit = true;
+        self.log_omega.release();
+        self.magnitude_db.release();
+        self.phase_deg.release();
+        self.must_fit_frequencies = true;
+        self.must_fit_values = true;
+    }
+
+    /// Shows all values of other curves at the next frame, on the axes that the engineer has not zoomed; the frequencies stay.
+    pub fn request_refit(&mut self) {
+        self.must_fit_values = true;
+    }
+
+    /// Shows all values of a pane at the next frame: they are in another unit.
+    pub fn release_values(&mut self, pane: Pane) {
+        self.values(pane).release();
+        self.must_fit_values = true;
+    }
+
+    /// Shows all frequencies again where a band \[rad/s\] that was set reaches out of what is in view, unless the engineer chose
+    /// that. A band that is dragged never does.
+    pub fn follow_band(&mut self, (min, max): (f64, f64)) {
+        /// An end dragged to the frame may come out a rounding error beyond it \[decades\].
+        const ROUNDING: f64 = 1e-6;
+        let view = self.log_omega.range();
+        let reaches_out = min.log10() < view.min - ROUNDING || max.log10() > view.max + ROUNDING;
+        self.must_fit_frequencies |= reaches_out && !self.log_omega.is_chosen();
     }
 
     /// Shows or hides the legend.
@@ -71,16 +103,35 @@ impl BodeView {
         self.hovered.as_ref()
     }
 
+    /// The frequency under the pointer \[rad/s\].
+    pub fn pointed_omega(&self) -> Option<f64> {
+        self.pointed_omega
+    }
+
+    /// Shows the frequencies that another plot shows.
+    pub fn share_frequencies(&mut self, other: &Self) {
+        self.log_omega = other.log_omega;
+        self.must_fit_frequencies = other.must_fit_frequencies;
+    }
+
     /// The frequencies in view \[rad/s\].
     pub fn omega_range(&self) -> (f64, f64) {
-        (10f64.powf(self.log_omega.min), 10f64.powf(self.log_omega.max))
+        let Range { min, max } = self.log_omega.range();
+        (10f64.powf(min), 10f64.powf(max))
     }
 
     /// The part of a pane's vertical axis that is in view.
     pub fn value_range(&self, pane: Pane) -> Range {
         match pane {
-            Pane::Magnitude => self.magnitude_db,
-            Pane::Phase => self.phase_deg,
+            Pane::Magnitude => self.magnitude_db.range(),
+            Pane::Phase => self.phase_deg.range(),
+        }
+    }
+
+    fn values(&mut self, pane: Pane) -> &mut ViewedRange {
+        match pane {
+            Pane::Magnitude => &mut self.magnitude_db,
+            Pane::Phase => &mut self.phase_deg,
         }
     }
 
@@ -118,72 +169,64 @@ impl BodeView {
 
     /// The part in view of a pane as egui_plot wants it.
     pub(super) fn bounds(&self, pane: Pane) -> PlotBounds {
-        let values = self.value_range(pane);
-        PlotBounds::from_min_max([self.log_omega.min, values.min], [self.log_omega.max, values.max])
+        let (frequencies, values) = (self.log_omega.range(), self.value_range(pane));
+        PlotBounds::from_min_max([frequencies.min, values.min], [frequencies.max, values.max])
     }
 
-    /// Takes over what panning and zooming made of a pane, and remembers where it is.
-    pub(super) fn take_over(&mut self, pane: Pane, transform: PlotTransform) {
-        let (min, max) = (transform.bounds().min(), transform.bounds().max());
-        self.set_log_omega(Range::new(min[0], max[0]));
-        self.set_values(pane, Range::new(min[1], max[1]));
+    /// Remembers where a pane was drawn.
+    pub(super) fn remember(&mut self, pane: Pane, transform: PlotTransform) {
         match pane {
             Pane::Magnitude => self.magnitude_transform = Some(transform),
             Pane::Phase => self.phase_transform = Some(transform),
         }
     }
 
+    /// Moves what a pane shows by so much on the screen.
+    pub(super) fn pan(&mut self, pane: Pane, by: Vec2) {
+        let Some(transform) = self.transform(pane) else { return };
+        let [x_per_point, y_per_point] = transform.dvalue_dpos();
+        self.log_omega.choose(self.log_omega.range().moved(-x_per_point * f64::from(by.x)));
+        let values = self.value_range(pane).moved(-y_per_point * f64::from(by.y));
+        self.values(pane).choose(values);
+    }
+
     /// Looks `factor` times closer at a pane, with the point under `pointer` staying where it is.
     pub(super) fn zoom(&mut self, pane: Pane, pointer: Pos2, frequency_factor: f64, value_factor: f64) {
         let Some(transform) = self.transform(pane) else { return };
         let fixed = transform.value_from_position(pointer);
-        self.set_log_omega(self.log_omega.zoomed(frequency_factor, fixed.x));
-        self.set_values(pane, self.value_range(pane).zoomed(value_factor, fixed.y));
+        self.log_omega.choose(self.log_omega.range().zoomed(frequency_factor, fixed.x));
+        let values = self.value_range(pane).zoomed(value_factor, fixed.y);
+        self.values(pane).choose(values);
     }
 
     /// Shows what lies in `area` of the screen.
     pub(super) fn zoom_to(&mut self, pane: Pane, area: Rect) {
         let Some(transform) = self.transform(pane) else { return };
         let (a, b) = (transform.value_from_position(area.min), transform.value_from_position(area.max));
-        self.set_log_omega(Range::new(a.x, b.x));
-        self.set_values(pane, Range::new(a.y, b.y));
+        self.log_omega.choose(Range::new(a.x, b.x));
+        self.values(pane).choose(Range::new(a.y, b.y));
     }
 
-    fn set_log_omega(&mut self, range: Range) {
-        if let Some(range) = range.limited(DECADES)
-            && LOG_OMEGA.contains(range.min)
-            && LOG_OMEGA.contains(range.max)
-        {
-            self.log_omega = range;
-        }
-    }
-
-    fn set_values(&mut self, pane: Pane, range: Range) {
-        let (current, widths) = match pane {
-            Pane::Magnitude => (&mut self.magnitude_db, DECIBELS),
-            Pane::Phase => (&mut self.phase_deg, DEGREES),
-        };
-        if let Some(range) = range.limited(widths) {
-            *current = range;
-        }
-    }
-
-    /// Shows all of `curves`, rejected ones included, if that was asked for. Without data the request stays.
-    pub(super) fn fit_if_requested(&mut self, curves: &[BodeCurve], band: (f64, f64)) {
-        if !self.must_fit {
+    /// Shows all curves of `scene`, rejected ones included, where that was asked for. Without data the request stays.
+    pub(super) fn fit_if_requested(&mut self, scene: &BodeScene<'_>) {
+        if !(self.must_fit_frequencies || self.must_fit_values) {
             return;
         }
-        let omega = curves.iter().flat_map(|curve| curve.omega.iter());
-        let Some(log_omega) = Range::of(omega.map(|omega| omega.log10())) else {
+        let ends = scene.omega_range.map(|(min, max)| Range::new(min, max));
+        let omega = || scene.curves.iter().flat_map(|curve| curve.omega.iter().copied());
+        let Some(omega) = ends.or_else(|| Range::of(omega())) else {
             return;
         };
-        self.must_fit = false;
-        // The legend stays where it is while zooming, but makes room for new curves.
-        self.legend.corner = None;
-        self.set_log_omega(log_omega);
-        for (pane, least) in [(Pane::Magnitude, 4.0), (Pane::Phase, 20.0)] {
-            if let Some(values) = fitted_values(curves, pane, band) {
-                self.set_values(pane, values.with_margin(FIT_MARGIN, least));
+        if std::mem::take(&mut self.must_fit_frequencies) {
+            self.log_omega.fit(Range::new(omega.min.log10(), omega.max.log10()));
+        }
+        if std::mem::take(&mut self.must_fit_values) {
+            // The legend stays where it is while zooming, but makes room for new curves.
+            self.legend.corner = None;
+            for pane in [Pane::Magnitude, Pane::Phase] {
+                if let Some(values) = fitted_values(scene.curves, pane, scene.band) {
+                    self.values(pane).fit(values.with_margin(FIT_MARGIN, scene.quantity.least_height(pane)));
+                }
             }
         }
     }

@@ -1,6 +1,6 @@
 //! The points of a pane's curves that have to be drawn.
 
-use egui_plot::{LineStyle, PlotBounds, PlotPoint};
+use egui_plot::{PlotBounds, PlotPoint};
 
 use super::curve::{BodeCurve, LogFrequencies, Pane, runs_in_view};
 use super::curve_numbers::CurveNumbers;
@@ -81,10 +81,7 @@ impl DrawnCurve {
 }
 
 fn margin(curve: &BodeCurve, palette: &Palette) -> f64 {
-    match curve.role.look(curve.rejected, palette).style {
-        LineStyle::Solid => LINE_MARGIN,
-        LineStyle::Dashed { .. } | LineStyle::Dotted { .. } => PATTERN_MARGIN,
-    }
+    if curve.role.look(curve.rejected, palette).is_broken() { PATTERN_MARGIN } else { LINE_MARGIN }
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ use crate::dataset::ConditionId;
 use super::axes::{LABELLED_HEIGHT, axis_hints, caption_font, quiet_plot};
 use super::dot::{DOT_RADIUS, Dot};
 use super::dot_label::{LabelledDot, PlacedLabels, Surroundings};
+use super::line_look::LinePattern;
 use super::linear_axis::{Ladder, tick_text};
 use super::number::decimals;
 use super::range::Range;
@@ -185,7 +186,10 @@ fn paint_bounds(painter: &Painter, placed: &[(&Dot, Pos2)], transform: &PlotTran
         if let Some([lower, upper]) = dot.bounds {
             let [y0, y1] = [lower, upper].map(|value| transform.position_from_point_y(value));
             let bar = Rect::from_x_y_ranges(center.x - 3.0..=center.x + 3.0, y1.min(y0)..=y0.max(y1));
-            painter.rect_filled(bar, 2.0, palette.accent.gamma_multiply(0.16));
+            let bar = bar.intersect(*transform.frame());
+            if bar.is_positive() {
+                painter.rect_filled(bar, 0.0, palette.accent.gamma_multiply(0.16));
+            }
         }
     }
 }
@@ -238,7 +242,11 @@ fn draw_lines(plot: &mut PlotUi<'_>, panel: &GainPanel, palette: &Palette) {
     );
     let look = Role::Scheduled.look(false, palette);
     let schedule: Vec<[f64; 2]> = panel.drawable_schedule().collect();
-    plot.line(Line::new("", schedule).color(look.color).width(look.width).style(look.style));
+    let style = match look.pattern {
+        LinePattern::Dashed { length } => LineStyle::Dashed { length },
+        _ => LineStyle::Solid,
+    };
+    plot.line(Line::new("", schedule).color(look.color).width(look.width).style(style));
 }
 
 fn paint_labels(

@@ -9,7 +9,8 @@ use egui::{
 
 use super::axes::caption_font;
 use super::curve::BodeCurve;
-use super::role::{LineLook, Role};
+use super::line_look::LineLook;
+use super::role::Role;
 use crate::view::palette::Palette;
 
 const ROW_HEIGHT: f32 = 16.5;
@@ -133,7 +134,9 @@ impl Rows {
         for (row, (look, galley)) in self.rows.into_iter().enumerate() {
             let middle = corner.y + ROW_HEIGHT * (row as f32 + 0.5);
             let sample = [pos2(corner.x, middle), pos2(corner.x + SAMPLE_WIDTH, middle)];
-            painter.extend(look.shapes(&sample));
+            let mut shapes = Vec::new();
+            look.add_shapes(sample.to_vec(), &mut shapes);
+            painter.extend(shapes);
             let text = pos2(corner.x + SAMPLE_WIDTH + SAMPLE_GAP, middle - 0.5 * galley.size().y);
             painter.galley(text, galley, palette.text);
         }

@@ -71,7 +71,7 @@ impl FrequencyUnit {
             return Vec::new();
         }
         let shift = self.of_omega(1.0).log10();
-        let marks = marks_of_unit((bounds.0 + shift, bounds.1 + shift), decades_per_point);
+        let marks = logarithmic_marks((bounds.0 + shift, bounds.1 + shift), decades_per_point);
         marks.into_iter().map(|mark| GridMark { value: mark.value - shift, ..mark }).collect()
     }
 
@@ -112,7 +112,8 @@ impl Labels {
     }
 }
 
-fn marks_of_unit(bounds: (f64, f64), decades_per_point: f64) -> Vec<GridMark> {
+/// Ticks and grid lines between `bounds`, both common logarithms, on an axis of `decades_per_point`.
+pub(super) fn logarithmic_marks(bounds: (f64, f64), decades_per_point: f64) -> Vec<GridMark> {
     let decades = decade_marks(bounds, decades_per_point);
     if bounds.1 - bounds.0 > LINEAR_BELOW {
         return decades;

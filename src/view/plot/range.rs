@@ -10,6 +10,9 @@ pub struct Range {
 }
 
 impl Range {
+    /// Every value.
+    pub(super) const ALL: Self = Self { min: f64::NEG_INFINITY, max: f64::INFINITY };
+
     /// The range from `min` to `max`, which need not be in order.
     pub fn new(min: f64, max: f64) -> Self {
         Self { min: min.min(max), max: max.max(min) }
@@ -44,8 +47,17 @@ impl Range {
         Self { min: self.middle() - half, max: self.middle() + half }
     }
 
+    /// This range with `by` added to both ends.
+    pub fn moved(self, by: f64) -> Self {
+        Self { min: self.min + by, max: self.max + by }
+    }
+
     /// This range seen `factor` times closer, with `fixed` staying where it is.
     pub fn zoomed(self, factor: f64, fixed: f64) -> Self {
+        if factor == 1.0 {
+            // To the last digit.
+            return self;
+        }
         Self { min: fixed + (self.min - fixed) / factor, max: fixed + (self.max - fixed) / factor }
     }
 

@@ -2,25 +2,31 @@
 
 use egui::{PopupAnchor, Response, RichText, Tooltip, Ui};
 
+use super::bode::BodeScene;
 use super::curve::{BodeCurve, Pane};
-use super::log_axis::FrequencyUnit;
-use super::number::decimals;
+use super::quantity::BodeQuantity;
 use crate::view::palette::{Palette, SMALL_SIZE};
 
 /// "nominal · 2.9 dB · −99°" at `omega` \[rad/s\].
-pub(super) fn value_text(curve: &BodeCurve, omega: f64) -> String {
-    let value = |pane, count, unit: &str| match curve.value_at(pane, omega) {
-        Some(value) => format!("{}{unit}", decimals(value, count)),
+pub(super) fn value_text(quantity: BodeQuantity<'_>, curve: &BodeCurve, omega: f64) -> String {
+    let value = |pane| match curve.value_at(pane, omega) {
+        Some(value) => quantity.unit(pane).readout(value),
         None => "–".to_owned(),
     };
-    format!("{} · {} · {}", curve.label, value(Pane::Magnitude, 1, " dB"), value(Pane::Phase, 0, "°"))
+    format!("{} · {} · {}", curve.label, value(Pane::Magnitude), value(Pane::Phase))
 }
 
 /// Shows frequency, name and values of `curve` at `omega` \[rad/s\] beside the pointer.
-pub(super) fn curve_tooltip_ui(plot: &Response, curve: &BodeCurve, omega: f64, unit: FrequencyUnit, palette: &Palette) {
+pub(super) fn curve_tooltip_ui(
+    plot: &Response,
+    scene: &BodeScene<'_>,
+    curve: &BodeCurve,
+    omega: f64,
+    palette: &Palette,
+) {
     tooltip_ui(plot, |ui| {
-        ui.label(RichText::new(unit.readout(omega)).size(SMALL_SIZE).color(palette.dim_text));
-        ui.label(value_text(curve, omega));
+        ui.label(RichText::new(scene.unit.readout(omega)).size(SMALL_SIZE).color(palette.dim_text));
+        ui.label(value_text(scene.quantity, curve, omega));
         if !curve.detail.is_empty() {
             ui.label(RichText::new(&curve.detail).size(SMALL_SIZE).color(palette.dim_text));
         }
@@ -54,7 +60,7 @@ mod tests {
             magnitude_db: vec![2.94, 3.0].into(),
             phase_deg: vec![-99.2, f64::NAN].into(),
         };
-        assert_eq!(value_text(&curve, 1.0), "nominal · 2.9 dB · \u{2212}99°");
-        assert_eq!(value_text(&curve, 2.0), "nominal · 3.0 dB · –");
+        assert_eq!(value_text(BodeQuantity::RESPONSE, &curve, 1.0), "nominal · 2.9 dB · \u{2212}99°");
+        assert_eq!(value_text(BodeQuantity::RESPONSE, &curve, 2.0), "nominal · 3.0 dB · –");
     }
 }

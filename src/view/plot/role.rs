@@ -1,8 +1,6 @@
 //! What a curve stands for, and how it is therefore drawn: the same in every view.
 
-use egui::{Color32, Pos2, Shape, Stroke};
-use egui_plot::LineStyle;
-
+use super::line_look::{LineLook, LinePattern};
 use crate::view::palette::Palette;
 
 /// What a curve stands for.
@@ -26,45 +24,8 @@ pub enum Role {
     Rejected,
 }
 
-/// Colour, width and line style of a curve.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LineLook {
-    /// Colour of the line.
-    pub color: Color32,
-    /// Width of the line \[pt\].
-    pub width: f32,
-    /// Solid, dashed or dotted: tells roles apart where colours do not.
-    pub style: LineStyle,
-}
-
-impl LineLook {
-    /// This line as it is drawn while something points at it.
-    pub fn emphasized(self) -> Self {
-        let color = self.color.to_opaque();
-        match self.style {
-            // Dots need room to stay dots.
-            LineStyle::Dotted { spacing } => {
-                let style = LineStyle::Dotted { spacing: 1.5 * spacing };
-                Self { color, width: self.width + 0.7, style }
-            }
-            _ => Self { color, width: self.width + 1.6, style: self.style },
-        }
-    }
-
-    /// This line along `path`, in screen coordinates.
-    pub fn shapes(&self, path: &[Pos2]) -> Vec<Shape> {
-        let stroke = Stroke::new(self.width, self.color);
-        match self.style {
-            LineStyle::Solid => vec![Shape::line(path.to_vec(), stroke)],
-            LineStyle::Dashed { length } => Shape::dashed_line(path, stroke, length, GAP_OF_DASH * length),
-            LineStyle::Dotted { spacing } => Shape::dotted_line(path, self.color, spacing, self.width),
-        }
-    }
-}
-
-/// Gap between dashes as a part of their length: as egui_plot has it, so that legends look like their plots.
-const GAP_OF_DASH: f32 = 0.618;
-const DOTTED: LineStyle = LineStyle::Dotted { spacing: 4.5 };
+/// The dots of what is left out.
+const DOTTED: LinePattern = LinePattern::Dotted { spacing: 4.5 };
 
 impl Role {
     /// Every role, in the order of a legend.
@@ -100,17 +61,20 @@ impl Role {
 
     /// How a curve of this role is drawn. A rejected nominal model stays red, but dotted.
     pub fn look(self, rejected: bool, palette: &Palette) -> LineLook {
-        let look = |color, width, style| LineLook { color, width, style };
+        let look = |color, width, pattern| LineLook { color, width: width * palette.line_width, pattern };
+        let dashed = |length| LinePattern::Dashed { length };
         match self.shown(rejected) {
             Self::Nominal if rejected => look(palette.nominal, 1.3, DOTTED),
-            Self::Nominal => look(palette.nominal, 1.8, LineStyle::Solid),
-            Self::Perturbed => look(palette.perturbed.gamma_multiply(0.8), 1.0, LineStyle::Solid),
-            Self::Representative => look(palette.perturbed, 2.4, LineStyle::Solid),
-            Self::Identified => look(palette.identified, 1.2, LineStyle::Dashed { length: 6.0 }),
-            // Wider than the corrected curve that is to lie on it, so that both are seen where they agree.
-            Self::IdentifiedRepresentative => look(palette.identified, 3.0, LineStyle::Solid),
-            Self::Corrected => look(palette.corrected, 2.0, LineStyle::Solid),
-            Self::Scheduled => look(palette.corrected, 2.0, LineStyle::Dashed { length: 8.0 }),
+            Self::Nominal => look(palette.nominal, 1.6, LinePattern::DashDotted { length: 11.0 }),
+            Self::Perturbed => look(palette.perturbed.gamma_multiply(0.8), 1.0, LinePattern::Solid),
+            Self::Representative => look(palette.perturbed, 2.8, LinePattern::Solid),
+            Self::Identified => look(palette.identified, 1.2, dashed(5.0)),
+            // Wide and open: the corrected curve that is to lie on it fills it, so that both are seen where they agree.
+            Self::IdentifiedRepresentative => {
+                look(palette.identified, 4.6, LinePattern::Double { ground: palette.background })
+            }
+            Self::Corrected => look(palette.corrected, 2.2, LinePattern::Solid),
+            Self::Scheduled => look(palette.corrected, 2.2, dashed(9.0)),
             Self::Rejected => look(palette.rejected, 1.0, DOTTED),
         }
     }
@@ -139,7 +103,25 @@ mod tests {
         let palette = Palette::dark();
         let look = Role::Nominal.look(true, &palette);
         assert_eq!(look.color, palette.nominal);
-        assert!(matches!(look.style, LineStyle::Dotted { .. }));
+        assert!(matches!(look.pattern, LinePattern::Dotted { .. }));
+    }
+
+    #[test]
+    fn before_and_after_and_the_reference_differ_in_pattern_and_in_width() {
+        let palette = Palette::light();
+        for other in [Role::Nominal, Role::Identified, Role::IdentifiedRepresentative] {
+            let (corrected, other) = (Role::Corrected.look(false, &palette), other.look(false, &palette));
+            assert!(corrected.pattern != other.pattern && (corrected.width - other.width).abs() > 0.5, "{other:?}");
+        }
+    }
+
+    #[test]
+    fn widths_follow_the_engineer() {
+        let palette = Palette { line_width: 2.0, ..Palette::dark() };
+        for role in Role::ALL {
+            let (wide, usual) = (role.look(false, &palette), role.look(false, &Palette::dark()));
+            assert_eq!(wide, LineLook { width: 2.0 * usual.width, ..usual });
+        }
     }
 
     #[test]
@@ -148,7 +130,7 @@ mod tests {
             for a in Role::ALL {
                 for b in Role::ALL.into_iter().filter(|b| *b != a) {
                     let (a, b) = (a.look(false, &palette), b.look(false, &palette));
-                    assert!(a.style != b.style || (a.width - b.width).abs() > 0.15, "{a:?} {b:?}");
+                    assert!(a.pattern != b.pattern || (a.width - b.width).abs() > 0.5, "{a:?} {b:?}");
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! Curves without axes, in the little room of a table's cell.
 
 use egui::{Pos2, Rect, Shape};
-use egui_plot::{LineStyle, PlotBounds, PlotPoint, PlotTransform};
+use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
 
 use super::curve::{BodeCurve, LogFrequencies, Pane, runs_in_view};
 use super::number::decimals;
@@ -12,8 +12,6 @@ use crate::view::palette::Palette;
 
 /// How far from the curve a drawn line may be \[pt\].
 const TOLERANCE: f64 = 0.25;
-/// Width of lines here as a part of that in a full plot.
-const WIDTH_PART: f32 = 0.72;
 
 /// One pane of some curves in a small rectangle.
 pub(super) struct Sparkline {
@@ -53,18 +51,16 @@ impl Sparkline {
         palette: &Palette,
         pixels_per_point: f32,
     ) -> Vec<Shape> {
-        let mut look = curve.role.look(curve.rejected, palette);
-        look.width *= WIDTH_PART;
-        look.style = match look.style {
-            LineStyle::Solid => LineStyle::Solid,
-            LineStyle::Dashed { .. } => LineStyle::Dashed { length: 4.0 },
-            LineStyle::Dotted { .. } => LineStyle::Dotted { spacing: 3.5 },
-        };
+        let mut look = curve.role.look(curve.rejected, palette).in_miniature();
         if curve.highlighted {
             look = look.emphasized();
         }
         let pixel = Pixel::of(&self.transform, pixels_per_point, TOLERANCE);
-        self.paths(curve, axis, pixel).iter().flat_map(|path| look.shapes(path)).collect()
+        let mut shapes = Vec::new();
+        for path in self.paths(curve, axis, pixel) {
+            look.add_shapes(path, &mut shapes);
+        }
+        shapes
     }
 
     /// A curve on the screen, thinned to what can be told apart.

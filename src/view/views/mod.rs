@@ -3,11 +3,14 @@
 mod assessment;
 mod bode;
 mod channels;
+mod error;
+mod frequency;
 mod net_gain;
 mod overview;
 
 pub use assessment::assessment_view_ui;
 pub use bode::bode_view_ui;
 pub use channels::{channels_header_ui, channels_view_ui};
+pub use error::{error_header_ui, error_view_ui};
 pub use net_gain::{net_gain_header_ui, net_gain_view_ui};
 pub use overview::overview_view_ui;

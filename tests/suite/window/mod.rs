@@ -1,9 +1,13 @@
 //! The window, driven by accessible labels: no display, no GPU.
 
+mod commands;
 mod computing;
 mod controls;
 mod decisions;
 mod files;
+mod forms;
+mod keyboard;
+mod lists;
 mod plots;
 mod recovery;
 mod reload;

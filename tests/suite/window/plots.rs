@@ -32,7 +32,7 @@ fn a_click_on_a_curve_rejects_it_and_another_click_restores_it() {
 }
 
 #[test]
-fn a_double_click_on_a_curve_fits_the_plot_and_leaves_no_decision() {
+fn a_double_click_on_a_curve_leaves_no_decision() {
     let mut window = window();
     choose_condition_10(&mut window);
     let start = state(&window).study.clone();
@@ -54,6 +54,100 @@ fn a_double_click_on_a_curve_fits_the_plot_and_leaves_no_decision() {
     assert_eq!(state(&window).study, start);
     assert_eq!(state(&window).history.undo_label(), None, "nothing to undo");
     assert!(state(&window).history.redo_label().is_some(), "what could be redone before still can");
+}
+
+/// Presses the primary button at `from` and drags it to `to`, in steps; it is not let go.
+fn drag_along(window: &mut Window, from: Pos2, to: Pos2) {
+    window.hover_at(from);
+    window.run_steps(2);
+    window.drag_at(from);
+    window.run_steps(1);
+    for step in 1..=6 {
+        window.hover_at(from + (to - from) * (step as f32 / 6.0));
+        // Long enough for the answer to an earlier step to come.
+        settle(window);
+    }
+}
+
+/// Where a frequency stands in the magnitude plot, near its lower edge.
+fn place_of(window: &Window, omega: f64) -> Pos2 {
+    let view = &state(window).display.bode;
+    let frame = *view.transform(Pane::Magnitude).unwrap().frame();
+    let place = view.screen_position(Pane::Magnitude, omega, 0.0).unwrap();
+    pos2(place.x, frame.bottom() - 12.0)
+}
+
+/// The frequency at a place of the magnitude plot.
+fn omega_at(window: &Window, place: Pos2) -> f64 {
+    let transform = *state(window).display.bode.transform(Pane::Magnitude).unwrap();
+    10f64.powf(transform.value_from_position(place).x)
+}
+
+fn band(window: &Window) -> (f64, f64) {
+    let band = state(window).study.settings.band;
+    (band.min(), band.max())
+}
+
+#[test]
+fn a_dragged_end_of_the_band_stays_under_the_pointer_and_the_view_stands_still() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    let view = state(&window).display.bode.omega_range();
+    for (end, by) in [(0.5, 54.0), (12.0, -80.0)] {
+        let from = place_of(&window, end);
+        let to = from + vec2(by, 0.0);
+        let expected = omega_at(&window, to);
+        drag_along(&mut window, from, to);
+        window.drop_at(to);
+        settle(&mut window);
+        let found = if by > 0.0 { band(&window).0 } else { band(&window).1 };
+        // A hundredth of a point on the screen.
+        assert!((found / expected - 1.0).abs() < 1e-4, "{end} dragged to {expected}: {found}");
+        assert_eq!(state(&window).display.bode.omega_range(), view);
+    }
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(&mut window);
+    assert_eq!(band(&window).1, 12.0, "a drag is one decision");
+}
+
+#[test]
+fn a_zoom_outlives_whatever_is_computed_and_whatever_is_shown() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    let area = *state(&window).display.bode.transform(Pane::Magnitude).unwrap().frame();
+    let (from, to) = (area.lerp_inside(vec2(0.3, 0.3)), area.lerp_inside(vec2(0.7, 0.8)));
+    window.hover_at(from);
+    window.run_steps(2);
+    let button = |pressed| {
+        let (pos, modifiers) = (if pressed { from } else { to }, Modifiers::NONE);
+        Event::PointerButton { pos, button: PointerButton::Secondary, pressed, modifiers }
+    };
+    window.event(button(true));
+    window.run_steps(1);
+    for at in [from.lerp(to, 0.5), to] {
+        window.hover_at(at);
+        window.run_steps(1);
+    }
+    window.event(button(false));
+    settle(&mut window);
+    let ranges = |window: &Window| {
+        let view = &state(window).display.bode;
+        (view.omega_range(), view.value_range(Pane::Magnitude), view.value_range(Pane::Phase))
+    };
+    let zoomed = ranges(&window);
+    assert!(zoomed.0.0 > 0.5 && zoomed.0.1 < 12.0, "{zoomed:?}");
+    click(&mut window, "Keep physics model V+10kt");
+    assert_eq!(ranges(&window), zoomed, "after another analysis");
+    window.key_press(Key::ArrowUp);
+    settle(&mut window);
+    assert_ne!(state(&window).condition().id(), ConditionId(10));
+    assert_eq!((ranges(&window).0, ranges(&window).1), (zoomed.0, zoomed.1), "in another condition");
+    assert_ne!(ranges(&window).2, zoomed.2, "phases, which nobody zoomed, are fitted");
+    click(&mut window, "Response LAT → P");
+    assert_eq!((ranges(&window).0, ranges(&window).1), (zoomed.0, zoomed.1), "of another response");
+    window.key_press(Key::F);
+    settle(&mut window);
+    assert!(ranges(&window).0.0 < 0.5 && ranges(&window).0.1 > 12.0, "until everything is fitted");
 }
 
 #[test]

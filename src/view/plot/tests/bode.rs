@@ -18,14 +18,7 @@ fn harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
         .with_context_setup(palette::apply)
         .build_ui_state(
             |ui, model: &mut Model| {
-                let scene = BodeScene {
-                    pair_title: "LON → Q",
-                    curves: &model.curves,
-                    band: model.band,
-                    unit: FrequencyUnit::RadPerSecond,
-                    stale: false,
-                    message: None,
-                };
+                let scene = BodeScene::of("LON → Q", &model.curves, model.band);
                 let palette = Palette::of(ui.visuals());
                 for event in bode_ui(ui, &scene, &mut model.view, &palette) {
                     if let BodeEvent::BandDragged { min, max } = event {
@@ -53,6 +46,21 @@ fn point_on(harness: &Harness<'_, Model>, index: usize, k: usize) -> Pos2 {
 /// A place in the magnitude plot that is far from every curve.
 fn empty_spot(harness: &Harness<'_, Model>) -> Pos2 {
     point_on(harness, 2, 60) + vec2(0.0, 40.0)
+}
+
+/// The same where there is one curve.
+fn empty_spot_of_one(harness: &Harness<'_, Model>) -> Pos2 {
+    point_on(harness, 0, 60) + vec2(0.0, 40.0)
+}
+
+fn wheel(delta: egui::Vec2) -> Event {
+    Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta,
+        phase: egui::TouchPhase::Move,
+        modifiers: Modifiers::NONE,
+        source: egui::MouseWheelSource::Wheel,
+    }
 }
 
 fn clicks(harness: &Harness<'_, Model>) -> Vec<BodeEvent> {
@@ -150,15 +158,8 @@ fn the_wheel_zooms_about_the_pointer() {
     let at = point_on(&harness, 1, 60);
     harness.hover_at(at);
     harness.step();
-    let wheel = Event::MouseWheel {
-        unit: egui::MouseWheelUnit::Point,
-        delta: vec2(0.0, 120.0),
-        phase: egui::TouchPhase::Move,
-        modifiers: Modifiers::NONE,
-        source: egui::MouseWheelSource::Wheel,
-    };
     let before = harness.state().view.omega_range();
-    harness.event(wheel);
+    harness.event(wheel(vec2(0.0, 120.0)));
     // Scrolling is smooth: it takes some frames.
     harness.run_steps(12);
     let after = harness.state().view.omega_range();
@@ -187,16 +188,80 @@ fn new_data_keep_the_zoom_and_a_double_click_fits_them() {
 }
 
 #[test]
-fn a_double_click_on_a_curve_fits_and_takes_its_first_click_back() {
+fn a_double_click_on_a_curve_takes_its_first_click_back_and_leaves_the_view() {
     let mut harness = harness(three_curves());
-    let fitted = harness.state().view.omega_range();
     let from = empty_spot(&harness);
     drag(&mut harness, &[from, from + vec2(40.0, 0.0)], PointerButton::Primary);
+    let panned = harness.state().view.omega_range();
     let at = point_on(&harness, 1, 60);
     click(&mut harness, at);
     click(&mut harness, at);
     assert_eq!(clicks(&harness), [BodeEvent::Clicked(numbered(2)), BodeEvent::TakenBack(numbered(2))]);
-    assert_eq!(harness.state().view.omega_range(), fitted);
+    harness.run();
+    assert_eq!(harness.state().view.omega_range(), panned);
+}
+
+#[test]
+fn values_are_fitted_to_other_curves_until_the_engineer_zooms_them() {
+    let mut harness = harness(three_curves());
+    let heights = |harness: &Harness<'_, Model>| harness.state().view.value_range(Pane::Magnitude);
+    let first = heights(&harness);
+    let other = |harness: &mut Harness<'_, Model>, gain_db| {
+        harness.state_mut().curves = vec![lag(5, gain_db, 1.0, Role::Nominal)];
+        harness.state_mut().view.request_refit();
+        harness.run();
+    };
+    other(&mut harness, 40.0);
+    let fitted = heights(&harness);
+    assert!(fitted.min > first.min + 20.0, "{first:?} {fitted:?}");
+    let from = empty_spot_of_one(&harness);
+    drag(&mut harness, &[from, from + vec2(0.0, 30.0)], PointerButton::Primary);
+    let panned = heights(&harness);
+    assert_ne!(panned, fitted);
+    other(&mut harness, 0.0);
+    assert_eq!(heights(&harness), panned, "zoomed by hand");
+    harness.state_mut().view.request_fit();
+    harness.run();
+    assert!(heights(&harness).max < 5.0, "a fit of everything takes no notice of it");
+}
+
+#[test]
+fn a_sideways_wheel_leaves_the_values_to_be_fitted() {
+    let mut harness = harness(three_curves());
+    let at = empty_spot(&harness);
+    harness.hover_at(at);
+    harness.step();
+    let before = harness.state().view.omega_range();
+    harness.event(wheel(vec2(120.0, 0.0)));
+    harness.run_steps(12);
+    assert!(harness.state().view.omega_range().1 < before.1);
+    let heights = harness.state().view.value_range(Pane::Magnitude);
+    harness.state_mut().curves = vec![lag(5, 40.0, 1.0, Role::Nominal)];
+    harness.state_mut().view.request_refit();
+    harness.run();
+    assert!(harness.state().view.value_range(Pane::Magnitude).min > heights.min + 20.0);
+}
+
+#[test]
+fn a_band_that_is_set_elsewhere_is_brought_into_view_unless_the_frequencies_were_zoomed() {
+    let mut harness = harness(three_curves());
+    let before = harness.state().view.omega_range();
+    harness.state_mut().view.follow_band((0.3, 20.0));
+    harness.run();
+    assert_eq!(harness.state().view.omega_range(), before, "it is in view");
+    let omega: Arc<[f64]> = (0..120).map(|k| 3.0 * (200.0f64 / 3.0).powf(f64::from(k) / 119.0)).collect();
+    let wider = BodeCurve { omega, ..lag(1, 0.0, 1.0, Role::Nominal) };
+    harness.state_mut().curves = vec![wider.clone()];
+    harness.state_mut().view.follow_band((5.0, 120.0));
+    harness.run();
+    let followed = harness.state().view.omega_range();
+    assert!((followed.0 - 3.0).abs() < 1e-9 && (followed.1 - 200.0).abs() < 1e-9, "{followed:?}");
+    let from = empty_spot_of_one(&harness);
+    drag(&mut harness, &[from, from + vec2(30.0, 0.0)], PointerButton::Primary);
+    let panned = harness.state().view.omega_range();
+    harness.state_mut().view.follow_band((0.1, 0.2));
+    harness.run();
+    assert_eq!(harness.state().view.omega_range(), panned);
 }
 
 #[test]

@@ -1,0 +1,122 @@
+//! Who the curves of a condition are: their names, roles and marks, whatever is drawn of them.
+
+use std::sync::Arc;
+
+use crate::correction::ChannelCorrection;
+use crate::dataset::{BundleKind, Condition, Model, ModelId, Pair};
+use crate::fidelity::SUGGESTION_RATIO;
+use crate::response::GainDelay;
+use crate::study::ConditionAnalysis;
+use crate::units::s_to_ms;
+
+use super::plot::{BodeCurve, CurveId, Role};
+use super::state::State;
+
+/// A curve without its numbers.
+#[derive(Clone, Debug)]
+pub(super) struct CurveFace {
+    pub(super) id: CurveId,
+    label: String,
+    detail: String,
+    role: Role,
+    pub(super) rejected: bool,
+    highlighted: bool,
+}
+
+impl CurveFace {
+    /// The curve of these numbers.
+    pub(super) fn with(self, omega: &Arc<[f64]>, magnitude_db: &Arc<[f64]>, phase_deg: &Arc<[f64]>) -> BodeCurve {
+        let Self { id, label, detail, role, rejected, highlighted } = self;
+        let (omega, magnitude_db, phase_deg) = (Arc::clone(omega), Arc::clone(magnitude_db), Arc::clone(phase_deg));
+        BodeCurve { id, label, detail, role, rejected, highlighted, omega, magnitude_db, phase_deg }
+    }
+}
+
+/// A corrected curve without its numbers: what it is made of.
+#[derive(Clone, Debug)]
+pub(super) struct CorrectedFace {
+    pub(super) face: CurveFace,
+    /// Index of the physics model.
+    pub(super) model: usize,
+    pub(super) correction: GainDelay,
+}
+
+/// Index of the identified model that the others are compared with; the first one where nothing was compared.
+pub(super) fn reference_of(state: &State, condition: &Condition) -> usize {
+    let name = state.shown().map(|shown| shown.representative_name(BundleKind::Identified));
+    name.and_then(|name| condition.position(BundleKind::Identified, name)).unwrap_or(0)
+}
+
+/// The models of a bundle that are shown, with their indices.
+pub(super) fn model_faces(
+    state: &State,
+    condition: &Condition,
+    kind: BundleKind,
+) -> impl Iterator<Item = (usize, CurveFace)> {
+    let shown = state.shown();
+    let representative = shown.map(|shown| shown.representative_name(kind));
+    let isolated = state.display.isolated.as_ref().filter(move |id| id.condition == condition.id());
+    let is_visible = move |name: &str| {
+        isolated.is_none_or(|id| (id.bundle == kind && id.name == name) || representative == Some(name))
+    };
+    let face = move |(index, model): (usize, &Model)| {
+        let id = ModelId::new(condition.id(), kind, &model.name);
+        let rejected = state.study.is_rejected(&id);
+        let face = CurveFace {
+            label: model.name.clone(),
+            detail: detail(shown, model, &id, rejected),
+            role: role_of(kind, model.is_nominal(), representative == Some(&model.name)),
+            rejected,
+            highlighted: state.display.hovered.as_ref() == Some(&id),
+            id: CurveId::Model(id),
+        };
+        (index, face)
+    };
+    condition.bundle(kind).iter().enumerate().filter(move |(_, model)| is_visible(&model.name)).map(face)
+}
+
+fn role_of(kind: BundleKind, nominal: bool, represents: bool) -> Role {
+    match (kind, nominal, represents) {
+        (BundleKind::Physics, true, _) => Role::Nominal,
+        (BundleKind::Physics, false, true) => Role::Representative,
+        (BundleKind::Physics, false, false) => Role::Perturbed,
+        (BundleKind::Identified, _, true) => Role::IdentifiedRepresentative,
+        (BundleKind::Identified, _, false) => Role::Identified,
+    }
+}
+
+/// "ratio 3.68, suggested as an outlier · click to reject".
+fn detail(shown: Option<&ConditionAnalysis>, model: &Model, id: &ModelId, rejected: bool) -> String {
+    let ratio =
+        shown.filter(|_| id.bundle == BundleKind::Physics).and_then(|shown| shown.discontinuity_ratio(&id.name));
+    let action = if rejected { "click to restore" } else { "click to reject" };
+    let ratio = ratio.map(|ratio| {
+        let verdict = if ratio > SUGGESTION_RATIO { ", suggested as an outlier" } else { "" };
+        format!("ratio {ratio:.2}{verdict}")
+    });
+    let source = model.source.as_ref().map(|source| format!("from {}", source.words()));
+    ratio.into_iter().chain(source).chain([action.to_owned()]).collect::<Vec<_>>().join(" · ")
+}
+
+/// The physics representative under the condition's own correction, and under the schedule's.
+pub(super) fn corrected_faces(state: &State, condition: &Condition, pair: Pair) -> Vec<CorrectedFace> {
+    let Some(shown) = state.shown() else { return Vec::new() };
+    let name = shown.representative_name(BundleKind::Physics);
+    let Some(model) = condition.position(BundleKind::Physics, name) else {
+        return Vec::new();
+    };
+    let face = |id: CurveId, label: String, role: Role, correction: &ChannelCorrection| {
+        let (net_gain, delay_ms) = (correction.net_gain(pair).value(), s_to_ms(correction.net_delay(pair).value_s()));
+        let detail = format!("net gain {net_gain:.3}, net delay {delay_ms:.1} ms");
+        let face = CurveFace { id, label, detail, role, rejected: false, highlighted: false };
+        Some(CorrectedFace { face, model, correction: correction.on(pair)? })
+    };
+    let own = face(CurveId::Corrected, format!("{name}, corrected"), Role::Corrected, &shown.correction);
+    let scheduled = state.analysis().and_then(|analysis| analysis.schedule.as_ref().ok()).and_then(|schedule| {
+        let older = if state.others_are_older() { " of older settings" } else { "" };
+        let label = format!("{name}, scheduled{older}");
+        let correction = schedule.at(state.condition().flight_state().airspeed_kt);
+        face(CurveId::Scheduled, label, Role::Scheduled, &correction)
+    });
+    own.into_iter().chain(scheduled).collect()
+}

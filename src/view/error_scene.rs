@@ -1,0 +1,241 @@
+//! What the fit sees of the focused response, made of what was computed.
+
+use std::sync::Arc;
+
+use crate::dataset::{BundleKind, Pair};
+use crate::fidelity::Mismatch;
+use crate::response::{FrequencyResponse, GainDelay, PolarCurve, quantile};
+use crate::study::{ConditionAnalysis, ConditionCurves};
+use crate::units::{ratio_to_db, s_to_ms};
+
+use super::curve_face::{CorrectedFace, corrected_faces, model_faces, reference_of};
+use super::plot::{BodeCurve, CurveId, Level, Pane, PhaseErrorUnit, Rule, RuleKind};
+use super::state::State;
+
+/// How far one response is from the reference, and on which branch.
+#[derive(Clone, Debug)]
+struct ErrorShape {
+    /// `20 log10 |H_sim| / |H_ref|`.
+    mismatch_db: Vec<f64>,
+    /// `Delta phi(H_sim, H_ref)` \[rad\] (M3, M6b): never a difference of two phases that were unwrapped apart.
+    phase: Vec<f64>,
+}
+
+/// What is drawn of it: `20 log10 |H_ref| / |H_sim|`, and `Delta phi` in degrees or `Delta phi / omega` in milliseconds.
+#[derive(Clone, Debug)]
+struct DrawnError {
+    magnitude_db: Arc<[f64]>,
+    phase: Arc<[f64]>,
+}
+
+impl ErrorShape {
+    /// Nothing where either response is zero or not finite somewhere.
+    fn of(simulated: &PolarCurve, reference: &PolarCurve, omega: &[f64]) -> Self {
+        let mismatch = Mismatch::new(simulated, reference);
+        Self { phase: mismatch.phase_difference(omega), mismatch_db: mismatch.magnitude_db }
+    }
+
+    /// After a gain and a delay of the simulated response (M10), which leave it on its branch.
+    fn drawn(&self, correction: GainDelay, omega: &[f64], unit: PhaseErrorUnit) -> DrawnError {
+        let phase = correction.phases(&self.phase, omega).zip(omega);
+        DrawnError {
+            magnitude_db: correction.magnitudes_db(&self.mismatch_db).map(|db| -db).collect(),
+            phase: match unit {
+                PhaseErrorUnit::Degree => phase.map(|(phase, _)| phase.to_degrees()).collect(),
+                PhaseErrorUnit::Millisecond => phase.map(|(phase, omega)| s_to_ms(phase / omega)).collect(),
+            },
+        }
+    }
+}
+
+/// What the errors are made of.
+#[derive(Clone, Debug)]
+struct Made {
+    curves: Arc<ConditionCurves>,
+    pair: Pair,
+    reference: usize,
+    band: (f64, f64),
+    unit: PhaseErrorUnit,
+}
+
+impl Made {
+    fn is_same(&self, other: &Self) -> bool {
+        let key = |made: &Self| (made.pair, made.reference, made.band, made.unit);
+        Arc::ptr_eq(&self.curves, &other.curves) && key(self) == key(other)
+    }
+
+    /// The response of a model in the band; nothing where it is zero or not finite somewhere in it.
+    fn polar(&self, response: &FrequencyResponse) -> Option<PolarCurve> {
+        let omega = self.curves.grid.omega();
+        let from = omega.partition_point(|omega| *omega < self.band.0);
+        let to = omega.partition_point(|omega| *omega <= self.band.1);
+        PolarCurve::of(response.curve(self.pair).get(from..to)?)
+    }
+
+    fn omega(&self) -> Arc<[f64]> {
+        let within = |omega: &&f64| (self.band.0..=self.band.1).contains(*omega);
+        self.curves.grid.omega().iter().filter(within).copied().collect()
+    }
+}
+
+/// Errors of every physics model of the condition shown for one response, kept while nothing of it changes.
+#[derive(Debug, Default)]
+pub struct CachedErrors {
+    made: Option<Made>,
+    omega: Arc<[f64]>,
+    /// Zero at each frequency: the reference itself.
+    zero: Arc<[f64]>,
+    /// In the order of the physics models.
+    errors: Vec<Option<(ErrorShape, DrawnError)>>,
+    /// Of each corrected curve: what it was made with, and what is drawn of it.
+    corrected: Vec<(CurveId, usize, GainDelay, DrawnError)>,
+}
+
+impl CachedErrors {
+    fn refresh(&mut self, made: Made) {
+        if self.made.as_ref().is_some_and(|before| before.is_same(&made)) {
+            return;
+        }
+        self.omega = made.omega();
+        self.zero = vec![0.0; self.omega.len()].into();
+        self.corrected.clear();
+        let reference = made.polar(&made.curves.identified[made.reference]);
+        let error = |response: &Arc<FrequencyResponse>| {
+            let shape = ErrorShape::of(&made.polar(response)?, reference.as_ref()?, &self.omega);
+            let drawn = shape.drawn(GainDelay::NONE, &self.omega, made.unit);
+            Some((shape, drawn))
+        };
+        self.errors = made.curves.physics.iter().map(error).collect();
+        self.made = Some(made);
+    }
+
+    fn corrected(&mut self, id: &CurveId, model: usize, correction: GainDelay) -> Option<DrawnError> {
+        let same =
+            |made: &&(CurveId, usize, GainDelay, DrawnError)| (&made.0, made.1, made.2) == (id, model, correction);
+        if let Some((.., drawn)) = self.corrected.iter().find(same) {
+            return Some(drawn.clone());
+        }
+        let drawn = self.errors[model].as_ref()?.0.drawn(correction, &self.omega, self.made.as_ref()?.unit);
+        self.corrected.retain(|(of, ..)| of != id);
+        self.corrected.push((id.clone(), model, correction, drawn.clone()));
+        Some(drawn)
+    }
+}
+
+/// The error over the band of every kept physics model, of the representative after its correction and after the schedule's, and the
+/// reference as the line at zero; none until the responses are there.
+pub fn error_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
+    let Some(curves) = state.curves().cloned() else {
+        return Vec::new();
+    };
+    let band = state.study.settings.band;
+    let condition = Arc::clone(&curves.condition);
+    let reference = reference_of(state, &condition);
+    let unit = state.display.phase_error;
+    let mut errors = std::mem::take(&mut state.display.errors);
+    errors.refresh(Made { curves, pair, reference, band: (band.min(), band.max()), unit });
+    let mut drawn = Vec::new();
+    for (index, face) in model_faces(state, &condition, BundleKind::Physics).filter(|(_, face)| !face.rejected) {
+        if let Some((_, error)) = &errors.errors[index] {
+            drawn.push(face.with(&errors.omega, &error.magnitude_db, &error.phase));
+        }
+    }
+    if !drawn.is_empty() {
+        let faces = model_faces(state, &condition, BundleKind::Identified);
+        drawn.extend(
+            faces
+                .filter(|(index, _)| *index == reference)
+                .map(|(_, face)| face.with(&errors.omega, &errors.zero, &errors.zero)),
+        );
+    }
+    for CorrectedFace { face, model, correction } in corrected_faces(state, &condition, pair) {
+        if let Some(error) = errors.corrected(&face.id, model, correction) {
+            drawn.push(face.with(&errors.omega, &error.magnitude_db, &error.phase));
+        }
+    }
+    state.display.errors = errors;
+    drawn
+}
+
+/// G and D, the bounds of the channels, and quantiles of the representative's error among `drawn`: what the fit makes of it (M6, M7).
+pub fn error_rules(state: &State, pair: Pair, drawn: &[BodeCurve]) -> Vec<Rule> {
+    let Some(shown) = state.shown() else { return Vec::new() };
+    let unit = state.display.phase_error;
+    let mut rules = delta_rules(shown, pair, unit);
+    rules.extend(bound_rules(shown, unit));
+    let name = shown.representative_name(BundleKind::Physics);
+    let is_representative = |curve: &&BodeCurve| matches!(&curve.id, CurveId::Model(id) if id.bundle == BundleKind::Physics && id.name == name);
+    if let Some(curve) = drawn.iter().find(is_representative) {
+        rules.extend(quantile_rules(curve, state.study.settings.quantile, unit));
+    }
+    rules
+}
+
+/// A delay as a line in the pane of phase errors.
+fn delay_rule(kind: RuleKind, label: String, delay_s: f64, unit: PhaseErrorUnit) -> Rule {
+    let level = match unit {
+        PhaseErrorUnit::Degree => Level::PerOmega(delay_s.to_degrees()),
+        PhaseErrorUnit::Millisecond => Level::Constant(s_to_ms(delay_s)),
+    };
+    Rule { pane: Pane::Phase, kind, label, level }
+}
+
+fn gain_rule(kind: RuleKind, label: String, gain: f64) -> Rule {
+    Rule { pane: Pane::Magnitude, kind, label, level: Level::Constant(ratio_to_db(gain)) }
+}
+
+fn signed(value: f64) -> String {
+    format!("{value:.1}").replace('-', "\u{2212}")
+}
+
+fn delta_rules(shown: &ConditionAnalysis, pair: Pair, unit: PhaseErrorUnit) -> Vec<Rule> {
+    let delta = &shown.comparison.delta;
+    let gain = delta.gain[pair].map(|gain| {
+        let label = format!("G {gain:.3} ({} dB), median over the band", signed(ratio_to_db(gain)));
+        gain_rule(RuleKind::Delta, label, gain)
+    });
+    let delay = delta.delay_s[pair].map(|delay_s| {
+        let meaning = if delay_s < 0.0 { ": lead is missing" } else { "" };
+        let label = format!("D {} ms{meaning}", signed(s_to_ms(delay_s)));
+        delay_rule(RuleKind::Delta, label, delay_s, unit)
+    });
+    gain.into_iter().chain(delay).collect()
+}
+
+fn bound_rules(shown: &ConditionAnalysis, unit: PhaseErrorUnit) -> Vec<Rule> {
+    let (bounds, delay_s) = (shown.gain_bounds(), shown.delay_upper_s());
+    vec![
+        gain_rule(RuleKind::Bound, format!("LB {:.3}", bounds.lower), bounds.lower),
+        gain_rule(RuleKind::Bound, format!("UB {:.3}", bounds.upper), bounds.upper),
+        delay_rule(RuleKind::Bound, format!("UB {} ms", signed(s_to_ms(delay_s))), delay_s, unit),
+    ]
+}
+
+/// The quantiles of one response's error: what M7 would take were there no others.
+fn quantile_rules(curve: &BodeCurve, q: f64, unit: PhaseErrorUnit) -> Vec<Rule> {
+    let delays = curve.omega.iter().zip(curve.phase_deg.iter()).map(|(omega, phase)| match unit {
+        PhaseErrorUnit::Degree => phase.to_radians() / omega,
+        PhaseErrorUnit::Millisecond => 1e-3 * phase,
+    });
+    let (mut ratios_db, mut delays_s) = (curve.magnitude_db.to_vec(), delays.collect::<Vec<f64>>());
+    let label = |q: f64| format!("{:.0} % quantile", 100.0 * q);
+    [q, 1.0 - q]
+        .into_iter()
+        .flat_map(|q| {
+            let level = Level::Constant(quantile(&mut ratios_db, q));
+            let of_magnitude = Rule { pane: Pane::Magnitude, kind: RuleKind::Quantile, label: label(q), level };
+            [of_magnitude, delay_rule(RuleKind::Quantile, label(q), quantile(&mut delays_s, q), unit)]
+        })
+        .collect()
+}
+
+/// What stands where there is no error to draw.
+pub fn error_message(state: &State, pair: Pair) -> String {
+    match state.shown() {
+        Some(shown) if shown.comparison.undefined[pair].is_some() => {
+            let name = state.dataset().pair_name(pair);
+            format!("{name} is not compared: one of the representatives has no such response in the band")
+        }
+        _ => state.curves_message().unwrap_or("Nothing to compare in the band").to_owned(),
+    }
+}

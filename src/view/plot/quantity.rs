@@ -1,0 +1,123 @@
+//! What the two stacked panes show, and in which units.
+
+use serde::{Deserialize, Serialize};
+
+use super::curve::Pane;
+use super::value_unit::ValueUnit;
+
+/// How the magnitude of a response is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum MagnitudeUnit {
+    /// Decibels.
+    #[default]
+    Decibel,
+    /// The ratio of output to input, in their units.
+    Ratio,
+}
+
+/// How the phase of a response is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PhaseUnit {
+    /// Continuous over frequency (M2).
+    #[default]
+    Unwrapped,
+    /// Between −180° and 180°.
+    Wrapped,
+}
+
+/// How a difference of phases is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PhaseErrorUnit {
+    /// Δφ.
+    #[default]
+    Degree,
+    /// Δφ/ω: the delay that would make up for it.
+    Millisecond,
+}
+
+/// What the two stacked panes show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BodeQuantity<'a> {
+    /// Responses: their magnitudes above, their phases below.
+    Response {
+        /// How magnitudes are read.
+        magnitude: MagnitudeUnit,
+        /// How phases are drawn.
+        phase: PhaseUnit,
+        /// The unit of a ratio: "(deg/s)/in".
+        ratio_unit: &'a str,
+    },
+    /// What the fit sees of them: `20 log10 |H_ref| / |H_sim|` above, `Delta phi(H_sim, H_ref)` below (M6).
+    Error {
+        /// How differences of phases are drawn.
+        phase: PhaseErrorUnit,
+    },
+}
+
+impl BodeQuantity<'_> {
+    /// Responses in decibels and degrees.
+    pub const RESPONSE: BodeQuantity<'static> =
+        BodeQuantity::Response { magnitude: MagnitudeUnit::Decibel, phase: PhaseUnit::Unwrapped, ratio_unit: "" };
+
+    /// Tells this plot's widgets from those of the others.
+    pub(super) fn salt(self) -> &'static str {
+        match self {
+            Self::Response { .. } => "bode",
+            Self::Error { .. } => "error",
+        }
+    }
+
+    /// What a pane shows: "Magnitude".
+    pub(super) fn name(self, pane: Pane) -> &'static str {
+        match (self, pane) {
+            (Self::Response { .. }, Pane::Magnitude) => "Magnitude",
+            (Self::Response { .. }, Pane::Phase) => "Phase",
+            (Self::Error { .. }, Pane::Magnitude) => "Magnitude error",
+            (Self::Error { .. }, Pane::Phase) => "Phase error",
+        }
+    }
+
+    /// A pane as part of a sentence: "magnitude plot".
+    pub(super) fn place(self, pane: Pane) -> &'static str {
+        match (self, pane) {
+            (Self::Response { .. }, Pane::Magnitude) => "magnitude plot",
+            (Self::Response { .. }, Pane::Phase) => "phase plot",
+            (Self::Error { .. }, Pane::Magnitude) => "magnitude error plot",
+            (Self::Error { .. }, Pane::Phase) => "phase error plot",
+        }
+    }
+
+    /// The unit that a pane is read in.
+    pub(super) fn unit(self, pane: Pane) -> ValueUnit {
+        match (self, pane) {
+            (Self::Response { magnitude: MagnitudeUnit::Ratio, .. }, Pane::Magnitude) => ValueUnit::Ratio,
+            (_, Pane::Magnitude) => ValueUnit::Decibel,
+            (Self::Error { phase: PhaseErrorUnit::Millisecond }, Pane::Phase) => ValueUnit::Millisecond,
+            (_, Pane::Phase) => ValueUnit::Degree,
+        }
+    }
+
+    /// What stands beside a pane's axis.
+    pub(super) fn axis_label(self, pane: Pane) -> String {
+        match (self, pane) {
+            (Self::Response { magnitude: MagnitudeUnit::Ratio, ratio_unit, .. }, Pane::Magnitude) => {
+                format!("Magnitude [{ratio_unit}]")
+            }
+            (Self::Response { .. }, Pane::Magnitude) => "Magnitude [dB]".to_owned(),
+            (Self::Response { .. }, Pane::Phase) => "Phase [deg]".to_owned(),
+            (Self::Error { .. }, Pane::Magnitude) => "|ident.| / |model| [dB]".to_owned(),
+            (Self::Error { phase: PhaseErrorUnit::Degree }, Pane::Phase) => "Δφ [deg]".to_owned(),
+            (Self::Error { phase: PhaseErrorUnit::Millisecond }, Pane::Phase) => "Δφ/ω [ms]".to_owned(),
+        }
+    }
+
+    /// The least height that fitting gives a pane.
+    pub(super) fn least_height(self, pane: Pane) -> f64 {
+        match (self, pane) {
+            (Self::Response { .. }, Pane::Magnitude) => 4.0,
+            (Self::Response { .. }, Pane::Phase) => 20.0,
+            (Self::Error { .. }, Pane::Magnitude) => 1.0,
+            (Self::Error { .. }, Pane::Phase) => 5.0,
+        }
+    }
+}

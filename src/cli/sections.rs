@@ -1,6 +1,6 @@
 //! The sections of the summary.
 
-use crate::correction::Outcome;
+use crate::correction::{ChannelCorrection, Outcome};
 use crate::dataset::{BundleKind, Condition, Pair};
 use crate::io::plain;
 use crate::schedule::{Schedule, ScheduledQuantity};
@@ -154,10 +154,23 @@ pub(super) fn schedule_section(analysis: &Analysis) -> String {
     for caution in &schedule.cautions {
         text.push_str(&detail("caution", &plain(&caution.words(&inputs, &outputs))));
     }
-    text + &schedule_table(analysis, schedule)
+    text.push_str(&schedule_table(analysis, schedule, |correction, pair| {
+        figure(Some(correction.net_gain(pair).value()), 3)
+    }));
+    if schedule.delays.is_some() {
+        text.push_str(&labelled(0, "", LABEL, "net delays in ms:"));
+        text.push_str(&schedule_table(analysis, schedule, |correction, pair| {
+            figure(Some(s_to_ms(correction.net_delay(pair).value_s())), 1)
+        }));
+    }
+    text
 }
 
-fn schedule_table(analysis: &Analysis, schedule: &Schedule) -> String {
+fn schedule_table(
+    analysis: &Analysis,
+    schedule: &Schedule,
+    entry: impl Fn(&ChannelCorrection, Pair) -> String,
+) -> String {
     /// Airspeeds shown: the ends, the middle, and the quarters.
     const SHOWN: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
     let dataset = &analysis.study.dataset;
@@ -168,8 +181,7 @@ fn schedule_table(analysis: &Analysis, schedule: &Schedule) -> String {
     let mut table = TextTable::new([("response", Side::Left), a, b, c, d, e]);
     let corrections = at.map(|airspeed| schedule.at(airspeed));
     for pair in shown_pairs(&analysis.study) {
-        let [a, b, c, d, e] =
-            corrections.each_ref().map(|correction| figure(Some(correction.net_gain(pair).value()), 3));
+        let [a, b, c, d, e] = corrections.each_ref().map(|correction| entry(correction, pair));
         table.row([plain(&dataset.pair_name(pair)), a, b, c, d, e]);
     }
     table.lines(2)

@@ -110,7 +110,8 @@ fn worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
 fn delay_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let (held, unmatched) = (result.held().marked().count(), &result.delays.unmatched);
     if unmatched.is_empty() {
-        let text = format!("All {held} held delays are matched exactly.");
+        let how = if result.delays.agreeing.is_empty() { "exactly" } else { "as far as can be told" };
+        let text = format!("All {held} held delays are matched {how}.");
         return if held == 0 { Vec::new() } else { vec![Remark::new(RemarkKind::Good, text)] };
     }
     let lead: Vec<String> = unmatched

@@ -153,6 +153,19 @@ fn every_option_reaches_the_analysis() {
 }
 
 #[test]
+fn delays_are_scheduled_and_a_tolerance_is_set_by_options() {
+    let desk = Desk::new();
+    let ended = desk.gdcm(&["analyze", "small.json", "--out", "out", "--schedule-delays", "--agreement", "0.2"]);
+    ended.assert_done();
+    assert!(ended.out.contains("net delays in ms:"), "{}", ended.out);
+    let written = read_corrections(&desk.path("out/corrections.json")).unwrap();
+    assert!(written.settings.schedule.delays && written.schedule.unwrap().delays_s.is_some());
+    assert_eq!(written.settings.agreement_db, 0.2);
+    let words = ["--agreement: agreement tolerance: expected a number of dB from 0 to 3, found 4"];
+    desk.gdcm(&["analyze", "small.json", "--out", "out", "--force", "--agreement", "4"]).assert_failed(2, &words);
+}
+
+#[test]
 fn no_pair_held_is_a_choice_of_its_own() {
     let desk = Desk::new();
     desk.gdcm(&["analyze", "small.json", "--out", "out", "--on", "none"]).assert_done();

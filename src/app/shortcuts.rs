@@ -74,5 +74,9 @@ fn navigation(ctx: &Context, state: &State) -> Vec<Command> {
     if pressed(Key::F) {
         commands.push(Command::FitPlots);
     }
+    let display = &state.display;
+    if (display.isolated.is_some() || !display.curves.selected.is_empty()) && pressed(Key::Escape) {
+        commands.push(Command::EndIsolation);
+    }
     commands
 }

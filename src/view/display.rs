@@ -6,12 +6,13 @@ use crate::dataset::{ConditionId, ModelId, Pair};
 
 use super::arrangement::Arrangement;
 use super::bode_scene::CachedShapes;
+use super::curve_display::CurveDisplay;
 use super::error_scene::CachedErrors;
 use super::looks::Looks;
 use super::net_gain_scene::PairSet;
 use super::plot::{
     Across, AssessmentView, BodeCurve, BodeView, ChannelsView, FrequencyUnit, GainView, Measure, OverviewView,
-    PhaseErrorUnit, PolesView,
+    PolesView,
 };
 
 /// What is shown, none of which changes a result.
@@ -31,8 +32,8 @@ pub struct Display {
     pub unit: FrequencyUnit,
     /// How curves are drawn.
     pub looks: Looks,
-    /// How differences of phases are drawn.
-    pub phase_error: PhaseErrorUnit,
+    /// How the plots over frequency show their curves.
+    pub curves: CurveDisplay,
     /// Ranges and transforms of the Bode plot.
     pub bode: BodeView,
     /// Ranges and transforms of the plot of errors.
@@ -76,7 +77,7 @@ impl Display {
             arrangement: Arrangement::default(),
             unit: FrequencyUnit::default(),
             looks: Looks::default(),
-            phase_error: PhaseErrorUnit::default(),
+            curves: CurveDisplay::default(),
             bode: BodeView::default(),
             error: BodeView::default(),
             net_gain_pairs: PairSet::default(),

@@ -6,7 +6,7 @@ use crate::study::Edit;
 
 use super::arrangement::{Preset, View};
 use super::command::{Command, FormKind};
-use super::looks_menu::looks_menu_ui;
+use super::looks_menu::{curve_units_menu_ui, looks_menu_ui};
 use super::palette::Palette;
 use super::plot::FrequencyUnit;
 use super::state::{RecentFile, State};
@@ -90,7 +90,8 @@ fn view_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         FrequencyUnit::Hertz => ("Frequencies in rad/s", FrequencyUnit::RadPerSecond),
     };
     entry(ui, text, "", Command::SetFrequencyUnit(unit), commands);
-    ui.menu_button("Curves", |ui| looks_menu_ui(ui, state.display.looks, commands));
+    ui.menu_button("Units of curves", |ui| curve_units_menu_ui(ui, &state.display.curves, commands));
+    ui.menu_button("Looks of curves", |ui| looks_menu_ui(ui, state.display.looks, commands));
     ui.separator();
     for view in View::ALL {
         entry(ui, &format!("Show {}", view.name()), "", Command::ShowView(view), commands);

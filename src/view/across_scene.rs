@@ -127,6 +127,7 @@ fn curve(state: &State, omega: &Arc<[f64]>, id: &ModelId, shape: &Shape) -> Opti
         detail: format!("{} · {} · click to show the condition", condition.flight_state().name, id.name),
         role: Role::OfAirspeed(airspeed_step(state, airspeed_kt)),
         rejected: false,
+        hidden: false,
         highlighted: condition.id() == state.condition().id(),
         omega: Arc::clone(omega),
         magnitude_db: shape.magnitude_db,

@@ -12,9 +12,10 @@ use super::across_scene::AcrossRole;
 use super::arrangement::{Preset, View};
 use super::assessment_scene::AssessedFigures;
 use super::bars::Bar;
+use super::curve_display::CurveCommand;
 use super::looks::Looks;
 use super::net_gain_scene::PairSet;
-use super::plot::{Across, FrequencyUnit, Measure, PhaseErrorUnit};
+use super::plot::{Across, FrequencyUnit, Measure};
 use super::tables::TableKind;
 
 /// One wish of the engineer: what a click, a key or a menu entry stands for. Views push them; the window carries them out.
@@ -60,8 +61,10 @@ pub enum Command {
     Assess(AssessedFigures),
     /// Read frequencies in another unit.
     SetFrequencyUnit(FrequencyUnit),
-    /// Draw differences of phases in another way.
-    SetPhaseErrorUnit(PhaseErrorUnit),
+    /// Show the curves of the plots over frequency in another way.
+    Curves(CurveCommand),
+    /// Show all models again, and select none.
+    EndIsolation,
     /// Draw curves in another way.
     SetLooks(Looks),
     /// Bring every curve back into view.
@@ -160,6 +163,12 @@ pub enum FormKind {
     Shortcuts,
     /// What the program is.
     About,
+}
+
+impl From<CurveCommand> for Command {
+    fn from(command: CurveCommand) -> Self {
+        Command::Curves(command)
+    }
 }
 
 impl From<Edit> for Command {

@@ -8,6 +8,7 @@ use super::across_scene::{AcrossRole, CachedAcross};
 use super::arrangement::Arrangement;
 use super::assessment_scene::AssessedFigures;
 use super::bode_scene::CachedShapes;
+use super::curve_display::CurveDisplay;
 use super::error_scene::CachedErrors;
 use super::evidence_scene::CachedEvidence;
 use super::looks::Looks;
@@ -15,7 +16,7 @@ use super::modes_scene::CachedModes;
 use super::net_gain_scene::PairSet;
 use super::plot::{
     Across, AssessmentView, BodeCurve, BodeView, ChannelsView, FrequencyUnit, GainView, Measure, OverviewView,
-    PhaseErrorUnit, PolesView,
+    PolesView,
 };
 use super::table_view::Sorting;
 
@@ -36,8 +37,8 @@ pub struct Display {
     pub unit: FrequencyUnit,
     /// How curves are drawn.
     pub looks: Looks,
-    /// How differences of phases are drawn.
-    pub phase_error: PhaseErrorUnit,
+    /// How the plots over frequency show their curves.
+    pub curves: CurveDisplay,
     /// Ranges and transforms of the Bode plot.
     pub bode: BodeView,
     /// Ranges and transforms of the plot of errors.
@@ -107,7 +108,7 @@ impl Display {
             arrangement: Arrangement::default(),
             unit: FrequencyUnit::default(),
             looks: Looks::default(),
-            phase_error: PhaseErrorUnit::default(),
+            curves: CurveDisplay::default(),
             bode: BodeView::default(),
             error: BodeView::default(),
             net_gain_pairs: PairSet::default(),

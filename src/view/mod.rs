@@ -12,6 +12,8 @@ mod command_search;
 pub mod command_table;
 pub mod compare_scene;
 pub mod conditions_panel;
+mod cursor_readout;
+pub mod curve_display;
 mod curve_face;
 pub mod display;
 pub mod error_scene;

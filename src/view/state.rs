@@ -255,6 +255,7 @@ impl State {
         }
         self.display.hovered = None;
         self.display.isolated = None;
+        self.display.curves.forget_models();
         self.display.shapes.clear();
         self.display.fit_frequency_plots();
     }

@@ -1,10 +1,12 @@
 //! What a curve stands for, and how it is therefore drawn: the same in every view.
 
+use serde::{Deserialize, Serialize};
+
 use super::line_look::{LineLook, LinePattern};
 use crate::view::palette::Palette;
 
 /// What a curve stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Role {
     /// The physics model at the trim itself.
     Nominal,
@@ -54,6 +56,15 @@ impl Role {
             Self::Scheduled => "scheduled",
             Self::Rejected => "rejected",
             Self::OfAirspeed(_) => "condition",
+        }
+    }
+
+    /// The name where there is little room.
+    pub fn short_name(self) -> &'static str {
+        match self {
+            Self::Representative => "repres.",
+            Self::IdentifiedRepresentative => "ident. rep.",
+            _ => self.name(),
         }
     }
 

@@ -15,6 +15,7 @@ pub mod conditions_panel;
 mod cursor_readout;
 pub mod curve_display;
 mod curve_face;
+pub mod derivation_window;
 pub mod display;
 pub mod error_scene;
 pub mod every_command;

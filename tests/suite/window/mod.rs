@@ -11,6 +11,8 @@ mod lists;
 mod plots;
 mod recovery;
 mod reload;
+mod views;
+mod walk;
 
 use std::path::Path;
 use std::process::Command;

@@ -109,6 +109,7 @@ fn curve(number: usize, points: usize) -> BodeCurve {
         },
         rejected: number == 23,
         highlighted: false,
+        hidden: false,
         magnitude_db: omega.iter().map(magnitude).collect(),
         phase_deg: omega.iter().map(phase).collect(),
         omega: omega.into(),

@@ -1,6 +1,7 @@
 //! The window: the only place that knows eframe, file dialogs and threads.
 
 mod autosave;
+mod beside;
 mod dialogs;
 mod disk_watch;
 pub mod fault;

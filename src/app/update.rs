@@ -7,6 +7,7 @@ use crate::io::{Existing, plain};
 use crate::study::Edit;
 use crate::view::arrangement::Arrangement;
 use crate::view::command::{Command, FormKind};
+use crate::view::curve_display::CurveCommand;
 use crate::view::display::Display;
 use crate::view::net_gain_scene::PairSet;
 use crate::view::number_field::focus_field;
@@ -36,11 +37,12 @@ impl GdcmApp {
 
     /// Carries out the commands of one frame.
     pub(super) fn carry_out(&mut self, commands: Vec<Command>, ctx: &Context) {
-        let pointed_before = self.state.display.hovered.take();
+        let pointed_before = (self.state.display.hovered.take(), self.state.display.curves.cursor.take());
         for command in commands {
             self.carry_out_one(command, ctx);
         }
-        if self.state.display.hovered != pointed_before {
+        let display = &self.state.display;
+        if (&display.hovered, display.curves.cursor) != (&pointed_before.0, pointed_before.1) {
             ctx.request_repaint();
         }
     }
@@ -74,10 +76,18 @@ impl GdcmApp {
                 }
             }
             Command::ShowChannels(measure, across) => display.channel_figure = (measure, across),
+            Command::ShowZeros(shown) => display.show_zeros = shown,
+            Command::ShowEvidence(shown) => display.show_evidence = shown,
+            Command::ShowAcross(role) => {
+                display.across_role = role;
+                display.across.request_refit();
+            }
+            Command::Assess(figures) => display.assessed = figures,
             Command::SetFrequencyUnit(unit) => display.unit = unit,
-            Command::SetPhaseErrorUnit(unit) => {
-                display.phase_error = unit;
-                display.error.release_values(Pane::Phase);
+            Command::Curves(command) => show_curves(display, command),
+            Command::EndIsolation => {
+                display.isolated = None;
+                display.curves.selected.clear();
             }
             Command::SetLooks(looks) => display.looks = looks,
             Command::FitPlots => {
@@ -235,6 +245,17 @@ fn select_condition(display: &mut Display, condition: ConditionId) {
     if display.condition != condition {
         display.condition = condition;
         display.isolated = None;
+        display.curves.selected.clear();
         display.refit_frequency_plots();
     }
+}
+
+/// Carries out a wish about curves. Values in another unit are fitted anew.
+fn show_curves(display: &mut Display, command: CurveCommand) {
+    match command {
+        CurveCommand::DrawPhaseErrors(_) => display.error.release_values(Pane::Phase),
+        CurveCommand::DrawPhases(_) => display.bode.release_values(Pane::Phase),
+        _ => {}
+    }
+    display.curves.carry_out(command);
 }

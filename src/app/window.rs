@@ -177,6 +177,13 @@ impl GdcmApp {
                     self.state.display.bode.follow_band((band.min(), band.max()));
                 }
                 Reply::Toggles(job, toggles) => results.toggles = Some((job, toggles)),
+                Reply::Modes(job, modes) => results.modes = Some((job, modes)),
+                Reply::Assessment(job, table) => results.assessment = Some((job, table)),
+                Reply::Across(job, curves) => results.across = Some((job, curves)),
+                Reply::Variant(job, analysis) => {
+                    results.variants.retain(|(known, _)| *known != job);
+                    results.variants.push((job, analysis));
+                }
                 Reply::Fault { generation, fault } => self.computing_failed(generation, &fault),
                 // Answers to questions that no longer stand.
                 Reply::Progress { .. } | Reply::Curves(..) => {}
@@ -332,6 +339,7 @@ impl eframe::App for GdcmApp {
         self.name_window(&ctx);
         let now = ctx.input(|input| input.time);
         self.request(now);
+        self.want_beside();
         if self.state.results.is_waiting() || self.state.results.background_since.is_some() {
             // The mark of stale results appears by the clock, not by an event, and so does that of work under way.
             ctx.request_repaint_after(std::time::Duration::from_millis(160));

@@ -10,8 +10,9 @@ use super::lane::{Ending, Lane, PATIENCE};
 use crate::correction::{Outcome, Problem, Solution};
 use crate::dataset::ConditionId;
 use crate::study::{
-    Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, CurvesJob, Engine, Job, Progress, ProofJob, Study,
-    Toggles, TogglesJob, display_band,
+    AcrossCurves, AcrossJob, Analysis, AssessmentJob, AssessmentTable, ConditionAnalysis, ConditionCurves,
+    ConditionFailure, ConditionModes, CurvesJob, Engine, Job, ModesJob, Progress, ProofJob, Study, Toggles, TogglesJob,
+    VariantJob, display_band,
 };
 use crate::view::results::{Background, FirstResult};
 
@@ -65,6 +66,14 @@ pub enum Reply {
     Toggles(TogglesJob, Arc<Toggles>),
     /// Responses of one condition for drawing.
     Curves(CurvesJob, Arc<ConditionCurves>),
+    /// Modes of the models of one condition.
+    Modes(ModesJob, Arc<ConditionModes>),
+    /// An assessment.
+    Assessment(AssessmentJob, Arc<AssessmentTable>),
+    /// Responses of one model of each condition.
+    Across(AcrossJob, Arc<AcrossCurves>),
+    /// The analysis of a variant.
+    Variant(VariantJob, Arc<Analysis>),
     /// Computing panicked.
     Fault {
         /// Number of the request that has no answer for it; none for a job.
@@ -126,6 +135,23 @@ struct Lanes {
     curves: Lane<CurvesJob>,
     toggles: Lane<TogglesJob>,
     proofs: Lane<ProofJob>,
+    modes: Lane<ModesJob>,
+    assessments: Lane<AssessmentJob>,
+    across: Lane<AcrossJob>,
+    variants: Lane<VariantJob>,
+}
+
+/// What the views that are shown need beside the live answer; a job that is not wanted any more is given up.
+#[derive(Clone, Debug, Default)]
+pub struct Beside {
+    /// Modes of the condition shown.
+    pub modes: Option<ModesJob>,
+    /// The assessment shown.
+    pub assessment: Option<AssessmentJob>,
+    /// One model of each condition.
+    pub across: Option<AcrossJob>,
+    /// The variants.
+    pub variants: Vec<VariantJob>,
 }
 
 /// The threads that compute. Dropping it ends them, and waits for none.
@@ -182,20 +208,38 @@ impl Worker {
         self.shared.filled.notify_one();
     }
 
+    /// Asks for what the views shown need, and for nothing else of its kind.
+    pub fn want_beside(&self, beside: Beside) {
+        self.lanes.modes.want(beside.modes.into_iter().collect());
+        self.lanes.assessments.want(beside.assessment.into_iter().collect());
+        self.lanes.across.want(beside.across.into_iter().collect());
+        self.lanes.variants.want(beside.variants);
+    }
+
     /// Gives up the request under way, the one that waits, and every job.
     pub fn stop(&self) {
         self.shared.newest.store(NOTHING, Ordering::Release);
         self.shared.mailbox().request = None;
-        self.lanes.curves.stop();
-        self.lanes.toggles.stop();
-        self.lanes.proofs.stop();
+        let Lanes { curves, toggles, proofs, modes, assessments, across, variants } = &*self.lanes;
+        curves.stop();
+        toggles.stop();
+        proofs.stop();
+        modes.stop();
+        assessments.stop();
+        across.stop();
+        variants.stop();
     }
 
     /// Lets the jobs that were stopped be begun again.
     pub fn resume(&self) {
-        self.lanes.curves.resume();
-        self.lanes.toggles.resume();
-        self.lanes.proofs.resume();
+        let Lanes { curves, toggles, proofs, modes, assessments, across, variants } = &*self.lanes;
+        curves.resume();
+        toggles.resume();
+        proofs.resume();
+        modes.resume();
+        assessments.resume();
+        across.resume();
+        variants.resume();
     }
 
     /// What is under way beside the live answer.
@@ -203,9 +247,18 @@ impl Worker {
         let proofs = self.lanes.proofs.unfinished().into_iter().map(|job| job.problem).collect();
         let curves =
             (!self.lanes.curves.unfinished().is_empty()).then(|| self.lanes.curves.progress().unwrap_or((0, 0)));
-        let Lanes { curves: of_curves, toggles, proofs: of_proofs } = &*self.lanes;
-        let stopped = of_curves.is_stopped() || toggles.is_stopped() || of_proofs.is_stopped();
-        Background { proofs, toggles: !toggles.unfinished().is_empty(), curves, stopped }
+        let Lanes { curves: of_curves, toggles, proofs: of_proofs, modes, assessments, across, variants } =
+            &*self.lanes;
+        let stopped = of_curves.is_stopped()
+            || toggles.is_stopped()
+            || of_proofs.is_stopped()
+            || modes.is_stopped()
+            || assessments.is_stopped()
+            || across.is_stopped()
+            || variants.is_stopped();
+        let views = modes.unfinished().len() + assessments.unfinished().len() + across.unfinished().len();
+        let views = views + variants.unfinished().len();
+        Background { proofs, toggles: !toggles.unfinished().is_empty(), curves, views, stopped }
     }
 
     /// The next reply, if one is there.
@@ -225,38 +278,44 @@ impl Drop for Worker {
 
 impl Lanes {
     fn start(shared: &Arc<Shared>, make_engine: &EngineMaker, outbox: &Outbox) -> std::io::Result<Self> {
-        let make_engine = Arc::clone(make_engine);
-        let out = outbox.clone();
-        let curves = Lane::start(
-            "curves",
-            move || make_engine(),
-            move |job: CurvesJob, ending| {
-                out.deliver::<CurvesJob>(ending, |curves| Some(Reply::Curves(job, curves?)));
-            },
-        )?;
-        let out = outbox.clone();
-        let toggles = Lane::start(
-            "toggles",
-            || (),
-            move |job: TogglesJob, ending| {
-                out.deliver::<TogglesJob>(ending, |toggles| Some(Reply::Toggles(job, Arc::new(toggles?))));
-            },
-        )?;
-        let (out, shared) = (outbox.clone(), Arc::clone(shared));
-        let proofs = Lane::start(
-            "proofs",
-            || (),
-            move |job: ProofJob, ending| {
-                out.deliver::<ProofJob>(ending, |solution| {
-                    // A problem without an answer has been told by the live answer.
-                    shared.mailbox().proofs.push((job.problem, solution.ok()?));
-                    shared.filled.notify_one();
-                    None
-                });
-            },
-        )?;
-        Ok(Self { curves, toggles, proofs })
+        let (for_curves, for_variants) = (Arc::clone(make_engine), Arc::clone(make_engine));
+        Ok(Self {
+            curves: lane("curves", move || for_curves(), outbox, |job, curves| Some(Reply::Curves(job, curves?)))?,
+            toggles: lane("toggles", || (), outbox, |job, toggles| Some(Reply::Toggles(job, Arc::new(toggles?))))?,
+            modes: lane("modes", || (), outbox, |job, modes| Some(Reply::Modes(job, modes)))?,
+            assessments: lane("assessment", || (), outbox, |job, table| Some(Reply::Assessment(job, table)))?,
+            across: lane("conditions", || (), outbox, |job, curves| Some(Reply::Across(job, curves)))?,
+            variants: lane("variants", move || for_variants(), outbox, |job, found| Some(Reply::Variant(job, found)))?,
+            proofs: proofs_lane(shared, outbox)?,
+        })
     }
+}
+
+/// A lane whose outputs become replies.
+fn lane<J: Job>(
+    name: &str,
+    tools: impl Fn() -> J::Tools + Send + 'static,
+    outbox: &Outbox,
+    reply: impl Fn(J, J::Output) -> Option<Reply> + Send + 'static,
+) -> std::io::Result<Lane<J>> {
+    let out = outbox.clone();
+    Lane::start(name, tools, move |job: J, ending| out.deliver::<J>(ending, |output| reply(job, output)))
+}
+
+/// The lane of proofs, which go to the thread that answers.
+fn proofs_lane(shared: &Arc<Shared>, outbox: &Outbox) -> std::io::Result<Lane<ProofJob>> {
+    let shared = Arc::clone(shared);
+    lane(
+        "proofs",
+        || (),
+        outbox,
+        move |job: ProofJob, solution| {
+            // A problem without an answer has been told by the live answer.
+            shared.mailbox().proofs.push((job.problem, solution.ok()?));
+            shared.filled.notify_one();
+            None
+        },
+    )
 }
 
 /// What the thread that answers works with.

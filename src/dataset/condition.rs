@@ -110,6 +110,11 @@ impl Condition {
         self.bundle(kind).iter().position(|model| model.name == name)
     }
 
+    /// The model of a bundle of this name.
+    pub fn model(&self, kind: BundleKind, name: &str) -> Option<&Model> {
+        Some(&self.bundle(kind)[self.position(kind, name)?])
+    }
+
     /// Index of the nominal model in the physics bundle.
     pub fn nominal(&self) -> usize {
         self.nominal

@@ -34,6 +34,10 @@ pub enum Edit {
         /// The condition.
         condition: ConditionId,
     },
+    /// Take models out of their bundles: all of them, or none.
+    RejectEach(Vec<ModelId>),
+    /// Put rejected models back.
+    RestoreEach(Vec<ModelId>),
     /// Let a model represent its bundle, whatever the medoid is.
     Pin(ModelId),
     /// Let the medoid represent a bundle again.
@@ -176,6 +180,8 @@ impl Edit {
                 format!("reject {} suggested (condition {condition})", models.len())
             }
             Edit::RestoreAll { condition } => format!("restore all (condition {condition})"),
+            Edit::RejectEach(models) => format!("reject {} models", models.len()),
+            Edit::RestoreEach(models) => format!("restore {} models", models.len()),
             Edit::Pin(id) => format!("pin {}", name_of(id)),
             Edit::Unpin { condition, .. } => format!("unpin (condition {condition})"),
             Edit::SetScheduled { condition, scheduled: true } => format!("schedule condition {condition}"),
@@ -204,10 +210,10 @@ impl Study {
         match edit {
             Edit::Reject(id) => return self.reject(id),
             Edit::RejectAll { condition, models } => return self.reject_all(*condition, models),
+            Edit::RejectEach(models) => return self.each(models, Self::reject),
+            Edit::RestoreEach(models) => return self.each(models, Self::restore),
             Edit::Pin(id) => return self.pin(id),
-            Edit::Restore(id) => {
-                self.model(id)?.1.bundle_mut(id.bundle).restore(&id.name);
-            }
+            Edit::Restore(id) => return self.restore(id),
             Edit::RestoreAll { condition } => {
                 let (_, choice) = self.condition(*condition)?;
                 choice.restore_all();
@@ -273,6 +279,23 @@ impl Study {
         } else {
             choice.reasons.insert(id.name.clone(), reason.to_owned());
         }
+        Ok(())
+    }
+
+    fn restore(&mut self, id: &ModelId) -> Result<(), EditRefusal> {
+        self.model(id)?.1.bundle_mut(id.bundle).restore(&id.name);
+        Ok(())
+    }
+
+    /// The same decision about several models: about all of them, or about none.
+    fn each(
+        &mut self,
+        models: &[ModelId],
+        decide: impl Fn(&mut Self, &ModelId) -> Result<(), EditRefusal>,
+    ) -> Result<(), EditRefusal> {
+        let mut trial = self.clone();
+        models.iter().try_for_each(|model| decide(&mut trial, model))?;
+        *self = trial;
         Ok(())
     }
 

@@ -1,5 +1,6 @@
 //! What the engineer does: settings, rejections, pins; and the analysis of it all, in cached stages.
 
+mod across_job;
 mod analysis;
 mod assessment_table;
 mod carry_over;
@@ -30,6 +31,7 @@ mod toggles;
 mod variant;
 mod variant_job;
 
+pub use across_job::{AcrossCurves, AcrossJob};
 pub use analysis::{Analysis, Assessed};
 pub use assessment_table::{
     AssessedCondition, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentJob, AssessmentSummary,

@@ -13,18 +13,33 @@ pub enum View {
     Error,
     /// Every response, small.
     Overview,
+    /// One response in every condition.
+    Across,
+    /// Poles and modes of every model of the condition.
+    Poles,
     /// Channel gains against airspeed (Figures 3 and 4).
     Channels,
     /// What the correction is worth (Figures 8 to 19).
     Assessment,
+    /// Decisions kept under names, beside the present ones.
+    Compare,
     /// Net gains against airspeed (Figures 6 and 7).
     NetGain,
 }
 
 impl View {
     /// Every view, in the order of the menu.
-    pub const ALL: [Self; 6] =
-        [Self::Bode, Self::Error, Self::Overview, Self::Channels, Self::Assessment, Self::NetGain];
+    pub const ALL: [Self; 9] = [
+        Self::Bode,
+        Self::Overview,
+        Self::Across,
+        Self::Poles,
+        Self::Channels,
+        Self::Assessment,
+        Self::Compare,
+        Self::NetGain,
+        Self::Error,
+    ];
 
     /// What its tab says.
     pub fn name(self) -> &'static str {
@@ -32,6 +47,9 @@ impl View {
             Self::Bode => "Bode",
             Self::Error => "Error",
             Self::Overview => "Overview",
+            Self::Across => "Conditions",
+            Self::Poles => "Poles",
+            Self::Compare => "Compare",
             Self::Channels => "Channels",
             Self::Assessment => "Assessment",
             Self::NetGain => "Net gain",
@@ -46,6 +64,9 @@ impl View {
                 "What the fit sees: the ratio and the phase difference of the response in focus, and G, D and bounds"
             }
             Self::Overview => "Every response of the condition, small",
+            Self::Across => "The response in focus in every condition, coloured by airspeed",
+            Self::Poles => "Poles of every model of the condition in the s-plane, and the modes in a table",
+            Self::Compare => "Variants: decisions kept under names, beside the present ones",
             Self::Channels => "Gain of every channel against airspeed",
             Self::Assessment => "What the correction is worth, condition by condition",
             Self::NetGain => "Net gain of the held responses against airspeed, with the schedule",
@@ -92,7 +113,8 @@ impl Default for Arrangement {
 }
 
 /// Views that stand in the first group of tabs; the others stand in the second.
-const UPPER: [View; 5] = [View::Bode, View::Error, View::Overview, View::Channels, View::Assessment];
+const UPPER: [View; 7] =
+    [View::Bode, View::Overview, View::Across, View::Poles, View::Channels, View::Assessment, View::Compare];
 /// Part of the room that the first group gets.
 const UPPER_PART: f32 = 0.66;
 

@@ -6,24 +6,24 @@ use std::sync::Arc;
 use nalgebra::Complex;
 
 use crate::dataset::{BundleKind, Pair};
-use crate::response::{FrequencyResponse, GainDelay, nearest_turn_offset, unwrap};
+use crate::response::{FrequencyResponse, GainDelay, nearest_turn_offset, unwrap, wrap};
 use crate::study::ConditionCurves;
 use crate::units::ratio_to_db;
 
 use super::curve_face::{CorrectedFace, CurveFace, corrected_faces, model_faces, reference_of};
-use super::plot::{BodeCurve, CurveId};
+use super::plot::{BodeCurve, CurveId, PhaseUnit};
 use super::state::State;
 
 /// Magnitude \[dB\] and unwrapped phase \[deg\] of one response.
 #[derive(Clone, Debug)]
-struct Shape {
-    magnitude_db: Arc<[f64]>,
-    phase_deg: Arc<[f64]>,
+pub(super) struct Shape {
+    pub(super) magnitude_db: Arc<[f64]>,
+    pub(super) phase_deg: Arc<[f64]>,
 }
 
 impl Shape {
     /// The phase is principal at the first finite value, then unwrapped; a value that is not finite leaves a gap (M2).
-    fn of(values: &[Complex<f64>]) -> Self {
+    pub(super) fn of(values: &[Complex<f64>]) -> Self {
         let finite: Vec<usize> =
             (0..values.len()).filter(|&k| values[k].is_finite() && values[k].norm() > 0.0).collect();
         let mut phase: Vec<f64> = finite.iter().map(|&k| values[k].arg()).collect();
@@ -37,7 +37,7 @@ impl Shape {
     }
 
     /// The shape moved by whole turns as near to `reference` as they bring it (M2).
-    fn laid_on(self, reference: &Shape) -> Self {
+    pub(super) fn laid_on(self, reference: &Shape) -> Self {
         let radians = |phase: &[f64]| phase.iter().map(|degrees| degrees.to_radians()).collect::<Vec<f64>>();
         let offset = nearest_turn_offset(&radians(&self.phase_deg), &radians(&reference.phase_deg)).to_degrees();
         if offset == 0.0 {
@@ -47,7 +47,7 @@ impl Shape {
     }
 
     /// The shape after a gain and a delay (M10).
-    fn corrected(&self, omega: &[f64], correction: GainDelay) -> Self {
+    pub(super) fn corrected(&self, omega: &[f64], correction: GainDelay) -> Self {
         let phase: Vec<f64> = self.phase_deg.iter().map(|degrees| degrees.to_radians()).collect();
         Self {
             magnitude_db: correction.magnitudes_db(&self.magnitude_db).collect(),
@@ -65,6 +65,28 @@ pub struct CachedShapes {
     identified: Vec<Shape>,
     /// Of each corrected curve: what it was made with, and its shape.
     corrected: BTreeMap<CurveId, (Treatment, Shape)>,
+    /// Phases that are not drawn as they are, by their curves: of which phase, how, and what is drawn.
+    presented: BTreeMap<CurveId, (Arc<[f64]>, Presentation, Arc<[f64]>)>,
+}
+
+/// How a phase is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Presentation {
+    unit: PhaseUnit,
+    /// Whole turns up.
+    turns: i32,
+}
+
+impl Presentation {
+    /// The continuous phase \[deg\] as it is drawn. A wrapped one has a gap where it jumps, in place of a line from edge to edge.
+    fn of(self, phase_deg: &[f64]) -> Arc<[f64]> {
+        if self.unit == PhaseUnit::Unwrapped {
+            return phase_deg.iter().map(|phase| phase + 360.0 * f64::from(self.turns)).collect();
+        }
+        let wrapped: Vec<f64> = phase_deg.iter().map(|phase| wrap(phase.to_radians()).to_degrees()).collect();
+        let jumps = |k: usize| k > 0 && (wrapped[k] - wrapped[k - 1]).abs() > 180.0;
+        (0..wrapped.len()).map(|k| if jumps(k) { f64::NAN } else { wrapped[k] }).collect()
+    }
 }
 
 /// What a corrected curve is made with.
@@ -93,6 +115,7 @@ impl CachedShapes {
         self.identified = shapes(BundleKind::Identified);
         self.omega = curves.grid.omega().into();
         self.corrected.clear();
+        self.presented.clear();
         self.made_of = Some((Arc::clone(curves), pair, reference));
     }
 
@@ -106,6 +129,22 @@ impl CachedShapes {
                 shape
             }
         }
+    }
+
+    /// The phase of the curve `id` as it is drawn: the same one until something of it changes.
+    fn presented(&mut self, id: &CurveId, phase_deg: &Arc<[f64]>, how: Presentation) -> Arc<[f64]> {
+        if how == (Presentation { unit: PhaseUnit::Unwrapped, turns: 0 }) {
+            return Arc::clone(phase_deg);
+        }
+        if let Some((of, before, drawn)) = self.presented.get(id)
+            && Arc::ptr_eq(of, phase_deg)
+            && *before == how
+        {
+            return Arc::clone(drawn);
+        }
+        let drawn = how.of(phase_deg);
+        self.presented.insert(id.clone(), (Arc::clone(phase_deg), how, Arc::clone(&drawn)));
+        drawn
     }
 
     fn of_bundle(&self, kind: BundleKind) -> &[Shape] {
@@ -125,17 +164,41 @@ pub fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
     let mut shapes = state.display.shapes.remove(&pair).unwrap_or_default();
     shapes.refresh(&curves, pair, reference);
     let mut drawn = Vec::new();
+    let mut draw = |shapes: &mut CachedShapes, face: CurveFace, shape: Shape| {
+        let turns = state.display.curves.turns_of(curves.condition.id(), pair, &face.id);
+        let how = Presentation { unit: state.display.curves.phase, turns };
+        let phase_deg = shapes.presented(&face.id, &shape.phase_deg, how);
+        drawn.push(face.moved_by_hand(turns).with(&shapes.omega, &shape.magnitude_db, &phase_deg));
+    };
     for kind in BundleKind::BOTH {
-        let with_shape = |(index, face): (usize, CurveFace)| {
-            let shape = &shapes.of_bundle(kind)[index];
-            face.with(&shapes.omega, &shape.magnitude_db, &shape.phase_deg)
-        };
-        drawn.extend(model_faces(state, &curves.condition, kind).map(with_shape));
+        for (index, face) in model_faces(state, &curves.condition, kind) {
+            let shape = shapes.of_bundle(kind)[index].clone();
+            draw(&mut shapes, face, shape);
+        }
     }
     for CorrectedFace { face, model, correction } in corrected_faces(state, &curves.condition, pair) {
         let shape = shapes.corrected(&face.id, Treatment { model, correction });
-        drawn.push(face.with(&shapes.omega, &shape.magnitude_db, &shape.phase_deg));
+        draw(&mut shapes, face, shape);
     }
     state.display.shapes.insert(pair, shapes);
     drawn
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wrapped_phase_stays_within_half_a_turn_and_has_a_gap_where_it_jumps() {
+        let wrapped = Presentation { unit: PhaseUnit::Wrapped, turns: 0 }.of(&[-100.0, -170.0, -190.0, -200.0]);
+        // Two roundings of angles below 360.
+        assert!((wrapped[1] + 170.0).abs() < 1e-12 && (wrapped[3] - 160.0).abs() < 1e-12);
+        assert!(wrapped[2].is_nan(), "{wrapped:?}");
+    }
+
+    #[test]
+    fn a_turn_by_hand_moves_a_phase_by_360_degrees() {
+        let up = Presentation { unit: PhaseUnit::Unwrapped, turns: 1 }.of(&[-100.0, f64::NAN]);
+        assert!(up[0] == 260.0 && up[1].is_nan());
+    }
 }

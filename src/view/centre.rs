@@ -42,7 +42,14 @@ impl Views<'_> {
         match view {
             View::NetGain => views::net_gain_header_ui(ui, state, palette, self.commands),
             View::Channels => views::channels_header_ui(ui, state, self.commands),
-            View::Bode | View::Error | View::Overview | View::Assessment => {
+            View::Across => views::across_header_ui(ui, state, palette, self.commands),
+            View::Poles => {
+                views::poles_header_ui(ui, state, self.commands);
+                condition_ui(ui, state, view, palette);
+            }
+            View::Assessment => views::assessment_header_ui(ui, state, self.commands),
+            View::Compare => {}
+            View::Bode | View::Error | View::Overview => {
                 if matches!(view, View::Bode | View::Error) {
                     fit_ui(ui, view, self.commands);
                 }
@@ -76,8 +83,8 @@ fn condition_ui(ui: &mut Ui, state: &State, view: View, palette: &Palette) {
     let of_condition = format!("condition {} · {}", condition.id(), condition.flight_state().name);
     let title = match view {
         View::Bode | View::Error => format!("{} · {of_condition}", state.dataset().pair_name(state.display.pair)),
-        View::Overview => of_condition,
-        View::NetGain | View::Channels | View::Assessment => return,
+        View::Overview | View::Poles => of_condition,
+        View::Across | View::NetGain | View::Channels | View::Assessment | View::Compare => return,
     };
     let text = RichText::new(&title).size(SMALL_SIZE).color(palette.dim_text);
     ui.add(egui::Label::new(text).truncate());
@@ -106,6 +113,9 @@ impl Behavior<View> for Views<'_> {
             View::Bode => views::bode_view_ui(ui, state, palette, commands),
             View::Error => views::error_view_ui(ui, state, palette, commands),
             View::Overview => views::overview_view_ui(ui, state, palette, commands),
+            View::Across => views::across_view_ui(ui, state, palette, commands),
+            View::Poles => views::poles_view_ui(ui, state, palette, commands),
+            View::Compare => views::compare_view_ui(ui, state, palette, commands),
             View::Channels => views::channels_view_ui(ui, state, palette, commands),
             View::Assessment => views::assessment_view_ui(ui, state, palette, commands),
             View::NetGain => views::net_gain_view_ui(ui, state, palette, commands),

@@ -8,11 +8,14 @@ use egui_tiles::LinearDir;
 use crate::dataset::{ConditionId, ModelId, Pair};
 use crate::study::Edit;
 
+use super::across_scene::AcrossRole;
 use super::arrangement::{Preset, View};
+use super::assessment_scene::AssessedFigures;
 use super::bars::Bar;
+use super::curve_display::CurveCommand;
 use super::looks::Looks;
 use super::net_gain_scene::PairSet;
-use super::plot::{Across, FrequencyUnit, Measure, PhaseErrorUnit};
+use super::plot::{Across, FrequencyUnit, Measure};
 use super::tables::TableKind;
 
 /// One wish of the engineer: what a click, a key or a menu entry stands for. Views push them; the window carries them out.
@@ -48,10 +51,20 @@ pub enum Command {
     PickPair(Pair),
     /// Show gains or delays of the channels, over airspeed or over conditions.
     ShowChannels(Measure, Across),
+    /// Show zeros among the poles, or not.
+    ShowZeros(bool),
+    /// Show the evidence for the schedule beside the net gains, or not.
+    ShowEvidence(bool),
+    /// Lay other models of the conditions over one another.
+    ShowAcross(AcrossRole),
+    /// Assess something else, or show it in another form.
+    Assess(AssessedFigures),
     /// Read frequencies in another unit.
     SetFrequencyUnit(FrequencyUnit),
-    /// Draw differences of phases in another way.
-    SetPhaseErrorUnit(PhaseErrorUnit),
+    /// Show the curves of the plots over frequency in another way.
+    Curves(CurveCommand),
+    /// Show all models again, and select none.
+    EndIsolation,
     /// Draw curves in another way.
     SetLooks(Looks),
     /// Bring every curve back into view.
@@ -150,6 +163,12 @@ pub enum FormKind {
     Shortcuts,
     /// What the program is.
     About,
+}
+
+impl From<CurveCommand> for Command {
+    fn from(command: CurveCommand) -> Self {
+        Command::Curves(command)
+    }
 }
 
 impl From<Edit> for Command {

@@ -21,14 +21,25 @@ pub(super) struct CurveFace {
     role: Role,
     pub(super) rejected: bool,
     highlighted: bool,
+    hidden: bool,
 }
 
 impl CurveFace {
+    /// The face of a curve whose phase was moved up by so many turns.
+    pub(super) fn moved_by_hand(mut self, turns: i32) -> Self {
+        if turns != 0 {
+            let (way, count) = (if turns > 0 { "up" } else { "down" }, turns.unsigned_abs());
+            let noun = if count == 1 { "turn" } else { "turns" };
+            self.detail = format!("phase moved {way} by {count} {noun} · {}", self.detail);
+        }
+        self
+    }
+
     /// The curve of these numbers.
     pub(super) fn with(self, omega: &Arc<[f64]>, magnitude_db: &Arc<[f64]>, phase_deg: &Arc<[f64]>) -> BodeCurve {
-        let Self { id, label, detail, role, rejected, highlighted } = self;
+        let Self { id, label, detail, role, rejected, highlighted, hidden } = self;
         let (omega, magnitude_db, phase_deg) = (Arc::clone(omega), Arc::clone(magnitude_db), Arc::clone(phase_deg));
-        BodeCurve { id, label, detail, role, rejected, highlighted, omega, magnitude_db, phase_deg }
+        BodeCurve { id, label, detail, role, rejected, highlighted, hidden, omega, magnitude_db, phase_deg }
     }
 }
 
@@ -62,12 +73,15 @@ pub(super) fn model_faces(
     let face = move |(index, model): (usize, &Model)| {
         let id = ModelId::new(condition.id(), kind, &model.name);
         let rejected = state.study.is_rejected(&id);
+        let role = role_of(kind, model.is_nominal(), representative == Some(&model.name));
+        let curves = &state.display.curves;
         let face = CurveFace {
             label: model.name.clone(),
             detail: detail(shown, model, &id, rejected),
-            role: role_of(kind, model.is_nominal(), representative == Some(&model.name)),
+            role,
             rejected,
-            highlighted: state.display.hovered.as_ref() == Some(&id),
+            highlighted: state.display.hovered.as_ref() == Some(&id) || curves.selected.contains(&id),
+            hidden: curves.hidden_roles.contains(&role.shown(rejected)) || curves.hidden_models.contains(&id),
             id: CurveId::Model(id),
         };
         (index, face)
@@ -108,7 +122,8 @@ pub(super) fn corrected_faces(state: &State, condition: &Condition, pair: Pair) 
     let face = |id: CurveId, label: String, role: Role, correction: &ChannelCorrection| {
         let (net_gain, delay_ms) = (correction.net_gain(pair).value(), s_to_ms(correction.net_delay(pair).value_s()));
         let detail = format!("net gain {net_gain:.3}, net delay {delay_ms:.1} ms");
-        let face = CurveFace { id, label, detail, role, rejected: false, highlighted: false };
+        let hidden = state.display.curves.hidden_roles.contains(&role);
+        let face = CurveFace { id, label, detail, role, rejected: false, highlighted: false, hidden };
         Some(CorrectedFace { face, model, correction: correction.on(pair)? })
     };
     let own = face(CurveId::Corrected, format!("{name}, corrected"), Role::Corrected, &shown.correction);

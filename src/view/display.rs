@@ -4,15 +4,21 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::dataset::{ConditionId, ModelId, Pair};
 
+use super::across_scene::{AcrossRole, CachedAcross};
 use super::arrangement::Arrangement;
+use super::assessment_scene::AssessedFigures;
 use super::bode_scene::CachedShapes;
+use super::curve_display::CurveDisplay;
 use super::error_scene::CachedErrors;
+use super::evidence_scene::CachedEvidence;
 use super::looks::Looks;
+use super::modes_scene::CachedModes;
 use super::net_gain_scene::PairSet;
 use super::plot::{
     Across, AssessmentView, BodeCurve, BodeView, ChannelsView, FrequencyUnit, GainView, Measure, OverviewView,
-    PhaseErrorUnit, PolesView,
+    PolesView,
 };
+use super::table_view::Sorting;
 
 /// What is shown, none of which changes a result.
 #[derive(Debug)]
@@ -31,8 +37,8 @@ pub struct Display {
     pub unit: FrequencyUnit,
     /// How curves are drawn.
     pub looks: Looks,
-    /// How differences of phases are drawn.
-    pub phase_error: PhaseErrorUnit,
+    /// How the plots over frequency show their curves.
+    pub curves: CurveDisplay,
     /// Ranges and transforms of the Bode plot.
     pub bode: BodeView,
     /// Ranges and transforms of the plot of errors.
@@ -51,6 +57,32 @@ pub struct Display {
     pub channels: ChannelsView,
     /// Ranges and transforms of the plots of poles.
     pub poles: PolesView,
+    /// Whether zeros of the response in focus are shown among the poles.
+    pub show_zeros: bool,
+    /// Modes and zeros, kept from frame to frame.
+    pub modes: CachedModes,
+    /// Order of the table of modes.
+    pub modes_sorting: Sorting,
+    /// What the assessment shows.
+    pub assessed: AssessedFigures,
+    /// Order of the table of the assessment.
+    pub assessment_sorting: Sorting,
+    /// Whether the evidence for the schedule stands beside the net gains.
+    pub show_evidence: bool,
+    /// What speaks for each form of the schedule, kept from frame to frame.
+    pub evidence: CachedEvidence,
+    /// Order of the table of the evidence.
+    pub evidence_sorting: Sorting,
+    /// What is shown of several conditions at once.
+    pub across_role: AcrossRole,
+    /// Ranges and transforms of the plot of several conditions.
+    pub across: BodeView,
+    /// Shapes of several conditions' responses, kept from frame to frame.
+    pub across_shapes: CachedAcross,
+    /// The name that the present decisions are to be kept under, as typed.
+    pub variant_name: String,
+    /// Orders of the tables of the comparison: what differs, and what it does.
+    pub compare_sorting: [Sorting; 2],
     /// Cells of the overview.
     pub overview: OverviewView,
     /// Transforms of the assessment.
@@ -76,7 +108,7 @@ impl Display {
             arrangement: Arrangement::default(),
             unit: FrequencyUnit::default(),
             looks: Looks::default(),
-            phase_error: PhaseErrorUnit::default(),
+            curves: CurveDisplay::default(),
             bode: BodeView::default(),
             error: BodeView::default(),
             net_gain_pairs: PairSet::default(),
@@ -86,6 +118,19 @@ impl Display {
             channel_figure: (Measure::default(), Across::default()),
             channels: ChannelsView::default(),
             poles: PolesView::default(),
+            show_zeros: false,
+            modes: CachedModes::default(),
+            modes_sorting: Sorting::default(),
+            assessed: AssessedFigures::default(),
+            assessment_sorting: Sorting::default(),
+            show_evidence: false,
+            evidence: CachedEvidence::default(),
+            evidence_sorting: Sorting::default(),
+            across_role: AcrossRole::default(),
+            across: BodeView::default(),
+            across_shapes: CachedAcross::default(),
+            variant_name: String::new(),
+            compare_sorting: [Sorting::default(); 2],
             overview: OverviewView::default(),
             assessment: AssessmentView::default(),
             shapes: BTreeMap::new(),

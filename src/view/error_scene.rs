@@ -131,7 +131,7 @@ pub fn error_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
     let band = state.study.settings.band;
     let condition = Arc::clone(&curves.condition);
     let reference = reference_of(state, &condition);
-    let unit = state.display.phase_error;
+    let unit = state.display.curves.phase_error;
     let mut errors = std::mem::take(&mut state.display.errors);
     errors.refresh(Made { curves, pair, reference, band: (band.min(), band.max()), unit });
     let mut drawn = Vec::new();
@@ -160,7 +160,7 @@ pub fn error_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
 /// G and D, the bounds of the channels, and quantiles of the representative's error among `drawn`: what the fit makes of it (M6, M7).
 pub fn error_rules(state: &State, pair: Pair, drawn: &[BodeCurve]) -> Vec<Rule> {
     let Some(shown) = state.shown() else { return Vec::new() };
-    let unit = state.display.phase_error;
+    let unit = state.display.curves.phase_error;
     let mut rules = delta_rules(shown, pair, unit);
     rules.extend(bound_rules(shown, unit));
     let name = shown.representative_name(BundleKind::Physics);

@@ -4,7 +4,10 @@ use std::sync::Arc;
 
 use crate::correction::Problem;
 use crate::dataset::{ConditionId, Dataset};
-use crate::study::{Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, CurvesJob, Toggles, TogglesJob};
+use crate::study::{
+    AcrossCurves, AcrossJob, Analysis, AssessmentJob, AssessmentTable, ConditionAnalysis, ConditionCurves,
+    ConditionFailure, ConditionModes, CurvesJob, ModesJob, Toggles, TogglesJob, VariantJob,
+};
 
 /// The result of the condition shown, ahead of the others'.
 #[derive(Clone, Debug)]
@@ -28,6 +31,8 @@ pub struct Background {
     pub toggles: bool,
     /// Whether curves are being computed: models done, of how many.
     pub curves: Option<(usize, usize)>,
+    /// Jobs that the views shown wait for.
+    pub views: usize,
     /// Whether something of it was stopped, by hand or by a fault.
     pub stopped: bool,
 }
@@ -35,7 +40,7 @@ pub struct Background {
 impl Background {
     /// Whether anything is under way.
     pub fn is_busy(&self) -> bool {
-        !self.proofs.is_empty() || self.toggles || self.curves.is_some()
+        !self.proofs.is_empty() || self.toggles || self.curves.is_some() || self.views > 0
     }
 }
 
@@ -50,6 +55,14 @@ pub struct Results {
     pub toggles: Option<(TogglesJob, Arc<Toggles>)>,
     /// Responses for drawing, and of what; see [`State::curves`].
     pub curves: Option<(CurvesJob, Arc<ConditionCurves>)>,
+    /// Modes of the models of one condition, and of which; see [`State::modes`].
+    pub modes: Option<(ModesJob, Arc<ConditionModes>)>,
+    /// The assessment that is asked for, and of what; see [`State::assessment`].
+    pub assessment: Option<(AssessmentJob, Arc<AssessmentTable>)>,
+    /// Responses of one model of each condition, and of which; see [`State::across`].
+    pub across: Option<(AcrossJob, Arc<AcrossCurves>)>,
+    /// Analyses of the variants.
+    pub variants: Vec<(VariantJob, Arc<Analysis>)>,
     /// What is under way beside the live answer.
     pub background: Background,
     /// Since when something has been \[s of the window's clock\].

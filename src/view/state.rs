@@ -6,9 +6,11 @@ use std::sync::Arc;
 
 use crate::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
 use crate::study::{
-    Analysis, ConditionAnalysis, ConditionCurves, ConditionFailure, Difference, History, Study, Toggles,
+    AcrossCurves, Analysis, AssessmentTable, ConditionAnalysis, ConditionCurves, ConditionFailure, ConditionModes,
+    Difference, History, Study, Toggles,
 };
 
+use super::assessment_scene::assessment_choice;
 use super::bars::Bar;
 use super::command::FormKind;
 use super::command_palette::PaletteForm;
@@ -120,7 +122,8 @@ impl State {
     /// The state of a window that shows `study` for the first time.
     pub fn new(study: Study, study_name: String, file_cautions: Vec<String>) -> Self {
         let pair = study.dataset.measuring_pairs().marked().next().unwrap_or_default();
-        let display = Display::of(study.dataset.conditions()[0].id(), pair);
+        let mut display = Display::of(study.dataset.conditions()[0].id(), pair);
+        display.once_held = study.settings.constrained.marked().collect();
         Self {
             study,
             history: History::default(),
@@ -194,6 +197,25 @@ impl State {
         fits.then_some(curves)
     }
 
+    /// The modes of every model of the condition shown.
+    pub fn modes(&self) -> Option<&Arc<ConditionModes>> {
+        let (job, modes) = self.results.modes.as_ref()?;
+        std::ptr::eq(job.condition.as_ref(), self.condition()).then_some(modes)
+    }
+
+    /// The assessment that is asked for; one of an older analysis of the same dataset until it is there.
+    pub fn assessment(&self) -> Option<&Arc<AssessmentTable>> {
+        let (job, table) = self.results.assessment.as_ref()?;
+        let of_this = Arc::ptr_eq(&job.analysis.study.dataset, &self.study.dataset);
+        (of_this && job.choice == assessment_choice(self)).then_some(table)
+    }
+
+    /// The responses of one model of each condition; those of older settings until new ones are there.
+    pub fn across(&self) -> Option<&Arc<AcrossCurves>> {
+        let (job, curves) = self.results.across.as_ref()?;
+        Arc::ptr_eq(&job.dataset, &self.study.dataset).then_some(curves)
+    }
+
     /// What stands in the place of curves that are not there, or are to be renewed.
     pub fn curves_message(&self) -> Option<&'static str> {
         let results = &self.results;
@@ -233,6 +255,7 @@ impl State {
         }
         self.display.hovered = None;
         self.display.isolated = None;
+        self.display.curves.forget_models();
         self.display.shapes.clear();
         self.display.fit_frequency_plots();
     }

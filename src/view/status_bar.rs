@@ -77,6 +77,7 @@ fn background_words(background: &Background) -> String {
         (2.., _) => format!("proving the gains of {} conditions …", background.proofs.len()),
         (0, Some((done, total))) if total > 0 => format!("curves, {} % …", 100 * done / total),
         (0, Some(_)) => "curves …".to_owned(),
+        (0, None) if background.views > 0 => "what the views show …".to_owned(),
         (0, None) => "what holding and freeing would cost …".to_owned(),
     }
 }

@@ -1,5 +1,7 @@
 //! The Bode plot, magnitude over phase of every model of a condition for one pair; and the same of what the fit sees of them.
 
+use std::collections::BTreeSet;
+
 use egui::{Align2, CursorIcon, Rect, Response, Ui, UiBuilder, pos2, vec2};
 use egui_plot::PlotPoint;
 
@@ -7,13 +9,17 @@ use super::axes::{caption_font, use_frame_colors};
 use super::band_handle::{BandChange, band_handles_ui};
 use super::bode_pane::{Emphasis, pane_ui};
 use super::bode_view::BodeView;
+use super::chip::{Chip, chips_ui};
 use super::curve::{BodeCurve, CurveId, Pane};
-use super::legend;
+use super::curve_menu::{CurveWish, MenuSubject, menu_ui};
+use super::legend::{self, LegendAnswer};
 use super::log_axis::FrequencyUnit;
 use super::message::message_ui;
-use super::picking::{Hit, nearest};
+use super::picking::{Hit, nearest, touched};
 use super::quantity::BodeQuantity;
 use super::readout::curve_tooltip_ui;
+use super::readout_box::{Readout, readout_box_ui};
+use super::role::Role;
 use super::rule::Rule;
 use crate::view::palette::Palette;
 
@@ -39,6 +45,14 @@ pub struct BodeScene<'a> {
     pub omega_range: Option<(f64, f64)>,
     /// Where a cursor stands that is led elsewhere \[rad/s\].
     pub cursor: Option<f64>,
+    /// Marked frequencies \[rad/s\].
+    pub pinned: &'a [f64],
+    /// What every role has at the cursor.
+    pub readout: Option<&'a Readout>,
+    /// Roles whose curves are not drawn.
+    pub hidden_roles: &'a BTreeSet<Role>,
+    /// What holds for the plot now.
+    pub chips: &'a [Chip],
     /// The band of comparison: lower and upper end \[rad/s\].
     pub band: (f64, f64),
     /// The unit of the frequency axis.
@@ -48,6 +62,8 @@ pub struct BodeScene<'a> {
     /// What to say where there is nothing to draw.
     pub message: Option<&'a str>,
 }
+
+static NO_ROLES: BTreeSet<Role> = BTreeSet::new();
 
 impl<'a> BodeScene<'a> {
     /// Responses of a pair in decibels, degrees and rad/s, and nothing else.
@@ -59,6 +75,10 @@ impl<'a> BodeScene<'a> {
             rules: &[],
             omega_range: None,
             cursor: None,
+            pinned: &[],
+            readout: None,
+            hidden_roles: &NO_ROLES,
+            chips: &[],
             band,
             unit: FrequencyUnit::RadPerSecond,
             stale: false,
@@ -87,6 +107,18 @@ pub enum BodeEvent {
     },
     /// The band was let go after dragging.
     BandReleased,
+    /// The legend's switch of a role was clicked.
+    RoleToggled(Role),
+    /// Something was chosen from a curve's menu.
+    Wished(CurveId, CurveWish),
+    /// A box was drawn over these curves.
+    Boxed(Vec<CurveId>),
+    /// A frequency \[rad/s\] is to be marked.
+    CursorPinned(f64),
+    /// The marks of frequencies are to be taken away.
+    CursorsUnpinned,
+    /// A chip was clicked, by its index.
+    ChipClicked(usize),
 }
 
 /// Draws a Bode plot into the space that is left in `ui`.
@@ -102,10 +134,17 @@ pub fn bode_ui(ui: &mut Ui, scene: &BodeScene<'_>, view: &mut BodeView, palette:
         view.pointed_omega = None;
         return events;
     }
-    view.fit_if_requested(scene);
+    let drawn: Vec<BodeCurve>;
+    let mut visible = *scene;
+    if scene.curves.iter().any(|curve| curve.hidden) {
+        drawn = scene.curves.iter().filter(|curve| !curve.hidden).cloned().collect();
+        visible.curves = &drawn;
+    }
+    view.fit_if_requested(&visible);
     ui.scope_builder(UiBuilder::new().id_salt(scene.quantity.salt()).max_rect(rect), |ui| {
         use_frame_colors(ui, palette);
-        panes_ui(ui, rect, scene, view, palette, &mut events);
+        panes_ui(ui, rect, &visible, view, palette, &mut events);
+        captions_ui(ui, &visible, scene.curves, view, palette, &mut events);
     });
     ui.advance_cursor_after_rect(rect);
     events
@@ -140,9 +179,25 @@ fn panes_ui(
         {
             curve_tooltip_ui(&response, scene, &scene.curves[hit.curve], hit.omega, palette);
         }
+        ask_for_menu(&response, scene, pointing, view);
+        menu_ui(&response, scene, view, events, palette);
         set_cursor_icon(response, hit);
     }
-    captions_ui(ui, scene, view, palette);
+    if let Some((pane, area)) = view.selection.take()
+        && let Some(transform) = view.transform(pane)
+    {
+        events.push(BodeEvent::Boxed(touched(scene.curves, pane, area, transform)));
+    }
+}
+
+/// A secondary click asks what can be done with the curve there, or with the ground.
+fn ask_for_menu(response: &Response, scene: &BodeScene<'_>, pointing: Option<Pointing>, view: &mut BodeView) {
+    if response.secondary_clicked()
+        && let Some(pointing) = pointing
+    {
+        let curve = pointing.hit.map(|hit| scene.curves[hit.curve].id.clone());
+        view.menu_subject = Some(MenuSubject { curve, omega: 10f64.powf(pointing.log_omega) });
+    }
 }
 
 /// Where the panes go: enough space around them for the tick labels at their edges.
@@ -233,17 +288,34 @@ fn set_cursor_icon(response: Response, hit: Option<Hit>) {
     response.on_hover_cursor(icon);
 }
 
-/// Title, legend, and whether newer curves are on their way.
-fn captions_ui(ui: &Ui, scene: &BodeScene<'_>, view: &mut BodeView, palette: &Palette) {
+/// What lies over the curves: the legend of all of them, hidden ones too, chips, the read-out, and whether newer curves are on their
+/// way.
+fn captions_ui(
+    ui: &Ui,
+    scene: &BodeScene<'_>,
+    all: &[BodeCurve],
+    view: &mut BodeView,
+    palette: &Palette,
+    events: &mut Vec<BodeEvent>,
+) {
     let Some(transform) = view.magnitude_transform().copied() else {
         return;
     };
     let frame = *transform.frame();
-    let entries = legend::entries(scene.curves, palette);
+    let plot = scene.quantity.label_suffix();
+    let entries = legend::entries(all, scene.hidden_roles, palette);
     let points = || scene.curves.iter().flat_map(|curve| curve.points(Pane::Magnitude));
     let position = |[x, y]: [f64; 2]| transform.position_from_point(&PlotPoint::new(x, y));
     let covered = |place: Rect| points().filter(|point| place.contains(position(*point))).count();
-    legend::legend_ui(ui, frame, &entries, &mut view.legend, covered, palette);
+    if let LegendAnswer::Toggled(role) =
+        legend::legend_ui(ui, (frame, plot), &entries, &mut view.legend, covered, palette)
+    {
+        events.push(BodeEvent::RoleToggled(role));
+    }
+    if let Some(readout) = scene.readout {
+        readout_box_ui(ui, frame, readout, view.legend.rect, palette);
+    }
+    events.extend(chips_ui(ui, (frame, plot), scene.chips, palette).map(BodeEvent::ChipClicked));
     if scene.stale {
         // The other corner below where the legend stands in this one.
         let taken = view.legend.corner.is_some_and(|(corner, _)| corner == Align2::LEFT_BOTTOM);

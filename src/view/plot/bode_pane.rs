@@ -1,17 +1,20 @@
 //! One of the two stacked plots: axes, band, curves and cursor.
 
-use egui::{Id, PointerButton, Rect, Response, Ui, UiBuilder, Vec2, WidgetInfo};
+use egui::{Id, PointerButton, Rect, Response, Ui, UiBuilder, WidgetInfo};
 use egui_plot::{Axis, LineStyle, PlotTransform, PlotUi, Span, VLine};
 
 use super::axes::{LABELLED_HEIGHT, TICKS_HEIGHT, axis_hints, quiet_plot};
+use super::axis_strip::axis_strips_ui;
 use super::bode::BodeScene;
 use super::bode_view::BodeView;
-use super::box_zoom::box_zoom_ui;
 use super::curve::{BodeCurve, CurveId, Pane};
 use super::curve_item::CurveItem;
+use super::drawn_box::drawn_box_ui;
 use super::drawn_curves::DrawnCurves;
 use super::pixel::Pixel;
+use super::plot_keys::plot_keys;
 use super::rule::rules_ui;
+use super::wheel::{Turn, turned};
 use crate::view::palette::Palette;
 
 /// Width of the vertical axes \[pt\]: the same above and below, so that the frequencies stand under one another.
@@ -51,25 +54,39 @@ pub(super) fn pane_ui(
             drawn.update(scene.curves, pane, (bounds, pixel), palette);
             draw_curves(plot, scene, drawn, emphasis, palette);
             outside_shade(plot, scene.band, palette);
-            draw_cursor(plot, emphasis.cursor, palette);
+            draw_cursors(plot, scene.pinned, emphasis.cursor, palette);
         })
     });
     let shown = shown.inner;
     *view.drawn_curves(pane) = kept;
     view.remember(pane, shown.transform);
-    if shown.response.dragged_by(PointerButton::Primary) {
-        view.pan(pane, shown.response.drag_delta());
-        ui.ctx().request_repaint();
-    }
-    if let Some(area) = box_zoom_ui(ui, &shown.response, *shown.transform.frame(), palette) {
-        view.zoom_to(pane, area);
-        ui.ctx().request_repaint();
-    }
+    drag(ui, pane, &shown.response, view, palette);
     zoom_by_scrolling(ui, pane, &shown.response, view);
+    plot_keys(ui, pane, &shown.response, view);
+    axis_strips_ui(ui, (pane, rect), scene, view, palette);
     rules_ui(ui, scene.rules, pane, &shown.transform, palette);
     let description = format!("{name} of {}, {} curves", scene.pair_title, scene.curves.len());
     shown.response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, description.clone()));
     shown.response
+}
+
+/// The primary button pans, with Shift it draws a box over curves; the secondary one draws a box to zoom into.
+fn drag(ui: &Ui, pane: Pane, response: &Response, view: &mut BodeView, palette: &Palette) {
+    let Some(frame) = view.transform(pane).map(|transform| *transform.frame()) else { return };
+    if response.drag_started_by(PointerButton::Primary) {
+        view.is_selecting = ui.input(|input| input.modifiers.shift);
+    }
+    if view.is_selecting {
+        let area = drawn_box_ui(ui, response, frame, PointerButton::Primary, palette);
+        view.selection = area.map(|area| (pane, area)).or(view.selection);
+    } else if response.dragged_by(PointerButton::Primary) {
+        view.pan(pane, response.drag_delta());
+        ui.ctx().request_repaint();
+    }
+    if let Some(area) = drawn_box_ui(ui, response, frame, PointerButton::Secondary, palette) {
+        view.zoom_to(pane, area);
+        ui.ctx().request_repaint();
+    }
 }
 
 fn pane_plot<'a>(id: Id, pane: Pane, rect: Rect, scene: &BodeScene<'_>, palette: &Palette) -> egui_plot::Plot<'a> {
@@ -124,25 +141,20 @@ fn draw_curves<'a>(
     }
 }
 
-fn draw_cursor(plot: &mut PlotUi<'_>, cursor: Option<f64>, palette: &Palette) {
+fn draw_cursors(plot: &mut PlotUi<'_>, pinned: &[f64], cursor: Option<f64>, palette: &Palette) {
+    for omega in pinned {
+        plot.vline(VLine::new("", omega.log10()).color(palette.text.gamma_multiply(0.7)).width(1.0));
+    }
     if let Some(log_omega) = cursor {
         let color = palette.text.gamma_multiply(0.55);
         plot.vline(VLine::new("", log_omega).color(color).width(0.8).style(LineStyle::Dotted { spacing: 4.0 }));
     }
 }
 
-/// The wheel zooms about the pointer, and so do two fingers; with Shift (which makes it a sideways wheel) only along the frequency
-/// axis.
+/// The wheel zooms about the pointer, and so do two fingers; the sideways wheel only along the frequency axis.
 fn zoom_by_scrolling(ui: &Ui, pane: Pane, response: &Response, view: &mut BodeView) {
-    /// Scrolled points that make a factor of e: about four clicks of a wheel.
-    const POINTS_PER_E: f32 = 200.0;
-    let Some(pointer) = response.hover_pos() else { return };
-    let (scrolled, pinched) = ui.input(|input| (input.smooth_scroll_delta(), input.zoom_delta_2d()));
-    if scrolled == Vec2::ZERO && pinched == Vec2::splat(1.0) {
-        return;
+    if let Some((Turn { both, sideways }, pointer)) = turned(ui, response) {
+        view.zoom(pane, pointer, f64::from(both.x * sideways), f64::from(both.y));
+        ui.ctx().request_repaint();
     }
-    let both = (scrolled.y / POINTS_PER_E).exp();
-    let sideways = (scrolled.x / POINTS_PER_E).exp();
-    view.zoom(pane, pointer, f64::from(both * sideways * pinched.x), f64::from(both * pinched.y));
-    ui.ctx().request_repaint();
 }

@@ -1,12 +1,15 @@
 //! What the Bode plot remembers between frames: the part in view, and where things are on the screen.
 
-use egui::{Pos2, Rect, Vec2};
+use egui::{Pos2, Rect, Vec2, vec2};
 use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
 
+use super::axis_strip::LimitsForm;
 use super::bode::BodeScene;
 use super::curve::{BodeCurve, CurveId, Pane};
+use super::curve_menu::MenuSubject;
 use super::drawn_curves::DrawnCurves;
 use super::legend::LegendState;
+use super::plot_axis::PlotAxis;
 use super::range::Range;
 use super::value_unit::ValueUnit;
 use super::viewed_range::ViewedRange;
@@ -34,6 +37,14 @@ pub struct BodeView {
     /// The frequency under the pointer \[rad/s\].
     pub(super) pointed_omega: Option<f64>,
     pub(super) last_clicked: Option<CurveId>,
+    /// What the menu that is open, or was last, was asked for.
+    pub(super) menu_subject: Option<MenuSubject>,
+    /// Whether a box is being drawn to select curves.
+    pub(super) is_selecting: bool,
+    /// The box that was drawn.
+    pub(super) selection: Option<(Pane, Rect)>,
+    /// Limits of an axis being typed.
+    pub(super) limits: Option<LimitsForm>,
     must_fit_frequencies: bool,
     must_fit_values: bool,
     magnitude_transform: Option<PlotTransform>,
@@ -52,6 +63,10 @@ impl Default for BodeView {
             hovered: None,
             pointed_omega: None,
             last_clicked: None,
+            menu_subject: None,
+            is_selecting: false,
+            selection: None,
+            limits: None,
             must_fit_frequencies: true,
             must_fit_values: true,
             magnitude_transform: None,
@@ -199,6 +214,47 @@ impl BodeView {
         self.values(pane).choose(values);
     }
 
+    /// What is in view of an axis.
+    pub(super) fn axis(&self, axis: PlotAxis) -> Range {
+        match axis {
+            PlotAxis::Frequency => self.log_omega.range(),
+            PlotAxis::Values(pane) => self.value_range(pane),
+        }
+    }
+
+    fn axis_mut(&mut self, axis: PlotAxis) -> &mut ViewedRange {
+        match axis {
+            PlotAxis::Frequency => &mut self.log_omega,
+            PlotAxis::Values(pane) => self.values(pane),
+        }
+    }
+
+    /// Shows a part of an axis that the engineer wants to see.
+    pub(super) fn choose(&mut self, axis: PlotAxis, range: Range) {
+        self.axis_mut(axis).choose(range);
+    }
+
+    /// Shows all of the curves on one axis at the next frame.
+    pub(super) fn fit_axis(&mut self, axis: PlotAxis) {
+        self.axis_mut(axis).release();
+        match axis {
+            PlotAxis::Frequency => self.must_fit_frequencies = true,
+            PlotAxis::Values(_) => self.must_fit_values = true,
+        }
+    }
+
+    /// Moves what a pane shows of one of its axes by so much on the screen.
+    pub(super) fn pan_axis(&mut self, axis: PlotAxis, pane: Pane, by: Vec2) {
+        let by = if axis == PlotAxis::Frequency { vec2(by.x, 0.0) } else { vec2(0.0, by.y) };
+        self.pan(pane, by);
+    }
+
+    /// Looks `factor` times closer at one axis of a pane, with what is beside `pointer` staying where it is.
+    pub(super) fn zoom_axis(&mut self, axis: PlotAxis, pane: Pane, pointer: Pos2, factor: f64) {
+        let (frequencies, values) = if axis == PlotAxis::Frequency { (factor, 1.0) } else { (1.0, factor) };
+        self.zoom(pane, pointer, frequencies, values);
+    }
+
     /// Shows what lies in `area` of the screen.
     pub(super) fn zoom_to(&mut self, pane: Pane, area: Rect) {
         let Some(transform) = self.transform(pane) else { return };
@@ -212,13 +268,13 @@ impl BodeView {
         if !(self.must_fit_frequencies || self.must_fit_values) {
             return;
         }
-        let ends = scene.omega_range.map(|(min, max)| Range::new(min, max));
-        let omega = || scene.curves.iter().flat_map(|curve| curve.omega.iter().copied());
-        let Some(omega) = ends.or_else(|| Range::of(omega())) else {
+        let ends = scene.omega_range.map(|(min, max)| Range::new(min.log10(), max.log10()));
+        let log_omega = || scene.curves.iter().flat_map(|curve| curve.omega.iter()).map(|omega| omega.log10());
+        let Some(log_omega) = ends.or_else(|| Range::of(log_omega())) else {
             return;
         };
         if std::mem::take(&mut self.must_fit_frequencies) {
-            self.log_omega.fit(Range::new(omega.min.log10(), omega.max.log10()));
+            self.log_omega.fit(log_omega);
         }
         if std::mem::take(&mut self.must_fit_values) {
             // The legend stays where it is while zooming, but makes room for new curves.
@@ -258,6 +314,7 @@ mod tests {
             role: Role::Perturbed,
             rejected: true,
             highlighted: false,
+            hidden: false,
             omega: vec![0.3, 0.5, 1.0, 10.0, 20.0].into(),
             magnitude_db: magnitude_db.into(),
             phase_deg: vec![0.0; 5].into(),

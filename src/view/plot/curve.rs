@@ -43,6 +43,8 @@ pub struct BodeCurve {
     pub rejected: bool,
     /// Whether another view points at it.
     pub highlighted: bool,
+    /// Whether the engineer does not want to see it; the legend names its role all the same.
+    pub hidden: bool,
     /// Frequencies \[rad/s\], ascending.
     pub omega: Arc<[f64]>,
     /// Magnitude \[dB\] at each frequency; a value that is not finite leaves a gap.
@@ -186,6 +188,7 @@ pub(super) fn sample_curve(id: u64, values: &[f64]) -> BodeCurve {
         role: Role::Perturbed,
         rejected: false,
         highlighted: false,
+        hidden: false,
         omega: vec![1.0, 2.0, 4.0].into(),
         magnitude_db: values.into(),
         phase_deg: values.into(),

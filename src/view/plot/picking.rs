@@ -1,9 +1,9 @@
 //! Which curve the pointer means: the nearest one, not the topmost.
 
-use egui::{Pos2, vec2};
+use egui::{Pos2, Rect, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
 
-use super::curve::{BodeCurve, LogFrequencies, Pane};
+use super::curve::{BodeCurve, CurveId, LogFrequencies, Pane};
 
 /// How far from a curve the pointer may be to mean it \[pt\].
 pub const PICK_RADIUS: f32 = 8.0;
@@ -38,6 +38,45 @@ pub fn nearest(curves: &[BodeCurve], pane: Pane, pointer: Pos2, transform: &Plot
         }
     }
     best.map(|(hit, _)| hit)
+}
+
+/// The curves that run through `area` of the screen.
+pub(super) fn touched(curves: &[BodeCurve], pane: Pane, area: Rect, transform: &PlotTransform) -> Vec<CurveId> {
+    let mut axis = LogFrequencies::default();
+    let [low, high] = [area.left(), area.right()].map(|x| transform.value_from_position(pos2(x, area.top())).x);
+    let runs_through = |curve: &&BodeCurve| {
+        let mut previous: Option<Pos2> = None;
+        curve.points_between(&mut axis, pane, (low, high)).any(|[x, y]| {
+            let is_point = x.is_finite() && y.is_finite();
+            let here = is_point.then(|| transform.position_from_point(&PlotPoint::new(x, y)));
+            let before = std::mem::replace(&mut previous, here);
+            before.zip(here).is_some_and(|(from, to)| meets(from, to, area))
+        })
+    };
+    curves.iter().filter(runs_through).map(|curve| curve.id.clone()).collect()
+}
+
+/// Whether the segment between two points has a part in `area`.
+///
+/// Of the segment `from + t (to - from)`, 0 <= t <= 1, each pair of edges leaves an interval of t (Liang and Barsky, "A new concept
+/// and method for line clipping", ACM TOG 3(1), 1984); it meets the area where the intervals have something in common.
+fn meets(from: Pos2, to: Pos2, area: Rect) -> bool {
+    let along = to - from;
+    let (mut first, mut last) = (0.0f32, 1.0f32);
+    for (start, step, low, high) in
+        [(from.x, along.x, area.left(), area.right()), (from.y, along.y, area.top(), area.bottom())]
+    {
+        if step == 0.0 {
+            if !(low..=high).contains(&start) {
+                return false;
+            }
+            continue;
+        }
+        let ends = [(low - start) / step, (high - start) / step];
+        first = first.max(ends[0].min(ends[1]));
+        last = last.min(ends[0].max(ends[1]));
+    }
+    first <= last
 }
 
 /// Distance from `pointer` to a curve and the point of the curve that has it; nothing where no part comes near.
@@ -81,7 +120,6 @@ mod tests {
     use super::*;
     use crate::view::plot::curve::numbered;
     use crate::view::plot::role::Role;
-    use egui::{Rect, pos2};
     use egui_plot::PlotBounds;
 
     fn flat(id: u64, level_db: f64, role: Role) -> BodeCurve {
@@ -92,6 +130,7 @@ mod tests {
             role,
             rejected: false,
             highlighted: false,
+            hidden: false,
             omega: vec![1.0, 3.0, 10.0].into(),
             magnitude_db: vec![level_db; 3].into(),
             phase_deg: vec![f64::NAN, 0.0, f64::NAN].into(),
@@ -126,6 +165,24 @@ mod tests {
         let curves = [flat(1, 50.0, Role::Nominal)];
         let hit = nearest(&curves, Pane::Magnitude, pos2(50.0, 48.0), &transform());
         assert!(hit.is_some_and(|hit| (hit.omega - 10f64.sqrt()).abs() < 1e-4));
+    }
+
+    #[test]
+    fn a_box_touches_the_curves_that_run_through_it_without_a_point_in_it_too() {
+        let curves = [flat(1, 50.0, Role::Perturbed), flat(2, 54.0, Role::Corrected), flat(3, 60.0, Role::Nominal)];
+        // Between the points at 3 and 10 rad/s.
+        let area = Rect::from_min_max(pos2(70.0, 44.0), pos2(75.0, 52.0));
+        assert_eq!(touched(&curves, Pane::Magnitude, area, &transform()), [numbered(1), numbered(2)]);
+        assert!(touched(&curves, Pane::Phase, area, &transform()).is_empty(), "a lone point is no curve");
+    }
+
+    #[test]
+    fn a_segment_meets_a_box_that_it_cuts_a_corner_of() {
+        let area = Rect::from_min_max(pos2(0.0, 0.0), pos2(10.0, 10.0));
+        assert!(meets(pos2(-5.0, 2.0), pos2(4.0, -1.0), area));
+        assert!(!meets(pos2(-5.0, 2.0), pos2(2.0, -5.0), area));
+        assert!(meets(pos2(2.0, 2.0), pos2(3.0, 3.0), area), "inside");
+        assert!(!meets(pos2(11.0, -5.0), pos2(11.0, 20.0), area), "upright, beside it");
     }
 
     #[test]

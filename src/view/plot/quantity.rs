@@ -67,6 +67,14 @@ impl BodeQuantity<'_> {
         }
     }
 
+    /// What tells labels of this plot from the same ones of the Bode plot.
+    pub(super) fn label_suffix(self) -> &'static str {
+        match self {
+            Self::Response { .. } => "",
+            Self::Error { .. } => ", error plot",
+        }
+    }
+
     /// What a pane shows: "Magnitude".
     pub(super) fn name(self, pane: Pane) -> &'static str {
         match (self, pane) {
@@ -94,6 +102,44 @@ impl BodeQuantity<'_> {
             (_, Pane::Magnitude) => ValueUnit::Decibel,
             (Self::Error { phase: PhaseErrorUnit::Millisecond }, Pane::Phase) => ValueUnit::Millisecond,
             (_, Pane::Phase) => ValueUnit::Degree,
+        }
+    }
+
+    /// What stands above a column of values of a pane, or of their changes.
+    pub(crate) fn column(self, pane: Pane, is_change: bool) -> &'static str {
+        match (self.unit(pane), is_change) {
+            (ValueUnit::Decibel, false) => "dB",
+            (ValueUnit::Ratio, false) => "ratio",
+            (ValueUnit::Degree, false) => "deg",
+            (ValueUnit::Millisecond, false) => "ms",
+            (ValueUnit::Decibel | ValueUnit::Ratio, true) => "Δ dB",
+            (ValueUnit::Degree, true) => "Δ deg",
+            (ValueUnit::Millisecond, true) => "Δ ms",
+        }
+    }
+
+    /// Digits behind the point of a value of a pane.
+    pub(crate) fn decimals(self, pane: Pane) -> usize {
+        match (self, self.unit(pane)) {
+            (_, ValueUnit::Ratio) => 3,
+            (Self::Error { .. }, ValueUnit::Decibel) => 2,
+            (Self::Response { .. }, ValueUnit::Degree) => 0,
+            _ => 1,
+        }
+    }
+
+    /// A drawn value of a pane in the unit that it is read in.
+    pub(crate) fn shown_value(self, pane: Pane, value: f64) -> f64 {
+        self.unit(pane).of_drawn(value)
+    }
+
+    /// What the numbers of a curve in a pane are, with the unit that they are drawn in.
+    pub(crate) fn drawn_label(self, pane: Pane) -> String {
+        match self {
+            Self::Response { phase, .. } => {
+                Self::Response { magnitude: MagnitudeUnit::Decibel, phase, ratio_unit: "" }.axis_label(pane)
+            }
+            Self::Error { .. } => self.axis_label(pane),
         }
     }
 

@@ -1,10 +1,12 @@
 //! What a curve stands for, and how it is therefore drawn: the same in every view.
 
+use serde::{Deserialize, Serialize};
+
 use super::line_look::{LineLook, LinePattern};
 use crate::view::palette::Palette;
 
 /// What a curve stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Role {
     /// The physics model at the trim itself.
     Nominal,
@@ -22,13 +24,15 @@ pub enum Role {
     Scheduled,
     /// A model left out, whatever it was.
     Rejected,
+    /// A model of one of several conditions: 0 is the slowest, 255 the fastest.
+    OfAirspeed(u8),
 }
 
 /// The dots of what is left out.
 const DOTTED: LinePattern = LinePattern::Dotted { spacing: 4.5 };
 
 impl Role {
-    /// Every role, in the order of a legend.
+    /// Every role of one condition, in the order of a legend.
     pub const ALL: [Self; 8] = [
         Self::Nominal,
         Self::Perturbed,
@@ -51,6 +55,16 @@ impl Role {
             Self::Corrected => "corrected",
             Self::Scheduled => "scheduled",
             Self::Rejected => "rejected",
+            Self::OfAirspeed(_) => "condition",
+        }
+    }
+
+    /// The name where there is little room.
+    pub fn short_name(self) -> &'static str {
+        match self {
+            Self::Representative => "repres.",
+            Self::IdentifiedRepresentative => "ident. rep.",
+            _ => self.name(),
         }
     }
 
@@ -76,6 +90,11 @@ impl Role {
             Self::Corrected => look(palette.corrected, 2.2, LinePattern::Solid),
             Self::Scheduled => look(palette.corrected, 2.2, dashed(9.0)),
             Self::Rejected => look(palette.rejected, 1.0, DOTTED),
+            // From blue over grey to amber, as in scales made for colour-blind eyes.
+            Self::OfAirspeed(step) => {
+                let part = f32::from(step) / f32::from(u8::MAX);
+                look(palette.perturbed.lerp_to_gamma(palette.identified, part), 1.8, LinePattern::Solid)
+            }
         }
     }
 
@@ -83,7 +102,7 @@ impl Role {
     pub fn layer(self, rejected: bool) -> usize {
         match self.shown(rejected) {
             Self::Rejected => 0,
-            Self::Perturbed => 1,
+            Self::Perturbed | Self::OfAirspeed(_) => 1,
             Self::Identified => 2,
             Self::Nominal => 3,
             Self::Representative => 4,

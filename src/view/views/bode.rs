@@ -2,28 +2,51 @@
 
 use egui::Ui;
 
-use super::frequency::carry_over;
+use super::frequency::{Drawn, carry_over, chips};
 use crate::view::bode_scene::bode_curves;
 use crate::view::command::Command;
+use crate::view::cursor_readout::cursor_readout;
 use crate::view::palette::Palette;
-use crate::view::plot::{BodeScene, bode_ui};
+use crate::view::plot::{BodeQuantity, BodeScene, bode_ui};
 use crate::view::state::State;
 
 /// Magnitude and phase of the response in focus, of every model of the condition shown.
 pub fn bode_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let pair = state.display.pair;
-    state.display.drawn = bode_curves(state, pair);
-    let band = state.study.settings.band;
+    let mut view = std::mem::take(&mut state.display.bode);
+    let curves = bode_curves(state, pair);
     let title = state.dataset().pair_name(pair);
+    let ratio_unit = ratio_unit(state);
+    let display = &state.display.curves;
+    let quantity =
+        BodeQuantity::Response { magnitude: display.magnitude, phase: display.phase, ratio_unit: &ratio_unit };
+    let at = (display.cursor, display.pinned.as_slice());
+    let readout = if display.lists_values { cursor_readout(&curves, quantity, state.display.unit, at) } else { None };
+    let chips: Vec<_> = chips(state).into_iter().map(|(chip, _)| chip).collect();
+    let band = state.study.settings.band;
     let scene = BodeScene {
+        quantity,
+        cursor: display.cursor,
+        pinned: &display.pinned,
+        readout: readout.as_ref(),
+        hidden_roles: &display.hidden_roles,
+        chips: &chips,
         unit: state.display.unit,
-        cursor: state.display.error.pointed_omega(),
         stale: state.results.is_stale(ui.input(|input| input.time)),
         message: state.curves_message(),
-        ..BodeScene::of(&title, &state.display.drawn, (band.min(), band.max()))
+        ..BodeScene::of(&title, &curves, (band.min(), band.max()))
     };
-    let events = bode_ui(ui, &scene, &mut state.display.bode, palette);
-    let display = &mut state.display;
-    display.error.share_frequencies(&display.bode);
-    carry_over(state, events, state.display.bode.hovered(), commands);
+    let events = bode_ui(ui, &scene, &mut view, palette);
+    carry_over(state, Drawn { quantity, curves: &curves, view: &view, events }, commands);
+    state.display.error.share_frequencies(&view);
+    state.display.bode = view;
+    state.display.drawn = curves;
+}
+
+/// "(deg/s)/in": the unit of the ratio of output to input.
+fn ratio_unit(state: &State) -> String {
+    let pair = state.display.pair;
+    let (output, input) = (&state.dataset().outputs()[pair.output].unit, &state.dataset().inputs()[pair.input].unit);
+    let bracketed = |unit: &str| if unit.contains('/') { format!("({unit})") } else { unit.to_owned() };
+    format!("{}/{}", bracketed(output), bracketed(input))
 }

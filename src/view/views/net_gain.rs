@@ -1,16 +1,18 @@
 //! Net gains against airspeed, and the form of the schedule.
 
-use egui::{RichText, Role, Ui, WidgetInfo};
+use egui::{Panel, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
 use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
 use crate::study::{Edit, Setting};
 use crate::view::command::Command;
+use crate::view::evidence_scene::{coefficient_table, evidence_table, residual_table};
 use crate::view::net_gain_scene::{PairSet, dot_key, net_gain_panels};
 use crate::view::number_field::NumberField;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{GainEvent, NetGainScene, net_gain_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
+use crate::view::table_view::{Sorting, TableLook, table_ui};
 
 /// Widest airspeed tolerance \[kt\].
 const WIDEST_TOLERANCE_KT: f64 = 100.0;
@@ -20,6 +22,12 @@ pub fn net_gain_header_ui(ui: &mut Ui, state: &State, palette: &Palette, command
     let small = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
     schedule_ui(ui, state.study.settings.schedule, commands);
     ui.label(small("schedule".to_owned()));
+    let mut shown = state.display.show_evidence;
+    let hint =
+        "What each form of the schedule misses, residuals and coefficients, so that a degree is chosen on evidence";
+    if ui.checkbox(&mut shown, "evidence").on_hover_text(hint).changed() {
+        commands.push(Command::ShowEvidence(shown));
+    }
     pair_set_ui(ui, state, commands);
     let key = dot_key(state);
     ui.add(egui::Label::new(small(key.clone())).truncate()).on_hover_text(key);
@@ -57,9 +65,46 @@ pub fn net_gain_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
             _ => "No response is held: hold one in the matrix",
         }
     };
+    if state.display.show_evidence {
+        let width = ui.available_width();
+        let panel = Panel::right("evidence").resizable(true).default_size(0.36 * width).min_size(120.0);
+        panel.show(ui, |ui| evidence_ui(ui, state, palette, commands));
+    }
     let scene = NetGainScene { panels: &panels, message: Some(message) };
     let events = net_gain_ui(ui, &scene, &mut state.display.net_gain, palette);
     commands.extend(events.into_iter().filter_map(|event| gain_command(state, event)));
+}
+
+/// What speaks for each form of the schedule; a click on a form takes it.
+fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    let mut cached = std::mem::take(&mut state.display.evidence);
+    cached.refresh(state);
+    let mut sorting = state.display.evidence_sorting;
+    let schedule = state.study.settings.schedule;
+    ScrollArea::vertical().show(ui, |ui| match cached.found() {
+        None => {
+            ui.label(RichText::new(state.results.absence()).color(palette.dim_text));
+        }
+        Some((conditions, evidence)) => {
+            let hint = "fit: residuals of the conditions that the schedule is made of; unseen: of each condition under the \
+                        schedule that is made without it (root mean square of ln of the net gain)";
+            ui.label(RichText::new("Error of each form [% of the net gain]").size(SMALL_SIZE).strong()).on_hover_text(hint);
+            let (table, kinds) = evidence_table(state, evidence);
+            let look = TableLook { color: &|_, _| None, selected: &|row| kinds.get(row) == Some(&schedule.kind) };
+            if let Some(click) = table_ui(ui, &table, &mut sorting, &look, palette, commands)
+                && let Some(&kind) = kinds.get(click.row)
+            {
+                commands.push(Edit::Set(Setting::Schedule(ScheduleSettings { kind, ..schedule })).into());
+            }
+            let plain = TableLook { color: &|_, _| None, selected: &|_| false };
+            for table in residual_table(state, conditions, evidence).into_iter().chain(coefficient_table(state)) {
+                ui.label(RichText::new(&table.title).size(SMALL_SIZE).strong());
+                table_ui(ui, &table, &mut Sorting::default(), &plain, palette, commands);
+            }
+        }
+    });
+    state.display.evidence = cached;
+    state.display.evidence_sorting = sorting;
 }
 
 /// What a click in a plot over airspeed asks for.

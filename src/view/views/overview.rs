@@ -14,7 +14,7 @@ use crate::view::state::State;
 /// Every response of the condition shown; a click brings it into focus.
 pub fn overview_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let pairs: Vec<Pair> = state.dataset().on_axis().pairs().collect();
-    let curves: Vec<Vec<BodeCurve>> = pairs.iter().map(|&pair| bode_curves(state, pair)).collect();
+    let curves: Vec<Vec<BodeCurve>> = pairs.iter().map(|&pair| visible_curves(state, pair)).collect();
     let cells: Vec<OverviewCell<'_>> = pairs
         .iter()
         .zip(&curves)
@@ -39,6 +39,13 @@ pub fn overview_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
         commands.push(Command::FocusPair(pair));
         commands.push(Command::ShowView(View::Bode));
     }
+}
+
+/// The curves of a response that are not hidden.
+fn visible_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
+    let mut curves = bode_curves(state, pair);
+    curves.retain(|curve| !curve.hidden);
+    curves
 }
 
 /// "J 75→61".

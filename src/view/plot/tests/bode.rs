@@ -1,24 +1,36 @@
+use std::collections::BTreeSet;
+
 use egui::vec2;
 
 use super::*;
 use crate::view::palette::{self, Palette};
 
-struct Model {
-    curves: Vec<BodeCurve>,
-    band: (f64, f64),
-    view: BodeView,
-    events: Vec<BodeEvent>,
+pub(super) struct Model {
+    pub(super) curves: Vec<BodeCurve>,
+    pub(super) band: (f64, f64),
+    pub(super) view: BodeView,
+    pub(super) events: Vec<BodeEvent>,
+    pub(super) hidden_roles: BTreeSet<Role>,
 }
 
-fn harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
-    let model = Model { curves, band: (0.5, 12.0), view: BodeView::default(), events: Vec::new() };
+pub(super) fn harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
+    let model = Model {
+        curves,
+        band: (0.5, 12.0),
+        view: BodeView::default(),
+        events: Vec::new(),
+        hidden_roles: BTreeSet::new(),
+    };
     let mut harness = Harness::builder()
         .with_step_dt(0.02)
         .with_size(vec2(900.0, 600.0))
         .with_context_setup(palette::apply)
         .build_ui_state(
             |ui, model: &mut Model| {
-                let scene = BodeScene::of("LON → Q", &model.curves, model.band);
+                let scene = BodeScene {
+                    hidden_roles: &model.hidden_roles,
+                    ..BodeScene::of("LON → Q", &model.curves, model.band)
+                };
                 let palette = Palette::of(ui.visuals());
                 for event in bode_ui(ui, &scene, &mut model.view, &palette) {
                     if let BodeEvent::BandDragged { min, max } = event {
@@ -33,18 +45,18 @@ fn harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
     harness
 }
 
-fn three_curves() -> Vec<BodeCurve> {
+pub(super) fn three_curves() -> Vec<BodeCurve> {
     vec![lag(1, 0.0, 1.0, Role::Nominal), lag(2, 3.0, 1.0, Role::Perturbed), lag(3, 20.0, 3.0, Role::Corrected)]
 }
 
 /// A point on the magnitude of curve `index` at the frequency of sample `k`.
-fn point_on(harness: &Harness<'_, Model>, index: usize, k: usize) -> Pos2 {
+pub(super) fn point_on(harness: &Harness<'_, Model>, index: usize, k: usize) -> Pos2 {
     let curve = &harness.state().curves[index];
     harness.state().view.screen_position(Pane::Magnitude, curve.omega[k], curve.magnitude_db[k]).unwrap()
 }
 
 /// A place in the magnitude plot that is far from every curve.
-fn empty_spot(harness: &Harness<'_, Model>) -> Pos2 {
+pub(super) fn empty_spot(harness: &Harness<'_, Model>) -> Pos2 {
     point_on(harness, 2, 60) + vec2(0.0, 40.0)
 }
 
@@ -53,7 +65,7 @@ fn empty_spot_of_one(harness: &Harness<'_, Model>) -> Pos2 {
     point_on(harness, 0, 60) + vec2(0.0, 40.0)
 }
 
-fn wheel(delta: egui::Vec2) -> Event {
+pub(super) fn wheel(delta: egui::Vec2) -> Event {
     Event::MouseWheel {
         unit: egui::MouseWheelUnit::Point,
         delta,
@@ -63,7 +75,7 @@ fn wheel(delta: egui::Vec2) -> Event {
     }
 }
 
-fn clicks(harness: &Harness<'_, Model>) -> Vec<BodeEvent> {
+pub(super) fn clicks(harness: &Harness<'_, Model>) -> Vec<BodeEvent> {
     let is_click =
         |event: &&BodeEvent| matches!(event, BodeEvent::Clicked(_) | BodeEvent::TakenBack(_) | BodeEvent::Isolated(_));
     harness.state().events.iter().filter(is_click).cloned().collect()
@@ -295,12 +307,73 @@ fn every_size_can_be_drawn() {
 }
 
 #[test]
-fn the_legend_folds_at_a_click_without_rejecting_a_curve() {
+fn the_legend_folds_at_a_click_on_its_head_without_rejecting_a_curve() {
     use egui_kittest::kittest::Queryable;
     let mut harness = harness(three_curves());
-    let legend = harness.get_by_label("Legend: nominal, perturbed, corrected").rect();
-    click(&mut harness, legend.center());
-    let folded = harness.get_by_label("Legend: nominal, perturbed, corrected").rect();
-    assert!(folded.height() < 0.6 * legend.height());
+    harness.get_by_label("Show nominal");
+    let head = harness.get_by_label("Fold the legend").rect();
+    click(&mut harness, head.center());
+    harness.get_by_label("Unfold the legend");
+    assert!(harness.query_by_label("Show nominal").is_none());
     assert_eq!(harness.state().events, []);
+}
+
+#[test]
+fn every_role_in_the_legend_is_a_switch_and_a_hidden_curve_is_neither_drawn_nor_meant() {
+    use egui_kittest::kittest::Queryable;
+    let mut harness = harness(three_curves());
+    harness.get_by_label("Show perturbed").click();
+    harness.run();
+    assert_eq!(harness.state().events, [BodeEvent::RoleToggled(Role::Perturbed)]);
+    let at = point_on(&harness, 1, 60);
+    harness.state_mut().hidden_roles.insert(Role::Perturbed);
+    harness.state_mut().curves[1].hidden = true;
+    harness.run();
+    click(&mut harness, at);
+    assert_eq!(clicks(&harness), [], "nothing else is near");
+    harness.get_by_label("Show perturbed");
+}
+
+#[test]
+fn a_box_drawn_with_shift_names_the_curves_it_touches_and_does_not_pan() {
+    let mut harness = harness(three_curves());
+    let before = harness.state().view.omega_range();
+    let (from, to) = (point_on(&harness, 0, 60) + vec2(-20.0, 30.0), point_on(&harness, 1, 60) + vec2(20.0, -20.0));
+    harness.event(Event::ModifiersChanged(Modifiers::SHIFT));
+    drag(&mut harness, &[from, from.lerp(to, 0.5), to], PointerButton::Primary);
+    harness.event(Event::ModifiersChanged(Modifiers::NONE));
+    harness.run();
+    assert!(harness.state().events.contains(&BodeEvent::Boxed(vec![numbered(1), numbered(2)])));
+    assert_eq!(harness.state().view.omega_range(), before);
+}
+
+#[test]
+fn a_secondary_click_on_a_curve_says_what_can_be_done_with_it() {
+    use egui_kittest::kittest::Queryable;
+    let mut harness = harness(three_curves());
+    let at = point_on(&harness, 1, 60);
+    press(&mut harness, at, PointerButton::Secondary, Modifiers::NONE);
+    harness.run();
+    harness.get_by_label("Reject model").click();
+    harness.run();
+    let wished = BodeEvent::Wished(numbered(2), CurveWish::RejectOrRestore);
+    assert!(harness.state().events.contains(&wished), "{:?}", harness.state().events);
+    assert_eq!(clicks(&harness), []);
+}
+
+#[test]
+fn a_secondary_click_on_the_ground_marks_the_frequency_there() {
+    use egui_kittest::kittest::Queryable;
+    let mut harness = harness(three_curves());
+    let at = empty_spot(&harness);
+    let omega = harness.state().curves[2].omega[60];
+    press(&mut harness, at, PointerButton::Secondary, Modifiers::NONE);
+    harness.run();
+    harness.get_by_label("Mark frequency").click();
+    harness.run();
+    let marked = harness.state().events.iter().find_map(|event| match event {
+        BodeEvent::CursorPinned(omega) => Some(*omega),
+        _ => None,
+    });
+    assert!(marked.is_some_and(|marked| (marked / omega - 1.0).abs() < 1e-3), "{marked:?} {omega}");
 }

@@ -1,5 +1,6 @@
 //! What the plots answer to the mouse, without a display.
 
+mod axes;
 mod bode;
 mod gains;
 mod tables;
@@ -58,6 +59,7 @@ fn lag(id: u64, gain_db: f64, corner: f64, role: Role) -> BodeCurve {
         role,
         rejected: false,
         highlighted: false,
+        hidden: false,
         omega,
         magnitude_db,
         phase_deg,

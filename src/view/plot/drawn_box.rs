@@ -1,4 +1,4 @@
-//! Zooming into a box drawn with the secondary button.
+//! Boxes drawn over a plot: with the secondary button to zoom into, with Shift and the primary one to select what they touch.
 //!
 //! egui_plot has this too, but begins the box where the pointer is by the time it is known to drag, not where it was pressed.
 
@@ -9,10 +9,16 @@ use crate::view::palette::Palette;
 /// A box less wide or high than this is a slip of the hand \[pt\].
 const LEAST_SIDE: f32 = 5.0;
 
-/// Draws the box while it is being drawn over `frame`, and gives it when it is done.
-pub(super) fn box_zoom_ui(ui: &Ui, plot: &Response, frame: Rect, palette: &Palette) -> Option<Rect> {
-    let is_done = plot.drag_stopped_by(PointerButton::Secondary);
-    if !(is_done || plot.dragged_by(PointerButton::Secondary)) {
+/// Draws the box while it is being drawn over `frame` with `button`, and gives it when it is done.
+pub(super) fn drawn_box_ui(
+    ui: &Ui,
+    plot: &Response,
+    frame: Rect,
+    button: PointerButton,
+    palette: &Palette,
+) -> Option<Rect> {
+    let is_done = plot.drag_stopped_by(button);
+    if !(is_done || plot.dragged_by(button)) {
         return None;
     }
     let (origin, now) = ui.input(|input| (input.pointer.press_origin(), input.pointer.latest_pos()));

@@ -1,0 +1,37 @@
+//! What the views that can be seen need beside the live answer.
+
+use std::sync::Arc;
+
+use crate::study::{AssessmentJob, ModesJob};
+use crate::view::across_scene::across_job;
+use crate::view::arrangement::View;
+use crate::view::assessment_scene::assessment_choice;
+use crate::view::compare_scene::variant_jobs;
+use crate::view::state::State;
+
+use super::window::GdcmApp;
+use super::worker::Beside;
+
+impl GdcmApp {
+    /// Asks for what the views shown need; what none shows is not computed.
+    pub(super) fn want_beside(&mut self) {
+        let beside = wanted(&self.state);
+        let variants = &beside.variants;
+        self.state.results.variants.retain(|(known, _)| variants.contains(known));
+        self.worker.want_beside(beside);
+    }
+}
+
+fn wanted(state: &State) -> Beside {
+    let is_shown = |view| state.display.arrangement.is_shown(view);
+    let analysis = state.results.analysis.as_ref().filter(|_| state.analysis().is_some());
+    let condition = state.dataset().condition(state.condition().id());
+    Beside {
+        modes: condition.filter(|_| is_shown(View::Poles)).map(|of| ModesJob { condition: Arc::clone(of) }),
+        assessment: analysis
+            .filter(|_| is_shown(View::Assessment))
+            .map(|analysis| AssessmentJob { analysis: Arc::clone(analysis), choice: assessment_choice(state) }),
+        across: is_shown(View::Across).then(|| across_job(state)),
+        variants: if is_shown(View::Compare) { variant_jobs(state) } else { Vec::new() },
+    }
+}

@@ -1,0 +1,83 @@
+//! Responses of single models of several conditions, to be laid over one another.
+
+use std::sync::Arc;
+
+use crate::dataset::{Band, Dataset, ModelId};
+use crate::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
+
+use super::job::Job;
+use super::progress::{Cancelled, Progress};
+
+/// The responses of some models, wherever in the dataset they are, on one grid.
+#[derive(Clone, Debug)]
+pub struct AcrossJob {
+    /// The dataset.
+    pub dataset: Arc<Dataset>,
+    /// The models; those that the dataset does not have are left out.
+    pub models: Vec<ModelId>,
+    /// Band, and the number of frequencies in it.
+    pub grid: (Band, usize),
+}
+
+/// Responses of models of several conditions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AcrossCurves {
+    /// The frequencies.
+    pub grid: FrequencyGrid,
+    /// Each model with its response.
+    pub responses: Vec<(ModelId, Arc<FrequencyResponse>)>,
+}
+
+impl PartialEq for AcrossJob {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.dataset, &other.dataset) && (&self.models, self.grid) == (&other.models, other.grid)
+    }
+}
+
+impl Job for AcrossJob {
+    type Tools = ();
+    type Output = Arc<AcrossCurves>;
+
+    fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        let (band, points) = self.grid;
+        let grid = FrequencyGrid::logarithmic(band, points);
+        let mut responses = Vec::with_capacity(self.models.len());
+        for (done, id) in self.models.iter().enumerate() {
+            if progress.cancelled() {
+                return Err(Cancelled);
+            }
+            let condition = self.dataset.condition(id.condition);
+            if let Some(model) = condition.and_then(|condition| condition.model(id.bundle, &id.name)) {
+                let response = PreparedModel::of(&model.dynamics).response(&grid);
+                responses.push((id.clone(), Arc::new(response)));
+            }
+            progress.advanced(done + 1, self.models.len());
+        }
+        Ok(Arc::new(AcrossCurves { grid, responses }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dataset::BundleKind;
+    use crate::io::embedded_example;
+    use crate::study::Unobserved;
+
+    #[test]
+    fn models_that_are_not_there_are_left_out_and_the_others_keep_their_order() {
+        let dataset = embedded_example().unwrap().dataset;
+        let ids = [2, 0].map(|index| {
+            let condition = &dataset.conditions()[index];
+            let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()];
+            ModelId::new(condition.id(), BundleKind::Physics, &nominal.name)
+        });
+        let missing = ModelId::new(ids[0].condition, BundleKind::Physics, "no such model");
+        let band = Band::new(0.5, 12.0).unwrap();
+        let job = AcrossJob { dataset, models: vec![ids[0].clone(), missing, ids[1].clone()], grid: (band, 5) };
+        let curves = job.run(&mut (), &Unobserved).unwrap();
+        let found: Vec<&ModelId> = curves.responses.iter().map(|(id, _)| id).collect();
+        assert_eq!(found, [&ids[0], &ids[1]]);
+        assert!(curves.responses.iter().all(|(_, response)| response.values().len() == 5 * 24));
+    }
+}

@@ -1,0 +1,161 @@
+//! How the plots over frequency show their curves: units, what is hidden, cursors. Nothing of it changes a result.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::dataset::{ConditionId, ModelId, Pair};
+
+use super::plot::{CurveId, MagnitudeUnit, PhaseErrorUnit, PhaseUnit, Role};
+
+/// How the plots over frequency show their curves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurveDisplay {
+    /// How magnitudes are read.
+    pub magnitude: MagnitudeUnit,
+    /// How phases are drawn.
+    pub phase: PhaseUnit,
+    /// How differences of phases are drawn.
+    pub phase_error: PhaseErrorUnit,
+    /// Roles whose curves are not drawn.
+    pub hidden_roles: BTreeSet<Role>,
+    /// Models that are not drawn.
+    pub hidden_models: BTreeSet<ModelId>,
+    /// Whole turns that phases were moved up by hand.
+    pub turns: BTreeMap<(ConditionId, Pair, CurveId), i32>,
+    /// The frequency under the pointer, in whichever plot it is \[rad/s\].
+    pub cursor: Option<f64>,
+    /// Frequencies that stay marked \[rad/s\]: none, one or two.
+    pub pinned: Vec<f64>,
+    /// Whether the values at the cursor are listed.
+    pub lists_values: bool,
+    /// Models that a box was drawn over.
+    pub selected: BTreeSet<ModelId>,
+}
+
+impl Default for CurveDisplay {
+    fn default() -> Self {
+        Self {
+            magnitude: MagnitudeUnit::default(),
+            phase: PhaseUnit::default(),
+            phase_error: PhaseErrorUnit::default(),
+            hidden_roles: BTreeSet::new(),
+            hidden_models: BTreeSet::new(),
+            turns: BTreeMap::new(),
+            cursor: None,
+            pinned: Vec::new(),
+            lists_values: true,
+            selected: BTreeSet::new(),
+        }
+    }
+}
+
+/// A wish about how curves are shown.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CurveCommand {
+    /// Read magnitudes in another unit.
+    ReadMagnitudes(MagnitudeUnit),
+    /// Draw phases in another way.
+    DrawPhases(PhaseUnit),
+    /// Draw differences of phases in another way.
+    DrawPhaseErrors(PhaseErrorUnit),
+    /// Hide the curves of a role, or show them again.
+    ToggleRole(Role),
+    /// Do not draw a model.
+    HideModel(ModelId),
+    /// Draw every model and every role.
+    ShowHidden,
+    /// Move the phase of a curve by whole turns: condition, response, curve, turns up.
+    Turn(ConditionId, Pair, CurveId, i32),
+    /// Point at a frequency \[rad/s\] in every plot, as long as this is asked for in each frame.
+    PointAt(f64),
+    /// Mark a frequency \[rad/s\]; a third one takes the place of the first.
+    PinCursor(f64),
+    /// Take the marks of frequencies away.
+    UnpinCursors,
+    /// List the values at the cursor, or not.
+    ListValues(bool),
+    /// Select models, in place of those that are.
+    Select(BTreeSet<ModelId>),
+}
+
+impl CurveDisplay {
+    /// Marked frequencies: two, of which the difference is told.
+    const MOST_PINNED: usize = 2;
+
+    /// Carries a wish out.
+    pub fn carry_out(&mut self, command: CurveCommand) {
+        match command {
+            CurveCommand::ReadMagnitudes(unit) => self.magnitude = unit,
+            CurveCommand::DrawPhases(unit) => self.phase = unit,
+            CurveCommand::DrawPhaseErrors(unit) => self.phase_error = unit,
+            CurveCommand::ToggleRole(role) => {
+                if !self.hidden_roles.remove(&role) {
+                    self.hidden_roles.insert(role);
+                }
+            }
+            CurveCommand::HideModel(model) => {
+                self.hidden_models.insert(model);
+            }
+            CurveCommand::ShowHidden => {
+                self.hidden_models.clear();
+                self.hidden_roles.clear();
+            }
+            CurveCommand::Turn(condition, pair, curve, by) => {
+                let turns = self.turns.entry((condition, pair, curve)).or_default();
+                *turns = (*turns + by).clamp(-99, 99);
+            }
+            CurveCommand::PointAt(omega) => self.cursor = Some(omega),
+            CurveCommand::PinCursor(omega) => {
+                self.pinned.push(omega);
+                if self.pinned.len() > Self::MOST_PINNED {
+                    self.pinned.remove(0);
+                }
+            }
+            CurveCommand::UnpinCursors => self.pinned.clear(),
+            CurveCommand::ListValues(wanted) => self.lists_values = wanted,
+            CurveCommand::Select(models) => self.selected = models,
+        }
+    }
+
+    /// Forgets what is about models of another dataset.
+    pub fn forget_models(&mut self) {
+        self.hidden_models.clear();
+        self.turns.clear();
+        self.selected.clear();
+    }
+
+    /// Turns by which a curve was moved up by hand.
+    pub fn turns_of(&self, condition: ConditionId, pair: Pair, curve: &CurveId) -> i32 {
+        if self.turns.is_empty() {
+            return 0;
+        }
+        self.turns.get(&(condition, pair, curve.clone())).copied().unwrap_or(0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_third_marked_frequency_takes_the_place_of_the_first() {
+        let mut display = CurveDisplay::default();
+        for omega in [1.0, 2.0, 3.0] {
+            display.carry_out(CurveCommand::PinCursor(omega));
+        }
+        assert_eq!(display.pinned, [2.0, 3.0]);
+        display.carry_out(CurveCommand::UnpinCursors);
+        assert!(display.pinned.is_empty());
+    }
+
+    #[test]
+    fn a_role_is_a_switch_and_everything_hidden_comes_back_at_once() {
+        let mut display = CurveDisplay::default();
+        display.carry_out(CurveCommand::ToggleRole(Role::Perturbed));
+        assert!(display.hidden_roles.contains(&Role::Perturbed));
+        display.carry_out(CurveCommand::ToggleRole(Role::Perturbed));
+        assert_eq!(display, CurveDisplay::default());
+        display.carry_out(CurveCommand::ToggleRole(Role::Rejected));
+        display.carry_out(CurveCommand::ShowHidden);
+        assert_eq!(display, CurveDisplay::default());
+    }
+}

@@ -1,0 +1,119 @@
+//! What can be done with a curve, and with the ground between the curves, on a secondary click.
+
+use egui::{Response, RichText, Ui};
+
+use super::bode::{BodeEvent, BodeScene};
+use super::bode_view::BodeView;
+use super::curve::{BodeCurve, CurveId};
+use super::quantity::{BodeQuantity, PhaseUnit};
+use super::role::Role;
+use crate::view::palette::{Palette, SMALL_SIZE};
+
+/// What the engineer wants of a curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CurveWish {
+    /// Reject its model, or restore it.
+    RejectOrRestore,
+    /// Let its model represent the bundle.
+    Pin,
+    /// Show it alone beside the representatives, or all again.
+    Isolate,
+    /// Do not draw it.
+    Hide,
+    /// Put its frequencies and values on the clipboard.
+    CopyValues,
+    /// Move its phase by whole turns.
+    Turn(i32),
+}
+
+/// What a menu was asked for: a curve or the ground, and the frequency there \[rad/s\].
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct MenuSubject {
+    pub(super) curve: Option<CurveId>,
+    pub(super) omega: f64,
+}
+
+/// Shows the menu of a pane while it is open.
+pub(super) fn menu_ui(
+    response: &Response,
+    scene: &BodeScene<'_>,
+    view: &mut BodeView,
+    events: &mut Vec<BodeEvent>,
+    palette: &Palette,
+) {
+    let Some(subject) = view.menu_subject.clone() else { return };
+    let curve = subject.curve.as_ref().and_then(|id| scene.curves.iter().find(|curve| curve.id == *id));
+    response.context_menu(|ui| match curve {
+        Some(curve) => curve_menu_ui(ui, scene, curve, events, palette),
+        None => ground_menu_ui(ui, scene, &subject, view, events),
+    });
+}
+
+fn entry(ui: &mut Ui, text: &str, hint: &str) -> bool {
+    let clicked = ui.button(text).on_hover_text(hint).clicked();
+    if clicked {
+        ui.close();
+    }
+    clicked
+}
+
+fn curve_menu_ui(
+    ui: &mut Ui,
+    scene: &BodeScene<'_>,
+    curve: &BodeCurve,
+    events: &mut Vec<BodeEvent>,
+    palette: &Palette,
+) {
+    ui.label(RichText::new(&curve.label).strong());
+    if !curve.detail.is_empty() {
+        ui.label(RichText::new(&curve.detail).size(SMALL_SIZE).color(palette.dim_text));
+    }
+    ui.separator();
+    let mut wish = |ui: &mut Ui, text: &str, hint: &str, wish: CurveWish| {
+        if entry(ui, text, hint) {
+            events.push(BodeEvent::Wished(curve.id.clone(), wish));
+        }
+    };
+    if matches!(curve.id, CurveId::Model(_)) {
+        let (text, hint) = match curve.rejected {
+            true => ("Restore model", "Put the model back into its bundle"),
+            false => ("Reject model", "Take the model out of its bundle"),
+        };
+        wish(ui, text, hint, CurveWish::RejectOrRestore);
+        let represents = matches!(curve.role, Role::Representative | Role::IdentifiedRepresentative);
+        if !curve.rejected && !represents {
+            wish(
+                ui,
+                "Let model represent",
+                "Let this model represent its bundle, whatever the medoid is",
+                CurveWish::Pin,
+            );
+        }
+        wish(ui, "Isolate model", "Only this model beside the representatives, or all again", CurveWish::Isolate);
+        wish(ui, "Hide curve", "Do not draw this model; it counts all the same", CurveWish::Hide);
+    }
+    wish(ui, "Copy values", "Frequencies and values as text, with their units", CurveWish::CopyValues);
+    if let BodeQuantity::Response { phase: PhaseUnit::Unwrapped, .. } = scene.quantity {
+        ui.separator();
+        wish(ui, "One turn up", "Draw this curve's phase 360° higher", CurveWish::Turn(1));
+        wish(ui, "One turn down", "Draw this curve's phase 360° lower", CurveWish::Turn(-1));
+    }
+}
+
+fn ground_menu_ui(
+    ui: &mut Ui,
+    scene: &BodeScene<'_>,
+    subject: &MenuSubject,
+    view: &mut BodeView,
+    events: &mut Vec<BodeEvent>,
+) {
+    if entry(ui, "Fit plot", "Bring every curve into view") {
+        view.request_fit();
+    }
+    if entry(ui, "Mark frequency", "Leave a cursor at this frequency; two show what changes between them") {
+        events.push(BodeEvent::CursorPinned(subject.omega));
+    }
+    if !scene.pinned.is_empty() && entry(ui, "Remove marks", "Take the marks of frequencies away") {
+        events.push(BodeEvent::CursorsUnpinned);
+    }
+}

@@ -173,3 +173,68 @@ fn the_assessment_of_the_example_agrees_and_leaves_condition_10_out() {
     }
     assert_eq!(left_out, [ConditionId(10)]);
 }
+
+/// The keys of an object, sorted.
+fn keys(value: &Value) -> Vec<&str> {
+    let mut keys: Vec<&str> = value.as_object().unwrap().keys().map(String::as_str).collect();
+    keys.sort_unstable();
+    keys
+}
+
+#[test]
+fn what_is_written_of_the_example_has_the_fields_that_it_always_had_and_the_tolerance() {
+    let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
+    let written = Corrections::of(analysis, "", &analysis.conditions.keys().copied().collect());
+    let value = serde_json::to_value(&written).unwrap();
+    let mut settings = keys(&value["settings"]);
+    settings.retain(|key| *key != "agreement_db");
+    assert_eq!(
+        settings,
+        [
+            "alpha_delay",
+            "alpha_gain",
+            "band_rad_s",
+            "constrained",
+            "cost_average",
+            "delay_upper_s",
+            "gain_bounds",
+            "gain_objective",
+            "ignored",
+            "points",
+            "quantile",
+            "schedule",
+        ]
+    );
+    assert_eq!(number(&value["settings"]["agreement_db"]), 0.05);
+    assert_eq!(
+        keys(&value["conditions"][0]),
+        [
+            "D_s",
+            "G",
+            "J",
+            "airspeed_kt",
+            "cautions",
+            "delay_solution",
+            "delay_upper_s",
+            "delays_s",
+            "discontinuity",
+            "gain_bounds",
+            "gain_solution",
+            "gains",
+            "held",
+            "id",
+            "identified_representative",
+            "name",
+            "net_gains",
+            "physics_representative",
+            "rejected",
+            "scheduled",
+            "set_aside",
+            "suggested_outliers",
+        ],
+        "without reasons there is no word of them"
+    );
+    assert_eq!(keys(&value["schedule"]["table"][0]), ["airspeed_kt", "inputs", "outputs"]);
+    assert!(value["schedule"]["delays_s"].is_null());
+    assert_eq!(keys(&value["conditions"][0]["gain_solution"]["explanation"]), ["conflicts", "remedy", "sensitivities"]);
+}

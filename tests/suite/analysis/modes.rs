@@ -2,7 +2,7 @@
 
 use gdcm::fidelity::Muad;
 use gdcm::response::{evaluate, modes, transmission_zeros};
-use gdcm::study::ConditionModes;
+use gdcm::study::{ConditionModes, Job, ZerosJob};
 
 use super::responses::model_of;
 use super::*;
@@ -97,20 +97,62 @@ fn the_envelopes_are_those_of_independent_code() {
     }
 }
 
+/// The models of a condition of the example at which some mode jumps, by name.
+fn jumping(id: i64) -> Vec<String> {
+    let dataset = &crate::EXAMPLE.dataset;
+    let modes = ConditionModes::of(dataset.condition(ConditionId(id)).unwrap(), &Unobserved).unwrap();
+    let names = modes.condition.bundle(BundleKind::Physics);
+    let suggested = EXAMPLE_WITH_SUGGESTIONS_REJECTED.condition(ConditionId(id)).unwrap().suggested();
+    let reference = (0..names.len()).find(|&model| !suggested.contains(&names[model].name)).unwrap();
+    let tracks = modes.tracks(BundleKind::Physics, reference);
+    assert!(tracks.iter().all(|track| track.modes.iter().all(Option::is_some)), "all models have 39 states");
+    let mut models: Vec<usize> = tracks.into_iter().flat_map(|track| track.jumps).collect();
+    models.sort_unstable();
+    models.dedup();
+    models.into_iter().map(|model| names[model].name.clone()).collect()
+}
+
 #[test]
-fn the_rigid_body_modes_of_the_example_are_followed_and_the_step_of_condition_10_is_seen() {
-    let dataset = crate::EXAMPLE.dataset.clone();
-    let jumping = |id: i64| {
-        let condition = dataset.conditions().iter().find(|condition| condition.id() == ConditionId(id)).unwrap();
-        let modes = ConditionModes::of(condition, &Unobserved).unwrap();
-        let tracks = modes.tracks(BundleKind::Physics, condition.nominal());
-        assert!(tracks.iter().all(|track| track.modes.iter().all(Option::is_some)));
-        let mut models: Vec<usize> = tracks.iter().flat_map(|track| track.jumps.clone()).collect();
-        models.sort_unstable();
-        models.dedup();
-        let names = condition.bundle(BundleKind::Physics);
-        models.into_iter().map(|model| names[model].name.clone()).collect::<Vec<String>>()
-    };
+fn the_modes_jump_where_the_physics_model_has_a_step_near_the_trim() {
     let suggested = EXAMPLE_WITH_SUGGESTIONS_REJECTED.condition(ConditionId(10)).unwrap().suggested();
-    println!("{:?} {:?} {suggested:?}", jumping(3), jumping(10));
+    println!("{:?} {:?} {:?} {suggested:?}", jumping(1), jumping(3), jumping(10));
+}
+
+#[test]
+fn states_take_part_in_the_modes_by_their_names() {
+    let condition = crate::EXAMPLE.dataset.conditions()[0].clone();
+    let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()];
+    assert_eq!(
+        (nominal.states.len(), nominal.state_name(4).as_str(), nominal.state_name(39).as_str()),
+        (39, "q", "state 40")
+    );
+    let modes = ConditionModes::of(&condition, &Unobserved).unwrap();
+    let of_nominal = modes.physics[condition.nominal()].as_ref().unwrap();
+    let mut actuators = 0;
+    for mode in of_nominal {
+        let shares = mode.participation.as_ref().unwrap_or_else(|why| panic!("{}: {why}", mode.pole));
+        assert!((shares.iter().map(|(_, share)| share).sum::<f64>() - 1.0).abs() < 1e-12);
+        actuators += usize::from(nominal.state_name(shares[0].0).starts_with("act_"));
+    }
+    // Four actuators of two states each, which nothing acts back upon.
+    assert_eq!(actuators, 8);
+}
+
+#[test]
+fn the_zeros_of_a_response_are_had_of_every_model_of_a_condition() {
+    let condition = crate::EXAMPLE.dataset.conditions()[0].clone();
+    let pair = crate::EXAMPLE.dataset.find_pair("Q", "LON").unwrap();
+    let job = ZerosJob { condition: condition.clone(), pair };
+    let found = job.run(&mut (), &Unobserved).unwrap();
+    for kind in BundleKind::BOTH {
+        assert_eq!(found.bundle(kind).len(), condition.bundle(kind).len());
+        for (model, zeros) in condition.bundle(kind).iter().zip(found.bundle(kind)) {
+            let Dynamics::StateSpace(space) = &model.dynamics else { continue };
+            let zeros = zeros.as_ref().unwrap().as_ref().unwrap();
+            for zero in &zeros.finite {
+                let beside = value_at(space, pair, zero + Complex::new(0.01 * (1.0 + zero.norm()), 0.0));
+                assert!(value_at(space, pair, *zero).norm() < 1e-3 * beside.norm(), "{} {zero}", model.name);
+            }
+        }
+    }
 }

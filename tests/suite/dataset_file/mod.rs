@@ -146,3 +146,16 @@ fn a_file_full_of_keys_that_are_not_known_tells_the_first_of_them_and_counts_the
     let cautions = load(&bytes).unwrap().cautions;
     assert_eq!((cautions.len(), cautions[50].as_str()), (51, "950 other keys are not known and not used"));
 }
+
+#[test]
+fn names_of_states_are_kept_where_there_is_one_for_each() {
+    let names = |loaded: &gdcm::io::LoadedDataset, model: usize| {
+        loaded.dataset.conditions()[0].bundle(gdcm::dataset::BundleKind::Physics)[model].states.to_vec()
+    };
+    let loaded = load(&small(|_| {})).unwrap();
+    assert_eq!((names(&loaded, 0), loaded.cautions.len()), (vec!["w".to_owned(), "q".to_owned()], 0));
+    let wrong = load(&small(|value| value["conditions"][0]["physics_models"][1]["states"] = json!(["w"]))).unwrap();
+    assert_eq!((names(&wrong, 0).len(), names(&wrong, 1).len()), (2, 0));
+    let [caution] = wrong.cautions.as_slice() else { panic!("{:?}", wrong.cautions) };
+    assert!(caution.contains("1 names for 2 states: they are left out"), "{caution}");
+}

@@ -115,6 +115,15 @@ impl GdcmApp {
             Command::LeaveRegion { forward } => self.focus_next(NextFocus::Region { forward }, ctx),
             Command::StartTour => self.state.tour = Some(0),
             Command::ShowTourStep(step) => self.state.tour = step,
+            Command::AskReason(model) => {
+                self.state.forms.reason = self.state.study.reason(&model).unwrap_or_default().to_owned();
+                self.state.forms.rejected_model = Some(model);
+                self.state.forms.shown = Some(FormKind::Reason);
+            }
+            Command::DecideInForm(edit) => {
+                self.state.forms.shown = None;
+                self.decide(&edit);
+            }
             Command::Refuse(why) => self.trouble(why),
             Command::DismissNotice => self.state.notice = None,
             Command::AskOpen => self.dialogs.ask(DialogPurpose::Open, String::new(), ctx),

@@ -134,6 +134,10 @@ pub enum Command {
     StartTour,
     /// Show another step of the guided tour, or end it.
     ShowTourStep(Option<usize>),
+    /// Take a decision that a form asked for, and close the form.
+    DecideInForm(Edit),
+    /// Ask for the reason of a rejection, in words: of a model that is rejected, or that is to be.
+    AskReason(ModelId),
     /// Say why what was typed is not taken.
     Refuse(String),
     /// Put the message away.
@@ -153,6 +157,8 @@ pub enum FormKind {
     Save,
     /// What to export, and where.
     Export,
+    /// Why a model is rejected, in words.
+    Reason,
     /// Where to save a table, by path.
     SaveTable,
     /// Every command, found by its name.

@@ -280,7 +280,7 @@ fn steps(state: &State) -> [Entry; 4] {
 }
 
 /// Fields that the palette goes to, by their accessible names.
-const FIELDS: [(&str, &str); 10] = [
+const FIELDS: [(&str, &str); 11] = [
     ("Set α gains (alpha)…", "α gains"),
     ("Set α delays (alpha)…", "α delays"),
     ("Set the lower end of the band…", "Band from"),
@@ -290,6 +290,7 @@ const FIELDS: [(&str, &str); 10] = [
     ("Set the lower gain bound…", "Lower gain bound"),
     ("Set the upper gain bound…", "Upper gain bound"),
     ("Set the delay bound…", "Upper delay bound"),
+    ("Set the agreement tolerance…", "Agreement tolerance"),
     ("Set the airspeed tolerance…", "Airspeed tolerance"),
 ];
 

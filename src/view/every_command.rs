@@ -5,12 +5,19 @@ use crate::study::Edit;
 
 use super::command::{Command, FormKind};
 use super::command_table::{Entry, command_table, hold_entry};
+use super::looks_menu::{curve_unit_choices, looks_choices};
+use super::net_gain_scene::PairSet;
 use super::state::State;
 
 /// Those of the table, and one for each condition, response, model and recent file.
 pub fn every_command(state: &State) -> Vec<Entry> {
     let mut entries = command_table(state);
     entries.retain(|entry| entry.command != Command::ShowForm(Some(FormKind::Palette)));
+    let choices = curve_unit_choices(&state.display.curves).into_iter().chain(looks_choices(state.display.looks));
+    entries.extend(choices.flatten().map(|(entry, is_chosen)| entry.enabled(!is_chosen)));
+    entries.extend(PairSet::ALL.map(|set| {
+        Entry::new(format!("Net gains of the responses {}", set.name()), set.purpose(), Command::ShowNetGains(set))
+    }));
     entries.extend(state.dataset().conditions().iter().map(|condition| {
         let (id, flight_state) = (condition.id(), condition.flight_state());
         let name = format!("Condition {id} · {}", flight_state.name);
@@ -43,10 +50,16 @@ fn model_entries(state: &State) -> Vec<Entry> {
             if choice.bundle(bundle).rejected.contains(name) {
                 let restore = Edit::Restore(id).into();
                 entries.push(Entry::new(format!("Restore {bundle} model {name}"), "Put it back", restore));
+                let ask = Command::AskReason(ModelId::new(condition.id(), bundle, name));
+                let text = format!("Say why {bundle} model {name} is rejected…");
+                entries.push(Entry::new(text, "In words, kept in the study", ask));
                 continue;
             }
             let reject = Edit::Reject(id.clone()).into();
             entries.push(Entry::new(format!("Reject {bundle} model {name}"), "Take it out of its bundle", reject));
+            let ask = Command::AskReason(id.clone());
+            let text = format!("Reject {bundle} model {name} with a reason…");
+            entries.push(Entry::new(text, "In words, kept in the study", ask));
             let (text, edit) = if choice.bundle(bundle).pinned.as_ref() == Some(name) {
                 ("Unpin", Edit::Unpin { condition: condition.id(), bundle })
             } else {

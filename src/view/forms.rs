@@ -1,15 +1,15 @@
-//! The forms in front of the window: paths, export, questions, help.
+//! The forms in front of the window: paths, export, help.
 
-use egui::text::{CCursor, CCursorRange};
-use egui::{Button, Context, Id, Key, Modal, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
+use egui::{Context, Id, Modal, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
 use crate::dataset::ConditionId;
-use crate::study::Difference;
 
 use super::command::{Command, FormKind};
 use super::command_palette::command_palette_ui;
+use super::form::Form;
 use super::keys_page::keys_page_ui;
 use super::palette::Palette;
+use super::question_forms::{differences_ui, overwrite_ui, reason_ui, unsaved_ui};
 use super::state::{ExportForm, State};
 
 /// Shows the form that is asked for, if any. Its field has the focus when it opens; Enter submits it; Escape and a click outside
@@ -36,6 +36,7 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
             FormKind::Shortcuts => shortcuts_ui(form, state, palette),
             FormKind::Palette => command_palette_ui(form.ui, state, opens, palette, form.commands),
             FormKind::SaveTable => save_table_ui(form, state),
+            FormKind::Reason => reason_ui(form, state, palette),
             FormKind::About => about_ui(form, palette),
         }
     });
@@ -44,69 +45,9 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
     }
 }
 
-/// A form being drawn.
-struct Form<'a, 'c> {
-    ui: &'a mut Ui,
-    /// Whether this is the first frame that shows it.
-    opens: bool,
-    commands: &'c mut Vec<Command>,
-}
-
-impl Form<'_, '_> {
-    fn title(&mut self, text: &str) {
-        self.ui.label(RichText::new(text).strong().size(15.0));
-        self.ui.add_space(4.0);
-    }
-
-    /// The text field of the form; whether the Enter key was pressed in it.
-    fn path_ui(&mut self, name: &str, path: &mut String, hint: &str) -> bool {
-        let shown = TextEdit::singleline(path).hint_text(hint).desired_width(f32::INFINITY).show(self.ui);
-        let response = shown.response.response;
-        response.widget_info(|| {
-            let mut info = WidgetInfo::labeled(Role::TextInput, true, name);
-            info.current_text_value = Some(path.clone());
-            info
-        });
-        if self.opens {
-            // What stands there is replaced by what is typed.
-            let mut edited = shown.state;
-            let all = CCursorRange::two(CCursor::new(0), CCursor::new(path.chars().count()));
-            edited.cursor.set_char_range(Some(all));
-            edited.store(self.ui.ctx(), response.id);
-            response.request_focus();
-        }
-        response.lost_focus() && self.ui.input(|input| input.key_pressed(Key::Enter))
-    }
-
-    /// The button that submits the form, which Enter does too; others follow on the same line.
-    fn submit_ui(&mut self, text: &str, is_ready: bool, entered: bool, command: impl FnOnce() -> Command) {
-        let clicked = self.ui.add_enabled(is_ready, Button::new(text)).clicked();
-        if clicked || (entered && is_ready) {
-            self.commands.push(command());
-        }
-    }
-
-    /// A button; the first of a form without a text field has the focus when it opens.
-    fn button_ui(&mut self, text: &str, is_first: bool, command: Command) {
-        let response = self.ui.button(text);
-        if is_first && self.opens {
-            response.request_focus();
-        }
-        if response.clicked() {
-            self.commands.push(command);
-        }
-    }
-
-    /// What follows stands on one line.
-    fn line(&mut self, add: impl FnOnce(&mut Form<'_, '_>)) {
-        let (opens, commands) = (self.opens, &mut *self.commands);
-        self.ui.horizontal(|ui| add(&mut Form { ui, opens, commands }));
-    }
-}
-
 fn open_ui(form: &mut Form<'_, '_>, path: &mut String) {
     form.title("Open a dataset or a study");
-    let entered = form.path_ui("Path to open", path, "path of a .json, .json.gz or .gdcm-study.json file");
+    let entered = form.text_ui("Path to open", path, "path of a .json, .json.gz or .gdcm-study.json file");
     let path = path.trim();
     form.line(|form| {
         form.submit_ui("Open file", !path.is_empty(), entered, || Command::Open(path.into()));
@@ -119,7 +60,7 @@ fn find_dataset_ui(form: &mut Form<'_, '_>, state: &mut State, palette: &Palette
     form.title("Where is the dataset of this study?");
     form.ui.label(RichText::new(reason).color(palette.dim_text));
     let path = &mut state.forms.dataset_path;
-    let entered = form.path_ui("Path of the dataset", path, "path of a .json or .json.gz file");
+    let entered = form.text_ui("Path of the dataset", path, "path of a .json or .json.gz file");
     let path = path.trim();
     form.line(|form| {
         let open = || Command::OpenStudyOf(study.clone(), path.into());
@@ -130,7 +71,7 @@ fn find_dataset_ui(form: &mut Form<'_, '_>, state: &mut State, palette: &Palette
 
 fn save_ui(form: &mut Form<'_, '_>, path: &mut String) {
     form.title("Save the study");
-    let entered = form.path_ui("Path to save", path, "path of a .gdcm-study.json file");
+    let entered = form.text_ui("Path to save", path, "path of a .gdcm-study.json file");
     let path = path.trim();
     form.line(|form| {
         form.submit_ui("Save file", !path.is_empty(), entered, || Command::SaveStudyAs(path.into()));
@@ -142,7 +83,7 @@ fn save_table_ui(form: &mut Form<'_, '_>, state: &mut State) {
     let Some(kind) = state.forms.table else { return };
     form.title(&format!("Save the table of {}", kind.name()));
     let path = &mut state.forms.table_path;
-    let entered = form.path_ui("Path of the table", path, "path of a .csv file");
+    let entered = form.text_ui("Path of the table", path, "path of a .csv file");
     let path = path.trim();
     form.line(|form| {
         form.submit_ui("Save table", !path.is_empty(), entered, || Command::SaveTable(kind, path.into()));
@@ -164,7 +105,7 @@ fn export_ui(form: &mut Form<'_, '_>, state: &mut State, palette: &Palette) {
     let export = &mut state.forms.export;
     conditions_ui(form.ui, export, &names);
     form.ui.add_space(4.0);
-    let entered = form.path_ui("Export folder", &mut export.folder, "folder; it is made where it does not exist");
+    let entered = form.text_ui("Export folder", &mut export.folder, "folder; it is made where it does not exist");
     let ready = !export.chosen.is_empty() && !export.folder.trim().is_empty();
     form.line(|form| {
         form.submit_ui("Export", ready, entered, || Command::Export);
@@ -197,50 +138,6 @@ fn conditions_ui(ui: &mut Ui, form: &mut ExportForm, names: &[(ConditionId, Stri
                 form.chosen.remove(id);
             }
         }
-    });
-}
-
-/// Asks whether to overwrite files; a cancel goes back to the form that would.
-fn overwrite_ui(form: &mut Form<'_, '_>, kind: FormKind, existing: &[String]) {
-    form.title(if existing.len() == 1 { "This file exists already" } else { "These files exist already" });
-    for path in existing {
-        form.ui.label(path);
-    }
-    form.ui.add_space(4.0);
-    form.line(|form| {
-        form.button_ui("Overwrite", false, Command::Overwrite);
-        // Enter loses nothing.
-        form.button_ui("Cancel", true, Command::ShowForm(Some(kind)));
-    });
-}
-
-fn unsaved_ui(form: &mut Form<'_, '_>) {
-    form.title("There are decisions that are not saved");
-    form.ui.label("Going on loses the rejected and pinned models and the settings of this study.");
-    form.ui.add_space(4.0);
-    form.line(|form| {
-        form.button_ui("Save study first", true, Command::SaveAndGoOn);
-        form.button_ui("Lose them", false, Command::DiscardAndGoOn);
-        form.button_ui("Cancel", false, Command::ShowForm(None));
-    });
-}
-
-fn differences_ui(form: &mut Form<'_, '_>, state: &State, palette: &Palette) {
-    form.title("The dataset is not the one the study was made with");
-    let words = "Every decision that still applies was kept. What is different:";
-    form.ui.label(RichText::new(words).color(palette.dim_text));
-    ScrollArea::vertical().max_height(300.0).show(form.ui, |ui| {
-        for difference in &state.differences {
-            let not_applied = matches!(difference, Difference::NotApplied { .. });
-            let color = if not_applied { palette.warning } else { palette.text };
-            ui.label(RichText::new(format!("• {difference}")).color(color));
-        }
-    });
-    form.ui.add_space(4.0);
-    let lines: Vec<String> = state.differences.iter().map(|difference| difference.to_string()).collect();
-    form.line(|form| {
-        form.button_ui("Go on", true, Command::ShowForm(None));
-        form.button_ui("Copy the list", false, Command::CopyText(lines.join("\n")));
     });
 }
 

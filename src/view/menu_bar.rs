@@ -4,7 +4,7 @@ use egui::{Align, Button, Layout, MenuBar, RichText, ThemePreference, Ui};
 
 use super::command::Command;
 use super::command_table::{Menu, command_table};
-use super::looks_menu::{curve_units_menu_ui, looks_menu_ui};
+use super::looks_menu::{choices_menu_ui, curve_unit_choices, looks_choices};
 use super::palette::Palette;
 use super::state::{RecentFile, State};
 
@@ -52,8 +52,10 @@ fn menu_ui(ui: &mut Ui, state: &State, menu: Menu, commands: &mut Vec<Command>) 
     }
     if menu == Menu::View {
         ui.separator();
-        ui.menu_button("Units of curves", |ui| curve_units_menu_ui(ui, &state.display.curves, commands));
-        ui.menu_button("Looks of curves", |ui| looks_menu_ui(ui, state.display.looks, commands));
+        let units = curve_unit_choices(&state.display.curves);
+        ui.menu_button("Units of curves", |ui| choices_menu_ui(ui, units, commands));
+        let looks = looks_choices(state.display.looks);
+        ui.menu_button("Looks of curves", |ui| choices_menu_ui(ui, looks, commands));
     }
 }
 

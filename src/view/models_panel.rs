@@ -4,14 +4,15 @@ use egui::{Checkbox, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use crate::dataset::{BundleKind, Model, ModelId, Origin};
 use crate::fidelity::SUGGESTION_RATIO;
-use crate::study::Edit;
+use crate::study::{AskedFigure, Edit};
 
 use super::command::Command;
 use super::command_table::open_suggestions;
+use super::derivation_window::question_menu_ui;
 use super::heading::table_heading_ui;
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 use super::region::{Region, region_ui};
-use super::row::{ROW_HEIGHT, elided, row_text};
+use super::row::{ROW_HEIGHT, elided_among, row_text};
 use super::state::State;
 use super::tables::TableKind;
 
@@ -59,15 +60,21 @@ fn bundle_ui(ui: &mut Ui, state: &State, palette: &Palette, kind: BundleKind, co
     };
     let figure = format!("{} of {}", models.len() - rejected.len(), models.len());
     table_heading_ui(ui, palette, (&title, &figure), TableKind::of_bundle(kind), commands);
-    for model in models {
-        let row = ModelRow::of(state, kind, model);
+    for (place, model) in models.iter().enumerate() {
+        let neighbours = [place.checked_sub(1), Some(place + 1)].map(|place| models.get(place?).map(short_name));
+        let row = ModelRow::of(state, kind, model, neighbours);
         row.ui(ui, palette, commands);
     }
 }
 
+/// Width of a row \[pt\] from which its ratio has a bar: in a narrower one the name needs the room.
+const LEAST_WITH_BAR: f32 = 205.0;
+
 struct ModelRow<'a> {
     id: ModelId,
     model: &'a Model,
+    /// Names of the models above and below it.
+    neighbours: [Option<&'a str>; 2],
     kept: bool,
     pinned: bool,
     represents: bool,
@@ -76,15 +83,19 @@ struct ModelRow<'a> {
     ratio: Option<f64>,
     /// Why it takes no part in the comparison, if it does not.
     set_aside: Option<String>,
+    /// Why it is rejected, in the engineer's words.
+    reason: Option<String>,
 }
 
 impl<'a> ModelRow<'a> {
-    fn of(state: &State, kind: BundleKind, model: &'a Model) -> Self {
+    fn of(state: &State, kind: BundleKind, model: &'a Model, neighbours: [Option<&'a str>; 2]) -> Self {
         let id = state.model_id(kind, &model.name);
         let shown = state.shown();
         Self {
             model,
+            neighbours,
             kept: !state.study.is_rejected(&id),
+            reason: state.study.reason(&id).map(str::to_owned),
             pinned: state.study.choice(id.condition).bundle(kind).pinned.as_ref() == Some(&id.name),
             represents: shown.is_some_and(|shown| shown.representative_name(kind) == id.name),
             pointed: state.display.hovered.as_ref() == Some(&id),
@@ -100,7 +111,10 @@ impl<'a> ModelRow<'a> {
 
     fn ui(&self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
         let width = ui.available_width();
-        let (rect, response) = ui.allocate_exact_size(vec2(width, ROW_HEIGHT), Sense::hover());
+        // No stop of the Tab key: what can be done is on its box, on its star, and in the palette.
+        let (rect, response) = ui.allocate_exact_size(vec2(width, ROW_HEIGHT), Sense::CLICK);
+        let name = format!("{} model {}", self.id.bundle, self.model.name);
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &name));
         if self.pointed || response.contains_pointer() {
             ui.painter().rect_filled(rect, 3.0, palette.raised);
         }
@@ -111,7 +125,32 @@ impl<'a> ModelRow<'a> {
         if response.contains_pointer() {
             commands.push(Command::Hover(self.id.clone()));
         }
+        response.context_menu(|ui| self.menu_ui(ui, commands));
         response.on_hover_ui(|ui| self.tooltip_ui(ui));
+    }
+
+    fn menu_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let mut entry = |ui: &mut Ui, text: &str, command: Command| {
+            if ui.button(text).clicked() {
+                commands.push(command);
+                ui.close();
+            }
+        };
+        if self.kept {
+            entry(ui, "Reject", Edit::Reject(self.id.clone()).into());
+            entry(ui, "Reject with a reason…", Command::AskReason(self.id.clone()));
+        } else {
+            entry(ui, "Restore", Edit::Restore(self.id.clone()).into());
+            entry(ui, "Say why it is rejected…", Command::AskReason(self.id.clone()));
+        }
+        entry(ui, "Copy its name", Command::CopyText(self.model.name.clone()));
+        let ratio =
+            self.ratio.map(|_| ("Discontinuity ratio".to_owned(), AskedFigure::DiscontinuityRatio(self.id.clone())));
+        let score = self.score.map(|_| ("Mean distance".to_owned(), AskedFigure::Score(self.id.clone())));
+        let figures: Vec<(String, AskedFigure)> = ratio.into_iter().chain(score).collect();
+        if !figures.is_empty() {
+            question_menu_ui(ui, figures, commands);
+        }
     }
 
     fn keep_ui(&self, ui: &mut Ui, rect: Rect, commands: &mut Vec<Command>) {
@@ -169,6 +208,12 @@ impl<'a> ModelRow<'a> {
         if let Some(ratio) = self.ratio {
             let suspect = ratio > SUGGESTION_RATIO;
             row_text(ui, rect, -5.0, &format!("{ratio:.2}"), BODY_SIZE, dim);
+            if rect.width() < LEAST_WITH_BAR {
+                if suspect {
+                    ui.painter().circle_filled(pos2(rect.right() - 40.0, rect.center().y), 3.0, palette.warning);
+                }
+                return 48.0;
+            }
             let full = 40.0;
             let bar = Rect::from_min_size(pos2(rect.right() - 84.0, rect.center().y - 2.0), vec2(full, 4.0));
             ui.painter().rect_filled(bar, 2.0, palette.line);
@@ -195,7 +240,7 @@ impl<'a> ModelRow<'a> {
         let color = if self.kept { palette.text } else { palette.rejected };
         let left = rect.left() + 42.0;
         let room = rect.right() - figure_width - left;
-        let name = elided(ui, &short_name(self.model), room, BODY_SIZE);
+        let name = elided_among(ui, short_name(self.model), self.neighbours, room, BODY_SIZE);
         let mut job = egui::text::LayoutJob::simple_singleline(name, egui::FontId::proportional(BODY_SIZE), color);
         if !self.kept {
             job.sections[0].format.strikethrough = egui::Stroke::new(1.0, color);
@@ -223,6 +268,9 @@ impl<'a> ModelRow<'a> {
         if let Some(why) = &self.set_aside {
             ui.label(why);
         }
+        if let Some(reason) = &self.reason {
+            ui.label(format!("rejected: {reason}"));
+        }
         if let Some(source) = &self.model.source {
             ui.label(format!("from {}", source.words()));
         }
@@ -237,11 +285,11 @@ impl<'a> ModelRow<'a> {
 }
 
 /// The name without the method that every model of an identified bundle repeats.
-fn short_name(model: &Model) -> String {
+fn short_name(model: &Model) -> &str {
     match &model.origin {
         Origin::Identified { method: Some(method), .. } => {
-            model.name.strip_prefix(method.as_str()).map_or(model.name.as_str(), str::trim_start).to_owned()
+            model.name.strip_prefix(method.as_str()).map_or(model.name.as_str(), str::trim_start)
         }
-        _ => model.name.clone(),
+        _ => &model.name,
     }
 }

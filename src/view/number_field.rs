@@ -46,7 +46,13 @@ pub struct Entered {
     pub is_ended: bool,
 }
 
-impl NumberField<'_> {
+impl<'a> NumberField<'a> {
+    /// A field for any pure number in the range, as wide as its text.
+    pub fn new(name: &'a str, hint: &'a str, range: RangeInclusive<f64>) -> Self {
+        let (unit, shows_unit, is_whole) = ("", false, false);
+        Self { name, hint, unit, shows_unit, range, is_whole, step: 0.01, width: 0.0, text: significant }
+    }
+
     /// The field with `value` in it. A number is dragged within the range; one that is typed is taken up by Enter, or when the
     /// focus goes on, and Escape leaves the old one.
     pub fn ui(&self, ui: &mut Ui, value: f64) -> Entered {

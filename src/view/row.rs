@@ -37,9 +37,26 @@ pub fn row_text_within(ui: &Ui, row: Rect, room: Room, text: &str, size: f32, co
     }
 }
 
-/// A text no wider than `room` \[pt\]: names that differ only at their end, or only at their beginning, differ still when the
-/// middle is left out. Empty where there is no room for one letter.
+/// A text no wider than `room` \[pt\], its middle left out where it is too long. Empty where there is no room for one letter.
 pub fn elided(ui: &Ui, text: &str, room: f32, size: f32) -> String {
+    elided_at(ui, text, room, size, 0.5)
+}
+
+/// As [`elided`], of a name in a list: where its neighbours would be shortened to the same text, what is left out is at its
+/// beginning or at its end instead.
+pub fn elided_among(ui: &Ui, text: &str, neighbours: [Option<&str>; 2], room: f32, size: f32) -> String {
+    /// Which part of what is kept stands before the gap.
+    const HEADS: [f32; 3] = [0.5, 0.0, 1.0];
+    let candidates = HEADS.map(|head| (head, elided_at(ui, text, room, size, head)));
+    let is_told_apart = |(head, shown): &&(f32, String)| {
+        let mut others = neighbours.iter().flatten().filter(|other| **other != text);
+        others.all(|other| elided_at(ui, other, room, size, *head) != *shown)
+    };
+    let found = candidates.iter().find(is_told_apart).unwrap_or(&candidates[0]);
+    found.1.clone()
+}
+
+fn elided_at(ui: &Ui, text: &str, room: f32, size: f32, head: f32) -> String {
     let width = |text: String| {
         let font = FontId::proportional(size);
         ui.fonts_mut(|fonts| fonts.layout_no_wrap(text, font, Color32::PLACEHOLDER).size().x)
@@ -49,8 +66,9 @@ pub fn elided(ui: &Ui, text: &str, room: f32, size: f32) -> String {
     }
     let letters: Vec<char> = text.chars().collect();
     let keeping = |kept: usize| {
-        let (head, tail) = (kept / 2, kept - kept / 2);
-        letters[..head].iter().chain(&['…']).chain(&letters[letters.len() - tail..]).collect::<String>()
+        let before = (head * kept as f32) as usize;
+        let after = letters.len() - (kept - before);
+        letters[..before].iter().chain(&['…']).chain(&letters[after..]).collect::<String>()
     };
     // The widths grow with what is kept: the greatest that fits is found by halving.
     let (mut fits, mut too_wide) = (0, letters.len());
@@ -84,6 +102,9 @@ mod tests {
             let [first, second] = names.map(|name| elided(ui, name, 90.0, 13.0));
             assert!(first != second && first.starts_with("FLI") && first.ends_with("00kg"), "{first} {second}");
             assert_eq!(elided(ui, "nominal", 90.0, 13.0), "nominal");
+            let shown = |name, other| elided_among(ui, name, [None, Some(other)], 52.0, 13.0);
+            let [first, second] = [shown("ROC-300fpm", "ROC-150fpm"), shown("ROC-150fpm", "ROC-300fpm")];
+            assert!(first != second && first.ends_with("00fpm"), "{first} {second}: they differ in the middle");
             assert_eq!(elided(ui, "nominal", 4.0, 13.0), "");
         });
         output.drop_without_applying_deltas();

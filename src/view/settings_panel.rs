@@ -6,14 +6,14 @@ use crate::correction::{GainBounds, GainObjective};
 use crate::dataset::{Band, GREATEST_OMEGA, LEAST_OMEGA};
 use crate::fidelity::CostAverage;
 use crate::study::{
-    Edit, GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS,
-    Setting,
+    Edit, GREATEST_AGREEMENT_DB, GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE, LARGEST_ALPHA, LEAST_GAIN,
+    LEAST_POINTS, MOST_POINTS, Setting,
 };
 use crate::units::s_to_ms;
 
 use super::command::Command;
 use super::heading::heading_ui;
-use super::number_field::{Entered, NumberField, gain_text, significant};
+use super::number_field::{Entered, NumberField, gain_text};
 use super::palette::{Palette, SMALL_SIZE};
 use super::region::{Region, region_ui};
 use super::state::State;
@@ -42,6 +42,7 @@ fn fields_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
         settings.points_ui();
         settings.gain_bounds_ui();
         settings.delay_bound_ui();
+        settings.agreement_ui();
         settings.method_ui();
     });
 }
@@ -85,15 +86,9 @@ impl Panel<'_, '_> {
         let mut value = alpha;
         let hint = format!("Weight that keeps the {of} near 1 (near 0 for delays); 0 is the limit α → 0");
         let field = NumberField {
-            name,
-            hint: &hint,
-            unit: "",
-            shows_unit: false,
-            range: 0.0..=LARGEST_ALPHA,
-            is_whole: false,
             step: 0.01 * alpha.max(0.01),
             width: TYPED_WIDTH,
-            text: significant,
+            ..NumberField::new(name, &hint, 0.0..=LARGEST_ALPHA)
         };
         let (slider, typed) = self
             .ui
@@ -125,17 +120,7 @@ impl Panel<'_, '_> {
         let band = self.state.study.settings.band;
         self.label("Band");
         let palette = self.palette;
-        let frequency = |name, hint, range| NumberField {
-            name,
-            hint,
-            unit: "rad/s",
-            shows_unit: false,
-            range,
-            is_whole: false,
-            step: 0.01,
-            width: 0.0,
-            text: significant,
-        };
+        let frequency = |name, hint, range| NumberField { unit: "rad/s", ..NumberField::new(name, hint, range) };
         let low = frequency(
             "Band from",
             "Lower end of the band of comparison [rad/s]; drag its line in the plot too",
@@ -173,27 +158,21 @@ impl Panel<'_, '_> {
         let (points, quantile) = (self.state.study.settings.points, self.state.study.settings.quantile);
         self.label("Points");
         let palette = self.palette;
+        let hint = "Number of logarithmically spaced frequencies in the band";
+        let range = LEAST_POINTS as f64..=MOST_POINTS as f64;
         let count = NumberField {
-            name: "Frequencies in the band",
-            hint: "Number of logarithmically spaced frequencies in the band",
-            unit: "",
-            shows_unit: false,
-            range: LEAST_POINTS as f64..=MOST_POINTS as f64,
             is_whole: true,
             step: 1.0,
-            width: 0.0,
             text: |points| format!("{points:.0}"),
+            ..NumberField::new("Frequencies in the band", hint, range)
         };
+        let hint = "Bounds are this quantile, and its complement, of |H_ref|/|H_sim| and of Δφ/ω [%]";
         let percent = NumberField {
-            name: "Quantile of the bounds",
-            hint: "Bounds are this quantile, and its complement, of |H_ref|/|H_sim| and of Δφ/ω [%]",
             unit: "%",
             shows_unit: true,
-            range: 0.0..=100.0 * GREATEST_QUANTILE,
-            is_whole: false,
             step: 0.1,
-            width: 0.0,
             text: |percent| format!("{percent:.1}"),
+            ..NumberField::new("Quantile of the bounds", hint, 0.0..=100.0 * GREATEST_QUANTILE)
         };
         let (count, percent) = self
             .ui
@@ -219,17 +198,8 @@ impl Panel<'_, '_> {
         };
         self.label("Gain bounds");
         let palette = self.palette;
-        let gain = |name, hint, range| NumberField {
-            name,
-            hint,
-            unit: "",
-            shows_unit: false,
-            range,
-            is_whole: false,
-            step: 0.002,
-            width: 0.0,
-            text: gain_text,
-        };
+        let gain =
+            |name, hint, range| NumberField { step: 0.002, text: gain_text, ..NumberField::new(name, hint, range) };
         let low = gain(
             "Lower gain bound",
             "Least gain of every channel [-]; typing sets it by hand, for every condition",
@@ -269,16 +239,13 @@ impl Panel<'_, '_> {
             self.ui.end_row();
             return;
         };
+        let hint = "Greatest delay of every channel [ms]; typing sets it by hand, for every condition";
         let field = NumberField {
-            name: "Upper delay bound",
-            hint: "Greatest delay of every channel [ms]; typing sets it by hand, for every condition",
             unit: "ms",
             shows_unit: true,
-            range: 0.0..=s_to_ms(GREATEST_DELAY_S),
-            is_whole: false,
             step: 0.2,
-            width: 0.0,
             text: |delay_ms| format!("{delay_ms:.1}"),
+            ..NumberField::new("Upper delay bound", hint, 0.0..=s_to_ms(GREATEST_DELAY_S))
         };
         let (typed, automatic) = self
             .ui
@@ -288,6 +255,19 @@ impl Panel<'_, '_> {
             self.set(Setting::DelayUpper((!automatic).then_some(upper_s)));
         }
         self.take(typed, |upper_ms| Setting::DelayUpper(Some(upper_ms / 1e3)));
+        self.ui.end_row();
+    }
+
+    fn agreement_ui(&mut self) {
+        self.label("Agreement");
+        let hint = "A loop of held gains that disagrees by no more than this [dB] counts as agreeing";
+        let field = NumberField {
+            unit: "dB",
+            shows_unit: true,
+            ..NumberField::new("Agreement tolerance", hint, 0.0..=GREATEST_AGREEMENT_DB)
+        };
+        let entered = field.ui(self.ui, self.state.study.settings.agreement_db);
+        self.take(entered, Setting::Agreement);
         self.ui.end_row();
     }
 

@@ -71,6 +71,10 @@ pub struct Forms {
     pub lost_dataset: Option<(PathBuf, String)>,
     /// The path of that dataset, as typed.
     pub dataset_path: String,
+    /// The model whose rejection is given a reason.
+    pub rejected_model: Option<ModelId>,
+    /// The reason, as typed.
+    pub reason: String,
     /// The table that is to be saved.
     pub table: Option<TableKind>,
     /// Where, as typed.

@@ -1,6 +1,7 @@
 //! Net gains against airspeed, and the form of the schedule.
 
-use egui::{Panel, RichText, Role, ScrollArea, Ui, WidgetInfo};
+use egui::containers::menu::{MenuButton, MenuConfig};
+use egui::{Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
 use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
 use crate::study::{Edit, Setting};
@@ -17,11 +18,26 @@ use crate::view::table_view::{Sorting, TableLook, table_ui};
 /// Widest airspeed tolerance \[kt\].
 const WIDEST_TOLERANCE_KT: f64 = 100.0;
 
-/// The form of the schedule and the key of the dots, laid out from right to left.
+/// Room \[pt\] in which the controls of this view stand in one line.
+const ONE_LINE: f32 = 480.0;
+
+/// What the plots show, the form of the schedule, and the key of the dots, laid out from right to left; behind a button where they
+/// have no room.
 pub fn net_gain_header_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let small = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
+    if ui.available_width() < ONE_LINE {
+        let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+        MenuButton::new("Schedule ▾").config(config).ui(ui, |ui| controls_ui(ui, state, palette, commands));
+    } else {
+        controls_ui(ui, state, palette, commands);
+    }
+    let key = dot_key(state);
+    let text = RichText::new(&key).size(SMALL_SIZE).color(palette.dim_text);
+    ui.add(egui::Label::new(text).truncate()).on_hover_text(key);
+}
+
+fn controls_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     schedule_ui(ui, state.study.settings.schedule, commands);
-    ui.label(small("schedule".to_owned()));
+    ui.label(RichText::new("schedule").size(SMALL_SIZE).color(palette.dim_text));
     let mut shown = state.display.show_evidence;
     let hint =
         "What each form of the schedule misses, residuals and coefficients, so that a degree is chosen on evidence";
@@ -29,8 +45,6 @@ pub fn net_gain_header_ui(ui: &mut Ui, state: &State, palette: &Palette, command
         commands.push(Command::ShowEvidence(shown));
     }
     pair_set_ui(ui, state, commands);
-    let key = dot_key(state);
-    ui.add(egui::Label::new(small(key.clone())).truncate()).on_hover_text(key);
 }
 
 /// Which responses are shown. Laid out from right to left.
@@ -144,19 +158,18 @@ fn schedule_ui(ui: &mut Ui, settings: ScheduleSettings, commands: &mut Vec<Comma
             (ScheduleKind::Table, "table", "Mean of each cluster of airspeeds, linear between"),
         ],
     );
+    let hint = "Airspeeds this close to the next one [kt] count as one, for the table and for the degree";
     let tolerance = NumberField {
-        name: "Airspeed tolerance",
-        hint: "Airspeeds this close to the next one [kt] count as one, for the table and for the degree",
         unit: "kt",
         shows_unit: true,
-        range: 0.0..=WIDEST_TOLERANCE_KT,
-        is_whole: false,
         step: 0.1,
-        width: 0.0,
         text: |airspeed_kt| format!("{airspeed_kt:.1}"),
+        ..NumberField::new("Airspeed tolerance", hint, 0.0..=WIDEST_TOLERANCE_KT)
     };
     let entered = tolerance.ui(ui, chosen.airspeed_tolerance_kt);
     chosen.airspeed_tolerance_kt = entered.value.unwrap_or(chosen.airspeed_tolerance_kt);
+    let hint = "Schedule the delays of the channels too, cut to their bounds (M11)";
+    ui.checkbox(&mut chosen.delays, "delays too").on_hover_text(hint);
     if chosen != settings {
         commands.push(Edit::Set(Setting::Schedule(chosen)).into());
     }

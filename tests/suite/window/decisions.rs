@@ -1,5 +1,7 @@
 //! Decisions, by hand, and what they give.
 
+use gdcm::study::derivation;
+
 use super::*;
 
 #[test]
@@ -165,4 +167,41 @@ fn control_and_r_reject_the_suggested_outliers() {
     settle(&mut window);
     let rejected = &state(&window).study.choice(ConditionId(10)).physics.rejected;
     assert_eq!(*rejected, suggested.into_iter().collect());
+}
+
+#[test]
+fn a_rejection_keeps_the_reason_given_for_it_and_undo_takes_both_back() {
+    let mut window = window();
+    let before = state(&window).study.clone();
+    let model = ModelId::new(ConditionId(1), BundleKind::Physics, "V+10kt");
+    window.get_by_label("physics model V+10kt").click_secondary();
+    window.run_steps(2);
+    window.get_by_label("Reject with a reason…").click();
+    window.run_steps(3);
+    window.event(Event::Text("trim not converged".to_owned()));
+    window.run_steps(2);
+    window.key_press(Key::Enter);
+    settle(&mut window);
+    assert!(state(&window).study.is_rejected(&model));
+    assert_eq!(state(&window).study.reason(&model), Some("trim not converged"));
+    assert_eq!(state(&window).forms.shown, None);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(&mut window);
+    assert_eq!(state(&window).study, before);
+}
+
+#[test]
+fn how_a_figure_of_a_cell_was_computed_is_told_with_its_numbers() {
+    let mut window = window();
+    window.get_by_label("Response LON → Q").click_secondary();
+    window.run_steps(2);
+    window.get_by_label_contains("How was this computed?").click();
+    window.run_steps(3);
+    window.get_by_role_and_label(Role::Button, "G").click();
+    window.run_steps(3);
+    let gain = state(&window).shown().unwrap().comparison.delta.gain[pair(&window, "Q", "LON")].unwrap();
+    let asked = state(&window).display.asked.clone().expect("the figure is explained");
+    let told = derivation(state(&window).analysis().unwrap(), &asked).unwrap();
+    assert_eq!(told.value, gain);
+    window.get_by_label(&told.equation);
 }

@@ -21,7 +21,7 @@ fn texts_in(window: &Window, area: egui::Rect) -> Vec<(String, egui::Rect)> {
     shapes
         .filter_map(|clipped| match &clipped.shape {
             egui::Shape::Text(text) => {
-                let place = egui::Rect::from_min_size(text.pos, text.galley.size());
+                let place = text.visual_bounding_rect();
                 let visible = clipped.clip_rect.intersects(place) && area.contains(place.center());
                 (visible && !text.galley.text().is_empty()).then(|| (text.galley.text().to_owned(), place))
             }
@@ -52,12 +52,20 @@ fn at_the_least_size_no_text_of_a_list_lies_over_another() {
     for row in rows {
         assert_apart(&window, row, "a condition");
     }
+    let names = ["ROC-300fpm", "ROC-150fpm", "ROC+150fpm", "ROC+300fpm"].map(|name| {
+        let row = window.get_by_label(&format!("physics model {name}")).rect();
+        texts_in(&window, row).into_iter().map(|(text, _)| text).max_by_key(String::len).unwrap()
+    });
+    for (index, name) in names.iter().enumerate() {
+        assert!(!names[index + 1..].contains(name), "{names:?}");
+    }
     let models: Vec<egui::Rect> =
         window.query_all_by_label_contains("Keep physics model").map(|row| row.rect()).collect();
     for model in models {
         let row = egui::Rect::from_min_max(model.min, pos2(model.min.x + 180.0, model.max.y));
         assert_apart(&window, row, "a model");
     }
+    window.get_by_label("Schedule ▾");
     for tab in ["Bode", "Net gain"] {
         let tab = window.get_by_label(tab).rect();
         let bar = egui::Rect::from_x_y_ranges(0.0..=900.0, tab.y_range());

@@ -65,11 +65,11 @@
 //! |---|---|
 //! | [`units`] | every conversion of units |
 //! | [`dataset`] | what the engineer loads: channels, models, flight conditions; checked once |
-//! | [`response`] | frequency responses, phase, order statistics |
-//! | [`fidelity`] | cost J, distances in a bundle, representative, discontinuity |
+//! | [`response`] | frequency responses, phase, poles and zeros, order statistics |
+//! | [`fidelity`] | cost J, distances in a bundle, representative, discontinuity, modes from model to model |
 //! | [`correction`] | G, D, bounds, gains, delays, and what they do to a response |
-//! | [`schedule`] | regression over airspeed, assessment |
-//! | [`study`] | what the engineer does: settings, rejections, pins, undo; the staged analysis |
+//! | [`schedule`] | regression over airspeed, what speaks for it, assessment |
+//! | [`study`] | what the engineer does: settings, rejections, pins, variants, undo; the staged analysis, and how each figure came about |
 //! | [`io`] | files: datasets, studies, corrections |
 //! | [`view`] | drawing: panels and plots that show a state and push commands |
 //! | [`cli`] | the headless commands |

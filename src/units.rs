@@ -29,9 +29,53 @@ pub fn number(value: f64) -> String {
     if plain.len() > LONGEST && exponent.len() < plain.len() { exponent } else { plain }
 }
 
+/// A figure that is not zero in so many decimals, and in more where it would read as nothing: two digits always stand.
+pub fn telling(value: f64, decimals: usize) -> String {
+    /// Beyond these decimals an exponent is shorter.
+    const MOST: i32 = 6;
+    if value == 0.0 || !value.is_finite() || value.abs() >= 10_f64.powi(-(decimals as i32)) {
+        return format!("{value:.decimals$}");
+    }
+    let needed = 1 - value.abs().log10().floor() as i32;
+    if needed > MOST { format!("{value:.1e}") } else { format!("{value:.*}", needed as usize) }
+}
+
+/// Two figures in so many decimals, and in as many more as it takes to tell one from the other.
+pub fn told_apart(a: f64, b: f64, decimals: usize) -> (String, String) {
+    /// All that a number of order one has.
+    const MOST: usize = 15;
+    let texts = |decimals: usize| (format!("{a:.decimals$}"), format!("{b:.decimals$}"));
+    let enough = (decimals..=MOST).find(|&decimals| texts(decimals).0 != texts(decimals).1);
+    texts(enough.unwrap_or(decimals))
+}
+
+/// A change in words, with its sign and so many decimals: "+12.3", "−0.4"; what rounds to nothing has no sign.
+pub fn signed(change: f64, decimals: usize) -> String {
+    let text = format!("{change:+.decimals$}");
+    let is_nothing = text.chars().all(|c| matches!(c, '+' | '-' | '0' | '.'));
+    if is_nothing { text[1..].to_owned() } else { text.replace('-', "−") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_small_figure_is_given_to_the_digits_that_tell_it() {
+        let figures = [12.34, 0.1, 0.06, 0.0123, -0.000_04, 0.0, 3e-9];
+        assert_eq!(
+            figures.map(|value| telling(value, 1)),
+            ["12.3", "0.1", "0.060", "0.012", "-0.000040", "0.0", "3.0e-9"]
+        );
+        assert_eq!(told_apart(1.2, 1.4, 3), ("1.200".to_owned(), "1.400".to_owned()));
+        assert_eq!(told_apart(1.000_04, 1.0, 3), ("1.00004".to_owned(), "1.00000".to_owned()));
+        assert_eq!(told_apart(2.0, 2.0, 1), ("2.0".to_owned(), "2.0".to_owned()));
+    }
+
+    #[test]
+    fn a_change_has_its_sign_unless_it_rounds_to_nothing() {
+        assert_eq!([12.34, -0.44, -0.04, 0.0].map(|change| signed(change, 1)), ["+12.3", "−0.4", "0.0", "0.0"]);
+    }
 
     #[test]
     fn a_number_in_a_message_is_short_and_never_another_number() {

@@ -6,14 +6,15 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use egui::Context;
 
 use crate::io::{
-    Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, embedded_example, load_any, open_study_of,
-    plain, plain_path, save_study, write_results,
+    Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, at_home, embedded_example, load_any,
+    open_study_of, plain, plain_path, save_study, save_table, write_results,
 };
 use crate::study::{Difference, Study};
 use crate::view::bars::Bar;
 use crate::view::command::{Command, FormKind};
 use crate::view::preferences::Preferences;
 use crate::view::state::State;
+use crate::view::tables::{TableKind, table_of};
 
 use super::dialogs::{DialogAnswer, DialogPurpose};
 use super::fault::{Fault, caught};
@@ -37,6 +38,15 @@ pub(super) enum ReadFor {
     Reloading,
     /// To go on with decisions that were not saved, by the number of the offer.
     Restoring(usize),
+}
+
+/// What waits for the answer whether the decisions that are not saved may be lost.
+#[derive(Debug)]
+pub(super) enum Postponed {
+    /// To show what was read, which is good.
+    Show(ReadFor, Box<Opened>),
+    /// To close the window.
+    Quit,
 }
 
 /// What was read, or why not; a fault where reading panicked.
@@ -89,7 +99,6 @@ impl GdcmApp {
         self.loaded = loaded;
         self.earlier.clear();
         self.saved = saved;
-        self.agreed_to_lose = false;
         self.keep_unsaved();
         self.done(format!("opened {name}"));
     }
@@ -102,6 +111,7 @@ impl GdcmApp {
 
     /// Opens a dataset or a study; what is open stays until it is read. The dataset of a study may have moved.
     pub(super) fn open(&mut self, path: PathBuf, moved: Option<PathBuf>, ctx: &Context) {
+        let (path, moved) = (self.at_home(path), moved.map(|dataset| self.at_home(dataset)));
         let lost = self.offers.iter().position(|lost| lost.as_ref().is_some_and(|lost| lost.path() == path));
         let purpose = lost.map_or(ReadFor::Opening, ReadFor::Restoring);
         self.state.forms.shown = None;
@@ -140,20 +150,52 @@ impl GdcmApp {
 
     fn answer_opened(&mut self, purpose: ReadFor, opened: Result<Opened, FileError>, ctx: &Context) {
         self.state.opening = None;
-        match (purpose, opened) {
-            (ReadFor::Opening, Ok(opened)) => {
+        match opened {
+            Ok(opened) if purpose != ReadFor::Reloading && self.state.unsaved => {
+                self.ask_to_lose(Postponed::Show(purpose, Box::new(opened)));
+            }
+            Ok(opened) => self.show_read(purpose, opened, ctx),
+            Err(error) => self.open_failed(error, ctx),
+        }
+    }
+
+    fn show_read(&mut self, purpose: ReadFor, opened: Opened, ctx: &Context) {
+        match purpose {
+            ReadFor::Opening => {
                 self.show(opened);
                 self.look_for_recent(ctx);
             }
-            (ReadFor::Reloading, Ok(opened)) => self.show_reloaded(opened.into_study().1),
-            (ReadFor::Restoring(offer), Ok(opened)) => self.show_restored(offer, opened, ctx),
-            (_, Err(error)) => self.open_failed(error, ctx),
+            ReadFor::Reloading => self.show_reloaded(opened.into_study().1),
+            ReadFor::Restoring(offer) => self.show_restored(offer, opened, ctx),
+        }
+    }
+
+    /// Asks whether the decisions that are not saved may be lost to what is to be done.
+    pub(super) fn ask_to_lose(&mut self, postponed: Postponed) {
+        self.postponed = Some(postponed);
+        self.goes_on_once_saved = false;
+        self.state.forms.shown = Some(FormKind::Unsaved);
+    }
+
+    /// Saves the study, and does what waits for it once it is saved.
+    pub(super) fn save_and_go_on(&mut self, ctx: &Context) {
+        self.state.forms.shown = None;
+        self.goes_on_once_saved = true;
+        self.save(ctx);
+    }
+
+    /// Does what the decisions that are not saved kept waiting.
+    pub(super) fn go_on(&mut self, ctx: &Context) {
+        self.goes_on_once_saved = false;
+        match self.postponed.take() {
+            Some(Postponed::Show(purpose, opened)) => self.show_read(purpose, *opened, ctx),
+            Some(Postponed::Quit) => self.quit(ctx),
+            None => {}
         }
     }
 
     /// Says why nothing was opened, or asks where a study's dataset is; what is open stays.
     fn open_failed(&mut self, error: FileError, ctx: &Context) {
-        self.agreed_to_lose = false;
         self.recent.look(None, ctx);
         match error {
             FileError::StudyDataset { path, dataset } => {
@@ -171,7 +213,6 @@ impl GdcmApp {
                 Ok(opened) => self.answer_opened(purpose, opened, ctx),
                 Err(fault) => {
                     self.state.opening = None;
-                    self.agreed_to_lose = false;
                     self.tell_fault("the reading of a file", &fault);
                 }
             }
@@ -208,7 +249,7 @@ impl GdcmApp {
 
     /// Saves the study to a file; asks before it overwrites one that is not the study's own, unless that was asked already.
     pub(super) fn save_as(&mut self, path: PathBuf, existing: Existing, ctx: &Context) {
-        let path = with_study_extension(path);
+        let path = with_study_extension(self.at_home(path));
         let is_own = self.saved.path.as_ref() == Some(&path);
         let place = OutputSet::new(if is_own { Existing::Replace } else { existing }, Vec::new());
         match place.check(&[&path]).and_then(|()| save_study(&self.state.study, &self.loaded, &path)) {
@@ -220,12 +261,19 @@ impl GdcmApp {
                 self.saved = SavedStudy { path: Some(path), study: Some(self.state.study.clone()) };
                 self.keep_unsaved();
                 self.look_for_recent(ctx);
+                if self.goes_on_once_saved {
+                    self.go_on(ctx);
+                }
             }
             Err(FileError::Exists { paths }) => {
                 self.state.forms.save_path = path.display().to_string();
                 self.ask_to_overwrite(&paths, FormKind::Save, Command::SaveStudyAs(path));
             }
-            Err(error) => self.trouble(error.to_string()),
+            Err(error) => {
+                self.goes_on_once_saved = false;
+                self.postponed = None;
+                self.trouble(error.to_string());
+            }
         }
     }
 
@@ -233,7 +281,12 @@ impl GdcmApp {
     fn ask_to_overwrite(&mut self, paths: &[PathBuf], form: FormKind, command: Command) {
         self.state.forms.existing = paths.iter().map(|path| plain_path(path)).collect();
         self.state.forms.shown = Some(form);
-        self.postponed = Some(command);
+        self.overwriting = Some(command);
+    }
+
+    /// A path as it is typed, with the home directory in the place of `~`.
+    fn at_home(&self, typed: PathBuf) -> PathBuf {
+        at_home(&typed, self.home.as_deref())
     }
 
     /// A name for the study's file.
@@ -244,6 +297,29 @@ impl GdcmApp {
         let stem = self.loaded.path().and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
         let stem = stem.unwrap_or_else(|| "example".to_owned());
         format!("{}.{STUDY_EXTENSION}", stem.trim_end_matches(".json"))
+    }
+
+    pub(super) fn ask_save_table(&mut self, kind: TableKind) {
+        let name: String = kind.name().chars().filter(|letter| letter.is_alphanumeric() || *letter == ' ').collect();
+        self.state.forms.table = Some(kind);
+        self.state.forms.table_path = format!("{}.csv", name.replace(' ', "-"));
+        self.state.forms.shown = Some(FormKind::SaveTable);
+    }
+
+    /// Saves a table of the window as CSV.
+    pub(super) fn save_table(&mut self, kind: TableKind, path: PathBuf, existing: Existing) {
+        let path = self.at_home(path);
+        let inputs = self.saved.path.iter().cloned().chain(self.loaded.origin.file());
+        match save_table(&table_of(&self.state, kind), &path, OutputSet::new(existing, inputs.collect())) {
+            Ok(()) => {
+                self.state.forms.shown = None;
+                self.done(format!("saved {}", plain_path(&path)));
+            }
+            Err(FileError::Exists { paths }) => {
+                self.ask_to_overwrite(&paths, FormKind::SaveTable, Command::SaveTable(kind, path));
+            }
+            Err(error) => self.trouble(error.to_string()),
+        }
     }
 
     /// Writes the corrections of the conditions chosen in the form.
@@ -263,7 +339,7 @@ impl GdcmApp {
         };
         let form = &self.state.forms.export;
         let chosen = form.chosen.clone();
-        let folder = PathBuf::from(form.folder.trim());
+        let folder = self.at_home(PathBuf::from(form.folder.trim()));
         let inputs = self.saved.path.iter().cloned().chain(self.loaded.origin.file());
         let outputs = OutputSet::new(existing, inputs.collect());
         match write_results(&analysis, &self.loaded.sha256, &chosen, &folder, outputs) {

@@ -5,6 +5,7 @@ mod dialogs;
 mod disk_watch;
 pub mod fault;
 mod files;
+mod key_order;
 mod lane;
 mod launch;
 mod pool;

@@ -1,6 +1,6 @@
 //! The files opened and saved of late.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use egui::Context;
@@ -25,6 +25,11 @@ impl Recent {
     pub(super) fn new(directory: Option<PathBuf>) -> Self {
         let (sender, receiver) = channel();
         Self { directory, sender, receiver }
+    }
+
+    /// Where the program keeps its data, if anywhere.
+    pub(super) fn directory(&self) -> Option<&Path> {
+        self.directory.as_deref()
     }
 
     /// Reads the list and looks which of its files are there, in a thread of its own; puts `newest` in front first.

@@ -16,6 +16,10 @@ pub struct Setup {
     pub engine: EngineMaker,
     /// Where recovery files and the list of recent files are kept; nowhere without it.
     pub directory: Option<PathBuf>,
+    /// What `~` stands for in a path that is typed; itself without it.
+    pub home: Option<PathBuf>,
+    /// Whether the first start shows the guided tour.
+    pub offers_tour: bool,
     /// How long after a change the decisions are kept in the recovery file at the latest.
     pub keep_after: Duration,
     /// How often the dataset's file is looked at.
@@ -29,6 +33,8 @@ impl Default for Setup {
         Self {
             engine: Arc::new(|| Engine::with_executor(Box::new(Pool)).with_proofs_within(LIVE_PROOF)),
             directory: None,
+            home: None,
+            offers_tour: false,
             keep_after: Duration::from_secs(2),
             look_every: Duration::from_millis(1500),
             preferences: Preferences::default(),
@@ -37,8 +43,13 @@ impl Default for Setup {
 }
 
 impl Setup {
-    /// That of the program: with the directory that the platform gives it for its data.
+    /// That of the program: with the directories that the platform gives it.
     pub(super) fn of_program() -> Self {
-        Self { directory: eframe::storage_dir(super::launch::APP_ID), ..Self::default() }
+        Self {
+            directory: eframe::storage_dir(super::launch::APP_ID),
+            home: std::env::home_dir(),
+            offers_tour: true,
+            ..Self::default()
+        }
     }
 }

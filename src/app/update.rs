@@ -7,14 +7,27 @@ use crate::io::{Existing, plain};
 use crate::study::Edit;
 use crate::view::arrangement::Arrangement;
 use crate::view::command::{Command, FormKind};
+use crate::view::curve_display::CurveCommand;
 use crate::view::display::Display;
 use crate::view::net_gain_scene::PairSet;
-use crate::view::curve_display::CurveCommand;
+use crate::view::number_field::focus_field;
 use crate::view::plot::Pane;
+use crate::view::region::leave_region;
 use crate::view::state::{Notice, NoticeKind};
+use crate::view::tables::table_of;
 
 use super::dialogs::DialogPurpose;
+use super::files::Postponed;
 use super::window::GdcmApp;
+
+/// What the focus is to go to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum NextFocus {
+    /// The field of this name.
+    Field(&'static str),
+    /// The next part of the window, or the one before.
+    Region { forward: bool },
+}
 
 impl GdcmApp {
     /// Saves the study to a file, as the form does once a path is typed.
@@ -78,20 +91,21 @@ impl GdcmApp {
             Command::ShowForm(form) => self.show_form(form),
             Command::StopComputing => self.stop_computing(),
             Command::Compute => self.compute_again(),
+            Command::CopyTable(kind) => {
+                ctx.copy_text(table_of(&self.state, kind).text());
+                self.done(format!("copied the table of {}", kind.name()));
+            }
+            Command::AskSaveTable(kind) => self.ask_save_table(kind),
+            Command::SaveTable(kind, path) => self.save_table(kind, path, Existing::Keep),
+            Command::FocusField(name) => self.focus_next(NextFocus::Field(name), ctx),
+            Command::LeaveRegion { forward } => self.focus_next(NextFocus::Region { forward }, ctx),
+            Command::StartTour => self.state.tour = Some(0),
+            Command::ShowTourStep(step) => self.state.tour = step,
+            Command::Refuse(why) => self.trouble(why),
             Command::DismissNotice => self.state.notice = None,
             Command::AskOpen => self.dialogs.ask(DialogPurpose::Open, String::new(), ctx),
             Command::AskSaveStudy => self.dialogs.ask(DialogPurpose::SaveStudy, self.proposed_name(), ctx),
             Command::AskExportFolder => self.dialogs.ask(DialogPurpose::ExportFolder, String::new(), ctx),
-            Command::Open(_)
-            | Command::OpenStudyOf(..)
-            | Command::OpenExample
-            | Command::RestoreRecovery(_)
-            | Command::Quit
-                if self.state.unsaved && !self.agreed_to_lose && !self.closing =>
-            {
-                self.postponed = Some(command);
-                self.state.forms.shown = Some(FormKind::Unsaved);
-            }
             Command::Open(path) => self.open(path, None, ctx),
             Command::OpenStudyOf(study, dataset) => self.open(study, Some(dataset), ctx),
             Command::OpenExample => self.open_example(ctx),
@@ -102,12 +116,17 @@ impl GdcmApp {
             Command::LookForRecent => self.recent.look(None, ctx),
             Command::CloseBar(bar) => self.state.bars.retain(|shown| *shown != bar),
             Command::CopyText(text) => ctx.copy_text(text),
+            Command::Quit if self.state.unsaved && !self.closing => self.ask_to_lose(Postponed::Quit),
             Command::Quit => self.quit(ctx),
             Command::SaveStudy => self.save(ctx),
             Command::SaveStudyAs(path) => self.save_as(path, Existing::Keep, ctx),
             Command::Export => self.export(Existing::Keep),
             Command::Overwrite => self.overwrite(ctx),
-            Command::DiscardAndGoOn => self.discard_and_go_on(ctx),
+            Command::SaveAndGoOn => self.save_and_go_on(ctx),
+            Command::DiscardAndGoOn => {
+                self.state.forms.shown = None;
+                self.go_on(ctx);
+            }
         }
     }
 
@@ -153,13 +172,35 @@ impl GdcmApp {
         self.keep_unsaved();
     }
 
+    /// Moves the focus before the next frame is drawn: what gets it then knows that it is new.
+    fn focus_next(&mut self, next: NextFocus, ctx: &Context) {
+        self.next_focus = Some(next);
+        ctx.request_repaint();
+    }
+
+    /// Gives the focus to what was asked for, once no form is in front of it.
+    pub(super) fn move_focus(&mut self, ctx: &Context) {
+        if self.state.forms.shown.is_some() || ctx.memory(|memory| memory.top_modal_layer().is_some()) {
+            return;
+        }
+        match self.next_focus.take() {
+            Some(NextFocus::Field(name)) => focus_field(ctx, name),
+            Some(NextFocus::Region { forward }) => leave_region(ctx, forward),
+            None => {}
+        }
+    }
+
     fn show_form(&mut self, form: Option<FormKind>) {
         if form == Some(FormKind::Export) {
             let all = self.state.study.dataset.conditions().iter().map(|condition| condition.id());
             self.state.forms.export.chosen = all.collect();
         }
-        self.postponed = None;
-        self.agreed_to_lose = false;
+        // A form that asks where to save goes on with what waits for that.
+        if !(self.goes_on_once_saved && form == Some(FormKind::Save)) {
+            self.postponed = None;
+            self.goes_on_once_saved = false;
+        }
+        self.overwriting = None;
         self.state.forms.existing.clear();
         self.state.forms.shown = form;
     }
@@ -167,22 +208,15 @@ impl GdcmApp {
     /// Does what was asked whether to overwrite files.
     fn overwrite(&mut self, ctx: &Context) {
         self.state.forms.existing.clear();
-        match self.postponed.take() {
+        match self.overwriting.take() {
             Some(Command::SaveStudyAs(path)) => self.save_as(path, Existing::Replace, ctx),
             Some(Command::Export) => self.export(Existing::Replace),
+            Some(Command::SaveTable(kind, path)) => self.save_table(kind, path, Existing::Replace),
             _ => {}
         }
     }
 
-    fn discard_and_go_on(&mut self, ctx: &Context) {
-        self.state.forms.shown = None;
-        self.agreed_to_lose = true;
-        if let Some(command) = self.postponed.take() {
-            self.carry_out_one(command, ctx);
-        }
-    }
-
-    fn quit(&mut self, ctx: &Context) {
+    pub(super) fn quit(&mut self, ctx: &Context) {
         self.closing = true;
         // Saved, or agreed to be lost.
         self.autosave.clear();

@@ -1,31 +1,34 @@
 //! The window: state, the thread that computes, the dialogs.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, ViewportCommand};
 
 use crate::dataset::ConditionId;
-use crate::io::{LoadedDataset, LostStudy, Opened};
+use crate::io::{LoadedDataset, LostStudy, Opened, is_first_start};
 use crate::study::Study;
 use crate::view::bars::Bar;
-use crate::view::command::{Command, FormKind};
+use crate::view::command::Command;
 use crate::view::palette::{self, Palette};
 use crate::view::preferences::Preferences;
 use crate::view::state::State;
 use crate::view::{
-    bars, centre, conditions_panel, forms, matrix_panel, menu_bar, models_panel, result_panel, settings_panel,
-    status_bar,
+    bars, centre, conditions_panel, focus_ring, forms, matrix_panel, menu_bar, models_panel, result_panel,
+    settings_panel, status_bar, tour,
 };
 
 use super::autosave::Autosave;
 use super::dialogs::Dialogs;
 use super::disk_watch::DiskWatch;
 use super::fault::Fault;
-use super::files::{Readers, SavedStudy};
+use super::files::{Postponed, Readers, SavedStudy};
+use super::key_order::KeyOrder;
 use super::recent::Recent;
 use super::recovery::LAST_WAIT;
 use super::setup::Setup;
 use super::shortcuts;
+use super::update::NextFocus;
 use super::worker::{Reply, Request, Worker};
 
 /// The program's window.
@@ -36,10 +39,12 @@ pub struct GdcmApp {
     pub(super) worker: Worker,
     pub(super) dialogs: Dialogs,
     pub(super) readers: Readers,
-    /// What waits for the answer whether to lose unsaved decisions.
-    pub(super) postponed: Option<Command>,
-    /// Whether the decisions that are not saved may be lost to what is being opened.
-    pub(super) agreed_to_lose: bool,
+    /// What waits for the answer whether to lose decisions that are not saved.
+    pub(super) postponed: Option<Postponed>,
+    /// Whether that is done once they are saved.
+    pub(super) goes_on_once_saved: bool,
+    /// What waits for the answer whether to write over files.
+    pub(super) overwriting: Option<Command>,
     pub(super) closing: bool,
     /// Datasets that were open before a reload, or after one that was undone.
     pub(super) earlier: Vec<LoadedDataset>,
@@ -48,6 +53,12 @@ pub struct GdcmApp {
     pub(super) offers: Vec<Option<LostStudy>>,
     pub(super) disk: DiskWatch,
     pub(super) recent: Recent,
+    /// What `~` stands for in a path that is typed.
+    pub(super) home: Option<PathBuf>,
+    /// What the focus goes to in the next frame.
+    pub(super) next_focus: Option<NextFocus>,
+    /// The window's title as it was set last.
+    title: String,
     /// What the newest request was made from.
     requested: Option<(Study, ConditionId)>,
 }
@@ -61,6 +72,7 @@ impl GdcmApp {
     /// The window on a dataset or a study. Starts the threads that compute, and those that look at the disk.
     pub fn with(ctx: &Context, opened: Opened, setup: Setup) -> std::io::Result<Self> {
         palette::apply(ctx);
+        ctx.add_plugin(KeyOrder::default());
         let waker = || {
             let ctx = ctx.clone();
             move || ctx.request_repaint()
@@ -69,7 +81,7 @@ impl GdcmApp {
         let autosave = Autosave::start(setup.directory.as_deref(), setup.keep_after, waker())?;
         let (mut state, loaded, saved) = Self::parts_of(opened);
         setup.preferences.apply(&mut state.display);
-        let app = Self {
+        let mut app = Self {
             state,
             loaded,
             saved,
@@ -77,15 +89,20 @@ impl GdcmApp {
             dialogs: Dialogs::new(),
             readers: Readers::default(),
             postponed: None,
-            agreed_to_lose: false,
+            goes_on_once_saved: false,
+            overwriting: None,
             closing: false,
             earlier: Vec::new(),
             autosave,
             offers: Vec::new(),
             disk: DiskWatch::start(setup.look_every, waker())?,
             recent: Recent::new(setup.directory),
+            home: setup.home,
+            next_focus: None,
+            title: String::new(),
             requested: None,
         };
+        app.offer_tour(setup.offers_tour);
         app.look_for_recent(ctx);
         Ok(app)
     }
@@ -201,8 +218,24 @@ impl GdcmApp {
     fn guard_closing(&mut self, ctx: &Context) {
         if ctx.input(|input| input.viewport().close_requested()) && self.state.unsaved && !self.closing {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
-            self.postponed = Some(Command::Quit);
-            self.state.forms.shown = Some(FormKind::Unsaved);
+            self.ask_to_lose(Postponed::Quit);
+        }
+    }
+
+    /// Shows the guided tour at the first start.
+    fn offer_tour(&mut self, is_asked: bool) {
+        let Some(directory) = self.recent.directory().filter(|_| is_asked) else { return };
+        if is_first_start(directory) {
+            self.state.tour = Some(0);
+        }
+    }
+
+    /// Sets the window's title where it changed.
+    fn name_window(&mut self, ctx: &Context) {
+        let title = self.state.window_title();
+        if title != self.title {
+            ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            self.title = title;
         }
     }
 
@@ -288,11 +321,15 @@ impl eframe::App for GdcmApp {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         let palette = Palette::of(ui.visuals()).with_looks(self.state.display.looks);
+        self.move_focus(&ctx);
         let mut commands = shortcuts::pressed(&ctx, &self.state);
         self.take_dropped_files(&ctx, &mut commands);
         self.panels_ui(ui, &palette, &mut commands);
         forms::forms_ui(&ctx, &mut self.state, &palette, &mut commands);
+        tour::tour_ui(&ctx, &self.state, &palette, &mut commands);
+        focus_ring::focus_ring_ui(&ctx, &palette);
         self.carry_out(commands, &ctx);
+        self.name_window(&ctx);
         let now = ctx.input(|input| input.time);
         self.request(now);
         if self.state.results.is_waiting() || self.state.results.background_since.is_some() {

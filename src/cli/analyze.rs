@@ -67,6 +67,13 @@ fn take_options(study: &mut Study, arguments: &AnalyzeArguments) -> Result<(), F
     if let Some(points) = arguments.points {
         set("--points", Setting::Points(points))?;
     }
+    if let Some(agreement_db) = arguments.agreement {
+        set("--agreement", Setting::Agreement(agreement_db))?;
+    }
+    if arguments.schedule_delays {
+        let schedule = ScheduleSettings { delays: true, ..study.settings.schedule };
+        study.apply(&Edit::Set(Setting::Schedule(schedule))).map_err(Failure::refused("--schedule-delays"))?;
+    }
     if let Some(degree) = arguments.degree {
         let schedule = ScheduleSettings { kind: ScheduleKind::Polynomial { degree }, ..study.settings.schedule };
         study.apply(&Edit::Set(Setting::Schedule(schedule))).map_err(Failure::refused("--degree"))?;

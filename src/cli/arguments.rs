@@ -80,6 +80,12 @@ pub struct AnalyzeArguments {
     /// Degree of the schedule's polynomial, 0 to 3.
     #[arg(long, value_name = "D", value_parser = whole_number::<0, HIGHEST_DEGREE>, allow_negative_numbers = true)]
     pub degree: Option<usize>,
+    /// Schedule the delays with airspeed too.
+    #[arg(long)]
+    pub schedule_delays: bool,
+    /// Mismatch up to which a loop of held gains counts as agreeing, in dB.
+    #[arg(long, value_name = "DB", value_parser = real_number, allow_negative_numbers = true)]
+    pub agreement: Option<f64>,
     /// Responses to hold, OUTPUT/INPUT, separated by commas (P/LAT,Q/LON); "none" holds none. Without it, the on-axis ones.
     #[arg(long, value_name = "PAIRS")]
     pub on: Option<PairList>,

@@ -5,6 +5,7 @@ use super::clash::{Clash, ClashKind};
 use super::problem::{Bounds, Problem};
 use super::quantity::{Quantity, three_digits_down, three_digits_up};
 use crate::dataset::Pair;
+use crate::units::{s_to_ms, telling, told_apart};
 
 /// A smallest set of held entries and bounds that cannot hold together: without any one of them the rest can.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,6 +105,28 @@ impl Conflict {
             && matches!(self.kind, ConflictKind::BelowLower { .. })
     }
 
+    /// Whether it is a loop that disagrees by no more than `tolerance`, in dB or in seconds.
+    pub(crate) fn agrees_within(&self, tolerance: f64) -> bool {
+        matches!(self.kind, ConflictKind::Loop { mismatch } if mismatch.abs() <= tolerance)
+    }
+
+    /// A loop that agrees within the tolerance, in words.
+    pub fn agreement_words(&self, inputs: &[String], outputs: &[String]) -> String {
+        let entries = pair_names(&self.entries, inputs, outputs);
+        let (what, mismatch) = match (self.quantity, self.kind) {
+            (Quantity::Gain(_), ConflictKind::Loop { mismatch }) => {
+                ("ratios", format!("{} dB", telling(mismatch.abs(), 1)))
+            }
+            (Quantity::Delay, ConflictKind::Loop { mismatch }) => {
+                ("delays", format!("{} ms", telling(s_to_ms(mismatch.abs()), 1)))
+            }
+            _ => return String::new(),
+        };
+        format!(
+            "{entries} form a loop: their {what} agree to {mismatch}, and count as agreeing; each is held at the nearest that does."
+        )
+    }
+
     /// The conflict and what would resolve it, in words.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let names = |channels: (Channel, Channel)| {
@@ -135,37 +158,38 @@ impl Conflict {
         match self.kind {
             ConflictKind::AboveUpper { channels, asked, upper } => {
                 let (first, second) = names(channels);
-                let most = high.powi(2);
+                let (most, asked) = told_apart(high.powi(2), asked, 3);
                 format!(
-                    "with gains <= {high:.3} the product {first} {second} is at most {most:.3}, not {asked:.3}; set the upper \
+                    "with gains <= {high:.3} the product {first} {second} is at most {most}, not {asked}; set the upper \
                      bound to {upper}"
                 )
             }
             ConflictKind::BelowLower { channels, asked, lower } => {
                 let (first, second) = names(channels);
-                let (least, lower) = (low.powi(2), lower.unwrap_or(low));
+                let ((least, asked), lower) = (told_apart(low.powi(2), asked, 3), lower.unwrap_or(low));
                 format!(
-                    "with gains >= {low:.3} the product {first} {second} is at least {least:.3}, not {asked:.3}; set the lower \
+                    "with gains >= {low:.3} the product {first} {second} is at least {least}, not {asked}; set the lower \
                      bound to {lower}"
                 )
             }
             ConflictKind::TooFarApart { greater, lesser, asked, upper, lower } => {
                 let (greater, lesser) = names((greater, lesser));
-                let (most, lower) = (high / low, lower.unwrap_or(low));
+                let ((most, asked), lower) = (told_apart(high / low, asked, 3), lower.unwrap_or(low));
                 format!(
-                    "with {greater} <= {high:.3} and {lesser} >= {low:.3} their ratio is at most {most:.3}, not {asked:.3}; set \
+                    "with {greater} <= {high:.3} and {lesser} >= {low:.3} their ratio is at most {most}, not {asked}; set \
                      the upper bound to {upper}, or the lower bound to {lower}"
                 )
             }
             ConflictKind::Loop { mismatch } => {
-                format!("{entries} form a loop: their ratios disagree by {:.1} dB", mismatch.abs())
+                format!("{entries} form a loop: their ratios disagree by {} dB", telling(mismatch.abs(), 1))
             }
             ConflictKind::Unclear => String::new(),
         }
     }
 
     fn delay_sentence(&self, entries: &str, names: impl Fn((Channel, Channel)) -> (String, String)) -> String {
-        let ms = |seconds: f64| format!("{:.1}", 1e3 * seconds);
+        let ms = |seconds: f64| telling(s_to_ms(seconds), 1);
+        let ms_apart = |a: f64, b: f64| told_apart(s_to_ms(a), s_to_ms(b), 1);
         match self.kind {
             ConflictKind::BelowLower { asked, .. } if self.entries.len() == 1 => {
                 format!("{entries} needs {} ms of lead: a delay cannot give it", ms(-asked))
@@ -175,13 +199,13 @@ impl Conflict {
                 format!("{first} and {second} would have to give {lead} ms of lead together, and a delay cannot")
             }
             ConflictKind::AboveUpper { channels, asked, upper } => {
-                let ((first, second), most, asked) = (names(channels), ms(2.0 * self.bounds.upper), ms(asked));
+                let ((first, second), (most, asked)) = (names(channels), ms_apart(2.0 * self.bounds.upper, asked));
                 format!(
                     "{first} and {second} give at most {most} ms together, not {asked}; set the upper bound to {upper} s"
                 )
             }
             ConflictKind::TooFarApart { greater, lesser, asked, upper, .. } => {
-                let ((greater, lesser), most, asked) = (names((greater, lesser)), ms(self.bounds.upper), ms(asked));
+                let ((greater, lesser), (most, asked)) = (names((greater, lesser)), ms_apart(self.bounds.upper, asked));
                 format!(
                     "{greater} cannot be {asked} ms above {lesser} with delays <= {most} ms; set the upper bound to {upper} s"
                 )

@@ -27,7 +27,7 @@ pub use channel::Channel;
 pub use channel_correction::{ChannelCorrection, NetDelay, NetGain};
 pub use conflict::{Conflict, ConflictKind};
 pub use delta::{Delta, delay_upper_s, gain_bounds, mismatch_table};
-pub use problem::{Bounds, Problem, ProblemError};
+pub use problem::{Bounds, DELAY_AGREEMENT_S, Problem, ProblemError};
 pub use quantity::{GainObjective, Quantity};
 pub use remedy::Remedy;
 pub use sensitivity::{Restraint, Sensitivity, sensitivities};

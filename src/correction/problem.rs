@@ -13,6 +13,9 @@ pub struct Bounds {
     pub upper: f64,
 }
 
+/// Mismatch of a loop of held delays that counts as agreement \[s\]: half of the last digit in which delays are told.
+pub const DELAY_AGREEMENT_S: f64 = 5e-5;
+
 /// The gains (eq. (7), M8) or the delays \[s\] (eq. (11), M9) that a condition's correction is to have.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
@@ -30,6 +33,8 @@ pub struct Problem {
     /// Weight of the departure of the output gains from 1, or of the output delays; `alpha = 0` stands for the limit
     /// `alpha -> 0+`.
     pub alpha: f64,
+    /// Greatest mismatch of a loop of held entries that counts as agreement: dB of gain, or seconds of delay.
+    pub agreement: f64,
 }
 
 /// Why gains or delays cannot be computed.
@@ -125,10 +130,11 @@ const GAINS: std::ops::RangeInclusive<f64> = 1e-50..=1e50;
 const GAIN_BOUNDS: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
 impl Problem {
-    /// The problem of equation (7) that fits every entry: `alpha = 1`, the paper's objective.
+    /// The problem of equation (7) that fits every entry: `alpha = 1`, the paper's objective, loops held to the last digit.
     pub fn gains(delta: PairTable<Option<f64>>, constrained: PairTable<bool>, bounds: Bounds) -> Self {
         let fitted = PairTable::filled(delta.outputs(), delta.inputs(), true);
-        Self { quantity: Quantity::Gain(GainObjective::Ratio), delta, constrained, fitted, bounds, alpha: 1.0 }
+        let quantity = Quantity::Gain(GainObjective::Ratio);
+        Self { quantity, delta, constrained, fitted, bounds, alpha: 1.0, agreement: 0.0 }
     }
 
     /// The problem of equation (11) that fits every entry, with `alpha = 1`; all times in seconds.

@@ -57,11 +57,11 @@ impl Sensitivity {
                 format!("{} is held: 1 ms {change} delay {effect}.", pair_name(pair, inputs, outputs))
             }
             (Quantity::Delay, Restraint::LowerBound(channel)) => {
-                format!("tau_{} is 0: 1 ms of lead {effect}.", channel.name(inputs, outputs))
+                format!("τ_{} is 0: 1 ms of lead {effect}.", channel.name(inputs, outputs))
             }
             (Quantity::Delay, Restraint::UpperBound(channel)) => {
                 let channel = channel.name(inputs, outputs);
-                format!("tau_{channel} is on its upper bound: raising the bound by 1 ms {effect}.")
+                format!("τ_{channel} is on its upper bound: raising the bound by 1 ms {effect}.")
             }
         }
     }

@@ -6,6 +6,7 @@ use super::conflict::Conflict;
 use super::quantity::Quantity;
 use super::remedy::Remedy;
 use crate::dataset::{Pair, PairTable};
+use crate::units::{telling, told_apart};
 
 /// Whether the answer is known to be the best there is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,21 +107,20 @@ impl Unmatched {
     pub fn words(&self, omega_top: f64, inputs: &[String], outputs: &[String]) -> String {
         let pair = pair_name(self.pair, inputs, outputs);
         if let Quantity::Gain(_) = self.quantity {
-            return format!(
-                "{pair} is held at {:.3} instead of {:.3} ({:+.1} dB).",
-                self.target, self.delta, self.excess
-            );
+            let (target, delta) = told_apart(self.target, self.delta, 3);
+            let sign = if self.excess > 0.0 { "+" } else { "" };
+            return format!("{pair} is held at {target} instead of {delta} ({sign}{} dB).", telling(self.excess, 1));
         }
         let lead_ms = 1e3 * self.excess;
-        let left = self.phase_left_deg(omega_top).abs();
+        let left = telling(self.phase_left_deg(omega_top).abs(), 0);
         let why = if self.why.is_lone_lead() && self.why.entries == [self.pair] {
-            format!("{pair} needs {lead_ms:.1} ms of lead: a delay cannot give it")
+            format!("{pair} needs {} ms of lead: a delay cannot give it", telling(lead_ms, 1))
         } else if lead_ms > 0.0 {
-            format!("{pair} gets {lead_ms:.1} ms more delay than it needs")
+            format!("{pair} gets {} ms more delay than it needs", telling(lead_ms, 1))
         } else {
-            format!("{pair} lacks {:.1} ms of delay", -lead_ms)
+            format!("{pair} lacks {} ms of delay", telling(-lead_ms, 1))
         };
-        format!("{why}; {left:.0}° of phase error remain at {omega_top} rad/s.")
+        format!("{why}; {left}° of phase error remain at {omega_top} rad/s.")
     }
 }
 
@@ -139,10 +139,13 @@ pub struct Solution {
     pub proof: Proof,
     /// Product or sum at which each held entry is held, p x m: its delta where that is possible (M8 and M9, stage 1).
     pub targets: PairTable<Option<f64>>,
-    /// Whether every held entry is held at its delta, within 1e-8 of its logarithm, or of the greatest delay in the problem.
+    /// Whether every held entry is held at its delta, within 1e-8 of its logarithm, or of the greatest delay in the problem; or
+    /// within the tolerance of [`Problem::agreement`](super::Problem::agreement) where a loop of entries asks for it.
     pub matched: bool,
     /// The entries that are not.
     pub unmatched: Vec<Unmatched>,
+    /// The loops of held entries that disagree by no more than the tolerance: each is held at the nearest that agrees.
+    pub agreeing: Vec<Conflict>,
     /// Each set of held entries and bounds that cannot hold together, once; loops first, then by number of entries.
     pub conflicts: Vec<Conflict>,
     /// The single changes that would let every held entry be held, where some cannot.

@@ -150,9 +150,12 @@ fn assemble(
     for (pair, target) in &reached.targets {
         targets[*pair] = Some(coordinate.value(*target));
     }
-    let unmatched = misses(problem, held, reached, effort)?;
+    let misses = misses(problem, held, reached, effort)?;
+    let (agreeing, unmatched): (Vec<Unmatched>, Vec<Unmatched>) = misses
+        .into_iter()
+        .partition(|miss| miss.why.agrees_within(problem.agreement) && miss.excess.abs() <= problem.agreement);
     let conflicts = conflicts_of(&unmatched);
-    let remedy = remedy_of(problem, held, &conflicts, effort)?;
+    let remedy = remedy_of(problem, &settled_loops(held, reached, &agreeing), &conflicts, effort)?;
     Ok(Solution {
         quantity: problem.quantity,
         inputs,
@@ -161,6 +164,7 @@ fn assemble(
         proof,
         targets,
         matched: unmatched.is_empty(),
+        agreeing: conflicts_of(&agreeing),
         remedy,
         unmatched,
         conflicts,
@@ -196,6 +200,16 @@ fn misses(
         Unmatched { quantity, pair: *pair, delta, target, excess, why: why(*pair) }
     });
     Ok(missed.collect())
+}
+
+/// What is held, the entries of loops that count as agreeing at their targets.
+fn settled_loops(held: &Held, reached: &Reached, agreeing: &[Unmatched]) -> Held {
+    let entries = held
+        .entries
+        .iter()
+        .zip(&reached.targets)
+        .map(|(asked, target)| if agreeing.iter().any(|miss| miss.pair == asked.0) { *target } else { *asked });
+    Held { entries: entries.collect(), ..held.clone() }
 }
 
 /// The distinct conflicts behind the misses.

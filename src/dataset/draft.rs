@@ -1,5 +1,7 @@
 //! A dataset before it is checked: what any reader fills, whatever the file.
 
+use std::sync::Arc;
+
 use nalgebra::DMatrix;
 
 use super::band::{Band, BandError};
@@ -49,6 +51,8 @@ pub struct ModelDraft {
     pub response: Option<ResponseDraft>,
     /// Which file it comes from.
     pub source: Option<Provenance>,
+    /// Names of the states, for people; none where they are not known.
+    pub states: Vec<String>,
 }
 
 /// One flight condition, unchecked.
@@ -263,9 +267,26 @@ impl Checker {
             && model.order() != *order
         {
             let words = format!("order says {order}, the matrices have {} states", model.order());
+            self.oddities.push(Oddity { place: place.clone(), words });
+        }
+        let states = self.state_names(place, &dynamics, draft.states);
+        Ok(Model { name: draft.name, origin: draft.origin, dynamics, source: draft.source, states })
+    }
+
+    /// The names of a model's states, if there is one for each.
+    fn state_names(&mut self, place: Place, dynamics: &Dynamics, names: Vec<String>) -> Arc<[String]> {
+        let order = match dynamics {
+            Dynamics::StateSpace(model) => model.order(),
+            Dynamics::Measured(_) => 0,
+        };
+        if names.len() == order {
+            return names.into();
+        }
+        if order > 0 && !names.is_empty() {
+            let words = format!("{} names for {order} states: they are left out", names.len());
             self.oddities.push(Oddity { place, words });
         }
-        Ok(Model { name: draft.name, origin: draft.origin, dynamics, source: draft.source })
+        Arc::default()
     }
 
     /// The model of four matrices, with `p` outputs and `m` inputs.

@@ -1,6 +1,7 @@
 //! One model of a bundle: where it comes from and how its response is known.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
@@ -90,12 +91,19 @@ pub struct Model {
     pub dynamics: Dynamics,
     /// Which file it was made from, where that is known.
     pub source: Option<Provenance>,
+    /// Names of the states, one for each; none where they are not known.
+    pub states: Arc<[String]>,
 }
 
 impl Model {
     /// A model of this name.
     pub fn new(name: impl Into<String>, origin: Origin, dynamics: Dynamics) -> Self {
-        Self { name: name.into(), origin, dynamics, source: None }
+        Self { name: name.into(), origin, dynamics, source: None, states: Arc::default() }
+    }
+
+    /// The name of a state, or its number (from 1) where it has none: "q", "state 5".
+    pub fn state_name(&self, state: usize) -> String {
+        self.states.get(state).cloned().unwrap_or_else(|| format!("state {}", state + 1))
     }
 
     /// Whether this is the physics model at the condition's own trim.

@@ -48,6 +48,11 @@ impl<T> PairTable<T> {
         self.inputs
     }
 
+    /// The entry of a response; `None` where the table has no such response.
+    pub fn get(&self, pair: Pair) -> Option<&T> {
+        (pair.output < self.outputs() && pair.input < self.inputs()).then(|| &self[pair])
+    }
+
     /// Every response, row by row.
     pub fn pairs(&self) -> impl Iterator<Item = Pair> + use<T> {
         let inputs = self.inputs;

@@ -17,6 +17,19 @@ const LEAST_MODELS: usize = 5;
 pub struct Discontinuity {
     /// `r_a`, one for each model: near 1 in a smooth bundle. `None` for a model set aside, and where no pair has a fitted distance.
     pub ratios: Vec<Option<f64>>,
+    /// What the fit explains distance by, one for each coordinate in which some model is perturbed.
+    pub weights: Vec<CoordinateWeight>,
+}
+
+/// What one coordinate of the perturbation explains of the squared distance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CoordinateWeight {
+    /// Name of the coordinate ("airspeed_kt").
+    pub name: String,
+    /// Its largest magnitude in the bundle, by which it is divided.
+    pub largest: f64,
+    /// `w_k`.
+    pub weight: f64,
 }
 
 /// Why no discontinuity ratio could be had.
@@ -61,7 +74,7 @@ impl Discontinuity {
             return Err(DiscontinuityError::TooFewModels { found: models.len() });
         }
         let perturbations: Vec<_> = models.iter().map(|&model| perturbations[model]).collect();
-        let coordinates = scaled_coordinates(&perturbations)?;
+        let (largest, coordinates) = scaled_coordinates(&perturbations)?;
         let (mut rows, mut squares) = (Vec::new(), Vec::new());
         for (a, b) in model_pairs(models.len()) {
             if let Some(distance) = distance.between(models[a], models[b]) {
@@ -81,7 +94,17 @@ impl Discontinuity {
             let mut others: Vec<f64> = (0..models.len()).filter(|&b| b != a).filter_map(|b| ratio(a, b)).collect();
             ratios[model] = (!others.is_empty()).then(|| median(&mut others));
         }
-        Ok(Self { ratios })
+        let named = largest.into_iter().zip(weights);
+        let weights =
+            named.map(|((name, largest), weight)| CoordinateWeight { name: name.to_owned(), largest, weight });
+        Ok(Self { ratios, weights: weights.collect() })
+    }
+
+    /// `sqrt(sum_k w_k (p_ak - p_bk)^2)` of two trims: the distance that their perturbations explain.
+    pub fn fitted_distance(&self, a: &BTreeMap<String, f64>, b: &BTreeMap<String, f64>) -> f64 {
+        let at = |of: &BTreeMap<String, f64>, name: &str| of.get(name).copied().unwrap_or_default();
+        let square = |of: &CoordinateWeight| of.weight * ((at(a, &of.name) - at(b, &of.name)) / of.largest).powi(2);
+        self.weights.iter().map(square).sum::<f64>().sqrt()
     }
 
     /// Models whose ratio exceeds [`SUGGESTION_RATIO`], in bundle order.
@@ -95,9 +118,12 @@ fn model_pairs(models: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..models).flat_map(move |a| (a + 1..models).map(move |b| (a, b)))
 }
 
-fn scaled_coordinates(
-    perturbations: &[(&str, Option<&BTreeMap<String, f64>>)],
-) -> Result<Vec<Vec<f64>>, DiscontinuityError> {
+/// The largest magnitude of each coordinate, and the coordinates of each model divided by them.
+type Coordinates<'a> = (BTreeMap<&'a str, f64>, Vec<Vec<f64>>);
+
+fn scaled_coordinates<'a>(
+    perturbations: &[(&str, Option<&'a BTreeMap<String, f64>>)],
+) -> Result<Coordinates<'a>, DiscontinuityError> {
     let mut largest: BTreeMap<&str, f64> = BTreeMap::new();
     for (model, perturbation) in perturbations {
         let Some(perturbation) = perturbation else {
@@ -115,7 +141,8 @@ fn scaled_coordinates(
     let scaled = |perturbation: &BTreeMap<String, f64>| {
         largest.iter().map(|(name, magnitude)| perturbation.get(*name).map_or(0.0, |value| value / magnitude)).collect()
     };
-    Ok(perturbations.iter().filter_map(|(_, perturbation)| perturbation.map(scaled)).collect())
+    let scaled = perturbations.iter().filter_map(|(_, perturbation)| perturbation.map(scaled)).collect();
+    Ok((largest, scaled))
 }
 
 fn squared_offsets(a: &[f64], b: &[f64]) -> Vec<f64> {

@@ -34,11 +34,22 @@ impl Mismatch {
         Cost::of(magnitude, phase, average, &mut Vec::with_capacity(omega.len()))
     }
 
+    /// Whether the unwrapped `Delta phi` of M3 leaves half a turn somewhere, so that M6b decides on the turns.
+    pub fn leaves_half_a_turn(&self) -> bool {
+        self.unwrapped().iter().any(|phase| phase.abs() > PI)
+    }
+
+    /// `Delta phi(sim, ref)` \[rad\] of M3.
+    fn unwrapped(&self) -> Vec<f64> {
+        let mut phase = self.phase.clone();
+        centred_unwrap(&mut phase, &mut Vec::new());
+        phase
+    }
+
     /// `Delta phi(sim, ref)` \[rad\] as a delay takes it from `omega`: that of M3 where it stays within half a turn, else at
     /// each frequency the turn nearest to the pure delay that fits best (M6b).
     pub fn phase_difference(&self, omega: &[f64]) -> Vec<f64> {
-        let mut phase = self.phase.clone();
-        centred_unwrap(&mut phase, &mut Vec::new());
+        let mut phase = self.unwrapped();
         if phase.iter().any(|phase| phase.abs() > PI) {
             let delay_s = nearest_pure_delay_s(&phase, omega);
             for (phase, omega) in phase.iter_mut().zip(omega) {

@@ -5,7 +5,9 @@ mod corrections_file;
 mod dataset_file;
 mod file_error;
 mod file_stamp;
+mod first_start;
 mod flaw;
+mod home;
 mod json_text;
 mod list;
 mod nested;
@@ -19,21 +21,24 @@ mod recovery_file;
 mod settings_entry;
 mod source;
 mod study_file;
+mod table_file;
 mod unknown_keys;
 
 pub use crate::dataset::limits::LARGEST_TEXT;
 pub use content_fault::ContentFault;
 pub use corrections_file::{
     Assessment, ByName, Channels, ConditionAssessment, ConditionCorrections, ConflictEntry, Corrections, CostTable,
-    CostTables, DatasetLabel, DelayOutcome, Explanation, GainOutcome, NetGain, RESULT_FILES, RemedyEntry, ScheduleUsed,
-    ScheduledDelays, ScheduledGains, SensitivityEntry, SetAsideEntry, SourceEntry, Table, UnmatchedDelayEntry,
-    UnmatchedGainEntry, WithoutResult, read_corrections, result_paths, write_results,
+    CostTables, DatasetLabel, DelayOutcome, Explanation, GainOutcome, NetGain, RESULT_FILES, ReasonEntry, RemedyEntry,
+    ScheduleUsed, ScheduledDelays, ScheduledGains, SensitivityEntry, SetAsideEntry, SourceEntry, Table,
+    UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult, read_corrections, result_paths, write_results,
 };
 pub use dataset_file::{
     DatasetOrigin, LoadedDataset, embedded_example, load_dataset, load_dataset_bytes, save_dataset, write_example,
 };
 pub use file_error::{FileError, system_words};
 pub use file_stamp::{FileStamp, file_exists, file_sha256};
+pub use first_start::is_first_start;
+pub use home::at_home;
 pub use opened::{Opened, load_any};
 pub use output_set::{Existing, OutputSet, make_directory, report_size_limit};
 pub use plain::{plain, plain_path};
@@ -41,3 +46,4 @@ pub use recent_files::{add_recent_file, recent_files};
 pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
 pub use settings_entry::{KindWord, ScheduleEntry, SettingsEntry};
 pub use study_file::{OpenedStudy, STUDY_EXTENSION, open_study, open_study_of, save_study};
+pub use table_file::save_table;

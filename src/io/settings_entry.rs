@@ -7,7 +7,7 @@ use crate::dataset::limits::MOST_PAIRS;
 use crate::dataset::{Band, Dataset, PairTable, Place};
 use crate::fidelity::CostAverage;
 use crate::schedule::{DEFAULT_TOLERANCE_KT, ScheduleKind, ScheduleSettings, ScheduledQuantity};
-use crate::study::{Setting, Settings};
+use crate::study::{DEFAULT_AGREEMENT_DB, Setting, Settings};
 
 use super::content_fault::ContentFault;
 use super::flaw::Flaw;
@@ -42,6 +42,9 @@ pub struct SettingsEntry {
     pub gain_bounds: Option<[f64; 2]>,
     /// Upper bound of the delays set by hand \[s\].
     pub delay_upper_s: Option<f64>,
+    /// Mismatch up to which a loop of held gains counts as agreeing \[dB\]; files of older programs do not say it.
+    #[serde(default = "default_agreement_db")]
+    pub agreement_db: f64,
     /// How gains are scheduled; results of older programs do not say it.
     #[serde(default)]
     pub schedule: ScheduleEntry,
@@ -68,6 +71,10 @@ impl Default for ScheduleEntry {
     fn default() -> Self {
         Self::of(ScheduleSettings::default())
     }
+}
+
+fn default_agreement_db() -> f64 {
+    DEFAULT_AGREEMENT_DB
 }
 
 fn default_tolerance_kt() -> f64 {
@@ -125,6 +132,7 @@ impl SettingsEntry {
             gain_objective: settings.gain_objective,
             gain_bounds: settings.gain_bounds.map(|bounds| [bounds.lower, bounds.upper]),
             delay_upper_s: settings.delay_upper_s,
+            agreement_db: settings.agreement_db,
             schedule: ScheduleEntry::of(settings.schedule),
         }
     }
@@ -145,6 +153,7 @@ impl SettingsEntry {
             ("quantile", Setting::Quantile(self.quantile)),
             ("gain_bounds", Setting::GainBounds(bounds)),
             ("delay_upper_s", Setting::DelayUpper(self.delay_upper_s)),
+            ("agreement_db", Setting::Agreement(self.agreement_db)),
             ("schedule", Setting::Schedule(self.schedule.settings()?)),
         ];
         for (key, setting) in decided {

@@ -1,4 +1,4 @@
-//! Frequency responses: the grid, the evaluation of a model on it, magnitude and phase (M2, M3).
+//! Frequency responses: the grid, the evaluation of a model on it, magnitude and phase (M2, M3); poles and zeros of a model.
 
 mod elimination;
 mod frequency_grid;
@@ -7,9 +7,13 @@ mod gain_delay;
 mod interpolation;
 mod phase;
 mod polar;
+mod poles;
 mod prepared_model;
+mod schur_form;
+mod staircase;
 mod statistics;
 mod structure;
+mod zeros;
 
 pub use elimination::{evaluate, evaluate_on};
 pub use frequency_grid::FrequencyGrid;
@@ -17,6 +21,7 @@ pub use frequency_response::FrequencyResponse;
 pub use gain_delay::GainDelay;
 pub use phase::{centred_unwrap, nearest_turn_offset, unwrap, wrap};
 pub use polar::{PolarCurve, PolarResponse};
+pub use poles::{Mode, ModesError, NearDefective, modes, modes_of};
 pub use prepared_model::{LargeEntry, PreparedModel};
-
 pub use statistics::{mean, median, quantile};
+pub use zeros::{TransmissionZeros, ZerosError, transmission_zeros};

@@ -1,6 +1,8 @@
 //! Which outputs an input can reach at all.
 
-use crate::dataset::{PairTable, StateSpace};
+use nalgebra::DMatrix;
+
+use crate::dataset::{Pair, PairTable, StateSpace};
 
 /// Whether each response of a model is more than a structural zero: whether a chain of entries that are not zero leads from
 /// the input through `B`, any number of times through `A`, and `C` (or at once through `D`) to the output.
@@ -18,15 +20,26 @@ pub fn connected(model: &StateSpace) -> PairTable<bool> {
     })
 }
 
+/// The states that lie on a chain of entries from the input of a response to its output.
+pub(super) fn leading_states(model: &StateSpace, pair: Pair) -> Vec<usize> {
+    let reached = reached_states(model, pair.input);
+    let seen = spread(&model.a().transpose(), model.c().row(pair.output).iter().map(|c| *c != 0.0).collect());
+    (0..model.order()).filter(|&state| reached[state] && seen[state]).collect()
+}
+
 fn reached_states(model: &StateSpace, input: usize) -> Vec<bool> {
-    let mut reached: Vec<bool> = model.b().column(input).iter().map(|b| *b != 0.0).collect();
+    spread(model.a(), model.b().column(input).iter().map(|b| *b != 0.0).collect())
+}
+
+/// The marked states, and those that the columns of `a` lead to from them.
+fn spread(a: &DMatrix<f64>, mut reached: Vec<bool>) -> Vec<bool> {
     let mut open: Vec<usize> = (0..reached.len()).filter(|&state| reached[state]).collect();
     let mut left = reached.len() - open.len();
     while let Some(from) = open.pop() {
         if left == 0 {
             break;
         }
-        for (to, a) in model.a().column(from).iter().enumerate() {
+        for (to, a) in a.column(from).iter().enumerate() {
             if *a != 0.0 && !reached[to] {
                 reached[to] = true;
                 left -= 1;
@@ -40,7 +53,6 @@ fn reached_states(model: &StateSpace, input: usize) -> Vec<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dataset::Pair;
     use nalgebra::dmatrix;
 
     #[test]

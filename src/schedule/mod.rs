@@ -1,13 +1,17 @@
-//! One correction for all airspeeds, and what it is worth (M11, M12).
+//! One correction for all airspeeds, what speaks for it, and what it is worth (M11, M12).
 
 mod assessment;
+mod coefficients;
+mod evidence;
 mod regression;
 #[expect(clippy::module_inception, reason = "the folder is named for its noun, and so is the file that holds it")]
 mod schedule;
 
 pub use assessment::{CostChange, assess};
+pub use coefficients::{CoefficientRow, CoefficientTable};
+pub use evidence::{Evidence, FitEvidence, KindEvidence, Residual, SCHEDULE_KINDS, evidence};
 pub use regression::{Airspeeds, Regression};
 pub use schedule::{
-    DEFAULT_TOLERANCE_KT, HIGHEST_DEGREE, Schedule, ScheduleCaution, ScheduleError, ScheduleKind, ScheduleSettings,
-    ScheduledPoint, ScheduledQuantity,
+    DEFAULT_TOLERANCE_KT, DelaySchedule, HIGHEST_DEGREE, Schedule, ScheduleCaution, ScheduleError, ScheduleKind,
+    ScheduleSettings, ScheduledPoint, ScheduledQuantity,
 };

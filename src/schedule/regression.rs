@@ -92,6 +92,14 @@ impl Regression {
         Self::Table { airspeeds_kt: airspeeds.clusters_kt(), values: airspeeds.cluster_means(figures) }
     }
 
+    /// Its coefficients, lowest power first, or the figures of its table.
+    pub fn figures(&self) -> &[f64] {
+        match self {
+            Regression::Polynomial { coefficients } => coefficients,
+            Regression::Table { values, .. } => values,
+        }
+    }
+
     /// The figure at an airspeed \[kt\]; outside the conditions' range the end value holds.
     pub fn at(&self, airspeeds: &Airspeeds, airspeed_kt: f64) -> f64 {
         match self {

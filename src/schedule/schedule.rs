@@ -59,12 +59,14 @@ impl Default for ScheduleSettings {
 }
 
 /// One condition's optimum, as the schedule takes it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScheduledPoint<'a> {
     /// True airspeed \[kt\].
     pub airspeed_kt: f64,
     /// The condition's own correction.
     pub correction: &'a ChannelCorrection,
+    /// The condition's upper bound of the delays \[s\].
+    pub delay_upper_s: f64,
 }
 
 /// Every channel's gain (and delay, where asked for) as a function of airspeed.
@@ -78,10 +80,21 @@ pub struct Schedule {
     pub inputs: Vec<Regression>,
     /// Regression of each output's gain, or of its logarithm.
     pub outputs: Vec<Regression>,
-    /// Regression of each input's and each output's delay \[s\], where delays are scheduled.
-    pub delays: Option<(Vec<Regression>, Vec<Regression>)>,
+    /// Delays as functions of airspeed, where delays are scheduled.
+    pub delays: Option<DelaySchedule>,
     /// What has to be known about it.
     pub cautions: Vec<ScheduleCaution>,
+}
+
+/// Every channel's delay as a function of airspeed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DelaySchedule {
+    /// Regression of each input's delay \[s\].
+    pub inputs: Vec<Regression>,
+    /// Regression of each output's delay \[s\].
+    pub outputs: Vec<Regression>,
+    /// The conditions' upper bounds \[s\], linear between them: no scheduled delay is above.
+    pub upper_s: Regression,
 }
 
 /// What has to be known about a schedule.
@@ -149,6 +162,13 @@ pub enum ScheduleError {
 impl Schedule {
     /// The schedule of these conditions' corrections.
     pub fn of(points: &[ScheduledPoint<'_>], settings: ScheduleSettings) -> Result<Self, ScheduleError> {
+        let mut schedule = Self::fitted(points, settings)?;
+        schedule.cautions = schedule.find_cautions(points);
+        Ok(schedule)
+    }
+
+    /// [`Schedule::of`] without a look between the conditions.
+    pub(super) fn fitted(points: &[ScheduledPoint<'_>], settings: ScheduleSettings) -> Result<Self, ScheduleError> {
         let airspeeds =
             Airspeeds::new(points.iter().map(|point| point.airspeed_kt).collect(), settings.airspeed_tolerance_kt);
         let airspeeds = airspeeds.ok_or(ScheduleError::NoCondition)?;
@@ -173,12 +193,14 @@ impl Schedule {
         let outputs = fit_channels(|correction| &correction.output_gains, &quantity);
         let delays = settings.delays.then(|| {
             let same = |delay: f64| delay;
-            let inputs = fit_channels(|correction| &correction.input_delays_s, &same);
-            (inputs, fit_channels(|correction| &correction.output_delays_s, &same))
+            let uppers: Vec<f64> = points.iter().map(|point| point.delay_upper_s).collect();
+            DelaySchedule {
+                inputs: fit_channels(|correction| &correction.input_delays_s, &same),
+                outputs: fit_channels(|correction| &correction.output_delays_s, &same),
+                upper_s: Regression::table(&airspeeds, &uppers),
+            }
         });
-        let mut schedule = Self { settings, airspeeds, inputs, outputs, delays, cautions: Vec::new() };
-        schedule.cautions = schedule.find_cautions(points);
-        Ok(schedule)
+        Ok(Self { settings, airspeeds, inputs, outputs, delays, cautions: Vec::new() })
     }
 
     /// Degree of the polynomial, which may be less than was asked for; `None` for a table.
@@ -244,7 +266,7 @@ impl Schedule {
 
     /// The scheduled correction at an airspeed \[kt\]; outside the conditions' range the end value holds.
     ///
-    /// A scheduled delay below zero, which a polynomial can give between its points, counts as zero.
+    /// Scheduled delays are cut to their bounds: from zero to the conditions' upper bounds, linear between them.
     pub fn at(&self, airspeed_kt: f64) -> ChannelCorrection {
         let gain = |regression: &Regression| {
             let value = regression.at(&self.airspeeds, airspeed_kt);
@@ -253,9 +275,12 @@ impl Schedule {
                 ScheduledQuantity::Gain => value,
             }
         };
-        let delay = |regression: &Regression| regression.at(&self.airspeeds, airspeed_kt).max(0.0);
         let (input_delays_s, output_delays_s) = match &self.delays {
-            Some((inputs, outputs)) => (inputs.iter().map(delay).collect(), outputs.iter().map(delay).collect()),
+            Some(DelaySchedule { inputs, outputs, upper_s }) => {
+                let upper_s = upper_s.at(&self.airspeeds, airspeed_kt);
+                let cut = |regression: &Regression| regression.at(&self.airspeeds, airspeed_kt).min(upper_s).max(0.0);
+                (inputs.iter().map(cut).collect(), outputs.iter().map(cut).collect())
+            }
             None => (vec![0.0; self.inputs.len()], vec![0.0; self.outputs.len()]),
         };
         ChannelCorrection {
@@ -288,7 +313,7 @@ mod tests {
         let points: Vec<_> = corrections
             .iter()
             .zip(airspeeds)
-            .map(|(correction, airspeed_kt)| ScheduledPoint { airspeed_kt, correction })
+            .map(|(correction, airspeed_kt)| ScheduledPoint { airspeed_kt, correction, delay_upper_s: 1.0 })
             .collect();
         let schedule = Schedule::of(&points, ScheduleSettings::default()).unwrap();
         let products: Vec<f64> = corrections.iter().map(|c| c.net_gain(Pair::new(0, 0)).value().ln()).collect();
@@ -312,7 +337,7 @@ mod tests {
             let points: Vec<_> = corrections
                 .iter()
                 .zip(airspeeds_kt)
-                .map(|(correction, airspeed_kt)| ScheduledPoint { airspeed_kt, correction })
+                .map(|(correction, airspeed_kt)| ScheduledPoint { airspeed_kt, correction, delay_upper_s: 1.0 })
                 .collect();
             Schedule::of(&points, ScheduleSettings { airspeed_tolerance_kt, ..ScheduleSettings::default() }).unwrap()
         };
@@ -333,9 +358,29 @@ mod tests {
     #[test]
     fn delays_are_scheduled_only_where_asked_for() {
         let own = correction(1.0);
-        let points = [ScheduledPoint { airspeed_kt: 60.0, correction: &own }];
+        let points = [ScheduledPoint { airspeed_kt: 60.0, correction: &own, delay_upper_s: 1.0 }];
         assert_eq!(Schedule::of(&points, ScheduleSettings::default()).unwrap().at(60.0).input_delays_s, [0.0]);
         let settings = ScheduleSettings { delays: true, ..ScheduleSettings::default() };
         assert_eq!(Schedule::of(&points, settings).unwrap().at(60.0).input_delays_s, [0.01]);
+    }
+    #[test]
+    fn a_scheduled_delay_stays_within_the_bounds_of_the_conditions() {
+        // Delays of 0, 0, 30 and 30 ms: a cubic through them swings to both sides. Bounds of 10, 20, 30 and 30 ms.
+        let delays_s = [0.0, 0.0, 0.03, 0.03];
+        let corrections = delays_s.map(|delay| ChannelCorrection { input_delays_s: vec![delay], ..correction(1.0) });
+        let points: Vec<_> = [60.0, 80.0, 100.0, 120.0]
+            .into_iter()
+            .zip(&corrections)
+            .zip([0.01, 0.02, 0.03, 0.03])
+            .map(|((airspeed_kt, correction), delay_upper_s)| ScheduledPoint { airspeed_kt, correction, delay_upper_s })
+            .collect();
+        let kind = ScheduleKind::Polynomial { degree: 3 };
+        let settings = ScheduleSettings { kind, delays: true, ..ScheduleSettings::default() };
+        let schedule = Schedule::of(&points, settings).unwrap();
+        let delay_at = |airspeed_kt: f64| schedule.at(airspeed_kt).input_delays_s[0];
+        assert_eq!((delay_at(70.0), delay_at(110.0)), (0.0, 0.03), "cut to 0 and to the bound");
+        assert!((delay_at(90.0) - 0.015).abs() < 1e-15, "half way, by symmetry");
+        let uncut = schedule.delays.as_ref().unwrap().inputs[0].at(&schedule.airspeeds, 70.0);
+        assert!(uncut < -0.001, "{uncut}");
     }
 }

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::dataset::{ConditionId, PairTable};
-use crate::schedule::{CostChange, Schedule, ScheduleError};
+use crate::schedule::{CostChange, Evidence, Schedule, ScheduleError, evidence};
 
 use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
 use super::document::Study;
+use super::engine::scheduled_points;
 
 /// The nominal model of a condition under the scheduled correction (M12).
 #[derive(Clone, Debug, PartialEq)]
@@ -40,5 +41,20 @@ impl Analysis {
     /// Result of one condition, where there is one.
     pub fn condition(&self, id: ConditionId) -> Option<&ConditionAnalysis> {
         self.conditions.get(&id)?.as_ref().ok()
+    }
+
+    /// The conditions that the schedule is made of, in the dataset's order: the chosen ones that have a result.
+    pub fn scheduled(&self) -> Vec<ConditionId> {
+        let all = self.study.dataset.conditions().iter().map(|condition| condition.id());
+        all.filter(|id| self.study.choice(*id).scheduled && self.condition(*id).is_some()).collect()
+    }
+
+    /// What speaks for each form of the schedule, its lists in the order of [`Analysis::scheduled`] (M11). Some hundred small
+    /// least squares problems.
+    ///
+    /// # Errors
+    /// [`ScheduleError`] where there is no schedule.
+    pub fn evidence(&self) -> Result<Evidence, ScheduleError> {
+        evidence(&scheduled_points(&self.study, &self.conditions), self.study.settings.schedule)
     }
 }

@@ -10,6 +10,7 @@ use super::document::{ConditionChoice, Study};
 use super::edit::Edit;
 use super::inventory::Inventory;
 use super::settings::Settings;
+use super::variant::Variant;
 
 /// One thing in which a dataset differs from the one that a study was made with, or a decision that has no place in it.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,6 +50,18 @@ pub enum Difference {
     },
 }
 
+impl Difference {
+    /// A decision of a variant that no longer applies.
+    fn of_variant(self, name: &str) -> Self {
+        match self {
+            Difference::NotApplied { decision, why } => {
+                Difference::NotApplied { decision: format!("{decision}, of variant \"{name}\""), why }
+            }
+            other => other,
+        }
+    }
+}
+
 impl fmt::Display for Difference {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -83,6 +96,8 @@ pub struct Decisions {
     pub ignored: Vec<(String, String)>,
     /// Choices in each condition.
     pub choices: BTreeMap<ConditionId, ConditionChoice>,
+    /// The decisions kept under names; these have none of their own.
+    pub variants: Vec<(String, Decisions)>,
 }
 
 impl Decisions {
@@ -95,6 +110,11 @@ impl Decisions {
             constrained: names(&study.settings.constrained),
             ignored: names(&study.settings.fitted.map(|_, fitted| !fitted)),
             choices: study.choices.clone(),
+            variants: study
+                .variants
+                .iter()
+                .filter_map(|variant| Some((variant.name.clone(), Self::of(&study.of_variant(&variant.name)?))))
+                .collect(),
         }
     }
 
@@ -107,6 +127,14 @@ impl Decisions {
         study.settings = Settings { constrained, fitted, ..self.settings.clone() };
         for (&condition, choice) in &self.choices {
             take_choice(&mut study, condition, choice, &mut differences);
+        }
+        for (name, decisions) in &self.variants {
+            let (of_variant, not_applied) = decisions.applied_to(Arc::clone(&study.dataset));
+            differences.extend(not_applied.into_iter().map(|difference| difference.of_variant(name)));
+            let Study { settings, choices, .. } = of_variant;
+            if study.variant(name).is_none() {
+                study.variants.push(Arc::new(Variant { name: name.clone(), settings, choices }));
+            }
         }
         (study, differences)
     }
@@ -142,6 +170,8 @@ fn take_choice(study: &mut Study, condition: ConditionId, choice: &ConditionChoi
         let id = |name: &String| ModelId::new(condition, kind, name);
         let of_bundle = choice.bundle(kind);
         edits.extend(of_bundle.rejected.iter().map(|name| Edit::Reject(id(name))));
+        let reasons = of_bundle.reasons.iter().filter(|(name, _)| of_bundle.rejected.contains(*name));
+        edits.extend(reasons.map(|(name, reason)| Edit::SetReason(id(name), reason.clone())));
         edits.extend(of_bundle.pinned.iter().map(|name| Edit::Pin(id(name))));
     }
     for edit in edits {

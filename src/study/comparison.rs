@@ -161,7 +161,7 @@ impl Comparison {
         let mut cautions: Vec<Caution> = BundleKind::BOTH.into_iter().flat_map(of_kind).collect();
         let representative = |kind: BundleKind| {
             let position = |name: &String| condition.position(kind, name);
-            let BundleChoice { rejected, pinned } = choice.bundle(kind);
+            let BundleChoice { rejected, pinned, .. } = choice.bundle(kind);
             let rejected: BTreeSet<usize> = rejected.iter().filter_map(position).collect();
             let representative =
                 Representative::of(figures.bundle(kind), &rejected, pinned.as_ref().and_then(position));

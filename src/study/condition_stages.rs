@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::correction::{
-    Bounds, ChannelCorrection, GainBounds, Problem, ProblemError, ProofBudget, Quantity, Solution, delay_upper_s,
-    gain_bounds, solve,
+    Bounds, ChannelCorrection, DELAY_AGREEMENT_S, GainBounds, Problem, ProblemError, ProofBudget, Quantity, Solution,
+    delay_upper_s, gain_bounds, solve,
 };
 use crate::dataset::{BundleKind, Condition, Pair, PairTable};
 use crate::fidelity::CostAverage;
@@ -116,7 +116,7 @@ impl ConditionStages {
         let measuring = study.dataset.measuring_pairs();
         let choice = study.choice(condition.id());
         let figures_key = ((settings.band, settings.points), measuring.clone());
-        let key: ComparisonKey = (figures_key, choice.clone(), settings.cost_average);
+        let key: ComparisonKey = (figures_key, choice.without_reasons(), settings.cost_average);
         let comparison = self.comparison.get(key.clone(), |_| {
             let comparison = Comparison::of(condition, responses, &figures, grid, choice, settings.cost_average);
             comparison.map(Arc::new)
@@ -173,12 +173,14 @@ impl ConditionStages {
             fitted: settings.fitted.clone(),
             bounds,
             alpha: settings.alpha_gain,
+            agreement: settings.agreement_db,
         });
         let delay_problem = Arc::new(Problem {
             quantity: Quantity::Delay,
             delta: delta.delay_s.clone(),
             bounds: Bounds { lower: 0.0, upper: upper_s },
             alpha: settings.alpha_delay,
+            agreement: DELAY_AGREEMENT_S,
             ..Problem::clone(&gain_problem)
         });
         let stop = || execution.progress().cancelled();

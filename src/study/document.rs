@@ -6,19 +6,33 @@ use std::sync::Arc;
 use crate::dataset::{BundleKind, ConditionId, Dataset, ModelId};
 
 use super::settings::Settings;
+use super::variant::Variant;
 
 /// The engineer's choices in one bundle.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct BundleChoice {
     /// Names of the rejected models.
     pub rejected: BTreeSet<String>,
+    /// Why, in the engineer's words, for those of them where that was said.
+    pub reasons: BTreeMap<String, String>,
     /// Name of the model that represents the bundle in place of the medoid; never a rejected one.
     pub pinned: Option<String>,
 }
 
 impl BundleChoice {
     const fn none() -> Self {
-        Self { rejected: BTreeSet::new(), pinned: None }
+        Self { rejected: BTreeSet::new(), reasons: BTreeMap::new(), pinned: None }
+    }
+
+    /// Puts a model back; the reason goes with the rejection.
+    pub(super) fn restore(&mut self, name: &str) {
+        self.rejected.remove(name);
+        self.reasons.remove(name);
+    }
+
+    fn restore_all(&mut self) {
+        self.rejected.clear();
+        self.reasons.clear();
     }
 }
 
@@ -43,6 +57,20 @@ impl ConditionChoice {
     /// Every model kept, none pinned, the condition scheduled.
     const fn none() -> Self {
         Self { physics: BundleChoice::none(), identified: BundleChoice::none(), scheduled: true }
+    }
+
+    /// Puts every model of both bundles back.
+    pub(super) fn restore_all(&mut self) {
+        self.physics.restore_all();
+        self.identified.restore_all();
+    }
+
+    /// What of the choices an analysis depends on: not the words that they were explained with.
+    pub(super) fn without_reasons(&self) -> Self {
+        let mut choice = self.clone();
+        choice.physics.reasons.clear();
+        choice.identified.reasons.clear();
+        choice
     }
 
     /// The choices in one bundle.
@@ -71,12 +99,16 @@ pub struct Study {
     pub settings: Settings,
     /// Choices in each condition of the dataset.
     pub choices: BTreeMap<ConditionId, ConditionChoice>,
+    /// Other decisions about the dataset, kept under their names, in the order in which they were kept. No analysis depends on
+    /// them.
+    pub variants: Vec<Arc<Variant>>,
 }
 
 impl PartialEq for Study {
     /// Decisions first: the numbers of two datasets are compared only where these are not one and the same.
     fn eq(&self, other: &Self) -> bool {
-        let decisions = self.settings == other.settings && self.choices == other.choices;
+        let decisions =
+            (&self.settings, &self.choices, &self.variants) == (&other.settings, &other.choices, &other.variants);
         decisions && (Arc::ptr_eq(&self.dataset, &other.dataset) || self.dataset == other.dataset)
     }
 }
@@ -87,7 +119,7 @@ impl Study {
         let settings = Settings::of(&dataset);
         let ids = dataset.conditions().iter().map(|condition| condition.id());
         let choices = ids.map(|id| (id, ConditionChoice::default())).collect();
-        Self { dataset, settings, choices }
+        Self { dataset, settings, choices, variants: Vec::new() }
     }
 
     /// The choices in one condition; those of a condition that the dataset does not have are none.
@@ -99,6 +131,11 @@ impl Study {
     /// Whether a model is rejected.
     pub fn is_rejected(&self, id: &ModelId) -> bool {
         self.choice(id.condition).bundle(id.bundle).rejected.contains(&id.name)
+    }
+
+    /// Why a model is rejected, where the engineer has said so.
+    pub fn reason(&self, id: &ModelId) -> Option<&str> {
+        self.choice(id.condition).bundle(id.bundle).reasons.get(&id.name).map(String::as_str)
     }
 
     /// Names of the rejected models of one condition in file order, the physics bundle first.

@@ -11,6 +11,15 @@ use super::setting::Setting;
 pub enum Edit {
     /// Take a model out of its bundle.
     Reject(ModelId),
+    /// Take a model out of its bundle, and say why.
+    RejectBecause {
+        /// The model.
+        model: ModelId,
+        /// The reason in the engineer's words.
+        reason: String,
+    },
+    /// Say why a rejected model is rejected; an empty reason takes back what was said.
+    SetReason(ModelId, String),
     /// Put a rejected model back.
     Restore(ModelId),
     /// Reject all of these models of one condition's physics bundle.
@@ -49,7 +58,32 @@ pub enum Edit {
     ConstrainOnAxis,
     /// Change a setting of the whole study.
     Set(Setting),
+    /// Keep the present decisions under a name.
+    KeepVariant {
+        /// The name.
+        name: String,
+    },
+    /// Put the decisions that were kept under a name in place of the present ones.
+    TakeVariant {
+        /// The name.
+        name: String,
+    },
+    /// Forget the decisions kept under a name.
+    RemoveVariant {
+        /// The name.
+        name: String,
+    },
+    /// Give kept decisions another name.
+    RenameVariant {
+        /// The name now.
+        from: String,
+        /// The new name.
+        to: String,
+    },
 }
+
+/// Characters that the reason of a rejection may have.
+pub const LONGEST_REASON: usize = 1000;
 
 /// Why a decision was not carried out; the study is unchanged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -69,6 +103,39 @@ pub enum EditRefusal {
         condition: ConditionId,
         /// The model's name.
         model: String,
+    },
+    /// Only a rejected model has a reason to be.
+    #[error("condition {condition}: \"{model}\" is not rejected; a reason goes with a rejection")]
+    ReasonOfKept {
+        /// The condition's id.
+        condition: ConditionId,
+        /// The model's name.
+        model: String,
+    },
+    /// A text is longer than it may be.
+    #[error("{what}: expected at most {most} characters, found {found}")]
+    TooLong {
+        /// What the text is.
+        what: &'static str,
+        /// Characters it may have.
+        most: usize,
+        /// Characters it has.
+        found: usize,
+    },
+    /// A variant needs a name.
+    #[error("a variant needs a name")]
+    VariantWithoutName,
+    /// Another variant has this name.
+    #[error("there is a variant \"{name}\" already")]
+    VariantExists {
+        /// The name.
+        name: String,
+    },
+    /// No variant has this name.
+    #[error("there is no variant \"{name}\"")]
+    NoVariant {
+        /// The name.
+        name: String,
     },
     /// A setting lies outside its range.
     #[error("{setting}: expected {expected}, found {}", number(*found))]
@@ -106,6 +173,8 @@ impl Edit {
         let name_of = |id: &ModelId| format!("{} (condition {})", id.name, id.condition);
         match self {
             Edit::Reject(id) => format!("reject {}", name_of(id)),
+            Edit::RejectBecause { model, .. } => format!("reject {}", name_of(model)),
+            Edit::SetReason(id, _) => format!("reason of {}", name_of(id)),
             Edit::Restore(id) => format!("restore {}", name_of(id)),
             Edit::RejectAll { condition, models } => {
                 format!("reject {} suggested (condition {condition})", models.len())
@@ -119,6 +188,10 @@ impl Edit {
             Edit::SetScheduled { condition, .. } => format!("leave condition {condition} out"),
             Edit::ConstrainOnAxis => "hold the on-axis responses".to_owned(),
             Edit::Set(setting) => setting.label(&study.dataset),
+            Edit::KeepVariant { name } => format!("keep variant {name}"),
+            Edit::TakeVariant { name } => format!("take variant {name}"),
+            Edit::RemoveVariant { name } => format!("remove variant {name}"),
+            Edit::RenameVariant { from, to } => format!("rename variant {from} to {to}"),
         }
     }
 
@@ -143,13 +216,23 @@ impl Study {
             Edit::Restore(id) => return self.restore(id),
             Edit::RestoreAll { condition } => {
                 let (_, choice) = self.condition(*condition)?;
-                choice.physics.rejected.clear();
-                choice.identified.rejected.clear();
+                choice.restore_all();
             }
+            Edit::RejectBecause { model, reason } => {
+                let mut trial = self.clone();
+                trial.reject(model)?;
+                trial.set_reason(model, reason)?;
+                *self = trial;
+            }
+            Edit::SetReason(id, reason) => return self.set_reason(id, reason),
             Edit::Unpin { condition, bundle } => self.condition(*condition)?.1.bundle_mut(*bundle).pinned = None,
             Edit::SetScheduled { condition, scheduled } => self.condition(*condition)?.1.scheduled = *scheduled,
             Edit::ConstrainOnAxis => self.settings.constrained = self.dataset.on_axis().clone(),
             Edit::Set(setting) => return self.settings.apply(setting),
+            Edit::KeepVariant { name } => return self.keep_variant(name),
+            Edit::TakeVariant { name } => return self.take_variant(name),
+            Edit::RemoveVariant { name } => return self.remove_variant(name),
+            Edit::RenameVariant { from, to } => return self.rename_variant(from, to),
         }
         Ok(())
     }
@@ -185,7 +268,7 @@ impl Study {
     }
 
     fn restore(&mut self, id: &ModelId) -> Result<(), EditRefusal> {
-        self.model(id)?.1.bundle_mut(id.bundle).rejected.remove(&id.name);
+        self.model(id)?.1.bundle_mut(id.bundle).restore(&id.name);
         Ok(())
     }
 
@@ -198,6 +281,21 @@ impl Study {
         let mut trial = self.clone();
         models.iter().try_for_each(|model| decide(&mut trial, model))?;
         *self = trial;
+        Ok(())
+    }
+
+    fn set_reason(&mut self, id: &ModelId, reason: &str) -> Result<(), EditRefusal> {
+        let (reason, (_, choice)) = (reason.trim(), self.model(id)?);
+        let choice = choice.bundle_mut(id.bundle);
+        if !choice.rejected.contains(&id.name) {
+            return Err(EditRefusal::ReasonOfKept { condition: id.condition, model: id.name.clone() });
+        }
+        check_length("reason", reason, LONGEST_REASON)?;
+        if reason.is_empty() {
+            choice.reasons.remove(&id.name);
+        } else {
+            choice.reasons.insert(id.name.clone(), reason.to_owned());
+        }
         Ok(())
     }
 
@@ -219,4 +317,9 @@ impl Study {
         choice.pinned = Some(id.name.clone());
         Ok(())
     }
+}
+
+pub(super) fn check_length(what: &'static str, text: &str, most: usize) -> Result<(), EditRefusal> {
+    let found = text.chars().count();
+    if found > most { Err(EditRefusal::TooLong { what, most, found }) } else { Ok(()) }
 }

@@ -47,7 +47,7 @@ impl Default for Engine {
 }
 
 /// What came of each condition.
-type Outcomes = BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>;
+pub(super) type Outcomes = BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>;
 
 impl Engine {
     /// An engine whose work is carried out by `executor`.
@@ -167,13 +167,14 @@ fn analyze_conditions(
 }
 
 /// The scheduled conditions that have a result, in the dataset's order.
-fn scheduled_points<'a>(study: &Study, outcomes: &'a Outcomes) -> Vec<ScheduledPoint<'a>> {
+pub(super) fn scheduled_points<'a>(study: &Study, outcomes: &'a Outcomes) -> Vec<ScheduledPoint<'a>> {
     let chosen = study.dataset.conditions().iter().filter(|condition| study.choice(condition.id()).scheduled);
     chosen
         .filter_map(|condition| {
             let analysis = outcomes.get(&condition.id())?.as_ref().ok()?;
             let airspeed_kt = condition.flight_state().airspeed_kt;
-            Some(ScheduledPoint { airspeed_kt, correction: &analysis.correction })
+            let delay_upper_s = analysis.delay_upper_s();
+            Some(ScheduledPoint { airspeed_kt, correction: &analysis.correction, delay_upper_s })
         })
         .collect()
 }

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use crate::correction::{Problem, ProblemError, ProofBudget, Solution, solve};
-use crate::dataset::{Band, ConditionId, Dataset};
+use crate::dataset::{Band, Condition, ConditionId, Dataset};
 
 use super::condition_analysis::ConditionAnalysis;
+use super::condition_modes::ConditionModes;
 use super::curves::ConditionCurves;
 use super::engine::Engine;
 use super::progress::{Cancelled, Progress};
@@ -106,5 +107,27 @@ impl Job for CurvesJob {
 
     fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
         engine.curves(&self.dataset, self.condition, self.grid, progress)
+    }
+}
+
+/// The modes of every model of one condition.
+#[derive(Clone, Debug)]
+pub struct ModesJob {
+    /// The condition.
+    pub condition: Arc<Condition>,
+}
+
+impl PartialEq for ModesJob {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.condition, &other.condition)
+    }
+}
+
+impl Job for ModesJob {
+    type Tools = ();
+    type Output = Arc<ConditionModes>;
+
+    fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        ConditionModes::of(&self.condition, progress).map(Arc::new)
     }
 }

@@ -1,13 +1,17 @@
 //! What the engineer does: settings, rejections, pins; and the analysis of it all, in cached stages.
 
 mod analysis;
+mod assessment_table;
 mod carry_over;
 mod caution;
 mod comparison;
 mod condition_analysis;
+mod condition_modes;
 mod condition_responses;
 mod condition_stages;
 mod curves;
+mod decision_difference;
+mod derivation;
 mod document;
 mod edit;
 mod engine;
@@ -22,26 +26,38 @@ mod setting;
 mod settings;
 mod table;
 mod toggles;
+mod variant;
+mod variant_job;
 
 pub use analysis::{Analysis, Assessed};
+pub use assessment_table::{
+    AssessedCondition, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentJob, AssessmentSummary,
+    AssessmentTable, LeftOut,
+};
 pub use carry_over::{Decisions, Difference};
 pub use caution::{BundleModel, Caution, NotFinite, Undefined};
 pub use comparison::{BundleFigures, Comparison, cautions_of_models};
 pub use condition_analysis::{ConditionAnalysis, ConditionFailure};
+pub use condition_modes::{ConditionModes, ModelModes};
 pub use condition_responses::ConditionResponses;
 pub use curves::{ConditionCurves, display_band};
+pub use decision_difference::{DecisionDifference, decision_differences};
+pub use derivation::{AskedFigure, Derivation, derivation};
 pub use document::{BundleChoice, ConditionChoice, Study};
-pub use edit::{Edit, EditRefusal};
+pub use edit::{Edit, EditRefusal, LONGEST_REASON};
 pub use engine::{Engine, LIVE_PROOF};
 pub use executor::{Execution, Executor, Sequential, Task};
 pub use history::History;
 pub use inventory::{ConditionInventory, Inventory};
-pub use job::{CurvesJob, Job, ProofJob, TogglesJob};
+pub use job::{CurvesJob, Job, ModesJob, ProofJob, TogglesJob};
 pub use progress::{Cancelled, Progress, Unobserved};
 pub use remark::{Remark, RemarkKind, details, remarks};
 pub use setting::Setting;
 pub use settings::{
-    GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings,
+    DEFAULT_AGREEMENT_DB, GREATEST_AGREEMENT_DB, GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE, LARGEST_ALPHA,
+    LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings,
 };
 pub use table::Table;
 pub use toggles::Toggles;
+pub use variant::{LONGEST_VARIANT_NAME, Variant};
+pub use variant_job::VariantJob;

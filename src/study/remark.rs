@@ -3,7 +3,7 @@
 use crate::correction::{Sensitivity, sensitivities};
 use crate::dataset::Pair;
 use crate::schedule::Schedule;
-use crate::units::s_to_ms;
+use crate::units::{number, s_to_ms, telling, told_apart};
 
 use super::condition_analysis::ConditionAnalysis;
 use super::document::Study;
@@ -41,6 +41,12 @@ impl Remark {
 pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Schedule>) -> Vec<Remark> {
     let mut remarks = gain_remarks(study, result);
     remarks.extend(delay_remarks(study, result));
+    remarks.extend(agreement_remarks(study, result));
+    remarks.extend(worse_remark(study, result));
+    if !study.choice(result.condition.id()).scheduled {
+        let text = "This condition is left out of the schedule: its gains do not count in it.".to_owned();
+        remarks.push(Remark::new(RemarkKind::Caution, text));
+    }
     let pair_name = |pair| study.dataset.pair_name(pair);
     remarks.extend(result.cautions.iter().map(|caution| Remark {
         kind: RemarkKind::Caution,
@@ -61,6 +67,9 @@ fn gain_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         let text = match held {
             0 => "No gain is held.".to_owned(),
             1 => "The held gain is matched exactly.".to_owned(),
+            count if !result.gains.agreeing.is_empty() => {
+                format!("All {count} held gains are matched within {} dB.", number(study.settings.agreement_db))
+            }
             count => format!("All {count} held gains are matched exactly."),
         };
         return vec![Remark::new(RemarkKind::Good, text)];
@@ -75,6 +84,29 @@ fn gain_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     texts.map(|text| Remark::new(RemarkKind::Trouble, text)).collect()
 }
 
+/// The loops of held responses that count as agreeing.
+fn agreement_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
+    let (inputs, outputs) = study.dataset.names_of_channels();
+    let loops = result.gains.agreeing.iter().chain(&result.delays.agreeing);
+    loops.map(|of| Remark::new(RemarkKind::Good, of.agreement_words(&inputs, &outputs))).collect()
+}
+
+/// The held responses that the correction takes away from flight.
+fn worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
+    /// A rise of J that nobody sees.
+    const NOTABLE: f64 = 0.5;
+    let worse = result.held().marked().filter_map(|pair| {
+        let change = result.cost[pair]?;
+        let (before, after) = told_apart(change.uncorrected.total(), change.corrected.total(), 0);
+        (change.total() > NOTABLE).then(|| format!("{} (J {before} → {after})", study.dataset.pair_name(pair)))
+    });
+    let worse: Vec<String> = worse.collect();
+    (!worse.is_empty()).then(|| {
+        let text = format!("Held, yet farther from flight than without a correction: {}.", worse.join(", "));
+        Remark::new(RemarkKind::Caution, text)
+    })
+}
+
 fn delay_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let (held, unmatched) = (result.held().marked().count(), &result.delays.unmatched);
     if unmatched.is_empty() {
@@ -84,7 +116,9 @@ fn delay_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let lead: Vec<String> = unmatched
         .iter()
         .filter(|unmatched| unmatched.delta < 0.0)
-        .map(|unmatched| format!("{} {:.0} ms", study.dataset.pair_name(unmatched.pair), -s_to_ms(unmatched.delta)))
+        .map(|unmatched| {
+            format!("{} {} ms", study.dataset.pair_name(unmatched.pair), telling(-s_to_ms(unmatched.delta), 0))
+        })
         .collect();
     let mut remarks = Vec::new();
     if !lead.is_empty() {

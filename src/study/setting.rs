@@ -8,7 +8,8 @@ use crate::units::number;
 
 use super::edit::EditRefusal;
 use super::settings::{
-    GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings,
+    GREATEST_AGREEMENT_DB, GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS,
+    MOST_POINTS, Settings,
 };
 
 /// Widest gap \[kt\] within which airspeeds may be taken as one.
@@ -39,6 +40,8 @@ pub enum Setting {
     GainBounds(Option<GainBounds>),
     /// Upper bound of the delays by hand \[s\]; `None` goes back to the quantile.
     DelayUpper(Option<f64>),
+    /// Mismatch of a loop of held gains that counts as agreement \[dB\].
+    Agreement(f64),
     /// How gains are scheduled.
     Schedule(ScheduleSettings),
 }
@@ -69,6 +72,7 @@ impl Setting {
             Setting::Quantile(_) => "quantile of the bounds",
             Setting::GainBounds(_) => "gain bounds",
             Setting::DelayUpper(_) => "upper delay bound",
+            Setting::Agreement(_) => "agreement tolerance",
             Setting::Schedule(_) => "schedule",
         }
     }
@@ -107,6 +111,7 @@ impl Setting {
                 self.check_range("an upper bound", *upper, *lower, GREATEST_GAIN)
             }
             Setting::DelayUpper(Some(upper)) => self.check_range("a number of seconds", *upper, 0.0, GREATEST_DELAY_S),
+            Setting::Agreement(tolerance) => self.check_range("a number of dB", *tolerance, 0.0, GREATEST_AGREEMENT_DB),
             // A band is checked where it is made.
             _ => Ok(()),
         }
@@ -129,6 +134,7 @@ impl Settings {
             Setting::Quantile(quantile) => self.quantile = *quantile,
             Setting::GainBounds(bounds) => self.gain_bounds = *bounds,
             Setting::DelayUpper(upper) => self.delay_upper_s = *upper,
+            Setting::Agreement(tolerance) => self.agreement_db = *tolerance,
             Setting::Schedule(schedule) => self.schedule = *schedule,
         }
         Ok(())

@@ -20,6 +20,11 @@ pub const LEAST_GAIN: f64 = 1e-6;
 /// Greatest upper bound of a channel gain (120 dB).
 pub const GREATEST_GAIN: f64 = 1e6;
 
+/// Greatest mismatch of a loop of held gains that may count as agreement \[dB\].
+pub const GREATEST_AGREEMENT_DB: f64 = 3.0;
+/// Mismatch of a loop of held gains that counts as agreement \[dB\] before any decision.
+pub const DEFAULT_AGREEMENT_DB: f64 = 0.05;
+
 /// Every setting that changes a result; the same for all conditions of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -45,6 +50,8 @@ pub struct Settings {
     pub gain_bounds: Option<GainBounds>,
     /// Upper bound of every channel delay \[s\] set by hand, in place of the quantile.
     pub delay_upper_s: Option<f64>,
+    /// Mismatch \[dB\] up to which a loop of held gains counts as agreeing: each is then held at the nearest that does.
+    pub agreement_db: f64,
     /// How channel gains are scheduled with airspeed (M11).
     pub schedule: ScheduleSettings,
 }
@@ -65,6 +72,7 @@ impl Settings {
             quantile: 0.05,
             gain_bounds: None,
             delay_upper_s: None,
+            agreement_db: DEFAULT_AGREEMENT_DB,
             schedule: ScheduleSettings::default(),
         }
     }

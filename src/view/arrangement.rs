@@ -23,7 +23,8 @@ pub enum View {
 
 impl View {
     /// Every view, in the order of the menu.
-    pub const ALL: [Self; 6] = [Self::Bode, Self::Error, Self::Overview, Self::Channels, Self::Assessment, Self::NetGain];
+    pub const ALL: [Self; 6] =
+        [Self::Bode, Self::Error, Self::Overview, Self::Channels, Self::Assessment, Self::NetGain];
 
     /// What its tab says.
     pub fn name(self) -> &'static str {
@@ -41,7 +42,9 @@ impl View {
     pub fn purpose(self) -> &'static str {
         match self {
             Self::Bode => "Magnitude and phase of the response in focus",
-            Self::Error => "What the fit sees: the ratio and the phase difference of the response in focus, and G, D and bounds",
+            Self::Error => {
+                "What the fit sees: the ratio and the phase difference of the response in focus, and G, D and bounds"
+            }
             Self::Overview => "Every response of the condition, small",
             Self::Channels => "Gain of every channel against airspeed",
             Self::Assessment => "What the correction is worth, condition by condition",
@@ -76,7 +79,7 @@ impl Preset {
 }
 
 /// How the views share the middle of the window: tabs that can be dragged, split and resized.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Arrangement {
     /// The tiles.
     pub(super) tree: Tree<View>,
@@ -139,17 +142,11 @@ impl Arrangement {
         self.tree.root = Some(whole);
     }
 
-    /// As text, to be read by [`Self::from_text`].
-    pub fn to_text(&self) -> Option<String> {
-        serde_json::to_string(&self.tree).ok()
-    }
-
-    /// What [`Self::to_text`] gave; nothing where the text is none, or does not hold every view once.
-    pub fn from_text(text: &str) -> Option<Self> {
-        let tree: Tree<View> = serde_json::from_str(text).ok()?;
-        let reachable = reachable(&tree)?;
+    /// This arrangement, kept from another day, where it holds every view once.
+    pub fn if_whole(self) -> Option<Self> {
+        let reachable = reachable(&self.tree)?;
         let once = |view: &View| reachable.iter().filter(|found| *found == view).count() == 1;
-        (reachable.len() == View::ALL.len() && View::ALL.iter().all(once)).then_some(Self { tree })
+        (reachable.len() == View::ALL.len() && View::ALL.iter().all(once)).then_some(self)
     }
 }
 
@@ -180,23 +177,26 @@ fn reachable(tree: &Tree<View>) -> Option<Vec<View>> {
 mod tests {
     use super::*;
 
+    fn kept(arrangement: &Arrangement) -> Arrangement {
+        let text = serde_json::to_string(arrangement).unwrap();
+        serde_json::from_str(&text).unwrap()
+    }
+
     #[test]
-    fn every_preset_holds_every_view_once_and_survives_its_text() {
+    fn every_preset_holds_every_view_once_and_can_be_kept() {
         for preset in Preset::ALL {
             let arrangement = Arrangement::of(preset);
-            let text = arrangement.to_text().unwrap();
-            assert_eq!(Arrangement::from_text(&text), Some(arrangement), "{preset:?}");
+            assert_eq!(kept(&arrangement).if_whole(), Some(arrangement), "{preset:?}");
         }
     }
 
     #[test]
-    fn a_text_that_lacks_a_view_or_is_no_arrangement_gives_none() {
+    fn an_arrangement_that_lacks_a_view_is_not_whole() {
         let mut tiles = Tiles::default();
         let root = tabs(&mut tiles, [View::Bode, View::Overview]);
-        let text = serde_json::to_string(&Tree::new(Id::unique("views"), root, tiles)).unwrap();
-        assert_eq!(Arrangement::from_text(&text), None);
-        assert_eq!(Arrangement::from_text("{}"), None);
-        assert_eq!(Arrangement::from_text(""), None);
+        let tree = Tree::new(Id::unique("views"), root, tiles);
+        assert_eq!(Arrangement { tree }.if_whole(), None);
+        assert_eq!(Arrangement { tree: Tree::empty(Id::unique("views")) }.if_whole(), None);
     }
 
     #[test]
@@ -213,8 +213,7 @@ mod tests {
         let mut arrangement = Arrangement::of(Preset::Single);
         arrangement.split_off(View::Channels, LinearDir::Horizontal);
         assert!(arrangement.is_shown(View::Bode) && arrangement.is_shown(View::Channels));
-        let text = arrangement.to_text().unwrap();
-        assert_eq!(Arrangement::from_text(&text), Some(arrangement.clone()), "no view is lost");
+        assert_eq!(arrangement.clone().if_whole(), Some(arrangement.clone()), "no view is lost");
         let before = arrangement.clone();
         arrangement.split_off(View::Channels, LinearDir::Vertical);
         assert_eq!(arrangement, before, "it stands alone already");

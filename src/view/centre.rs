@@ -1,7 +1,8 @@
 //! The middle of the window: the views in tabs that can be dragged, split and resized.
 
 use egui::{
-    Align, Button, Color32, FontId, Frame, Id, Layout, Margin, Response, RichText, Role, Stroke, Ui, Visuals, WidgetInfo, WidgetText,
+    Align, Button, Color32, FontId, Frame, Id, Layout, Margin, Response, RichText, Role, Stroke, Ui, Visuals,
+    WidgetInfo, WidgetText,
 };
 use egui_tiles::{
     Behavior, Container, LinearDir, SimplificationOptions, TabState, Tabs, Tile, TileId, Tiles, Tree, UiResponse,
@@ -10,6 +11,7 @@ use egui_tiles::{
 use super::arrangement::View;
 use super::command::Command;
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
+use super::region::{Region, region_ui};
 use super::state::State;
 use super::views;
 
@@ -100,14 +102,15 @@ impl Behavior<View> for Views<'_> {
         let frame = Frame::new().fill(self.palette.background).inner_margin(Margin { top: 4, ..Margin::ZERO });
         let (state, palette) = (&mut *self.state, self.palette);
         let commands = &mut *self.commands;
-        frame.show(ui, |ui| match view {
+        let view_ui = |ui: &mut Ui| match view {
             View::Bode => views::bode_view_ui(ui, state, palette, commands),
             View::Error => views::error_view_ui(ui, state, palette, commands),
             View::Overview => views::overview_view_ui(ui, state, palette, commands),
             View::Channels => views::channels_view_ui(ui, state, palette, commands),
             View::Assessment => views::assessment_view_ui(ui, state, palette, commands),
             View::NetGain => views::net_gain_view_ui(ui, state, palette, commands),
-        });
+        };
+        frame.show(ui, |ui| region_ui(ui, Region::Plots, view_ui));
         UiResponse::None
     }
 

@@ -14,6 +14,7 @@ use super::curve_display::CurveCommand;
 use super::looks::Looks;
 use super::net_gain_scene::PairSet;
 use super::plot::{Across, FrequencyUnit, Measure};
+use super::tables::TableKind;
 
 /// One wish of the engineer: what a click, a key or a menu entry stands for. Views push them; the window carries them out.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,7 +83,9 @@ pub enum Command {
     Export,
     /// Write over the files that the form has named.
     Overwrite,
-    /// Go on with what would lose unsaved decisions.
+    /// Save the study, then go on with what would lose decisions that are not saved.
+    SaveAndGoOn,
+    /// Go on with what loses decisions that are not saved.
     DiscardAndGoOn,
     /// Give up the computation under way.
     StopComputing,
@@ -102,6 +105,25 @@ pub enum Command {
     CloseBar(Bar),
     /// Put a text on the clipboard.
     CopyText(String),
+    /// Put a table on the clipboard as text.
+    CopyTable(TableKind),
+    /// Ask where to save a table.
+    AskSaveTable(TableKind),
+    /// Save a table as CSV.
+    SaveTable(TableKind, PathBuf),
+    /// Give the focus to the field of this accessible name.
+    FocusField(&'static str),
+    /// Give the focus to the next part of the window, or to the one before.
+    LeaveRegion {
+        /// Whether to the next.
+        forward: bool,
+    },
+    /// Show the first step of the guided tour.
+    StartTour,
+    /// Show another step of the guided tour, or end it.
+    ShowTourStep(Option<usize>),
+    /// Say why what was typed is not taken.
+    Refuse(String),
     /// Put the message away.
     DismissNotice,
     /// Close the window.
@@ -119,6 +141,10 @@ pub enum FormKind {
     Save,
     /// What to export, and where.
     Export,
+    /// Where to save a table, by path.
+    SaveTable,
+    /// Every command, found by its name.
+    Palette,
     /// Whether to lose unsaved decisions.
     Unsaved,
     /// What is different in the dataset from the one the study was made with.

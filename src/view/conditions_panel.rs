@@ -1,32 +1,47 @@
 //! The list of flight conditions.
 
-use egui::{RichText, Ui};
+use egui::{Color32, Rect, RichText, Sense, Ui, vec2};
 
 use crate::dataset::{Condition, ConditionId, FlightState};
-use crate::study::{Analysis, ConditionAnalysis};
+use crate::study::Edit;
 
 use super::command::Command;
-use super::heading::heading_ui;
+use super::heading::table_heading_ui;
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
-use super::row::{row_text, row_ui};
+use super::region::{Region, region_ui};
+use super::row::{Room, row_text, row_text_within, row_ui};
 use super::state::State;
+use super::tables::TableKind;
 
 /// Every condition with speed, altitude, weight and its marks; a click shows it.
 pub fn conditions_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    region_ui(ui, Region::Conditions, |ui| list_ui(ui, state, palette, commands));
+}
+
+fn list_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let conditions = state.dataset().conditions();
     let older = if state.others_are_older() { " · marks of older settings" } else { "" };
-    heading_ui(ui, palette, "Conditions", &format!("{}{older}", conditions.len()));
+    let figure = format!("{}{older}", conditions.len());
+    table_heading_ui(ui, palette, ("Conditions", &figure), TableKind::Conditions, commands);
+    column_headings_ui(ui, palette);
     for condition in conditions {
         let id = condition.id();
         let selected = id == state.condition().id();
-        let marks = Marks::of(state.analysis(), id);
-        let name = format!("Condition {id}: {}", in_words(condition.flight_state()));
+        let marks = Marks::of(state, id);
+        let name = format!("Condition {id}: {}{}", in_words(condition.flight_state()), marks.after_name());
         let (row, response) = row_ui(ui, palette, selected, false, &name);
-        paint_flight_state(ui, row, condition, palette, state.study.choice(id).scheduled);
-        marks.paint(ui, row, palette);
+        let marked_from = marks.paint(ui, row, palette);
+        paint_flight_state(
+            ui,
+            row,
+            marked_from,
+            condition,
+            if marks.left_out { palette.dim_text } else { palette.text },
+        );
         if response.clicked() {
             commands.push(Command::SelectCondition(id));
         }
+        response.context_menu(|ui| menu_ui(ui, id, !marks.left_out, commands));
         response.on_hover_ui(|ui| tooltip_ui(ui, condition, &marks));
     }
 }
@@ -43,71 +58,116 @@ fn in_words(state: &FlightState) -> String {
     words
 }
 
-fn paint_flight_state(ui: &Ui, row: egui::Rect, condition: &Condition, palette: &Palette, scheduled: bool) {
+/// Between a text of one column and the next column \[pt\].
+const COLUMN_GAP: f32 = 4.0;
+const SPEED: Room = Room { left: 30.0, right: 80.0 - COLUMN_GAP };
+const ALTITUDE: Room = Room { left: 80.0, right: 128.0 - COLUMN_GAP };
+const WEIGHT: Room = Room { left: 128.0, right: f32::INFINITY };
+
+fn column_headings_ui(ui: &mut Ui, palette: &Palette) {
+    let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), 15.0), Sense::hover());
+    for (room, text) in [(SPEED, "speed"), (ALTITUDE, "altitude"), (WEIGHT, "weight")] {
+        let room = Room { right: room.right.min(row.width()), ..room };
+        row_text_within(ui, row, room, text, SMALL_SIZE, palette.dim_text);
+    }
+}
+
+/// Speed, altitude and weight, as far as the marks leave room, which begin at `marked_from` \[pt from the row's left edge\].
+fn paint_flight_state(ui: &Ui, row: Rect, marked_from: f32, condition: &Condition, color: Color32) {
     let state = condition.flight_state();
-    let color = if scheduled { palette.text } else { palette.dim_text };
     let altitude = state.altitude.clone().or_else(|| state.altitude_ft.map(|feet| format!("{feet} ft")));
     let weight = state.weight.clone().or_else(|| state.mass_kg.map(|mass| format!("{mass} kg")));
     row_text(ui, row, 6.0, &condition.id().to_string(), BODY_SIZE, color);
-    row_text(ui, row, 30.0, &format!("{} kt", state.airspeed_kt), BODY_SIZE, color);
-    row_text(ui, row, 80.0, altitude.as_deref().unwrap_or("–"), BODY_SIZE, color);
-    row_text(ui, row, 118.0, weight.as_deref().unwrap_or("–"), BODY_SIZE, color);
+    let columns = [
+        (SPEED, format!("{} kt", state.airspeed_kt)),
+        (ALTITUDE, altitude.unwrap_or_else(|| "–".to_owned())),
+        (WEIGHT, weight.unwrap_or_else(|| "–".to_owned())),
+    ];
+    for (room, text) in columns {
+        let room = Room { right: room.right.min(marked_from - COLUMN_GAP), ..room };
+        row_text_within(ui, row, room, &text, BODY_SIZE, color);
+    }
 }
 
-/// What the list says about a condition's result.
+fn menu_ui(ui: &mut Ui, condition: ConditionId, scheduled: bool, commands: &mut Vec<Command>) {
+    let text = if scheduled { "Leave out of the schedule" } else { "Take into the schedule" };
+    if ui.button(format!("{text}: condition {condition}")).clicked() {
+        commands.push(Edit::SetScheduled { condition, scheduled: !scheduled }.into());
+        ui.close();
+    }
+}
+
+/// What the list says about a condition: what is still to do there.
 struct Marks {
+    /// Models that are suggested as outliers and not rejected.
     suggested: usize,
+    /// Held gains that are not matched.
     unmatched_gains: usize,
+    /// Held delays that are not matched, though a delay could: not those that need lead, which no decision can give.
     unmatched_delays: usize,
+    left_out: bool,
     failure: Option<String>,
 }
 
 impl Marks {
-    fn of(analysis: Option<&Analysis>, condition: ConditionId) -> Self {
-        let none = Self { suggested: 0, unmatched_gains: 0, unmatched_delays: 0, failure: None };
-        match analysis.and_then(|analysis| analysis.conditions.get(&condition)) {
-            None => none,
-            Some(Err(failure)) => Self { failure: Some(failure.to_string()), ..none },
-            Some(Ok(condition)) => Self::of_result(condition),
-        }
-    }
-
-    fn of_result(condition: &ConditionAnalysis) -> Self {
-        Self {
-            suggested: condition.suggested().len(),
-            unmatched_gains: condition.gains.unmatched.len(),
-            unmatched_delays: condition.delays.unmatched.len(),
-            failure: None,
-        }
-    }
-
-    fn paint(&self, ui: &Ui, row: egui::Rect, palette: &Palette) {
-        let mut right = -6.0;
-        let mut mark = |count: usize, symbol: &str, emphasised: bool| {
-            if count > 0 {
-                let color = if emphasised { palette.warning } else { palette.dim_text };
-                let place = row_text(ui, row, right, &format!("{symbol} {count}"), SMALL_SIZE, color);
-                right = place.left() - row.right() - 8.0;
+    fn of(state: &State, condition: ConditionId) -> Self {
+        let choice = state.study.choice(condition);
+        let mut marks =
+            Self { suggested: 0, unmatched_gains: 0, unmatched_delays: 0, left_out: !choice.scheduled, failure: None };
+        match state.analysis().and_then(|analysis| analysis.conditions.get(&condition)) {
+            None => {}
+            Some(Err(failure)) => marks.failure = Some(failure.to_string()),
+            Some(Ok(result)) => {
+                let is_open = |model: &String| !choice.physics.rejected.contains(model);
+                marks.suggested = result.suggested().iter().filter(|model| is_open(model)).count();
+                marks.unmatched_gains = result.gains.unmatched.len();
+                marks.unmatched_delays =
+                    result.delays.unmatched.iter().filter(|unmatched| unmatched.delta >= 0.0).count();
             }
-        };
-        mark(self.unmatched_delays, "τ", false);
-        mark(self.unmatched_gains, "k", true);
-        mark(self.suggested, "⚠", true);
-        if self.failure.is_some() {
-            row_text(ui, row, -6.0, "⚠ no result", SMALL_SIZE, palette.warning);
         }
+        marks
+    }
+
+    /// What the accessible name of the row says after the flight state.
+    fn after_name(&self) -> &'static str {
+        if self.left_out { ", left out of the schedule" } else { "" }
+    }
+
+    /// Paints the marks from the right; returns where they begin \[pt from the row's left edge\].
+    fn paint(&self, ui: &Ui, row: Rect, palette: &Palette) -> f32 {
+        let mut right = -6.0;
+        let mut mark = |text: String, color: Color32| {
+            let place = row_text(ui, row, right, &text, SMALL_SIZE, color);
+            right = place.left() - row.right() - 8.0;
+        };
+        if self.failure.is_some() {
+            mark("⚠ no result".to_owned(), palette.warning);
+        }
+        for (count, symbol) in [(self.unmatched_delays, "τ"), (self.unmatched_gains, "k"), (self.suggested, "⚠")] {
+            if count > 0 {
+                mark(format!("{symbol} {count}"), palette.warning);
+            }
+        }
+        if self.left_out {
+            mark("left out".to_owned(), palette.dim_text);
+        }
+        row.width() + right + 8.0
     }
 
     fn sentences(&self) -> Vec<String> {
         let mut sentences = Vec::new();
-        let mut say = |count: usize, text: String| {
-            if count > 0 {
+        let mut say = |is_so: bool, text: String| {
+            if is_so {
                 sentences.push(text);
             }
         };
-        say(self.suggested, format!("⚠ {}: physics models suggested as outliers", self.suggested));
-        say(self.unmatched_gains, format!("k {}: held gains that could not be matched", self.unmatched_gains));
-        say(self.unmatched_delays, format!("τ {}: held delays that could not be matched", self.unmatched_delays));
+        say(self.suggested > 0, format!("⚠ {}: physics models suggested as outliers, not rejected", self.suggested));
+        say(self.unmatched_gains > 0, format!("k {}: held gains that could not be matched", self.unmatched_gains));
+        say(
+            self.unmatched_delays > 0,
+            format!("τ {}: held delays that could not be matched, besides those that need lead", self.unmatched_delays),
+        );
+        say(self.left_out, "Left out of the schedule; the secondary button takes it in".to_owned());
         sentences.extend(self.failure.clone());
         sentences
     }

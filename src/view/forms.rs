@@ -1,31 +1,42 @@
 //! The forms in front of the window: paths, export, questions, help.
 
-use egui::{Button, Context, Grid, Id, Key, Modal, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
+use egui::text::{CCursor, CCursorRange};
+use egui::{Button, Context, Id, Key, Modal, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 use crate::dataset::ConditionId;
 use crate::study::Difference;
 
 use super::command::{Command, FormKind};
+use super::command_palette::command_palette_ui;
+use super::keys_page::keys_page_ui;
 use super::palette::Palette;
 use super::state::{ExportForm, State};
 
-/// Shows the form that is asked for, if any. Escape and a click outside close it.
+/// Shows the form that is asked for, if any. Its field has the focus when it opens; Enter submits it; Escape and a click outside
+/// close it.
 pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    let Some(kind) = state.forms.shown else { return };
+    let Some(kind) = state.forms.shown else {
+        state.forms.drawn = None;
+        return;
+    };
+    let asks_to_overwrite =
+        matches!(kind, FormKind::Save | FormKind::Export | FormKind::SaveTable) && !state.forms.existing.is_empty();
+    let opens = state.forms.drawn.replace((kind, asks_to_overwrite)) != Some((kind, asks_to_overwrite));
     let modal = Modal::new(Id::unique("form")).show(ctx, |ui| {
         ui.set_width(460.0);
+        let form = &mut Form { ui, opens, commands };
         match kind {
-            FormKind::Save | FormKind::Export if !state.forms.existing.is_empty() => {
-                overwrite_ui(ui, kind, &state.forms.existing, commands);
-            }
-            FormKind::Open => open_ui(ui, &mut state.forms.open_path, commands),
-            FormKind::FindDataset => find_dataset_ui(ui, state, palette, commands),
-            FormKind::Save => save_ui(ui, &mut state.forms.save_path, commands),
-            FormKind::Export => export_ui(ui, state, palette, commands),
-            FormKind::Unsaved => unsaved_ui(ui, commands),
-            FormKind::Differences => differences_ui(ui, state, palette, commands),
-            FormKind::Shortcuts => shortcuts_ui(ui, palette),
-            FormKind::About => about_ui(ui, palette),
+            _ if asks_to_overwrite => overwrite_ui(form, kind, &state.forms.existing),
+            FormKind::Open => open_ui(form, &mut state.forms.open_path),
+            FormKind::FindDataset => find_dataset_ui(form, state, palette),
+            FormKind::Save => save_ui(form, &mut state.forms.save_path),
+            FormKind::Export => export_ui(form, state, palette),
+            FormKind::Unsaved => unsaved_ui(form),
+            FormKind::Differences => differences_ui(form, state, palette),
+            FormKind::Shortcuts => shortcuts_ui(form, state, palette),
+            FormKind::Palette => command_palette_ui(form.ui, state, opens, palette, form.commands),
+            FormKind::SaveTable => save_table_ui(form, state),
+            FormKind::About => about_ui(form, palette),
         }
     });
     if modal.should_close() {
@@ -33,96 +44,134 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
     }
 }
 
-fn title(ui: &mut Ui, text: &str) {
-    ui.label(RichText::new(text).strong().size(15.0));
-    ui.add_space(4.0);
+/// A form being drawn.
+struct Form<'a, 'c> {
+    ui: &'a mut Ui,
+    /// Whether this is the first frame that shows it.
+    opens: bool,
+    commands: &'c mut Vec<Command>,
 }
 
-/// A text field with an accessible name; whether the Enter key ended it.
-fn path_ui(ui: &mut Ui, name: &str, path: &mut String, hint: &str) -> bool {
-    let field = TextEdit::singleline(path).hint_text(hint).desired_width(f32::INFINITY);
-    let response = ui.add(field);
-    response.widget_info(|| {
-        let mut info = WidgetInfo::labeled(Role::TextInput, true, name);
-        info.current_text_value = Some(path.clone());
-        info
-    });
-    response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter))
-}
+impl Form<'_, '_> {
+    fn title(&mut self, text: &str) {
+        self.ui.label(RichText::new(text).strong().size(15.0));
+        self.ui.add_space(4.0);
+    }
 
-fn open_ui(ui: &mut Ui, path: &mut String, commands: &mut Vec<Command>) {
-    title(ui, "Open a dataset or a study");
-    let entered = path_ui(ui, "Path to open", path, "path of a .json, .json.gz or .gdcm-study.json file");
-    ui.horizontal(|ui| {
-        let open = ui.add_enabled(!path.trim().is_empty(), Button::new("Open file"));
-        if open.clicked() || (entered && !path.trim().is_empty()) {
-            commands.push(Command::Open(path.trim().into()));
+    /// The text field of the form; whether the Enter key was pressed in it.
+    fn path_ui(&mut self, name: &str, path: &mut String, hint: &str) -> bool {
+        let shown = TextEdit::singleline(path).hint_text(hint).desired_width(f32::INFINITY).show(self.ui);
+        let response = shown.response.response;
+        response.widget_info(|| {
+            let mut info = WidgetInfo::labeled(Role::TextInput, true, name);
+            info.current_text_value = Some(path.clone());
+            info
+        });
+        if self.opens {
+            // What stands there is replaced by what is typed.
+            let mut edited = shown.state;
+            let all = CCursorRange::two(CCursor::new(0), CCursor::new(path.chars().count()));
+            edited.cursor.set_char_range(Some(all));
+            edited.store(self.ui.ctx(), response.id);
+            response.request_focus();
         }
-        if ui.button("Cancel").clicked() {
-            commands.push(Command::ShowForm(None));
+        response.lost_focus() && self.ui.input(|input| input.key_pressed(Key::Enter))
+    }
+
+    /// The button that submits the form, which Enter does too; others follow on the same line.
+    fn submit_ui(&mut self, text: &str, is_ready: bool, entered: bool, command: impl FnOnce() -> Command) {
+        let clicked = self.ui.add_enabled(is_ready, Button::new(text)).clicked();
+        if clicked || (entered && is_ready) {
+            self.commands.push(command());
         }
-    });
+    }
+
+    /// A button; the first of a form without a text field has the focus when it opens.
+    fn button_ui(&mut self, text: &str, is_first: bool, command: Command) {
+        let response = self.ui.button(text);
+        if is_first && self.opens {
+            response.request_focus();
+        }
+        if response.clicked() {
+            self.commands.push(command);
+        }
+    }
+
+    /// What follows stands on one line.
+    fn line(&mut self, add: impl FnOnce(&mut Form<'_, '_>)) {
+        let (opens, commands) = (self.opens, &mut *self.commands);
+        self.ui.horizontal(|ui| add(&mut Form { ui, opens, commands }));
+    }
 }
 
-fn find_dataset_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    let Some((study, reason)) = &state.forms.lost_dataset else { return };
-    title(ui, "Where is the dataset of this study?");
-    ui.label(RichText::new(reason).color(palette.dim_text));
-    let path = &mut state.forms.open_path;
-    let entered = path_ui(ui, "Path of the dataset", path, "path of a .json or .json.gz file");
+fn open_ui(form: &mut Form<'_, '_>, path: &mut String) {
+    form.title("Open a dataset or a study");
+    let entered = form.path_ui("Path to open", path, "path of a .json, .json.gz or .gdcm-study.json file");
     let path = path.trim();
-    ui.horizontal(|ui| {
-        let open = ui.add_enabled(!path.is_empty(), Button::new("Open with this dataset"));
-        if open.clicked() || (entered && !path.is_empty()) {
-            commands.push(Command::OpenStudyOf(study.clone(), path.into()));
-        }
-        if ui.button("Cancel").clicked() {
-            commands.push(Command::ShowForm(None));
-        }
+    form.line(|form| {
+        form.submit_ui("Open file", !path.is_empty(), entered, || Command::Open(path.into()));
+        form.button_ui("Cancel", false, Command::ShowForm(None));
     });
 }
 
-fn save_ui(ui: &mut Ui, path: &mut String, commands: &mut Vec<Command>) {
-    title(ui, "Save the study");
-    let entered = path_ui(ui, "Path to save", path, "path of a .gdcm-study.json file");
-    ui.horizontal(|ui| {
-        let save = ui.add_enabled(!path.trim().is_empty(), Button::new("Save file"));
-        if save.clicked() || (entered && !path.trim().is_empty()) {
-            commands.push(Command::SaveStudyAs(path.trim().into()));
-        }
-        if ui.button("Cancel").clicked() {
-            commands.push(Command::ShowForm(None));
-        }
+fn find_dataset_ui(form: &mut Form<'_, '_>, state: &mut State, palette: &Palette) {
+    let Some((study, reason)) = &state.forms.lost_dataset else { return };
+    form.title("Where is the dataset of this study?");
+    form.ui.label(RichText::new(reason).color(palette.dim_text));
+    let path = &mut state.forms.dataset_path;
+    let entered = form.path_ui("Path of the dataset", path, "path of a .json or .json.gz file");
+    let path = path.trim();
+    form.line(|form| {
+        let open = || Command::OpenStudyOf(study.clone(), path.into());
+        form.submit_ui("Open with this dataset", !path.is_empty(), entered, open);
+        form.button_ui("Cancel", false, Command::ShowForm(None));
     });
 }
 
-fn export_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    title(ui, "Export corrections");
+fn save_ui(form: &mut Form<'_, '_>, path: &mut String) {
+    form.title("Save the study");
+    let entered = form.path_ui("Path to save", path, "path of a .gdcm-study.json file");
+    let path = path.trim();
+    form.line(|form| {
+        form.submit_ui("Save file", !path.is_empty(), entered, || Command::SaveStudyAs(path.into()));
+        form.button_ui("Cancel", false, Command::ShowForm(None));
+    });
+}
+
+fn save_table_ui(form: &mut Form<'_, '_>, state: &mut State) {
+    let Some(kind) = state.forms.table else { return };
+    form.title(&format!("Save the table of {}", kind.name()));
+    let path = &mut state.forms.table_path;
+    let entered = form.path_ui("Path of the table", path, "path of a .csv file");
+    let path = path.trim();
+    form.line(|form| {
+        form.submit_ui("Save table", !path.is_empty(), entered, || Command::SaveTable(kind, path.into()));
+        form.button_ui("Cancel", false, Command::ShowForm(None));
+    });
+}
+
+fn export_ui(form: &mut Form<'_, '_>, state: &mut State, palette: &Palette) {
+    form.title("Export corrections");
     let dim = |text: &str| RichText::new(text.to_owned()).color(palette.dim_text);
-    ui.label(dim("Writes corrections.json, corrections.csv and assessment.csv into a folder."));
+    form.ui.label(dim("Writes corrections.json, corrections.csv and assessment.csv into a folder."));
     let names: Vec<(ConditionId, String)> = state
         .dataset()
         .conditions()
         .iter()
         .map(|condition| (condition.id(), condition.flight_state().name.clone()))
         .collect();
-    let form = &mut state.forms.export;
-    conditions_ui(ui, form, &names);
-    ui.add_space(4.0);
-    path_ui(ui, "Export folder", &mut form.folder, "folder; it is made where it does not exist");
-    let ready = !form.chosen.is_empty() && !form.folder.trim().is_empty();
-    ui.horizontal(|ui| {
-        if ui.add_enabled(ready, Button::new("Export")).clicked() {
-            commands.push(Command::Export);
-        }
-        if ui.button("Choose folder…").clicked() {
-            commands.push(Command::AskExportFolder);
-        }
-        if ui.button("Cancel").clicked() {
-            commands.push(Command::ShowForm(None));
-        }
-        if state.results.is_behind() {
-            ui.label(dim("waits for the newest results"));
+    let is_behind = state.results.is_behind();
+    let export = &mut state.forms.export;
+    conditions_ui(form.ui, export, &names);
+    form.ui.add_space(4.0);
+    let entered = form.path_ui("Export folder", &mut export.folder, "folder; it is made where it does not exist");
+    let ready = !export.chosen.is_empty() && !export.folder.trim().is_empty();
+    form.line(|form| {
+        form.submit_ui("Export", ready, entered, || Command::Export);
+        form.button_ui("Choose folder…", false, Command::AskExportFolder);
+        form.button_ui("Cancel", false, Command::ShowForm(None));
+        if is_behind {
+            form.ui.label(dim("waits for the newest results"));
         }
     });
 }
@@ -152,98 +201,65 @@ fn conditions_ui(ui: &mut Ui, form: &mut ExportForm, names: &[(ConditionId, Stri
 }
 
 /// Asks whether to overwrite files; a cancel goes back to the form that would.
-fn overwrite_ui(ui: &mut Ui, form: FormKind, existing: &[String], commands: &mut Vec<Command>) {
-    title(ui, if existing.len() == 1 { "This file exists already" } else { "These files exist already" });
+fn overwrite_ui(form: &mut Form<'_, '_>, kind: FormKind, existing: &[String]) {
+    form.title(if existing.len() == 1 { "This file exists already" } else { "These files exist already" });
     for path in existing {
-        ui.label(path);
+        form.ui.label(path);
     }
-    ui.add_space(4.0);
-    ui.horizontal(|ui| {
-        if ui.button("Overwrite").clicked() {
-            commands.push(Command::Overwrite);
-        }
-        if ui.button("Cancel").clicked() {
-            commands.push(Command::ShowForm(Some(form)));
-        }
+    form.ui.add_space(4.0);
+    form.line(|form| {
+        form.button_ui("Overwrite", false, Command::Overwrite);
+        // Enter loses nothing.
+        form.button_ui("Cancel", true, Command::ShowForm(Some(kind)));
     });
 }
 
-fn unsaved_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
-    title(ui, "There are decisions that are not saved");
-    ui.label("Going on loses the rejected and pinned models and the settings of this study.");
-    ui.add_space(4.0);
-    ui.horizontal(|ui| {
-        if ui.button("Save study first").clicked() {
-            commands.push(Command::ShowForm(None));
-            commands.push(Command::SaveStudy);
-        }
-        if ui.button("Lose them").clicked() {
-            commands.push(Command::DiscardAndGoOn);
-        }
-        if ui.button("Cancel").clicked() {
-            commands.push(Command::ShowForm(None));
-        }
+fn unsaved_ui(form: &mut Form<'_, '_>) {
+    form.title("There are decisions that are not saved");
+    form.ui.label("Going on loses the rejected and pinned models and the settings of this study.");
+    form.ui.add_space(4.0);
+    form.line(|form| {
+        form.button_ui("Save study first", true, Command::SaveAndGoOn);
+        form.button_ui("Lose them", false, Command::DiscardAndGoOn);
+        form.button_ui("Cancel", false, Command::ShowForm(None));
     });
 }
 
-fn differences_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    title(ui, "The dataset is not the one the study was made with");
-    ui.label(RichText::new("Every decision that still applies was kept. What is different:").color(palette.dim_text));
-    ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
+fn differences_ui(form: &mut Form<'_, '_>, state: &State, palette: &Palette) {
+    form.title("The dataset is not the one the study was made with");
+    let words = "Every decision that still applies was kept. What is different:";
+    form.ui.label(RichText::new(words).color(palette.dim_text));
+    ScrollArea::vertical().max_height(300.0).show(form.ui, |ui| {
         for difference in &state.differences {
             let not_applied = matches!(difference, Difference::NotApplied { .. });
             let color = if not_applied { palette.warning } else { palette.text };
             ui.label(RichText::new(format!("• {difference}")).color(color));
         }
     });
-    ui.add_space(4.0);
-    ui.horizontal(|ui| {
-        if ui.button("Go on").clicked() {
-            commands.push(Command::ShowForm(None));
-        }
-        if ui.button("Copy the list").clicked() {
-            let lines: Vec<String> = state.differences.iter().map(|difference| difference.to_string()).collect();
-            ui.ctx().copy_text(lines.join("\n"));
-        }
+    form.ui.add_space(4.0);
+    let lines: Vec<String> = state.differences.iter().map(|difference| difference.to_string()).collect();
+    form.line(|form| {
+        form.button_ui("Go on", true, Command::ShowForm(None));
+        form.button_ui("Copy the list", false, Command::CopyText(lines.join("\n")));
     });
 }
 
-const KEYS: &[(&str, &str)] = &[
-    ("Up, Down", "previous, next condition"),
-    ("Left, Right", "previous, next response"),
-    ("Space", "hold or free the response in focus"),
-    ("Ctrl+R", "reject the suggested outliers of this condition"),
-    ("Ctrl+Z, Ctrl+Shift+Z", "undo, redo"),
-    ("Ctrl+O, Ctrl+S, Ctrl+E", "open, save the study, export"),
-    ("F", "fit the plots"),
-    ("click on a curve", "reject or restore its model"),
-    ("Alt+click on a curve", "show it alone; again: show all"),
-    ("drag, wheel", "move, zoom a plot"),
-    ("drag with the secondary button", "zoom to a box"),
-    ("double click in a plot", "fit it"),
-    ("drag an end of the band", "move the band of comparison"),
-];
-
-fn shortcuts_ui(ui: &mut Ui, palette: &Palette) {
-    title(ui, "Keys and gestures");
-    Grid::new("keys").num_columns(2).spacing([16.0, 4.0]).show(ui, |ui| {
-        for (keys, meaning) in KEYS {
-            ui.label(RichText::new(*keys).strong());
-            ui.label(RichText::new(*meaning).color(palette.dim_text));
-            ui.end_row();
-        }
-    });
+fn shortcuts_ui(form: &mut Form<'_, '_>, state: &State, palette: &Palette) {
+    form.title("Keys and gestures");
+    keys_page_ui(form.ui, state, palette);
+    form.button_ui("Close", true, Command::ShowForm(None));
 }
 
-fn about_ui(ui: &mut Ui, palette: &Palette) {
-    title(ui, concat!("gdcm ", env!("CARGO_PKG_VERSION")));
-    ui.label(
+fn about_ui(form: &mut Form<'_, '_>, palette: &Palette) {
+    form.title(concat!("gdcm ", env!("CARGO_PKG_VERSION")));
+    form.ui.label(
         "The Gain-Delay Correction Method: one gain and one delay for each input and output channel, so that a physics-based \
          helicopter model matches flight and holds the important responses exactly.",
     );
-    ui.label(
+    form.ui.label(
         RichText::new("The embedded example is simulated; nothing in it comes from a real aircraft.")
             .color(palette.dim_text),
     );
-    ui.label(RichText::new("MIT OR Apache-2.0").color(palette.dim_text));
+    form.ui.label(RichText::new("MIT OR Apache-2.0").color(palette.dim_text));
+    form.button_ui("Close", true, Command::ShowForm(None));
 }

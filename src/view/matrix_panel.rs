@@ -13,9 +13,11 @@ use crate::units::s_to_ms;
 
 use super::command::Command;
 use super::explanation::{gain_conflict_marks, toggle_costs};
-use super::heading::heading_ui;
+use super::heading::table_heading_ui;
 use super::palette::{Palette, SMALL_SIZE};
+use super::region::{Region, region_ui};
 use super::state::State;
+use super::tables::TableKind;
 
 const CELL_HEIGHT: f32 = 50.0;
 const LEAST_CELL_WIDTH: f32 = 58.0;
@@ -26,7 +28,12 @@ const LOCK_SIZE: f32 = 15.0;
 /// Every response as a cell. A click on the cell chooses the response for the large plot; a click on its box, a double click or
 /// the space bar holds or frees it; the secondary button offers more.
 pub fn matrix_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    heading_ui(ui, palette, "Constraints", "G · delay · J before→after");
+    let heading = ("Constraints", "G · delay · J before→after");
+    table_heading_ui(ui, palette, heading, TableKind::Matrix, commands);
+    region_ui(ui, Region::Matrix, |ui| cells_ui(ui, state, palette, commands));
+}
+
+fn cells_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let (outputs, inputs) = (state.dataset().outputs(), state.dataset().inputs());
     let room = (ui.available_width() - ROW_LABEL_WIDTH) / inputs.len() as f32;
     let width = room.max(LEAST_CELL_WIDTH);
@@ -111,6 +118,9 @@ impl<'a> Cell<'a> {
         let response = ui.interact(rect, ui.scope_id().with(("cell", self.pair)), Sense::click());
         response
             .widget_info(|| WidgetInfo::selected(Role::Button, true, self.focused, format!("Response {}", self.name)));
+        if response.gained_focus() {
+            response.scroll_to_me(None);
+        }
         self.paint(ui, rect, &response, palette);
         let lock = self.lock_ui(ui, rect, palette);
         let space = response.has_focus() && ui.input(|input| input.key_pressed(Key::Space));
@@ -168,7 +178,7 @@ impl<'a> Cell<'a> {
         if self.in_conflict {
             painter.rect_stroke(rect.shrink(2.0), 2.0, Stroke::new(2.0, palette.warning), StrokeKind::Inside);
         }
-        if self.focused || response.has_focus() {
+        if self.focused {
             painter.rect_stroke(rect, 1.0, Stroke::new(2.0, palette.accent), StrokeKind::Inside);
         }
         self.paint_figures(ui, rect, palette);

@@ -2,13 +2,9 @@
 
 use egui::{Align, Button, Layout, MenuBar, RichText, ThemePreference, Ui};
 
-use crate::study::Edit;
-
-use super::arrangement::{Preset, View};
-use super::command::{Command, FormKind};
-use super::looks_menu::{curve_units_menu_ui, looks_menu_ui};
+use super::command::Command;
+use super::command_table::{Menu, command_table};
 use super::palette::Palette;
-use super::plot::FrequencyUnit;
 use super::state::{RecentFile, State};
 
 /// Menus and the state of the document.
@@ -16,12 +12,12 @@ pub fn menu_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
     MenuBar::new().ui(ui, |ui| {
         ui.label(RichText::new("gdcm").strong());
         ui.add_space(4.0);
-        if ui.menu_button("File", |ui| file_menu_ui(ui, state, commands)).response.clicked() {
+        if ui.menu_button("File", |ui| menu_ui(ui, state, Menu::File, commands)).response.clicked() {
             commands.push(Command::LookForRecent);
         }
-        ui.menu_button("Edit", |ui| edit_menu_ui(ui, state, commands));
-        ui.menu_button("View", |ui| view_menu_ui(ui, state, commands));
-        ui.menu_button("Help", |ui| help_menu_ui(ui, commands));
+        ui.menu_button("Edit", |ui| menu_ui(ui, state, Menu::Edit, commands));
+        ui.menu_button("View", |ui| menu_ui(ui, state, Menu::View, commands));
+        ui.menu_button("Help", |ui| menu_ui(ui, state, Menu::Help, commands));
         ui.separator();
         history_ui(ui, state, commands);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -31,29 +27,35 @@ pub fn menu_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
     });
 }
 
-fn entry(ui: &mut Ui, text: &str, keys: &str, command: Command, commands: &mut Vec<Command>) {
-    if ui.add(Button::new(text).shortcut_text(keys)).clicked() {
-        commands.push(command);
-        ui.close();
+/// The entries of one menu, in groups parted by lines.
+fn menu_ui(ui: &mut Ui, state: &State, menu: Menu, commands: &mut Vec<Command>) {
+    let entries = command_table(state).into_iter().filter_map(|entry| {
+        let (within, group) = entry.menu?;
+        (within == menu).then_some((group, entry))
+    });
+    let mut last = None;
+    for (group, entry) in entries {
+        if last.replace(group).is_some_and(|last| last != group) {
+            ui.separator();
+        }
+        let is_recent_place = entry.command == Command::OpenExample && !state.recent.is_empty();
+        if is_recent_place {
+            ui.menu_button("Open recent", |ui| recent_menu_ui(ui, state, commands));
+        }
+        let keys = entry.shortcuts.first().map(|shortcut| ui.ctx().format_shortcut(shortcut));
+        let button = Button::new(entry.name.as_str());
+        // An empty text would end the button's name in a space.
+        let button = if let Some(keys) = keys { button.shortcut_text(keys) } else { button };
+        let response = ui.add_enabled(entry.enabled, button);
+        if response.on_hover_text(entry.meaning).clicked() {
+            commands.push(entry.command);
+            ui.close();
+        }
     }
-}
-
-fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    entry(ui, "Open…", "Ctrl+O", Command::AskOpen, commands);
-    entry(ui, "Open by path…", "Ctrl+Shift+O", Command::ShowForm(Some(FormKind::Open)), commands);
-    if !state.recent.is_empty() {
-        ui.menu_button("Open recent", |ui| recent_menu_ui(ui, state, commands));
-    }
-    entry(ui, "Open the example", "", Command::OpenExample, commands);
-    ui.separator();
-    entry(ui, "Save study", "Ctrl+S", Command::SaveStudy, commands);
-    entry(ui, "Save study as…", "Ctrl+Shift+S", Command::AskSaveStudy, commands);
-    ui.separator();
-    if state.analysis().is_some() {
-        entry(ui, "Export corrections …", "Ctrl+E", Command::ShowForm(Some(FormKind::Export)), commands);
+    if menu == Menu::View {
         ui.separator();
+        ui.menu_button("Curves", |ui| menu_ui(ui, state, Menu::Curves, commands));
     }
-    entry(ui, "Quit", "Ctrl+Q", Command::Quit, commands);
 }
 
 /// The newest first; what is not there any more cannot be chosen.
@@ -66,49 +68,6 @@ fn recent_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             ui.close();
         }
     }
-}
-
-fn edit_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    if let Some(label) = state.history.undo_label() {
-        entry(ui, &format!("Undo {label}"), "Ctrl+Z", Command::Undo, commands);
-    }
-    if let Some(label) = state.history.redo_label() {
-        entry(ui, &format!("Redo {label}"), "Ctrl+Shift+Z", Command::Redo, commands);
-    }
-    entry(ui, "Hold exactly the on-axis responses", "", Edit::ConstrainOnAxis.into(), commands);
-    let condition = state.condition().id();
-    let scheduled = state.study.choice(condition).scheduled;
-    let text =
-        if scheduled { "Leave this condition out of the schedule" } else { "Take this condition into the schedule" };
-    entry(ui, text, "", Edit::SetScheduled { condition, scheduled: !scheduled }.into(), commands);
-}
-
-fn view_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    entry(ui, "Fit the plots", "F", Command::FitPlots, commands);
-    let (text, unit) = match state.display.unit {
-        FrequencyUnit::RadPerSecond => ("Frequencies in Hz", FrequencyUnit::Hertz),
-        FrequencyUnit::Hertz => ("Frequencies in rad/s", FrequencyUnit::RadPerSecond),
-    };
-    entry(ui, text, "", Command::SetFrequencyUnit(unit), commands);
-    ui.menu_button("Units of curves", |ui| curve_units_menu_ui(ui, &state.display.curves, commands));
-    ui.menu_button("Looks of curves", |ui| looks_menu_ui(ui, state.display.looks, commands));
-    ui.separator();
-    for view in View::ALL {
-        entry(ui, &format!("Show {}", view.name()), "", Command::ShowView(view), commands);
-    }
-    ui.separator();
-    for preset in Preset::ALL {
-        entry(ui, preset.name(), "", Command::Arrange(preset), commands);
-    }
-    ui.separator();
-    entry(ui, "Theme of the desktop", "", Command::SetTheme(ThemePreference::System), commands);
-    entry(ui, "Dark theme", "", Command::SetTheme(ThemePreference::Dark), commands);
-    entry(ui, "Light theme", "", Command::SetTheme(ThemePreference::Light), commands);
-}
-
-fn help_menu_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
-    entry(ui, "Keys and gestures", "F1", Command::ShowForm(Some(FormKind::Shortcuts)), commands);
-    entry(ui, "About gdcm", "", Command::ShowForm(Some(FormKind::About)), commands);
 }
 
 fn history_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {

@@ -7,19 +7,28 @@ use crate::fidelity::SUGGESTION_RATIO;
 use crate::study::Edit;
 
 use super::command::Command;
-use super::heading::heading_ui;
+use super::command_table::open_suggestions;
+use super::heading::table_heading_ui;
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
-use super::row::{ROW_HEIGHT, row_text};
+use super::region::{Region, region_ui};
+use super::row::{ROW_HEIGHT, elided, row_text};
 use super::state::State;
+use super::tables::TableKind;
 
 /// The physics models with discontinuity ratios, and what may be done with all of them at once.
 pub fn physics_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    bundle_ui(ui, state, palette, BundleKind::Physics, commands);
+    region_ui(ui, Region::Models, |ui| {
+        bundle_ui(ui, state, palette, BundleKind::Physics, commands);
+        at_once_ui(ui, state, commands);
+    });
+}
+
+/// What may be done with all of them at once.
+fn at_once_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let condition = state.condition().id();
     let choice = state.study.choice(condition);
     let rejected = &choice.physics.rejected;
-    let suggested = state.shown().map(|shown| shown.suggested()).unwrap_or_default();
-    let open: Vec<String> = suggested.into_iter().filter(|model| !rejected.contains(model)).collect();
+    let open = open_suggestions(state);
     ui.horizontal_wrapped(|ui| {
         let label =
             if open.is_empty() { "Reject suggested".to_owned() } else { format!("Reject {} suggested", open.len()) };
@@ -38,7 +47,7 @@ pub fn physics_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands
 
 /// The identified models with their orders.
 pub fn identified_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    bundle_ui(ui, state, palette, BundleKind::Identified, commands);
+    region_ui(ui, Region::Models, |ui| bundle_ui(ui, state, palette, BundleKind::Identified, commands));
 }
 
 fn bundle_ui(ui: &mut Ui, state: &State, palette: &Palette, kind: BundleKind, commands: &mut Vec<Command>) {
@@ -48,7 +57,8 @@ fn bundle_ui(ui: &mut Ui, state: &State, palette: &Palette, kind: BundleKind, co
         BundleKind::Physics => format!("Physics models of {}", state.condition().id()),
         BundleKind::Identified => "Identified models".to_owned(),
     };
-    heading_ui(ui, palette, &title, &format!("{} of {}", models.len() - rejected.len(), models.len()));
+    let figure = format!("{} of {}", models.len() - rejected.len(), models.len());
+    table_heading_ui(ui, palette, (&title, &figure), TableKind::of_bundle(kind), commands);
     for model in models {
         let row = ModelRow::of(state, kind, model);
         row.ui(ui, palette, commands);
@@ -184,15 +194,12 @@ impl<'a> ModelRow<'a> {
     fn paint_name(&self, ui: &Ui, rect: Rect, figure_width: f32, palette: &Palette) {
         let color = if self.kept { palette.text } else { palette.rejected };
         let left = rect.left() + 42.0;
-        let mut job = egui::text::LayoutJob::simple_singleline(
-            short_name(self.model),
-            egui::FontId::proportional(BODY_SIZE),
-            color,
-        );
+        let room = rect.right() - figure_width - left;
+        let name = elided(ui, &short_name(self.model), room, BODY_SIZE);
+        let mut job = egui::text::LayoutJob::simple_singleline(name, egui::FontId::proportional(BODY_SIZE), color);
         if !self.kept {
             job.sections[0].format.strikethrough = egui::Stroke::new(1.0, color);
         }
-        job.wrap = egui::text::TextWrapping::truncate_at_width((rect.right() - figure_width - left).max(20.0));
         let galley = ui.fonts_mut(|fonts| fonts.layout_job(job));
         ui.painter().galley(pos2(left, rect.center().y - 0.5 * galley.size().y), galley, color);
     }

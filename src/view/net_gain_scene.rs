@@ -174,43 +174,45 @@ fn samples(schedule: &Schedule, figure: &FigureOf) -> Vec<[f64; 2]> {
     (0..=SAMPLES).map(|sample| [airspeed(sample), figure(&schedule.at(airspeed(sample)))]).collect()
 }
 
-/// The altitude class drawn as circles and the weight class drawn filled: "low", or the first of the names.
+/// The altitude class drawn as circles and the weight class drawn filled: "low", or the first of the names; and the others.
 struct Classes {
-    altitude: Option<String>,
-    weight: Option<String>,
+    altitudes: Vec<String>,
+    weights: Vec<String>,
 }
 
 impl Classes {
     fn of(state: &State) -> Self {
-        let names = |class: fn(&FlightState) -> &Option<String>| -> BTreeSet<String> {
+        let names = |class: fn(&FlightState) -> &Option<String>| -> Vec<String> {
             let states = state.dataset().conditions().iter().map(|condition| condition.flight_state());
-            states.filter_map(|state| class(state).clone()).collect()
+            let mut names: Vec<String> =
+                states.filter_map(|state| class(state).clone()).collect::<BTreeSet<_>>().into_iter().collect();
+            names.sort_by_key(|name| !["low", "light"].contains(&name.as_str()));
+            names
         };
-        let first = |names: BTreeSet<String>| {
-            let low = names.iter().find(|name| ["low", "light"].contains(&name.as_str())).cloned();
-            low.or_else(|| names.into_iter().next())
-        };
-        Self { altitude: first(names(|state| &state.altitude)), weight: first(names(|state| &state.weight)) }
+        Self { altitudes: names(|state| &state.altitude), weights: names(|state| &state.weight) }
     }
 
     fn is_first_altitude(&self, state: &FlightState) -> bool {
-        state.altitude == self.altitude
+        state.altitude.as_ref() == self.altitudes.first()
     }
 
     fn is_first_weight(&self, state: &FlightState) -> bool {
-        state.weight == self.weight
+        state.weight.as_ref() == self.weights.first()
     }
 }
 
-/// What shapes and fills of the dots mean; empty where the dataset has no classes.
+/// What shapes and fills of the dots mean: "altitude ● low ◆ high · weight filled low, open high"; empty where the dataset has no
+/// classes.
 pub fn dot_key(state: &State) -> String {
     let classes = Classes::of(state);
     let mut words = Vec::new();
-    if let Some(altitude) = classes.altitude {
-        words.push(format!("● {altitude} altitude, ◆ other"));
+    if let Some((first, others)) = classes.altitudes.split_first() {
+        let others = if others.is_empty() { String::new() } else { format!(" ◆ {}", others.join(", ")) };
+        words.push(format!("altitude ● {first}{others}"));
     }
-    if let Some(weight) = classes.weight {
-        words.push(format!("filled: {weight} weight"));
+    if let Some((first, others)) = classes.weights.split_first() {
+        let others = if others.is_empty() { String::new() } else { format!(", open {}", others.join(", ")) };
+        words.push(format!("weight filled {first}{others}"));
     }
     words.join(" · ")
 }

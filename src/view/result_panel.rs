@@ -9,12 +9,18 @@ use crate::units::s_to_ms;
 
 use super::command::{Command, FormKind};
 use super::explanation::{details_shown, remarks_shown};
-use super::heading::heading_ui;
+use super::heading::{heading_ui, table_menu_ui};
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
+use super::region::{Region, region_ui};
 use super::state::State;
+use super::tables::TableKind;
 
 /// Outcome, channel gains and delays, objective, and what could not be matched and why.
 pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    region_ui(ui, Region::Result, |ui| outcome_ui(ui, state, palette, commands));
+}
+
+fn outcome_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     match state.outcome() {
         None => {
             heading_ui(ui, palette, "Result", "");
@@ -25,7 +31,7 @@ pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
             remark_ui(ui, palette, &Remark::new(RemarkKind::Trouble, failure.to_string()));
         }
         Some(Ok(shown)) => {
-            header_ui(ui, state, shown, palette);
+            header_ui(ui, state, shown, palette, commands);
             ui.scope(|ui| channels_ui(ui, state, shown, palette));
             objective_ui(ui, shown, palette);
             for remark in remarks_shown(state, shown) {
@@ -48,15 +54,16 @@ pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
 pub fn export_button_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let ready = state.analysis().is_some();
     let label = RichText::new("Export corrections…").strong().color(palette.on_accent());
-    let export = ui.add_enabled(ready, Button::new(label).fill(palette.accent));
+    let button = Button::new(label).fill(palette.accent);
+    let export = region_ui(ui, Region::Result, |ui| ui.add_enabled(ready, button));
     if export.on_hover_text("Write corrections.json, corrections.csv and assessment.csv (Ctrl+E)").clicked() {
         commands.push(Command::ShowForm(Some(FormKind::Export)));
     }
 }
 
-fn header_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Palette) {
+fn header_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Palette, commands: &mut Vec<Command>) {
     ui.add_space(4.0);
-    ui.horizontal(|ui| {
+    let heading = ui.horizontal(|ui| {
         ui.label(RichText::new("Result").size(SMALL_SIZE).strong().color(palette.dim_text));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let (word, color, gap, hint) = outcome(shown, state.is_proving(shown), palette);
@@ -64,6 +71,7 @@ fn header_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Pa
             badge_ui(ui, word, color, palette).on_hover_text(hint);
         });
     });
+    table_menu_ui(ui, &heading.response, TableKind::Channels, commands);
 }
 
 fn outcome(shown: &ConditionAnalysis, proving: bool, palette: &Palette) -> (&'static str, Color32, f64, String) {

@@ -1,8 +1,6 @@
 //! The settings that change a result.
 
-use std::ops::RangeInclusive;
-
-use egui::{ComboBox, DragValue, Grid, Response, RichText, Role, Slider, Ui, WidgetInfo};
+use egui::{ComboBox, Grid, RichText, Role, Slider, Ui, WidgetInfo};
 
 use crate::correction::{GainBounds, GainObjective};
 use crate::dataset::{Band, GREATEST_OMEGA, LEAST_OMEGA};
@@ -15,7 +13,9 @@ use crate::units::s_to_ms;
 
 use super::command::Command;
 use super::heading::heading_ui;
+use super::number_field::{Entered, NumberField, gain_text, significant};
 use super::palette::{Palette, SMALL_SIZE};
+use super::region::{Region, region_ui};
 use super::state::State;
 
 /// Largest alpha on the slider; more can be typed.
@@ -29,6 +29,10 @@ const TYPED_WIDTH: f32 = 62.0;
 /// Alpha, band, points, bounds and the choices of the method.
 pub fn settings_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     heading_ui(ui, palette, "Settings", "");
+    region_ui(ui, Region::Settings, |ui| fields_ui(ui, state, palette, commands));
+}
+
+fn fields_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let mut settings = Panel { ui, state, palette, commands };
     settings.alpha_ui("α gains", state.study.settings.alpha_gain, "output gains, eq. (7)", Setting::AlphaGain);
     settings.alpha_ui("α delays", state.study.settings.alpha_delay, "output delays, eq. (11)", Setting::AlphaDelay);
@@ -62,9 +66,17 @@ impl Panel<'_, '_> {
         self.commands.push(Edit::Set(setting).into());
     }
 
-    /// A decision made by dragging ends when the pointer lets go.
-    fn end_with(&mut self, response: &Response) {
-        if response.drag_stopped() || response.lost_focus() {
+    /// Takes up what was entered, tells why it is not taken, or ends the decision.
+    fn take(&mut self, entered: Entered, setting: impl FnOnce(f64) -> Setting) {
+        if let Some(value) = entered.value {
+            self.set(setting(value));
+        }
+        self.end(entered);
+    }
+
+    fn end(&mut self, entered: Entered) {
+        self.commands.extend(entered.refusal.map(Command::Refuse));
+        if entered.is_ended {
             self.commands.push(Command::EndEdit);
         }
     }
@@ -72,6 +84,17 @@ impl Panel<'_, '_> {
     fn alpha_ui(&mut self, name: &str, alpha: f64, of: &str, setting: fn(f64) -> Setting) {
         let mut value = alpha;
         let hint = format!("Weight that keeps the {of} near 1 (near 0 for delays); 0 is the limit α → 0");
+        let field = NumberField {
+            name,
+            hint: &hint,
+            unit: "",
+            shows_unit: false,
+            range: 0.0..=LARGEST_ALPHA,
+            is_whole: false,
+            step: 0.01 * alpha.max(0.01),
+            width: TYPED_WIDTH,
+            text: significant,
+        };
         let (slider, typed) = self
             .ui
             .horizontal(|ui| {
@@ -83,84 +106,112 @@ impl Panel<'_, '_> {
                     .logarithmic(true)
                     .smallest_positive(SMALLEST_ALPHA)
                     .show_value(false);
-                let slider = named(ui.add(slider), Role::Slider, &format!("{name} slider"));
-                let drag = DragValue::new(&mut value)
-                    .range(0.0..=LARGEST_ALPHA)
-                    .speed(0.01 * alpha.max(0.01))
-                    .custom_formatter(|alpha, _| significant(alpha));
-                let typed = named(ui.add_sized([TYPED_WIDTH, 18.0], drag), Role::SpinButton, name);
-                (slider, typed)
+                let slider = ui.add(slider);
+                slider.widget_info(|| WidgetInfo::labeled(Role::Slider, true, format!("{name} slider")));
+                (slider, field.ui(ui, alpha))
             })
             .inner;
-        if slider.changed() || typed.changed() {
+        if slider.changed() {
             self.set(setting(value));
         }
-        self.end_with(&slider);
-        self.end_with(&typed);
+        if slider.drag_stopped() || slider.lost_focus() {
+            self.commands.push(Command::EndEdit);
+        }
         slider.on_hover_text(&hint);
-        typed.on_hover_text(&hint);
+        self.take(typed, setting);
     }
 
     fn band_ui(&mut self) {
         let band = self.state.study.settings.band;
-        let (mut min, mut max) = (band.min(), band.max());
         self.label("Band");
         let palette = self.palette;
+        let frequency = |name, hint, range| NumberField {
+            name,
+            hint,
+            unit: "rad/s",
+            shows_unit: false,
+            range,
+            is_whole: false,
+            step: 0.01,
+            width: 0.0,
+            text: significant,
+        };
+        let low = frequency(
+            "Band from",
+            "Lower end of the band of comparison [rad/s]; drag its line in the plot too",
+            LEAST_OMEGA..=band.max(),
+        );
+        let high = frequency(
+            "Band to",
+            "Upper end of the band of comparison [rad/s]; drag its line in the plot too",
+            band.min()..=GREATEST_OMEGA,
+        );
         let (low, high) = self
             .ui
             .horizontal(|ui| {
-                let low = named(ui.add(frequency_value(&mut min, LEAST_OMEGA..=max)), Role::SpinButton, "Band from");
+                let low = low.ui(ui, band.min());
                 Self::unit(ui, palette, "–");
-                let high = named(ui.add(frequency_value(&mut max, min..=GREATEST_OMEGA)), Role::SpinButton, "Band to");
+                let high = high.ui(ui, band.max());
                 Self::unit(ui, palette, "rad/s");
                 (low, high)
             })
             .inner;
-        if (low.changed() || high.changed())
-            && let Ok(band) = Band::new(min, max)
-        {
-            self.set(Setting::Band(band));
+        if low.value.is_some() || high.value.is_some() {
+            match Band::new(low.value.unwrap_or(band.min()), high.value.unwrap_or(band.max())) {
+                Ok(band) => self.set(Setting::Band(band)),
+                // An end that is dragged stops before the other.
+                Err(_) if low.is_dragged || high.is_dragged => {}
+                Err(error) => self.commands.push(Command::Refuse(error.to_string())),
+            }
         }
-        self.end_with(&low);
-        self.end_with(&high);
-        low.on_hover_text("Lower end of the band of comparison [rad/s]; drag its line in the plot too");
-        high.on_hover_text("Upper end of the band of comparison [rad/s]; drag its line in the plot too");
+        self.end(low);
+        self.end(high);
         self.ui.end_row();
     }
 
     fn points_ui(&mut self) {
-        let mut points = self.state.study.settings.points;
-        let mut percent = 100.0 * self.state.study.settings.quantile;
+        let (points, quantile) = (self.state.study.settings.points, self.state.study.settings.quantile);
         self.label("Points");
         let palette = self.palette;
-        let (count, quantile) = self
+        let count = NumberField {
+            name: "Frequencies in the band",
+            hint: "Number of logarithmically spaced frequencies in the band",
+            unit: "",
+            shows_unit: false,
+            range: LEAST_POINTS as f64..=MOST_POINTS as f64,
+            is_whole: true,
+            step: 1.0,
+            width: 0.0,
+            text: |points| format!("{points:.0}"),
+        };
+        let percent = NumberField {
+            name: "Quantile of the bounds",
+            hint: "Bounds are this quantile, and its complement, of |H_ref|/|H_sim| and of Δφ/ω [%]",
+            unit: "%",
+            shows_unit: true,
+            range: 0.0..=100.0 * GREATEST_QUANTILE,
+            is_whole: false,
+            step: 0.1,
+            width: 0.0,
+            text: |percent| format!("{percent:.1}"),
+        };
+        let (count, percent) = self
             .ui
             .horizontal(|ui| {
-                let drag = DragValue::new(&mut points).range(LEAST_POINTS..=MOST_POINTS);
-                let count = named(ui.add(drag), Role::SpinButton, "Frequencies in the band");
+                let count = count.ui(ui, points as f64);
                 Self::unit(ui, palette, "quantile");
-                let drag = DragValue::new(&mut percent).range(0.0..=100.0 * GREATEST_QUANTILE).speed(0.1).suffix(" %");
-                let quantile = named(ui.add(drag), Role::SpinButton, "Quantile of the bounds");
-                (count, quantile)
+                (count, percent.ui(ui, 100.0 * quantile))
             })
             .inner;
-        if count.changed() {
-            self.set(Setting::Points(points));
-        }
-        if quantile.changed() {
-            self.set(Setting::Quantile(percent / 100.0));
-        }
-        self.end_with(&count);
-        self.end_with(&quantile);
-        count.on_hover_text("Number of logarithmically spaced frequencies in the band");
-        quantile.on_hover_text("Bounds are this quantile, and its complement, of |H_ref|/|H_sim| and of Δφ/ω [%]");
+        self.take(count, |count| Setting::Points(count.round() as usize));
+        self.take(percent, |percent| Setting::Quantile(percent / 100.0));
         self.ui.end_row();
     }
 
     fn gain_bounds_ui(&mut self) {
         let by_hand = self.state.study.settings.gain_bounds;
         let shown = self.state.shown().map(|shown| shown.gain_bounds());
-        let Some(GainBounds { mut lower, mut upper }) = by_hand.or(shown) else {
+        let Some(bounds) = by_hand.or(shown) else {
             self.label("Gain bounds");
             self.label("…");
             self.ui.end_row();
@@ -168,27 +219,44 @@ impl Panel<'_, '_> {
         };
         self.label("Gain bounds");
         let palette = self.palette;
+        let gain = |name, hint, range| NumberField {
+            name,
+            hint,
+            unit: "",
+            shows_unit: false,
+            range,
+            is_whole: false,
+            step: 0.002,
+            width: 0.0,
+            text: gain_text,
+        };
+        let low = gain(
+            "Lower gain bound",
+            "Least gain of every channel [-]; typing sets it by hand, for every condition",
+            LEAST_GAIN..=bounds.upper,
+        );
+        let high = gain(
+            "Upper gain bound",
+            "Greatest gain of every channel [-]; typing sets it by hand, for every condition",
+            bounds.lower..=GREATEST_GAIN,
+        );
         let (low, high, automatic) = self
             .ui
             .horizontal(|ui| {
-                let low = ui.add(gain_value(&mut lower, LEAST_GAIN..=upper));
-                let low = named(low, Role::SpinButton, "Lower gain bound");
+                let low = low.ui(ui, bounds.lower);
                 Self::unit(ui, palette, "–");
-                let high = ui.add(gain_value(&mut upper, lower..=GREATEST_GAIN));
-                let high = named(high, Role::SpinButton, "Upper gain bound");
+                let high = high.ui(ui, bounds.upper);
                 (low, high, automatic_ui(ui, by_hand.is_some(), "Gain bounds"))
             })
             .inner;
-        if low.changed() || high.changed() {
+        if low.value.is_some() || high.value.is_some() {
+            let (lower, upper) = (low.value.unwrap_or(bounds.lower), high.value.unwrap_or(bounds.upper));
             self.set(Setting::GainBounds(Some(GainBounds { lower, upper })));
         } else if let Some(automatic) = automatic {
-            let bounds = (!automatic).then_some(GainBounds { lower, upper });
-            self.set(Setting::GainBounds(bounds));
+            self.set(Setting::GainBounds((!automatic).then_some(bounds)));
         }
-        self.end_with(&low);
-        self.end_with(&high);
-        low.on_hover_text("Least gain of every channel [-]; typing sets it by hand, for every condition");
-        high.on_hover_text("Greatest gain of every channel [-]; typing sets it by hand, for every condition");
+        self.end(low);
+        self.end(high);
         self.ui.end_row();
     }
 
@@ -201,26 +269,25 @@ impl Panel<'_, '_> {
             self.ui.end_row();
             return;
         };
-        let mut upper_ms = s_to_ms(upper_s);
+        let field = NumberField {
+            name: "Upper delay bound",
+            hint: "Greatest delay of every channel [ms]; typing sets it by hand, for every condition",
+            unit: "ms",
+            shows_unit: true,
+            range: 0.0..=s_to_ms(GREATEST_DELAY_S),
+            is_whole: false,
+            step: 0.2,
+            width: 0.0,
+            text: |delay_ms| format!("{delay_ms:.1}"),
+        };
         let (typed, automatic) = self
             .ui
-            .horizontal(|ui| {
-                let drag = DragValue::new(&mut upper_ms)
-                    .range(0.0..=s_to_ms(GREATEST_DELAY_S))
-                    .speed(0.2)
-                    .max_decimals(1)
-                    .suffix(" ms");
-                let typed = named(ui.add(drag), Role::SpinButton, "Upper delay bound");
-                (typed, automatic_ui(ui, by_hand.is_some(), "Delay bound"))
-            })
+            .horizontal(|ui| (field.ui(ui, s_to_ms(upper_s)), automatic_ui(ui, by_hand.is_some(), "Delay bound")))
             .inner;
-        if typed.changed() {
-            self.set(Setting::DelayUpper(Some(upper_ms / 1e3)));
-        } else if let Some(automatic) = automatic {
+        if let Some(automatic) = automatic.filter(|_| typed.value.is_none()) {
             self.set(Setting::DelayUpper((!automatic).then_some(upper_s)));
         }
-        self.end_with(&typed);
-        typed.on_hover_text("Greatest delay of every channel [ms]; typing sets it by hand, for every condition");
+        self.take(typed, |upper_ms| Setting::DelayUpper(Some(upper_ms / 1e3)));
         self.ui.end_row();
     }
 
@@ -258,21 +325,6 @@ impl Panel<'_, '_> {
     }
 }
 
-fn frequency_value(omega: &mut f64, range: RangeInclusive<f64>) -> DragValue<'_> {
-    DragValue::new(omega).range(range).speed(0.01).custom_formatter(|omega, _| significant(omega))
-}
-
-fn gain_value(gain: &mut f64, range: RangeInclusive<f64>) -> DragValue<'_> {
-    DragValue::new(gain).range(range).speed(0.002).min_decimals(2).max_decimals(3)
-}
-
-/// Names a widget for screen readers and tests.
-fn named(response: Response, kind: Role, name: &str) -> Response {
-    let enabled = response.enabled();
-    response.widget_info(|| WidgetInfo::labeled(kind, enabled, name));
-    response
-}
-
 /// The box that hands bounds back to the quantiles; the new state where it was clicked.
 fn automatic_ui(ui: &mut Ui, by_hand: bool, name: &str) -> Option<bool> {
     let mut automatic = !by_hand;
@@ -293,29 +345,4 @@ pub(super) fn choice_ui<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mu
     });
     shown.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, name));
     shown.response.on_hover_text(name);
-}
-
-/// Three significant digits, without an exponent from 0.001 to 9999.
-fn significant(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    let magnitude = value.abs().log10().floor();
-    if (-3.0..4.0).contains(&magnitude) {
-        format!("{value:.*}", (2.0 - magnitude).max(0.0) as usize)
-    } else {
-        format!("{value:.2e}")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::significant;
-
-    #[test]
-    fn alpha_is_shown_with_three_significant_digits() {
-        for (value, text) in [(0.0, "0"), (1.0, "1.00"), (0.00123, "0.00123"), (120.0, "120"), (1e6, "1.00e6")] {
-            assert_eq!(significant(value), text);
-        }
-    }
 }

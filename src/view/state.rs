@@ -11,8 +11,10 @@ use crate::study::{
 
 use super::bars::Bar;
 use super::command::FormKind;
+use super::command_palette::PaletteForm;
 use super::display::Display;
 use super::results::{FirstResult, Results};
+use super::tables::TableKind;
 
 /// How a message is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,10 +61,20 @@ pub struct ExportForm {
 pub struct Forms {
     /// The form shown.
     pub shown: Option<FormKind>,
+    /// The form drawn last, and whether it asked to overwrite files: another one opens.
+    pub drawn: Option<(FormKind, bool)>,
     /// The path in the open form, as typed.
     pub open_path: String,
     /// The study whose dataset is not where it says, and what opening it said.
     pub lost_dataset: Option<(PathBuf, String)>,
+    /// The path of that dataset, as typed.
+    pub dataset_path: String,
+    /// The table that is to be saved.
+    pub table: Option<TableKind>,
+    /// Where, as typed.
+    pub table_path: String,
+    /// The palette of commands.
+    pub palette: PaletteForm,
     /// The path in the save form, as typed.
     pub save_path: String,
     /// The export form.
@@ -100,6 +112,8 @@ pub struct State {
     pub opening: Option<String>,
     /// What the forms hold.
     pub forms: Forms,
+    /// The step of the guided tour that is shown.
+    pub tour: Option<usize>,
 }
 
 impl State {
@@ -121,7 +135,14 @@ impl State {
             recent: Vec::new(),
             opening: None,
             forms: Forms::default(),
+            tour: None,
         }
+    }
+
+    /// What the window's title says: the study, marked where it is not saved, and the dataset.
+    pub fn window_title(&self) -> String {
+        let mark = if self.unsaved { " •" } else { "" };
+        format!("{}{mark} – {} – gdcm", self.study_name, self.dataset().name())
     }
 
     /// The dataset.

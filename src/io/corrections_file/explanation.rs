@@ -11,6 +11,9 @@ use super::names::ChannelNames;
 pub struct Explanation {
     /// Each smallest set of held responses and bounds that cannot hold together.
     pub conflicts: Vec<ConflictEntry>,
+    /// Each loop of held responses that disagrees by no more than the tolerance, and counts as agreeing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub agreeing: Vec<ConflictEntry>,
     /// Single changes after which everything held can be held; absent where nothing is in the way.
     pub remedy: Option<RemedyEntry>,
     /// What each held response and each active bound costs, the most expensive first.
@@ -68,6 +71,7 @@ impl Explanation {
         let sensitivities = sensitivities(problem, solution);
         Self {
             conflicts: solution.conflicts.iter().map(|conflict| ConflictEntry::of(conflict, names)).collect(),
+            agreeing: solution.agreeing.iter().map(|agreement| ConflictEntry::of_agreement(agreement, names)).collect(),
             remedy: solution.remedy.as_ref().map(|remedy| RemedyEntry {
                 upper: remedy.upper,
                 lower: remedy.lower,
@@ -97,6 +101,10 @@ impl ConflictEntry {
             lower,
             words: conflict.words(&names.inputs, &names.outputs),
         }
+    }
+
+    fn of_agreement(agreement: &Conflict, names: &ChannelNames) -> Self {
+        Self { words: agreement.agreement_words(&names.inputs, &names.outputs), ..Self::of(agreement, names) }
     }
 }
 

@@ -7,14 +7,14 @@ use crate::dataset::{BundleKind, Condition, ConditionId, Model, PairTable, Prove
 use crate::fidelity::Cost;
 use crate::io::settings_entry::SettingsEntry;
 use crate::schedule::{Regression, Schedule, ScheduleKind, ScheduledQuantity};
-use crate::study::{Analysis, Assessed, Caution, ConditionAnalysis};
+use crate::study::{Analysis, Assessed, Caution, ConditionAnalysis, ConditionChoice};
 
 use super::explanation::Explanation;
 use super::names::{ByName, ChannelNames, rows};
 use super::schema::{
     Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
-    DelayOutcome, GainOutcome, NetGain, ScheduleUsed, ScheduledDelays, ScheduledGains, SetAsideEntry, SourceEntry,
-    UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
+    DelayOutcome, GainOutcome, NetGain, ReasonEntry, ScheduleUsed, ScheduledDelays, ScheduledGains, SetAsideEntry,
+    SourceEntry, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
 };
 use super::{NAME, VERSION};
 
@@ -82,6 +82,7 @@ impl Gather<'_> {
             physics_representative: representative(BundleKind::Physics),
             identified_representative: representative(BundleKind::Identified),
             rejected: study.rejected_names(condition.id()).into_iter().map(str::to_owned).collect(),
+            reasons: reasons_of(study.choice(condition.id())),
             suggested_outliers: result.suggested(),
             discontinuity: discontinuity_of(condition, result),
             set_aside: self.set_aside(result),
@@ -185,13 +186,17 @@ impl Gather<'_> {
             ScheduledQuantity::LnGain => "ln k",
             ScheduledQuantity::Gain => "k",
         };
-        let figures = |regressions: &[Regression]| regressions.iter().map(figures_of).collect::<Vec<_>>();
+        let figures = |regressions: &[Regression]| {
+            regressions.iter().map(|regression| regression.figures().to_vec()).collect::<Vec<_>>()
+        };
         let table = airspeeds.clusters_kt().into_iter().map(|airspeed_kt| {
-            let Channels { inputs, outputs } = {
-                let correction = schedule.at(airspeed_kt);
-                names.channels(&correction.input_gains, &correction.output_gains)
-            };
-            ScheduledGains { airspeed_kt, inputs, outputs }
+            let correction = schedule.at(airspeed_kt);
+            let Channels { inputs, outputs } = names.channels(&correction.input_gains, &correction.output_gains);
+            let delays_s = schedule
+                .delays
+                .as_ref()
+                .map(|_| names.channels(&correction.input_delays_s, &correction.output_delays_s));
+            ScheduledGains { airspeed_kt, inputs, outputs, delays_s }
         });
         ScheduleUsed {
             kind: kind.to_owned(),
@@ -203,14 +208,28 @@ impl Gather<'_> {
             airspeed_range_kt: [airspeeds.min_kt, airspeeds.max_kt],
             inputs: names.by_input(figures(&schedule.inputs)),
             outputs: names.by_output(figures(&schedule.outputs)),
-            delays_s: schedule.delays.as_ref().map(|(inputs, outputs)| ScheduledDelays {
-                inputs: names.by_input(figures(inputs)),
-                outputs: names.by_output(figures(outputs)),
+            delays_s: schedule.delays.as_ref().map(|delays| ScheduledDelays {
+                inputs: names.by_input(figures(&delays.inputs)),
+                outputs: names.by_output(figures(&delays.outputs)),
+                upper_s: Some(delays.upper_s.figures().to_vec()),
             }),
             table: table.collect(),
             cautions: schedule.cautions.iter().map(|caution| caution.words(&names.inputs, &names.outputs)).collect(),
         }
     }
+}
+
+/// Why models are rejected, the physics bundle first.
+fn reasons_of(choice: &ConditionChoice) -> Vec<ReasonEntry> {
+    let of_bundle = |kind: BundleKind| {
+        let reasons = choice.bundle(kind).reasons.iter();
+        reasons.map(move |(model, why)| ReasonEntry {
+            bundle: kind.to_string(),
+            model: model.clone(),
+            why: why.clone(),
+        })
+    };
+    BundleKind::BOTH.into_iter().flat_map(of_bundle).collect()
 }
 
 /// Where the models come from, as far as their dataset says.
@@ -228,13 +247,6 @@ fn discontinuity_of(condition: &Condition, result: &ConditionAnalysis) -> ByName
     let ratios = result.figures.discontinuity.as_ref().map(|found| found.ratios.clone()).unwrap_or_default();
     let names = condition.bundle(BundleKind::Physics).iter().map(|model| model.name.clone());
     ByName(names.zip(ratios).collect())
-}
-
-fn figures_of(regression: &Regression) -> Vec<f64> {
-    match regression {
-        Regression::Polynomial { coefficients } => coefficients.clone(),
-        Regression::Table { values, .. } => values.clone(),
-    }
 }
 
 fn cost_tables(result: &ConditionAnalysis) -> CostTables {

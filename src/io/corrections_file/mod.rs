@@ -21,8 +21,8 @@ pub use explanation::{ConflictEntry, Explanation, RemedyEntry, SensitivityEntry}
 pub use names::ByName;
 pub use schema::{
     Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
-    DelayOutcome, GainOutcome, NetGain, ScheduleUsed, ScheduledDelays, ScheduledGains, SetAsideEntry, SourceEntry,
-    Table, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
+    DelayOutcome, GainOutcome, NetGain, ReasonEntry, ScheduleUsed, ScheduledDelays, ScheduledGains, SetAsideEntry,
+    SourceEntry, Table, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
 };
 
 const NAME: &str = "gdcm-corrections";

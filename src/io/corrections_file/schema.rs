@@ -59,6 +59,9 @@ pub struct ConditionCorrections {
     pub identified_representative: String,
     /// Rejected models, physics first.
     pub rejected: Vec<String>,
+    /// Why models are rejected, where the engineer has said so.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub reasons: Vec<ReasonEntry>,
     /// Physics models suggested as outliers, whatever is rejected.
     pub suggested_outliers: Vec<String>,
     /// Discontinuity ratio of each physics model, where it has one.
@@ -98,6 +101,17 @@ pub struct ConditionCorrections {
     pub cost: CostTables,
     /// What has to be known about the result.
     pub cautions: Vec<String>,
+}
+
+/// Why a model is rejected, in the engineer's words.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReasonEntry {
+    /// `physics` or `identified`.
+    pub bundle: String,
+    /// The model's name.
+    pub model: String,
+    /// The reason.
+    pub why: String,
 }
 
 /// A model that takes no part in the comparison of its bundle.
@@ -267,6 +281,10 @@ pub struct ScheduledDelays {
     pub inputs: ByName<Vec<f64>>,
     /// Of each output.
     pub outputs: ByName<Vec<f64>>,
+    /// Upper bound of every delay at each airspeed of `table`, linear between \[s\]: scheduled delays are cut to 0 and to
+    /// this. Results of older programs do not say it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper_s: Option<Vec<f64>>,
 }
 
 /// The scheduled gains at one airspeed.
@@ -278,6 +296,9 @@ pub struct ScheduledGains {
     pub inputs: ByName<f64>,
     /// Of each output.
     pub outputs: ByName<f64>,
+    /// The scheduled delays \[s\], where they are scheduled.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub delays_s: Option<Channels>,
 }
 
 /// What the scheduled correction is worth.

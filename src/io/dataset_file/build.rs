@@ -73,6 +73,7 @@ fn physics_model_of(place: &Place, text: PhysicsText) -> Result<ModelDraft, Flaw
         origin,
         matrices: [text.a, text.b, text.c, text.d].map(|array| array.map(matrix)),
         response: text.frequency_response.map(response_of),
+        states: text.states.unwrap_or_default(),
         source: text.source.map(provenance_of),
     })
 }
@@ -83,6 +84,7 @@ fn identified_model_of(text: IdentifiedText) -> ModelDraft {
         origin: Origin::Identified { method: text.method, order: text.order },
         matrices: [text.a, text.b, text.c, text.d].map(|array| array.map(matrix)),
         response: text.frequency_response.map(response_of),
+        states: text.states.unwrap_or_default(),
         source: text.source.map(provenance_of),
     }
 }

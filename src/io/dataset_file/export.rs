@@ -11,7 +11,7 @@ use super::schema::{
     BandText, ChannelText, ConditionText, DatasetText, FORMAT, IdentifiedText, PhysicsText, ResponseText, SourceText,
 };
 
-/// The text of a dataset, entry by entry. Names of states, which the program does not keep, are not in it.
+/// The text of a dataset, entry by entry.
 pub(super) fn text_of(dataset: &Dataset) -> DatasetText {
     let on_axis = dataset
         .on_axis()
@@ -59,7 +59,7 @@ fn physics_text(model: &Model) -> PhysicsText {
         name: model.name.clone(),
         role: if model.is_nominal() { "nominal" } else { "perturbed" }.to_owned(),
         perturbation: model.perturbation().cloned(),
-        _states: None,
+        states: state_names(model),
         a,
         b,
         c,
@@ -80,7 +80,12 @@ fn identified_text(model: &Model) -> IdentifiedText {
         Dynamics::Measured(response) => Some(response_text(response)),
     };
     let source = model.source.as_ref().map(source_text);
-    IdentifiedText { name: model.name.clone(), method, order, _states: None, a, b, c, d, frequency_response, source }
+    let (name, states) = (model.name.clone(), state_names(model));
+    IdentifiedText { name, method, order, states, a, b, c, d, frequency_response, source }
+}
+
+fn state_names(model: &Model) -> Option<Vec<String>> {
+    (!model.states.is_empty()).then(|| model.states.to_vec())
 }
 
 fn source_text(provenance: &Provenance) -> SourceText {

@@ -1,13 +1,13 @@
 //! A dataset file, key by key.
 
 use std::collections::BTreeMap;
-use std::fmt;
 
-use serde::de::{Deserializer, SeqAccess, Visitor};
+use serde::de::Deserializer;
 use serde::{Deserialize, Serialize};
 
 use crate::dataset::limits::{
     MOST_CHANNELS, MOST_CONDITIONS, MOST_COORDINATES, MOST_FREQUENCIES, MOST_MODELS, MOST_MODELS_IN_ALL, MOST_PAIRS,
+    MOST_STATES,
 };
 use crate::io::json_text::Format;
 use crate::io::list::{Numbers, list, list_while, optional_list};
@@ -90,9 +90,9 @@ pub(super) struct PhysicsText {
     pub(super) role: String,
     #[serde(default, deserialize_with = "coordinates", skip_serializing_if = "Option::is_none")]
     pub(super) perturbation: Option<BTreeMap<String, f64>>,
-    /// Names of the states, for people: known, and not used.
-    #[serde(default, skip_serializing, rename = "states")]
-    pub(super) _states: Option<Texts>,
+    /// Names of the states, for people.
+    #[serde(default, deserialize_with = "optional_list::<MOST_STATES, _, _>", skip_serializing_if = "Option::is_none")]
+    pub(super) states: Option<Vec<String>>,
     #[serde(rename = "A", skip_serializing_if = "Option::is_none")]
     pub(super) a: Option<Nested<2>>,
     #[serde(rename = "B", skip_serializing_if = "Option::is_none")]
@@ -115,9 +115,9 @@ pub(super) struct IdentifiedText {
     pub(super) method: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) order: Option<usize>,
-    /// Names of the states, for people: known, and not used.
-    #[serde(default, skip_serializing, rename = "states")]
-    pub(super) _states: Option<Texts>,
+    /// Names of the states, for people.
+    #[serde(default, deserialize_with = "optional_list::<MOST_STATES, _, _>", skip_serializing_if = "Option::is_none")]
+    pub(super) states: Option<Vec<String>>,
     #[serde(rename = "A", skip_serializing_if = "Option::is_none")]
     pub(super) a: Option<Nested<2>>,
     #[serde(rename = "B", skip_serializing_if = "Option::is_none")]
@@ -156,26 +156,4 @@ pub(super) struct ResponseText {
     pub(super) im: Nested<3>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) coherence: Option<Nested<3>>,
-}
-
-/// A list of texts that is checked to be one, and not kept.
-pub(super) struct Texts;
-
-impl<'de> Deserialize<'de> for Texts {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_seq(Texts)
-    }
-}
-
-impl<'de> Visitor<'de> for Texts {
-    type Value = Texts;
-
-    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str("a list of texts")
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, mut texts: A) -> Result<Texts, A::Error> {
-        while texts.next_element::<String>()?.is_some() {}
-        Ok(Texts)
-    }
 }

@@ -8,14 +8,27 @@ use crate::io::flaw::Flaw;
 use crate::io::settings_entry::SettingsEntry;
 use crate::study::{BundleChoice, ConditionChoice, ConditionInventory, Decisions, Inventory, Settings};
 
-use super::schema::{BundleText, ConditionInventoryText, ConditionText};
+use super::schema::{BundleText, ConditionInventoryText, ConditionText, VariantText};
 
 /// The decisions of a study file. `start` is what the settings are before any decision; each has to be within its range.
 pub(super) fn decisions_of(
-    start: Settings,
+    start: &Settings,
     text: SettingsEntry,
     conditions: Vec<ConditionText>,
+    variants: Vec<VariantText>,
 ) -> Result<Decisions, Flaw> {
+    let mut decisions = present_decisions(start.clone(), text, conditions)?;
+    for VariantText { name, settings, conditions } in variants {
+        let of_variant = present_decisions(start.clone(), settings, conditions).map_err(|mut flaw| {
+            flaw.place.entry = format!("variant \"{name}\", {}", flaw.place.entry);
+            flaw
+        })?;
+        decisions.variants.push((name, of_variant));
+    }
+    Ok(decisions)
+}
+
+fn present_decisions(start: Settings, text: SettingsEntry, conditions: Vec<ConditionText>) -> Result<Decisions, Flaw> {
     let mut settings = start;
     text.take_into(&mut settings)?;
     let mut choices = BTreeMap::new();
@@ -30,11 +43,11 @@ pub(super) fn decisions_of(
             return Err(Flaw::new(Place::condition(index + 1, id), ContentFault::DuplicateCondition { id }));
         }
     }
-    Ok(Decisions { settings, constrained: text.constrained, ignored: text.ignored, choices })
+    Ok(Decisions { settings, constrained: text.constrained, ignored: text.ignored, choices, variants: Vec::new() })
 }
 
 fn bundle_choice(text: BundleText) -> BundleChoice {
-    BundleChoice { rejected: text.rejected.into_iter().collect(), pinned: text.pinned }
+    BundleChoice { rejected: text.rejected.into_iter().collect(), reasons: text.reasons, pinned: text.pinned }
 }
 
 /// What the study's dataset held when the study was saved.

@@ -1,21 +1,21 @@
 //! From a study to what its file says.
 
-use crate::dataset::{BundleKind, ConditionId, Model};
+use std::sync::Arc;
+
+use crate::dataset::{BundleKind, Condition, ConditionId, Model};
 use crate::io::settings_entry::SettingsEntry;
 use crate::study::{BundleChoice, ConditionInventory, Inventory, Study};
 
-use super::schema::{BundleText, ConditionInventoryText, ConditionText, DatasetReference, FORMAT, StudyText};
+use super::schema::{
+    BundleText, ConditionInventoryText, ConditionText, DatasetReference, FORMAT, StudyText, VariantText,
+};
 
 /// The text of a study of the referenced dataset.
 pub(super) fn text_of(study: &Study, dataset: DatasetReference) -> StudyText {
-    let conditions = study.dataset.conditions().iter().map(|condition| {
-        let choice = study.choice(condition.id());
-        ConditionText {
-            id: condition.id().0,
-            physics: bundle_text(condition.bundle(BundleKind::Physics), &choice.physics),
-            identified: bundle_text(condition.bundle(BundleKind::Identified), &choice.identified),
-            scheduled: choice.scheduled,
-        }
+    let variants = study.variants.iter().filter_map(|variant| {
+        let of_variant = study.of_variant(&variant.name)?;
+        let settings = SettingsEntry::of(&variant.settings, &study.dataset);
+        Some(VariantText { name: variant.name.clone(), settings, conditions: condition_texts(&of_variant) })
     });
     StudyText {
         format: FORMAT.name.to_owned(),
@@ -23,8 +23,23 @@ pub(super) fn text_of(study: &Study, dataset: DatasetReference) -> StudyText {
         software: concat!("gdcm ", env!("CARGO_PKG_VERSION")).to_owned(),
         dataset,
         settings: SettingsEntry::of(&study.settings, &study.dataset),
-        conditions: conditions.collect(),
+        conditions: condition_texts(study),
+        variants: variants.collect(),
     }
+}
+
+/// The choices in each condition.
+fn condition_texts(study: &Study) -> Vec<ConditionText> {
+    let text = |condition: &Arc<Condition>| {
+        let choice = study.choice(condition.id());
+        ConditionText {
+            id: condition.id().0,
+            physics: bundle_text(condition.bundle(BundleKind::Physics), &choice.physics),
+            identified: bundle_text(condition.bundle(BundleKind::Identified), &choice.identified),
+            scheduled: choice.scheduled,
+        }
+    };
+    study.dataset.conditions().iter().map(text).collect()
 }
 
 /// What a dataset holds, as a study's file says it.
@@ -40,5 +55,5 @@ pub(super) fn inventory_text(inventory: &Inventory) -> Vec<ConditionInventoryTex
 
 fn bundle_text(models: &[Model], choice: &BundleChoice) -> BundleText {
     let names = models.iter().map(|model| &model.name).filter(|name| choice.rejected.contains(*name));
-    BundleText { rejected: names.cloned().collect(), pinned: choice.pinned.clone() }
+    BundleText { rejected: names.cloned().collect(), reasons: choice.reasons.clone(), pinned: choice.pinned.clone() }
 }

@@ -96,7 +96,8 @@ pub(super) fn study_from(source: &Source<'_>, path: &Path, moved: Option<&Path>)
     let (text, unknown) = FORMAT.decode::<StudyText>(source.text(), path)?;
     FORMAT.check_read(&text.format, text.version, path)?;
     let mut loaded = load_referenced(&text.dataset, path, moved)?;
-    let decisions = decisions_of(Settings::of(&loaded.dataset), text.settings, text.conditions)
+    let start = Settings::of(&loaded.dataset);
+    let decisions = decisions_of(&start, text.settings, text.conditions, text.variants)
         .map_err(|flaw| FileError::content(path, flaw))?;
     let (study, not_applied) = decisions.applied_to(loaded.dataset.clone());
     let mut differences = match text.dataset.holds {

@@ -9,6 +9,9 @@ use crate::io::json_text::Format;
 use crate::io::list::list;
 use crate::io::settings_entry::SettingsEntry;
 
+/// Most variants that a study file may hold.
+const MOST_VARIANTS: usize = 1000;
+
 /// What a study file calls itself.
 pub(super) const FORMAT: Format = Format { name: "gdcm-study", version: 1 };
 
@@ -18,6 +21,18 @@ pub(super) struct StudyText {
     pub(super) version: u64,
     pub(super) software: String,
     pub(super) dataset: DatasetReference,
+    pub(super) settings: SettingsEntry,
+    #[serde(deserialize_with = "list::<MOST_CONDITIONS, _, _>")]
+    pub(super) conditions: Vec<ConditionText>,
+    /// Decisions kept under names; absent in studies of older programs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "list::<MOST_VARIANTS, _, _>")]
+    pub(super) variants: Vec<VariantText>,
+}
+
+/// Decisions kept under a name.
+#[derive(Deserialize, Serialize)]
+pub(super) struct VariantText {
+    pub(super) name: String,
     pub(super) settings: SettingsEntry,
     #[serde(deserialize_with = "list::<MOST_CONDITIONS, _, _>")]
     pub(super) conditions: Vec<ConditionText>,
@@ -59,5 +74,8 @@ pub(super) struct ConditionText {
 pub(super) struct BundleText {
     #[serde(deserialize_with = "list::<MOST_MODELS, _, _>")]
     pub(super) rejected: Vec<String>,
+    /// Why, by model name; absent in studies of older programs.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(super) reasons: BTreeMap<String, String>,
     pub(super) pinned: Option<String>,
 }

@@ -34,6 +34,7 @@ use crate::dataset::StateSpace;
 
 use super::frequency_response::FrequencyResponse;
 
+pub(super) use balancing::balance;
 pub(super) use hessenberg_form::HessenbergForm;
 use lane_response::LaneResponse;
 

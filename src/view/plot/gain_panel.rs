@@ -186,7 +186,10 @@ fn paint_bounds(painter: &Painter, placed: &[(&Dot, Pos2)], transform: &PlotTran
         if let Some([lower, upper]) = dot.bounds {
             let [y0, y1] = [lower, upper].map(|value| transform.position_from_point_y(value));
             let bar = Rect::from_x_y_ranges(center.x - 3.0..=center.x + 3.0, y1.min(y0)..=y0.max(y1));
-            painter.rect_filled(bar, 2.0, palette.accent.gamma_multiply(0.16));
+            let bar = bar.intersect(*transform.frame());
+            if bar.is_positive() {
+                painter.rect_filled(bar, 0.0, palette.accent.gamma_multiply(0.16));
+            }
         }
     }
 }

@@ -57,8 +57,8 @@ pub use assessment::{AssessmentEvent, AssessmentScene, AssessmentView, assessmen
 pub use bar::{AssessmentBar, AssessmentPanel, BarValue};
 pub use bode::{BodeEvent, BodeScene, bode_ui};
 pub use bode_view::BodeView;
-pub use chip::Chip;
 pub use channels::{ChannelsScene, ChannelsView, channels_ui};
+pub use chip::Chip;
 pub use curve::{BodeCurve, CurveId, Pane};
 pub use curve_menu::CurveWish;
 pub use dot::{Dot, DotShape};

@@ -32,7 +32,13 @@ fn branch_text(phase_deg: f64) -> Option<String> {
 }
 
 /// Shows frequency, name and values of `curve` at `omega` \[rad/s\] beside the pointer.
-pub(super) fn curve_tooltip_ui(plot: &Response, scene: &BodeScene<'_>, curve: &BodeCurve, omega: f64, palette: &Palette) {
+pub(super) fn curve_tooltip_ui(
+    plot: &Response,
+    scene: &BodeScene<'_>,
+    curve: &BodeCurve,
+    omega: f64,
+    palette: &Palette,
+) {
     tooltip_ui(plot, |ui| {
         ui.label(RichText::new(scene.unit.readout(omega)).size(SMALL_SIZE).color(palette.dim_text));
         ui.label(value_text(scene.quantity, curve, omega));

@@ -69,7 +69,8 @@ impl ValueUnit {
                 Self::Decibel | Self::Millisecond => Ladder::Decimal.marks(bounds, per_point, VERTICAL_TICK_GAP),
                 Self::Degree => Ladder::Degrees.marks(bounds, per_point, VERTICAL_TICK_GAP),
                 Self::Ratio => {
-                    let marks = logarithmic_marks((bounds.0 / DB_OF_DECADE, bounds.1 / DB_OF_DECADE), per_point / DB_OF_DECADE);
+                    let marks =
+                        logarithmic_marks((bounds.0 / DB_OF_DECADE, bounds.1 / DB_OF_DECADE), per_point / DB_OF_DECADE);
                     let in_db = |mark: GridMark| GridMark {
                         value: DB_OF_DECADE * mark.value,
                         step_size: DB_OF_DECADE * mark.step_size,

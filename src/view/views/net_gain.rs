@@ -1,23 +1,28 @@
 //! Net gains against airspeed, and the form of the schedule.
 
-use egui::{DragValue, RichText, Role, Ui, WidgetInfo};
+use egui::{RichText, Role, Ui, WidgetInfo};
 
 use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
 use crate::study::{Edit, Setting};
 use crate::view::command::Command;
 use crate::view::net_gain_scene::{PairSet, dot_key, net_gain_panels};
+use crate::view::number_field::NumberField;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{GainEvent, NetGainScene, net_gain_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 
+/// Widest airspeed tolerance \[kt\].
+const WIDEST_TOLERANCE_KT: f64 = 100.0;
+
 /// The form of the schedule and the key of the dots, laid out from right to left.
 pub fn net_gain_header_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let small = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
-    commands.extend(schedule_ui(ui, state.study.settings.schedule));
+    schedule_ui(ui, state.study.settings.schedule, commands);
     ui.label(small("schedule".to_owned()));
     pair_set_ui(ui, state, commands);
-    ui.add(egui::Label::new(small(dot_key(state))).truncate());
+    let key = dot_key(state);
+    ui.add(egui::Label::new(small(key.clone())).truncate()).on_hover_text(key);
 }
 
 /// Which responses are shown. Laid out from right to left.
@@ -69,8 +74,8 @@ pub(super) fn gain_command(state: &State, event: GainEvent) -> Option<Command> {
     }
 }
 
-/// The form of the schedule; the edit where it was changed. Laid out from right to left.
-fn schedule_ui(ui: &mut Ui, settings: ScheduleSettings) -> Option<Command> {
+/// The form of the schedule. Laid out from right to left.
+fn schedule_ui(ui: &mut Ui, settings: ScheduleSettings, commands: &mut Vec<Command>) {
     let mut chosen = settings;
     choice_ui(
         ui,
@@ -94,9 +99,24 @@ fn schedule_ui(ui: &mut Ui, settings: ScheduleSettings) -> Option<Command> {
             (ScheduleKind::Table, "table", "Mean of each cluster of airspeeds, linear between"),
         ],
     );
-    let tolerance = DragValue::new(&mut chosen.airspeed_tolerance_kt).range(0.0..=100.0).speed(0.1).suffix(" kt");
-    let tolerance = ui.add(tolerance);
-    tolerance.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, "Airspeed tolerance"));
-    tolerance.on_hover_text("Airspeeds this close to the next one [kt] count as one, for the table and for the degree");
-    (chosen != settings).then(|| Edit::Set(Setting::Schedule(chosen)).into())
+    let tolerance = NumberField {
+        name: "Airspeed tolerance",
+        hint: "Airspeeds this close to the next one [kt] count as one, for the table and for the degree",
+        unit: "kt",
+        shows_unit: true,
+        range: 0.0..=WIDEST_TOLERANCE_KT,
+        is_whole: false,
+        step: 0.1,
+        width: 0.0,
+        text: |airspeed_kt| format!("{airspeed_kt:.1}"),
+    };
+    let entered = tolerance.ui(ui, chosen.airspeed_tolerance_kt);
+    chosen.airspeed_tolerance_kt = entered.value.unwrap_or(chosen.airspeed_tolerance_kt);
+    if chosen != settings {
+        commands.push(Edit::Set(Setting::Schedule(chosen)).into());
+    }
+    commands.extend(entered.refusal.map(Command::Refuse));
+    if entered.is_ended {
+        commands.push(Command::EndEdit);
+    }
 }

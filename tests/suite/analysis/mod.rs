@@ -9,12 +9,17 @@ use gdcm::study::{Analysis, Assessed, Edit, Engine, Setting, Study, Unobserved};
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 
+mod assessment;
+mod derivations;
 mod edges;
 mod example;
 mod known_answer;
+mod modes;
+mod remarks;
 mod response_paths;
 mod responses;
 mod studies;
+mod variants;
 
 fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap()

@@ -79,6 +79,7 @@ fn edits() -> impl Strategy<Value = Vec<Edit>> {
         (0.0..0.5_f64).prop_map(Setting::Quantile),
         (0.1..1.0_f64, 1.0..3.0_f64).prop_map(|(lower, upper)| Setting::GainBounds(Some(GainBounds { lower, upper }))),
         prop::option::of(number()).prop_map(Setting::DelayUpper),
+        (0.0..3.0_f64).prop_map(Setting::Agreement),
         (0_usize..=3, any::<bool>(), any::<bool>(), 0.0..100.0_f64).prop_map(|(degree, table, delays, tolerance)| {
             let kind = if table { ScheduleKind::Table } else { ScheduleKind::Polynomial { degree } };
             let quantity = if delays { ScheduledQuantity::Gain } else { ScheduledQuantity::LnGain };
@@ -90,7 +91,9 @@ fn edits() -> impl Strategy<Value = Vec<Edit>> {
 
 proptest! {
     #[test]
-    fn a_study_saved_and_opened_is_the_same_to_the_last_digit(edits in edits(), rejected in 0_usize..2, scheduled in any::<bool>()) {
+    fn a_study_saved_and_opened_is_the_same_to_the_last_digit(
+        edits in edits(), others in edits(), rejected in 0_usize..2, scheduled in any::<bool>(), reason in "[ -~α→\n]{0,40}",
+    ) {
         let desk = Desk::new();
         let loaded = desk.loaded();
         let mut study = Study::new(loaded.dataset.clone());
@@ -98,16 +101,42 @@ proptest! {
         let first = loaded.dataset.conditions()[0].clone();
         let id = |bundle, model: usize| ModelId::new(first.id(), bundle, &first.bundle(bundle)[model].name);
         decided(&mut study, &[
-            Edit::Reject(id(BundleKind::Physics, rejected)),
+            Edit::RejectBecause { model: id(BundleKind::Physics, rejected), reason },
             Edit::Pin(id(BundleKind::Identified, rejected)),
             Edit::SetScheduled { condition: loaded.dataset.conditions()[1].id(), scheduled },
+            Edit::KeepVariant { name: "first → α".to_owned() },
         ]);
+        decided(&mut study, &others);
+        decided(&mut study, &[Edit::Restore(id(BundleKind::Physics, rejected)), Edit::KeepVariant { name: "second".to_owned() }]);
         save_study(&study, &loaded, &desk.study()).unwrap();
         let opened = open_study(&desk.study()).unwrap();
         prop_assert_eq!(opened.study, study);
         prop_assert_eq!(opened.loaded.sha256, loaded.sha256);
         prop_assert_eq!(opened.differences, []);
     }
+}
+
+#[test]
+fn a_study_of_an_older_program_has_neither_reasons_nor_variants_nor_a_tolerance() {
+    let desk = Desk::new();
+    desk.saved(|text| {
+        assert!(text.get("variants").is_none() && text["conditions"][0]["physics"].get("reasons").is_none());
+        text["settings"].as_object_mut().unwrap().remove("agreement_db").unwrap();
+    });
+    let opened = open_study(&desk.study()).unwrap();
+    assert_eq!(opened.study, Study::new(opened.loaded.dataset.clone()));
+    assert_eq!(opened.study.settings.agreement_db, 0.05);
+}
+
+#[test]
+fn a_wrong_variant_is_refused_with_its_name() {
+    let desk = Desk::new();
+    let message = desk.refusal(|text| {
+        let (settings, conditions) = (text["settings"].clone(), text["conditions"].clone());
+        text["variants"] = json!([{"name": "soft", "settings": settings, "conditions": conditions}]);
+        text["variants"][0]["settings"]["alpha_gain"] = json!(-1);
+    });
+    assert!(message.contains("variant \"soft\", settings, alpha_gain") && message.contains("found -1"), "{message}");
 }
 
 #[test]

@@ -120,6 +120,66 @@ fn a_cycle_of_constraints_is_explained() {
     }
 }
 
+/// Six by four gains of 1, of which four round a loop are held that disagree by `mismatch_db`.
+fn near_loop(mismatch_db: f64, agreement: f64) -> Problem {
+    let loop_of = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(output, input)| Pair::new(output, input));
+    let problem = table_two(&[(0, 0, 10_f64.powf(mismatch_db / 20.0))], Bounds { lower: 0.5, upper: 2.0 });
+    Problem { agreement, ..holding(&problem, &loop_of) }
+}
+
+#[test]
+fn a_loop_that_disagrees_by_less_than_the_tolerance_counts_as_agreeing_and_is_said_to() {
+    let (inputs, outputs) = (names(&INPUTS), names(&OUTPUTS));
+    let agreeing = solved_within(&near_loop(0.04, 0.05), BUDGET);
+    assert!(agreeing.matched && agreeing.unmatched.is_empty() && agreeing.conflicts.is_empty(), "{agreeing:?}");
+    assert_eq!(agreeing.remedy, None);
+    let [agreement] = agreeing.agreeing.as_slice() else { panic!("{:?}", agreeing.agreeing) };
+    let words = agreement.agreement_words(&inputs, &outputs);
+    assert!(words.contains("form a loop: their ratios agree to 0.040 dB"), "{words}");
+    // The least squares spread the mismatch evenly over the four entries.
+    for (pair, target) in agreeing.targets.iter().filter_map(|(pair, target)| Some((pair, (*target)?))) {
+        let (net, wanted) =
+            (agreeing.outputs[pair.output] * agreeing.inputs[pair.input], near_loop(0.04, 0.05).delta[pair]);
+        assert!((net / target).ln().abs() < 1e-8);
+        assert!((20.0 * (target / wanted.unwrap()).log10()).abs() < 0.0101, "{pair:?}");
+    }
+    let disagreeing = solved_within(&near_loop(0.06, 0.05), BUDGET);
+    assert!(!disagreeing.matched && disagreeing.agreeing.is_empty());
+    let words = disagreeing.conflicts[0].words(&inputs, &outputs);
+    assert!(words.contains("form a loop: their ratios disagree by 0.060 dB"), "{words}");
+}
+
+#[test]
+fn what_disagrees_by_little_is_told_to_the_digits_that_show_it() {
+    let (inputs, outputs) = (names(&INPUTS), names(&OUTPUTS));
+    let solution = solved_within(&near_loop(0.002, 0.0), BUDGET);
+    let words = solution.conflicts[0].words(&inputs, &outputs);
+    assert!(words.contains("disagree by 0.0020 dB"), "{words}");
+    for miss in &solution.unmatched {
+        let words = miss.words(12.0, &inputs, &outputs);
+        let figures: Vec<&str> =
+            words.split(' ').filter(|word| word.starts_with("1.0") || word.starts_with("0.9")).collect();
+        assert!(figures.len() == 2 && figures[0] != figures[1] && !words.contains("0.0 dB"), "{words}");
+    }
+    let problem = table_two(&[(0, 1, 1.960_1)], Bounds { lower: 0.7, upper: 1.4 });
+    let words = solved_within(&problem, BUDGET).conflicts[0].words(&inputs, &outputs);
+    assert!(words.contains("is at most 1.9600, not 1.9601;"), "{words}");
+}
+
+#[test]
+fn what_a_near_loop_needs_does_not_hide_what_a_real_conflict_needs() {
+    let mut problem = near_loop(0.04, 0.05);
+    let other = Pair::new(2, 2);
+    problem.constrained[other] = true;
+    problem.delta[other] = Some(4.5);
+    let solution = solved_within(&problem, BUDGET);
+    assert_eq!((solution.unmatched.len(), solution.agreeing.len()), (1, 1), "{solution:?}");
+    let remedy = solution.remedy.unwrap();
+    assert_eq!(remedy.free, [other]);
+    assert!(is_matched(&without(&problem, other)));
+    assert!(is_matched(&bounded(&problem, 0.5, remedy.upper.unwrap())));
+}
+
 #[test]
 fn unreachable_reference_instances_are_explained_as_they_were_made() {
     for instance in gain_instances().iter().filter(|instance| instance.kind == "infeasible") {

@@ -203,6 +203,7 @@ fn a_strong_regularisation_that_meets_its_bound_is_proven() {
         fitted: PairTable::from_fn(3, 1, |pair| pair.output != 1),
         bounds: Bounds { lower: 0.2, upper: 1.0 },
         alpha: 1e6,
+        agreement: 0.0,
     };
     let solution = solved(&problem);
     assert!(matches!(solution.proof.outcome, Outcome::Proven { gap } if gap <= 1e-9), "{:?}", solution.proof.outcome);

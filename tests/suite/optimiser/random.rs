@@ -72,7 +72,7 @@ pub fn gain_problems(most: (usize, usize), spread: f64, pattern: Pattern) -> imp
     (tables(most, pattern, deltas), bounds, alphas(), objectives()).prop_map(
         |((delta, constrained, fitted), (lower, upper, fixed), alpha, objective)| {
             let bounds = Bounds { lower, upper: if fixed { lower } else { upper } };
-            Problem { quantity: Quantity::Gain(objective), delta, constrained, fitted, bounds, alpha }
+            Problem { quantity: Quantity::Gain(objective), delta, constrained, fitted, bounds, alpha, agreement: 0.0 }
         },
     )
 }
@@ -82,6 +82,6 @@ pub fn delay_problems(most: (usize, usize), pattern: Pattern) -> impl Strategy<V
     let upper = prop_oneof![1 => Just(0.0), 9 => 0.0..0.2_f64];
     (tables(most, pattern, -0.1..0.1_f64), upper, alphas()).prop_map(|((delta, constrained, fitted), upper, alpha)| {
         let bounds = Bounds { lower: 0.0, upper };
-        Problem { quantity: Quantity::Delay, delta, constrained, fitted, bounds, alpha }
+        Problem { quantity: Quantity::Delay, delta, constrained, fitted, bounds, alpha, agreement: 0.0 }
     })
 }

@@ -13,11 +13,72 @@ fn a_file_that_cannot_be_read_leaves_what_is_open_and_says_what_is_wrong() {
     let path = folder.path().join("broken.json");
     std::fs::write(&path, "{\"format\": \"gdcm-dataset\", ").unwrap();
     open_by_path(&mut window, &path);
-    click(&mut window, "Lose them");
+    assert!(window.query_by_label("Lose them").is_none(), "nothing is asked for a file that cannot be shown");
     let notice = state(&window).notice.clone().expect("the trouble is shown");
     assert_eq!(notice.kind, NoticeKind::Trouble);
     assert!(notice.text.contains("broken.json"), "{}", notice.text);
     assert_eq!(state(&window).study, before);
+    assert!(state(&window).unsaved, "they are not saved still");
+}
+
+#[test]
+fn whether_to_lose_decisions_is_asked_once_the_file_is_found_good() {
+    let mut window = window();
+    click(&mut window, "Keep physics model V+10kt");
+    let before = state(&window).study.clone();
+    for answer in ["Cancel", "Lose them"] {
+        window.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(small_dataset())));
+        wait_until(&mut window, "the question", |window| window.query_by_label(answer).is_some());
+        assert_eq!(state(&window).study, before, "what is open stays until the answer");
+        assert!(state(&window).unsaved);
+        click(&mut window, answer);
+        let opened = answer == "Lose them";
+        assert_eq!(state(&window).dataset().conditions().len() == 2, opened, "{answer}");
+        assert_eq!(state(&window).unsaved, !opened, "{answer}");
+    }
+}
+
+#[test]
+fn decisions_are_saved_first_and_what_they_kept_waiting_is_opened_then() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.gdcm-study.json");
+    let mut window = window();
+    save_as(&mut window, &path);
+    click(&mut window, "Keep physics model V+10kt");
+    let decided = state(&window).study.choices.clone();
+    open_by_path(&mut window, &small_dataset());
+    click(&mut window, "Save study first");
+    assert_eq!(state(&window).dataset().conditions().len(), 2, "and it is open");
+    assert_eq!(open_study(&path).unwrap().study.choices, decided);
+    // What waited is done once.
+    click(&mut window, "Keep physics model V+5kt");
+    save_as(&mut window, &folder.path().join("other.gdcm-study.json"));
+    assert_eq!(state(&window).study_name, "other.gdcm-study.json");
+}
+
+#[test]
+fn a_study_whose_dataset_is_gone_loses_no_decision_before_the_dataset_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let (dataset, study) = (folder.path().join("data.json"), folder.path().join("theirs.gdcm-study.json"));
+    std::fs::copy(small_dataset(), &dataset).unwrap();
+    let mut theirs = window_with(load_any(&dataset).unwrap(), Setup::default());
+    save_as(&mut theirs, &study);
+    drop(theirs);
+    let moved = folder.path().join("moved.json");
+    std::fs::rename(&dataset, &moved).unwrap();
+
+    let mut window = window();
+    click(&mut window, "Keep physics model V+10kt");
+    open_by_path(&mut window, &study);
+    assert!(window.query_by_label("Lose them").is_none(), "where its dataset is comes first");
+    fill(&mut window, "Path of the dataset", &folder.path().join("nowhere.json"));
+    click(&mut window, "Open with this dataset");
+    assert!(state(&window).unsaved && state(&window).dataset().conditions().len() == 11);
+    open_by_path(&mut window, &study);
+    fill(&mut window, "Path of the dataset", &moved);
+    click(&mut window, "Open with this dataset");
+    click(&mut window, "Lose them");
+    assert!(!state(&window).unsaved && state(&window).dataset().conditions().len() == 2);
 }
 
 /// The path of a dataset of two conditions.

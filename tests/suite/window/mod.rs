@@ -1,9 +1,14 @@
 //! The window, driven by accessible labels: no display, no GPU.
 
+mod commands;
 mod computing;
 mod controls;
+mod curves;
 mod decisions;
 mod files;
+mod forms;
+mod keyboard;
+mod lists;
 mod plots;
 mod recovery;
 mod reload;

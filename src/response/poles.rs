@@ -1,0 +1,240 @@
+//! The modes of a model: its poles, how fast and how damped they are, and which states take part.
+//!
+//! ```text
+//! 1  balance A; A = Q T Q^H, T triangular with the poles lambda_k on its diagonal
+//! 2  for each k: x_k = 1, x_j = -(sum_(j < i <= k) t_ji x_i) / (t_jj - lambda_k), j = k - 1 ... 1;    v = Q x
+//! 3              y_k = 1, y_j = -(sum_(k <= i < j) y_i t_ij) / (t_jj - lambda_k), j = k + 1 ... n;    w = y Q^H
+//! 4  w v = 1: the pole moves by |w| |v| for each unit by which A changes; beyond a limit it is near defective
+//! 5  participation of state i: |w_i v_i| / sum_j |w_j v_j|, whatever the units of the states are
+//! ```
+//!
+//! Eigenvectors: Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 7.6.4. Participation: Perez-Arriaga, Verghese &
+//! Schweppe, "Selective modal analysis", IEEE Trans. Power Apparatus and Systems 101(9), 1982.
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use crate::dataset::{Dynamics, StateSpace};
+
+use super::elimination::balance;
+use super::prepared_model::LargeEntry;
+use super::schur_form::SchurForm;
+
+/// Movement of a pole for each unit of change of the balanced A from which its eigenvectors mean nothing: a double pole of one
+/// eigenvector has 1e8 in floating point, a single one below 1e3.
+const NEAR_DEFECTIVE: f64 = 1e6;
+
+/// One pole of a model, with what it means for the motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode {
+    /// The pole `lambda` \[rad/s\].
+    pub pole: Complex<f64>,
+    /// Undamped natural frequency `|lambda|` \[rad/s\].
+    pub frequency_rad_s: f64,
+    /// `-Re lambda / |lambda|`, negative where the mode grows; none of a pole at zero.
+    pub damping_ratio: Option<f64>,
+    /// `-1 / Re lambda` \[s\], negative where the mode grows; none where it neither grows nor decays.
+    pub time_constant_s: Option<f64>,
+    /// Share of each state (index, share), the greatest first, sum 1; or why there is none.
+    pub participation: Result<Vec<(usize, f64)>, NearDefective>,
+}
+
+/// A pole so close to a defective one that its eigenvectors, and with them the participation of states, are rounding errors.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "the pole is next to another that shares its eigenvector: a change of A by 1e-16 of itself moves it {movement:.0e} times \
+     as far, so the shares of the states mean nothing"
+)]
+pub struct NearDefective {
+    /// How far the pole moves for each unit of change of A.
+    pub movement: f64,
+}
+
+/// Why a model has no modes.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ModesError {
+    /// An entry is too large to compute with.
+    #[error("{0}")]
+    TooLarge(LargeEntry),
+    /// The iteration for the eigenvalues did not come to an end.
+    #[error("the eigenvalues of its matrix A were not found: the iteration does not come to an end")]
+    NotConverged,
+}
+
+impl Mode {
+    fn new(pole: Complex<f64>, participation: Result<Vec<(usize, f64)>, NearDefective>) -> Self {
+        let frequency_rad_s = pole.norm();
+        Self {
+            pole,
+            frequency_rad_s,
+            damping_ratio: (frequency_rad_s > 0.0).then(|| -pole.re / frequency_rad_s),
+            time_constant_s: (pole.re != 0.0).then(|| -1.0 / pole.re),
+            participation,
+        }
+    }
+
+    /// Whether it is an oscillation: one of two conjugate poles.
+    pub fn oscillates(&self) -> bool {
+        self.pole.im != 0.0
+    }
+}
+
+/// The modes of a model, one for each pole, rising in `|lambda|`; of a conjugate pair the one above the real axis first, and the
+/// other its mirror image to the last digit. A pole below the rounding of the matrix counts as zero.
+///
+/// # Errors
+/// [`ModesError`] where no eigenvalues can be computed.
+pub fn modes(model: &StateSpace) -> Result<Vec<Mode>, ModesError> {
+    if let Some(entry) = LargeEntry::of(model) {
+        return Err(ModesError::TooLarge(entry));
+    }
+    let (mut a, mut b, mut c) = (model.a().clone(), model.b().clone(), model.c().clone());
+    balance(&mut a, &mut b, &mut c);
+    let form = SchurForm::of(&a).ok_or(ModesError::NotConverged)?;
+    let rounding = 4.0 * f64::EPSILON * a.nrows() as f64 * a.norm();
+    let mut modes: Vec<Mode> = Vec::with_capacity(a.nrows());
+    let mut last_pair: Option<Mode> = None;
+    for (index, pole) in form.eigenvalues().into_iter().enumerate() {
+        let mode = match last_pair.take() {
+            Some(upper) => Mode::new(upper.pole.conj(), upper.participation),
+            None if pole.norm() <= rounding => Mode::new(Complex::from(0.0), participation(&form, index)),
+            None => Mode::new(pole, participation(&form, index)),
+        };
+        last_pair = (mode.pole.im > 0.0).then(|| mode.clone());
+        modes.push(mode);
+    }
+    modes.sort_by(|a, b| {
+        let by_size = a.frequency_rad_s.total_cmp(&b.frequency_rad_s);
+        by_size.then(a.pole.re.total_cmp(&b.pole.re)).then(b.pole.im.total_cmp(&a.pole.im))
+    });
+    Ok(modes)
+}
+
+/// [`modes`] of a model known by its matrices; none of one known by a measured response, which has no states.
+///
+/// # Errors
+/// As [`modes`].
+pub fn modes_of(dynamics: &Dynamics) -> Result<Vec<Mode>, ModesError> {
+    match dynamics {
+        Dynamics::StateSpace(model) => modes(model),
+        Dynamics::Measured(_) => Ok(Vec::new()),
+    }
+}
+
+/// The shares of the states in the mode at this place of the diagonal.
+fn participation(form: &SchurForm, index: usize) -> Result<Vec<(usize, f64)>, NearDefective> {
+    let (x, y) = (right(&form.t, index), left(&form.t, index));
+    let movement = x.norm() * y.norm();
+    // Not a number, too, where they overflow.
+    if !movement.le(&NEAR_DEFECTIVE) {
+        return Err(NearDefective { movement });
+    }
+    let (v, w) = (&form.q * x, form.q.conjugate() * y);
+    let products: Vec<f64> = v.iter().zip(&w).map(|(v, w)| (v * w).norm()).collect();
+    let sum: f64 = products.iter().sum();
+    let mut shares: Vec<(usize, f64)> = products.into_iter().map(|product| product / sum).enumerate().collect();
+    shares.sort_by(|a, b| b.1.total_cmp(&a.1));
+    Ok(shares)
+}
+
+/// `(T - t_kk) x = 0` with `x_k = 1`.
+fn right(t: &DMatrix<Complex<f64>>, k: usize) -> DVector<Complex<f64>> {
+    let mut x = DVector::from_element(t.nrows(), Complex::new(0.0, 0.0));
+    x[k] = Complex::new(1.0, 0.0);
+    for row in (0..k).rev() {
+        let sum: Complex<f64> = (row + 1..=k).map(|column| t[(row, column)] * x[column]).sum();
+        x[row] = -sum / apart(t, row, k);
+    }
+    x
+}
+
+/// `y (T - t_kk) = 0` with `y_k = 1`.
+fn left(t: &DMatrix<Complex<f64>>, k: usize) -> DVector<Complex<f64>> {
+    let mut y = DVector::from_element(t.nrows(), Complex::new(0.0, 0.0));
+    y[k] = Complex::new(1.0, 0.0);
+    for column in k + 1..t.nrows() {
+        let sum: Complex<f64> = (k..column).map(|row| y[row] * t[(row, column)]).sum();
+        y[column] = -sum / apart(t, column, k);
+    }
+    y
+}
+
+/// The difference of two poles; rounding at least, for equal ones.
+fn apart(t: &DMatrix<Complex<f64>>, of: usize, from: usize) -> Complex<f64> {
+    let difference = t[(of, of)] - t[(from, from)];
+    let least = (f64::EPSILON * t.camax()).max(f64::MIN_POSITIVE);
+    if difference.norm() < least { Complex::from(least) } else { difference }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::dmatrix;
+    use proptest::prelude::*;
+
+    fn model(a: DMatrix<f64>) -> StateSpace {
+        let n = a.nrows();
+        StateSpace::new(a, DMatrix::zeros(n, 1), DMatrix::zeros(1, n), DMatrix::zeros(1, 1)).unwrap()
+    }
+
+    #[test]
+    fn an_oscillator_and_a_lag_have_the_modes_of_the_textbook() {
+        // x'' + 2 0.3 4 x' + 16 x = 0 beside x' = -0.5 x.
+        let found = modes(&model(dmatrix![0.0, 1.0, 0.0; -16.0, -2.4, 0.0; 0.0, 0.0, -0.5])).unwrap();
+        assert_eq!(found.len(), 3);
+        assert_eq!((found[0].pole, found[0].time_constant_s), (Complex::new(-0.5, 0.0), Some(2.0)));
+        assert_eq!(found[0].participation.as_ref().unwrap()[0], (2, 1.0));
+        assert!((found[1].frequency_rad_s - 4.0).abs() < 1e-14 && found[1].pole.im > 0.0);
+        assert!((found[1].damping_ratio.unwrap() - 0.3).abs() < 1e-15);
+        assert_eq!(found[2].pole, found[1].pole.conj());
+        // |w_i v_i| is the same for position and speed of an oscillator.
+        for &(_, share) in &found[1].participation.as_ref().unwrap()[..2] {
+            assert!((share - 0.5).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn an_integrator_is_a_pole_at_zero_without_a_time_constant() {
+        let found = modes(&model(dmatrix![0.0, 1.0; 0.0, -2.0])).unwrap();
+        assert_eq!((found[0].pole, found[0].time_constant_s), (Complex::from(0.0), None));
+        assert_eq!((found[0].damping_ratio, found[0].frequency_rad_s), (None, 0.0));
+    }
+
+    #[test]
+    fn two_poles_that_share_an_eigenvector_have_no_participation_and_say_why() {
+        let found = modes(&model(dmatrix![-1.0, 1.0, 0.0; 0.0, -1.0, 0.0; 0.0, 0.0, -3.0])).unwrap();
+        let why = found[0].participation.as_ref().unwrap_err();
+        assert!(why.movement > 1e15 && why.to_string().contains("shares its eigenvector"));
+        assert_eq!(found[2].participation.as_ref().unwrap()[0], (2, 1.0), "the third is by itself");
+        let apart = modes(&model(dmatrix![-1.0, 1.0; 0.0, -1.001])).unwrap();
+        assert!(apart[0].participation.is_ok(), "poles a thousandth apart can be told from one another");
+    }
+
+    #[test]
+    fn a_model_without_states_has_no_modes_and_one_too_large_is_refused() {
+        assert_eq!(modes(&model(DMatrix::zeros(0, 0))), Ok(Vec::new()));
+        assert!(matches!(modes(&model(dmatrix![1e80])), Err(ModesError::TooLarge(_))));
+    }
+
+    proptest! {
+        #[test]
+        fn units_of_the_states_change_neither_poles_nor_participation(
+            entries in prop::collection::vec(-2.0_f64..2.0, 25), exponents in prop::collection::vec(-12_i32..12, 5),
+        ) {
+            let a = DMatrix::from_vec(5, 5, entries);
+            // Powers of two: nothing is rounded.
+            let scaled = DMatrix::from_fn(5, 5, |row, column| a[(row, column)] * 2.0_f64.powi(exponents[row] - exponents[column]));
+            let (plain, scaled) = (modes(&model(a.clone())).unwrap(), modes(&model(scaled)).unwrap());
+            for mode in &plain {
+                let Ok(shares) = &mode.participation else { continue };
+                let near = |other: &&Mode| (other.pole - mode.pole).norm();
+                let same = scaled.iter().min_by(|a, b| near(a).total_cmp(&near(b))).unwrap();
+                // The movement is at most 1e6; poles of such matrices are mostly of movement 1 to 100.
+                prop_assert!(near(&same) < 1e-8, "{} {}", same.pole, mode.pole);
+                let Ok(others) = &same.participation else { continue };
+                let share_of = |state: usize| others.iter().find(|(other, _)| *other == state).map_or(0.0, |(_, share)| *share);
+                let alone = plain.iter().all(|other| other.pole == mode.pole || (other.pole - mode.pole).norm() > 1e-3);
+                prop_assert!(!alone || shares.iter().all(|(state, share)| (share - share_of(*state)).abs() < 1e-6));
+            }
+        }
+    }
+}

@@ -1,0 +1,304 @@
+//! Transmission zeros of one response.
+//!
+//! ```text
+//! 1  keep the states that a chain of entries leads to from the input and from which one leads to the output; balance A
+//! 2  keep what the input reaches and the output sees (staircase): no pole is left that a zero would cancel
+//! 3  A Hessenberg, b = beta e_1. While d is negligible, the first state is at the same time what the input drives and what is
+//!    at rest in a zero: it becomes the input,
+//!       A <- A_22, b <- A_21, c <- c_2, d <- c_1       (a zero at infinity each time)
+//! 4  zeros are where [A - sI  b; c  d] loses rank: the eigenvalues of A - b c / d
+//! 5  Newton: z <- z - H(z) / H'(z) on what step 2 left, while |H| falls
+//! ```
+//!
+//! Emami-Naeini & Van Dooren, "Computation of zeros of linear multivariable systems", Automatica 18(4), 1982, for one input and
+//! one output.
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use crate::dataset::{Pair, StateSpace};
+
+use super::elimination::balance;
+use super::prepared_model::LargeEntry;
+use super::schur_form::SchurForm;
+use super::staircase::SingleResponse;
+use super::structure::leading_states;
+
+/// The transmission zeros of one response.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TransmissionZeros {
+    /// The finite zeros \[rad/s\], rising in size; conjugate pairs to the last digit, the one above the real axis first.
+    pub finite: Vec<Complex<f64>>,
+    /// Number of zeros at infinity: by how much the response has more poles than finite zeros.
+    pub infinite: usize,
+}
+
+/// Why a response has no zeros to be told.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ZerosError {
+    /// An entry is too large to compute with.
+    #[error("{0}")]
+    TooLarge(LargeEntry),
+    /// The input does not act on the output at any frequency.
+    #[error("the input does not act on this output: the response is zero everywhere")]
+    NoResponse,
+    /// The iteration for the eigenvalues did not come to an end.
+    #[error("the zeros were not found: the iteration for the eigenvalues does not come to an end")]
+    NotConverged,
+    /// The model has no such response.
+    #[error("the model has no output number {} or no input number {}", pair.output + 1, pair.input + 1)]
+    OutsideModel {
+        /// The response asked for.
+        pair: Pair,
+    },
+}
+
+/// The transmission zeros of the response of one output to one input: where `H(z) = C (zI - A)^-1 B + D` is zero. Poles that the
+/// response does not have (not reached or not seen) are no zeros either.
+///
+/// # Errors
+/// [`ZerosError`] where there is no response, or nothing can be computed.
+pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<TransmissionZeros, ZerosError> {
+    if let Some(entry) = LargeEntry::of(model) {
+        return Err(ZerosError::TooLarge(entry));
+    }
+    if pair.output >= model.outputs() || pair.input >= model.inputs() {
+        return Err(ZerosError::OutsideModel { pair });
+    }
+    let minimal = single(model, pair).reached().transposed().reached().transposed().reached();
+    let (reduced, infinite) = without_infinite_zeros(minimal.clone()).ok_or(ZerosError::NoResponse)?;
+    let closed = &reduced.a - &reduced.b * reduced.c.transpose() / reduced.d;
+    let form = SchurForm::of(&closed).ok_or(ZerosError::NotConverged)?;
+    let mut finite = Vec::with_capacity(closed.nrows());
+    for zero in form.eigenvalues().into_iter().filter(|zero| zero.im >= 0.0) {
+        let zero = polished(&minimal, zero);
+        finite.push(zero);
+        finite.extend((zero.im > 0.0).then(|| zero.conj()));
+    }
+    finite.sort_by(|a, b| a.norm().total_cmp(&b.norm()).then(a.re.total_cmp(&b.re)).then(b.im.total_cmp(&a.im)));
+    Ok(TransmissionZeros { finite, infinite })
+}
+
+/// The states between one input and one output, in units that make their rows and columns alike.
+fn single(model: &StateSpace, pair: Pair) -> SingleResponse {
+    let states = leading_states(model, pair);
+    let mut a = model.a().select_rows(&states).select_columns(&states);
+    let mut b = model.b().column(pair.input).select_rows(&states);
+    let mut c = model.c().row(pair.output).select_columns(&states);
+    let mut columns = DMatrix::from_column_slice(b.nrows(), 1, b.as_slice());
+    let mut rows = DMatrix::from_row_slice(1, c.ncols(), c.as_slice());
+    balance(&mut a, &mut columns, &mut rows);
+    b.copy_from(&columns.column(0));
+    c.copy_from(&rows.row(0));
+    SingleResponse { a, b, c: c.transpose(), d: model.d()[(pair.output, pair.input)] }
+}
+
+/// Takes the zeros at infinity out of a Hessenberg model, and counts them; `None` where nothing is left.
+///
+/// A feed-through counts as none where it would put a zero 1e10 times as far out as `|A|`, or where it is the rounding of c.
+fn without_infinite_zeros(mut model: SingleResponse) -> Option<(SingleResponse, usize)> {
+    const FARTHEST: f64 = 1e10;
+    const ROUNDING: f64 = 1e-12;
+    let size = model.a.norm().max(f64::MIN_POSITIVE);
+    let mut infinite = 0;
+    loop {
+        let states = model.a.nrows();
+        let through_states = model.b.norm() * model.c.norm() / size;
+        let rounding = if infinite == 0 { 0.0 } else { ROUNDING * model.c.norm() };
+        if model.d != 0.0 && model.d.abs() > rounding.max(through_states / FARTHEST) {
+            return Some((model, infinite));
+        }
+        if states == 0 {
+            return None;
+        }
+        let rest = states - 1;
+        // The first entry of b is all that b has: it becomes a factor of the response, which moves no zero.
+        model = SingleResponse {
+            a: model.a.view((1, 1), (rest, rest)).into_owned(),
+            b: model.a.view((1, 0), (rest, 1)).column(0).into_owned(),
+            c: model.c.rows(1, rest).into_owned(),
+            d: model.c[0],
+        };
+        infinite += 1;
+    }
+}
+
+/// `H(s)` and `H'(s) = -c (sI - A)^-2 b`; `None` at a pole.
+fn response_and_slope(model: &SingleResponse, s: Complex<f64>) -> Option<(Complex<f64>, Complex<f64>)> {
+    let resolvent = DMatrix::from_fn(model.a.nrows(), model.a.nrows(), |row, column| {
+        let diagonal = if row == column { s } else { Complex::from(0.0) };
+        diagonal - model.a[(row, column)]
+    });
+    let factors = resolvent.lu();
+    let through = |vector: &DVector<Complex<f64>>| -> Complex<f64> {
+        model.c.iter().zip(vector.iter()).map(|(c, x)| x * *c).sum()
+    };
+    let states = factors.solve(&model.b.map(Complex::from))?;
+    let slope = factors.solve(&states)?;
+    Some((through(&states) + model.d, -through(&slope)))
+}
+
+/// A zero moved to where the response is least, if that is close by.
+fn polished(model: &SingleResponse, zero: Complex<f64>) -> Complex<f64> {
+    const MOST_STEPS: usize = 4;
+    /// Share of its size by which rounding may have moved a zero.
+    const CLOSE: f64 = 1e-3;
+    let mut best = zero;
+    let Some((mut value, mut slope)) = response_and_slope(model, zero) else { return zero };
+    for _ in 0..MOST_STEPS {
+        let mut next = best - value / slope;
+        if zero.im == 0.0 {
+            next.im = 0.0;
+        }
+        // Not a number, too, where the slope is zero.
+        if !(next - zero).norm().le(&(CLOSE * zero.norm())) || next.im < 0.0 {
+            break;
+        }
+        match response_and_slope(model, next) {
+            Some(there) if there.0.norm() < value.norm() => {
+                best = next;
+                (value, slope) = there;
+            }
+            _ => break,
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{dmatrix, dvector};
+    use proptest::prelude::*;
+
+    const ONLY: Pair = Pair { output: 0, input: 0 };
+
+    /// The polynomial with these real roots, highest power first.
+    fn polynomial(roots: &[f64]) -> Vec<f64> {
+        roots.iter().fold(vec![1.0], |of, root| {
+            let shifted = of.iter().copied().chain([0.0]);
+            let scaled = std::iter::once(0.0).chain(of.iter().map(|coefficient| -root * coefficient));
+            shifted.zip(scaled).map(|(a, b)| a + b).collect()
+        })
+    }
+
+    /// `gain (s - z1) ... / (s - p1) ...` in the controllable canonical form.
+    fn canonical(gain: f64, zeros: &[f64], poles: &[f64]) -> StateSpace {
+        let n = poles.len();
+        let (mut numerator, denominator) = (polynomial(zeros), polynomial(poles));
+        while numerator.len() <= n {
+            numerator.insert(0, 0.0);
+        }
+        let a = DMatrix::from_fn(n, n, |row, column| match (row + 1 == n, column == row + 1) {
+            (true, _) => -denominator[n - column],
+            (false, next) => f64::from(u8::from(next)),
+        });
+        let b = DMatrix::from_fn(n, 1, |row, _| f64::from(u8::from(row + 1 == n)));
+        let through = numerator[0];
+        let c = DMatrix::from_fn(1, n, |_, column| gain * (numerator[n - column] - through * denominator[n - column]));
+        StateSpace::new(a, b, c, dmatrix![gain * through]).unwrap()
+    }
+
+    /// The same in other coordinates of the states.
+    fn transformed(model: &StateSpace, by: &DMatrix<f64>) -> StateSpace {
+        let inverse = by.clone().try_inverse().unwrap();
+        StateSpace::new(by * model.a() * &inverse, by * model.b(), model.c() * inverse, model.d().clone()).unwrap()
+    }
+
+    fn assert_zeros(model: &StateSpace, expected: &[f64], infinite: usize, tolerance: f64) {
+        let found = transmission_zeros(model, ONLY).unwrap();
+        assert_eq!((found.finite.len(), found.infinite), (expected.len(), infinite), "{found:?}");
+        for zero in expected {
+            let nearest = found.finite.iter().map(|found| (found - zero).norm()).fold(f64::INFINITY, f64::min);
+            assert!(nearest <= tolerance * (1.0 + zero.abs()), "{zero}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn the_zeros_of_a_ratio_of_polynomials_are_found() {
+        // Conditioning of the roots of polynomials of degree 2 to 5 with roots this far apart.
+        assert_zeros(&canonical(2.0, &[-1.0, -2.0], &[-3.0, -4.0, -5.0]), &[-1.0, -2.0], 1, 1e-12);
+        assert_zeros(&canonical(-0.1, &[-1.0, 2.0, -8.0], &[-3.0, -4.0, -5.0]), &[-1.0, 2.0, -8.0], 0, 1e-12);
+        assert_zeros(&canonical(1e-6, &[0.0, -30.0], &[-1.0, -2.0, -7.0, -9.0, -20.0]), &[0.0, -30.0], 3, 1e-10);
+        assert_zeros(&canonical(5.0, &[], &[-1.0, -2.0, -3.0]), &[], 3, 1e-12);
+    }
+
+    #[test]
+    fn a_conjugate_pair_of_zeros_is_one_to_the_last_digit() {
+        // (s^2 + 0.2 s + 4) / (s + 1)^3.
+        let model = StateSpace::new(
+            dmatrix![0.0, 1.0, 0.0; 0.0, 0.0, 1.0; -1.0, -3.0, -3.0],
+            dmatrix![0.0; 0.0; 1.0],
+            dmatrix![4.0, 0.2, 1.0],
+            dmatrix![0.0],
+        );
+        let found = transmission_zeros(&model.unwrap(), ONLY).unwrap();
+        assert_eq!((found.finite.len(), found.infinite, found.finite[0]), (2, 1, found.finite[1].conj()));
+        assert!((found.finite[0] - Complex::new(-0.1, 3.99_f64.sqrt())).norm() < 1e-13);
+    }
+
+    #[test]
+    fn a_pole_that_the_response_does_not_have_is_no_zero() {
+        // A heading beside a lag, which nothing sees; and a mode that the input does not drive.
+        let model = StateSpace::new(
+            dmatrix![-1.0, 0.0, 0.5; 1.0, 0.0, 0.0; 0.0, 0.0, -4.0],
+            dmatrix![1.0; 0.0; 0.0],
+            dmatrix![2.0, 0.0, 1.0],
+            dmatrix![1.0],
+        );
+        // 1 + 2 / (s + 1).
+        assert_zeros(&model.unwrap(), &[-3.0], 0, 1e-14);
+        let hidden =
+            SingleResponse { a: dmatrix![-1.5, 0.5; 0.5, -1.5], b: dvector![1.0, 1.0], c: dvector![1.0, 0.0], d: 1.0 };
+        let model = StateSpace::new(
+            hidden.a.clone(),
+            DMatrix::from_column_slice(2, 1, hidden.b.as_slice()),
+            DMatrix::from_row_slice(1, 2, hidden.c.as_slice()),
+            dmatrix![1.0],
+        );
+        // 1 + 1 / (s + 1); the pole at -2 is not reached.
+        assert_zeros(&model.unwrap(), &[-2.0], 0, 1e-14);
+    }
+
+    #[test]
+    fn a_response_that_is_nowhere_is_refused() {
+        let apart =
+            StateSpace::new(dmatrix![-1.0, 0.0; 0.0, -2.0], dmatrix![1.0; 0.0], dmatrix![0.0, 1.0], dmatrix![0.0]);
+        assert_eq!(transmission_zeros(&apart.unwrap(), ONLY), Err(ZerosError::NoResponse));
+        let gain = StateSpace::new(DMatrix::zeros(0, 0), DMatrix::zeros(0, 1), DMatrix::zeros(1, 0), dmatrix![3.0]);
+        let gain = gain.unwrap();
+        assert_eq!(transmission_zeros(&gain, ONLY), Ok(TransmissionZeros { finite: Vec::new(), infinite: 0 }));
+        assert!(transmission_zeros(&gain, Pair::new(1, 0)).unwrap_err().to_string().contains("output number 2"));
+    }
+
+    proptest! {
+        #[test]
+        fn zeros_are_the_same_in_any_coordinates_and_the_response_is_zero_there(
+            zeros in prop::collection::vec(-9.0_f64..9.0, 0..4), extra in 0_usize..3,
+            turns in prop::collection::vec(-1.0_f64..1.0, 49),
+        ) {
+            let apart = |values: &[f64]| values.iter().enumerate()
+                .all(|(i, a)| values[..i].iter().all(|b| (a - b).abs() > 0.3));
+            let poles: Vec<f64> = (0..zeros.len() + extra + 1).map(|k| -0.55 - 1.1 * k as f64).collect();
+            let mut all = zeros.clone();
+            all.extend(&poles);
+            prop_assume!(apart(&all));
+            let n = poles.len();
+            let by = DMatrix::from_fn(n, n, |row, column| turns[7 * row + column] + if row == column { 3.0 } else { 0.0 });
+            let model = transformed(&canonical(1.7, &zeros, &poles), &by);
+            let found = transmission_zeros(&model, ONLY).unwrap();
+            prop_assert_eq!((found.finite.len(), found.infinite), (zeros.len(), extra + 1));
+            for zero in &zeros {
+                let nearest = found.finite.iter().map(|found| (found - zero).norm()).fold(f64::INFINITY, f64::min);
+                // The canonical form of seven poles has entries up to 1e4, and zeros 0.3 apart a condition of some 1e3.
+                prop_assert!(nearest < 1e-6, "{zero}: {found:?}");
+            }
+            let minimal = single(&model, ONLY);
+            let peak = (0..200).filter_map(|k| response_and_slope(&minimal, Complex::new(0.0, 0.1 * f64::from(k))))
+                .map(|(value, _)| value.norm()).fold(0.0, f64::max);
+            for zero in &found.finite {
+                let (value, _) = response_and_slope(&minimal, *zero).unwrap();
+                prop_assert!(value.norm() < 1e-8 * peak, "{zero}: {} of {peak}", value.norm());
+            }
+        }
+    }
+}

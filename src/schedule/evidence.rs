@@ -1,0 +1,233 @@
+//! What speaks for one form of the schedule or another: what it misses, and what it would have said of a condition it has not
+//! seen.
+
+use crate::correction::ChannelCorrection;
+use crate::dataset::{Pair, PairTable};
+
+use super::schedule::{Schedule, ScheduleError, ScheduleKind, ScheduleSettings, ScheduledPoint};
+
+/// Every form that a schedule can have: polynomials from the mean to the cubic, and the table.
+pub const SCHEDULE_KINDS: [ScheduleKind; 5] = [
+    ScheduleKind::Polynomial { degree: 0 },
+    ScheduleKind::Polynomial { degree: 1 },
+    ScheduleKind::Polynomial { degree: 2 },
+    ScheduleKind::Polynomial { degree: 3 },
+    ScheduleKind::Table,
+];
+
+/// How far a condition's own gain is from the scheduled one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Residual {
+    /// `ln k - ln k_scheduled`.
+    pub ln: f64,
+    /// `100 (k / k_scheduled - 1)`, in percent of the scheduled gain.
+    pub percent: f64,
+}
+
+impl Residual {
+    /// The residual of a gain; `None` where the scheduled gain is not positive.
+    fn of(own: f64, scheduled: f64) -> Option<Self> {
+        (scheduled > 0.0).then(|| {
+            let ln = (own / scheduled).ln();
+            Self { ln, percent: 100.0 * ln.exp_m1() }
+        })
+    }
+}
+
+/// What one form of the schedule makes of one gain. The lists are in the order of the conditions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FitEvidence {
+    /// Residual of each condition; none where the scheduled gain is not positive.
+    pub residuals: Vec<Option<Residual>>,
+    /// The same of the schedule that is made without that condition; none of the only one.
+    pub left_out: Vec<Option<Residual>>,
+}
+
+impl FitEvidence {
+    /// Root of the mean squared residual of `ln k`; none where a residual is missing.
+    pub fn rms_ln(&self) -> Option<f64> {
+        rms(&self.residuals)
+    }
+
+    /// Leave-one-condition-out error: the same of the schedules that have not seen the condition.
+    pub fn left_out_rms_ln(&self) -> Option<f64> {
+        rms(&self.left_out)
+    }
+}
+
+fn rms(residuals: &[Option<Residual>]) -> Option<f64> {
+    let squares = residuals.iter().map(|residual| residual.map(|residual| residual.ln * residual.ln));
+    let sum: f64 = squares.sum::<Option<f64>>()?;
+    (!residuals.is_empty()).then(|| (sum / residuals.len() as f64).sqrt())
+}
+
+/// What one form of the schedule makes of every channel and every response.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KindEvidence {
+    /// The form asked for.
+    pub kind: ScheduleKind,
+    /// Degree of the polynomial, which may be less than was asked for (M11b); none of a table.
+    pub degree: Option<usize>,
+    /// Gain of each input channel.
+    pub inputs: Vec<FitEvidence>,
+    /// Gain of each output channel.
+    pub outputs: Vec<FitEvidence>,
+    /// Net gain of each response, `k_o k_i`.
+    pub pairs: PairTable<FitEvidence>,
+}
+
+impl KindEvidence {
+    /// Leave-one-condition-out error of `ln k_o k_i`, root mean square over these responses; none where one is missing.
+    pub fn left_out_rms_ln(&self, pairs: impl IntoIterator<Item = Pair>) -> Option<f64> {
+        let squares = pairs.into_iter().map(|pair| self.pairs[pair].left_out_rms_ln().map(|rms| rms * rms));
+        let squares: Vec<f64> = squares.collect::<Option<_>>()?;
+        (!squares.is_empty()).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
+    }
+}
+
+/// The evidence for every form of a schedule.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Evidence {
+    /// Airspeed of each condition \[kt\], in the order of the lists of residuals.
+    pub airspeeds_kt: Vec<f64>,
+    /// Each form of [`SCHEDULE_KINDS`], in that order.
+    pub kinds: Vec<KindEvidence>,
+}
+
+impl Evidence {
+    /// The evidence for one form.
+    pub fn of(&self, kind: ScheduleKind) -> Option<&KindEvidence> {
+        self.kinds.iter().find(|evidence| evidence.kind == kind)
+    }
+}
+
+/// Residuals and leave-one-condition-out errors (M11) of every form of the schedule of these conditions; `settings` says what
+/// is regressed and which airspeeds are one.
+///
+/// A condition is left out together with nothing else: what the schedule of the others says at its airspeed, beyond their
+/// range the end value, is compared with its own gain.
+///
+/// # Errors
+/// [`ScheduleError::NoCondition`] where there is no condition.
+pub fn evidence(points: &[ScheduledPoint<'_>], settings: ScheduleSettings) -> Result<Evidence, ScheduleError> {
+    let of_kind = |kind| {
+        let settings = ScheduleSettings { kind, delays: false, ..settings };
+        let schedule = Schedule::fitted(points, settings)?;
+        let scheduled = points.iter().map(|point| Some(schedule.at(point.airspeed_kt))).collect();
+        let unseen = (0..points.len()).map(|left_out| {
+            let others: Vec<ScheduledPoint<'_>> =
+                points[..left_out].iter().chain(&points[left_out + 1..]).copied().collect();
+            Schedule::fitted(&others, settings).ok().map(|schedule| schedule.at(points[left_out].airspeed_kt))
+        });
+        let degree = schedule.degree();
+        Ok(Predicted { points, scheduled, unseen: unseen.collect() }.evidence(kind, degree))
+    };
+    let kinds = SCHEDULE_KINDS.into_iter().map(of_kind).collect::<Result<Vec<_>, _>>()?;
+    Ok(Evidence { airspeeds_kt: points.iter().map(|point| point.airspeed_kt).collect(), kinds })
+}
+
+/// What the schedule says at each condition, and what it says that has not seen it.
+struct Predicted<'a> {
+    points: &'a [ScheduledPoint<'a>],
+    scheduled: Vec<Option<ChannelCorrection>>,
+    unseen: Vec<Option<ChannelCorrection>>,
+}
+
+impl Predicted<'_> {
+    fn evidence(&self, kind: ScheduleKind, degree: Option<usize>) -> KindEvidence {
+        let own = self.points[0].correction;
+        let (inputs, outputs) = (own.input_gains.len(), own.output_gains.len());
+        KindEvidence {
+            kind,
+            degree,
+            inputs: (0..inputs).map(|input| self.of_gain(|correction| correction.input_gains[input])).collect(),
+            outputs: (0..outputs).map(|output| self.of_gain(|correction| correction.output_gains[output])).collect(),
+            pairs: PairTable::from_fn(outputs, inputs, |pair| {
+                self.of_gain(|correction| correction.net_gain(pair).value())
+            }),
+        }
+    }
+
+    fn of_gain(&self, gain: impl Fn(&ChannelCorrection) -> f64) -> FitEvidence {
+        let against = |predicted: &[Option<ChannelCorrection>]| {
+            let residual = |(point, predicted): (&ScheduledPoint<'_>, &Option<ChannelCorrection>)| {
+                Residual::of(gain(point.correction), gain(predicted.as_ref()?))
+            };
+            self.points.iter().zip(predicted).map(residual).collect()
+        };
+        FitEvidence { residuals: against(&self.scheduled), left_out: against(&self.unseen) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corrections(gains: &[f64]) -> Vec<ChannelCorrection> {
+        let of = |gain: &f64| ChannelCorrection {
+            input_gains: vec![*gain],
+            output_gains: vec![2.0 / gain, 1.0],
+            input_delays_s: vec![0.0],
+            output_delays_s: vec![0.0; 2],
+        };
+        gains.iter().map(of).collect()
+    }
+
+    fn points<'a>(airspeeds_kt: &[f64], corrections: &'a [ChannelCorrection]) -> Vec<ScheduledPoint<'a>> {
+        let pairs = airspeeds_kt.iter().zip(corrections);
+        pairs.map(|(&airspeed_kt, correction)| ScheduledPoint { airspeed_kt, correction, delay_upper_s: 0.0 }).collect()
+    }
+
+    #[test]
+    fn the_degree_that_made_the_gains_leaves_nothing_and_foresees_what_it_has_not_seen() {
+        // ln k = 0.1 v + 0.05 v^2 over 60 to 120 kt.
+        let airspeeds = [60.0, 75.0, 90.0, 105.0, 120.0];
+        let gains = airspeeds.map(|airspeed: f64| {
+            let v = (airspeed - 90.0) / 30.0;
+            (0.1 * v + 0.05 * v * v).exp()
+        });
+        let corrections = corrections(&gains);
+        let evidence = evidence(&points(&airspeeds, &corrections), ScheduleSettings::default()).unwrap();
+        let of = |degree| &evidence.of(ScheduleKind::Polynomial { degree }).unwrap().inputs[0];
+        // Least squares of five points, condition number below 5.
+        assert!(of(2).rms_ln().unwrap() < 1e-14 && of(3).rms_ln().unwrap() < 1e-14);
+        assert!(of(1).rms_ln().unwrap() > 0.01 && of(0).rms_ln().unwrap() > of(1).rms_ln().unwrap());
+        // Inside; beyond the range of the others the end value holds, whatever the degree.
+        assert!(of(2).left_out[2].unwrap().ln.abs() < 1e-14);
+        let step = gains[4] / gains[3];
+        assert!((of(2).left_out[4].unwrap().ln - step.ln()).abs() < 1e-14);
+        assert!((of(2).left_out[4].unwrap().percent - 100.0 * (step - 1.0)).abs() < 1e-11);
+        let table = evidence.of(ScheduleKind::Table).unwrap();
+        assert_eq!((table.degree, table.inputs[0].rms_ln()), (None, Some(0.0)), "a table goes through its points");
+        assert!(table.inputs[0].left_out_rms_ln() > of(2).left_out_rms_ln());
+    }
+
+    #[test]
+    fn the_residual_of_a_response_is_that_of_its_two_channels_together() {
+        let corrections = corrections(&[1.0, 1.2, 0.9, 1.4]);
+        let evidence =
+            evidence(&points(&[50.0, 80.0, 110.0, 140.0], &corrections), ScheduleSettings::default()).unwrap();
+        for kind in &evidence.kinds {
+            for condition in 0..4 {
+                let [input, output, pair] = [&kind.inputs[0], &kind.outputs[1], &kind.pairs[Pair::new(1, 0)]]
+                    .map(|fit| fit.residuals[condition].unwrap().ln);
+                // A regression of logarithms: products of regressions are regressions of products.
+                assert!((input + output - pair).abs() < 1e-14);
+                // k_0 k_i = 2 in every condition.
+                assert!(kind.pairs[Pair::new(0, 0)].residuals[condition].unwrap().ln.abs() < 1e-14);
+            }
+            let both = kind.left_out_rms_ln([Pair::new(0, 0), Pair::new(1, 0)]).unwrap();
+            let one = kind.pairs[Pair::new(1, 0)].left_out_rms_ln().unwrap();
+            assert!((both - one / 2.0_f64.sqrt()).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_single_condition_cannot_be_left_out() {
+        let corrections = corrections(&[1.3]);
+        let found = evidence(&points(&[80.0], &corrections), ScheduleSettings::default()).unwrap();
+        let fit = &found.kinds[0].inputs[0];
+        assert_eq!((fit.rms_ln(), fit.left_out_rms_ln(), fit.left_out.as_slice()), (Some(0.0), None, &[None][..]));
+        assert_eq!(evidence(&[], ScheduleSettings::default()), Err(ScheduleError::NoCondition));
+    }
+}

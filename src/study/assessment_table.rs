@@ -1,0 +1,227 @@
+//! What a correction is worth, response by response and condition by condition, for the model and the correction that are asked
+//! for (M12, Figures 8 to 19).
+
+use std::sync::Arc;
+
+use crate::correction::ChannelCorrection;
+use crate::dataset::{BundleKind, ConditionId, Dataset, Pair, PairTable};
+use crate::fidelity::CostAverage;
+use crate::response::GainDelay;
+use crate::schedule::CostChange;
+use crate::units::signed;
+
+use super::analysis::Analysis;
+use super::comparison::ModelMismatch;
+use super::condition_analysis::ConditionAnalysis;
+use super::job::Job;
+use super::progress::{Cancelled, Progress};
+
+/// Which physics model is assessed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum AssessedModel {
+    /// The one at the condition's own trim (the paper).
+    #[default]
+    Nominal,
+    /// The one that represents its bundle.
+    Representative,
+}
+
+/// Which correction is assessed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum AssessedCorrection {
+    /// The schedule at the condition's airspeed (the paper).
+    #[default]
+    Scheduled,
+    /// The condition's own optimum.
+    Own,
+}
+
+/// What is assessed, and how.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct AssessmentChoice {
+    /// Which physics model.
+    pub model: AssessedModel,
+    /// Under which correction.
+    pub correction: AssessedCorrection,
+    /// How squared errors are averaged in J.
+    pub average: CostAverage,
+}
+
+/// One condition's part of an assessment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AssessedCondition {
+    /// The condition.
+    pub condition: ConditionId,
+    /// True airspeed \[kt\].
+    pub airspeed_kt: f64,
+    /// Name of the physics model.
+    pub model: String,
+    /// J of each response before and after, against the identified representative.
+    pub changes: PairTable<Option<CostChange>>,
+    /// Why a response has none.
+    pub missing: Vec<(Pair, &'static str)>,
+}
+
+/// A condition that an assessment leaves out, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LeftOut {
+    /// The condition.
+    pub condition: ConditionId,
+    /// The reason in words.
+    pub why: String,
+}
+
+/// J before and after of every response of every condition (M12).
+#[derive(Clone, Debug, PartialEq)]
+pub struct AssessmentTable {
+    /// What is assessed.
+    pub choice: AssessmentChoice,
+    /// The conditions assessed, in the dataset's order.
+    pub conditions: Vec<AssessedCondition>,
+    /// Those left out.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// An assessment in a sentence: how many responses come closer, and which goes farthest away.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AssessmentSummary {
+    /// Responses with a J less than before.
+    pub better: usize,
+    /// Responses compared, each in each condition.
+    pub compared: usize,
+    /// The one with the greatest change of J, and the change.
+    pub worst: Option<(ConditionId, Pair, f64)>,
+}
+
+impl AssessmentTable {
+    /// The assessment of an analysis, from the mismatches that it keeps: two averages over frequency for each response.
+    pub fn of(analysis: &Analysis, choice: AssessmentChoice) -> Self {
+        let mut table = Self { choice, conditions: Vec::new(), left_out: Vec::new() };
+        analysis.study.dataset.conditions().iter().for_each(|condition| table.add(analysis, condition.id()));
+        table
+    }
+
+    fn add(&mut self, analysis: &Analysis, condition: ConditionId) {
+        match assessed(analysis, condition, self.choice) {
+            Ok(found) => self.conditions.push(found),
+            Err(why) => self.left_out.push(LeftOut { condition, why }),
+        }
+    }
+
+    /// J before and after of one response in one condition.
+    pub fn change(&self, condition: ConditionId, pair: Pair) -> Option<CostChange> {
+        self.conditions.iter().find(|assessed| assessed.condition == condition)?.changes[pair]
+    }
+
+    /// The assessment of the marked responses in a sentence.
+    pub fn summary(&self, marked: &PairTable<bool>) -> AssessmentSummary {
+        let mut summary = AssessmentSummary { better: 0, compared: 0, worst: None };
+        for assessed in &self.conditions {
+            for (pair, change) in marked.marked().filter_map(|pair| Some((pair, assessed.changes[pair]?.total()))) {
+                summary.compared += 1;
+                summary.better += usize::from(change < 0.0);
+                if summary.worst.is_none_or(|(.., worst)| change > worst) {
+                    summary.worst = Some((assessed.condition, pair, change));
+                }
+            }
+        }
+        summary
+    }
+}
+
+impl AssessmentSummary {
+    /// The sentence: "better in 41 of 50, worst PED → NY in condition 5: +12.3".
+    pub fn words(&self, dataset: &Dataset) -> String {
+        let Some((condition, pair, change)) = self.worst else {
+            return "nothing to assess".to_owned();
+        };
+        let (pair, change) = (dataset.pair_name(pair), signed(change, 1));
+        format!("better in {} of {}, worst {pair} in condition {condition}: {change}", self.better, self.compared)
+    }
+}
+
+/// One condition's part, or why it has none.
+pub(super) fn assessed(
+    analysis: &Analysis,
+    id: ConditionId,
+    choice: AssessmentChoice,
+) -> Result<AssessedCondition, String> {
+    let outcome = analysis.conditions.get(&id).ok_or_else(|| "it was not analysed".to_owned())?;
+    let condition = analysis.study.dataset.condition(id).ok_or_else(|| "it was not analysed".to_owned())?;
+    let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()].name;
+    let by_nominal = choice.model == AssessedModel::Nominal;
+    if by_nominal && analysis.study.choice(id).physics.rejected.contains(nominal) {
+        return Err("the nominal model is rejected".to_owned());
+    }
+    let result = outcome.as_ref().map_err(ToString::to_string)?;
+    let airspeed_kt = condition.flight_state().airspeed_kt;
+    let correction = match choice.correction {
+        AssessedCorrection::Own => result.correction.clone(),
+        AssessedCorrection::Scheduled => analysis.schedule.as_ref().map_err(ToString::to_string)?.at(airspeed_kt),
+    };
+    let models = if by_nominal { &result.comparison.nominal } else { &result.comparison.representative };
+    let changes = changes(models, &correction, &analysis.omega, choice.average);
+    let model = if by_nominal { nominal.as_str() } else { result.representative_name(BundleKind::Physics) };
+    let missing = missing(result, models, &changes);
+    Ok(AssessedCondition { condition: id, airspeed_kt, model: model.to_owned(), changes, missing })
+}
+
+fn changes(
+    models: &ModelMismatch,
+    correction: &ChannelCorrection,
+    omega: &[f64],
+    average: CostAverage,
+) -> PairTable<Option<CostChange>> {
+    models.mismatch.map(|pair, mismatch| {
+        let mismatch = mismatch.as_ref()?;
+        let corrected = mismatch.cost(omega, correction.on(pair)?, average);
+        Some(CostChange { uncorrected: mismatch.cost(omega, GainDelay::NONE, average), corrected })
+    })
+}
+
+fn missing(
+    result: &ConditionAnalysis,
+    models: &ModelMismatch,
+    changes: &PairTable<Option<CostChange>>,
+) -> Vec<(Pair, &'static str)> {
+    let without = changes.iter().filter(|(_, change)| change.is_none()).map(|(pair, _)| pair);
+    let why = |pair: Pair| match (&models.mismatch[pair], result.comparison.undefined[pair]) {
+        (Some(_), _) => "the scheduled net gain is not positive",
+        (None, Some(_)) => "its response is zero, numerically nothing or not finite somewhere in the band",
+        (None, None) => "the nominal model's response is zero, numerically nothing or not finite somewhere in the band",
+    };
+    without.map(|pair| (pair, why(pair))).collect()
+}
+
+/// An assessment that may take longer than a frame: of hundreds of conditions.
+#[derive(Clone, Debug)]
+pub struct AssessmentJob {
+    /// The analysis that is assessed.
+    pub analysis: Arc<Analysis>,
+    /// What is assessed, and how.
+    pub choice: AssessmentChoice,
+}
+
+impl PartialEq for AssessmentJob {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.analysis, &other.analysis) && self.choice == other.choice
+    }
+}
+
+impl Job for AssessmentJob {
+    type Tools = ();
+    type Output = Arc<AssessmentTable>;
+
+    fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        let mut table = AssessmentTable { choice: self.choice, conditions: Vec::new(), left_out: Vec::new() };
+        let conditions = self.analysis.study.dataset.conditions();
+        for (done, condition) in conditions.iter().enumerate() {
+            if progress.cancelled() {
+                return Err(Cancelled);
+            }
+            table.add(&self.analysis, condition.id());
+            progress.advanced(done + 1, conditions.len());
+        }
+        Ok(Arc::new(table))
+    }
+}

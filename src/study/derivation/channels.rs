@@ -1,0 +1,168 @@
+//! How channel gains and delays, net gains and delays, and objectives were computed (M8, M9, M11).
+
+use crate::correction::{Channel, Problem, Quantity, Solution};
+use crate::dataset::Pair;
+use crate::units::{number, s_to_ms};
+
+use super::context::{Context, digits};
+use super::{Derivation, gain_objective_equation};
+
+pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
+    let net = context.result.correction.net_gain(pair);
+    let (input, output) = (context.channel(Channel::Input(pair.input)), context.channel(Channel::Output(pair.output)));
+    let value = net.value();
+    Derivation {
+        title: context.title(&format!("net gain of {}", context.pair(pair))),
+        equation: "k_o k_i".to_owned(),
+        with_numbers: vec![format!(
+            "k_{output} k_{input} = {} · {} = {}",
+            digits(net.output),
+            digits(net.input),
+            digits(value)
+        )],
+        rests_on: vec![held_at(context, pair, &context.result.gains, context.result.comparison.delta.gain[pair])],
+        section: "M11, eq. (12)",
+        value,
+    }
+}
+
+pub(super) fn net_delay(context: &Context<'_>, pair: Pair) -> Derivation {
+    let net = context.result.correction.net_delay(pair);
+    let (input, output) = (context.channel(Channel::Input(pair.input)), context.channel(Channel::Output(pair.output)));
+    let value = s_to_ms(net.value_s());
+    let parts = format!("{} + {}", digits(s_to_ms(net.output_s)), digits(s_to_ms(net.input_s)));
+    let delta_ms = context.result.comparison.delta.delay_s[pair].map(s_to_ms);
+    Derivation {
+        title: context.title(&format!("net delay of {}", context.pair(pair))),
+        equation: "τ_o + τ_i".to_owned(),
+        with_numbers: vec![format!("τ_{output} + τ_{input} = {parts} = {} ms", digits(value))],
+        rests_on: vec![held_at(context, pair, &context.result.delays, delta_ms)],
+        section: "M10, eq. (12)",
+        value,
+    }
+}
+
+/// Whether a response is held, and at what.
+fn held_at(context: &Context<'_>, pair: Pair, solution: &Solution, delta: Option<f64>) -> String {
+    let delta = delta.map_or("nothing defined".to_owned(), digits);
+    let name = context.pair(pair);
+    match solution.targets[pair] {
+        None => format!("{name} is free, its delta is {delta}"),
+        Some(_) if solution.unmatched.iter().any(|miss| miss.pair == pair) => {
+            format!("{name} is held at the nearest that can be reached, its delta is {delta}")
+        }
+        Some(_) => format!("{name} is held at its delta {delta}"),
+    }
+}
+
+pub(super) fn gain(context: &Context<'_>, channel: Channel) -> Option<Derivation> {
+    let value = of_channel(&context.result.gains, channel)?;
+    let (equation, _) = gain_objective_equation(context.settings().gain_objective);
+    let problem = &context.result.gain_problem;
+    let name = format!("k_{}", context.channel(channel));
+    Some(Derivation {
+        title: context.title(&name),
+        equation: format!("min {equation}, subject to k_o k_i = G (held), LB ≤ k ≤ UB"),
+        with_numbers: steps(context, channel, problem, &context.result.gains, &format!("{name} = {}", digits(value))),
+        rests_on: optimum_rests_on(context, problem, &context.result.gains),
+        section: "M8, eq. (7)",
+        value,
+    })
+}
+
+pub(super) fn delay(context: &Context<'_>, channel: Channel) -> Option<Derivation> {
+    let value = s_to_ms(of_channel(&context.result.delays, channel)?);
+    let problem = &context.result.delay_problem;
+    let name = format!("τ_{}", context.channel(channel));
+    Some(Derivation {
+        title: context.title(&name),
+        equation: "min Σ w (D − τ_o − τ_i)² + α Σ τ_o², subject to τ_o + τ_i = D (held), 0 ≤ τ ≤ UB".to_owned(),
+        with_numbers: steps(
+            context,
+            channel,
+            problem,
+            &context.result.delays,
+            &format!("{name} = {} ms", digits(value)),
+        ),
+        rests_on: optimum_rests_on(context, problem, &context.result.delays),
+        section: "M9, eq. (11)",
+        value,
+    })
+}
+
+fn of_channel(solution: &Solution, channel: Channel) -> Option<f64> {
+    match channel {
+        Channel::Input(input) => solution.inputs.get(input).copied(),
+        Channel::Output(output) => solution.outputs.get(output).copied(),
+    }
+}
+
+/// The held responses that tie the channel to others, the bounds, and the value.
+fn steps(context: &Context<'_>, channel: Channel, problem: &Problem, solution: &Solution, last: &str) -> Vec<String> {
+    let is_gain = matches!(problem.quantity, Quantity::Gain(_));
+    let (unit, scale) = if is_gain { ("", 1.0) } else { (" ms", 1e3) };
+    let ties = solution.targets.iter().filter(|(pair, _)| match channel {
+        Channel::Input(input) => pair.input == input,
+        Channel::Output(output) => pair.output == output,
+    });
+    let tie = |(pair, target): (Pair, &Option<f64>)| {
+        let target = (*target)?;
+        let output = context.channel(Channel::Output(pair.output));
+        let input = context.channel(Channel::Input(pair.input));
+        let sum = if is_gain { format!("k_{output} k_{input}") } else { format!("τ_{output} + τ_{input}") };
+        Some(format!("{sum} = {}{unit} (held)", digits(scale * target)))
+    };
+    let mut steps: Vec<String> = ties.filter_map(tie).collect();
+    let (lower, upper) = (problem.bounds.lower, problem.bounds.upper);
+    let value = of_channel(solution, channel).unwrap_or_default();
+    let place = match (value == lower, value == upper) {
+        (true, _) => ", on the lower bound",
+        (_, true) => ", on the upper bound",
+        _ => "",
+    };
+    let (lower, upper) = (digits(scale * lower), digits(scale * upper));
+    steps.push(format!("{lower} ≤ {last} ≤ {upper}{unit}{place}"));
+    steps
+}
+
+fn optimum_rests_on(context: &Context<'_>, problem: &Problem, solution: &Solution) -> Vec<String> {
+    let defined = problem.delta.iter().filter(|(pair, delta)| delta.is_some() && problem.fitted[*pair]).count();
+    let mut rests_on = context.models();
+    rests_on.extend([
+        context.held(),
+        format!("{defined} responses fitted, α = {}", number(problem.alpha)),
+        solution.proof.outcome.words(),
+    ]);
+    rests_on
+}
+
+pub(super) fn gain_objective(context: &Context<'_>) -> Derivation {
+    let (equation, unit) = gain_objective_equation(context.settings().gain_objective);
+    objective(context, (equation, unit, 1.0), (&context.result.gain_problem, &context.result.gains), "M8, eq. (7)")
+}
+
+pub(super) fn delay_objective(context: &Context<'_>) -> Derivation {
+    let equation = ("Σ w (D − τ_o − τ_i)² + α Σ τ_o²", " ms²", 1e6);
+    objective(context, equation, (&context.result.delay_problem, &context.result.delays), "M9, eq. (11)")
+}
+
+fn objective(
+    context: &Context<'_>,
+    (equation, unit, scale): (&str, &str, f64),
+    (problem, solution): (&Problem, &Solution),
+    section: &'static str,
+) -> Derivation {
+    let value = scale * solution.objective;
+    let fit = scale * Problem { alpha: 0.0, ..problem.clone() }.objective_at(&solution.inputs, &solution.outputs);
+    let parts = format!("{} (fit) + {} (α = {})", digits(fit), digits(value - fit), number(problem.alpha));
+    let mut rests_on = optimum_rests_on(context, problem, solution);
+    rests_on.push(format!("no less than {}{unit} is possible", digits(scale * solution.proof.lower_bound)));
+    Derivation {
+        title: context.title(&format!("objective of the {}s", problem.quantity)),
+        equation: equation.to_owned(),
+        with_numbers: vec![format!("{parts} = {}{unit}", digits(value))],
+        rests_on,
+        section,
+        value,
+    }
+}

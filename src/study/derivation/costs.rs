@@ -1,0 +1,100 @@
+//! How J and its changes were computed (M4, M12).
+
+use crate::correction::{Channel, ChannelCorrection};
+use crate::dataset::{BundleKind, Pair};
+use crate::fidelity::{Cost, CostAverage, PHASE_WEIGHT};
+use crate::study::assessment_table::{AssessedCorrection, AssessedModel, AssessmentChoice, assessed};
+use crate::units::{number, s_to_ms, signed};
+
+use super::context::{Context, digits};
+use super::{Derivation, average_word};
+
+const SECTION: &str = "M4, eq. (14) to (19)";
+
+fn equation(average: CostAverage) -> String {
+    let word = average_word(average);
+    format!("J = 20 · 1 · {word}_ω(ΔdB²) + 20 · {PHASE_WEIGHT} · {word}_ω(Δφ²), dB and degrees")
+}
+
+/// J of a mismatch under a correction, in two steps and their sum.
+fn steps(symbol: &str, cost: Cost, average: CostAverage) -> Vec<String> {
+    let word = average_word(average);
+    // 20 W of each part is what the squares were multiplied by.
+    let (db_squared, deg_squared) = (cost.magnitude / 20.0, cost.phase / (20.0 * PHASE_WEIGHT));
+    let (magnitude, phase, total) = (digits(cost.magnitude), digits(cost.phase), digits(cost.total()));
+    vec![
+        format!("{symbol}_mag = 20 · 1 · {} dB² = {magnitude}   ({word} of the squares)", digits(db_squared)),
+        format!("{symbol}_phase = 20 · {PHASE_WEIGHT} · {} deg² = {phase}", digits(deg_squared)),
+        format!("{symbol} = {magnitude} + {phase} = {total}"),
+    ]
+}
+
+fn correction_words(context: &Context<'_>, pair: Pair, correction: &ChannelCorrection) -> String {
+    let name = |channel| context.channel(channel);
+    let (output, input) = (name(Channel::Output(pair.output)), name(Channel::Input(pair.input)));
+    let (gain, delay_ms) = (correction.net_gain(pair).value(), s_to_ms(correction.net_delay(pair).value_s()));
+    format!("k_{output} k_{input} = {}, τ_{output} + τ_{input} = {} ms", digits(gain), digits(delay_ms))
+}
+
+pub(super) fn before(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
+    let cost = context.result.cost[pair]?.uncorrected;
+    let average = context.settings().cost_average;
+    Some(Derivation {
+        title: context.title(&format!("J of {} before the correction", context.pair(pair))),
+        equation: equation(average),
+        with_numbers: steps("J", cost, average),
+        rests_on: [context.models(), vec![context.band()]].concat(),
+        section: SECTION,
+        value: cost.total(),
+    })
+}
+
+pub(super) fn after(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
+    let cost = context.result.cost[pair]?.corrected;
+    let average = context.settings().cost_average;
+    let correction = correction_words(context, pair, &context.result.correction);
+    Some(Derivation {
+        title: context.title(&format!("J of {} after the correction", context.pair(pair))),
+        equation: format!("{}; of H_sim · k_o k_i e^(−jω(τ_o + τ_i))", equation(average)),
+        with_numbers: [vec![correction], steps("J", cost, average)].concat(),
+        rests_on: [context.models(), vec![context.band()]].concat(),
+        section: SECTION,
+        value: cost.total(),
+    })
+}
+
+pub(super) fn change(context: &Context<'_>, pair: Pair, choice: AssessmentChoice) -> Option<Derivation> {
+    let id = context.result.condition.id();
+    let found = assessed(context.analysis, id, choice).ok()?;
+    let change = found.changes.get(pair)?.as_ref()?;
+    let (average, which) = (choice.average, context.pair(pair));
+    let (correction, from) = match choice.correction {
+        AssessedCorrection::Own => (context.result.correction.clone(), "the condition's own optimum".to_owned()),
+        AssessedCorrection::Scheduled => {
+            let from = format!("the schedule at {} kt", number(found.airspeed_kt));
+            (context.analysis.schedule.as_ref().ok()?.at(found.airspeed_kt), from)
+        }
+    };
+    let role = match choice.model {
+        AssessedModel::Nominal => "nominal model",
+        AssessedModel::Representative => "physics representative",
+    };
+    let (after, before) = (change.corrected.total(), change.uncorrected.total());
+    let mut with_numbers = vec![format!("{} ({from})", correction_words(context, pair, &correction))];
+    with_numbers.extend(steps("J₀", change.uncorrected, average));
+    with_numbers.extend(steps("J", change.corrected, average));
+    let parts = format!("{} magnitude, {} phase", signed(change.magnitude(), 2), signed(change.phase(), 2));
+    with_numbers.push(format!("ΔJ = {} − {} = {} ({parts})", digits(after), digits(before), digits(change.total())));
+    Some(Derivation {
+        title: context.title(&format!("ΔJ of {which}")),
+        equation: format!("ΔJ = J(corrected) − J(uncorrected), {}", equation(average)),
+        with_numbers,
+        rests_on: vec![
+            format!("{role} {} (H_sim)", found.model),
+            format!("identified representative {} (H_ref)", context.result.representative_name(BundleKind::Identified)),
+            context.band(),
+        ],
+        section: "M12, eq. (14) to (19)",
+        value: change.total(),
+    })
+}

@@ -1,0 +1,114 @@
+//! How G, D and the bounds were computed (M6, M7).
+
+use crate::dataset::Pair;
+use crate::fidelity::Mismatch;
+use crate::units::{db_to_ratio, number, s_to_ms};
+
+use super::Derivation;
+use super::context::{Context, digits, median_words, spread};
+
+/// `|H_ref| / |H_sim|` at each frequency.
+fn ratios(mismatch: &Mismatch) -> Vec<f64> {
+    mismatch.magnitude_db.iter().map(|error| db_to_ratio(-error)).collect()
+}
+
+/// `Δφ/ω` \[ms\] at each frequency, on the branch of M6b.
+fn delays_ms(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
+    let phases = mismatch.phase_difference(omega);
+    phases.iter().zip(omega).map(|(phase, omega)| s_to_ms(phase / omega)).collect()
+}
+
+pub(super) fn gain(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
+    let value = context.result.comparison.delta.gain[pair]?;
+    let ratios = ratios(context.mismatch(pair)?);
+    Some(Derivation {
+        title: context.title(&format!("G of {}", context.pair(pair))),
+        equation: "G = median_ω |H_ref| / |H_sim|".to_owned(),
+        with_numbers: vec![format!("G = {} = {}", median_words(&ratios), digits(value))],
+        rests_on: [context.models(), vec![context.band()]].concat(),
+        section: "M6, eq. (5)",
+        value,
+    })
+}
+
+pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
+    let value = s_to_ms(context.result.comparison.delta.delay_s[pair]?);
+    let mismatch = context.mismatch(pair)?;
+    let mut rests_on = [context.models(), vec![context.band()]].concat();
+    if mismatch.leaves_half_a_turn() {
+        rests_on.push("at each frequency the turn nearest to the pure delay that fits best (M6b)".to_owned());
+    }
+    Some(Derivation {
+        title: context.title(&format!("D of {}", context.pair(pair))),
+        equation: "D = median_ω Δφ(H_sim, H_ref) / ω".to_owned(),
+        with_numbers: vec![format!(
+            "D = {} = {} ms",
+            median_words(&delays_ms(mismatch, context.omega())),
+            digits(value)
+        )],
+        rests_on,
+        section: "M6, eq. (9)",
+        value,
+    })
+}
+
+/// The mismatches that are pooled: of the measuring responses, or of all where none of those is defined.
+fn pooled<'a>(context: &Context<'a>) -> Vec<&'a Mismatch> {
+    let measuring = context.analysis.study.dataset.measuring_pairs();
+    let marked: Vec<&Mismatch> = measuring.marked().filter_map(|pair| context.mismatch(pair)).collect();
+    if marked.is_empty() { measuring.pairs().filter_map(|pair| context.mismatch(pair)).collect() } else { marked }
+}
+
+fn pool_rests_on(context: &Context<'_>) -> Vec<String> {
+    [context.models(), vec![context.band(), context.measuring()]].concat()
+}
+
+pub(super) fn gain_bounds(context: &Context<'_>) -> Derivation {
+    let bounds = context.result.gain_bounds();
+    let (lower, upper) = (digits(bounds.lower), digits(bounds.upper));
+    let percent = |share: f64| number((1e6 * share).round() / 1e4);
+    let quantile = context.settings().quantile;
+    let (with_numbers, rests_on) = match context.settings().gain_bounds {
+        Some(_) => (vec![format!("LB = {lower}"), format!("UB = {upper}")], vec!["set by hand".to_owned()]),
+        None => {
+            let pool: Vec<f64> = pooled(context).into_iter().flat_map(ratios).collect();
+            let pool = spread(&pool);
+            let steps = vec![
+                format!("LB = min(1, {} % quantile of {pool}) = {lower}", percent(quantile)),
+                format!("UB = max(1, {} % quantile of {pool}) = {upper}", percent(1.0 - quantile)),
+            ];
+            (steps, pool_rests_on(context))
+        }
+    };
+    Derivation {
+        title: context.title("bounds of the gains"),
+        equation: "LB = min(1, q-quantile of |H_ref| / |H_sim|), UB = max(1, (1 − q)-quantile)".to_owned(),
+        with_numbers,
+        rests_on,
+        section: "M7",
+        value: bounds.upper,
+    }
+}
+
+pub(super) fn delay_bound(context: &Context<'_>) -> Derivation {
+    let value = s_to_ms(context.result.delay_upper_s());
+    let quantile = context.settings().quantile;
+    let (with_numbers, rests_on) = match context.settings().delay_upper_s {
+        Some(_) => (vec![format!("UB = {} ms", digits(value))], vec!["set by hand".to_owned()]),
+        None => {
+            let pool: Vec<f64> =
+                pooled(context).into_iter().flat_map(|mismatch| delays_ms(mismatch, context.omega())).collect();
+            let percent = number((1e6 * (1.0 - quantile)).round() / 1e4);
+            let step = format!("UB = max(0, {percent} % quantile of {}) = {} ms", spread(&pool), digits(value));
+            (vec![step], pool_rests_on(context))
+        }
+    };
+    Derivation {
+        title: context.title("upper bound of the delays"),
+        equation: "UB = max(0, (1 − q)-quantile of Δφ/ω)".to_owned(),
+        with_numbers,
+        rests_on,
+        section: "M7",
+        value,
+    }
+}

@@ -1,0 +1,91 @@
+//! The palette: every command, found by some letters of its name.
+
+use egui::text::{CCursor, CCursorRange};
+use egui::{Key, Modifiers, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
+
+use super::command::Command;
+use super::command_search::answers;
+use super::command_table::Entry;
+use super::every_command::every_command;
+use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
+use super::row::{Room, row_text, row_text_within, row_ui};
+use super::state::State;
+
+/// Rows that are drawn: whoever looks for more types another letter.
+const MOST_ROWS: usize = 60;
+
+/// What the palette holds while it is shown.
+#[derive(Clone, Debug, Default)]
+pub struct PaletteForm {
+    /// What is looked for, as typed.
+    pub query: String,
+    /// The row that Enter carries out.
+    pub chosen: usize,
+}
+
+/// The field and the commands that answer it. Up and Down choose, Enter carries out.
+pub fn command_palette_ui(ui: &mut Ui, state: &mut State, opens: bool, palette: &Palette, commands: &mut Vec<Command>) {
+    let entries = every_command(state);
+    let form = &mut state.forms.palette;
+    if opens {
+        *form = PaletteForm::default();
+    }
+    let pressed = |ui: &Ui, key| ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key));
+    let (down, up) = (pressed(ui, Key::ArrowDown), pressed(ui, Key::ArrowUp));
+    let entered = pressed(ui, Key::Enter) > 0;
+    if field_ui(ui, &mut form.query, opens) {
+        form.chosen = 0;
+    }
+    let mut found = answers(entries.iter().map(|entry| entry.name.as_str()), &form.query);
+    found.truncate(MOST_ROWS);
+    form.chosen = (form.chosen + down).saturating_sub(up).min(found.len().saturating_sub(1));
+    let (chosen, has_moved) = (form.chosen, down + up > 0);
+    ui.add_space(4.0);
+    if found.is_empty() {
+        ui.label(RichText::new("No command has these letters").color(palette.dim_text));
+    }
+    let mut taken = found.get(chosen).filter(|_| entered).copied();
+    ScrollArea::vertical().max_height(340.0).auto_shrink([false, true]).show(ui, |ui| {
+        for (row, &place) in found.iter().enumerate() {
+            let response = entry_ui(ui, &entries[place], row == chosen, palette);
+            if response.clicked() {
+                taken = Some(place);
+            }
+            if row == chosen && has_moved {
+                response.scroll_to_me(None);
+            }
+        }
+    });
+    if let Some(entry) = taken.map(|place| &entries[place]).filter(|entry| entry.enabled) {
+        commands.push(Command::ShowForm(None));
+        commands.push(entry.command.clone());
+    }
+}
+
+/// What is looked for; whether it was changed.
+fn field_ui(ui: &mut Ui, query: &mut String, opens: bool) -> bool {
+    let shown = TextEdit::singleline(query).hint_text("what to do").desired_width(f32::INFINITY).show(ui);
+    let response = shown.response.response;
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::TextInput, true, "Command palette");
+        info.current_text_value = Some(query.clone());
+        info
+    });
+    if opens || !response.has_focus() {
+        let mut edited = shown.state;
+        edited.cursor.set_char_range(Some(CCursorRange::one(CCursor::new(query.chars().count()))));
+        edited.store(ui.ctx(), response.id);
+        response.request_focus();
+    }
+    response.changed()
+}
+
+fn entry_ui(ui: &mut Ui, entry: &Entry, chosen: bool, palette: &Palette) -> egui::Response {
+    let (row, response) = row_ui(ui, palette, chosen, false, &entry.name);
+    let color = if entry.enabled { palette.text } else { palette.rejected };
+    let keys = entry.shortcuts.first().map(|shortcut| ui.ctx().format_shortcut(shortcut)).unwrap_or_default();
+    let keys = row_text(ui, row, -6.0, &keys, SMALL_SIZE, palette.dim_text);
+    let room = Room { left: 8.0, right: keys.left() - row.left() - 10.0 };
+    row_text_within(ui, row, room, &entry.name, BODY_SIZE, color);
+    response.on_hover_text(entry.meaning)
+}

@@ -1,0 +1,313 @@
+//! Every command of the window, once: the menus, the shortcuts, the palette and the page of keys are made of this table.
+
+use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
+
+use crate::dataset::Pair;
+use crate::study::{Edit, Setting};
+
+use super::arrangement::{Preset, View};
+use super::command::{Command, FormKind};
+use super::curve_entries::curve_entries;
+use super::plot::FrequencyUnit;
+use super::state::State;
+use super::tables::TableKind;
+
+/// A menu of the bar on top.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Menu {
+    /// Opening, saving, exporting.
+    File,
+    /// Decisions about the study.
+    Edit,
+    /// What is shown, and how.
+    View,
+    /// How curves are drawn: a part of the menu before.
+    Curves,
+    /// Explanations.
+    Help,
+}
+
+/// Where a shortcut works.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// Everywhere, also while text is typed.
+    Everywhere,
+    /// Only while nothing has the focus and no form is open: keys that lists, fields and texts use too.
+    WithoutFocus,
+}
+
+/// One command.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// Its name, by which menus show it and the palette finds it.
+    pub name: String,
+    /// What it does, where the name does not say all.
+    pub meaning: &'static str,
+    /// The keys that give it, the first of which is shown.
+    pub shortcuts: Vec<KeyboardShortcut>,
+    /// Where they work.
+    pub reach: Reach,
+    /// The menu it stands in, and its group there; groups are parted by lines.
+    pub menu: Option<(Menu, u8)>,
+    /// Whether it can be given now.
+    pub enabled: bool,
+    /// What it asks for.
+    pub command: Command,
+}
+
+impl Entry {
+    /// An entry without shortcut and menu.
+    pub(super) fn new(name: impl Into<String>, meaning: &'static str, command: Command) -> Self {
+        let (shortcuts, reach) = (Vec::new(), Reach::Everywhere);
+        Self { name: name.into(), meaning, shortcuts, reach, menu: None, enabled: true, command }
+    }
+
+    pub(super) fn keys(mut self, modifiers: Modifiers, key: Key) -> Self {
+        self.shortcuts.push(KeyboardShortcut::new(modifiers, key));
+        self
+    }
+
+    /// A key without modifiers that works only while nothing has the focus.
+    pub(super) fn free_key(mut self, key: Key) -> Self {
+        self.reach = Reach::WithoutFocus;
+        self.keys(Modifiers::NONE, key)
+    }
+
+    pub(super) fn within(mut self, menu: Menu, group: u8) -> Self {
+        self.menu = Some((menu, group));
+        self
+    }
+
+    pub(super) fn enabled(mut self, enabled: bool) -> Self {
+        self.enabled = enabled;
+        self
+    }
+}
+
+const CTRL: Modifiers = Modifiers::COMMAND;
+const CTRL_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
+
+/// The commands of the menus and of the keys, in the order in which menus and the page of keys show them.
+pub fn command_table(state: &State) -> Vec<Entry> {
+    let mut entries = file_entries(state);
+    entries.extend(edit_entries(state));
+    entries.extend(view_entries(state));
+    entries.extend(curve_entries(state));
+    entries.extend(field_entries());
+    entries.extend(TableKind::ALL.map(|kind| {
+        Entry::new(format!("Copy table: {}", kind.name()), "As text, one line a row", Command::CopyTable(kind))
+    }));
+    entries.extend(
+        TableKind::ALL.map(|kind| {
+            Entry::new(format!("Save table: {}…", kind.name()), "As a CSV file", Command::AskSaveTable(kind))
+        }),
+    );
+    entries.extend(help_entries());
+    entries
+}
+
+fn file_entries(state: &State) -> Vec<Entry> {
+    let form = |form| Command::ShowForm(Some(form));
+    vec![
+        Entry::new("Open…", "A dataset or a study, with the desktop's dialog", Command::AskOpen)
+            .keys(CTRL, Key::O)
+            .within(Menu::File, 0),
+        Entry::new("Open by path…", "A dataset or a study, by its path; ~ is the home directory", form(FormKind::Open))
+            .keys(CTRL_SHIFT, Key::O)
+            .within(Menu::File, 0),
+        Entry::new("Open the example", "The simulated dataset that comes with the program", Command::OpenExample)
+            .within(Menu::File, 0),
+        Entry::new("Save study", "Where it was saved last", Command::SaveStudy)
+            .keys(CTRL, Key::S)
+            .within(Menu::File, 1),
+        Entry::new("Save study as…", "With the desktop's dialog", Command::AskSaveStudy)
+            .keys(CTRL_SHIFT, Key::S)
+            .within(Menu::File, 1),
+        Entry::new(
+            "Export corrections…",
+            "Write corrections.json, corrections.csv and assessment.csv",
+            form(FormKind::Export),
+        )
+        .keys(CTRL, Key::E)
+        .within(Menu::File, 2)
+        .enabled(state.analysis().is_some()),
+        Entry::new("Quit", "Close the window", Command::Quit).keys(CTRL, Key::Q).within(Menu::File, 3),
+    ]
+}
+
+fn edit_entries(state: &State) -> Vec<Entry> {
+    let step = |verb: &str, label: Option<&str>| label.map_or(verb.to_owned(), |label| format!("{verb} {label}"));
+    let (undo, redo) = (state.history.undo_label(), state.history.redo_label());
+    let condition = state.condition().id();
+    let choice = state.study.choice(condition);
+    let suggested = open_suggestions(state);
+    let reject = match suggested.len() {
+        0 => "Reject suggested".to_owned(),
+        count => format!("Reject {count} suggested"),
+    };
+    let any_rejected = !choice.physics.rejected.is_empty() || !choice.identified.rejected.is_empty();
+    let (scheduled, pair) = (choice.scheduled, state.display.pair);
+    let schedule =
+        if scheduled { "Leave this condition out of the schedule" } else { "Take this condition into the schedule" };
+    vec![
+        Entry::new(step("Undo", undo), "Take the last decision back", Command::Undo)
+            .keys(CTRL, Key::Z)
+            .within(Menu::Edit, 0)
+            .enabled(undo.is_some()),
+        Entry::new(step("Redo", redo), "Bring a decision taken back again", Command::Redo)
+            .keys(CTRL_SHIFT, Key::Z)
+            .keys(CTRL, Key::Y)
+            .within(Menu::Edit, 0)
+            .enabled(redo.is_some()),
+        Entry::new(
+            reject,
+            "Reject the suggested outliers of this condition",
+            Edit::RejectAll { condition, models: suggested.clone() }.into(),
+        )
+        .keys(CTRL, Key::R)
+        .within(Menu::Edit, 1)
+        .enabled(!suggested.is_empty()),
+        Entry::new(
+            "Restore all models of this condition",
+            "Put every rejected model of this condition back",
+            Edit::RestoreAll { condition }.into(),
+        )
+        .within(Menu::Edit, 1)
+        .enabled(any_rejected),
+        hold_entry(state, pair).free_key(Key::Space).within(Menu::Edit, 2),
+        Entry::new(
+            "Hold exactly the on-axis responses",
+            "As the dataset names them, and no others",
+            Edit::ConstrainOnAxis.into(),
+        )
+        .within(Menu::Edit, 2),
+        Entry::new(
+            schedule,
+            "Whether its gains enter the regression over airspeed",
+            Edit::SetScheduled { condition, scheduled: !scheduled }.into(),
+        )
+        .within(Menu::Edit, 3),
+    ]
+}
+
+/// "Hold LON → Q" or "Free LON → Q"; a response that has no G cannot be held.
+pub(super) fn hold_entry(state: &State, pair: Pair) -> Entry {
+    let held = state.study.settings.constrained[pair];
+    let verb = if held { "Free" } else { "Hold" };
+    let is_undefined = state.shown().is_some_and(|shown| shown.comparison.undefined[pair].is_some());
+    Entry::new(
+        format!("{verb} {} exactly", state.dataset().pair_name(pair)),
+        "Hold a response exactly, or leave it to the fit",
+        Edit::Set(Setting::Constrained(pair, !held)).into(),
+    )
+    .enabled(held || !is_undefined)
+}
+
+/// The models of the condition shown that are suggested as outliers and not rejected.
+pub fn open_suggestions(state: &State) -> Vec<String> {
+    let rejected = &state.study.choice(state.condition().id()).physics.rejected;
+    let suggested = state.shown().map(|shown| shown.suggested()).unwrap_or_default();
+    suggested.into_iter().filter(|model| !rejected.contains(model)).collect()
+}
+
+fn view_entries(state: &State) -> Vec<Entry> {
+    let (unit_name, unit) = match state.display.unit {
+        FrequencyUnit::RadPerSecond => ("Frequencies in Hz", FrequencyUnit::Hertz),
+        FrequencyUnit::Hertz => ("Frequencies in rad/s", FrequencyUnit::RadPerSecond),
+    };
+    let mut entries = vec![
+        Entry::new("Fit the plots", "Bring every curve back into view", Command::FitPlots)
+            .free_key(Key::F)
+            .within(Menu::View, 0),
+        Entry::new(unit_name, "In every plot over frequency", Command::SetFrequencyUnit(unit)).within(Menu::View, 0),
+    ];
+    entries.extend(steps(state));
+    let show = |view: View| {
+        Entry::new(format!("Show {}", view.name()), view.purpose(), Command::ShowView(view)).within(Menu::View, 2)
+    };
+    entries.extend(View::ALL.map(show));
+    let arrange = |preset: Preset| Entry::new(preset.name(), ARRANGED, Command::Arrange(preset)).within(Menu::View, 3);
+    entries.extend(Preset::ALL.map(arrange));
+    entries.extend([
+        Entry::new("Next part of the window", PARTS, Command::LeaveRegion { forward: true })
+            .keys(Modifiers::NONE, Key::F6)
+            .within(Menu::View, 4),
+        Entry::new("Previous part of the window", PARTS, Command::LeaveRegion { forward: false })
+            .keys(Modifiers::SHIFT, Key::F6)
+            .within(Menu::View, 4),
+    ]);
+    let themes = [
+        ("Theme of the desktop", "Light or dark as the desktop is", ThemePreference::System),
+        ("Dark theme", "Light text on a dark ground", ThemePreference::Dark),
+        ("Light theme", "Dark text on a light ground", ThemePreference::Light),
+    ];
+    let theme = |(name, meaning, theme)| Entry::new(name, meaning, Command::SetTheme(theme)).within(Menu::View, 5);
+    entries.extend(themes.map(theme));
+    entries
+}
+
+const ARRANGED: &str = "Every plot goes back to its place in this arrangement";
+const PARTS: &str = "Conditions, models, plots, matrix, settings, result; each remembers what had the focus in it";
+
+/// To the neighbours of the condition and of the response shown.
+fn steps(state: &State) -> [Entry; 4] {
+    let conditions = state.dataset().conditions();
+    let here = conditions.iter().position(|condition| condition.id() == state.condition().id()).unwrap_or(0);
+    let to_condition = |name, key, place: Option<usize>| {
+        let found = place.and_then(|place| conditions.get(place));
+        let command = Command::SelectCondition(found.unwrap_or(&conditions[here]).id());
+        Entry::new(name, "In the order of the list", command)
+            .free_key(key)
+            .within(Menu::View, 1)
+            .enabled(found.is_some())
+    };
+    let (inputs, outputs) = (state.dataset().inputs().len(), state.dataset().outputs().len());
+    let at = state.display.pair.output * inputs + state.display.pair.input;
+    let to_response = |name, key, place: Option<usize>| {
+        let found = place.filter(|place| *place < inputs * outputs);
+        let place = found.unwrap_or(at);
+        let command = Command::FocusPair(Pair::new(place / inputs, place % inputs));
+        Entry::new(name, "Row by row of the matrix", command)
+            .free_key(key)
+            .within(Menu::View, 1)
+            .enabled(found.is_some())
+    };
+    [
+        to_condition("Next condition", Key::ArrowDown, Some(here + 1)),
+        to_condition("Previous condition", Key::ArrowUp, here.checked_sub(1)),
+        to_response("Next response", Key::ArrowRight, Some(at + 1)),
+        to_response("Previous response", Key::ArrowLeft, at.checked_sub(1)),
+    ]
+}
+
+/// Fields that the palette goes to, by their accessible names.
+const FIELDS: [(&str, &str); 10] = [
+    ("Set α gains (alpha)…", "α gains"),
+    ("Set α delays (alpha)…", "α delays"),
+    ("Set the lower end of the band…", "Band from"),
+    ("Set the upper end of the band…", "Band to"),
+    ("Set the number of frequencies…", "Frequencies in the band"),
+    ("Set the quantile of the bounds…", "Quantile of the bounds"),
+    ("Set the lower gain bound…", "Lower gain bound"),
+    ("Set the upper gain bound…", "Upper gain bound"),
+    ("Set the delay bound…", "Upper delay bound"),
+    ("Set the airspeed tolerance…", "Airspeed tolerance"),
+];
+
+fn field_entries() -> impl Iterator<Item = Entry> {
+    FIELDS.into_iter().map(|(name, field)| Entry::new(name, "Goes to its field", Command::FocusField(field)))
+}
+
+fn help_entries() -> [Entry; 4] {
+    let form = |form| Command::ShowForm(Some(form));
+    [
+        Entry::new("Command palette", "Find any command by its name", form(FormKind::Palette))
+            .keys(CTRL, Key::K)
+            .within(Menu::Help, 0),
+        Entry::new("Keys and gestures", "Every key, and what the pointer does", form(FormKind::Shortcuts))
+            .keys(Modifiers::NONE, Key::F1)
+            .within(Menu::Help, 0),
+        Entry::new("Guided tour", "Five steps through the window", Command::StartTour).within(Menu::Help, 0),
+        Entry::new("About gdcm", "Version and licence", form(FormKind::About)).within(Menu::Help, 1),
+    ]
+}

@@ -1,0 +1,75 @@
+//! The forms, worked from the keyboard.
+
+use super::*;
+
+fn press(window: &mut Window, modifiers: Modifiers, key: Key) {
+    window.key_press_modifiers(modifiers, key);
+    window.run_steps(2);
+}
+
+fn type_text(window: &mut Window, text: &str) {
+    window.event(Event::Text(text.to_owned()));
+    window.run_steps(2);
+}
+
+/// A window whose home directory is `home`.
+fn window_at(home: &Path) -> Window {
+    window_with(example(), Setup { home: Some(home.to_owned()), ..Setup::default() })
+}
+
+#[test]
+fn a_path_is_typed_at_once_and_enter_opens_it_and_a_tilde_means_home() {
+    let home = tempfile::tempdir().unwrap();
+    std::fs::copy(files::small_dataset(), home.path().join("data.json")).unwrap();
+    let mut window = window_at(home.path());
+    press(&mut window, Modifiers::COMMAND | Modifiers::SHIFT, Key::O);
+    type_text(&mut window, "~/data.json");
+    press(&mut window, Modifiers::NONE, Key::Enter);
+    settle(&mut window);
+    assert_eq!(state(&window).dataset().conditions().len(), 2);
+    assert_eq!(state(&window).forms.shown, None);
+}
+
+#[test]
+fn enter_exports_and_what_exists_already_is_asked_about() {
+    let home = tempfile::tempdir().unwrap();
+    let mut window = window_at(home.path());
+    let written = home.path().join("results/corrections.json");
+    press(&mut window, Modifiers::COMMAND, Key::E);
+    type_text(&mut window, "~/results");
+    press(&mut window, Modifiers::NONE, Key::Enter);
+    settle(&mut window);
+    assert!(written.exists());
+    let first = std::fs::read(&written).unwrap();
+
+    window.get_by_role_and_label(Role::Slider, "α gains slider").set_value_accesskit(12.5);
+    settle(&mut window);
+    press(&mut window, Modifiers::COMMAND, Key::E);
+    type_text(&mut window, "~/results");
+    press(&mut window, Modifiers::NONE, Key::Enter);
+    settle(&mut window);
+    window.get_by_label("These files exist already");
+    press(&mut window, Modifiers::NONE, Key::Enter);
+    settle(&mut window);
+    assert_eq!(std::fs::read(&written).unwrap(), first, "Enter alone overwrites nothing");
+    window.get_by_label("Export folder");
+    press(&mut window, Modifiers::NONE, Key::Enter);
+    settle(&mut window);
+    click(&mut window, "Overwrite");
+    assert_eq!(read_corrections(&written).unwrap().settings.alpha_gain, 12.5);
+}
+
+#[test]
+fn escape_closes_each_form_and_decides_nothing() {
+    let mut window = window();
+    click(&mut window, "Keep physics model V+10kt");
+    let before = state(&window).study.clone();
+    let (ctrl, shift) = (Modifiers::COMMAND, Modifiers::COMMAND | Modifiers::SHIFT);
+    for (modifiers, key) in [(shift, Key::O), (ctrl, Key::E), (ctrl, Key::Q), (Modifiers::NONE, Key::F1)] {
+        press(&mut window, modifiers, key);
+        assert!(state(&window).forms.shown.is_some(), "{key:?}");
+        press(&mut window, Modifiers::NONE, Key::Escape);
+        assert_eq!(state(&window).forms.shown, None, "{key:?}");
+    }
+    assert!(state(&window).study == before && state(&window).unsaved);
+}

@@ -1,0 +1,131 @@
+//! What the lists say, and that it can be read.
+
+use gdcm::study::Edit;
+use gdcm::view::net_gain_scene::dot_key;
+
+use super::*;
+
+/// The window at its least size.
+fn small_window() -> Window {
+    let build = |creation: &mut eframe::CreationContext<'static>| {
+        GdcmApp::with(&creation.egui_ctx, example(), Setup::default()).expect("a thread can be started")
+    };
+    let mut window = Harness::builder().with_size(vec2(900.0, 560.0)).build_eframe(build);
+    settle(&mut window);
+    window
+}
+
+/// The texts painted in the last frame whose place is inside `area`, each with its place.
+fn texts_in(window: &Window, area: egui::Rect) -> Vec<(String, egui::Rect)> {
+    let shapes = window.output().shapes.iter();
+    shapes
+        .filter_map(|clipped| match &clipped.shape {
+            egui::Shape::Text(text) => {
+                let place = egui::Rect::from_min_size(text.pos, text.galley.size());
+                let visible = clipped.clip_rect.intersects(place) && area.contains(place.center());
+                (visible && !text.galley.text().is_empty()).then(|| (text.galley.text().to_owned(), place))
+            }
+            _ => None,
+        })
+        .collect()
+}
+
+/// Asserts that no two texts in `area` lie over one another.
+fn assert_apart(window: &Window, area: egui::Rect, what: &str) {
+    let texts = texts_in(window, area);
+    for (index, (text, place)) in texts.iter().enumerate() {
+        for (other, at) in &texts[index + 1..] {
+            let over = place.intersect(*at);
+            assert!(over.width() < 1.0 || over.height() < 3.0, "{what}: \"{text}\" and \"{other}\" at {over}");
+        }
+    }
+}
+
+#[test]
+fn at_the_least_size_no_text_of_a_list_lies_over_another() {
+    let mut window = small_window();
+    // Bounds that leave gains unmatched give every condition its marks.
+    window.get_by_label("Upper gain bound").set_value_accesskit(1.0);
+    settle(&mut window);
+    let rows: Vec<egui::Rect> = window.query_all_by_label_contains("Condition ").map(|row| row.rect()).collect();
+    assert_eq!(rows.len(), 11);
+    for row in rows {
+        assert_apart(&window, row, "a condition");
+    }
+    let models: Vec<egui::Rect> =
+        window.query_all_by_label_contains("Keep physics model").map(|row| row.rect()).collect();
+    for model in models {
+        let row = egui::Rect::from_min_max(model.min, pos2(model.min.x + 180.0, model.max.y));
+        assert_apart(&window, row, "a model");
+    }
+    for tab in ["Bode", "Net gain"] {
+        let tab = window.get_by_label(tab).rect();
+        let bar = egui::Rect::from_x_y_ranges(0.0..=900.0, tab.y_range());
+        assert_apart(&window, bar, "a row of tabs");
+    }
+}
+
+#[test]
+fn the_list_of_conditions_has_headings() {
+    let window = window();
+    let heading = window.get_by_label_contains("Condition 1: ").rect().translate(vec2(0.0, -16.0));
+    let texts: Vec<String> =
+        texts_in(&window, heading.expand2(vec2(0.0, 4.0))).into_iter().map(|(text, _)| text).collect();
+    for word in ["speed", "altitude", "weight"] {
+        assert!(texts.iter().any(|text| text == word), "{texts:?}");
+    }
+}
+
+fn marks_of_10(window: &Window) -> Vec<String> {
+    let row = window.get_by_label_contains("Condition 10: ").rect();
+    texts_in(window, row).into_iter().map(|(text, _)| text).filter(|text| text.starts_with(['⚠', 'k', 'τ'])).collect()
+}
+
+#[test]
+fn a_mark_goes_once_what_it_asks_for_is_done() {
+    let mut window = window();
+    assert_eq!(marks_of_10(&window), ["⚠ 3"], "delays that need lead ask for nothing");
+    choose_condition_10(&mut window);
+    click(&mut window, "Reject 3 suggested");
+    assert!(marks_of_10(&window).is_empty(), "{:?}", marks_of_10(&window));
+}
+
+#[test]
+fn a_condition_left_out_of_the_schedule_says_so_and_its_menu_takes_it_in_again() {
+    let mut window = window();
+    window.get_by_label_contains("Condition 3: ").click_secondary();
+    window.run_steps(2);
+    click(&mut window, "Leave out of the schedule: condition 3");
+    assert!(!state(&window).study.choice(ConditionId(3)).scheduled);
+    window.get_by_label_contains(", left out of the schedule").click_secondary();
+    window.run_steps(2);
+    click(&mut window, "Take into the schedule: condition 3");
+    assert!(state(&window).study.choice(ConditionId(3)).scheduled);
+    assert!(window.query_by_label_contains(", left out of the schedule").is_none());
+    let edit = Edit::SetScheduled { condition: ConditionId(3), scheduled: true };
+    assert_eq!(state(&window).history.undo_label(), Some(edit.label(&state(&window).study).as_str()));
+}
+
+#[test]
+fn the_key_of_the_dots_names_every_class() {
+    let window = window();
+    assert_eq!(dot_key(state(&window)), "altitude ● low ◆ high · weight filled low, open high");
+}
+
+#[test]
+fn the_title_of_the_window_names_the_study_and_the_dataset_and_marks_what_is_not_saved() {
+    let mut window = window();
+    let dataset = state(&window).dataset().name().to_owned();
+    assert_eq!(state(&window).window_title(), format!("untitled study – {dataset} – gdcm"));
+    window.get_by_label("Keep physics model V+10kt").click();
+    let mut titles = Vec::new();
+    for _ in 0..10 {
+        window.step();
+        let commands = window.output().viewport_output.values().flat_map(|viewport| viewport.commands.iter());
+        titles.extend(commands.filter_map(|command| match command {
+            egui::ViewportCommand::Title(title) => Some(title.clone()),
+            _ => None,
+        }));
+    }
+    assert_eq!(titles, [format!("untitled study • – {dataset} – gdcm")], "told once");
+}

@@ -3,6 +3,7 @@
 mod commands;
 mod computing;
 mod controls;
+mod curves;
 mod decisions;
 mod files;
 mod forms;

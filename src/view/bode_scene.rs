@@ -65,8 +65,18 @@ pub struct CachedShapes {
     identified: Vec<Shape>,
     /// Of each corrected curve: what it was made with, and its shape.
     corrected: BTreeMap<CurveId, (Treatment, Shape)>,
-    /// Phases that are not drawn as they are, by their curves: of which phase, how, and what is drawn.
-    presented: BTreeMap<CurveId, (Arc<[f64]>, Presentation, Arc<[f64]>)>,
+    /// Phases that are not drawn as they are, by their curves.
+    presented: BTreeMap<CurveId, PresentedPhase>,
+}
+
+/// A phase that is not drawn as it is.
+#[derive(Clone, Debug)]
+struct PresentedPhase {
+    /// The phase as it is \[deg\].
+    phase_deg: Arc<[f64]>,
+    how: Presentation,
+    /// What is drawn of it \[deg\].
+    drawn_deg: Arc<[f64]>,
 }
 
 /// How a phase is drawn.
@@ -136,15 +146,14 @@ impl CachedShapes {
         if how == (Presentation { unit: PhaseUnit::Unwrapped, turns: 0 }) {
             return Arc::clone(phase_deg);
         }
-        if let Some((of, before, drawn)) = self.presented.get(id)
-            && Arc::ptr_eq(of, phase_deg)
-            && *before == how
-        {
-            return Arc::clone(drawn);
+        let is_same = |before: &&PresentedPhase| Arc::ptr_eq(&before.phase_deg, phase_deg) && before.how == how;
+        if let Some(before) = self.presented.get(id).filter(is_same) {
+            return Arc::clone(&before.drawn_deg);
         }
-        let drawn = how.of(phase_deg);
-        self.presented.insert(id.clone(), (Arc::clone(phase_deg), how, Arc::clone(&drawn)));
-        drawn
+        let drawn_deg = how.of(phase_deg);
+        let presented = PresentedPhase { phase_deg: Arc::clone(phase_deg), how, drawn_deg: Arc::clone(&drawn_deg) };
+        self.presented.insert(id.clone(), presented);
+        drawn_deg
     }
 
     fn of_bundle(&self, kind: BundleKind) -> &[Shape] {

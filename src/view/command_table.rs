@@ -3,11 +3,13 @@
 use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
 
 use crate::dataset::Pair;
+use crate::figure::FigureFormat;
 use crate::study::{Edit, Setting};
 
 use super::arrangement::{Preset, View};
 use super::command::{Command, FormKind};
 use super::curve_entries::curve_entries;
+use super::figures::views_with_figure;
 use super::plot::FrequencyUnit;
 use super::state::State;
 use super::tables::TableKind;
@@ -102,6 +104,14 @@ pub fn command_table(state: &State) -> Vec<Entry> {
             Entry::new(format!("Save table: {}…", kind.name()), "As a CSV file", Command::AskSaveTable(kind))
         }),
     );
+    entries.extend(views_with_figure().map(|view| {
+        let name = format!("Copy numbers of {}", view.name());
+        Entry::new(name, "As CSV, to the clipboard", Command::CopyFigure(view))
+    }));
+    entries.extend(views_with_figure().map(|view| {
+        let command = Command::AskSaveFigure(view, FigureFormat::Svg);
+        Entry::new(format!("Save figure: {}…", view.name()), "As SVG, PNG or PDF, or its numbers as CSV", command)
+    }));
     entries.extend(help_entries());
     entries
 }

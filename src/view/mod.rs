@@ -22,6 +22,7 @@ pub mod error_scene;
 pub mod every_command;
 pub mod evidence_scene;
 pub mod explanation;
+pub mod figures;
 pub mod focus_ring;
 pub mod forms;
 mod heading;

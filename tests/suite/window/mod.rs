@@ -5,6 +5,7 @@ mod computing;
 mod controls;
 mod curves;
 mod decisions;
+mod figures;
 mod files;
 mod forms;
 mod keyboard;

@@ -35,6 +35,12 @@ impl GdcmApp {
         self.save_as(path, Existing::Keep, ctx);
     }
 
+    /// Carries out one command, as a click or a key would.
+    pub fn give(&mut self, command: Command, ctx: &Context) {
+        self.carry_out_one(command, ctx);
+        ctx.request_repaint();
+    }
+
     /// Carries out the commands of one frame.
     pub(super) fn carry_out(&mut self, commands: Vec<Command>, ctx: &Context) {
         let pointed_before = (self.state.display.hovered.take(), self.state.display.curves.cursor.take());
@@ -76,6 +82,7 @@ impl GdcmApp {
                 }
             }
             Command::ShowChannels(measure, across) => display.channel_figure = (measure, across),
+            Command::Explain(asked) => display.asked = asked,
             Command::ShowZeros(shown) => display.show_zeros = shown,
             Command::ShowEvidence(shown) => display.show_evidence = shown,
             Command::ShowAcross(role) => {

@@ -14,8 +14,8 @@ use crate::view::palette::{self, Palette};
 use crate::view::preferences::Preferences;
 use crate::view::state::State;
 use crate::view::{
-    bars, centre, conditions_panel, focus_ring, forms, matrix_panel, menu_bar, models_panel, result_panel,
-    settings_panel, status_bar, tour,
+    bars, centre, conditions_panel, derivation_window, focus_ring, forms, matrix_panel, menu_bar, models_panel,
+    result_panel, settings_panel, status_bar, tour,
 };
 
 use super::autosave::Autosave;
@@ -335,6 +335,7 @@ impl eframe::App for GdcmApp {
         forms::forms_ui(&ctx, &mut self.state, &palette, &mut commands);
         tour::tour_ui(&ctx, &self.state, &palette, &mut commands);
         focus_ring::focus_ring_ui(&ctx, &palette);
+        derivation_window::derivation_window_ui(&ctx, &self.state, &palette, &mut commands);
         self.carry_out(commands, &ctx);
         self.name_window(&ctx);
         let now = ctx.input(|input| input.time);

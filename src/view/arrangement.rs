@@ -47,7 +47,7 @@ impl View {
             Self::Bode => "Bode",
             Self::Error => "Error",
             Self::Overview => "Overview",
-            Self::Across => "Conditions",
+            Self::Across => "Airspeeds",
             Self::Poles => "Poles",
             Self::Compare => "Compare",
             Self::Channels => "Channels",

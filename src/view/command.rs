@@ -6,7 +6,7 @@ use egui::ThemePreference;
 use egui_tiles::LinearDir;
 
 use crate::dataset::{ConditionId, ModelId, Pair};
-use crate::study::Edit;
+use crate::study::{AskedFigure, Edit};
 
 use super::across_scene::AcrossRole;
 use super::arrangement::{Preset, View};
@@ -59,6 +59,8 @@ pub enum Command {
     ShowAcross(AcrossRole),
     /// Assess something else, or show it in another form.
     Assess(AssessedFigures),
+    /// Show how a figure was computed, or put that away.
+    Explain(Option<AskedFigure>),
     /// Read frequencies in another unit.
     SetFrequencyUnit(FrequencyUnit),
     /// Show the curves of the plots over frequency in another way.

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::dataset::{ConditionId, ModelId, Pair};
+use crate::study::AskedFigure;
 
 use super::across_scene::{AcrossRole, CachedAcross};
 use super::arrangement::Arrangement;
@@ -31,6 +32,8 @@ pub struct Display {
     pub hovered: Option<ModelId>,
     /// The only model shown beside the representatives.
     pub isolated: Option<ModelId>,
+    /// The figure whose derivation is shown.
+    pub asked: Option<AskedFigure>,
     /// How the plots share the middle of the window.
     pub arrangement: Arrangement,
     /// Unit of frequencies.
@@ -105,6 +108,7 @@ impl Display {
             pair,
             hovered: None,
             isolated: None,
+            asked: None,
             arrangement: Arrangement::default(),
             unit: FrequencyUnit::default(),
             looks: Looks::default(),

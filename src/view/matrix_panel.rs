@@ -8,10 +8,11 @@ use egui::{
 use crate::correction::Channel;
 use crate::dataset::Pair;
 use crate::fidelity::{ACCEPTABLE, INDISTINGUISHABLE};
-use crate::study::{ConditionAnalysis, Edit, Setting, Undefined};
+use crate::study::{AskedFigure, ConditionAnalysis, Edit, Setting, Undefined};
 use crate::units::s_to_ms;
 
 use super::command::Command;
+use super::derivation_window::question_menu_ui;
 use super::explanation::{gain_conflict_marks, toggle_costs};
 use super::heading::table_heading_ui;
 use super::palette::{Palette, SMALL_SIZE};
@@ -225,6 +226,18 @@ impl<'a> Cell<'a> {
         if ui.button("Hold exactly the on-axis responses").clicked() {
             commands.push(Edit::ConstrainOnAxis.into());
             ui.close();
+        }
+        if let Some(shown) = self.shown.filter(|_| !self.is_undefined()) {
+            let (id, pair) = (shown.condition.id(), self.pair);
+            let figures = [
+                ("G", AskedFigure::DeltaGain(id, pair)),
+                ("D", AskedFigure::DeltaDelay(id, pair)),
+                ("Net gain", AskedFigure::NetGain(id, pair)),
+                ("Net delay", AskedFigure::NetDelay(id, pair)),
+                ("J before", AskedFigure::CostBefore(id, pair)),
+                ("J after", AskedFigure::CostAfter(id, pair)),
+            ];
+            question_menu_ui(ui, figures.map(|(name, asked)| (name.to_owned(), asked)).into(), commands);
         }
     }
 

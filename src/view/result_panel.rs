@@ -2,12 +2,13 @@
 
 use egui::{Align, Button, CollapsingHeader, Color32, Grid, Layout, RichText, Role, Ui, WidgetInfo, vec2};
 
-use crate::correction::{GainObjective, Outcome, Quantity};
+use crate::correction::{self, GainObjective, Outcome, Quantity};
 use crate::dataset::{Channel, Pair};
-use crate::study::{ConditionAnalysis, Edit, Remark, RemarkKind, Setting};
+use crate::study::{AskedFigure, ConditionAnalysis, Edit, Remark, RemarkKind, Setting};
 use crate::units::s_to_ms;
 
 use super::command::{Command, FormKind};
+use super::derivation_window::figure_ui;
 use super::explanation::{details_shown, remarks_shown};
 use super::heading::{heading_ui, table_menu_ui};
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
@@ -32,8 +33,8 @@ fn outcome_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
         }
         Some(Ok(shown)) => {
             header_ui(ui, state, shown, palette, commands);
-            ui.scope(|ui| channels_ui(ui, state, shown, palette));
-            objective_ui(ui, shown, palette);
+            ui.scope(|ui| channels_ui(ui, state, shown, palette, commands));
+            objective_ui(ui, shown, palette, commands);
             for remark in remarks_shown(state, shown) {
                 remark_ui(ui, palette, &remark);
                 if let Some(pair) = remark.ignore {
@@ -105,43 +106,67 @@ fn badge_ui(ui: &mut Ui, word: &str, color: Color32, palette: &Palette) -> egui:
 }
 
 /// Inputs beside outputs.
-fn channels_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Palette) {
-    let (gains, delays) = (&shown.gains, &shown.delays);
-    let dataset = state.dataset();
-    let sides = [
-        ("input", dataset.inputs(), &gains.inputs, &delays.inputs),
-        ("output", dataset.outputs(), &gains.outputs, &delays.outputs),
-    ];
+fn channels_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Palette, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.x = 18.0;
     ui.columns(2, |columns| {
-        for (ui, (title, channels, gains, delays_s)) in columns.iter_mut().zip(sides) {
-            channel_table_ui(ui, title, channels, gains, delays_s, palette);
-        }
+        channel_table_ui(&mut columns[0], "input", state.dataset().inputs(), Side::Input, shown, palette, commands);
+        channel_table_ui(&mut columns[1], "output", state.dataset().outputs(), Side::Output, shown, palette, commands);
     });
 }
 
+/// Which of the two tables of channels.
+#[derive(Clone, Copy, Debug)]
+enum Side {
+    Input,
+    Output,
+}
+
+impl Side {
+    fn channel(self, index: usize) -> correction::Channel {
+        match self {
+            Self::Input => correction::Channel::Input(index),
+            Self::Output => correction::Channel::Output(index),
+        }
+    }
+
+    /// Gain, and delay \[ms\], of a channel.
+    fn figures(self, shown: &ConditionAnalysis, index: usize) -> (f64, f64) {
+        let (gains, delays) = (&shown.gains, &shown.delays);
+        match self {
+            Self::Input => (gains.inputs[index], s_to_ms(delays.inputs[index])),
+            Self::Output => (gains.outputs[index], s_to_ms(delays.outputs[index])),
+        }
+    }
+}
+
+/// Gains and delays of the channels of one side; a click on a figure asks how it was computed.
 fn channel_table_ui(
     ui: &mut Ui,
     title: &str,
     channels: &[Channel],
-    gains: &[f64],
-    delays_s: &[f64],
+    side: Side,
+    shown: &ConditionAnalysis,
     palette: &Palette,
+    commands: &mut Vec<Command>,
 ) {
-    let width = ui.available_width();
+    let (width, id) = (ui.available_width(), shown.condition.id());
     Grid::new(title).num_columns(3).spacing([6.0, 3.0]).min_col_width(0.3 * width - 6.0).show(ui, |ui| {
         let head = |ui: &mut Ui, text: &str| ui.label(RichText::new(text).size(SMALL_SIZE).color(palette.dim_text));
         head(ui, title);
         right(ui, |ui| head(ui, "k"));
         right(ui, |ui| head(ui, "τ ms"));
         ui.end_row();
-        for ((channel, gain), delay_s) in channels.iter().zip(gains).zip(delays_s) {
+        for (index, channel) in channels.iter().enumerate() {
+            let (gain, delay_ms) = side.figures(shown, index);
             ui.label(RichText::new(&channel.name).size(BODY_SIZE));
-            right(ui, |ui| ui.label(format!("{gain:.3}")).on_hover_text(format!("{gain}")));
-            let delay_ms = s_to_ms(*delay_s);
+            let asked = AskedFigure::Gain(id, side.channel(index));
+            let hint = format!("{gain}\nclick: how was this computed?");
+            right(ui, |ui| figure_ui(ui, format!("{gain:.3}"), asked, commands)).on_hover_text(hint);
             let text = if delay_ms == 0.0 { "0".to_owned() } else { format!("{delay_ms:.1}") };
             let color = if delay_ms == 0.0 { palette.dim_text } else { palette.text };
-            right(ui, |ui| ui.label(RichText::new(text).color(color)).on_hover_text(format!("{delay_ms} ms")));
+            let asked = AskedFigure::Delay(id, side.channel(index));
+            let hint = format!("{delay_ms} ms\nclick: how was this computed?");
+            right(ui, |ui| figure_ui(ui, RichText::new(text).color(color), asked, commands)).on_hover_text(hint);
             ui.end_row();
         }
     });
@@ -151,15 +176,21 @@ fn right<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
     ui.with_layout(Layout::right_to_left(Align::Center), add).inner
 }
 
-fn objective_ui(ui: &mut Ui, shown: &ConditionAnalysis, palette: &Palette) {
+fn objective_ui(ui: &mut Ui, shown: &ConditionAnalysis, palette: &Palette, commands: &mut Vec<Command>) {
     let unit = if shown.gains.quantity == Quantity::Gain(GainObjective::Decibel) { " dB²" } else { "" };
     let gains = format!("objective {:.4}{unit}", shown.gains.objective);
     let delays = format!("delays {:.4} s²", shown.delays.objective);
-    let label = ui.label(RichText::new(format!("{gains} · {delays}")).size(SMALL_SIZE).color(palette.dim_text));
-    label.on_hover_text(format!(
-        "eq. (7): {}{unit}, lower bound {}{unit}\neq. (11): {} s²",
-        shown.gains.objective, shown.gains.proof.lower_bound, shown.delays.objective
-    ));
+    let dim = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
+    let id = shown.condition.id();
+    ui.horizontal_wrapped(|ui| {
+        let label = figure_ui(ui, dim(gains), AskedFigure::GainObjective(id), commands);
+        label.on_hover_text(format!(
+            "eq. (7): {}{unit}, lower bound {}{unit}",
+            shown.gains.objective, shown.gains.proof.lower_bound
+        ));
+        let label = figure_ui(ui, dim(delays), AskedFigure::DelayObjective(id), commands);
+        label.on_hover_text(format!("eq. (11): {} s²", shown.delays.objective));
+    });
 }
 
 /// The click that takes a response out of the objective.

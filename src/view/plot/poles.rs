@@ -14,8 +14,8 @@ use super::s_plane::{PlaneView, plane_ui};
 use crate::view::palette::{Palette, SMALL_SIZE};
 
 /// Real and imaginary parts in the window of the slow modes \[rad/s\]: the rigid-body modes of a helicopter lie there.
-const SLOW_REAL: Range = Range { min: -1.2, max: 0.5 };
-const SLOW_IMAGINARY: Range = Range { min: -2.2, max: 2.2 };
+const SLOW_REAL: Range = Range { min: -2.0, max: 0.6 };
+const SLOW_IMAGINARY: Range = Range { min: -3.2, max: 3.2 };
 /// Below this, there is no room for two plots beside one another \[pt\].
 const LEAST_PAIR_WIDTH: f32 = 620.0;
 const LEAST_SIZE: Vec2 = vec2(140.0, 130.0);

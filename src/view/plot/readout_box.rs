@@ -44,7 +44,7 @@ impl Readout {
 
 const FONT: FontId = FontId::monospace(10.5);
 const ROW_HEIGHT: f32 = 13.5;
-const COLUMN_GAP: f32 = 9.0;
+const COLUMN_GAP: f32 = 7.0;
 const PADDING: Vec2 = vec2(7.0, 5.0);
 const SWATCH: f32 = 4.0;
 
@@ -53,7 +53,7 @@ pub(super) fn readout_box_ui(ui: &Ui, frame: Rect, readout: &Readout, taken: Opt
     let painter = ui.painter().with_clip_rect(frame);
     let table = Table::new(&painter, readout, palette);
     let room = frame.shrink(9.0);
-    if table.size.x > 0.55 * room.width() || table.size.y > 0.7 * room.height() {
+    if table.size.x > 0.8 * room.width() || table.size.y > 0.8 * room.height() {
         return;
     }
     let corners = [Align2::LEFT_BOTTOM, Align2::RIGHT_BOTTOM, Align2::RIGHT_TOP, Align2::LEFT_TOP];

@@ -3,6 +3,7 @@
 mod commands;
 mod computing;
 mod controls;
+mod curves;
 mod decisions;
 mod files;
 mod forms;
@@ -11,6 +12,8 @@ mod lists;
 mod plots;
 mod recovery;
 mod reload;
+mod views;
+mod walk;
 
 use std::path::Path;
 use std::process::Command;

@@ -1,0 +1,219 @@
+//! The views: what each shows, by its controls.
+
+use gdcm::correction::Channel;
+use gdcm::study::{AskedFigure, AssessedCorrection, AssessedModel, Edit, derivation};
+use gdcm::view::across_scene::AcrossRole;
+use gdcm::view::arrangement::{Arrangement, Preset, View};
+use gdcm::view::assessment_scene::{AssessedPairs, assessment_sentences, assessment_text_table};
+use gdcm::view::command::Command as Wish;
+use gdcm::view::modes_scene::pole_marks;
+use gdcm::view::net_gain_scene::{PairSet, net_gain_pairs};
+use gdcm::view::plot::MarkShape;
+use gdcm::view::preferences::Preferences;
+
+use super::*;
+
+fn give(window: &mut Window, command: impl Into<Wish>) {
+    let ctx = window.ctx.clone();
+    window.state_mut().give(command.into(), &ctx);
+    settle(window);
+}
+
+fn show(window: &mut Window, view: View) {
+    give(window, Wish::ShowView(view));
+    assert!(state(window).display.arrangement.is_shown(view), "{view:?}");
+}
+
+#[test]
+fn every_view_has_a_tab_and_a_click_brings_it_to_the_front() {
+    let mut window = window();
+    for view in View::ALL {
+        click(&mut window, view.name());
+        assert!(state(&window).display.arrangement.is_shown(view), "{view:?}");
+    }
+}
+
+#[test]
+fn an_arrangement_is_remembered_and_one_command_resets_it() {
+    let mut window = window();
+    give(&mut window, Wish::SplitView(View::Poles, egui_tiles::LinearDir::Horizontal));
+    let kept = Preferences::of(&state(&window).display);
+    let mut other = window_with(example(), Setup { preferences: kept, ..Setup::default() });
+    assert_eq!(state(&other).display.arrangement, state(&window).display.arrangement);
+    click(&mut other, "View");
+    click(&mut other, Preset::Stacked.name());
+    assert_eq!(state(&other).display.arrangement, Arrangement::default());
+}
+
+#[test]
+fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
+    let mut window = window();
+    show(&mut window, View::Poles);
+    wait_until(&mut window, "the modes", |window| state(window).modes().is_some());
+    let marks = pole_marks(state(&window));
+    let condition = state(&window).condition();
+    let order: usize =
+        BundleKind::BOTH.into_iter().flat_map(|kind| condition.bundle(kind)).filter_map(|model| model.order()).sum();
+    assert_eq!(marks.len(), order, "a mark for each state of each model");
+    let (table, _) = state(&window).display.modes.table();
+    assert!(!table.rows.is_empty() && table.rows.len() <= 20);
+
+    // The fastest pole of some perturbed model stands clear of the crowd.
+    let fastest = marks.iter().min_by(|a, b| a.value[0].total_cmp(&b.value[0])).unwrap();
+    let at = state(&window).display.poles.screen_position(fastest.value).unwrap();
+    window.hover_at(at);
+    window.run_steps(2);
+    let meant = state(&window).display.hovered.clone().expect("the pole is pointed at");
+    window.drag_at(at);
+    window.drop_at(at);
+    settle(&mut window);
+    assert!(state(&window).study.is_rejected(&meant), "{meant:?}");
+    give(&mut window, Wish::Undo);
+    assert!(!state(&window).study.is_rejected(&meant));
+}
+
+#[test]
+fn zeros_of_the_response_in_focus_are_shown_on_wish() {
+    let mut window = window();
+    show(&mut window, View::Poles);
+    wait_until(&mut window, "the modes", |window| state(window).modes().is_some());
+    let zeros =
+        |window: &Window| pole_marks(state(window)).into_iter().filter(|mark| mark.shape == MarkShape::Circle).count();
+    assert_eq!(zeros(&window), 0);
+    let name = format!("zeros of {}", state(&window).dataset().pair_name(state(&window).display.pair));
+    click(&mut window, &name);
+    assert!(zeros(&window) > 0);
+}
+
+#[test]
+fn one_response_of_every_condition_is_laid_over_the_others_and_a_click_shows_a_condition() {
+    let mut window = window();
+    show(&mut window, View::Across);
+    for role in AcrossRole::ALL {
+        give(&mut window, Wish::ShowAcross(role));
+        wait_until(&mut window, "the responses", |window| {
+            let state = state(window);
+            state.across().is_some_and(|curves| curves.responses.len() == 11)
+        });
+    }
+    assert_eq!(state(&window).across().unwrap().responses.len(), 11);
+}
+
+#[test]
+fn freeing_a_response_does_not_take_its_net_gains_away() {
+    let mut window = window();
+    let before = net_gain_pairs(state(&window));
+    click(&mut window, "Hold LON → Q");
+    assert_eq!(net_gain_pairs(state(&window)), before);
+    let lon_q = pair(&window, "Q", "LON");
+    assert!(before.contains(&lon_q) && !state(&window).study.settings.constrained[lon_q]);
+    give(&mut window, Wish::ShowNetGains(PairSet::All));
+    assert_eq!(net_gain_pairs(state(&window)).len(), 24);
+    give(&mut window, Wish::PickPair(lon_q));
+    assert_eq!(net_gain_pairs(state(&window)), [lon_q]);
+}
+
+#[test]
+fn a_click_on_a_dot_with_ctrl_takes_its_condition_out_of_the_schedule() {
+    let mut window = window();
+    let fifth = ConditionId(5);
+    let at = state(&window).display.net_gain.screen_position(0, fifth).unwrap();
+    window.hover_at(at);
+    window.run_steps(1);
+    let press = |pressed| Event::PointerButton {
+        pos: at,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::COMMAND,
+    };
+    window.event_modifiers(press(true), Modifiers::COMMAND);
+    window.event_modifiers(press(false), Modifiers::COMMAND);
+    settle(&mut window);
+    assert!(!state(&window).study.choice(fifth).scheduled);
+    assert_eq!(state(&window).analysis().unwrap().scheduled().len(), 10);
+}
+
+#[test]
+fn a_degree_is_chosen_on_evidence() {
+    let mut window = window();
+    show(&mut window, View::NetGain);
+    click(&mut window, "evidence");
+    let evidence = state(&window).analysis().unwrap().evidence().unwrap();
+    let (conditions, shown) = state(&window).display.evidence.found().expect("the evidence is there");
+    assert_eq!((conditions.len(), shown), (11, &evidence));
+    click(&mut window, "Sort Errors of each form of the schedule by unseen [%]");
+    assert_eq!(state(&window).study, state(&window).study, "sorting decides nothing");
+    assert!(!state(&window).unsaved);
+}
+
+#[test]
+fn an_assessment_can_be_had_for_every_model_correction_and_response() {
+    let mut window = window();
+    show(&mut window, View::Assessment);
+    let wait = |window: &mut Window| {
+        wait_until(window, "the assessment", |window| state(window).assessment().is_some());
+    };
+    wait(&mut window);
+    let table = state(&window).assessment().unwrap();
+    assert!(assessment_sentences(state(&window), table)[0].starts_with("better in "));
+    let mut figures = state(&window).display.assessed;
+    figures.model = AssessedModel::Representative;
+    figures.correction = AssessedCorrection::Own;
+    figures.pairs = AssessedPairs::All;
+    figures.as_table = true;
+    give(&mut window, Wish::Assess(figures));
+    wait(&mut window);
+    let shown = state(&window);
+    let table = shown.assessment().unwrap();
+    let text = assessment_text_table(shown, table);
+    assert_eq!((text.rows.len(), text.columns.len()), (24, 12));
+    // The condition's own J, as the matrix shows it.
+    let (condition, lon_q) = (shown.condition().id(), pair(&window, "Q", "LON"));
+    let own = shown.shown().unwrap().cost[lon_q].unwrap();
+    let change = table.change(condition, lon_q).unwrap();
+    assert!((change.total() - own.total()).abs() < 1e-9, "the same figure, computed twice");
+}
+
+#[test]
+fn variants_are_kept_compared_taken_and_removed_and_undo_brings_each_back() {
+    let mut window = window();
+    show(&mut window, View::Compare);
+    let before = state(&window).study.clone();
+    window.get_by_label("Name of the variant").focus();
+    window.run_steps(2);
+    window.get_by_label("Name of the variant").type_text("as it was");
+    window.run_steps(2);
+    click(&mut window, "Keep as variant");
+    assert_eq!(state(&window).study.variants.len(), 1);
+    let kept = state(&window).study.clone();
+    click(&mut window, "Hold LON → Q");
+    wait_until(&mut window, "the variant's analysis", |window| state(window).results.variants.len() == 1);
+    let (_, analysis) = &state(&window).results.variants[0];
+    assert_eq!(analysis.study.settings, before.settings);
+    click(&mut window, "Take variant as it was");
+    assert_eq!(state(&window).study.settings, before.settings);
+    give(&mut window, Wish::Undo);
+    assert_ne!(state(&window).study.settings, before.settings);
+    give(&mut window, Wish::Undo);
+    assert_eq!(state(&window).study, kept);
+    click(&mut window, "Remove variant as it was");
+    assert!(state(&window).study.variants.is_empty());
+    give(&mut window, Wish::Undo);
+    assert_eq!(state(&window).study, kept);
+    give(&mut window, Wish::Undo);
+    assert_eq!(state(&window).study, before);
+}
+
+#[test]
+fn a_figure_says_how_it_was_computed_and_follows_the_results() {
+    let mut window = window();
+    let condition = state(&window).condition().id();
+    let asked = AskedFigure::Gain(condition, Channel::Input(0));
+    give(&mut window, Wish::Explain(Some(asked.clone())));
+    let title = derivation(state(&window).analysis().unwrap(), &asked).unwrap().title;
+    assert!(window.query_by_label(&title).is_some(), "{title}");
+    click(&mut window, "Copy the derivation");
+    give(&mut window, Edit::ConstrainOnAxis);
+    give(&mut window, Wish::Explain(None));
+    assert!(window.query_by_label("Copy the derivation").is_none());
+}

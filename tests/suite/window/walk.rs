@@ -1,0 +1,96 @@
+//! A long walk through the window at random: nothing panics, and what is shown is what a fresh computation gives.
+
+use gdcm::study::{Edit, Engine, Setting, Unobserved};
+use gdcm::view::command::Command as Wish;
+use gdcm::view::every_command::every_command;
+
+use super::*;
+
+const STEPS: usize = 2000;
+/// Frames are drawn, and results compared, after so many steps.
+const STEPS_OF_A_FRAME: usize = 4;
+const STEPS_OF_A_COMPARISON: usize = 400;
+
+/// Numbers that look random and are the same in every run: the 64-bit linear congruential generator of Knuth's MMIX.
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, bound: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) as usize) % bound
+    }
+}
+
+/// Whether a command stays within the window: no file, no desktop, no end.
+fn stays_within(command: &Wish) -> bool {
+    !matches!(
+        command,
+        Wish::Quit
+            | Wish::Open(_)
+            | Wish::OpenExample
+            | Wish::OpenStudyOf(..)
+            | Wish::SaveStudy
+            | Wish::AskOpen
+            | Wish::AskSaveStudy
+            | Wish::AskSaveTable(_)
+            | Wish::AskExportFolder
+            | Wish::StopComputing
+            | Wish::SetTheme(_)
+    )
+}
+
+fn random_command(window: &Window, dice: &mut Dice) -> Option<Wish> {
+    match dice.below(12) {
+        0 => Some(Edit::Set(Setting::AlphaGain(10f64.powi(dice.below(5) as i32 - 2))).into()),
+        1 => Some(Edit::Set(Setting::Points(20 + dice.below(60))).into()),
+        2 => Some(Wish::Undo),
+        3 => Some(Wish::Redo),
+        _ => {
+            let mut entries = every_command(state(window));
+            entries.retain(|entry| entry.enabled && stays_within(&entry.command));
+            let chosen = dice.below(entries.len().max(1));
+            entries.into_iter().nth(chosen).map(|entry| entry.command)
+        }
+    }
+}
+
+fn assert_fresh(window: &Window, step: usize) {
+    let shown = state(window).analysis().expect("there are results");
+    let fresh = Engine::default().analyze(&state(window).study, &Unobserved).unwrap();
+    assert_eq!(shown.study, state(window).study, "step {step}");
+    for (id, outcome) in &fresh.conditions {
+        match (outcome, &shown.conditions[id]) {
+            (Ok(fresh), Ok(shown)) => {
+                assert_eq!(fresh.comparison, shown.comparison, "step {step}, condition {id}");
+                // What may still be proven is the same optimum, or a better one.
+                let same =
+                    (fresh.gains.objective - shown.gains.objective).abs() <= 1e-6 * (1.0 + fresh.gains.objective);
+                assert!(same, "step {step}, condition {id}: {} {}", fresh.gains.objective, shown.gains.objective);
+                assert_eq!(fresh.delays, shown.delays, "step {step}, condition {id}");
+            }
+            (Err(fresh), Err(shown)) => assert_eq!(fresh, shown, "step {step}, condition {id}"),
+            _ => panic!("step {step}, condition {id}: a result on one side only"),
+        }
+    }
+}
+
+#[test]
+fn two_thousand_random_commands_never_panic_and_leave_what_a_fresh_computation_gives() {
+    let mut window = window();
+    let ctx = window.ctx.clone();
+    let mut dice = Dice(20_261_122);
+    for step in 1..=STEPS {
+        if let Some(command) = random_command(&window, &mut dice) {
+            window.state_mut().give(command, &ctx);
+        }
+        // A form in front would keep the rest from being seen.
+        window.state_mut().give(Wish::ShowForm(None), &ctx);
+        if step % STEPS_OF_A_FRAME == 0 {
+            window.run_steps(1);
+        }
+        if step % STEPS_OF_A_COMPARISON == 0 {
+            settle(&mut window);
+            assert_fresh(&window, step);
+        }
+    }
+}

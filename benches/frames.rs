@@ -206,6 +206,8 @@ fn frames(criterion: &mut Criterion) {
         ("Bode", Doing::Nothing, ""),
         ("Bode", Doing::Pointing, ", pointer moving"),
         ("Bode", Doing::Resizing, ", resized"),
+        ("Error", Doing::Nothing, ""),
+        ("Error", Doing::Pointing, ", pointer moving"),
         ("Overview", Doing::Nothing, ""),
         ("Overview", Doing::Resizing, ", resized"),
         ("Channels", Doing::Nothing, ""),

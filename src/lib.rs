@@ -70,7 +70,8 @@
 //! | [`correction`] | G, D, bounds, gains, delays, and what they do to a response |
 //! | [`schedule`] | regression over airspeed, what speaks for it, assessment |
 //! | [`study`] | what the engineer does: settings, rejections, pins, variants, undo; the staged analysis, and how each figure came about |
-//! | [`io`] | files: datasets, studies, corrections |
+//! | [`figure`] | figures: what plots show, laid out on paper |
+//! | [`io`] | files: datasets, studies, corrections, figures |
 //! | [`view`] | drawing: panels and plots that show a state and push commands |
 //! | [`cli`] | the headless commands |
 //! | [`app`] | the window: threads, dialogs, and the one place that changes what is shown |
@@ -96,6 +97,7 @@ pub mod cli;
 pub mod correction;
 pub mod dataset;
 pub mod fidelity;
+pub mod figure;
 pub mod io;
 pub mod response;
 pub mod schedule;

@@ -278,15 +278,20 @@ impl GdcmApp {
     }
 
     /// Asks in a form whether to overwrite files, which `command` would do.
-    fn ask_to_overwrite(&mut self, paths: &[PathBuf], form: FormKind, command: Command) {
+    pub(super) fn ask_to_overwrite(&mut self, paths: &[PathBuf], form: FormKind, command: Command) {
         self.state.forms.existing = paths.iter().map(|path| plain_path(path)).collect();
         self.state.forms.shown = Some(form);
         self.overwriting = Some(command);
     }
 
     /// A path as it is typed, with the home directory in the place of `~`.
-    fn at_home(&self, typed: PathBuf) -> PathBuf {
+    pub(super) fn at_home(&self, typed: PathBuf) -> PathBuf {
         at_home(&typed, self.home.as_deref())
+    }
+
+    /// What the program reads from, which is never overwritten by results.
+    pub(super) fn inputs(&self) -> Vec<PathBuf> {
+        self.saved.path.iter().cloned().chain(self.loaded.origin.file()).collect()
     }
 
     /// A name for the study's file.
@@ -309,8 +314,7 @@ impl GdcmApp {
     /// Saves a table of the window as CSV.
     pub(super) fn save_table(&mut self, kind: TableKind, path: PathBuf, existing: Existing) {
         let path = self.at_home(path);
-        let inputs = self.saved.path.iter().cloned().chain(self.loaded.origin.file());
-        match save_table(&table_of(&self.state, kind), &path, OutputSet::new(existing, inputs.collect())) {
+        match save_table(&table_of(&self.state, kind), &path, OutputSet::new(existing, self.inputs())) {
             Ok(()) => {
                 self.state.forms.shown = None;
                 self.done(format!("saved {}", plain_path(&path)));
@@ -340,8 +344,7 @@ impl GdcmApp {
         let form = &self.state.forms.export;
         let chosen = form.chosen.clone();
         let folder = self.at_home(PathBuf::from(form.folder.trim()));
-        let inputs = self.saved.path.iter().cloned().chain(self.loaded.origin.file());
-        let outputs = OutputSet::new(existing, inputs.collect());
+        let outputs = OutputSet::new(existing, self.inputs());
         match write_results(&analysis, &self.loaded.sha256, &chosen, &folder, outputs) {
             Ok(()) => {
                 self.state.forms.shown = None;

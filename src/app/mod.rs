@@ -5,6 +5,7 @@ mod beside;
 mod dialogs;
 mod disk_watch;
 pub mod fault;
+mod figures;
 mod files;
 mod key_order;
 mod lane;

@@ -111,6 +111,9 @@ impl GdcmApp {
             }
             Command::AskSaveTable(kind) => self.ask_save_table(kind),
             Command::SaveTable(kind, path) => self.save_table(kind, path, Existing::Keep),
+            Command::CopyFigure(view) => self.copy_figure(view, ctx),
+            Command::AskSaveFigure(view, format) => self.ask_save_figure(view, format),
+            Command::SaveFigure(view, width, path) => self.save_figure((view, width), path, Existing::Keep),
             Command::FocusField(name) => self.focus_next(NextFocus::Field(name), ctx),
             Command::LeaveRegion { forward } => self.focus_next(NextFocus::Region { forward }, ctx),
             Command::StartTour => self.state.tour = Some(0),
@@ -235,6 +238,7 @@ impl GdcmApp {
             Some(Command::SaveStudyAs(path)) => self.save_as(path, Existing::Replace, ctx),
             Some(Command::Export) => self.export(Existing::Replace),
             Some(Command::SaveTable(kind, path)) => self.save_table(kind, path, Existing::Replace),
+            Some(Command::SaveFigure(view, width, path)) => self.save_figure((view, width), path, Existing::Replace),
             _ => {}
         }
     }

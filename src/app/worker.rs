@@ -10,14 +10,11 @@ use super::lane::{Ending, Lane, PATIENCE};
 use crate::correction::{Outcome, Problem, Solution};
 use crate::dataset::ConditionId;
 use crate::study::{
-    AcrossCurves, AcrossJob, Analysis, AssessmentJob, AssessmentTable, ConditionAnalysis, ConditionCurves,
-    ConditionFailure, ConditionModes, CurvesJob, Engine, Job, ModesJob, Progress, ProofJob, Study, Toggles, TogglesJob,
-    VariantJob, display_band,
+    AcrossCurves, AcrossJob, Analysis, AssessmentJob, AssessmentTable, CURVE_POINTS, ConditionAnalysis,
+    ConditionCurves, ConditionFailure, ConditionModes, CurvesJob, Engine, Job, ModesJob, Progress, ProofJob, Study,
+    Toggles, TogglesJob, VariantJob, display_band,
 };
 use crate::view::results::{Background, FirstResult};
-
-/// Frequencies of the curves that are drawn.
-const CURVE_POINTS: usize = 500;
 
 /// What is to be computed. All of it is shared, so that a request costs next to nothing.
 #[derive(Clone, Debug)]

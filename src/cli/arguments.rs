@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 
+use crate::figure::{ColumnWidth, FigureKind, Role};
 use crate::schedule::HIGHEST_DEGREE;
 use crate::study::{LEAST_POINTS, MOST_POINTS};
 
@@ -24,6 +26,8 @@ pub(super) struct Arguments {
 pub enum Command {
     /// Analyse a dataset or a study, write corrections.json, corrections.csv and assessment.csv, and print a summary.
     Analyze(AnalyzeArguments),
+    /// Make one of the figures that the window shows, or its numbers, as a file.
+    Figure(Box<FigureArguments>),
     /// Say what a dataset or a study holds, or what is wrong with it and where.
     Check {
         /// Dataset or study.
@@ -56,15 +60,9 @@ pub struct OpeningArguments {
 
 /// What is to be analysed, and how.
 #[derive(Debug, Args)]
-pub struct AnalyzeArguments {
+pub struct StudyArguments {
     /// Dataset or study; without it, the embedded example (synthetic data).
     pub file: Option<PathBuf>,
-    /// Directory for the results; made where there is none.
-    #[arg(long, value_name = "DIR")]
-    pub out: PathBuf,
-    /// Overwrite results that are there already.
-    #[arg(long)]
-    pub force: bool,
     /// Weight of the regularisation of the gains, from 0.
     #[arg(long, value_name = "A", value_parser = real_number, allow_negative_numbers = true)]
     pub alpha: Option<f64>,
@@ -98,6 +96,104 @@ pub struct AnalyzeArguments {
     /// Reject a model of a condition; may be repeated.
     #[arg(long, value_name = "ID:NAME", allow_hyphen_values = true)]
     pub reject: Vec<Rejection>,
+}
+
+/// What is to be analysed, and where the results go.
+#[derive(Debug, Args)]
+pub struct AnalyzeArguments {
+    /// What is to be analysed, and how.
+    #[command(flatten)]
+    pub study: StudyArguments,
+    /// Directory for the results; made where there is none.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Overwrite results that are there already.
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Which figure is to be made, of what, and where it goes.
+#[derive(Debug, Args)]
+pub struct FigureArguments {
+    /// What is to be analysed, and how.
+    #[command(flatten)]
+    pub study: StudyArguments,
+    /// Which figure.
+    #[arg(long, value_name = "VIEW", value_parser = figure_kinds())]
+    pub view: FigureKind,
+    /// The condition, by its id: of bode, error and overview.
+    #[arg(long, value_name = "ID", allow_negative_numbers = true)]
+    pub condition: Option<i64>,
+    /// The responses, OUTPUT/INPUT, separated by commas (P/LAT,Q/LON), or "on-axis", "off-axis", "all". Without it, the on-axis
+    /// ones; of net-gain, those held.
+    #[arg(long, value_name = "PAIRS")]
+    pub pair: Option<PairChoice>,
+    /// The channels, separated by commas (LON,LAT), or "inputs", "outputs"; of channels. Without it, all.
+    #[arg(long, value_name = "NAMES")]
+    pub channel: Option<String>,
+    /// Show delays of the channels in place of their gains.
+    #[arg(long)]
+    pub delays: bool,
+    /// Show channels over conditions in place of airspeed.
+    #[arg(long)]
+    pub over_conditions: bool,
+    /// Roles to leave out of bode, error and overview, separated by commas (perturbed,identified,rejected).
+    #[arg(long, value_name = "ROLES", value_delimiter = ',', value_parser = roles())]
+    pub hide: Vec<Role>,
+    /// Frequencies in Hz in place of rad/s.
+    #[arg(long)]
+    pub hertz: bool,
+    /// Width on paper: one column of a journal (84 mm), or both (174 mm).
+    #[arg(long, value_name = "WIDTH", default_value = "double", value_parser = column_widths())]
+    pub width: ColumnWidth,
+    /// The file; the end of its name says what it is: .svg, .png (300 dots to the inch), .pdf, or .csv for the numbers.
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// Overwrite a file that is there already.
+    #[arg(long)]
+    pub force: bool,
+}
+
+fn figure_kinds() -> impl TypedValueParser<Value = FigureKind> {
+    PossibleValuesParser::new(FigureKind::ALL.map(FigureKind::name))
+        .try_map(|name| FigureKind::ALL.into_iter().find(|kind| kind.name() == name).ok_or("there is no such figure"))
+}
+
+fn roles() -> impl TypedValueParser<Value = Role> {
+    PossibleValuesParser::new(Role::ALL.map(Role::word))
+        .try_map(|name| Role::ALL.into_iter().find(|role| role.word() == name).ok_or("there is no such role"))
+}
+
+fn column_widths() -> impl TypedValueParser<Value = ColumnWidth> {
+    PossibleValuesParser::new(ColumnWidth::BOTH.map(ColumnWidth::name)).try_map(|name| {
+        ColumnWidth::BOTH.into_iter().find(|width| width.name() == name).ok_or("there is no such width")
+    })
+}
+
+/// Which responses a figure is of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PairChoice {
+    /// Those that matter.
+    OnAxis,
+    /// The others.
+    OffAxis,
+    /// All.
+    All,
+    /// These.
+    These(PairList),
+}
+
+impl FromStr for PairChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Ok(match text {
+            "on-axis" => Self::OnAxis,
+            "off-axis" => Self::OffAxis,
+            "all" => Self::All,
+            list => Self::These(list.parse()?),
+        })
+    }
 }
 
 fn real_number(text: &str) -> Result<f64, String> {

@@ -6,9 +6,11 @@ mod analyze;
 mod arguments;
 mod check;
 mod failure;
+mod figure;
 mod opening;
 mod progress;
 mod sections;
+mod study_options;
 mod summary;
 mod terminal;
 mod text_table;
@@ -27,7 +29,9 @@ use arguments::Arguments;
 use failure::Failure;
 use terminal::{say, say_error};
 
-pub use arguments::{AnalyzeArguments, Command, OpeningArguments, PairList, Rejection};
+pub use arguments::{
+    AnalyzeArguments, Command, FigureArguments, OpeningArguments, PairChoice, PairList, Rejection, StudyArguments,
+};
 
 /// What the command line asks for.
 #[derive(Debug)]
@@ -55,6 +59,7 @@ pub fn request(arguments: impl IntoIterator<Item = OsString>) -> Result<Request,
 pub fn run(command: &Command) -> ExitCode {
     finish(match command {
         Command::Analyze(arguments) => analyze::analyze(arguments),
+        Command::Figure(arguments) => figure::figure(arguments),
         Command::Check { file, opening } => check::check(file, opening),
         Command::Example { directory, force } => example(directory, existing(*force)),
     })

@@ -150,6 +150,12 @@ pub enum FileError {
         /// The file.
         path: PathBuf,
     },
+    /// The name of a file does not say what a figure is to be written as.
+    #[error("{}: a figure is written to a name that ends in .svg, .png, .pdf or .csv", plain_path(path))]
+    FigureFormat {
+        /// The file.
+        path: PathBuf,
+    },
     /// The file could not be written; what was there before is still there.
     #[error("{}: cannot be written: {reason}", plain_path(path))]
     Unwritable {

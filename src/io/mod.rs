@@ -2,7 +2,9 @@
 
 mod content_fault;
 mod corrections_file;
+mod csv_table;
 mod dataset_file;
+mod figure_file;
 mod file_error;
 mod file_stamp;
 mod first_start;
@@ -21,7 +23,6 @@ mod recovery_file;
 mod settings_entry;
 mod source;
 mod study_file;
-mod table_file;
 mod unknown_keys;
 
 pub use crate::dataset::limits::LARGEST_TEXT;
@@ -32,9 +33,11 @@ pub use corrections_file::{
     ScheduleUsed, ScheduledDelays, ScheduledGains, SensitivityEntry, SetAsideEntry, SourceEntry, Table,
     UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult, read_corrections, result_paths, write_results,
 };
+pub use csv_table::{csv_text, save_table};
 pub use dataset_file::{
     DatasetOrigin, LoadedDataset, embedded_example, load_dataset, load_dataset_bytes, save_dataset, write_example,
 };
+pub use figure_file::{figure_format, write_as, write_figure};
 pub use file_error::{FileError, system_words};
 pub use file_stamp::{FileStamp, file_exists, file_sha256};
 pub use first_start::is_first_start;
@@ -46,4 +49,3 @@ pub use recent_files::{add_recent_file, recent_files};
 pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
 pub use settings_entry::{KindWord, ScheduleEntry, SettingsEntry};
 pub use study_file::{OpenedStudy, STUDY_EXTENSION, open_study, open_study_of, save_study};
-pub use table_file::save_table;

@@ -34,6 +34,9 @@ impl ConditionCurves {
     }
 }
 
+/// Frequencies of drawn curves.
+pub const CURVE_POINTS: usize = 500;
+
 /// The band drawn around a band of comparison: a little more than half a decade's third on either side.
 pub fn display_band(band: Band) -> Band {
     const MARGIN: f64 = 1.7;

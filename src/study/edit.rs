@@ -267,21 +267,6 @@ impl Study {
         Ok(())
     }
 
-    fn set_reason(&mut self, id: &ModelId, reason: &str) -> Result<(), EditRefusal> {
-        let (reason, (_, choice)) = (reason.trim(), self.model(id)?);
-        let choice = choice.bundle_mut(id.bundle);
-        if !choice.rejected.contains(&id.name) {
-            return Err(EditRefusal::ReasonOfKept { condition: id.condition, model: id.name.clone() });
-        }
-        check_length("reason", reason, LONGEST_REASON)?;
-        if reason.is_empty() {
-            choice.reasons.remove(&id.name);
-        } else {
-            choice.reasons.insert(id.name.clone(), reason.to_owned());
-        }
-        Ok(())
-    }
-
     fn restore(&mut self, id: &ModelId) -> Result<(), EditRefusal> {
         self.model(id)?.1.bundle_mut(id.bundle).restore(&id.name);
         Ok(())
@@ -296,6 +281,21 @@ impl Study {
         let mut trial = self.clone();
         models.iter().try_for_each(|model| decide(&mut trial, model))?;
         *self = trial;
+        Ok(())
+    }
+
+    fn set_reason(&mut self, id: &ModelId, reason: &str) -> Result<(), EditRefusal> {
+        let (reason, (_, choice)) = (reason.trim(), self.model(id)?);
+        let choice = choice.bundle_mut(id.bundle);
+        if !choice.rejected.contains(&id.name) {
+            return Err(EditRefusal::ReasonOfKept { condition: id.condition, model: id.name.clone() });
+        }
+        check_length("reason", reason, LONGEST_REASON)?;
+        if reason.is_empty() {
+            choice.reasons.remove(&id.name);
+        } else {
+            choice.reasons.insert(id.name.clone(), reason.to_owned());
+        }
         Ok(())
     }
 

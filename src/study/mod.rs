@@ -44,7 +44,7 @@ pub use condition_analysis::{ConditionAnalysis, ConditionFailure};
 pub use condition_modes::{ConditionModes, ModelModes};
 pub use condition_responses::ConditionResponses;
 pub use condition_zeros::{ConditionZeros, ModelZeros, ZerosJob};
-pub use curves::{ConditionCurves, display_band};
+pub use curves::{CURVE_POINTS, ConditionCurves, display_band};
 pub use decision_difference::{DecisionDifference, decision_differences};
 pub use derivation::{AskedFigure, Derivation, derivation};
 pub use document::{BundleChoice, ConditionChoice, Study};

@@ -3,10 +3,9 @@
 use std::sync::Arc;
 
 use crate::dataset::{BundleKind, Condition, ModelId, Pair};
-use crate::response::GainDelay;
+use crate::response::{GainDelay, ResponseShape};
 use crate::study::{AcrossCurves, AcrossJob, display_band};
 
-use super::bode_scene::Shape;
 use super::plot::{BodeCurve, CurveId, Role};
 use super::state::State;
 
@@ -77,7 +76,7 @@ pub fn across_job(state: &State) -> AcrossJob {
 pub struct CachedAcross {
     made_of: Option<(Arc<AcrossCurves>, Pair)>,
     omega: Arc<[f64]>,
-    shapes: Vec<(ModelId, Shape)>,
+    shapes: Vec<(ModelId, ResponseShape)>,
 }
 
 impl CachedAcross {
@@ -86,9 +85,9 @@ impl CachedAcross {
         if self.made_of.as_ref().is_some_and(|(of, at)| Arc::ptr_eq(of, curves) && *at == pair) {
             return;
         }
-        let mut first: Option<Shape> = None;
+        let mut first: Option<ResponseShape> = None;
         let shape = |(id, response): &(ModelId, Arc<crate::response::FrequencyResponse>)| {
-            let shape = Shape::of(&response.curve(pair));
+            let shape = ResponseShape::of(&response.curve(pair));
             let shape = match &first {
                 Some(first) => shape.laid_on(first),
                 None => shape,
@@ -115,7 +114,7 @@ pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
     drawn
 }
 
-fn curve(state: &State, omega: &Arc<[f64]>, id: &ModelId, shape: &Shape) -> Option<BodeCurve> {
+fn curve(state: &State, omega: &Arc<[f64]>, id: &ModelId, shape: &ResponseShape) -> Option<BodeCurve> {
     let role = state.display.across_role;
     let condition = state.dataset().condition(id.condition)?;
     let correction = role.correction(state, id, state.display.pair)?;

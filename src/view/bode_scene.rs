@@ -3,70 +3,35 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use nalgebra::Complex;
-
 use crate::dataset::{BundleKind, Pair};
-use crate::response::{FrequencyResponse, GainDelay, nearest_turn_offset, unwrap, wrap};
+use crate::response::{FrequencyResponse, GainDelay, ResponseShape, wrapped_deg};
 use crate::study::ConditionCurves;
-use crate::units::ratio_to_db;
 
 use super::curve_face::{CorrectedFace, CurveFace, corrected_faces, model_faces, reference_of};
 use super::plot::{BodeCurve, CurveId, PhaseUnit};
 use super::state::State;
-
-/// Magnitude \[dB\] and unwrapped phase \[deg\] of one response.
-#[derive(Clone, Debug)]
-pub(super) struct Shape {
-    pub(super) magnitude_db: Arc<[f64]>,
-    pub(super) phase_deg: Arc<[f64]>,
-}
-
-impl Shape {
-    /// The phase is principal at the first finite value, then unwrapped; a value that is not finite leaves a gap (M2).
-    pub(super) fn of(values: &[Complex<f64>]) -> Self {
-        let finite: Vec<usize> =
-            (0..values.len()).filter(|&k| values[k].is_finite() && values[k].norm() > 0.0).collect();
-        let mut phase: Vec<f64> = finite.iter().map(|&k| values[k].arg()).collect();
-        unwrap(&mut phase);
-        let mut shape = (vec![f64::NAN; values.len()], vec![f64::NAN; values.len()]);
-        for (&k, phase) in finite.iter().zip(phase) {
-            shape.0[k] = ratio_to_db(values[k].norm());
-            shape.1[k] = phase.to_degrees();
-        }
-        Self { magnitude_db: shape.0.into(), phase_deg: shape.1.into() }
-    }
-
-    /// The shape moved by whole turns as near to `reference` as they bring it (M2).
-    pub(super) fn laid_on(self, reference: &Shape) -> Self {
-        let radians = |phase: &[f64]| phase.iter().map(|degrees| degrees.to_radians()).collect::<Vec<f64>>();
-        let offset = nearest_turn_offset(&radians(&self.phase_deg), &radians(&reference.phase_deg)).to_degrees();
-        if offset == 0.0 {
-            return self;
-        }
-        Self { phase_deg: self.phase_deg.iter().map(|phase| phase + offset).collect(), ..self }
-    }
-
-    /// The shape after a gain and a delay (M10).
-    pub(super) fn corrected(&self, omega: &[f64], correction: GainDelay) -> Self {
-        let phase: Vec<f64> = self.phase_deg.iter().map(|degrees| degrees.to_radians()).collect();
-        Self {
-            magnitude_db: correction.magnitudes_db(&self.magnitude_db).collect(),
-            phase_deg: correction.phases(&phase, omega).map(f64::to_degrees).collect(),
-        }
-    }
-}
 
 /// Shapes of every model of the condition shown for one response, kept while neither changes.
 #[derive(Debug, Default)]
 pub struct CachedShapes {
     made_of: Option<(Arc<ConditionCurves>, Pair, usize)>,
     omega: Arc<[f64]>,
-    physics: Vec<Shape>,
-    identified: Vec<Shape>,
+    physics: Vec<ResponseShape>,
+    identified: Vec<ResponseShape>,
     /// Of each corrected curve: what it was made with, and its shape.
-    corrected: BTreeMap<CurveId, (Treatment, Shape)>,
-    /// Phases that are not drawn as they are, by their curves: of which phase, how, and what is drawn.
-    presented: BTreeMap<CurveId, (Arc<[f64]>, Presentation, Arc<[f64]>)>,
+    corrected: BTreeMap<CurveId, (Treatment, ResponseShape)>,
+    /// Phases that are not drawn as they are, by their curves.
+    presented: BTreeMap<CurveId, PresentedPhase>,
+}
+
+/// A phase that is not drawn as it is.
+#[derive(Clone, Debug)]
+struct PresentedPhase {
+    /// The phase as it is \[deg\].
+    phase_deg: Arc<[f64]>,
+    how: Presentation,
+    /// What is drawn of it \[deg\].
+    drawn_deg: Arc<[f64]>,
 }
 
 /// How a phase is drawn.
@@ -83,9 +48,7 @@ impl Presentation {
         if self.unit == PhaseUnit::Unwrapped {
             return phase_deg.iter().map(|phase| phase + 360.0 * f64::from(self.turns)).collect();
         }
-        let wrapped: Vec<f64> = phase_deg.iter().map(|phase| wrap(phase.to_radians()).to_degrees()).collect();
-        let jumps = |k: usize| k > 0 && (wrapped[k] - wrapped[k - 1]).abs() > 180.0;
-        (0..wrapped.len()).map(|k| if jumps(k) { f64::NAN } else { wrapped[k] }).collect()
+        wrapped_deg(phase_deg).into()
     }
 }
 
@@ -106,9 +69,10 @@ impl CachedShapes {
         if self.made_of.as_ref().is_some_and(same) {
             return;
         }
-        let reference_shape = Shape::of(&curves.identified[reference].curve(pair));
+        let reference_shape = ResponseShape::of(&curves.identified[reference].curve(pair));
         let shapes = |kind| {
-            let laid = |response: &Arc<FrequencyResponse>| Shape::of(&response.curve(pair)).laid_on(&reference_shape);
+            let laid =
+                |response: &Arc<FrequencyResponse>| ResponseShape::of(&response.curve(pair)).laid_on(&reference_shape);
             curves.bundle(kind).iter().map(laid).collect()
         };
         self.physics = shapes(BundleKind::Physics);
@@ -120,7 +84,7 @@ impl CachedShapes {
     }
 
     /// The corrected shape of the curve `id`: the same one until it is made with something else.
-    fn corrected(&mut self, id: &CurveId, treatment: Treatment) -> Shape {
+    fn corrected(&mut self, id: &CurveId, treatment: Treatment) -> ResponseShape {
         match self.corrected.get(id) {
             Some((with, shape)) if *with == treatment => shape.clone(),
             _ => {
@@ -136,18 +100,17 @@ impl CachedShapes {
         if how == (Presentation { unit: PhaseUnit::Unwrapped, turns: 0 }) {
             return Arc::clone(phase_deg);
         }
-        if let Some((of, before, drawn)) = self.presented.get(id)
-            && Arc::ptr_eq(of, phase_deg)
-            && *before == how
-        {
-            return Arc::clone(drawn);
+        let is_same = |before: &&PresentedPhase| Arc::ptr_eq(&before.phase_deg, phase_deg) && before.how == how;
+        if let Some(before) = self.presented.get(id).filter(is_same) {
+            return Arc::clone(&before.drawn_deg);
         }
-        let drawn = how.of(phase_deg);
-        self.presented.insert(id.clone(), (Arc::clone(phase_deg), how, Arc::clone(&drawn)));
-        drawn
+        let drawn_deg = how.of(phase_deg);
+        let presented = PresentedPhase { phase_deg: Arc::clone(phase_deg), how, drawn_deg: Arc::clone(&drawn_deg) };
+        self.presented.insert(id.clone(), presented);
+        drawn_deg
     }
 
-    fn of_bundle(&self, kind: BundleKind) -> &[Shape] {
+    fn of_bundle(&self, kind: BundleKind) -> &[ResponseShape] {
         match kind {
             BundleKind::Physics => &self.physics,
             BundleKind::Identified => &self.identified,
@@ -164,7 +127,7 @@ pub fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
     let mut shapes = state.display.shapes.remove(&pair).unwrap_or_default();
     shapes.refresh(&curves, pair, reference);
     let mut drawn = Vec::new();
-    let mut draw = |shapes: &mut CachedShapes, face: CurveFace, shape: Shape| {
+    let mut draw = |shapes: &mut CachedShapes, face: CurveFace, shape: ResponseShape| {
         let turns = state.display.curves.turns_of(curves.condition.id(), pair, &face.id);
         let how = Presentation { unit: state.display.curves.phase, turns };
         let phase_deg = shapes.presented(&face.id, &shape.phase_deg, how);

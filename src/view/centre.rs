@@ -10,6 +10,7 @@ use egui_tiles::{
 
 use super::arrangement::View;
 use super::command::Command;
+use super::figures::figure_button_ui;
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 use super::region::{Region, region_ui};
 use super::state::State;
@@ -39,6 +40,7 @@ struct Views<'a> {
 impl Views<'_> {
     fn header_ui(&mut self, ui: &mut Ui, view: View) {
         let (state, palette) = (&*self.state, self.palette);
+        figure_button_ui(ui, view, self.commands);
         match view {
             View::NetGain => views::net_gain_header_ui(ui, state, palette, self.commands),
             View::Channels => views::channels_header_ui(ui, state, self.commands),

@@ -6,6 +6,7 @@ use egui::ThemePreference;
 use egui_tiles::LinearDir;
 
 use crate::dataset::{ConditionId, ModelId, Pair};
+use crate::figure::{ColumnWidth, FigureFormat};
 use crate::study::{AskedFigure, Edit};
 
 use super::across_scene::AcrossRole;
@@ -123,6 +124,12 @@ pub enum Command {
     AskSaveTable(TableKind),
     /// Save a table as CSV.
     SaveTable(TableKind, PathBuf),
+    /// Put the numbers of what a view shows on the clipboard, as CSV.
+    CopyFigure(View),
+    /// Ask where to save what a view shows.
+    AskSaveFigure(View, FigureFormat),
+    /// Save what a view shows, in the format that the name says, as wide as it is to be printed.
+    SaveFigure(View, ColumnWidth, PathBuf),
     /// Give the focus to the field of this accessible name.
     FocusField(&'static str),
     /// Give the focus to the next part of the window, or to the one before.
@@ -161,6 +168,8 @@ pub enum FormKind {
     Reason,
     /// Where to save a table, by path.
     SaveTable,
+    /// Where to save a figure, by path, and how wide.
+    SaveFigure,
     /// Every command, found by its name.
     Palette,
     /// Whether to lose unsaved decisions.

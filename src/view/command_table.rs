@@ -3,10 +3,13 @@
 use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
 
 use crate::dataset::Pair;
+use crate::figure::FigureFormat;
 use crate::study::{Edit, Setting};
 
 use super::arrangement::{Preset, View};
 use super::command::{Command, FormKind};
+use super::curve_entries::curve_entries;
+use super::figures::views_with_figure;
 use super::plot::FrequencyUnit;
 use super::state::State;
 use super::tables::TableKind;
@@ -20,6 +23,8 @@ pub enum Menu {
     Edit,
     /// What is shown, and how.
     View,
+    /// How curves are drawn: a part of the menu before.
+    Curves,
     /// Explanations.
     Help,
 }
@@ -59,18 +64,18 @@ impl Entry {
         Self { name: name.into(), meaning, shortcuts, reach, menu: None, enabled: true, command }
     }
 
-    fn keys(mut self, modifiers: Modifiers, key: Key) -> Self {
+    pub(super) fn keys(mut self, modifiers: Modifiers, key: Key) -> Self {
         self.shortcuts.push(KeyboardShortcut::new(modifiers, key));
         self
     }
 
     /// A key without modifiers that works only while nothing has the focus.
-    fn free_key(mut self, key: Key) -> Self {
+    pub(super) fn free_key(mut self, key: Key) -> Self {
         self.reach = Reach::WithoutFocus;
         self.keys(Modifiers::NONE, key)
     }
 
-    fn within(mut self, menu: Menu, group: u8) -> Self {
+    pub(super) fn within(mut self, menu: Menu, group: u8) -> Self {
         self.menu = Some((menu, group));
         self
     }
@@ -89,6 +94,7 @@ pub fn command_table(state: &State) -> Vec<Entry> {
     let mut entries = file_entries(state);
     entries.extend(edit_entries(state));
     entries.extend(view_entries(state));
+    entries.extend(curve_entries(state));
     entries.extend(field_entries());
     entries.extend(TableKind::ALL.map(|kind| {
         Entry::new(format!("Copy table: {}", kind.name()), "As text, one line a row", Command::CopyTable(kind))
@@ -98,6 +104,14 @@ pub fn command_table(state: &State) -> Vec<Entry> {
             Entry::new(format!("Save table: {}…", kind.name()), "As a CSV file", Command::AskSaveTable(kind))
         }),
     );
+    entries.extend(views_with_figure().map(|view| {
+        let name = format!("Copy numbers of {}", view.name());
+        Entry::new(name, "As CSV, to the clipboard", Command::CopyFigure(view))
+    }));
+    entries.extend(views_with_figure().map(|view| {
+        let command = Command::AskSaveFigure(view, FigureFormat::Svg);
+        Entry::new(format!("Save figure: {}…", view.name()), "As SVG, PNG or PDF, or its numbers as CSV", command)
+    }));
     entries.extend(help_entries());
     entries
 }

@@ -84,14 +84,14 @@ fn change_cells(members: &[&BodeCurve], quantity: BodeQuantity<'_>, (from, to): 
 /// principal value, for a single frequency knows no turns (M4).
 fn difference_cells(members: &[&BodeCurve], reference: Option<&BodeCurve>, omega: f64) -> [String; 3] {
     let difference = |pane| {
-        let of = move |curve: &&BodeCurve| Some(curve.value_at(pane, omega)? - reference?.value_at(pane, omega)?);
-        members.iter().filter_map(of)
+        let of_reference = reference.and_then(|reference| reference.value_at(pane, omega));
+        members.iter().filter_map(move |curve| Some(curve.value_at(pane, omega)? - of_reference?))
     };
-    let phases = || difference(Pane::Phase).map(|degrees| wrap(degrees.to_radians()));
+    let phases: Vec<f64> = difference(Pane::Phase).map(|degrees| wrap(degrees.to_radians())).collect();
     [
         cell(difference(Pane::Magnitude), 2),
-        cell(phases().map(f64::to_degrees), 1),
-        cell(phases().map(|phase| s_to_ms(phase / omega)), 1),
+        cell(phases.iter().map(|phase| phase.to_degrees()), 1),
+        cell(phases.iter().map(|phase| s_to_ms(phase / omega)), 1),
     ]
 }
 

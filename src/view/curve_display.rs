@@ -27,6 +27,8 @@ pub struct CurveDisplay {
     pub pinned: Vec<f64>,
     /// Whether the values at the cursor are listed.
     pub lists_values: bool,
+    /// Whether the plot of errors shows what a pilot does not notice.
+    pub shows_muad: bool,
     /// Models that a box was drawn over.
     pub selected: BTreeSet<ModelId>,
 }
@@ -43,6 +45,7 @@ impl Default for CurveDisplay {
             cursor: None,
             pinned: Vec::new(),
             lists_values: true,
+            shows_muad: false,
             selected: BTreeSet::new(),
         }
     }
@@ -73,6 +76,8 @@ pub enum CurveCommand {
     UnpinCursors,
     /// List the values at the cursor, or not.
     ListValues(bool),
+    /// Show in the plot of errors what a pilot does not notice, or not.
+    ShowMuad(bool),
     /// Select models, in place of those that are.
     Select(BTreeSet<ModelId>),
 }
@@ -112,6 +117,7 @@ impl CurveDisplay {
             }
             CurveCommand::UnpinCursors => self.pinned.clear(),
             CurveCommand::ListValues(wanted) => self.lists_values = wanted,
+            CurveCommand::ShowMuad(wanted) => self.shows_muad = wanted,
             CurveCommand::Select(models) => self.selected = models,
         }
     }

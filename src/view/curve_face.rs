@@ -73,7 +73,7 @@ pub(super) fn model_faces(
     let face = move |(index, model): (usize, &Model)| {
         let id = ModelId::new(condition.id(), kind, &model.name);
         let rejected = state.study.is_rejected(&id);
-        let role = role_of(kind, model.is_nominal(), representative == Some(&model.name));
+        let role = Role::of_model(kind, model.is_nominal(), representative == Some(&model.name));
         let curves = &state.display.curves;
         let face = CurveFace {
             label: model.name.clone(),
@@ -87,16 +87,6 @@ pub(super) fn model_faces(
         (index, face)
     };
     condition.bundle(kind).iter().enumerate().filter(move |(_, model)| is_visible(&model.name)).map(face)
-}
-
-fn role_of(kind: BundleKind, nominal: bool, represents: bool) -> Role {
-    match (kind, nominal, represents) {
-        (BundleKind::Physics, true, _) => Role::Nominal,
-        (BundleKind::Physics, false, true) => Role::Representative,
-        (BundleKind::Physics, false, false) => Role::Perturbed,
-        (BundleKind::Identified, _, true) => Role::IdentifiedRepresentative,
-        (BundleKind::Identified, _, false) => Role::Identified,
-    }
 }
 
 /// "ratio 3.68, suggested as an outlier · click to reject".

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::dataset::{BundleKind, Pair};
-use crate::fidelity::Mismatch;
-use crate::response::{FrequencyResponse, GainDelay, PolarCurve, quantile};
+use crate::fidelity::{Mismatch, Muad, leaves};
+use crate::response::{FrequencyResponse, GainDelay, PolarCurve, quantile, wrap};
 use crate::study::{ConditionAnalysis, ConditionCurves};
 use crate::units::{ratio_to_db, s_to_ms};
 
@@ -168,7 +168,48 @@ pub fn error_rules(state: &State, pair: Pair, drawn: &[BodeCurve]) -> Vec<Rule> 
     if let Some(curve) = drawn.iter().find(is_representative) {
         rules.extend(quantile_rules(curve, state.study.settings.quantile, unit));
     }
+    if let Some(curve) = drawn.first().filter(|_| state.display.curves.shows_muad) {
+        rules.extend(muad_rules(&curve.omega, unit));
+    }
     rules
+}
+
+/// The envelopes of unnoticeable added dynamics over the frequencies of an error (MIL-STD-1797A). They are those of model over
+/// reference: what is drawn above is its inverse, what is drawn below is not.
+fn muad_rules(omega: &[f64], unit: PhaseErrorUnit) -> Vec<Rule> {
+    let phase = |omega: f64, degrees: f64| match unit {
+        PhaseErrorUnit::Degree => degrees,
+        PhaseErrorUnit::Millisecond => s_to_ms(degrees.to_radians() / omega),
+    };
+    let rule = |pane, label: &str, value: &dyn Fn(f64) -> f64| {
+        let level = Level::Sampled(omega.iter().map(|&omega| [omega, value(omega)]).collect());
+        Rule { pane, kind: RuleKind::Envelope, label: label.to_owned(), level }
+    };
+    [(0, "unnoticed below, MUAD"), (1, "unnoticed above, MUAD")]
+        .into_iter()
+        .flat_map(|(end, label)| {
+            [
+                rule(Pane::Magnitude, label, &|omega| -Muad::at(omega).magnitude_db[end]),
+                rule(Pane::Phase, label, &|omega| phase(omega, Muad::at(omega).phase_deg[end])),
+            ]
+        })
+        .collect()
+}
+
+/// Where what is left of the mismatch would be noticed \[rad/s\]: that of the corrected curve among `drawn`.
+pub fn noticed(state: &State, drawn: &[BodeCurve]) -> Vec<(f64, f64)> {
+    let curves = &state.display.curves;
+    let corrected = drawn.iter().find(|curve| curve.id == CurveId::Corrected).filter(|_| curves.shows_muad);
+    let Some(curve) = corrected else { return Vec::new() };
+    let error_db: Vec<f64> = curve.magnitude_db.iter().map(|db| -db).collect();
+    let error_deg: Vec<f64> = match curves.phase_error {
+        PhaseErrorUnit::Degree => curve.phase_deg.to_vec(),
+        PhaseErrorUnit::Millisecond => {
+            curve.omega.iter().zip(curve.phase_deg.iter()).map(|(omega, ms)| (1e-3 * ms * omega).to_degrees()).collect()
+        }
+    };
+    let principal: Vec<f64> = error_deg.iter().map(|phase| wrap(phase.to_radians()).to_degrees()).collect();
+    leaves(&curve.omega, &error_db, &principal)
 }
 
 /// A delay as a line in the pane of phase errors.
@@ -237,5 +278,53 @@ pub fn error_message(state: &State, pair: Pair) -> String {
             format!("{name} is not compared: one of the representatives has no such response in the band")
         }
         _ => state.curves_message().unwrap_or("Nothing to compare in the band").to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    /// A gain \[dB\] and a lead \[s\] over the reference, a response of one.
+    fn error(omega: &[f64], gain_db: f64, lead_s: f64) -> ErrorShape {
+        let polar = |gain_db: f64, lead_s: f64| PolarCurve {
+            magnitude_db: vec![gain_db; omega.len()],
+            phase: omega.iter().map(|omega| wrap(omega * lead_s)).collect(),
+        };
+        ErrorShape::of(&polar(gain_db, lead_s), &polar(0.0, 0.0), omega)
+    }
+
+    #[test]
+    fn the_right_gain_and_delay_bring_an_error_to_zero_on_its_branch() {
+        // At 12 rad/s the lead is 1.15 turns: the phases themselves wrap.
+        let omega: Vec<f64> = (1..=120).map(|k| 0.1 * f64::from(k)).collect();
+        let error = error(&omega, 2.0, 0.6);
+        let before = error.drawn(GainDelay::NONE, &omega, PhaseErrorUnit::Millisecond);
+        // Roundings of angles of a turn, divided by 0.1 rad/s.
+        assert!(before.phase.iter().all(|delay| (delay - 600.0).abs() < 1e-9) && omega[119] * 0.6 > TAU);
+        assert_eq!(before.magnitude_db[0], -2.0, "the model is to be made smaller");
+        let after = error.drawn(GainDelay::new(10f64.powf(-0.1), 0.6), &omega, PhaseErrorUnit::Degree);
+        let values = after.magnitude_db.iter().chain(after.phase.iter());
+        assert!(values.into_iter().all(|value| value.abs() < 1e-10));
+    }
+
+    #[test]
+    fn a_delay_is_a_ray_in_degrees_and_level_in_milliseconds() {
+        let level = |unit| delay_rule(RuleKind::Delta, String::new(), 0.1, unit).level;
+        assert_eq!(level(PhaseErrorUnit::Degree), Level::PerOmega(0.1f64.to_degrees()));
+        assert_eq!(level(PhaseErrorUnit::Millisecond), Level::Constant(100.0));
+    }
+
+    #[test]
+    fn the_envelopes_of_model_over_reference_are_mirrored_where_the_inverse_is_drawn() {
+        let muad = Muad::at(2.0);
+        let rules = muad_rules(&[2.0], PhaseErrorUnit::Degree);
+        let of = |pane| rules.iter().filter(move |rule| rule.pane == pane).map(|rule| rule.level.clone());
+        let sampled = |value: f64| Level::Sampled(vec![[2.0, value]]);
+        let expected = muad.magnitude_db.map(|db| sampled(-db));
+        assert_eq!(of(Pane::Magnitude).collect::<Vec<_>>(), expected);
+        assert_eq!(of(Pane::Phase).collect::<Vec<_>>(), muad.phase_deg.map(sampled));
     }
 }

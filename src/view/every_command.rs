@@ -5,7 +5,6 @@ use crate::study::Edit;
 
 use super::command::{Command, FormKind};
 use super::command_table::{Entry, command_table, hold_entry};
-use super::looks_menu::{curve_unit_choices, looks_choices};
 use super::net_gain_scene::PairSet;
 use super::state::State;
 
@@ -13,8 +12,6 @@ use super::state::State;
 pub fn every_command(state: &State) -> Vec<Entry> {
     let mut entries = command_table(state);
     entries.retain(|entry| entry.command != Command::ShowForm(Some(FormKind::Palette)));
-    let choices = curve_unit_choices(&state.display.curves).into_iter().chain(looks_choices(state.display.looks));
-    entries.extend(choices.flatten().map(|(entry, is_chosen)| entry.enabled(!is_chosen)));
     entries.extend(PairSet::ALL.map(|set| {
         Entry::new(format!("Net gains of the responses {}", set.name()), set.purpose(), Command::ShowNetGains(set))
     }));

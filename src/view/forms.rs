@@ -3,6 +3,7 @@
 use egui::{Context, Id, Modal, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
 use crate::dataset::ConditionId;
+use crate::figure::ColumnWidth;
 
 use super::command::{Command, FormKind};
 use super::command_palette::command_palette_ui;
@@ -10,7 +11,7 @@ use super::form::Form;
 use super::keys_page::keys_page_ui;
 use super::palette::Palette;
 use super::question_forms::{differences_ui, overwrite_ui, reason_ui, unsaved_ui};
-use super::state::{ExportForm, State};
+use super::state::{ExportForm, FigureForm, State};
 
 /// Shows the form that is asked for, if any. Its field has the focus when it opens; Enter submits it; Escape and a click outside
 /// close it.
@@ -20,7 +21,8 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
         return;
     };
     let asks_to_overwrite =
-        matches!(kind, FormKind::Save | FormKind::Export | FormKind::SaveTable) && !state.forms.existing.is_empty();
+        matches!(kind, FormKind::Save | FormKind::Export | FormKind::SaveTable | FormKind::SaveFigure)
+            && !state.forms.existing.is_empty();
     let opens = state.forms.drawn.replace((kind, asks_to_overwrite)) != Some((kind, asks_to_overwrite));
     let modal = Modal::new(Id::unique("form")).show(ctx, |ui| {
         ui.set_width(460.0);
@@ -36,6 +38,7 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
             FormKind::Shortcuts => shortcuts_ui(form, state, palette),
             FormKind::Palette => command_palette_ui(form.ui, state, opens, palette, form.commands),
             FormKind::SaveTable => save_table_ui(form, state),
+            FormKind::SaveFigure => save_figure_ui(form, state, palette),
             FormKind::Reason => reason_ui(form, state, palette),
             FormKind::About => about_ui(form, palette),
         }
@@ -87,6 +90,26 @@ fn save_table_ui(form: &mut Form<'_, '_>, state: &mut State) {
     let path = path.trim();
     form.line(|form| {
         form.submit_ui("Save table", !path.is_empty(), entered, || Command::SaveTable(kind, path.into()));
+        form.button_ui("Cancel", false, Command::ShowForm(None));
+    });
+}
+
+fn save_figure_ui(form: &mut Form<'_, '_>, state: &mut State, palette: &Palette) {
+    let FigureForm { view: Some(view), path, width } = &mut state.forms.figure else { return };
+    let view = *view;
+    form.title(&format!("Save the figure of {}", view.name()));
+    let hint = "path of a .svg, .png, .pdf or .csv file";
+    let entered = form.text_ui("Path of the figure", path, hint);
+    for choice in ColumnWidth::BOTH {
+        form.ui.radio_value(width, choice, choice.words());
+    }
+    let words = "On white paper, whatever the theme. The end of the name says the format; CSV holds the numbers.";
+    form.ui.label(RichText::new(words).color(palette.dim_text));
+    form.ui.add_space(4.0);
+    let (path, width) = (path.trim(), *width);
+    form.line(|form| {
+        let save = || Command::SaveFigure(view, width, path.into());
+        form.submit_ui("Save figure", !path.is_empty(), entered, save);
         form.button_ui("Cancel", false, Command::ShowForm(None));
     });
 }

@@ -4,7 +4,6 @@ use egui::{Align, Button, Layout, MenuBar, RichText, ThemePreference, Ui};
 
 use super::command::Command;
 use super::command_table::{Menu, command_table};
-use super::looks_menu::{choices_menu_ui, curve_unit_choices, looks_choices};
 use super::palette::Palette;
 use super::state::{RecentFile, State};
 
@@ -43,8 +42,11 @@ fn menu_ui(ui: &mut Ui, state: &State, menu: Menu, commands: &mut Vec<Command>) 
         if is_recent_place {
             ui.menu_button("Open recent", |ui| recent_menu_ui(ui, state, commands));
         }
-        let keys = entry.shortcuts.first().map(|shortcut| ui.ctx().format_shortcut(shortcut)).unwrap_or_default();
-        let response = ui.add_enabled(entry.enabled, Button::new(entry.name.as_str()).shortcut_text(keys));
+        let keys = entry.shortcuts.first().map(|shortcut| ui.ctx().format_shortcut(shortcut));
+        let button = Button::new(entry.name.as_str());
+        // An empty text would end the button's name in a space.
+        let button = if let Some(keys) = keys { button.shortcut_text(keys) } else { button };
+        let response = ui.add_enabled(entry.enabled, button);
         if response.on_hover_text(entry.meaning).clicked() {
             commands.push(entry.command);
             ui.close();
@@ -52,10 +54,7 @@ fn menu_ui(ui: &mut Ui, state: &State, menu: Menu, commands: &mut Vec<Command>) 
     }
     if menu == Menu::View {
         ui.separator();
-        let units = curve_unit_choices(&state.display.curves);
-        ui.menu_button("Units of curves", |ui| choices_menu_ui(ui, units, commands));
-        let looks = looks_choices(state.display.looks);
-        ui.menu_button("Looks of curves", |ui| choices_menu_ui(ui, looks, commands));
+        ui.menu_button("Curves", |ui| menu_ui(ui, state, Menu::Curves, commands));
     }
 }
 

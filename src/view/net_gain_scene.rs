@@ -1,20 +1,15 @@
 //! Gains and delays against airspeed or over conditions, made of what was computed.
 
-use std::collections::BTreeSet;
-
 use serde::{Deserialize, Serialize};
 
 use crate::correction::ChannelCorrection;
 use crate::dataset::{Channel, FlightState, Pair};
-use crate::schedule::Schedule;
+use crate::figure::{Classes, is_scheduled, scheduled_samples};
 use crate::study::{Analysis, ConditionAnalysis};
 use crate::units::s_to_ms;
 
 use super::plot::{Across, Dot, DotShape, GainPanel, Measure};
 use super::state::State;
-
-/// Samples of a schedule between its ends.
-const SAMPLES: usize = 120;
 
 /// Which responses the plots of net gain show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -135,7 +130,7 @@ struct Figure {
 
 impl Figure {
     fn panel(self, state: &State, analysis: &Analysis, across: Across) -> GainPanel {
-        let classes = Classes::of(state);
+        let classes = Classes::of(state.dataset());
         let place = |index: usize, flight_state: &FlightState| match across {
             Across::Airspeed => flight_state.airspeed_kt,
             Across::Conditions => index as f64,
@@ -158,53 +153,16 @@ impl Figure {
                 detail: flight_state.name.clone(),
             })
         });
-        let schedule = analysis.schedule.as_ref().ok().filter(|schedule| self.is_scheduled(schedule, across));
-        let schedule = schedule.map(|schedule| samples(schedule, &self.of)).unwrap_or_default();
+        let schedule = analysis.schedule.as_ref().ok().filter(|schedule| is_scheduled(schedule, self.measure, across));
+        let schedule = schedule.map(|schedule| scheduled_samples(schedule, &self.of)).unwrap_or_default();
         GainPanel { title: self.title, measure: self.measure, across, dots: dots.collect(), schedule }
-    }
-
-    fn is_scheduled(&self, schedule: &Schedule, across: Across) -> bool {
-        across == Across::Airspeed && (self.measure == Measure::Gain || schedule.settings.delays)
-    }
-}
-
-fn samples(schedule: &Schedule, figure: &FigureOf) -> Vec<[f64; 2]> {
-    let (from, to) = (schedule.airspeeds.min_kt, schedule.airspeeds.max_kt);
-    let airspeed = |sample: usize| from + (to - from) * sample as f64 / SAMPLES as f64;
-    (0..=SAMPLES).map(|sample| [airspeed(sample), figure(&schedule.at(airspeed(sample)))]).collect()
-}
-
-/// The altitude class drawn as circles and the weight class drawn filled: "low", or the first of the names; and the others.
-struct Classes {
-    altitudes: Vec<String>,
-    weights: Vec<String>,
-}
-
-impl Classes {
-    fn of(state: &State) -> Self {
-        let names = |class: fn(&FlightState) -> &Option<String>| -> Vec<String> {
-            let states = state.dataset().conditions().iter().map(|condition| condition.flight_state());
-            let mut names: Vec<String> =
-                states.filter_map(|state| class(state).clone()).collect::<BTreeSet<_>>().into_iter().collect();
-            names.sort_by_key(|name| !["low", "light"].contains(&name.as_str()));
-            names
-        };
-        Self { altitudes: names(|state| &state.altitude), weights: names(|state| &state.weight) }
-    }
-
-    fn is_first_altitude(&self, state: &FlightState) -> bool {
-        state.altitude.as_ref() == self.altitudes.first()
-    }
-
-    fn is_first_weight(&self, state: &FlightState) -> bool {
-        state.weight.as_ref() == self.weights.first()
     }
 }
 
 /// What shapes and fills of the dots mean: "altitude ● low ◆ high · weight filled low, open high"; empty where the dataset has no
 /// classes.
 pub fn dot_key(state: &State) -> String {
-    let classes = Classes::of(state);
+    let classes = Classes::of(state.dataset());
     let mut words = Vec::new();
     if let Some((first, others)) = classes.altitudes.split_first() {
         let others = if others.is_empty() { String::new() } else { format!(" ◆ {}", others.join(", ")) };

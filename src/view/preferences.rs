@@ -25,6 +25,8 @@ pub struct Preferences {
     pub phase_error: PhaseErrorUnit,
     /// Roles whose curves are not drawn.
     pub hidden_roles: BTreeSet<Role>,
+    /// Whether the plot of errors shows what a pilot does not notice.
+    pub shows_muad: bool,
     /// Whether the values at the cursor are not listed.
     pub lists_no_values: bool,
     /// How curves are drawn.
@@ -41,6 +43,7 @@ impl Preferences {
             phase: display.curves.phase,
             phase_error: display.curves.phase_error,
             hidden_roles: display.curves.hidden_roles.clone(),
+            shows_muad: display.curves.shows_muad,
             lists_no_values: !display.curves.lists_values,
             looks: display.looks,
         }
@@ -54,6 +57,7 @@ impl Preferences {
         display.curves.phase = self.phase;
         display.curves.phase_error = self.phase_error;
         display.curves.hidden_roles.clone_from(&self.hidden_roles);
+        display.curves.shows_muad = self.shows_muad;
         display.curves.lists_values = !self.lists_no_values;
         display.looks = self.looks.within_limits();
     }

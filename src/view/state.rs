@@ -5,11 +5,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
+use crate::figure::ColumnWidth;
 use crate::study::{
     AcrossCurves, Analysis, AssessmentTable, ConditionAnalysis, ConditionCurves, ConditionFailure, ConditionModes,
     Difference, History, Study, Toggles,
 };
 
+use super::arrangement::View;
 use super::assessment_scene::assessment_choice;
 use super::bars::Bar;
 use super::command::FormKind;
@@ -58,6 +60,17 @@ pub struct ExportForm {
     pub chosen: BTreeSet<ConditionId>,
 }
 
+/// What the form that saves a figure holds.
+#[derive(Clone, Debug, Default)]
+pub struct FigureForm {
+    /// The view whose figure is saved.
+    pub view: Option<View>,
+    /// Where, as typed.
+    pub path: String,
+    /// How wide it is printed.
+    pub width: ColumnWidth,
+}
+
 /// What the forms hold while they are shown.
 #[derive(Debug, Default)]
 pub struct Forms {
@@ -79,6 +92,8 @@ pub struct Forms {
     pub table: Option<TableKind>,
     /// Where, as typed.
     pub table_path: String,
+    /// The figure that is to be saved.
+    pub figure: FigureForm,
     /// The palette of commands.
     pub palette: PaletteForm,
     /// The path in the save form, as typed.

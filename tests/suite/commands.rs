@@ -397,3 +397,55 @@ fn a_study_whose_dataset_has_changed_or_moved_is_used_and_told_about_unless_it_h
         .assert_failed(2, &["small.json: there is no such file", "--dataset FILE"]);
     assert_eq!(desk.gdcm(&["check", "a.gdcm-study.json", "--dataset", "moved.json"]).status, 0);
 }
+
+#[test]
+fn a_figure_of_every_view_is_written() {
+    let desk = Desk::new();
+    for (view, rest) in [
+        ("bode", ["--condition", "7"].as_slice()),
+        ("error", &["--condition", "7", "--hertz"]),
+        ("overview", &["--condition", "10", "--width", "single"]),
+        ("net-gain", &["--pair", "all"]),
+        ("channels", &["--channel", "inputs", "--over-conditions", "--delays"]),
+        ("assessment", &[]),
+        ("poles", &["--condition", "7", "--hide", "identified,rejected"]),
+    ] {
+        let out = format!("{view}.svg");
+        let ended = desk.gdcm(&[&["figure", "small.json", "--view", view, "--out", &out][..], rest].concat());
+        ended.assert_done();
+        assert!(ended.out.starts_with(&format!("{out}: ")), "{}", ended.out);
+        assert!(fs::read_to_string(desk.path(&out)).unwrap().starts_with("<svg"), "{out}");
+    }
+}
+
+#[test]
+fn a_figure_is_written_as_its_name_says() {
+    let desk = Desk::new();
+    for (out, start) in [("a.pdf", "%PDF"), ("a.PNG", "\u{fffd}PNG"), ("a.csv", "series,label,Airspeed [kt]")] {
+        desk.gdcm(&["figure", "small.json", "--view", "net-gain", "--out", out]).assert_done();
+        let bytes = fs::read(desk.path(out)).unwrap();
+        assert!(String::from_utf8_lossy(&bytes).contains(start) && bytes.len() > 100, "{out}");
+    }
+}
+
+#[test]
+fn a_figure_that_cannot_be_made_is_status_2_and_says_what_there_is() {
+    let desk = Desk::new();
+    let figure = |rest: &[&str]| desk.gdcm(&[&["figure", "small.json"][..], rest].concat());
+    figure(&["--view", "bode", "--out", "a.svg"])
+        .assert_failed(2, &["--condition", "a figure of one condition", "7, 10"]);
+    figure(&["--view", "bode", "--condition", "99", "--out", "a.svg"]).assert_failed(2, &["no condition 99", "7, 10"]);
+    figure(&["--view", "sky", "--out", "a.svg"]).assert_failed(2, &["--view"]);
+    figure(&["--view", "net-gain", "--out", "a.jpg"]).assert_failed(2, &["a.jpg: ", ".svg, .png, .pdf or .csv"]);
+    figure(&["--view", "net-gain", "--pair", "X/Y", "--out", "a.svg"]).assert_failed(2, &["--pair", "no response X/Y"]);
+    figure(&["--view", "channels", "--channel", "X", "--out", "a.svg"])
+        .assert_failed(2, &["--channel", "no channel X"]);
+    figure(&["--view", "net-gain", "--out", "small.json"]).assert_failed(2, &["small.json: "]);
+    assert!(!desk.path("a.svg").exists());
+    fs::write(desk.path("a.svg"), "mine").unwrap();
+    let existing = ["--view", "net-gain", "--out", "a.svg"];
+    figure(&existing).assert_failed(2, &["a.svg exists already; --force overwrites"]);
+    assert_eq!(fs::read_to_string(desk.path("a.svg")).unwrap(), "mine");
+    figure(&[&existing[..], &["--force"]].concat()).assert_done();
+    assert!(fs::read_to_string(desk.path("a.svg")).unwrap().starts_with("<svg"));
+}

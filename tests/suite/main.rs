@@ -8,6 +8,7 @@ use gdcm::io::{LoadedDataset, embedded_example};
 mod analysis;
 mod commands;
 mod dataset_file;
+mod figures;
 mod messages;
 mod optimiser;
 mod outputs;

@@ -13,10 +13,11 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("correction", &["units", "dataset", "response", "fidelity"]),
     ("schedule", &["units", "dataset", "response", "fidelity", "correction"]),
     ("study", &["units", "dataset", "response", "fidelity", "correction", "schedule"]),
-    ("io", &["units", "dataset", "response", "fidelity", "correction", "schedule", "study"]),
-    ("view", &["units", "dataset", "response", "fidelity", "correction", "schedule", "study", "view"]),
-    ("cli", &["units", "dataset", "response", "fidelity", "correction", "schedule", "study", "io", "app"]),
-    ("app", &["units", "dataset", "response", "fidelity", "correction", "schedule", "study", "io", "view"]),
+    ("figure", &["units", "dataset", "response", "fidelity", "correction", "schedule", "study"]),
+    ("io", &["units", "dataset", "response", "fidelity", "correction", "schedule", "study", "figure"]),
+    ("view", &["units", "dataset", "response", "fidelity", "correction", "schedule", "study", "figure", "view"]),
+    ("cli", &["units", "dataset", "response", "fidelity", "correction", "schedule", "study", "figure", "io", "app"]),
+    ("app", &["units", "dataset", "response", "fidelity", "correction", "schedule", "study", "figure", "io", "view"]),
 ];
 
 /// What only some modules may name, because the rest must stay free of windows, files and threads.
@@ -31,6 +32,9 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("rayon::", &["app"]),
     ("clap::", &["cli"]),
     ("serde_json::", &["io"]),
+    ("skrifa::", &["figure", "io"]),
+    ("vello_cpu::", &["io"]),
+    ("pdf_writer::", &["io"]),
 ];
 
 fn sources(folder: &Path) -> Vec<PathBuf> {

@@ -7,6 +7,8 @@ use crate::correction::ChannelCorrection;
 use crate::dataset::{Channel, Condition, ConditionId, Pair};
 use crate::study::{Analysis, Assessed};
 
+use super::super::csv_table::write_records;
+
 const CHANNEL_HEADER: [&str; 8] =
     ["condition", "airspeed_kt", "kind", "channel", "gain", "delay_s", "scheduled_gain", "scheduled_delay_s"];
 
@@ -20,7 +22,7 @@ pub(super) fn channel_table(
     let conditions = analysis.study.dataset.conditions();
     let chosen = conditions.iter().filter(|condition| chosen.contains(&condition.id()));
     let rows = chosen.flat_map(|condition| channel_rows(analysis, condition));
-    write_csv(file, &CHANNEL_HEADER, rows)
+    write_records(file, std::iter::once(CHANNEL_HEADER.map(str::to_owned)).chain(rows))
 }
 
 fn channel_rows(analysis: &Analysis, condition: &Condition) -> Vec<[String; 8]> {
@@ -94,7 +96,7 @@ pub(super) fn response_table(
         let pairs = analysis.study.dataset.on_axis().pairs();
         pairs.map(move |pair| response_row(analysis, condition, scheduled.as_ref(), pair))
     });
-    write_csv(file, &RESPONSE_HEADER, rows)
+    write_records(file, std::iter::once(RESPONSE_HEADER.map(str::to_owned)).chain(rows))
 }
 
 fn response_row(
@@ -134,23 +136,6 @@ fn response_row(
         cell(change.map(|change| change.total())),
         left_out.to_owned(),
     ]
-}
-
-fn write_csv<const COLUMNS: usize>(
-    file: &mut dyn Write,
-    header: &[&str; COLUMNS],
-    rows: impl Iterator<Item = [String; COLUMNS]>,
-) -> io::Result<()> {
-    let mut table = csv::Writer::from_writer(file);
-    let records = std::iter::once(header.map(str::to_owned)).chain(rows);
-    for record in records {
-        // Unpacked, so that a full disk is told as one.
-        table.write_record(&record).map_err(|error| match error.into_kind() {
-            csv::ErrorKind::Io(error) => error,
-            _ => io::ErrorKind::InvalidData.into(),
-        })?;
-    }
-    table.flush()
 }
 
 /// A figure to the last digit; an empty cell where there is none, or none that is finite.

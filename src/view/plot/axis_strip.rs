@@ -79,8 +79,11 @@ fn limits_ui(
         .open_bool(&mut is_open)
         .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
         .accessible_name("Limits of the axis");
-    let answer = popup.show(|ui| form_ui(ui, &mut form, scene, palette)).map(|shown| shown.inner);
-    match answer.unwrap_or_default() {
+    let answer = popup.show(|ui| form_ui(ui, &mut form, scene, palette)).map(|shown| shown.inner).unwrap_or_default();
+    if answer != FormAnswer::Waiting {
+        ui.ctx().request_repaint();
+    }
+    match answer {
         FormAnswer::Waiting => {}
         FormAnswer::Fit => {
             view.fit_axis(axis);
@@ -94,7 +97,6 @@ fn limits_ui(
             Err(refusal) => form.trouble = Some(refusal.to_string()),
         },
     }
-    ui.ctx().request_repaint();
     if is_open {
         view.limits = Some(form);
     }

@@ -41,6 +41,8 @@ pub struct BodeScene<'a> {
     pub curves: &'a [BodeCurve],
     /// Labelled lines across the panes.
     pub rules: &'a [Rule],
+    /// Frequencies marked along the lower edge of each pane \[rad/s\].
+    pub strips: &'a [(f64, f64)],
     /// The frequencies that fitting shows \[rad/s\]; those of the curves where there are none.
     pub omega_range: Option<(f64, f64)>,
     /// Where a cursor stands that is led elsewhere \[rad/s\].
@@ -73,6 +75,7 @@ impl<'a> BodeScene<'a> {
             pair_title,
             curves,
             rules: &[],
+            strips: &[],
             omega_range: None,
             cursor: None,
             pinned: &[],
@@ -109,6 +112,8 @@ pub enum BodeEvent {
     BandReleased,
     /// The legend's switch of a role was clicked.
     RoleToggled(Role),
+    /// The model of a curve is to be rejected, for a reason.
+    RejectedBecause(CurveId, String),
     /// Something was chosen from a curve's menu.
     Wished(CurveId, CurveWish),
     /// A box was drawn over these curves.
@@ -196,7 +201,7 @@ fn ask_for_menu(response: &Response, scene: &BodeScene<'_>, pointing: Option<Poi
         && let Some(pointing) = pointing
     {
         let curve = pointing.hit.map(|hit| scene.curves[hit.curve].id.clone());
-        view.menu_subject = Some(MenuSubject { curve, omega: 10f64.powf(pointing.log_omega) });
+        view.menu_subject = Some(MenuSubject { curve, omega: 10f64.powf(pointing.log_omega), reason: String::new() });
     }
 }
 

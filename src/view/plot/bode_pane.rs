@@ -13,7 +13,7 @@ use super::drawn_box::drawn_box_ui;
 use super::drawn_curves::DrawnCurves;
 use super::pixel::Pixel;
 use super::plot_keys::plot_keys;
-use super::rule::rules_ui;
+use super::rule::{rules_ui, strips_ui};
 use super::wheel::{Turn, turned};
 use crate::view::palette::Palette;
 
@@ -65,6 +65,7 @@ pub(super) fn pane_ui(
     plot_keys(ui, pane, &shown.response, view);
     axis_strips_ui(ui, (pane, rect), scene, view, palette);
     rules_ui(ui, scene.rules, pane, &shown.transform, palette);
+    strips_ui(ui, scene.strips, &shown.transform, palette);
     let description = format!("{name} of {}, {} curves", scene.pair_title, scene.curves.len());
     shown.response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, description.clone()));
     shown.response

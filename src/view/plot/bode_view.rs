@@ -135,6 +135,21 @@ impl BodeView {
         (10f64.powf(min), 10f64.powf(max))
     }
 
+    /// The frequencies in view \[rad/s\], where the engineer chose them.
+    pub fn chosen_omega(&self) -> Option<Range> {
+        let (min, max) = self.omega_range();
+        self.log_omega.is_chosen().then_some(Range { min, max })
+    }
+
+    /// The part of a pane's vertical axis in view, where the engineer chose it.
+    pub fn chosen_values(&self, pane: Pane) -> Option<Range> {
+        let viewed = match pane {
+            Pane::Magnitude => &self.magnitude_db,
+            Pane::Phase => &self.phase_deg,
+        };
+        viewed.is_chosen().then(|| viewed.range())
+    }
+
     /// The part of a pane's vertical axis that is in view.
     pub fn value_range(&self, pane: Pane) -> Range {
         match pane {

@@ -1,6 +1,6 @@
 //! What can be done with a curve, and with the ground between the curves, on a secondary click.
 
-use egui::{Response, RichText, Ui};
+use egui::{Button, Key, Popup, PopupCloseBehavior, Response, RichText, Role as WidgetRole, TextEdit, Ui, WidgetInfo};
 
 use super::bode::{BodeEvent, BodeScene};
 use super::bode_view::BodeView;
@@ -31,6 +31,8 @@ pub enum CurveWish {
 pub(super) struct MenuSubject {
     pub(super) curve: Option<CurveId>,
     pub(super) omega: f64,
+    /// Why the model is to be rejected, as far as it is typed.
+    pub(super) reason: String,
 }
 
 /// Shows the menu of a pane while it is open.
@@ -41,12 +43,15 @@ pub(super) fn menu_ui(
     events: &mut Vec<BodeEvent>,
     palette: &Palette,
 ) {
-    let Some(subject) = view.menu_subject.clone() else { return };
+    let Some(mut subject) = view.menu_subject.take() else { return };
     let curve = subject.curve.as_ref().and_then(|id| scene.curves.iter().find(|curve| curve.id == *id));
-    response.context_menu(|ui| match curve {
-        Some(curve) => curve_menu_ui(ui, scene, curve, events, palette),
+    // A click into the field for the reason must not close the menu.
+    let menu = Popup::context_menu(response).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    menu.show(|ui| match curve {
+        Some(curve) => curve_menu_ui(ui, scene, (curve, &mut subject.reason), events, palette),
         None => ground_menu_ui(ui, scene, &subject, view, events),
     });
+    view.menu_subject = Some(subject);
 }
 
 fn entry(ui: &mut Ui, text: &str, hint: &str) -> bool {
@@ -57,10 +62,24 @@ fn entry(ui: &mut Ui, text: &str, hint: &str) -> bool {
     clicked
 }
 
+/// A field for the reason of a rejection; gives whether the model is to be rejected for it.
+fn reason_ui(ui: &mut Ui, reason: &mut String) -> bool {
+    let field = ui.add(TextEdit::singleline(reason).hint_text("reason").desired_width(150.0));
+    field.widget_info(|| WidgetInfo::labeled(WidgetRole::TextInput, true, "Reason of the rejection"));
+    let is_entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+    field.on_hover_text("Why the model is rejected, in words: kept in the study; Enter rejects it");
+    let is_clicked = ui.add_enabled(!reason.trim().is_empty(), Button::new("Reject with reason")).clicked();
+    let is_wanted = (is_entered || is_clicked) && !reason.trim().is_empty();
+    if is_wanted {
+        ui.close();
+    }
+    is_wanted
+}
+
 fn curve_menu_ui(
     ui: &mut Ui,
     scene: &BodeScene<'_>,
-    curve: &BodeCurve,
+    (curve, reason): (&BodeCurve, &mut String),
     events: &mut Vec<BodeEvent>,
     palette: &Palette,
 ) {
@@ -69,6 +88,9 @@ fn curve_menu_ui(
         ui.label(RichText::new(&curve.detail).size(SMALL_SIZE).color(palette.dim_text));
     }
     ui.separator();
+    if matches!(curve.id, CurveId::Model(_)) && !curve.rejected && reason_ui(ui, reason) {
+        events.push(BodeEvent::RejectedBecause(curve.id.clone(), reason.clone()));
+    }
     let mut wish = |ui: &mut Ui, text: &str, hint: &str, wish: CurveWish| {
         if entry(ui, text, hint) {
             events.push(BodeEvent::Wished(curve.id.clone(), wish));

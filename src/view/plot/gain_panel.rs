@@ -15,6 +15,7 @@ use super::linear_axis::{Ladder, tick_text};
 use super::number::decimals;
 use super::range::Range;
 use super::role::Role;
+pub use crate::figure::{Across, Measure};
 use crate::view::palette::Palette;
 
 const TITLE_HEIGHT: f32 = 18.0;
@@ -28,25 +29,7 @@ const LABEL_FONT: FontId = FontId::proportional(10.5);
 /// Height that a row of label text has above and below its figures \[pt\].
 const LABEL_LEADING: f32 = 4.0;
 
-/// What the dots of a panel measure.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Measure {
-    /// A gain, a ratio; no correction is 1.
-    #[default]
-    Gain,
-    /// A delay \[ms\]; no correction is 0.
-    Delay,
-}
-
 impl Measure {
-    /// The value that corrects nothing.
-    pub fn null(self) -> f64 {
-        match self {
-            Self::Gain => 1.0,
-            Self::Delay => 0.0,
-        }
-    }
-
     /// A value with its unit.
     pub fn text(self, value: f64) -> String {
         match self {
@@ -54,24 +37,6 @@ impl Measure {
             Self::Delay => format!("{} ms", decimals(value, 1)),
         }
     }
-
-    /// Least height of a plot, in its unit.
-    fn least_height(self) -> f64 {
-        match self {
-            Self::Gain => 0.1,
-            Self::Delay => 10.0,
-        }
-    }
-}
-
-/// What the horizontal axis stands for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Across {
-    /// True airspeed \[kt\].
-    #[default]
-    Airspeed,
-    /// Conditions in file order, each at its place from 0 on; the axis has no numbers, dots have their labels.
-    Conditions,
 }
 
 /// One small plot: dots over airspeed or over conditions, with the schedule.

@@ -1,11 +1,10 @@
 //! The logarithmic frequency axis: everything that knows that a plot's x is `log10(omega)`.
 
 use egui_plot::{GridInput, GridMark};
-use serde::{Deserialize, Serialize};
 
 use super::grid_strength::{is_labelled, labelled_mark, minor_mark};
 use super::number::compact;
-use crate::units::rad_s_to_hz;
+pub use crate::figure::FrequencyUnit;
 
 /// Least distance between two labels \[pt\].
 const LABEL_GAP: f64 = 34.0;
@@ -19,38 +18,7 @@ const LINEAR_BELOW: f64 = 0.9;
 /// From 9 to 10, the narrowest gap between the lines of a decade \[decades\].
 const NINE_TO_TEN: f64 = 0.045_757_490_560_675_115;
 
-/// The unit frequencies are shown in; inside they are always rad/s.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum FrequencyUnit {
-    /// Angular frequency.
-    #[default]
-    RadPerSecond,
-    /// Cycles per second.
-    Hertz,
-}
-
 impl FrequencyUnit {
-    /// The symbol of the unit.
-    pub fn symbol(self) -> &'static str {
-        match self {
-            Self::RadPerSecond => "rad/s",
-            Self::Hertz => "Hz",
-        }
-    }
-
-    /// The angular frequency `omega` \[rad/s\] in this unit.
-    pub fn of_omega(self, omega: f64) -> f64 {
-        match self {
-            Self::RadPerSecond => omega,
-            Self::Hertz => rad_s_to_hz(omega),
-        }
-    }
-
-    /// What stands beside the axis.
-    pub fn axis_label(self) -> String {
-        format!("Frequency [{}]", self.symbol())
-    }
-
     /// An angular frequency as a reader wants it: "ω 2.05 rad/s" or "f 0.326 Hz".
     pub fn readout(self, omega: f64) -> String {
         let quantity = match self {

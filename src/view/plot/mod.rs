@@ -28,7 +28,6 @@ mod linear_axis;
 mod log_axis;
 mod message;
 mod net_gain;
-mod number;
 mod overview;
 mod picking;
 mod pixel;
@@ -37,7 +36,6 @@ mod plot_keys;
 mod pole_mark;
 mod poles;
 mod quantity;
-mod range;
 mod readout;
 mod readout_box;
 mod role;
@@ -52,6 +50,8 @@ mod tiles;
 mod value_unit;
 mod viewed_range;
 mod wheel;
+
+use crate::figure::{number, range};
 
 pub use assessment::{AssessmentEvent, AssessmentScene, AssessmentView, assessment_ui};
 pub use bar::{AssessmentBar, AssessmentPanel, BarValue};

@@ -1,39 +1,8 @@
 //! What the two stacked panes show, and in which units.
 
-use serde::{Deserialize, Serialize};
-
 use super::curve::Pane;
 use super::value_unit::ValueUnit;
-
-/// How the magnitude of a response is read.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum MagnitudeUnit {
-    /// Decibels.
-    #[default]
-    Decibel,
-    /// The ratio of output to input, in their units.
-    Ratio,
-}
-
-/// How the phase of a response is drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum PhaseUnit {
-    /// Continuous over frequency (M2).
-    #[default]
-    Unwrapped,
-    /// Between −180° and 180°.
-    Wrapped,
-}
-
-/// How a difference of phases is drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum PhaseErrorUnit {
-    /// Δφ.
-    #[default]
-    Degree,
-    /// Δφ/ω: the delay that would make up for it.
-    Millisecond,
-}
+pub use crate::figure::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 
 /// What the two stacked panes show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

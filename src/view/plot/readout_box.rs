@@ -44,16 +44,19 @@ impl Readout {
 
 const FONT: FontId = FontId::monospace(10.5);
 const ROW_HEIGHT: f32 = 13.5;
-const COLUMN_GAP: f32 = 9.0;
+const COLUMN_GAP: f32 = 7.0;
 const PADDING: Vec2 = vec2(7.0, 5.0);
 const SWATCH: f32 = 4.0;
+/// Part of the plot that may be covered.
+const MOST_COVERED: f32 = 0.35;
 
-/// Draws a read-out into a corner of `frame` other than that which `taken` covers; not at all where it would hide half of the plot.
+/// Draws a read-out into a corner of `frame` other than that which `taken` covers; not at all where it would hide too much of the plot.
 pub(super) fn readout_box_ui(ui: &Ui, frame: Rect, readout: &Readout, taken: Option<Rect>, palette: &Palette) {
     let painter = ui.painter().with_clip_rect(frame);
     let table = Table::new(&painter, readout, palette);
     let room = frame.shrink(9.0);
-    if table.size.x > 0.55 * room.width() || table.size.y > 0.7 * room.height() {
+    let is_small = table.size.x * table.size.y < MOST_COVERED * room.area();
+    if !is_small || table.size.x > room.width() || table.size.y > room.height() {
         return;
     }
     let corners = [Align2::LEFT_BOTTOM, Align2::RIGHT_BOTTOM, Align2::RIGHT_TOP, Align2::LEFT_TOP];

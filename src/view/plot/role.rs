@@ -1,64 +1,13 @@
-//! What a curve stands for, and how it is therefore drawn: the same in every view.
-
-use serde::{Deserialize, Serialize};
+//! How a curve of a role is drawn on the screen: the same in every view.
 
 use super::line_look::{LineLook, LinePattern};
+pub use crate::figure::Role;
 use crate::view::palette::Palette;
-
-/// What a curve stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum Role {
-    /// The physics model at the trim itself.
-    Nominal,
-    /// A physics model at a perturbed trim.
-    Perturbed,
-    /// The physics model that represents its bundle.
-    Representative,
-    /// A model identified from flight.
-    Identified,
-    /// The identified model that represents its bundle.
-    IdentifiedRepresentative,
-    /// The representative physics model with the condition's own correction.
-    Corrected,
-    /// The physics model with the correction of the schedule.
-    Scheduled,
-    /// A model left out, whatever it was.
-    Rejected,
-    /// A model of one of several conditions: 0 is the slowest, 255 the fastest.
-    OfAirspeed(u8),
-}
 
 /// The dots of what is left out.
 const DOTTED: LinePattern = LinePattern::Dotted { spacing: 4.5 };
 
 impl Role {
-    /// Every role of one condition, in the order of a legend.
-    pub const ALL: [Self; 8] = [
-        Self::Nominal,
-        Self::Perturbed,
-        Self::Representative,
-        Self::Identified,
-        Self::IdentifiedRepresentative,
-        Self::Corrected,
-        Self::Scheduled,
-        Self::Rejected,
-    ];
-
-    /// The name in a legend.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Nominal => "nominal",
-            Self::Perturbed => "perturbed",
-            Self::Representative => "representative",
-            Self::Identified => "identified",
-            Self::IdentifiedRepresentative => "identified representative",
-            Self::Corrected => "corrected",
-            Self::Scheduled => "scheduled",
-            Self::Rejected => "rejected",
-            Self::OfAirspeed(_) => "condition",
-        }
-    }
-
     /// The name where there is little room.
     pub fn short_name(self) -> &'static str {
         match self {
@@ -66,11 +15,6 @@ impl Role {
             Self::IdentifiedRepresentative => "ident. rep.",
             _ => self.name(),
         }
-    }
-
-    /// The role that a curve is shown in: a rejected curve is `Rejected`, but the nominal model stays nominal.
-    pub fn shown(self, rejected: bool) -> Self {
-        if rejected && self != Self::Nominal { Self::Rejected } else { self }
     }
 
     /// How a curve of this role is drawn. A rejected nominal model stays red, but dotted.
@@ -95,20 +39,6 @@ impl Role {
                 let part = f32::from(step) / f32::from(u8::MAX);
                 look(palette.perturbed.lerp_to_gamma(palette.identified, part), 1.8, LinePattern::Solid)
             }
-        }
-    }
-
-    /// Place in the order of drawing: what matters most is drawn last, on top.
-    pub fn layer(self, rejected: bool) -> usize {
-        match self.shown(rejected) {
-            Self::Rejected => 0,
-            Self::Perturbed | Self::OfAirspeed(_) => 1,
-            Self::Identified => 2,
-            Self::Nominal => 3,
-            Self::Representative => 4,
-            Self::IdentifiedRepresentative => 5,
-            Self::Scheduled => 6,
-            Self::Corrected => 7,
         }
     }
 }

@@ -6,7 +6,7 @@ use super::frequency::{Drawn, carry_over, chips};
 use crate::view::command::Command;
 use crate::view::cursor_readout::cursor_readout;
 use crate::view::curve_display::CurveCommand;
-use crate::view::error_scene::{error_curves, error_message, error_rules};
+use crate::view::error_scene::{error_curves, error_message, error_rules, noticed};
 use crate::view::palette::Palette;
 use crate::view::plot::{BodeQuantity, BodeScene, PhaseErrorUnit, bode_ui};
 use crate::view::settings_panel::choice_ui;
@@ -17,7 +17,7 @@ pub fn error_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
     let pair = state.display.pair;
     let mut view = std::mem::take(&mut state.display.error);
     let curves = error_curves(state, pair);
-    let rules = error_rules(state, pair, &curves);
+    let (rules, strips) = (error_rules(state, pair, &curves), noticed(state, &curves));
     let (title, message) = (state.dataset().pair_name(pair), error_message(state, pair));
     let display = &state.display.curves;
     let quantity = BodeQuantity::Error { phase: display.phase_error };
@@ -29,6 +29,7 @@ pub fn error_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
     let scene = BodeScene {
         quantity,
         rules: &rules,
+        strips: &strips,
         omega_range: grid.and_then(|omega| Some((*omega.first()?, *omega.last()?))),
         cursor: display.cursor,
         pinned: &display.pinned,

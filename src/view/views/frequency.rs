@@ -49,6 +49,7 @@ fn command_of(state: &State, event: BodeEvent) -> Option<Command> {
         }
         BodeEvent::BandReleased => Some(Command::EndEdit),
         BodeEvent::RoleToggled(role) => Some(CurveCommand::ToggleRole(role).into()),
+        BodeEvent::RejectedBecause(CurveId::Model(model), reason) => Some(Edit::RejectBecause { model, reason }.into()),
         BodeEvent::Wished(id, wish) => wished(state, id, wish),
         BodeEvent::Boxed(curves) => {
             let models = curves.into_iter().filter_map(|curve| match curve {
@@ -63,6 +64,7 @@ fn command_of(state: &State, event: BodeEvent) -> Option<Command> {
         | BodeEvent::Clicked(_)
         | BodeEvent::TakenBack(_)
         | BodeEvent::Isolated(_)
+        | BodeEvent::RejectedBecause(..)
         | BodeEvent::ChipClicked(_) => None,
     }
 }

@@ -3,7 +3,9 @@
 mod commands;
 mod computing;
 mod controls;
+mod curves;
 mod decisions;
+mod figures;
 mod files;
 mod forms;
 mod keyboard;
@@ -61,7 +63,8 @@ fn wait_until(window: &mut Window, what: &str, is_so: impl Fn(&Window) -> bool) 
     let limit = Instant::now() + LIMIT;
     while !is_so(window) {
         window.run_steps(1);
-        assert!(Instant::now() < limit, "never came: {what}");
+        let results = &state(window).results;
+        assert!(Instant::now() < limit, "never came: {what} ({} of {})", results.received, results.requested);
         std::thread::sleep(Duration::from_millis(5));
     }
     window.run_steps(1);

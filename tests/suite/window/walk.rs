@@ -1,6 +1,7 @@
 //! A long walk through the window at random: nothing panics, and what is shown is what a fresh computation gives.
 
 use gdcm::study::{Edit, Engine, Setting, Unobserved};
+use gdcm::view::arrangement::View;
 use gdcm::view::command::Command as Wish;
 use gdcm::view::every_command::every_command;
 
@@ -89,6 +90,8 @@ fn two_thousand_random_commands_never_panic_and_leave_what_a_fresh_computation_g
             window.run_steps(1);
         }
         if step % STEPS_OF_A_COMPARISON == 0 {
+            // The curves of the plots are made where they can be seen.
+            window.state_mut().give(Wish::ShowView(View::Bode), &ctx);
             settle(&mut window);
             assert_fresh(&window, step);
         }

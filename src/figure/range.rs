@@ -11,7 +11,7 @@ pub struct Range {
 
 impl Range {
     /// Every value.
-    pub(super) const ALL: Self = Self { min: f64::NEG_INFINITY, max: f64::INFINITY };
+    pub(crate) const ALL: Self = Self { min: f64::NEG_INFINITY, max: f64::INFINITY };
 
     /// The range from `min` to `max`, which need not be in order.
     pub fn new(min: f64, max: f64) -> Self {

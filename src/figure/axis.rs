@@ -1,0 +1,138 @@
+//! An axis of a panel: what is along it, and which part of it is shown.
+
+use super::range::Range;
+
+/// Space on either side of what is shown, as a part of its width.
+const MARGIN: f64 = 0.05;
+
+/// How values lie along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// In proportion, with ticks at 1, 2, 5 times a power of ten.
+    Linear,
+    /// In proportion, with ticks at parts of a turn.
+    Degrees,
+    /// By their logarithm.
+    Logarithmic,
+}
+
+/// An axis: its quantity with the unit, its scale, and the part that is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// Quantity and unit: `Frequency [rad/s]`.
+    pub label: String,
+    /// How values lie along it.
+    pub scale: Scale,
+    /// The part shown; what holds all marks, where none is given.
+    pub range: Option<Range>,
+    /// Values that are shown in any case.
+    pub including: Vec<f64>,
+    /// The least width shown, in the axis' unit.
+    pub least: f64,
+    /// Names at places, in place of ticks with numbers.
+    pub names: Option<Vec<(f64, String)>>,
+}
+
+impl Axis {
+    fn new(label: impl Into<String>, scale: Scale) -> Self {
+        Self { label: label.into(), scale, range: None, including: Vec::new(), least: 0.0, names: None }
+    }
+
+    /// An axis of decimal ticks.
+    pub fn linear(label: impl Into<String>) -> Self {
+        Self::new(label, Scale::Linear)
+    }
+
+    /// An axis of angles \[deg\].
+    pub fn degrees(label: impl Into<String>) -> Self {
+        Self::new(label, Scale::Degrees)
+    }
+
+    /// A logarithmic axis; values that are not positive are not shown.
+    pub fn logarithmic(label: impl Into<String>) -> Self {
+        Self::new(label, Scale::Logarithmic)
+    }
+
+    /// An axis of named places, the first at 0, the others at whole numbers from there.
+    pub fn named(label: impl Into<String>, names: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        let names: Vec<_> = names.into_iter().enumerate().map(|(at, name)| (at as f64, name.into())).collect();
+        let range = Range::new(-0.5, (names.len() as f64 - 0.5).max(0.5));
+        Self { names: Some(names), range: Some(range), ..Self::new(label, Scale::Linear) }
+    }
+
+    /// The same axis that shows exactly this part.
+    pub fn showing(self, range: Option<Range>) -> Self {
+        Self { range: range.or(self.range), ..self }
+    }
+
+    /// The same axis that shows `value` too.
+    pub fn including(mut self, value: f64) -> Self {
+        self.including.push(value);
+        self
+    }
+
+    /// The same axis that shows at least this width, in its unit.
+    pub fn at_least(self, least: f64) -> Self {
+        Self { least, ..self }
+    }
+
+    /// The part that shows `values`, where none is given: on a logarithmic axis exactly those, else with some space around.
+    pub(super) fn fitted(&self, values: impl Iterator<Item = f64>) -> Range {
+        if let Some(range) = self.range {
+            return range;
+        }
+        let shown = values.chain(self.including.iter().copied()).filter(|value| self.can_show(*value));
+        let range = Range::of(shown).unwrap_or(Range::new(1.0, 10.0));
+        match self.scale {
+            Scale::Logarithmic if range.min < range.max => range,
+            Scale::Logarithmic => Range::new(range.min / 2.0, range.max * 2.0),
+            Scale::Linear | Scale::Degrees => {
+                let least = if self.least > 0.0 { self.least } else { 1e-3 * range.middle().abs().max(1e-6) };
+                range.with_margin(MARGIN, least)
+            }
+        }
+    }
+
+    /// Whether a value has a place on the axis.
+    pub(super) fn can_show(&self, value: f64) -> bool {
+        value.is_finite() && (self.scale != Scale::Logarithmic || value > 0.0)
+    }
+
+    /// Where a value is along the axis: 0 at the lower end of `range`, 1 at the upper; nowhere for what cannot be shown.
+    pub(super) fn fraction(&self, value: f64, range: Range) -> Option<f64> {
+        let place = |value: f64| match self.scale {
+            Scale::Logarithmic => value.log10(),
+            Scale::Linear | Scale::Degrees => value,
+        };
+        let (low, high) = (place(range.min), place(range.max));
+        self.can_show(value).then(|| (place(value) - low) / (high - low))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_decade_is_as_long_as_another_on_a_logarithmic_axis() {
+        let (axis, range) = (Axis::logarithmic("Frequency [rad/s]"), Range::new(0.1, 10.0));
+        assert_eq!(axis.fraction(0.1, range), Some(0.0));
+        assert!((axis.fraction(1.0, range).unwrap() - 0.5).abs() < 1e-15);
+        assert_eq!(axis.fraction(-1.0, range), None);
+        assert_eq!(axis.fraction(0.0, range), None);
+    }
+
+    #[test]
+    fn an_axis_shows_what_it_has_to_and_no_less_than_its_least_width() {
+        let axis = Axis::linear("Gain [-]").including(1.0).at_least(0.5);
+        let fitted = axis.fitted([1.2, f64::NAN].into_iter());
+        assert!(fitted.contains(1.0) && fitted.contains(1.2) && (fitted.width() - 0.5).abs() < 1e-12);
+        assert_eq!(axis.showing(Some(Range::new(0.0, 2.0))).fitted([5.0].into_iter()), Range::new(0.0, 2.0));
+    }
+
+    #[test]
+    fn an_axis_without_values_still_has_a_range() {
+        assert!(Axis::linear("").fitted(std::iter::empty()).width() > 0.0);
+        assert!(Axis::logarithmic("").fitted([2.0].into_iter()).width() > 0.0);
+    }
+}

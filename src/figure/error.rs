@@ -1,0 +1,145 @@
+//! What the fit sees of a response: how far it is from its reference, frequency by frequency (M6).
+
+use std::sync::Arc;
+
+use crate::dataset::{BundleKind, Pair};
+use crate::fidelity::Mismatch;
+use crate::response::{GainDelay, PolarCurve};
+use crate::units::{ratio_to_db, s_to_ms};
+
+use super::axis::Axis;
+use super::bode::BodeOptions;
+use super::condition_source::ConditionSource;
+use super::figure::Figure;
+use super::mark::{Curve, Mark, Rule};
+use super::number::decimals;
+use super::panel::{Panel, Plot};
+use super::range::Range;
+use super::reading::PhaseErrorUnit;
+use super::role::{AMBER, Role};
+use super::stroke::{Color, Dash, Stroke};
+
+const DELTA: Stroke = Stroke::dashed(Color::INK, 0.7, Dash::Dotted);
+const BOUND: Stroke = Stroke::dashed(AMBER, 0.7, Dash::DashDot);
+
+impl PhaseErrorUnit {
+    /// A difference of phases \[rad\] at `omega` as it is drawn.
+    fn of(self, phase: f64, omega: f64) -> f64 {
+        match self {
+            Self::Degree => phase.to_degrees(),
+            Self::Millisecond => s_to_ms(phase / omega),
+        }
+    }
+
+    fn axis(self) -> Axis {
+        match self {
+            Self::Degree => Axis::degrees("Δφ [deg]").including(0.0).at_least(5.0),
+            Self::Millisecond => Axis::linear("Δφ/ω [ms]").including(0.0).at_least(5.0),
+        }
+    }
+}
+
+/// One model's error over the band.
+struct ErrorLine {
+    name: String,
+    role: Role,
+    /// `20 log10 |H_ref| / |H_sim|`.
+    ratio_db: Arc<[f64]>,
+    /// `Delta phi(H_sim, H_ref)`, or that over the frequency.
+    phase: Arc<[f64]>,
+}
+
+/// What the fit sees of `pairs`: the error of every kept physics model, and of the representative before and after its
+/// correction, with G, D and the bounds.
+pub fn error_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeOptions) -> Figure {
+    let names: Vec<String> = pairs.iter().map(|pair| source.dataset().pair_name(*pair)).collect();
+    let (title, aspect) = match &names[..] {
+        [name] => (format!("Error of {name} · {}", source.condition_words()), 0.72),
+        _ => (format!("Error · {}", source.condition_words()), 1.35),
+    };
+    let plots = pairs.iter().zip(&names).map(|(pair, name)| {
+        let title = if names.len() == 1 { "" } else { name };
+        plot(source, *pair, title, options)
+    });
+    Figure::new(title).caption(source.caption()).columns(5).aspect(aspect).shared_x().plots(plots)
+}
+
+fn plot(source: &ConditionSource<'_>, pair: Pair, title: &str, options: &BodeOptions) -> Plot {
+    let omega = omega_in_band(source);
+    let mut lines: Vec<ErrorLine> =
+        errors(source, pair, &omega, options).into_iter().filter(|line| !options.hidden.contains(&line.role)).collect();
+    lines.sort_by_key(|line| line.role.layer(false));
+    let frequency: Arc<[f64]> = omega.iter().map(|omega| options.unit.of_omega(*omega)).collect();
+    let curves = |of: fn(&ErrorLine) -> &Arc<[f64]>| -> Vec<Mark> {
+        let curve = |line: &ErrorLine| {
+            let values = Arc::clone(of(line));
+            Curve::new(&line.name, line.role.stroke(false), Arc::clone(&frequency), values)
+                .key(line.role.key(false))
+                .into()
+        };
+        lines.iter().map(curve).collect()
+    };
+    let axis = || options.frequency_axis();
+    let (delta, bounds) = (&source.analysis.comparison.delta, source.analysis.gain_bounds());
+    let gain = delta.gain[pair].map(|gain| {
+        let label = format!("G {} ({} dB)", decimals(gain, 3), decimals(ratio_to_db(gain), 1));
+        Rule::horizontal(ratio_to_db(gain), DELTA).label(label)
+    });
+    let bounds = [("LB", bounds.lower), ("UB", bounds.upper)].map(|(name, bound)| {
+        Rule::horizontal(ratio_to_db(bound), BOUND).label(format!("{name} {}", decimals(bound, 3)))
+    });
+    let delay = delta.delay_s[pair].map(|delay_s| {
+        let values: Arc<[f64]> = omega.iter().map(|&at| options.phase_error.of(delay_s * at, at)).collect();
+        let name = format!("D {} ms", decimals(s_to_ms(delay_s), 1));
+        Curve::new(name.clone(), DELTA, Arc::clone(&frequency), values).key("delta gain, delta delay")
+    });
+    let ratio = Axis::linear("|ident.| / |model| [dB]").including(0.0).at_least(1.0);
+    let ratio = ratio.showing(options.values[0]);
+    let phase = options.phase_error.axis().showing(options.values[1]);
+    Plot::new(title)
+        .panel(Panel::new(axis(), ratio).with_all(curves(|line| &line.ratio_db)).with_all(gain).with_all(bounds))
+        .panel(Panel::new(axis(), phase).with_all(curves(|line| &line.phase)).with_all(delay))
+}
+
+fn omega_in_band(source: &ConditionSource<'_>) -> Vec<f64> {
+    let band = source.study.settings.band;
+    let range = Range::new(band.min(), band.max());
+    source.curves.grid.omega().iter().copied().filter(|omega| range.contains(*omega)).collect()
+}
+
+/// The reference as the line at zero, every kept physics model, and the corrected ones.
+fn errors(source: &ConditionSource<'_>, pair: Pair, omega: &[f64], options: &BodeOptions) -> Vec<ErrorLine> {
+    let all = source.curves.grid.omega();
+    let from = all.partition_point(|at| omega.first().is_some_and(|first| at < first));
+    let polar = |kind, index: usize| {
+        PolarCurve::of(source.curves.bundle(kind)[index].curve(pair).get(from..from + omega.len())?)
+    };
+    let Some(reference) = polar(BundleKind::Identified, source.reference()) else {
+        return Vec::new();
+    };
+    let line = |name: String, role: Role, model: usize, correction: GainDelay| {
+        let mismatch = Mismatch::new(&polar(BundleKind::Physics, model)?, &reference);
+        // On the branch of the model as it is (M6b), which a correction leaves it on.
+        let phase = mismatch.phase_difference(omega);
+        Some(ErrorLine {
+            name,
+            role,
+            ratio_db: correction.magnitudes_db(&mismatch.magnitude_db).map(|db| -db).collect(),
+            phase: correction
+                .phases(&phase, omega)
+                .zip(omega)
+                .map(|(by, at)| options.phase_error.of(by, *at))
+                .collect(),
+        })
+    };
+    let zero: Arc<[f64]> = vec![0.0; omega.len()].into();
+    let name = source.analysis.representative_name(BundleKind::Identified).to_owned();
+    let role = Role::IdentifiedRepresentative;
+    let mut lines = vec![ErrorLine { name, role, ratio_db: Arc::clone(&zero), phase: zero }];
+    let kept =
+        source.models(BundleKind::Physics).into_iter().filter(|model| !model.rejected && options.shows_model(model));
+    lines.extend(kept.filter_map(|of| line(of.id.name, of.role, of.index, GainDelay::NONE)));
+    let corrected = source.corrected_models(pair).into_iter();
+    lines.extend(corrected.filter_map(|of| line(of.name, of.role, of.model, of.correction)));
+    lines
+}

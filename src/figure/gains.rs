@@ -1,0 +1,271 @@
+//! Gains and delays against airspeed or over conditions (Figures 3, 4, 6 and 7).
+
+use std::collections::BTreeSet;
+
+use crate::correction::{Channel, ChannelCorrection};
+use crate::dataset::{Dataset, FlightState, Pair};
+use crate::schedule::Schedule;
+use crate::study::{Analysis, ConditionAnalysis};
+use crate::units::s_to_ms;
+
+use super::axis::Axis;
+use super::condition_source::{schedule_words, settings_words};
+use super::figure::Figure;
+use super::mark::{Curve, Dot, DotShape, Dots, Rule, Spans};
+use super::panel::{Panel, Plot};
+use super::role::{BLUE, GREY, Role};
+use super::stroke::{Color, Dash, Stroke};
+
+/// Samples of a schedule between its ends.
+const SAMPLES: usize = 120;
+const NULL: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
+/// The ground of the bounds.
+const BOUNDS: Color = Color::new(0xe2, 0xea, 0xf3);
+/// Width of that ground over airspeed \[kt\], and over conditions.
+const BOUNDS_WIDTHS: [f64; 2] = [3.0, 0.7];
+
+/// What the dots of a panel measure.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Measure {
+    /// A gain, a ratio; no correction is 1.
+    #[default]
+    Gain,
+    /// A delay \[ms\]; no correction is 0.
+    Delay,
+}
+
+impl Measure {
+    /// The value that corrects nothing.
+    pub fn null(self) -> f64 {
+        match self {
+            Self::Gain => 1.0,
+            Self::Delay => 0.0,
+        }
+    }
+
+    /// Least height of a plot, in its unit.
+    pub(crate) fn least_height(self) -> f64 {
+        match self {
+            Self::Gain => 0.1,
+            Self::Delay => 10.0,
+        }
+    }
+
+    /// What stands beside an axis of values of a channel.
+    fn axis_label(self) -> &'static str {
+        match self {
+            Self::Gain => "Gain [-]",
+            Self::Delay => "Delay [ms]",
+        }
+    }
+}
+
+/// What the horizontal axis stands for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Across {
+    /// True airspeed \[kt\].
+    #[default]
+    Airspeed,
+    /// Conditions in file order, each at its place from 0 on.
+    Conditions,
+}
+
+/// The altitude class drawn as circles and the weight class drawn filled: "low", or the first of the names; and the others.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Classes {
+    /// The altitude classes, the one of circles first.
+    pub altitudes: Vec<String>,
+    /// The weight classes, the one of filled dots first.
+    pub weights: Vec<String>,
+}
+
+impl Classes {
+    /// Those of a dataset.
+    pub fn of(dataset: &Dataset) -> Self {
+        let names = |class: fn(&FlightState) -> &Option<String>| -> Vec<String> {
+            let states = dataset.conditions().iter().map(|condition| condition.flight_state());
+            let names: BTreeSet<String> = states.filter_map(|state| class(state).clone()).collect();
+            let mut names: Vec<String> = names.into_iter().collect();
+            names.sort_by_key(|name| !["low", "light"].contains(&name.as_str()));
+            names
+        };
+        Self { altitudes: names(|state| &state.altitude), weights: names(|state| &state.weight) }
+    }
+
+    /// Whether a condition is drawn as a circle.
+    pub fn is_first_altitude(&self, state: &FlightState) -> bool {
+        state.altitude.as_ref() == self.altitudes.first()
+    }
+
+    /// Whether a condition is drawn filled.
+    pub fn is_first_weight(&self, state: &FlightState) -> bool {
+        state.weight.as_ref() == self.weights.first()
+    }
+}
+
+/// A figure of a correction.
+type FigureOf<'a> = Box<dyn Fn(&ChannelCorrection) -> f64 + 'a>;
+/// Between which values it was looked for.
+type BoundsOf<'a> = Box<dyn Fn(&ConditionAnalysis) -> [f64; 2] + 'a>;
+
+/// The net gain of each of `pairs` in each condition's optimum, and the schedule (Figures 6 and 7).
+pub fn net_gain_figure(analysis: &Analysis, pairs: &[Pair]) -> Figure {
+    let plots = pairs.iter().map(|&pair| {
+        let quantity = Quantity {
+            measure: Measure::Gain,
+            of: Box::new(move |correction| correction.net_gain(pair).value()),
+            bounds: None,
+        };
+        let panel = quantity.panel(analysis, Across::Airspeed, "Net gain [-]");
+        Plot::new(analysis.study.dataset.pair_name(pair)).panel(panel)
+    });
+    let figure = Figure::new("Net gains against airspeed").caption(caption(analysis, Across::Airspeed, Measure::Gain));
+    figure.plots(plots).columns(5).shared_x().shared_y().aspect(0.95)
+}
+
+/// Gain or delay of each of `channels` in each condition's optimum, and the schedule (Figures 3 and 4).
+pub fn channels_figure(analysis: &Analysis, channels: &[Channel], measure: Measure, across: Across) -> Figure {
+    let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+    let plots = channels.iter().map(|&channel| {
+        let bounds: BoundsOf<'_> = Box::new(move |result| match measure {
+            Measure::Gain => [result.gain_bounds().lower, result.gain_bounds().upper],
+            Measure::Delay => [0.0, s_to_ms(result.delay_upper_s())],
+        });
+        let of: FigureOf<'_> = Box::new(move |correction| match (measure, channel) {
+            (Measure::Gain, Channel::Input(input)) => correction.input_gains[input],
+            (Measure::Gain, Channel::Output(output)) => correction.output_gains[output],
+            (Measure::Delay, Channel::Input(input)) => s_to_ms(correction.input_delays_s[input]),
+            (Measure::Delay, Channel::Output(output)) => s_to_ms(correction.output_delays_s[output]),
+        });
+        let panel = Quantity { measure, of, bounds: Some(bounds) }.panel(analysis, across, measure.axis_label());
+        Plot::new(channel.name(&inputs, &outputs)).panel(panel)
+    });
+    let title = match measure {
+        Measure::Gain => "Channel gains",
+        Measure::Delay => "Channel delays",
+    };
+    let figure = Figure::new(title).caption(caption(analysis, across, measure)).plots(plots);
+    figure.columns(6).shared_x().shared_y().aspect(0.95)
+}
+
+/// Every channel, inputs first.
+pub fn all_channels(dataset: &Dataset) -> Vec<Channel> {
+    let inputs = (0..dataset.inputs().len()).map(Channel::Input);
+    inputs.chain((0..dataset.outputs().len()).map(Channel::Output)).collect()
+}
+
+/// Samples of a scheduled figure from the least to the greatest of the conditions' airspeeds: airspeed \[kt\], and figure.
+pub fn scheduled_samples(schedule: &Schedule, figure: impl Fn(&ChannelCorrection) -> f64) -> Vec<[f64; 2]> {
+    let (from, to) = (schedule.airspeeds.min_kt, schedule.airspeeds.max_kt);
+    let airspeed = |sample: usize| from + (to - from) * sample as f64 / SAMPLES as f64;
+    (0..=SAMPLES).map(|sample| [airspeed(sample), figure(&schedule.at(airspeed(sample)))]).collect()
+}
+
+/// Whether a schedule has values of this measure, over this axis.
+pub fn is_scheduled(schedule: &Schedule, measure: Measure, across: Across) -> bool {
+    across == Across::Airspeed && (measure == Measure::Gain || schedule.settings.delays)
+}
+
+fn caption(analysis: &Analysis, across: Across, measure: Measure) -> String {
+    let study = &analysis.study;
+    let mut caption = settings_words(&study.dataset, &study.settings);
+    let schedule = analysis.schedule.as_ref().ok().filter(|schedule| is_scheduled(schedule, measure, across));
+    if schedule.is_some() {
+        caption.push_str(&format!(" Schedule: {}.", schedule_words(&study.settings.schedule)));
+    }
+    caption.push_str(" Numbers are those of the conditions; dashed: no correction.");
+    caption
+}
+
+/// A figure of every condition's correction, and of the schedule.
+struct Quantity<'a> {
+    measure: Measure,
+    of: FigureOf<'a>,
+    bounds: Option<BoundsOf<'a>>,
+}
+
+impl Quantity<'_> {
+    fn panel(&self, analysis: &Analysis, across: Across, label: &str) -> Panel {
+        let conditions = analysis.study.dataset.conditions();
+        let x = match across {
+            Across::Airspeed => Axis::linear("Airspeed [kt]").at_least(10.0),
+            Across::Conditions => {
+                Axis::named("Condition", conditions.iter().map(|condition| condition.id().to_string()))
+            }
+        };
+        let y = Axis::linear(label).including(self.measure.null()).at_least(self.measure.least_height());
+        let schedule = analysis.schedule.as_ref().ok().filter(|schedule| is_scheduled(schedule, self.measure, across));
+        let curve = schedule.map(|schedule| {
+            let (x, y): (Vec<f64>, Vec<f64>) =
+                scheduled_samples(schedule, &self.of).into_iter().map(|[x, y]| (x, y)).unzip();
+            let stroke = Stroke { color: Role::Scheduled.stroke(false).color, ..Stroke::solid(Color::INK, 1.2) };
+            Curve::new("schedule", stroke, x, y).key("schedule")
+        });
+        let panel = Panel::new(x, y).with_all(self.spans(analysis, across));
+        let panel = panel.with(Rule::horizontal(self.measure.null(), NULL)).with_all(curve);
+        panel.with_all(self.dots(analysis, across))
+    }
+
+    /// Where each optimum was looked for.
+    fn spans(&self, analysis: &Analysis, across: Across) -> Option<Spans> {
+        let bounds = self.bounds.as_ref()?;
+        let width = match across {
+            Across::Airspeed => BOUNDS_WIDTHS[0],
+            Across::Conditions => BOUNDS_WIDTHS[1],
+        };
+        let places = places(analysis, across).map(|(x, _, result)| {
+            let [lower, upper] = bounds(result);
+            [x, lower, upper]
+        });
+        Some(Spans { name: "bounds".to_owned(), color: BOUNDS, width, spans: places.collect() })
+    }
+
+    /// One group of dots for each class of conditions, and one of those that are not in the schedule.
+    fn dots(&self, analysis: &Analysis, across: Across) -> Vec<Dots> {
+        let classes = Classes::of(&analysis.study.dataset);
+        let mut groups: Vec<Dots> = Vec::new();
+        for (x, state, result) in places(analysis, across) {
+            let chosen = analysis.study.choice(state.id).scheduled;
+            let name = class_words(state, chosen);
+            let dot = Dot { x, y: (self.of)(&result.correction), label: state.id.to_string() };
+            match groups.iter_mut().find(|group| group.name == name) {
+                Some(group) => group.dots.push(dot),
+                None => {
+                    let shape = if classes.is_first_altitude(state) { DotShape::Circle } else { DotShape::Diamond };
+                    let color = if chosen { BLUE } else { GREY };
+                    let group = Dots::new(&name, shape, color).filled(classes.is_first_weight(state)).key(&name);
+                    groups.push(Dots { dots: vec![dot], ..group });
+                }
+            }
+        }
+        groups.sort_by(|a, b| (a.shape, !a.filled).cmp(&(b.shape, !b.filled)));
+        groups
+    }
+}
+
+/// Every condition with a result: its place on the horizontal axis, what describes it, its result.
+fn places(analysis: &Analysis, across: Across) -> impl Iterator<Item = (f64, &FlightState, &ConditionAnalysis)> {
+    let conditions = analysis.study.dataset.conditions().iter().enumerate();
+    conditions.filter_map(move |(index, condition)| {
+        let state = condition.flight_state();
+        let x = match across {
+            Across::Airspeed => state.airspeed_kt,
+            Across::Conditions => index as f64,
+        };
+        Some((x, state, analysis.condition(condition.id())?))
+    })
+}
+
+/// `low altitude, high weight`; `optimum` of a condition without classes.
+fn class_words(state: &FlightState, chosen: bool) -> String {
+    let class = |name: &Option<String>, what: &str| name.as_ref().map(|name| format!("{name} {what}"));
+    let mut words: Vec<String> =
+        [class(&state.altitude, "altitude"), class(&state.weight, "weight")].into_iter().flatten().collect();
+    if words.is_empty() {
+        words.push("optimum".to_owned());
+    }
+    if !chosen {
+        words.push("not in the schedule".to_owned());
+    }
+    words.join(", ")
+}

@@ -1,0 +1,121 @@
+//! What a view shows as a figure on paper, and the button that takes it away.
+
+use egui::containers::menu::MenuButton;
+use egui::{RichText, Role, Ui, WidgetInfo};
+
+use crate::figure::{BodeOptions, ConditionSource, Figure, FigureFormat, FigureKind, FigureRequest, all_channels};
+
+use super::arrangement::View;
+use super::assessment_scene::{assessed_pairs, assessment_choice};
+use super::command::Command;
+use super::net_gain_scene::net_gain_pairs;
+use super::palette::SMALL_SIZE;
+use super::plot::{BodeView, Pane};
+use super::state::State;
+
+/// The figure that a view shows; none until its results are there.
+pub fn figure_of(state: &State, view: View) -> Option<Figure> {
+    let analysis = state.analysis();
+    let source = state.shown().zip(state.curves()).map(|(shown, curves)| ConditionSource {
+        study: &state.study,
+        analysis: shown,
+        schedule: analysis.and_then(|analysis| analysis.schedule.as_ref().ok()),
+        curves,
+    });
+    request(state, view)?.figure(analysis, source.as_ref())
+}
+
+/// A name for the file of a view's figure: `bode-10-LON-Q`.
+pub fn figure_name(state: &State, view: View) -> String {
+    let kind = kind(view);
+    let mut parts: Vec<String> = kind.iter().map(|kind| kind.name().to_owned()).collect();
+    if kind.is_some_and(FigureKind::is_of_condition) {
+        parts.push(state.condition().id().to_string());
+    }
+    if matches!(view, View::Bode | View::Error) {
+        let (output, input) = state.dataset().channel_names(state.display.pair);
+        parts.extend([input, output]);
+    }
+    let is_plain = |letter: char| letter.is_alphanumeric() || letter == '-';
+    parts.join("-").chars().map(|letter| if is_plain(letter) { letter } else { '_' }).collect()
+}
+
+/// The figure of a view; the view of variants is one of tables, that across conditions has none of its own.
+fn kind(view: View) -> Option<FigureKind> {
+    match view {
+        View::Bode => Some(FigureKind::Bode),
+        View::Error => Some(FigureKind::Error),
+        View::Overview => Some(FigureKind::Overview),
+        View::Channels => Some(FigureKind::Channels),
+        View::Assessment => Some(FigureKind::Assessment),
+        View::NetGain => Some(FigureKind::NetGain),
+        View::Poles => Some(FigureKind::Poles),
+        View::Across | View::Compare => None,
+    }
+}
+
+/// The views that have a figure.
+pub fn views_with_figure() -> impl Iterator<Item = View> {
+    View::ALL.into_iter().filter(|view| kind(*view).is_some())
+}
+
+/// What a view shows: the same that the command `gdcm figure` is asked for.
+fn request(state: &State, view: View) -> Option<FigureRequest> {
+    let kind = kind(view)?;
+    let (display, dataset) = (&state.display, state.dataset());
+    let pairs = match view {
+        View::Bode | View::Error => vec![display.pair],
+        View::NetGain => net_gain_pairs(state),
+        View::Assessment => assessed_pairs(state),
+        _ => Vec::new(),
+    };
+    let (measure, across) = display.channel_figure;
+    let ranges = match view {
+        View::Bode => chosen(&display.bode),
+        View::Error => chosen(&display.error),
+        _ => BodeOptions::default(),
+    };
+    let bode = BodeOptions {
+        unit: display.unit,
+        magnitude: display.curves.magnitude,
+        phase: display.curves.phase,
+        phase_error: display.curves.phase_error,
+        hidden: display.curves.hidden_roles.clone(),
+        hidden_models: display.curves.hidden_models.clone(),
+        isolated: display.isolated.clone().filter(|model| model.condition == state.condition().id()),
+        ..ranges
+    };
+    let assessed = Some(assessment_choice(state));
+    let usual = FigureRequest::new(kind, pairs, all_channels(dataset));
+    Some(FigureRequest { measure, across, assessed, bode, ..usual })
+}
+
+/// The parts of the axes that the engineer chose to see.
+fn chosen(view: &BodeView) -> BodeOptions {
+    let values = [Pane::Magnitude, Pane::Phase].map(|pane| view.chosen_values(pane));
+    BodeOptions { omega: view.chosen_omega(), values, ..BodeOptions::default() }
+}
+
+/// The button that copies or saves what a view shows.
+pub(super) fn figure_button_ui(ui: &mut Ui, view: View, commands: &mut Vec<Command>) {
+    if kind(view).is_none() {
+        return;
+    }
+    let text = RichText::new("⬇").size(SMALL_SIZE);
+    let (button, _) = MenuButton::new(text).ui(ui, |ui| {
+        if ui.button("Copy the numbers").on_hover_text("As CSV, to the clipboard").clicked() {
+            commands.push(Command::CopyFigure(view));
+            ui.close();
+        }
+        for format in FigureFormat::ALL {
+            let text = format!("Save as {}…", format.extension().to_uppercase());
+            if ui.button(text).on_hover_text(format.words()).clicked() {
+                commands.push(Command::AskSaveFigure(view, format));
+                ui.close();
+            }
+        }
+    });
+    let name = format!("Save or copy {}", view.name());
+    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+    button.on_hover_text("This plot on paper, or its numbers: copy, CSV, SVG, PNG, PDF");
+}

@@ -1,0 +1,73 @@
+//! The pictures of the documentation: the commands that the page names make them.
+
+use std::fs;
+use std::path::Path;
+
+use roxmltree::Document;
+
+use crate::commands::Desk;
+
+/// How far a text may have moved \[pt\]: a digit of a number may round to the other side on another processor.
+const MOVED_PT: f64 = 0.5;
+
+/// The commands of the page, each without `gdcm`, and the file that it makes.
+fn commands(page: &str) -> Vec<Vec<&str>> {
+    let lines = page.lines().filter_map(|line| line.strip_prefix("gdcm figure "));
+    lines.map(|line| std::iter::once("figure").chain(line.split_whitespace()).collect()).collect()
+}
+
+/// The words of a picture with their places.
+fn words(svg: &str) -> Vec<(String, [f64; 2])> {
+    let document = Document::parse(svg).unwrap();
+    let texts = document.descendants().filter(|node| node.has_tag_name("text"));
+    texts
+        .map(|node| {
+            let place = ["x", "y"].map(|name| node.attribute(name).unwrap().parse().unwrap());
+            (node.text().unwrap_or_default().to_owned(), place)
+        })
+        .collect()
+}
+
+#[test]
+fn the_commands_of_the_page_make_its_pictures() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let page = fs::read_to_string(docs.join("figures.md")).unwrap();
+    let commands = commands(&page);
+    assert!(commands.len() >= 8, "{commands:?}");
+    let desk = Desk::new();
+    fs::create_dir_all(desk.path("docs/figures")).unwrap();
+    for command in commands {
+        let ended = desk.gdcm(&command);
+        assert_eq!((ended.status, ended.error.as_str()), (0, ""), "{command:?}");
+        let out = command[command.iter().position(|word| *word == "--out").unwrap() + 1];
+        let made = fs::read_to_string(desk.path(out)).unwrap();
+        let kept = fs::read_to_string(docs.parent().unwrap().join(out)).unwrap();
+        assert!(kept.len() < 100_000, "{out}: {} bytes", kept.len());
+        let (made, kept) = (words(&made), words(&kept));
+        let same = |((a, at), (b, before)): (&(String, [f64; 2]), &(String, [f64; 2]))| {
+            a == b && (at[0] - before[0]).abs() < MOVED_PT && (at[1] - before[1]).abs() < MOVED_PT
+        };
+        assert!(made.len() == kept.len() && made.iter().zip(&kept).all(same), "{out} is not what its command makes");
+    }
+}
+
+#[test]
+fn every_figure_of_the_paper_has_a_picture_on_the_page() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let page = fs::read_to_string(docs.join("figures.md")).unwrap();
+    let pictures: Vec<&str> = page.split("](figures/").skip(1).filter_map(|rest| rest.split(')').next()).collect();
+    for picture in &pictures {
+        assert!(docs.join("figures").join(picture).is_file(), "{picture}");
+    }
+    // figure-08-12.svg shows 8 to 12.
+    let mut shown: Vec<u32> = Vec::new();
+    for picture in pictures {
+        let numbers: Vec<u32> = picture.split(['-', '.']).filter_map(|word| word.parse().ok()).collect();
+        if let (Some(first), Some(last)) = (numbers.first(), numbers.last()) {
+            shown.extend(*first..=*last);
+        }
+    }
+    shown.sort_unstable();
+    shown.dedup();
+    assert_eq!(shown, (1..=19).collect::<Vec<u32>>());
+}

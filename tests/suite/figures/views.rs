@@ -1,0 +1,139 @@
+//! The figures of the views, of the example.
+
+use std::collections::BTreeSet;
+
+use gdcm::figure::{Across, BodeOptions, FrequencyUnit, Mark, Measure, Role};
+
+use super::*;
+
+fn legend(figure: &Figure) -> Vec<String> {
+    figure.legend().into_iter().map(|entry| entry.text).collect()
+}
+
+#[test]
+fn the_legend_of_a_bode_figure_names_the_roles_that_are_present() {
+    let example = &*EXAMPLE;
+    let pair = example.pair("Q", "LON");
+    let figure = example.figure(FigureKind::Bode, vec![pair]);
+    let expected = [
+        "nominal (rejected)",
+        "perturbed",
+        "representative",
+        "identified",
+        "identified representative",
+        "corrected",
+        "scheduled",
+        "rejected",
+        "band of comparison",
+    ];
+    assert_eq!(legend(&figure), expected);
+    let hidden = BTreeSet::from([Role::Perturbed, Role::Rejected]);
+    let request = FigureRequest {
+        bode: BodeOptions { hidden, ..BodeOptions::default() },
+        ..FigureRequest::new(FigureKind::Bode, vec![pair], Vec::new())
+    };
+    let without = legend(&example.request(&request));
+    assert!(!without.iter().any(|text| text == "perturbed" || text == "rejected"), "{without:?}");
+    assert_eq!(without.len(), expected.len() - 2);
+}
+
+#[test]
+fn a_figure_says_dataset_condition_and_what_was_rejected_and_no_date() {
+    let example = &*EXAMPLE;
+    let figure = example.figure(FigureKind::Bode, vec![example.pair("Q", "LON")]);
+    assert!(figure.title.starts_with("LON → Q · Condition 10: 60 kt"), "{}", figure.title);
+    for words in
+        [example.analysis.study.dataset.name(), "0.5 to 12 rad/s, 200 frequencies", "Rejected: nominal, ROLL+5deg"]
+    {
+        assert!(figure.caption.contains(words), "{words} in: {}", figure.caption);
+    }
+}
+
+#[test]
+fn on_axis_responses_stand_side_by_side_with_a_magnitude_above_a_phase() {
+    let example = &*EXAMPLE;
+    let figure = example.figure(FigureKind::Bode, example.on_axis());
+    assert_eq!(figure.plots.len(), 5);
+    assert!(figure.plots.iter().all(|plot| plot.panels.len() == 2));
+    assert_eq!(figure.plots[1].title, "LON → Q");
+}
+
+#[test]
+fn frequencies_in_hertz_are_those_of_the_curves_over_two_pi() {
+    let example = &*EXAMPLE;
+    let request = FigureRequest {
+        bode: BodeOptions { unit: FrequencyUnit::Hertz, ..BodeOptions::default() },
+        ..FigureRequest::new(FigureKind::Bode, vec![example.pair("Q", "LON")], Vec::new())
+    };
+    let table = example.request(&request).tables().remove(0);
+    assert_eq!(table.columns[0], "Frequency [Hz]");
+    let first: f64 = table.rows[0][0].parse().unwrap();
+    assert_eq!(first, example.curves.grid.omega()[0] / std::f64::consts::TAU);
+}
+
+#[test]
+fn the_overview_has_every_response_outputs_down_and_inputs_across() {
+    let example = &*EXAMPLE;
+    let figure = example.figure(FigureKind::Overview, Vec::new());
+    assert_eq!((figure.plots.len(), figure.columns), (24, 4));
+    assert_eq!(figure.plots[0].title, "LON → P");
+    assert_eq!(figure.plots[4].title, "LON → Q (held)");
+}
+
+#[test]
+fn net_gains_have_a_dot_for_each_condition_and_the_schedule() {
+    let example = &*EXAMPLE;
+    let figure = example.figure(FigureKind::NetGain, example.on_axis());
+    for plot in &figure.plots {
+        let dots = plot.panels[0].marks.iter().filter_map(|mark| match mark {
+            Mark::Dots(dots) => Some(dots.dots.len()),
+            _ => None,
+        });
+        assert_eq!(dots.sum::<usize>(), 11);
+    }
+    assert!(legend(&figure).contains(&"schedule".to_owned()));
+}
+
+#[test]
+fn channels_stand_over_conditions_in_file_order_with_their_bounds() {
+    let example = &*EXAMPLE;
+    let request = FigureRequest {
+        across: Across::Conditions,
+        measure: Measure::Delay,
+        ..FigureRequest::new(FigureKind::Channels, Vec::new(), example.channels())
+    };
+    let figure = example.request(&request);
+    assert_eq!(figure.plots.len(), 10);
+    let names = figure.plots[0].panels[0].x.names.as_ref().unwrap();
+    assert_eq!(names[9], (9.0, "10".to_owned()));
+    assert!(legend(&figure).contains(&"bounds".to_owned()) && !legend(&figure).contains(&"schedule".to_owned()));
+    assert_eq!(figure.plots[0].panels[0].y.label, "Delay [ms]");
+}
+
+#[test]
+fn an_assessment_names_what_is_left_out_and_why() {
+    let example = &*EXAMPLE;
+    let figure = example.figure(FigureKind::Assessment, example.on_axis());
+    assert!(figure.caption.contains("Condition 10 is left out: the nominal model is rejected"), "{}", figure.caption);
+    let notes = figure.plots[0].panels[0].marks.iter().filter(|mark| matches!(mark, Mark::Note(_)));
+    assert_eq!(notes.count(), 1);
+    assert_eq!(legend(&figure), ["ΔJ", "ΔJ magnitude", "ΔJ phase"]);
+}
+
+#[test]
+fn the_error_of_the_reference_is_nothing_and_a_correction_moves_the_median_of_a_held_response_to_zero() {
+    let example = &*EXAMPLE;
+    let pair = example.pair("Q", "LON");
+    let table = example.figure(FigureKind::Error, vec![pair]).tables().remove(0);
+    let column = |name: &str| -> Vec<f64> {
+        let at = table.columns.iter().position(|column| column.starts_with(name)).unwrap();
+        table.rows.iter().map(|row| row[at].parse().unwrap()).collect()
+    };
+    let source = example.source();
+    let reference = source.analysis.representative_name(gdcm::dataset::BundleKind::Identified);
+    assert!(column(reference).iter().all(|error| *error == 0.0));
+    let physics = source.analysis.representative_name(gdcm::dataset::BundleKind::Physics);
+    let mut errors = column(&format!("{physics}, corrected"));
+    // The curves have their own frequencies: a fifth as far apart as those that the median was taken of, and as many at the ends.
+    assert!(gdcm::response::median(&mut errors).abs() < 0.02);
+}

@@ -1,0 +1,101 @@
+//! What a view shows, taken away.
+
+use std::fs;
+
+use gdcm::figure::{ColumnWidth, FigureFormat};
+use gdcm::io::{csv_text, write_as};
+use gdcm::view::arrangement::View;
+use gdcm::view::figures::{figure_of, views_with_figure};
+
+use super::*;
+
+/// Asks for a view's file through the button in its header, and types where to put it.
+fn save_figure(window: &mut Window, view: View, format: &str, path: &Path) {
+    click(window, &format!("Save or copy {}", view.name()));
+    click(window, &format!("Save as {format}…"));
+    fill(window, "Path of the figure", path);
+    click(window, "Save figure");
+}
+
+/// Saves a view and asserts that the file holds its figure.
+fn assert_saved(window: &mut Window, view: View, format: FigureFormat, folder: &Path) {
+    let path = folder.join(format!("{}.{}", view.name(), format.extension()));
+    save_figure(window, view, &format.extension().to_uppercase(), &path);
+    let notice = state(window).notice.clone().expect("it is reported");
+    assert_eq!(notice.kind, NoticeKind::Done, "{}", notice.text);
+    let mut expected = Vec::new();
+    let figure = figure_of(state(window), view).expect("the view has a figure");
+    write_as(&figure, ColumnWidth::Double, format, &mut expected).unwrap();
+    assert_eq!(fs::read(&path).unwrap(), expected, "{view:?} {format:?}");
+}
+
+#[test]
+fn every_view_is_saved_from_its_header() {
+    let mut window = window();
+    let folder = tempfile::tempdir().unwrap();
+    for view in views_with_figure() {
+        click(&mut window, view.name());
+        assert_saved(&mut window, view, FigureFormat::Svg, folder.path());
+    }
+}
+
+#[test]
+fn a_view_is_saved_in_every_format() {
+    let mut window = window();
+    let folder = tempfile::tempdir().unwrap();
+    for format in FigureFormat::ALL {
+        assert_saved(&mut window, View::NetGain, format, folder.path());
+    }
+}
+
+#[test]
+fn a_figure_of_the_window_is_that_of_the_command() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    let folder = tempfile::tempdir().unwrap();
+    let (ours, theirs) = (folder.path().join("window.svg"), folder.path().join("command.svg"));
+    save_figure(&mut window, View::Bode, "SVG", &ours);
+    let desk = crate::commands::Desk::new();
+    let command =
+        ["figure", "--view", "bode", "--condition", "10", "--pair", "Q/LON", "--out", theirs.to_str().unwrap()];
+    desk.gdcm(&command).assert_done();
+    assert_eq!(fs::read_to_string(ours).unwrap(), fs::read_to_string(theirs).unwrap());
+}
+
+#[test]
+fn a_file_that_is_there_is_asked_about_and_a_name_without_a_format_is_refused() {
+    let mut window = window();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bode.svg");
+    fs::write(&path, "mine").unwrap();
+    save_figure(&mut window, View::Bode, "SVG", &path);
+    assert!(window.query_by_label("This file exists already").is_some());
+    assert_eq!(fs::read_to_string(&path).unwrap(), "mine");
+    click(&mut window, "Overwrite");
+    assert!(fs::read_to_string(&path).unwrap().starts_with("<svg"));
+    save_figure(&mut window, View::Bode, "SVG", &folder.path().join("bode.docx"));
+    let notice = state(&window).notice.clone().unwrap();
+    assert_eq!(notice.kind, NoticeKind::Trouble);
+    assert!(notice.text.contains(".svg, .png, .pdf or .csv"), "{}", notice.text);
+    assert!(!folder.path().join("bode.docx").exists());
+}
+
+#[test]
+fn the_numbers_of_a_view_are_copied_as_csv() {
+    let mut window = window();
+    click(&mut window, "Save or copy Net gain");
+    window.get_by_label("Copy the numbers").click();
+    let copied = |window: &Window| {
+        window.output().platform_output.commands.iter().find_map(|command| match command {
+            egui::OutputCommand::CopyText(text) => Some(text.clone()),
+            _ => None,
+        })
+    };
+    let mut text = None;
+    for _ in 0..4 {
+        window.run_steps(1);
+        text = text.or_else(|| copied(&window));
+    }
+    let figure = figure_of(state(&window), View::NetGain).unwrap();
+    assert_eq!(text, Some(csv_text(&figure.tables())));
+}

@@ -51,10 +51,10 @@ fn augment(
         let Some(next) = open.min_by(|&a, &b| distance[a].total_cmp(&distance[b])) else { return };
         let step = distance[next];
         of_row[new] += step;
-        for column in 0..columns {
-            match row_of[column] {
+        for (column, owner) in row_of.iter().enumerate() {
+            match owner {
                 Some(owner) if in_tree[column] => {
-                    of_row[owner] += step;
+                    of_row[*owner] += step;
                     of_column[column] -= step;
                 }
                 _ => distance[column] -= step,

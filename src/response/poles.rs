@@ -38,11 +38,12 @@ pub struct Mode {
     pub participation: Result<Vec<(usize, f64)>, NearDefective>,
 }
 
-/// A pole so close to a defective one that its eigenvectors, and with them the participation of states, are rounding errors.
+/// A pole so close to another that its eigenvectors, and with them the participation of states, are rounding errors: the two share
+/// one eigenvector, or are equal, as those of two sensors of the same make are.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "the pole is next to another that shares its eigenvector: a change of A by 1e-16 of itself moves it {movement:.0e} times \
-     as far, so the shares of the states mean nothing"
+    "the pole cannot be told from another next to it: a change of A by 1e-16 of itself moves it {movement:.0e} times as far, so \
+     the shares of the states mean nothing"
 )]
 pub struct NearDefective {
     /// How far the pole moves for each unit of change of A.
@@ -203,7 +204,7 @@ mod tests {
     fn two_poles_that_share_an_eigenvector_have_no_participation_and_say_why() {
         let found = modes(&model(dmatrix![-1.0, 1.0, 0.0; 0.0, -1.0, 0.0; 0.0, 0.0, -3.0])).unwrap();
         let why = found[0].participation.as_ref().unwrap_err();
-        assert!(why.movement > 1e15 && why.to_string().contains("shares its eigenvector"));
+        assert!(why.movement > 1e15 && why.to_string().contains("cannot be told from another"));
         assert_eq!(found[2].participation.as_ref().unwrap()[0], (2, 1.0), "the third is by itself");
         let apart = modes(&model(dmatrix![-1.0, 1.0; 0.0, -1.001])).unwrap();
         assert!(apart[0].participation.is_ok(), "poles a thousandth apart can be told from one another");

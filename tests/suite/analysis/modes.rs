@@ -57,7 +57,7 @@ fn the_four_poles_of_a_near_defective_chain_are_near_their_place_and_without_par
         assert!((mode.pole + 0.001).norm() < 0.01, "{}", mode.pole);
         assert!(mode.participation.is_err(), "{mode:?}");
     }
-    assert!(found[4].frequency_rad_s > 0.1, "the fifth is of the stable block: {}", found[4].pole);
+    assert!((found[4].pole + 0.001).norm() > 0.03, "the fifth is of the stable block: {}", found[4].pole);
 }
 
 #[test]
@@ -115,7 +115,8 @@ fn jumping(id: i64) -> Vec<String> {
 #[test]
 fn the_modes_jump_where_the_physics_model_has_a_step_near_the_trim() {
     let suggested = EXAMPLE_WITH_SUGGESTIONS_REJECTED.condition(ConditionId(10)).unwrap().suggested();
-    println!("{:?} {:?} {:?} {suggested:?}", jumping(1), jumping(3), jumping(10));
+    assert_eq!((suggested.len(), jumping(10)), (3, suggested));
+    assert_eq!([jumping(1), jumping(3)], [[""; 0]; 2], "smooth bundles");
 }
 
 #[test]
@@ -128,14 +129,29 @@ fn states_take_part_in_the_modes_by_their_names() {
     );
     let modes = ConditionModes::of(&condition, &Unobserved).unwrap();
     let of_nominal = modes.physics[condition.nominal()].as_ref().unwrap();
-    let mut actuators = 0;
+    let mut slow = 0;
     for mode in of_nominal {
-        let shares = mode.participation.as_ref().unwrap_or_else(|why| panic!("{}: {why}", mode.pole));
+        let shares = match &mode.participation {
+            Ok(shares) => shares,
+            // Sensors of the same make have equal poles.
+            Err(_) => {
+                let near =
+                    of_nominal.iter().filter(|other| (other.pole - mode.pole).norm() < 1e-3 * mode.frequency_rad_s);
+                assert!(near.count() > 1, "{}", mode.pole);
+                continue;
+            }
+        };
         assert!((shares.iter().map(|(_, share)| share).sum::<f64>() - 1.0).abs() < 1e-12);
-        actuators += usize::from(nominal.state_name(shares[0].0).starts_with("act_"));
+        if mode.frequency_rad_s < 5.0 {
+            slow += 1;
+            // Nothing acts back upon actuators, and sensors act upon nothing.
+            for (state, share) in shares.iter().map(|&(state, share)| (nominal.state_name(state), share)) {
+                let is_beside = state.starts_with("act_") || state.starts_with("sens_");
+                assert!(!is_beside || share < 1e-6, "{state} {share} in {}", mode.pole);
+            }
+        }
     }
-    // Four actuators of two states each, which nothing acts back upon.
-    assert_eq!(actuators, 8);
+    assert!(slow >= 6, "{slow} rigid-body modes");
 }
 
 #[test]

@@ -50,7 +50,8 @@ const SWATCH: f32 = 4.0;
 /// Part of the plot that may be covered.
 const MOST_COVERED: f32 = 0.35;
 
-/// Draws a read-out into a corner of `frame` other than that which `taken` covers, at the right where labels stand at the left; not at all where it would hide too much of the plot.
+/// Draws a read-out into a corner of `frame` other than that which `taken` covers, at the right where labels stand at the left; not
+/// at all where it would hide too much of the plot.
 pub(super) fn readout_box_ui(
     ui: &Ui,
     frame: Rect,

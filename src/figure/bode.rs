@@ -76,7 +76,7 @@ pub fn bode_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeO
     let names: Vec<String> = pairs.iter().map(|pair| source.dataset().pair_name(*pair)).collect();
     let (title, aspect) = match &names[..] {
         [name] => (format!("{name} · {}", source.condition_words()), 0.72),
-        _ => (source.condition_words(), 1.35),
+        _ => (source.condition_words(), 1.9),
     };
     let plots = pairs.iter().zip(&names).map(|(pair, name)| {
         let title = if names.len() == 1 { "" } else { name };

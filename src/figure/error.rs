@@ -55,7 +55,7 @@ pub fn error_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &Bode
     let names: Vec<String> = pairs.iter().map(|pair| source.dataset().pair_name(*pair)).collect();
     let (title, aspect) = match &names[..] {
         [name] => (format!("Error of {name} · {}", source.condition_words()), 0.72),
-        _ => (format!("Error · {}", source.condition_words()), 1.35),
+        _ => (format!("Error · {}", source.condition_words()), 1.9),
     };
     let plots = pairs.iter().zip(&names).map(|(pair, name)| {
         let title = if names.len() == 1 { "" } else { name };

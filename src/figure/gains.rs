@@ -173,7 +173,10 @@ fn caption(analysis: &Analysis, across: Across, measure: Measure) -> String {
     if schedule.is_some() {
         caption.push_str(&format!(" Schedule: {}.", schedule_words(&study.settings.schedule)));
     }
-    caption.push_str(" Numbers are those of the conditions; dashed: no correction.");
+    if across == Across::Airspeed {
+        caption.push_str(" Numbers are those of the conditions.");
+    }
+    caption.push_str(" Dashed: no correction.");
     caption
 }
 
@@ -227,7 +230,9 @@ impl Quantity<'_> {
         for (x, state, result) in places(analysis, across) {
             let chosen = analysis.study.choice(state.id).scheduled;
             let name = class_words(state, chosen);
-            let dot = Dot { x, y: (self.of)(&result.correction), label: state.id.to_string() };
+            // Over conditions the axis has their numbers.
+            let label = if across == Across::Airspeed { state.id.to_string() } else { String::new() };
+            let dot = Dot { x, y: (self.of)(&result.correction), label };
             match groups.iter_mut().find(|group| group.name == name) {
                 Some(group) => group.dots.push(dot),
                 None => {

@@ -182,7 +182,10 @@ impl<'f> Table<'f> {
         let range = self.x_range(index);
         let has_numbers = is_lowest && self.has_x_numbers(index);
         let ticks = horizontal_ticks(&plot.panels[panel].x, range, frame_width);
-        Side { range, ticks, has_numbers, has_label: has_numbers, depth: TICK + SMALL_LINE }
+        // Where frames are narrow, the first of a row says it for all.
+        let has_room = LABEL_PT * width(&plot.panels[panel].x.label) <= frame_width + COLUMN_GAP;
+        let has_label = has_numbers && (has_room || index.is_multiple_of(self.columns));
+        Side { range, ticks, has_numbers, has_label, depth: TICK + SMALL_LINE }
     }
 
     /// Room at the left of a column of frames, for numbers and labels.

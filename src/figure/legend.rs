@@ -59,7 +59,8 @@ fn entry(mark: &Mark) -> Option<Entry> {
 }
 
 fn place(text: &str) -> usize {
-    let of_role = |role: &Role| [false, true].into_iter().any(|rejected| role.key(rejected) == text);
+    // A rejected model has the entry of its own role: all but the nominal one have that of the rejected.
+    let of_role = |role: &Role| role.key(false) == text || (*role == Role::Nominal && role.key(true) == text);
     Role::ALL.iter().position(of_role).unwrap_or(Role::ALL.len())
 }
 

@@ -105,6 +105,7 @@ fn panel_shapes(placed: &Placed<'_>) -> Vec<Shape> {
         shapes.push(text([x, y - 4.0], placed.title, LABEL_PT, Anchor::Middle, Color::INK));
     }
     shapes.extend(dots_and_labels(placed));
+    shapes.extend(placed.panel.marks.iter().flat_map(|mark| rule_label(placed, mark)));
     shapes.extend(placed.panel.marks.iter().filter_map(|mark| words(placed, mark)));
     shapes
 }
@@ -250,32 +251,42 @@ fn dot([x, y]: [f64; 2], shape: DotShape, color: Color, filled: bool) -> Vec<Sha
         let points = corners.iter().map(|[dx, dy]| [x + size * dx, y + size * dy]).collect();
         vec![Shape::Path { points, closed: true, fill, stroke }]
     };
-    let strokes = |ends: [[[f64; 2]; 2]; 2]| {
-        let at = |[dx, dy]: [f64; 2]| [x + DOT * dx, y + DOT * dy];
-        ends.map(|[from, to]| Shape::line([at(from), at(to)], line)).to_vec()
+    // Both strokes as one line, over the middle.
+    let strokes = |[a, b, c, d]: [[f64; 2]; 4]| {
+        let points: Vec<[f64; 2]> = [a, b, [0.0, 0.0], c, d].map(|[dx, dy]| [x + DOT * dx, y + DOT * dy]).into();
+        vec![Shape::line(points, line)]
     };
     match shape {
         DotShape::Circle => vec![Shape::Circle { center: [x, y], radius: size, fill, stroke }],
         DotShape::Diamond => corners(&[[0.0, -1.3], [1.3, 0.0], [0.0, 1.3], [-1.3, 0.0]]),
         DotShape::Square => corners(&[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]]),
         DotShape::Triangle => corners(&[[0.0, -1.3], [1.2, 0.9], [-1.2, 0.9]]),
-        DotShape::Cross => strokes([[[-1.0, -1.0], [1.0, 1.0]], [[-1.0, 1.0], [1.0, -1.0]]]),
-        DotShape::Plus => strokes([[[-1.3, 0.0], [1.3, 0.0]], [[0.0, -1.3], [0.0, 1.3]]]),
+        DotShape::Cross => strokes([[-1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [1.0, -1.0]]),
+        DotShape::Plus => strokes([[-1.3, 0.0], [1.3, 0.0], [0.0, -1.3], [0.0, 1.3]]),
     }
+}
+
+/// The words beside a line across the frame, on white, so that curves may run behind them.
+fn rule_label(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
+    let Mark::Rule(Rule { along, at, label, .. }) = mark else { return Vec::new() };
+    let Some([_, [x, y]]) = placed.across(*along, *at).filter(|[_, end]| !label.is_empty() && placed.shows(*end))
+    else {
+        return Vec::new();
+    };
+    let [x, y] = match along {
+        Along::Y => [x - 2.0, y - 2.0],
+        Along::X => [x - 2.0, y + SMALL_LINE],
+    };
+    let length = SMALL_PT * width(label);
+    let ground = Area::new(x - length - 1.0, y - 0.75 * SMALL_PT, length + 2.0, 0.8 * SMALL_PT);
+    let words = text([x, y], label, SMALL_PT, Anchor::End, Color::DIM);
+    vec![Shape::rectangle(ground, Some(Color::WHITE), None), words]
 }
 
 /// The words that belong to a mark.
 fn words(placed: &Placed<'_>, mark: &Mark) -> Option<Shape> {
     let small = |at, words: &str, anchor| text(at, words, SMALL_PT, anchor, Color::DIM);
     match mark {
-        Mark::Rule(Rule { along, at, label, .. }) if !label.is_empty() => {
-            let [_, [x, y]] = placed.across(*along, *at)?;
-            let place = match along {
-                Along::Y => [x - 2.0, y - 2.0],
-                Along::X => [x - 2.0, y + SMALL_LINE],
-            };
-            placed.shows([x, y]).then(|| small(place, label, Anchor::End))
-        }
         Mark::Guide(Guide { points, label }) if !label.is_empty() => {
             let visible = points.iter().rev().filter_map(|point| placed.at(*point)).find(|place| placed.shows(*place));
             visible.map(|[x, y]| small([x + 1.5, y + SMALL_PT], label, Anchor::Start))
@@ -317,8 +328,10 @@ fn horizontal(side: &Side, axis: &Axis, frame: Area) -> Vec<Shape> {
         }
     }
     if side.has_label {
-        let [x, y] = frame.at(0.5, 0.0);
-        shapes.push(text([x, y + side.depth + LABEL_PT - 0.5], &axis.label, LABEL_PT, Anchor::Middle, Color::INK));
+        let is_wide = LABEL_PT * width(&axis.label) > frame.width;
+        let (part, anchor) = if is_wide { (0.0, Anchor::Start) } else { (0.5, Anchor::Middle) };
+        let [x, y] = frame.at(part, 0.0);
+        shapes.push(text([x, y + side.depth + LABEL_PT - 0.5], &axis.label, LABEL_PT, anchor, Color::INK));
     }
     shapes
 }

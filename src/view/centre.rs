@@ -20,13 +20,17 @@ use super::views;
 const TAB_HEIGHT: f32 = 26.0;
 /// Space left and right of the name on a tab \[pt\].
 const TAB_MARGIN: f32 = 9.0;
+/// Space that the row of tabs needs besides the tabs, so that it does not scroll \[pt\].
+const TAB_SLACK: f32 = 28.0;
+/// A title is not narrower \[pt\].
+const LEAST_TITLE: f32 = 60.0;
 /// Least size of a view \[pt\].
 const LEAST_VIEW: f32 = 150.0;
 
 /// Everything between the side panels.
 pub fn centre_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let mut tree = std::mem::replace(&mut state.display.arrangement.tree, Tree::empty(Id::unique("views")));
-    tree.ui(&mut Views { state, palette, commands }, ui);
+    tree.ui(&mut Views { state, palette, commands, below: Vec::new() }, ui);
     state.display.arrangement.tree = tree;
 }
 
@@ -35,6 +39,8 @@ struct Views<'a> {
     state: &'a mut State,
     palette: &'a Palette,
     commands: &'a mut Vec<Command>,
+    /// Views whose header has no room beside the tabs: it stands below them.
+    below: Vec<View>,
 }
 
 impl Views<'_> {
@@ -79,6 +85,19 @@ fn fit_ui(ui: &mut Ui, view: View, commands: &mut Vec<Command>) {
     }
 }
 
+/// The width that the controls of a view's header need \[pt\]; its title takes what is left.
+fn header_width(view: View) -> f32 {
+    match view {
+        View::Compare => 0.0,
+        View::Bode | View::Overview => 90.0,
+        View::Error => 260.0,
+        View::Poles => 180.0,
+        View::Channels | View::Across => 330.0,
+        View::NetGain => 480.0,
+        View::Assessment => 640.0,
+    }
+}
+
 /// Which response and which condition a view shows.
 fn condition_ui(ui: &mut Ui, state: &State, view: View, palette: &Palette) {
     let condition = state.condition();
@@ -88,8 +107,11 @@ fn condition_ui(ui: &mut Ui, state: &State, view: View, palette: &Palette) {
         View::Overview | View::Poles => of_condition,
         View::Across | View::NetGain | View::Channels | View::Assessment | View::Compare => return,
     };
-    let text = RichText::new(&title).size(SMALL_SIZE).color(palette.dim_text);
-    ui.add(egui::Label::new(text).truncate());
+    // A title of a few letters says nothing.
+    if ui.available_width() > LEAST_TITLE {
+        let text = RichText::new(&title).size(SMALL_SIZE).color(palette.dim_text);
+        ui.add(egui::Label::new(text).truncate());
+    }
 }
 
 /// Says that what stands beside is of older settings than the result of the condition shown.
@@ -108,6 +130,11 @@ fn is_in_front(tiles: &Tiles<View>, tile: TileId) -> bool {
 
 impl Behavior<View> for Views<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, view: &mut View) -> UiResponse {
+        if self.below.contains(view) && header_width(*view) > 0.0 {
+            let layout = Layout::right_to_left(Align::Center).with_main_wrap(true);
+            let size = egui::vec2(ui.available_width(), TAB_HEIGHT);
+            ui.allocate_ui_with_layout(size, layout, |ui| self.header_ui(ui, *view));
+        }
         let frame = Frame::new().fill(self.palette.background).inner_margin(Margin { top: 4, ..Margin::ZERO });
         let (state, palette) = (&mut *self.state, self.palette);
         let commands = &mut *self.commands;
@@ -163,7 +190,11 @@ impl Behavior<View> for Views<'_> {
         let active = tabs.active.and_then(|active| tiles.get_pane(&active)).copied();
         let Some(view) = active else { return };
         // The tabs come first: what is left is the header's.
-        let room = (ui.available_width() - of_tabs).max(0.0);
+        let room = (ui.available_width() - of_tabs - TAB_SLACK).max(0.0);
+        if room < header_width(view) {
+            self.below.push(view);
+            return;
+        }
         let size = egui::vec2(room, ui.available_height());
         ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
             ui.set_max_width(room);

@@ -2,26 +2,26 @@
 
 use std::fmt::Write;
 
-use crate::figure::{Anchor, Area, Color, Drawing, FONTS, PT_PER_MM, Shape, Stroke, Text};
+use crate::figure::{Anchor, Area, Color, Drawing, FONTS, PT_PER_MM, Shape, Stroke, Text, width};
 
 /// Fonts to take where a reader does not have ours, about as wide.
 const OTHER_FONTS: &str = "Helvetica, Arial, sans-serif";
 
 /// The text of the file.
 pub(super) fn svg(drawing: &Drawing) -> String {
-    let [width, height] = drawing.size;
+    let [paper_width, paper_height] = drawing.size;
     let mut svg = Svg { text: String::new(), clips: 0 };
     svg.line(&format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {} {}\" \
          font-family=\"{}, {OTHER_FONTS}\" font-weight=\"300\" stroke-linejoin=\"round\">",
-        number(width / PT_PER_MM),
-        number(height / PT_PER_MM),
-        number(width),
-        number(height),
+        number(paper_width / PT_PER_MM),
+        number(paper_height / PT_PER_MM),
+        number(paper_width),
+        number(paper_height),
         FONTS[0].0,
     ));
     svg.line(&format!("<title>{}</title>", escaped(&drawing.title)));
-    svg.shape(&Shape::rectangle(Area::new(0.0, 0.0, width, height), Some(Color::WHITE), None));
+    svg.shape(&Shape::rectangle(Area::new(0.0, 0.0, paper_width, paper_height), Some(Color::WHITE), None));
     drawing.shapes.iter().for_each(|shape| svg.shape(shape));
     svg.line("</svg>");
     svg.text
@@ -74,9 +74,12 @@ impl Svg {
         };
         let (x, y, size) = (number(*x), number(*y), number(*size_pt));
         let turn = if *upright { format!(" transform=\"rotate(-90 {x} {y})\"") } else { String::new() };
+        // As long as it was laid out, in whatever letters the reader has.
+        let length = number(size_pt * width(words));
+        let length = format!(" textLength=\"{length}\" lengthAdjust=\"spacingAndGlyphs\"");
         let (color, words) = (hex(*color), escaped(words));
         self.line(&format!(
-            "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" fill=\"{color}\"{anchor}{turn}>{words}</text>"
+            "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" fill=\"{color}\"{anchor}{turn}{length}>{words}</text>"
         ));
     }
 }

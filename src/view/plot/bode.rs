@@ -318,7 +318,8 @@ fn captions_ui(
         events.push(BodeEvent::RoleToggled(role));
     }
     if let Some(readout) = scene.readout {
-        readout_box_ui(ui, frame, readout, view.legend.rect, palette);
+        let labelled = !scene.rules.is_empty();
+        readout_box_ui(ui, frame, readout, (view.legend.rect, labelled), palette);
     }
     events.extend(chips_ui(ui, (frame, plot), scene.chips, palette).map(BodeEvent::ChipClicked));
     if scene.stale {

@@ -50,8 +50,15 @@ const SWATCH: f32 = 4.0;
 /// Part of the plot that may be covered.
 const MOST_COVERED: f32 = 0.35;
 
-/// Draws a read-out into a corner of `frame` other than that which `taken` covers; not at all where it would hide too much of the plot.
-pub(super) fn readout_box_ui(ui: &Ui, frame: Rect, readout: &Readout, taken: Option<Rect>, palette: &Palette) {
+/// Draws a read-out into a corner of `frame` other than that which `taken` covers, at the right where labels stand at the left; not
+/// at all where it would hide too much of the plot.
+pub(super) fn readout_box_ui(
+    ui: &Ui,
+    frame: Rect,
+    readout: &Readout,
+    (taken, is_left_labelled): (Option<Rect>, bool),
+    palette: &Palette,
+) {
     let painter = ui.painter().with_clip_rect(frame);
     let table = Table::new(&painter, readout, palette);
     let room = frame.shrink(9.0);
@@ -59,10 +66,13 @@ pub(super) fn readout_box_ui(ui: &Ui, frame: Rect, readout: &Readout, taken: Opt
     if !is_small || table.size.x > room.width() || table.size.y > room.height() {
         return;
     }
-    let corners = [Align2::LEFT_BOTTOM, Align2::RIGHT_BOTTOM, Align2::RIGHT_TOP, Align2::LEFT_TOP];
+    let mut corners = [Align2::LEFT_BOTTOM, Align2::LEFT_TOP, Align2::RIGHT_BOTTOM, Align2::RIGHT_TOP];
+    if is_left_labelled {
+        corners.reverse();
+    }
     let place = |corner: Align2| corner.align_size_within_rect(table.size, room);
     let is_free = |corner: &Align2| taken.is_none_or(|taken| !taken.intersects(place(*corner)));
-    let rect = place(corners.into_iter().find(is_free).unwrap_or(Align2::LEFT_BOTTOM));
+    let rect = place(corners.into_iter().find(is_free).unwrap_or(corners[0]));
     painter.rect(rect, 4.0, palette.raised.gamma_multiply(0.88), Stroke::new(1.0, palette.line), StrokeKind::Inside);
     table.paint(&painter, rect);
     let response = ui.interact(rect, ui.scope_id().with("read-out"), Sense::hover());

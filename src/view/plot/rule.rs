@@ -46,7 +46,7 @@ pub enum RuleKind {
 impl RuleKind {
     fn look(self, palette: &Palette) -> LineLook {
         let (color, width, pattern) = match self {
-            Self::Delta => (palette.text, 1.4, LinePattern::Dotted { spacing: 4.0 }),
+            Self::Delta => (palette.text, 0.9, LinePattern::Dotted { spacing: 4.0 }),
             Self::Bound => (palette.warning, 1.0, LinePattern::DashDotted { length: 9.0 }),
             Self::Quantile => (palette.dim_text, 0.9, LinePattern::Dashed { length: 3.0 }),
             Self::Envelope => (palette.good, 1.0, LinePattern::Solid),

@@ -231,9 +231,6 @@ fn view_entries(state: &State) -> Vec<Entry> {
             .within(Menu::View, 0),
         Entry::new(unit_name, "In every plot over frequency", Command::SetFrequencyUnit(unit)).within(Menu::View, 0),
     ];
-    let narrowed = state.display.isolated.is_some() || !state.display.curves.selected.is_empty();
-    let end = Entry::new("Show every model again", "End what was isolated or selected", Command::EndIsolation);
-    entries.push(end.free_key(Key::Escape).within(Menu::View, 0).enabled(narrowed));
     entries.extend(steps(state));
     let show = |view: View| {
         Entry::new(format!("Show {}", view.name()), view.purpose(), Command::ShowView(view)).within(Menu::View, 2)

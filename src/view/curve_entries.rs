@@ -93,7 +93,8 @@ fn visibility_entries(state: &State) -> Vec<Entry> {
     let is_hidden = !(display.curves.hidden_models.is_empty() && display.curves.hidden_roles.is_empty());
     let isolation = Entry::new("End isolation and selection", "Show every model, select none", Command::EndIsolation);
     vec![
-        // The key closes menus too: it is taken only where it has something to end here.
+        // The key of an entry is taken from fields and menus, whether the entry is enabled or not: it is one only where it has
+        // something to end here.
         if is_isolated { isolation.free_key(Key::Escape) } else { isolation.enabled(false) }.within(Menu::Curves, 3),
         Entry::new("Show hidden curves", "Draw every model and every role", CurveCommand::ShowHidden.into())
             .within(Menu::Curves, 3)

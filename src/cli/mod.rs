@@ -39,13 +39,13 @@ pub enum Request {
     /// The window, on a file or on the embedded example.
     Window(Option<PathBuf>),
     /// A command without a window.
-    Command(Command),
+    Command(Box<Command>),
 }
 
 /// Reads a command line; help, version and errors are printed here, and leave only the exit status.
 pub fn request(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, ExitCode> {
     match Arguments::try_parse_from(arguments) {
-        Ok(Arguments { command: Some(command), .. }) => Ok(Request::Command(command)),
+        Ok(Arguments { command: Some(command), .. }) => Ok(Request::Command(Box::new(command))),
         Ok(Arguments { command: None, file }) => Ok(Request::Window(file)),
         Err(error) if error.use_stderr() => {
             say_error(&usage_words(&error));

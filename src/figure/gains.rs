@@ -243,7 +243,7 @@ impl Quantity<'_> {
                 }
             }
         }
-        groups.sort_by(|a, b| (a.shape, !a.filled).cmp(&(b.shape, !b.filled)));
+        groups.sort_by_key(|group| (group.shape, !group.filled));
         groups
     }
 }

@@ -19,9 +19,10 @@ pub fn overview_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> F
             let text = format!("J {:.0} → {:.0}", cost.uncorrected.total(), cost.corrected.total());
             Note { at: Place::LowerLeft, text }
         });
-        let held = if source.analysis.held()[pair] { " (held)" } else { "" };
+        let held = if source.analysis.held()[pair] { " *" } else { "" };
         Plot::new(format!("{}{held}", dataset.pair_name(pair))).panel(panel.with_all(note))
     });
-    let figure = Figure::new(source.condition_words()).caption(source.caption()).plots(plots);
+    let figure =
+        Figure::new(source.condition_words()).caption(format!("{} * held exactly.", source.caption())).plots(plots);
     figure.columns(dataset.inputs().len()).dense().shared_x().aspect(0.55)
 }

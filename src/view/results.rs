@@ -51,15 +51,15 @@ pub struct Results {
     pub analysis: Option<Arc<Analysis>>,
     /// The condition shown, where it is ahead of that analysis.
     pub first: Option<FirstResult>,
-    /// What holding or freeing each response of a condition would cost, and of which; see [`State::toggles`].
+    /// What holding or freeing each response of a condition would cost, and of which; see [`super::state::State::toggles`].
     pub toggles: Option<(TogglesJob, Arc<Toggles>)>,
-    /// Responses for drawing, and of what; see [`State::curves`].
+    /// Responses for drawing, and of what; see [`super::state::State::curves`].
     pub curves: Option<(CurvesJob, Arc<ConditionCurves>)>,
-    /// Modes of the models of one condition, and of which; see [`State::modes`].
+    /// Modes of the models of one condition, and of which; see [`super::state::State::modes`].
     pub modes: Option<(ModesJob, Arc<ConditionModes>)>,
-    /// The assessment that is asked for, and of what; see [`State::assessment`].
+    /// The assessment that is asked for, and of what; see [`super::state::State::assessment`].
     pub assessment: Option<(AssessmentJob, Arc<AssessmentTable>)>,
-    /// Responses of one model of each condition, and of which; see [`State::across`].
+    /// Responses of one model of each condition, and of which; see [`super::state::State::across`].
     pub across: Option<(AcrossJob, Arc<AcrossCurves>)>,
     /// Analyses of the variants.
     pub variants: Vec<(VariantJob, Arc<Analysis>)>,

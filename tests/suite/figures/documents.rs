@@ -44,10 +44,10 @@ fn the_commands_of_the_page_make_its_pictures() {
         let kept = fs::read_to_string(docs.parent().unwrap().join(out)).unwrap();
         assert!(kept.len() < 200_000, "{out}: {} bytes", kept.len());
         let (made, kept) = (words(&made), words(&kept));
-        let same = |((a, at), (b, before)): (&(String, [f64; 2]), &(String, [f64; 2]))| {
+        let same = made.iter().zip(&kept).all(|((a, at), (b, before))| {
             a == b && (at[0] - before[0]).abs() < MOVED_PT && (at[1] - before[1]).abs() < MOVED_PT
-        };
-        assert!(made.len() == kept.len() && made.iter().zip(&kept).all(same), "{out} is not what its command makes");
+        });
+        assert!(made.len() == kept.len() && same, "{out} is not what its command makes");
     }
 }
 

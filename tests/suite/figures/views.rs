@@ -77,7 +77,7 @@ fn the_overview_has_every_response_outputs_down_and_inputs_across() {
     let figure = example.figure(FigureKind::Overview, Vec::new());
     assert_eq!((figure.plots.len(), figure.columns), (24, 4));
     assert_eq!(figure.plots[0].title, "LON → P");
-    assert_eq!(figure.plots[4].title, "LON → Q (held)");
+    assert_eq!(figure.plots[4].title, "LON → Q *");
 }
 
 #[test]

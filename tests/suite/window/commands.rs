@@ -125,11 +125,11 @@ fn copied(window: &mut Window) -> String {
     for _ in 0..4 {
         window.step();
         let commands = window.output().platform_output.commands.iter();
-        let text = commands.filter_map(|command| match command {
+        let mut text = commands.filter_map(|command| match command {
             egui::OutputCommand::CopyText(text) => Some(text.clone()),
             _ => None,
         });
-        if let Some(text) = text.last() {
+        if let Some(text) = text.next_back() {
             return text;
         }
     }

@@ -1,6 +1,6 @@
 //! Labelled lines across a pane: what a figure of the fit is at every frequency.
 
-use egui::{Align2, FontId, Rect, Ui, pos2, vec2};
+use egui::{Align2, FontId, Rangef, Rect, Ui, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
 
 use super::curve::Pane;
@@ -30,8 +30,8 @@ impl Level {
     }
 }
 
-/// What a rule stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What a rule stands for; what comes first gets its label first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RuleKind {
     /// What the fit asks for: G, D.
     Delta,
@@ -75,8 +75,8 @@ const FONT: FontId = FontId::proportional(10.5);
 /// Least distance between two labels \[pt\].
 const LABEL_GAP: f32 = 12.0;
 
-/// Draws the rules of a pane into the plot that was drawn as `transform` says, with their labels at the left, below one another where
-/// the lines are close.
+/// Draws the rules of a pane into the plot that was drawn as `transform` says, with their labels at the left, beside one another where
+/// the lines are close. A label without room is left out.
 pub(super) fn rules_ui(ui: &Ui, rules: &[Rule], pane: Pane, transform: &PlotTransform, palette: &Palette) {
     let frame = *transform.frame();
     let painter = ui.painter().with_clip_rect(frame.shrink(1.0));
@@ -88,21 +88,32 @@ pub(super) fn rules_ui(ui: &Ui, rules: &[Rule], pane: Pane, transform: &PlotTran
         let at = path.iter().find(|at| at.x >= left).or(path.first());
         let look = rule.kind.look(palette);
         if let Some(at) = at.filter(|at| frame.y_range().contains(at.y)) {
-            labels.push((at.y, rule.label.as_str(), look.color));
+            labels.push((rule.kind, at.y, rule.label.as_str(), look.color));
         }
         look.add_shapes(path, &mut shapes);
     }
     painter.extend(shapes);
-    labels.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut free = frame.top();
-    for (y, label, color) in labels {
+    labels.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let mut taken = Vec::new();
+    for (_, y, label, color) in labels {
+        let Some(bottom) = free_place(y - 1.0, frame.y_range(), &taken) else { continue };
+        taken.push(bottom);
         let galley = painter.layout_no_wrap(label.to_owned(), FONT, color);
-        let bottom = (y - 1.0).max(free + LABEL_GAP).min(frame.bottom());
-        free = bottom;
         let place: Rect = Align2::LEFT_BOTTOM.anchor_size(pos2(frame.left() + LABEL_LEFT, bottom), galley.size());
         painter.rect_filled(place.expand(1.0), 2.0, palette.background.gamma_multiply(0.75));
         painter.galley(place.min, galley, color);
     }
+}
+
+/// The lower edge of a label nearest to `wanted` that keeps clear of those placed already, and of the ends of the plot; at most two
+/// labels away, where it still is seen to belong to its line.
+fn free_place(wanted: f32, frame: Rangef, taken: &[f32]) -> Option<f32> {
+    let steps = [0.0, 1.0, -1.0, 2.0, -2.0];
+    let is_free = |bottom: &f32| {
+        let is_within = *bottom - LABEL_GAP >= frame.min && *bottom <= frame.max;
+        is_within && taken.iter().all(|other| (bottom - other).abs() >= LABEL_GAP)
+    };
+    steps.into_iter().map(|step| wanted + step * LABEL_GAP).find(is_free)
 }
 
 /// Distance of the labels from the left edge \[pt\].
@@ -140,5 +151,16 @@ mod tests {
         let points = Level::PerOmega(-2.0).points(0.0, 1.0);
         assert_eq!((points[0], points[POINTS]), ([0.0, -2.0], [1.0, -20.0]));
         assert_eq!(Level::Sampled(vec![[100.0, 5.0]]).points(0.0, 1.0), [[2.0, 5.0]]);
+    }
+
+    #[test]
+    fn labels_keep_clear_of_one_another_and_one_without_room_is_left_out() {
+        let frame = Rangef::new(0.0, 30.0);
+        let mut taken = Vec::new();
+        for _ in 0..4 {
+            taken.extend(free_place(20.0, frame, &taken));
+        }
+        assert_eq!(taken, [20.0], "there is room for two, but not for one above and one below this one");
+        assert_eq!(free_place(29.0, Rangef::new(0.0, 40.0), &[29.0]), Some(17.0));
     }
 }

@@ -18,6 +18,8 @@ use crate::view::table_view::{Sorting, TableLook, table_ui};
 /// Widest airspeed tolerance \[kt\].
 const WIDEST_TOLERANCE_KT: f64 = 100.0;
 
+/// The key of the dots is not narrower \[pt\].
+const LEAST_KEY: f32 = 120.0;
 /// Room \[pt\] in which the controls of this view stand in one line.
 const ONE_LINE: f32 = 480.0;
 
@@ -30,9 +32,12 @@ pub fn net_gain_header_ui(ui: &mut Ui, state: &State, palette: &Palette, command
     } else {
         controls_ui(ui, state, palette, commands);
     }
-    let key = dot_key(state);
-    let text = RichText::new(&key).size(SMALL_SIZE).color(palette.dim_text);
-    ui.add(egui::Label::new(text).truncate()).on_hover_text(key);
+    // A few letters of the key say nothing.
+    if ui.available_width() > LEAST_KEY {
+        let key = dot_key(state);
+        let text = RichText::new(&key).size(SMALL_SIZE).color(palette.dim_text);
+        ui.add(egui::Label::new(text).truncate()).on_hover_text(key);
+    }
 }
 
 fn controls_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {

@@ -4,6 +4,7 @@ use egui_plot::{GridInput, GridMark};
 
 use super::grid_strength::labelled_mark;
 use super::number::compact;
+use crate::figure::{degree_step, step_above};
 
 /// The steps that ticks may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,17 +15,12 @@ pub enum Ladder {
     Degrees,
 }
 
-/// Degrees between ticks, from about one degree on; below, decimal steps.
-const DEGREE_STEPS: [f64; 13] = [5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0, 720.0, 1800.0, 3600.0, 7200.0];
-
 impl Ladder {
     /// The least step of this ladder that is not below `least`.
     pub fn step(self, least: f64) -> f64 {
         match self {
-            Self::Degrees if least > 2.0 => {
-                DEGREE_STEPS.into_iter().find(|step| *step >= least).unwrap_or_else(|| step_above(least))
-            }
-            Self::Decimal | Self::Degrees => step_above(least),
+            Self::Degrees => degree_step(least),
+            Self::Decimal => step_above(least),
         }
     }
 
@@ -43,18 +39,6 @@ impl Ladder {
     pub fn spacer(self, gap: f64) -> impl Fn(GridInput) -> Vec<GridMark> {
         move |input| self.marks(input.bounds, input.base_step_size, gap)
     }
-}
-
-/// The least of 1, 2 and 5 times a power of ten that is not below `least`.
-pub fn step_above(least: f64) -> f64 {
-    if !(least > 0.0 && least.is_finite()) {
-        return 1.0;
-    }
-    let power = 10f64.powf(least.log10().floor());
-    // A step that is meant to be round may come in a rounding error above itself.
-    let fits = |factor: f64| factor * power >= least * (1.0 - 1e-9);
-    let factor = [1.0, 2.0, 5.0].into_iter().find(|factor| fits(*factor)).unwrap_or(10.0);
-    factor * power
 }
 
 /// The text of a tick of a linear axis.

@@ -116,7 +116,7 @@ fn linear_marks(bounds: (f64, f64), decades_per_point: f64) -> Vec<GridMark> {
     let (low, high) = (10f64.powf(bounds.0), 10f64.powf(bounds.1));
     // The upper end is where equal steps are closest.
     let units_per_point = high * decades_per_point * std::f64::consts::LN_10;
-    let step = super::linear_axis::step_above(LABEL_GAP * 1.5 * units_per_point);
+    let step = crate::figure::step_above(LABEL_GAP * 1.5 * units_per_point);
     let indices = (low / step).ceil() as i64..=(high / step).floor() as i64;
     indices.map(|k| labelled_mark((k as f64 * step).log10(), decades_per_point)).collect()
 }

@@ -4,9 +4,10 @@ use egui::{Align2, FontId, Id, Painter, Pos2, Rect, Response, Sense, Stroke, Ui,
 use egui_plot::{Axis, HLine, Line, Plot, PlotBounds, PlotPoint, PlotTransform, PlotUi, VLine};
 
 use super::axes::{LABELLED_HEIGHT, VERTICAL_TICK_GAP, axis_hints, caption_font, quiet_plot};
-use super::linear_axis::{Ladder, step_above, tick_text};
+use super::linear_axis::{Ladder, tick_text};
 use super::pole_mark::PoleMark;
 use super::range::Range;
+use crate::figure::step_above;
 use crate::view::palette::Palette;
 
 const TITLE_HEIGHT: f32 = 18.0;

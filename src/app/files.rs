@@ -1,6 +1,7 @@
 //! Opening, saving and exporting.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use egui::Context;
@@ -9,12 +10,11 @@ use crate::io::{
     Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, at_home, embedded_example, load_any,
     open_study_of, plain, plain_path, save_study, save_table, write_results,
 };
-use crate::study::{Difference, Study};
+use crate::study::{Difference, Study, Table};
 use crate::view::bars::Bar;
 use crate::view::command::{Command, FormKind};
 use crate::view::preferences::Preferences;
 use crate::view::state::State;
-use crate::view::tables::{TableKind, table_of};
 
 use super::dialogs::{DialogAnswer, DialogPurpose};
 use super::fault::{Fault, caught};
@@ -304,23 +304,24 @@ impl GdcmApp {
         format!("{}.{STUDY_EXTENSION}", stem.trim_end_matches(".json"))
     }
 
-    pub(super) fn ask_save_table(&mut self, kind: TableKind) {
-        let name: String = kind.name().chars().filter(|letter| letter.is_alphanumeric() || *letter == ' ').collect();
-        self.state.forms.table = Some(kind);
+    /// Asks where to save a table as it is now.
+    pub(super) fn ask_save_table(&mut self, name: &str, table: Arc<Table>) {
+        let name: String = name.chars().filter(|letter| letter.is_alphanumeric() || *letter == ' ').collect();
+        self.state.forms.table = Some(table);
         self.state.forms.table_path = format!("{}.csv", name.replace(' ', "-"));
         self.state.forms.shown = Some(FormKind::SaveTable);
     }
 
     /// Saves a table of the window as CSV.
-    pub(super) fn save_table(&mut self, kind: TableKind, path: PathBuf, existing: Existing) {
+    pub(super) fn save_table(&mut self, table: Arc<Table>, path: PathBuf, existing: Existing) {
         let path = self.at_home(path);
-        match save_table(&table_of(&self.state, kind), &path, OutputSet::new(existing, self.inputs())) {
+        match save_table(&table, &path, OutputSet::new(existing, self.inputs())) {
             Ok(()) => {
                 self.state.forms.shown = None;
                 self.done(format!("saved {}", plain_path(&path)));
             }
             Err(FileError::Exists { paths }) => {
-                self.ask_to_overwrite(&paths, FormKind::SaveTable, Command::SaveTable(kind, path));
+                self.ask_to_overwrite(&paths, FormKind::SaveTable, Command::SaveTable(table, path));
             }
             Err(error) => self.trouble(error.to_string()),
         }

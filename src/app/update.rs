@@ -109,8 +109,12 @@ impl GdcmApp {
                 ctx.copy_text(table_of(&self.state, kind).text());
                 self.done(format!("copied the table of {}", kind.name()));
             }
-            Command::AskSaveTable(kind) => self.ask_save_table(kind),
-            Command::SaveTable(kind, path) => self.save_table(kind, path, Existing::Keep),
+            Command::AskSaveTable(kind) => {
+                let table = table_of(&self.state, kind);
+                self.ask_save_table(kind.name(), table.into());
+            }
+            Command::AskSaveShownTable(table) => self.ask_save_table(&table.title, table.clone()),
+            Command::SaveTable(table, path) => self.save_table(table, path, Existing::Keep),
             Command::CopyFigure(view) => self.copy_figure(view, ctx),
             Command::AskSaveFigure(view, format) => self.ask_save_figure(view, format),
             Command::SaveFigure(view, width, path) => self.save_figure((view, width), path, Existing::Keep),
@@ -237,7 +241,7 @@ impl GdcmApp {
         match self.overwriting.take() {
             Some(Command::SaveStudyAs(path)) => self.save_as(path, Existing::Replace, ctx),
             Some(Command::Export) => self.export(Existing::Replace),
-            Some(Command::SaveTable(kind, path)) => self.save_table(kind, path, Existing::Replace),
+            Some(Command::SaveTable(table, path)) => self.save_table(table, path, Existing::Replace),
             Some(Command::SaveFigure(view, width, path)) => self.save_figure((view, width), path, Existing::Replace),
             _ => {}
         }

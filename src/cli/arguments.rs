@@ -8,7 +8,7 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::figure::{ColumnWidth, FigureKind, Role};
 use crate::schedule::HIGHEST_DEGREE;
-use crate::study::{LEAST_POINTS, MOST_POINTS};
+use crate::study::{AcrossRole, LEAST_POINTS, MOST_POINTS};
 
 /// Gain-Delay Correction Method: matches physics-based helicopter models to flight.
 #[derive(Debug, Parser)]
@@ -143,6 +143,15 @@ pub struct FigureArguments {
     /// Frequencies in Hz in place of rad/s.
     #[arg(long)]
     pub hertz: bool,
+    /// Which model of each condition airspeeds shows: nominal, representative, corrected or identified.
+    #[arg(long, value_name = "MODEL", default_value = "nominal", value_parser = across_roles())]
+    pub model: AcrossRole,
+    /// Among the poles, the zeros of this response, OUTPUT/INPUT, in the nominal model and in the representatives.
+    #[arg(long, value_name = "PAIR")]
+    pub zeros: Option<PairList>,
+    /// Among the errors, the limits of what a pilot does not notice (MUAD, MIL-STD-1797A).
+    #[arg(long)]
+    pub muad: bool,
     /// Width on paper: one column of a journal (84 mm), or both (174 mm).
     #[arg(long, value_name = "WIDTH", default_value = "double", value_parser = column_widths())]
     pub width: ColumnWidth,
@@ -152,6 +161,11 @@ pub struct FigureArguments {
     /// Overwrite a file that is there already.
     #[arg(long)]
     pub force: bool,
+}
+
+fn across_roles() -> impl TypedValueParser<Value = AcrossRole> {
+    PossibleValuesParser::new(AcrossRole::ALL.map(AcrossRole::name))
+        .try_map(|name| AcrossRole::ALL.into_iter().find(|role| role.name() == name).ok_or("there is no such model"))
 }
 
 fn figure_kinds() -> impl TypedValueParser<Value = FigureKind> {

@@ -71,8 +71,13 @@ fn request(study: &Study, arguments: &FigureArguments) -> Result<FigureRequest, 
     let across = if arguments.over_conditions { Across::Conditions } else { Across::Airspeed };
     let unit = if arguments.hertz { FrequencyUnit::Hertz } else { FrequencyUnit::RadPerSecond };
     let hidden = arguments.hide.iter().copied().collect();
-    let bode = BodeOptions { unit, hidden, ..BodeOptions::default() };
-    Ok(FigureRequest { measure, across, bode, ..FigureRequest::new(arguments.view, pairs, channels) })
+    let zeros_of = match &arguments.zeros {
+        Some(list) => pairs_of(dataset, list, "--zeros")?.first().copied(),
+        None => None,
+    };
+    let bode = BodeOptions { unit, hidden, zeros_of, shows_muad: arguments.muad, ..BodeOptions::default() };
+    let across_role = arguments.model;
+    Ok(FigureRequest { measure, across, across_role, bode, ..FigureRequest::new(arguments.view, pairs, channels) })
 }
 
 fn chosen_pairs(dataset: &Dataset, choice: &PairChoice) -> Result<Vec<Pair>, Failure> {

@@ -157,6 +157,12 @@ impl Dataset {
         self.band
     }
 
+    /// Airspeeds of the slowest and of the fastest condition \[kt\].
+    pub fn airspeed_range_kt(&self) -> (f64, f64) {
+        let airspeeds = self.conditions.iter().map(|condition| condition.flight_state().airspeed_kt);
+        airspeeds.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), kt| (least.min(kt), most.max(kt)))
+    }
+
     /// Conditions, in file order.
     pub fn conditions(&self) -> &[Arc<Condition>] {
         &self.conditions

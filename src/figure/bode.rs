@@ -1,14 +1,14 @@
 //! Responses of one condition: magnitude and phase of every model over frequency (Figures 2 and 5).
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use crate::dataset::{ModelId, Pair};
+use crate::dataset::{Band as BandOfComparison, ConditionId, ModelId, Pair};
 use crate::response::wrapped_deg;
 use crate::units::db_to_ratio;
 
 use super::axis::Axis;
-use super::condition_source::{ConditionSource, ResponseLine, SourceModel};
+use super::condition_source::{ConditionSource, CurveId, ResponseLine, SourceModel};
 use super::figure::Figure;
 use super::mark::{Along, Band, Curve, Mark};
 use super::panel::{Panel, Plot};
@@ -41,6 +41,12 @@ pub struct BodeOptions {
     pub hidden_models: BTreeSet<ModelId>,
     /// The only model shown beside the representatives.
     pub isolated: Option<ModelId>,
+    /// Whole turns that phases were moved up by hand.
+    pub turns: BTreeMap<(ConditionId, Pair, CurveId), i32>,
+    /// Whether what a pilot does not notice is shown among the errors.
+    pub shows_muad: bool,
+    /// The response whose zeros are shown among the poles, where those of one are.
+    pub zeros_of: Option<Pair>,
     /// The frequencies shown \[rad/s\]; those of the curves, where none are given.
     pub omega: Option<Range>,
     /// The values shown in the upper and in the lower panel; those that the band needs, where none are given.
@@ -57,6 +63,20 @@ impl BodeOptions {
         represents || self.isolated.as_ref().is_none_or(|isolated| *isolated == model.id)
     }
 
+    /// A phase \[deg\] with the turns that it was given by hand.
+    pub(super) fn turned(
+        &self,
+        condition: ConditionId,
+        pair: Pair,
+        curve: &CurveId,
+        phase_deg: &Arc<[f64]>,
+    ) -> Arc<[f64]> {
+        match self.turns.get(&(condition, pair, curve.clone())) {
+            Some(turns) => phase_deg.iter().map(|phase| phase + 360.0 * f64::from(*turns)).collect(),
+            None => Arc::clone(phase_deg),
+        }
+    }
+
     /// The axis of frequencies.
     pub(super) fn frequency_axis(&self) -> Axis {
         let in_unit = |range: Range| Range::new(self.unit.of_omega(range.min), self.unit.of_omega(range.max));
@@ -65,10 +85,14 @@ impl BodeOptions {
 
     /// The ground of the band of comparison.
     pub(super) fn band(&self, source: &ConditionSource<'_>) -> Band {
-        let band = source.study.settings.band;
-        let range = Range::new(self.unit.of_omega(band.min()), self.unit.of_omega(band.max()));
-        Band { along: Along::X, range, color: BAND, key: Some("band of comparison".to_owned()) }
+        ground_of(source.study.settings.band, self.unit)
     }
+}
+
+/// The ground of a band of comparison.
+pub(super) fn ground_of(band: BandOfComparison, unit: FrequencyUnit) -> Band {
+    let range = Range::new(unit.of_omega(band.min()), unit.of_omega(band.max()));
+    Band { along: Along::X, range, color: BAND, key: Some("band of comparison".to_owned()) }
 }
 
 /// The responses `pairs` of one condition: a magnitude above a phase each, of every model and of the corrected ones.

@@ -24,6 +24,17 @@ pub struct ConditionSource<'a> {
     pub curves: &'a ConditionCurves,
 }
 
+/// What a curve stands for; unique within a scene.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum CurveId {
+    /// One model as it is.
+    Model(ModelId),
+    /// The representative physics model with the condition's own correction.
+    Corrected,
+    /// The representative physics model with the scheduled correction.
+    Scheduled,
+}
+
 /// A model of the condition.
 #[derive(Clone, Debug)]
 pub(super) struct SourceModel {
@@ -37,6 +48,7 @@ pub(super) struct SourceModel {
 /// One line of a response's plot.
 #[derive(Clone, Debug)]
 pub(super) struct ResponseLine {
+    pub(super) id: CurveId,
     pub(super) name: String,
     pub(super) role: Role,
     pub(super) rejected: bool,
@@ -46,6 +58,7 @@ pub(super) struct ResponseLine {
 /// The representative physics model after a correction.
 #[derive(Clone, Debug)]
 pub(super) struct CorrectedModel {
+    pub(super) id: CurveId,
     pub(super) name: String,
     pub(super) role: Role,
     /// Index of the physics model.
@@ -111,10 +124,11 @@ impl<'a> ConditionSource<'a> {
             return Vec::new();
         };
         let airspeed_kt = self.curves.condition.flight_state().airspeed_kt;
-        let own = self.analysis.correction.on(pair).map(|correction| (Role::Corrected, correction));
+        let own = self.analysis.correction.on(pair).map(|correction| (CurveId::Corrected, Role::Corrected, correction));
         let scheduled = self.schedule.and_then(|schedule| schedule.at(airspeed_kt).on(pair));
-        let both = own.into_iter().chain(scheduled.map(|correction| (Role::Scheduled, correction)));
-        both.map(|(role, correction)| CorrectedModel {
+        let both = own.into_iter().chain(scheduled.map(|correction| (CurveId::Scheduled, Role::Scheduled, correction)));
+        both.map(|(id, role, correction)| CorrectedModel {
+            id,
             name: format!("{name}, {}", role.name()),
             role,
             model,
@@ -132,13 +146,17 @@ impl<'a> ConditionSource<'a> {
         let mut lines: Vec<ResponseLine> = shown
             .map(|SourceModel { id, index, role, rejected }| {
                 let shape = shape(id.bundle, index).laid_on(&reference);
-                ResponseLine { name: id.name, role, rejected, shape }
+                let name = id.name.clone();
+                ResponseLine { id: CurveId::Model(id), name, role, rejected, shape }
             })
             .collect();
         let omega = self.curves.grid.omega();
-        for CorrectedModel { name, role, model, correction } in self.corrected_models(pair) {
+        for CorrectedModel { id, name, role, model, correction } in self.corrected_models(pair) {
             let shape = shape(BundleKind::Physics, model).laid_on(&reference).corrected(omega, correction);
-            lines.push(ResponseLine { name, role, rejected: false, shape });
+            lines.push(ResponseLine { id, name, role, rejected: false, shape });
+        }
+        for line in &mut lines {
+            line.shape.phase_deg = options.turned(self.id(), pair, &line.id, &line.shape.phase_deg);
         }
         lines.retain(|line| !options.hidden.contains(&line.role.shown(line.rejected)));
         lines.sort_by_key(|line| line.role.layer(line.rejected));

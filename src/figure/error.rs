@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::dataset::{BundleKind, Pair};
-use crate::fidelity::Mismatch;
-use crate::response::{GainDelay, PolarCurve};
+use crate::fidelity::{Mismatch, Muad};
+use crate::response::{GainDelay, PolarCurve, quantile};
 use crate::units::{ratio_to_db, s_to_ms};
 
 use super::axis::Axis;
@@ -16,11 +16,13 @@ use super::number::decimals;
 use super::panel::{Panel, Plot};
 use super::range::Range;
 use super::reading::PhaseErrorUnit;
-use super::role::{AMBER, Role};
+use super::role::{AMBER, GREY, Role};
 use super::stroke::{Color, Dash, Stroke};
 
 const DELTA: Stroke = Stroke::dashed(Color::INK, 0.7, Dash::Dotted);
 const BOUND: Stroke = Stroke::dashed(AMBER, 0.7, Dash::DashDot);
+const QUANTILE: Stroke = Stroke::dashed(Color::DIM, 0.5, Dash::Short);
+const MUAD: Stroke = Stroke::dashed(GREY, 0.9, Dash::Long);
 
 impl PhaseErrorUnit {
     /// A difference of phases \[rad\] at `omega` as it is drawn.
@@ -28,6 +30,14 @@ impl PhaseErrorUnit {
         match self {
             Self::Degree => phase.to_degrees(),
             Self::Millisecond => s_to_ms(phase / omega),
+        }
+    }
+
+    /// The delay \[s\] that a difference of phases as drawn is at `omega`.
+    fn delay_s(self, drawn: f64, omega: f64) -> f64 {
+        match self {
+            Self::Degree => drawn.to_radians() / omega,
+            Self::Millisecond => 1e-3 * drawn,
         }
     }
 
@@ -93,12 +103,70 @@ fn plot(source: &ConditionSource<'_>, pair: Pair, title: &str, options: &BodeOpt
         let name = format!("D {} ms", decimals(s_to_ms(delay_s), 1));
         Curve::new(name.clone(), DELTA, Arc::clone(&frequency), values).key("delta gain, delta delay")
     });
+    let mut references = quantile_lines(&lines, &omega, source.study.settings.quantile, options.phase_error);
+    if options.shows_muad {
+        references.extend(muad_lines(&omega, options.phase_error));
+    }
     let ratio = Axis::linear("|ident.| / |model| [dB]").including(0.0).at_least(1.0);
     let ratio = ratio.showing(options.values[0]);
     let phase = options.phase_error.axis().showing(options.values[1]);
     Plot::new(title)
-        .panel(Panel::new(axis(), ratio).with_all(curves(|line| &line.ratio_db)).with_all(gain).with_all(bounds))
-        .panel(Panel::new(axis(), phase).with_all(curves(|line| &line.phase)).with_all(delay))
+        .panel(
+            Panel::new(axis(), ratio)
+                .with_all(curves(|line| &line.ratio_db))
+                .with_all(gain)
+                .with_all(bounds)
+                .with_all(references.iter().map(|reference| reference.mark(&frequency, |line| &line.ratio_db))),
+        )
+        .panel(
+            Panel::new(axis(), phase)
+                .with_all(curves(|line| &line.phase))
+                .with_all(delay)
+                .with_all(references.iter().map(|reference| reference.mark(&frequency, |line| &line.phase))),
+        )
+}
+
+/// A line that errors are read against: a quantile, or the limit of what a pilot does not notice.
+struct ReferenceLine {
+    key: &'static str,
+    stroke: Stroke,
+    line: ErrorLine,
+}
+
+impl ReferenceLine {
+    fn new(key: &'static str, name: String, stroke: Stroke, ratio_db: Arc<[f64]>, phase: Arc<[f64]>) -> Self {
+        Self { key, stroke, line: ErrorLine { name, role: Role::IdentifiedRepresentative, ratio_db, phase } }
+    }
+
+    fn mark(&self, frequency: &Arc<[f64]>, of: fn(&ErrorLine) -> &Arc<[f64]>) -> Curve {
+        Curve::new(&self.line.name, self.stroke, Arc::clone(frequency), Arc::clone(of(&self.line))).key(self.key)
+    }
+}
+
+/// The quantiles of the representative's own error (M7 pools those of all on-axis responses).
+fn quantile_lines(lines: &[ErrorLine], omega: &[f64], q: f64, unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
+    let represents = |line: &&ErrorLine| line.role == Role::Representative;
+    // The nominal model keeps its role where it represents its bundle.
+    let own = lines.iter().find(represents).or(lines.iter().find(|line| line.role == Role::Nominal));
+    let Some(own) = own else { return Vec::new() };
+    let line = |q: f64| {
+        let ratio_db = quantile(&mut own.ratio_db.to_vec(), q);
+        let mut delays_s: Vec<f64> = own.phase.iter().zip(omega).map(|(phase, at)| unit.delay_s(*phase, *at)).collect();
+        let delay_s = quantile(&mut delays_s, q);
+        let phase = omega.iter().map(|at| unit.of(delay_s * at, *at)).collect();
+        let ratio_db = vec![ratio_db; omega.len()].into();
+        ReferenceLine::new("quantiles", format!("{:.0} % quantile", 100.0 * q), QUANTILE, ratio_db, phase)
+    };
+    [q, 1.0 - q].map(line).into()
+}
+
+/// The envelopes of unnoticeable added dynamics (MIL-STD-1797A); those of the magnitude stand mirrored, for its inverse is drawn.
+fn muad_lines(omega: &[f64], unit: PhaseErrorUnit) -> [ReferenceLine; 2] {
+    [(0, "lower"), (1, "upper")].map(|(end, word)| {
+        let ratio_db = omega.iter().map(|at| -Muad::at(*at).magnitude_db[end]).collect();
+        let phase = omega.iter().map(|at| unit.of(Muad::at(*at).phase_deg[end].to_radians(), *at)).collect();
+        ReferenceLine::new("unnoticed within, MUAD", format!("{word} limit, MUAD"), MUAD, ratio_db, phase)
+    })
 }
 
 fn omega_in_band(source: &ConditionSource<'_>) -> Vec<f64> {

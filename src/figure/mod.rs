@@ -18,6 +18,7 @@
 //! assert_eq!(figure.drawing(ColumnWidth::Single).size[0].round(), 238.0);
 //! ```
 
+mod airspeeds;
 mod assessment;
 mod axis;
 mod bode;
@@ -47,10 +48,11 @@ mod simplify;
 mod stroke;
 mod ticks;
 
+pub use airspeeds::airspeeds_figure;
 pub use assessment::assessment_figure;
 pub use axis::{Axis, Scale};
 pub use bode::{BodeOptions, bode_figure};
-pub use condition_source::ConditionSource;
+pub use condition_source::{ConditionSource, CurveId};
 pub use drawing::{Anchor, Area, Drawing, PT_PER_MM, Shape, Text};
 pub use error::error_figure;
 pub use figure::{ColumnWidth, Figure, Shared};

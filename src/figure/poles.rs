@@ -1,15 +1,17 @@
 //! Poles of every model of one condition in the s-plane.
 
-use crate::dataset::BundleKind;
+use crate::dataset::{BundleKind, Pair};
+use crate::response::finite_zeros;
 use crate::study::{ConditionModes, Unobserved};
 
 use super::axis::Axis;
 use super::bode::BodeOptions;
-use super::condition_source::ConditionSource;
+use super::condition_source::{ConditionSource, SourceModel};
 use super::figure::Figure;
 use super::mark::{DotShape, Dots, Guide, Mark, Rule};
 use super::panel::{Panel, Plot};
 use super::range::Range;
+use super::role::Role;
 use super::stroke::{Color, Stroke};
 
 /// Real and imaginary parts in the window of the slow modes \[rad/s\]: the rigid-body modes of a helicopter lie there.
@@ -22,7 +24,9 @@ const ZERO: Stroke = Stroke::solid(Color::DIM, 0.6);
 /// Poles of every model of one condition: all of them, and the window of the slow modes; physics models ×, identified ones +.
 pub fn poles_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> Option<Figure> {
     let modes = ConditionModes::of(&source.curves.condition, &Unobserved).ok()?;
-    let dots = poles(source, &modes, options);
+    let shown = shown_models(source, options);
+    let dots = poles(&shown, &modes);
+    let zeros: Vec<Dots> = options.zeros_of.map(|pair| zeros(source, &shown, pair)).unwrap_or_default();
     let values = |of: fn(&super::mark::Dot) -> f64| {
         Range::of(dots.iter().flat_map(|dots| &dots.dots).map(of)).unwrap_or(Range::new(-1.0, 1.0))
     };
@@ -33,6 +37,7 @@ pub fn poles_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> Opti
         let x = Axis::linear("Re λ [rad/s]").showing(Some(real));
         let y = Axis::linear("Im λ [rad/s]").showing(Some(imaginary));
         let panel = Panel::new(x, y).with_all(rays()).with(Rule::vertical(0.0, ZERO)).with_all(dots.clone());
+        let panel = panel.with_all(zeros.clone());
         Plot::new(title).panel(panel)
     };
     let title = format!("Poles · {}", source.condition_words());
@@ -40,14 +45,19 @@ pub fn poles_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> Opti
     Some(figure.plot(plot("s-plane", whole)).plot(plot("slow modes", SLOW)).columns(2).aspect(0.85))
 }
 
-/// One group of dots for each model, what matters most last.
-fn poles(source: &ConditionSource<'_>, modes: &ConditionModes, options: &BodeOptions) -> Vec<Dots> {
+/// The models that are shown, what matters most last.
+fn shown_models(source: &ConditionSource<'_>, options: &BodeOptions) -> Vec<SourceModel> {
     let models = BundleKind::BOTH.into_iter().flat_map(|kind| source.models(kind));
     let mut shown: Vec<_> = models
         .filter(|model| options.shows_model(model) && !options.hidden.contains(&model.role.shown(model.rejected)))
         .collect();
     shown.sort_by_key(|model| model.role.layer(model.rejected));
-    let group = |model: super::condition_source::SourceModel| {
+    shown
+}
+
+/// One group of dots for each model.
+fn poles(shown: &[SourceModel], modes: &ConditionModes) -> Vec<Dots> {
+    let group = |model: &SourceModel| {
         let shape = match model.id.bundle {
             BundleKind::Physics => DotShape::Cross,
             BundleKind::Identified => DotShape::Plus,
@@ -57,7 +67,20 @@ fn poles(source: &ConditionSource<'_>, modes: &ConditionModes, options: &BodeOpt
         let dots = Dots::new(&model.id.name, shape, color).key(model.role.key(model.rejected));
         found.iter().fold(dots, |dots, mode| dots.dot(mode.pole.re, mode.pole.im, ""))
     };
-    shown.into_iter().map(group).collect()
+    shown.iter().map(group).collect()
+}
+
+/// Zeros of one response in the nominal model and in both representatives, as circles; they may lie far out, and widen no range.
+fn zeros(source: &ConditionSource<'_>, shown: &[SourceModel], pair: Pair) -> Vec<Dots> {
+    let has_zeros = |role| matches!(role, Role::Nominal | Role::Representative | Role::IdentifiedRepresentative);
+    let group = |model: &SourceModel| {
+        let found = source.curves.condition.model(model.id.bundle, &model.id.name)?;
+        let zeros = finite_zeros(&found.dynamics, pair);
+        let key = format!("zeros of {}, {}", source.dataset().pair_name(pair), model.role.key(model.rejected));
+        let dots = Dots::new(&model.id.name, DotShape::Circle, model.role.stroke(model.rejected).color).key(key);
+        Some(zeros.iter().fold(dots.filled(false), |dots, zero| dots.dot(zero.re, zero.im, "")))
+    };
+    shown.iter().filter(|model| has_zeros(model.role)).filter_map(group).collect()
 }
 
 /// Rays of equal damping ratio, `Re λ = -ζ |λ|`, above and below the real axis.

@@ -2,8 +2,9 @@
 
 use crate::correction::Channel;
 use crate::dataset::Pair;
-use crate::study::{Analysis, AssessmentChoice};
+use crate::study::{AcrossRole, Analysis, AssessmentChoice};
 
+use super::airspeeds::airspeeds_figure;
 use super::assessment::{assessment_figure, usual_choice};
 use super::bode::{BodeOptions, bode_figure};
 use super::condition_source::ConditionSource;
@@ -30,12 +31,22 @@ pub enum FigureKind {
     Assessment,
     /// Poles of every model of one condition.
     Poles,
+    /// One response in every condition, coloured by airspeed.
+    Airspeeds,
 }
 
 impl FigureKind {
     /// Every kind.
-    pub const ALL: [Self; 7] =
-        [Self::Bode, Self::Error, Self::Overview, Self::NetGain, Self::Channels, Self::Assessment, Self::Poles];
+    pub const ALL: [Self; 8] = [
+        Self::Bode,
+        Self::Error,
+        Self::Overview,
+        Self::NetGain,
+        Self::Channels,
+        Self::Assessment,
+        Self::Poles,
+        Self::Airspeeds,
+    ];
 
     /// Its name in a command and in the name of a file.
     pub fn name(self) -> &'static str {
@@ -47,6 +58,7 @@ impl FigureKind {
             Self::Channels => "channels",
             Self::Assessment => "assessment",
             Self::Poles => "poles",
+            Self::Airspeeds => "airspeeds",
         }
     }
 
@@ -71,6 +83,8 @@ pub struct FigureRequest {
     pub across: Across,
     /// What is assessed; the paper's choice where none is given.
     pub assessed: Option<AssessmentChoice>,
+    /// Which model of each condition, where one of each is shown.
+    pub across_role: AcrossRole,
     /// How responses are shown.
     pub bode: BodeOptions,
 }
@@ -79,7 +93,8 @@ impl FigureRequest {
     /// A figure of these responses and channels, shown as usual.
     pub fn new(kind: FigureKind, pairs: Vec<Pair>, channels: Vec<Channel>) -> Self {
         let (measure, across) = (Measure::default(), Across::default());
-        Self { kind, pairs, channels, measure, across, assessed: None, bode: BodeOptions::default() }
+        let (across_role, bode) = (AcrossRole::default(), BodeOptions::default());
+        Self { kind, pairs, channels, measure, across, assessed: None, across_role, bode }
     }
 
     /// The figure; none where what it is made of is not there: the condition's source for those of one condition, else the
@@ -96,6 +111,7 @@ impl FigureRequest {
                 assessment_figure(analysis, &self.pairs, self.assessed.unwrap_or_else(|| usual_choice(analysis)))
             }
             FigureKind::Poles => return poles_figure(condition?, &self.bode),
+            FigureKind::Airspeeds => return airspeeds_figure(analysis?, &self.pairs, self.across_role, &self.bode),
         })
     }
 }

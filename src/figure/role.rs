@@ -53,6 +53,12 @@ impl Role {
         Self::Rejected,
     ];
 
+    /// The role of a model of a condition at an airspeed \[kt\], among those of the slowest and the fastest condition.
+    pub fn of_airspeed(airspeed_kt: f64, (least, most): (f64, f64)) -> Self {
+        let part = if most > least { (airspeed_kt - least) / (most - least) } else { 0.0 };
+        Self::OfAirspeed((255.0 * part.clamp(0.0, 1.0)).round() as u8)
+    }
+
     /// The role of a model as it is.
     pub fn of_model(kind: BundleKind, is_nominal: bool, represents: bool) -> Self {
         match (kind, is_nominal, represents) {

@@ -26,4 +26,4 @@ pub use poles::{Mode, ModesError, NearDefective, modes, modes_of};
 pub use prepared_model::{LargeEntry, PreparedModel};
 pub use response_shape::{ResponseShape, wrapped_deg};
 pub use statistics::{mean, median, quantile};
-pub use zeros::{TransmissionZeros, ZerosError, transmission_zeros};
+pub use zeros::{TransmissionZeros, ZerosError, finite_zeros, transmission_zeros};

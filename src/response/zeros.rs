@@ -15,7 +15,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use crate::dataset::{Pair, StateSpace};
+use crate::dataset::{Dynamics, Pair, StateSpace};
 
 use super::elimination::balance;
 use super::prepared_model::LargeEntry;
@@ -50,6 +50,14 @@ pub enum ZerosError {
         /// The response asked for.
         pair: Pair,
     },
+}
+
+/// The finite transmission zeros of a model's response; none of a measured one, which has no states, and of one that it does not have.
+pub fn finite_zeros(dynamics: &Dynamics, pair: Pair) -> Vec<Complex<f64>> {
+    match dynamics {
+        Dynamics::StateSpace(model) => transmission_zeros(model, pair).map(|zeros| zeros.finite).unwrap_or_default(),
+        Dynamics::Measured(_) => Vec::new(),
+    }
 }
 
 /// The transmission zeros of the response of one output to one input: where `H(z) = C (zI - A)^-1 B + D` is zero. Poles that the

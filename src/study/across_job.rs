@@ -5,6 +5,8 @@ use std::sync::Arc;
 use crate::dataset::{Band, Dataset, ModelId};
 use crate::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
 
+use super::across_role::AcrossRole;
+use super::analysis::Analysis;
 use super::job::Job;
 use super::progress::{Cancelled, Progress};
 
@@ -26,6 +28,14 @@ pub struct AcrossCurves {
     pub grid: FrequencyGrid,
     /// Each model with its response.
     pub responses: Vec<(ModelId, Arc<FrequencyResponse>)>,
+}
+
+impl AcrossJob {
+    /// The model of a role of every condition, as far as there is one.
+    pub fn of(dataset: &Arc<Dataset>, analysis: Option<&Analysis>, role: AcrossRole, grid: (Band, usize)) -> Self {
+        let models = dataset.conditions().iter().filter_map(|condition| role.model(condition, analysis)).collect();
+        Self { dataset: Arc::clone(dataset), models, grid }
+    }
 }
 
 impl PartialEq for AcrossJob {

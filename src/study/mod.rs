@@ -1,6 +1,7 @@
 //! What the engineer does: settings, rejections, pins; and the analysis of it all, in cached stages.
 
 mod across_job;
+mod across_role;
 mod analysis;
 mod assessment_table;
 mod carry_over;
@@ -10,7 +11,6 @@ mod condition_analysis;
 mod condition_modes;
 mod condition_responses;
 mod condition_stages;
-mod condition_zeros;
 mod curves;
 mod decision_difference;
 mod derivation;
@@ -32,6 +32,7 @@ mod variant;
 mod variant_job;
 
 pub use across_job::{AcrossCurves, AcrossJob};
+pub use across_role::AcrossRole;
 pub use analysis::{Analysis, Assessed};
 pub use assessment_table::{
     AssessedCondition, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentJob, AssessmentSummary,
@@ -43,7 +44,6 @@ pub use comparison::{BundleFigures, Comparison, cautions_of_models};
 pub use condition_analysis::{ConditionAnalysis, ConditionFailure};
 pub use condition_modes::{ConditionModes, ModelModes};
 pub use condition_responses::ConditionResponses;
-pub use condition_zeros::{ConditionZeros, ModelZeros, ZerosJob};
 pub use curves::{CURVE_POINTS, ConditionCurves, display_band};
 pub use decision_difference::{DecisionDifference, decision_differences};
 pub use derivation::{AskedFigure, Derivation, derivation};

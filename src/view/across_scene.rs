@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::dataset::{BundleKind, Condition, ModelId, Pair};
+use crate::dataset::{ModelId, Pair};
 use crate::response::{GainDelay, ResponseShape};
 use crate::study::{AcrossCurves, AcrossJob, display_band};
 
@@ -12,63 +12,10 @@ use super::state::State;
 /// Frequencies of each curve.
 const POINTS: usize = 300;
 
-/// Which model of each condition is laid over the others'.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum AcrossRole {
-    /// The physics model at the condition's own trim.
-    #[default]
-    Nominal,
-    /// The physics model that represents its bundle.
-    Representative,
-    /// The same under the condition's own correction.
-    Corrected,
-    /// The identified model that represents its bundle.
-    Identified,
-}
-
-impl AcrossRole {
-    /// Every role, in the order of its list.
-    pub const ALL: [Self; 4] = [Self::Nominal, Self::Representative, Self::Corrected, Self::Identified];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Nominal => "nominal",
-            Self::Representative => "representative",
-            Self::Corrected => "corrected",
-            Self::Identified => "identified",
-        }
-    }
-
-    /// The model that has this role in a condition; none where the condition has no result.
-    fn model(self, state: &State, condition: &Condition) -> Option<ModelId> {
-        let of = |kind: BundleKind, name: &str| ModelId::new(condition.id(), kind, name);
-        if self == Self::Nominal {
-            return Some(of(BundleKind::Physics, &condition.bundle(BundleKind::Physics)[condition.nominal()].name));
-        }
-        let result = state.analysis()?.condition(condition.id())?;
-        let kind = if self == Self::Identified { BundleKind::Identified } else { BundleKind::Physics };
-        Some(of(kind, result.representative_name(kind)))
-    }
-
-    /// What is done to its response before it is drawn; nothing where the response has no correction.
-    fn correction(self, state: &State, id: &ModelId, pair: Pair) -> Option<GainDelay> {
-        match self {
-            Self::Corrected => state.analysis()?.condition(id.condition)?.correction.on(pair),
-            _ => Some(GainDelay::NONE),
-        }
-    }
-}
-
 /// The responses that the view needs: one model of each condition.
 pub fn across_job(state: &State) -> AcrossJob {
-    let role = state.display.across_role;
-    let models = state.dataset().conditions().iter().filter_map(|condition| role.model(state, condition)).collect();
-    AcrossJob {
-        dataset: Arc::clone(&state.study.dataset),
-        models,
-        grid: (display_band(state.study.settings.band), POINTS),
-    }
+    let grid = (display_band(state.study.settings.band), POINTS);
+    AcrossJob::of(&state.study.dataset, state.analysis(), state.display.across_role, grid)
 }
 
 /// Shapes of one response of several models, kept while both stay the same.
@@ -117,14 +64,14 @@ pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
 fn curve(state: &State, omega: &Arc<[f64]>, id: &ModelId, shape: &ResponseShape) -> Option<BodeCurve> {
     let role = state.display.across_role;
     let condition = state.dataset().condition(id.condition)?;
-    let correction = role.correction(state, id, state.display.pair)?;
+    let correction = role.correction(id.condition, state.display.pair, state.analysis())?;
     let shape = if correction == GainDelay::NONE { shape.clone() } else { shape.corrected(omega, correction) };
     let airspeed_kt = condition.flight_state().airspeed_kt;
     Some(BodeCurve {
         id: CurveId::Model(id.clone()),
         label: format!("condition {} · {airspeed_kt:.0} kt", condition.id()),
         detail: format!("{} · {} · click to show the condition", condition.flight_state().name, id.name),
-        role: Role::OfAirspeed(airspeed_step(state, airspeed_kt)),
+        role: Role::of_airspeed(airspeed_kt, state.dataset().airspeed_range_kt()),
         rejected: false,
         hidden: false,
         highlighted: condition.id() == state.condition().id(),
@@ -132,17 +79,4 @@ fn curve(state: &State, omega: &Arc<[f64]>, id: &ModelId, shape: &ResponseShape)
         magnitude_db: shape.magnitude_db,
         phase_deg: shape.phase_deg,
     })
-}
-
-/// The step of an airspeed between the slowest condition, 0, and the fastest, 255.
-fn airspeed_step(state: &State, airspeed_kt: f64) -> u8 {
-    let (least, most) = airspeed_range_kt(state);
-    let part = if most > least { (airspeed_kt - least) / (most - least) } else { 0.0 };
-    (255.0 * part.clamp(0.0, 1.0)).round() as u8
-}
-
-/// Airspeeds of the slowest and of the fastest condition \[kt\].
-pub fn airspeed_range_kt(state: &State) -> (f64, f64) {
-    let airspeeds = state.dataset().conditions().iter().map(|condition| condition.flight_state().airspeed_kt);
-    airspeeds.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), kt| (least.min(kt), most.max(kt)))
 }

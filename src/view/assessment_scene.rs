@@ -3,7 +3,7 @@
 use crate::dataset::{Condition, ConditionId, Pair};
 use crate::fidelity::CostAverage;
 use crate::schedule::CostChange;
-use crate::study::{AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, Table};
+use crate::study::{AskedFigure, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, Table};
 use crate::units::signed;
 
 use super::plot::{AssessmentBar, AssessmentPanel, BarValue};
@@ -110,7 +110,19 @@ fn bar(state: &State, table: &AssessmentTable, pair: Pair, condition: &Condition
         ),
         (None, why) => (BarValue::LeftOut { why }, String::new()),
     };
-    AssessmentBar { condition: id, label: id.to_string(), value, selected: id == state.condition().id(), detail }
+    let asked = ("Change of J".to_owned(), AskedFigure::CostChange(id, pair, assessment_choice(state)));
+    let figures = match value {
+        BarValue::Change { .. } => vec![asked],
+        BarValue::LeftOut { .. } => Vec::new(),
+    };
+    AssessmentBar {
+        condition: id,
+        label: id.to_string(),
+        value,
+        selected: id == state.condition().id(),
+        detail,
+        figures,
+    }
 }
 
 /// Why a response of a condition has no change of J.

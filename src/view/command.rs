@@ -1,15 +1,15 @@
 //! What the engineer asks the window to do.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use egui::ThemePreference;
 use egui_tiles::LinearDir;
 
 use crate::dataset::{ConditionId, ModelId, Pair};
 use crate::figure::{ColumnWidth, FigureFormat};
-use crate::study::{AskedFigure, Edit};
+use crate::study::{AcrossRole, AskedFigure, Edit, Table};
 
-use super::across_scene::AcrossRole;
 use super::arrangement::{Preset, View};
 use super::assessment_scene::AssessedFigures;
 use super::bars::Bar;
@@ -122,8 +122,10 @@ pub enum Command {
     CopyTable(TableKind),
     /// Ask where to save a table.
     AskSaveTable(TableKind),
+    /// Ask where to save a table that a view shows.
+    AskSaveShownTable(Arc<Table>),
     /// Save a table as CSV.
-    SaveTable(TableKind, PathBuf),
+    SaveTable(Arc<Table>, PathBuf),
     /// Put the numbers of what a view shows on the clipboard, as CSV.
     CopyFigure(View),
     /// Ask where to save what a view shows.

@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::dataset::{ConditionId, ModelId, Pair};
-use crate::study::AskedFigure;
+use crate::study::{AcrossRole, AskedFigure};
 
-use super::across_scene::{AcrossRole, CachedAcross};
+use super::across_scene::CachedAcross;
 use super::arrangement::Arrangement;
 use super::assessment_scene::AssessedFigures;
 use super::bode_scene::CachedShapes;

@@ -32,7 +32,7 @@ pub fn figure_name(state: &State, view: View) -> String {
     if kind.is_some_and(FigureKind::is_of_condition) {
         parts.push(state.condition().id().to_string());
     }
-    if matches!(view, View::Bode | View::Error) {
+    if matches!(view, View::Bode | View::Error | View::Across) {
         let (output, input) = state.dataset().channel_names(state.display.pair);
         parts.extend([input, output]);
     }
@@ -40,7 +40,7 @@ pub fn figure_name(state: &State, view: View) -> String {
     parts.join("-").chars().map(|letter| if is_plain(letter) { letter } else { '_' }).collect()
 }
 
-/// The figure of a view; the view of variants is one of tables, that across conditions has none of its own.
+/// The figure of a view; that of variants consists of tables, which are saved as such.
 fn kind(view: View) -> Option<FigureKind> {
     match view {
         View::Bode => Some(FigureKind::Bode),
@@ -50,7 +50,8 @@ fn kind(view: View) -> Option<FigureKind> {
         View::Assessment => Some(FigureKind::Assessment),
         View::NetGain => Some(FigureKind::NetGain),
         View::Poles => Some(FigureKind::Poles),
-        View::Across | View::Compare => None,
+        View::Across => Some(FigureKind::Airspeeds),
+        View::Compare => None,
     }
 }
 
@@ -64,7 +65,7 @@ fn request(state: &State, view: View) -> Option<FigureRequest> {
     let kind = kind(view)?;
     let (display, dataset) = (&state.display, state.dataset());
     let pairs = match view {
-        View::Bode | View::Error => vec![display.pair],
+        View::Bode | View::Error | View::Across => vec![display.pair],
         View::NetGain => net_gain_pairs(state),
         View::Assessment => assessed_pairs(state),
         _ => Vec::new(),
@@ -73,6 +74,7 @@ fn request(state: &State, view: View) -> Option<FigureRequest> {
     let ranges = match view {
         View::Bode => chosen(&display.bode),
         View::Error => chosen(&display.error),
+        View::Across => chosen(&display.across),
         _ => BodeOptions::default(),
     };
     let bode = BodeOptions {
@@ -80,6 +82,9 @@ fn request(state: &State, view: View) -> Option<FigureRequest> {
         magnitude: display.curves.magnitude,
         phase: display.curves.phase,
         phase_error: display.curves.phase_error,
+        turns: display.curves.turns.clone(),
+        shows_muad: display.curves.shows_muad,
+        zeros_of: display.show_zeros.then_some(display.pair),
         hidden: display.curves.hidden_roles.clone(),
         hidden_models: display.curves.hidden_models.clone(),
         isolated: display.isolated.clone().filter(|model| model.condition == state.condition().id()),
@@ -87,7 +92,7 @@ fn request(state: &State, view: View) -> Option<FigureRequest> {
     };
     let assessed = Some(assessment_choice(state));
     let usual = FigureRequest::new(kind, pairs, all_channels(dataset));
-    Some(FigureRequest { measure, across, assessed, bode, ..usual })
+    Some(FigureRequest { measure, across, assessed, across_role: display.across_role, bode, ..usual })
 }
 
 /// The parts of the axes that the engineer chose to see.

@@ -83,13 +83,13 @@ fn save_ui(form: &mut Form<'_, '_>, path: &mut String) {
 }
 
 fn save_table_ui(form: &mut Form<'_, '_>, state: &mut State) {
-    let Some(kind) = state.forms.table else { return };
-    form.title(&format!("Save the table of {}", kind.name()));
+    let Some(table) = state.forms.table.clone() else { return };
+    form.title(&format!("Save the table \u{201c}{}\u{201d}", table.title));
     let path = &mut state.forms.table_path;
     let entered = form.text_ui("Path of the table", path, "path of a .csv file");
     let path = path.trim();
     form.line(|form| {
-        form.submit_ui("Save table", !path.is_empty(), entered, || Command::SaveTable(kind, path.into()));
+        form.submit_ui("Save table", !path.is_empty(), entered, || Command::SaveTable(table, path.into()));
         form.button_ui("Cancel", false, Command::ShowForm(None));
     });
 }

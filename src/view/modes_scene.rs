@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use nalgebra::Complex;
 
-use crate::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
-use crate::response::{Mode, transmission_zeros};
+use crate::dataset::{BundleKind, Model, ModelId, Pair};
+use crate::response::{Mode, finite_zeros};
 use crate::study::{ConditionModes, Table};
 
 use super::plot::{MarkShape, PoleMark, Role};
@@ -59,18 +59,15 @@ impl CachedModes {
         if self.zeros_of.as_ref().is_some_and(|of| Arc::ptr_eq(&of.0, modes) && (of.1, &of.2) == (pair, &now.2)) {
             return;
         }
-        self.zeros = now.2.iter().map(|id| (id.clone(), zeros(condition.model(id.bundle, &id.name), pair))).collect();
+        self.zeros = now
+            .2
+            .iter()
+            .map(|id| {
+                let model = condition.model(id.bundle, &id.name);
+                (id.clone(), model.map(|model| finite_zeros(&model.dynamics, pair)).unwrap_or_default())
+            })
+            .collect();
         self.zeros_of = Some(now);
-    }
-}
-
-/// The finite transmission zeros of a model's response; none of a measured one, and of one that it does not have.
-fn zeros(model: Option<&Model>, pair: Pair) -> Vec<Complex<f64>> {
-    match model.map(|model| &model.dynamics) {
-        Some(Dynamics::StateSpace(system)) => {
-            transmission_zeros(system, pair).map(|zeros| zeros.finite).unwrap_or_default()
-        }
-        Some(Dynamics::Measured(_)) | None => Vec::new(),
     }
 }
 
@@ -116,13 +113,7 @@ impl Face {
     fn of(state: &State, kind: BundleKind, model: &Model) -> Self {
         let id = state.model_id(kind, &model.name);
         let represents = state.shown().is_some_and(|shown| shown.representative_name(kind) == model.name);
-        let role = match (kind, model.is_nominal(), represents) {
-            (BundleKind::Physics, true, _) => Role::Nominal,
-            (BundleKind::Physics, false, true) => Role::Representative,
-            (BundleKind::Physics, false, false) => Role::Perturbed,
-            (BundleKind::Identified, _, true) => Role::IdentifiedRepresentative,
-            (BundleKind::Identified, _, false) => Role::Identified,
-        };
+        let role = Role::of_model(kind, model.is_nominal(), represents);
         let (rejected, highlighted) = (state.study.is_rejected(&id), state.display.hovered.as_ref() == Some(&id));
         Self { id, role, rejected, highlighted }
     }

@@ -2,13 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::correction::ChannelCorrection;
-use crate::dataset::{Channel, FlightState, Pair};
+use crate::correction::{Channel as CorrectedChannel, ChannelCorrection};
+use crate::dataset::{Channel, ConditionId, FlightState, Pair};
 use crate::figure::{Classes, is_scheduled, scheduled_samples};
-use crate::study::{Analysis, ConditionAnalysis};
+use crate::study::{Analysis, AskedFigure, ConditionAnalysis};
 use crate::units::s_to_ms;
 
-use super::plot::{Across, Dot, DotShape, GainPanel, Measure};
+use super::plot::{Across, Dot, DotShape, GainPanel, Measure, NamedFigure};
 use super::state::State;
 
 /// Which responses the plots of net gain show.
@@ -79,6 +79,7 @@ pub fn net_gain_panels(state: &State) -> Vec<GainPanel> {
             measure: Measure::Gain,
             of: Box::new(move |correction: &ChannelCorrection| correction.net_gain(pair).value()),
             bounds: None,
+            asked: Box::new(move |id, _| vec![(format!("Net gain, condition {id}"), AskedFigure::NetGain(id, pair))]),
         };
         figure.panel(state, analysis, Across::Airspeed)
     };
@@ -102,17 +103,36 @@ pub fn channel_panels(state: &State, measure: Measure, across: Across) -> (Vec<G
             Measure::Delay => Box::new(move |correction| s_to_ms(correction.output_delays_s[index])),
         }
     };
-    let panels = |channels: &[Channel], of: &dyn Fn(usize) -> FigureOf| {
+    let panels = |channels: &[Channel], of: &dyn Fn(usize) -> FigureOf, side: fn(usize) -> CorrectedChannel| {
         let figure = |(index, channel): (usize, &Channel)| {
             let bounds: Option<BoundsOf> = Some(Box::new(move |result| match measure {
                 Measure::Gain => [result.gain_bounds().lower, result.gain_bounds().upper],
                 Measure::Delay => [0.0, s_to_ms(result.delay_upper_s())],
             }));
-            Figure { title: channel.name.clone(), measure, of: of(index), bounds }.panel(state, analysis, across)
+            let asked = asked_of_channel(measure, side(index));
+            Figure { title: channel.name.clone(), measure, of: of(index), bounds, asked }.panel(state, analysis, across)
         };
         channels.iter().enumerate().map(figure).collect()
     };
-    (panels(state.dataset().inputs(), &of_input), panels(state.dataset().outputs(), &of_output))
+    (
+        panels(state.dataset().inputs(), &of_input, CorrectedChannel::Input),
+        panels(state.dataset().outputs(), &of_output, CorrectedChannel::Output),
+    )
+}
+
+/// What can be asked of a channel in a condition at its airspeed.
+fn asked_of_channel(measure: Measure, channel: CorrectedChannel) -> AskedOf {
+    Box::new(move |id, airspeed_kt| match measure {
+        Measure::Gain => vec![
+            ("Gain".to_owned(), AskedFigure::Gain(id, channel)),
+            ("Bounds of the gains".to_owned(), AskedFigure::GainBounds(id)),
+            ("Scheduled gain".to_owned(), AskedFigure::ScheduledGain(channel, airspeed_kt)),
+        ],
+        Measure::Delay => vec![
+            ("Delay".to_owned(), AskedFigure::Delay(id, channel)),
+            ("Bound of the delays".to_owned(), AskedFigure::DelayBound(id)),
+        ],
+    })
 }
 
 /// A figure of a correction.
@@ -120,12 +140,16 @@ type FigureOf = Box<dyn Fn(&ChannelCorrection) -> f64>;
 /// Between which values it was looked for.
 type BoundsOf = Box<dyn Fn(&ConditionAnalysis) -> [f64; 2]>;
 
+/// What can be asked about in a condition at an airspeed \[kt\].
+type AskedOf = Box<dyn Fn(ConditionId, f64) -> Vec<NamedFigure>>;
+
 /// A figure of every condition's correction, and of the schedule.
 struct Figure {
     title: String,
     measure: Measure,
     of: FigureOf,
     bounds: Option<BoundsOf>,
+    asked: AskedOf,
 }
 
 impl Figure {
@@ -151,6 +175,7 @@ impl Figure {
                 selected: id == state.condition().id(),
                 chosen: analysis.study.choice(id).scheduled,
                 detail: flight_state.name.clone(),
+                figures: (self.asked)(id, flight_state.airspeed_kt),
             })
         });
         let schedule = analysis.schedule.as_ref().ok().filter(|schedule| is_scheduled(schedule, self.measure, across));

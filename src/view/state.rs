@@ -8,7 +8,7 @@ use crate::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
 use crate::figure::ColumnWidth;
 use crate::study::{
     AcrossCurves, Analysis, AssessmentTable, ConditionAnalysis, ConditionCurves, ConditionFailure, ConditionModes,
-    Difference, History, Study, Toggles,
+    Difference, History, Study, Table, Toggles,
 };
 
 use super::arrangement::View;
@@ -18,7 +18,6 @@ use super::command::FormKind;
 use super::command_palette::PaletteForm;
 use super::display::Display;
 use super::results::{FirstResult, Results};
-use super::tables::TableKind;
 
 /// How a message is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,7 +88,7 @@ pub struct Forms {
     /// The reason, as typed.
     pub reason: String,
     /// The table that is to be saved.
-    pub table: Option<TableKind>,
+    pub table: Option<Arc<Table>>,
     /// Where, as typed.
     pub table_path: String,
     /// The figure that is to be saved.

@@ -1,5 +1,7 @@
 //! A table in the window: sorted by a click on a heading, copied as text.
 
+use std::sync::Arc;
+
 use egui::{Align, Button, Color32, Grid, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo};
 
 use crate::study::Table;
@@ -69,7 +71,7 @@ pub struct TableLook<'a> {
     pub selected: &'a dyn Fn(usize) -> bool,
 }
 
-/// Draws a table that scrolls where it is too large. Its headings sort it; the secondary button copies it.
+/// Draws a table that scrolls where it is too large. Its headings sort it; the secondary button copies or saves it.
 pub fn table_ui(
     ui: &mut Ui,
     table: &Table,
@@ -87,7 +89,7 @@ pub fn table_ui(
                 let name = format!("Sort {} by {heading}", table.title);
                 button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
                 button.context_menu(|ui| copy_ui(ui, table, commands));
-                if button.on_hover_text("Sort; secondary click: copy the table").clicked() {
+                if button.on_hover_text("Sort; secondary click: copy or save the table").clicked() {
                     *sorting = sorting.clicked(column);
                 }
             }
@@ -116,6 +118,10 @@ pub fn table_ui(
 fn copy_ui(ui: &mut Ui, table: &Table, commands: &mut Vec<Command>) {
     if ui.button("Copy the table as text").clicked() {
         commands.push(Command::CopyText(table.text()));
+        ui.close();
+    }
+    if ui.button("Save the table as CSV…").clicked() {
+        commands.push(Command::AskSaveShownTable(Arc::new(table.clone())));
         ui.close();
     }
 }

@@ -4,12 +4,14 @@ use egui::{Align2, Pos2, Rect, RichText, Stroke, Ui, UiBuilder, Vec2, pos2, vec2
 use egui_plot::{PlotPoint, PlotTransform};
 
 use crate::dataset::ConditionId;
+use crate::study::AskedFigure;
 
 use super::axes::{caption_font, use_frame_colors};
 use super::bar::{AssessmentBar, AssessmentPanel, BarValue};
 use super::bar_panel::{BarAnswer, PHASE_FADE, bar_panel_ui};
 use super::message::message_ui;
 use super::number::decimals;
+use super::questions::Questions;
 use super::readout::tooltip_ui;
 use super::tiles::tiles_ui;
 use crate::view::palette::{Palette, SMALL_SIZE};
@@ -28,7 +30,7 @@ pub struct AssessmentScene<'a> {
 }
 
 /// What the engineer did in the assessment.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum AssessmentEvent {
     /// A bar was clicked.
     BarClicked {
@@ -37,12 +39,15 @@ pub enum AssessmentEvent {
         /// Its condition.
         condition: ConditionId,
     },
+    /// How a figure was computed is asked.
+    Asked(AskedFigure),
 }
 
 /// What the assessment remembers between frames.
 #[derive(Clone, Debug, Default)]
 pub struct AssessmentView {
     panels: Vec<(Option<PlotTransform>, Vec<ConditionId>)>,
+    questions: Questions,
 }
 
 impl AssessmentView {
@@ -80,6 +85,9 @@ pub fn assessment_ui(
             let panel = &scene.panels[index];
             let answer = bar_panel_ui(ui, (ui.make_persistent_id(("assessment", index)), rect), panel, palette);
             view.panels[index] = (Some(answer.transform), panel.bars.iter().map(|bar| bar.condition).collect());
+            let pointed = answer.hovered.and_then(|bar| panel.bars.get(bar));
+            let asked = view.questions.ui(&answer.response, pointed.map_or(&[], |bar| &bar.figures));
+            events.extend(asked.map(AssessmentEvent::Asked));
             events.extend(panel_event(index, panel, &answer, palette));
         });
     });

@@ -2,6 +2,7 @@
 
 use crate::dataset::ConditionId;
 
+use super::questions::NamedFigure;
 use super::range::Range;
 
 /// What a bar says.
@@ -34,6 +35,8 @@ pub struct AssessmentBar {
     pub selected: bool,
     /// A further line for hovering, such as J before and after. May be empty.
     pub detail: String,
+    /// The figures that can be asked about here.
+    pub figures: Vec<NamedFigure>,
 }
 
 /// Bars side by side: one pair in every condition.
@@ -85,6 +88,7 @@ mod tests {
             value: BarValue::Change { magnitude, phase: 0.0 },
             selected: false,
             detail: String::new(),
+            figures: Vec::new(),
         };
         let panel =
             AssessmentPanel { title: "a".into(), axis_label: "b".into(), bars: vec![bar(1, -40.0), bar(2, -90.0)] };

@@ -4,20 +4,9 @@ use std::sync::Arc;
 
 use egui_plot::PlotBounds;
 
-use crate::dataset::ModelId;
+pub use crate::figure::CurveId;
 
 use super::role::Role;
-
-/// What a curve stands for; unique within a scene.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum CurveId {
-    /// One model as it is.
-    Model(ModelId),
-    /// The representative physics model with the condition's own correction.
-    Corrected,
-    /// The representative physics model with the scheduled correction.
-    Scheduled,
-}
 
 /// Which of the two stacked plots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -174,7 +163,7 @@ fn touches(a: [f64; 2], b: [f64; 2], bounds: &PlotBounds) -> bool {
 /// The curve of a physics model with this number for a name.
 #[cfg(test)]
 pub(super) fn numbered(number: u64) -> CurveId {
-    use crate::dataset::{BundleKind, ConditionId};
+    use crate::dataset::{BundleKind, ConditionId, ModelId};
     CurveId::Model(ModelId::new(ConditionId(1), BundleKind::Physics, number.to_string()))
 }
 

@@ -91,35 +91,47 @@ fn curve_menu_ui(
     if matches!(curve.id, CurveId::Model(_)) && !curve.rejected && reason_ui(ui, reason) {
         events.push(BodeEvent::RejectedBecause(curve.id.clone(), reason.clone()));
     }
+    let wished = model_wishes_ui(ui, curve);
+    events.extend(wished.map(|wish| BodeEvent::Wished(curve.id.clone(), wish)));
     let mut wish = |ui: &mut Ui, text: &str, hint: &str, wish: CurveWish| {
         if entry(ui, text, hint) {
             events.push(BodeEvent::Wished(curve.id.clone(), wish));
         }
     };
-    if matches!(curve.id, CurveId::Model(_)) {
-        let (text, hint) = match curve.rejected {
-            true => ("Restore model", "Put the model back into its bundle"),
-            false => ("Reject model", "Take the model out of its bundle"),
-        };
-        wish(ui, text, hint, CurveWish::RejectOrRestore);
-        let represents = matches!(curve.role, Role::Representative | Role::IdentifiedRepresentative);
-        if !curve.rejected && !represents {
-            wish(
-                ui,
-                "Let model represent",
-                "Let this model represent its bundle, whatever the medoid is",
-                CurveWish::Pin,
-            );
-        }
-        wish(ui, "Isolate model", "Only this model beside the representatives, or all again", CurveWish::Isolate);
-        wish(ui, "Hide curve", "Do not draw this model; it counts all the same", CurveWish::Hide);
-    }
     wish(ui, "Copy values", "Frequencies and values as text, with their units", CurveWish::CopyValues);
     if let BodeQuantity::Response { phase: PhaseUnit::Unwrapped, .. } = scene.quantity {
         ui.separator();
         wish(ui, "One turn up", "Draw this curve's phase 360° higher", CurveWish::Turn(1));
         wish(ui, "One turn down", "Draw this curve's phase 360° lower", CurveWish::Turn(-1));
     }
+}
+
+/// What can be done with the model of a curve, in whichever plot it is drawn; nothing where it is of no model.
+pub(super) fn model_wishes_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveWish> {
+    if !matches!(curve.id, CurveId::Model(_)) {
+        return None;
+    }
+    let represents = matches!(curve.role, Role::Representative | Role::IdentifiedRepresentative);
+    let reject = match curve.rejected {
+        true => ("Restore model", "Put the model back into its bundle"),
+        false => ("Reject model", "Take the model out of its bundle"),
+    };
+    let pin = ("Let model represent", "Let this model represent its bundle, whatever the medoid is");
+    let isolate = ("Isolate model", "Only this model beside the representatives, or all again");
+    let hide = ("Hide curve", "Do not draw this model; it counts all the same");
+    let wishes = [
+        (reject, CurveWish::RejectOrRestore, true),
+        (pin, CurveWish::Pin, !curve.rejected && !represents),
+        (isolate, CurveWish::Isolate, true),
+        (hide, CurveWish::Hide, true),
+    ];
+    let mut wished = None;
+    for ((text, hint), wish, _) in wishes.into_iter().filter(|(.., is_possible)| *is_possible) {
+        if entry(ui, text, hint) {
+            wished = Some(wish);
+        }
+    }
+    wished
 }
 
 fn ground_menu_ui(

@@ -5,6 +5,8 @@ use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
 use crate::dataset::ConditionId;
 use crate::view::palette::Palette;
 
+use super::questions::NamedFigure;
+
 /// Radius of a dot \[pt\].
 pub(super) const DOT_RADIUS: f32 = 4.0;
 
@@ -85,6 +87,8 @@ pub struct Dot {
     pub chosen: bool,
     /// A further line for hovering: what the caller wants to say. May be empty.
     pub detail: String,
+    /// The figures that can be asked about here.
+    pub figures: Vec<NamedFigure>,
 }
 
 impl Dot {

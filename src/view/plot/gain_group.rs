@@ -4,11 +4,13 @@ use egui::{FontId, Pos2, Rect, RichText, Ui, UiBuilder, Vec2, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
 
 use crate::dataset::ConditionId;
+use crate::study::AskedFigure;
 
 use super::axes::use_frame_colors;
 use super::dot::Dot;
 use super::dot_label::PlacedLabels;
 use super::gain_panel::{GainPanel, PanelAnswer, SharedRanges, gain_panel_ui};
+use super::questions::Questions;
 use super::readout::tooltip_ui;
 use super::tiles::{Tiles, tiles_ui};
 use crate::view::palette::{Palette, SMALL_SIZE};
@@ -19,7 +21,7 @@ const LABEL_STRIP: f32 = 16.0;
 const LEAST_PANEL: Vec2 = vec2(122.0, 120.0);
 
 /// What the engineer did in the plots of gains over airspeed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum GainEvent {
     /// The pointer came to mean another condition, or none.
     ConditionHovered(Option<ConditionId>),
@@ -27,6 +29,8 @@ pub enum GainEvent {
     ConditionClicked(ConditionId),
     /// A condition's dot was clicked with the key for commands held: into the schedule, or out of it.
     ScheduleToggled(ConditionId),
+    /// How a figure was computed is asked.
+    Asked(AskedFigure),
 }
 
 /// What the plots of gains over airspeed remember between frames.
@@ -37,6 +41,7 @@ pub struct GainView {
     transforms: Vec<Option<PlotTransform>>,
     dots: Vec<Vec<(ConditionId, [f64; 2])>>,
     labels: Vec<PlacedLabels>,
+    questions: Questions,
 }
 
 impl GainView {
@@ -105,7 +110,7 @@ pub(super) fn gain_group_ui(
             let answer = gain_panel_ui(ui, (id, rect), panel, ranges, remembered, palette);
             view.remember(index, panel, &answer);
             hovered = hovered.or(answer.hovered);
-            events.extend(panel_event(panel, answer, palette));
+            events.extend(panel_events(panel, answer, &mut view.questions, palette));
         });
         if view.hovered != hovered {
             view.hovered = hovered;
@@ -116,15 +121,23 @@ pub(super) fn gain_group_ui(
     events
 }
 
-fn panel_event(panel: &GainPanel, answer: PanelAnswer, palette: &Palette) -> Option<GainEvent> {
-    if let Some(dot) = panel.dots.iter().find(|dot| answer.hovered == Some(dot.condition)) {
+fn panel_events(
+    panel: &GainPanel,
+    answer: PanelAnswer,
+    questions: &mut Questions,
+    palette: &Palette,
+) -> impl Iterator<Item = GainEvent> {
+    let pointed = panel.dots.iter().find(|dot| answer.hovered == Some(dot.condition));
+    let asked = questions.ui(&answer.response, pointed.map_or(&[], |dot| &dot.figures));
+    if let Some(dot) = pointed {
         dot_tooltip_ui(&answer, panel, dot, palette);
         answer.response.on_hover_cursor(egui::CursorIcon::PointingHand);
     }
-    answer.clicked.map(|(condition, with_command)| match with_command {
+    let clicked = answer.clicked.map(|(condition, with_command)| match with_command {
         true => GainEvent::ScheduleToggled(condition),
         false => GainEvent::ConditionClicked(condition),
-    })
+    });
+    clicked.into_iter().chain(asked.map(GainEvent::Asked))
 }
 
 fn dot_tooltip_ui(answer: &PanelAnswer, panel: &GainPanel, dot: &Dot, palette: &Palette) {
@@ -145,7 +158,9 @@ fn dot_tooltip_ui(answer: &PanelAnswer, panel: &GainPanel, dot: &Dot, palette: &
         if !dot.detail.is_empty() {
             ui.label(dim(dot.detail.clone()));
         }
-        ui.label(dim("click: show the condition · Ctrl+click: into the schedule, or out of it".to_owned()));
+        ui.label(dim(
+            "click: show the condition · Ctrl+click: into the schedule, or out of it · secondary click: ask".to_owned()
+        ));
     });
 }
 

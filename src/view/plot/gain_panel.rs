@@ -292,6 +292,7 @@ mod tests {
             selected: false,
             chosen: true,
             detail: String::new(),
+            figures: Vec::new(),
         };
         let panel = GainPanel { dots: vec![dot], ..GainPanel::default() };
         assert!(

@@ -36,6 +36,7 @@ mod plot_keys;
 mod pole_mark;
 mod poles;
 mod quantity;
+mod questions;
 mod readout;
 mod readout_box;
 mod role;
@@ -72,6 +73,7 @@ pub use overview::{OverviewCell, OverviewEvent, OverviewScene, OverviewView, ove
 pub use pole_mark::{MarkShape, PoleMark};
 pub use poles::{PoleEvent, PolesScene, PolesView, poles_ui};
 pub use quantity::{BodeQuantity, MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
+pub use questions::NamedFigure;
 pub use range::Range;
 pub use readout_box::{Readout, ReadoutRow};
 pub use role::Role;

@@ -3,13 +3,17 @@
 use std::collections::BTreeMap;
 
 use egui::{
-    Align2, Button, Color32, CursorIcon, FontId, Painter, Pos2, Rect, RichText, Sense, Stroke, StrokeKind, Ui,
-    UiBuilder, Vec2, WidgetInfo, pos2, vec2,
+    Align2, Button, Color32, CursorIcon, FontId, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, StrokeKind,
+    Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
 };
 
+use egui_plot::PlotPoint;
+
 use super::axes::caption_font;
-use super::curve::{BodeCurve, Pane};
+use super::curve::{BodeCurve, CurveId, Pane};
+use super::curve_menu::{CurveWish, model_wishes_ui};
 use super::message::message_ui;
+use super::picking::nearest;
 use super::range::Range;
 use super::sketch::Sketch;
 use crate::dataset::Pair;
@@ -54,10 +58,16 @@ pub struct OverviewScene<'a> {
 }
 
 /// What the engineer did in the overview.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OverviewEvent {
     /// A response was clicked.
     PairClicked(Pair),
+    /// The pointer means a curve.
+    Hovered(CurveId),
+    /// A curve was clicked with Alt held.
+    Isolated(CurveId),
+    /// Something was chosen in the menu of a curve.
+    Wished(CurveId, CurveWish),
 }
 
 /// What the overview remembers between frames.
@@ -67,9 +77,29 @@ pub struct OverviewView {
     pub show_phase: bool,
     places: Vec<(Pair, Rect)>,
     sketches: BTreeMap<(Pair, Pane), Sketch>,
+    /// The curve whose menu is open, and in which cell.
+    menu_of: Option<(Pair, CurveId)>,
 }
 
 impl OverviewView {
+    /// The curve of a cell that the pointer means, if it means one.
+    fn curve_at<'c>(&self, cell: &OverviewCell<'c>, pointer: Pos2) -> Option<&'c BodeCurve> {
+        let hit = |pane: Pane| {
+            let transform = self.sketches.get(&(cell.pair, pane))?.transform()?;
+            let is_inside = transform.frame().contains(pointer);
+            nearest(cell.curves, pane, pointer, &transform).filter(|_| is_inside)
+        };
+        let hits = [Pane::Magnitude, Pane::Phase].into_iter().filter_map(hit);
+        let hit = hits.min_by(|a, b| a.distance.total_cmp(&b.distance))?;
+        cell.curves.get(hit.curve)
+    }
+
+    /// Where a magnitude of a response is on the screen: decades of frequency and decibels.
+    pub fn position_in(&self, pair: Pair, log_omega: f64, magnitude_db: f64) -> Option<Pos2> {
+        let transform = self.sketches.get(&(pair, Pane::Magnitude))?.transform()?;
+        Some(transform.position_from_point(&PlotPoint::new(log_omega, magnitude_db)))
+    }
+
     /// The middle of a response's cell on the screen.
     pub fn screen_position(&self, pair: Pair) -> Option<Pos2> {
         self.places.iter().find(|(placed, _)| *placed == pair).map(|(_, rect)| rect.center())
@@ -100,9 +130,8 @@ pub fn overview_ui(
         for cell in scene.cells {
             let place = table.cell(cell.pair);
             view.places.push((cell.pair, place));
-            if cell_ui(ui, scene, (cell, place), view, log_omega, palette) {
-                events.push(OverviewEvent::PairClicked(cell.pair));
-            }
+            let response = cell_ui(ui, scene, (cell, place), view, log_omega, palette);
+            events.extend(cell_events(&response, cell, view));
         }
     });
     ui.advance_cursor_after_rect(rect);
@@ -143,7 +172,7 @@ fn headers_ui(ui: &mut Ui, scene: &OverviewScene<'_>, view: &mut OverviewView, t
     }
 }
 
-/// Draws one response; gives whether it was clicked.
+/// Draws one response.
 fn cell_ui(
     ui: &Ui,
     scene: &OverviewScene<'_>,
@@ -151,7 +180,7 @@ fn cell_ui(
     view: &mut OverviewView,
     log_omega: Range,
     palette: &Palette,
-) -> bool {
+) -> Response {
     let response = ui.interact(place, ui.scope_id().with(cell.pair), Sense::click());
     let title = title(scene, cell.pair);
     let name = if cell.note.is_empty() { title } else { format!("{title}: {}", cell.note) };
@@ -174,7 +203,32 @@ fn cell_ui(
             paint_text(&painter, corner, Align2::RIGHT_TOP, &cell.note, palette.text, palette);
         }
     }
-    response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text(name).clicked()
+    response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text(name)
+}
+
+/// What was done in a cell: a click brings its response into focus, the rest is about the curve under the pointer.
+fn cell_events(response: &Response, cell: &OverviewCell<'_>, view: &mut OverviewView) -> Vec<OverviewEvent> {
+    let pointer = response.hover_pos().or(response.interact_pointer_pos());
+    let meant = pointer.and_then(|pointer| view.curve_at(cell, pointer)).map(|curve| curve.id.clone());
+    let mut events: Vec<OverviewEvent> = meant.clone().map(OverviewEvent::Hovered).into_iter().collect();
+    if response.clicked() {
+        let is_alone = response.ctx.input(|input| input.modifiers.alt);
+        events.push(match meant.clone().filter(|_| is_alone) {
+            Some(curve) => OverviewEvent::Isolated(curve),
+            None => OverviewEvent::PairClicked(cell.pair),
+        });
+    }
+    if response.secondary_clicked() {
+        view.menu_of = meant.map(|curve| (cell.pair, curve));
+    }
+    let subject = view.menu_of.as_ref().filter(|(pair, _)| *pair == cell.pair);
+    if let Some(curve) = subject.and_then(|(_, id)| cell.curves.iter().find(|curve| curve.id == *id)) {
+        response.context_menu(|ui| {
+            ui.label(RichText::new(&curve.label).strong());
+            events.extend(model_wishes_ui(ui, curve).map(|wish| OverviewEvent::Wished(curve.id.clone(), wish)));
+        });
+    }
+    events
 }
 
 fn has_texts(place: Rect) -> bool {

@@ -1,7 +1,7 @@
 //! A sparkline as it was drawn last.
 
 use egui::{Painter, Rect, Shape};
-use egui_plot::PlotBounds;
+use egui_plot::{PlotBounds, PlotTransform};
 
 use super::curve::{BodeCurve, LogFrequencies, Pane};
 use super::curve_numbers::CurveNumbers;
@@ -44,6 +44,12 @@ impl Sketch {
     /// The part of the vertical axis that was in view, in words; empty where there was nothing to draw.
     pub(super) fn range_text(&self) -> &str {
         &self.range_text
+    }
+
+    /// Where the curves were drawn last: x counts decades of frequency; nothing where there was nothing to draw.
+    pub(super) fn transform(&self) -> Option<PlotTransform> {
+        let (place, bounds) = self.drawn?;
+        Some(PlotTransform::new(place.rect, bounds?, false))
     }
 
     fn shows(&self, curves: &[BodeCurve], pane: Pane, place: &Place) -> bool {

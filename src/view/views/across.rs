@@ -2,7 +2,8 @@
 
 use egui::{Align2, Pos2, Rect, RichText, Ui, pos2, vec2};
 
-use crate::view::across_scene::{AcrossRole, across_curves, airspeed_range_kt};
+use crate::study::AcrossRole;
+use crate::view::across_scene::across_curves;
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{BodeEvent, BodeScene, CurveId, Role, bode_ui};
@@ -21,7 +22,7 @@ pub fn across_header_ui(ui: &mut Ui, state: &State, palette: &Palette, commands:
     if role != state.display.across_role {
         commands.push(Command::ShowAcross(role));
     }
-    let (least, most) = airspeed_range_kt(state);
+    let (least, most) = state.dataset().airspeed_range_kt();
     let small = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
     ui.label(small(format!("{most:.0} kt")));
     let (rect, _) = ui.allocate_exact_size(KEY_SIZE, egui::Sense::hover());

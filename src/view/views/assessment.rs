@@ -83,9 +83,14 @@ pub fn assessment_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, com
     let (pairs, panels) = assessment_panels(state, &table);
     let scene = AssessmentScene { panels: &panels, message: Some("No response of this kind: choose others above") };
     let events = assessment_ui(ui, &scene, &mut state.display.assessment, palette);
-    for AssessmentEvent::BarClicked { panel, condition } in events {
-        commands.push(Command::SelectCondition(condition));
-        commands.extend(pairs.get(panel).map(|&pair| Command::FocusPair(pair)));
+    for event in events {
+        match event {
+            AssessmentEvent::BarClicked { panel, condition } => {
+                commands.push(Command::SelectCondition(condition));
+                commands.extend(pairs.get(panel).map(|&pair| Command::FocusPair(pair)));
+            }
+            AssessmentEvent::Asked(figure) => commands.push(Command::Explain(Some(figure))),
+        }
     }
 }
 

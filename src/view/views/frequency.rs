@@ -73,7 +73,8 @@ fn reject_or_restore(state: &State, id: ModelId) -> Command {
     if state.study.is_rejected(&id) { Edit::Restore(id) } else { Edit::Reject(id) }.into()
 }
 
-fn wished(state: &State, id: CurveId, wish: CurveWish) -> Option<Command> {
+/// What a wish about a curve asks for.
+pub(super) fn wished(state: &State, id: CurveId, wish: CurveWish) -> Option<Command> {
     match (wish, id) {
         (CurveWish::Turn(by), id) => {
             Some(CurveCommand::Turn(state.condition().id(), state.display.pair, id, by).into())

@@ -134,6 +134,7 @@ pub(super) fn gain_command(state: &State, event: GainEvent) -> Option<Command> {
             Some(Edit::SetScheduled { condition, scheduled }.into())
         }
         GainEvent::ConditionClicked(condition) => Some(Command::SelectCondition(condition)),
+        GainEvent::Asked(figure) => Some(Command::Explain(Some(figure))),
         GainEvent::ConditionHovered(_) => None,
     }
 }

@@ -2,13 +2,14 @@
 
 use egui::Ui;
 
+use super::frequency::wished;
 use crate::dataset::Pair;
 use crate::view::arrangement::View;
 use crate::view::bode_scene::bode_curves;
 use crate::view::command::Command;
 use crate::view::explanation::channel_names;
 use crate::view::palette::Palette;
-use crate::view::plot::{BodeCurve, OverviewCell, OverviewEvent, OverviewScene, overview_ui};
+use crate::view::plot::{BodeCurve, CurveId, OverviewCell, OverviewEvent, OverviewScene, overview_ui};
 use crate::view::state::State;
 
 /// Every response of the condition shown; a click brings it into focus.
@@ -35,9 +36,17 @@ pub fn overview_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
         band: (band.min(), band.max()),
         message: Some(state.results.absence()),
     };
-    for OverviewEvent::PairClicked(pair) in overview_ui(ui, &scene, &mut state.display.overview, palette) {
-        commands.push(Command::FocusPair(pair));
-        commands.push(Command::ShowView(View::Bode));
+    for event in overview_ui(ui, &scene, &mut state.display.overview, palette) {
+        match event {
+            OverviewEvent::PairClicked(pair) => {
+                commands.push(Command::FocusPair(pair));
+                commands.push(Command::ShowView(View::Bode));
+            }
+            OverviewEvent::Hovered(CurveId::Model(id)) => commands.push(Command::Hover(id)),
+            OverviewEvent::Isolated(CurveId::Model(id)) => commands.push(Command::Isolate(id)),
+            OverviewEvent::Wished(id, wish) => commands.extend(wished(state, id, wish)),
+            OverviewEvent::Hovered(_) | OverviewEvent::Isolated(_) => {}
+        }
     }
 }
 

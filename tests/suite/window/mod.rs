@@ -8,6 +8,7 @@ mod decisions;
 mod figures;
 mod files;
 mod forms;
+mod hands;
 mod keyboard;
 mod lists;
 mod plots;

@@ -1,8 +1,7 @@
 //! The views: what each shows, by its controls.
 
 use gdcm::correction::Channel;
-use gdcm::study::{AskedFigure, AssessedCorrection, AssessedModel, Edit, derivation};
-use gdcm::view::across_scene::AcrossRole;
+use gdcm::study::{AcrossRole, AskedFigure, AssessedCorrection, AssessedModel, Edit, derivation};
 use gdcm::view::arrangement::{Arrangement, Preset, View};
 use gdcm::view::assessment_scene::{AssessedPairs, assessment_sentences, assessment_text_table};
 use gdcm::view::command::Command as Wish;
@@ -13,13 +12,13 @@ use gdcm::view::preferences::Preferences;
 
 use super::*;
 
-fn give(window: &mut Window, command: impl Into<Wish>) {
+pub(super) fn give(window: &mut Window, command: impl Into<Wish>) {
     let ctx = window.ctx.clone();
     window.state_mut().give(command.into(), &ctx);
     settle(window);
 }
 
-fn show(window: &mut Window, view: View) {
+pub(super) fn show(window: &mut Window, view: View) {
     give(window, Wish::ShowView(view));
     assert!(state(window).display.arrangement.is_shown(view), "{view:?}");
 }

@@ -23,7 +23,7 @@ impl Dice {
 }
 
 /// Whether a command stays within the window: no file, no desktop, no end.
-fn stays_within(command: &Wish) -> bool {
+pub(super) fn stays_within(command: &Wish) -> bool {
     !matches!(
         command,
         Wish::Quit
@@ -34,6 +34,7 @@ fn stays_within(command: &Wish) -> bool {
             | Wish::AskOpen
             | Wish::AskSaveStudy
             | Wish::AskSaveTable(_)
+            | Wish::AskSaveShownTable(_)
             | Wish::AskExportFolder
             | Wish::StopComputing
             | Wish::SetTheme(_)

@@ -28,6 +28,7 @@ fn dot(number: usize, airspeed_kt: f64, gain: f64) -> Dot {
         selected: number == 2,
         chosen: true,
         detail: String::new(),
+        figures: Vec::new(),
     }
 }
 

@@ -83,6 +83,7 @@ fn change(id: i64, magnitude: f64, phase: f64) -> AssessmentBar {
         value: BarValue::Change { magnitude, phase },
         selected: id == 3,
         detail: String::new(),
+        figures: Vec::new(),
     }
 }
 

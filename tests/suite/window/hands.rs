@@ -1,0 +1,153 @@
+//! What can be asked and taken in the plots and tables: derivations, models in the overview, tables as files.
+
+use gdcm::study::{AskedFigure, derivation};
+use gdcm::view::arrangement::View;
+use gdcm::view::command::Command as Wish;
+use gdcm::view::every_command::every_command;
+
+use super::views::{give, show};
+use super::walk::stays_within;
+use super::*;
+
+fn secondary_click(window: &mut Window, at: egui::Pos2) {
+    window.hover_at(at);
+    window.run_steps(2);
+    for pressed in [true, false] {
+        let button = PointerButton::Secondary;
+        window.event(Event::PointerButton { pos: at, button, pressed, modifiers: Modifiers::NONE });
+    }
+    window.run_steps(3);
+}
+
+/// Asks for a figure in the menu that is open, and asserts that its derivation ends in the value.
+fn ask(window: &mut Window, entry: &str, expected: f64) {
+    window.get_by_label(entry).click();
+    window.run_steps(3);
+    let asked = state(window).display.asked.clone().expect("a figure is explained");
+    let found = derivation(state(window).analysis().unwrap(), &asked).expect("it has a derivation");
+    assert!((found.value - expected).abs() <= 1e-12 * expected.abs(), "{}: {} {expected}", found.title, found.value);
+    give(window, Wish::Explain(None));
+}
+
+#[test]
+fn a_dot_of_net_gain_says_how_it_was_computed() {
+    let mut window = window();
+    let fifth = ConditionId(5);
+    let at = state(&window).display.net_gain.screen_position(0, fifth).unwrap();
+    secondary_click(&mut window, at);
+    let pair = gdcm::view::net_gain_scene::net_gain_pairs(state(&window))[0];
+    let result = state(&window).analysis().unwrap().condition(fifth).unwrap();
+    let expected = result.correction.net_gain(pair).value();
+    ask(&mut window, "Net gain, condition 5", expected);
+}
+
+#[test]
+fn a_dot_of_a_channel_says_how_gain_and_schedule_were_computed() {
+    let mut window = window();
+    show(&mut window, View::Channels);
+    let seventh = ConditionId(7);
+    let at = state(&window).display.channels.outputs.screen_position(2, seventh).unwrap();
+    let analysis = state(&window).analysis().unwrap();
+    let gain = analysis.condition(seventh).unwrap().correction.output_gains[2];
+    let airspeed_kt = analysis.study.dataset.condition(seventh).unwrap().flight_state().airspeed_kt;
+    let scheduled = analysis.schedule.as_ref().unwrap().at(airspeed_kt).output_gains[2];
+    secondary_click(&mut window, at);
+    ask(&mut window, "Gain", gain);
+    secondary_click(&mut window, at);
+    ask(&mut window, "Scheduled gain", scheduled);
+}
+
+#[test]
+fn a_bar_of_the_assessment_says_how_it_was_computed() {
+    let mut window = window();
+    show(&mut window, View::Assessment);
+    wait_until(&mut window, "the assessment", |window| state(window).assessment().is_some());
+    window.run_steps(2);
+    let second = ConditionId(2);
+    let foot = state(&window).display.assessment.screen_position(0, second).unwrap();
+    secondary_click(&mut window, foot + egui::vec2(0.0, -3.0));
+    let pair = state(&window).dataset().measuring_pairs().marked().next().unwrap();
+    let expected = state(&window).assessment().unwrap().change(second, pair).unwrap().total();
+    window.get_by_label("Change of J").click();
+    window.run_steps(3);
+    let asked = state(&window).display.asked.clone();
+    assert!(matches!(&asked, Some(AskedFigure::CostChange(id, at, _)) if (*id, *at) == (second, pair)), "{asked:?}");
+    let found = derivation(state(&window).analysis().unwrap(), &asked.unwrap()).unwrap();
+    assert!((found.value - expected).abs() < 1e-9, "{} {expected}", found.value);
+}
+
+#[test]
+fn a_curve_of_the_overview_is_pointed_at_isolated_and_rejected() {
+    let mut window = window();
+    show(&mut window, View::Overview);
+    window.run_steps(2);
+    let pair = pair(&window, "Q", "LON");
+    let at = {
+        let state = state(&window);
+        let name = state.shown().unwrap().representative_name(BundleKind::Physics).to_owned();
+        let model = state.condition().position(BundleKind::Physics, &name).unwrap();
+        let curves = state.curves().unwrap();
+        let middle = curves.grid.omega().len() / 2;
+        let db = 20.0 * curves.physics[model].curve(pair)[middle].norm().log10();
+        state.display.overview.position_in(pair, curves.grid.omega()[middle].log10(), db).unwrap()
+    };
+    window.hover_at(at);
+    window.run_steps(2);
+    let meant = state(&window).display.hovered.clone().expect("a curve is under the pointer");
+    secondary_click(&mut window, at);
+    click(&mut window, "Isolate model");
+    let isolated = state(&window).display.isolated.clone().expect("one model is alone");
+    give(&mut window, Wish::EndIsolation);
+    secondary_click(&mut window, at);
+    click(&mut window, "Reject model");
+    assert!(state(&window).study.is_rejected(&isolated), "{isolated:?}, {meant:?}");
+    give(&mut window, Wish::Undo);
+    assert!(!state(&window).study.is_rejected(&isolated));
+}
+
+#[test]
+fn every_table_of_a_view_is_saved_as_csv() {
+    let mut window = window();
+    let folder = tempfile::tempdir().unwrap();
+    show(&mut window, View::NetGain);
+    click(&mut window, "evidence");
+    window.get_by_label("Sort Errors of each form of the schedule by unseen [%]").click_secondary();
+    window.run_steps(2);
+    window.get_by_label("Save the table as CSV…").click();
+    window.run_steps(3);
+    let path = folder.path().join("evidence.csv");
+    let ctx = window.ctx.clone();
+    let table = state(&window).forms.table.clone().expect("the form holds the table");
+    window.state_mut().give(Wish::SaveTable(table.clone(), path.clone()), &ctx);
+    settle(&mut window);
+    let text = std::fs::read_to_string(path).unwrap();
+    let rows = text.lines().filter(|line| !line.starts_with('#')).count();
+    assert_eq!(rows, table.rows.len() + 1, "{text}");
+    assert!(text.contains("unseen"), "{text}");
+}
+
+#[test]
+fn undo_after_each_command_restores_the_study_exactly() {
+    let mut window = window();
+    let ctx = window.ctx.clone();
+    let mut decisions = 0;
+    for entry in every_command(state(&window)) {
+        if !entry.enabled || !stays_within(&entry.command) || matches!(entry.command, Wish::Undo | Wish::Redo) {
+            continue;
+        }
+        let before = state(&window).study.clone();
+        window.state_mut().give(entry.command.clone(), &ctx);
+        window.state_mut().give(Wish::ShowForm(None), &ctx);
+        if state(&window).study == before {
+            continue;
+        }
+        decisions += 1;
+        let after = state(&window).study.clone();
+        window.state_mut().give(Wish::Undo, &ctx);
+        assert_eq!(state(&window).study, before, "undo of {}", entry.name);
+        window.state_mut().give(Wish::Redo, &ctx);
+        assert_eq!(state(&window).study, after, "redo of {}", entry.name);
+        window.state_mut().give(Wish::Undo, &ctx);
+    }
+    assert!(decisions > 60, "{decisions} commands decide something");
+}

@@ -15,6 +15,8 @@ pub enum BodeQuantity<'a> {
         phase: PhaseUnit,
         /// The unit of a ratio: "(deg/s)/in".
         ratio_unit: &'a str,
+        /// Whether they are of every condition, and not of the one shown.
+        of_every_condition: bool,
     },
     /// What the fit sees of them: `20 log10 |H_ref| / |H_sim|` above, `Delta phi(H_sim, H_ref)` below (M6).
     Error {
@@ -25,12 +27,24 @@ pub enum BodeQuantity<'a> {
 
 impl BodeQuantity<'_> {
     /// Responses in decibels and degrees.
-    pub const RESPONSE: BodeQuantity<'static> =
-        BodeQuantity::Response { magnitude: MagnitudeUnit::Decibel, phase: PhaseUnit::Unwrapped, ratio_unit: "" };
+    pub const RESPONSE: BodeQuantity<'static> = BodeQuantity::Response {
+        magnitude: MagnitudeUnit::Decibel,
+        phase: PhaseUnit::Unwrapped,
+        ratio_unit: "",
+        of_every_condition: false,
+    };
+    /// The same of every condition.
+    pub const RESPONSE_OF_EVERY_CONDITION: BodeQuantity<'static> = BodeQuantity::Response {
+        magnitude: MagnitudeUnit::Decibel,
+        phase: PhaseUnit::Unwrapped,
+        ratio_unit: "",
+        of_every_condition: true,
+    };
 
     /// Tells this plot's widgets from those of the others.
     pub(super) fn salt(self) -> &'static str {
         match self {
+            Self::Response { of_every_condition: true, .. } => "airspeeds",
             Self::Response { .. } => "bode",
             Self::Error { .. } => "error",
         }
@@ -39,6 +53,7 @@ impl BodeQuantity<'_> {
     /// What tells labels of this plot from the same ones of the Bode plot.
     pub(super) fn label_suffix(self) -> &'static str {
         match self {
+            Self::Response { of_every_condition: true, .. } => ", plot of airspeeds",
             Self::Response { .. } => "",
             Self::Error { .. } => ", error plot",
         }
@@ -47,6 +62,8 @@ impl BodeQuantity<'_> {
     /// What a pane shows: "Magnitude".
     pub(super) fn name(self, pane: Pane) -> &'static str {
         match (self, pane) {
+            (Self::Response { of_every_condition: true, .. }, Pane::Magnitude) => "Magnitude in every condition",
+            (Self::Response { of_every_condition: true, .. }, Pane::Phase) => "Phase in every condition",
             (Self::Response { .. }, Pane::Magnitude) => "Magnitude",
             (Self::Response { .. }, Pane::Phase) => "Phase",
             (Self::Error { .. }, Pane::Magnitude) => "Magnitude error",
@@ -57,6 +74,8 @@ impl BodeQuantity<'_> {
     /// A pane as part of a sentence: "magnitude plot".
     pub(super) fn place(self, pane: Pane) -> &'static str {
         match (self, pane) {
+            (Self::Response { of_every_condition: true, .. }, Pane::Magnitude) => "magnitude plot of every condition",
+            (Self::Response { of_every_condition: true, .. }, Pane::Phase) => "phase plot of every condition",
             (Self::Response { .. }, Pane::Magnitude) => "magnitude plot",
             (Self::Response { .. }, Pane::Phase) => "phase plot",
             (Self::Error { .. }, Pane::Magnitude) => "magnitude error plot",
@@ -106,7 +125,8 @@ impl BodeQuantity<'_> {
     pub(crate) fn drawn_label(self, pane: Pane) -> String {
         match self {
             Self::Response { phase, .. } => {
-                Self::Response { magnitude: MagnitudeUnit::Decibel, phase, ratio_unit: "" }.axis_label(pane)
+                Self::Response { magnitude: MagnitudeUnit::Decibel, phase, ratio_unit: "", of_every_condition: false }
+                    .axis_label(pane)
             }
             Self::Error { .. } => self.axis_label(pane),
         }

@@ -6,7 +6,7 @@ use crate::study::AcrossRole;
 use crate::view::across_scene::across_curves;
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
-use crate::view::plot::{BodeEvent, BodeScene, CurveId, Role, bode_ui};
+use crate::view::plot::{BodeEvent, BodeQuantity, BodeScene, CurveId, Role, bode_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 
@@ -47,6 +47,7 @@ pub fn across_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, command
     let title = state.dataset().pair_name(state.display.pair);
     let rect = ui.available_rect_before_wrap();
     let scene = BodeScene {
+        quantity: BodeQuantity::RESPONSE_OF_EVERY_CONDITION,
         unit: state.display.unit,
         stale: state.results.is_stale(ui.input(|input| input.time)),
         message: Some(state.results.absence()),

@@ -18,8 +18,12 @@ pub fn bode_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands:
     let title = state.dataset().pair_name(pair);
     let ratio_unit = ratio_unit(state);
     let display = &state.display.curves;
-    let quantity =
-        BodeQuantity::Response { magnitude: display.magnitude, phase: display.phase, ratio_unit: &ratio_unit };
+    let quantity = BodeQuantity::Response {
+        magnitude: display.magnitude,
+        phase: display.phase,
+        ratio_unit: &ratio_unit,
+        of_every_condition: false,
+    };
     let at = (display.cursor, display.pinned.as_slice());
     let readout = if display.lists_values { cursor_readout(&curves, quantity, state.display.unit, at) } else { None };
     let chips: Vec<_> = chips(state).into_iter().map(|(chip, _)| chip).collect();

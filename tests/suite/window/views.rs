@@ -33,6 +33,22 @@ fn every_view_has_a_tab_and_a_click_brings_it_to_the_front() {
 }
 
 #[test]
+fn controls_of_plots_side_by_side_have_names_of_their_own() {
+    let mut window = window();
+    for view in [View::Error, View::Across] {
+        give(&mut window, Wish::SplitView(view, egui_tiles::LinearDir::Horizontal));
+    }
+    wait_until(&mut window, "the responses", |window| state(window).across().is_some());
+    for name in ["Frequency axis", "Value axis", "Lower end of the band", "Upper end of the band"] {
+        let labels: Vec<String> =
+            window.query_all_by_label_contains(name).filter_map(|node| node.accesskit_node().label()).collect();
+        let unique: std::collections::BTreeSet<&String> = labels.iter().collect();
+        assert_eq!(unique.len(), labels.len(), "{labels:?}");
+        assert!(labels.len() >= 3, "{name}: {labels:?}");
+    }
+}
+
+#[test]
 fn an_arrangement_is_remembered_and_one_command_resets_it() {
     let mut window = window();
     give(&mut window, Wish::SplitView(View::Poles, egui_tiles::LinearDir::Horizontal));

@@ -1,5 +1,6 @@
 //! `gdcm check`.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::dataset::{BundleKind, Channel, Condition, Dataset, Dynamics, Model};
@@ -44,6 +45,7 @@ fn contents(loaded: &LoadedDataset) -> String {
     }
     text.push_str(&labelled(0, "Conditions", LABEL, &dataset.conditions().len().to_string()));
     text.push_str(&condition_table(dataset));
+    text.push_str(&timings(dataset));
     for caution in &loaded.cautions {
         text.push_str(&labelled(0, "Caution", LABEL, &plain(caution)));
     }
@@ -83,6 +85,27 @@ fn condition_table(dataset: &Dataset) -> String {
         table.row(condition_row(condition));
     }
     table.lines(2)
+}
+
+/// Sample times and delays, for each bundle the models that share them (M2a).
+fn timings(dataset: &Dataset) -> String {
+    let mut text = String::new();
+    for condition in dataset.conditions() {
+        for kind in BundleKind::BOTH {
+            let mut named: BTreeMap<String, Vec<String>> = BTreeMap::new();
+            for model in condition.bundle(kind) {
+                let Dynamics::StateSpace(matrices) = &model.dynamics else { continue };
+                if !matrices.timing().is_plain() {
+                    named.entry(matrices.timing().words()).or_default().push(plain(&model.name));
+                }
+            }
+            for (words, names) in named {
+                let words = format!("condition {}, {kind} {}: {words}", condition.id(), names.join(", "));
+                text.push_str(&labelled(0, "Timing", LABEL, &words));
+            }
+        }
+    }
+    text
 }
 
 fn condition_row(condition: &Condition) -> [String; 9] {

@@ -6,13 +6,15 @@ use sha2::{Digest, Sha256};
 use super::measured_response::MeasuredResponse;
 use super::model::Dynamics;
 use super::state_space::StateSpace;
+use super::timing::Timing;
 
 /// SHA-256 of every number that the response of a model depends on: models of one hash have one response.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ContentHash([u8; 32]);
 
 impl ContentHash {
-    /// The hash of a model's matrices, or of its measured frequencies, values and coherence; shapes included.
+    /// The hash of a model's matrices and timing, or of its measured frequencies, values, coherence and valid bands; shapes
+    /// included.
     pub fn of(dynamics: &Dynamics) -> Self {
         let mut hash = Sha256::new();
         match dynamics {
@@ -41,6 +43,14 @@ fn add_state_space(hash: &mut Sha256, model: &StateSpace) {
         add_numbers(hash, matrix.as_slice());
     };
     [model.a(), model.b(), model.c(), model.d()].into_iter().for_each(|matrix| add(hash, matrix));
+    // Nothing is added for a plain model: its hash stays what it was before there was any timing.
+    if !model.timing().is_plain() {
+        let Timing { sample_time_s, input_delays_s, output_delays_s } = model.timing();
+        hash.update(b"timing");
+        add_numbers(hash, sample_time_s.as_slice());
+        add_numbers(hash, input_delays_s.as_deref().unwrap_or_default());
+        add_numbers(hash, output_delays_s.as_deref().unwrap_or_default());
+    }
 }
 
 fn add_measured(hash: &mut Sha256, response: &MeasuredResponse) {
@@ -53,6 +63,10 @@ fn add_measured(hash: &mut Sha256, response: &MeasuredResponse) {
     }
     for (_, coherence) in response.coherence().into_iter().flat_map(|table| table.iter()) {
         add_numbers(hash, coherence);
+    }
+    if let Some(bands) = response.valid_bands() {
+        hash.update(b"valid bands");
+        bands.iter().for_each(|(_, band)| add_numbers(hash, band));
     }
 }
 
@@ -72,5 +86,23 @@ mod tests {
         let next = f64::from_bits((-1.0_f64).to_bits() + 1);
         assert_ne!(ContentHash::of(&model(-1.0, &[2.0])), ContentHash::of(&model(next, &[2.0])));
         assert_ne!(ContentHash::of(&model(-1.0, &[2.0, 0.0])), ContentHash::of(&model(-1.0, &[2.0])));
+    }
+
+    #[test]
+    fn a_model_without_timing_has_the_hash_that_it_always_had() {
+        let hash = |dynamics: &Dynamics| ContentHash::of(dynamics).bytes()[..4].to_vec();
+        let plain = model(-1.0, &[2.0]);
+        assert_eq!(hash(&plain), [198, 153, 200, 246]);
+        let Dynamics::StateSpace(matrices) = plain.clone() else { unreachable!() };
+        let timed = |sample_time_s, delay_s| {
+            let timing = Timing { sample_time_s, input_delays_s: Some(vec![delay_s]), output_delays_s: None };
+            Dynamics::StateSpace(matrices.clone().timed(timing).unwrap())
+        };
+        assert_eq!(hash(&timed(None, 0.0)), hash(&plain));
+        let others = [timed(Some(0.01), 0.0), timed(None, 0.01), timed(Some(0.01), 0.01)];
+        let mut hashes: Vec<Vec<u8>> = others.iter().chain([&plain]).map(hash).collect();
+        hashes.sort();
+        hashes.dedup();
+        assert_eq!(hashes.len(), 4);
     }
 }

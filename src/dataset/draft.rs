@@ -10,11 +10,12 @@ use super::condition::{Condition, ConditionError, FlightState};
 use super::dataset::{Dataset, DatasetError, DatasetHeader};
 use super::identity::BundleKind;
 use super::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS};
-use super::measured_response::{MeasuredResponse, MeasuredResponseError};
+use super::measured_response::{Estimate, MeasuredResponse, MeasuredResponseError};
 use super::model::{Dynamics, Model, Origin, Provenance};
 use super::pair::{Pair, PairTable};
 use super::place::Place;
 use super::state_space::{StateSpace, StateSpaceError};
+use super::timing::Timing;
 
 /// A table of numbers for each response and frequency, `[output][input][frequency]`, the last index running fastest.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +37,10 @@ pub struct ResponseDraft {
     pub im: ResponseArray,
     /// Coherence, where it is given.
     pub coherence: Option<ResponseArray>,
+    /// First and last trusted frequency of each response \[rad/s\], where they are given.
+    pub valid_bands: Option<ResponseArray>,
+    /// How it was estimated.
+    pub estimate: Estimate,
 }
 
 /// One model, unchecked.
@@ -47,6 +52,8 @@ pub struct ModelDraft {
     pub origin: Origin,
     /// Matrices A, B, C, D, each where it is given.
     pub matrices: [Option<DMatrix<f64>>; 4],
+    /// Sample time and delays, where they are given.
+    pub timing: Timing,
     /// Measured response, where it is given.
     pub response: Option<ResponseDraft>,
     /// Which file it comes from.
@@ -132,6 +139,12 @@ pub enum DraftFault {
     /// A model has neither matrices nor frequency data.
     #[error("neither matrices A, B, C, D nor a measured response is given; add one of them")]
     NoDynamics,
+    /// Frequency data have a sample time or delays.
+    #[error(
+        "a measured response has its delays in it: take out sample_time_s, input_delays_s and output_delays_s, which go with \
+         matrices A, B, C, D"
+    )]
+    TimedResponse,
     /// A physics model is given by frequency data.
     #[error("a physics model needs matrices A, B, C, D; a measured response is for identified models")]
     MeasuredPhysics,
@@ -260,7 +273,10 @@ impl Checker {
             }
             (true, Some(_)) => return Err(DraftError::new(place, DraftFault::BothDynamics)),
             (false, None) => return Err(DraftError::new(place, DraftFault::NoDynamics)),
-            (true, None) => Dynamics::StateSpace(self.state_space(&place, draft.matrices)?),
+            (false, Some(_)) if !draft.timing.is_plain() => {
+                return Err(DraftError::new(place, DraftFault::TimedResponse));
+            }
+            (true, None) => Dynamics::StateSpace(self.state_space(&place, draft.matrices, draft.timing)?),
             (false, Some(response)) => Dynamics::Measured(self.measured(&place, response)?),
         };
         if let (Dynamics::StateSpace(model), Origin::Identified { order: Some(order), .. }) = (&dynamics, &draft.origin)
@@ -290,7 +306,12 @@ impl Checker {
     }
 
     /// The model of four matrices, with `p` outputs and `m` inputs.
-    fn state_space(&self, place: &Place, matrices: [Option<DMatrix<f64>>; 4]) -> Result<StateSpace, DraftError> {
+    fn state_space(
+        &self,
+        place: &Place,
+        matrices: [Option<DMatrix<f64>>; 4],
+        timing: Timing,
+    ) -> Result<StateSpace, DraftError> {
         let (p, m) = (self.outputs, self.inputs);
         let [a, b, c, d] = matrices;
         let given = |matrix: char, of: Option<DMatrix<f64>>| {
@@ -309,29 +330,47 @@ impl Checker {
         let stateless = a.nrows() == 0;
         let b = if stateless && b.nrows() == 0 { DMatrix::zeros(0, m) } else { b };
         let c = if stateless && c.is_empty() { DMatrix::zeros(p, 0) } else { c };
-        StateSpace::new(a, b, c, d).map_err(|error| DraftError::new(place.clone(), error))
+        let model = StateSpace::new(a, b, c, d).and_then(|model| model.timed(timing));
+        model.map_err(|error| DraftError::new(place.clone(), error))
     }
 
     fn measured(&self, place: &Place, draft: ResponseDraft) -> Result<MeasuredResponse, DraftError> {
         let count = draft.omega.len();
-        let shape = [self.outputs, self.inputs, count];
-        let table = |array: &ResponseArray, part: &str| {
-            if array.shape != shape {
-                let fault = DraftFault::Shape {
-                    expected: format!("{} (outputs x inputs x frequencies)", dimensions(shape)),
-                    found: dimensions(array.shape),
-                };
-                return Err(DraftError::new(place.at(format!("measured response, {part}")), fault));
-            }
-            Ok(PairTable::from_fn(self.outputs, self.inputs, |Pair { output, input }| {
-                let start = (output * self.inputs + input) * count;
-                array.values[start..start + count].to_vec()
-            }))
-        };
+        let table = |array: &ResponseArray, part| self.table(place, array, part, (count, "frequencies"));
         let (re, im) = (table(&draft.re, "re")?, table(&draft.im, "im")?);
         let coherence = draft.coherence.as_ref().map(|array| table(array, "coherence")).transpose()?;
-        MeasuredResponse::new(draft.omega, &re, &im, coherence)
-            .map_err(|error| DraftError::new(place.at("measured response"), error))
+        let wrong = |error| DraftError::new(place.at("measured response"), error);
+        let response = MeasuredResponse::new(draft.omega, &re, &im, coherence).map_err(wrong)?;
+        let response = match &draft.valid_bands {
+            None => response,
+            Some(array) => {
+                let bands = self.table(place, array, "valid_band_rad_s", (2, "first and last frequency"))?;
+                response.with_valid_bands(bands.map(|_, band| [band[0], band[1]])).map_err(wrong)?
+            }
+        };
+        Ok(response.with_estimate(draft.estimate))
+    }
+
+    /// A part of a measured response, `count` numbers for each pair.
+    fn table(
+        &self,
+        place: &Place,
+        array: &ResponseArray,
+        part: &str,
+        (count, of): (usize, &str),
+    ) -> Result<PairTable<Vec<f64>>, DraftError> {
+        let shape = [self.outputs, self.inputs, count];
+        if array.shape != shape {
+            let fault = DraftFault::Shape {
+                expected: format!("{} (outputs x inputs x {of})", dimensions(shape)),
+                found: dimensions(array.shape),
+            };
+            return Err(DraftError::new(place.at(format!("measured response, {part}")), fault));
+        }
+        Ok(PairTable::from_fn(self.outputs, self.inputs, |Pair { output, input }| {
+            let start = (output * self.inputs + input) * count;
+            array.values[start..start + count].to_vec()
+        }))
     }
 }
 

@@ -14,6 +14,17 @@ pub struct MeasuredResponse {
     omega: Vec<f64>,
     values: PairTable<Vec<Complex<f64>>>,
     coherence: Option<PairTable<Vec<f64>>>,
+    valid_bands: Option<PairTable<[f64; 2]>>,
+    estimate: Estimate,
+}
+
+/// How a response was estimated from records, as far as whoever made it says; it changes no result.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Estimate {
+    /// Number of independent averages.
+    pub averages: Option<f64>,
+    /// Length of the windows \[s\].
+    pub window_s: Option<f64>,
 }
 
 /// Why frequency data is not a response.
@@ -46,6 +57,19 @@ pub enum MeasuredResponseError {
         expected: usize,
         /// Number of values.
         found: usize,
+    },
+    /// A valid band does not begin at or above zero and end at or above its beginning.
+    #[error(
+        "valid_band_rad_s, output {output}, input {input}: expected two rising frequencies from 0, found {} and {}",
+        number(band[0]), number(band[1])
+    )]
+    ValidBand {
+        /// Output, counted from 1.
+        output: usize,
+        /// Input, counted from 1.
+        input: usize,
+        /// What stands there.
+        band: [f64; 2],
     },
     /// A value is NaN or infinite, or a coherence lies outside 0 to 1.
     #[error("{array}, output {output}, input {input}, entry {entry}: expected {expected}, found {}", number(*value))]
@@ -82,7 +106,27 @@ impl MeasuredResponse {
             })?;
         }
         let values = re.map(|pair, re| re.iter().zip(&im[pair]).map(|(&re, &im)| Complex::new(re, im)).collect());
-        Ok(Self { omega, values, coherence })
+        Ok(Self { omega, values, coherence, valid_bands: None, estimate: Estimate::default() })
+    }
+
+    /// The same response, each pair of which is trusted between two frequencies \[rad/s\] only (M4a).
+    ///
+    /// # Errors
+    /// [`MeasuredResponseError::ValidBand`] where a band is not finite, negative, or ends before it begins.
+    pub fn with_valid_bands(mut self, bands: PairTable<[f64; 2]>) -> Result<Self, MeasuredResponseError> {
+        let is_band = |[low, high]: [f64; 2]| (0.0..=high).contains(&low) && high.is_finite();
+        if let Some((pair, &band)) = bands.iter().find(|(_, band)| !is_band(**band)) {
+            let (output, input) = (pair.output + 1, pair.input + 1);
+            return Err(MeasuredResponseError::ValidBand { output, input, band });
+        }
+        self.valid_bands = Some(bands);
+        Ok(self)
+    }
+
+    /// The same response, with what is known of how it was estimated.
+    pub fn with_estimate(mut self, estimate: Estimate) -> Self {
+        self.estimate = estimate;
+        self
     }
 
     /// Frequencies \[rad/s\], strictly rising.
@@ -98,6 +142,16 @@ impl MeasuredResponse {
     /// Coherence of each response, one value from 0 to 1 for each frequency, where the file gives it.
     pub fn coherence(&self) -> Option<&PairTable<Vec<f64>>> {
         self.coherence.as_ref()
+    }
+
+    /// First and last frequency \[rad/s\] between which each response is trusted, where the file gives them.
+    pub fn valid_bands(&self) -> Option<&PairTable<[f64; 2]>> {
+        self.valid_bands.as_ref()
+    }
+
+    /// How the response was estimated.
+    pub fn estimate(&self) -> Estimate {
+        self.estimate
     }
 }
 
@@ -161,5 +215,15 @@ mod tests {
         let result =
             MeasuredResponse::new(vec![1.0, 2.0], &table(&[0.0; 2]), &table(&[0.0; 2]), Some(table(&[0.5, 1.5])));
         assert!(matches!(result, Err(MeasuredResponseError::Value { array: "coherence", entry: 2, .. })));
+    }
+
+    #[test]
+    fn a_valid_band_that_ends_before_it_begins_is_refused() {
+        let response = MeasuredResponse::new(vec![1.0, 2.0], &table(&[0.0; 2]), &table(&[0.0; 2]), None).unwrap();
+        let with = |band| response.clone().with_valid_bands(PairTable::filled(1, 1, band));
+        assert_eq!(with([0.5, 1.5]).unwrap().valid_bands().unwrap()[crate::dataset::Pair::new(0, 0)], [0.5, 1.5]);
+        for band in [[2.0, 1.0], [-1.0, 1.0], [1.0, f64::INFINITY], [f64::NAN, 1.0]] {
+            assert!(matches!(with(band), Err(MeasuredResponseError::ValidBand { .. })));
+        }
     }
 }

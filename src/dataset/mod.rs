@@ -14,6 +14,7 @@ mod model;
 mod pair;
 mod place;
 mod state_space;
+mod timing;
 
 pub use band::{Band, BandError, GREATEST_OMEGA, LEAST_OMEGA};
 pub use channel::Channel;
@@ -24,8 +25,9 @@ pub use draft::{
     ConditionDraft, DatasetDraft, DraftError, DraftFault, ModelDraft, Oddity, ResponseArray, ResponseDraft,
 };
 pub use identity::{BundleKind, ConditionId, ModelId};
-pub use measured_response::{MeasuredResponse, MeasuredResponseError};
+pub use measured_response::{Estimate, MeasuredResponse, MeasuredResponseError};
 pub use model::{Dynamics, Model, Origin, Provenance};
 pub use pair::{Pair, PairTable};
 pub use place::{ConditionPlace, ModelPlace, Place};
 pub use state_space::{StateSpace, StateSpaceError};
+pub use timing::{GREATEST_CHANNEL_DELAY_S, Timing, TimingError};

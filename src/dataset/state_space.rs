@@ -2,7 +2,10 @@
 
 use nalgebra::DMatrix;
 
-/// A linear model `x' = A x + B u`, `y = C x + D u`, with `n` states, `m` inputs and `p` outputs.
+use super::timing::{Timing, TimingError};
+
+/// A linear model `x' = A x + B u`, `y = C x + D u`, with `n` states, `m` inputs and `p` outputs; of discrete time, and with
+/// delayed channels, where its [`Timing`] says so (M2a).
 ///
 /// Shapes are checked at construction: `A` n x n, `B` n x m, `C` p x n, `D` p x m, all entries finite.
 /// A model of order zero (`n = 0`) is the static gain `D`.
@@ -12,6 +15,7 @@ pub struct StateSpace {
     b: DMatrix<f64>,
     c: DMatrix<f64>,
     d: DMatrix<f64>,
+    timing: Timing,
 }
 
 /// Why four matrices are not a state-space model.
@@ -43,10 +47,13 @@ pub enum StateSpaceError {
         /// What stands there.
         value: f64,
     },
+    /// The sample time or the delays are wrong.
+    #[error(transparent)]
+    Timing(#[from] TimingError),
 }
 
 impl StateSpace {
-    /// The model (A, B, C, D); the order is the rows of `A`, the inputs and outputs are the columns and rows of `D`.
+    /// The model (A, B, C, D) of continuous time; the order is the rows of `A`, the inputs and outputs are the columns and rows of `D`.
     pub fn new(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>, d: DMatrix<f64>) -> Result<Self, StateSpaceError> {
         let (n, p, m) = (a.nrows(), d.nrows(), d.ncols());
         for (matrix, of, rows, columns) in [('A', &a, n, n), ('B', &b, n, m), ('C', &c, p, n)] {
@@ -66,7 +73,21 @@ impl StateSpace {
                 return Err(StateSpaceError::NotFinite { matrix, row: row + 1, column: column + 1, value: of[at] });
             }
         }
-        Ok(Self { a, b, c, d })
+        Ok(Self { a, b, c, d, timing: Timing::default() })
+    }
+
+    /// The same matrices with a sample time or delays (M2a).
+    ///
+    /// # Errors
+    /// [`TimingError`] where they are out of range or not one for each channel.
+    pub fn timed(mut self, timing: Timing) -> Result<Self, StateSpaceError> {
+        self.timing = timing.checked(self.outputs(), self.inputs())?;
+        Ok(self)
+    }
+
+    /// Sample time and delays; delays that are all zero are none.
+    pub fn timing(&self) -> &Timing {
+        &self.timing
     }
 
     /// System matrix, n x n.

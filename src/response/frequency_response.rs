@@ -91,6 +91,14 @@ impl FrequencyResponse {
         }
     }
 
+    /// Multiplies a response by a factor at each frequency.
+    pub(super) fn multiply(&mut self, pair: Pair, factors: &[Complex<f64>]) {
+        let (first, block, stride) = (self.places[pair] * self.block, self.block, self.stride());
+        for (values, factors) in self.values.chunks_exact_mut(stride).zip(factors.chunks(block.max(1))) {
+            values[first..first + block].iter_mut().zip(factors).for_each(|(value, factor)| *value *= factor);
+        }
+    }
+
     /// Values in a block; at least one, for there are no chunks of none.
     fn stride(&self) -> usize {
         (self.outputs() * self.inputs() * self.block).max(1)
@@ -138,6 +146,15 @@ mod tests {
         response.clear(Pair::new(0, 0));
         let mut expected = curves();
         expected[Pair::new(0, 0)].fill(Complex::from(0.0));
+        assert_eq!(response.curves(), expected);
+    }
+
+    #[test]
+    fn a_multiplied_curve_has_its_factor_at_each_frequency_and_the_others_stay() {
+        let mut response = blocks();
+        response.multiply(Pair::new(1, 0), &[1.0, 0.5, 2.0].map(Complex::from));
+        let mut expected = curves();
+        expected[Pair::new(1, 0)] = [10.0, 10.0, 60.0].map(Complex::from).to_vec();
         assert_eq!(response.curves(), expected);
     }
 

@@ -26,6 +26,15 @@ pub fn interpolate(response: &MeasuredResponse, omega: &[f64]) -> PairTable<Vec<
     })
 }
 
+/// The coherence of each measured response at each `omega` \[rad/s\], linear on log omega (M4a); none where it is not given.
+///
+/// Not a number outside the measured frequencies.
+pub fn coherence_at(response: &MeasuredResponse, omega: &[f64]) -> Option<PairTable<Vec<f64>>> {
+    let places: Vec<Option<Place>> = omega.iter().map(|&omega| Place::of(response.omega(), omega)).collect();
+    let at = |place: &Option<Place>, values: &[f64]| place.as_ref().map_or(f64::NAN, |place| place.between(values));
+    Some(response.coherence()?.map(|_, values| places.iter().map(|place| at(place, values)).collect()))
+}
+
 /// Where a frequency lies between two measured ones: on `after`, or `fraction` of the way from the one before it.
 struct Place {
     after: usize,
@@ -80,6 +89,16 @@ mod tests {
     fn the_measured_points_themselves_are_returned() {
         assert!((at(1.0) - Complex::new(1.0, 0.0)).norm() < 1e-15);
         assert!((at(100.0) - Complex::new(0.0, -0.01)).norm() < 1e-16);
+    }
+
+    #[test]
+    fn coherence_is_linear_in_log_frequency() {
+        let table = |values: &[f64]| PairTable::filled(1, 1, values.to_vec());
+        let with = MeasuredResponse::new(vec![1.0, 100.0], &table(&[1.0; 2]), &table(&[0.0; 2]), Some(table(&[0.4, 1.0])));
+        let found = coherence_at(&with.unwrap(), &[0.5, 1.0, 10.0, 100.0]).unwrap();
+        let found = found.iter().next().unwrap().1;
+        assert!(found[0].is_nan() && found[1] == 0.4 && (found[2] - 0.7).abs() < 1e-15 && found[3] == 1.0);
+        assert_eq!(coherence_at(&measured(), &[10.0]), None);
     }
 
     #[test]

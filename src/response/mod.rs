@@ -1,5 +1,6 @@
 //! Frequency responses: the grid, the evaluation of a model on it, magnitude and phase (M2, M3); poles and zeros of a model.
 
+mod discrete_form;
 mod elimination;
 mod frequency_grid;
 mod frequency_response;
@@ -10,6 +11,7 @@ mod polar;
 mod poles;
 mod prepared_model;
 mod response_shape;
+mod s_plane;
 mod schur_form;
 mod staircase;
 mod statistics;
@@ -20,6 +22,7 @@ pub use elimination::{evaluate, evaluate_on};
 pub use frequency_grid::FrequencyGrid;
 pub use frequency_response::FrequencyResponse;
 pub use gain_delay::GainDelay;
+pub use interpolation::coherence_at;
 pub use phase::{centred_unwrap, nearest_turn_offset, unwrap, wrap};
 pub use polar::{PolarCurve, PolarResponse};
 pub use poles::{Mode, ModesError, NearDefective, modes, modes_of};

@@ -17,6 +17,7 @@ use crate::dataset::{Dynamics, StateSpace};
 
 use super::elimination::balance;
 use super::prepared_model::LargeEntry;
+use super::s_plane::SPlane;
 use super::schur_form::SchurForm;
 
 /// Movement of a pole for each unit of change of the balanced A from which its eigenvectors mean nothing: a double pole of one
@@ -73,7 +74,8 @@ impl Mode {
         }
     }
 
-    /// Whether it is an oscillation: one of two conjugate poles.
+    /// Whether it is an oscillation: one of two conjugate poles (of discrete time also a sign that alternates from sample to
+    /// sample, which is a single one).
     pub fn oscillates(&self) -> bool {
         self.pole.im != 0.0
     }
@@ -82,25 +84,31 @@ impl Mode {
 /// The modes of a model, one for each pole, rising in `|lambda|`; of a conjugate pair the one above the real axis first, and the
 /// other its mirror image to the last digit. A pole below the rounding of the matrix counts as zero.
 ///
+/// Poles of discrete time are told as `s = ln z / T`; those at `z = 0`, which are gone within one sample, have no `s` and are
+/// left out (M2a). Delays of channels move no pole.
+///
 /// # Errors
 /// [`ModesError`] where no eigenvalues can be computed.
 pub fn modes(model: &StateSpace) -> Result<Vec<Mode>, ModesError> {
     if let Some(entry) = LargeEntry::of(model) {
         return Err(ModesError::TooLarge(entry));
     }
-    let (mut a, mut b, mut c) = (model.a().clone(), model.b().clone(), model.c().clone());
+    let plane = SPlane::of(model);
+    let (mut a, mut b, mut c) = (plane.matrix(model.a()), model.b().clone(), model.c().clone());
     balance(&mut a, &mut b, &mut c);
     let form = SchurForm::of(&a).ok_or(ModesError::NotConverged)?;
     let rounding = 4.0 * f64::EPSILON * a.nrows() as f64 * a.norm();
     let mut modes: Vec<Mode> = Vec::with_capacity(a.nrows());
     let mut last_pair: Option<Mode> = None;
-    for (index, pole) in form.eigenvalues().into_iter().enumerate() {
-        let mode = match last_pair.take() {
-            Some(upper) => Mode::new(upper.pole.conj(), upper.participation),
-            None if pole.norm() <= rounding => Mode::new(Complex::from(0.0), participation(&form, index)),
-            None => Mode::new(pole, participation(&form, index)),
-        };
-        last_pair = (mode.pole.im > 0.0).then(|| mode.clone());
+    for (index, eigenvalue) in form.eigenvalues().into_iter().enumerate() {
+        if let Some(upper) = last_pair.take() {
+            modes.push(Mode::new(upper.pole.conj(), upper.participation));
+            continue;
+        }
+        let eigenvalue = if eigenvalue.norm() <= rounding { Complex::from(0.0) } else { eigenvalue };
+        let Some(pole) = plane.value(eigenvalue) else { continue };
+        let mode = Mode::new(pole, participation(&form, index));
+        last_pair = (eigenvalue.im > 0.0).then(|| mode.clone());
         modes.push(mode);
     }
     modes.sort_by(|a, b| {
@@ -169,6 +177,7 @@ fn apart(t: &DMatrix<Complex<f64>>, of: usize, from: usize) -> Complex<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dataset::Timing;
     use nalgebra::dmatrix;
     use proptest::prelude::*;
 
@@ -208,6 +217,26 @@ mod tests {
         assert_eq!(found[2].participation.as_ref().unwrap()[0], (2, 1.0), "the third is by itself");
         let apart = modes(&model(dmatrix![-1.0, 1.0; 0.0, -1.001])).unwrap();
         assert!(apart[0].participation.is_ok(), "poles a thousandth apart can be told from one another");
+    }
+
+    #[test]
+    fn modes_of_discrete_time_are_those_that_were_sampled() {
+        // e^(A T) of the oscillator and the lag above, T = 0.02 s; a sign that alternates, and a state that forgets within a
+        // sample.
+        let sampled = (dmatrix![0.0, 1.0, 0.0; -16.0, -2.4, 0.0; 0.0, 0.0, -0.5] * 0.02).exp();
+        let mut a = DMatrix::zeros(5, 5);
+        a.view_mut((0, 0), (3, 3)).copy_from(&sampled);
+        a[(3, 3)] = -1.0;
+        let timing = Timing { sample_time_s: Some(0.02), ..Timing::default() };
+        let found = modes(&model(a).timed(timing).unwrap()).unwrap();
+        let imaginary = (16.0_f64 - 1.44).sqrt();
+        let alternating = 50.0 * std::f64::consts::PI;
+        let expected = [(-0.5, 0.0), (-1.2, imaginary), (-1.2, -imaginary), (0.0, alternating)];
+        assert_eq!(found.len(), 4, "the pole at z = 0 has no s");
+        for (mode, (re, im)) in found.iter().zip(expected) {
+            // The exponential rounds by some 1e-16, in s by 50 times as much.
+            assert!((mode.pole - Complex::new(re, im)).norm() < 1e-12, "{} {re} {im}", mode.pole);
+        }
     }
 
     #[test]

@@ -19,6 +19,7 @@ use crate::dataset::{Dynamics, Pair, StateSpace};
 
 use super::elimination::balance;
 use super::prepared_model::LargeEntry;
+use super::s_plane::SPlane;
 use super::schur_form::SchurForm;
 use super::staircase::SingleResponse;
 use super::structure::leading_states;
@@ -28,7 +29,8 @@ use super::structure::leading_states;
 pub struct TransmissionZeros {
     /// The finite zeros \[rad/s\], rising in size; conjugate pairs to the last digit, the one above the real axis first.
     pub finite: Vec<Complex<f64>>,
-    /// Number of zeros at infinity: by how much the response has more poles than finite zeros.
+    /// Number of zeros at infinity: by how much the response has more poles than finite zeros. Of discrete time those at `z = 0`
+    /// are among them, for they have no `s`.
     pub infinite: usize,
 }
 
@@ -61,7 +63,7 @@ pub fn finite_zeros(dynamics: &Dynamics, pair: Pair) -> Vec<Complex<f64>> {
 }
 
 /// The transmission zeros of the response of one output to one input: where `H(z) = C (zI - A)^-1 B + D` is zero. Poles that the
-/// response does not have (not reached or not seen) are no zeros either.
+/// response does not have (not reached or not seen) are no zeros either. Those of discrete time are told as `s = ln z / T` (M2a).
 ///
 /// # Errors
 /// [`ZerosError`] where there is no response, or nothing can be computed.
@@ -72,24 +74,28 @@ pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<Transmission
     if pair.output >= model.outputs() || pair.input >= model.inputs() {
         return Err(ZerosError::OutsideModel { pair });
     }
-    let minimal = single(model, pair).reached().transposed().reached().transposed().reached();
-    let (reduced, infinite) = without_infinite_zeros(minimal.clone()).ok_or(ZerosError::NoResponse)?;
+    let plane = SPlane::of(model);
+    let minimal = single(model, plane, pair).reached().transposed().reached().transposed().reached();
+    let (reduced, mut infinite) = without_infinite_zeros(minimal.clone()).ok_or(ZerosError::NoResponse)?;
     let closed = &reduced.a - &reduced.b * reduced.c.transpose() / reduced.d;
     let form = SchurForm::of(&closed).ok_or(ZerosError::NotConverged)?;
     let mut finite = Vec::with_capacity(closed.nrows());
     for zero in form.eigenvalues().into_iter().filter(|zero| zero.im >= 0.0) {
         let zero = polished(&minimal, zero);
-        finite.push(zero);
-        finite.extend((zero.im > 0.0).then(|| zero.conj()));
+        let mirrored = zero.im > 0.0;
+        match plane.value(zero) {
+            Some(zero) => finite.extend([Some(zero), mirrored.then(|| zero.conj())].into_iter().flatten()),
+            None => infinite += 1 + usize::from(mirrored),
+        }
     }
     finite.sort_by(|a, b| a.norm().total_cmp(&b.norm()).then(a.re.total_cmp(&b.re)).then(b.im.total_cmp(&a.im)));
     Ok(TransmissionZeros { finite, infinite })
 }
 
 /// The states between one input and one output, in units that make their rows and columns alike.
-fn single(model: &StateSpace, pair: Pair) -> SingleResponse {
+fn single(model: &StateSpace, plane: SPlane, pair: Pair) -> SingleResponse {
     let states = leading_states(model, pair);
-    let mut a = model.a().select_rows(&states).select_columns(&states);
+    let mut a = plane.matrix(&model.a().select_rows(&states).select_columns(&states));
     let mut b = model.b().column(pair.input).select_rows(&states);
     let mut c = model.c().row(pair.output).select_columns(&states);
     let mut columns = DMatrix::from_column_slice(b.nrows(), 1, b.as_slice());
@@ -175,6 +181,7 @@ fn polished(model: &SingleResponse, zero: Complex<f64>) -> Complex<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dataset::Timing;
     use nalgebra::{dmatrix, dvector};
     use proptest::prelude::*;
 
@@ -268,6 +275,14 @@ mod tests {
     }
 
     #[test]
+    fn zeros_of_discrete_time_are_those_of_the_recursion() {
+        // (z - 0.9) z / ((z - 0.5) (z - 0.8) (z + 0.3)), T = 0.1 s: s = ln 0.9 / T; z = 0 has no s.
+        let timing = Timing { sample_time_s: Some(0.1), ..Timing::default() };
+        let model = canonical(2.0, &[0.9, 0.0], &[0.5, 0.8, -0.3]).timed(timing).unwrap();
+        assert_zeros(&model, &[0.9_f64.ln() / 0.1], 2, 1e-12);
+    }
+
+    #[test]
     fn a_response_that_is_nowhere_is_refused() {
         let apart =
             StateSpace::new(dmatrix![-1.0, 0.0; 0.0, -2.0], dmatrix![1.0; 0.0], dmatrix![0.0, 1.0], dmatrix![0.0]);
@@ -300,7 +315,7 @@ mod tests {
                 // The canonical form of seven poles has entries up to 1e4, and zeros 0.3 apart a condition of some 1e3.
                 prop_assert!(nearest < 1e-6, "{zero}: {found:?}");
             }
-            let minimal = single(&model, ONLY);
+            let minimal = single(&model, SPlane::of(&model), ONLY);
             let peak = (0..200).filter_map(|k| response_and_slope(&minimal, Complex::new(0.0, 0.1 * f64::from(k))))
                 .map(|(value, _)| value.norm()).fold(0.0, f64::max);
             for zero in &found.finite {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::dataset::{BundleKind, Condition, Dynamics, Pair};
 use crate::fidelity::{DiscontinuityError, MeasuredPairs};
 use crate::response::{FrequencyResponse, LargeEntry};
+use crate::units::number;
 
 use super::document::BundleChoice;
 
@@ -110,15 +111,27 @@ pub enum NotFinite {
         /// Last measured frequency \[rad/s\].
         max: f64,
     },
+    /// It is of discrete time, and the band goes on to where that has no response (M2a).
+    Sampled {
+        /// Sample time \[s\].
+        sample_time_s: f64,
+        /// Where its response ends, `pi / T` \[rad/s\].
+        nyquist_rad_s: f64,
+    },
     /// A pole on the imaginary axis, or an overflow.
     Pole,
 }
 
 impl NotFinite {
-    /// Why a model of these dynamics has a response that is not finite.
-    fn of(dynamics: &Dynamics) -> Self {
+    /// Why a model of these dynamics has a response that is not finite in a band that ends at `top` \[rad/s\].
+    fn of(dynamics: &Dynamics, top: f64) -> Self {
         match dynamics {
-            Dynamics::StateSpace(model) => LargeEntry::of(model).map_or(NotFinite::Pole, NotFinite::Entry),
+            Dynamics::StateSpace(model) => {
+                let timing = model.timing();
+                let sampled = timing.sample_time_s.zip(timing.nyquist_rad_s().filter(|nyquist| top >= *nyquist));
+                let sampled = sampled.map(|(sample_time_s, nyquist_rad_s)| Self::Sampled { sample_time_s, nyquist_rad_s });
+                LargeEntry::of(model).map(NotFinite::Entry).or(sampled).unwrap_or(NotFinite::Pole)
+            }
             Dynamics::Measured(response) => {
                 let omega = response.omega();
                 NotFinite::Measured { min: omega[0], max: omega[omega.len() - 1] }
@@ -135,6 +148,11 @@ impl NotFinite {
                 let (min, max) = (round(min), round(max));
                 format!("it is measured from {min} to {max} rad/s only: narrow the band, or reject the model")
             }
+            NotFinite::Sampled { sample_time_s, nyquist_rad_s } => format!(
+                "it is of discrete time, T = {} s, and has no response from π/T = {nyquist_rad_s:.4} rad/s on: narrow the \
+                 band, or reject the model",
+                number(sample_time_s)
+            ),
             NotFinite::Pole => {
                 "a pole lies on a frequency of the grid, or its numbers overflow: change the band or the \
                                 number of frequencies, or reject the model"
@@ -204,19 +222,21 @@ fn short(gain: f64) -> String {
     if (1e-3..1e4).contains(&gain) { format!("{gain:.3}") } else { format!("{gain:.2e}") }
 }
 
-/// What the kept models of a bundle lack: those set aside, and those that have responses which are not finite.
+/// What the kept models of a bundle lack in a band that ends at `top` \[rad/s\]: those set aside, and those that have responses
+/// which are not finite.
 pub(super) fn of_models(
     condition: &Condition,
     choice: &BundleChoice,
     bundle: BundleKind,
     responses: &[Arc<FrequencyResponse>],
     measured: &MeasuredPairs,
+    top: f64,
 ) -> Vec<Caution> {
     let caution = |index: usize| {
         let (lacks, not_finite) = (&measured.lacks[index], responses[index].not_finite());
         let name = &condition.bundle(bundle)[index].name;
         let model = BundleModel::of(condition, bundle, index);
-        let why = NotFinite::of(&condition.bundle(bundle)[index].dynamics);
+        let why = NotFinite::of(&condition.bundle(bundle)[index].dynamics, top);
         if !lacks.is_empty() {
             let why = lacks.iter().any(|pair| not_finite.contains(pair)).then_some(why);
             return Some(Caution::SetAside {

@@ -101,7 +101,7 @@ pub fn cautions_of_models(study: &Study, execution: &Execution<'_>) -> Result<Ve
         for kind in BundleKind::BOTH {
             let (_, measured) = measured_pairs(responses.bundle(kind), &measuring, execution)?;
             let choice = study.choice(condition.id()).bundle(kind);
-            let of_bundle = caution::of_models(condition, choice, kind, responses.bundle(kind), &measured);
+            let of_bundle = caution::of_models(condition, choice, kind, responses.bundle(kind), &measured, grid.0.max());
             cautions.extend(of_bundle.into_iter().map(|caution| (condition.id(), caution)));
         }
     }
@@ -154,9 +154,10 @@ impl Comparison {
         choice: &ConditionChoice,
         average: CostAverage,
     ) -> Result<Self, ConditionFailure> {
+        let top = grid.omega().last().copied().unwrap_or_default();
         let of_kind = |kind| {
             let measured = figures.bundle(kind).measured();
-            caution::of_models(condition, choice.bundle(kind), kind, responses.bundle(kind), measured)
+            caution::of_models(condition, choice.bundle(kind), kind, responses.bundle(kind), measured, top)
         };
         let mut cautions: Vec<Caution> = BundleKind::BOTH.into_iter().flat_map(of_kind).collect();
         let representative = |kind: BundleKind| {

@@ -3,8 +3,8 @@
 use nalgebra::DMatrix;
 
 use crate::dataset::{
-    BundleKind, Channel, ConditionDraft, ConditionId, DatasetDraft, FlightState, ModelDraft, Origin, Place, Provenance,
-    ResponseArray, ResponseDraft,
+    BundleKind, Channel, ConditionDraft, ConditionId, DatasetDraft, Estimate, FlightState, ModelDraft, Origin, Place,
+    Provenance, ResponseArray, ResponseDraft, Timing,
 };
 use crate::io::content_fault::ContentFault;
 use crate::io::flaw::Flaw;
@@ -68,9 +68,15 @@ fn physics_model_of(place: &Place, text: PhysicsText) -> Result<ModelDraft, Flaw
             return Err(Flaw::new(place.at("role"), fault));
         }
     };
+    let timing = Timing {
+        sample_time_s: text.sample_time_s,
+        input_delays_s: text.input_delays_s,
+        output_delays_s: text.output_delays_s,
+    };
     Ok(ModelDraft {
         name: text.name,
         origin,
+        timing,
         matrices: [text.a, text.b, text.c, text.d].map(|array| array.map(matrix)),
         response: text.frequency_response.map(response_of),
         states: text.states.unwrap_or_default(),
@@ -79,8 +85,14 @@ fn physics_model_of(place: &Place, text: PhysicsText) -> Result<ModelDraft, Flaw
 }
 
 fn identified_model_of(text: IdentifiedText) -> ModelDraft {
+    let timing = Timing {
+        sample_time_s: text.sample_time_s,
+        input_delays_s: text.input_delays_s,
+        output_delays_s: text.output_delays_s,
+    };
     ModelDraft {
         name: text.name,
+        timing,
         origin: Origin::Identified { method: text.method, order: text.order },
         matrices: [text.a, text.b, text.c, text.d].map(|array| array.map(matrix)),
         response: text.frequency_response.map(response_of),
@@ -100,6 +112,8 @@ fn response_of(text: ResponseText) -> ResponseDraft {
         re: array(text.re),
         im: array(text.im),
         coherence: text.coherence.map(array),
+        valid_bands: text.valid_band_rad_s.map(array),
+        estimate: Estimate { averages: text.averages, window_s: text.window_s },
     }
 }
 

@@ -3,7 +3,8 @@
 use nalgebra::DMatrix;
 
 use crate::dataset::{
-    BundleKind, Channel, Condition, Dataset, Dynamics, MeasuredResponse, Model, Origin, PairTable, Provenance,
+    BundleKind, Channel, Condition, Dataset, Dynamics, Estimate, MeasuredResponse, Model, Origin, PairTable, Provenance,
+    Timing,
 };
 use crate::io::nested::Nested;
 
@@ -55,6 +56,7 @@ fn condition_text(condition: &Condition) -> ConditionText {
 
 fn physics_text(model: &Model) -> PhysicsText {
     let [a, b, c, d] = matrices(&model.dynamics);
+    let Timing { sample_time_s, input_delays_s, output_delays_s } = timing(&model.dynamics);
     PhysicsText {
         name: model.name.clone(),
         role: if model.is_nominal() { "nominal" } else { "perturbed" }.to_owned(),
@@ -64,6 +66,9 @@ fn physics_text(model: &Model) -> PhysicsText {
         b,
         c,
         d,
+        sample_time_s,
+        input_delays_s,
+        output_delays_s,
         frequency_response: None,
         source: model.source.as_ref().map(source_text),
     }
@@ -79,9 +84,29 @@ fn identified_text(model: &Model) -> IdentifiedText {
         Dynamics::StateSpace(_) => None,
         Dynamics::Measured(response) => Some(response_text(response)),
     };
-    let source = model.source.as_ref().map(source_text);
-    let (name, states) = (model.name.clone(), state_names(model));
-    IdentifiedText { name, method, order, states, a, b, c, d, frequency_response, source }
+    let Timing { sample_time_s, input_delays_s, output_delays_s } = timing(&model.dynamics);
+    IdentifiedText {
+        name: model.name.clone(),
+        method,
+        order,
+        states: state_names(model),
+        a,
+        b,
+        c,
+        d,
+        sample_time_s,
+        input_delays_s,
+        output_delays_s,
+        frequency_response,
+        source: model.source.as_ref().map(source_text),
+    }
+}
+
+fn timing(dynamics: &Dynamics) -> Timing {
+    match dynamics {
+        Dynamics::StateSpace(model) => model.timing().clone(),
+        Dynamics::Measured(_) => Timing::default(),
+    }
 }
 
 fn state_names(model: &Model) -> Option<Vec<String>> {
@@ -117,10 +142,18 @@ fn response_text(response: &MeasuredResponse) -> ResponseText {
         shape,
         values: table.iter().flat_map(|(_, values)| values.iter().copied()).collect(),
     });
+    let valid_band_rad_s = response.valid_bands().map(|bands| Nested {
+        shape: [bands.outputs(), bands.inputs(), 2],
+        values: bands.iter().flat_map(|(_, band)| band.iter().copied()).collect(),
+    });
+    let Estimate { averages, window_s } = response.estimate();
     ResponseText {
         omega_rad_s: response.omega().to_vec(),
         re: part(|value| value.re),
         im: part(|value| value.im),
         coherence,
+        valid_band_rad_s,
+        averages,
+        window_s,
     }
 }

@@ -101,6 +101,21 @@ pub(super) struct PhysicsText {
     pub(super) c: Option<Nested<2>>,
     #[serde(rename = "D", skip_serializing_if = "Option::is_none")]
     pub(super) d: Option<Nested<2>>,
+    /// Sample time of a model of discrete time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) sample_time_s: Option<f64>,
+    #[serde(
+        default,
+        deserialize_with = "optional_list::<MOST_CHANNELS, _, _>",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub(super) input_delays_s: Option<Vec<f64>>,
+    #[serde(
+        default,
+        deserialize_with = "optional_list::<MOST_CHANNELS, _, _>",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub(super) output_delays_s: Option<Vec<f64>>,
     #[serde(default, skip_serializing)]
     pub(super) frequency_response: Option<ResponseText>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -126,6 +141,21 @@ pub(super) struct IdentifiedText {
     pub(super) c: Option<Nested<2>>,
     #[serde(rename = "D", skip_serializing_if = "Option::is_none")]
     pub(super) d: Option<Nested<2>>,
+    /// Sample time of a model of discrete time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) sample_time_s: Option<f64>,
+    #[serde(
+        default,
+        deserialize_with = "optional_list::<MOST_CHANNELS, _, _>",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub(super) input_delays_s: Option<Vec<f64>>,
+    #[serde(
+        default,
+        deserialize_with = "optional_list::<MOST_CHANNELS, _, _>",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub(super) output_delays_s: Option<Vec<f64>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) frequency_response: Option<ResponseText>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -156,4 +186,13 @@ pub(super) struct ResponseText {
     pub(super) im: Nested<3>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) coherence: Option<Nested<3>>,
+    /// First and last trusted frequency of each response.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) valid_band_rad_s: Option<Nested<3>>,
+    /// Number of independent averages of the estimate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) averages: Option<f64>,
+    /// Length of the windows of the estimate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) window_s: Option<f64>,
 }

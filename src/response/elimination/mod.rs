@@ -49,6 +49,9 @@ use lane_response::LaneResponse;
 /// entries are changed by less than 1e-10 of the largest of the balanced A, in practice by some 1e-13, so the relative error
 /// grows as `j omega` comes close to a pole; at a pole, where elimination meets a zero, the values are not finite. Entries
 /// beyond [`super::LargeEntry`]'s limit may overflow.
+///
+/// The matrices alone count, as those of continuous time: for a model with [`crate::dataset::Timing`] see
+/// [`super::PreparedModel`].
 pub fn evaluate(model: &StateSpace, omega: &[f64]) -> FrequencyResponse {
     evaluate_on(Arch::new(), model, omega)
 }

@@ -65,6 +65,7 @@
 //! |---|---|
 //! | [`units`] | every conversion of units |
 //! | [`dataset`] | what the engineer loads: channels, models, flight conditions; checked once |
+//! | [`assembly`] | from the models of many files to one dataset: names, channels, units |
 //! | [`response`] | frequency responses, phase, poles and zeros, order statistics |
 //! | [`fidelity`] | cost J, distances in a bundle, representative, discontinuity, modes from model to model |
 //! | [`correction`] | G, D, bounds, gains, delays, and what they do to a response |
@@ -93,6 +94,7 @@
 //! ```
 
 pub mod app;
+pub mod assembly;
 pub mod cli;
 pub mod correction;
 pub mod dataset;

@@ -28,6 +28,10 @@ pub enum Command {
     Analyze(AnalyzeArguments),
     /// Make one of the figures that the window shows, or its numbers, as a file.
     Figure(Box<FigureArguments>),
+    /// Make a dataset of a folder of model files: MATLAB, NumPy, JSON, text. Without rules, proposes them and says what is missing.
+    Assemble(AssembleArguments),
+    /// Write every model and response in any file as JSON.
+    Convert(ConvertArguments),
     /// Say what a dataset or a study holds, or what is wrong with it and where.
     Check {
         /// Dataset or study.
@@ -45,6 +49,37 @@ pub enum Command {
         #[arg(long)]
         force: bool,
     },
+}
+
+/// Which files are to become a dataset, and how.
+#[derive(Debug, Args)]
+pub struct AssembleArguments {
+    /// Folders, with all that is in them, or files.
+    #[arg(value_name = "FOLDER", required = true)]
+    pub folders: Vec<PathBuf>,
+    /// What is said about the files; without it, it is proposed and written beside the dataset.
+    #[arg(long, value_name = "RULES.json")]
+    pub rules: Option<PathBuf>,
+    /// The dataset, packed where the name ends in .gz.
+    #[arg(long, value_name = "DATASET.json.gz")]
+    pub out: PathBuf,
+    /// Overwrite files that are there already.
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Which files are to be read, and where their models go.
+#[derive(Debug, Args)]
+pub struct ConvertArguments {
+    /// Files, or folders with all that is in them.
+    #[arg(value_name = "FILE", required = true)]
+    pub files: Vec<PathBuf>,
+    /// The file of models.
+    #[arg(long, value_name = "MODELS.json")]
+    pub out: PathBuf,
+    /// Overwrite a file that is there already.
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// How a study is opened whose dataset has moved or changed.

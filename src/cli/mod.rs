@@ -7,6 +7,7 @@ mod arguments;
 mod check;
 mod failure;
 mod figure;
+mod models;
 mod opening;
 mod progress;
 mod sections;
@@ -30,7 +31,8 @@ use failure::Failure;
 use terminal::{say, say_error};
 
 pub use arguments::{
-    AnalyzeArguments, Command, FigureArguments, OpeningArguments, PairChoice, PairList, Rejection, StudyArguments,
+    AnalyzeArguments, AssembleArguments, Command, ConvertArguments, FigureArguments, OpeningArguments, PairChoice,
+    PairList, Rejection, StudyArguments,
 };
 
 /// What the command line asks for.
@@ -60,6 +62,8 @@ pub fn run(command: &Command) -> ExitCode {
     finish(match command {
         Command::Analyze(arguments) => analyze::analyze(arguments),
         Command::Figure(arguments) => figure::figure(arguments),
+        Command::Assemble(arguments) => models::assemble(arguments),
+        Command::Convert(arguments) => models::convert(arguments),
         Command::Check { file, opening } => check::check(file, opening),
         Command::Example { directory, force } => example(directory, existing(*force)),
     })

@@ -126,7 +126,10 @@ mod tests {
         assert!(error(timing(Some(0.0), &[])).contains("none at all for continuous time"));
         assert!(error(timing(Some(f64::INFINITY), &[0.0; 2])).contains("sample_time_s"));
         assert_eq!(error(timing(None, &[0.0])), "input_delays_s: expected 2 delays, one for each channel, found 1");
-        assert_eq!(error(timing(None, &[0.0, -0.1])), "input_delays_s, entry 2: expected a delay from 0 to 60 s, found -0.1");
+        assert_eq!(
+            error(timing(None, &[0.0, -0.1])),
+            "input_delays_s, entry 2: expected a delay from 0 to 60 s, found -0.1"
+        );
         assert!(error(timing(None, &[f64::NAN, 61.0])).contains("entry 1"));
     }
 

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use super::content_fault::ContentFault;
 use super::flaw::Flaw;
 use super::json_text::line_of;
-use super::plain::plain_path;
+use super::plain::{plain, plain_path};
+use super::variables::VariableFault;
 use crate::dataset::Place;
 
 /// Why a file could not be read or written: one line that names the file, and the place in it.
@@ -117,6 +118,28 @@ pub enum FileError {
         fault: Box<ContentFault>,
         /// Line at which the condition or the model begins, counted from 1; none where the fault names its own.
         line: Option<usize>,
+    },
+    /// A file of models cannot be read.
+    #[error("{}: {}", plain_path(path), plain(&.fault.to_string()))]
+    Variables {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        fault: VariableFault,
+    },
+    /// Folders lie in folders, deeper than models are looked for.
+    #[error("{}: folders lie too deep inside one another; give a folder farther down", plain_path(path))]
+    FolderTooDeep {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A folder holds more files than are looked at.
+    #[error("{}: holds more than {most} files; give a folder with fewer", plain_path(path))]
+    TooManyFiles {
+        /// The folder.
+        path: PathBuf,
+        /// The limit.
+        most: usize,
     },
     /// The dataset of a study cannot be read.
     #[error(

@@ -4,6 +4,7 @@ mod content_fault;
 mod corrections_file;
 mod csv_table;
 mod dataset_file;
+mod exports;
 mod figure_file;
 mod file_error;
 mod file_stamp;
@@ -12,18 +13,29 @@ mod flaw;
 mod home;
 mod json_text;
 mod list;
+mod mat;
+mod mat73;
+mod model_files;
+mod models_file;
 mod nested;
+mod npy;
 mod opened;
 mod outline;
 mod output_set;
 mod place;
+mod places;
 mod plain;
 mod recent_files;
+mod recognise;
 mod recovery_file;
+mod rules_file;
 mod settings_entry;
 mod source;
+mod stored_number;
 mod study_file;
+mod text;
 mod unknown_keys;
+pub mod variables;
 
 pub use crate::dataset::limits::LARGEST_TEXT;
 pub use content_fault::ContentFault;
@@ -35,17 +47,21 @@ pub use corrections_file::{
 };
 pub use csv_table::{csv_text, save_table};
 pub use dataset_file::{
-    DatasetOrigin, LoadedDataset, embedded_example, load_dataset, load_dataset_bytes, save_dataset, write_example,
+    DatasetOrigin, LoadedDataset, add_dataset, embedded_example, load_dataset, load_dataset_bytes, save_dataset,
+    write_example,
 };
 pub use figure_file::{figure_format, write_as, write_figure};
 pub use file_error::{FileError, system_words};
 pub use file_stamp::{FileStamp, file_exists, file_sha256};
 pub use first_start::is_first_start;
 pub use home::at_home;
+pub use model_files::{FileFormat, FolderProgress, FoundModels, read_models};
+pub use models_file::add_models;
 pub use opened::{Opened, load_any};
 pub use output_set::{Existing, OutputSet, make_directory, report_size_limit};
 pub use plain::{plain, plain_path};
 pub use recent_files::{add_recent_file, recent_files};
 pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
+pub use rules_file::{add_rules, load_rules};
 pub use settings_entry::{KindWord, ScheduleEntry, SettingsEntry};
-pub use study_file::{OpenedStudy, STUDY_EXTENSION, open_study, open_study_of, save_study};
+pub use study_file::{OpenedStudy, STUDY_EXTENSION, open_study, open_study_of, relative_folder, save_study};

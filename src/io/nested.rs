@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use nalgebra::DMatrix;
 use serde::de::{DeserializeSeed, Deserializer, Error, SeqAccess, Visitor};
 use serde::ser::{SerializeSeq, Serializer};
 use serde::{Deserialize, Serialize};
@@ -29,6 +30,14 @@ impl<const DEPTH: usize> Nested<DEPTH> {
             (_, 0 | 1) => MOST_CHANNELS,
             _ => MOST_FREQUENCIES,
         }
+    }
+}
+
+impl Nested<2> {
+    /// A matrix, row by row.
+    pub(super) fn of_matrix(matrix: &DMatrix<f64>) -> Self {
+        // nalgebra stores columns, a file has rows.
+        Self { shape: [matrix.nrows(), matrix.ncols()], values: matrix.transpose().as_slice().to_vec() }
     }
 }
 

@@ -27,7 +27,7 @@ pub(super) struct Source<'b> {
 impl Source<'static> {
     /// Reads a file, unpacking it where it is packed.
     pub(super) fn read(path: &Path) -> Result<Self, FileError> {
-        let bytes = read_bytes(path)?;
+        let bytes = read_bytes(path, LARGEST_TEXT)?;
         let sha256 = sha256_hex(&bytes);
         let text = if bytes.starts_with(&GZIP_MAGIC) { unpack(&bytes, path)? } else { bytes };
         Ok(Source { sha256, text: Cow::Owned(text) })
@@ -40,7 +40,7 @@ impl<'b> Source<'b> {
         let text = if bytes.starts_with(&GZIP_MAGIC) {
             Cow::Owned(unpack(bytes, path)?)
         } else {
-            check_length(bytes.len() as u64, path)?;
+            check_length(bytes.len() as u64, LARGEST_TEXT, path)?;
             Cow::Borrowed(bytes)
         };
         Ok(Source { sha256: sha256_hex(bytes), text })
@@ -52,7 +52,8 @@ impl<'b> Source<'b> {
     }
 }
 
-fn read_bytes(path: &Path) -> Result<Vec<u8>, FileError> {
+/// The bytes of a file of at most `most`.
+pub(super) fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, FileError> {
     let failed = |error: std::io::Error| FileError::reading(path, &error);
     let file = File::open(path).map_err(failed)?;
     // Opening a directory succeeds on some systems; reading it gives an error that says less.
@@ -60,8 +61,8 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, FileError> {
         return Err(FileError::Directory { path: path.to_owned() });
     }
     let mut bytes = Vec::new();
-    file.take(LARGEST_TEXT + 1).read_to_end(&mut bytes).map_err(failed)?;
-    check_length(bytes.len() as u64, path)?;
+    file.take(most + 1).read_to_end(&mut bytes).map_err(failed)?;
+    check_length(bytes.len() as u64, most, path)?;
     Ok(bytes)
 }
 
@@ -74,7 +75,7 @@ fn unpack(bytes: &[u8], path: &Path) -> Result<Vec<u8>, FileError> {
         let mut member = GzDecoder::new(rest);
         let left = (LARGEST_TEXT + 1).saturating_sub(text.len() as u64);
         let unpacked = member.by_ref().take(left).read_to_end(&mut text);
-        check_length(text.len() as u64, path)?;
+        check_length(text.len() as u64, LARGEST_TEXT, path)?;
         unpacked.map_err(|error| match error.kind() {
             ErrorKind::UnexpectedEof => FileError::GzipCutOff { path: path.to_owned() },
             _ => FileError::Gzip { path: path.to_owned() },
@@ -84,9 +85,9 @@ fn unpack(bytes: &[u8], path: &Path) -> Result<Vec<u8>, FileError> {
     Ok(text)
 }
 
-fn check_length(length: u64, path: &Path) -> Result<(), FileError> {
-    if length > LARGEST_TEXT {
-        return Err(FileError::TooLarge { path: path.to_owned(), most_mib: LARGEST_TEXT >> 20 });
+fn check_length(length: u64, most: u64, path: &Path) -> Result<(), FileError> {
+    if length > most {
+        return Err(FileError::TooLarge { path: path.to_owned(), most_mib: most >> 20 });
     }
     Ok(())
 }

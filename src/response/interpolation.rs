@@ -94,7 +94,8 @@ mod tests {
     #[test]
     fn coherence_is_linear_in_log_frequency() {
         let table = |values: &[f64]| PairTable::filled(1, 1, values.to_vec());
-        let with = MeasuredResponse::new(vec![1.0, 100.0], &table(&[1.0; 2]), &table(&[0.0; 2]), Some(table(&[0.4, 1.0])));
+        let with =
+            MeasuredResponse::new(vec![1.0, 100.0], &table(&[1.0; 2]), &table(&[0.0; 2]), Some(table(&[0.4, 1.0])));
         let found = coherence_at(&with.unwrap(), &[0.5, 1.0, 10.0, 100.0]).unwrap();
         let found = found.iter().next().unwrap().1;
         assert!(found[0].is_nan() && found[1] == 0.4 && (found[2] - 0.7).abs() < 1e-15 && found[3] == 1.0);

@@ -139,9 +139,8 @@ fn delays_of(dynamics: &Dynamics) -> Option<PairTable<f64>> {
     let Dynamics::StateSpace(model) = dynamics else { return None };
     let timing = model.timing();
     let is_delayed = timing.input_delays_s.is_some() || timing.output_delays_s.is_some();
-    is_delayed.then(|| {
-        PairTable::from_fn(model.outputs(), model.inputs(), |pair| timing.delay_s(pair.output, pair.input))
-    })
+    is_delayed
+        .then(|| PairTable::from_fn(model.outputs(), model.inputs(), |pair| timing.delay_s(pair.output, pair.input)))
 }
 
 #[cfg(test)]

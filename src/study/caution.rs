@@ -129,7 +129,8 @@ impl NotFinite {
             Dynamics::StateSpace(model) => {
                 let timing = model.timing();
                 let sampled = timing.sample_time_s.zip(timing.nyquist_rad_s().filter(|nyquist| top >= *nyquist));
-                let sampled = sampled.map(|(sample_time_s, nyquist_rad_s)| Self::Sampled { sample_time_s, nyquist_rad_s });
+                let sampled =
+                    sampled.map(|(sample_time_s, nyquist_rad_s)| Self::Sampled { sample_time_s, nyquist_rad_s });
                 LargeEntry::of(model).map(NotFinite::Entry).or(sampled).unwrap_or(NotFinite::Pole)
             }
             Dynamics::Measured(response) => {

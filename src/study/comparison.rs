@@ -101,7 +101,8 @@ pub fn cautions_of_models(study: &Study, execution: &Execution<'_>) -> Result<Ve
         for kind in BundleKind::BOTH {
             let (_, measured) = measured_pairs(responses.bundle(kind), &measuring, execution)?;
             let choice = study.choice(condition.id()).bundle(kind);
-            let of_bundle = caution::of_models(condition, choice, kind, responses.bundle(kind), &measured, grid.0.max());
+            let of_bundle =
+                caution::of_models(condition, choice, kind, responses.bundle(kind), &measured, grid.0.max());
             cautions.extend(of_bundle.into_iter().map(|caution| (condition.id(), caution)));
         }
     }

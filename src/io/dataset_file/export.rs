@@ -1,10 +1,8 @@
 //! From a dataset to what its file says.
 
-use nalgebra::DMatrix;
-
 use crate::dataset::{
-    BundleKind, Channel, Condition, Dataset, Dynamics, Estimate, MeasuredResponse, Model, Origin, PairTable, Provenance,
-    Timing,
+    BundleKind, Channel, Condition, Dataset, Dynamics, Estimate, MeasuredResponse, Model, Origin, PairTable,
+    Provenance, Timing,
 };
 use crate::io::nested::Nested;
 
@@ -120,14 +118,11 @@ fn source_text(provenance: &Provenance) -> SourceText {
 
 fn matrices(dynamics: &Dynamics) -> [Option<Nested<2>>; 4] {
     match dynamics {
-        Dynamics::StateSpace(model) => [model.a(), model.b(), model.c(), model.d()].map(|matrix| Some(rows(matrix))),
+        Dynamics::StateSpace(model) => {
+            [model.a(), model.b(), model.c(), model.d()].map(|matrix| Some(Nested::of_matrix(matrix)))
+        }
         Dynamics::Measured(_) => [const { None }; 4],
     }
-}
-
-fn rows(matrix: &DMatrix<f64>) -> Nested<2> {
-    // nalgebra stores columns, the file has rows.
-    Nested { shape: [matrix.nrows(), matrix.ncols()], values: matrix.transpose().as_slice().to_vec() }
 }
 
 fn response_text(response: &MeasuredResponse) -> ResponseText {

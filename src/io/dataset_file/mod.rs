@@ -15,7 +15,7 @@ use crate::dataset::Dataset;
 
 use super::file_error::FileError;
 use super::flaw::Flaw;
-use super::output_set::{Existing, OutputSet, make_directory, write_whole};
+use super::output_set::{Existing, OutputSet, make_directory};
 use super::plain::{plain, plain_path};
 use super::source::Source;
 
@@ -120,11 +120,18 @@ pub fn write_example(directory: &Path, existing: Existing) -> Result<PathBuf, Fi
     Ok(path)
 }
 
-/// Saves a dataset; packed by gzip where the name ends in `.gz`.
+/// Saves a dataset in place of what is there; packed by gzip where the name ends in `.gz`.
 pub fn save_dataset(dataset: &Dataset, path: &Path) -> Result<(), FileError> {
+    let mut outputs = OutputSet::new(Existing::Replace, Vec::new());
+    add_dataset(dataset, path, &mut outputs)?;
+    outputs.persist()
+}
+
+/// Adds a dataset to `outputs`; packed by gzip where the name ends in `.gz`.
+pub fn add_dataset(dataset: &Dataset, path: &Path, outputs: &mut OutputSet) -> Result<(), FileError> {
     let text = text_of(dataset);
     let packed = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
-    write_whole(path, |file| {
+    outputs.add(path, |file| {
         if packed {
             let mut encoder = GzEncoder::new(file, Compression::default());
             serde_json::to_writer(&mut encoder, &text)?;

@@ -141,6 +141,14 @@ fn path_text(dataset: &Path, study: &Path) -> Result<String, FileError> {
     slashed(&relative, study)
 }
 
+/// The way from the folder of `file` to `folder`, with `/` between its parts; the folder as it is where there is none.
+pub fn relative_folder(folder: &Path, file: &Path) -> String {
+    let absolute = |path: &Path| std::path::absolute(path).ok();
+    let base = absolute(file).and_then(|file| file.parent().map(Path::to_owned));
+    let way = absolute(folder).zip(base).and_then(|(folder, base)| pathdiff::diff_paths(folder, base));
+    way.as_deref().unwrap_or(folder).to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/")
+}
+
 /// A path with `/` between its parts.
 fn slashed(path: &Path, study: &Path) -> Result<String, FileError> {
     let unreadable = || FileError::unwritable(study, "the dataset's path is not valid Unicode");

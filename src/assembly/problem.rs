@@ -1,0 +1,145 @@
+//! What is still to be said before the files are a dataset.
+
+use super::row::RowRole;
+
+/// What is missing or contradicts itself.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ProblemKind {
+    /// No model is taken.
+    #[error("no model is taken; add files that hold models")]
+    NoModels,
+    /// The dataset has no inputs, or no outputs.
+    #[error("the dataset has no {0}; say which there are")]
+    NoChannels(&'static str),
+    /// A channel of the dataset has no unit.
+    #[error("the unit of {0} is not said; say in which the dataset is to have it")]
+    NoUnit(String),
+    /// Files that do not say the unit of a channel.
+    #[error("the file does not say in which unit it has {channel}; say it for all files that do not")]
+    UnitOfFile {
+        /// The channel of the dataset.
+        channel: String,
+    },
+    /// A unit that cannot be converted.
+    #[error(
+        "{channel} is in {from} in the file and in {to} in the dataset: there is no factor from one to the other; say one"
+    )]
+    Conversion {
+        /// The channel of the dataset.
+        channel: String,
+        /// The file's unit.
+        from: String,
+        /// The dataset's unit.
+        to: String,
+    },
+    /// A channel that the model does not have.
+    #[error("the model has no {side} {channel}; it has {found}")]
+    NoChannel {
+        /// "input" or "output".
+        side: &'static str,
+        /// The channel of the dataset.
+        channel: String,
+        /// What the file has, in words.
+        found: String,
+    },
+    /// Two channels of the model are called the same.
+    #[error("two {side}s of the model can be {channel}: {found}; say which")]
+    AmbiguousChannel {
+        /// "input" or "output".
+        side: &'static str,
+        /// The channel of the dataset.
+        channel: String,
+        /// Their names.
+        found: String,
+    },
+    /// Channels without names, and another number of them than the dataset has.
+    #[error("the model has {found} {side}s without names, the dataset has {expected}; say their names")]
+    Unnamed {
+        /// "input" or "output".
+        side: &'static str,
+        /// How many the dataset has.
+        expected: usize,
+        /// How many the model has.
+        found: usize,
+    },
+    /// The condition is not said.
+    #[error("its condition is not said")]
+    NoCondition,
+    /// The role is not said.
+    #[error("its role is not said: nominal, perturbed or identified")]
+    NoRole,
+    /// The airspeed is not said.
+    #[error("the airspeed of its condition is not said")]
+    NoAirspeed,
+    /// Rows of one condition contradict one another.
+    #[error("condition {condition}: {field} is {first} and {second}; one condition has one")]
+    Contradiction {
+        /// The condition.
+        condition: i64,
+        /// What.
+        field: &'static str,
+        /// In one row.
+        first: String,
+        /// In another.
+        second: String,
+    },
+    /// A condition without a nominal model, or with several.
+    #[error("condition {condition} has {found} nominal models; it needs exactly one")]
+    Nominal {
+        /// The condition.
+        condition: i64,
+        /// How many it has.
+        found: usize,
+    },
+    /// A condition without identified models.
+    #[error("condition {condition} has no identified model")]
+    NoIdentified {
+        /// The condition.
+        condition: i64,
+    },
+    /// Two models of a bundle have one name.
+    #[error("the name \"{name}\" stands twice among the {bundle} models of condition {condition}")]
+    Name {
+        /// The condition.
+        condition: i64,
+        /// "physics" or "identified".
+        bundle: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// A physics model is measured data.
+    #[error("a {} model needs matrices; this is measured data", .0.word())]
+    MeasuredPhysics(RowRole),
+    /// Measured parts of one model are on different frequencies.
+    #[error("measured responses of one model must be at the same frequencies; those of {first} and {second} are not")]
+    Grids {
+        /// One file.
+        first: String,
+        /// The other.
+        second: String,
+    },
+    /// What the dataset itself refuses.
+    #[error("{0}")]
+    Dataset(String),
+}
+
+/// A problem, and the model that has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Problem {
+    /// Index of the model; none of a problem of the whole.
+    pub part: Option<usize>,
+    /// What it is.
+    pub kind: ProblemKind,
+}
+
+impl Problem {
+    /// A problem of the whole.
+    pub fn of_all(kind: ProblemKind) -> Self {
+        Self { part: None, kind }
+    }
+
+    /// A problem of one model.
+    pub fn of(part: usize, kind: ProblemKind) -> Self {
+        Self { part: Some(part), kind }
+    }
+}

@@ -1,0 +1,174 @@
+//! `gdcm assemble` and `gdcm convert`: models out of files of whatever format.
+
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::assembly::{Assembly, proposed_rules};
+use crate::io::{
+    FolderProgress, FoundModels, OutputSet, add_dataset, add_models, add_rules, load_rules, plain, plain_path,
+    read_models, relative_folder,
+};
+use crate::units::number;
+
+use super::arguments::{AssembleArguments, ConvertArguments};
+use super::existing;
+use super::failure::Failure;
+use super::terminal::{say, say_error};
+use super::text_table::{Side, TextTable};
+
+/// How the name of a rules file ends.
+const RULES_EXTENSION: &str = "gdcm-rules.json";
+
+/// Which file is read, on a terminal only.
+struct ReadingProgress {
+    bar: RefCell<ProgressBar>,
+}
+
+impl ReadingProgress {
+    fn new() -> Self {
+        // Draws nothing where standard error is no terminal.
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+        if let Ok(style) = ProgressStyle::with_template("reading {pos} of {len}: {msg}") {
+            bar.set_style(style);
+        }
+        Self { bar: RefCell::new(bar) }
+    }
+}
+
+impl FolderProgress for ReadingProgress {
+    fn reading(&self, number: usize, of: usize, name: &str) {
+        let bar = self.bar.borrow();
+        bar.set_length(of as u64);
+        bar.set_position(number as u64);
+        bar.set_message(plain(name));
+    }
+
+    fn stopped(&self) -> bool {
+        false
+    }
+}
+
+impl Drop for ReadingProgress {
+    fn drop(&mut self) {
+        self.bar.borrow().finish_and_clear();
+    }
+}
+
+/// Writes every model of some files as JSON.
+pub(super) fn convert(arguments: &ConvertArguments) -> Result<(), Failure> {
+    let mut outputs = OutputSet::new(existing(arguments.force), arguments.files.clone());
+    outputs.check(&[&arguments.out])?;
+    let found = found_models(&arguments.files)?;
+    if found.models.is_empty() {
+        return Err(Failure::Option { option: "FILE", reason: "holds no model that could be taken".to_owned() });
+    }
+    add_models(&found.models, &arguments.out, &mut outputs)?;
+    outputs.persist()?;
+    let lines = found.models.iter().map(|model| format!("{}: {}\n", plain(&model.key()), model.words()));
+    say(&format!(
+        "{}{}: {}\n",
+        lines.collect::<String>(),
+        plain_path(&arguments.out),
+        counted(found.models.len(), "model")
+    ))
+}
+
+/// Makes a dataset of the models in a folder.
+pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
+    let rules_path = arguments.rules.clone().unwrap_or_else(|| rules_path(&arguments.out));
+    let is_proposed = arguments.rules.is_none();
+    let mut outputs = OutputSet::new(existing(arguments.force), arguments.rules.iter().cloned().collect());
+    let mut places: Vec<&Path> = vec![&arguments.out];
+    places.extend(is_proposed.then_some(rules_path.as_path()));
+    outputs.check(&places)?;
+    let found = found_models(&arguments.folders)?;
+    let rules = match &arguments.rules {
+        Some(path) => {
+            let (rules, cautions) = load_rules(path)?;
+            cautions.iter().for_each(|caution| say_error(&format!("{}: {}", plain_path(path), plain(caution))));
+            rules
+        }
+        None => proposed_rules(&name_of(&arguments.folders), &found.models),
+    };
+    let assembly = Assembly::new(found.models, rules);
+    say(&table(&assembly))?;
+    if is_proposed {
+        add_rules(assembly.rules(), &rules_path, &mut outputs)?;
+    }
+    let folder = relative_folder(arguments.folders.first().map_or(Path::new("."), PathBuf::as_path), &arguments.out);
+    let dataset = assembly.dataset(&folder);
+    if let Some(dataset) = &dataset {
+        add_dataset(dataset, &arguments.out, &mut outputs)?;
+    }
+    outputs.persist()?;
+    if is_proposed {
+        say(&format!("{}: the rules proposed; correct them and give them with --rules\n", plain_path(&rules_path)))?;
+    }
+    match dataset {
+        Some(dataset) => {
+            let conditions = counted(dataset.conditions().len(), "condition");
+            say(&format!("{}: {conditions}\n", plain_path(&arguments.out)))
+        }
+        None => {
+            let problems = assembly.problems();
+            problems.iter().for_each(|problem| say_error(&plain(&assembly.words(problem))));
+            Err(Failure::Incomplete { count: problems.len(), rules: plain_path(&rules_path) })
+        }
+    }
+}
+
+/// The models of files and folders; what could not be taken is told on standard error.
+fn found_models(paths: &[PathBuf]) -> Result<FoundModels, Failure> {
+    let found = read_models(paths, &ReadingProgress::new())?;
+    found.faults.iter().for_each(|fault| say_error(&format!("not taken: {}", plain(fault))));
+    found.passed_over.iter().for_each(|words| say_error(&format!("no model: {}", plain(words))));
+    Ok(found)
+}
+
+fn name_of(folders: &[PathBuf]) -> String {
+    let name = folders.first().and_then(|folder| folder.file_name());
+    name.map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+}
+
+fn rules_path(out: &Path) -> PathBuf {
+    let name = out.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let stem = name.trim_end_matches(".gz").trim_end_matches(".json");
+    out.with_file_name(format!("{stem}.{RULES_EXTENSION}"))
+}
+
+/// A line a model: what it is to be.
+fn table(assembly: &Assembly) -> String {
+    use Side::{Left, Right};
+    let mut table = TextTable::new([
+        ("condition", Right),
+        ("role", Left),
+        ("name", Left),
+        ("airspeed", Right),
+        ("altitude", Left),
+        ("weight", Left),
+        ("trim", Left),
+        ("file", Left),
+    ]);
+    for part in assembly.parts() {
+        let row = &part.row;
+        let or_dash = |text: Option<String>| text.unwrap_or_else(|| "?".to_owned());
+        let trim = row.perturbation.iter().map(|(coordinate, by)| format!("{coordinate} {}", number(*by)));
+        table.row([
+            or_dash(row.condition.map(|condition| condition.to_string())),
+            if row.left_out { "left out".to_owned() } else { or_dash(row.role.map(|role| role.word().to_owned())) },
+            plain(&row.name),
+            or_dash(row.airspeed_kt.map(|airspeed| format!("{} kt", number(airspeed)))),
+            row.altitude.clone().or(row.altitude_ft.map(|feet| format!("{} ft", number(feet)))).unwrap_or_default(),
+            row.weight.clone().or(row.mass_kg.map(|mass| format!("{} kg", number(mass)))).unwrap_or_default(),
+            trim.collect::<Vec<_>>().join(", "),
+            plain(&part.found.key()),
+        ]);
+    }
+    table.lines(0)
+}
+
+fn counted(count: usize, what: &str) -> String {
+    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
+}

@@ -1,0 +1,173 @@
+//! A correction as a header of C.
+
+use std::fmt::Write;
+
+use super::curve::Curve;
+use super::export_fault::ExportFault;
+use super::number::{list, number};
+use super::python_module::heading;
+use super::quoted::{c_text, comment};
+use super::scheduled_correction::{ScheduledChannel, ScheduledCorrection};
+
+/// What the function needs to interpolate.
+const TABLE: &str = "
+static inline double gdcm_table(int count, const double points[], const double values[], double x)
+{
+    int k;
+    if (x <= points[0]) {
+        return values[0];
+    }
+    for (k = 1; k < count; k++) {
+        if (x < points[k]) {
+            double part = (x - points[k - 1]) / (points[k] - points[k - 1]);
+            return values[k - 1] + part * (values[k] - values[k - 1]);
+        }
+    }
+    return values[count - 1];
+}
+
+static inline double gdcm_polynomial(int count, const double coefficients[], double v)
+{
+    double value = 0.0;
+    int k;
+    for (k = count - 1; k >= 0; k--) {
+        value = value * v + coefficients[k];
+    }
+    return value;
+}
+
+/* Gains and delays [s] at an airspeed [kt]. Gives 0, or 1 where the airspeed was cut to the range, or -1 and no values where
+ * it is not a number. */
+static inline int gdcm_correction(double airspeed_kt, double gain_in[], double gain_out[], double delay_in[],
+                                  double delay_out[])
+{
+";
+
+/// Writes a header with the function `gdcm_correction`, which fills arrays of gains and delays \[s\] (C99, `-lm`).
+pub fn c_header(correction: &ScheduledCorrection) -> Result<String, ExportFault> {
+    correction.check()?;
+    let mut text = String::from("/*\n");
+    for line in heading(correction) {
+        let _ = writeln!(text, " * {line}");
+    }
+    text.push_str(" */\n#ifndef GDCM_CORRECTION_H\n#define GDCM_CORRECTION_H\n\n#include <math.h>\n\n");
+    for (side, channels) in [("INPUT", &correction.inputs), ("OUTPUT", &correction.outputs)] {
+        let _ = writeln!(text, "#define GDCM_{side}_COUNT {}", channels.len());
+        for (index, channel) in channels.iter().enumerate() {
+            let _ = writeln!(text, "#define GDCM_{side}_NAME_{index} {}", c_text(&channel.name));
+        }
+    }
+    text.push_str(TABLE);
+    let (least, most) = correction.airspeed_range_kt;
+    let (least, most) = (number(least), number(most));
+    let (mean, half) = (number(correction.airspeed_mean_kt), number(correction.airspeed_half_range_kt));
+    let _ = write!(
+        text,
+        "    double a = airspeed_kt < {least} ? {least} : (airspeed_kt > {most} ? {most} : airspeed_kt);\n    \
+         double v = (a - ({mean})) / {half};\n    \
+         if (airspeed_kt != airspeed_kt) {{\n        return -1;\n    }}\n    \
+         (void)v;\n    (void)gain_in;\n    (void)gain_out;\n    (void)delay_in;\n    (void)delay_out;\n"
+    );
+    for (side, channels) in [("in", &correction.inputs), ("out", &correction.outputs)] {
+        for (index, channel) in channels.iter().enumerate() {
+            write_channel(&mut text, side, index, channel);
+        }
+    }
+    text.push_str("    return a != airspeed_kt;\n}\n\n#endif\n");
+    Ok(text)
+}
+
+fn write_channel(text: &mut String, side: &str, index: usize, channel: &ScheduledChannel) {
+    let _ = writeln!(text, "    /* {side}put {}: {} . */", index + 1, comment(&channel.name));
+    write_curve(text, &format!("gain_{side}[{index}]"), &channel.gain);
+    write_curve(text, &format!("delay_{side}[{index}]"), &channel.delay_s);
+}
+
+fn write_curve(text: &mut String, target: &str, curve: &Curve) {
+    let mut lines = Vec::new();
+    match curve {
+        Curve::Polynomial { of_logarithm, coefficients, least, most } => {
+            lines.push(format!("static const double c[] = {{{}}};", list(coefficients)));
+            let sum = format!("gdcm_polynomial({}, c, v)", coefficients.len());
+            let value = if *of_logarithm { format!("exp({sum})") } else { sum };
+            lines.push(format!("{target} = {value};"));
+            for (sign, cut) in [("<", least), (">", most)] {
+                if let Some(cut) = cut.map(number) {
+                    lines.push(format!("if ({target} {sign} {cut}) {{ {target} = {cut}; }}"));
+                }
+            }
+        }
+        Curve::Table { airspeed_kt, values } => {
+            lines.push(format!("static const double p[] = {{{}}};", list(airspeed_kt)));
+            lines.push(format!("static const double y[] = {{{}}};", list(values)));
+            lines.push(format!("{target} = gdcm_table({}, p, y, a);", values.len()));
+        }
+        Curve::Constant(value) => lines.push(format!("{target} = {};", number(*value))),
+    }
+    let body: String = lines.iter().map(|line| format!("        {line}\n")).collect();
+    let _ = write!(text, "    {{\n{body}    }}\n");
+}
+
+#[cfg(test)]
+mod tests {
+    use std::process::Command;
+
+    use super::super::scheduled_correction::tests::{NASTY, airspeeds, assert_printed, example};
+    use super::*;
+
+    /// Compiles the header with a program around it and gives what that prints.
+    fn run(header: &str, body: &str, name: &str) -> Option<String> {
+        if Command::new("cc").arg("--version").output().is_err() {
+            eprintln!("SKIPPED: cc is not installed");
+            return None;
+        }
+        let folder = std::env::temp_dir().join(format!("gdcm-c-header-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let (source, program) = (folder.join("main.c"), folder.join("main"));
+        std::fs::write(folder.join("gdcm.h"), header).unwrap();
+        let main = format!("#include \"gdcm.h\"\n#include <stdio.h>\nint main(void)\n{{\n{body}\nreturn 0;\n}}\n");
+        std::fs::write(&source, main).unwrap();
+        let flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-o"];
+        let built = Command::new("cc").args(flags).args([&program, &source]).arg("-lm").output().unwrap();
+        assert!(built.status.success(), "{}\n{header}", String::from_utf8_lossy(&built.stderr));
+        let output = Command::new(&program).output().unwrap();
+        assert!(output.status.success());
+        std::fs::remove_dir_all(&folder).unwrap();
+        Some(String::from_utf8(output.stdout).unwrap())
+    }
+
+    #[test]
+    fn the_header_computes_what_the_correction_says() {
+        let correction = example();
+        let speeds: Vec<String> = airspeeds().iter().map(|speed| format!("{speed:.1}")).collect();
+        let body = format!(
+            "double s[] = {{{}}}; double gi[2], go[1], di[2], no[1]; int k;\n\
+             for (k = 0; k < 50; k++) {{ int cut = gdcm_correction(s[k], gi, go, di, no);\n\
+             if (cut != (s[k] < 0.0 || s[k] > 80.0)) return 1;\n\
+             printf(\"%.17g %.17g %.17g %.17g %.17g %.17g\\n\", gi[0], gi[1], go[0], di[0], di[1], no[0]); }}\n\
+             if (gdcm_correction(NAN, gi, go, di, no) != -1) return 1;",
+            speeds.join(",")
+        );
+        if let Some(printed) = run(&c_header(&correction).unwrap(), &body, "values") {
+            assert_printed(&correction, &printed);
+        }
+    }
+
+    #[test]
+    fn names_come_back_byte_by_byte() {
+        let body = "const char *n[] = {GDCM_INPUT_NAME_0, GDCM_INPUT_NAME_1}; int k; const char *c;\n\
+                    for (k = 0; k < GDCM_INPUT_COUNT; k++) { for (c = n[k]; *c; c++) printf(\"%d \", (unsigned char)*c); }";
+        if let Some(printed) = run(&c_header(&example()).unwrap(), body, "names") {
+            let bytes: Vec<u8> = printed.split_whitespace().map(|word| word.parse().unwrap()).collect();
+            assert_eq!(bytes, [NASTY[0], NASTY[1]].concat().as_bytes());
+        }
+    }
+
+    #[test]
+    fn a_correction_without_channels_compiles() {
+        let mut correction = example();
+        correction.inputs.clear();
+        correction.outputs.clear();
+        run(&c_header(&correction).unwrap(), "return gdcm_correction(1.0, 0, 0, 0, 0);", "empty");
+    }
+}

@@ -1,0 +1,134 @@
+//! A correction as a module of Python.
+
+use std::fmt::Write;
+
+use super::curve::Curve;
+use super::export_fault::ExportFault;
+use super::number::{list, number};
+use super::quoted::{comment, python_text};
+use super::scheduled_correction::{ScheduledChannel, ScheduledCorrection};
+
+/// What the module needs to compute curves.
+const CURVES: &str = r#"
+
+def _polynomial(coefficients, v, of_logarithm, least, most):
+    value = 0.0
+    for coefficient in reversed(coefficients):
+        value = value * v + coefficient
+    if of_logarithm:
+        value = math.exp(value)
+    if least is not None:
+        value = max(value, least)
+    if most is not None:
+        value = min(value, most)
+    return value
+
+
+def _table(points, values, x):
+    if x <= points[0]:
+        return values[0]
+    for k in range(1, len(points)):
+        if x < points[k]:
+            part = (x - points[k - 1]) / (points[k] - points[k - 1])
+            return values[k - 1] + part * (values[k] - values[k - 1])
+    return values[-1]
+
+
+def _diagonal(values):
+    return [[value if row == column else 0.0 for column in range(len(values))] for row, value in enumerate(values)]
+
+
+def gdcm_correction(airspeed_kt):
+    """Gain matrices Mi and Mo (lists of rows), delays tau_i and tau_o in seconds, at an airspeed in knots."""
+    if airspeed_kt != airspeed_kt:
+        raise ValueError("the airspeed is not a number")
+    a = min(max(float(airspeed_kt), AIRSPEED_RANGE_KT[0]), AIRSPEED_RANGE_KT[1])
+"#;
+
+/// Writes a module with the function `gdcm_correction(airspeed_kt)`, which gives `(Mi, Mo, tau_i, tau_o)`; it needs nothing but
+/// `math`.
+pub fn python_module(correction: &ScheduledCorrection) -> Result<String, ExportFault> {
+    correction.check()?;
+    let mut text = String::new();
+    for line in heading(correction) {
+        let _ = writeln!(text, "# {line}");
+    }
+    let names = |channels: &[ScheduledChannel]| -> String {
+        channels.iter().map(|channel| format!("    {},\n", python_text(&channel.name))).collect()
+    };
+    let (least, most) = correction.airspeed_range_kt;
+    let _ = write!(text, "\nimport math\n\nINPUTS = [\n{}]\n", names(&correction.inputs));
+    let _ = write!(text, "OUTPUTS = [\n{}]\n", names(&correction.outputs));
+    let _ = writeln!(text, "AIRSPEED_RANGE_KT = ({}, {})", number(least), number(most));
+    text.push_str(CURVES);
+    let (mean, half) = (number(correction.airspeed_mean_kt), number(correction.airspeed_half_range_kt));
+    let _ = writeln!(text, "    v = (a - ({mean})) / {half}");
+    let curves = |channels: &[ScheduledChannel], of: fn(&ScheduledChannel) -> &Curve| -> String {
+        channels.iter().map(|channel| format!("        {},\n", expression(of(channel)))).collect()
+    };
+    for (name, channels) in [("i", &correction.inputs), ("o", &correction.outputs)] {
+        let _ = write!(text, "    gain_{name} = [\n{}    ]\n", curves(channels, |channel| &channel.gain));
+        let _ = write!(text, "    tau_{name} = [\n{}    ]\n", curves(channels, |channel| &channel.delay_s));
+    }
+    text.push_str("    return _diagonal(gain_i), _diagonal(gain_o), tau_i, tau_o\n");
+    Ok(text)
+}
+
+/// What the file is, line by line, for the comment at its start.
+pub(super) fn heading(correction: &ScheduledCorrection) -> Vec<String> {
+    let (least, most) = correction.airspeed_range_kt;
+    vec![
+        "Gains and delays that correct a model of a helicopter, scheduled with airspeed.".to_owned(),
+        "The model gets the input Mi*u(t - tau_i); its output ym gives y(t) = Mo*ym(t - tau_o).".to_owned(),
+        "Units: airspeed in knots, delays in seconds, gains without a unit.".to_owned(),
+        format!("Airspeeds outside {least} to {most} kt are cut to the ends of this range."),
+        format!("Correction: {}", comment(&correction.name)),
+        format!("Dataset: {}", comment(&correction.dataset)),
+        format!("SHA-256 of the dataset: {}", comment(&correction.sha256)),
+        format!("Written by: {}", comment(&correction.software)),
+    ]
+}
+
+fn expression(curve: &Curve) -> String {
+    let optional = |value: &Option<f64>| value.map_or("None".to_owned(), number);
+    match curve {
+        Curve::Polynomial { of_logarithm, coefficients, least, most } => {
+            let logarithm = if *of_logarithm { "True" } else { "False" };
+            let (least, most) = (optional(least), optional(most));
+            format!("_polynomial([{}], v, {logarithm}, {least}, {most})", list(coefficients))
+        }
+        Curve::Table { airspeed_kt, values } => format!("_table([{}], [{}], a)", list(airspeed_kt), list(values)),
+        Curve::Constant(value) => number(*value),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::process::Command;
+
+    use super::super::scheduled_correction::tests::{NASTY, airspeeds, assert_printed, example};
+    use super::*;
+
+    #[test]
+    fn the_module_computes_what_the_correction_says() {
+        let Ok(found) = Command::new("python3").arg("--version").output() else {
+            eprintln!("SKIPPED: python3 is not installed");
+            return;
+        };
+        assert!(found.status.success());
+        let correction = example();
+        let names: Vec<String> = NASTY.iter().map(|name| format!("{:?}", name.as_bytes())).collect();
+        let program = format!(
+            "{}\nassert [list(name.encode()) for name in INPUTS + OUTPUTS] == [{}]\n\
+             for airspeed in {:?}:\n    mi, mo, ti, to = gdcm_correction(airspeed)\n    \
+             assert mi[0][1] == 0.0 and len(mi) == 2 and len(mo) == 1\n    \
+             print(*[repr(x) for x in [mi[0][0], mi[1][1], mo[0][0]] + ti + to])\n",
+            python_module(&correction).unwrap(),
+            names.join(","),
+            airspeeds(),
+        );
+        let output = Command::new("python3").args(["-c", &program]).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert_printed(&correction, &String::from_utf8(output.stdout).unwrap());
+    }
+}

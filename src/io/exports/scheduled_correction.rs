@@ -1,0 +1,168 @@
+//! Gains and delays of inputs and outputs, scheduled with airspeed.
+
+use super::airspeed::CutAirspeed;
+use super::curve::Curve;
+use super::export_fault::ExportFault;
+
+/// A gain and a delay of an input or an output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScheduledChannel {
+    /// Name of the input or output.
+    pub name: String,
+    /// The gain \[-\].
+    pub gain: Curve,
+    /// The delay \[s\].
+    pub delay_s: Curve,
+}
+
+/// A correction of a model: y(t) = Mo ym(t - tau_o), with Mi u(t - tau_i) as the input of the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScheduledCorrection {
+    /// Its name.
+    pub name: String,
+    /// The dataset that it was found with.
+    pub dataset: String,
+    /// The program that wrote it, with its version.
+    pub software: String,
+    /// SHA-256 of the dataset, in hexadecimal.
+    pub sha256: String,
+    /// The inputs.
+    pub inputs: Vec<ScheduledChannel>,
+    /// The outputs.
+    pub outputs: Vec<ScheduledChannel>,
+    /// Least and greatest airspeed \[kt\]; airspeeds outside are cut to them.
+    pub airspeed_range_kt: (f64, f64),
+    /// Airspeed at which the scaled airspeed is 0 \[kt\].
+    pub airspeed_mean_kt: f64,
+    /// Airspeed above the mean at which it is 1 \[kt\].
+    pub airspeed_half_range_kt: f64,
+}
+
+/// A curve of a correction, with what it is.
+pub(super) struct NamedCurve<'c> {
+    pub(super) side: &'static str,
+    pub(super) kind: &'static str,
+    pub(super) name: &'c str,
+    pub(super) curve: &'c Curve,
+}
+
+impl ScheduledCorrection {
+    /// An airspeed \[kt\] cut to the range; what is not a number stays so.
+    pub fn cut(&self, airspeed_kt: f64) -> CutAirspeed {
+        let (least, most) = self.airspeed_range_kt;
+        let kt = match airspeed_kt {
+            slow if slow < least => least,
+            fast if fast > most => most,
+            within => within,
+        };
+        CutAirspeed { kt, scaled: (kt - self.airspeed_mean_kt) / self.airspeed_half_range_kt }
+    }
+
+    /// All curves: for every input, then every output, the gain and the delay.
+    pub(super) fn curves(&self) -> impl Iterator<Item = NamedCurve<'_>> {
+        let inputs = self.inputs.iter().map(|channel| ("input", channel));
+        inputs.chain(self.outputs.iter().map(|channel| ("output", channel))).flat_map(|(side, channel)| {
+            let named = |kind, curve| NamedCurve { side, kind, name: &channel.name, curve };
+            [named("gain", &channel.gain), named("delay", &channel.delay_s)]
+        })
+    }
+
+    /// Refuses numbers that no program can compute with.
+    pub(super) fn check(&self) -> Result<(), ExportFault> {
+        let (least, most) = self.airspeed_range_kt;
+        let numbers = [least, most, self.airspeed_mean_kt, self.airspeed_half_range_kt];
+        if !numbers.iter().all(|number| number.is_finite()) || least > most || self.airspeed_half_range_kt <= 0.0 {
+            return Err(ExportFault::Range);
+        }
+        for NamedCurve { side, kind, name, curve } in self.curves() {
+            if let Some(flaw) = curve.flaw() {
+                return Err(ExportFault::Curve { channel: format!("{side} {name}"), curve: kind, flaw });
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// Names that would end a comment or a text if they were written as they are.
+    pub(in crate::io::exports) const NASTY: [&str; 3] =
+        ["LAT \"x\" 'y' */ \\ %d\n%}\r*/ end", "δ_a ??/ /* \u{2028} ''' \"\"\" ${x}", "\\u{7f}\u{0}\\"];
+
+    /// A correction with every kind of curve and names that are hard to write.
+    pub(in crate::io::exports) fn example() -> ScheduledCorrection {
+        let polynomial = |of_logarithm, coefficients: &[f64], least, most| Curve::Polynomial {
+            of_logarithm,
+            coefficients: coefficients.to_vec(),
+            least,
+            most,
+        };
+        let channel = |name: &str, gain, delay_s| ScheduledChannel { name: name.to_owned(), gain, delay_s };
+        let table = Curve::Table { airspeed_kt: vec![0.0, 40.0, 61.3], values: vec![0.9, 1.1 / 3.0, 2.0] };
+        ScheduledCorrection {
+            name: format!("first {}", NASTY[0]),
+            dataset: NASTY[1].to_owned(),
+            software: "gdcm 0.1.0".to_owned(),
+            sha256: "ba78".to_owned(),
+            inputs: vec![
+                channel(NASTY[0], polynomial(true, &[0.1, -0.7 / 3.0, 0.05], None, Some(1.2)), Curve::Constant(0.02)),
+                channel(NASTY[1], table, polynomial(false, &[0.03, 0.04], Some(0.0), None)),
+            ],
+            outputs: vec![channel(
+                NASTY[2],
+                Curve::Constant(1.0),
+                Curve::Table { airspeed_kt: vec![30.0], values: vec![0.1] },
+            )],
+            airspeed_range_kt: (0.0, 80.0),
+            airspeed_mean_kt: 40.0,
+            airspeed_half_range_kt: 40.0,
+        }
+    }
+
+    /// Airspeeds within the range, on its points, and outside.
+    pub(in crate::io::exports) fn airspeeds() -> Vec<f64> {
+        (0..50).map(|index| f64::from(index) * 2.0 - 9.0).collect()
+    }
+
+    /// What a program must give, airspeed by airspeed: gains of inputs and outputs, delays of inputs and outputs.
+    pub(in crate::io::exports) fn expected(correction: &ScheduledCorrection) -> Vec<f64> {
+        let values = |airspeed: f64| {
+            let at = correction.cut(airspeed);
+            let channels = || correction.inputs.iter().chain(&correction.outputs);
+            let gains = channels().map(move |channel| channel.gain.at(at));
+            gains.chain(channels().map(move |channel| channel.delay_s.at(at))).collect::<Vec<_>>()
+        };
+        airspeeds().into_iter().flat_map(values).collect()
+    }
+
+    /// Compares what a program printed to 1e-12 of each value.
+    pub(in crate::io::exports) fn assert_printed(correction: &ScheduledCorrection, printed: &str) {
+        let found: Vec<f64> = printed.split_whitespace().map(|word| word.parse().unwrap()).collect();
+        let expected = expected(correction);
+        assert_eq!(found.len(), expected.len(), "{printed}");
+        for (index, (a, b)) in found.iter().zip(&expected).enumerate() {
+            assert!((a - b).abs() <= 1e-12 * b.abs(), "value {index}: {a} instead of {b}");
+        }
+    }
+
+    #[test]
+    fn airspeeds_are_cut_to_the_range() {
+        let correction = example();
+        assert_eq!(correction.cut(-3.0), CutAirspeed { kt: 0.0, scaled: -1.0 });
+        assert_eq!(correction.cut(100.0), CutAirspeed { kt: 80.0, scaled: 1.0 });
+    }
+
+    #[test]
+    fn what_cannot_be_computed_is_refused_with_its_channel() {
+        let mut correction = example();
+        assert_eq!(correction.check(), Ok(()));
+        correction.outputs[0].name = "Q".to_owned();
+        correction.outputs[0].gain = Curve::Constant(f64::NAN);
+        let fault = correction.check().unwrap_err().to_string();
+        assert_eq!(fault, "the gain of output Q has a number that is not finite; correct it before it is exported");
+        correction.airspeed_half_range_kt = 0.0;
+        assert_eq!(correction.check(), Err(ExportFault::Range));
+    }
+}

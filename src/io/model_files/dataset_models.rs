@@ -1,0 +1,67 @@
+//! The models of a dataset of this program, to be put together with others.
+
+use crate::assembly::{ChannelLabel, Facts, FoundModel};
+use crate::dataset::{
+    BundleKind, Channel, Condition, Dataset, Dynamics, Model, ModelDraft, PairTable, Provenance, ResponseArray,
+    ResponseDraft, Timing,
+};
+
+/// Every model, with what the dataset says about it.
+pub(super) fn models_of(dataset: &Dataset) -> Vec<FoundModel> {
+    let mut models = Vec::new();
+    for condition in dataset.conditions() {
+        for kind in BundleKind::BOTH {
+            models.extend(condition.bundle(kind).iter().map(|model| found(dataset, condition, kind, model)));
+        }
+    }
+    models
+}
+
+fn found(dataset: &Dataset, condition: &Condition, kind: BundleKind, model: &Model) -> FoundModel {
+    let state = condition.flight_state();
+    let label = |channel: &Channel| ChannelLabel { name: Some(channel.name.clone()), unit: Some(channel.unit.clone()) };
+    let (matrices, timing, response) = match &model.dynamics {
+        Dynamics::StateSpace(system) => {
+            let matrices = [system.a(), system.b(), system.c(), system.d()].map(|matrix| Some(matrix.clone()));
+            (matrices, system.timing().clone(), None)
+        }
+        Dynamics::Measured(response) => {
+            let array = |table: PairTable<Vec<f64>>| {
+                let shape = [table.outputs(), table.inputs(), response.omega().len()];
+                ResponseArray { shape, values: table.pairs().flat_map(|pair| table[pair].clone()).collect() }
+            };
+            let draft = ResponseDraft {
+                omega: response.omega().to_vec(),
+                re: array(response.values().map(|_, values| values.iter().map(|value| value.re).collect())),
+                im: array(response.values().map(|_, values| values.iter().map(|value| value.im).collect())),
+                coherence: response.coherence().cloned().map(array),
+                valid_bands: None,
+                estimate: response.estimate().clone(),
+            };
+            ([None, None, None, None], Timing::default(), Some(draft))
+        }
+    };
+    FoundModel {
+        draft: ModelDraft {
+            name: model.name.clone(),
+            origin: model.origin.clone(),
+            matrices,
+            timing,
+            response,
+            source: Some(Provenance {
+                variable: Some(format!("{}/{kind}/{}", state.id, model.name)),
+                ..Provenance::default()
+            }),
+            states: model.states.to_vec(),
+        },
+        inputs: dataset.inputs().iter().map(label).collect(),
+        outputs: dataset.outputs().iter().map(label).collect(),
+        facts: Facts {
+            condition: Some(state.id.0),
+            airspeed_kt: Some(state.airspeed_kt),
+            altitude_ft: state.altitude_ft,
+            mass_kg: state.mass_kg,
+        },
+        notes: Vec::new(),
+    }
+}

@@ -1,0 +1,100 @@
+//! Models in files of whatever format: MATLAB, NumPy, JSON, text.
+//!
+//! ```text
+//! bytes -> format, by what they begin with                      (never by the name alone)
+//!       -> variables, or a table of columns                     (mat, mat73, npy, text, JSON)
+//!       -> models                                               (recognise)
+//! folder -> files -> models; matrices in files of their own go together by name: A.csv, B.csv, C.csv, D.csv
+//! ```
+
+mod contents;
+mod dataset_models;
+mod folder;
+mod format;
+mod json_value;
+mod loose_matrices;
+mod table_models;
+
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
+
+use crate::assembly::FoundModel;
+use crate::dataset::Provenance;
+
+use super::file_error::FileError;
+use super::recognise::{Recognised, recognise};
+use super::source::read_bytes;
+use super::variables::{Meter, Variable};
+
+use contents::{Contents, contents_of};
+use loose_matrices::LooseMatrix;
+
+pub use folder::{FolderProgress, read_models};
+pub use format::FileFormat;
+
+/// Memory that the variables of one file may take \[bytes\].
+const MOST_MEMORY: u64 = 1 << 30;
+/// Largest file of models \[bytes\].
+const LARGEST_FILE: u64 = 512 << 20;
+
+/// What was found in files.
+#[derive(Clone, Debug, Default)]
+pub struct FoundModels {
+    /// The models, in the order of their files.
+    pub models: Vec<FoundModel>,
+    /// What could not be taken: files, and what looks like a model in them, each with its place and why.
+    pub faults: Vec<String>,
+    /// What is no model, in words.
+    pub passed_over: Vec<String>,
+    /// Number of files that were read.
+    pub files: usize,
+}
+
+/// What one file holds.
+#[derive(Default)]
+struct FileModels {
+    recognised: Recognised,
+    /// A matrix that has a file to itself.
+    loose: Option<LooseMatrix>,
+}
+
+/// The models of one file; `name` is how the dataset calls it, relative to what was asked for.
+fn read_file(path: &Path, name: &str, stop: &dyn Fn() -> bool) -> Result<FileModels, FileError> {
+    let bytes = read_bytes(path, LARGEST_FILE)?;
+    let meter = Meter::new(MOST_MEMORY, stop);
+    let wrong = |fault| FileError::Variables { path: path.to_owned(), fault };
+    let mut found = match contents_of(&bytes, path, &meter)? {
+        Contents::Variables { variables, notes } => of_variables(&variables, notes, name),
+        Contents::Table { table, notes } => {
+            let recognised = table_models::models_of(&table, name, notes).map_err(wrong)?;
+            FileModels { recognised, loose: None }
+        }
+        Contents::Dataset(dataset) => {
+            let recognised = Recognised { models: dataset_models::models_of(&dataset), ..Recognised::default() };
+            FileModels { recognised, loose: None }
+        }
+    };
+    let sha256: String = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+    for model in &mut found.recognised.models {
+        let source = model.draft.source.get_or_insert_with(Provenance::default);
+        source.file = Some(name.to_owned());
+        source.sha256 = Some(sha256.clone());
+        source.note = Some(model.notes.join("; ")).filter(|note| !note.is_empty());
+    }
+    if let Some(loose) = &mut found.loose {
+        loose.sha256 = sha256;
+    }
+    Ok(found)
+}
+
+fn of_variables(variables: &[Variable], notes: Vec<String>, name: &str) -> FileModels {
+    if let Some(loose) = LooseMatrix::of(variables, name) {
+        return FileModels { recognised: Recognised::default(), loose: Some(loose) };
+    }
+    let mut recognised = recognise(variables);
+    for model in &mut recognised.models {
+        model.notes.extend(notes.iter().cloned());
+    }
+    FileModels { recognised, loose: None }
+}

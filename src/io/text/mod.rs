@@ -1,0 +1,29 @@
+//! Texts that hold numbers: tables in columns, frequency responses, matrices and MATLAB literals.
+
+mod cell_number;
+mod column_guess;
+mod column_meaning;
+mod columns;
+mod encoding;
+mod frequency_columns;
+mod frequency_values;
+mod heading;
+mod layout;
+mod lines;
+mod literals;
+mod matrix_text;
+mod printed_line;
+mod response_columns;
+mod response_label;
+mod separator;
+mod unit_word;
+
+pub use columns::{TextTable, read_table};
+pub use encoding::{DecodedText, Encoding, decode};
+pub use frequency_columns::{
+    FrequencyColumn, FrequencyColumns, FrequencyUnit, MagnitudeUnit, PhaseUnit, RecognisedResponse, ResponseParts,
+};
+pub use frequency_values::ResponsePoints;
+pub use literals::{Literals, read_literals};
+pub use matrix_text::{NamedMatrices, read_matrices, read_matrix};
+pub use separator::Separator;

@@ -41,7 +41,7 @@ fn stages(criterion: &mut Criterion) {
     let responses = ConditionResponses::of(condition, (dataset.band(), 200), &alone).expect("nobody stops it");
     let figures = BundleFigures::of(condition, &responses, &measuring, &alone).expect("nobody stops it");
     let polar = PolarResponse::of;
-    let mismatch = mismatch_table(&polar(&responses.physics[10]), &polar(&responses.identified[2]));
+    let mismatch = mismatch_table(&polar(&responses.physics[10]), &polar(&responses.identified[2]), None);
     let models = condition.bundle(BundleKind::Physics);
     let perturbations: Vec<_> = models.iter().map(|model| (model.name.as_str(), model.perturbation())).collect();
     let mut group = criterion.benchmark_group("one condition");

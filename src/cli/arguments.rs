@@ -8,7 +8,7 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::figure::{ColumnWidth, FigureKind, Role};
 use crate::schedule::HIGHEST_DEGREE;
-use crate::study::{AcrossRole, LEAST_POINTS, MOST_POINTS};
+use crate::study::{AcrossRole, DEFAULT_COHERENCE, LEAST_POINTS, MOST_POINTS};
 
 /// Gain-Delay Correction Method: matches physics-based helicopter models to flight.
 #[derive(Debug, Parser)]
@@ -119,6 +119,9 @@ pub struct StudyArguments {
     /// Mismatch up to which a loop of held gains counts as agreeing, in dB.
     #[arg(long, value_name = "DB", value_parser = real_number, allow_negative_numbers = true)]
     pub agreement: Option<f64>,
+    /// Whether the coherence of measured responses counts: off, on, or the least that does (on is 0.6).
+    #[arg(long, value_name = "off|on|LEAST", allow_negative_numbers = true)]
+    pub coherence: Option<CoherenceChoice>,
     /// Responses to hold, OUTPUT/INPUT, separated by commas (P/LAT,Q/LON); "none" holds none. Without it, the on-axis ones.
     #[arg(long, value_name = "PAIRS")]
     pub on: Option<PairList>,
@@ -252,6 +255,26 @@ fn real_number(text: &str) -> Result<f64, String> {
 fn whole_number<const LEAST: usize, const MOST: usize>(text: &str) -> Result<usize, String> {
     let number = text.trim().parse().ok().filter(|number| (LEAST..=MOST).contains(number));
     number.ok_or_else(|| format!("expected a whole number from {LEAST} to {MOST}, found {text}"))
+}
+
+/// Whether coherence counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoherenceChoice {
+    /// The least that does; none where it counts for nothing.
+    pub threshold: Option<f64>,
+}
+
+impl FromStr for CoherenceChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let threshold = match text {
+            "off" => None,
+            "on" => Some(DEFAULT_COHERENCE),
+            number => Some(number.parse().map_err(|_| format!("expected off, on or a number, found {number}"))?),
+        };
+        Ok(Self { threshold })
+    }
 }
 
 /// Responses by the names of their channels.

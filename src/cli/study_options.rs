@@ -5,7 +5,7 @@ use crate::io::{LoadedDataset, embedded_example};
 use crate::schedule::{ScheduleKind, ScheduleSettings};
 use crate::study::{Analysis, Edit, Engine, Progress, Setting, Study};
 
-use super::arguments::{PairList, Rejection, StudyArguments};
+use super::arguments::{CoherenceChoice, PairList, Rejection, StudyArguments};
 use super::failure::Failure;
 use super::opening::open as open_file;
 use super::terminal::say_error;
@@ -62,6 +62,9 @@ fn take_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Fai
     }
     if let Some(agreement_db) = arguments.agreement {
         set("--agreement", Setting::Agreement(agreement_db))?;
+    }
+    if let Some(CoherenceChoice { threshold }) = arguments.coherence {
+        set("--coherence", Setting::Coherence(threshold))?;
     }
     if arguments.schedule_delays {
         let schedule = ScheduleSettings { delays: true, ..study.settings.schedule };

@@ -2,15 +2,16 @@
 //! spread over the band gives to the channels (M7).
 
 use crate::dataset::{Pair, PairTable};
-use crate::fidelity::Mismatch;
-use crate::response::{PolarResponse, median, quantile};
+use crate::fidelity::{CountedFrequencies, Mismatch};
+use crate::response::{PolarResponse, quantile};
 use crate::units::db_to_ratio;
 
 use super::GainBounds;
 
 /// `G = median |H_ref| / |H_sim|` and `D = median Delta phi(H_sim, H_ref) / omega` of every response (M6).
 ///
-/// `None` where the ratio is zero or not finite at some frequency.
+/// `None` where the ratio is zero or not finite at some frequency, or where none counts. The medians are weighted where the
+/// reference is measured with coherence (M4a).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Delta {
     /// G, `[output, input]`, dimensionless.
@@ -22,8 +23,8 @@ pub struct Delta {
 impl Delta {
     /// G and D of the mismatch of two representatives.
     pub fn of(mismatch: &PairTable<Option<Mismatch>>, omega: &[f64]) -> Self {
-        let gain = mismatch.map(|_, entry| entry.as_ref().map(|entry| median(&mut ratios(entry))));
-        let delay_s = mismatch.map(|_, entry| entry.as_ref().map(|entry| median(&mut delays(entry, omega))));
+        let gain = mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.median(&mut ratios(entry))));
+        let delay_s = mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.median(&mut delays(entry, omega))));
         Self { gain, delay_s }
     }
 }
@@ -31,10 +32,19 @@ impl Delta {
 /// A ratio beyond this (1e50 and 1e-50), of which the objective cannot take the square, counts as infinite or zero (M6).
 const LARGEST_DB: f64 = 1000.0;
 
-/// The mismatch of every response that both models have and whose ratio is finite and not zero.
-pub fn mismatch_table(simulated: &PolarResponse, reference: &PolarResponse) -> PairTable<Option<Mismatch>> {
+/// The mismatch of every response that both models have and whose ratio is finite and not zero, at the frequencies that count:
+/// all where `counted` is none (M4a).
+pub fn mismatch_table(
+    simulated: &PolarResponse,
+    reference: &PolarResponse,
+    counted: Option<&PairTable<CountedFrequencies>>,
+) -> PairTable<Option<Mismatch>> {
     simulated.curves().map(|pair, simulated| {
         let mismatch = Mismatch::new(simulated.as_ref()?, reference.curves()[pair].as_ref()?);
+        let mismatch = match counted {
+            None => mismatch,
+            Some(counted) => mismatch.counting(&counted[pair])?,
+        };
         mismatch.magnitude_db.iter().all(|error| error.abs() < LARGEST_DB).then_some(mismatch)
     })
 }
@@ -46,7 +56,7 @@ fn ratios(mismatch: &Mismatch) -> Vec<f64> {
 
 /// `Delta phi(H_sim, H_ref) / omega` \[s\] at each frequency, on the branch nearest to a pure delay (M6b).
 fn delays(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
-    mismatch.phase_difference(omega).iter().zip(omega).map(|(phase, omega)| phase / omega).collect()
+    mismatch.phase_difference(omega).iter().zip(mismatch.omega(omega)).map(|(phase, omega)| phase / omega).collect()
 }
 
 /// The mismatches that are pooled: those marked in `measuring`, or all where none of the marked is defined.

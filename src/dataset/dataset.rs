@@ -6,7 +6,7 @@ use super::band::Band;
 use super::channel::Channel;
 use super::condition::Condition;
 use super::identity::{BundleKind, ConditionId, ModelId};
-use super::model::Model;
+use super::model::{Dynamics, Model};
 use super::pair::{Pair, PairTable};
 
 /// Channels, on-axis responses, the default band, and the flight conditions with their models (M1).
@@ -171,6 +171,13 @@ impl Dataset {
     /// One condition.
     pub fn condition(&self, id: ConditionId) -> Option<&Arc<Condition>> {
         self.conditions.iter().find(|condition| condition.id() == id)
+    }
+
+    /// Whether any identified model is measured with coherence.
+    pub fn has_coherence(&self) -> bool {
+        let has =
+            |model: &Model| matches!(&model.dynamics, Dynamics::Measured(response) if response.coherence().is_some());
+        self.conditions.iter().any(|condition| condition.bundle(BundleKind::Identified).iter().any(has))
     }
 
     /// One model.

@@ -1,6 +1,6 @@
 //! The cost J of a mismatch between two responses, eq. (14)-(19).
 
-use crate::response::{mean, median};
+use crate::response::{mean, median, weighted_median};
 
 /// Weight of the squared magnitude error \[dB^2\], `W_g`.
 pub const MAGNITUDE_WEIGHT: f64 = 1.0;
@@ -24,15 +24,21 @@ pub enum CostAverage {
 }
 
 impl CostAverage {
-    fn of(self, squares: &mut [f64]) -> f64 {
-        match self {
-            CostAverage::Median => median(squares),
-            CostAverage::Mean => mean(squares),
+    fn of(self, squares: &mut [f64], weights: Option<&[f64]>) -> f64 {
+        match (self, weights) {
+            (CostAverage::Median, None) => median(squares),
+            (CostAverage::Mean, None) => mean(squares),
+            (CostAverage::Median, Some(weights)) => weighted_median(squares, weights),
+            // Over the number of frequencies, not over the sum of weights: Tischler's form.
+            (CostAverage::Mean, Some(weights)) => {
+                squares.iter_mut().zip(weights).for_each(|(square, weight)| *square *= weight);
+                mean(squares)
+            }
         }
     }
 }
 
-/// The two parts of J; `J = J_mag + J_phase` (M4).
+/// The two parts of J; `J = J_mag + J_phase` (M4). With weights the average is a weighted one (M4a).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
     /// `J_mag = 20 W_g average(e_dB^2)`.
@@ -42,21 +48,23 @@ pub struct Cost {
 }
 
 impl Cost {
-    /// J of the magnitude errors \[dB\] and the phase errors \[rad\], one of each for each frequency.
+    /// J of the magnitude errors \[dB\] and the phase errors \[rad\], one of each for each frequency; `weights` likewise, where
+    /// not all frequencies count alike.
     ///
     /// `scratch` is overwritten.
     pub fn of(
         magnitude_error_db: impl Iterator<Item = f64>,
         phase_error: impl Iterator<Item = f64>,
+        weights: Option<&[f64]>,
         average: CostAverage,
         scratch: &mut Vec<f64>,
     ) -> Self {
         scratch.clear();
         scratch.extend(magnitude_error_db.map(|error| error * error));
-        let magnitude = SCALE * MAGNITUDE_WEIGHT * average.of(scratch);
+        let magnitude = SCALE * MAGNITUDE_WEIGHT * average.of(scratch, weights);
         scratch.clear();
         scratch.extend(phase_error.map(f64::to_degrees).map(|error| error * error));
-        let phase = SCALE * PHASE_WEIGHT * average.of(scratch);
+        let phase = SCALE * PHASE_WEIGHT * average.of(scratch, weights);
         Self { magnitude, phase }
     }
 
@@ -72,7 +80,7 @@ mod tests {
 
     #[test]
     fn a_constant_error_has_the_cost_of_the_definition() {
-        let cost = Cost::of([2.0; 5].into_iter(), [0.1; 5].into_iter(), CostAverage::Median, &mut Vec::new());
+        let cost = Cost::of([2.0; 5].into_iter(), [0.1; 5].into_iter(), None, CostAverage::Median, &mut Vec::new());
         assert_eq!(cost.magnitude, 80.0);
         // 20 * 0.0175 * (18 / pi)^2, by hand: 11.48966...; a few roundings.
         assert!((cost.phase - 0.35 * (18.0 / std::f64::consts::PI).powi(2)).abs() < 1e-12);
@@ -82,7 +90,18 @@ mod tests {
     fn the_median_ignores_one_bad_frequency_and_the_mean_does_not() {
         let error = || [1.0, 1.0, 10.0].into_iter();
         let none = || [0.0; 3].into_iter();
-        assert_eq!(Cost::of(error(), none(), CostAverage::Median, &mut Vec::new()).total(), 20.0);
-        assert_eq!(Cost::of(error(), none(), CostAverage::Mean, &mut Vec::new()).total(), 680.0);
+        assert_eq!(Cost::of(error(), none(), None, CostAverage::Median, &mut Vec::new()).total(), 20.0);
+        assert_eq!(Cost::of(error(), none(), None, CostAverage::Mean, &mut Vec::new()).total(), 680.0);
+    }
+
+    #[test]
+    fn weights_are_tischlers_in_the_mean_and_a_weighted_median_in_the_median() {
+        let cost = |average| {
+            let (magnitude, phase) = ([1.0, 3.0, 2.0].into_iter(), [0.0; 3].into_iter());
+            Cost::of(magnitude, phase, Some(&[0.5, 1.0, 0.25]), average, &mut Vec::new()).total()
+        };
+        // 20 / 3 (0.5 + 9 + 1); half of the weight of 1.75 is passed at the last of the squares 1, 4, 9.
+        assert!((cost(CostAverage::Mean) - 70.0).abs() < 1e-13);
+        assert_eq!(cost(CostAverage::Median), 180.0);
     }
 }

@@ -3,9 +3,12 @@
 use std::collections::BTreeSet;
 
 use crate::dataset::{Pair, PairTable};
-use crate::response::PolarResponse;
+use crate::response::{PolarCurve, PolarResponse};
 
+use super::cost::{Cost, CostAverage};
+use super::counted::CountedFrequencies;
 use super::mean_cost::mean_cost;
+use super::mismatch::Mismatch;
 
 /// Which responses measure distance in a bundle, and what each model lacks of them (M5b).
 #[derive(Clone, Debug, PartialEq)]
@@ -79,16 +82,45 @@ impl BundleDistance {
     }
 }
 
+/// A model of a bundle as distances compare it.
+#[derive(Clone, Copy, Debug)]
+pub struct ComparedModel<'a> {
+    /// Its responses.
+    pub responses: &'a PolarResponse,
+    /// Which frequencies of each count, where it is measured with coherence (M4a).
+    pub counted: Option<&'a PairTable<CountedFrequencies>>,
+}
+
+impl ComparedModel<'_> {
+    /// J with this model as the reference, by its coherence; none where it says nothing.
+    fn cost_as_reference(&self, a: &PolarCurve, b: &PolarCurve, pair: Pair) -> Option<f64> {
+        let mismatch = Mismatch::new(a, b).counting(&self.counted?[pair])?;
+        let weights = mismatch.counted.as_ref().map(CountedFrequencies::weights);
+        let (magnitude_db, phase) = (mismatch.magnitude_db.iter().copied(), mismatch.phase.iter().copied());
+        Some(Cost::of(magnitude_db, phase, weights, CostAverage::Mean, &mut Vec::new()).total())
+    }
+}
+
 /// The distances of one model from each of the models after it: independent pieces of work for a large bundle.
-pub fn distances_from(a: usize, responses: &[&PolarResponse], compared: &[Pair]) -> Vec<f64> {
-    let a_curves = responses[a].curves();
-    let distance = |b: &PolarResponse| {
-        let b_curves = b.curves();
-        let curves = compared.iter().filter_map(|&pair| a_curves[pair].as_ref().zip(b_curves[pair].as_ref()));
-        let sum: f64 = curves.map(|(a, b)| mean_cost(a, b)).sum();
+///
+/// J is weighted by the coherence of the model that is compared with (M4a). In a bundle either may be that: where one of the two has
+/// coherence, J is the mean of both ways, so that a distance does not depend on the order of the models. A response of which no
+/// frequency counts is compared over all of them, for models that were hardly measured must not look alike.
+pub fn distances_from(a: usize, models: &[ComparedModel<'_>], compared: &[Pair]) -> Vec<f64> {
+    let of_pair = |b: &ComparedModel<'_>, pair: Pair| {
+        let (from, to) = (models[a].responses.curves()[pair].as_ref()?, b.responses.curves()[pair].as_ref()?);
+        if models[a].counted.is_none() && b.counted.is_none() {
+            return Some(mean_cost(from, to));
+        }
+        let ways = [models[a], *b].map(|reference| reference.cost_as_reference(from, to, pair));
+        let [one, other] = ways.map(|cost| cost.unwrap_or_else(|| mean_cost(from, to)));
+        Some(0.5 * (one + other))
+    };
+    let distance = |b: &ComparedModel<'_>| {
+        let sum: f64 = compared.iter().filter_map(|&pair| of_pair(b, pair)).sum();
         (sum / compared.len().max(1) as f64).sqrt()
     };
-    responses[a + 1..].iter().map(|b| distance(b)).collect()
+    models[a + 1..].iter().map(distance).collect()
 }
 
 /// The medoid of the models kept, or the one the analyst pinned, with every kept model's score (M5).
@@ -119,5 +151,46 @@ impl Representative {
             }
         }
         Some(Self { model: pinned.filter(|model| kept.contains(model)).unwrap_or(medoid), scores })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dataset::{Dynamics, MeasuredResponse};
+    use crate::response::{FrequencyGrid, FrequencyResponse};
+
+    /// A response of 1 but for the upper half of the band, where it is `upper`, of this coherence there.
+    fn measured(upper: f64, coherence: f64) -> Dynamics {
+        let table = |low: f64, high: f64| PairTable::filled(1, 1, vec![low, low, high, high]);
+        let coherence = Some(table(1.0, coherence));
+        let omega = vec![1.0, 2.99, 3.01, 9.0];
+        Dynamics::Measured(MeasuredResponse::new(omega, &table(1.0, upper), &table(0.0, 0.0), coherence).unwrap())
+    }
+
+    fn distances(models: &[Dynamics], threshold: Option<f64>) -> Vec<f64> {
+        let grid = FrequencyGrid::logarithmic(crate::dataset::Band::new(1.0, 9.0).unwrap(), 100);
+        let of = |model| PolarResponse::of(&FrequencyResponse::of(model, &grid));
+        let responses: Vec<PolarResponse> = models.iter().map(of).collect();
+        let counted: Vec<_> =
+            models.iter().map(|model| CountedFrequencies::of_model(model, grid.omega(), threshold)).collect();
+        let models: Vec<ComparedModel<'_>> = responses
+            .iter()
+            .zip(&counted)
+            .map(|(responses, counted)| ComparedModel { responses, counted: counted.as_ref() })
+            .collect();
+        (0..models.len()).flat_map(|a| distances_from(a, &models, &[Pair::new(0, 0)])).collect()
+    }
+
+    #[test]
+    fn what_was_not_measured_counts_in_a_distance_one_way_only_where_the_other_model_has_it() {
+        let (good, bad) = (measured(1.0, 0.9), measured(2.0, 0.1));
+        let [apart] = distances(&[good.clone(), bad.clone()], None)[..] else { panic!("one distance") };
+        let [weighed] = distances(&[good.clone(), bad.clone()], Some(0.6))[..] else { panic!("one distance") };
+        let [turned] = distances(&[bad.clone(), good.clone()], Some(0.6))[..] else { panic!("one distance") };
+        assert_eq!(weighed, turned, "whichever comes first");
+        assert!(weighed > 0.0 && weighed < apart);
+        // Half of J at the weight 0.879 of the one, and none of it by the other.
+        assert!((weighed / apart - (0.5 * crate::fidelity::coherence_weight(0.9)).sqrt()).abs() < 0.01);
     }
 }

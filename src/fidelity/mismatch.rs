@@ -4,9 +4,10 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Complex;
 
-use crate::response::{GainDelay, PolarCurve, centred_unwrap, wrap};
+use crate::response::{GainDelay, PolarCurve, centred_unwrap, median, weighted_median, wrap};
 
 use super::cost::{Cost, CostAverage};
+use super::counted::CountedFrequencies;
 
 /// What a gain and a delay have to act upon: the difference of a simulated response from its reference.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +16,9 @@ pub struct Mismatch {
     pub magnitude_db: Vec<f64>,
     /// Principal value of `arg(H_sim conj H_ref)` \[rad\] at each frequency.
     pub phase: Vec<f64>,
+    /// At which frequencies those stand and what each counts, where the reference's coherence says so (M4a); otherwise they stand
+    /// at each frequency of the grid and count alike.
+    pub counted: Option<CountedFrequencies>,
 }
 
 impl Mismatch {
@@ -23,15 +27,39 @@ impl Mismatch {
         let difference = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>();
         let mut phase = difference(&simulated.phase, &reference.phase);
         phase.iter_mut().for_each(|angle| *angle = wrap(*angle));
-        Self { magnitude_db: difference(&simulated.magnitude_db, &reference.magnitude_db), phase }
+        Self { magnitude_db: difference(&simulated.magnitude_db, &reference.magnitude_db), phase, counted: None }
+    }
+
+    /// What is left of it at the frequencies that count, as if there were no others; none where none counts (M4a).
+    pub fn counting(self, counted: &CountedFrequencies) -> Option<Self> {
+        let (magnitude_db, phase) = (counted.pick(&self.magnitude_db), counted.pick(&self.phase));
+        (!counted.is_empty()).then(|| Self { magnitude_db, phase, counted: Some(counted.clone()) })
+    }
+
+    /// The frequencies \[rad/s\] at which it stands: all of the grid, or those that count.
+    pub fn omega<'a>(&'a self, grid: &'a [f64]) -> &'a [f64] {
+        self.counted.as_ref().map_or(grid, CountedFrequencies::omega)
+    }
+
+    /// The median of a figure of each frequency, weighted where not all count alike (M6, M4a).
+    pub fn median(&self, values: &mut [f64]) -> f64 {
+        match self.weights() {
+            None => median(values),
+            Some(weights) => weighted_median(values, weights),
+        }
+    }
+
+    fn weights(&self) -> Option<&[f64]> {
+        self.counted.as_ref().map(CountedFrequencies::weights)
     }
 
     /// J after a correction of the simulated response (M4, M10). The correction takes `omega tau` from the phase, of which the
     /// principal value counts: a zero passed on the other side of the axis must not cost a whole turn.
     pub fn cost(&self, omega: &[f64], correction: GainDelay, average: CostAverage) -> Cost {
+        let omega = self.omega(omega);
         let phase = correction.phases(&self.phase, omega).map(wrap);
         let magnitude = correction.magnitudes_db(&self.magnitude_db);
-        Cost::of(magnitude, phase, average, &mut Vec::with_capacity(omega.len()))
+        Cost::of(magnitude, phase, self.weights(), average, &mut Vec::with_capacity(omega.len()))
     }
 
     /// Whether the unwrapped `Delta phi` of M3 leaves half a turn somewhere, so that M6b decides on the turns.
@@ -49,7 +77,7 @@ impl Mismatch {
     /// `Delta phi(sim, ref)` \[rad\] as a delay takes it from `omega`: that of M3 where it stays within half a turn, else at
     /// each frequency the turn nearest to the pure delay that fits best (M6b).
     pub fn phase_difference(&self, omega: &[f64]) -> Vec<f64> {
-        let mut phase = self.unwrapped();
+        let (mut phase, omega) = (self.unwrapped(), self.omega(omega));
         if phase.iter().any(|phase| phase.abs() > PI) {
             let delay_s = nearest_pure_delay_s(&phase, omega);
             for (phase, omega) in phase.iter_mut().zip(omega) {
@@ -115,13 +143,34 @@ mod tests {
         let omega: Vec<f64> = (1..=120).map(|k| 0.1 * f64::from(k)).collect();
         let turn = |omega: f64| TAU / (1.0 + (-40.0 * (omega - 2.0)).exp());
         let phase = omega.iter().map(|omega| wrap(-0.07 * omega + turn(*omega))).collect();
-        let mismatch = Mismatch { magnitude_db: vec![0.0; 120], phase };
+        let mismatch = Mismatch { magnitude_db: vec![0.0; 120], phase, counted: None };
         let cost = mismatch.cost(&omega, GainDelay::new(1.0, -0.07), CostAverage::Median);
         // Squares of what is left of the turn at 6 rad/s: e^-160.
         assert!(cost.phase < 1e-20, "{cost:?}");
         let delays = mismatch.phase_difference(&omega).into_iter().zip(&omega).map(|(phase, omega)| phase / omega);
         let mut delays: Vec<f64> = delays.collect();
         assert!((crate::response::median(&mut delays) + 0.07).abs() < 1e-12);
+    }
+
+    #[test]
+    fn frequencies_that_do_not_count_move_neither_the_cost_nor_the_branch() {
+        let omega: Vec<f64> = (1..=240).map(|k| 0.1 * f64::from(k)).collect();
+        let mut reference = curve(1.0, 0.3, &omega);
+        // From 5 to 8 rad/s nothing but noise was measured.
+        for (k, phase) in reference.phase.iter_mut().enumerate().take(80).skip(50) {
+            *phase = wrap(2.3 * (k * k) as f64);
+            reference.magnitude_db[k] = 40.0;
+        }
+        let coherence: Vec<f64> = (0..240).map(|k| if (50..80).contains(&k) { 0.1 } else { 0.8 }).collect();
+        let counted = CountedFrequencies::of(&omega, &coherence, 0.6, None);
+        let mismatch = Mismatch::new(&curve(0.0, 0.0, &omega), &reference).counting(&counted).unwrap();
+        let (phase, left) = (mismatch.phase_difference(&omega), mismatch.omega(&omega));
+        assert_eq!((phase.len(), left.len()), (210, 210));
+        assert!(phase.iter().zip(left).all(|(phase, omega)| (phase - 0.3 * omega).abs() < 1e-13));
+        let right = GainDelay::new(db_to_ratio(1.0), 0.3);
+        assert!(mismatch.cost(&omega, right, CostAverage::Mean).total() < 1e-20);
+        let nothing = CountedFrequencies::of(&omega, &[0.0; 240], 0.6, None);
+        assert_eq!(mismatch.counting(&nothing), None);
     }
 
     #[test]

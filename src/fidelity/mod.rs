@@ -4,6 +4,7 @@
 mod absolute_deviations;
 mod assignment;
 mod cost;
+mod counted;
 mod discontinuity;
 mod distance;
 mod mean_cost;
@@ -14,8 +15,9 @@ mod vertex;
 
 pub use absolute_deviations::FitError;
 pub use cost::{ACCEPTABLE, Cost, CostAverage, INDISTINGUISHABLE, PHASE_WEIGHT};
+pub use counted::{CountedFrequencies, coherence_weight};
 pub use discontinuity::{CoordinateWeight, Discontinuity, DiscontinuityError, SUGGESTION_RATIO};
-pub use distance::{BundleDistance, MeasuredPairs, Representative, distances_from};
+pub use distance::{BundleDistance, ComparedModel, MeasuredPairs, Representative, distances_from};
 pub use mismatch::Mismatch;
 pub use mode_tracks::{ModeTrack, mode_tracks};
 pub use muad::{Muad, leaves};

@@ -35,6 +35,9 @@ pub struct SettingsEntry {
     /// `median` or `mean`: the average over frequency in J.
     #[serde(with = "CostAverageWord")]
     pub cost_average: CostAverage,
+    /// Least coherence that counts; without it coherence counts for nothing, as in files of older programs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coherence_threshold: Option<f64>,
     /// `ratio` or `dB`: what the gains minimise.
     #[serde(with = "GainObjectiveWord")]
     pub gain_objective: GainObjective,
@@ -129,6 +132,7 @@ impl SettingsEntry {
             constrained: names(&settings.constrained),
             ignored: names(&settings.fitted.map(|_, fitted| !fitted)),
             cost_average: settings.cost_average,
+            coherence_threshold: settings.coherence_threshold,
             gain_objective: settings.gain_objective,
             gain_bounds: settings.gain_bounds.map(|bounds| [bounds.lower, bounds.upper]),
             delay_upper_s: settings.delay_upper_s,
@@ -147,6 +151,7 @@ impl SettingsEntry {
             ("band_rad_s", Setting::Band(band)),
             ("points", Setting::Points(self.points)),
             ("cost_average", Setting::CostAverage(self.cost_average)),
+            ("coherence_threshold", Setting::Coherence(self.coherence_threshold)),
             ("alpha_gain", Setting::AlphaGain(self.alpha_gain)),
             ("alpha_delay", Setting::AlphaDelay(self.alpha_delay)),
             ("gain_objective", Setting::GainObjective(self.gain_objective)),

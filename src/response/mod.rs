@@ -28,5 +28,5 @@ pub use polar::{PolarCurve, PolarResponse};
 pub use poles::{Mode, ModesError, NearDefective, modes, modes_of};
 pub use prepared_model::{LargeEntry, PreparedModel};
 pub use response_shape::{ResponseShape, wrapped_deg};
-pub use statistics::{mean, median, quantile};
+pub use statistics::{mean, median, quantile, weighted_median};
 pub use zeros::{TransmissionZeros, ZerosError, finite_zeros, transmission_zeros};

@@ -16,6 +16,30 @@ pub fn median(values: &mut [f64]) -> f64 {
     0.5 * (lower + *upper)
 }
 
+/// Weighted median: the smallest value at which the cumulated weight reaches half of the whole, or the mean of it and the next
+/// where it is half exactly; of equal weights that is [`median`] (M4a).
+///
+/// Returns NaN for no values. The values must be finite and the weights positive, one for each.
+pub fn weighted_median(values: &[f64], weights: &[f64]) -> f64 {
+    /// Share of the whole weight by which sums of thousands of weights may be rounded.
+    const ROUNDING: f64 = 1e-12;
+    let mut sorted: Vec<(f64, f64)> = values.iter().copied().zip(weights.iter().copied()).collect();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let whole: f64 = sorted.iter().map(|(_, weight)| weight).sum();
+    let mut cumulated = 0.0;
+    for (index, &(value, weight)) in sorted.iter().enumerate() {
+        cumulated += weight;
+        let beyond_half = cumulated - 0.5 * whole;
+        if beyond_half.abs() <= ROUNDING * whole {
+            return sorted.get(index + 1).map_or(value, |(next, _)| 0.5 * (value + next));
+        }
+        if beyond_half > 0.0 {
+            return value;
+        }
+    }
+    f64::NAN
+}
+
 /// Arithmetic mean; NaN for no values.
 pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
@@ -41,12 +65,31 @@ pub fn quantile(values: &mut [f64], q: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn the_median_of_an_even_count_is_the_mean_of_the_middle_two() {
         assert_eq!(median(&mut [4.0, 1.0, 3.0, 2.0]), 2.5);
         assert_eq!(median(&mut [4.0, 1.0, 3.0]), 3.0);
         assert!(median(&mut []).is_nan());
+    }
+
+    #[test]
+    fn the_weighted_median_is_where_half_of_the_weight_lies() {
+        assert_eq!(weighted_median(&[3.0, 1.0, 2.0], &[1.0, 1.0, 3.0]), 2.0);
+        assert_eq!(weighted_median(&[3.0, 1.0, 2.0], &[2.0, 1.0, 1.0]), 2.5);
+        assert_eq!(weighted_median(&[5.0], &[0.3]), 5.0);
+        assert!(weighted_median(&[], &[]).is_nan());
+    }
+
+    proptest! {
+        #[test]
+        fn equal_weights_give_the_median_to_the_last_digit(
+            values in prop::collection::vec(-1e3_f64..1e3, 1..300), weight in 0.05_f64..1.0,
+        ) {
+            let weights = vec![weight; values.len()];
+            prop_assert_eq!(weighted_median(&values, &weights), median(&mut values.clone()));
+        }
     }
 
     #[test]

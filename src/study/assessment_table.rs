@@ -11,6 +11,7 @@ use crate::schedule::CostChange;
 use crate::units::signed;
 
 use super::analysis::Analysis;
+use super::caution::Undefined;
 use super::comparison::ModelMismatch;
 use super::condition_analysis::ConditionAnalysis;
 use super::job::Job;
@@ -187,6 +188,9 @@ fn missing(
     let without = changes.iter().filter(|(_, change)| change.is_none()).map(|(pair, _)| pair);
     let why = |pair: Pair| match (&models.mismatch[pair], result.comparison.undefined[pair]) {
         (Some(_), _) => "the scheduled net gain is not positive",
+        (None, Some(Undefined::NotCoherent)) => {
+            "its response was not measured: no frequency of the band is coherent enough"
+        }
         (None, Some(_)) => "its response is zero, numerically nothing or not finite somewhere in the band",
         (None, None) => "the nominal model's response is zero, numerically nothing or not finite somewhere in the band",
     };

@@ -48,6 +48,19 @@ pub enum Caution {
         /// The responses.
         responses: Vec<Pair>,
     },
+    /// Frequencies of the identified representative's responses count for nothing, because it was not measured there (M4a).
+    NotCoherent {
+        /// Least coherence that counts.
+        threshold: f64,
+        /// Number of responses that coherence weighs.
+        weighed: usize,
+        /// How many frequencies of which response are left out, the most first.
+        left_out: Vec<(Pair, usize)>,
+        /// Number of frequencies in the band.
+        points: usize,
+    },
+    /// The identified representative is measured with coherence, which is switched off (M4a).
+    CoherenceNotUsed,
     /// A response is fitted whose G is far from one.
     UnusualGain {
         /// The response.
@@ -83,6 +96,8 @@ pub enum Undefined {
     ZeroOrNotFinite,
     /// It is numerically nothing in the representative of this bundle (M6a).
     NumericallyNothing(BundleKind),
+    /// No frequency of the identified representative's response is coherent enough, or all lie outside its valid band (M4a).
+    NotCoherent,
 }
 
 impl Undefined {
@@ -90,6 +105,9 @@ impl Undefined {
     pub fn words(self) -> String {
         match self {
             Undefined::ZeroOrNotFinite => "its response is zero or not finite somewhere in the band".to_owned(),
+            Undefined::NotCoherent => {
+                "its response was not measured: at no frequency of the band does its coherence count".to_owned()
+            }
             Undefined::NumericallyNothing(bundle) => format!(
                 "its response is numerically nothing in the {} model: over the band less than 1e-6 of the greatest of its \
                  output and of its input",
@@ -163,6 +181,9 @@ impl NotFinite {
     }
 }
 
+/// Responses named of those that frequencies are left out of.
+const NAMED: usize = 3;
+
 /// G outside these is unusual: a change of units, a sign of a response that means nothing.
 const USUAL_GAINS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 
@@ -206,6 +227,25 @@ impl Caution {
                 model.words(),
                 names(responses)
             ),
+            Caution::NotCoherent { threshold, weighed, left_out, points } => {
+                let some: Vec<String> = left_out
+                    .iter()
+                    .take(NAMED)
+                    .map(|(pair, count)| format!("{count} of {}", pair_name(*pair)))
+                    .collect();
+                let rest = left_out.len().saturating_sub(NAMED);
+                let more = if rest > 0 { format!(", and some of {rest} more responses") } else { String::new() };
+                format!(
+                    "coherence weighs J, G and D of {weighed} responses; of {points} frequencies, {}{more} are left out: \
+                     their coherence is under {}, or they lie outside the valid band",
+                    some.join(", "),
+                    number(*threshold)
+                )
+            }
+            Caution::CoherenceNotUsed => {
+                "the identified representative is measured with coherence, which is switched off: every frequency counts alike"
+                    .to_owned()
+            }
             Caution::UnusualGain { pair, gain } => format!(
                 "{} has a G of {}, outside {} to {}, and is fitted like the others: ignore it in the objective if it means \
                  nothing (in a study file: \"ignored\")",

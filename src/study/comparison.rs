@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use crate::correction::{Delta, mismatch_table};
-use crate::dataset::{BundleKind, Condition, ConditionId, Pair, PairTable};
+use crate::dataset::{BundleKind, Condition, ConditionId, Dynamics, Pair, PairTable};
 use crate::fidelity::{
-    BundleDistance, Cost, CostAverage, Discontinuity, DiscontinuityError, FitError, MeasuredPairs, Mismatch,
-    Representative, distances_from,
+    BundleDistance, ComparedModel, Cost, CostAverage, CountedFrequencies, Discontinuity, DiscontinuityError, FitError,
+    MeasuredPairs, Mismatch, Representative, distances_from,
 };
 use crate::response::{FrequencyGrid, FrequencyResponse, GainDelay, PolarResponse};
 
@@ -30,15 +30,21 @@ pub struct BundleFigures {
 }
 
 impl BundleFigures {
-    /// Distances over the responses marked in `measuring`, two steps for each model.
+    /// Distances over the responses marked in `measuring`, two steps for each model. Measured models are compared by their
+    /// coherence where there is a threshold for it (M4a).
     pub fn of(
         condition: &Condition,
         responses: &ConditionResponses,
         measuring: &PairTable<bool>,
+        (grid, coherence): (&FrequencyGrid, Option<f64>),
         execution: &Execution<'_>,
     ) -> Result<Self, Cancelled> {
-        let physics = distances(&responses.physics, measuring, execution)?;
-        let identified = distances(&responses.identified, measuring, execution)?;
+        let distances = |kind| {
+            let models = condition.bundle(kind).iter();
+            let counted = models.map(|model| CountedFrequencies::of_model(&model.dynamics, grid.omega(), coherence));
+            distances(responses.bundle(kind), &counted.collect::<Vec<_>>(), measuring, execution)
+        };
+        let (physics, identified) = (distances(BundleKind::Physics)?, distances(BundleKind::Identified)?);
         let models = condition.bundle(BundleKind::Physics);
         let perturbations: Vec<(&str, Option<&BTreeMap<String, f64>>)> =
             models.iter().map(|model| (model.name.as_str(), model.perturbation())).collect();
@@ -80,11 +86,13 @@ fn measured_pairs(
 
 fn distances(
     responses: &[Arc<FrequencyResponse>],
+    counted: &[Option<PairTable<CountedFrequencies>>],
     measuring: &PairTable<bool>,
     execution: &Execution<'_>,
 ) -> Result<BundleDistance, Cancelled> {
     let (polar, measured) = measured_pairs(responses, measuring, execution)?;
-    let compared: Vec<&PolarResponse> = measured.compared_models().into_iter().map(|model| &polar[model]).collect();
+    let model = |model: usize| ComparedModel { responses: &polar[model], counted: counted[model].as_ref() };
+    let compared: Vec<ComparedModel<'_>> = measured.compared_models().into_iter().map(model).collect();
     let rows = execution.each(compared.len(), 1, |place| distances_from(place, &compared, &measured.compared))?;
     execution.step(polar.len() - compared.len());
     Ok(BundleDistance::from_rows(rows, measured))
@@ -119,8 +127,8 @@ pub struct ModelMismatch {
 }
 
 impl ModelMismatch {
-    fn of(simulated: &PolarResponse, reference: &PolarResponse, omega: &[f64], average: CostAverage) -> Self {
-        let mismatch = mismatch_table(simulated, reference);
+    fn of(simulated: &Compared, reference: &Compared, omega: &[f64], average: CostAverage) -> Self {
+        let mismatch = mismatch_table(&simulated.polar, &reference.polar, reference.counted.as_ref());
         let cost = mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.cost(omega, GainDelay::NONE, average)));
         Self { mismatch, cost }
     }
@@ -146,14 +154,15 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Picks the representatives among the models kept and compares them.
+    /// Picks the representatives among the models kept and compares them, by the coherence of the identified one where there is
+    /// a threshold for it (M4a).
     pub fn of(
         condition: &Condition,
         responses: &ConditionResponses,
         figures: &BundleFigures,
         grid: &FrequencyGrid,
         choice: &ConditionChoice,
-        average: CostAverage,
+        (average, coherence): (CostAverage, Option<f64>),
     ) -> Result<Self, ConditionFailure> {
         let top = grid.omega().last().copied().unwrap_or_default();
         let of_kind = |kind| {
@@ -170,10 +179,11 @@ impl Comparison {
             representative.ok_or(ConditionFailure::AllSetAside { bundle: kind })
         };
         let (physics, identified) = (representative(BundleKind::Physics)?, representative(BundleKind::Identified)?);
-        let reference = Compared::of(&responses.identified[identified.model]);
+        let flight = &condition.bundle(BundleKind::Identified)[identified.model].dynamics;
+        let mut reference = Compared::of(&responses.identified[identified.model]);
+        reference.counted = CountedFrequencies::of_model(flight, grid.omega(), coherence);
         let simulated = Compared::of(&responses.physics[physics.model]);
-        let against =
-            |simulated: &Compared| ModelMismatch::of(&simulated.polar, &reference.polar, grid.omega(), average);
+        let against = |simulated: &Compared| ModelMismatch::of(simulated, &reference, grid.omega(), average);
         let representative = against(&simulated);
         let nominal = condition.nominal();
         let nominal = if physics.model == nominal {
@@ -186,8 +196,12 @@ impl Comparison {
             Some(_) => None,
             None if simulated.nothing[pair] => Some(Undefined::NumericallyNothing(BundleKind::Physics)),
             None if reference.nothing[pair] => Some(Undefined::NumericallyNothing(BundleKind::Identified)),
+            None if simulated.has(pair) && reference.has(pair) && reference.left(pair) == Some(0) => {
+                Some(Undefined::NotCoherent)
+            }
             None => Some(Undefined::ZeroOrNotFinite),
         });
+        cautions.extend(coherence_caution(flight, &reference, grid.len(), coherence));
         for (kind, model, compared) in
             [(BundleKind::Physics, physics.model, &simulated), (BundleKind::Identified, identified.model, &reference)]
         {
@@ -201,10 +215,29 @@ impl Comparison {
     }
 }
 
+/// What coherence did to the comparison with a reference, where that is more than to weigh it (M4a).
+fn coherence_caution(
+    flight: &Dynamics,
+    reference: &Compared,
+    points: usize,
+    coherence: Option<f64>,
+) -> Option<Caution> {
+    let Dynamics::Measured(response) = flight else { return None };
+    response.coherence()?;
+    let Some(threshold) = coherence else { return Some(Caution::CoherenceNotUsed) };
+    let pairs: Vec<Pair> = reference.polar.curves().pairs().filter(|pair| reference.has(*pair)).collect();
+    let left_out = pairs.iter().filter_map(|pair| Some((*pair, points - reference.left(*pair)?)));
+    let mut left_out: Vec<(Pair, usize)> = left_out.filter(|(_, count)| *count > 0).collect();
+    left_out.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    (!left_out.is_empty()).then_some(Caution::NotCoherent { threshold, weighed: pairs.len(), left_out, points })
+}
+
 /// A model as it is compared: without the responses that are numerically nothing.
 struct Compared {
     polar: PolarResponse,
     nothing: PairTable<bool>,
+    /// Which frequencies count, where coherence says that.
+    counted: Option<PairTable<CountedFrequencies>>,
 }
 
 impl Compared {
@@ -212,6 +245,15 @@ impl Compared {
         let mut polar = PolarResponse::of(response);
         let nothing = polar.numerically_nothing();
         polar.clear(&nothing);
-        Self { polar, nothing }
+        Self { polar, nothing, counted: None }
+    }
+
+    fn has(&self, pair: Pair) -> bool {
+        self.polar.curves()[pair].is_some()
+    }
+
+    /// How many frequencies of a response count, where coherence says which do.
+    fn left(&self, pair: Pair) -> Option<usize> {
+        self.counted.as_ref().map(|counted| counted[pair].len())
     }
 }

@@ -21,8 +21,8 @@ use super::memo::Memo;
 use super::progress::Cancelled;
 use super::settings::Settings;
 
-/// What the distances depend on, besides the models: the grid, and the responses that measure them.
-type FiguresKey = (GridKey, PairTable<bool>);
+/// What the distances depend on, besides the models: the grid, the responses that measure them, and the coherence that counts.
+type FiguresKey = (GridKey, PairTable<bool>, Option<f64>);
 /// What the comparison of the representatives depends on, besides the models.
 type ComparisonKey = (FiguresKey, ConditionChoice, CostAverage);
 /// What the bounds depend on: the comparison, the quantile, and the bounds set by hand.
@@ -90,13 +90,14 @@ impl ConditionStages {
     ) -> Result<Result<ConditionAnalysis, ConditionFailure>, Cancelled> {
         let condition = Arc::clone(self.models.condition());
         let grid_key = (study.settings.band, study.settings.points);
-        let figures_key = (grid_key, study.dataset.measuring_pairs());
+        let coherence = study.settings.coherence_threshold;
+        let figures_key = (grid_key, study.dataset.measuring_pairs(), coherence);
         let responses = self.models.responses(Purpose::Comparison, grid_key, grid, execution)?;
         if self.figures.holds(&figures_key) {
             execution.step(2 * model_count(&condition));
         }
-        let figures = self.figures.get_or_fail(figures_key, |(_, measuring)| {
-            BundleFigures::of(&condition, &responses, measuring, execution).map(Arc::new)
+        let figures = self.figures.get_or_fail(figures_key, |(_, measuring, _)| {
+            BundleFigures::of(&condition, &responses, measuring, (grid, coherence), execution).map(Arc::new)
         })?;
         let outcome = self.compare_and_solve(study, &condition, grid, &responses, figures, (proofs, execution))?;
         execution.step(1);
@@ -115,10 +116,12 @@ impl ConditionStages {
         let settings = &study.settings;
         let measuring = study.dataset.measuring_pairs();
         let choice = study.choice(condition.id());
-        let figures_key = ((settings.band, settings.points), measuring.clone());
+        let coherence = settings.coherence_threshold;
+        let figures_key = ((settings.band, settings.points), measuring.clone(), coherence);
         let key: ComparisonKey = (figures_key, choice.without_reasons(), settings.cost_average);
         let comparison = self.comparison.get(key.clone(), |_| {
-            let comparison = Comparison::of(condition, responses, &figures, grid, choice, settings.cost_average);
+            let averaging = (settings.cost_average, coherence);
+            let comparison = Comparison::of(condition, responses, &figures, grid, choice, averaging);
             comparison.map(Arc::new)
         });
         let compared = comparison.and_then(|comparison| {

@@ -67,6 +67,8 @@ fn setting_words(settings: &Settings) -> Vec<(&'static str, String)> {
         CostAverage::Median => "median",
         CostAverage::Mean => "mean",
     };
+    let coherence = settings.coherence_threshold;
+    let coherence = coherence.map_or_else(|| "not used".to_owned(), |least| format!("used from {}", number(least)));
     let objective = match settings.gain_objective {
         GainObjective::Ratio => "ratios",
         GainObjective::Decibel => "dB",
@@ -81,6 +83,7 @@ fn setting_words(settings: &Settings) -> Vec<(&'static str, String)> {
         ("frequency band", band),
         ("number of frequencies", settings.points.to_string()),
         ("average in J", average.to_owned()),
+        ("coherence", coherence),
         ("α of the gains", number(settings.alpha_gain)),
         ("α of the delays", number(settings.alpha_delay)),
         ("objective of the gains", objective.to_owned()),

@@ -58,8 +58,8 @@ pub use progress::{Cancelled, Progress, Unobserved};
 pub use remark::{Remark, RemarkKind, details, remarks};
 pub use setting::Setting;
 pub use settings::{
-    DEFAULT_AGREEMENT_DB, GREATEST_AGREEMENT_DB, GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE, LARGEST_ALPHA,
-    LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings,
+    DEFAULT_AGREEMENT_DB, DEFAULT_COHERENCE, GREATEST_AGREEMENT_DB, GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE,
+    LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings,
 };
 pub use table::Table;
 pub use toggles::Toggles;

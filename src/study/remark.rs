@@ -5,6 +5,7 @@ use crate::dataset::Pair;
 use crate::schedule::Schedule;
 use crate::units::{number, s_to_ms, telling, told_apart};
 
+use super::caution::Caution;
 use super::condition_analysis::ConditionAnalysis;
 use super::document::Study;
 
@@ -42,6 +43,7 @@ pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Sche
     let mut remarks = gain_remarks(study, result);
     remarks.extend(delay_remarks(study, result));
     remarks.extend(agreement_remarks(study, result));
+    remarks.extend(coherence_remark(result));
     remarks.extend(worse_remark(study, result));
     if !study.choice(result.condition.id()).scheduled {
         let text = "This condition is left out of the schedule: its gains do not count in it.".to_owned();
@@ -89,6 +91,15 @@ fn agreement_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let (inputs, outputs) = study.dataset.names_of_channels();
     let loops = result.gains.agreeing.iter().chain(&result.delays.agreeing);
     loops.map(|of| Remark::new(RemarkKind::Good, of.agreement_words(&inputs, &outputs))).collect()
+}
+
+/// That coherence weighs, where it leaves nothing out; a caution says so where it does (M4a).
+fn coherence_remark(result: &ConditionAnalysis) -> Option<Remark> {
+    let mismatches = result.comparison.representative.mismatch.iter();
+    let weighed = mismatches.filter(|(_, entry)| entry.as_ref().is_some_and(|entry| entry.counted.is_some())).count();
+    let is_told = result.cautions.iter().any(|caution| matches!(caution, Caution::NotCoherent { .. }));
+    (weighed > 0 && !is_told)
+        .then(|| Remark::new(RemarkKind::Good, format!("Coherence weighs J, G and D of {weighed} responses.")))
 }
 
 /// The held responses that the correction takes away from flight.

@@ -32,6 +32,8 @@ pub enum Setting {
     Points(usize),
     /// Median or mean in J.
     CostAverage(CostAverage),
+    /// Least coherence that counts; `None` lets coherence count for nothing.
+    Coherence(Option<f64>),
     /// What the gains minimise.
     GainObjective(GainObjective),
     /// Quantile that sets the bounds.
@@ -68,6 +70,7 @@ impl Setting {
             Setting::Band(_) => "frequency band",
             Setting::Points(_) => "number of frequencies",
             Setting::CostAverage(_) => "average in J",
+            Setting::Coherence(_) => "coherence threshold",
             Setting::GainObjective(_) => "objective of the gains",
             Setting::Quantile(_) => "quantile of the bounds",
             Setting::GainBounds(_) => "gain bounds",
@@ -105,6 +108,7 @@ impl Setting {
             Setting::Points(points) => {
                 self.check_range("a whole number", *points as f64, LEAST_POINTS as f64, MOST_POINTS as f64)
             }
+            Setting::Coherence(Some(threshold)) => self.check_range("a number", *threshold, 0.0, 1.0),
             Setting::Quantile(quantile) => self.check_range("a number", *quantile, 0.0, GREATEST_QUANTILE),
             Setting::GainBounds(Some(GainBounds { lower, upper })) => {
                 self.check_range("a lower bound", *lower, LEAST_GAIN, GREATEST_GAIN)?;
@@ -130,6 +134,7 @@ impl Settings {
             Setting::Band(band) => self.band = *band,
             Setting::Points(points) => self.points = *points,
             Setting::CostAverage(average) => self.cost_average = *average,
+            Setting::Coherence(threshold) => self.coherence_threshold = *threshold,
             Setting::GainObjective(objective) => self.gain_objective = *objective,
             Setting::Quantile(quantile) => self.quantile = *quantile,
             Setting::GainBounds(bounds) => self.gain_bounds = *bounds,

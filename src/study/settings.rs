@@ -25,6 +25,9 @@ pub const GREATEST_AGREEMENT_DB: f64 = 3.0;
 /// Mismatch of a loop of held gains that counts as agreement \[dB\] before any decision.
 pub const DEFAULT_AGREEMENT_DB: f64 = 0.05;
 
+/// Least coherence of a frequency that counts before any decision (M4a).
+pub const DEFAULT_COHERENCE: f64 = 0.6;
+
 /// Every setting that changes a result; the same for all conditions of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -34,6 +37,9 @@ pub struct Settings {
     pub points: usize,
     /// Whether J takes the median over frequency (the paper) or the mean (Tischler) (M4).
     pub cost_average: CostAverage,
+    /// Least coherence of a frequency that counts, where the reference is measured with coherence, which then weighs J, G and D
+    /// too; none: coherence counts for nothing (M4a).
+    pub coherence_threshold: Option<f64>,
     /// Weight of the regularisation of the output gains, eq. (7).
     pub alpha_gain: f64,
     /// Weight of the regularisation of the output delays, eq. (11).
@@ -64,6 +70,7 @@ impl Settings {
             band: dataset.band(),
             points: 200,
             cost_average: CostAverage::Median,
+            coherence_threshold: dataset.has_coherence().then_some(DEFAULT_COHERENCE),
             alpha_gain: 1.0,
             alpha_delay: 1.0,
             gain_objective: GainObjective::Ratio,

@@ -6,6 +6,7 @@ pub mod assessment_scene;
 pub mod bars;
 pub mod bode_scene;
 pub mod centre;
+mod coherence_setting;
 pub mod command;
 pub mod command_palette;
 mod command_search;

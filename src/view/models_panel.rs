@@ -2,7 +2,7 @@
 
 use egui::{Checkbox, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
-use crate::dataset::{BundleKind, Model, ModelId, Origin};
+use crate::dataset::{BundleKind, Dynamics, Model, ModelId, Origin};
 use crate::fidelity::SUGGESTION_RATIO;
 use crate::study::{AskedFigure, Edit};
 
@@ -264,6 +264,11 @@ impl<'a> ModelRow<'a> {
         }
         if let Some(order) = self.model.order() {
             ui.label(format!("{order} states"));
+        }
+        if let Dynamics::StateSpace(matrices) = &self.model.dynamics
+            && !matrices.timing().is_plain()
+        {
+            ui.label(matrices.timing().words());
         }
         if let Some(why) = &self.set_aside {
             ui.label(why);

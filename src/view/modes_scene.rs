@@ -7,6 +7,7 @@ use nalgebra::Complex;
 use crate::dataset::{BundleKind, Model, ModelId, Pair};
 use crate::response::{Mode, finite_zeros};
 use crate::study::{ConditionModes, Table};
+use crate::units::number;
 
 use super::plot::{MarkShape, PoleMark, Role};
 use super::state::State;
@@ -130,6 +131,7 @@ impl Face {
         };
         let mut details = vec![mode_words(mode)];
         details.extend(participation_words(mode, model));
+        details.extend(sampled_words(model));
         self.mark(shape, [mode.pole.re, mode.pole.im], details)
     }
 
@@ -159,6 +161,13 @@ fn mode_words(mode: &Mode) -> String {
     words.extend(mode.damping_ratio.filter(|_| mode.oscillates()).map(|ratio| format!("ζ {ratio:.3}")));
     words.extend(mode.time_constant_s.map(|constant| format!("T {constant:.2} s")));
     words.join(", ")
+}
+
+/// What a pole of a model of discrete time stands for.
+fn sampled_words(model: &Model) -> Option<String> {
+    let Dynamics::StateSpace(system) = &model.dynamics else { return None };
+    let sample_time_s = system.timing().sample_time_s?;
+    Some(format!("s = ln z / T, T = {} s; poles at z = 0 have no s and are not drawn", number(sample_time_s)))
 }
 
 /// The states that take part most: "w 62 %, q 21 %".

@@ -11,6 +11,7 @@ use crate::study::{
 };
 use crate::units::s_to_ms;
 
+use super::coherence_setting::coherence_ui;
 use super::command::Command;
 use super::heading::heading_ui;
 use super::number_field::{Entered, NumberField, gain_text};
@@ -44,6 +45,7 @@ fn fields_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
         settings.delay_bound_ui();
         settings.agreement_ui();
         settings.method_ui();
+        coherence_ui(settings.ui, state, palette, settings.commands);
     });
 }
 

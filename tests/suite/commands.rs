@@ -166,6 +166,38 @@ fn delays_are_scheduled_and_a_tolerance_is_set_by_options() {
 }
 
 #[test]
+fn coherence_is_switched_by_an_option() {
+    let desk = Desk::new();
+    for (choice, threshold) in [("off", None), ("on", Some(0.6)), ("0.85", Some(0.85))] {
+        desk.gdcm(&["analyze", "small.json", "--out", "out", "--force", "--coherence", choice]).assert_done();
+        let written = read_corrections(&desk.path("out/corrections.json")).unwrap();
+        assert_eq!(written.settings.coherence_threshold, threshold, "{choice}");
+    }
+    for (choice, words) in [
+        ("1.5", "--coherence: coherence threshold: expected a number from 0 to 1, found 1.5"),
+        ("some", "expected off, on or a number, found some"),
+    ] {
+        let ended = desk.gdcm(&["analyze", "small.json", "--out", "out", "--force", "--coherence", choice]);
+        ended.assert_failed(2, &[words]);
+    }
+}
+
+#[test]
+fn sample_times_and_delays_are_told() {
+    let desk = Desk::new();
+    desk.write("timed.json", |file| {
+        let models = &mut file["conditions"][0]["physics_models"];
+        models[0]["sample_time_s"] = json!(0.01);
+        models[1]["input_delays_s"] = json!([0.02, 0]);
+    });
+    let ended = desk.gdcm(&["check", "timed.json"]);
+    ended.assert_done();
+    assert!(ended.out.contains("condition 7, physics nominal: discrete time, T = 0.01 s"), "{}", ended.out);
+    assert!(ended.out.contains("condition 7, physics V+5kt: input delays 0.02, 0 s"), "{}", ended.out);
+    assert!(!desk.gdcm(&["check", "small.json"]).out.contains("Timing"));
+}
+
+#[test]
 fn no_pair_held_is_a_choice_of_its_own() {
     let desk = Desk::new();
     desk.gdcm(&["analyze", "small.json", "--out", "out", "--on", "none"]).assert_done();

@@ -63,6 +63,14 @@ impl<'a> Context<'a> {
         band_words(self.settings())
     }
 
+    /// The two representatives, the band, and which of its frequencies count for a response.
+    pub(super) fn models_and_frequencies(&self, mismatch: &Mismatch) -> Vec<String> {
+        let mut words = self.models();
+        words.push(self.band());
+        words.extend(counted_words(mismatch));
+        words
+    }
+
     /// The marked responses in words.
     pub(super) fn pairs(&self, pairs: impl Iterator<Item = Pair>) -> String {
         let names: Vec<String> = pairs.map(|pair| self.pair(pair)).collect();
@@ -79,6 +87,12 @@ impl<'a> Context<'a> {
     pub(super) fn held(&self) -> String {
         format!("held {}", self.pairs(self.result.held().marked()))
     }
+}
+
+/// How many frequencies count and how much, where coherence says that.
+pub(super) fn counted_words(mismatch: &Mismatch) -> Option<String> {
+    let count = mismatch.counted.as_ref()?.len();
+    Some(format!("{count} of the frequencies, each by its coherence: W = [1.58 (1 − e^(−γ²))]² (M4a)"))
 }
 
 /// The band and its frequencies.

@@ -6,7 +6,7 @@ use crate::fidelity::{Cost, CostAverage, PHASE_WEIGHT};
 use crate::study::assessment_table::{AssessedCorrection, AssessedModel, AssessmentChoice, assessed};
 use crate::units::{number, s_to_ms, signed};
 
-use super::context::{Context, digits};
+use super::context::{Context, counted_words, digits};
 use super::{Derivation, average_word};
 
 const SECTION: &str = "M4, eq. (14) to (19)";
@@ -43,7 +43,7 @@ pub(super) fn before(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
         title: context.title(&format!("J of {} before the correction", context.pair(pair))),
         equation: equation(average),
         with_numbers: steps("J", cost, average),
-        rests_on: [context.models(), vec![context.band()]].concat(),
+        rests_on: context.models_and_frequencies(context.mismatch(pair)?),
         section: SECTION,
         value: cost.total(),
     })
@@ -57,7 +57,7 @@ pub(super) fn after(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
         title: context.title(&format!("J of {} after the correction", context.pair(pair))),
         equation: format!("{}; of H_sim · k_o k_i e^(−jω(τ_o + τ_i))", equation(average)),
         with_numbers: [vec![correction], steps("J", cost, average)].concat(),
-        rests_on: [context.models(), vec![context.band()]].concat(),
+        rests_on: context.models_and_frequencies(context.mismatch(pair)?),
         section: SECTION,
         value: cost.total(),
     })
@@ -85,15 +85,17 @@ pub(super) fn change(context: &Context<'_>, pair: Pair, choice: AssessmentChoice
     with_numbers.extend(steps("J", change.corrected, average));
     let parts = format!("{} magnitude, {} phase", signed(change.magnitude(), 2), signed(change.phase(), 2));
     with_numbers.push(format!("ΔJ = {} − {} = {} ({parts})", digits(after), digits(before), digits(change.total())));
+    let mut rests_on = vec![
+        format!("{role} {} (H_sim)", found.model),
+        format!("identified representative {} (H_ref)", context.result.representative_name(BundleKind::Identified)),
+        context.band(),
+    ];
+    rests_on.extend(context.mismatch(pair).and_then(counted_words));
     Some(Derivation {
         title: context.title(&format!("ΔJ of {which}")),
         equation: format!("ΔJ = J(corrected) − J(uncorrected), {}", equation(average)),
         with_numbers,
-        rests_on: vec![
-            format!("{role} {} (H_sim)", found.model),
-            format!("identified representative {} (H_ref)", context.result.representative_name(BundleKind::Identified)),
-            context.band(),
-        ],
+        rests_on,
         section: "M12, eq. (14) to (19)",
         value: change.total(),
     })

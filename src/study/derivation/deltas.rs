@@ -15,17 +15,25 @@ fn ratios(mismatch: &Mismatch) -> Vec<f64> {
 /// `Δφ/ω` \[ms\] at each frequency, on the branch of M6b.
 fn delays_ms(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
     let phases = mismatch.phase_difference(omega);
-    phases.iter().zip(omega).map(|(phase, omega)| s_to_ms(phase / omega)).collect()
+    phases.iter().zip(mismatch.omega(omega)).map(|(phase, omega)| s_to_ms(phase / omega)).collect()
+}
+
+/// How the median over the frequencies that count comes about.
+fn middle_words(mismatch: &Mismatch, values: &[f64]) -> String {
+    match mismatch.counted {
+        None => median_words(values),
+        Some(_) => format!("where half of the weight lies of {}", spread(values)),
+    }
 }
 
 pub(super) fn gain(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let value = context.result.comparison.delta.gain[pair]?;
-    let ratios = ratios(context.mismatch(pair)?);
+    let mismatch = context.mismatch(pair)?;
     Some(Derivation {
         title: context.title(&format!("G of {}", context.pair(pair))),
         equation: "G = median_ω |H_ref| / |H_sim|".to_owned(),
-        with_numbers: vec![format!("G = {} = {}", median_words(&ratios), digits(value))],
-        rests_on: [context.models(), vec![context.band()]].concat(),
+        with_numbers: vec![format!("G = {} = {}", middle_words(mismatch, &ratios(mismatch)), digits(value))],
+        rests_on: context.models_and_frequencies(mismatch),
         section: "M6, eq. (5)",
         value,
     })
@@ -34,7 +42,7 @@ pub(super) fn gain(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
 pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let value = s_to_ms(context.result.comparison.delta.delay_s[pair]?);
     let mismatch = context.mismatch(pair)?;
-    let mut rests_on = [context.models(), vec![context.band()]].concat();
+    let mut rests_on = context.models_and_frequencies(mismatch);
     if mismatch.leaves_half_a_turn() {
         rests_on.push("at each frequency the turn nearest to the pure delay that fits best (M6b)".to_owned());
     }
@@ -43,7 +51,7 @@ pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
         equation: "D = median_ω Δφ(H_sim, H_ref) / ω".to_owned(),
         with_numbers: vec![format!(
             "D = {} = {} ms",
-            median_words(&delays_ms(mismatch, context.omega())),
+            middle_words(mismatch, &delays_ms(mismatch, context.omega())),
             digits(value)
         )],
         rests_on,

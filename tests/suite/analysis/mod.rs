@@ -10,6 +10,7 @@ use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 
 mod assessment;
+mod coherence;
 mod derivations;
 mod edges;
 mod example;
@@ -19,6 +20,7 @@ mod remarks;
 mod response_paths;
 mod responses;
 mod studies;
+mod timing;
 mod variants;
 
 fn json(text: &str) -> Value {

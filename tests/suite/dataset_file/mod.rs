@@ -78,6 +78,31 @@ fn the_small_dataset_is_read_as_it_is_written() {
 }
 
 #[test]
+fn timing_valid_bands_and_how_a_response_was_estimated_are_known_and_kept() {
+    let bytes = small(|file| {
+        let model = &mut file["conditions"][0]["physics_models"][1];
+        model["sample_time_s"] = json!(0.01);
+        model["output_delays_s"] = json!([0, 0.02]);
+        let response = &mut file["conditions"][0]["identified_models"][1]["frequency_response"];
+        response["averages"] = json!(12);
+        response["window_s"] = json!(20.0);
+        response["valid_band_rad_s"] = json!([[[0.5, 9], [0.5, 9]], [[0.5, 9], [1, 9]]]);
+    });
+    let loaded = load(&bytes).unwrap();
+    assert_eq!(loaded.cautions, Vec::<String>::new());
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("again.json");
+    gdcm::io::save_dataset(&loaded.dataset, &path).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    for written in
+        ["\"sample_time_s\":0.01", "\"output_delays_s\":[0.0,0.02]", "\"averages\":12.0", "\"window_s\":20.0"]
+    {
+        assert!(text.contains(written), "{written}");
+    }
+    assert_eq!(load_dataset(&path).unwrap().dataset, loaded.dataset);
+}
+
+#[test]
 fn a_packed_file_is_known_by_its_bytes_and_not_by_its_name() {
     let plain = load(SMALL.as_bytes()).unwrap();
     let packed = load(&gzip(SMALL.as_bytes())).unwrap();

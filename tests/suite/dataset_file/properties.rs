@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use gdcm::dataset::{
-    Band, Channel, Condition, Dataset, DatasetHeader, Dynamics, FlightState, MeasuredResponse, Model, Origin, Pair,
-    PairTable, StateSpace,
+    Band, Channel, Condition, Dataset, DatasetHeader, Dynamics, Estimate, FlightState, MeasuredResponse, Model, Origin,
+    Pair, PairTable, StateSpace, Timing,
 };
 use gdcm::io::{load_dataset, save_dataset};
 use nalgebra::DMatrix;
@@ -76,22 +76,35 @@ fn matrix(rows: usize, columns: usize) -> impl Strategy<Value = DMatrix<f64>> {
 
 fn state_space(p: usize, m: usize) -> impl Strategy<Value = Dynamics> {
     (0_usize..4).prop_flat_map(move |n| {
-        (matrix(n, n), matrix(n, m), matrix(p, n), matrix(p, m))
-            .prop_map(|(a, b, c, d)| Dynamics::StateSpace(StateSpace::new(a, b, c, d).unwrap()))
+        (matrix(n, n), matrix(n, m), matrix(p, n), matrix(p, m), timing(p, m)).prop_map(|(a, b, c, d, timing)| {
+            Dynamics::StateSpace(StateSpace::new(a, b, c, d).unwrap().timed(timing).unwrap())
+        })
     })
+}
+
+fn timing(p: usize, m: usize) -> impl Strategy<Value = Timing> {
+    let delays = |count| prop::option::of(prop::collection::vec(0.0..=60.0_f64, count));
+    (prop::option::of(1e-9..1e9_f64), delays(m), delays(p)).prop_map(
+        |(sample_time_s, input_delays_s, output_delays_s)| Timing { sample_time_s, input_delays_s, output_delays_s },
+    )
 }
 
 fn measured(p: usize, m: usize) -> impl Strategy<Value = Dynamics> {
     let values = move || prop::collection::vec(numbers(), 3 * p * m);
-    (values(), values(), prop::option::of(prop::collection::vec(0.0..=1.0_f64, 3 * p * m))).prop_map(
-        move |(re, im, coherence)| {
+    let coherence = prop::option::of(prop::collection::vec(0.0..=1.0_f64, 3 * p * m));
+    let band = prop::option::of((0.0..5.0_f64, 5.0..1e3_f64));
+    (values(), values(), coherence, band, prop::option::of(numbers())).prop_map(
+        move |(re, im, coherence, band, window_s)| {
             let table = |values: &[f64]| {
                 PairTable::from_fn(p, m, |Pair { output, input }| values[3 * (output * m + input)..][..3].to_vec())
             };
             let coherence = coherence.as_deref().map(table);
-            Dynamics::Measured(
-                MeasuredResponse::new(vec![0.1, 1.0, 1e300], &table(&re), &table(&im), coherence).unwrap(),
-            )
+            let response = MeasuredResponse::new(vec![0.1, 1.0, 1e300], &table(&re), &table(&im), coherence).unwrap();
+            let response = response.with_estimate(Estimate { averages: window_s, window_s });
+            Dynamics::Measured(match band {
+                Some((low, high)) => response.with_valid_bands(PairTable::filled(p, m, [low, high])).unwrap(),
+                None => response,
+            })
         },
     )
 }

@@ -80,6 +80,7 @@ fn edits() -> impl Strategy<Value = Vec<Edit>> {
         (0.1..1.0_f64, 1.0..3.0_f64).prop_map(|(lower, upper)| Setting::GainBounds(Some(GainBounds { lower, upper }))),
         prop::option::of(number()).prop_map(Setting::DelayUpper),
         (0.0..3.0_f64).prop_map(Setting::Agreement),
+        prop::option::of(0.0..=1.0_f64).prop_map(Setting::Coherence),
         (0_usize..=3, any::<bool>(), any::<bool>(), 0.0..100.0_f64).prop_map(|(degree, table, delays, tolerance)| {
             let kind = if table { ScheduleKind::Table } else { ScheduleKind::Polynomial { degree } };
             let quantity = if delays { ScheduledQuantity::Gain } else { ScheduledQuantity::LnGain };
@@ -117,14 +118,18 @@ proptest! {
 }
 
 #[test]
-fn a_study_of_an_older_program_has_neither_reasons_nor_variants_nor_a_tolerance() {
+fn a_study_of_an_older_program_has_neither_reasons_nor_variants_nor_a_tolerance_nor_coherence() {
     let desk = Desk::new();
     desk.saved(|text| {
         assert!(text.get("variants").is_none() && text["conditions"][0]["physics"].get("reasons").is_none());
-        text["settings"].as_object_mut().unwrap().remove("agreement_db").unwrap();
+        let settings = text["settings"].as_object_mut().unwrap();
+        ["agreement_db", "coherence_threshold"].map(|key| settings.remove(key).unwrap());
     });
     let opened = open_study(&desk.study()).unwrap();
-    assert_eq!(opened.study, Study::new(opened.loaded.dataset.clone()));
+    let mut expected = Study::new(opened.loaded.dataset.clone());
+    assert_eq!(expected.settings.coherence_threshold, Some(0.6), "one response is measured with coherence");
+    decided(&mut expected, &[Edit::Set(Setting::Coherence(None))]);
+    assert_eq!(opened.study, expected, "an older program took no notice of coherence");
     assert_eq!(opened.study.settings.agreement_db, 0.05);
 }
 

@@ -209,3 +209,44 @@ fn a_message_stays_on_one_line_whatever_the_names_in_the_file() {
     assert!(message.contains("matrix A, row 1, column 1") && message.chars().count() < 400, "{message}");
     assert!(!message.contains('\u{1b}'), "{message}");
 }
+
+#[test]
+fn a_sample_time_and_delays_that_cannot_be_are_named() {
+    let model = "condition 7 (number 1 in the file), physics model \"V+5kt\" (number 2)";
+    for (key, value, words) in [
+        (
+            "sample_time_s",
+            json!(0),
+            "sample_time_s: expected a positive number of seconds (none at all for continuous time)",
+        ),
+        ("sample_time_s", json!(-1), "found -1"),
+        ("sample_time_s", json!("fast"), "sample_time_s: expected a number (without quotation marks)"),
+        ("input_delays_s", json!([0.1]), "input_delays_s: expected 2 delays, one for each channel, found 1"),
+        ("input_delays_s", json!([]), "input_delays_s: expected 2 delays"),
+        ("output_delays_s", json!([0, 60.1]), "output_delays_s, entry 2: expected a delay from 0 to 60 s, found 60.1"),
+        ("output_delays_s", json!([-0.01, 0]), "output_delays_s, entry 1: expected a delay"),
+        ("output_delays_s", json!(vec![0; 33]), "expected at most 32 entries"),
+    ] {
+        assert_refused(|file| file["conditions"][0]["physics_models"][1][key] = value, &[model, words]);
+    }
+    assert_refused(
+        |file| file["conditions"][0]["identified_models"][1]["input_delays_s"] = json!([0.1, 0]),
+        &["identified model \"measured\" (number 2)", "a measured response has its delays in it"],
+    );
+}
+
+#[test]
+fn a_valid_band_that_cannot_be_is_named() {
+    let measured = "/conditions/0/identified_models/1/frequency_response";
+    let bands = |band: Value| json!([[[0.5, 9], [0.5, 9]], [[0.5, 9], band]]);
+    for (value, words) in [
+        (
+            bands(json!([9, 0.5])),
+            "valid_band_rad_s, output 2, input 2: expected two rising frequencies from 0, found 9 and 0.5",
+        ),
+        (bands(json!([-1, 9])), "found -1 and 9"),
+        (json!([[[0.5, 9]]]), "valid_band_rad_s: expected 2 x 2 x 2 (outputs x inputs x first and last frequency)"),
+    ] {
+        assert_refused(|file| file.pointer_mut(measured).unwrap()["valid_band_rad_s"] = value, &[words]);
+    }
+}

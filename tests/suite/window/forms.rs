@@ -60,6 +60,21 @@ fn enter_exports_and_what_exists_already_is_asked_about() {
 }
 
 #[test]
+fn coherence_is_switched_where_something_is_measured_with_it() {
+    let mut example = window();
+    assert!(example.query_by_label("Coherence counts").is_none(), "the example has none");
+    open_by_path(&mut example, &files::small_dataset());
+    settle(&mut example);
+    assert_eq!(state(&example).study.settings.coherence_threshold, Some(0.6));
+    click(&mut example, "Coherence counts");
+    assert_eq!(state(&example).study.settings.coherence_threshold, None);
+    click(&mut example, "Coherence counts");
+    example.get_by_label("Least coherence").set_value_accesskit(0.75);
+    settle(&mut example);
+    assert_eq!(state(&example).study.settings.coherence_threshold, Some(0.75));
+}
+
+#[test]
 fn escape_closes_each_form_and_decides_nothing() {
     let mut window = window();
     click(&mut window, "Keep physics model V+10kt");

@@ -81,8 +81,8 @@ fn main() {
     group.bench_function("responses, one core", |bencher| bencher.iter(|| responses(&Sequential)));
     let all = responses(&Pool);
     group.bench_function("distances and ratios, all cores", |bencher| {
-        bencher
-            .iter(|| BundleFigures::of(&condition, &all, &measuring, &Execution::new(&Pool, &Unobserved, 2 * MODELS)));
+        let execution = Execution::new(&Pool, &Unobserved, 2 * MODELS);
+        bencher.iter(|| BundleFigures::of(&condition, &all, &measuring, (&grid, None), &execution));
     });
     group.finish();
     criterion.final_summary();

@@ -19,7 +19,7 @@ fn dataset(keys: &Value, more: &[Value]) -> Arc<Dataset> {
     let mut file = json(SMALL);
     let mut flight = file["conditions"][0]["physics_models"][0].clone();
     let model = flight.as_object_mut().unwrap();
-    ["role", "perturbation"].map(|key| model.remove(key));
+    ["role", "perturbation"].iter().for_each(|key| drop(model.remove(*key)));
     model.extend(keys.as_object().unwrap().clone());
     model.insert("name".to_owned(), json!("flight"));
     file["conditions"][0]["identified_models"] = json!([[flight.clone()].as_slice(), more].concat());

@@ -123,7 +123,7 @@ fn a_study_of_an_older_program_has_neither_reasons_nor_variants_nor_a_tolerance_
     desk.saved(|text| {
         assert!(text.get("variants").is_none() && text["conditions"][0]["physics"].get("reasons").is_none());
         let settings = text["settings"].as_object_mut().unwrap();
-        ["agreement_db", "coherence_threshold"].map(|key| settings.remove(key).unwrap());
+        ["agreement_db", "coherence_threshold"].iter().for_each(|key| drop(settings.remove(*key).unwrap()));
     });
     let opened = open_study(&desk.study()).unwrap();
     let mut expected = Study::new(opened.loaded.dataset.clone());

@@ -25,7 +25,7 @@ pub(super) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Analyse a dataset or a study, write corrections.json, corrections.csv and assessment.csv, and print a summary.
-    Analyze(AnalyzeArguments),
+    Analyze(Box<AnalyzeArguments>),
     /// Make one of the figures that the window shows, or its numbers, as a file.
     Figure(Box<FigureArguments>),
     /// Make a dataset of a folder of model files: MATLAB, NumPy, JSON, text. Without rules, proposes them and says what is missing.

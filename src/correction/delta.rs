@@ -41,10 +41,7 @@ pub fn mismatch_table(
 ) -> PairTable<Option<Mismatch>> {
     simulated.curves().map(|pair, simulated| {
         let mismatch = Mismatch::new(simulated.as_ref()?, reference.curves()[pair].as_ref()?);
-        let mismatch = match counted {
-            None => mismatch,
-            Some(counted) => mismatch.counting(&counted[pair])?,
-        };
+        let mismatch = mismatch.counting(counted.map(|counted| &counted[pair]))?;
         mismatch.magnitude_db.iter().all(|error| error.abs() < LARGEST_DB).then_some(mismatch)
     })
 }

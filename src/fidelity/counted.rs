@@ -63,6 +63,13 @@ impl CountedFrequencies {
         self.places.is_empty()
     }
 
+    /// What stands at these frequencies in their places among `points` of the grid, not a number elsewhere.
+    pub(super) fn spread(&self, values: &[f64], points: usize) -> Vec<f64> {
+        let mut spread = vec![f64::NAN; points];
+        self.places.iter().zip(values).for_each(|(&place, &value)| spread[place] = value);
+        spread
+    }
+
     /// What stands at these frequencies, of one value for each of the grid.
     pub(super) fn pick(&self, values: &[f64]) -> Vec<f64> {
         self.places.iter().map(|&place| values[place]).collect()
@@ -81,6 +88,8 @@ mod tests {
         assert_eq!((counted.omega(), counted.len()), ([3.0, 4.0].as_slice(), 2));
         assert_eq!(counted.weights(), [coherence_weight(0.6), coherence_weight(0.9)]);
         assert_eq!(counted.pick(&[10.0, 20.0, 30.0, 40.0, 50.0]), [30.0, 40.0]);
+        let spread = counted.spread(&[30.0, 40.0], 5);
+        assert!(spread[2..4] == [30.0, 40.0] && [0, 1, 4].iter().all(|place: &usize| spread[*place].is_nan()));
         assert!(CountedFrequencies::of(&omega, &[0.0; 5], 0.0, None).is_empty(), "nothing was measured");
     }
 }

@@ -94,7 +94,7 @@ pub struct ComparedModel<'a> {
 impl ComparedModel<'_> {
     /// J with this model as the reference, by its coherence; none where it says nothing.
     fn cost_as_reference(&self, a: &PolarCurve, b: &PolarCurve, pair: Pair) -> Option<f64> {
-        let mismatch = Mismatch::new(a, b).counting(&self.counted?[pair])?;
+        let mismatch = Mismatch::new(a, b).counting(Some(&self.counted?[pair]))?;
         let weights = mismatch.counted.as_ref().map(CountedFrequencies::weights);
         let (magnitude_db, phase) = (mismatch.magnitude_db.iter().copied(), mismatch.phase.iter().copied());
         Some(Cost::of(magnitude_db, phase, weights, CostAverage::Mean, &mut Vec::new()).total())

@@ -30,8 +30,10 @@ impl Mismatch {
         Self { magnitude_db: difference(&simulated.magnitude_db, &reference.magnitude_db), phase, counted: None }
     }
 
-    /// What is left of it at the frequencies that count, as if there were no others; none where none counts (M4a).
-    pub fn counting(self, counted: &CountedFrequencies) -> Option<Self> {
+    /// What is left of it at the frequencies that count, as if there were no others: all, where coherence does not say; none
+    /// where none counts (M4a).
+    pub fn counting(self, counted: Option<&CountedFrequencies>) -> Option<Self> {
+        let Some(counted) = counted else { return Some(self) };
         let (magnitude_db, phase) = (counted.pick(&self.magnitude_db), counted.pick(&self.phase));
         (!counted.is_empty()).then(|| Self { magnitude_db, phase, counted: Some(counted.clone()) })
     }
@@ -46,6 +48,14 @@ impl Mismatch {
         match self.weights() {
             None => median(values),
             Some(weights) => weighted_median(values, weights),
+        }
+    }
+
+    /// A figure of each frequency at which it stands, in its place on a grid of `points`; not a number where none counts.
+    pub fn on_grid(&self, values: Vec<f64>, points: usize) -> Vec<f64> {
+        match &self.counted {
+            None => values,
+            Some(counted) => counted.spread(&values, points),
         }
     }
 
@@ -163,14 +173,14 @@ mod tests {
         }
         let coherence: Vec<f64> = (0..240).map(|k| if (50..80).contains(&k) { 0.1 } else { 0.8 }).collect();
         let counted = CountedFrequencies::of(&omega, &coherence, 0.6, None);
-        let mismatch = Mismatch::new(&curve(0.0, 0.0, &omega), &reference).counting(&counted).unwrap();
+        let mismatch = Mismatch::new(&curve(0.0, 0.0, &omega), &reference).counting(Some(&counted)).unwrap();
         let (phase, left) = (mismatch.phase_difference(&omega), mismatch.omega(&omega));
         assert_eq!((phase.len(), left.len()), (210, 210));
         assert!(phase.iter().zip(left).all(|(phase, omega)| (phase - 0.3 * omega).abs() < 1e-13));
         let right = GainDelay::new(db_to_ratio(1.0), 0.3);
         assert!(mismatch.cost(&omega, right, CostAverage::Mean).total() < 1e-20);
         let nothing = CountedFrequencies::of(&omega, &[0.0; 240], 0.6, None);
-        assert_eq!(mismatch.counting(&nothing), None);
+        assert_eq!(mismatch.counting(Some(&nothing)), None);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::dataset::{BundleKind, Pair};
-use crate::fidelity::{Mismatch, Muad};
+use crate::fidelity::{CountedFrequencies, Mismatch, Muad};
 use crate::response::{GainDelay, PolarCurve, quantile};
 use crate::units::{ratio_to_db, s_to_ms};
 
@@ -185,14 +185,19 @@ fn errors(source: &ConditionSource<'_>, pair: Pair, omega: &[f64], options: &Bod
     let Some(reference) = polar(BundleKind::Identified, source.reference()) else {
         return Vec::new();
     };
+    // Of a reference measured with coherence the errors at frequencies that do not count are gaps (M4a).
+    let flight = &source.curves.condition.bundle(BundleKind::Identified)[source.reference()].dynamics;
+    let counted = CountedFrequencies::of_model(flight, omega, source.study.settings.coherence_threshold);
     let line = |name: String, role: Role, model: usize, correction: GainDelay| {
         let mismatch = Mismatch::new(&polar(BundleKind::Physics, model)?, &reference);
+        let mismatch = mismatch.counting(counted.as_ref().map(|counted| &counted[pair]))?;
         // On the branch of the model as it is (M6b), which a correction leaves it on.
-        let phase = mismatch.phase_difference(omega);
+        let phase = mismatch.on_grid(mismatch.phase_difference(omega), omega.len());
+        let mismatch_db = mismatch.on_grid(mismatch.magnitude_db.clone(), omega.len());
         Some(ErrorLine {
             name,
             role,
-            ratio_db: correction.magnitudes_db(&mismatch.magnitude_db).map(|db| -db).collect(),
+            ratio_db: correction.magnitudes_db(&mismatch_db).map(|db| -db).collect(),
             phase: correction
                 .phases(&phase, omega)
                 .zip(omega)

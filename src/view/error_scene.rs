@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use crate::dataset::{BundleKind, Pair};
-use crate::fidelity::{Mismatch, Muad, leaves};
+use crate::fidelity::{CountedFrequencies, Mismatch, Muad, leaves};
 use crate::response::{FrequencyResponse, GainDelay, PolarCurve, quantile, wrap};
-use crate::study::{ConditionAnalysis, ConditionCurves};
+use crate::study::{ConditionAnalysis, ConditionCurves, Undefined};
 use crate::units::{ratio_to_db, s_to_ms};
 
 use super::curve_face::{CorrectedFace, corrected_faces, model_faces, reference_of};
@@ -29,10 +29,16 @@ struct DrawnError {
 }
 
 impl ErrorShape {
-    /// Nothing where either response is zero or not finite somewhere.
-    fn of(simulated: &PolarCurve, reference: &PolarCurve, omega: &[f64]) -> Self {
-        let mismatch = Mismatch::new(simulated, reference);
-        Self { phase: mismatch.phase_difference(omega), mismatch_db: mismatch.magnitude_db }
+    /// The error at the frequencies that count; none where none does. Not a number at the others (M4a).
+    fn of(
+        simulated: &PolarCurve,
+        reference: &PolarCurve,
+        omega: &[f64],
+        counted: Option<&CountedFrequencies>,
+    ) -> Option<Self> {
+        let mismatch = Mismatch::new(simulated, reference).counting(counted)?;
+        let phase = mismatch.on_grid(mismatch.phase_difference(omega), omega.len());
+        Some(Self { phase, mismatch_db: mismatch.on_grid(mismatch.magnitude_db.clone(), omega.len()) })
     }
 
     /// After a gain and a delay of the simulated response (M10), which leave it on its branch.
@@ -55,12 +61,14 @@ struct Made {
     pair: Pair,
     reference: usize,
     band: (f64, f64),
+    /// Least coherence that counts.
+    coherence: Option<f64>,
     unit: PhaseErrorUnit,
 }
 
 impl Made {
     fn is_same(&self, other: &Self) -> bool {
-        let key = |made: &Self| (made.pair, made.reference, made.band, made.unit);
+        let key = |made: &Self| (made.pair, made.reference, made.band, made.coherence, made.unit);
         Arc::ptr_eq(&self.curves, &other.curves) && key(self) == key(other)
     }
 
@@ -70,6 +78,12 @@ impl Made {
         let from = omega.partition_point(|omega| *omega < self.band.0);
         let to = omega.partition_point(|omega| *omega <= self.band.1);
         PolarCurve::of(response.curve(self.pair).get(from..to)?)
+    }
+
+    /// The frequencies among `omega` that count, where the reference's coherence says that.
+    fn counted(&self, omega: &[f64]) -> Option<CountedFrequencies> {
+        let flight = &self.curves.condition.bundle(BundleKind::Identified)[self.reference].dynamics;
+        Some(CountedFrequencies::of_model(flight, omega, self.coherence)?[self.pair].clone())
     }
 
     fn omega(&self) -> Arc<[f64]> {
@@ -100,8 +114,9 @@ impl CachedErrors {
         self.zero = vec![0.0; self.omega.len()].into();
         self.corrected.clear();
         let reference = made.polar(&made.curves.identified[made.reference]);
+        let counted = made.counted(&self.omega);
         let error = |response: &Arc<FrequencyResponse>| {
-            let shape = ErrorShape::of(&made.polar(response)?, reference.as_ref()?, &self.omega);
+            let shape = ErrorShape::of(&made.polar(response)?, reference.as_ref()?, &self.omega, counted.as_ref())?;
             let drawn = shape.drawn(GainDelay::NONE, &self.omega, made.unit);
             Some((shape, drawn))
         };
@@ -133,7 +148,8 @@ pub fn error_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
     let reference = reference_of(state, &condition);
     let unit = state.display.curves.phase_error;
     let mut errors = std::mem::take(&mut state.display.errors);
-    errors.refresh(Made { curves, pair, reference, band: (band.min(), band.max()), unit });
+    let coherence = state.study.settings.coherence_threshold;
+    errors.refresh(Made { curves, pair, reference, band: (band.min(), band.max()), coherence, unit });
     let mut drawn = Vec::new();
     for (index, face) in model_faces(state, &condition, BundleKind::Physics).filter(|(_, face)| !face.rejected) {
         if let Some((_, error)) = &errors.errors[index] {
@@ -201,15 +217,19 @@ pub fn noticed(state: &State, drawn: &[BodeCurve]) -> Vec<(f64, f64)> {
     let curves = &state.display.curves;
     let corrected = drawn.iter().find(|curve| curve.id == CurveId::Corrected).filter(|_| curves.shows_muad);
     let Some(curve) = corrected else { return Vec::new() };
-    let error_db: Vec<f64> = curve.magnitude_db.iter().map(|db| -db).collect();
-    let error_deg: Vec<f64> = match curves.phase_error {
-        PhaseErrorUnit::Degree => curve.phase_deg.to_vec(),
-        PhaseErrorUnit::Millisecond => {
-            curve.omega.iter().zip(curve.phase_deg.iter()).map(|(omega, ms)| (1e-3 * ms * omega).to_degrees()).collect()
-        }
-    };
-    let principal: Vec<f64> = error_deg.iter().map(|phase| wrap(phase.to_radians()).to_degrees()).collect();
-    leaves(&curve.omega, &error_db, &principal)
+    let errors = curve.omega.iter().zip(curve.magnitude_db.iter().zip(curve.phase_deg.iter()));
+    let (mut omega, mut error_db, mut principal_deg) = (Vec::new(), Vec::new(), Vec::new());
+    // There is no error at frequencies that do not count.
+    for (&at, (&db, &phase)) in errors.filter(|(_, (db, _))| db.is_finite()) {
+        let radians = match curves.phase_error {
+            PhaseErrorUnit::Degree => phase.to_radians(),
+            PhaseErrorUnit::Millisecond => 1e-3 * phase * at,
+        };
+        omega.push(at);
+        error_db.push(-db);
+        principal_deg.push(wrap(radians).to_degrees());
+    }
+    leaves(&omega, &error_db, &principal_deg)
 }
 
 /// A delay as a line in the pane of phase errors.
@@ -258,7 +278,9 @@ fn quantile_rules(curve: &BodeCurve, q: f64, unit: PhaseErrorUnit) -> Vec<Rule> 
         PhaseErrorUnit::Degree => phase.to_radians() / omega,
         PhaseErrorUnit::Millisecond => 1e-3 * phase,
     });
-    let (mut ratios_db, mut delays_s) = (curve.magnitude_db.to_vec(), delays.collect::<Vec<f64>>());
+    // There is no error at frequencies that do not count.
+    let finite = |values: &mut dyn Iterator<Item = f64>| values.filter(|value| value.is_finite()).collect::<Vec<f64>>();
+    let (mut ratios_db, mut delays_s) = (finite(&mut curve.magnitude_db.iter().copied()), finite(&mut { delays }));
     let label = |q: f64| format!("{:.0} % quantile", 100.0 * q);
     [q, 1.0 - q]
         .into_iter()
@@ -273,6 +295,9 @@ fn quantile_rules(curve: &BodeCurve, q: f64, unit: PhaseErrorUnit) -> Vec<Rule> 
 /// What stands where there is no error to draw.
 pub fn error_message(state: &State, pair: Pair) -> String {
     match state.shown() {
+        Some(shown) if shown.comparison.undefined[pair] == Some(Undefined::NotCoherent) => {
+            format!("{} is not compared: {}", state.dataset().pair_name(pair), Undefined::NotCoherent.words())
+        }
         Some(shown) if shown.comparison.undefined[pair].is_some() => {
             let name = state.dataset().pair_name(pair);
             format!("{name} is not compared: one of the representatives has no such response in the band")
@@ -293,7 +318,7 @@ mod tests {
             magnitude_db: vec![gain_db; omega.len()],
             phase: omega.iter().map(|omega| wrap(omega * lead_s)).collect(),
         };
-        ErrorShape::of(&polar(gain_db, lead_s), &polar(0.0, 0.0), omega)
+        ErrorShape::of(&polar(gain_db, lead_s), &polar(0.0, 0.0), omega, None).unwrap()
     }
 
     #[test]
@@ -308,6 +333,17 @@ mod tests {
         let after = error.drawn(GainDelay::new(10f64.powf(-0.1), 0.6), &omega, PhaseErrorUnit::Degree);
         let values = after.magnitude_db.iter().chain(after.phase.iter());
         assert!(values.into_iter().all(|value| value.abs() < 1e-10));
+    }
+
+    #[test]
+    fn frequencies_that_do_not_count_are_gaps() {
+        let (omega, polar) = ([1.0, 2.0, 3.0], PolarCurve { magnitude_db: vec![1.0; 3], phase: vec![0.1; 3] });
+        let counted = CountedFrequencies::of(&omega, &[0.9, 0.2, 0.9], 0.6, None);
+        let shape = ErrorShape::of(&polar, &polar, &omega, Some(&counted)).unwrap();
+        assert!(shape.mismatch_db[1].is_nan() && shape.phase[1].is_nan());
+        assert_eq!((shape.mismatch_db[0], shape.phase[2]), (0.0, 0.0));
+        let nothing = CountedFrequencies::of(&omega, &[0.0; 3], 0.6, None);
+        assert!(ErrorShape::of(&polar, &polar, &omega, Some(&nothing)).is_none());
     }
 
     #[test]

@@ -149,9 +149,12 @@ fn quantile_lines(lines: &[ErrorLine], omega: &[f64], q: f64, unit: PhaseErrorUn
     // The nominal model keeps its role where it represents its bundle.
     let own = lines.iter().find(represents).or(lines.iter().find(|line| line.role == Role::Nominal));
     let Some(own) = own else { return Vec::new() };
+    // There is no error at frequencies that do not count.
+    let mut ratios_db: Vec<f64> = own.ratio_db.iter().copied().filter(|ratio| ratio.is_finite()).collect();
+    let delays_s = own.phase.iter().zip(omega).map(|(phase, at)| unit.delay_s(*phase, *at));
+    let mut delays_s: Vec<f64> = delays_s.filter(|delay| delay.is_finite()).collect();
     let line = |q: f64| {
-        let ratio_db = quantile(&mut own.ratio_db.to_vec(), q);
-        let mut delays_s: Vec<f64> = own.phase.iter().zip(omega).map(|(phase, at)| unit.delay_s(*phase, *at)).collect();
+        let ratio_db = quantile(&mut ratios_db, q);
         let delay_s = quantile(&mut delays_s, q);
         let phase = omega.iter().map(|at| unit.of(delay_s * at, *at)).collect();
         let ratio_db = vec![ratio_db; omega.len()].into();

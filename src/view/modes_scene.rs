@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Complex;
 
-use crate::dataset::{BundleKind, Model, ModelId, Pair};
+use crate::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
 use crate::response::{Mode, finite_zeros};
 use crate::study::{ConditionModes, Table};
 use crate::units::number;

@@ -53,7 +53,8 @@ pub enum StateSpaceError {
 }
 
 impl StateSpace {
-    /// The model (A, B, C, D) of continuous time; the order is the rows of `A`, the inputs and outputs are the columns and rows of `D`.
+    /// The model (A, B, C, D) of continuous time; the order is the rows of `A`, the inputs and outputs are the columns and rows
+    /// of `D`.
     pub fn new(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>, d: DMatrix<f64>) -> Result<Self, StateSpaceError> {
         let (n, p, m) = (a.nrows(), d.nrows(), d.ncols());
         for (matrix, of, rows, columns) in [('A', &a, n, n), ('B', &b, n, m), ('C', &c, p, n)] {

@@ -103,9 +103,9 @@ impl ComparedModel<'_> {
 
 /// The distances of one model from each of the models after it: independent pieces of work for a large bundle.
 ///
-/// J is weighted by the coherence of the model that is compared with (M4a). In a bundle either may be that: where one of the two has
-/// coherence, J is the mean of both ways, so that a distance does not depend on the order of the models. A response of which no
-/// frequency counts is compared over all of them, for models that were hardly measured must not look alike.
+/// J is weighted by the coherence of the model that is compared with (M4a). In a bundle either may be that: where one of the two
+/// has coherence, J is the mean of both ways, so that a distance does not depend on the order of the models. A response of which
+/// no frequency counts is compared over all of them, for models that were hardly measured must not look alike.
 pub fn distances_from(a: usize, models: &[ComparedModel<'_>], compared: &[Pair]) -> Vec<f64> {
     let of_pair = |b: &ComparedModel<'_>, pair: Pair| {
         let (from, to) = (models[a].responses.curves()[pair].as_ref()?, b.responses.curves()[pair].as_ref()?);

@@ -63,7 +63,8 @@ pub fn finite_zeros(dynamics: &Dynamics, pair: Pair) -> Vec<Complex<f64>> {
 }
 
 /// The transmission zeros of the response of one output to one input: where `H(z) = C (zI - A)^-1 B + D` is zero. Poles that the
-/// response does not have (not reached or not seen) are no zeros either. Those of discrete time are told as `s = ln z / T` (M2a).
+/// response does not have (not reached or not seen) are no zeros either. Those of discrete time are told as `s = ln z / T`
+/// (M2a).
 ///
 /// # Errors
 /// [`ZerosError`] where there is no response, or nothing can be computed.

@@ -181,9 +181,6 @@ impl NotFinite {
     }
 }
 
-/// Responses named of those that frequencies are left out of.
-const NAMED: usize = 3;
-
 /// G outside these is unusual: a change of units, a sign of a response that means nothing.
 const USUAL_GAINS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 
@@ -227,21 +224,12 @@ impl Caution {
                 model.words(),
                 names(responses)
             ),
-            Caution::NotCoherent { threshold, weighed, left_out, points } => {
-                let some: Vec<String> = left_out
-                    .iter()
-                    .take(NAMED)
-                    .map(|(pair, count)| format!("{count} of {}", pair_name(*pair)))
-                    .collect();
-                let rest = left_out.len().saturating_sub(NAMED);
-                let more = if rest > 0 { format!(", and some of {rest} more responses") } else { String::new() };
-                format!(
-                    "coherence weighs J, G and D of {weighed} responses; of {points} frequencies, {}{more} are left out: \
-                     their coherence is under {}, or they lie outside the valid band",
-                    some.join(", "),
-                    number(*threshold)
-                )
-            }
+            Caution::NotCoherent { threshold, weighed, left_out, points } => format!(
+                "coherence weighs J, G and D of {weighed} responses; of {points} frequencies, {} are left out: their coherence is \
+                 under {}, or they lie outside the valid band",
+                left_out_words(left_out, &pair_name),
+                number(*threshold)
+            ),
             Caution::CoherenceNotUsed => {
                 "the identified representative is measured with coherence, which is switched off: every frequency counts alike"
                     .to_owned()
@@ -256,6 +244,16 @@ impl Caution {
             ),
         }
     }
+}
+
+/// "31 of PED → P, 12 of COL → Q, and some of 5 more responses".
+fn left_out_words(left_out: &[(Pair, usize)], pair_name: &impl Fn(Pair) -> String) -> String {
+    /// Responses named.
+    const NAMED: usize = 3;
+    let named = left_out.iter().take(NAMED).map(|(pair, count)| format!("{count} of {}", pair_name(*pair)));
+    let rest = left_out.len().saturating_sub(NAMED);
+    let more = (rest > 0).then(|| format!("and some of {rest} more"));
+    named.chain(more).collect::<Vec<_>>().join(", ")
 }
 
 /// Three significant digits.

@@ -192,15 +192,8 @@ impl Comparison {
             against(&Compared::of(&responses.physics[nominal]))
         };
         let delta = Delta::of(&representative.mismatch, grid.omega());
-        let undefined = delta.gain.map(|pair, gain| match gain {
-            Some(_) => None,
-            None if simulated.nothing[pair] => Some(Undefined::NumericallyNothing(BundleKind::Physics)),
-            None if reference.nothing[pair] => Some(Undefined::NumericallyNothing(BundleKind::Identified)),
-            None if simulated.has(pair) && reference.has(pair) && reference.left(pair) == Some(0) => {
-                Some(Undefined::NotCoherent)
-            }
-            None => Some(Undefined::ZeroOrNotFinite),
-        });
+        let undefined =
+            delta.gain.map(|pair, gain| gain.is_none().then(|| why_undefined(&simulated, &reference, pair)));
         cautions.extend(coherence_caution(flight, &reference, grid.len(), coherence));
         for (kind, model, compared) in
             [(BundleKind::Physics, physics.model, &simulated), (BundleKind::Identified, identified.model, &reference)]
@@ -215,6 +208,20 @@ impl Comparison {
     }
 }
 
+/// Why a response of two representatives has no G and no D.
+fn why_undefined(simulated: &Compared, reference: &Compared, pair: Pair) -> Undefined {
+    let both_have_it = simulated.has(pair) && reference.has(pair);
+    if simulated.nothing[pair] {
+        Undefined::NumericallyNothing(BundleKind::Physics)
+    } else if reference.nothing[pair] {
+        Undefined::NumericallyNothing(BundleKind::Identified)
+    } else if both_have_it && reference.left(pair) == Some(0) {
+        Undefined::NotCoherent
+    } else {
+        Undefined::ZeroOrNotFinite
+    }
+}
+
 /// What coherence did to the comparison with a reference, where that is more than to weigh it (M4a).
 fn coherence_caution(
     flight: &Dynamics,
@@ -225,11 +232,13 @@ fn coherence_caution(
     let Dynamics::Measured(response) = flight else { return None };
     response.coherence()?;
     let Some(threshold) = coherence else { return Some(Caution::CoherenceNotUsed) };
-    let pairs: Vec<Pair> = reference.polar.curves().pairs().filter(|pair| reference.has(*pair)).collect();
-    let left_out = pairs.iter().filter_map(|pair| Some((*pair, points - reference.left(*pair)?)));
+    let pairs = reference.polar.curves().pairs().filter(|pair| reference.has(*pair));
+    let left: Vec<(Pair, usize)> = pairs.filter_map(|pair| Some((pair, reference.left(pair)?))).collect();
+    let weighed = left.iter().filter(|(_, count)| *count > 0).count();
+    let left_out = left.into_iter().map(|(pair, count)| (pair, points - count));
     let mut left_out: Vec<(Pair, usize)> = left_out.filter(|(_, count)| *count > 0).collect();
     left_out.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-    (!left_out.is_empty()).then_some(Caution::NotCoherent { threshold, weighed: pairs.len(), left_out, points })
+    (!left_out.is_empty()).then_some(Caution::NotCoherent { threshold, weighed, left_out, points })
 }
 
 /// A model as it is compared: without the responses that are numerically nothing.

@@ -116,11 +116,10 @@ impl ConditionStages {
         let settings = &study.settings;
         let measuring = study.dataset.measuring_pairs();
         let choice = study.choice(condition.id());
-        let coherence = settings.coherence_threshold;
-        let figures_key = ((settings.band, settings.points), measuring.clone(), coherence);
+        let figures_key = ((settings.band, settings.points), measuring.clone(), settings.coherence_threshold);
         let key: ComparisonKey = (figures_key, choice.without_reasons(), settings.cost_average);
         let comparison = self.comparison.get(key.clone(), |_| {
-            let averaging = (settings.cost_average, coherence);
+            let averaging = (settings.cost_average, settings.coherence_threshold);
             let comparison = Comparison::of(condition, responses, &figures, grid, choice, averaging);
             comparison.map(Arc::new)
         });

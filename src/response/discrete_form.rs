@@ -124,7 +124,8 @@ mod tests {
         let response = DiscreteForm::of(&model, 0.1).response(&[2.0, 31.4, 31.5]);
         let values = response.curve(Pair::new(0, 0));
         let expected: Complex<f64> = (Complex::from_polar(1.0, 0.2) - 0.5).inv();
-        assert!((values[0] - expected).norm() < 1e-15 * expected.norm());
+        let error: Complex<f64> = values[0] - expected;
+        assert!(error.norm() < 1e-15 * expected.norm());
         assert!(values[1].is_finite() && !values[2].is_finite(), "there is no response from pi / T = 31.42 rad/s on");
     }
 
@@ -172,7 +173,8 @@ mod tests {
         assert!(!values[1].is_finite() || values[1].norm() > 1e15);
         for (omega, value) in [(1.0, values[0]), (2.0, values[2])] {
             let expected: Complex<f64> = (Complex::from_polar(1.0, 2.0 * omega) + 1.0).inv();
-            assert!((value - expected).norm() < 1e-14 * expected.norm(), "{omega}");
+            let error: Complex<f64> = value - expected;
+            assert!(error.norm() < 1e-14 * expected.norm(), "{omega}");
         }
     }
 }

@@ -138,49 +138,63 @@ impl<'m> Reading<'m> {
     fn row(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         if self.lines.is_empty() && self.layout.trailing && names_one_more(&self.skipped, self.layout) {
             self.layout.columns += 1;
+            self.layout.trailing = false;
             self.columns.push(Vec::new());
         }
         // Vectors grow by doubling: half of what they take may be free.
         self.meter.take(self.layout.columns as u64 + 1, 16, "")?;
-        let mut cells = self.layout.cells(line);
+        let (mut cells, mut ends_empty) = (self.layout.cells(line), false);
         for (index, column) in self.columns.iter_mut().enumerate() {
             let Some(cell) = cells.next() else {
                 return Err(self.ragged(number, line));
             };
             let Some(value) = cell_number(&cell, self.layout.decimal_comma) else {
-                return Err(line_fault(number, self.no_number(index, &cell)));
+                return Err(line_fault(number, self.no_number(index, &cell, line)));
             };
+            ends_empty = cell.trim().is_empty();
             self.missing += usize::from(value.is_nan());
             column.push(value);
         }
-        match (cells.next(), cells.next()) {
-            (None, _) => {}
-            (Some(cell), None) if cell.trim().is_empty() => {}
-            _ => return Err(self.ragged(number, line)),
+        let complete = match (cells.next(), cells.next()) {
+            (None, _) => self.layout.fits(self.layout.columns, ends_empty),
+            (Some(cell), None) => cell.trim().is_empty(),
+            _ => false,
+        };
+        if !complete {
+            return Err(self.ragged(number, line));
         }
         self.lines.push(number);
         Ok(())
     }
 
-    fn no_number(&self, index: usize, cell: &str) -> String {
+    fn no_number(&self, index: usize, cell: &str, line: &str) -> String {
+        if self.layout.cells(line).take(20).all(|cell| cell_number(&cell, self.layout.decimal_comma).is_none()) {
+            let start = excerpt(line);
+            return format!(
+                "words among the rows (\"{start}\"); put # before them, or split the file if others follow"
+            );
+        }
         let mark =
             if self.layout.decimal_comma && cell.contains('.') { " (the decimal mark is the comma)" } else { "" };
         let (cell, place) = (excerpt(cell), index + 1);
-        format!("column {place} holds \"{cell}\", which is no number{mark}; put # before lines that are no rows")
+        format!("column {place} holds \"{cell}\", which is no number{mark}; correct it, or empty the cell")
     }
 
     fn ragged(&self, number: usize, line: &str) -> VariableFault {
-        let (found, expected) = (self.layout.cells(line).count(), self.layout.columns);
+        let expected = self.layout.columns;
+        let (found, ends_empty) =
+            self.layout.cells(line).fold((0, false), |(count, _), cell| (count + 1, cell.trim().is_empty()));
+        let found: usize = if self.layout.trailing && ends_empty { found - 1 } else { found };
         let separator = self.layout.separator.words();
-        let what = format!("{found} columns, where the table has {expected} (between {separator}); complete the line");
-        line_fault(number, what)
+        let remedy = "complete the line, or split the file where the columns change";
+        line_fault(number, format!("{found} columns, where the table has {expected} (between {separator}); {remedy}"))
     }
 
     fn finish(mut self, text: &str) -> Result<TextTable, VariableFault> {
         let Some(&first_line) = self.lines.first() else {
             return Err(no_numbers(text));
         };
-        let mut above = self.skipped.iter().take_while(|(number, _)| *number < first_line).count();
+        let above = self.skipped.iter().take_while(|(number, _)| *number < first_line).count();
         let Heading { names, units, notes } = Heading::find(&self.skipped[..above], self.layout);
         self.notes.extend(notes);
         let Layout { separator, decimal_comma, columns, .. } = self.layout;
@@ -249,16 +263,22 @@ mod tests {
         let message = |text: &str| read(text).unwrap_err().to_string();
         assert_eq!(
             message("a,b,c\n1,2,3\n4,5\n"),
-            "line 3: 2 columns, where the table has 3 (between commas); complete the line"
+            "line 3: 2 columns, where the table has 3 (between commas); \
+             complete the line, or split the file where the columns change"
         );
         assert_eq!(
             message("1,2,3\n4,x,6\n"),
-            "line 2: column 2 holds \"x\", which is no number; put # before lines that are no rows"
+            "line 2: column 2 holds \"x\", which is no number; correct it, or empty the cell"
         );
         assert_eq!(
             message("1,5;2\n1.5;3\n1,6;2\n"),
             "line 2: column 1 holds \"1.5\", which is no number (the decimal mark is the comma); \
-             put # before lines that are no rows"
+             correct it, or empty the cell"
+        );
+        assert!(message("t;x;\n1;2;\n3;4;\n5;\n").starts_with("line 4: 1 columns, where the table has 2"));
+        assert_eq!(
+            message("1,2\n3,4\nt,x\n"),
+            "line 3: words among the rows (\"t,x\"); put # before them, or split the file if others follow"
         );
         assert_eq!(message(" \n"), "expected a table of numbers in columns, found an empty file");
         assert!(message("hello world").contains("no line that consists of numbers (it begins with \"hello world\")"));

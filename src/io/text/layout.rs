@@ -79,9 +79,11 @@ impl Layout {
         width(self.separator, self.decimal_comma, line)
     }
 
-    /// Whether a line of so many cells fits: one more, which is empty, stands behind a separator at the end.
+    /// Whether a line of so many cells fits: one more, which is empty, stands behind a separator at the end. Where all lines end
+    /// in a separator, the empty cell behind it is none.
     pub(super) fn fits(self, width: usize, ends_empty: bool) -> bool {
-        width == self.columns || (width == self.columns + 1 && ends_empty)
+        let expected = if self.trailing && ends_empty { self.columns + 1 } else { self.columns };
+        width == expected || (width == self.columns + 1 && ends_empty)
     }
 }
 

@@ -41,9 +41,11 @@ pub(super) fn refuse_binary(text: &str, expected: &'static str) -> Result<(), Va
 
 /// The beginning of a text for a message: its first line, at most 40 characters, visible ones only.
 pub(super) fn excerpt(text: &str) -> String {
-    let line = text.trim_start().lines().next().unwrap_or_default().trim_end();
-    let mut short: String = line.chars().take(40).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
-    if line.chars().nth(40).is_some() {
+    // No more of a line is looked at than is shown: it may be as long as the text.
+    let mut line = text.trim_start().chars().take_while(|c| !matches!(c, '\n' | '\r'));
+    let shown: String = line.by_ref().take(40).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+    let mut short = shown.trim_end().to_owned();
+    if line.next().is_some() {
         short.push('…');
     }
     short

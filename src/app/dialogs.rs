@@ -14,6 +14,8 @@ pub enum DialogPurpose {
     SaveStudy,
     /// A folder to export to.
     ExportFolder,
+    /// A folder of model files.
+    ModelFolder,
 }
 
 /// How a dialog ended.
@@ -76,6 +78,7 @@ fn dialog(purpose: DialogPurpose, file_name: &str) -> Option<PathBuf> {
         DialogPurpose::SaveStudy => {
             dialog.set_title("Save the study").add_filter("studies", &["json"]).set_file_name(file_name).save_file()
         }
+        DialogPurpose::ModelFolder => dialog.set_title("A folder of model files").pick_folder(),
         DialogPurpose::ExportFolder => dialog.set_title("Export corrections to a folder").pick_folder(),
     }
 }

@@ -11,6 +11,7 @@ use crate::io::{
     open_study_of, plain, plain_path, save_study, save_table, write_results,
 };
 use crate::study::{Difference, Study, Table};
+use crate::view::assembling::AssemblingCommand;
 use crate::view::bars::Bar;
 use crate::view::command::{Command, FormKind};
 use crate::view::preferences::Preferences;
@@ -234,7 +235,10 @@ impl GdcmApp {
                     self.state.forms.save_path = self.proposed_name();
                     self.state.forms.shown = Some(FormKind::Save);
                 }
-                DialogAnswer::Nothing(DialogPurpose::ExportFolder) => {}
+                DialogAnswer::Chosen(DialogPurpose::ModelFolder, path) => {
+                    self.assemble(AssemblingCommand::Add(vec![path]), ctx);
+                }
+                DialogAnswer::Nothing(DialogPurpose::ExportFolder | DialogPurpose::ModelFolder) => {}
             }
         }
     }

@@ -1,5 +1,6 @@
 //! The window: the only place that knows eframe, file dialogs and threads.
 
+mod assembling;
 mod autosave;
 mod beside;
 mod dialogs;

@@ -6,6 +6,7 @@ use crate::dataset::ConditionId;
 use crate::io::{Existing, plain};
 use crate::study::Edit;
 use crate::view::arrangement::Arrangement;
+use crate::view::assembling::AssemblingCommand;
 use crate::view::command::{Command, FormKind};
 use crate::view::curve_display::CurveCommand;
 use crate::view::display::Display;
@@ -115,6 +116,7 @@ impl GdcmApp {
             }
             Command::AskSaveShownTable(table) => self.ask_save_table(&table.title, table.clone()),
             Command::SaveTable(table, path) => self.save_table(table, path, Existing::Keep),
+            Command::Assembling(command) => self.assemble(command, ctx),
             Command::CopyFigure(view) => self.copy_figure(view, ctx),
             Command::AskSaveFigure(view, format) => self.ask_save_figure(view, format),
             Command::SaveFigure(view, width, path) => self.save_figure((view, width), path, Existing::Keep),
@@ -242,6 +244,10 @@ impl GdcmApp {
             Some(Command::SaveStudyAs(path)) => self.save_as(path, Existing::Replace, ctx),
             Some(Command::Export) => self.export(Existing::Replace),
             Some(Command::SaveTable(table, path)) => self.save_table(table, path, Existing::Replace),
+            Some(Command::Assembling(AssemblingCommand::SaveRules(path))) => self.save_rules(path, Existing::Replace),
+            Some(Command::Assembling(AssemblingCommand::MakeDataset(path))) => {
+                self.make_dataset(path, Existing::Replace, ctx);
+            }
             Some(Command::SaveFigure(view, width, path)) => self.save_figure((view, width), path, Existing::Replace),
             _ => {}
         }

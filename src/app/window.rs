@@ -1,6 +1,6 @@
 //! The window: state, the thread that computes, the dialogs.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, ViewportCommand};
@@ -8,6 +8,7 @@ use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, Viewport
 use crate::dataset::ConditionId;
 use crate::io::{LoadedDataset, LostStudy, Opened, is_first_start};
 use crate::study::Study;
+use crate::view::assembling::{AssemblingCommand, assembling_ui};
 use crate::view::bars::Bar;
 use crate::view::command::Command;
 use crate::view::palette::{self, Palette};
@@ -18,6 +19,7 @@ use crate::view::{
     result_panel, settings_panel, status_bar, tour,
 };
 
+use super::assembling::ModelReader;
 use super::autosave::Autosave;
 use super::dialogs::Dialogs;
 use super::disk_watch::DiskWatch;
@@ -39,6 +41,7 @@ pub struct GdcmApp {
     pub(super) worker: Worker,
     pub(super) dialogs: Dialogs,
     pub(super) readers: Readers,
+    pub(super) model_reader: ModelReader,
     /// What waits for the answer whether to lose decisions that are not saved.
     pub(super) postponed: Option<Postponed>,
     /// Whether that is done once they are saved.
@@ -88,6 +91,7 @@ impl GdcmApp {
             worker,
             dialogs: Dialogs::new(),
             readers: Readers::default(),
+            model_reader: ModelReader::default(),
             postponed: None,
             goes_on_once_saved: false,
             overwriting: None,
@@ -219,7 +223,14 @@ impl GdcmApp {
 
     fn take_dropped_files(&mut self, ctx: &Context, commands: &mut Vec<Command>) {
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
-        commands.extend(dropped.iter().map(|file| Command::Open(file.path().to_path_buf())));
+        let paths: Vec<PathBuf> = dropped.iter().map(|file| file.path().to_path_buf()).collect();
+        // A dataset or a study is opened; several files, a folder, and files of other programs are models.
+        let is_ours = |path: &Path| path.extension().is_some_and(|extension| extension == "json" || extension == "gz");
+        match paths.as_slice() {
+            [] => {}
+            [path] if self.state.assembling.is_none() && is_ours(path) => commands.push(Command::Open(path.clone())),
+            _ => commands.push(AssemblingCommand::Add(paths).into()),
+        }
     }
 
     fn guard_closing(&mut self, ctx: &Context) {
@@ -254,6 +265,9 @@ impl GdcmApp {
             Panel::top("bars").frame(bar).show(ui, |ui| bars::bars_ui(ui, &state.bars, palette, commands));
         }
         Panel::bottom("status bar").frame(bar).show(ui, |ui| status_bar::status_bar_ui(ui, state, palette, commands));
+        if let Some(bench) = &mut state.assembling {
+            return assembling_ui(ui, bench, palette, commands);
+        }
         let side = Frame::new().fill(palette.panel).inner_margin(Margin { left: 10, right: 4, top: 4, bottom: 4 });
         let width = ui.available_width();
         // The sides give way before the plots do.
@@ -319,6 +333,7 @@ impl eframe::App for GdcmApp {
     fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
         self.receive(ctx.input(|input| input.time));
         self.receive_files(ctx);
+        self.receive_models();
         self.receive_disk();
         self.receive_recent();
         self.receive_recovery();

@@ -72,6 +72,26 @@ impl Assembly {
         }
     }
 
+    /// The problems in words, those of many models once: with the first model that has it, and how many others do.
+    pub fn told(&self) -> Vec<(Option<usize>, String)> {
+        let mut kinds: Vec<(&Problem, usize)> = Vec::new();
+        for problem in &self.problems {
+            match kinds.iter_mut().find(|(known, _)| known.kind == problem.kind) {
+                Some((_, count)) => *count += 1,
+                None => kinds.push((problem, 1)),
+            }
+        }
+        let words = |(problem, count): (&Problem, usize)| {
+            let others = match count - 1 {
+                0 => String::new(),
+                1 => " (and 1 other model)".to_owned(),
+                others => format!(" (and {others} other models)"),
+            };
+            (problem.part, format!("{}{others}", self.words(problem)))
+        };
+        kinds.into_iter().map(words).collect()
+    }
+
     /// The dataset; none while there are problems. Models name their files with `folder` before them, which leads to the files from
     /// where the dataset is to lie.
     pub fn dataset(&self, folder: &str) -> Option<Dataset> {

@@ -10,8 +10,8 @@ const ON_AXIS: [(&str, &str); 5] = [("P", "LAT"), ("Q", "LON"), ("R", "PED"), ("
 /// Rules with the channels that the models have, by their own names and units, the standard patterns, and the on-axis responses of
 /// a helicopter as far as there are such channels. What the files do not say stays open.
 pub fn proposed_rules(name: &str, models: &[FoundModel]) -> Rules {
-    let inputs = channels(models, |model| &model.inputs);
-    let outputs = channels(models, |model| &model.outputs);
+    let inputs = channels(models, "input", |model| &model.inputs);
+    let outputs = channels(models, "output", |model| &model.outputs);
     let find = |channels: &[ChannelRule], name: &str| {
         channels.iter().find(|channel| same_channel(&channel.name, name)).map(|channel| channel.name.clone())
     };
@@ -21,7 +21,7 @@ pub fn proposed_rules(name: &str, models: &[FoundModel]) -> Rules {
 }
 
 /// Channels with names of their own, in the order of the model that has most of them; those of other models that it lacks behind.
-fn channels(models: &[FoundModel], of: fn(&FoundModel) -> &Vec<ChannelLabel>) -> Vec<ChannelRule> {
+fn channels(models: &[FoundModel], side: &str, of: fn(&FoundModel) -> &Vec<ChannelLabel>) -> Vec<ChannelRule> {
     let named = |model: &FoundModel| of(model).iter().filter(|label| label.name.is_some()).count();
     let mut order: Vec<&FoundModel> = models.iter().collect();
     order.sort_by_key(|model| std::cmp::Reverse(named(model)));
@@ -44,7 +44,7 @@ fn channels(models: &[FoundModel], of: fn(&FoundModel) -> &Vec<ChannelLabel>) ->
     }
     if channels.is_empty() {
         let count = models.iter().map(|model| of(model).len()).max().unwrap_or(0);
-        channels.extend((1..=count).map(|number| ChannelRule::named(format!("channel {number}"))));
+        channels.extend((1..=count).map(|number| ChannelRule::named(format!("{side} {number}"))));
     }
     channels
 }

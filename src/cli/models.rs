@@ -112,8 +112,8 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
             say(&format!("{}: {conditions}\n", plain_path(&arguments.out)))
         }
         None => {
-            let problems = assembly.problems();
-            problems.iter().for_each(|problem| say_error(&plain(&assembly.words(problem))));
+            let problems = assembly.told();
+            problems.iter().for_each(|(_, words)| say_error(&plain(words)));
             Err(Failure::Incomplete { count: problems.len(), rules: plain_path(&rules_path) })
         }
     }

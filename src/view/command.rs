@@ -11,6 +11,7 @@ use crate::figure::{ColumnWidth, FigureFormat};
 use crate::study::{AcrossRole, AskedFigure, Edit, Table};
 
 use super::arrangement::{Preset, View};
+use super::assembling::AssemblingCommand;
 use super::assessment_scene::AssessedFigures;
 use super::bars::Bar;
 use super::curve_display::CurveCommand;
@@ -124,6 +125,8 @@ pub enum Command {
     AskSaveTable(TableKind),
     /// Ask where to save a table that a view shows.
     AskSaveShownTable(Arc<Table>),
+    /// Put models of files together.
+    Assembling(AssemblingCommand),
     /// Save a table as CSV.
     SaveTable(Arc<Table>, PathBuf),
     /// Put the numbers of what a view shows on the clipboard, as CSV.
@@ -170,6 +173,8 @@ pub enum FormKind {
     Reason,
     /// Where to save a table, by path.
     SaveTable,
+    /// What is made of models that are put together.
+    Models,
     /// Where to save a figure, by path, and how wide.
     SaveFigure,
     /// Every command, found by its name.
@@ -187,6 +192,12 @@ pub enum FormKind {
 impl From<CurveCommand> for Command {
     fn from(command: CurveCommand) -> Self {
         Command::Curves(command)
+    }
+}
+
+impl From<AssemblingCommand> for Command {
+    fn from(command: AssemblingCommand) -> Self {
+        Self::Assembling(command)
     }
 }
 

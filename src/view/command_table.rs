@@ -7,6 +7,7 @@ use crate::figure::FigureFormat;
 use crate::study::{Edit, Setting};
 
 use super::arrangement::{Preset, View};
+use super::assembling::AssemblingCommand;
 use super::command::{Command, FormKind};
 use super::curve_entries::curve_entries;
 use super::figures::views_with_figure;
@@ -127,6 +128,12 @@ fn file_entries(state: &State) -> Vec<Entry> {
             .within(Menu::File, 0),
         Entry::new("Open the example", "The simulated dataset that comes with the program", Command::OpenExample)
             .within(Menu::File, 0),
+        Entry::new(
+            "Put models together…",
+            "A dataset of a folder of model files: MATLAB, NumPy, JSON, text",
+            Command::Assembling(AssemblingCommand::Open),
+        )
+        .within(Menu::File, 0),
         Entry::new("Save study", "Where it was saved last", Command::SaveStudy)
             .keys(CTRL, Key::S)
             .within(Menu::File, 1),

@@ -20,9 +20,10 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
         state.forms.drawn = None;
         return;
     };
-    let asks_to_overwrite =
-        matches!(kind, FormKind::Save | FormKind::Export | FormKind::SaveTable | FormKind::SaveFigure)
-            && !state.forms.existing.is_empty();
+    let asks_to_overwrite = matches!(
+        kind,
+        FormKind::Save | FormKind::Export | FormKind::SaveTable | FormKind::SaveFigure | FormKind::Models
+    ) && !state.forms.existing.is_empty();
     let opens = state.forms.drawn.replace((kind, asks_to_overwrite)) != Some((kind, asks_to_overwrite));
     let modal = Modal::new(Id::unique("form")).show(ctx, |ui| {
         ui.set_width(460.0);
@@ -38,6 +39,8 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
             FormKind::Shortcuts => shortcuts_ui(form, state, palette),
             FormKind::Palette => command_palette_ui(form.ui, state, opens, palette, form.commands),
             FormKind::SaveTable => save_table_ui(form, state),
+            // It only asks whether to overwrite.
+            FormKind::Models => {}
             FormKind::SaveFigure => save_figure_ui(form, state, palette),
             FormKind::Reason => reason_ui(form, state, palette),
             FormKind::About => about_ui(form, palette),

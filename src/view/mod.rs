@@ -2,6 +2,7 @@
 
 pub mod across_scene;
 pub mod arrangement;
+pub mod assembling;
 pub mod assessment_scene;
 pub mod bars;
 pub mod bode_scene;

@@ -12,6 +12,7 @@ use crate::study::{
 };
 
 use super::arrangement::View;
+use super::assembling::Workbench;
 use super::assessment_scene::assessment_choice;
 use super::bars::Bar;
 use super::command::FormKind;
@@ -134,6 +135,8 @@ pub struct State {
     pub forms: Forms,
     /// The step of the guided tour that is shown.
     pub tour: Option<usize>,
+    /// Models that are being put together, in the place of the study.
+    pub assembling: Option<Workbench>,
 }
 
 impl State {
@@ -157,6 +160,7 @@ impl State {
             opening: None,
             forms: Forms::default(),
             tour: None,
+            assembling: None,
         }
     }
 

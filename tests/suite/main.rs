@@ -6,6 +6,7 @@ use std::sync::LazyLock;
 use gdcm::io::{LoadedDataset, embedded_example};
 
 mod analysis;
+mod assembling;
 mod commands;
 mod dataset_file;
 mod figures;

@@ -72,7 +72,7 @@ pub use number::decimals;
 pub use overview::{OverviewCell, OverviewEvent, OverviewScene, OverviewView, overview_ui};
 pub use pole_mark::{MarkShape, PoleMark};
 pub use poles::{PoleEvent, PolesScene, PolesView, poles_ui};
-pub use quantity::{BodeQuantity, MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
+pub use quantity::{BodeQuantity, MagnitudeUnit, PhaseErrorUnit, PhaseUnit, ResponsePlace};
 pub use questions::NamedFigure;
 pub use range::Range;
 pub use readout_box::{Readout, ReadoutRow};

@@ -15,8 +15,8 @@ pub enum BodeQuantity<'a> {
         phase: PhaseUnit,
         /// The unit of a ratio: "(deg/s)/in".
         ratio_unit: &'a str,
-        /// Whether they are of every condition, and not of the one shown.
-        of_every_condition: bool,
+        /// In which plot they are.
+        place: ResponsePlace,
     },
     /// What the fit sees of them: `20 log10 |H_ref| / |H_sim|` above, `Delta phi(H_sim, H_ref)` below (M6).
     Error {
@@ -25,26 +25,35 @@ pub enum BodeQuantity<'a> {
     },
 }
 
+/// In which plot responses are, which tells its controls from the same ones of the others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ResponsePlace {
+    /// That of the condition shown.
+    #[default]
+    Condition,
+    /// That of every condition.
+    EveryCondition,
+    /// That of a model that was found in a file.
+    FoundModel,
+}
+
 impl BodeQuantity<'_> {
     /// Responses in decibels and degrees.
-    pub const RESPONSE: BodeQuantity<'static> = BodeQuantity::Response {
-        magnitude: MagnitudeUnit::Decibel,
-        phase: PhaseUnit::Unwrapped,
-        ratio_unit: "",
-        of_every_condition: false,
-    };
+    pub const RESPONSE: BodeQuantity<'static> = Self::in_place(ResponsePlace::Condition);
     /// The same of every condition.
-    pub const RESPONSE_OF_EVERY_CONDITION: BodeQuantity<'static> = BodeQuantity::Response {
-        magnitude: MagnitudeUnit::Decibel,
-        phase: PhaseUnit::Unwrapped,
-        ratio_unit: "",
-        of_every_condition: true,
-    };
+    pub const RESPONSE_OF_EVERY_CONDITION: BodeQuantity<'static> = Self::in_place(ResponsePlace::EveryCondition);
+    /// The same of a model that was found in a file.
+    pub const RESPONSE_OF_FOUND_MODEL: BodeQuantity<'static> = Self::in_place(ResponsePlace::FoundModel);
+
+    const fn in_place(place: ResponsePlace) -> BodeQuantity<'static> {
+        BodeQuantity::Response { magnitude: MagnitudeUnit::Decibel, phase: PhaseUnit::Unwrapped, ratio_unit: "", place }
+    }
 
     /// Tells this plot's widgets from those of the others.
     pub(super) fn salt(self) -> &'static str {
         match self {
-            Self::Response { of_every_condition: true, .. } => "airspeeds",
+            Self::Response { place: ResponsePlace::EveryCondition, .. } => "airspeeds",
+            Self::Response { place: ResponsePlace::FoundModel, .. } => "found model",
             Self::Response { .. } => "bode",
             Self::Error { .. } => "error",
         }
@@ -53,7 +62,8 @@ impl BodeQuantity<'_> {
     /// What tells labels of this plot from the same ones of the Bode plot.
     pub(super) fn label_suffix(self) -> &'static str {
         match self {
-            Self::Response { of_every_condition: true, .. } => ", plot of airspeeds",
+            Self::Response { place: ResponsePlace::EveryCondition, .. } => ", plot of airspeeds",
+            Self::Response { place: ResponsePlace::FoundModel, .. } => ", plot of a found model",
             Self::Response { .. } => "",
             Self::Error { .. } => ", error plot",
         }
@@ -62,8 +72,12 @@ impl BodeQuantity<'_> {
     /// What a pane shows: "Magnitude".
     pub(super) fn name(self, pane: Pane) -> &'static str {
         match (self, pane) {
-            (Self::Response { of_every_condition: true, .. }, Pane::Magnitude) => "Magnitude in every condition",
-            (Self::Response { of_every_condition: true, .. }, Pane::Phase) => "Phase in every condition",
+            (Self::Response { place: ResponsePlace::EveryCondition, .. }, Pane::Magnitude) => {
+                "Magnitude in every condition"
+            }
+            (Self::Response { place: ResponsePlace::FoundModel, .. }, Pane::Magnitude) => "Magnitude of a found model",
+            (Self::Response { place: ResponsePlace::EveryCondition, .. }, Pane::Phase) => "Phase in every condition",
+            (Self::Response { place: ResponsePlace::FoundModel, .. }, Pane::Phase) => "Phase of a found model",
             (Self::Response { .. }, Pane::Magnitude) => "Magnitude",
             (Self::Response { .. }, Pane::Phase) => "Phase",
             (Self::Error { .. }, Pane::Magnitude) => "Magnitude error",
@@ -74,8 +88,16 @@ impl BodeQuantity<'_> {
     /// A pane as part of a sentence: "magnitude plot".
     pub(super) fn place(self, pane: Pane) -> &'static str {
         match (self, pane) {
-            (Self::Response { of_every_condition: true, .. }, Pane::Magnitude) => "magnitude plot of every condition",
-            (Self::Response { of_every_condition: true, .. }, Pane::Phase) => "phase plot of every condition",
+            (Self::Response { place: ResponsePlace::EveryCondition, .. }, Pane::Magnitude) => {
+                "magnitude plot of every condition"
+            }
+            (Self::Response { place: ResponsePlace::FoundModel, .. }, Pane::Magnitude) => {
+                "magnitude plot of a found model"
+            }
+            (Self::Response { place: ResponsePlace::EveryCondition, .. }, Pane::Phase) => {
+                "phase plot of every condition"
+            }
+            (Self::Response { place: ResponsePlace::FoundModel, .. }, Pane::Phase) => "phase plot of a found model",
             (Self::Response { .. }, Pane::Magnitude) => "magnitude plot",
             (Self::Response { .. }, Pane::Phase) => "phase plot",
             (Self::Error { .. }, Pane::Magnitude) => "magnitude error plot",
@@ -124,10 +146,13 @@ impl BodeQuantity<'_> {
     /// What the numbers of a curve in a pane are, with the unit that they are drawn in.
     pub(crate) fn drawn_label(self, pane: Pane) -> String {
         match self {
-            Self::Response { phase, .. } => {
-                Self::Response { magnitude: MagnitudeUnit::Decibel, phase, ratio_unit: "", of_every_condition: false }
-                    .axis_label(pane)
+            Self::Response { phase, .. } => Self::Response {
+                magnitude: MagnitudeUnit::Decibel,
+                phase,
+                ratio_unit: "",
+                place: ResponsePlace::Condition,
             }
+            .axis_label(pane),
             Self::Error { .. } => self.axis_label(pane),
         }
     }

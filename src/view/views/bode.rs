@@ -7,7 +7,7 @@ use crate::view::bode_scene::bode_curves;
 use crate::view::command::Command;
 use crate::view::cursor_readout::cursor_readout;
 use crate::view::palette::Palette;
-use crate::view::plot::{BodeQuantity, BodeScene, bode_ui};
+use crate::view::plot::{BodeQuantity, BodeScene, ResponsePlace, bode_ui};
 use crate::view::state::State;
 
 /// Magnitude and phase of the response in focus, of every model of the condition shown.
@@ -22,7 +22,7 @@ pub fn bode_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands:
         magnitude: display.magnitude,
         phase: display.phase,
         ratio_unit: &ratio_unit,
-        of_every_condition: false,
+        place: ResponsePlace::Condition,
     };
     let at = (display.cursor, display.pinned.as_slice());
     let readout = if display.lists_values { cursor_readout(&curves, quantity, state.display.unit, at) } else { None };

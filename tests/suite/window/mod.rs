@@ -1,5 +1,6 @@
 //! The window, driven by accessible labels: no display, no GPU.
 
+mod assembling;
 mod commands;
 mod computing;
 mod controls;

@@ -32,6 +32,7 @@ pub(super) fn stays_within(command: &Wish) -> bool {
             | Wish::OpenStudyOf(..)
             | Wish::SaveStudy
             | Wish::AskOpen
+            | Wish::Assembling(_)
             | Wish::AskSaveStudy
             | Wish::AskSaveTable(_)
             | Wish::AskSaveShownTable(_)

@@ -1,0 +1,230 @@
+//! Putting models of files together: reading them in a thread, and what becomes of them.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+use egui::Context;
+
+use crate::assembly::Rules;
+use crate::io::{
+    Existing, FileError, FolderProgress, FoundModels, OutputSet, add_dataset, add_rules, load_rules, plain_path,
+    read_models, relative_folder,
+};
+use crate::view::assembling::{AssemblingCommand, Reading, Workbench};
+use crate::view::command::{Command, FormKind};
+
+use super::dialogs::DialogPurpose;
+use super::fault::{Fault, caught};
+use super::window::GdcmApp;
+
+/// How the name of a rules file ends.
+const RULES_EXTENSION: &str = "gdcm-rules.json";
+
+/// What the thread that reads tells.
+enum Told {
+    Reading(Reading),
+    Read(Vec<PathBuf>, Result<Result<FoundModels, FileError>, Fault>),
+}
+
+/// The thread that reads models, and where its answers arrive.
+pub(super) struct ModelReader {
+    sender: Sender<(u64, Told)>,
+    receiver: Receiver<(u64, Told)>,
+    /// Number of the newest reading: answers of others are late.
+    newest: u64,
+    stop: Arc<AtomicBool>,
+}
+
+impl Default for ModelReader {
+    fn default() -> Self {
+        let (sender, receiver) = channel();
+        Self { sender, receiver, newest: 0, stop: Arc::default() }
+    }
+}
+
+impl Drop for ModelReader {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Release);
+    }
+}
+
+/// Tells the window which file is read.
+struct Teller {
+    number: u64,
+    sender: Sender<(u64, Told)>,
+    stop: Arc<AtomicBool>,
+    ctx: Context,
+}
+
+impl FolderProgress for Teller {
+    fn reading(&self, number: usize, of: usize, name: &str) {
+        let reading = Reading { number, of, name: name.to_owned() };
+        // The window may be gone by now.
+        let _ = self.sender.send((self.number, Told::Reading(reading)));
+        self.ctx.request_repaint();
+    }
+
+    fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Acquire)
+    }
+}
+
+impl GdcmApp {
+    /// Carries out a command of the assembling view.
+    pub(super) fn assemble(&mut self, command: AssemblingCommand, ctx: &Context) {
+        let bench = self.state.assembling.get_or_insert_with(Workbench::default);
+        match command {
+            AssemblingCommand::Open => {}
+            AssemblingCommand::Close => {
+                self.model_reader.stop.store(true, Ordering::Release);
+                self.state.assembling = None;
+            }
+            AssemblingCommand::AskFolder => self.dialogs.ask(DialogPurpose::ModelFolder, String::new(), ctx),
+            AssemblingCommand::Add(paths) => self.read_models(paths, ctx),
+            AssemblingCommand::StopReading => self.model_reader.stop.store(true, Ordering::Release),
+            AssemblingCommand::Change(rules) => bench.change(*rules),
+            AssemblingCommand::Undo => bench.undo(),
+            AssemblingCommand::Redo => bench.redo(),
+            AssemblingCommand::Select(part) => bench.selected = part,
+            AssemblingCommand::Sort(column) => bench.sort(column),
+            AssemblingCommand::ShowResponse(place) => bench.preview.response = place,
+            AssemblingCommand::LoadRules(path) => self.take_rules(path),
+            AssemblingCommand::SaveRules(path) => self.save_rules(path, Existing::Keep),
+            AssemblingCommand::MakeDataset(path) => self.make_dataset(path, Existing::Keep, ctx),
+        }
+    }
+
+    fn read_models(&mut self, paths: Vec<PathBuf>, ctx: &Context) {
+        let paths: Vec<PathBuf> = paths.into_iter().map(|path| self.at_home(path)).collect();
+        self.model_reader.stop.store(true, Ordering::Release);
+        let reader = &mut self.model_reader;
+        reader.newest += 1;
+        reader.stop = Arc::default();
+        let (number, sender, stop, ctx) = (reader.newest, reader.sender.clone(), Arc::clone(&reader.stop), ctx.clone());
+        let work = move || {
+            let teller = Teller { number, sender: sender.clone(), stop, ctx: ctx.clone() };
+            let found = caught(|| read_models(&paths, &teller));
+            let _ = sender.send((number, Told::Read(paths, found)));
+            ctx.request_repaint();
+        };
+        if let Some(bench) = &mut self.state.assembling {
+            bench.reading = Some(Reading::default());
+        }
+        if let Err(error) = std::thread::Builder::new().name("models".to_owned()).spawn(work) {
+            self.trouble(format!("the files cannot be read: {error}"));
+        }
+    }
+
+    /// Takes what the thread that reads models has told since the last frame.
+    pub(super) fn receive_models(&mut self) {
+        while let Ok((number, told)) = self.model_reader.receiver.try_recv() {
+            let Some(bench) = self.state.assembling.as_mut().filter(|_| number == self.model_reader.newest) else {
+                continue;
+            };
+            match told {
+                Told::Reading(reading) => bench.reading = Some(reading),
+                Told::Read(paths, found) => {
+                    bench.reading = None;
+                    match found {
+                        Ok(Ok(found)) => self.take_models(paths, found),
+                        Ok(Err(error)) => self.trouble(error.to_string()),
+                        Err(fault) => self.tell_fault("the reading of models", &fault),
+                    }
+                }
+            }
+        }
+    }
+
+    fn take_models(&mut self, paths: Vec<PathBuf>, found: FoundModels) {
+        let Some(bench) = &mut self.state.assembling else { return };
+        let name = paths.first().and_then(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());
+        let (models, files) = (found.models.len(), found.files);
+        bench.add(&name.unwrap_or_default(), found.models);
+        bench.faults.extend(found.faults);
+        bench.passed_over.extend(found.passed_over);
+        if bench.dataset_path.is_empty()
+            && let Some(first) = paths.first()
+        {
+            bench.dataset_path = format!("{}.json.gz", first.with_extension("").display());
+            bench.rules_path = rules_path(Path::new(&bench.dataset_path)).display().to_string();
+        }
+        bench.sources.extend(paths);
+        self.done(format!("{models} models in {files} files"));
+    }
+
+    fn take_rules(&mut self, path: PathBuf) {
+        let path = self.at_home(path);
+        match load_rules(&path) {
+            Ok((rules, cautions)) => {
+                if let Some(bench) = &mut self.state.assembling {
+                    bench.change(rules);
+                }
+                let cautions: String = cautions.iter().map(|caution| format!("; {caution}")).collect();
+                self.done(format!("took the rules of {}{cautions}", plain_path(&path)));
+            }
+            Err(error) => self.trouble(error.to_string()),
+        }
+    }
+
+    fn said(&self) -> Option<Rules> {
+        self.state.assembling.as_ref().map(|bench| bench.assembly().rules().clone())
+    }
+
+    /// Writes the rules; asks before it overwrites a file.
+    pub(super) fn save_rules(&mut self, path: PathBuf, existing: Existing) {
+        let Some(rules) = self.said() else { return };
+        let path = self.at_home(path);
+        let mut outputs = OutputSet::new(existing, self.inputs());
+        match add_rules(&rules, &path, &mut outputs).and_then(|()| outputs.persist()) {
+            Ok(()) => {
+                self.state.forms.shown = None;
+                self.done(format!("saved {}", plain_path(&path)));
+            }
+            Err(FileError::Exists { paths }) => {
+                let command = AssemblingCommand::SaveRules(path).into();
+                self.ask_to_overwrite(&paths, FormKind::Models, command);
+            }
+            Err(error) => self.trouble(error.to_string()),
+        }
+    }
+
+    /// Writes the dataset and its rules, and opens it; asks before it overwrites a file.
+    pub(super) fn make_dataset(&mut self, path: PathBuf, existing: Existing, ctx: &Context) {
+        let Some(bench) = &self.state.assembling else { return };
+        let path = self.at_home(path);
+        let source = bench.sources.first().map_or(Path::new("."), PathBuf::as_path);
+        // Models name their files from the folder that was given; a file alone lies in its folder.
+        let folder = if source.is_dir() { source } else { source.parent().unwrap_or(Path::new(".")) };
+        let Some(dataset) = bench.assembly().dataset(&relative_folder(folder, &path)) else {
+            return self.trouble("some things are still to be said before the dataset can be made".to_owned());
+        };
+        let rules = bench.assembly().rules().clone();
+        let beside = rules_path(&path);
+        let mut outputs = OutputSet::new(existing, self.inputs());
+        let written = outputs
+            .check(&[&path, &beside])
+            .and_then(|()| add_dataset(&dataset, &path, &mut outputs))
+            .and_then(|()| add_rules(&rules, &beside, &mut outputs))
+            .and_then(|()| outputs.persist());
+        match written {
+            Ok(()) => {
+                self.state.forms.shown = None;
+                self.state.assembling = None;
+                self.open(path, None, ctx);
+            }
+            Err(FileError::Exists { paths }) => {
+                let command: Command = AssemblingCommand::MakeDataset(path).into();
+                self.ask_to_overwrite(&paths, FormKind::Models, command);
+            }
+            Err(error) => self.trouble(error.to_string()),
+        }
+    }
+}
+
+fn rules_path(dataset: &Path) -> PathBuf {
+    let name = dataset.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let stem = name.trim_end_matches(".gz").trim_end_matches(".json");
+    dataset.with_file_name(format!("{stem}.{RULES_EXTENSION}"))
+}

@@ -1,0 +1,230 @@
+//! What one model is to be, field by field.
+
+use std::collections::BTreeMap;
+
+use egui::{Grid, RichText, Role, Ui, WidgetInfo};
+
+use crate::assembly::{Part, RowRole, RowRule};
+use crate::units::number;
+use crate::view::command::Command;
+use crate::view::palette::{Palette, SMALL_SIZE};
+use crate::view::settings_panel::choice_ui;
+
+use super::entry::{entry_ui, typed_number};
+use super::workbench::{AssemblingCommand, Workbench};
+
+const FIELD_WIDTH: f32 = 130.0;
+
+/// A field: its name, what stands in it, and what a text in it says.
+struct Field {
+    name: &'static str,
+    value: String,
+    hint: &'static str,
+    say: fn(&str, &mut RowRule) -> Result<(), String>,
+}
+
+/// The fields of the model shown.
+pub(super) fn details_ui(ui: &mut Ui, bench: &Workbench, palette: &Palette, commands: &mut Vec<Command>) {
+    let Some(part) = bench.assembly().parts().get(bench.selected) else {
+        ui.label(RichText::new("No model yet: add a folder or files above").color(palette.dim_text));
+        return;
+    };
+    let small = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
+    ui.label(RichText::new(part.found.key()).strong());
+    ui.label(small(part.found.words()));
+    let mut taken = !part.row.left_out;
+    if ui.checkbox(&mut taken, "Take this model").on_hover_text("Whether it becomes part of the dataset").changed() {
+        push(bench.said_of(bench.selected, |row| row.left_out = Some(!taken)), commands);
+    }
+    Grid::new("details of a model").num_columns(3).spacing([6.0, 3.0]).show(ui, |ui| {
+        role_ui(ui, bench, part, commands);
+        for field in fields(part) {
+            field_ui(ui, bench, &field, commands);
+        }
+    });
+    let notes = part.found.notes.iter().chain(&part.inputs.notes).chain(&part.outputs.notes);
+    let uses = part.inputs.uses.iter().chain(&part.outputs.uses).flatten();
+    for note in notes.cloned().chain(uses.filter_map(|used| used.words.clone())) {
+        ui.label(small(note));
+    }
+}
+
+fn push(rules: crate::assembly::Rules, commands: &mut Vec<Command>) {
+    commands.push(AssemblingCommand::Change(Box::new(rules)).into());
+}
+
+fn role_ui(ui: &mut Ui, bench: &Workbench, part: &Part, commands: &mut Vec<Command>) {
+    ui.label("role");
+    let mut role = part.row.role;
+    let roles = RowRole::ALL.map(|role| (Some(role), role.word(), "What the model is in its condition"));
+    choice_ui(ui, "Role of the model", &mut role, &roles);
+    if role != part.row.role {
+        push(bench.said_of(bench.selected, |row| row.role = role), commands);
+    }
+    if fill_ui(ui, "role") {
+        let role = part.row.role;
+        push(bench.filled_down(bench.selected, |row| row.role = role), commands);
+    }
+    ui.end_row();
+}
+
+/// A button that says the same of the models below, in the same folder.
+fn fill_ui(ui: &mut Ui, name: &str) -> bool {
+    let response = ui.small_button("↓");
+    let label = format!("Fill down {name}");
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
+    response.on_hover_text(format!("{label}: the same for every model below it in the same folder")).clicked()
+}
+
+fn field_ui(ui: &mut Ui, bench: &Workbench, field: &Field, commands: &mut Vec<Command>) {
+    ui.label(field.name);
+    let name = format!("Model {}", field.name);
+    if let Some(text) = entry_ui(ui, &name, &field.value, field.hint, FIELD_WIDTH) {
+        let mut refusal = None;
+        let rules = bench.said_of(bench.selected, |row| refusal = (field.say)(&text, row).err());
+        match refusal {
+            None => push(rules, commands),
+            Some(why) => commands.push(Command::Refuse(format!("{}: {why}", field.name))),
+        }
+    }
+    if fill_ui(ui, field.name) {
+        let rules = bench.filled_down(bench.selected, |row| {
+            // What stands in a field was taken before.
+            let _ = (field.say)(&field.value, row);
+        });
+        push(rules, commands);
+    }
+    ui.end_row();
+}
+
+fn fields(part: &Part) -> Vec<Field> {
+    let row = &part.row;
+    let figure = |value: Option<f64>| value.map_or(String::new(), number);
+    let word = |value: &Option<String>| value.clone().unwrap_or_default();
+    let mut fields = vec![
+        Field {
+            name: "condition",
+            value: row.condition.map_or(String::new(), |of| of.to_string()),
+            hint: "a number",
+            say: say_condition,
+        },
+        Field {
+            name: "name",
+            value: row.name.clone(),
+            hint: "in its bundle",
+            say: |text, row| {
+                row.name = Some(text.trim().to_owned());
+                Ok(())
+            },
+        },
+        Field {
+            name: "airspeed",
+            value: figure(row.airspeed_kt),
+            hint: "kt",
+            say: |text, row| {
+                row.airspeed_kt = typed_number(text)?;
+                Ok(())
+            },
+        },
+        Field {
+            name: "altitude",
+            value: word(&row.altitude),
+            hint: "low, high",
+            say: |text, row| {
+                row.altitude = said(text);
+                Ok(())
+            },
+        },
+        Field {
+            name: "altitude [ft]",
+            value: figure(row.altitude_ft),
+            hint: "ft",
+            say: |text, row| {
+                row.altitude_ft = typed_number(text)?;
+                Ok(())
+            },
+        },
+        Field {
+            name: "weight",
+            value: word(&row.weight),
+            hint: "low, high",
+            say: |text, row| {
+                row.weight = said(text);
+                Ok(())
+            },
+        },
+        Field {
+            name: "mass [kg]",
+            value: figure(row.mass_kg),
+            hint: "kg",
+            say: |text, row| {
+                row.mass_kg = typed_number(text)?;
+                Ok(())
+            },
+        },
+    ];
+    match row.role {
+        Some(RowRole::Identified) => fields.push(Field {
+            name: "method",
+            value: word(&row.method),
+            hint: "CT-PBSID",
+            say: |text, row| {
+                row.method = said(text);
+                Ok(())
+            },
+        }),
+        _ => fields.push(Field {
+            name: "trim",
+            value: trim_words(&row.perturbation),
+            hint: "roll_deg 5, airspeed_kt -10",
+            say: say_trim,
+        }),
+    }
+    fields
+}
+
+fn said(text: &str) -> Option<String> {
+    Some(text.trim().to_owned()).filter(|text| !text.is_empty())
+}
+
+fn say_condition(text: &str, row: &mut RowRule) -> Result<(), String> {
+    let text = text.trim();
+    row.condition = match text.is_empty() {
+        true => None,
+        false => Some(text.parse().map_err(|_| format!("expected a whole number, found \"{text}\""))?),
+    };
+    Ok(())
+}
+
+fn trim_words(perturbation: &BTreeMap<String, f64>) -> String {
+    perturbation.iter().map(|(coordinate, by)| format!("{coordinate} {}", number(*by))).collect::<Vec<_>>().join(", ")
+}
+
+/// "roll_deg 5, airspeed_kt -10": a coordinate and its offset, separated by commas.
+fn say_trim(text: &str, row: &mut RowRule) -> Result<(), String> {
+    let mut offsets = BTreeMap::new();
+    for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
+        let wrong = || format!("expected a coordinate and a number as in \"roll_deg 5\", found \"{part}\"");
+        let (coordinate, by) = part.rsplit_once(' ').ok_or_else(wrong)?;
+        let by = typed_number(by)?.ok_or_else(wrong)?;
+        offsets.insert(coordinate.trim().to_owned(), by);
+    }
+    row.perturbation = Some(offsets);
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_trim_is_said_in_words_and_comes_back_in_the_same_words() {
+        let mut row = RowRule::default();
+        say_trim("roll_deg 5, airspeed_kt -10", &mut row).unwrap();
+        assert_eq!(trim_words(&row.perturbation.clone().unwrap()), "airspeed_kt -10, roll_deg 5");
+        assert!(say_trim("roll", &mut row).unwrap_err().contains("roll_deg 5"));
+        say_condition("3", &mut row).unwrap();
+        assert_eq!(row.condition, Some(3));
+        assert!(say_condition("three", &mut row).is_err());
+    }
+}

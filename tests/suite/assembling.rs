@@ -1,0 +1,348 @@
+//! Datasets out of folders of files, by the command line and by the library.
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::process::Command;
+use std::sync::Arc;
+
+use gdcm::assembly::{Assembly, ProblemKind, RowRole, UnitRule, proposed_rules};
+use gdcm::dataset::{BundleKind, Condition, Dataset, Dynamics, Model, StateSpace};
+use gdcm::io::variables::{Array, CellArray, StructArray, TextArray, Value, Variable};
+use gdcm::io::{FolderProgress, FoundModels, load_dataset, read_models, write_mat, write_npz};
+use nalgebra::DMatrix;
+
+use crate::commands::Ended;
+
+struct Silent;
+
+impl FolderProgress for Silent {
+    fn reading(&self, _: usize, _: usize, _: &str) {}
+
+    fn stopped(&self) -> bool {
+        false
+    }
+}
+
+fn run(arguments: &[&str]) -> Ended {
+    Ended::of(&Command::new(env!("CARGO_BIN_EXE_gdcm")).args(arguments).output().unwrap())
+}
+
+fn found_in(folder: &Path) -> FoundModels {
+    read_models(&[folder.to_owned()], &Silent).unwrap()
+}
+
+fn matrices(model: &Model) -> [&DMatrix<f64>; 4] {
+    match &model.dynamics {
+        Dynamics::StateSpace(system) => [system.a(), system.b(), system.c(), system.d()],
+        Dynamics::Measured(_) => panic!("the example has matrices"),
+    }
+}
+
+fn array(matrix: &DMatrix<f64>) -> Value {
+    Value::Array(Array::matrix(matrix.nrows(), matrix.ncols(), matrix.as_slice().to_vec()))
+}
+
+fn text(text: &str) -> Value {
+    Value::Text(TextArray { shape: vec![1, 1], texts: vec![text.to_owned()] })
+}
+
+fn cell(texts: &[String]) -> Value {
+    Value::Cell(CellArray { shape: vec![texts.len(), 1], values: texts.iter().map(|of| text(of)).collect() })
+}
+
+/// Names and units of the example's channels, as MATLAB names their lists.
+fn labels(dataset: &Dataset) -> [(&'static str, Vec<String>); 4] {
+    let of = |channels: &[gdcm::dataset::Channel], part: fn(&gdcm::dataset::Channel) -> &String| {
+        channels.iter().map(|channel| part(channel).clone()).collect()
+    };
+    [
+        ("InputName", of(dataset.inputs(), |channel| &channel.name)),
+        ("InputUnit", of(dataset.inputs(), |channel| &channel.unit)),
+        ("OutputName", of(dataset.outputs(), |channel| &channel.name)),
+        ("OutputUnit", of(dataset.outputs(), |channel| &channel.unit)),
+    ]
+}
+
+/// Name of a model's file: the nominal model is called so, identified ones say what they are.
+fn stem(kind: BundleKind, model: &Model) -> String {
+    match kind {
+        BundleKind::Physics if model.is_nominal() => "nominal".to_owned(),
+        BundleKind::Physics => model.name.replace(' ', "_"),
+        BundleKind::Identified => format!("flight_{}", model.name.replace([' ', '/'], "_")),
+    }
+}
+
+/// Writes every model of the example into a folder for each condition, one file a model.
+fn write_folders(root: &Path, dataset: &Dataset, write: impl Fn(&Path, &Model)) {
+    for condition in dataset.conditions() {
+        let state = condition.flight_state();
+        let class = |class: &Option<String>| class.clone().unwrap();
+        let name = format!(
+            "c{:02}_{:03.0}kt_{}_{}",
+            state.id.0,
+            state.airspeed_kt,
+            class(&state.altitude),
+            class(&state.weight)
+        );
+        let folder = root.join(name);
+        std::fs::create_dir_all(&folder).unwrap();
+        for kind in BundleKind::BOTH {
+            condition.bundle(kind).iter().for_each(|model| write(&folder.join(stem(kind, model)), model));
+        }
+    }
+}
+
+fn write_as_mat(dataset: &Dataset, path: &Path, model: &Model) {
+    let names = ["A", "B", "C", "D"]
+        .into_iter()
+        .zip(matrices(model))
+        .map(|(name, matrix)| (name.to_owned(), vec![array(matrix)]));
+    let lists = labels(dataset).into_iter().map(|(name, list)| (name.to_owned(), vec![cell(&list)]));
+    let sys = Value::Struct(StructArray { shape: vec![1, 1], fields: names.chain(lists).collect() });
+    let bytes = write_mat(&[Variable { name: "sys".into(), value: sys }]).unwrap();
+    std::fs::write(path.with_file_name(file_name(path, "mat")), bytes).unwrap();
+}
+
+fn write_as_npz(dataset: &Dataset, path: &Path, model: &Model) {
+    let numbers = ["A", "B", "C", "D"].into_iter().zip(matrices(model)).map(|(name, matrix)| (name, array(matrix)));
+    let lists = labels(dataset)
+        .into_iter()
+        .map(|(name, texts)| (name, Value::Text(TextArray { shape: vec![1, texts.len()], texts })));
+    let variables: Vec<Variable> =
+        numbers.chain(lists).map(|(name, value)| Variable { name: name.to_owned(), value }).collect();
+    std::fs::write(path.with_file_name(file_name(path, "npz")), write_npz(&variables).unwrap()).unwrap();
+}
+
+fn write_as_csv(path: &Path, model: &Model) {
+    for (letter, matrix) in ["A", "B", "C", "D"].into_iter().zip(matrices(model)) {
+        let mut text = String::new();
+        for row in matrix.row_iter() {
+            let cells: Vec<String> = row.iter().map(|value| format!("{value:?}")).collect();
+            writeln!(text, "{}", cells.join(",")).unwrap();
+        }
+        let name = format!("{}_{letter}.csv", path.file_name().unwrap().to_str().unwrap());
+        std::fs::write(path.with_file_name(name), text).unwrap();
+    }
+}
+
+fn write_as_literals(dataset: &Dataset, path: &Path, model: &Model) {
+    let mut text = String::from("% one model\r\n");
+    for (letter, matrix) in ["A", "B", "C", "D"].into_iter().zip(matrices(model)) {
+        let rows: Vec<String> = matrix
+            .row_iter()
+            .map(|row| row.iter().map(|value| format!("{value:?}")).collect::<Vec<_>>().join(" "))
+            .collect();
+        write!(text, "{letter} = [{}];\r\n", rows.join("; ...\r\n  ")).unwrap();
+    }
+    for (name, list) in labels(dataset) {
+        let quoted: Vec<String> = list.iter().map(|item| format!("'{item}'")).collect();
+        write!(text, "{name} = {{{}}};\r\n", quoted.join(", ")).unwrap();
+    }
+    std::fs::write(path.with_file_name(file_name(path, "m")), text).unwrap();
+}
+
+/// "roll+5" and "mat" make "roll+5.mat"; `with_extension` would cut names at their points.
+fn file_name(path: &Path, extension: &str) -> String {
+    format!("{}.{extension}", path.file_name().unwrap().to_str().unwrap())
+}
+
+/// Asserts that a dataset has the example's numbers, bit for bit, with the names of the files.
+fn assert_same_numbers(made: &Dataset, example: &Dataset, route: &str) {
+    assert_eq!(made.conditions().len(), example.conditions().len(), "{route}");
+    for expected in example.conditions() {
+        let found: &Arc<Condition> = made.condition(expected.id()).unwrap();
+        let (found_state, state) = (found.flight_state(), expected.flight_state());
+        assert_eq!(
+            (found_state.airspeed_kt, &found_state.altitude, &found_state.weight),
+            (state.airspeed_kt, &state.altitude, &state.weight)
+        );
+        for kind in BundleKind::BOTH {
+            assert_eq!(found.bundle(kind).len(), expected.bundle(kind).len(), "{route}");
+            for model in expected.bundle(kind) {
+                let same =
+                    found.model(kind, &stem(kind, model)).unwrap_or_else(|| panic!("{route}: {}", stem(kind, model)));
+                assert_eq!(matrices(same), matrices(model), "{route}: {}", model.name);
+                assert_eq!(same.is_nominal(), model.is_nominal(), "{route}: {}", model.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_example_in_a_folder_of_any_format_is_the_same_dataset_to_the_last_digit() {
+    let example = &crate::EXAMPLE.dataset;
+    let folder = tempfile::tempdir().unwrap();
+    let routes: [(&str, &dyn Fn(&Path, &Model)); 3] = [
+        ("mat", &|path, model| write_as_mat(example, path, model)),
+        ("npz", &|path, model| write_as_npz(example, path, model)),
+        ("m", &|path, model| write_as_literals(example, path, model)),
+    ];
+    for (route, write) in routes {
+        let root = folder.path().join(route);
+        write_folders(&root, example, write);
+        let found = found_in(&root);
+        assert!(found.faults.is_empty(), "{route}: {:?}", found.faults);
+        let rules = proposed_rules(route, &found.models);
+        let assembly = Assembly::new(found.models, rules);
+        assert!(assembly.problems().is_empty(), "{route}: {:?}", assembly.told());
+        assert_same_numbers(&assembly.dataset("").unwrap(), example, route);
+    }
+}
+
+#[test]
+fn perturbations_of_file_names_are_the_example_s() {
+    let example = &crate::EXAMPLE.dataset;
+    let folder = tempfile::tempdir().unwrap();
+    write_folders(folder.path(), example, |path, model| write_as_mat(example, path, model));
+    let found = found_in(folder.path());
+    let rules = proposed_rules("", &found.models);
+    let made = Assembly::new(found.models, rules).dataset("").unwrap();
+    for expected in example.conditions() {
+        for model in expected.bundle(BundleKind::Physics) {
+            let condition = made.condition(expected.id()).unwrap();
+            let found = condition.model(BundleKind::Physics, &stem(BundleKind::Physics, model)).unwrap();
+            assert_eq!(found.perturbation(), model.perturbation(), "{}", model.name);
+        }
+    }
+}
+
+#[test]
+fn a_folder_of_matrices_without_names_is_made_a_dataset_by_rules_from_the_shell() {
+    let example = &crate::EXAMPLE.dataset;
+    let folder = tempfile::tempdir().unwrap();
+    let root = folder.path().join("csv");
+    write_folders(&root, example, write_as_csv);
+    let out = folder.path().join("made.json.gz");
+    let (root, made) = (root.to_str().unwrap(), out.to_str().unwrap());
+    let first = run(&["assemble", root, "--out", made]);
+    assert_eq!(first.status, 2, "{}", first.error);
+    let said = &first.error;
+    assert!(said.contains("the unit of input 1 is not said") && said.contains("and 241 other models"), "{said}");
+    assert!(!out.exists(), "nothing half made");
+    // The rules that were proposed, with the names and units of the channels.
+    let path = folder.path().join("made.gdcm-rules.json");
+    let mut rules: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    for (side, channels) in [("inputs", example.inputs()), ("outputs", example.outputs())] {
+        rules[side] = channels
+            .iter()
+            .map(|channel| serde_json::json!({"name": channel.name, "unit": channel.unit, "unit_in_files": channel.unit}))
+            .collect();
+    }
+    std::fs::write(&path, rules.to_string()).unwrap();
+    let second = run(&["assemble", root, "--rules", path.to_str().unwrap(), "--out", made]);
+    assert_eq!(second.status, 0, "{}", second.error);
+    assert!(second.out.contains("11 conditions"), "{}", second.out);
+    let dataset = load_dataset(&out).unwrap().dataset;
+    assert_same_numbers(&dataset, example, "csv");
+    let nominal = &dataset.conditions()[0].bundle(BundleKind::Physics)[0];
+    let source = nominal.source.as_ref().unwrap();
+    assert_eq!(source.file.as_deref(), Some("csv/c01_120kt_low_low/nominal"), "relative to the dataset");
+    assert!(source.note.as_ref().unwrap().contains("SHA-256 of its files"), "{source:?}");
+    let again = run(&["assemble", root, "--rules", path.to_str().unwrap(), "--out", made]);
+    assert_eq!(again.status, 2, "nothing is overwritten unasked");
+    assert!(again.error.contains("--force"), "{}", again.error);
+}
+
+/// Two physics models and a measured response of one input and one output, as files.
+pub(crate) fn small_folder(root: &Path) {
+    let model = |gain: f64| {
+        let values = [("A", vec![-1.0]), ("B", vec![gain]), ("C", vec![1.0]), ("D", vec![0.0])];
+        let numbers = values
+            .map(|(name, values)| Variable { name: name.into(), value: Value::Array(Array::matrix(1, 1, values)) });
+        let names = [("InputName", "xb"), ("OutputName", "pitch rate"), ("InputUnit", "in"), ("OutputUnit", "rad/s")];
+        let texts = names.map(|(name, of)| Variable { name: name.into(), value: text(of) });
+        write_mat(&[&numbers[..], &texts[..]].concat()).unwrap()
+    };
+    let folder = root.join("c1_60kt");
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("trim.mat"), model(1.0)).unwrap();
+    std::fs::write(folder.join("V+5kt.mat"), model(1.1)).unwrap();
+    let mut frf = String::from("omega [rad/s],mag [dB],phase [deg],coherence\n");
+    for step in 0..40 {
+        let omega = 0.3 * 1.1f64.powi(step);
+        let magnitude = -10.0 * (1.0 + omega * omega).log10();
+        writeln!(frf, "{omega},{magnitude},{},0.9", -omega.atan().to_degrees()).unwrap();
+    }
+    std::fs::write(folder.join("frf_Q_LON.csv"), frf).unwrap();
+    std::fs::write(folder.join("broken.mat"), b"not a mat file at all").unwrap();
+}
+
+#[test]
+fn channels_are_matched_and_units_converted_as_declared_and_never_in_silence() {
+    let folder = tempfile::tempdir().unwrap();
+    small_folder(folder.path());
+    let found = found_in(folder.path());
+    assert_eq!(found.models.len(), 3);
+    assert!(found.faults.iter().any(|fault| fault.contains("broken.mat")), "{:?}", found.faults);
+    let mut rules = proposed_rules("small", &found.models);
+    let assembly = Assembly::new(found.models, rules.clone());
+    let asked =
+        |assembly: &Assembly, wanted: fn(&ProblemKind) -> bool| assembly.problems().iter().any(|of| wanted(&of.kind));
+    assert!(
+        asked(&assembly, |kind| matches!(kind, ProblemKind::UnitOfFile { .. })),
+        "the response has no units: {:?}",
+        assembly.told()
+    );
+    (rules.inputs[0].name, rules.inputs[0].unit) = ("LON".into(), "%".into());
+    (rules.outputs[0].name, rules.outputs[0].unit) = ("Q".into(), "deg/s".into());
+    rules.inputs[0].unit_in_files = Some("%".into());
+    rules.outputs[0].unit_in_files = Some("deg/s".into());
+    let assembly = assembly.with_rules(rules.clone());
+    assert!(
+        asked(&assembly, |kind| matches!(kind, ProblemKind::Conversion { .. })),
+        "inches of a stick: {:?}",
+        assembly.told()
+    );
+    rules.units.push(UnitRule { channel: "LON".into(), from: "in".into(), factor: 8.0 });
+    let assembly = assembly.with_rules(rules);
+    assert!(assembly.problems().is_empty(), "{:?}", assembly.told());
+    assert_eq!(assembly.parts().iter().filter(|part| part.row.role == Some(RowRole::Identified)).count(), 1);
+    let dataset = assembly.dataset("there").unwrap();
+    let nominal = &dataset.conditions()[0].bundle(BundleKind::Physics)[0];
+    let [_, b, c, _] = matrices(nominal);
+    // One inch is 8 %, one radian 57.3 degrees.
+    assert_eq!((b[(0, 0)], c[(0, 0)]), (1.0 / 8.0, 180.0 / std::f64::consts::PI));
+    let source = nominal.source.as_ref().unwrap();
+    assert_eq!(source.file.as_deref(), Some("there/c1_60kt/trim.mat"));
+    let note = source.note.as_ref().unwrap();
+    assert!(note.contains("LON in → % (× 8)") && note.contains("Q rad/s → deg/s"), "{note}");
+    assert_eq!(source.sha256.as_ref().map(String::len), Some(64));
+    let Dynamics::Measured(response) = &dataset.conditions()[0].bundle(BundleKind::Identified)[0].dynamics else {
+        panic!("the response is measured")
+    };
+    assert!(response.coherence().is_some());
+}
+
+#[test]
+fn what_was_converted_is_read_again_as_the_same_models() {
+    let folder = tempfile::tempdir().unwrap();
+    small_folder(folder.path());
+    let file = |name: &str| folder.path().join("c1_60kt").join(name).to_str().unwrap().to_owned();
+    let out = folder.path().join("models.json");
+    let ended = run(&["convert", &file("trim.mat"), &file("frf_Q_LON.csv"), "--out", out.to_str().unwrap()]);
+    assert_eq!(ended.status, 0, "{}", ended.error);
+    let again = read_models(&[out], &Silent).unwrap();
+    assert_eq!(again.models.len(), 2, "{:?}", again.faults);
+    let first = read_models(&[file("trim.mat").into(), file("frf_Q_LON.csv").into()], &Silent).unwrap();
+    for (a, b) in first.models.iter().zip(&again.models) {
+        assert_eq!((&a.draft.matrices, &a.inputs, &a.outputs), (&b.draft.matrices, &b.inputs, &b.outputs));
+        assert_eq!(
+            a.draft.response.as_ref().map(|of| (&of.omega, &of.re, &of.im)),
+            b.draft.response.as_ref().map(|of| (&of.omega, &of.re, &of.im))
+        );
+    }
+}
+
+#[test]
+fn a_discrete_time_model_keeps_its_sample_time_and_its_delays_in_samples_become_seconds() {
+    let folder = tempfile::tempdir().unwrap();
+    let numbers = [("A", 0.9), ("B", 1.0), ("C", 1.0), ("D", 0.0), ("Ts", 0.02), ("InputDelay", 3.0)];
+    let variables = numbers
+        .map(|(name, value)| Variable { name: name.into(), value: Value::Array(Array::matrix(1, 1, vec![value])) });
+    std::fs::write(folder.path().join("sys.mat"), write_mat(&variables).unwrap()).unwrap();
+    let found = found_in(folder.path());
+    let timing = &found.models[0].draft.timing;
+    assert_eq!((timing.sample_time_s, timing.input_delays_s.as_deref()), (Some(0.02), Some(&[0.06][..])));
+    let [a, b, c, d] = found.models[0].draft.matrices.clone().map(Option::unwrap);
+    assert!(StateSpace::new(a, b, c, d).unwrap().timed(timing.clone()).is_ok());
+}

@@ -1,0 +1,90 @@
+//! Putting models together in the window, by its controls.
+
+use gdcm::view::assembling::{AssemblingCommand, Column, Workbench, cell_text};
+
+use super::views::give;
+use super::*;
+
+fn bench(window: &Window) -> &Workbench {
+    state(window).assembling.as_ref().expect("models are being put together")
+}
+
+fn type_into(window: &mut Window, field: &str, text: &str) {
+    window.get_by_label(field).focus();
+    window.run_steps(2);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    window.get_by_label(field).type_text(text);
+    window.run_steps(2);
+    window.key_press(Key::Enter);
+    window.run_steps(3);
+}
+
+fn wait_for_models(window: &mut Window) {
+    wait_until(window, "the models", |window| bench(window).reading.is_none());
+}
+
+#[test]
+fn a_folder_is_put_together_by_its_labels_and_opened() {
+    let folder = tempfile::tempdir().unwrap();
+    crate::assembling::small_folder(folder.path());
+    let mut window = window();
+    give(&mut window, AssemblingCommand::Open);
+    type_into(&mut window, "Folder or file of models", folder.path().to_str().unwrap());
+    wait_for_models(&mut window);
+    assert_eq!(bench(&window).assembly().parts().len(), 3);
+    assert!(window.query_by_label_contains("still to be said").is_some());
+    assert!(window.query_by_label_contains("not taken: ").is_some(), "the broken file is named");
+
+    type_into(&mut window, "Name of input 1", "LON");
+    type_into(&mut window, "Unit of input 1", "%");
+    type_into(&mut window, "Unit in files of input 1", "%");
+    type_into(&mut window, "Name of output 1", "Q");
+    type_into(&mut window, "Unit of output 1", "deg/s");
+    type_into(&mut window, "Unit in files of output 1", "deg/s");
+    type_into(&mut window, "Factor of LON from in", "8,0");
+    assert!(bench(&window).assembly().problems().is_empty(), "{:?}", bench(&window).assembly().told());
+
+    let made = folder.path().join("made.json.gz");
+    type_into(&mut window, "Path of the dataset to make", made.to_str().unwrap());
+    window.get_by_label("Make dataset").click();
+    wait_until(&mut window, "the dataset", |window| {
+        state(window).assembling.is_none() && state(window).dataset().conditions().len() == 1
+    });
+    assert!(made.exists() && folder.path().join("made.gdcm-rules.json").exists());
+    assert_eq!(state(&window).dataset().inputs()[0].name, "LON");
+}
+
+#[test]
+fn what_is_said_of_a_model_is_filled_down_undone_and_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    crate::assembling::small_folder(folder.path());
+    let mut window = window();
+    give(&mut window, AssemblingCommand::Add(vec![folder.path().to_owned()]));
+    wait_for_models(&mut window);
+    window.run_steps(2);
+    let column = |window: &Window, column: Column| -> Vec<String> {
+        bench(window).assembly().parts().iter().map(|part| cell_text(column, part)).collect()
+    };
+    window.get_by_label_contains("Model c1_60kt/V+5kt.mat").click();
+    window.run_steps(2);
+    type_into(&mut window, "Model altitude", "high");
+    let before = column(&window, Column::Altitude);
+    assert_eq!(before.iter().filter(|cell| *cell == "high").count(), 1);
+    let first = bench(&window).order()[0];
+    let selected = bench(&window).selected;
+    if first != selected {
+        give(&mut window, AssemblingCommand::Select(first));
+        type_into(&mut window, "Model altitude", "high");
+    }
+    window.get_by_label("Fill down altitude").click();
+    window.run_steps(3);
+    assert!(
+        column(&window, Column::Altitude).iter().all(|cell| cell == "high"),
+        "{:?}",
+        column(&window, Column::Altitude)
+    );
+    click(&mut window, "Undo change");
+    assert!(!column(&window, Column::Altitude).iter().all(|cell| cell == "high"));
+    click(&mut window, "Leave");
+    assert!(state(&window).assembling.is_none());
+}

@@ -1,7 +1,7 @@
 //! From the command line to a window on the screen.
 
 use std::error::Error;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 
@@ -9,6 +9,7 @@ use eframe::{App, Frame, NativeOptions};
 use egui::{Context, Ui, ViewportBuilder};
 
 use crate::io::{FileError, Opened, embedded_example, load_any};
+use crate::view::assembling::AssemblingCommand;
 
 use super::autosave::Autosave;
 use super::fault::{self, Fault, caught};
@@ -26,8 +27,11 @@ const WRONG_FILE: u8 = 2;
 /// Opens the window on a dataset or a study, or on the embedded example, and returns when it is closed.
 ///
 /// Where there is no display, or the window cannot be made, one line on standard error says so and names the headless command.
+///
+/// A folder, or a file of another program, is opened to put its models together.
 pub fn open(path: Option<PathBuf>) -> ExitCode {
-    let opened = match load(path) {
+    let models = path.clone().filter(|path| holds_models(path));
+    let opened = match load(path.filter(|_| models.is_none())) {
         Ok(opened) => opened,
         Err(error) => {
             eprintln!("gdcm: {error}");
@@ -40,7 +44,7 @@ pub fn open(path: Option<PathBuf>) -> ExitCode {
     }
     std::panic::set_hook(Box::new(fault::note));
     let opening = Arc::new(OnceLock::new());
-    match ending(caught(|| run(opened, Setup::of_program(), &opening)), opening.get()) {
+    match ending(caught(|| run(opened, models, Setup::of_program(), &opening)), opening.get()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(words) => {
             eprintln!("gdcm: {words}");
@@ -61,6 +65,12 @@ fn ending(run: Result<eframe::Result, Fault>, kept: Option<&Autosave>) -> Result
     }
 }
 
+/// Whether a path is a folder, or a file that only models can be taken from.
+pub(super) fn holds_models(path: &Path) -> bool {
+    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default();
+    path.is_dir() || path.is_file() && !matches!(extension.as_str(), "json" | "gz")
+}
+
 fn load(path: Option<PathBuf>) -> Result<Opened, FileError> {
     match path {
         Some(path) => load_any(&path),
@@ -68,7 +78,7 @@ fn load(path: Option<PathBuf>) -> Result<Opened, FileError> {
     }
 }
 
-fn run(opened: Opened, setup: Setup, opening: &Arc<OnceLock<Autosave>>) -> eframe::Result {
+fn run(opened: Opened, models: Option<PathBuf>, setup: Setup, opening: &Arc<OnceLock<Autosave>>) -> eframe::Result {
     let viewport = ViewportBuilder::default()
         .with_title("gdcm")
         .with_app_id(APP_ID)
@@ -79,7 +89,11 @@ fn run(opened: Opened, setup: Setup, opening: &Arc<OnceLock<Autosave>>) -> efram
     let build = move |creation: &eframe::CreationContext<'_>| -> Result<Box<dyn App>, Box<dyn Error + Send + Sync>> {
         let kept = creation.storage.and_then(|storage| eframe::get_value(storage, PREFERENCES));
         let setup = Setup { preferences: kept.unwrap_or_default(), ..setup };
-        Ok(Box::new(Guarded { app: GdcmApp::with(&creation.egui_ctx, opened, setup)?, opening }))
+        let mut app = GdcmApp::with(&creation.egui_ctx, opened, setup)?;
+        if let Some(models) = models {
+            app.give(AssemblingCommand::Add(vec![models]).into(), &creation.egui_ctx);
+        }
+        Ok(Box::new(Guarded { app, opening }))
     };
     eframe::run_native(APP_ID, options, Box::new(build))
 }

@@ -1,6 +1,6 @@
 //! The window: state, the thread that computes, the dialogs.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, ViewportCommand};
@@ -26,6 +26,7 @@ use super::disk_watch::DiskWatch;
 use super::fault::Fault;
 use super::files::{Postponed, Readers, SavedStudy};
 use super::key_order::KeyOrder;
+use super::launch::holds_models;
 use super::recent::Recent;
 use super::recovery::LAST_WAIT;
 use super::setup::Setup;
@@ -225,10 +226,11 @@ impl GdcmApp {
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         let paths: Vec<PathBuf> = dropped.iter().map(|file| file.path().to_path_buf()).collect();
         // A dataset or a study is opened; several files, a folder, and files of other programs are models.
-        let is_ours = |path: &Path| path.extension().is_some_and(|extension| extension == "json" || extension == "gz");
         match paths.as_slice() {
             [] => {}
-            [path] if self.state.assembling.is_none() && is_ours(path) => commands.push(Command::Open(path.clone())),
+            [path] if self.state.assembling.is_none() && !holds_models(path) => {
+                commands.push(Command::Open(path.clone()))
+            }
             _ => commands.push(AssemblingCommand::Add(paths).into()),
         }
     }

@@ -16,8 +16,8 @@ use crate::study::{AcrossRole, DEFAULT_COHERENCE, LEAST_POINTS, MOST_POINTS};
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub(super) command: Option<Command>,
-    /// Dataset or study to open the window on; without it, the embedded example (synthetic data). A file named like a command:
-    /// ./analyze
+    /// Dataset or study to open the window on; without it, the embedded example (synthetic data). A folder, or a file of another
+    /// program, is opened to put its models together. A file named like a command: ./analyze
     pub(super) file: Option<PathBuf>,
 }
 

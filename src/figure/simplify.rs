@@ -1,5 +1,25 @@
 //! Fewer points for the same line.
 
+use super::drawing::{Drawing, Shape};
+
+impl Drawing {
+    /// The same drawing with fewer points: none of those left out is farther than `tolerance_pt` from its line.
+    pub fn simplified(self, tolerance_pt: f64) -> Self {
+        Self { shapes: coarser(self.shapes, tolerance_pt), ..self }
+    }
+}
+
+fn coarser(shapes: Vec<Shape>, tolerance: f64) -> Vec<Shape> {
+    let one = |shape: Shape| match shape {
+        Shape::Path { points, closed: false, fill, stroke } => {
+            Shape::Path { points: simplified(&points, tolerance), closed: false, fill, stroke }
+        }
+        Shape::Clipped { area, shapes } => Shape::Clipped { area, shapes: coarser(shapes, tolerance) },
+        other => other,
+    };
+    shapes.into_iter().map(one).collect()
+}
+
 /// `points` without those that lie within `tolerance` of the line that the others make; the ends stay.
 ///
 /// ```text

@@ -45,7 +45,7 @@ impl Table {
     }
 
     /// Whether every cell of a column that is not empty is a figure, and there is one.
-    fn has_figures(&self, column: usize) -> bool {
+    pub fn has_figures(&self, column: usize) -> bool {
         let mut cells = self.rows.iter().map(|row| row[column].as_str()).filter(|cell| !cell.is_empty()).peekable();
         cells.peek().is_some() && cells.all(is_figure)
     }

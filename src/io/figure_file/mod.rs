@@ -14,6 +14,8 @@ use super::csv_table::write_tables;
 use super::file_error::FileError;
 use super::output_set::OutputSet;
 
+pub(super) use svg::{escaped, inline_svg};
+
 /// The format that the end of a file's name says.
 ///
 /// # Errors

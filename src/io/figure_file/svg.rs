@@ -9,31 +9,47 @@ const OTHER_FONTS: &str = "Helvetica, Arial, sans-serif";
 
 /// The text of the file.
 pub(super) fn svg(drawing: &Drawing) -> String {
-    let [paper_width, paper_height] = drawing.size;
-    let mut svg = Svg { text: String::new(), clips: 0 };
+    let head = format!("xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" {}", size_attributes(drawing));
+    element(drawing, &head, "frame")
+}
+
+/// The drawing as a part of a page in HTML, which knows the element without a name space. `name` begins the names that it refers
+/// to by: no two of a page may share it.
+pub(in crate::io) fn inline_svg(drawing: &Drawing, name: &str) -> String {
+    let label = escaped(&drawing.title);
+    element(drawing, &format!("role=\"img\" aria-label=\"{label}\" {}", size_attributes(drawing)), name)
+}
+
+fn size_attributes(drawing: &Drawing) -> String {
+    let [width, height] = drawing.size;
+    let [width_mm, height_mm] = [width, height].map(|length| number(length / PT_PER_MM));
+    let [width, height] = [width, height].map(number);
+    format!("width=\"{width_mm}mm\" height=\"{height_mm}mm\" viewBox=\"0 0 {width} {height}\"")
+}
+
+fn element(drawing: &Drawing, head: &str, name: &str) -> String {
+    let [width, height] = drawing.size;
+    let mut svg = Svg { text: String::new(), name, clips: 0 };
     svg.line(&format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {} {}\" \
-         font-family=\"{}, {OTHER_FONTS}\" font-weight=\"300\" stroke-linejoin=\"round\">",
-        number(paper_width / PT_PER_MM),
-        number(paper_height / PT_PER_MM),
-        number(paper_width),
-        number(paper_height),
+        "<svg {head} font-family=\"{}, {OTHER_FONTS}\" font-weight=\"300\" stroke-linejoin=\"round\">",
         FONTS[0].0,
     ));
     svg.line(&format!("<title>{}</title>", escaped(&drawing.title)));
-    svg.shape(&Shape::rectangle(Area::new(0.0, 0.0, paper_width, paper_height), Some(Color::WHITE), None));
+    svg.shape(&Shape::rectangle(Area::new(0.0, 0.0, width, height), Some(Color::WHITE), None));
     drawing.shapes.iter().for_each(|shape| svg.shape(shape));
     svg.line("</svg>");
     svg.text
 }
 
-struct Svg {
+struct Svg<'a> {
     text: String,
-    /// How many areas have been clipped to: their numbers are their names.
+    /// What the names of areas begin with.
+    name: &'a str,
+    /// How many areas have been clipped to: their numbers end their names.
     clips: usize,
 }
 
-impl Svg {
+impl Svg<'_> {
     fn line(&mut self, line: &str) {
         self.text.push_str(line);
         self.text.push('\n');
@@ -55,9 +71,9 @@ impl Svg {
                 let Area { left, top, width, height } = *area;
                 let [x, y, width, height] = [left, top, width, height].map(number);
                 self.line(&format!(
-                    "<clipPath id=\"frame{0}\"><rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"/></clipPath>\n\
-                     <g clip-path=\"url(#frame{0})\">",
-                    self.clips
+                    "<clipPath id=\"{0}{1}\"><rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"/></clipPath>\n\
+                     <g clip-path=\"url(#{0}{1})\">",
+                    self.name, self.clips
                 ));
                 shapes.iter().for_each(|shape| self.shape(shape));
                 self.line("</g>");
@@ -126,7 +142,7 @@ fn number(value: f64) -> String {
 }
 
 /// Words as XML takes them; what XML 1.0 has no place for is left out.
-fn escaped(words: &str) -> String {
+pub(in crate::io) fn escaped(words: &str) -> String {
     let mut text = String::with_capacity(words.len());
     for character in words.chars() {
         match character {

@@ -15,7 +15,7 @@ use super::worker::Beside;
 impl GdcmApp {
     /// Asks for what the views shown need; what none shows is not computed.
     pub(super) fn want_beside(&mut self) {
-        let beside = wanted(&self.state);
+        let beside = Beside { report: self.reporting.clone(), ..wanted(&self.state) };
         let variants = &beside.variants;
         self.state.results.variants.retain(|(known, _)| variants.contains(known));
         self.worker.want_beside(beside);
@@ -32,6 +32,7 @@ fn wanted(state: &State) -> Beside {
             .filter(|_| is_shown(View::Assessment))
             .map(|analysis| AssessmentJob { analysis: Arc::clone(analysis), choice: assessment_choice(state) }),
         across: is_shown(View::Across).then(|| across_job(state)),
+        report: None,
         variants: if is_shown(View::Compare) { variant_jobs(state) } else { Vec::new() },
     }
 }

@@ -10,7 +10,7 @@ use crate::io::{
     Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, at_home, embedded_example, load_any,
     open_study_of, plain, plain_path, save_study, save_table, write_results,
 };
-use crate::study::{Difference, Study, Table};
+use crate::study::{Analysis, Difference, Study, Table};
 use crate::view::assembling::AssemblingCommand;
 use crate::view::bars::Bar;
 use crate::view::command::{Command, FormKind};
@@ -331,20 +331,25 @@ impl GdcmApp {
         }
     }
 
+    /// The analysis, where it is complete and of what is decided now; otherwise a sentence that says why not. `what` could be done
+    /// again once it is.
+    pub(super) fn analysis_to_write(&self, what: &str) -> Result<Arc<Analysis>, String> {
+        let results = &self.state.results;
+        if results.stopped {
+            return Err(format!("{}, for computing was stopped; compute first", self.state.after_stop()));
+        }
+        if !results.background.proofs.is_empty() {
+            return Err(format!("the gains are still being proven; {what} again in a moment, or stop it"));
+        }
+        let analysis = results.analysis.clone().filter(|_| !results.is_waiting());
+        analysis.ok_or_else(|| format!("the newest results are still being computed; {what} again in a moment"))
+    }
+
     /// Writes the corrections of the conditions chosen in the form.
     pub(super) fn export(&mut self, existing: Existing) {
-        if self.state.results.stopped {
-            let left = self.state.after_stop();
-            return self.trouble(format!("{left}, for computing was stopped; compute first"));
-        }
-        if !self.state.results.background.proofs.is_empty() {
-            return self.trouble("the gains are still being proven; export again in a moment, or stop it".to_owned());
-        }
-        if self.state.results.is_waiting() {
-            return self.trouble("the newest results are still being computed; export again in a moment".to_owned());
-        }
-        let Some(analysis) = self.state.results.analysis.clone() else {
-            return;
+        let analysis = match self.analysis_to_write("export") {
+            Ok(analysis) => analysis,
+            Err(why) => return self.trouble(why),
         };
         let form = &self.state.forms.export;
         let chosen = form.chosen.clone();

@@ -15,6 +15,7 @@ mod pool;
 mod recent;
 mod recovery;
 mod reload;
+mod report;
 mod setup;
 mod shortcuts;
 mod update;

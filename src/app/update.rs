@@ -120,6 +120,8 @@ impl GdcmApp {
             Command::CopyFigure(view) => self.copy_figure(view, ctx),
             Command::AskSaveFigure(view, format) => self.ask_save_figure(view, format),
             Command::SaveFigure(view, width, path) => self.save_figure((view, width), path, Existing::Keep),
+            Command::AskReport => self.ask_report(),
+            Command::WriteReport(path) => self.write_report(path, Existing::Keep),
             Command::FocusField(name) => self.focus_next(NextFocus::Field(name), ctx),
             Command::LeaveRegion { forward } => self.focus_next(NextFocus::Region { forward }, ctx),
             Command::StartTour => self.state.tour = Some(0),
@@ -249,6 +251,7 @@ impl GdcmApp {
                 self.make_dataset(path, Existing::Replace, ctx);
             }
             Some(Command::SaveFigure(view, width, path)) => self.save_figure((view, width), path, Existing::Replace),
+            Some(Command::WriteReport(path)) => self.write_report(path, Existing::Replace),
             _ => {}
         }
     }

@@ -29,6 +29,7 @@ use super::key_order::KeyOrder;
 use super::launch::holds_models;
 use super::recent::Recent;
 use super::recovery::LAST_WAIT;
+use super::report::ReportJob;
 use super::setup::Setup;
 use super::shortcuts;
 use super::update::NextFocus;
@@ -50,6 +51,8 @@ pub struct GdcmApp {
     /// What waits for the answer whether to write over files.
     pub(super) overwriting: Option<Command>,
     pub(super) closing: bool,
+    /// The report that is being written.
+    pub(super) reporting: Option<ReportJob>,
     /// Datasets that were open before a reload, or after one that was undone.
     pub(super) earlier: Vec<LoadedDataset>,
     pub(super) autosave: Autosave,
@@ -97,6 +100,7 @@ impl GdcmApp {
             goes_on_once_saved: false,
             overwriting: None,
             closing: false,
+            reporting: None,
             earlier: Vec::new(),
             autosave,
             offers: Vec::new(),
@@ -140,6 +144,7 @@ impl GdcmApp {
     /// Gives up the computation under way; what is shown stays.
     pub(super) fn stop_computing(&mut self) {
         self.worker.stop();
+        self.give_up_report();
         let results = &mut self.state.results;
         results.stopped = results.is_behind();
         results.waiting_since = None;
@@ -189,6 +194,7 @@ impl GdcmApp {
                     results.variants.retain(|(known, _)| *known != job);
                     results.variants.push((job, analysis));
                 }
+                Reply::Report(job, outcome) => self.report_written(job, outcome),
                 Reply::Fault { generation, fault } => self.computing_failed(generation, &fault),
                 // Answers to questions that no longer stand.
                 Reply::Progress { .. } | Reply::Curves(..) => {}
@@ -205,6 +211,9 @@ impl GdcmApp {
             results.stopped = true;
             results.waiting_since = None;
             results.progress = None;
+        }
+        if self.worker.is_report_stopped() {
+            self.give_up_report();
         }
         self.tell_fault("the computation", fault);
     }

@@ -7,8 +7,10 @@ use std::time::Instant;
 
 use super::fault::{Fault, caught};
 use super::lane::{Ending, Lane, PATIENCE};
+use super::report::ReportJob;
 use crate::correction::{Outcome, Problem, Solution};
 use crate::dataset::ConditionId;
+use crate::io::FileError;
 use crate::study::{
     AcrossCurves, AcrossJob, Analysis, AssessmentJob, AssessmentTable, CURVE_POINTS, ConditionAnalysis,
     ConditionCurves, ConditionFailure, ConditionModes, CurvesJob, Engine, Job, ModesJob, Progress, ProofJob, Study,
@@ -71,6 +73,8 @@ pub enum Reply {
     Across(AcrossJob, Arc<AcrossCurves>),
     /// The analysis of a variant.
     Variant(VariantJob, Arc<Analysis>),
+    /// What came of writing a report.
+    Report(ReportJob, Result<(), FileError>),
     /// Computing panicked.
     Fault {
         /// Number of the request that has no answer for it; none for a job.
@@ -136,6 +140,7 @@ struct Lanes {
     assessments: Lane<AssessmentJob>,
     across: Lane<AcrossJob>,
     variants: Lane<VariantJob>,
+    reports: Lane<ReportJob>,
 }
 
 /// What the views that are shown need beside the live answer; a job that is not wanted any more is given up.
@@ -149,6 +154,8 @@ pub struct Beside {
     pub across: Option<AcrossJob>,
     /// The variants.
     pub variants: Vec<VariantJob>,
+    /// The report that is being written.
+    pub report: Option<ReportJob>,
 }
 
 /// The threads that compute. Dropping it ends them, and waits for none.
@@ -211,13 +218,14 @@ impl Worker {
         self.lanes.assessments.want(beside.assessment.into_iter().collect());
         self.lanes.across.want(beside.across.into_iter().collect());
         self.lanes.variants.want(beside.variants);
+        self.lanes.reports.want(beside.report.into_iter().collect());
     }
 
     /// Gives up the request under way, the one that waits, and every job.
     pub fn stop(&self) {
         self.shared.newest.store(NOTHING, Ordering::Release);
         self.shared.mailbox().request = None;
-        let Lanes { curves, toggles, proofs, modes, assessments, across, variants } = &*self.lanes;
+        let Lanes { curves, toggles, proofs, modes, assessments, across, variants, reports } = &*self.lanes;
         curves.stop();
         toggles.stop();
         proofs.stop();
@@ -225,11 +233,12 @@ impl Worker {
         assessments.stop();
         across.stop();
         variants.stop();
+        reports.stop();
     }
 
     /// Lets the jobs that were stopped be begun again.
     pub fn resume(&self) {
-        let Lanes { curves, toggles, proofs, modes, assessments, across, variants } = &*self.lanes;
+        let Lanes { curves, toggles, proofs, modes, assessments, across, variants, reports } = &*self.lanes;
         curves.resume();
         toggles.resume();
         proofs.resume();
@@ -237,6 +246,12 @@ impl Worker {
         assessments.resume();
         across.resume();
         variants.resume();
+        reports.resume();
+    }
+
+    /// Whether a report was stopped that is still asked for.
+    pub fn is_report_stopped(&self) -> bool {
+        self.lanes.reports.is_stopped()
     }
 
     /// What is under way beside the live answer.
@@ -244,7 +259,7 @@ impl Worker {
         let proofs = self.lanes.proofs.unfinished().into_iter().map(|job| job.problem).collect();
         let curves =
             (!self.lanes.curves.unfinished().is_empty()).then(|| self.lanes.curves.progress().unwrap_or((0, 0)));
-        let Lanes { curves: of_curves, toggles, proofs: of_proofs, modes, assessments, across, variants } =
+        let Lanes { curves: of_curves, toggles, proofs: of_proofs, modes, assessments, across, variants, reports } =
             &*self.lanes;
         let stopped = of_curves.is_stopped()
             || toggles.is_stopped()
@@ -255,7 +270,8 @@ impl Worker {
             || variants.is_stopped();
         let views = modes.unfinished().len() + assessments.unfinished().len() + across.unfinished().len();
         let views = views + variants.unfinished().len();
-        Background { proofs, toggles: !toggles.unfinished().is_empty(), curves, views, stopped }
+        let report = (!reports.unfinished().is_empty()).then(|| reports.progress().unwrap_or((0, 0)));
+        Background { proofs, toggles: !toggles.unfinished().is_empty(), curves, views, report, stopped }
     }
 
     /// The next reply, if one is there.
@@ -275,7 +291,7 @@ impl Drop for Worker {
 
 impl Lanes {
     fn start(shared: &Arc<Shared>, make_engine: &EngineMaker, outbox: &Outbox) -> std::io::Result<Self> {
-        let (for_curves, for_variants) = (Arc::clone(make_engine), Arc::clone(make_engine));
+        let [for_curves, for_variants, for_reports] = std::array::from_fn(|_| Arc::clone(make_engine));
         Ok(Self {
             curves: lane("curves", move || for_curves(), outbox, |job, curves| Some(Reply::Curves(job, curves?)))?,
             toggles: lane("toggles", || (), outbox, |job, toggles| Some(Reply::Toggles(job, Arc::new(toggles?))))?,
@@ -283,6 +299,7 @@ impl Lanes {
             assessments: lane("assessment", || (), outbox, |job, table| Some(Reply::Assessment(job, table)))?,
             across: lane("conditions", || (), outbox, |job, curves| Some(Reply::Across(job, curves)))?,
             variants: lane("variants", move || for_variants(), outbox, |job, found| Some(Reply::Variant(job, found)))?,
+            reports: lane("report", move || for_reports(), outbox, |job, outcome| Some(Reply::Report(job, outcome)))?,
             proofs: proofs_lane(shared, outbox)?,
         })
     }

@@ -19,7 +19,7 @@ pub(super) fn analyze(arguments: &AnalyzeArguments) -> Result<(), Failure> {
     outputs.check(&result_paths(&arguments.out))?;
     make_directory(&arguments.out)?;
     let mut engine = Engine::with_executor(Box::new(crate::app::Pool));
-    let progress = TerminalProgress::new();
+    let progress = TerminalProgress::new("analysing");
     let analysis = analysis_of(&mut study, &arguments.study, &mut engine, &progress)?;
     drop(progress);
     check_result(&analysis)?;
@@ -29,7 +29,7 @@ pub(super) fn analyze(arguments: &AnalyzeArguments) -> Result<(), Failure> {
 }
 
 /// Refuses an analysis without any result; says which conditions of another have none.
-fn check_result(analysis: &Analysis) -> Result<(), Failure> {
+pub(super) fn check_result(analysis: &Analysis) -> Result<(), Failure> {
     let failures = analysis.study.dataset.conditions().iter().filter_map(|condition| {
         let failure = analysis.conditions.get(&condition.id())?.as_ref().err()?;
         Some(format!("condition {}: {failure}", condition.id()))

@@ -28,6 +28,9 @@ pub enum Command {
     Analyze(Box<AnalyzeArguments>),
     /// Make one of the figures that the window shows, or its numbers, as a file.
     Figure(Box<FigureArguments>),
+    /// Write all that was done and found as one page to read and to print: settings, rejections with their reasons, gains, delays, what
+    /// could not be matched and why, the schedule, the assessment, and every plot.
+    Report(Box<ReportArguments>),
     /// Make a dataset of a folder of model files: MATLAB, NumPy, JSON, text. Without rules, proposes them and says what is missing.
     Assemble(AssembleArguments),
     /// Write every model and response in any file as JSON.
@@ -194,6 +197,20 @@ pub struct FigureArguments {
     #[arg(long, value_name = "WIDTH", default_value = "double", value_parser = column_widths())]
     pub width: ColumnWidth,
     /// The file; the end of its name says what it is: .svg, .png (300 dots to the inch), .pdf, or .csv for the numbers.
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// Overwrite a file that is there already.
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// What is to be reported, and where the report goes.
+#[derive(Debug, Args)]
+pub struct ReportArguments {
+    /// What is to be analysed, and how.
+    #[command(flatten)]
+    pub study: StudyArguments,
+    /// The file: HTML that needs no other file.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
     /// Overwrite a file that is there already.

@@ -25,7 +25,7 @@ pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     let request = request(&study, arguments)?;
     let condition = condition(&study, arguments)?;
     let mut engine = Engine::with_executor(Box::new(crate::app::Pool));
-    let progress = TerminalProgress::new();
+    let progress = TerminalProgress::new("analysing");
     let analysis = analysis_of(&mut study, &arguments.study, &mut engine, &progress)?;
     let figure = match condition {
         None => request.figure(Some(&analysis), None),

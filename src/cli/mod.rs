@@ -10,6 +10,7 @@ mod figure;
 mod models;
 mod opening;
 mod progress;
+mod report;
 mod sections;
 mod study_options;
 mod summary;
@@ -32,7 +33,7 @@ use terminal::{say, say_error};
 
 pub use arguments::{
     AnalyzeArguments, AssembleArguments, Command, ConvertArguments, FigureArguments, OpeningArguments, PairChoice,
-    PairList, Rejection, StudyArguments,
+    PairList, Rejection, ReportArguments, StudyArguments,
 };
 
 /// What the command line asks for.
@@ -62,6 +63,7 @@ pub fn run(command: &Command) -> ExitCode {
     finish(match command {
         Command::Analyze(arguments) => analyze::analyze(arguments),
         Command::Figure(arguments) => figure::figure(arguments),
+        Command::Report(arguments) => report::report(arguments),
         Command::Assemble(arguments) => models::assemble(arguments),
         Command::Convert(arguments) => models::convert(arguments),
         Command::Check { file, opening } => check::check(file, opening),

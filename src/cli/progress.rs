@@ -16,10 +16,11 @@ pub(super) struct TerminalProgress {
 }
 
 impl TerminalProgress {
-    pub(super) fn new() -> Self {
+    /// `doing` says what takes the time.
+    pub(super) fn new(doing: &str) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
-        // The template is a constant; without it the bar has its own looks.
-        if let Ok(style) = ProgressStyle::with_template("analysing {bar:40} {percent} %") {
+        // A template that is not understood leaves the bar its own looks.
+        if let Ok(style) = ProgressStyle::with_template(&format!("{doing} {{bar:40}} {{percent}} %")) {
             bar.set_style(style);
         }
         Self { bar, started: Instant::now() }

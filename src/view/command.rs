@@ -135,6 +135,10 @@ pub enum Command {
     AskSaveFigure(View, FigureFormat),
     /// Save what a view shows, in the format that the name says, as wide as it is to be printed.
     SaveFigure(View, ColumnWidth, PathBuf),
+    /// Ask where to write the report.
+    AskReport,
+    /// Write the report to a file.
+    WriteReport(PathBuf),
     /// Give the focus to the field of this accessible name.
     FocusField(&'static str),
     /// Give the focus to the next part of the window, or to the one before.
@@ -177,6 +181,8 @@ pub enum FormKind {
     Models,
     /// Where to save a figure, by path, and how wide.
     SaveFigure,
+    /// Where to write the report, by path.
+    Report,
     /// Every command, found by its name.
     Palette,
     /// Whether to lose unsaved decisions.

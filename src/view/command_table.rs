@@ -148,6 +148,13 @@ fn file_entries(state: &State) -> Vec<Entry> {
         .keys(CTRL, Key::E)
         .within(Menu::File, 2)
         .enabled(state.analysis().is_some()),
+        Entry::new(
+            "Write report…",
+            "All that was done and found as one page to print, with every plot",
+            Command::AskReport,
+        )
+        .within(Menu::File, 2)
+        .enabled(state.analysis().is_some()),
         Entry::new("Quit", "Close the window", Command::Quit).keys(CTRL, Key::Q).within(Menu::File, 3),
     ]
 }

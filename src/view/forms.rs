@@ -20,10 +20,15 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
         state.forms.drawn = None;
         return;
     };
-    let asks_to_overwrite = matches!(
-        kind,
-        FormKind::Save | FormKind::Export | FormKind::SaveTable | FormKind::SaveFigure | FormKind::Models
-    ) && !state.forms.existing.is_empty();
+    let writes = [
+        FormKind::Save,
+        FormKind::Export,
+        FormKind::SaveTable,
+        FormKind::SaveFigure,
+        FormKind::Report,
+        FormKind::Models,
+    ];
+    let asks_to_overwrite = writes.contains(&kind) && !state.forms.existing.is_empty();
     let opens = state.forms.drawn.replace((kind, asks_to_overwrite)) != Some((kind, asks_to_overwrite));
     let modal = Modal::new(Id::unique("form")).show(ctx, |ui| {
         ui.set_width(460.0);
@@ -42,6 +47,7 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
             // It only asks whether to overwrite.
             FormKind::Models => {}
             FormKind::SaveFigure => save_figure_ui(form, state, palette),
+            FormKind::Report => report_ui(form, &mut state.forms.report_path, palette),
             FormKind::Reason => reason_ui(form, state, palette),
             FormKind::About => about_ui(form, palette),
         }
@@ -113,6 +119,19 @@ fn save_figure_ui(form: &mut Form<'_, '_>, state: &mut State, palette: &Palette)
     form.line(|form| {
         let save = || Command::SaveFigure(view, width, path.into());
         form.submit_ui("Save figure", !path.is_empty(), entered, save);
+        form.button_ui("Cancel", false, Command::ShowForm(None));
+    });
+}
+
+fn report_ui(form: &mut Form<'_, '_>, path: &mut String, palette: &Palette) {
+    form.title("Write the report");
+    let entered = form.text_ui("Path of the report", path, "path of a .html file");
+    let words = "All that was done and found as one page with every plot, to read in a browser and to print.";
+    form.ui.label(RichText::new(words).color(palette.dim_text));
+    form.ui.add_space(4.0);
+    let path = path.trim();
+    form.line(|form| {
+        form.submit_ui("Write report", !path.is_empty(), entered, || Command::WriteReport(path.into()));
         form.button_ui("Cancel", false, Command::ShowForm(None));
     });
 }

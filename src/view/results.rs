@@ -33,6 +33,8 @@ pub struct Background {
     pub curves: Option<(usize, usize)>,
     /// Jobs that the views shown wait for.
     pub views: usize,
+    /// Whether a report is being written: conditions done, of how many.
+    pub report: Option<(usize, usize)>,
     /// Whether something of it was stopped, by hand or by a fault.
     pub stopped: bool,
 }
@@ -40,7 +42,7 @@ pub struct Background {
 impl Background {
     /// Whether anything is under way.
     pub fn is_busy(&self) -> bool {
-        !self.proofs.is_empty() || self.toggles || self.curves.is_some() || self.views > 0
+        !self.proofs.is_empty() || self.toggles || self.curves.is_some() || self.views > 0 || self.report.is_some()
     }
 }
 

@@ -94,6 +94,8 @@ pub struct Forms {
     pub table_path: String,
     /// The figure that is to be saved.
     pub figure: FigureForm,
+    /// Where the report goes, as typed.
+    pub report_path: String,
     /// The palette of commands.
     pub palette: PaletteForm,
     /// The path in the save form, as typed.

@@ -72,6 +72,9 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
 
 /// What is under way beside the live answer, the longest first.
 fn background_words(background: &Background) -> String {
+    if let Some((done, total)) = background.report {
+        return format!("writing the report, {} % …", 100 * done / total.max(1));
+    }
     match (background.proofs.len(), background.curves) {
         (1, _) => "proving the gains of 1 condition …".to_owned(),
         (2.., _) => format!("proving the gains of {} conditions …", background.proofs.len()),

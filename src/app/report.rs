@@ -1,0 +1,125 @@
+//! The report, written beside what the window goes on with.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::io::{Existing, FileError, OutputSet, ReportSource, plain_path, report, save_report};
+use crate::study::{Analysis, Cancelled, Engine, Job, Progress};
+use crate::view::command::{Command, FormKind};
+
+use super::files::study_name;
+use super::window::GdcmApp;
+
+/// Making a report and writing it: seconds, for it has every plot.
+#[derive(Clone, Debug)]
+pub struct ReportJob {
+    /// What it is about.
+    pub analysis: Arc<Analysis>,
+    /// The files of the study.
+    pub source: ReportSource,
+    /// Where it goes.
+    pub path: PathBuf,
+    /// What becomes of a file that is there.
+    pub existing: Existing,
+    /// What the program reads from, which is never replaced.
+    pub inputs: Vec<PathBuf>,
+}
+
+impl PartialEq for ReportJob {
+    fn eq(&self, other: &Self) -> bool {
+        let decided = |job: &Self| (job.source.clone(), job.path.clone(), job.existing);
+        Arc::ptr_eq(&self.analysis, &other.analysis) && decided(self) == decided(other)
+    }
+}
+
+impl Job for ReportJob {
+    /// The engine that has the responses that are drawn.
+    type Tools = Engine;
+    type Output = Result<(), FileError>;
+
+    fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        let report = report(&self.analysis, &self.source, engine, progress)?;
+        // Whoever stopped it does not want a file any more.
+        if progress.cancelled() {
+            return Err(Cancelled);
+        }
+        Ok(save_report(&report, &self.path, OutputSet::new(self.existing, self.inputs.clone())))
+    }
+}
+
+impl GdcmApp {
+    /// Asks where to write the report, unless there is nothing to report on yet.
+    pub(super) fn ask_report(&mut self) {
+        match self.analysis_to_write("write the report") {
+            Ok(_) => {
+                let form = &mut self.state.forms.report_path;
+                let name = report_name(self.saved.path.as_deref().or(self.loaded.path()));
+                *form = Path::new(form.trim()).with_file_name(name).display().to_string();
+                self.state.forms.shown = Some(FormKind::Report);
+            }
+            Err(why) => self.trouble(why),
+        }
+    }
+
+    /// Has the report written; asks before it overwrites a file.
+    pub(super) fn write_report(&mut self, path: PathBuf, existing: Existing) {
+        let analysis = match self.analysis_to_write("write the report") {
+            Ok(analysis) => analysis,
+            Err(why) => return self.trouble(why),
+        };
+        let (path, inputs) = (self.at_home(path), self.inputs());
+        match OutputSet::new(existing, inputs.clone()).check(&[&path]) {
+            Ok(()) => {
+                let source = ReportSource::of(&self.loaded, self.saved.path.as_deref());
+                self.state.forms.shown = None;
+                self.reporting = Some(ReportJob { analysis, source, path, existing, inputs });
+            }
+            Err(error) => self.report_failed(path, error),
+        }
+    }
+
+    /// Says what came of a report.
+    pub(super) fn report_written(&mut self, job: ReportJob, outcome: Result<(), FileError>) {
+        self.reporting = None;
+        match outcome {
+            Ok(()) => self.done(format!("wrote the report {}", plain_path(&job.path))),
+            Err(error) => self.report_failed(job.path, error),
+        }
+    }
+
+    fn report_failed(&mut self, path: PathBuf, error: FileError) {
+        match error {
+            FileError::Exists { paths } => {
+                self.ask_to_overwrite(&paths, FormKind::Report, Command::WriteReport(path));
+            }
+            error => self.trouble(error.to_string()),
+        }
+    }
+
+    /// Says that a report under way was given up, by hand or by a fault.
+    pub(super) fn give_up_report(&mut self) {
+        if let Some(job) = self.reporting.take() {
+            self.trouble(format!("{} was not written: it was stopped", plain_path(&job.path)));
+        }
+    }
+}
+
+/// A name for the report of a study, or of a dataset: `flight-7-report.html`.
+fn report_name(file: Option<&Path>) -> String {
+    let name = file.map_or_else(|| "example".to_owned(), |file| study_name(Some(file)));
+    let stem = name.split(".gdcm-study").next().unwrap_or(&name);
+    let stem = stem.trim_end_matches(".gz").trim_end_matches(".json");
+    format!("{stem}-report.html")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_report_is_named_for_its_study_or_else_for_its_dataset() {
+        assert_eq!(report_name(None), "example-report.html");
+        assert_eq!(report_name(Some(Path::new("/a/flight 7.gdcm-study.json"))), "flight 7-report.html");
+        assert_eq!(report_name(Some(Path::new("data.json.gz"))), "data-report.html");
+    }
+}

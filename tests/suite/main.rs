@@ -13,6 +13,7 @@ mod figures;
 mod messages;
 mod optimiser;
 mod outputs;
+mod report;
 mod structure;
 mod window;
 

@@ -33,6 +33,7 @@ pub(super) fn add(page: &mut Page, study: &Study) {
         ("Upper bound of the delays", delay_bound_words(settings)),
         ("Loops of held gains agree within", format!("{} dB", number(*agreement_db))),
         ("J takes over frequency", average_word(settings.cost_average).to_owned()),
+        ("Coherence counts from", coherence_words(settings.coherence_threshold)),
         ("Schedule", schedule_words(schedule)),
     ]);
 }
@@ -50,6 +51,10 @@ fn objective_words(objective: GainObjective) -> &'static str {
         GainObjective::Ratio => "squared differences of ratios, eq. (7)",
         GainObjective::Decibel => "squared differences in dB",
     }
+}
+
+fn coherence_words(threshold: Option<f64>) -> String {
+    threshold.map_or("it counts for nothing".to_owned(), |least| format!("γ² = {}", number(least)))
 }
 
 fn percent(quantile: f64) -> String {

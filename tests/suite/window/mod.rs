@@ -61,7 +61,7 @@ fn window_with(opened: Opened, setup: Setup) -> Window {
 }
 
 /// Draws frames until something is so.
-fn wait_until(window: &mut Window, what: &str, is_so: impl Fn(&Window) -> bool) {
+pub(crate) fn wait_until(window: &mut Window, what: &str, is_so: impl Fn(&Window) -> bool) {
     let limit = Instant::now() + LIMIT;
     while !is_so(window) {
         window.run_steps(1);
@@ -111,7 +111,7 @@ fn choose_condition_10(window: &mut Window) {
     click(window, "Response LON → Q");
 }
 
-fn fill(window: &mut Window, field: &str, path: &Path) {
+pub(crate) fn fill(window: &mut Window, field: &str, path: &Path) {
     window.get_by_label(field).focus();
     window.run_steps(2);
     window.get_by_label(field).type_text(path.to_str().unwrap());

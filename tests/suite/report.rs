@@ -1,0 +1,248 @@
+//! The report of a study.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::sync::LazyLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use gdcm::dataset::{BundleKind, ConditionId, ModelId};
+use gdcm::io::{ReportSource, load_dataset, report, save_study};
+use gdcm::study::{Analysis, Cancelled, Edit, Engine, Progress, Study, Unobserved};
+use roxmltree::{Document, Node, ParsingOptions};
+use serde_json::{Value, json};
+
+use crate::EXAMPLE;
+use crate::commands::Desk;
+use crate::window::{click, settle, state, window};
+
+const SECTIONS: [&str; 9] = [
+    "1 Summary",
+    "2 Settings",
+    "3 Provenance",
+    "4 Models left out",
+    "5 Conditions",
+    "6 Channels and schedule",
+    "7 Assessment",
+    "8 The method",
+    "9 Sources of the models",
+];
+const REASON: &str = "steps at 2 rad/s <see the & bode plot>";
+
+/// The example, the nominal model of condition 10 rejected with a reason.
+static ANALYSIS: LazyLock<Analysis> = LazyLock::new(|| {
+    let mut study = Study::new(EXAMPLE.dataset.clone());
+    let model = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
+    study.apply(&Edit::RejectBecause { model, reason: REASON.to_owned() }).unwrap();
+    Engine::default().analyze(&study, &Unobserved).unwrap()
+});
+
+static REPORT: LazyLock<String> = LazyLock::new(example_report);
+
+fn example_report() -> String {
+    report(&ANALYSIS, &ReportSource::of(&EXAMPLE, None), &mut Engine::default(), &Unobserved).unwrap()
+}
+
+/// The page as XML; its document type is HTML's, which names no other file.
+fn parsed(text: &str) -> Document<'_> {
+    Document::parse_with_options(text, ParsingOptions { allow_dtd: true, ..ParsingOptions::default() }).unwrap()
+}
+
+fn texts<'t>(document: &Document<'t>, tag: &str) -> Vec<String> {
+    let all_words = |node: Node<'_, '_>| node.descendants().filter_map(|of| of.text().filter(|_| of.is_text())).collect();
+    document.descendants().filter(|node| node.has_tag_name(tag)).map(all_words).collect()
+}
+
+#[test]
+fn the_report_of_the_example_has_every_section_and_every_condition() {
+    let document = parsed(&REPORT);
+    let sections = texts(&document, "h2");
+    assert_eq!(sections[1..], SECTIONS, "after the contents");
+    let parts = texts(&document, "h3");
+    for condition in EXAMPLE.dataset.conditions() {
+        let heading = format!("Condition {}: {}", condition.id(), condition.flight_state().name);
+        assert!(parts.iter().any(|part| part.ends_with(&heading)), "{heading} in {parts:?}");
+    }
+    let figures = texts(&document, "figcaption");
+    for words in ["responses on axis", "what the fit sees", "magnitude of every response", "poles of its models"] {
+        let of = figures.iter().filter(|caption| caption.contains(words)).count();
+        assert_eq!(of, EXAMPLE.dataset.conditions().len(), "{words}");
+    }
+    for words in [
+        "Gains of the inputs over conditions",
+        "Delays of the outputs over conditions",
+        "Net gains against airspeed",
+        "Change of J of on-axis responses",
+        "Change of J of off-axis responses",
+    ] {
+        assert!(figures.iter().any(|caption| caption.contains(words)), "{words} in {figures:?}");
+    }
+}
+
+#[test]
+fn a_rejected_model_stands_with_the_words_that_the_analyst_typed() {
+    let document = parsed(&REPORT);
+    let cells = texts(&document, "td");
+    let place = cells.iter().position(|cell| cell == REASON).expect("the reason is there");
+    assert_eq!(cells[place - 4..place - 1], ["10", "physics", "nominal"]);
+    assert!(REPORT.contains("Condition 10 is left out: the nominal model is rejected."));
+    assert!(REPORT.contains(&EXAMPLE.sha256) && REPORT.contains(concat!("gdcm ", env!("CARGO_PKG_VERSION"))));
+    assert!(REPORT.contains("A delay cannot give it."), "what could not be matched is said in words");
+}
+
+#[test]
+fn a_report_runs_nothing_and_loads_nothing() {
+    let document = parsed(&REPORT);
+    for tag in ["script", "img", "link", "iframe", "object", "image", "use"] {
+        assert_eq!(texts(&document, tag), [""; 0], "{tag}");
+    }
+    assert!(!REPORT.contains("http:") && !REPORT.contains("https:") && !REPORT.contains("@import"));
+    let attributes = document.descendants().flat_map(|node| node.attributes());
+    for attribute in attributes {
+        let value = attribute.value();
+        match attribute.name() {
+            "href" => assert!(value.starts_with('#'), "{value}"),
+            "clip-path" => assert!(value.starts_with("url(#"), "{value}"),
+            name => assert!(!name.starts_with("on") && name != "src", "{name}"),
+        }
+    }
+}
+
+#[test]
+fn every_link_and_every_name_within_a_report_leads_to_one_place() {
+    let document = parsed(&REPORT);
+    let ids: Vec<&str> = document.descendants().filter_map(|node| node.attribute("id")).collect();
+    let different: BTreeSet<&str> = ids.iter().copied().collect();
+    assert_eq!(different.len(), ids.len());
+    let links = document.descendants().filter_map(|node| node.attribute("href")).map(|link| &link[1..]);
+    let clips = document.descendants().filter_map(|node| node.attribute("clip-path"));
+    let referred = links.chain(clips.map(|clip| clip.trim_start_matches("url(#").trim_end_matches(')')));
+    let missing: Vec<&str> = referred.filter(|name| !different.contains(name)).collect();
+    assert_eq!(missing, [""; 0]);
+}
+
+#[test]
+fn the_same_study_makes_the_same_bytes_and_not_too_many() {
+    assert!(*REPORT == example_report());
+    assert!(REPORT.len() < 15_000_000, "{} bytes", REPORT.len());
+}
+
+/// Stops after so many conditions.
+struct Impatient(AtomicUsize);
+
+impl Progress for Impatient {
+    fn cancelled(&self) -> bool {
+        self.0.load(Ordering::Relaxed) == 0
+    }
+
+    fn advanced(&self, done: usize, total: usize) {
+        assert_eq!(total, EXAMPLE.dataset.conditions().len());
+        self.0.store(2_usize.saturating_sub(done), Ordering::Relaxed);
+    }
+}
+
+#[test]
+fn a_report_that_is_not_wanted_any_more_is_given_up() {
+    let impatient = Impatient(AtomicUsize::new(2));
+    let source = ReportSource::of(&EXAMPLE, None);
+    assert_eq!(report(&ANALYSIS, &source, &mut Engine::default(), &impatient), Err(Cancelled));
+}
+
+/// The small dataset with names that are markup, and a condition that has no result.
+fn write_odd(desk: &Desk) {
+    desk.write("odd.json", |file| {
+        file["name"] = json!("<script>alert(\"1\")</script> & co\u{1b}[2J");
+        file["conditions"][0]["physics_models"][1]["name"] = json!("</td><b>&'\"\u{202e}");
+        let model = &mut file["conditions"][1]["physics_models"][0];
+        model["B"] = json!([[0, 0], [0, 0]]);
+        model["D"] = json!([[0, 0], [0, 0]]);
+        let source: Value = json!({"file": "models/<a>.mat", "sha256": "c0ffee", "made": "2026-03-01"});
+        file["conditions"][0]["physics_models"][0]["source"] = source;
+    });
+}
+
+#[test]
+fn names_that_are_markup_stay_names_and_a_condition_without_result_says_why() {
+    let desk = Desk::new();
+    write_odd(&desk);
+    let ended = desk.gdcm(&["report", "odd.json", "--out", "report.html"]);
+    assert_eq!((ended.status, ended.out.as_str()), (0, "report.html: a report on 1 conditions\n"), "{ended:?}");
+    assert!(ended.error.starts_with("gdcm: condition 10: no response of"), "{}", ended.error);
+    let text = fs::read_to_string(desk.path("report.html")).unwrap();
+    assert!(!text.contains("<script") && !text.contains('\u{1b}') && !text.contains('\u{202e}'));
+    let document = parsed(&text);
+    assert!(texts(&document, "h1")[0].contains("<script>alert(\"1\")</script> & co\\u{1b}[2J"));
+    assert!(texts(&document, "td").iter().any(|cell| cell == "</td><b>&'\"\\u{202e}"));
+    let why = "This condition has no result: no response of \"nominal\"";
+    assert!(texts(&document, "p").iter().any(|words| words.starts_with(why)));
+    assert!(texts(&document, "td").iter().any(|cell| cell == "models/<a>.mat") && text.contains("c0ffee"));
+}
+
+#[test]
+fn a_report_is_overwritten_only_by_force_and_never_over_what_it_is_read_from() {
+    let desk = Desk::new();
+    let command = ["report", "small.json", "--out", "report.html"];
+    fs::write(desk.path("report.html"), "mine").unwrap();
+    desk.gdcm(&command).assert_failed(2, &["report.html exists already; --force overwrites"]);
+    assert_eq!(fs::read_to_string(desk.path("report.html")).unwrap(), "mine");
+    desk.gdcm(&[&command[..], &["--force"]].concat()).assert_done();
+    assert!(fs::read_to_string(desk.path("report.html")).unwrap().starts_with("<!DOCTYPE html>"));
+    let over = ["report", "small.json", "--out", "small.json", "--force"];
+    desk.gdcm(&over).assert_failed(2, &["small.json: ", "the data are read from this file"]);
+    desk.gdcm(&["report", "missing.json", "--out", "a.html"]).assert_failed(2, &["missing.json"]);
+    assert!(!desk.path("a.html").exists());
+}
+
+#[test]
+fn a_study_is_reported_by_its_name_with_its_decisions() {
+    let desk = Desk::new();
+    let loaded = load_dataset(&desk.path("small.json")).unwrap();
+    let mut study = Study::new(loaded.dataset.clone());
+    let model = ModelId::new(ConditionId(7), BundleKind::Physics, "V+5kt");
+    study.apply(&Edit::RejectBecause { model, reason: "trimmed badly".to_owned() }).unwrap();
+    save_study(&study, &loaded, &desk.path("a.gdcm-study.json")).unwrap();
+    desk.gdcm(&["report", "a.gdcm-study.json", "--out", "a.html"]).assert_done();
+    let text = fs::read_to_string(desk.path("a.html")).unwrap();
+    for words in ["Study a.gdcm-study.json. Dataset small.json.", "trimmed badly", &loaded.sha256] {
+        assert!(text.contains(words), "{words}");
+    }
+}
+
+#[test]
+fn of_a_long_bundle_a_part_is_shown_and_said_to_be_one() {
+    let desk = Desk::new();
+    desk.write("long.json", |file| {
+        let models = file["conditions"][0]["physics_models"].as_array_mut().unwrap();
+        let last = models.last().unwrap().clone();
+        for number in 0..300 {
+            let mut model = last.clone();
+            model["name"] = json!(format!("trim {number}"));
+            models.push(model);
+        }
+    });
+    desk.gdcm(&["report", "long.json", "--out", "long.html"]).assert_done();
+    let text = fs::read_to_string(desk.path("long.html")).unwrap();
+    assert!(text.contains("40 of 302 physics models are listed and drawn."));
+    assert!(text.len() < 3_000_000, "{} bytes", text.len());
+}
+
+#[test]
+fn the_window_writes_the_report_beside_and_asks_before_it_overwrites() {
+    let mut window = window();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("report.html");
+    fs::write(&path, "mine").unwrap();
+    click(&mut window, "File");
+    click(&mut window, "Write report…");
+    crate::window::fill(&mut window, "Path of the report", &path);
+    click(&mut window, "Write report");
+    assert_eq!(fs::read_to_string(&path).unwrap(), "mine");
+    click(&mut window, "Overwrite");
+    crate::window::wait_until(&mut window, "the report", |window| {
+        state(window).notice.as_ref().is_some_and(|notice| notice.text.starts_with("wrote the report"))
+    });
+    settle(&mut window);
+    let written = fs::read_to_string(&path).unwrap();
+    let analysis = state(&window).results.analysis.clone().unwrap();
+    let expected = report(&analysis, &ReportSource::of(&EXAMPLE, None), &mut Engine::default(), &Unobserved).unwrap();
+    assert!(written == expected, "what the command would write");
+}

@@ -48,7 +48,8 @@ fn parsed(text: &str) -> Document<'_> {
 }
 
 fn texts<'t>(document: &Document<'t>, tag: &str) -> Vec<String> {
-    let all_words = |node: Node<'_, '_>| node.descendants().filter_map(|of| of.text().filter(|_| of.is_text())).collect();
+    let all_words =
+        |node: Node<'_, '_>| node.descendants().filter_map(|of| of.text().filter(|_| of.is_text())).collect();
     document.descendants().filter(|node| node.has_tag_name(tag)).map(all_words).collect()
 }
 

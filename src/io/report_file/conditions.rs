@@ -94,7 +94,8 @@ fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) 
         RemarkKind::Trouble => format!("Not matched: {}", remark.text),
     });
     page.heading_within("What was matched, what was not and why");
-    page.list(said.chain(details(study, result)));
+    page.list(said);
+    page.fine_list(details(study, result));
     add_responses(page, study, result);
     page.table(&channel_table(analysis, result));
     BundleKind::BOTH.into_iter().for_each(|kind| add_models(page, study, result, kind));

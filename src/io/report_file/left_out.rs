@@ -1,6 +1,7 @@
 //! The models that take no part: rejected ones with the analyst's reasons, those set aside, and those that are suspected.
 
 use crate::dataset::{BundleKind, Condition, ModelId};
+use crate::fidelity::SUGGESTION_RATIO;
 use crate::figure::number::decimals;
 use crate::study::{Analysis, Caution, Table};
 
@@ -16,7 +17,9 @@ pub(super) fn add(page: &mut Page, analysis: &Analysis) {
     if rejected.rows.is_empty() {
         page.paragraph("No model is rejected.");
     } else {
-        page.paragraph("Only the analyst rejects a model. A discontinuity ratio above 2.5 makes it suspect.");
+        page.paragraph(&format!(
+            "Only the analyst rejects a model. A discontinuity ratio above {SUGGESTION_RATIO} makes it suspect."
+        ));
     }
     page.table(&rejected);
     let lines: Vec<String> = analysis.study.dataset.conditions().iter().flat_map(|of| lines(analysis, of)).collect();

@@ -11,6 +11,10 @@ use super::markup::{classed, element, words};
 const TOLERANCE_PT: f64 = 0.1;
 /// Rows of a table; beyond, a file of results is the place to look.
 const ROWS: usize = 1000;
+/// A table of no more rows is not parted.
+const ROWS_ON_A_SHEET: usize = 30;
+/// Letters of a text that stands in one line.
+const SHORT: usize = 24;
 const STYLE: &str = include_str!("style.css");
 /// Nothing is fetched and nothing is run, whatever a page might hold.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'";
@@ -63,9 +67,18 @@ impl Page {
 
     /// A list; nothing where it is empty.
     pub(super) fn list(&mut self, items: impl IntoIterator<Item = impl AsRef<str>>) {
+        self.list_of("", items);
+    }
+
+    /// A list in small letters, of what only some will read.
+    pub(super) fn fine_list(&mut self, items: impl IntoIterator<Item = impl AsRef<str>>) {
+        self.list_of(" class=\"fine\"", items);
+    }
+
+    fn list_of(&mut self, class: &str, items: impl IntoIterator<Item = impl AsRef<str>>) {
         let items: String = items.into_iter().map(|item| element("li", item.as_ref())).collect();
         if !items.is_empty() {
-            self.body.push_str(&format!("<ul>\n{items}</ul>\n"));
+            self.body.push_str(&format!("<ul{class}>\n{items}</ul>\n"));
         }
     }
 
@@ -85,16 +98,15 @@ impl Page {
         }
         let more = table.rows.len().saturating_sub(ROWS);
         self.tables += 1;
-        let is_figure: Vec<bool> = (0..table.columns.len()).map(|column| table.has_figures(column)).collect();
-        let cell = |tag: &str, (text, is_figure): (&String, &bool)| {
-            if *is_figure { classed(tag, "n", text) } else { element(tag, text) }
-        };
+        let classes: Vec<&str> = (0..table.columns.len()).map(|column| class_of(table, column)).collect();
         let row = |tag: &str, cells: &[String]| {
-            let cells: String = cells.iter().zip(&is_figure).map(|of| cell(tag, of)).collect();
-            format!("<tr>\n{cells}</tr>\n")
+            let cells = cells.iter().zip(&classes).map(|(text, class)| match *class {
+                "" => element(tag, text),
+                class => classed(tag, class, text),
+            });
+            format!("<tr>\n{}</tr>\n", cells.collect::<String>())
         };
-        // A short one stays on one sheet.
-        let class = if table.rows.len() <= 12 { " class=\"whole\"" } else { "" };
+        let class = if table.rows.len() <= ROWS_ON_A_SHEET { " class=\"whole\"" } else { "" };
         let title = format!("Table {}. {}", self.tables, table.title);
         self.body.push_str(&format!("<table{class}>\n{}<thead>\n", element("caption", &title)));
         self.body.push_str(&row("th", &table.columns));
@@ -144,6 +156,16 @@ impl Page {
         };
         let entries: String = self.headings.iter().map(entry).collect();
         format!("<nav aria-label=\"Contents\">\n<h2>Contents</h2>\n<ul>\n{entries}</ul>\n</nav>\n")
+    }
+}
+
+/// Whether a column is one of figures, or of words so short that they stand in one line.
+fn class_of(table: &Table, column: usize) -> &'static str {
+    let is_short = table.rows.iter().all(|row| row[column].chars().count() <= SHORT);
+    match (table.has_figures(column), is_short) {
+        (true, _) => "n",
+        (false, true) => "s",
+        (false, false) => "",
     }
 }
 

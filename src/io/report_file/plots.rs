@@ -3,7 +3,9 @@
 use std::collections::BTreeSet;
 
 use crate::dataset::Pair;
-use crate::figure::{BodeOptions, ConditionSource, Role, bode_figure, error_figure, overview_figure, poles_figure};
+use crate::figure::{
+    BodeOptions, ConditionSource, Figure, Mark, Role, bode_figure, error_figure, overview_figure, poles_figure,
+};
 
 use super::extent::{PAIRS_DRAWN, models_hidden};
 use super::page::Page;
@@ -25,7 +27,7 @@ pub(super) fn add_plots(page: &mut Page, source: &ConditionSource<'_>) {
         let title = format!("Condition {id}, what the fit sees of them");
         let caption = "Ratio and phase difference of the identified representative and each kept physics model, with G, D, the \
                        bounds and the quantiles.";
-        page.figure(&error_figure(source, pairs, &options), &title, caption);
+        page.figure(&without_values(error_figure(source, pairs, &options)), &title, caption);
     }
     if drawn.len() < measuring.len() {
         page.paragraph(&format!("{} of {} responses that measure a model are drawn.", drawn.len(), measuring.len()));
@@ -44,6 +46,17 @@ pub(super) fn add_plots(page: &mut Page, source: &ConditionSource<'_>) {
             "Physics models ×, identified ones +; rays of equal damping ratio. A correction moves no pole.",
         );
     }
+}
+
+/// Lines across narrow frames with their names alone ("G", "UB"): what they are at stands in the tables.
+fn without_values(mut figure: Figure) -> Figure {
+    let panels = figure.plots.iter_mut().flat_map(|plot| &mut plot.panels);
+    for mark in panels.flat_map(|panel| &mut panel.marks) {
+        if let Mark::Rule(rule) = mark {
+            rule.label = rule.label.split(' ').next().unwrap_or_default().to_owned();
+        }
+    }
+    figure
 }
 
 /// " on axis" where some responses are; all of them measure a model otherwise.

@@ -37,7 +37,7 @@ impl Side {
 pub(super) fn channels_ui(ui: &mut Ui, bench: &Workbench, palette: &Palette, commands: &mut Vec<Command>) {
     let rules = bench.assembly().rules();
     Grid::new("channels of the dataset").num_columns(4).spacing([6.0, 3.0]).show(ui, |ui| {
-        for heading in ["channel", "unit", "unit in files that do not say", ""] {
+        for heading in ["channel", "unit", "where files do not say", ""] {
             ui.label(RichText::new(heading).size(SMALL_SIZE).color(palette.dim_text));
         }
         ui.end_row();
@@ -79,14 +79,14 @@ fn channel_ui(
         rules
     };
     let name = |what: &str| format!("{what} of {} {}", side.word(), index + 1);
-    if let Some(text) = entry_ui(ui, &name("Name"), &channel.name, "name", 70.0) {
+    if let Some(text) = entry_ui(ui, &name("Name"), &channel.name, "name", 90.0) {
         push(changed(&|channel| text.trim().clone_into(&mut channel.name)), commands);
     }
-    if let Some(text) = entry_ui(ui, &name("Unit"), &channel.unit, "?", 60.0) {
+    if let Some(text) = entry_ui(ui, &name("Unit"), &channel.unit, "?", 80.0) {
         push(changed(&|channel| text.trim().clone_into(&mut channel.unit)), commands);
     }
     let in_files = channel.unit_in_files.clone().unwrap_or_default();
-    if let Some(text) = entry_ui(ui, &name("Unit in files"), &in_files, "as files say", 80.0) {
+    if let Some(text) = entry_ui(ui, &name("Unit in files"), &in_files, "as files say", 110.0) {
         let said = Some(text.trim().to_owned()).filter(|text| !text.is_empty());
         push(changed(&|channel| channel.unit_in_files.clone_from(&said)), commands);
     }

@@ -13,7 +13,7 @@ use crate::view::settings_panel::choice_ui;
 use super::entry::{entry_ui, typed_number};
 use super::workbench::{AssemblingCommand, Workbench};
 
-const FIELD_WIDTH: f32 = 130.0;
+const FIELD_WIDTH: f32 = 200.0;
 
 /// A field: its name, what stands in it, and what a text in it says.
 struct Field {

@@ -1,14 +1,16 @@
 //! A field whose text is taken up when it is left.
 
-use egui::{Id, Key, Role, TextEdit, Ui, WidgetInfo};
+use egui::{Id, Key, Role, TextEdit, Ui, WidgetInfo, vec2};
+
+const HEIGHT: f32 = 20.0;
 
 /// A text field of this accessible name that shows `value`; gives what was typed once the field is left or Enter is pressed.
 pub(super) fn entry_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, width: f32) -> Option<String> {
     let id = Id::unique(("entry", name));
     let held = ui.data(|data| data.get_temp::<String>(id));
     let mut text = held.unwrap_or_else(|| value.to_owned());
-    let edit = TextEdit::singleline(&mut text).id(id.with("field")).hint_text(hint).desired_width(width);
-    let response = ui.add(edit);
+    let edit = TextEdit::singleline(&mut text).id(id.with("field")).hint_text(hint);
+    let response = ui.add_sized(vec2(width, HEIGHT), edit);
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::TextInput, true, name);
         info.current_text_value = Some(text.clone());

@@ -148,7 +148,7 @@ fn settings_ui(ui: &mut Ui, bench: &Workbench, palette: &Palette, commands: &mut
     let rules = bench.assembly().rules();
     let dim = |text: &str| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
     ui.label(dim("dataset"));
-    if let Some(name) = entry_ui(ui, "Name of the dataset", &rules.name, "name", 120.0) {
+    if let Some(name) = entry_ui(ui, "Name of the dataset", &rules.name, "name", 140.0) {
         let mut rules = rules.clone();
         name.trim().clone_into(&mut rules.name);
         commands.push(AssemblingCommand::Change(Box::new(rules)).into());
@@ -156,7 +156,7 @@ fn settings_ui(ui: &mut Ui, bench: &Workbench, palette: &Palette, commands: &mut
     ui.label(dim("band [rad/s]"));
     let ends = [("Lower end of the dataset's band", rules.band.0), ("Upper end of the dataset's band", rules.band.1)];
     for (index, (name, value)) in ends.into_iter().enumerate() {
-        let Some(text) = entry_ui(ui, name, &crate::units::number(value), "rad/s", 40.0) else { continue };
+        let Some(text) = entry_ui(ui, name, &crate::units::number(value), "rad/s", 50.0) else { continue };
         match typed_number(&text) {
             Ok(Some(value)) => {
                 let mut rules = rules.clone();

@@ -32,6 +32,8 @@ pub struct Preview {
 
 /// The response of the model shown, and which one.
 pub(super) fn preview_ui(ui: &mut Ui, bench: &mut Workbench, palette: &Palette, commands: &mut Vec<Command>) {
+    // A panel without content would shrink.
+    ui.set_min_size(ui.available_size());
     let (selected, band) = (bench.selected, bench.assembly().rules().band);
     let Some(found) = bench.assembly().parts().get(selected).map(|part| part.found.clone()) else { return };
     let count = (found.inputs.len() * found.outputs.len()).max(1);

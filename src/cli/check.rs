@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::dataset::{BundleKind, Channel, Condition, Dataset, Dynamics, Model};
-use crate::io::{LoadedDataset, Opened, OpenedStudy, plain, plain_path};
+use crate::io::{FileError, LoadedDataset, Opened, OpenedStudy, dataset_faults, plain, plain_path};
 use crate::study::{Execution, Study, Unobserved, cautions_of_models};
 use crate::units::number;
 
@@ -12,18 +12,34 @@ use super::arguments::OpeningArguments;
 use super::failure::Failure;
 use super::opening::open;
 use super::summary::LABEL;
-use super::terminal::say;
+use super::terminal::{say, say_error};
 use super::text_table::{Side, TextTable, labelled};
 
 /// Says what a dataset or a study holds.
 pub(super) fn check(file: &Path, arguments: &OpeningArguments) -> Result<(), Failure> {
-    let text = match open(file, arguments)? {
+    let opened = match open(file, arguments) {
+        Err(Failure::File(error @ FileError::Content { .. })) => return Err(all_faults(file, error)),
+        opened => opened?,
+    };
+    let text = match opened {
         Opened::Dataset(loaded) => contents(&loaded) + &model_cautions(&Study::new(loaded.dataset))?,
         Opened::Study(OpenedStudy { study, loaded, .. }) => {
             decisions(file, &study) + &contents(&loaded) + &model_cautions(&study)?
         }
     };
     say(&text)
+}
+
+/// Tells every fault of a dataset, and gives what the command ends with: the only one itself, else their number.
+fn all_faults(file: &Path, first: FileError) -> Failure {
+    match dataset_faults(file) {
+        Ok(faults) if faults.len() > 1 => {
+            faults.iter().for_each(|fault| say_error(&fault.to_string()));
+            Failure::Faulty { path: plain_path(file), count: faults.len() }
+        }
+        // One, or a study: what was said first is all there is.
+        _ => Failure::File(first),
+    }
 }
 
 fn contents(loaded: &LoadedDataset) -> String {

@@ -20,6 +20,9 @@ pub(super) enum Failure {
     /// The dataset of a study is not the one that it was made with.
     #[error("{path}: {count} differences from what the study was made with, and --strict asks for none")]
     Different { path: String, count: usize },
+    /// A dataset has several faults, which were told.
+    #[error("{path}: {count} faults; once they are mended, check the file again")]
+    Faulty { path: String, count: usize },
     /// Something is still to be said before files are a dataset.
     #[error("no dataset was made: {count} {} still to be said; say it in {rules} and give it with --rules", if *count == 1 { "thing is" } else { "things are" })]
     Incomplete { count: usize, rules: String },
@@ -47,9 +50,11 @@ impl Failure {
             | Failure::NoResult { .. }
             | Failure::Cancelled(_)
             | Failure::StandardOutput { .. } => NOT_DONE,
-            Failure::File(_) | Failure::Option { .. } | Failure::Different { .. } | Failure::Incomplete { .. } => {
-                WRONG_INPUT
-            }
+            Failure::File(_)
+            | Failure::Option { .. }
+            | Failure::Different { .. }
+            | Failure::Incomplete { .. }
+            | Failure::Faulty { .. } => WRONG_INPUT,
         }
     }
 }

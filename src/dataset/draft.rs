@@ -175,7 +175,7 @@ pub struct DraftError {
 }
 
 impl DraftError {
-    fn new(place: Place, fault: impl Into<DraftFault>) -> Self {
+    pub(super) fn new(place: Place, fault: impl Into<DraftFault>) -> Self {
         Self { place: Box::new(place), fault: Box::new(fault.into()) }
     }
 }
@@ -199,7 +199,7 @@ impl DatasetDraft {
         // It names itself.
         let band = band.map_err(|error| DraftError::new(Place::default(), error))?;
         let on_axis = on_axis_table(&self.outputs, &self.inputs, &self.on_axis)?;
-        let mut checker = Checker { outputs: self.outputs.len(), inputs: self.inputs.len(), oddities: Vec::new() };
+        let mut checker = Checker::of(&self);
         let conditions = self.conditions.into_iter().enumerate();
         let conditions =
             conditions.map(|(index, draft)| checker.condition(index + 1, draft)).collect::<Result<_, _>>()?;
@@ -211,12 +211,12 @@ impl DatasetDraft {
     }
 }
 
-fn check_count(list: &str, found: usize, most: usize) -> Result<(), DraftError> {
+pub(super) fn check_count(list: &str, found: usize, most: usize) -> Result<(), DraftError> {
     let fault = DraftFault::TooMany { most, found };
     if found > most { Err(DraftError::new(Place::entry(list), fault)) } else { Ok(()) }
 }
 
-fn on_axis_table(
+pub(super) fn on_axis_table(
     outputs: &[Channel],
     inputs: &[Channel],
     pairs: &[(String, String)],
@@ -237,13 +237,18 @@ fn on_axis_table(
 }
 
 /// What the checks of models need to know, and note.
-struct Checker {
+pub(super) struct Checker {
     outputs: usize,
     inputs: usize,
     oddities: Vec<Oddity>,
 }
 
 impl Checker {
+    /// For the models of a draft.
+    pub(super) fn of(draft: &DatasetDraft) -> Self {
+        Self { outputs: draft.outputs.len(), inputs: draft.inputs.len(), oddities: Vec::new() }
+    }
+
     fn condition(&mut self, position: usize, draft: ConditionDraft) -> Result<Condition, DraftError> {
         let place = Place::condition(position, draft.flight_state.id.0);
         let physics = self.bundle(&place, BundleKind::Physics, draft.physics)?;
@@ -265,7 +270,8 @@ impl Checker {
         drafts.map(|(index, draft)| self.model(condition.model(kind, index + 1, &draft.name), kind, draft)).collect()
     }
 
-    fn model(&mut self, place: Place, kind: BundleKind, draft: ModelDraft) -> Result<Model, DraftError> {
+    /// The model of a draft at a place.
+    pub(super) fn model(&mut self, place: Place, kind: BundleKind, draft: ModelDraft) -> Result<Model, DraftError> {
         let has_matrices = draft.matrices.iter().any(Option::is_some);
         let dynamics = match (has_matrices, draft.response) {
             (_, Some(_)) if kind == BundleKind::Physics => {

@@ -7,6 +7,7 @@ mod content;
 #[expect(clippy::module_inception, reason = "the folder is named for its noun, and so is the file that holds it")]
 mod dataset;
 mod draft;
+mod draft_faults;
 mod identity;
 pub mod limits;
 mod measured_response;

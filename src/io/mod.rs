@@ -48,8 +48,8 @@ pub use corrections_file::{
 };
 pub use csv_table::{csv_text, save_table};
 pub use dataset_file::{
-    DatasetOrigin, LoadedDataset, add_dataset, embedded_example, load_dataset, load_dataset_bytes, save_dataset,
-    write_example,
+    DatasetOrigin, LoadedDataset, add_dataset, dataset_faults, embedded_example, load_dataset, load_dataset_bytes,
+    save_dataset, write_example,
 };
 pub use figure_file::{figure_format, write_as, write_figure};
 pub use file_error::{FileError, system_words};
@@ -57,7 +57,7 @@ pub use file_stamp::{FileStamp, file_exists, file_sha256};
 pub use first_start::is_first_start;
 pub use home::at_home;
 pub use mat::write as write_mat;
-pub use model_files::{FileFormat, FolderProgress, FoundModels, read_models};
+pub use model_files::{FileFormat, FolderProgress, FoundModels, models_of_bytes, read_models};
 pub use models_file::add_models;
 pub use npy::write_npz;
 pub use opened::{Opened, load_any};

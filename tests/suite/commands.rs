@@ -481,3 +481,21 @@ fn a_figure_that_cannot_be_made_is_status_2_and_says_what_there_is() {
     figure(&[&existing[..], &["--force"]].concat()).assert_done();
     assert!(fs::read_to_string(desk.path("a.svg")).unwrap().starts_with("<svg"));
 }
+
+#[test]
+fn check_tells_every_fault_of_a_dataset_at_once_each_with_its_place() {
+    let desk = Desk::new();
+    desk.write("faulty.json", |dataset| {
+        dataset["frequency_band"]["min"] = json!(-1.0);
+        dataset["conditions"][0]["physics_models"][0]["A"] = json!([[1.0, 2.0]]);
+        dataset["conditions"][0]["identified_models"][0]["D"] = json!([[1.0], [2.0], [3.0], [4.0], [5.0]]);
+    });
+    let ended = desk.gdcm(&["check", "faulty.json"]);
+    assert_eq!(ended.status, 2);
+    let lines: Vec<&str> = ended.error.lines().collect();
+    assert_eq!(lines.len(), 4, "{}", ended.error);
+    assert!(lines[0].contains("band") || lines[0].contains("-1"), "{}", lines[0]);
+    assert!(lines[1].contains("physics model") && lines[1].contains("line"), "{}", lines[1]);
+    assert!(lines[2].contains("identified model"), "{}", lines[2]);
+    assert!(lines[3].contains("3 faults"), "{}", lines[3]);
+}

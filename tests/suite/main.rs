@@ -10,6 +10,7 @@ mod assembling;
 mod commands;
 mod dataset_file;
 mod figures;
+mod hostile_files;
 mod messages;
 mod optimiser;
 mod outputs;

@@ -98,6 +98,17 @@ pub fn load_dataset(path: &Path) -> Result<LoadedDataset, FileError> {
     dataset_from(&Source::read(path)?, DatasetOrigin::File(path.to_owned()))
 }
 
+/// Everything that is wrong in a dataset's file, each with its place; nothing where it can be loaded. Text that cannot be read at all
+/// is an error.
+pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
+    let source = Source::read(path)?;
+    let (text, _) = FORMAT.decode::<DatasetText>(source.text(), path)?;
+    FORMAT.check_read(&text.format, text.version, path)?;
+    let draft = draft_of(text).map_err(|flaw| FileError::content_of(path, flaw, source.text()))?;
+    let told = |error| FileError::content_of(path, Flaw::from(error), source.text());
+    Ok(draft.faults().into_iter().map(told).collect())
+}
+
 /// Loads a dataset from bytes that are already at hand; `origin` is what errors call them.
 pub fn load_dataset_bytes(bytes: &[u8], origin: DatasetOrigin) -> Result<LoadedDataset, FileError> {
     dataset_from(&Source::of(bytes, &origin.path())?, origin)

@@ -59,12 +59,25 @@ struct FileModels {
     loose: Option<LooseMatrix>,
 }
 
+/// The models in the bytes of a file of this name, in no more than `most` bytes of memory for its variables.
+pub fn models_of_bytes(bytes: &[u8], name: &str, most: u64) -> Result<FoundModels, FileError> {
+    let found = of_bytes(bytes, Path::new(name), name, &Meter::new(most, &|| false))?;
+    let Recognised { mut models, mut faults, passed_over } = found.recognised;
+    let of_matrices = loose_matrices::models_of(found.loose.into_iter().collect());
+    models.extend(of_matrices.models);
+    faults.extend(of_matrices.faults);
+    Ok(FoundModels { models, faults, passed_over, files: 1 })
+}
+
 /// The models of one file; `name` is how the dataset calls it, relative to what was asked for.
 fn read_file(path: &Path, name: &str, stop: &dyn Fn() -> bool) -> Result<FileModels, FileError> {
     let bytes = read_bytes(path, LARGEST_FILE)?;
-    let meter = Meter::new(MOST_MEMORY, stop);
+    of_bytes(&bytes, path, name, &Meter::new(MOST_MEMORY, stop))
+}
+
+fn of_bytes(bytes: &[u8], path: &Path, name: &str, meter: &Meter<'_>) -> Result<FileModels, FileError> {
     let wrong = |fault| FileError::Variables { path: path.to_owned(), fault };
-    let mut found = match contents_of(&bytes, path, &meter)? {
+    let mut found = match contents_of(bytes, path, meter)? {
         Contents::Variables { variables, notes } => of_variables(&variables, notes, name),
         Contents::Table { table, notes } => {
             let recognised = table_models::models_of(&table, name, notes).map_err(wrong)?;
@@ -75,7 +88,7 @@ fn read_file(path: &Path, name: &str, stop: &dyn Fn() -> bool) -> Result<FileMod
             FileModels { recognised, loose: None }
         }
     };
-    let sha256: String = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+    let sha256: String = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
     for model in &mut found.recognised.models {
         let source = model.draft.source.get_or_insert_with(Provenance::default);
         source.file = Some(name.to_owned());

@@ -10,6 +10,8 @@ use crate::figure::{ColumnWidth, FigureKind, Role};
 use crate::schedule::HIGHEST_DEGREE;
 use crate::study::{AcrossRole, DEFAULT_COHERENCE, LEAST_POINTS, MOST_POINTS};
 
+use super::export_arguments::ExportArguments;
+
 /// Gain-Delay Correction Method: matches physics-based helicopter models to flight.
 #[derive(Debug, Parser)]
 #[command(name = "gdcm", version, args_conflicts_with_subcommands = true)]
@@ -31,6 +33,8 @@ pub enum Command {
     /// Write all that was done and found as one page to read and to print: settings, rejections with their reasons, gains, delays, what
     /// could not be matched and why, the schedule, the assessment, and every plot.
     Report(Box<ReportArguments>),
+    /// Write corrections for other tools: MATLAB, Python, C, lookup tables, corrected models as state-space.
+    Export(Box<ExportArguments>),
     /// Make a dataset of a folder of model files: MATLAB, NumPy, JSON, text. Without rules, proposes them and says what is missing.
     Assemble(AssembleArguments),
     /// Write every model and response in any file as JSON.
@@ -265,11 +269,11 @@ impl FromStr for PairChoice {
     }
 }
 
-fn real_number(text: &str) -> Result<f64, String> {
+pub(super) fn real_number(text: &str) -> Result<f64, String> {
     text.trim().parse().map_err(|_| format!("expected a number, found {text}"))
 }
 
-fn whole_number<const LEAST: usize, const MOST: usize>(text: &str) -> Result<usize, String> {
+pub(super) fn whole_number<const LEAST: usize, const MOST: usize>(text: &str) -> Result<usize, String> {
     let number = text.trim().parse().ok().filter(|number| (LEAST..=MOST).contains(number));
     number.ok_or_else(|| format!("expected a whole number from {LEAST} to {MOST}, found {text}"))
 }

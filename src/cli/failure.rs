@@ -50,6 +50,7 @@ impl Failure {
             | Failure::NoResult { .. }
             | Failure::Cancelled(_)
             | Failure::StandardOutput { .. } => NOT_DONE,
+            Failure::File(FileError::Export { fault, .. }) if fault.is_of_analysis() => NOT_DONE,
             Failure::File(_)
             | Failure::Option { .. }
             | Failure::Different { .. }

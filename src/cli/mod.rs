@@ -5,6 +5,8 @@
 mod analyze;
 mod arguments;
 mod check;
+mod export;
+mod export_arguments;
 mod failure;
 mod figure;
 mod models;
@@ -35,6 +37,7 @@ pub use arguments::{
     AnalyzeArguments, AssembleArguments, Command, ConvertArguments, FigureArguments, OpeningArguments, PairChoice,
     PairList, Rejection, ReportArguments, StudyArguments,
 };
+pub use export_arguments::{Breakpoints, ExportArguments};
 
 /// What the command line asks for.
 #[derive(Debug)]
@@ -64,6 +67,7 @@ pub fn run(command: &Command) -> ExitCode {
         Command::Analyze(arguments) => analyze::analyze(arguments),
         Command::Figure(arguments) => figure::figure(arguments),
         Command::Report(arguments) => report::report(arguments),
+        Command::Export(arguments) => export::export(arguments),
         Command::Assemble(arguments) => models::assemble(arguments),
         Command::Convert(arguments) => models::convert(arguments),
         Command::Check { file, opening } => check::check(file, opening),

@@ -4,6 +4,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::content_fault::ContentFault;
+use super::exports::ExportFault;
 use super::flaw::Flaw;
 use super::json_text::line_of;
 use super::plain::{plain, plain_path};
@@ -119,7 +120,7 @@ pub enum FileError {
         /// Line at which the condition or the model begins, counted from 1; none where the fault names its own.
         line: Option<usize>,
     },
-    /// A file of models cannot be read.
+    /// A file of variables cannot be read, or not be written.
     #[error("{}: {}", plain_path(path), plain(&.fault.to_string()))]
     Variables {
         /// The file.
@@ -179,6 +180,14 @@ pub enum FileError {
         /// The file.
         path: PathBuf,
     },
+    /// What was asked for cannot be exported.
+    #[error("{}: {}", plain_path(path), plain(&.fault.to_string()))]
+    Export {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        fault: ExportFault,
+    },
     /// The file could not be written; what was there before is still there.
     #[error("{}: cannot be written: {reason}", plain_path(path))]
     Unwritable {
@@ -208,6 +217,10 @@ impl FileError {
 
     pub(super) fn unwritable(path: &Path, reason: &str) -> Self {
         FileError::Unwritable { path: path.to_owned(), reason: reason.to_owned() }
+    }
+
+    pub(super) fn export(path: &Path, fault: ExportFault) -> Self {
+        FileError::Export { path: path.to_owned(), fault }
     }
 
     pub(super) fn content(path: &Path, flaw: Flaw) -> Self {

@@ -7,6 +7,7 @@ mod schema;
 mod tables;
 
 use std::collections::BTreeSet;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use crate::dataset::ConditionId;
@@ -16,6 +17,9 @@ use super::file_error::FileError;
 use super::json_text::Format;
 use super::output_set::{OutputSet, make_directory};
 use super::source::Source;
+use tables::response_table;
+
+pub(super) use tables::channel_table;
 
 pub use explanation::{ConflictEntry, Explanation, RemedyEntry, SensitivityEntry};
 pub use names::ByName;
@@ -49,13 +53,21 @@ pub fn write_results(
     let [json, channels, responses] = result_paths(directory);
     outputs.check(&[&json, &channels, &responses])?;
     make_directory(directory)?;
-    outputs.add(&json, |file| {
-        serde_json::to_writer_pretty(&mut *file, &Corrections::of(analysis, sha256, chosen))?;
-        file.write_all(b"\n")
-    })?;
-    outputs.add(&channels, |file| tables::channel_table(analysis, chosen, file))?;
-    outputs.add(&responses, |file| tables::response_table(analysis, chosen, file))?;
+    outputs.add(&json, |file| write_corrections(analysis, sha256, chosen, file))?;
+    outputs.add(&channels, |file| channel_table(analysis, chosen, file))?;
+    outputs.add(&responses, |file| response_table(analysis, chosen, file))?;
     outputs.persist()
+}
+
+/// `corrections.json`: everything that was found in the chosen conditions.
+pub(super) fn write_corrections(
+    analysis: &Analysis,
+    sha256: &str,
+    chosen: &BTreeSet<ConditionId>,
+    file: &mut dyn Write,
+) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut *file, &Corrections::of(analysis, sha256, chosen))?;
+    file.write_all(b"\n")
 }
 
 /// Reads a `corrections.json`.

@@ -14,7 +14,7 @@ const CHANNEL_HEADER: [&str; 8] =
 
 /// `corrections.csv`: the channel gains (ratios) and delays \[s\] of the chosen conditions, and the scheduled ones at the same
 /// airspeed. A figure that does not exist is an empty cell.
-pub(super) fn channel_table(
+pub(in crate::io) fn channel_table(
     analysis: &Analysis,
     chosen: &BTreeSet<ConditionId>,
     file: &mut dyn Write,

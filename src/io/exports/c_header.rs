@@ -4,8 +4,9 @@ use std::fmt::Write;
 
 use super::curve::Curve;
 use super::export_fault::ExportFault;
+use super::heading::heading;
+use super::lookup_table::LookupTable;
 use super::number::{list, number};
-use super::python_module::heading;
 use super::quoted::{c_text, comment};
 use super::scheduled_correction::{ScheduledChannel, ScheduledCorrection};
 
@@ -60,11 +61,11 @@ pub fn c_header(correction: &ScheduledCorrection) -> Result<String, ExportFault>
     text.push_str(TABLE);
     let (least, most) = correction.airspeed_range_kt;
     let (least, most) = (number(least), number(most));
-    let (mean, half) = (number(correction.airspeed_mean_kt), number(correction.airspeed_half_range_kt));
+    let scaled = correction.scaled_expression();
     let _ = write!(
         text,
         "    double a = airspeed_kt < {least} ? {least} : (airspeed_kt > {most} ? {most} : airspeed_kt);\n    \
-         double v = (a - ({mean})) / {half};\n    \
+         double v = {scaled};\n    \
          if (airspeed_kt != airspeed_kt) {{\n        return -1;\n    }}\n    \
          (void)v;\n    (void)gain_in;\n    (void)gain_out;\n    (void)delay_in;\n    (void)delay_out;\n"
     );
@@ -79,33 +80,51 @@ pub fn c_header(correction: &ScheduledCorrection) -> Result<String, ExportFault>
 
 fn write_channel(text: &mut String, side: &str, index: usize, channel: &ScheduledChannel) {
     let _ = writeln!(text, "    /* {side}put {}: {} . */", index + 1, comment(&channel.name));
-    write_curve(text, &format!("gain_{side}[{index}]"), &channel.gain);
-    write_curve(text, &format!("delay_{side}[{index}]"), &channel.delay_s);
+    for (target, curve) in [("gain", &channel.gain), ("delay", &channel.delay_s)] {
+        let body: String =
+            lines(&format!("{target}_{side}[{index}]"), curve).iter().map(|line| format!("        {line}\n")).collect();
+        let _ = write!(text, "    {{\n{body}    }}\n");
+    }
 }
 
-fn write_curve(text: &mut String, target: &str, curve: &Curve) {
-    let mut lines = Vec::new();
+/// The statements, of a block of their own, that give `target` the value of a curve.
+fn lines(target: &str, curve: &Curve) -> Vec<String> {
+    let value = |of_logarithm: bool, figure: String| if of_logarithm { format!("exp({figure})") } else { figure };
     match curve {
-        Curve::Polynomial { of_logarithm, coefficients, least, most } => {
-            lines.push(format!("static const double c[] = {{{}}};", list(coefficients)));
+        Curve::Polynomial { of_logarithm, coefficients } => {
             let sum = format!("gdcm_polynomial({}, c, v)", coefficients.len());
-            let value = if *of_logarithm { format!("exp({sum})") } else { sum };
-            lines.push(format!("{target} = {value};"));
-            for (sign, cut) in [("<", least), (">", most)] {
-                if let Some(cut) = cut.map(number) {
-                    lines.push(format!("if ({target} {sign} {cut}) {{ {target} = {cut}; }}"));
-                }
-            }
+            vec![
+                format!("static const double c[] = {{{}}};", list(coefficients)),
+                format!("{target} = {};", value(*of_logarithm, sum)),
+            ]
         }
-        Curve::Table { airspeed_kt, values } => {
-            lines.push(format!("static const double p[] = {{{}}};", list(airspeed_kt)));
-            lines.push(format!("static const double y[] = {{{}}};", list(values)));
-            lines.push(format!("{target} = gdcm_table({}, p, y, a);", values.len()));
+        Curve::Table { of_logarithm, table } => {
+            let [points, values] = arrays(table);
+            vec![points, values, format!("{target} = {};", value(*of_logarithm, looked_up(table)))]
         }
-        Curve::Constant(value) => lines.push(format!("{target} = {};", number(*value))),
+        Curve::Constant(value) => vec![format!("{target} = {};", number(*value))],
+        Curve::Cut { curve, least, most } => {
+            let inner: String = lines(target, curve).iter().map(|line| format!(" {line}")).collect();
+            let [points, values] = arrays(most);
+            vec![
+                format!("{{{inner} }}"),
+                points,
+                values,
+                format!("const double most = {};", looked_up(most)),
+                format!("if ({target} > most) {{ {target} = most; }}"),
+                format!("if ({target} < {0}) {{ {target} = {0}; }}", number(*least)),
+            ]
+        }
     }
-    let body: String = lines.iter().map(|line| format!("        {line}\n")).collect();
-    let _ = write!(text, "    {{\n{body}    }}\n");
+}
+
+fn arrays(table: &LookupTable) -> [String; 2] {
+    [("p", &table.airspeed_kt), ("y", &table.values)]
+        .map(|(name, numbers)| format!("static const double {name}[] = {{{}}};", list(numbers)))
+}
+
+fn looked_up(table: &LookupTable) -> String {
+    format!("gdcm_table({}, p, y, a)", table.values.len())
 }
 
 #[cfg(test)]
@@ -116,15 +135,14 @@ mod tests {
     use super::*;
 
     /// Compiles the header with a program around it and gives what that prints.
-    fn run(header: &str, body: &str, name: &str) -> Option<String> {
+    fn run(header: &str, body: &str) -> Option<String> {
         if Command::new("cc").arg("--version").output().is_err() {
             eprintln!("SKIPPED: cc is not installed");
             return None;
         }
-        let folder = std::env::temp_dir().join(format!("gdcm-c-header-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).unwrap();
-        let (source, program) = (folder.join("main.c"), folder.join("main"));
-        std::fs::write(folder.join("gdcm.h"), header).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let [source, program] = ["main.c", "main"].map(|name| folder.path().join(name));
+        std::fs::write(folder.path().join("gdcm.h"), header).unwrap();
         let main = format!("#include \"gdcm.h\"\n#include <stdio.h>\nint main(void)\n{{\n{body}\nreturn 0;\n}}\n");
         std::fs::write(&source, main).unwrap();
         let flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-o"];
@@ -132,7 +150,6 @@ mod tests {
         assert!(built.status.success(), "{}\n{header}", String::from_utf8_lossy(&built.stderr));
         let output = Command::new(&program).output().unwrap();
         assert!(output.status.success());
-        std::fs::remove_dir_all(&folder).unwrap();
         Some(String::from_utf8(output.stdout).unwrap())
     }
 
@@ -148,7 +165,7 @@ mod tests {
              if (gdcm_correction(NAN, gi, go, di, no) != -1) return 1;",
             speeds.join(",")
         );
-        if let Some(printed) = run(&c_header(&correction).unwrap(), &body, "values") {
+        if let Some(printed) = run(&c_header(&correction).unwrap(), &body) {
             assert_printed(&correction, &printed);
         }
     }
@@ -157,7 +174,7 @@ mod tests {
     fn names_come_back_byte_by_byte() {
         let body = "const char *n[] = {GDCM_INPUT_NAME_0, GDCM_INPUT_NAME_1}; int k; const char *c;\n\
                     for (k = 0; k < GDCM_INPUT_COUNT; k++) { for (c = n[k]; *c; c++) printf(\"%d \", (unsigned char)*c); }";
-        if let Some(printed) = run(&c_header(&example()).unwrap(), body, "names") {
+        if let Some(printed) = run(&c_header(&example()).unwrap(), body) {
             let bytes: Vec<u8> = printed.split_whitespace().map(|word| word.parse().unwrap()).collect();
             assert_eq!(bytes, [NASTY[0], NASTY[1]].concat().as_bytes());
         }
@@ -168,6 +185,6 @@ mod tests {
         let mut correction = example();
         correction.inputs.clear();
         correction.outputs.clear();
-        run(&c_header(&correction).unwrap(), "return gdcm_correction(1.0, 0, 0, 0, 0);", "empty");
+        run(&c_header(&correction).unwrap(), "return gdcm_correction(1.0, 0, 0, 0, 0);");
     }
 }

@@ -2,12 +2,17 @@
 
 use std::fmt::Write;
 
-use super::curve::Curve;
 use super::export_fault::ExportFault;
-use super::number::{list, number};
-use super::python_module::heading;
+use super::expression::Functions;
+use super::heading::heading;
+use super::number::number;
 use super::quoted::comment;
 use super::scheduled_correction::{ScheduledChannel, ScheduledCorrection};
+
+const FUNCTIONS: Functions = Functions { exp: "exp", polynomial: "gdcm_polynomial", table: "gdcm_table" };
+
+/// The functions below, whose names the file cannot have.
+const HELPERS: [&str; 2] = [FUNCTIONS.polynomial, FUNCTIONS.table];
 
 /// Linear between the points, the end value outside; `interp1` refuses a table of one point.
 const TABLE: &str = "
@@ -30,12 +35,23 @@ function y = gdcm_polynomial(coefficients, v)
 end
 ";
 
-/// Writes the file `gdcm_correction.m` with the function `[Mi, Mo, tau_i, tau_o] = gdcm_correction(airspeed_kt)`: diagonal
-/// matrices of gains, columns of delays \[s\].
-pub fn matlab_function(correction: &ScheduledCorrection) -> Result<String, ExportFault> {
+/// Longest name that MATLAB takes (`namelengthmax`).
+const LONGEST_NAME: usize = 63;
+
+/// Writes the file `name.m` with the function `[Mi, Mo, tau_i, tau_o] = name(airspeed_kt)`: diagonal matrices of gains, columns of
+/// delays \[s\]. MATLAB calls a function by the name of its file.
+///
+/// # Errors
+/// [`ExportFault::FunctionName`] where MATLAB could not.
+pub fn matlab_function(correction: &ScheduledCorrection, name: &str) -> Result<String, ExportFault> {
     correction.check()?;
-    let mut text = String::from("function [Mi, Mo, tau_i, tau_o] = gdcm_correction(airspeed_kt)\n");
-    text.push_str("%GDCM_CORRECTION Gain matrices Mi and Mo, delays tau_i and tau_o [s] at an airspeed [kt].\n");
+    check_function_name(name)?;
+    let mut text = format!("function [Mi, Mo, tau_i, tau_o] = {name}(airspeed_kt)\n");
+    let _ = writeln!(
+        text,
+        "%{} Gain matrices Mi and Mo, delays tau_i and tau_o [s] at an airspeed [kt].",
+        name.to_ascii_uppercase()
+    );
     for line in heading(correction) {
         let _ = writeln!(text, "% {line}");
     }
@@ -45,14 +61,14 @@ pub fn matlab_function(correction: &ScheduledCorrection) -> Result<String, Expor
         }
     }
     let (least, most) = correction.airspeed_range_kt;
-    let (mean, half) = (number(correction.airspeed_mean_kt), number(correction.airspeed_half_range_kt));
     let _ = write!(
         text,
         "  if ~(isscalar(airspeed_kt) && isreal(airspeed_kt)) || isnan(airspeed_kt)\n    \
          error('gdcm:airspeed', 'The airspeed must be one real number.');\n  end\n  \
-         a = min(max(double(airspeed_kt), {}), {});\n  v = (a - ({mean})) / {half};\n",
+         a = min(max(double(airspeed_kt), {}), {});\n  v = {};\n",
         number(least),
         number(most),
+        correction.scaled_expression(),
     );
     for (name, channels) in [("i", &correction.inputs), ("o", &correction.outputs)] {
         let count = channels.len();
@@ -66,22 +82,20 @@ pub fn matlab_function(correction: &ScheduledCorrection) -> Result<String, Expor
     Ok(text)
 }
 
-fn write_channel(text: &mut String, side: &str, place: usize, channel: &ScheduledChannel) {
-    let _ = writeln!(text, "  M{side}({place}, {place}) = {};", expression(&channel.gain));
-    let _ = writeln!(text, "  tau_{side}({place}) = {};", expression(&channel.delay_s));
+/// Refuses a name that no function of a file can have.
+pub(super) fn check_function_name(name: &str) -> Result<(), ExportFault> {
+    let is_name = name.starts_with(|first: char| first.is_ascii_alphabetic())
+        && name.len() <= LONGEST_NAME
+        && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+    if !is_name || HELPERS.contains(&name) {
+        return Err(ExportFault::FunctionName { found: name.to_owned() });
+    }
+    Ok(())
 }
 
-fn expression(curve: &Curve) -> String {
-    match curve {
-        Curve::Polynomial { of_logarithm, coefficients, least, most } => {
-            let sum = format!("gdcm_polynomial([{}], v)", list(coefficients));
-            let value = if *of_logarithm { format!("exp({sum})") } else { sum };
-            let value = least.map_or(value.clone(), |least| format!("max({value}, {})", number(least)));
-            most.map_or(value.clone(), |most| format!("min({value}, {})", number(most)))
-        }
-        Curve::Table { airspeed_kt, values } => format!("gdcm_table([{}], [{}], a)", list(airspeed_kt), list(values)),
-        Curve::Constant(value) => number(*value),
-    }
+fn write_channel(text: &mut String, side: &str, place: usize, channel: &ScheduledChannel) {
+    let _ = writeln!(text, "  M{side}({place}, {place}) = {};", FUNCTIONS.expression(&channel.gain));
+    let _ = writeln!(text, "  tau_{side}({place}) = {};", FUNCTIONS.expression(&channel.delay_s));
 }
 
 #[cfg(test)]
@@ -98,9 +112,12 @@ mod tests {
             return;
         }
         let correction = example();
-        let folder = std::env::temp_dir().join(format!("gdcm-matlab-function-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).unwrap();
-        std::fs::write(folder.join("gdcm_correction.m"), matlab_function(&correction).unwrap()).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(
+            folder.path().join("gdcm_correction.m"),
+            matlab_function(&correction, "gdcm_correction").unwrap(),
+        )
+        .unwrap();
         let speeds: Vec<String> = airspeeds().iter().map(f64::to_string).collect();
         let program = format!(
             "for s = [{}], [Mi, Mo, ti, to] = gdcm_correction(s); \
@@ -110,12 +127,11 @@ mod tests {
         let output = Command::new("octave-cli").args(["--eval", &program]).current_dir(&folder).output().unwrap();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         assert_printed(&correction, &String::from_utf8(output.stdout).unwrap());
-        std::fs::remove_dir_all(&folder).unwrap();
     }
 
     #[test]
     fn every_line_that_is_no_code_is_a_comment() {
-        let text = matlab_function(&example()).unwrap();
+        let text = matlab_function(&example(), "gdcm_correction").unwrap();
         assert!(text.is_ascii());
         let code = ["function ", "  ", "end", "%"];
         for line in text.lines().filter(|line| !line.is_empty()) {
@@ -123,5 +139,14 @@ mod tests {
             assert!(!matches!(line.trim(), "%{" | "%}"));
         }
         assert_eq!(text.lines().filter(|line| line.starts_with("% Input")).count(), 2);
+    }
+
+    #[test]
+    fn a_name_that_matlab_cannot_call_is_refused() {
+        for name in ["", "2nd", "my-study", "gdcm_table", "\u{e9}t\u{e9}", &"x".repeat(64)] {
+            let refused = matlab_function(&example(), name);
+            assert_eq!(refused, Err(ExportFault::FunctionName { found: name.to_owned() }));
+        }
+        assert!(matlab_function(&example(), "k2_v").unwrap().starts_with("function [Mi, Mo, tau_i, tau_o] = k2_v("));
     }
 }

@@ -4,23 +4,21 @@ use std::fmt::Write;
 
 use super::curve::Curve;
 use super::export_fault::ExportFault;
-use super::number::{list, number};
-use super::quoted::{comment, python_text};
+use super::expression::Functions;
+use super::heading::heading;
+use super::number::number;
+use super::quoted::python_text;
 use super::scheduled_correction::{ScheduledChannel, ScheduledCorrection};
+
+const FUNCTIONS: Functions = Functions { exp: "math.exp", polynomial: "_polynomial", table: "_table" };
 
 /// What the module needs to compute curves.
 const CURVES: &str = r#"
 
-def _polynomial(coefficients, v, of_logarithm, least, most):
+def _polynomial(coefficients, v):
     value = 0.0
     for coefficient in reversed(coefficients):
         value = value * v + coefficient
-    if of_logarithm:
-        value = math.exp(value)
-    if least is not None:
-        value = max(value, least)
-    if most is not None:
-        value = min(value, most)
     return value
 
 
@@ -61,10 +59,9 @@ pub fn python_module(correction: &ScheduledCorrection) -> Result<String, ExportF
     let _ = write!(text, "OUTPUTS = [\n{}]\n", names(&correction.outputs));
     let _ = writeln!(text, "AIRSPEED_RANGE_KT = ({}, {})", number(least), number(most));
     text.push_str(CURVES);
-    let (mean, half) = (number(correction.airspeed_mean_kt), number(correction.airspeed_half_range_kt));
-    let _ = writeln!(text, "    v = (a - ({mean})) / {half}");
+    let _ = writeln!(text, "    v = {}", correction.scaled_expression());
     let curves = |channels: &[ScheduledChannel], of: fn(&ScheduledChannel) -> &Curve| -> String {
-        channels.iter().map(|channel| format!("        {},\n", expression(of(channel)))).collect()
+        channels.iter().map(|channel| format!("        {},\n", FUNCTIONS.expression(of(channel)))).collect()
     };
     for (name, channels) in [("i", &correction.inputs), ("o", &correction.outputs)] {
         let _ = write!(text, "    gain_{name} = [\n{}    ]\n", curves(channels, |channel| &channel.gain));
@@ -72,34 +69,6 @@ pub fn python_module(correction: &ScheduledCorrection) -> Result<String, ExportF
     }
     text.push_str("    return _diagonal(gain_i), _diagonal(gain_o), tau_i, tau_o\n");
     Ok(text)
-}
-
-/// What the file is, line by line, for the comment at its start.
-pub(super) fn heading(correction: &ScheduledCorrection) -> Vec<String> {
-    let (least, most) = correction.airspeed_range_kt;
-    vec![
-        "Gains and delays that correct a model of a helicopter, scheduled with airspeed.".to_owned(),
-        "The model gets the input Mi*u(t - tau_i); its output ym gives y(t) = Mo*ym(t - tau_o).".to_owned(),
-        "Units: airspeed in knots, delays in seconds, gains without a unit.".to_owned(),
-        format!("Airspeeds outside {least} to {most} kt are cut to the ends of this range."),
-        format!("Correction: {}", comment(&correction.name)),
-        format!("Dataset: {}", comment(&correction.dataset)),
-        format!("SHA-256 of the dataset: {}", comment(&correction.sha256)),
-        format!("Written by: {}", comment(&correction.software)),
-    ]
-}
-
-fn expression(curve: &Curve) -> String {
-    let optional = |value: &Option<f64>| value.map_or("None".to_owned(), number);
-    match curve {
-        Curve::Polynomial { of_logarithm, coefficients, least, most } => {
-            let logarithm = if *of_logarithm { "True" } else { "False" };
-            let (least, most) = (optional(least), optional(most));
-            format!("_polynomial([{}], v, {logarithm}, {least}, {most})", list(coefficients))
-        }
-        Curve::Table { airspeed_kt, values } => format!("_table([{}], [{}], a)", list(airspeed_kt), list(values)),
-        Curve::Constant(value) => number(*value),
-    }
 }
 
 #[cfg(test)]

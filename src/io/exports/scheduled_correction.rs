@@ -3,6 +3,7 @@
 use super::airspeed::CutAirspeed;
 use super::curve::Curve;
 use super::export_fault::ExportFault;
+use super::number::number;
 
 /// A gain and a delay of an input or an output.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,8 +35,10 @@ pub struct ScheduledCorrection {
     pub airspeed_range_kt: (f64, f64),
     /// Airspeed at which the scaled airspeed is 0 \[kt\].
     pub airspeed_mean_kt: f64,
-    /// Airspeed above the mean at which it is 1 \[kt\].
+    /// Airspeed above the mean at which it is 1 \[kt\]; zero where there is one airspeed only: it is 0 there.
     pub airspeed_half_range_kt: f64,
+    /// What has to be known about it.
+    pub notes: Vec<String>,
 }
 
 /// A curve of a correction, with what it is.
@@ -44,6 +47,18 @@ pub(super) struct NamedCurve<'c> {
     pub(super) kind: &'static str,
     pub(super) name: &'c str,
     pub(super) curve: &'c Curve,
+}
+
+impl NamedCurve<'_> {
+    /// Whether it is a delay \[s\]; otherwise it is a gain.
+    pub(super) fn is_delay(&self) -> bool {
+        self.kind == "delay"
+    }
+
+    /// What it is: "gain of input LON".
+    pub(super) fn words(&self) -> String {
+        format!("{} of {} {}", self.kind, self.side, self.name)
+    }
 }
 
 impl ScheduledCorrection {
@@ -55,7 +70,16 @@ impl ScheduledCorrection {
             fast if fast > most => most,
             within => within,
         };
-        CutAirspeed { kt, scaled: (kt - self.airspeed_mean_kt) / self.airspeed_half_range_kt }
+        let half_kt = self.airspeed_half_range_kt;
+        CutAirspeed { kt, scaled: if half_kt == 0.0 { 0.0 } else { (kt - self.airspeed_mean_kt) / half_kt } }
+    }
+
+    /// The scaled airspeed of the airspeed `a`, in every language.
+    pub(super) fn scaled_expression(&self) -> String {
+        if self.airspeed_half_range_kt == 0.0 {
+            return number(0.0);
+        }
+        format!("(a - ({})) / {}", number(self.airspeed_mean_kt), number(self.airspeed_half_range_kt))
     }
 
     /// All curves: for every input, then every output, the gain and the delay.
@@ -71,7 +95,7 @@ impl ScheduledCorrection {
     pub(super) fn check(&self) -> Result<(), ExportFault> {
         let (least, most) = self.airspeed_range_kt;
         let numbers = [least, most, self.airspeed_mean_kt, self.airspeed_half_range_kt];
-        if !numbers.iter().all(|number| number.is_finite()) || least > most || self.airspeed_half_range_kt <= 0.0 {
+        if !numbers.iter().all(|number| number.is_finite()) || least > most || self.airspeed_half_range_kt < 0.0 {
             return Err(ExportFault::Range);
         }
         for NamedCurve { side, kind, name, curve } in self.curves() {
@@ -85,6 +109,7 @@ impl ScheduledCorrection {
 
 #[cfg(test)]
 pub(super) mod tests {
+    use super::super::lookup_table::LookupTable;
     use super::*;
 
     /// Names that would end a comment or a text if they were written as they are.
@@ -93,31 +118,42 @@ pub(super) mod tests {
 
     /// A correction with every kind of curve and names that are hard to write.
     pub(in crate::io::exports) fn example() -> ScheduledCorrection {
-        let polynomial = |of_logarithm, coefficients: &[f64], least, most| Curve::Polynomial {
+        let polynomial = |of_logarithm, coefficients: &[f64]| Curve::Polynomial {
             of_logarithm,
             coefficients: coefficients.to_vec(),
+        };
+        let cut = |curve: Curve, least, most: &[f64]| Curve::Cut {
+            curve: Box::new(curve),
             least,
-            most,
+            most: LookupTable { airspeed_kt: vec![10.0, 70.0], values: most.to_vec() },
         };
         let channel = |name: &str, gain, delay_s| ScheduledChannel { name: name.to_owned(), gain, delay_s };
-        let table = Curve::Table { airspeed_kt: vec![0.0, 40.0, 61.3], values: vec![0.9, 1.1 / 3.0, 2.0] };
+        let table = |of_logarithm, airspeed_kt: &[f64], values: &[f64]| {
+            let table = LookupTable { airspeed_kt: airspeed_kt.to_vec(), values: values.to_vec() };
+            Curve::Table { of_logarithm, table }
+        };
         ScheduledCorrection {
             name: format!("first {}", NASTY[0]),
             dataset: NASTY[1].to_owned(),
             software: "gdcm 0.1.0".to_owned(),
             sha256: "ba78".to_owned(),
             inputs: vec![
-                channel(NASTY[0], polynomial(true, &[0.1, -0.7 / 3.0, 0.05], None, Some(1.2)), Curve::Constant(0.02)),
-                channel(NASTY[1], table, polynomial(false, &[0.03, 0.04], Some(0.0), None)),
+                channel(NASTY[0], polynomial(true, &[0.1, -0.7 / 3.0, 0.05]), Curve::Constant(0.02)),
+                channel(
+                    NASTY[1],
+                    table(true, &[0.0, 40.0, 61.3], &[-0.1, 1.1 / 3.0, 2.0]),
+                    cut(polynomial(false, &[0.03, 0.04]), 0.0, &[0.05, 0.06]),
+                ),
             ],
             outputs: vec![channel(
                 NASTY[2],
-                Curve::Constant(1.0),
-                Curve::Table { airspeed_kt: vec![30.0], values: vec![0.1] },
+                table(false, &[0.0, 40.0, 61.3], &[0.9, 1.1 / 3.0, 2.0]),
+                cut(table(false, &[30.0], &[0.1]), 0.0, &[0.2, 0.05]),
             )],
             airspeed_range_kt: (0.0, 80.0),
             airspeed_mean_kt: 40.0,
             airspeed_half_range_kt: 40.0,
+            notes: vec![NASTY[0].to_owned()],
         }
     }
 
@@ -152,6 +188,8 @@ pub(super) mod tests {
         let correction = example();
         assert_eq!(correction.cut(-3.0), CutAirspeed { kt: 0.0, scaled: -1.0 });
         assert_eq!(correction.cut(100.0), CutAirspeed { kt: 80.0, scaled: 1.0 });
+        let single = ScheduledCorrection { airspeed_range_kt: (40.0, 40.0), airspeed_half_range_kt: 0.0, ..correction };
+        assert_eq!(single.cut(100.0), CutAirspeed { kt: 40.0, scaled: 0.0 });
     }
 
     #[test]
@@ -162,7 +200,7 @@ pub(super) mod tests {
         correction.outputs[0].gain = Curve::Constant(f64::NAN);
         let fault = correction.check().unwrap_err().to_string();
         assert_eq!(fault, "the gain of output Q has a number that is not finite; correct it before it is exported");
-        correction.airspeed_half_range_kt = 0.0;
+        correction.airspeed_half_range_kt = -1.0;
         assert_eq!(correction.check(), Err(ExportFault::Range));
     }
 }

@@ -1,22 +1,18 @@
-//! A correction as a table of gains and delays over airspeed.
+//! A correction as a table of gains and delays over airspeed, in text.
 
 use std::fmt::Write;
 
+use super::breakpoint_table::{BreakpointColumn, BreakpointTable};
 use super::export_fault::ExportFault;
+use super::heading::heading;
 use super::number::number;
-use super::python_module::heading;
 use super::quoted::comment;
 use super::scheduled_correction::{NamedCurve, ScheduledCorrection};
-use super::table_error::TableError;
 
 /// Writes a table (CSV) of all gains and delays at the airspeeds `breakpoints_kt`, for lookup tables that are linear between them.
 /// Lines that begin with # say what it is and how far each column lies from its curve at most.
 pub fn table_csv(correction: &ScheduledCorrection, breakpoints_kt: &[f64]) -> Result<String, ExportFault> {
-    correction.check()?;
-    let increasing = breakpoints_kt.windows(2).all(|pair| pair[0] < pair[1]);
-    if breakpoints_kt.len() < 2 || !increasing || !breakpoints_kt.iter().all(|point| point.is_finite()) {
-        return Err(ExportFault::Breakpoints);
-    }
+    let table = BreakpointTable::of(correction, breakpoints_kt)?;
     let mut text = String::new();
     for line in heading(correction) {
         let _ = writeln!(text, "# {line}");
@@ -24,45 +20,29 @@ pub fn table_csv(correction: &ScheduledCorrection, breakpoints_kt: &[f64]) -> Re
     text.push_str(
         "# Greatest error of linear interpolation in this table, end values outside it, against the curves:\n",
     );
-    for curve in correction.curves() {
-        let _ = writeln!(text, "# {}", error_words(correction, breakpoints_kt, &curve));
+    for column in &table.columns {
+        let _ = writeln!(text, "# {}: {}", comment(&column.of.words()), column.error_words());
     }
     text.push_str("airspeed [kt]");
-    for NamedCurve { side, kind, name, .. } in correction.curves() {
-        let unit = if kind == "delay" { " [s]" } else { " [-]" };
+    for BreakpointColumn { of, .. } in &table.columns {
+        let unit = if of.is_delay() { " [s]" } else { " [-]" };
+        let NamedCurve { side, kind, name, .. } = of;
         let _ = write!(text, ",\"{kind} of {side} {}{unit}\"", comment(name).replace('"', "\"\""));
     }
     text.push('\n');
-    for &airspeed in breakpoints_kt {
+    for (row, &airspeed) in table.airspeed_kt.iter().enumerate() {
         text.push_str(&number(airspeed));
-        let at = correction.cut(airspeed);
-        for named in correction.curves() {
-            let _ = write!(text, ",{}", number(named.curve.at(at)));
+        for column in &table.columns {
+            let _ = write!(text, ",{}", number(column.values[row]));
         }
         text.push('\n');
     }
     Ok(text)
 }
 
-fn error_words(correction: &ScheduledCorrection, points: &[f64], named: &NamedCurve) -> String {
-    let NamedCurve { side, kind, name, curve } = named;
-    let truth = |airspeed: f64| curve.at(correction.cut(airspeed));
-    let range = correction.airspeed_range_kt;
-    let (found, unit) = if *kind == "delay" {
-        let milliseconds = |value: f64, truth: f64| 1e3 * (value - truth).abs();
-        (TableError::greatest(points, range, truth, milliseconds), "ms")
-    } else {
-        // Both zero: no error; a table that misses a zero has no error in percent.
-        let percent =
-            |value: f64, truth: f64| if value == truth { 0.0 } else { 100.0 * ((value - truth) / truth).abs() };
-        (TableError::greatest(points, range, truth, percent), "%")
-    };
-    let place = if found.error > 0.0 { format!(" at {:.3} kt", found.airspeed_kt) } else { String::new() };
-    format!("{kind} of {side} {}: {:.3e} {unit}{place}", comment(name), found.error)
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::curve::Curve;
     use super::super::scheduled_correction::tests::example;
     use super::*;
     use crate::io::text::read_table;
@@ -90,11 +70,10 @@ mod tests {
         correction.inputs.truncate(1);
         correction.outputs.clear();
         correction.inputs[0].name = "LAT".to_owned();
-        let parabola = vec![0.0, 0.0, 0.16];
-        correction.inputs[0].delay_s =
-            super::super::Curve::Polynomial { of_logarithm: false, coefficients: parabola, least: None, most: None };
+        let coefficients = vec![0.0, 0.0, 0.16];
+        correction.inputs[0].delay_s = Curve::Polynomial { of_logarithm: false, coefficients };
         let text = table_csv(&correction, &[0.0, 80.0]).unwrap();
         assert!(text.contains("# delay of input LAT: 1.600e2 ms at 40.000 kt"), "{text}");
-        assert_eq!(table_csv(&correction, &[1.0]), Err(ExportFault::Breakpoints));
+        assert_eq!(table_csv(&correction, &[]), Err(ExportFault::Breakpoints));
     }
 }

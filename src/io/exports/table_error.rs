@@ -1,6 +1,6 @@
 //! How far a table lies from the curve that it was taken from.
 
-use super::curve::interpolated;
+use super::lookup_table::LookupTable;
 
 /// Intervals of the grid on which the greatest error is looked for.
 const GRID: usize = 2000;
@@ -25,8 +25,9 @@ impl TableError {
         curve: impl Fn(f64) -> f64,
         measure: impl Fn(f64, f64) -> f64,
     ) -> Self {
-        let values: Vec<f64> = points.iter().map(|&point| curve(point)).collect();
-        let error = |x: f64| measure(interpolated(points, &values, x), curve(x));
+        let values = points.iter().map(|&point| curve(point)).collect();
+        let table = LookupTable { airspeed_kt: points.to_vec(), values };
+        let error = |x: f64| measure(table.at(x), curve(x));
         let step = (range.1 - range.0) / GRID as f64;
         let mut best = Self { error: error(range.0), airspeed_kt: range.0 };
         for index in 1..=GRID {

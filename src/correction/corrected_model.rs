@@ -1,0 +1,313 @@
+//! A corrected model as matrices (M10).
+
+use nalgebra::DMatrix;
+
+use crate::dataset::limits::MOST_STATES;
+use crate::dataset::{StateSpace, StateSpaceError, Timing};
+use crate::units::number;
+
+use super::channel::Channel;
+use super::channel_correction::ChannelCorrection;
+use super::delay_model::DelayModel;
+use super::pade::Pade;
+
+/// How far a delay may lie from a whole number of samples: parts of one. Delays that were computed are rounded.
+const SAMPLE_TOLERANCE: f64 = 1e-6;
+
+/// A delay \[s\] below which there is none: what is left of rounding would make states of enormous entries. At 12 rad/s it turns the
+/// phase by less than a millionth of a degree.
+const LEAST_DELAY_S: f64 = 1e-9;
+
+/// `M_O H M_I` without delays: those of the correction and of the model itself have become states (M10, M2a).
+///
+/// In continuous time each delayed channel has the states of a Pade approximant, in discrete time one for each sample, exactly.
+/// Gains are exact; a channel without a delay adds no state. States of the inputs come first, then the model's, then the outputs'.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CorrectedModel {
+    /// The matrices, with the model's sample time.
+    pub model: StateSpace,
+    /// Number of states that each input's delay has become.
+    pub input_states: Vec<usize>,
+    /// Number of states that each output's delay has become.
+    pub output_states: Vec<usize>,
+    /// Delay of each input \[s\], the model's own and the correction's.
+    input_delays_s: Vec<f64>,
+    /// Delay of each output \[s\], likewise.
+    output_delays_s: Vec<f64>,
+    /// What the delays are approximated by; nothing in discrete time.
+    pade: Option<Pade>,
+}
+
+/// Why a corrected model cannot be written as matrices.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}", self.words(&[], &[]))]
+pub enum CorrectedModelError {
+    /// A delay of a discrete-time model takes parts of a sample.
+    PartOfSample {
+        /// The channel.
+        channel: Channel,
+        /// Its delay \[s\].
+        delay_s: f64,
+        /// The sample time \[s\].
+        sample_time_s: f64,
+    },
+    /// The delays would become more states than a model may have.
+    TooManyStates {
+        /// How many.
+        states: usize,
+    },
+    /// A product is not finite.
+    Matrices(#[from] StateSpaceError),
+}
+
+impl CorrectedModelError {
+    /// The reason in words; channels have these names.
+    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
+        match self {
+            Self::PartOfSample { channel, delay_s, sample_time_s } => format!(
+                "the delay of {}, {} s, is {} samples of {} s; in discrete time only whole samples are exact",
+                channel.name(inputs, outputs),
+                number(*delay_s),
+                number(delay_s / sample_time_s),
+                number(*sample_time_s)
+            ),
+            Self::TooManyStates { states } => {
+                format!("with its delays as states it would have {states} of them; at most {MOST_STATES} are written")
+            }
+            Self::Matrices(error) => error.to_string(),
+        }
+    }
+}
+
+impl CorrectedModel {
+    /// The model under a correction, delays of continuous time by `pade`.
+    ///
+    /// # Errors
+    /// [`CorrectedModelError`] where a discrete-time delay is no whole number of samples, or states or numbers become too many or
+    /// too large.
+    pub fn of(model: &StateSpace, correction: &ChannelCorrection, pade: Pade) -> Result<Self, CorrectedModelError> {
+        let timing = model.timing();
+        let input_delays_s = added(&correction.input_delays_s, timing.input_delays_s.as_deref());
+        let output_delays_s = added(&correction.output_delays_s, timing.output_delays_s.as_deref());
+        let sampling = timing.sample_time_s;
+        let delayed = |delays_s: &[f64], channel: fn(usize) -> Channel| -> Result<Vec<DelayModel>, _> {
+            let states = |(at, &delay_s): (usize, &f64)| delay_model(channel(at), delay_s, sampling, pade);
+            delays_s.iter().enumerate().map(states).collect()
+        };
+        let inputs = delayed(&input_delays_s, Channel::Input)?;
+        let outputs = delayed(&output_delays_s, Channel::Output)?;
+        let states_of = |models: &[DelayModel]| models.iter().map(DelayModel::order).collect::<Vec<_>>();
+        let (input_states, output_states) = (states_of(&inputs), states_of(&outputs));
+        let states = input_states.iter().chain(&output_states).sum::<usize>() + model.order();
+        if states > MOST_STATES {
+            return Err(CorrectedModelError::TooManyStates { states });
+        }
+        let plant = Blocks::of_gained(model, correction);
+        let whole = Blocks::beside(&inputs).then(&plant).then(&Blocks::beside(&outputs));
+        let timing = Timing { sample_time_s: sampling, ..Timing::default() };
+        let model = StateSpace::new(whole.a, whole.b, whole.c, whole.d)?.timed(timing)?;
+        let pade = sampling.is_none().then_some(pade);
+        Ok(Self { model, input_states, output_states, input_delays_s, output_delays_s, pade })
+    }
+
+    /// The greatest phase error \[rad\] of its responses at `omega` \[rad/s\]: what the approximated delays lag too little.
+    pub fn phase_error(&self, omega: f64) -> f64 {
+        let Some(pade) = self.pade else { return 0.0 };
+        // The error grows with the delay, and that of a response is the sum of its two channels'.
+        let longest = |delays_s: &[f64]| delays_s.iter().copied().fold(0.0, f64::max);
+        [&self.input_delays_s, &self.output_delays_s]
+            .map(|delays_s| pade.phase_error(omega * longest(delays_s)))
+            .iter()
+            .sum()
+    }
+}
+
+fn added(correction_s: &[f64], own_s: Option<&[f64]>) -> Vec<f64> {
+    let own_s = own_s.unwrap_or_default().iter().copied().chain(std::iter::repeat(0.0));
+    let sums = correction_s.iter().zip(own_s).map(|(correction_s, own_s)| correction_s + own_s);
+    sums.map(|delay_s| if delay_s < LEAST_DELAY_S { 0.0 } else { delay_s }).collect()
+}
+
+/// The delay of a channel as states.
+fn delay_model(
+    channel: Channel,
+    delay_s: f64,
+    sample_time_s: Option<f64>,
+    pade: Pade,
+) -> Result<DelayModel, CorrectedModelError> {
+    let Some(sample_time_s) = sample_time_s else {
+        return Ok(if delay_s > 0.0 { pade.model(delay_s) } else { DelayModel::none() });
+    };
+    let samples = (delay_s / sample_time_s).round();
+    if (delay_s / sample_time_s - samples).abs() > SAMPLE_TOLERANCE {
+        return Err(CorrectedModelError::PartOfSample { channel, delay_s, sample_time_s });
+    }
+    // Refused before it takes memory.
+    if samples > MOST_STATES as f64 {
+        return Err(CorrectedModelError::TooManyStates { states: samples as usize });
+    }
+    Ok(DelayModel::samples(samples as usize))
+}
+
+/// Four matrices, in continuous or discrete time.
+struct Blocks {
+    a: DMatrix<f64>,
+    b: DMatrix<f64>,
+    c: DMatrix<f64>,
+    d: DMatrix<f64>,
+}
+
+impl Blocks {
+    /// A model between the gains of its channels, without any delay.
+    fn of_gained(model: &StateSpace, correction: &ChannelCorrection) -> Self {
+        let mut blocks =
+            Self { a: model.a().clone(), b: model.b().clone(), c: model.c().clone(), d: model.d().clone() };
+        for (input, &gain) in correction.input_gains.iter().enumerate() {
+            blocks.b.column_mut(input).scale_mut(gain);
+            blocks.d.column_mut(input).scale_mut(gain);
+        }
+        for (output, &gain) in correction.output_gains.iter().enumerate() {
+            blocks.c.row_mut(output).scale_mut(gain);
+            blocks.d.row_mut(output).scale_mut(gain);
+        }
+        blocks
+    }
+
+    /// Channels beside one another, each with its own delay.
+    fn beside(channels: &[DelayModel]) -> Self {
+        let (states, count) = (channels.iter().map(DelayModel::order).sum(), channels.len());
+        let mut blocks = Self {
+            a: DMatrix::zeros(states, states),
+            b: DMatrix::zeros(states, count),
+            c: DMatrix::zeros(count, states),
+            d: DMatrix::zeros(count, count),
+        };
+        let mut at = 0;
+        for (channel, delay) in channels.iter().enumerate() {
+            let order = delay.order();
+            blocks.a.view_mut((at, at), (order, order)).copy_from(&delay.a);
+            blocks.b.view_mut((at, channel), (order, 1)).copy_from(&delay.b);
+            blocks.c.view_mut((channel, at), (1, order)).copy_from(&delay.c);
+            blocks.d[(channel, channel)] = delay.d;
+            at += order;
+        }
+        blocks
+    }
+
+    /// The series connection: what comes out of these goes into `next`. These states come first.
+    fn then(&self, next: &Self) -> Self {
+        let (first, second) = (self.a.nrows(), next.a.nrows());
+        let states = first + second;
+        let mut a = DMatrix::zeros(states, states);
+        a.view_mut((0, 0), (first, first)).copy_from(&self.a);
+        a.view_mut((first, 0), (second, first)).copy_from(&(&next.b * &self.c));
+        a.view_mut((first, first), (second, second)).copy_from(&next.a);
+        let mut b = DMatrix::zeros(states, self.b.ncols());
+        b.rows_mut(0, first).copy_from(&self.b);
+        b.rows_mut(first, second).copy_from(&(&next.b * &self.d));
+        let mut c = DMatrix::zeros(next.c.nrows(), states);
+        c.columns_mut(0, first).copy_from(&(&next.d * &self.c));
+        c.columns_mut(first, second).copy_from(&next.c);
+        Self { a, b, c, d: &next.d * &self.d }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Complex;
+
+    use super::*;
+    use crate::dataset::Pair;
+    use crate::response::evaluate;
+
+    const OMEGA: [f64; 6] = [0.5, 1.0, 2.0, 4.0, 8.0, 12.0];
+
+    /// Two inputs, two outputs, three states; poles of 1 to 5 rad/s.
+    fn plant() -> StateSpace {
+        let a = DMatrix::from_row_slice(3, 3, &[-0.8, 2.0, 0.1, -1.5, -1.0, 0.3, 0.2, -0.4, -5.0]);
+        let b = DMatrix::from_row_slice(3, 2, &[1.0, 0.2, 0.0, 1.0, 0.5, -0.3]);
+        let c = DMatrix::from_row_slice(2, 3, &[1.0, 0.0, 0.4, 0.0, 2.0, -1.0]);
+        StateSpace::new(a, b, c, DMatrix::from_row_slice(2, 2, &[0.1, 0.0, 0.0, -0.2])).unwrap()
+    }
+
+    fn correction() -> ChannelCorrection {
+        ChannelCorrection {
+            input_gains: vec![1.3, 0.7],
+            output_gains: vec![0.9, -1.1],
+            input_delays_s: vec![0.03, 0.0],
+            output_delays_s: vec![0.0, 0.011],
+        }
+    }
+
+    /// The gain, the model's response and a factor for the delays of each channel, compared with the matrices.
+    fn assert_response(corrected: &CorrectedModel, plant: &StateSpace, delay: impl Fn(f64, f64) -> Complex<f64>) {
+        let (found, plain) = (evaluate(&corrected.model, &OMEGA), evaluate(plant, &OMEGA));
+        let correction = correction();
+        for pair in [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(output, input)| Pair { output, input }) {
+            let (found, plain) = (found.curve(pair), plain.curve(pair));
+            for (at, omega) in OMEGA.into_iter().enumerate() {
+                let delays = delay(omega, corrected.input_delays_s[pair.input])
+                    * delay(omega, corrected.output_delays_s[pair.output]);
+                let expected = plain[at] * delays * correction.net_gain(pair).value();
+                assert!((found[at] - expected).norm() <= 1e-10 * expected.norm(), "{pair:?} at {omega} rad/s");
+            }
+        }
+    }
+
+    #[test]
+    fn the_response_is_the_gain_the_approximant_and_the_models_own() {
+        for order in [1, 2, 3, 8] {
+            let pade = Pade::new(order).unwrap();
+            let corrected = CorrectedModel::of(&plant(), &correction(), pade).unwrap();
+            let states = (corrected.input_states.as_slice(), corrected.output_states.as_slice());
+            assert_eq!(states, ([order, 0].as_slice(), [0, order].as_slice()));
+            assert_eq!(corrected.model.order(), 3 + 2 * order);
+            // Of magnitude 1; its lag is that of the delay less the error.
+            let delay = |omega: f64, delay_s: f64| {
+                let angle = omega * delay_s;
+                Complex::new(0.0, pade.phase_error(angle) - angle).exp()
+            };
+            assert_response(&corrected, &plant(), delay);
+            let expected = pade.phase_error(12.0 * 0.03) + pade.phase_error(12.0 * 0.011);
+            assert_eq!(corrected.phase_error(12.0), expected);
+        }
+    }
+
+    #[test]
+    fn delays_of_the_model_itself_become_states_with_the_corrections() {
+        let own = Timing { input_delays_s: Some(vec![0.02, 0.0]), ..Timing::default() };
+        let pade = Pade::new(2).unwrap();
+        let corrected = CorrectedModel::of(&plant().timed(own).unwrap(), &correction(), pade).unwrap();
+        assert_eq!((corrected.input_delays_s.clone(), corrected.model.order()), (vec![0.05, 0.0], 7));
+        assert!(corrected.model.timing().is_plain());
+    }
+
+    #[test]
+    fn whole_samples_are_exact_and_parts_of_one_are_refused() {
+        let sampled = |sample_time_s| {
+            let a = DMatrix::from_row_slice(3, 3, &[0.9, 0.02, 0.0, -0.01, 0.95, 0.0, 0.1, 0.0, 0.8]);
+            let plant = plant();
+            let model = StateSpace::new(a, plant.b().clone(), plant.c().clone(), plant.d().clone()).unwrap();
+            model.timed(Timing { sample_time_s: Some(sample_time_s), ..Timing::default() }).unwrap()
+        };
+        let pade = Pade::new(2).unwrap();
+        let corrected = CorrectedModel::of(&sampled(0.001), &correction(), pade).unwrap();
+        assert_eq!((corrected.model.order(), corrected.phase_error(12.0)), (3 + 30 + 11, 0.0));
+        assert_eq!(corrected.model.timing().sample_time_s, Some(0.001));
+        assert_response(&corrected, &sampled(0.001), |omega, delay_s| Complex::new(0.0, -omega * delay_s).exp());
+        let refused = CorrectedModel::of(&sampled(0.01), &correction(), pade).unwrap_err();
+        assert_eq!(
+            refused,
+            CorrectedModelError::PartOfSample { channel: Channel::Output(1), delay_s: 0.011, sample_time_s: 0.01 }
+        );
+        let refused = CorrectedModel::of(&sampled(1e-5), &correction(), pade).unwrap_err();
+        assert!(matches!(refused, CorrectedModelError::TooManyStates { .. }), "{refused}");
+    }
+
+    #[test]
+    fn without_delays_there_are_no_states_besides_the_models() {
+        let none = ChannelCorrection { input_delays_s: vec![0.0; 2], output_delays_s: vec![0.0; 2], ..correction() };
+        let corrected = CorrectedModel::of(&plant(), &none, Pade::new(4).unwrap()).unwrap();
+        assert_eq!((corrected.model.a(), corrected.phase_error(12.0)), (plant().a(), 0.0));
+    }
+}

@@ -1,0 +1,148 @@
+//! A corrected model of a condition, with the names of its states.
+
+use crate::correction::{ChannelCorrection, CorrectedModel};
+use crate::dataset::{BundleKind, Channel, Condition, ConditionId, Dynamics, Model, StateSpace};
+use crate::study::{Analysis, AssessedCorrection, ConditionAnalysis, ExportRequest, ExportedRole};
+use crate::units::number;
+
+use super::export_fault::ExportFault;
+
+/// A corrected model as it is written.
+pub(super) struct ExportedModel {
+    /// Its condition.
+    pub(super) condition: ConditionId,
+    /// True airspeed of the condition \[kt\].
+    pub(super) airspeed_kt: f64,
+    /// Name of the physics model.
+    pub(super) name: String,
+    /// "scheduled" or "own".
+    pub(super) correction: &'static str,
+    /// The matrices.
+    pub(super) model: StateSpace,
+    /// A name for each state.
+    pub(super) states: Vec<String>,
+    /// Order of the approximants of its delays; 0 in discrete time, where delays are exact.
+    pub(super) pade_order: usize,
+    /// Greatest phase error at the top of the band \[deg\].
+    pub(super) phase_error_deg: f64,
+    /// Top of the band of comparison \[rad/s\].
+    pub(super) band_top_rad_s: f64,
+}
+
+/// The corrected models that a request asks for, in the dataset's order.
+pub(super) fn exported_models(analysis: &Analysis, request: &ExportRequest) -> Result<Vec<ExportedModel>, ExportFault> {
+    let dataset = &analysis.study.dataset;
+    if let Some(condition) = request.condition.filter(|&condition| dataset.condition(condition).is_none()) {
+        return Err(ExportFault::NoCondition { condition });
+    }
+    let asked = |condition: &&std::sync::Arc<Condition>| request.condition.is_none_or(|id| id == condition.id());
+    let conditions = dataset.conditions().iter().filter(asked);
+    conditions.map(|condition| exported_model(analysis, request, condition)).collect()
+}
+
+fn exported_model(
+    analysis: &Analysis,
+    request: &ExportRequest,
+    condition: &Condition,
+) -> Result<ExportedModel, ExportFault> {
+    let id = condition.id();
+    let model = model_of(analysis, &request.role, condition)?;
+    let correction = correction_of(analysis, request.correction, condition)?;
+    let Dynamics::StateSpace(dynamics) = &model.dynamics else {
+        return Err(ExportFault::NoMatrices { condition: id, model: model.name.clone() });
+    };
+    let corrected = CorrectedModel::of(dynamics, &correction, request.pade).map_err(|error| {
+        let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+        let words = error.words(&inputs, &outputs);
+        ExportFault::Model { condition: id, model: model.name.clone(), words }
+    })?;
+    let band_top_rad_s = analysis.study.settings.band.max();
+    let is_sampled = dynamics.timing().sample_time_s.is_some();
+    Ok(ExportedModel {
+        condition: id,
+        airspeed_kt: condition.flight_state().airspeed_kt,
+        name: model.name.clone(),
+        correction: match request.correction {
+            AssessedCorrection::Scheduled => "scheduled",
+            AssessedCorrection::Own => "own",
+        },
+        states: state_names(analysis, model, &corrected),
+        pade_order: if is_sampled { 0 } else { request.pade.order() },
+        phase_error_deg: corrected.phase_error(band_top_rad_s).to_degrees(),
+        band_top_rad_s,
+        model: corrected.model,
+    })
+}
+
+fn model_of<'c>(analysis: &Analysis, role: &ExportedRole, condition: &'c Condition) -> Result<&'c Model, ExportFault> {
+    let bundle = condition.bundle(BundleKind::Physics);
+    let name = match role {
+        ExportedRole::Nominal => return Ok(&bundle[condition.nominal()]),
+        ExportedRole::Representative => result_of(analysis, condition)?.representative_name(BundleKind::Physics),
+        ExportedRole::Named(name) => name,
+    };
+    let missing = || ExportFault::NoModel { condition: condition.id(), model: name.to_owned() };
+    condition.model(BundleKind::Physics, name).ok_or_else(missing)
+}
+
+fn correction_of(
+    analysis: &Analysis,
+    which: AssessedCorrection,
+    condition: &Condition,
+) -> Result<ChannelCorrection, ExportFault> {
+    match which {
+        AssessedCorrection::Own => Ok(result_of(analysis, condition)?.correction.clone()),
+        AssessedCorrection::Scheduled => {
+            let schedule = analysis.schedule.as_ref().map_err(|error| ExportFault::Schedule(*error))?;
+            Ok(schedule.at(condition.flight_state().airspeed_kt))
+        }
+    }
+}
+
+fn result_of<'a>(analysis: &'a Analysis, condition: &Condition) -> Result<&'a ConditionAnalysis, ExportFault> {
+    let without = |why: String| ExportFault::NoResult { condition: condition.id(), why };
+    match analysis.conditions.get(&condition.id()) {
+        Some(Ok(result)) => Ok(result),
+        Some(Err(failure)) => Err(without(failure.to_string())),
+        None => Err(without("it has no result".to_owned())),
+    }
+}
+
+/// "LON delay 1" of the inputs, the model's own names, "Q delay 1" of the outputs.
+fn state_names(analysis: &Analysis, model: &Model, corrected: &CorrectedModel) -> Vec<String> {
+    let dataset = &analysis.study.dataset;
+    let delays = |channels: &[Channel], counts: &[usize]| -> Vec<String> {
+        let of = |(channel, &count): (&Channel, &usize)| {
+            let name = channel.name.clone();
+            (1..=count).map(move |place| format!("{name} delay {place}")).collect::<Vec<_>>()
+        };
+        channels.iter().zip(counts).flat_map(of).collect()
+    };
+    let added: usize = corrected.input_states.iter().chain(&corrected.output_states).sum();
+    let own = (0..corrected.model.order() - added).map(|state| model.state_name(state));
+    let mut names = delays(dataset.inputs(), &corrected.input_states);
+    names.extend(own);
+    names.extend(delays(dataset.outputs(), &corrected.output_states));
+    names
+}
+
+impl ExportedModel {
+    /// What it is and how exact, in one line.
+    pub(super) fn words(&self) -> String {
+        let Self { condition, name, correction, .. } = self;
+        format!("condition {condition}, model {name}, {correction} correction: {}", self.delay_words())
+    }
+
+    /// How exact its delays are.
+    pub(super) fn delay_words(&self) -> String {
+        if self.pade_order == 0 {
+            return "gains and delays exact".to_owned();
+        }
+        format!(
+            "gains exact, delays by Pade approximants of order {}, phase error up to {:.3e} deg at {} rad/s",
+            self.pade_order,
+            self.phase_error_deg,
+            number(self.band_top_rad_s)
+        )
+    }
+}

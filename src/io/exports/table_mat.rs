@@ -1,0 +1,65 @@
+//! A correction as a table of gains and delays over airspeed, for MATLAB.
+
+use super::breakpoint_table::{BreakpointColumn, BreakpointTable};
+use super::export_fault::ExportFault;
+use super::fields::{Fields, cell_of_texts, column, matrix, text};
+use super::heading::heading;
+use super::scheduled_correction::ScheduledCorrection;
+use crate::io::variables::{Value, Variable};
+
+/// The variable `gdcm_table`: the airspeeds `breakpoints_kt`, and for each input and output a column of gains and one of delays \[s\],
+/// to be interpolated linearly between them; with the greatest error of that.
+pub(super) fn table_variable(
+    correction: &ScheduledCorrection,
+    breakpoints_kt: &[f64],
+) -> Result<Variable, ExportFault> {
+    let table = BreakpointTable::of(correction, breakpoints_kt)?;
+    let rows = table.airspeed_kt.len();
+    let of = |side: &str, is_delay: bool| -> Vec<&BreakpointColumn<'_>> {
+        let columns = table.columns.iter();
+        columns.filter(|column| column.of.side == side && column.of.is_delay() == is_delay).collect()
+    };
+    let mut fields = Fields::default();
+    fields.add("about", cell_of_texts(heading(correction)));
+    fields.add("airspeed_kt", column(table.airspeed_kt.iter().copied()));
+    for (side, channels) in [("input", &correction.inputs), ("output", &correction.outputs)] {
+        fields.add(&format!("{side}s"), cell_of_texts(channels.iter().map(|channel| channel.name.clone())));
+        for (kind, unit, is_delay) in [("gain", "percent", false), ("delay", "ms", true)] {
+            let columns = of(side, is_delay);
+            let values = columns.iter().flat_map(|column| column.values.iter().copied()).collect();
+            let suffix = if is_delay { "_s" } else { "" };
+            fields.add(&format!("{side}_{kind}s{suffix}"), matrix(rows, columns.len(), values));
+            let errors = columns.iter().map(|column| column.error.error);
+            fields.add(&format!("{side}_{kind}_error_{unit}"), column_of_row(errors));
+        }
+    }
+    fields.add("interpolation", text("linear between the airspeeds, the end values outside"));
+    Ok(Variable { name: "gdcm_table".to_owned(), value: fields.record() })
+}
+
+fn column_of_row(values: impl Iterator<Item = f64>) -> Value {
+    let values: Vec<f64> = values.collect();
+    matrix(1, values.len(), values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::scheduled_correction::tests::example;
+    use super::*;
+
+    #[test]
+    fn each_channel_has_a_column_of_gains_and_one_of_delays() {
+        let correction = example();
+        let points = [0.0, 30.0, 80.0];
+        let Value::Struct(table) = table_variable(&correction, &points).unwrap().value else { panic!("no struct") };
+        for (field, curve) in
+            [("input_gains", &correction.inputs[1].gain), ("input_delays_s", &correction.inputs[1].delay_s)]
+        {
+            let Some([Value::Array(array)]) = table.field(field) else { panic!("no {field}") };
+            assert_eq!(array.shape, [3, 2]);
+            assert_eq!(array.re[3..], points.map(|point| curve.at(correction.cut(point))), "{field}, second column");
+        }
+        let Some([Value::Array(errors)]) = table.field("output_delay_error_ms") else { panic!("no errors") };
+        assert_eq!(errors.shape, [1, 1]);
+    }
+}

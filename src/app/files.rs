@@ -1,4 +1,4 @@
-//! Opening, saving and exporting.
+//! Opening and saving.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use egui::Context;
 
 use crate::io::{
     Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, at_home, embedded_example, load_any,
-    open_study_of, plain, plain_path, save_study, save_table, write_results,
+    open_study_of, plain, plain_path, save_study, save_table,
 };
 use crate::study::{Analysis, Difference, Study, Table};
 use crate::view::assembling::AssemblingCommand;
@@ -343,26 +343,6 @@ impl GdcmApp {
         }
         let analysis = results.analysis.clone().filter(|_| !results.is_waiting());
         analysis.ok_or_else(|| format!("the newest results are still being computed; {what} again in a moment"))
-    }
-
-    /// Writes the corrections of the conditions chosen in the form.
-    pub(super) fn export(&mut self, existing: Existing) {
-        let analysis = match self.analysis_to_write("export") {
-            Ok(analysis) => analysis,
-            Err(why) => return self.trouble(why),
-        };
-        let form = &self.state.forms.export;
-        let chosen = form.chosen.clone();
-        let folder = self.at_home(PathBuf::from(form.folder.trim()));
-        let outputs = OutputSet::new(existing, self.inputs());
-        match write_results(&analysis, &self.loaded.sha256, &chosen, &folder, outputs) {
-            Ok(()) => {
-                self.state.forms.shown = None;
-                self.done(format!("exported {} conditions to {}", chosen.len(), plain_path(&folder)));
-            }
-            Err(FileError::Exists { paths }) => self.ask_to_overwrite(&paths, FormKind::Export, Command::Export),
-            Err(error) => self.trouble(error.to_string()),
-        }
     }
 }
 

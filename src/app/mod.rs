@@ -5,6 +5,7 @@ mod autosave;
 mod beside;
 mod dialogs;
 mod disk_watch;
+mod exports;
 pub mod fault;
 mod figures;
 mod files;

@@ -155,6 +155,7 @@ impl GdcmApp {
             Command::SaveStudy => self.save(ctx),
             Command::SaveStudyAs(path) => self.save_as(path, Existing::Keep, ctx),
             Command::Export => self.export(Existing::Keep),
+            Command::ExportAs(format, path) => self.export_as(format, path, Existing::Keep),
             Command::Overwrite => self.overwrite(ctx),
             Command::SaveAndGoOn => self.save_and_go_on(ctx),
             Command::DiscardAndGoOn => {
@@ -229,6 +230,9 @@ impl GdcmApp {
             let all = self.state.study.dataset.conditions().iter().map(|condition| condition.id());
             self.state.forms.export.chosen = all.collect();
         }
+        if form == Some(FormKind::ExportAs) {
+            self.ask_export_as();
+        }
         // A form that asks where to save goes on with what waits for that.
         if !(self.goes_on_once_saved && form == Some(FormKind::Save)) {
             self.postponed = None;
@@ -245,6 +249,7 @@ impl GdcmApp {
         match self.overwriting.take() {
             Some(Command::SaveStudyAs(path)) => self.save_as(path, Existing::Replace, ctx),
             Some(Command::Export) => self.export(Existing::Replace),
+            Some(Command::ExportAs(format, path)) => self.export_as(format, path, Existing::Replace),
             Some(Command::SaveTable(table, path)) => self.save_table(table, path, Existing::Replace),
             Some(Command::Assembling(AssemblingCommand::SaveRules(path))) => self.save_rules(path, Existing::Replace),
             Some(Command::Assembling(AssemblingCommand::MakeDataset(path))) => {

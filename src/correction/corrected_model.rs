@@ -217,10 +217,8 @@ mod tests {
     use nalgebra::Complex;
 
     use super::*;
-    use crate::dataset::Pair;
-    use crate::response::evaluate;
-
-    const OMEGA: [f64; 6] = [0.5, 1.0, 2.0, 4.0, 8.0, 12.0];
+    use crate::dataset::{Band, Dynamics, Pair};
+    use crate::response::{FrequencyGrid, PreparedModel};
 
     /// Two inputs, two outputs, three states; poles of 1 to 5 rad/s.
     fn plant() -> StateSpace {
@@ -241,11 +239,13 @@ mod tests {
 
     /// The gain, the model's response and a factor for the delays of each channel, compared with the matrices.
     fn assert_response(corrected: &CorrectedModel, plant: &StateSpace, delay: impl Fn(f64, f64) -> Complex<f64>) {
-        let (found, plain) = (evaluate(&corrected.model, &OMEGA), evaluate(plant, &OMEGA));
+        let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 12);
+        let [found, plain] = [&corrected.model, plant]
+            .map(|model| PreparedModel::of(&Dynamics::StateSpace(model.clone())).response(&grid));
         let correction = correction();
         for pair in [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(output, input)| Pair { output, input }) {
             let (found, plain) = (found.curve(pair), plain.curve(pair));
-            for (at, omega) in OMEGA.into_iter().enumerate() {
+            for (at, &omega) in grid.omega().iter().enumerate() {
                 let delays = delay(omega, corrected.input_delays_s[pair.input])
                     * delay(omega, corrected.output_delays_s[pair.output]);
                 let expected = plain[at] * delays * correction.net_gain(pair).value();

@@ -62,7 +62,7 @@ impl ExportFormat {
             Self::C => "C header, a function of airspeed",
             Self::TableCsv => "Lookup table over airspeed, CSV",
             Self::TableMat => "Lookup table over airspeed, MATLAB data",
-            Self::StateSpace => "Corrected nominal models as state-space",
+            Self::StateSpace => "Corrected models as state-space",
             Self::Csv => "corrections.csv alone",
             Self::Json => "corrections.json alone",
         }
@@ -78,10 +78,5 @@ impl ExportFormat {
             Self::TableCsv | Self::Csv => "csv",
             Self::Json => "json",
         }
-    }
-
-    /// Whether it is of the schedule, which there must be then.
-    pub fn is_of_schedule(self) -> bool {
-        matches!(self, Self::Matlab | Self::Python | Self::C | Self::TableCsv | Self::TableMat)
     }
 }

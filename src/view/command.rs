@@ -8,7 +8,7 @@ use egui_tiles::LinearDir;
 
 use crate::dataset::{ConditionId, ModelId, Pair};
 use crate::figure::{ColumnWidth, FigureFormat};
-use crate::study::{AcrossRole, AskedFigure, Edit, Table};
+use crate::study::{AcrossRole, AskedFigure, Edit, ExportFormat, Table};
 
 use super::arrangement::{Preset, View};
 use super::assembling::AssemblingCommand;
@@ -95,6 +95,8 @@ pub enum Command {
     AskExportFolder,
     /// Write the corrections chosen in the export form.
     Export,
+    /// Write all corrections in a format for other tools.
+    ExportAs(ExportFormat, PathBuf),
     /// Write over the files that the form has named.
     Overwrite,
     /// Save the study, then go on with what would lose decisions that are not saved.
@@ -173,6 +175,8 @@ pub enum FormKind {
     Save,
     /// What to export, and where.
     Export,
+    /// As what to export for other tools, and where.
+    ExportAs,
     /// Why a model is rejected, in words.
     Reason,
     /// Where to save a table, by path.

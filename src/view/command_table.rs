@@ -155,6 +155,13 @@ fn file_entries(state: &State) -> Vec<Entry> {
         )
         .within(Menu::File, 2)
         .enabled(state.analysis().is_some()),
+        Entry::new(
+            "Export as…",
+            "For MATLAB, Python, C or a lookup table; corrected models as state-space",
+            form(FormKind::ExportAs),
+        )
+        .within(Menu::File, 2)
+        .enabled(state.analysis().is_some()),
         Entry::new("Quit", "Close the window", Command::Quit).keys(CTRL, Key::Q).within(Menu::File, 3),
     ]
 }

@@ -4,6 +4,7 @@ use egui::{Context, Id, Modal, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
 use crate::dataset::ConditionId;
 use crate::figure::ColumnWidth;
+use crate::study::ExportFormat;
 
 use super::command::{Command, FormKind};
 use super::command_palette::command_palette_ui;
@@ -11,7 +12,7 @@ use super::form::Form;
 use super::keys_page::keys_page_ui;
 use super::palette::Palette;
 use super::question_forms::{differences_ui, overwrite_ui, reason_ui, unsaved_ui};
-use super::state::{ExportForm, FigureForm, State};
+use super::state::{ExportAsForm, ExportForm, FigureForm, State};
 
 /// Shows the form that is asked for, if any. Its field has the focus when it opens; Enter submits it; Escape and a click outside
 /// close it.
@@ -23,6 +24,7 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
     let writes = [
         FormKind::Save,
         FormKind::Export,
+        FormKind::ExportAs,
         FormKind::SaveTable,
         FormKind::SaveFigure,
         FormKind::Report,
@@ -39,6 +41,7 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
             FormKind::FindDataset => find_dataset_ui(form, state, palette),
             FormKind::Save => save_ui(form, &mut state.forms.save_path),
             FormKind::Export => export_ui(form, state, palette),
+            FormKind::ExportAs => export_as_ui(form, state, palette),
             FormKind::Unsaved => unsaved_ui(form),
             FormKind::Differences => differences_ui(form, state, palette),
             FormKind::Shortcuts => shortcuts_ui(form, state, palette),
@@ -155,6 +158,32 @@ fn export_ui(form: &mut Form<'_, '_>, state: &mut State, palette: &Palette) {
     form.line(|form| {
         form.submit_ui("Export", ready, entered, || Command::Export);
         form.button_ui("Choose folder…", false, Command::AskExportFolder);
+        form.button_ui("Cancel", false, Command::ShowForm(None));
+        if is_behind {
+            form.ui.label(dim("waits for the newest results"));
+        }
+    });
+}
+
+fn export_as_ui(form: &mut Form<'_, '_>, state: &mut State, palette: &Palette) {
+    form.title("Export as…");
+    let is_behind = state.results.is_behind();
+    let ExportAsForm { format, path } = &mut state.forms.export_as;
+    let entered = form.text_ui("Path of the export", path, "path of the file");
+    let before = *format;
+    for choice in ExportFormat::ALL {
+        form.ui.radio_value(format, choice, choice.words());
+    }
+    // The end of the name goes with the format, as long as nobody has typed another.
+    if let Some(stem) = path.strip_suffix(&format!(".{}", before.extension())) {
+        *path = format!("{stem}.{}", format.extension());
+    }
+    let dim = |text: &str| RichText::new(text.to_owned()).color(palette.dim_text);
+    form.ui.label(dim("State-space may be .mat, .json or .npz. gdcm export has more choices."));
+    form.ui.add_space(4.0);
+    let (format, path) = (*format, path.trim());
+    form.line(|form| {
+        form.submit_ui("Export file", !path.is_empty(), entered, || Command::ExportAs(format, path.into()));
         form.button_ui("Cancel", false, Command::ShowForm(None));
         if is_behind {
             form.ui.label(dim("waits for the newest results"));

@@ -8,7 +8,7 @@ use crate::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
 use crate::figure::ColumnWidth;
 use crate::study::{
     AcrossCurves, Analysis, AssessmentTable, ConditionAnalysis, ConditionCurves, ConditionFailure, ConditionModes,
-    Difference, History, Study, Table, Toggles,
+    Difference, ExportFormat, History, Study, Table, Toggles,
 };
 
 use super::arrangement::View;
@@ -60,6 +60,15 @@ pub struct ExportForm {
     pub chosen: BTreeSet<ConditionId>,
 }
 
+/// What the form that exports for other tools holds.
+#[derive(Clone, Debug, Default)]
+pub struct ExportAsForm {
+    /// As what.
+    pub format: ExportFormat,
+    /// Where, as typed.
+    pub path: String,
+}
+
 /// What the form that saves a figure holds.
 #[derive(Clone, Debug, Default)]
 pub struct FigureForm {
@@ -102,6 +111,8 @@ pub struct Forms {
     pub save_path: String,
     /// The export form.
     pub export: ExportForm,
+    /// The form that exports for other tools.
+    pub export_as: ExportAsForm,
     /// Files that what the form asks for would overwrite: where there are any, it asks whether to.
     pub existing: Vec<String>,
 }

@@ -9,6 +9,7 @@ mod analysis;
 mod assembling;
 mod commands;
 mod dataset_file;
+mod exports;
 mod figures;
 mod hostile_files;
 mod messages;

@@ -1,7 +1,6 @@
 //! A study's corrections in a file for other tools.
 
 use std::collections::BTreeSet;
-use std::io::Write;
 use std::path::Path;
 
 use crate::dataset::ConditionId;

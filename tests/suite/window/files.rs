@@ -1,5 +1,7 @@
 //! Opening and saving.
 
+use gdcm::view::command::{Command, FormKind};
+
 use super::*;
 
 #[test]
@@ -173,4 +175,35 @@ fn a_window_without_a_directory_of_its_own_lists_nothing() {
     let mut window = window();
     click(&mut window, "File");
     assert!(window.query_by_label("Open recent").is_none() && state(&window).recent.is_empty());
+}
+
+#[test]
+fn corrections_are_exported_for_other_tools_and_an_existing_file_is_asked_about() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("correction.py");
+    let mut window = window();
+    let ctx = window.ctx.clone();
+    window.state_mut().give(Command::ShowForm(Some(FormKind::ExportAs)), &ctx);
+    window.run_steps(2);
+    assert_eq!(state(&window).forms.export_as.path, "example.mat");
+    click(&mut window, "Python module, a function of airspeed");
+    assert_eq!(state(&window).forms.export_as.path, "example.py", "the end of the name goes with the format");
+    window.get_by_label("Path of the export").focus();
+    window.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    window.run_steps(2);
+    fill(&mut window, "Path of the export", &path);
+    click(&mut window, "Export file");
+    let notice = state(&window).notice.clone().expect("the export is reported");
+    assert!(notice.kind == NoticeKind::Done && notice.text.contains("delays are not scheduled"), "{}", notice.text);
+    assert!(std::fs::read_to_string(&path).unwrap().contains("def gdcm_correction(airspeed_kt):"));
+
+    std::fs::write(&path, "mine").unwrap();
+    window.state_mut().give(Command::ShowForm(Some(FormKind::ExportAs)), &ctx);
+    window.run_steps(10);
+    click(&mut window, "Export file");
+    assert!(window.query_by_label("This file exists already").is_some());
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "mine");
+    click(&mut window, "Overwrite");
+    assert!(std::fs::read_to_string(&path).unwrap().contains("def gdcm_correction"));
+    assert_eq!(state(&window).forms.shown, None);
 }

@@ -1,0 +1,264 @@
+//! Corrections for other tools, through the program itself.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use gdcm::assembly::FoundModel;
+use gdcm::dataset::{Pair, StateSpace};
+use gdcm::io::{FolderProgress, read_corrections, read_models};
+use gdcm::response::evaluate;
+use serde_json::json;
+
+use crate::commands::Desk;
+
+/// Every format with a name for its file.
+const FORMATS: [(&str, &str); 9] = [
+    ("mat", "all.mat"),
+    ("m", "correction.m"),
+    ("py", "correction.py"),
+    ("h", "correction.h"),
+    ("table-csv", "table.csv"),
+    ("table-mat", "table.mat"),
+    ("state-space", "models.mat"),
+    ("csv", "corrections.csv"),
+    ("json", "corrections.json"),
+];
+
+struct Silent;
+
+impl FolderProgress for Silent {
+    fn reading(&self, _: usize, _: usize, _: &str) {}
+
+    fn stopped(&self) -> bool {
+        false
+    }
+}
+
+fn models(path: &Path) -> Vec<FoundModel> {
+    let found = read_models(&[path.to_owned()], &Silent).unwrap();
+    assert!(found.faults.is_empty(), "{:?}", found.faults);
+    found.models
+}
+
+fn state_space(model: &FoundModel) -> StateSpace {
+    let [a, b, c, d] = model.draft.matrices.clone().map(Option::unwrap);
+    StateSpace::new(a, b, c, d).unwrap().timed(model.draft.timing.clone()).unwrap()
+}
+
+#[test]
+fn every_format_is_written_once_and_over_nothing_unasked() {
+    let desk = Desk::new();
+    for (format, name) in FORMATS {
+        let arguments = ["export", "small.json", "--as", format, "--out", name];
+        let ended = desk.gdcm(&arguments);
+        ended.assert_done();
+        assert!(ended.out.starts_with(&format!("{name}: ")), "{}", ended.out);
+        let written = fs::read(desk.path(name)).unwrap();
+        desk.gdcm(&arguments).assert_failed(2, &[name, "exists already; --force overwrites"]);
+        desk.gdcm(&[&arguments[..], &["--force"]].concat()).assert_done();
+        assert!(fs::read(desk.path(name)).unwrap() == written, "{format}: the same every time");
+        desk.gdcm(&["export", "small.json", "--as", format, "--out", "no/such/folder/x.mat"]);
+        assert!(!desk.path("no").exists());
+    }
+}
+
+#[test]
+fn json_and_csv_are_those_of_analyze() {
+    let desk = Desk::new();
+    desk.gdcm(&["analyze", "small.json", "--out", "out"]).assert_done();
+    for (format, name) in [("json", "corrections.json"), ("csv", "corrections.csv")] {
+        desk.gdcm(&["export", "small.json", "--as", format, "--out", name]).assert_done();
+        assert_eq!(fs::read(desk.path(name)).unwrap(), fs::read(desk.path("out").join(name)).unwrap());
+    }
+}
+
+#[test]
+fn what_cannot_be_exported_is_status_2_before_any_work() {
+    let desk = Desk::new();
+    let export = |rest: &[&str]| desk.gdcm(&[&["export", "small.json", "--as"][..], rest].concat());
+    export(&["xls", "--out", "a"]).assert_failed(2, &["--as", "table-csv"]);
+    export(&["state-space", "--out", "a.csv"]).assert_failed(2, &["a.csv: ", ".mat, .json or .npz"]);
+    export(&["m", "--out", "my-study.m"]).assert_failed(2, &["my-study.m: ", "found \"my-study\""]);
+    export(&["json", "--out", "small.json", "--force"]).assert_failed(2, &["small.json: the data are read from this"]);
+    export(&["m", "--out", "a.m", "--pade", "2"]).assert_failed(2, &["--pade: is an option of --as state-space"]);
+    export(&["h", "--out", "a.h", "--breakpoints", "1,2"]).assert_failed(2, &["--breakpoints: ", "table-csv"]);
+    export(&["table-csv", "--out", "a.csv", "--breakpoints", "60,40"]).assert_failed(2, &["airspeeds that rise"]);
+    let models = |rest: &[&str]| export(&[&["state-space", "--out", "a.mat"][..], rest].concat());
+    models(&["--pade", "9"]).assert_failed(2, &["--pade: ", "from 1 to 8"]);
+    models(&["--condition", "8"]).assert_failed(2, &["--condition: ", "no condition 8; it has 7, 10"]);
+    models(&["--correction", "none"]).assert_failed(2, &["--correction"]);
+    models(&["--model", "V+5kt"]).assert_failed(2, &["condition 10 has no physics model \"V+5kt\""]);
+    assert_eq!(fs::read_dir(desk.directory.path()).unwrap().count(), 1, "nothing was written");
+    models(&["--model", "V+5kt", "--condition", "7"]).assert_done();
+}
+
+#[test]
+fn the_options_of_a_study_come_first() {
+    let desk = Desk::new();
+    let more = ["--degree", "0", "--schedule-delays", "--as", "py", "--out", "a.py"];
+    let ended = desk.gdcm(&[&["export", "small.json"][..], &more].concat());
+    ended.assert_done();
+    let text = fs::read_to_string(desk.path("a.py")).unwrap();
+    assert!(!text.contains("delays are not scheduled") && !ended.out.contains("delays are not scheduled"));
+    let ended = desk.gdcm(&["export", "small.json", "--as", "py", "--out", "b.py"]);
+    assert!(ended.out.contains("delays are not scheduled in this study: they are zero here"), "{}", ended.out);
+    assert!(fs::read_to_string(desk.path("b.py")).unwrap().contains("# Note: delays are not scheduled"));
+}
+
+#[test]
+fn a_table_says_how_far_it_is_off() {
+    let desk = Desk::new();
+    let table = ["export", "--as", "table-csv", "--out", "t.csv", "--breakpoints", "40,90,150"];
+    let ended = desk.gdcm(&table);
+    ended.assert_done();
+    assert!(ended.out.contains("table of the gain of input LON: off by up to "), "{}", ended.out);
+    let text = fs::read_to_string(desk.path("t.csv")).unwrap();
+    let rows: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
+    assert_eq!(rows.len(), 4);
+    assert!(rows[1].starts_with("4.0") && rows[3].starts_with("1.5"), "{text}");
+    desk.gdcm(&["export", "--as", "table-csv", "--out", "own.csv"]).assert_done();
+    let own = fs::read_to_string(desk.path("own.csv")).unwrap();
+    assert_eq!(own.lines().filter(|line| !line.starts_with('#')).count(), 1 + 5, "45, 60, 90, 120 and 140 kt");
+}
+
+/// The corrected models of the example by their own corrections, in three formats that say the same.
+#[test]
+fn corrected_models_are_the_program_s_in_every_format() {
+    let desk = Desk::new();
+    let models_of = |name: &str| {
+        let options = ["--correction", "own", "--model", "representative", "--pade", "8"];
+        let ended = desk.gdcm(&[&["export", "--as", "state-space", "--out", name][..], &options].concat());
+        ended.assert_done();
+        assert!(ended.out.contains("order 8, phase error up to "), "{}", ended.out);
+        ended.out.lines().skip(1).map(str::to_owned).collect::<Vec<_>>()
+    };
+    let lines = models_of("m.json");
+    assert_eq!(models_of("m.mat"), lines);
+    assert_eq!(models_of("m.npz"), lines);
+    let found = models(&desk.path("m.json"));
+    assert_eq!(found.len(), 11);
+    let names: Vec<_> = found[0].outputs.iter().map(|label| label.name.clone().unwrap()).collect();
+    assert_eq!(names, ["P", "Q", "R", "NX", "NY", "NZ"]);
+    let of_matlab = models(&desk.path("m.mat"));
+    for (json, mat) in found.iter().zip(&of_matlab) {
+        assert_eq!(json.draft.matrices, mat.draft.matrices);
+        assert_eq!((&json.inputs, &json.outputs, &json.draft.states), (&mat.inputs, &mat.outputs, &mat.draft.states));
+    }
+    // Against the physics models and the corrections as `analyze` writes them.
+    desk.gdcm(&["analyze", "--out", "."]).assert_done();
+    let corrections = read_corrections(&desk.path("corrections.json")).unwrap();
+    let omega = [0.5, 3.0, 12.0];
+    let mut delayed = 0;
+    for (model, result) in found.iter().zip(&corrections.conditions) {
+        let condition = crate::EXAMPLE.dataset.conditions().iter().find(|of| of.id().0 == result.id).unwrap();
+        let physics = condition.model(gdcm::dataset::BundleKind::Physics, &result.physics_representative).unwrap();
+        let gdcm::dataset::Dynamics::StateSpace(plain) = &physics.dynamics else { panic!("no matrices") };
+        let (corrected, plain) = (evaluate(&state_space(model), &omega), evaluate(plain, &omega));
+        for (output, (_, output_gain)) in result.gains.outputs.0.iter().enumerate() {
+            for (input, (_, input_gain)) in result.gains.inputs.0.iter().enumerate() {
+                let delay = result.delays_s.outputs.0[output].1 + result.delays_s.inputs.0[input].1;
+                delayed += usize::from(delay > 0.0);
+                let (corrected, plain) = (corrected.curve(Pair { output, input }), plain.curve(Pair { output, input }));
+                for (at, omega) in omega.into_iter().enumerate() {
+                    let factor = nalgebra::Complex::new(0.0, -omega * delay).exp() * output_gain * input_gain;
+                    let expected = plain[at] * factor;
+                    // What order 8 misses of these delays is less than rounding.
+                    assert!((corrected[at] - expected).norm() <= 1e-9 * expected.norm(), "condition {}", result.id);
+                }
+            }
+        }
+    }
+    assert!(delayed > 0, "some responses are delayed");
+}
+
+#[test]
+fn delays_of_discrete_time_are_exact_or_refused() {
+    let desk = Desk::new();
+    desk.write("sampled.json", |file| {
+        for condition in [0, 1] {
+            let nominal = &mut file["conditions"][condition]["physics_models"][0];
+            nominal["A"] = json!([[0.99, 0.01], [-0.02, 0.98]]);
+            nominal["sample_time_s"] = json!(0.01);
+            nominal["input_delays_s"] = json!([0.03, 0]);
+        }
+    });
+    let export = |name: &str| desk.gdcm(&["export", "sampled.json", "--as", "state-space", "--out", name]);
+    let ended = export("m.json");
+    ended.assert_done();
+    assert!(ended.out.contains("nominal, scheduled correction: gains and delays exact"), "{}", ended.out);
+    let found = models(&desk.path("m.json"));
+    assert_eq!(found[0].draft.timing.sample_time_s, Some(0.01));
+    assert_eq!(found[0].draft.states, ["LON delay 1", "LON delay 2", "LON delay 3", "w", "q"]);
+    desk.write("part.json", |file| {
+        let nominal = &mut file["conditions"][0]["physics_models"][0];
+        nominal["A"] = json!([[0.99, 0.01], [-0.02, 0.98]]);
+        nominal["sample_time_s"] = json!(0.01);
+        nominal["input_delays_s"] = json!([0.034, 0]);
+    });
+    let words = ["m.npz: condition 7, model \"nominal\": the delay of LON, 0.034 s, is 3.4 samples of 0.01 s"];
+    desk.gdcm(&["export", "part.json", "--as", "state-space", "--out", "m.npz"]).assert_failed(2, &words);
+    assert!(!desk.path("m.npz").exists());
+}
+
+fn octave(desk: &Desk, program: &str) -> Option<Vec<f64>> {
+    let Ok(output) = Command::new("octave-cli").args(["--eval", program]).current_dir(&desk.directory).output() else {
+        eprintln!("SKIPPED: octave-cli is not installed, files for MATLAB are not read by it");
+        return None;
+    };
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    Some(text.split_whitespace().map(|word| word.parse().unwrap()).collect())
+}
+
+#[test]
+fn octave_reads_the_corrections_as_analyze_writes_them() {
+    let desk = Desk::new();
+    desk.gdcm(&["analyze", "--out", ".", "--schedule-delays"]).assert_done();
+    let corrections = read_corrections(&desk.path("corrections.json")).unwrap();
+    desk.gdcm(&["export", "--as", "mat", "--out", "c.mat", "--schedule-delays"]).assert_done();
+    let program = "load c.mat; for c = corrections.conditions, \
+                   printf('%.17g ', c.id, c.G', c.D_s', c.gains.inputs, c.delays_s.outputs, c.J.corrected.mag', c.net_gains'); end; \
+                   s = corrections.schedule; printf('%.17g ', s.inputs', s.delays_s.upper_s, s.table.outputs'); \
+                   assert(strcmp(corrections.inputs{2}, 'LAT') && islogical(corrections.settings.constrained));";
+    let Some(found) = octave(&desk, program) else { return };
+    let mut expected = Vec::new();
+    let table =
+        |table: &gdcm::io::Table| table.iter().flatten().map(|entry| entry.unwrap_or(f64::NAN)).collect::<Vec<_>>();
+    let figures = |of: &gdcm::io::ByName<f64>| of.0.iter().map(|(_, figure)| *figure).collect::<Vec<_>>();
+    for of in &corrections.conditions {
+        expected.push(of.id as f64);
+        expected.extend([table(&of.delta_gain), table(&of.delta_delay_s)].concat());
+        expected.extend([figures(&of.gains.inputs), figures(&of.delays_s.outputs)].concat());
+        expected.extend(table(&of.cost.corrected.mag));
+        expected.extend(of.net_gains.iter().map(|net| net.gain));
+    }
+    let schedule = corrections.schedule.unwrap();
+    expected.extend(schedule.inputs.0.iter().flat_map(|(_, coefficients)| coefficients));
+    expected.extend(schedule.delays_s.unwrap().upper_s.unwrap());
+    expected.extend(schedule.table.iter().flat_map(|row| figures(&row.outputs)));
+    assert_eq!(found.len(), expected.len());
+    assert!(found.iter().zip(&expected).all(|(a, b)| a == b || (a.is_nan() && b.is_nan())), "to the last digit");
+}
+
+#[test]
+fn octave_computes_the_response_of_a_corrected_model() {
+    let desk = Desk::new();
+    let path: PathBuf = desk.path("m.json");
+    for name in ["m.mat", "m.json"] {
+        desk.gdcm(&["export", "--as", "state-space", "--correction", "own", "--out", name]).assert_done();
+    }
+    let program = "load m.mat; for m = models, H = m.C * ((3i * eye(size(m.A)) - m.A) \\ m.B) + m.D; \
+                   printf('%.17g ', m.condition, m.Ts, abs(H)'); \
+                   assert(numel(m.StateName) == rows(m.A) && strcmp(m.OutputUnit{1}, 'deg/s')); end";
+    let Some(found) = octave(&desk, program) else { return };
+    let mut expected = Vec::new();
+    for (place, model) in models(&path).iter().enumerate() {
+        expected.extend([crate::EXAMPLE.dataset.conditions()[place].id().0 as f64, 0.0]);
+        let response = evaluate(&state_space(model), &[3.0]);
+        let pairs = (0..6).flat_map(|output| (0..4).map(move |input| Pair { output, input }));
+        expected.extend(pairs.map(|pair| response.curve(pair)[0].norm()));
+    }
+    assert_eq!(found.len(), expected.len());
+    assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() <= 1e-9 * b.abs()));
+}

@@ -68,7 +68,8 @@ impl CorrectedModelError {
                 "the delay of {}, {} s, is {} samples of {} s; in discrete time only whole samples are exact",
                 channel.name(inputs, outputs),
                 number(*delay_s),
-                number(delay_s / sample_time_s),
+                // Digits enough to tell it from a whole number, none of rounding.
+                number((delay_s / sample_time_s * 1e6).round() / 1e6),
                 number(*sample_time_s)
             ),
             Self::TooManyStates { states } => {

@@ -79,42 +79,42 @@ pub fn write_export(
         | ExportFormat::Python
         | ExportFormat::C
         | ExportFormat::TableCsv
-        | ExportFormat::TableMat => {
-            let schedule = analysis.schedule.as_ref().map_err(|error| fault(ExportFault::Schedule(*error)))?;
-            let correction = ScheduledCorrection::of(schedule, &analysis.study.dataset, source);
-            remarks.extend(correction.notes.clone());
-            let points = request.breakpoints_kt.clone().unwrap_or_else(|| distinct_airspeeds(schedule));
-            if matches!(request.format, ExportFormat::TableCsv | ExportFormat::TableMat) {
-                remarks.extend(table_remarks(&correction, &points).map_err(fault)?);
-            }
-            add_schedule(request.format, &correction, &points, path, &mut outputs)?;
-        }
+        | ExportFormat::TableMat => remarks = add_schedule(analysis, source, request, path, &mut outputs)?,
     }
     outputs.persist()?;
     Ok(remarks)
 }
 
-/// Adds the scheduled correction as a program or a table.
+/// Adds the scheduled correction as a program or a table, and gives what is to be known of it.
 fn add_schedule(
-    format: ExportFormat,
-    correction: &ScheduledCorrection,
-    points: &[f64],
+    analysis: &Analysis,
+    source: &ExportSource,
+    request: &ExportRequest,
     path: &Path,
     outputs: &mut OutputSet,
-) -> Result<(), FileError> {
+) -> Result<Vec<String>, FileError> {
     let fault = |fault| FileError::export(path, fault);
-    let text = match format {
+    let schedule = analysis.schedule.as_ref().map_err(|error| fault(ExportFault::Schedule(*error)))?;
+    let correction = ScheduledCorrection::of(schedule, &analysis.study.dataset, source);
+    let points = request.breakpoints_kt.clone().unwrap_or_else(|| distinct_airspeeds(schedule));
+    let mut remarks = correction.notes.clone();
+    if matches!(request.format, ExportFormat::TableCsv | ExportFormat::TableMat) {
+        remarks.extend(table_remarks(&correction, &points).map_err(fault)?);
+    }
+    let text = match request.format {
         ExportFormat::TableMat => {
-            let variable = table_variable(correction, points).map_err(fault)?;
-            return add_variables(&[variable], mat::write, path, outputs);
+            let variable = table_variable(&correction, &points).map_err(fault)?;
+            add_variables(&[variable], mat::write, path, outputs)?;
+            return Ok(remarks);
         }
-        ExportFormat::Matlab => matlab_function(correction, &stem(path)),
-        ExportFormat::Python => python_module(correction),
-        ExportFormat::C => c_header(correction),
-        _ => table_csv(correction, points),
+        ExportFormat::Matlab => matlab_function(&correction, &stem(path)),
+        ExportFormat::Python => python_module(&correction),
+        ExportFormat::C => c_header(&correction),
+        _ => table_csv(&correction, &points),
     };
     let text = text.map_err(fault)?;
-    outputs.add(path, |file| file.write_all(text.as_bytes()))
+    outputs.add(path, |file| file.write_all(text.as_bytes()))?;
+    Ok(remarks)
 }
 
 fn add_exported_models(
@@ -125,7 +125,8 @@ fn add_exported_models(
 ) -> Result<(), FileError> {
     let dataset = &analysis.study.dataset;
     match models_format(path).map_err(|fault| FileError::export(path, fault))? {
-        ModelsFormat::Mat => add_variables(&[models_variable(models, dataset)], mat::write, path, outputs),
+        // Packed: the matrices of delayed models are mostly zeros.
+        ModelsFormat::Mat => add_variables(&[models_variable(models, dataset)], mat::write_packed, path, outputs),
         ModelsFormat::Npz => add_variables(&model_arrays(models, dataset), write_npz, path, outputs),
         ModelsFormat::Json => add_models(&found_models(models, dataset), path, outputs),
     }

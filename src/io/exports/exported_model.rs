@@ -3,7 +3,7 @@
 use crate::correction::{ChannelCorrection, CorrectedModel};
 use crate::dataset::{BundleKind, Channel, Condition, ConditionId, Dynamics, Model, StateSpace};
 use crate::study::{Analysis, AssessedCorrection, ConditionAnalysis, ExportRequest, ExportedRole};
-use crate::units::number;
+use crate::units::{number, telling};
 
 use super::export_fault::ExportFault;
 
@@ -21,6 +21,8 @@ pub(super) struct ExportedModel {
     pub(super) model: StateSpace,
     /// A name for each state.
     pub(super) states: Vec<String>,
+    /// How many of them are of delays.
+    delay_states: usize,
     /// Order of the approximants of its delays; 0 in discrete time, where delays are exact.
     pub(super) pade_order: usize,
     /// Greatest phase error at the top of the band \[deg\].
@@ -67,6 +69,7 @@ fn exported_model(
             AssessedCorrection::Own => "own",
         },
         states: state_names(analysis, model, &corrected),
+        delay_states: corrected.model.order() - dynamics.order(),
         pade_order: if is_sampled { 0 } else { request.pade.order() },
         phase_error_deg: corrected.phase_error(band_top_rad_s).to_degrees(),
         band_top_rad_s,
@@ -135,13 +138,13 @@ impl ExportedModel {
 
     /// How exact its delays are.
     pub(super) fn delay_words(&self) -> String {
-        if self.pade_order == 0 {
+        if self.pade_order == 0 || self.delay_states == 0 {
             return "gains and delays exact".to_owned();
         }
         format!(
-            "gains exact, delays by Pade approximants of order {}, phase error up to {:.3e} deg at {} rad/s",
+            "gains exact, delays by Pade approximants of order {}, phase error up to {} deg at {} rad/s",
             self.pade_order,
-            self.phase_error_deg,
+            telling(self.phase_error_deg, 3),
             number(self.band_top_rad_s)
         )
     }

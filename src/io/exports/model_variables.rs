@@ -86,3 +86,38 @@ fn row_of_texts<T: ToString>(texts: impl Iterator<Item = T>) -> Value {
     let texts: Vec<String> = texts.map(|text| text.to_string()).collect();
     Value::Text(TextArray { shape: vec![1, texts.len()], texts })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::exported_model::exported_models;
+    use super::*;
+    use crate::io::npy::{read_npz, write_npz};
+    use crate::io::variables::Meter;
+    use crate::io::{embedded_example, mat};
+    use crate::study::{Engine, ExportFormat, ExportRequest, Study, Unobserved};
+
+    #[test]
+    fn numpy_and_matlab_get_the_same_matrices_and_names() {
+        let study = Study::new(embedded_example().unwrap().dataset);
+        let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
+        let models = exported_models(&analysis, &ExportRequest::new(ExportFormat::StateSpace)).unwrap();
+        let meter = Meter::new(1 << 28, &|| false);
+        let arrays = read_npz(&write_npz(&model_arrays(&models, &study.dataset)).unwrap(), &meter).unwrap();
+        let bytes = mat::write_packed(&[models_variable(&models, &study.dataset)]).unwrap();
+        let [Variable { value: Value::Struct(records), .. }] = &mat::read(&bytes, &meter).unwrap()[..] else {
+            panic!("one struct array")
+        };
+        for (place, model) in models.iter().enumerate() {
+            for name in ["A", "B", "C", "D"] {
+                let found = arrays.iter().find(|array| array.name == format!("{name}_{place}")).unwrap();
+                assert_eq!(found.value, records.field(name).unwrap()[place], "{name} of model {place}");
+            }
+            assert_eq!(records.field("A").unwrap()[place], array(model.model.a()));
+            let names = arrays.iter().find(|array| array.name == format!("StateName_{place}")).unwrap();
+            assert_eq!(names.value, row_of_texts(model.states.iter()));
+        }
+        let airspeeds = arrays.iter().find(|array| array.name == "airspeed_kt").unwrap();
+        let values = models.iter().map(|model| model.airspeed_kt).collect();
+        assert_eq!(airspeeds.value, matrix(1, models.len(), values));
+    }
+}

@@ -306,16 +306,19 @@ fn problems_of_condition(condition: i64, parts: &[(usize, &Part)]) -> Vec<Proble
     problems
 }
 
+/// A field of a flight condition: its name, and what a row says of it.
+type Field<'f> = (&'static str, &'f dyn Fn(&Row) -> Option<String>);
+
 fn contradictions(condition: i64, parts: &[(usize, &Part)]) -> Vec<ProblemKind> {
     let number = |value: Option<f64>| value.map(crate::units::number);
-    let fields: [(&'static str, &dyn Fn(&Row) -> Option<String>); 5] = [
+    let fields: [Field<'_>; 5] = [
         ("airspeed [kt]", &|row| number(row.airspeed_kt)),
         ("altitude [ft]", &|row| number(row.altitude_ft)),
         ("mass [kg]", &|row| number(row.mass_kg)),
         ("altitude", &|row| row.altitude.clone()),
         ("weight", &|row| row.weight.clone()),
     ];
-    let contradiction = |(field, of): (&'static str, &dyn Fn(&Row) -> Option<String>)| {
+    let contradiction = |(field, of): Field<'_>| {
         let mut values = parts.iter().filter_map(|(_, part)| of(&part.row));
         let first = values.next()?;
         let second = values.find(|value| *value != first)?;

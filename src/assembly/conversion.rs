@@ -81,7 +81,7 @@ fn converted_response(
         im: table(&response.im, true, 0.0),
         coherence: response.coherence.as_ref().map(|array| table(array, false, 0.0)),
         valid_bands: response.valid_bands.as_ref().map(|array| table(array, false, 0.0)),
-        estimate: response.estimate.clone(),
+        estimate: response.estimate,
     }
 }
 

@@ -23,7 +23,7 @@ pub(super) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     check_export(request.format, &arguments.out)?;
     outputs.check(&[&arguments.out])?;
     let mut engine = Engine::with_executor(Box::new(crate::app::Pool));
-    let progress = TerminalProgress::new();
+    let progress = TerminalProgress::new("analysing");
     let analysis = analysis_of(&mut study, &arguments.study, &mut engine, &progress)?;
     drop(progress);
     check_result(&analysis)?;

@@ -52,7 +52,7 @@ impl Pade {
             a: DMatrix::from_fn(self.order, self.order, |row, column| -2.0 / delay_s * inverse(row, column)),
             b: DVector::from_fn(self.order, |row, _| gain * inverse(row, 0)),
             c: RowDVector::from_fn(self.order, |_, column| gain * inverse(0, column)),
-            d: if self.order % 2 == 0 { 1.0 } else { -1.0 },
+            d: if self.order.is_multiple_of(2) { 1.0 } else { -1.0 },
         }
     }
 

@@ -168,11 +168,14 @@ fn assert_same_numbers(made: &Dataset, example: &Dataset, route: &str) {
     }
 }
 
+/// The name of a format, and what writes a model in it.
+type Route<'w> = (&'static str, &'w dyn Fn(&Path, &Model));
+
 #[test]
 fn the_example_in_a_folder_of_any_format_is_the_same_dataset_to_the_last_digit() {
     let example = &crate::EXAMPLE.dataset;
     let folder = tempfile::tempdir().unwrap();
-    let routes: [(&str, &dyn Fn(&Path, &Model)); 3] = [
+    let routes: [Route<'_>; 3] = [
         ("mat", &|path, model| write_as_mat(example, path, model)),
         ("npz", &|path, model| write_as_npz(example, path, model)),
         ("m", &|path, model| write_as_literals(example, path, model)),

@@ -34,6 +34,9 @@ pub(super) fn models_variable(models: &[ExportedModel], dataset: &Dataset) -> Va
     Variable { name: "models".to_owned(), value: records(models.iter().map(record).collect()) }
 }
 
+/// A figure of a model, and its name.
+type Figure = (&'static str, fn(&ExportedModel) -> f64);
+
 /// The same as arrays, which is all that `NumPy` has: of model 0 `A_0`, `B_0`, `C_0`, `D_0` and `StateName_0`; one entry for each model in
 /// the others.
 pub(super) fn model_arrays(models: &[ExportedModel], dataset: &Dataset) -> Vec<Variable> {
@@ -49,7 +52,7 @@ pub(super) fn model_arrays(models: &[ExportedModel], dataset: &Dataset) -> Vec<V
         let units = row_of_texts(channels.iter().map(|channel| &channel.unit));
         variables.extend([variable(format!("{name}Name"), names), variable(format!("{name}Unit"), units)]);
     }
-    let figures: [(&str, fn(&ExportedModel) -> f64); 6] = [
+    let figures: [Figure; 6] = [
         ("Ts", sample_time_s),
         ("condition", |model| model.condition.0 as f64),
         ("airspeed_kt", |model| model.airspeed_kt),

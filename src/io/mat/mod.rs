@@ -22,7 +22,6 @@ mod trail;
 mod workspace;
 mod writer;
 
-pub use export_line::export_line;
 pub use subsystem::Subsystem;
 pub use writer::{write, write_packed};
 

@@ -34,7 +34,8 @@ use crate::io::variables::{Meter, Variable, VariableFault};
 
 /// Reads all variables of a MATLAB 7.3 file or a plain HDF5 file; objects of MATLAB's classes stay
 /// [`Value::Opaque`](crate::io::variables::Value::Opaque).
-pub fn read(bytes: &[u8], meter: &Meter<'_>) -> Result<Vec<Variable>, VariableFault> {
+#[cfg(test)]
+fn read(bytes: &[u8], meter: &Meter<'_>) -> Result<Vec<Variable>, VariableFault> {
     let opened = Opened::new(bytes, meter)?;
     Reader { meter, objects: &Objects::Opaque("objects of classes are not read") }.variables(&opened.root())
 }

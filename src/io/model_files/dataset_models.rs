@@ -36,7 +36,7 @@ fn found(dataset: &Dataset, condition: &Condition, kind: BundleKind, model: &Mod
                 im: array(response.values().map(|_, values| values.iter().map(|value| value.im).collect())),
                 coherence: response.coherence().cloned().map(array),
                 valid_bands: None,
-                estimate: response.estimate().clone(),
+                estimate: response.estimate(),
             };
             ([None, None, None, None], Timing::default(), Some(draft))
         }

@@ -19,11 +19,8 @@ mod separator;
 mod unit_word;
 
 pub use columns::{TextTable, read_table};
-pub use encoding::{DecodedText, Encoding, decode};
-pub use frequency_columns::{
-    FrequencyColumn, FrequencyColumns, FrequencyUnit, MagnitudeUnit, PhaseUnit, RecognisedResponse, ResponseParts,
-};
+pub use encoding::decode;
+pub use frequency_columns::{FrequencyColumns, RecognisedResponse};
 pub use frequency_values::ResponsePoints;
-pub use literals::{Literals, read_literals};
-pub use matrix_text::{NamedMatrices, read_matrices, read_matrix};
-pub use separator::Separator;
+pub use literals::read_literals;
+pub use matrix_text::{read_matrices, read_matrix};

@@ -14,12 +14,13 @@ mod statement;
 mod token;
 mod trouble;
 
-pub use statement::{Literals, read_literals};
+pub use statement::read_literals;
 
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
+    use super::statement::Literals;
     use super::*;
     use crate::io::variables::{Array, CellArray, Meter, StructArray, TextArray, Value, VariableFault};
 

@@ -82,7 +82,7 @@ impl ModelResponses {
 
 /// The models that some condition holds, by their numbers: a model that stays, or comes back under another name or in another
 /// place, keeps its responses.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct KnownModels {
     by_content: HashMap<ContentHash, Weak<ModelResponses>>,
 }
@@ -104,7 +104,7 @@ impl KnownModels {
 }
 
 /// The models of a condition with their responses.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct ConditionModels {
     condition: Arc<Condition>,
     /// Hash and responses of each model of both bundles, the physics models first.

@@ -29,7 +29,7 @@ type ComparisonKey = (FiguresKey, ConditionChoice, CostAverage);
 type BoundsKey = (ComparisonKey, f64, Option<GainBounds>, Option<f64>);
 
 /// The last result of each stage of a condition.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct ConditionStages {
     models: ConditionModels,
     figures: Memo<FiguresKey, Arc<BundleFigures>>,

@@ -63,6 +63,19 @@ impl Engine {
         }
     }
 
+    /// Another engine that knows what this one has computed, and goes its own way from there.
+    pub fn fork(&self, executor: Box<dyn Executor>) -> Self {
+        Self {
+            executor,
+            proofs: self.proofs,
+            dataset: self.dataset.clone(),
+            known: self.known.clone(),
+            conditions: self.conditions.clone(),
+            drawn: self.drawn,
+            curves: self.curves.clone(),
+        }
+    }
+
     /// The same engine with another budget for the proof of each condition's gains.
     pub fn with_proofs_within(self, proofs: ProofBudget) -> Self {
         Self { proofs, ..self }

@@ -44,11 +44,22 @@ const CONDITION_10: &str = "Condition 10: 60 kt, low altitude, high weight";
 
 /// The window on the example, its first results there.
 pub(crate) fn window() -> Window {
-    window_with(example(), Setup::default())
+    window_with(example(), warm())
 }
 
 fn example() -> Opened {
     Opened::Dataset(crate::EXAMPLE.clone())
+}
+
+/// An engine that has analysed the example: most windows begin with that, and none has to wait for it again.
+static WARM: LazyLock<Engine> = LazyLock::new(|| {
+    let mut engine = Engine::default().with_proofs_within(LIVE_PROOF);
+    engine.analyze(&Study::new(crate::EXAMPLE.dataset.clone()), &Unobserved).expect("nothing stops it");
+    engine
+});
+
+fn warm() -> Setup {
+    Setup { engine: Arc::new(|| WARM.fork(Box::new(Pool))), ..Setup::default() }
 }
 
 fn window_with(opened: Opened, setup: Setup) -> Window {

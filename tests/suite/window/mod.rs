@@ -20,6 +20,7 @@ mod walk;
 
 use std::path::Path;
 use std::process::Command;
+use std::sync::{Arc, LazyLock};
 use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
@@ -27,7 +28,7 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
-use gdcm::app::{GdcmApp, Setup};
+use gdcm::app::{GdcmApp, Pool, Setup};
 use gdcm::dataset::{BundleKind, ConditionId, ModelId, Pair};
 use gdcm::io::{Opened, OpenedStudy, load_any, open_study, read_corrections};
 use gdcm::view::explanation::{gain_conflict_marks, remarks_shown, toggle_costs};

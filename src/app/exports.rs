@@ -46,7 +46,11 @@ impl GdcmApp {
         match write_export(&analysis, &source, &ExportRequest::new(format), &path, outputs) {
             Ok(remarks) => {
                 self.state.forms.shown = None;
-                let remark = remarks.first().map(|remark| format!(" ({remark})")).unwrap_or_default();
+                let remark = match remarks.as_slice() {
+                    [] => String::new(),
+                    [remark] => format!(" ({remark})"),
+                    several => format!(" ({} remarks, in the file)", several.len()),
+                };
                 self.done(format!("exported {}{remark}", plain_path(&path)));
             }
             Err(FileError::Exists { paths }) => {

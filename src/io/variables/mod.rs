@@ -1,6 +1,6 @@
 //! Variables by name, as files of other programs hold them; what they mean is decided elsewhere.
 //!
-//! Every reader of such files ([`super::mat`], [`super::npy`], …) gives these values and knows nothing of models.
+//! Every reader of such files (MATLAB's, NumPy's, text) gives these values and knows nothing of models.
 
 mod array;
 mod fault;

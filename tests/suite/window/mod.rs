@@ -31,6 +31,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use gdcm::app::{GdcmApp, Pool, Setup};
 use gdcm::dataset::{BundleKind, ConditionId, ModelId, Pair};
 use gdcm::io::{Opened, OpenedStudy, load_any, open_study, read_corrections};
+use gdcm::study::{Engine, LIVE_PROOF, Study, Unobserved};
 use gdcm::view::explanation::{gain_conflict_marks, remarks_shown, toggle_costs};
 use gdcm::view::net_gain_scene::channel_panels;
 use gdcm::view::plot::{Across, BodeCurve, Measure, Pane, Role as CurveRole};

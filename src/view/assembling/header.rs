@@ -104,7 +104,7 @@ fn reading_ui(ui: &mut Ui, bench: &Workbench, palette: &Palette, commands: &mut 
 }
 
 fn path_ui(ui: &mut Ui, name: &str, text: &mut String, hint: &str) -> bool {
-    let width = (0.3 * ui.available_width()).clamp(120.0, 420.0);
+    let width = (0.22 * ui.available_width()).clamp(120.0, 360.0);
     let response = ui.add(TextEdit::singleline(text).hint_text(hint).desired_width(width));
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::TextInput, true, name);

@@ -321,7 +321,9 @@ mod tests {
                 .map(|(value, _)| value.norm()).fold(0.0, f64::max);
             for zero in &found.finite {
                 let (value, _) = response_and_slope(&minimal, *zero).unwrap();
-                prop_assert!(value.norm() < 1e-8 * peak, "{zero}: {} of {peak}", value.norm());
+                // Of the sixteen digits the coordinates take three and the entries of the canonical form four, as above; a zero far
+                // to the left lies where the response is steeper than on the axis that the peak is of.
+                prop_assert!(value.norm() < 1e-6 * peak, "{zero}: {} of {peak}", value.norm());
             }
         }
     }

@@ -48,8 +48,14 @@ pub(super) fn preview_ui(ui: &mut Ui, bench: &mut Workbench, palette: &Palette, 
     }
     let key = found.key();
     if bench.preview.drawn.as_ref().is_none_or(|(of, at, _)| (of, *at) != (&key, place)) {
+        let is_other_model = bench.preview.drawn.as_ref().is_none_or(|(of, ..)| *of != key);
         bench.preview.drawn = Some((key, place, curve(&found, place, band).into_iter().collect()));
-        bench.preview.view.request_refit();
+        // A measured response may be at other frequencies than the model shown before.
+        if is_other_model {
+            bench.preview.view.request_fit();
+        } else {
+            bench.preview.view.request_refit();
+        }
     }
     let Some((_, _, curves)) = &bench.preview.drawn else { return };
     let scene = BodeScene {

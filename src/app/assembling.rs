@@ -1,5 +1,6 @@
 //! Putting models of files together: reading them in a thread, and what becomes of them.
 
+use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,10 +23,28 @@ use super::window::GdcmApp;
 /// How the name of a rules file ends.
 const RULES_EXTENSION: &str = "gdcm-rules.json";
 
+/// Bytes of values between two words about how far a file is read.
+const TOLD_EVERY: u64 = 16 << 20;
+
+/// What is read: more, or all there is once more, by other headings.
+#[derive(Clone, Debug)]
+enum Sources {
+    More(Vec<PathBuf>),
+    Again(Vec<PathBuf>),
+}
+
+impl Sources {
+    fn paths(&self) -> &[PathBuf] {
+        let (Sources::More(paths) | Sources::Again(paths)) = self;
+        paths
+    }
+}
+
 /// What the thread that reads tells.
 enum Told {
     Reading(Reading),
-    Read(Vec<PathBuf>, Result<Result<FoundModels, FileError>, Fault>),
+    Taken(u64),
+    Read(Sources, Result<Result<FoundModels, FileError>, Fault>),
 }
 
 /// The thread that reads models, and where its answers arrive.
@@ -56,17 +75,25 @@ struct Teller {
     sender: Sender<(u64, Told)>,
     stop: Arc<AtomicBool>,
     ctx: Context,
+    /// Bytes of values of the file, when that was told last.
+    told: Cell<u64>,
 }
 
 impl FolderProgress for Teller {
     fn reading(&self, number: usize, of: usize, name: &str) {
-        let reading = Reading { number, of, name: name.to_owned() };
+        self.told.set(0);
+        let reading = Reading { number, of, name: name.to_owned(), taken: 0 };
         // The window may be gone by now.
         let _ = self.sender.send((self.number, Told::Reading(reading)));
         self.ctx.request_repaint();
     }
 
-    fn stopped(&self) -> bool {
+    fn stopped(&self, taken: u64) -> bool {
+        if taken >= self.told.get() + TOLD_EVERY {
+            self.told.set(taken);
+            let _ = self.sender.send((self.number, Told::Taken(taken)));
+            self.ctx.request_repaint();
+        }
         self.stop.load(Ordering::Acquire)
     }
 }
@@ -75,6 +102,7 @@ impl GdcmApp {
     /// Carries out a command of the assembling view.
     pub(super) fn assemble(&mut self, command: AssemblingCommand, ctx: &Context) {
         let bench = self.state.assembling.get_or_insert_with(Workbench::default);
+        let headings = bench.assembly().rules().headings.clone();
         match command {
             AssemblingCommand::Open => {}
             AssemblingCommand::Close => {
@@ -82,7 +110,10 @@ impl GdcmApp {
                 self.state.assembling = None;
             }
             AssemblingCommand::AskFolder => self.dialogs.ask(DialogPurpose::ModelFolder, String::new(), ctx),
-            AssemblingCommand::Add(paths) => self.read_models(paths, ctx),
+            AssemblingCommand::Add(paths) => {
+                let paths = paths.into_iter().map(|path| self.at_home(path)).collect();
+                self.read_models(Sources::More(paths), ctx);
+            }
             AssemblingCommand::StopReading => self.model_reader.stop.store(true, Ordering::Release),
             AssemblingCommand::Change(rules) => bench.change(*rules),
             AssemblingCommand::Undo => bench.undo(),
@@ -94,19 +125,25 @@ impl GdcmApp {
             AssemblingCommand::SaveRules(path) => self.save_rules(path, Existing::Keep),
             AssemblingCommand::MakeDataset(path) => self.make_dataset(path, Existing::Keep, ctx),
         }
+        if let Some(bench) = &self.state.assembling
+            && bench.assembly().rules().headings != headings
+        {
+            self.read_models(Sources::Again(bench.sources.clone()), ctx);
+        }
     }
 
-    fn read_models(&mut self, paths: Vec<PathBuf>, ctx: &Context) {
-        let paths: Vec<PathBuf> = paths.into_iter().map(|path| self.at_home(path)).collect();
+    /// Reads models in a thread, tables by the headings said of them.
+    fn read_models(&mut self, sources: Sources, ctx: &Context) {
+        let headings = self.said().map(|rules| rules.headings).unwrap_or_default();
         self.model_reader.stop.store(true, Ordering::Release);
         let reader = &mut self.model_reader;
         reader.newest += 1;
         reader.stop = Arc::default();
         let (number, sender, stop, ctx) = (reader.newest, reader.sender.clone(), Arc::clone(&reader.stop), ctx.clone());
         let work = move || {
-            let teller = Teller { number, sender: sender.clone(), stop, ctx: ctx.clone() };
-            let found = caught(|| read_models(&paths, &teller));
-            let _ = sender.send((number, Told::Read(paths, found)));
+            let teller = Teller { number, sender: sender.clone(), stop, ctx: ctx.clone(), told: Cell::new(0) };
+            let found = caught(|| read_models(sources.paths(), &headings, &teller));
+            let _ = sender.send((number, Told::Read(sources, found)));
             ctx.request_repaint();
         };
         if let Some(bench) = &mut self.state.assembling {
@@ -125,10 +162,11 @@ impl GdcmApp {
             };
             match told {
                 Told::Reading(reading) => bench.reading = Some(reading),
-                Told::Read(paths, found) => {
+                Told::Taken(taken) => bench.reading.iter_mut().for_each(|reading| reading.taken = taken),
+                Told::Read(sources, found) => {
                     bench.reading = None;
                     match found {
-                        Ok(Ok(found)) => self.take_models(paths, found),
+                        Ok(Ok(found)) => self.take_models(sources, found),
                         Ok(Err(error)) => self.trouble(error.to_string()),
                         Err(fault) => self.tell_fault("the reading of models", &fault),
                     }
@@ -137,20 +175,32 @@ impl GdcmApp {
         }
     }
 
-    fn take_models(&mut self, paths: Vec<PathBuf>, found: FoundModels) {
+    fn take_models(&mut self, sources: Sources, found: FoundModels) {
         let Some(bench) = &mut self.state.assembling else { return };
+        let paths = match sources {
+            Sources::More(paths) => paths,
+            Sources::Again(_) if self.model_reader.stop.load(Ordering::Acquire) => {
+                return self.done("stopped: the models are those that were read before".to_owned());
+            }
+            Sources::Again(paths) => {
+                bench.forget_models();
+                paths
+            }
+        };
         let name = paths.first().and_then(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());
         let (models, files) = (found.models.len(), found.files);
         bench.add(&name.unwrap_or_default(), found.models);
         bench.faults.extend(found.faults);
         bench.passed_over.extend(found.passed_over);
+        bench.tables.extend(found.tables);
         if bench.dataset_path.is_empty()
             && let Some(first) = paths.first()
         {
             bench.dataset_path = format!("{}.json.gz", first.with_extension("").display());
             bench.rules_path = rules_path(Path::new(&bench.dataset_path)).display().to_string();
         }
-        bench.sources.extend(paths);
+        let new = paths.into_iter().filter(|path| !bench.sources.contains(path)).collect::<Vec<_>>();
+        bench.sources.extend(new);
         self.done(format!("{models} models in {files} files"));
     }
 

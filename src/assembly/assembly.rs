@@ -176,7 +176,15 @@ fn part_of(found: FoundModel, row: Row, rules: &Rules) -> Part {
     let matched = |side, labels: &[ChannelLabel], channels: &[ChannelRule]| {
         ChannelMatch::of(side, labels, channels, &rules.units, partial)
     };
-    let (inputs, outputs) = (matched("input", &inputs, &rules.inputs), matched("output", &outputs, &rules.outputs));
+    let mut channels = [matched("input", &inputs, &rules.inputs), matched("output", &outputs, &rules.outputs)];
+    let names = said.map_or([None, None], |said| [said.inputs.as_ref(), said.outputs.as_ref()]);
+    let counts = [("input", inputs.len()), ("output", outputs.len())];
+    for ((of_side, names), (side, found)) in channels.iter_mut().zip(names).zip(counts) {
+        if let Some(names) = names.filter(|names| names.len() != found) {
+            of_side.problems.push(ProblemKind::Names { side, said: names.len(), found });
+        }
+    }
+    let [inputs, outputs] = channels;
     Part { found, row, inputs, outputs }
 }
 

@@ -29,4 +29,4 @@ pub use physical_unit::{Dimension, PhysicalUnit, conversion_factor};
 pub use problem::{Problem, ProblemKind};
 pub use proposal::proposed_rules;
 pub use row::{Row, RowRole};
-pub use rules::{ChannelRule, RowRule, Rules, UnitRule};
+pub use rules::{ChannelRule, Headings, RowRule, Rules, UnitRule};

@@ -62,6 +62,16 @@ pub enum ProblemKind {
         /// How many the model has.
         found: usize,
     },
+    /// More or fewer names are said of a model's channels than it has.
+    #[error("{said} names are said for the {found} {side}s of the model; say one for each, in the file's order")]
+    Names {
+        /// "input" or "output".
+        side: &'static str,
+        /// How many names.
+        said: usize,
+        /// How many channels.
+        found: usize,
+    },
     /// The condition is not said.
     #[error("its condition is not said")]
     NoCondition,

@@ -42,9 +42,12 @@ fn channels(models: &[FoundModel], side: &str, of: fn(&FoundModel) -> &Vec<Chann
             }
         }
     }
-    if channels.is_empty() {
+    // Matrices without names have all channels of the dataset, whatever a measured response beside them is called.
+    let all_unnamed = models.iter().filter(|model| model.response().is_none()).all(|model| named(model) == 0);
+    if channels.is_empty() || all_unnamed {
         let count = models.iter().map(|model| of(model).len()).max().unwrap_or(0);
-        channels.extend((1..=count).map(|number| ChannelRule::named(format!("{side} {number}"))));
+        let missing = channels.len() + 1..=count;
+        channels.extend(missing.map(|number| ChannelRule::named(format!("{side} {number}"))));
     }
     channels
 }

@@ -91,6 +91,9 @@ impl RowRule {
     }
 }
 
+/// Headings of the columns of tables, by file: "omega \[rad/s\]", "mag P/LAT \[dB\]".
+pub type Headings = BTreeMap<String, Vec<String>>;
+
 /// What the engineer says about the files of a folder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rules {
@@ -110,6 +113,8 @@ pub struct Rules {
     pub patterns: Vec<NamePattern>,
     /// Conversions that units alone do not give.
     pub units: Vec<UnitRule>,
+    /// What the columns of tables hold, in place of their own headings: what a file of columns is read by.
+    pub headings: Headings,
     /// What is said of single models, by [`super::FoundModel::key`].
     pub rows: BTreeMap<String, RowRule>,
 }
@@ -126,6 +131,7 @@ impl Default for Rules {
             band: (0.5, 12.0),
             patterns: standard_patterns(),
             units: Vec::new(),
+            headings: Headings::new(),
             rows: BTreeMap::new(),
         }
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::assembly::{Assembly, proposed_rules};
+use crate::assembly::{Assembly, Headings, proposed_rules};
 use crate::io::{
     FolderProgress, FoundModels, OutputSet, add_dataset, add_models, add_rules, load_rules, plain, plain_path,
     read_models, relative_folder,
@@ -45,7 +45,7 @@ impl FolderProgress for ReadingProgress {
         bar.set_message(plain(name));
     }
 
-    fn stopped(&self) -> bool {
+    fn stopped(&self, _: u64) -> bool {
         false
     }
 }
@@ -60,7 +60,7 @@ impl Drop for ReadingProgress {
 pub(super) fn convert(arguments: &ConvertArguments) -> Result<(), Failure> {
     let mut outputs = OutputSet::new(existing(arguments.force), arguments.files.clone());
     outputs.check(&[&arguments.out])?;
-    let found = found_models(&arguments.files)?;
+    let found = found_models(&arguments.files, &Headings::new())?;
     if found.models.is_empty() {
         return Err(Failure::Option { option: "FILE", reason: "holds no model that could be taken".to_owned() });
     }
@@ -83,15 +83,17 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     let mut places: Vec<&Path> = vec![&arguments.out];
     places.extend(is_proposed.then_some(rules_path.as_path()));
     outputs.check(&places)?;
-    let found = found_models(&arguments.folders)?;
-    let rules = match &arguments.rules {
+    let said = match &arguments.rules {
         Some(path) => {
             let (rules, cautions) = load_rules(path)?;
             cautions.iter().for_each(|caution| say_error(&format!("{}: {}", plain_path(path), plain(caution))));
-            rules
+            Some(rules)
         }
-        None => proposed_rules(&name_of(&arguments.folders), &found.models),
+        None => None,
     };
+    let none = Headings::new();
+    let found = found_models(&arguments.folders, said.as_ref().map_or(&none, |rules| &rules.headings))?;
+    let rules = said.unwrap_or_else(|| proposed_rules(&name_of(&arguments.folders), &found.models));
     let assembly = Assembly::new(found.models, rules);
     say(&table(&assembly))?;
     if is_proposed {
@@ -120,8 +122,8 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
 }
 
 /// The models of files and folders; what could not be taken is told on standard error.
-fn found_models(paths: &[PathBuf]) -> Result<FoundModels, Failure> {
-    let found = read_models(paths, &ReadingProgress::new())?;
+fn found_models(paths: &[PathBuf], headings: &Headings) -> Result<FoundModels, Failure> {
+    let found = read_models(paths, headings, &ReadingProgress::new())?;
     found.faults.iter().for_each(|fault| say_error(&format!("not taken: {}", plain(fault))));
     found.passed_over.iter().for_each(|words| say_error(&format!("no model: {}", plain(words))));
     Ok(found)

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 use std::sync::Arc;
 
-use gdcm::assembly::{Assembly, ProblemKind, RowRole, UnitRule, proposed_rules};
+use gdcm::assembly::{Assembly, Headings, ProblemKind, RowRole, UnitRule, proposed_rules};
 use gdcm::dataset::{BundleKind, Condition, Dataset, Dynamics, Model, StateSpace};
 use gdcm::io::variables::{Array, CellArray, StructArray, TextArray, Value, Variable};
 use gdcm::io::{FolderProgress, FoundModels, load_dataset, read_models, write_mat, write_npz};
@@ -18,7 +18,7 @@ struct Silent;
 impl FolderProgress for Silent {
     fn reading(&self, _: usize, _: usize, _: &str) {}
 
-    fn stopped(&self) -> bool {
+    fn stopped(&self, _: u64) -> bool {
         false
     }
 }
@@ -28,7 +28,7 @@ fn run(arguments: &[&str]) -> Ended {
 }
 
 fn found_in(folder: &Path) -> FoundModels {
-    read_models(&[folder.to_owned()], &Silent).unwrap()
+    read_models(&[folder.to_owned()], &Headings::new(), &Silent).unwrap()
 }
 
 fn matrices(model: &Model) -> [&DMatrix<f64>; 4] {
@@ -324,9 +324,10 @@ fn what_was_converted_is_read_again_as_the_same_models() {
     let out = folder.path().join("models.json");
     let ended = run(&["convert", &file("trim.mat"), &file("frf_Q_LON.csv"), "--out", out.to_str().unwrap()]);
     assert_eq!(ended.status, 0, "{}", ended.error);
-    let again = read_models(&[out], &Silent).unwrap();
+    let again = read_models(&[out], &Headings::new(), &Silent).unwrap();
     assert_eq!(again.models.len(), 2, "{:?}", again.faults);
-    let first = read_models(&[file("trim.mat").into(), file("frf_Q_LON.csv").into()], &Silent).unwrap();
+    let first =
+        read_models(&[file("trim.mat").into(), file("frf_Q_LON.csv").into()], &Headings::new(), &Silent).unwrap();
     for (a, b) in first.models.iter().zip(&again.models) {
         assert_eq!((&a.draft.matrices, &a.inputs, &a.outputs), (&b.draft.matrices, &b.inputs, &b.outputs));
         assert_eq!(
@@ -348,4 +349,48 @@ fn a_discrete_time_model_keeps_its_sample_time_and_its_delays_in_samples_become_
     assert_eq!((timing.sample_time_s, timing.input_delays_s.as_deref()), (Some(0.02), Some(&[0.06][..])));
     let [a, b, c, d] = found.models[0].draft.matrices.clone().map(Option::unwrap);
     assert!(StateSpace::new(a, b, c, d).unwrap().timed(timing.clone()).is_ok());
+}
+
+#[test]
+fn columns_are_read_by_the_headings_that_the_rules_say_in_place_of_the_file_s() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("frf-omega-re-im.csv");
+    std::fs::write(&path, "1,0,-90\n2,-6,-100\n4,-12,-120\n").unwrap();
+    let of = |headings: &Headings| read_models(&[folder.path().to_owned()], headings, &Silent).unwrap();
+    let guessed = of(&Headings::new());
+    assert_eq!(guessed.tables["frf-omega-re-im.csv"], ["", "", ""]);
+    assert!(guessed.models.iter().all(|model| model.inputs[0].name.is_none()), "re and im are no channels");
+
+    let said = ["f [Hz]", "mag P/LAT [dB]", "phase P/LAT [deg]"].map(str::to_owned).to_vec();
+    let headings = Headings::from([("frf-omega-re-im.csv".to_owned(), said.clone())]);
+    let found = of(&headings);
+    assert_eq!(found.tables, headings);
+    let response = found.models[0].response().unwrap();
+    // 1 Hz is 2 pi rad/s; -6 dB at -100 degrees.
+    assert!((response.omega[0] - std::f64::consts::TAU).abs() < 1e-12);
+    let (magnitude, phase) = (10f64.powf(-0.3), -100f64.to_radians());
+    assert!((response.re.values[1] - magnitude * phase.cos()).abs() < 1e-12);
+    assert_eq!(found.models[0].outputs[0].name.as_deref(), Some("P"));
+
+    let short = Headings::from([("frf-omega-re-im.csv".to_owned(), said[..2].to_vec())]);
+    let fault = read_models(&[folder.path().to_owned()], &short, &Silent).unwrap_err().to_string();
+    assert!(fault.contains("2 headings for 3 columns"), "{fault}");
+}
+
+#[test]
+fn names_are_said_for_the_channels_of_one_model_and_a_wrong_number_of_them_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    small_folder(folder.path());
+    let found = found_in(folder.path());
+    let rules = proposed_rules("", &found.models);
+    let key = found.models.iter().find(|model| model.file().ends_with("trim.mat")).unwrap().key();
+    let with = |names: &[&str]| {
+        let mut rules = rules.clone();
+        rules.rows.entry(key.clone()).or_default().outputs =
+            Some(names.iter().map(|name| (*name).to_owned()).collect());
+        Assembly::new(found.models.clone(), rules)
+    };
+    let told = |assembly: &Assembly| assembly.told().into_iter().map(|(_, words)| words).collect::<Vec<_>>().join("\n");
+    assert!(told(&with(&["NZ"])).contains("NZ"), "the model has another output now: {}", told(&with(&["NZ"])));
+    assert!(told(&with(&["Q", "P"])).contains("2 names are said for the 1 outputs"), "{}", told(&with(&["Q", "P"])));
 }

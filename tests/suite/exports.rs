@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use gdcm::assembly::FoundModel;
+use gdcm::assembly::{FoundModel, Headings};
 use gdcm::dataset::{Pair, StateSpace};
 use gdcm::io::{FolderProgress, read_corrections, read_models};
 use gdcm::response::evaluate;
@@ -30,13 +30,13 @@ struct Silent;
 impl FolderProgress for Silent {
     fn reading(&self, _: usize, _: usize, _: &str) {}
 
-    fn stopped(&self) -> bool {
+    fn stopped(&self, _: u64) -> bool {
         false
     }
 }
 
 fn models(path: &Path) -> Vec<FoundModel> {
-    let found = read_models(&[path.to_owned()], &Silent).unwrap();
+    let found = read_models(&[path.to_owned()], &Headings::new(), &Silent).unwrap();
     assert!(found.faults.is_empty(), "{:?}", found.faults);
     found.models
 }

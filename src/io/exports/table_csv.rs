@@ -54,7 +54,7 @@ mod tests {
     fn the_table_holds_the_curves_at_its_airspeeds() {
         let correction = example();
         let text = table_csv(&correction, &POINTS).unwrap();
-        let table = read_table(&text, &Meter::new(1 << 20, &|| false)).unwrap();
+        let table = read_table(&text, &Meter::new(1 << 20, &|_| false)).unwrap();
         assert_eq!(table.columns[0], POINTS);
         assert_eq!(table.columns.len(), 7);
         assert_eq!(table.units[2].as_deref(), Some("s"));

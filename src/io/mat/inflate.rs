@@ -75,7 +75,7 @@ mod tests {
     }
 
     fn read(bytes: &[u8], most: u64) -> Result<Vec<u8>, VariableFault> {
-        unpacked(Cursor::file(bytes, ByteOrder::Little), &Meter::new(most, &|| false))
+        unpacked(Cursor::file(bytes, ByteOrder::Little), &Meter::new(most, &|_| false))
     }
 
     #[test]

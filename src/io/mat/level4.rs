@@ -207,7 +207,7 @@ mod tests {
 
     fn first(bytes: &[u8]) -> Result<Value, VariableFault> {
         assert!(begins(bytes));
-        let mut variables = read(bytes, &Meter::new(1 << 16, &|| false))?;
+        let mut variables = read(bytes, &Meter::new(1 << 16, &|_| false))?;
         assert_eq!(variables[0].name, "x");
         Ok(variables.remove(0).value)
     }

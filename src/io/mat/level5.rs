@@ -120,7 +120,7 @@ mod tests {
     }
 
     fn variables(bytes: &[u8]) -> Result<Vec<Variable>, VariableFault> {
-        read(bytes, ByteOrder::Little, &Meter::new(1 << 16, &|| false))
+        read(bytes, ByteOrder::Little, &Meter::new(1 << 16, &|_| false))
     }
 
     #[test]

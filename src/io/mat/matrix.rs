@@ -183,7 +183,7 @@ mod tests {
     use super::{Array, Meter, Value, VariableFault};
 
     fn first(bytes: &[u8]) -> Result<Value, VariableFault> {
-        let mut variables = read(bytes, &Meter::new(1 << 16, &|| false))?;
+        let mut variables = read(bytes, &Meter::new(1 << 16, &|_| false))?;
         Ok(variables.remove(0).value)
     }
 

@@ -91,7 +91,7 @@ mod tests {
     const MOST: u64 = 1 << 20;
 
     fn read(bytes: &[u8]) -> Result<Vec<Variable>, VariableFault> {
-        super::read(bytes, &Meter::new(MOST, &|| false))
+        super::read(bytes, &Meter::new(MOST, &|_| false))
     }
 
     fn value(bytes: &[u8], name: &str) -> Value {
@@ -202,7 +202,7 @@ mod tests {
 
     #[test]
     fn a_reader_that_shall_stop_stops() {
-        assert_eq!(super::read(PLAIN, &Meter::new(MOST, &|| true)), Err(VariableFault::Stopped));
+        assert_eq!(super::read(PLAIN, &Meter::new(MOST, &|_| true)), Err(VariableFault::Stopped));
     }
 
     proptest! {

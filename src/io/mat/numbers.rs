@@ -69,7 +69,7 @@ mod tests {
     fn read(kind: u8, data: &[u8], count: usize) -> Result<Vec<f64>, VariableFault> {
         let bytes = [&[kind, 0, 0, 0, data.len() as u8, 0, 0, 0], data].concat();
         let element = Element::read(&mut Cursor::file(&bytes, ByteOrder::Little)).unwrap();
-        numbers(&element, count, &Meter::new(1 << 10, &|| false))
+        numbers(&element, count, &Meter::new(1 << 10, &|_| false))
     }
 
     #[test]

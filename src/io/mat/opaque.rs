@@ -52,7 +52,7 @@ mod tests {
     use crate::io::variables::{Meter, Value};
 
     fn first(bytes: &[u8]) -> (String, String) {
-        match read(bytes, &Meter::new(1 << 16, &|| false)).unwrap().remove(0).value {
+        match read(bytes, &Meter::new(1 << 16, &|_| false)).unwrap().remove(0).value {
             Value::Opaque { class, why } => (class, why),
             other => panic!("{other:?}"),
         }

@@ -84,7 +84,7 @@ mod tests {
     fn read(kind: u8, data: &[u8], shape: &[usize]) -> Result<TextArray, VariableFault> {
         let bytes = [&[kind, 0, 0, 0, data.len() as u8, 0, 0, 0], data].concat();
         let element = Element::read(&mut Cursor::file(&bytes, ByteOrder::Little)).unwrap();
-        text(&element, shape, &Meter::new(1 << 16, &|| false))
+        text(&element, shape, &Meter::new(1 << 16, &|_| false))
     }
 
     #[test]

@@ -122,7 +122,7 @@ mod tests {
     }
 
     fn read(bytes: &[u8], at: usize) -> Result<Subsystem, VariableFault> {
-        objects(bytes, Some(at), ByteOrder::Little, &Meter::new(1 << 16, &|| false))
+        objects(bytes, Some(at), ByteOrder::Little, &Meter::new(1 << 16, &|_| false))
     }
 
     #[test]

@@ -61,7 +61,7 @@ mod tests {
     }
 
     fn read_file(name: &str) -> Result<Vec<Variable>, VariableFault> {
-        read(&file(name), &Meter::new(1 << 24, &|| false))
+        read(&file(name), &Meter::new(1 << 24, &|_| false))
     }
 
     fn value(variables: &[Variable], name: &str) -> Value {
@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn objects_are_given_to_their_decoder_with_the_part_in_which_they_lie() {
-        let (meter, bytes) = (Meter::new(1 << 24, &|| false), file("objects.mat"));
+        let (meter, bytes) = (Meter::new(1 << 24, &|_| false), file("objects.mat"));
         let variables = read_with_objects(&bytes, &meter, |wrapper| {
             assert_eq!(wrapper.cells.len(), 3);
             assert!(matches!(&wrapper.cells[0], Value::Array(bytes) if bytes.re == [4.0, 0.0, 0.0, 0.0]));
@@ -180,7 +180,7 @@ mod tests {
 
     #[test]
     fn other_variables_are_read_where_the_objects_are_damaged() {
-        let (meter, bytes) = (Meter::new(1 << 24, &|| false), file("objects.mat"));
+        let (meter, bytes) = (Meter::new(1 << 24, &|_| false), file("objects.mat"));
         let fault = || VariableFault::TooDeep { variable: String::new() };
         let variables = read_with_objects(&bytes, &meter, |_| Err(fault())).unwrap();
         assert_eq!(value(&variables, "before"), number(1.0));
@@ -256,7 +256,7 @@ mod tests {
 
     #[test]
     fn what_is_no_hdf5_is_named_and_what_is_cut_off_is_said_to_be() {
-        let read = |bytes: &[u8]| read(bytes, &Meter::new(1 << 24, &|| false));
+        let read = |bytes: &[u8]| read(bytes, &Meter::new(1 << 24, &|_| false));
         assert!(matches!(read(b""), Err(VariableFault::Format { .. })));
         assert!(matches!(read(b"MATLAB 5.0 MAT-file"), Err(VariableFault::Format { .. })));
         for name in ["numbers.mat", "plain_latest.h5"] {
@@ -267,7 +267,7 @@ mod tests {
 
     #[test]
     fn damage_anywhere_is_a_fault_and_never_a_panic() {
-        let read = |bytes: &[u8]| read(bytes, &Meter::new(1 << 24, &|| false));
+        let read = |bytes: &[u8]| read(bytes, &Meter::new(1 << 24, &|_| false));
         for name in ["objects.mat", "plain_latest.h5"] {
             let whole = file(name);
             for length in (0..whole.len()).step_by(97) {

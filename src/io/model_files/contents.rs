@@ -27,12 +27,7 @@ pub(super) enum Contents {
         notes: Vec<String>,
     },
     /// Numbers in columns.
-    Table {
-        /// They.
-        table: TextTable,
-        /// How they were read.
-        notes: Vec<String>,
-    },
+    Table(Box<TextTable>),
     /// A dataset of this program.
     Dataset(Box<Dataset>),
 }
@@ -91,9 +86,7 @@ fn text_contents(text: &str, path: &Path, meter: &Meter<'_>) -> Result<Contents,
     if looks_named && let Ok(matrices) = read_matrices(text, meter) {
         return Ok(Contents::Variables { variables: matrices.variables, notes: matrices.notes });
     }
-    let table = read_table(text, meter)?;
-    let notes = table.notes.clone();
-    Ok(Contents::Table { table, notes })
+    read_table(text, meter).map(|table| Contents::Table(Box::new(table)))
 }
 
 fn stem(path: &Path) -> &str {

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::assembly::Headings;
 use crate::io::file_error::FileError;
 use crate::io::plain::plain_path;
 
@@ -19,12 +20,17 @@ const ENDINGS: [&str; 11] = ["mat", "npz", "npy", "json", "gz", "csv", "txt", "d
 pub trait FolderProgress {
     /// A file is about to be read: its number from 1, how many there are, its name.
     fn reading(&self, number: usize, of: usize, name: &str);
-    /// Whether the engineer wants no more.
-    fn stopped(&self) -> bool;
+    /// Whether the engineer wants no more, now that this many bytes of the file's values are read.
+    fn stopped(&self, taken: u64) -> bool;
 }
 
-/// The models of files and folders, folders with all that is in them. A file that cannot be read is a fault, and the rest is read.
-pub fn read_models(paths: &[PathBuf], progress: &dyn FolderProgress) -> Result<FoundModels, FileError> {
+/// The models of files and folders, folders with all that is in them; tables of columns by the headings that are said of them. A
+/// file that cannot be read is a fault, and the rest is read.
+pub fn read_models(
+    paths: &[PathBuf],
+    headings: &Headings,
+    progress: &dyn FolderProgress,
+) -> Result<FoundModels, FileError> {
     let mut files = Vec::new();
     for path in paths {
         if path.is_dir() {
@@ -37,13 +43,14 @@ pub fn read_models(paths: &[PathBuf], progress: &dyn FolderProgress) -> Result<F
     let mut found = FoundModels { files: files.len(), ..FoundModels::default() };
     let mut loose: Vec<LooseMatrix> = Vec::new();
     for (index, (path, name)) in files.iter().enumerate() {
-        if progress.stopped() {
+        if progress.stopped(0) {
             break;
         }
         progress.reading(index + 1, files.len(), name);
-        match read_file(path, name, &|| progress.stopped()) {
+        match read_file(path, (name, headings.get(name)), &|taken| progress.stopped(taken)) {
             Ok(mut of_file) => {
                 loose.extend(of_file.loose);
+                found.tables.extend(of_file.headings.map(|headings| (name.clone(), headings)));
                 found.models.append(&mut of_file.recognised.models);
                 let at =
                     |words: String| if words.starts_with(name.as_str()) { words } else { format!("{name}: {words}") };

@@ -19,7 +19,7 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use crate::assembly::FoundModel;
+use crate::assembly::{FoundModel, Headings};
 use crate::dataset::Provenance;
 
 use super::file_error::FileError;
@@ -47,6 +47,8 @@ pub struct FoundModels {
     pub faults: Vec<String>,
     /// What is no model, in words.
     pub passed_over: Vec<String>,
+    /// The tables of columns among the files, with the headings that they were read by.
+    pub tables: Headings,
     /// Number of files that were read.
     pub files: usize,
 }
@@ -57,35 +59,52 @@ struct FileModels {
     recognised: Recognised,
     /// A matrix that has a file to itself.
     loose: Option<LooseMatrix>,
+    /// The headings of a table of columns.
+    headings: Option<Vec<String>>,
 }
 
 /// The models in the bytes of a file of this name, in no more than `most` bytes of memory for its variables.
 pub fn models_of_bytes(bytes: &[u8], name: &str, most: u64) -> Result<FoundModels, FileError> {
-    let found = of_bytes(bytes, Path::new(name), name, &Meter::new(most, &|| false))?;
+    let found = of_bytes(bytes, Path::new(name), (name, None), &Meter::new(most, &|_| false))?;
     let Recognised { mut models, mut faults, passed_over } = found.recognised;
     let of_matrices = loose_matrices::models_of(found.loose.into_iter().collect());
     models.extend(of_matrices.models);
     faults.extend(of_matrices.faults);
-    Ok(FoundModels { models, faults, passed_over, files: 1 })
+    let tables = found.headings.map(|headings| (name.to_owned(), headings)).into_iter().collect();
+    Ok(FoundModels { models, faults, passed_over, tables, files: 1 })
 }
 
-/// The models of one file; `name` is how the dataset calls it, relative to what was asked for.
-fn read_file(path: &Path, name: &str, stop: &dyn Fn() -> bool) -> Result<FileModels, FileError> {
+/// The models of one file; its name is how the dataset calls it, relative to what was asked for, and its headings are those said of
+/// its columns.
+fn read_file(
+    path: &Path,
+    named: (&str, Option<&Vec<String>>),
+    stop: &dyn Fn(u64) -> bool,
+) -> Result<FileModels, FileError> {
     let bytes = read_bytes(path, LARGEST_FILE)?;
-    of_bytes(&bytes, path, name, &Meter::new(MOST_MEMORY, stop))
+    of_bytes(&bytes, path, named, &Meter::new(MOST_MEMORY, stop))
 }
 
-fn of_bytes(bytes: &[u8], path: &Path, name: &str, meter: &Meter<'_>) -> Result<FileModels, FileError> {
+fn of_bytes(
+    bytes: &[u8],
+    path: &Path,
+    (name, headings): (&str, Option<&Vec<String>>),
+    meter: &Meter<'_>,
+) -> Result<FileModels, FileError> {
     let wrong = |fault| FileError::Variables { path: path.to_owned(), fault };
     let mut found = match contents_of(bytes, path, meter)? {
         Contents::Variables { variables, notes } => of_variables(&variables, notes, name),
-        Contents::Table { table, notes } => {
-            let recognised = table_models::models_of(&table, name, notes).map_err(wrong)?;
-            FileModels { recognised, loose: None }
+        Contents::Table(table) => {
+            let table = match headings {
+                Some(said) => table.with_headings(said).map_err(wrong)?,
+                None => *table,
+            };
+            let recognised = table_models::models_of(&table, name).map_err(wrong)?;
+            FileModels { recognised, headings: Some(table.headings()), ..FileModels::default() }
         }
         Contents::Dataset(dataset) => {
             let recognised = Recognised { models: dataset_models::models_of(&dataset), ..Recognised::default() };
-            FileModels { recognised, loose: None }
+            FileModels { recognised, ..FileModels::default() }
         }
     };
     let sha256: String = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
@@ -103,11 +122,11 @@ fn of_bytes(bytes: &[u8], path: &Path, name: &str, meter: &Meter<'_>) -> Result<
 
 fn of_variables(variables: &[Variable], notes: Vec<String>, name: &str) -> FileModels {
     if let Some(loose) = LooseMatrix::of(variables, name) {
-        return FileModels { recognised: Recognised::default(), loose: Some(loose) };
+        return FileModels { loose: Some(loose), ..FileModels::default() };
     }
     let mut recognised = recognise(variables);
     for model in &mut recognised.models {
         model.notes.extend(notes.iter().cloned());
     }
-    FileModels { recognised, loose: None }
+    FileModels { recognised, ..FileModels::default() }
 }

@@ -3,11 +3,11 @@
 use crate::assembly::{ChannelLabel, Facts, FoundModel};
 use crate::dataset::{Estimate, ModelDraft, Origin, Provenance, ResponseArray, ResponseDraft, Timing};
 use crate::io::recognise::Recognised;
-use crate::io::text::{FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable};
+use crate::io::text::{FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable, says_quantity};
 use crate::io::variables::VariableFault;
 
 /// The responses of a table, each a model of one input and one output; a table that holds none is passed over in words.
-pub(super) fn models_of(table: &TextTable, file: &str, notes: Vec<String>) -> Result<Recognised, VariableFault> {
+pub(super) fn models_of(table: &TextTable, file: &str) -> Result<Recognised, VariableFault> {
     let columns = match FrequencyColumns::recognise(table) {
         Ok(columns) => columns,
         Err(fault) => {
@@ -19,7 +19,7 @@ pub(super) fn models_of(table: &TextTable, file: &str, notes: Vec<String>) -> Re
     let several = columns.responses.len() > 1;
     let named = file_label(file);
     let models = columns.responses.iter().zip(values).map(|(response, points)| {
-        let mut notes: Vec<String> = columns.notes.iter().chain(&notes).cloned().collect();
+        let mut notes: Vec<String> = columns.notes.iter().chain(&table.notes).cloned().collect();
         if response.coherence.is_some() {
             notes.push("coherence taken as gamma squared".to_owned());
         }
@@ -33,6 +33,10 @@ fn file_label(file: &str) -> Option<(String, String)> {
     let name = file.rsplit('/').next().unwrap_or(file);
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     let words: Vec<&str> = stem.split(['_', '-', ' ']).filter(|word| !word.is_empty()).collect();
+    // "frf-omega-re-im" says what the columns are, not whose response it is.
+    if words.iter().rev().take(2).any(|word| says_quantity(word)) {
+        return None;
+    }
     match words.as_slice() {
         [.., input, to, output] if to.eq_ignore_ascii_case("to") => Some(((*output).to_owned(), (*input).to_owned())),
         [.., output, input] => Some(((*output).to_owned(), (*input).to_owned())),

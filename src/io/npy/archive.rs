@@ -116,7 +116,7 @@ mod tests {
     }
 
     fn read(bytes: &[u8]) -> Result<Vec<Variable>, VariableFault> {
-        read_npz(bytes, &Meter::new(1 << 20, &|| false))
+        read_npz(bytes, &Meter::new(1 << 20, &|_| false))
     }
 
     #[test]

@@ -99,7 +99,7 @@ mod tests {
     use crate::io::variables::{CellArray, Meter};
 
     fn read(bytes: &[u8]) -> Vec<Variable> {
-        read_npz(bytes, &Meter::new(1 << 24, &|| false)).unwrap()
+        read_npz(bytes, &Meter::new(1 << 24, &|_| false)).unwrap()
     }
 
     #[test]

@@ -124,7 +124,7 @@ mod tests {
 
     fn read(file: &str) -> Result<Value, VariableFault> {
         let bytes = std::fs::read(format!("{}/tests/data/npy/{file}.npy", env!("CARGO_MANIFEST_DIR"))).unwrap();
-        read_npy(&bytes, "x", &Meter::new(1 << 20, &|| false)).map(|mut variables| variables.remove(0).value)
+        read_npy(&bytes, "x", &Meter::new(1 << 20, &|_| false)).map(|mut variables| variables.remove(0).value)
     }
 
     fn array(file: &str) -> Array {
@@ -211,7 +211,7 @@ mod tests {
             let text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}}}");
             let bytes =
                 [b"\x93NUMPY\x01\x00".as_slice(), &(text.len() as u16).to_le_bytes(), text.as_bytes(), data].concat();
-            read_npy(&bytes, "x", &Meter::new(1 << 20, &|| false)).unwrap_err()
+            read_npy(&bytes, "x", &Meter::new(1 << 20, &|_| false)).unwrap_err()
         };
         assert!(matches!(file("(2,)", &[0; 15]), VariableFault::CutOff { .. }));
         assert!(matches!(file("(2,)", &[0; 17]), VariableFault::Unsupported { .. }));
@@ -223,7 +223,7 @@ mod tests {
     fn elements_of_no_bytes_do_not_take_more_memory_than_is_allowed() {
         let text = "{'descr': '<U0', 'fortran_order': False, 'shape': (1000000000000,)}";
         let bytes = [b"\x93NUMPY\x01\x00".as_slice(), &(text.len() as u16).to_le_bytes(), text.as_bytes()].concat();
-        let fault = read_npy(&bytes, "x", &Meter::new(1 << 20, &|| false)).unwrap_err();
+        let fault = read_npy(&bytes, "x", &Meter::new(1 << 20, &|_| false)).unwrap_err();
         assert!(matches!(fault, VariableFault::TooLarge { .. }));
     }
 }

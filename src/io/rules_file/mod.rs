@@ -55,6 +55,7 @@ fn rules_of(text: RulesText) -> Result<Rules, Flaw> {
             .into_iter()
             .map(|text| UnitRule { channel: text.channel, from: text.from, factor: text.factor })
             .collect(),
+        headings: text.headings,
         rows: rows.collect::<Result<_, Flaw>>()?,
     })
 }
@@ -111,6 +112,7 @@ fn text_of(rules: &Rules) -> RulesText {
         band_rad_s: [rules.band.0, rules.band.1],
         conversions: rules.units.iter().map(conversion).collect(),
         patterns: rules.patterns.iter().map(|pattern| pattern.as_str().to_owned()).collect(),
+        headings: rules.headings.clone(),
         models: rules.rows.iter().map(|(key, row)| (key.clone(), row_text(row))).collect(),
     }
 }
@@ -154,6 +156,7 @@ mod tests {
             ..RowRule::default()
         };
         rules.rows.insert("c03/nom.mat".into(), row);
+        rules.headings.insert("frf.csv".into(), vec!["omega [Hz]".into(), "re".into(), "im".into()]);
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("week.gdcm-rules.json");
         let mut outputs = OutputSet::new(Existing::Keep, Vec::new());

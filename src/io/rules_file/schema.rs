@@ -33,6 +33,9 @@ pub(super) struct RulesText {
     pub(super) conversions: Vec<UnitText>,
     #[serde(default = "standard", deserialize_with = "list::<MOST_PATTERNS, _, _>")]
     pub(super) patterns: Vec<String>,
+    /// What the columns of tables hold, by file.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(super) headings: BTreeMap<String, Vec<String>>,
     /// What is said of single models, by file and variable.
     #[serde(default)]
     pub(super) models: BTreeMap<String, RowText>,

@@ -64,6 +64,13 @@ const UNIT_ENDINGS: [(&str, KnownUnit); 10] = [
     ("rad", KnownUnit::Radian),
 ];
 
+/// Whether a word names what a column of a frequency response holds ("re", "phase") or its unit, and so no channel.
+pub fn says_quantity(word: &str) -> bool {
+    let word = word.to_lowercase();
+    let known = |kinds: &[&str]| kinds.contains(&word.as_str());
+    WORDS.iter().any(|(_, kinds)| known(kinds)) || UNIT_ENDINGS.iter().any(|(unit, _)| *unit == word)
+}
+
 impl ColumnMeaning {
     /// Reads the name and the unit of a column.
     pub(super) fn of(name: &str, unit: Option<&str>) -> Self {

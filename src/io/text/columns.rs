@@ -5,6 +5,7 @@ use super::heading::{Heading, names_one_more, numbers_mostly};
 use super::layout::{Layout, comment, is_rule};
 use super::lines::{excerpt, lines, refuse_binary};
 use super::separator::Separator;
+use super::unit_word::name_and_unit;
 use crate::io::variables::{Meter, VariableFault};
 
 const EXPECTED: &str = "a table of numbers in columns";
@@ -32,6 +33,33 @@ pub struct TextTable {
     pub missing: usize,
     /// What was decided and could be otherwise, in words.
     pub notes: Vec<String>,
+}
+
+impl TextTable {
+    /// The headings of the columns, one for each: "omega \[rad/s\]"; empty where there is none.
+    pub fn headings(&self) -> Vec<String> {
+        let name = |column: usize| self.names.as_ref().and_then(|names| names.get(column)).map_or("", String::as_str);
+        let heading = |(column, unit): (usize, &Option<String>)| match unit {
+            Some(unit) => format!("{} [{unit}]", name(column)).trim().to_owned(),
+            None => name(column).to_owned(),
+        };
+        self.units.iter().enumerate().map(heading).collect()
+    }
+
+    /// The table with other headings, as [`TextTable::headings`] gives them.
+    ///
+    /// # Errors
+    /// There is another number of them than of columns.
+    pub fn with_headings(mut self, headings: &[String]) -> Result<Self, VariableFault> {
+        if headings.len() != self.columns.len() {
+            let found = format!("{} headings for {} columns", headings.len(), self.columns.len());
+            return Err(VariableFault::Format { expected: "one heading for each column", found });
+        }
+        let (names, units) = headings.iter().map(|heading| name_and_unit(heading)).unzip();
+        (self.names, self.units) = (Some(names), units);
+        self.notes.push("the headings of the columns are those of the rules".to_owned());
+        Ok(self)
+    }
 }
 
 /// Reads a table of numbers in columns: its separator, decimal mark, names and units are recognised.
@@ -218,7 +246,7 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<TextTable, VariableFault> {
-        read_table(text, &Meter::new(1 << 24, &|| false))
+        read_table(text, &Meter::new(1 << 24, &|_| false))
     }
 
     #[test]
@@ -239,6 +267,18 @@ mod tests {
         assert_eq!(table.names.as_deref().unwrap(), ["Vind", "Q"]);
         assert_eq!(table.units, [Some("kias".to_owned()), Some("rad/s".to_owned())]);
         assert_eq!(table.columns, [[-10.42649, 1.0], [0.00079, 2.0]]);
+    }
+
+    #[test]
+    fn headings_can_be_said_in_place_of_the_file_s() {
+        let table = read("w,P [dB],x\n1,2,3\n2,3,4\n").unwrap();
+        assert_eq!(table.headings(), ["w", "P [dB]", "x"]);
+        let said = ["f [Hz]", "", "phase [deg]"].map(str::to_owned);
+        let table = table.with_headings(&said).unwrap();
+        assert_eq!((table.headings(), table.columns.len()), (said.to_vec(), 3));
+        assert_eq!(table.units[2].as_deref(), Some("deg"));
+        let fault = table.with_headings(&said[..2]).unwrap_err().to_string();
+        assert!(fault.contains("2 headings for 3 columns"), "{fault}");
     }
 
     #[test]
@@ -317,7 +357,7 @@ mod tests {
     fn what_claims_too_much_is_refused_before_it_is_taken() {
         let wide = "1,".repeat(1_000_000);
         assert!(matches!(read(&wide), Err(VariableFault::TooLarge { .. })));
-        let stopped = read_table("1,2", &Meter::new(1 << 20, &|| true));
+        let stopped = read_table("1,2", &Meter::new(1 << 20, &|_| true));
         assert_eq!(stopped, Err(VariableFault::Stopped));
         assert!(matches!(read("1,2\0"), Err(VariableFault::Format { .. })));
     }

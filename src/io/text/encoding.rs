@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     fn read(bytes: &[u8]) -> Result<DecodedText, VariableFault> {
-        decode(bytes, &Meter::new(1 << 20, &|| false))
+        decode(bytes, &Meter::new(1 << 20, &|_| false))
     }
 
     #[test]
@@ -91,7 +91,7 @@ mod tests {
     fn what_is_no_text_is_refused() {
         assert!(matches!(read(b"a\0b"), Err(VariableFault::Format { .. })));
         assert!(matches!(read(b"\xff\xfea"), Err(VariableFault::CutOff { .. })));
-        let small = decode(b"abc", &Meter::new(8, &|| false));
+        let small = decode(b"abc", &Meter::new(8, &|_| false));
         assert!(matches!(small, Err(VariableFault::TooLarge { .. })));
     }
 }

@@ -121,12 +121,12 @@ mod tests {
     use crate::io::variables::Meter;
 
     fn recognise(text: &str) -> FrequencyColumns {
-        let table = read_table(text, &Meter::new(1 << 20, &|| false)).unwrap();
+        let table = read_table(text, &Meter::new(1 << 20, &|_| false)).unwrap();
         FrequencyColumns::recognise(&table).unwrap()
     }
 
     fn fault(text: &str) -> String {
-        let table = read_table(text, &Meter::new(1 << 20, &|| false)).unwrap();
+        let table = read_table(text, &Meter::new(1 << 20, &|_| false)).unwrap();
         FrequencyColumns::recognise(&table).unwrap_err().to_string()
     }
 

@@ -144,7 +144,7 @@ mod tests {
     use super::*;
 
     fn of(text: &str) -> Option<(Separator, bool, usize)> {
-        let layout = Layout::recognise(text, &Meter::new(1 << 20, &|| false)).unwrap()?;
+        let layout = Layout::recognise(text, &Meter::new(1 << 20, &|_| false)).unwrap()?;
         Some((layout.separator, layout.decimal_comma, layout.columns))
     }
 

@@ -222,7 +222,7 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<NamedMatrices, VariableFault> {
-        read_matrices(text, &Meter::new(1 << 22, &|| false))
+        read_matrices(text, &Meter::new(1 << 22, &|_| false))
     }
 
     fn arrays(text: &str) -> Vec<(String, Array)> {
@@ -235,7 +235,7 @@ mod tests {
 
     #[test]
     fn one_matrix_fills_a_file() {
-        let meter = Meter::new(1 << 20, &|| false);
+        let meter = Meter::new(1 << 20, &|_| false);
         let variable = read_matrix("x1,x2\n1,2\n3,4\n5,6", "A", &meter).unwrap();
         let expected = Array::matrix(3, 2, vec![1.0, 3.0, 5.0, 2.0, 4.0, 6.0]);
         assert_eq!(variable, Variable { name: "A".to_owned(), value: Value::Array(expected) });
@@ -293,7 +293,7 @@ mod tests {
         #[test]
         fn any_text_is_read_or_refused(text in "[A-Cx0-9=:;,. \\n\\-e*+]{0,120}") {
             let _ = read(&text);
-            let _ = read_matrix(&text, "A", &Meter::new(1 << 20, &|| false));
+            let _ = read_matrix(&text, "A", &Meter::new(1 << 20, &|_| false));
         }
     }
 }

@@ -18,6 +18,7 @@ mod response_label;
 mod separator;
 mod unit_word;
 
+pub use column_meaning::says_quantity;
 pub use columns::{TextTable, read_table};
 pub use encoding::decode;
 pub use frequency_columns::{FrequencyColumns, RecognisedResponse};

@@ -9,18 +9,18 @@ use super::fault::VariableFault;
 pub struct Meter<'s> {
     most: u64,
     taken: Cell<u64>,
-    stop: &'s dyn Fn() -> bool,
+    stop: &'s dyn Fn(u64) -> bool,
 }
 
 impl<'s> Meter<'s> {
-    /// A meter for at most `most` bytes; `stop` is asked at every [`Meter::take`].
-    pub fn new(most: u64, stop: &'s dyn Fn() -> bool) -> Self {
+    /// A meter for at most `most` bytes; `stop` is told at every [`Meter::take`] how many are taken, and answers whether to stop.
+    pub fn new(most: u64, stop: &'s dyn Fn(u64) -> bool) -> Self {
         Self { most, taken: Cell::new(0), stop }
     }
 
     /// Counts `count` elements of `size` bytes that `variable` is about to take.
     pub fn take(&self, count: u64, size: u64, variable: &str) -> Result<(), VariableFault> {
-        if (self.stop)() {
+        if (self.stop)(self.taken.get()) {
             return Err(VariableFault::Stopped);
         }
         let taken = self.taken.get().saturating_add(count.saturating_mul(size));

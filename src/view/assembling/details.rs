@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 
 use egui::{Grid, RichText, Role, Ui, WidgetInfo};
 
-use crate::assembly::{Part, RowRole, RowRule};
+use crate::assembly::{ChannelLabel, Part, RowRole, RowRule};
 use crate::units::number;
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::settings_panel::choice_ui;
 
+use super::columns::columns_ui;
 use super::entry::{entry_ui, typed_number};
 use super::workbench::{AssemblingCommand, Workbench};
 
@@ -38,10 +39,13 @@ pub(super) fn details_ui(ui: &mut Ui, bench: &Workbench, palette: &Palette, comm
     }
     Grid::new("details of a model").num_columns(3).spacing([6.0, 3.0]).show(ui, |ui| {
         role_ui(ui, bench, part, commands);
-        for field in fields(part) {
+        for field in fields(part, bench.assembly().rules().rows.get(&part.found.key())) {
             field_ui(ui, bench, &field, commands);
         }
     });
+    if bench.tables.contains_key(part.found.file()) {
+        columns_ui(ui, bench, part.found.file(), palette, commands);
+    }
     let notes = part.found.notes.iter().chain(&part.inputs.notes).chain(&part.outputs.notes);
     let uses = part.inputs.uses.iter().chain(&part.outputs.uses).flatten();
     for note in notes.cloned().chain(uses.filter_map(|used| used.words.clone())) {
@@ -97,7 +101,7 @@ fn field_ui(ui: &mut Ui, bench: &Workbench, field: &Field, commands: &mut Vec<Co
     ui.end_row();
 }
 
-fn fields(part: &Part) -> Vec<Field> {
+fn fields(part: &Part, rule: Option<&RowRule>) -> Vec<Field> {
     let row = &part.row;
     let figure = |value: Option<f64>| value.map_or(String::new(), number);
     let word = |value: &Option<String>| value.clone().unwrap_or_default();
@@ -163,6 +167,26 @@ fn fields(part: &Part) -> Vec<Field> {
             },
         },
     ];
+    fields.extend([
+        Field {
+            name: "inputs",
+            value: channel_names(&part.found.inputs, rule.and_then(|rule| rule.inputs.as_deref())),
+            hint: "in the file's order: LON, LAT",
+            say: |text, row| {
+                row.inputs = said_names(text);
+                Ok(())
+            },
+        },
+        Field {
+            name: "outputs",
+            value: channel_names(&part.found.outputs, rule.and_then(|rule| rule.outputs.as_deref())),
+            hint: "in the file's order: P, Q",
+            say: |text, row| {
+                row.outputs = said_names(text);
+                Ok(())
+            },
+        },
+    ]);
     match row.role {
         Some(RowRole::Identified) => fields.push(Field {
             name: "method",
@@ -181,6 +205,17 @@ fn fields(part: &Part) -> Vec<Field> {
         }),
     }
     fields
+}
+
+/// The channels of a file in its own order, as they are said to be or as the file calls them; "?" where it does not.
+fn channel_names(labels: &[ChannelLabel], said: Option<&[String]>) -> String {
+    let of_file = || labels.iter().map(|label| label.name.clone().unwrap_or_else(|| "?".to_owned())).collect();
+    said.map_or_else(of_file, <[String]>::to_vec).join(", ")
+}
+
+/// "LON, LAT, PED, COL"; an empty text says nothing.
+fn said_names(text: &str) -> Option<Vec<String>> {
+    said(text).map(|text| text.split(',').map(|name| name.trim().to_owned()).collect())
 }
 
 fn said(text: &str) -> Option<String> {

@@ -91,7 +91,11 @@ fn reading_ui(ui: &mut Ui, bench: &Workbench, palette: &Palette, commands: &mut 
     match &bench.reading {
         Some(reading) => {
             ui.spinner();
-            ui.label(small(format!("reading {} of {}: {}", reading.number, reading.of, reading.name)));
+            let taken = match reading.taken >> 20 {
+                0 => String::new(),
+                megabytes => format!(", {megabytes} MiB of values"),
+            };
+            ui.label(small(format!("reading {} of {}: {}{taken}", reading.number, reading.of, reading.name)));
             if ui.button("Stop reading").clicked() {
                 commands.push(AssemblingCommand::StopReading.into());
             }

@@ -1,6 +1,7 @@
 //! Putting models of many files together: a table with a line a model, what each is to be, and its response.
 
 mod channels;
+mod columns;
 mod details;
 mod entry;
 mod header;

@@ -5,10 +5,13 @@ use egui::{Label, RichText, ScrollArea, Sense, Ui};
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
 
+use super::columns::columns_ui;
 use super::workbench::{AssemblingCommand, Workbench};
 
 /// More lines than this are counted.
 const MOST_LINES: usize = 200;
+/// Tables of which no model came whose columns can be said here; the others follow as these are read.
+const MOST_TABLES: usize = 5;
 
 /// A line for each problem; a click shows its model.
 pub(super) fn problems_ui(ui: &mut Ui, bench: &Workbench, palette: &Palette, commands: &mut Vec<Command>) {
@@ -36,6 +39,11 @@ pub(super) fn problems_ui(ui: &mut Ui, bench: &Workbench, palette: &Palette, com
         let no_models = bench.passed_over.iter().map(|words| (format!("no model: {words}"), palette.dim_text));
         for (text, color) in not_taken.chain(no_models).take(MOST_LINES) {
             ui.add(Label::new(line(text, color)).wrap());
+        }
+        let parts = assembly.parts();
+        let unread = bench.tables.keys().filter(|file| !parts.iter().any(|part| part.found.file() == file.as_str()));
+        for file in unread.take(MOST_TABLES) {
+            columns_ui(ui, bench, file, palette, commands);
         }
     });
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::assembly::{Assembly, FoundModel, RowRule, Rules, proposed_rules};
+use crate::assembly::{Assembly, FoundModel, Headings, RowRule, Rules, proposed_rules};
 
 use super::preview::Preview;
 use super::table::Column;
@@ -52,6 +52,8 @@ pub struct Reading {
     pub of: usize,
     /// Its name.
     pub name: String,
+    /// Bytes of its values that are read.
+    pub taken: u64,
 }
 
 /// Models that are being put together.
@@ -68,6 +70,8 @@ pub struct Workbench {
     pub faults: Vec<String>,
     /// What is no model, in words.
     pub passed_over: Vec<String>,
+    /// The tables of columns among the files, with the headings that they were read by.
+    pub tables: Headings,
     /// The reading under way.
     pub reading: Option<Reading>,
     /// Index of the model shown.
@@ -94,6 +98,7 @@ impl Default for Workbench {
             sources: Vec::new(),
             faults: Vec::new(),
             passed_over: Vec::new(),
+            tables: Headings::new(),
             reading: None,
             selected: 0,
             sorting: None,
@@ -122,6 +127,14 @@ impl Workbench {
         };
         self.assembly = Assembly::new(models, rules);
         self.selected = self.selected.min(self.assembly.parts().len().saturating_sub(1));
+    }
+
+    /// Forgets all models and what was told of their files; what was said of them stays.
+    pub fn forget_models(&mut self) {
+        self.assembly = Assembly::new(Vec::new(), self.assembly.rules().clone());
+        self.faults.clear();
+        self.passed_over.clear();
+        self.tables.clear();
     }
 
     /// Takes other rules, which can be undone.
@@ -168,6 +181,18 @@ impl Workbench {
         let mut rules = self.assembly.rules().clone();
         if let Some(part) = self.assembly.parts().get(part) {
             say(rules.rows.entry(part.found.key()).or_default());
+        }
+        rules
+    }
+
+    /// The rules with another heading of a column of a table; the file's own headings stand where nothing else is said.
+    pub fn with_heading(&self, file: &str, column: usize, heading: &str) -> Rules {
+        let mut rules = self.assembly.rules().clone();
+        if let Some(headings) = self.tables.get(file) {
+            let said = rules.headings.entry(file.to_owned()).or_insert_with(|| headings.clone());
+            if let Some(place) = said.get_mut(column) {
+                heading.trim().clone_into(place);
+            }
         }
         rules
     }

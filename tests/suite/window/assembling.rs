@@ -88,3 +88,25 @@ fn what_is_said_of_a_model_is_filled_down_undone_and_shown() {
     click(&mut window, "Leave");
     assert!(state(&window).assembling.is_none());
 }
+
+#[test]
+fn the_columns_of_a_table_are_corrected_before_they_are_taken() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("flight.txt");
+    std::fs::write(&path, "1 0 -90\n2 -6 -100\n4 -12 -120\n").unwrap();
+    let mut window = window();
+    give(&mut window, AssemblingCommand::Add(vec![path]));
+    wait_for_models(&mut window);
+    window.run_steps(2);
+    for (column, heading) in [(1, "f [Hz]"), (2, "mag Q/LON [dB]"), (3, "phase Q/LON [deg]")] {
+        type_into(&mut window, &format!("Heading of column {column} of flight.txt"), heading);
+        wait_for_models(&mut window);
+    }
+    let parts = bench(&window).assembly().parts();
+    let response = parts[0].found.response().expect("a measured response");
+    assert!((response.omega[0] - std::f64::consts::TAU).abs() < 1e-12, "1 Hz is 2 pi rad/s");
+    assert_eq!(parts[0].found.inputs[0].name.as_deref(), Some("LON"));
+    click(&mut window, "Undo change");
+    wait_for_models(&mut window);
+    assert_eq!(bench(&window).tables["flight.txt"][2], "", "the file is read again as before");
+}

@@ -142,7 +142,7 @@ mod tests {
     }
 
     fn values(bytes: &[u8]) -> HashMap<String, Value> {
-        let variables = read(bytes, &Meter::new(1 << 20, &|| false)).unwrap();
+        let variables = read(bytes, &Meter::new(1 << 20, &|_| false)).unwrap();
         variables.into_iter().map(|variable| (variable.name, variable.value)).collect()
     }
 
@@ -234,7 +234,7 @@ mod tests {
         let text = Value::Array(Array::matrix(1, 6, words.to_vec()));
         let cells = vec![directory, empty(), empty(), text, empty()];
         let subsystem = Subsystem::new(cells).unwrap();
-        let meter = Meter::new(1 << 16, &|| false);
+        let meter = Meter::new(1 << 16, &|_| false);
         let found = subsystem.object(&[0xdd00_0000, 2, 1, 1, 3, 3], "t", &meter);
         assert_eq!(found, Ok(Value::Text(TextArray { shape: vec![1, 1], texts: vec!["ab".to_owned()] })));
         assert!(matches!(subsystem.object(&[1, 2, 3], "t", &meter), Ok(Value::Opaque { .. })));
@@ -251,7 +251,7 @@ mod tests {
                 let at = at.index(bytes.len());
                 bytes[at] ^= byte;
             }
-            let _ = read(&bytes, &Meter::new(1 << 20, &|| false));
+            let _ = read(&bytes, &Meter::new(1 << 20, &|_| false));
         }
     }
 
@@ -259,7 +259,7 @@ mod tests {
     fn a_file_cut_off_anywhere_never_panics() {
         let bytes = file(4);
         for length in 0..bytes.len() {
-            let _ = read(&bytes[..length], &Meter::new(1 << 20, &|| false));
+            let _ = read(&bytes[..length], &Meter::new(1 << 20, &|_| false));
         }
     }
 }

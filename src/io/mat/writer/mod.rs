@@ -73,7 +73,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn back(bytes: &[u8]) -> Vec<Variable> {
-        read(bytes, &Meter::new(1 << 24, &|| false)).unwrap()
+        read(bytes, &Meter::new(1 << 24, &|_| false)).unwrap()
     }
 
     fn named(name: &str, value: Value) -> Variable {

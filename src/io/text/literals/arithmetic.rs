@@ -171,7 +171,7 @@ mod tests {
     }
 
     fn combine(left: Value, operator: &str, right: Value) -> Result<Value, Trouble> {
-        binary(left, operator, right, &Meter::new(1 << 20, &|| false))
+        binary(left, operator, right, &Meter::new(1 << 20, &|_| false))
     }
 
     #[test]
@@ -191,7 +191,7 @@ mod tests {
 
     #[test]
     fn ranges_include_their_end_despite_rounding() {
-        let meter = Meter::new(1 << 20, &|| false);
+        let meter = Meter::new(1 << 20, &|_| false);
         let of = |first, step, last| range(&scalar(first, 0.0), &scalar(step, 0.0), &scalar(last, 0.0), &meter);
         assert_eq!(numbers(of(0.0, 0.1, 0.3).unwrap()).unwrap().len(), 4);
         assert_eq!(of(3.0, 1.0, 1.0).unwrap(), matrix(1, 0, &[]));

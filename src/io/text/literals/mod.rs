@@ -25,7 +25,7 @@ mod tests {
     use crate::io::variables::{Array, CellArray, Meter, StructArray, TextArray, Value, VariableFault};
 
     fn read(text: &str) -> Result<Literals, VariableFault> {
-        read_literals(text, &Meter::new(1 << 22, &|| false))
+        read_literals(text, &Meter::new(1 << 22, &|_| false))
     }
 
     fn value(text: &str) -> Value {

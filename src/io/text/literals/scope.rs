@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn fields_are_set_within_fields() {
-        let meter = Meter::new(1 << 20, &|| false);
+        let meter = Meter::new(1 << 20, &|_| false);
         let mut scope = Scope::default();
         scope.set(&["sys", "a", "b"], scalar(1.0, 0.0), &meter).unwrap();
         scope.set(&["sys", "c"], scalar(2.0, 0.0), &meter).unwrap();

@@ -68,6 +68,8 @@
 //! | [`assembly`] | from the models of many files to one dataset: names, channels, units |
 //! | [`response`] | frequency responses, phase, poles and zeros, order statistics |
 //! | [`fidelity`] | cost J, distances in a bundle, representative, discontinuity, modes from model to model |
+//! | [`identification`] | identified models from flight records (M14) |
+//! | [`records`] | from the columns of record files to flight records: time, channels, units |
 //! | [`correction`] | G, D, bounds, gains, delays, and what they do to a response |
 //! | [`schedule`] | regression over airspeed, what speaks for it, assessment |
 //! | [`study`] | what the engineer does: settings, rejections, pins, variants, undo; the staged analysis, and how each figure came about |
@@ -100,7 +102,9 @@ pub mod correction;
 pub mod dataset;
 pub mod fidelity;
 pub mod figure;
+pub mod identification;
 pub mod io;
+pub mod records;
 pub mod response;
 pub mod schedule;
 pub mod study;

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::dataset::{ModelDraft, ResponseArray, ResponseDraft, Timing};
+use crate::dataset::{BandsDraft, ModelDraft, ResponseArray, ResponseDraft, Timing};
 
 use super::channel_match::ChannelUse;
 
@@ -23,7 +23,13 @@ pub(super) fn converted(
     let b = b.as_ref().map(|b| columns(b, inputs));
     let c = c.as_ref().map(|c| rows(c, outputs));
     let d = d.as_ref().map(|d| rows(&columns(d, inputs), outputs));
-    ModelDraft { matrices: [a.clone(), b, c, d], response, timing, ..model.clone() }
+    // A factor moves a curve in decibels and leaves the width of its band.
+    let bands = model.bands.as_ref().map(|bands| BandsDraft {
+        omega: bands.omega.clone(),
+        sd_db: picked(&bands.sd_db, (inputs, outputs), false),
+        sd_deg: picked(&bands.sd_deg, (inputs, outputs), false),
+    });
+    ModelDraft { matrices: [a.clone(), b, c, d], response, timing, bands, ..model.clone() }
 }
 
 fn chosen(delays: &[f64], uses: &[Option<ChannelUse>]) -> Vec<f64> {
@@ -57,32 +63,38 @@ fn converted_response(
     inputs: &[Option<ChannelUse>],
     outputs: &[Option<ChannelUse>],
 ) -> ResponseDraft {
-    let table = |array: &ResponseArray, convert: bool, missing: f64| {
-        let [p, m, count] = array.shape;
-        let mut values = Vec::with_capacity(outputs.len() * inputs.len() * count);
-        for output in outputs {
-            for input in inputs {
-                let of =
-                    output.as_ref().zip(input.as_ref()).filter(|(output, input)| output.index < p && input.index < m);
-                let Some((output, input)) = of else {
-                    values.extend(std::iter::repeat_n(missing, count));
-                    continue;
-                };
-                let start = (output.index * m + input.index) * count;
-                let (times, over) = if convert { (output.factor, input.factor) } else { (1.0, 1.0) };
-                values.extend(array.values[start..start + count].iter().map(|value| scaled(*value, times, over)));
-            }
-        }
-        ResponseArray { shape: [outputs.len(), inputs.len(), count], values }
-    };
+    let table = |array: &ResponseArray, convert: bool| picked(array, (inputs, outputs), convert);
     ResponseDraft {
         omega: response.omega.clone(),
-        re: table(&response.re, true, 0.0),
-        im: table(&response.im, true, 0.0),
-        coherence: response.coherence.as_ref().map(|array| table(array, false, 0.0)),
-        valid_bands: response.valid_bands.as_ref().map(|array| table(array, false, 0.0)),
+        re: table(&response.re, true),
+        im: table(&response.im, true),
+        coherence: response.coherence.as_ref().map(|array| table(array, false)),
+        valid_bands: response.valid_bands.as_ref().map(|array| table(array, false)),
         estimate: response.estimate,
     }
+}
+
+/// The table of the dataset's channels, converted or as it is; zero where a channel is missing.
+fn picked(
+    array: &ResponseArray,
+    (inputs, outputs): (&[Option<ChannelUse>], &[Option<ChannelUse>]),
+    convert: bool,
+) -> ResponseArray {
+    let [p, m, count] = array.shape;
+    let mut values = Vec::with_capacity(outputs.len() * inputs.len() * count);
+    for output in outputs {
+        for input in inputs {
+            let of = output.as_ref().zip(input.as_ref()).filter(|(output, input)| output.index < p && input.index < m);
+            let Some((output, input)) = of else {
+                values.extend(std::iter::repeat_n(0.0, count));
+                continue;
+            };
+            let start = (output.index * m + input.index) * count;
+            let (times, over) = if convert { (output.factor, input.factor) } else { (1.0, 1.0) };
+            values.extend(array.values[start..start + count].iter().map(|value| scaled(*value, times, over)));
+        }
+    }
+    ResponseArray { shape: [outputs.len(), inputs.len(), count], values }
 }
 
 #[cfg(test)]
@@ -110,6 +122,7 @@ mod tests {
             response: None,
             source: None,
             states: Vec::new(),
+            bands: None,
         };
         let turned = converted(&model, &[used(1, 2.0), used(0, 1.0)], &[used(1, 10.0)]);
         let [_, b, c, d] = turned.matrices.map(Option::unwrap);

@@ -59,6 +59,7 @@ fn condition_of(id: i64, parts: &[&Part]) -> ConditionDraft {
         flight_state: state,
         physics: physics.iter().map(|part| physics_model(part, &coordinates)).collect(),
         identified: identified_models(&of_role(&[RowRole::Identified])),
+        records: Vec::new(),
     }
 }
 

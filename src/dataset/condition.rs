@@ -2,6 +2,7 @@
 
 use crate::units::number;
 
+use super::condition_record::ConditionRecord;
 use super::identity::{BundleKind, ConditionId};
 use super::model::Model;
 
@@ -24,13 +25,15 @@ pub struct FlightState {
     pub mass_kg: Option<f64>,
 }
 
-/// One flight condition: a bundle of physics models, exactly one of them nominal, and a bundle of identified models.
+/// One flight condition: a bundle of physics models, exactly one of them nominal, a bundle of identified models, and the flight
+/// records that these come from, where the dataset says so.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Condition {
     flight_state: FlightState,
     physics: Vec<Model>,
     identified: Vec<Model>,
     nominal: usize,
+    records: Vec<ConditionRecord>,
 }
 
 /// Why two bundles are not a condition.
@@ -72,6 +75,30 @@ pub enum ConditionError {
         /// Their names, in parentheses, where there are several.
         names: String,
     },
+    /// Two records share a name.
+    #[error("records: the name \"{name}\" stands twice (records {first} and {second}); names must differ")]
+    DuplicateRecord {
+        /// The name.
+        name: String,
+        /// First record, counted from 1.
+        first: usize,
+        /// Second record, counted from 1.
+        second: usize,
+    },
+    /// A sample time, or the time of a piece, cannot be that of a record.
+    #[error("record \"{name}\" (number {position}), {field}: expected {expected}, found {}", number(*value))]
+    Record {
+        /// The record's name.
+        name: String,
+        /// Which record, counted from 1.
+        position: usize,
+        /// The figure.
+        field: &'static str,
+        /// What may stand there.
+        expected: &'static str,
+        /// What stands there.
+        value: f64,
+    },
 }
 
 impl Condition {
@@ -82,9 +109,24 @@ impl Condition {
         check_bundle(BundleKind::Identified, &identified)?;
         let nominal: Vec<usize> = (0..physics.len()).filter(|&index| physics[index].is_nominal()).collect();
         match nominal[..] {
-            [nominal] => Ok(Self { flight_state, physics, identified, nominal }),
+            [nominal] => Ok(Self { flight_state, physics, identified, nominal, records: Vec::new() }),
             _ => Err(ConditionError::Nominal { found: nominal.len(), names: names_of(&physics, &nominal) }),
         }
+    }
+
+    /// The same condition with these flight records, in file order.
+    ///
+    /// # Errors
+    /// [`ConditionError::DuplicateRecord`] and [`ConditionError::Record`].
+    pub fn with_records(mut self, records: Vec<ConditionRecord>) -> Result<Self, ConditionError> {
+        check_records(&records)?;
+        self.records = records;
+        Ok(self)
+    }
+
+    /// The flight records, in file order; none where the dataset names none.
+    pub fn records(&self) -> &[ConditionRecord] {
+        &self.records
     }
 
     /// What describes the condition, besides its models.
@@ -145,6 +187,31 @@ fn check_bundle(bundle: BundleKind, models: &[Model]) -> Result<(), ConditionErr
         if let Some(first) = models[..second].iter().position(|earlier| earlier.name == model.name) {
             let name = model.name.clone();
             return Err(ConditionError::DuplicateName { bundle, name, first: first + 1, second: second + 1 });
+        }
+    }
+    Ok(())
+}
+
+fn check_records(records: &[ConditionRecord]) -> Result<(), ConditionError> {
+    for (second, record) in records.iter().enumerate() {
+        if let Some(first) = records[..second].iter().position(|earlier| earlier.name == record.name) {
+            let name = record.name.clone();
+            return Err(ConditionError::DuplicateRecord { name, first: first + 1, second: second + 1 });
+        }
+        let wrong = |field, expected, value| {
+            let (name, position) = (record.name.clone(), second + 1);
+            Err(ConditionError::Record { name, position, field, expected, value })
+        };
+        if let Some(value) = record.sample_time_s.filter(|value| !value.is_finite() || *value <= 0.0) {
+            return wrong("sample_time_s", "a positive number of seconds", value);
+        }
+        for &[first, last] in &record.used_s {
+            if !first.is_finite() {
+                return wrong("used_s", "finite times", first);
+            }
+            if !last.is_finite() || last < first {
+                return wrong("used_s", "a finite last time, not before the first", last);
+            }
         }
     }
     Ok(())

@@ -7,11 +7,13 @@ use nalgebra::DMatrix;
 use super::band::{Band, BandError};
 use super::channel::Channel;
 use super::condition::{Condition, ConditionError, FlightState};
+use super::condition_record::ConditionRecord;
 use super::dataset::{Dataset, DatasetError, DatasetHeader};
 use super::identity::BundleKind;
-use super::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS};
+use super::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
 use super::measured_response::{Estimate, MeasuredResponse, MeasuredResponseError};
 use super::model::{Dynamics, Model, Origin, Provenance};
+use super::model_bands::ModelBands;
 use super::pair::{Pair, PairTable};
 use super::place::Place;
 use super::state_space::{StateSpace, StateSpaceError};
@@ -43,6 +45,17 @@ pub struct ResponseDraft {
     pub estimate: Estimate,
 }
 
+/// Standard deviations of a model's response, unchecked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BandsDraft {
+    /// Frequencies \[rad/s\].
+    pub omega: Vec<f64>,
+    /// Standard deviation of magnitudes \[dB\].
+    pub sd_db: ResponseArray,
+    /// Standard deviation of phases \[deg\].
+    pub sd_deg: ResponseArray,
+}
+
 /// One model, unchecked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelDraft {
@@ -60,6 +73,8 @@ pub struct ModelDraft {
     pub source: Option<Provenance>,
     /// Names of the states, for people; none where they are not known.
     pub states: Vec<String>,
+    /// How uncertain its response is, where that is given.
+    pub bands: Option<BandsDraft>,
 }
 
 /// One flight condition, unchecked.
@@ -71,6 +86,8 @@ pub struct ConditionDraft {
     pub physics: Vec<ModelDraft>,
     /// Identified models.
     pub identified: Vec<ModelDraft>,
+    /// Flight records.
+    pub records: Vec<ConditionRecord>,
 }
 
 /// A dataset, unchecked.
@@ -216,6 +233,11 @@ pub(super) fn check_count(list: &str, found: usize, most: usize) -> Result<(), D
     if found > most { Err(DraftError::new(Place::entry(list), fault)) } else { Ok(()) }
 }
 
+pub(super) fn check_records(condition: &Place, found: usize) -> Result<(), DraftError> {
+    let fault = DraftFault::TooMany { most: MOST_RECORDS, found };
+    if found > MOST_RECORDS { Err(DraftError::new(condition.at("records"), fault)) } else { Ok(()) }
+}
+
 pub(super) fn on_axis_table(
     outputs: &[Channel],
     inputs: &[Channel],
@@ -253,7 +275,11 @@ impl Checker {
         let place = Place::condition(position, draft.flight_state.id.0);
         let physics = self.bundle(&place, BundleKind::Physics, draft.physics)?;
         let identified = self.bundle(&place, BundleKind::Identified, draft.identified)?;
-        Condition::new(draft.flight_state, physics, identified).map_err(|error| DraftError::new(place, error))
+        check_records(&place, draft.records.len())?;
+        let condition = Condition::new(draft.flight_state, physics, identified);
+        condition
+            .and_then(|condition| condition.with_records(draft.records))
+            .map_err(|error| DraftError::new(place, error))
     }
 
     fn bundle(
@@ -291,8 +317,9 @@ impl Checker {
             let words = format!("order says {order}, the matrices have {} states", model.order());
             self.oddities.push(Oddity { place: place.clone(), words });
         }
+        let bands = draft.bands.as_ref().map(|bands| self.bands(&place, bands)).transpose()?.map(Arc::new);
         let states = self.state_names(place, &dynamics, draft.states);
-        Ok(Model { name: draft.name, origin: draft.origin, dynamics, source: draft.source, states })
+        Ok(Model { name: draft.name, origin: draft.origin, dynamics, source: draft.source, states, bands })
     }
 
     /// The names of a model's states, if there is one for each.
@@ -342,7 +369,9 @@ impl Checker {
 
     fn measured(&self, place: &Place, draft: ResponseDraft) -> Result<MeasuredResponse, DraftError> {
         let count = draft.omega.len();
-        let table = |array: &ResponseArray, part| self.table(place, array, part, (count, "frequencies"));
+        let table = |array: &ResponseArray, part: &str| {
+            self.table(place, array, &format!("measured response, {part}"), (count, "frequencies"))
+        };
         let (re, im) = (table(&draft.re, "re")?, table(&draft.im, "im")?);
         let coherence = draft.coherence.as_ref().map(|array| table(array, "coherence")).transpose()?;
         let wrong = |error| DraftError::new(place.at("measured response"), error);
@@ -350,14 +379,23 @@ impl Checker {
         let response = match &draft.valid_bands {
             None => response,
             Some(array) => {
-                let bands = self.table(place, array, "valid_band_rad_s", (2, "first and last frequency"))?;
+                let bands =
+                    self.table(place, array, "measured response, valid_band_rad_s", (2, "first and last frequency"))?;
                 response.with_valid_bands(bands.map(|_, band| [band[0], band[1]])).map_err(wrong)?
             }
         };
         Ok(response.with_estimate(draft.estimate))
     }
 
-    /// A part of a measured response, `count` numbers for each pair.
+    fn bands(&self, place: &Place, draft: &BandsDraft) -> Result<ModelBands, DraftError> {
+        let count = draft.omega.len();
+        let table = |array, part: &str| self.table(place, array, &format!("bands, {part}"), (count, "frequencies"));
+        let (sd_db, sd_deg) = (table(&draft.sd_db, "sd_db")?, table(&draft.sd_deg, "sd_deg")?);
+        let bands = ModelBands::new(draft.omega.clone(), sd_db, sd_deg);
+        bands.map_err(|error| DraftError::new(place.at("bands"), error))
+    }
+
+    /// A table of frequency data, `count` numbers for each pair.
     fn table(
         &self,
         place: &Place,
@@ -371,7 +409,7 @@ impl Checker {
                 expected: format!("{} (outputs x inputs x {of})", dimensions(shape)),
                 found: dimensions(array.shape),
             };
-            return Err(DraftError::new(place.at(format!("measured response, {part}")), fault));
+            return Err(DraftError::new(place.at(part), fault));
         }
         Ok(PairTable::from_fn(self.outputs, self.inputs, |Pair { output, input }| {
             let start = (output * self.inputs + input) * count;

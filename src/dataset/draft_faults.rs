@@ -2,7 +2,7 @@
 
 use super::band::Band;
 use super::condition::Condition;
-use super::draft::{Checker, ConditionDraft, DatasetDraft, DraftError, check_count, on_axis_table};
+use super::draft::{Checker, ConditionDraft, DatasetDraft, DraftError, check_count, check_records, on_axis_table};
 use super::identity::BundleKind;
 use super::limits::{MOST_CHANNELS, MOST_CONDITIONS};
 use super::model::Model;
@@ -57,8 +57,10 @@ fn faults_of_condition(checker: &mut Checker, position: usize, draft: &Condition
     };
     let physics = bundle(BundleKind::Physics, &draft.physics);
     let identified = bundle(BundleKind::Identified, &draft.identified);
+    faults.extend(check_records(&place, draft.records.len()).err());
     if faults.is_empty() {
-        let condition = Condition::new(draft.flight_state.clone(), physics, identified);
+        let condition = Condition::new(draft.flight_state.clone(), physics, identified)
+            .and_then(|condition| condition.with_records(draft.records.clone()));
         faults.extend(condition.err().map(|error| DraftError::new(place, error)));
     }
     faults

@@ -11,6 +11,10 @@ pub const MOST_PAIRS: usize = MOST_CHANNELS * MOST_CHANNELS;
 pub const MOST_CONDITIONS: usize = 5000;
 /// Models of a bundle: comparing their names takes time that grows with the square.
 pub const MOST_MODELS: usize = 5000;
+/// Records of a condition: comparing their names takes time that grows with the square.
+pub const MOST_RECORDS: usize = 1000;
+/// Pieces of a record, and records that a model says it was made of.
+pub const MOST_PIECES: usize = 1000;
 /// Models of all conditions together.
 pub const MOST_MODELS_IN_ALL: usize = 50_000;
 /// States of a model: the time of a response grows with the third power.

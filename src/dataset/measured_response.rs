@@ -155,7 +155,7 @@ impl MeasuredResponse {
     }
 }
 
-fn check_frequencies(omega: &[f64]) -> Result<(), MeasuredResponseError> {
+pub(super) fn check_frequencies(omega: &[f64]) -> Result<(), MeasuredResponseError> {
     if omega.len() < 2 {
         return Err(MeasuredResponseError::TooFewFrequencies { found: omega.len() });
     }
@@ -169,7 +169,7 @@ fn check_frequencies(omega: &[f64]) -> Result<(), MeasuredResponseError> {
     Ok(())
 }
 
-fn check_values(
+pub(super) fn check_values(
     array: &'static str,
     table: &PairTable<Vec<f64>>,
     length: usize,

@@ -7,6 +7,7 @@ use sha2::{Digest, Sha256};
 
 use super::content::ContentHash;
 use super::measured_response::MeasuredResponse;
+use super::model_bands::ModelBands;
 use super::state_space::StateSpace;
 
 /// How the response of a model is known.
@@ -63,6 +64,8 @@ pub struct Provenance {
     pub made: Option<String>,
     /// What else the reader noted.
     pub note: Option<String>,
+    /// Names of the flight records that an identified model was made of; none where they are not said.
+    pub records: Vec<String>,
 }
 
 impl Provenance {
@@ -74,6 +77,7 @@ impl Provenance {
             named("variable ", &self.variable),
             named("made ", &self.made),
             named("SHA-256 ", &self.sha256),
+            (!self.records.is_empty()).then(|| format!("from the records {}", self.records.join(", "))),
             self.note.clone(),
         ];
         parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
@@ -93,12 +97,14 @@ pub struct Model {
     pub source: Option<Provenance>,
     /// Names of the states, one for each; none where they are not known.
     pub states: Arc<[String]>,
+    /// How uncertain its response is, where the identification says so.
+    pub bands: Option<Arc<ModelBands>>,
 }
 
 impl Model {
     /// A model of this name.
     pub fn new(name: impl Into<String>, origin: Origin, dynamics: Dynamics) -> Self {
-        Self { name: name.into(), origin, dynamics, source: None, states: Arc::default() }
+        Self { name: name.into(), origin, dynamics, source: None, states: Arc::default(), bands: None }
     }
 
     /// The name of a state, or its number (from 1) where it has none: "q", "state 5".

@@ -78,7 +78,7 @@ fn entry_words(steps: &[Step]) -> String {
             Step::Key(key) => {
                 indices = match key.as_str() {
                     "A" | "B" | "C" | "D" => &["row", "column"],
-                    "re" | "im" | "coherence" | "valid_band_rad_s" => &["output", "input"],
+                    "re" | "im" | "coherence" | "valid_band_rad_s" | "sd_db" | "sd_deg" => &["output", "input"],
                     _ => &[],
                 };
                 let matrix = if indices == ["row", "column"] { "matrix " } else { "" };

@@ -235,8 +235,9 @@ fn reasons_of(choice: &ConditionChoice) -> Vec<ReasonEntry> {
 /// Where the models come from, as far as their dataset says.
 fn sources_of(condition: &Condition) -> Vec<SourceEntry> {
     let entry = |bundle: BundleKind, model: &Model| {
-        let Provenance { file, sha256, variable, made, note } = model.source.clone()?;
-        Some(SourceEntry { bundle: bundle.to_string(), model: model.name.clone(), file, sha256, variable, made, note })
+        let Provenance { file, sha256, variable, made, note, records } = model.source.clone()?;
+        let (bundle, model) = (bundle.to_string(), model.name.clone());
+        Some(SourceEntry { bundle, model, file, sha256, variable, made, note, records })
     };
     let of_bundle = |kind| condition.bundle(kind).iter().filter_map(move |model| entry(kind, model));
     BundleKind::BOTH.into_iter().flat_map(of_bundle).collect()

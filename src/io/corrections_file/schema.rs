@@ -345,4 +345,7 @@ pub struct SourceEntry {
     pub made: Option<String>,
     /// What else is known of it.
     pub note: Option<String>,
+    /// Names of the flight records that it was identified from.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub records: Vec<String>,
 }

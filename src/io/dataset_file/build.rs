@@ -3,14 +3,17 @@
 use nalgebra::DMatrix;
 
 use crate::dataset::{
-    BundleKind, Channel, ConditionDraft, ConditionId, DatasetDraft, Estimate, FlightState, ModelDraft, Origin, Place,
-    Provenance, ResponseArray, ResponseDraft, Timing,
+    BandsDraft, BundleKind, Channel, ConditionDraft, ConditionId, ConditionRecord, DatasetDraft, Estimate, FlightState,
+    ModelDraft, Origin, Place, Provenance, RecordKind, ResponseArray, ResponseDraft, Timing,
 };
 use crate::io::content_fault::ContentFault;
 use crate::io::flaw::Flaw;
 use crate::io::nested::Nested;
 
-use super::schema::{ChannelText, ConditionText, DatasetText, IdentifiedText, PhysicsText, ResponseText, SourceText};
+use super::schema::{
+    BandsText, ChannelText, ConditionText, DatasetText, IdentifiedText, PhysicsText, RecordText, ResponseText,
+    SourceText,
+};
 
 /// The draft that a file's text holds; of its content only what JSON alone spells is checked: words, not numbers.
 pub(super) fn draft_of(text: DatasetText) -> Result<DatasetDraft, Flaw> {
@@ -46,6 +49,8 @@ fn condition_of(position: usize, text: ConditionText) -> Result<ConditionDraft, 
         weight: text.weight,
         mass_kg: text.mass_kg,
     };
+    let records = text.records.unwrap_or_default().into_iter().enumerate();
+    let records = records.map(|(index, record)| record_of(&place, index + 1, record)).collect::<Result<_, _>>()?;
     let physics = text.physics_models.into_iter().enumerate();
     let physics = physics.map(|(index, model)| {
         let place = place.model(BundleKind::Physics, index + 1, &model.name);
@@ -55,6 +60,29 @@ fn condition_of(position: usize, text: ConditionText) -> Result<ConditionDraft, 
         flight_state,
         physics: physics.collect::<Result<_, _>>()?,
         identified: text.identified_models.into_iter().map(identified_model_of).collect(),
+        records,
+    })
+}
+
+fn record_of(condition: &Place, position: usize, text: RecordText) -> Result<ConditionRecord, Flaw> {
+    let kind = match text.kind {
+        None => RecordKind::Other,
+        Some(word) => RecordKind::of(&word).ok_or_else(|| {
+            let words = RecordKind::ALL.map(|kind| format!("\"{}\"", kind.word()));
+            let fault = ContentFault::Word { expected: format!("one of {}", words.join(", ")), found: word };
+            Flaw::new(condition.at(format!("records, entry {position}, kind")), fault)
+        })?,
+    };
+    Ok(ConditionRecord {
+        name: text.name,
+        file: text.file,
+        variable: text.variable,
+        sha256: text.sha256,
+        kind,
+        held_out: text.held_out,
+        used: text.used.unwrap_or(true),
+        sample_time_s: text.sample_time_s,
+        used_s: text.used_s.unwrap_or_default(),
     })
 }
 
@@ -81,6 +109,7 @@ fn physics_model_of(place: &Place, text: PhysicsText) -> Result<ModelDraft, Flaw
         response: text.frequency_response.map(response_of),
         states: text.states.unwrap_or_default(),
         source: text.source.map(provenance_of),
+        bands: None,
     })
 }
 
@@ -98,7 +127,16 @@ fn identified_model_of(text: IdentifiedText) -> ModelDraft {
         response: text.frequency_response.map(response_of),
         states: text.states.unwrap_or_default(),
         source: text.source.map(provenance_of),
+        bands: text.bands.map(bands_of),
     }
+}
+
+fn bands_of(text: BandsText) -> BandsDraft {
+    BandsDraft { omega: text.omega_rad_s, sd_db: array(text.sd_db), sd_deg: array(text.sd_deg) }
+}
+
+fn array(nested: Nested<3>) -> ResponseArray {
+    ResponseArray { shape: nested.shape, values: nested.values }
 }
 
 fn matrix(array: Nested<2>) -> DMatrix<f64> {
@@ -106,7 +144,6 @@ fn matrix(array: Nested<2>) -> DMatrix<f64> {
 }
 
 fn response_of(text: ResponseText) -> ResponseDraft {
-    let array = |nested: Nested<3>| ResponseArray { shape: nested.shape, values: nested.values };
     ResponseDraft {
         omega: text.omega_rad_s,
         re: array(text.re),
@@ -118,6 +155,6 @@ fn response_of(text: ResponseText) -> ResponseDraft {
 }
 
 fn provenance_of(text: SourceText) -> Provenance {
-    let SourceText { file, sha256, variable, made, note } = text;
-    Provenance { file, sha256, variable, made, note }
+    let SourceText { file, sha256, variable, made, note, records } = text;
+    Provenance { file, sha256, variable, made, note, records: records.unwrap_or_default() }
 }

@@ -1,13 +1,14 @@
 //! From a dataset to what its file says.
 
 use crate::dataset::{
-    BundleKind, Channel, Condition, Dataset, Dynamics, Estimate, MeasuredResponse, Model, Origin, PairTable,
-    Provenance, Timing,
+    BundleKind, Channel, Condition, ConditionRecord, Dataset, Dynamics, Estimate, MeasuredResponse, Model, ModelBands,
+    Origin, PairTable, Provenance, Timing,
 };
 use crate::io::nested::Nested;
 
 use super::schema::{
-    BandText, ChannelText, ConditionText, DatasetText, FORMAT, IdentifiedText, PhysicsText, ResponseText, SourceText,
+    BandText, BandsText, ChannelText, ConditionText, DatasetText, FORMAT, IdentifiedText, PhysicsText, RecordText,
+    ResponseText, SourceText,
 };
 
 /// The text of a dataset, entry by entry.
@@ -49,7 +50,20 @@ fn condition_text(condition: &Condition) -> ConditionText {
         mass_kg: state.mass_kg,
         physics_models: condition.bundle(BundleKind::Physics).iter().map(physics_text).collect(),
         identified_models: condition.bundle(BundleKind::Identified).iter().map(identified_text).collect(),
+        records: entries(condition.records()).map(|records| records.iter().map(record_text).collect()),
     }
+}
+
+/// A list, where there is anything in it.
+fn entries<T>(list: &[T]) -> Option<&[T]> {
+    (!list.is_empty()).then_some(list)
+}
+
+fn record_text(record: &ConditionRecord) -> RecordText {
+    let ConditionRecord { name, file, variable, sha256, kind, held_out, used, sample_time_s, used_s } = record.clone();
+    let (kind, used) = (Some(kind.word().to_owned()), Some(used));
+    let used_s = entries(&used_s).map(<[_]>::to_vec);
+    RecordText { name, file, variable, sha256, kind, held_out, used, sample_time_s, used_s }
 }
 
 fn physics_text(model: &Model) -> PhysicsText {
@@ -96,6 +110,7 @@ fn identified_text(model: &Model) -> IdentifiedText {
         input_delays_s,
         output_delays_s,
         frequency_response,
+        bands: model.bands.as_deref().map(bands_text),
         source: model.source.as_ref().map(source_text),
     }
 }
@@ -112,8 +127,8 @@ fn state_names(model: &Model) -> Option<Vec<String>> {
 }
 
 fn source_text(provenance: &Provenance) -> SourceText {
-    let Provenance { file, sha256, variable, made, note } = provenance.clone();
-    SourceText { file, sha256, variable, made, note }
+    let Provenance { file, sha256, variable, made, note, records } = provenance.clone();
+    SourceText { file, sha256, variable, made, note, records: entries(&records).map(<[_]>::to_vec) }
 }
 
 fn matrices(dynamics: &Dynamics) -> [Option<Nested<2>>; 4] {
@@ -125,6 +140,21 @@ fn matrices(dynamics: &Dynamics) -> [Option<Nested<2>>; 4] {
     }
 }
 
+fn bands_text(bands: &ModelBands) -> BandsText {
+    let count = bands.omega().len();
+    BandsText {
+        omega_rad_s: bands.omega().to_vec(),
+        sd_db: nested(bands.sd_db(), count),
+        sd_deg: nested(bands.sd_deg(), count),
+    }
+}
+
+/// A table with so many numbers for each pair.
+fn nested(table: &PairTable<Vec<f64>>, count: usize) -> Nested<3> {
+    let values = table.iter().flat_map(|(_, values)| values.iter().copied()).collect();
+    Nested { shape: [table.outputs(), table.inputs(), count], values }
+}
+
 fn response_text(response: &MeasuredResponse) -> ResponseText {
     let count = response.omega().len();
     let values = response.values();
@@ -133,10 +163,7 @@ fn response_text(response: &MeasuredResponse) -> ResponseText {
         shape,
         values: values.iter().flat_map(|(_, values)| values.iter().map(of)).collect(),
     };
-    let coherence = response.coherence().map(|table: &PairTable<Vec<f64>>| Nested {
-        shape,
-        values: table.iter().flat_map(|(_, values)| values.iter().copied()).collect(),
-    });
+    let coherence = response.coherence().map(|table| nested(table, count));
     let valid_band_rad_s = response.valid_bands().map(|bands| Nested {
         shape: [bands.outputs(), bands.inputs(), 2],
         values: bands.iter().flat_map(|(_, band)| band.iter().copied()).collect(),

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::dataset::limits::{
     MOST_CHANNELS, MOST_CONDITIONS, MOST_COORDINATES, MOST_FREQUENCIES, MOST_MODELS, MOST_MODELS_IN_ALL, MOST_PAIRS,
-    MOST_STATES,
+    MOST_PIECES, MOST_RECORDS, MOST_STATES,
 };
 use crate::io::json_text::Format;
 use crate::io::list::{Numbers, list, list_while, optional_list};
@@ -81,6 +81,33 @@ pub(super) struct ConditionText {
     pub(super) physics_models: Vec<PhysicsText>,
     #[serde(deserialize_with = "list::<MOST_MODELS, _, _>")]
     pub(super) identified_models: Vec<IdentifiedText>,
+    #[serde(
+        default,
+        deserialize_with = "optional_list::<MOST_RECORDS, _, _>",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub(super) records: Option<Vec<RecordText>>,
+}
+
+/// A flight record.
+#[derive(Deserialize, Serialize)]
+pub(super) struct RecordText {
+    pub(super) name: String,
+    pub(super) file: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) variable: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) sha256: Option<String>,
+    /// "other" where it is not given.
+    pub(super) kind: Option<String>,
+    #[serde(default)]
+    pub(super) held_out: bool,
+    /// True where it is not given.
+    pub(super) used: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) sample_time_s: Option<f64>,
+    #[serde(default, deserialize_with = "optional_list::<MOST_PIECES, _, _>", skip_serializing_if = "Option::is_none")]
+    pub(super) used_s: Option<Vec<[f64; 2]>>,
 }
 
 /// A physics model. Frequency data are read only to be refused in words.
@@ -159,6 +186,8 @@ pub(super) struct IdentifiedText {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) frequency_response: Option<ResponseText>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) bands: Option<BandsText>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) source: Option<SourceText>,
 }
 
@@ -175,6 +204,18 @@ pub(super) struct SourceText {
     pub(super) made: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) note: Option<String>,
+    /// Flight records of the condition.
+    #[serde(default, deserialize_with = "optional_list::<MOST_PIECES, _, _>", skip_serializing_if = "Option::is_none")]
+    pub(super) records: Option<Vec<String>>,
+}
+
+/// Standard deviations of a model's response.
+#[derive(Deserialize, Serialize)]
+pub(super) struct BandsText {
+    #[serde(deserialize_with = "list::<MOST_FREQUENCIES, _, _>")]
+    pub(super) omega_rad_s: Vec<f64>,
+    pub(super) sd_db: Nested<3>,
+    pub(super) sd_deg: Nested<3>,
 }
 
 /// A measured frequency response.

@@ -20,6 +20,7 @@ pub(super) fn found_models(models: &[ExportedModel], dataset: &Dataset) -> Vec<F
             response: None,
             source: None,
             states: model.states.clone(),
+            bands: None,
         },
         inputs: labels(dataset.inputs()),
         outputs: labels(dataset.outputs()),

@@ -2,8 +2,8 @@
 
 use crate::assembly::{ChannelLabel, Facts, FoundModel};
 use crate::dataset::{
-    BundleKind, Channel, Condition, Dataset, Dynamics, Model, ModelDraft, PairTable, Provenance, ResponseArray,
-    ResponseDraft, Timing,
+    BandsDraft, BundleKind, Channel, Condition, Dataset, Dynamics, Model, ModelBands, ModelDraft, PairTable,
+    Provenance, ResponseArray, ResponseDraft, Timing,
 };
 
 /// Every model, with what the dataset says about it.
@@ -53,6 +53,7 @@ fn found(dataset: &Dataset, condition: &Condition, kind: BundleKind, model: &Mod
                 ..Provenance::default()
             }),
             states: model.states.to_vec(),
+            bands: model.bands.as_deref().map(bands_draft),
         },
         inputs: dataset.inputs().iter().map(label).collect(),
         outputs: dataset.outputs().iter().map(label).collect(),
@@ -64,4 +65,12 @@ fn found(dataset: &Dataset, condition: &Condition, kind: BundleKind, model: &Mod
         },
         notes: Vec::new(),
     }
+}
+
+fn bands_draft(bands: &ModelBands) -> BandsDraft {
+    let array = |table: &PairTable<Vec<f64>>| ResponseArray {
+        shape: [table.outputs(), table.inputs(), bands.omega().len()],
+        values: table.iter().flat_map(|(_, values)| values.iter().copied()).collect(),
+    };
+    BandsDraft { omega: bands.omega().to_vec(), sd_db: array(bands.sd_db()), sd_deg: array(bands.sd_deg()) }
 }

@@ -80,6 +80,7 @@ fn model(
             response: Some(draft),
             source: Some(Provenance { variable, ..Provenance::default() }),
             states: Vec::new(),
+            bands: None,
         },
         inputs: vec![label(input)],
         outputs: vec![label(output)],

@@ -69,6 +69,7 @@ pub(super) fn response(record: &Record<'_>, variable: &str) -> Result<FoundModel
             response: Some(response),
             source: Some(Provenance { variable, ..Provenance::default() }),
             states: Vec::new(),
+            bands: None,
         },
         inputs: inputs_of(record, inputs),
         outputs: outputs_of(record, outputs),

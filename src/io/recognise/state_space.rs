@@ -88,6 +88,7 @@ pub(super) fn found(
             response: None,
             source: Some(Provenance { variable: source, ..Provenance::default() }),
             states,
+            bands: None,
         },
         inputs,
         outputs,

@@ -69,6 +69,8 @@ pub(super) fn add_models(page: &mut Page, study: &Study) {
 }
 
 fn cells(source: &Provenance) -> [String; 5] {
-    let Provenance { file, sha256, variable, made, note } = source;
-    [file, sha256, variable, made, note].map(|part| part.clone().unwrap_or_default())
+    let Provenance { file, sha256, variable, made, note, records } = source;
+    let records = Some(format!("records {}", records.join(", "))).filter(|_| !records.is_empty());
+    let variable = variable.clone().or(records);
+    [file, sha256, &variable, made, note].map(|part| part.clone().unwrap_or_default())
 }

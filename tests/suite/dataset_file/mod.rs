@@ -9,6 +9,7 @@ use gdcm::io::{DatasetOrigin, FileError, LARGEST_TEXT, embedded_example, load_an
 use serde_json::{Value, json};
 
 mod properties;
+mod records;
 mod studies;
 mod wrong_content;
 mod wrong_text;

@@ -1,0 +1,3 @@
+//! Identified models from flight records (M14).
+mod flight_record;
+pub use flight_record::{FlightRecord, Piece};

@@ -1,0 +1,1 @@
+//! From the columns of record files to flight records.

@@ -61,14 +61,11 @@ impl GdcmApp {
 
     /// Takes up the file of the dataset that the study is about, after a reload or a step back or forth across one.
     pub(super) fn follow_dataset(&mut self) {
-        let dataset = &self.state.study.dataset;
-        if Arc::ptr_eq(&self.loaded.dataset, dataset) {
-            return;
-        }
+        let dataset = self.state.study.file_dataset();
         if let Some(index) = self.earlier.iter().position(|loaded| Arc::ptr_eq(&loaded.dataset, dataset)) {
             std::mem::swap(&mut self.loaded, &mut self.earlier[index]);
+            self.state.file_cautions.clone_from(&self.loaded.cautions);
         }
-        self.state.file_cautions.clone_from(&self.loaded.cautions);
         self.state.follow_dataset();
     }
 }

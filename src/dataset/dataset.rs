@@ -115,6 +115,19 @@ impl Dataset {
         Ok(Self { name, description, inputs, outputs, on_axis, band, conditions })
     }
 
+    /// The dataset with this condition in place of its condition of the same id; the others are shared.
+    ///
+    /// # Errors
+    /// A model of another shape than the channels'.
+    pub fn with_condition(&self, condition: Condition) -> Result<Self, DatasetError> {
+        check_conditions(std::slice::from_ref(&condition), self.outputs.len(), self.inputs.len())?;
+        let mut dataset = self.clone();
+        if let Some(place) = dataset.conditions.iter_mut().find(|place| place.id() == condition.id()) {
+            *place = Arc::new(condition);
+        }
+        Ok(dataset)
+    }
+
     /// What describes the dataset, besides its conditions.
     pub fn header(&self) -> DatasetHeader {
         DatasetHeader {

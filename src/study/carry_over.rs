@@ -10,6 +10,7 @@ use super::document::{ConditionChoice, Study};
 use super::edit::Edit;
 use super::inventory::Inventory;
 use super::settings::Settings;
+use super::taken_models::TakenModels;
 use super::variant::Variant;
 
 /// One thing in which a dataset differs from the one that a study was made with, or a decision that has no place in it.
@@ -96,6 +97,8 @@ pub struct Decisions {
     pub ignored: Vec<(String, String)>,
     /// Choices in each condition.
     pub choices: BTreeMap<ConditionId, ConditionChoice>,
+    /// Models taken in place of those of the file.
+    pub taken: Vec<(ConditionId, Arc<TakenModels>)>,
     /// The decisions kept under names; these have none of their own.
     pub variants: Vec<(String, Decisions)>,
 }
@@ -110,6 +113,7 @@ impl Decisions {
             constrained: names(&study.settings.constrained),
             ignored: names(&study.settings.fitted.map(|_, fitted| !fitted)),
             choices: study.choices.clone(),
+            taken: study.taken_models().map(|(id, taken)| (id, Arc::clone(taken))).collect(),
             variants: study
                 .variants
                 .iter()
@@ -125,6 +129,10 @@ impl Decisions {
         let constrained = marked("hold", &self.constrained, &study, &mut differences);
         let fitted = marked("ignore", &self.ignored, &study, &mut differences).map(|_, ignored| !ignored);
         study.settings = Settings { constrained, fitted, ..self.settings.clone() };
+        for taken in &self.taken {
+            let edit = Edit::TakeModels(vec![taken.clone()]);
+            carry_out(&edit, &mut study, &mut differences);
+        }
         for (&condition, choice) in &self.choices {
             take_choice(&mut study, condition, choice, &mut differences);
         }
@@ -174,17 +182,19 @@ fn take_choice(study: &mut Study, condition: ConditionId, choice: &ConditionChoi
         edits.extend(reasons.map(|(name, reason)| Edit::SetReason(id(name), reason.clone())));
         edits.extend(of_bundle.pinned.iter().map(|name| Edit::Pin(id(name))));
     }
-    for edit in edits {
-        if let Err(refusal) = study.apply(&edit) {
-            differences.push(Difference::NotApplied { decision: edit.label(study), why: refusal.to_string() });
-        }
+    edits.iter().for_each(|edit| carry_out(edit, study, differences));
+}
+
+fn carry_out(edit: &Edit, study: &mut Study, differences: &mut Vec<Difference>) {
+    if let Err(refusal) = study.apply(edit) {
+        differences.push(Difference::NotApplied { decision: edit.label(study), why: refusal.to_string() });
     }
 }
 
 impl Study {
     /// This study of another state of its dataset: with every decision that still applies, and all that is different.
     pub fn carried_over(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
-        let mut differences = Inventory::of(&self.dataset).differences(&dataset);
+        let mut differences = Inventory::of(self.file_dataset()).differences(&dataset);
         let (study, not_applied) = Decisions::of(self).applied_to(dataset);
         differences.extend(not_applied);
         (study, differences)

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::dataset::{BundleKind, ConditionId, Dataset, ModelId};
 
 use super::settings::Settings;
+use super::taken_models::Taken;
 use super::variant::Variant;
 
 /// The engineer's choices in one bundle.
@@ -102,6 +103,8 @@ pub struct Study {
     /// Other decisions about the dataset, kept under their names, in the order in which they were kept. No analysis depends on
     /// them.
     pub variants: Vec<Arc<Variant>>,
+    /// Models taken in place of those of the dataset's file; `dataset` has them.
+    pub(super) taken: Option<Taken>,
 }
 
 impl PartialEq for Study {
@@ -119,7 +122,7 @@ impl Study {
         let settings = Settings::of(&dataset);
         let ids = dataset.conditions().iter().map(|condition| condition.id());
         let choices = ids.map(|id| (id, ConditionChoice::default())).collect();
-        Self { dataset, settings, choices, variants: Vec::new() }
+        Self { dataset, settings, choices, variants: Vec::new(), taken: None }
     }
 
     /// The choices in one condition; those of a condition that the dataset does not have are none.

@@ -1,10 +1,13 @@
 //! Every decision the engineer can take about a study, and the only code that carries one out.
 
+use std::sync::Arc;
+
 use crate::dataset::{BundleKind, Condition, ConditionId, ModelId, Pair};
 use crate::units::number;
 
 use super::document::{ConditionChoice, Study};
 use super::setting::Setting;
+use super::taken_models::TakenModels;
 
 /// One decision about a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +61,13 @@ pub enum Edit {
     ConstrainOnAxis,
     /// Change a setting of the whole study.
     Set(Setting),
+    /// Put models identified from flight records into conditions, in place of the identified models there.
+    TakeModels(Vec<(ConditionId, Arc<TakenModels>)>),
+    /// Put the identified models of the dataset's file back into a condition.
+    ReturnModels {
+        /// The condition.
+        condition: ConditionId,
+    },
     /// Keep the present decisions under a name.
     KeepVariant {
         /// The name.
@@ -121,6 +131,14 @@ pub enum EditRefusal {
         most: usize,
         /// Characters it has.
         found: usize,
+    },
+    /// Models that cannot be those of a condition.
+    #[error("condition {condition}: {why}")]
+    Models {
+        /// The condition's id.
+        condition: ConditionId,
+        /// Why not.
+        why: String,
     },
     /// A variant needs a name.
     #[error("a variant needs a name")]
@@ -188,6 +206,13 @@ impl Edit {
             Edit::SetScheduled { condition, .. } => format!("leave condition {condition} out"),
             Edit::ConstrainOnAxis => "hold the on-axis responses".to_owned(),
             Edit::Set(setting) => setting.label(&study.dataset),
+            Edit::TakeModels(taken) => match taken.as_slice() {
+                [(condition, _)] => format!("take identified models (condition {condition})"),
+                _ => format!("take identified models ({} conditions)", taken.len()),
+            },
+            Edit::ReturnModels { condition } => {
+                format!("put the file's identified models back (condition {condition})")
+            }
             Edit::KeepVariant { name } => format!("keep variant {name}"),
             Edit::TakeVariant { name } => format!("take variant {name}"),
             Edit::RemoveVariant { name } => format!("remove variant {name}"),
@@ -229,6 +254,8 @@ impl Study {
             Edit::SetScheduled { condition, scheduled } => self.condition(*condition)?.1.scheduled = *scheduled,
             Edit::ConstrainOnAxis => self.settings.constrained = self.dataset.on_axis().clone(),
             Edit::Set(setting) => return self.settings.apply(setting),
+            Edit::TakeModels(taken) => return self.take_models(taken),
+            Edit::ReturnModels { condition } => return self.return_models(*condition),
             Edit::KeepVariant { name } => return self.keep_variant(name),
             Edit::TakeVariant { name } => return self.take_variant(name),
             Edit::RemoveVariant { name } => return self.remove_variant(name),

@@ -29,6 +29,7 @@ mod remark;
 mod setting;
 mod settings;
 mod table;
+mod taken_models;
 mod toggles;
 mod variant;
 mod variant_job;
@@ -66,6 +67,7 @@ pub use settings::{
     LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings,
 };
 pub use table::Table;
+pub use taken_models::{Taken, TakenModels};
 pub use toggles::Toggles;
 pub use variant::{LONGEST_VARIANT_NAME, Variant};
 pub use variant_job::VariantJob;

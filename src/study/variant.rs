@@ -34,7 +34,13 @@ impl Study {
     pub fn of_variant(&self, name: &str) -> Option<Study> {
         let Variant { settings, choices, .. } = self.variant(name)?;
         let dataset = Arc::clone(&self.dataset);
-        Some(Study { dataset, settings: settings.clone(), choices: choices.clone(), variants: Vec::new() })
+        Some(Study {
+            dataset,
+            settings: settings.clone(),
+            choices: choices.clone(),
+            variants: Vec::new(),
+            taken: self.taken.clone(),
+        })
     }
 
     pub(super) fn keep_variant(&mut self, name: &str) -> Result<(), EditRefusal> {

@@ -122,6 +122,8 @@ pub struct Forms {
 pub struct State {
     /// The study: what is saved.
     pub study: Study,
+    /// The dataset that what is shown is of.
+    followed: Arc<Dataset>,
     /// What undo goes back over.
     pub history: History,
     /// Name of the study's file, or what stands for it.
@@ -159,6 +161,7 @@ impl State {
         let mut display = Display::of(study.dataset.conditions()[0].id(), pair);
         display.once_held = study.settings.constrained.marked().collect();
         Self {
+            followed: Arc::clone(&study.dataset),
             study,
             history: History::default(),
             study_name,
@@ -281,9 +284,14 @@ impl State {
         }
     }
 
-    /// Shows what there is of another dataset: the same response where it has that, the first otherwise.
+    /// Shows what there is of the study's dataset, where it is another one now: the same response where it has that, the first
+    /// otherwise.
     pub fn follow_dataset(&mut self) {
         let dataset = &self.study.dataset;
+        if Arc::ptr_eq(dataset, &self.followed) {
+            return;
+        }
+        self.followed = Arc::clone(dataset);
         let pair = self.display.pair;
         if pair.output >= dataset.outputs().len() || pair.input >= dataset.inputs().len() {
             self.display.pair = dataset.measuring_pairs().marked().next().unwrap_or_default();

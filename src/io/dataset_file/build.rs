@@ -64,7 +64,8 @@ fn condition_of(position: usize, text: ConditionText) -> Result<ConditionDraft, 
     })
 }
 
-fn record_of(condition: &Place, position: usize, text: RecordText) -> Result<ConditionRecord, Flaw> {
+/// The record of a text; `condition` is where it stands.
+pub(in crate::io) fn record_of(condition: &Place, position: usize, text: RecordText) -> Result<ConditionRecord, Flaw> {
     let kind = match text.kind {
         None => RecordKind::Other,
         Some(word) => RecordKind::of(&word).ok_or_else(|| {
@@ -113,7 +114,8 @@ fn physics_model_of(place: &Place, text: PhysicsText) -> Result<ModelDraft, Flaw
     })
 }
 
-fn identified_model_of(text: IdentifiedText) -> ModelDraft {
+/// The draft of an identified model's text.
+pub(in crate::io) fn identified_model_of(text: IdentifiedText) -> ModelDraft {
     let timing = Timing {
         sample_time_s: text.sample_time_s,
         input_delays_s: text.input_delays_s,

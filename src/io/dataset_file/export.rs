@@ -59,7 +59,8 @@ fn entries<T>(list: &[T]) -> Option<&[T]> {
     (!list.is_empty()).then_some(list)
 }
 
-fn record_text(record: &ConditionRecord) -> RecordText {
+/// A record, as files say it.
+pub(in crate::io) fn record_text(record: &ConditionRecord) -> RecordText {
     let ConditionRecord { name, file, variable, sha256, kind, held_out, used, sample_time_s, used_s } = record.clone();
     let (kind, used) = (Some(kind.word().to_owned()), Some(used));
     let used_s = entries(&used_s).map(<[_]>::to_vec);
@@ -86,7 +87,8 @@ fn physics_text(model: &Model) -> PhysicsText {
     }
 }
 
-fn identified_text(model: &Model) -> IdentifiedText {
+/// An identified model, as files say it.
+pub(in crate::io) fn identified_text(model: &Model) -> IdentifiedText {
     let (method, order) = match &model.origin {
         Origin::Identified { method, order } => (method.clone(), *order),
         Origin::Nominal { .. } | Origin::Perturbed { .. } => (None, None),

@@ -23,6 +23,10 @@ use build::draft_of;
 use export::text_of;
 use schema::{DatasetText, FORMAT};
 
+pub(super) use build::{identified_model_of, record_of};
+pub(super) use export::{identified_text, record_text};
+pub(super) use schema::{IdentifiedText, RecordText};
+
 /// The example dataset: a synthetic UH-60A-class helicopter at the paper's eleven flight conditions.
 const EXAMPLE: &[u8] = include_bytes!("../../../assets/example-dataset.json.gz");
 /// Name under which the example is written.

@@ -91,7 +91,7 @@ pub(super) struct ConditionText {
 
 /// A flight record.
 #[derive(Deserialize, Serialize)]
-pub(super) struct RecordText {
+pub(in crate::io) struct RecordText {
     pub(super) name: String,
     pub(super) file: String,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -151,7 +151,7 @@ pub(super) struct PhysicsText {
 
 /// An identified model.
 #[derive(Deserialize, Serialize)]
-pub(super) struct IdentifiedText {
+pub(in crate::io) struct IdentifiedText {
     pub(super) name: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) method: Option<String>,

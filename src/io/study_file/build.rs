@@ -1,14 +1,16 @@
 //! From what a study file says to the decisions it holds, each error with its place.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use crate::dataset::{ConditionId, Place};
+use crate::dataset::{ConditionId, Place, checked_identified};
 use crate::io::content_fault::ContentFault;
+use crate::io::dataset_file::{identified_model_of, record_of};
 use crate::io::flaw::Flaw;
 use crate::io::settings_entry::SettingsEntry;
-use crate::study::{BundleChoice, ConditionChoice, ConditionInventory, Decisions, Inventory, Settings};
+use crate::study::{BundleChoice, ConditionChoice, ConditionInventory, Decisions, Inventory, Settings, TakenModels};
 
-use super::schema::{BundleText, ConditionInventoryText, ConditionText, VariantText};
+use super::schema::{BundleText, ConditionInventoryText, ConditionText, TakenText, VariantText};
 
 /// The decisions of a study file. `start` is what the settings are before any decision; each has to be within its range.
 pub(super) fn decisions_of(
@@ -43,7 +45,31 @@ fn present_decisions(start: Settings, text: SettingsEntry, conditions: Vec<Condi
             return Err(Flaw::new(Place::condition(index + 1, id), ContentFault::DuplicateCondition { id }));
         }
     }
-    Ok(Decisions { settings, constrained: text.constrained, ignored: text.ignored, choices, variants: Vec::new() })
+    Ok(Decisions {
+        settings,
+        constrained: text.constrained,
+        ignored: text.ignored,
+        choices,
+        taken: Vec::new(),
+        variants: Vec::new(),
+    })
+}
+
+/// The models that a study has taken, for a dataset of this shape.
+pub(super) fn taken_of(
+    text: Vec<TakenText>,
+    shape: (usize, usize),
+) -> Result<Vec<(ConditionId, Arc<TakenModels>)>, Flaw> {
+    let of = |(index, text): (usize, TakenText)| {
+        let mut place = Place::condition(index + 1, text.condition);
+        place.entry = "taken".to_owned();
+        let drafts = text.identified_models.into_iter().map(identified_model_of).collect();
+        let models = checked_identified(drafts, &place, shape)?;
+        let records = text.records.into_iter().enumerate();
+        let records = records.map(|(index, record)| record_of(&place, index + 1, record)).collect::<Result<_, _>>()?;
+        Ok((ConditionId(text.condition), Arc::new(TakenModels { models, records })))
+    };
+    text.into_iter().enumerate().map(of).collect()
 }
 
 fn bundle_choice(text: BundleText) -> BundleChoice {

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use crate::dataset::{BundleKind, Condition, ConditionId, Model};
+use crate::io::dataset_file::{identified_text, record_text};
 use crate::io::settings_entry::SettingsEntry;
-use crate::study::{BundleChoice, ConditionInventory, Inventory, Study};
+use crate::study::{BundleChoice, ConditionInventory, Inventory, Study, TakenModels};
 
 use super::schema::{
-    BundleText, ConditionInventoryText, ConditionText, DatasetReference, FORMAT, StudyText, VariantText,
+    BundleText, ConditionInventoryText, ConditionText, DatasetReference, FORMAT, StudyText, TakenText, VariantText,
 };
 
 /// The text of a study of the referenced dataset.
@@ -24,7 +25,16 @@ pub(super) fn text_of(study: &Study, dataset: DatasetReference) -> StudyText {
         dataset,
         settings: SettingsEntry::of(&study.settings, &study.dataset),
         conditions: condition_texts(study),
+        taken: study.taken_models().map(|(id, taken)| taken_text(id, taken)).collect(),
         variants: variants.collect(),
+    }
+}
+
+fn taken_text(condition: ConditionId, taken: &TakenModels) -> TakenText {
+    TakenText {
+        condition: condition.0,
+        identified_models: taken.models.iter().map(identified_text).collect(),
+        records: taken.records.iter().map(record_text).collect(),
     }
 }
 

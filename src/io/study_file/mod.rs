@@ -7,14 +7,14 @@ mod schema;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::study::{Difference, Inventory, Settings, Study};
+use crate::study::{Decisions, Difference, Inventory, Settings, Study};
 
 use super::dataset_file::{DatasetOrigin, LoadedDataset, dataset_from, embedded_example};
 use super::file_error::FileError;
 use super::output_set::{Existing, OutputSet};
 use super::source::Source;
 
-use build::{decisions_of, inventory_of};
+use build::{decisions_of, inventory_of, taken_of};
 use export::{inventory_text, text_of};
 use schema::{DatasetReference, FORMAT, StudyText};
 
@@ -55,7 +55,7 @@ fn save(
     path: &Path,
     path_text: impl FnOnce(&Path) -> Result<String, FileError>,
 ) -> Result<(), FileError> {
-    let (sha256, holds) = (loaded.sha256.clone(), Some(inventory_text(&Inventory::of(&study.dataset))));
+    let (sha256, holds) = (loaded.sha256.clone(), Some(inventory_text(&Inventory::of(study.file_dataset()))));
     let reference = match &loaded.origin {
         DatasetOrigin::EmbeddedExample => DatasetReference { path: None, name: EMBEDDED.to_owned(), sha256, holds },
         DatasetOrigin::File(dataset) => {
@@ -97,7 +97,9 @@ pub(super) fn study_from(source: &Source<'_>, path: &Path, moved: Option<&Path>)
     FORMAT.check_read(&text.format, text.version, path)?;
     let mut loaded = load_referenced(&text.dataset, path, moved)?;
     let start = Settings::of(&loaded.dataset);
+    let shape = (loaded.dataset.outputs().len(), loaded.dataset.inputs().len());
     let decisions = decisions_of(&start, text.settings, text.conditions, text.variants)
+        .and_then(|decisions| Ok(Decisions { taken: taken_of(text.taken, shape)?, ..decisions }))
         .map_err(|flaw| FileError::content(path, flaw))?;
     let (study, not_applied) = decisions.applied_to(loaded.dataset.clone());
     let mut differences = match text.dataset.holds {

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::dataset::limits::{MOST_CONDITIONS, MOST_MODELS};
+use crate::dataset::limits::{MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
+use crate::io::dataset_file::{IdentifiedText, RecordText};
 use crate::io::json_text::Format;
 use crate::io::list::list;
 use crate::io::settings_entry::SettingsEntry;
@@ -24,9 +25,22 @@ pub(super) struct StudyText {
     pub(super) settings: SettingsEntry,
     #[serde(deserialize_with = "list::<MOST_CONDITIONS, _, _>")]
     pub(super) conditions: Vec<ConditionText>,
+    /// Identified models taken in place of the dataset's own; absent where there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "list::<MOST_CONDITIONS, _, _>")]
+    pub(super) taken: Vec<TakenText>,
     /// Decisions kept under names; absent in studies of older programs.
     #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "list::<MOST_VARIANTS, _, _>")]
     pub(super) variants: Vec<VariantText>,
+}
+
+/// Identified models taken into a condition, and the flight records that they are of.
+#[derive(Deserialize, Serialize)]
+pub(super) struct TakenText {
+    pub(super) condition: i64,
+    #[serde(deserialize_with = "list::<MOST_MODELS, _, _>")]
+    pub(super) identified_models: Vec<IdentifiedText>,
+    #[serde(default, deserialize_with = "list::<MOST_RECORDS, _, _>")]
+    pub(super) records: Vec<RecordText>,
 }
 
 /// Decisions kept under a name.

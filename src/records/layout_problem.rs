@@ -1,0 +1,204 @@
+//! What is wrong, or odd, in the columns chosen from a record.
+
+use crate::units::{number, telling};
+
+/// Why the columns chosen from a record cannot be used as they are.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LayoutProblem {
+    /// Nothing says when the samples were taken.
+    #[error("no column gives the time; say which does, or the sample rate (columns: {found})")]
+    NoTime {
+        /// The columns there are.
+        found: String,
+    },
+    /// There is no column of the name asked for.
+    #[error("there is no column \"{name}\"; there are {found}")]
+    NoSuchColumn {
+        /// The name.
+        name: String,
+        /// The columns there are.
+        found: String,
+    },
+    /// Stamps stand still or fall.
+    #[error(
+        "the time in column {column} does not increase at {count} of {samples} samples, first at sample {sample} ({} s follows \
+         {} s); choose another column, give the sample rate in its place, or cut the file there",
+        number(*after), number(*before)
+    )]
+    TimeOrder {
+        /// The column, in quotation marks.
+        column: String,
+        /// How many stamps.
+        count: usize,
+        /// Of how many.
+        samples: usize,
+        /// The first of them, counted from 1.
+        sample: usize,
+        /// The stamp before it \[s\].
+        before: f64,
+        /// The stamp \[s\].
+        after: f64,
+    },
+    /// Steps of time are too long for a manoeuvre.
+    #[error(
+        "the time in column {column} goes in steps of {} s; it cannot be in the unit that it is taken in (s, ms), or it is no time",
+        telling(*step_s, 3)
+    )]
+    TimeStep {
+        /// The column, in quotation marks.
+        column: String,
+        /// The median step \[s\].
+        step_s: f64,
+    },
+    /// A sample time that is not positive.
+    #[error("the sample time is {} s; it must be a positive number of seconds", number(*step_s))]
+    SampleTime {
+        /// The sample time \[s\].
+        step_s: f64,
+    },
+    /// No column is this channel.
+    #[error("no column is the {side} {channel}; say which is (columns: {found})")]
+    NoColumn {
+        /// "input" or "output".
+        side: &'static str,
+        /// The channel.
+        channel: String,
+        /// The columns there are.
+        found: String,
+    },
+    /// Several columns can be this channel.
+    #[error("several columns can be the {side} {channel}: {found}; say which is")]
+    SeveralColumns {
+        /// "input" or "output".
+        side: &'static str,
+        /// The channel.
+        channel: String,
+        /// Their names.
+        found: String,
+    },
+    /// Columns without names, and another number of them than channels.
+    #[error(
+        "the file has {found} columns without names, where {expected} are expected (time, then inputs, then outputs); say which \
+         column is which channel"
+    )]
+    Unnamed {
+        /// Time and channels together.
+        expected: usize,
+        /// Columns of the file.
+        found: usize,
+    },
+    /// A unit that cannot be converted.
+    #[error(
+        "{channel} is in {from} in the file (column {column}) and is wanted in {to}: there is no factor from one to the other; say one"
+    )]
+    Conversion {
+        /// The channel.
+        channel: String,
+        /// The column, in quotation marks.
+        column: String,
+        /// The file's unit.
+        from: String,
+        /// The unit wanted.
+        to: String,
+    },
+    /// Two channels are one column.
+    #[error("{first} and {second} are both taken from column {column}; choose another for one of them")]
+    OneColumn {
+        /// One channel.
+        first: String,
+        /// The other, or "the time".
+        second: String,
+        /// The column, in quotation marks.
+        column: String,
+    },
+    /// A column has no numbers.
+    #[error("{channel}: column {column} has no sample that is a number; choose another")]
+    Empty {
+        /// The channel.
+        channel: String,
+        /// The column, in quotation marks.
+        column: String,
+    },
+    /// A factor that is zero or not finite.
+    #[error("{channel}: samples cannot be multiplied by {}", number(*factor))]
+    Factor {
+        /// The channel.
+        channel: String,
+        /// The factor.
+        factor: f64,
+    },
+    /// Samples that no helicopter has in this unit.
+    #[error(
+        "{channel} (column {column}) reaches {} {unit}, and no helicopter more than {} {unit}: the column or its unit is wrong{hint}",
+        telling(*value, 0), number(*most)
+    )]
+    Magnitude {
+        /// The channel.
+        channel: String,
+        /// The column, in quotation marks.
+        column: String,
+        /// The greatest sample, converted.
+        value: f64,
+        /// The most there can be.
+        most: f64,
+        /// The channel's unit.
+        unit: String,
+        /// What it may be, in words; empty where nothing is known.
+        hint: String,
+    },
+}
+
+/// What is odd in the columns chosen from a record, and can be right.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LayoutCaution {
+    /// A channel does not change.
+    #[error("{channel} (column {column}) does not change in this record")]
+    Constant {
+        /// The channel.
+        channel: String,
+        /// The column, in quotation marks.
+        column: String,
+    },
+    /// Two channels have the same samples.
+    #[error("{first} and {second} have the same samples")]
+    Same {
+        /// One channel.
+        first: String,
+        /// The other.
+        second: String,
+    },
+    /// Samples are missing.
+    #[error("{channel} (column {column}): {count} of {samples} samples are missing")]
+    Missing {
+        /// The channel.
+        channel: String,
+        /// The column, in quotation marks.
+        column: String,
+        /// How many.
+        count: usize,
+        /// Of how many.
+        samples: usize,
+    },
+    /// Stamps are missing.
+    #[error("{count} of {samples} stamps of time are missing")]
+    MissingTime {
+        /// How many.
+        count: usize,
+        /// Of how many.
+        samples: usize,
+    },
+    /// Rates so small that they may be in another unit.
+    #[error("no rate varies by more than {} {unit}, and the file does not say the unit: perhaps it has rad/s", telling(*most, 2))]
+    PerhapsRadians {
+        /// The greatest range of a rate.
+        most: f64,
+        /// The unit taken.
+        unit: String,
+    },
+    /// Parts of the travel so small that they may be fractions.
+    #[error("no input varies by more than {} %, and the file does not say the unit: perhaps it has fractions of the travel", telling(*most, 2))]
+    PerhapsFractions {
+        /// The greatest range of an input.
+        most: f64,
+    },
+}

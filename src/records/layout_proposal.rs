@@ -1,0 +1,209 @@
+//! Columns proposed for the time and the channels of a record.
+
+use crate::assembly::{ChannelRule, conversion_factor, same_channel};
+use crate::units::number;
+
+use super::column_use::ColumnUse;
+use super::layout_problem::{LayoutCaution, LayoutProblem};
+use super::record_channels::RecordChannels;
+use super::record_layout::RecordLayout;
+use super::record_table::{ColumnSide, RecordTable};
+use super::time_base::TimeBase;
+
+/// What the engineer says about the time of records.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TimeWish {
+    /// The column; none for the one that looks like it.
+    pub column: Option<String>,
+    /// Sample time \[s\], which stands in place of a column.
+    pub sample_time_s: Option<f64>,
+}
+
+/// A layout proposed for a record, every choice in words.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LayoutProposal {
+    /// The layout, as far as there is one.
+    pub layout: RecordLayout,
+    /// What was chosen and why, a line a choice.
+    pub notes: Vec<String>,
+    /// What keeps the layout from being used.
+    pub problems: Vec<LayoutProblem>,
+    /// What is odd, and can be right.
+    pub cautions: Vec<LayoutCaution>,
+}
+
+impl RecordLayout {
+    /// Columns for the time and for each channel.
+    ///
+    /// ```text
+    /// time     as wished, else the column of that name, else the file's sample time
+    /// channel  the column of its very name, else of one of its other names, else one that the field calls the same;
+    ///          among several the one whose unit can be converted
+    /// else     columns that the file says are inputs or outputs, or columns without names, in order, if there are as many
+    /// factor   from the file's unit to the channel's; a file that says none is taken as the channel's rule says
+    /// ```
+    pub fn proposed(table: &RecordTable, channels: &RecordChannels, time: &TimeWish) -> LayoutProposal {
+        let mut proposal = LayoutProposal::default();
+        let time = proposal.time(table, time);
+        let time_column = match time {
+            Some(TimeBase::Column { column, .. }) => Some(column),
+            _ => None,
+        };
+        let (inputs, outputs) = if table.named {
+            (
+                proposal.named(table, ("input", ColumnSide::Input), &channels.inputs, time_column),
+                proposal.named(table, ("output", ColumnSide::Output), &channels.outputs, time_column),
+            )
+        } else {
+            proposal.in_order(table, channels, time_column)
+        };
+        proposal.layout = RecordLayout { time, inputs, outputs };
+        let told = std::mem::take(&mut proposal.problems);
+        // Where something was said of a channel already, that it has no column is no news.
+        let rest = proposal.layout.problems(table, channels).into_iter().filter(|problem| match problem {
+            LayoutProblem::NoColumn { .. } | LayoutProblem::NoTime { .. } => told.is_empty(),
+            _ => true,
+        });
+        proposal.problems = told.iter().cloned().chain(rest).collect();
+        proposal.cautions = proposal.layout.cautions(table, channels);
+        proposal
+    }
+}
+
+impl LayoutProposal {
+    fn time(&mut self, table: &RecordTable, wish: &TimeWish) -> Option<TimeBase> {
+        if let Some(step_s) = wish.sample_time_s {
+            self.notes.push(format!("one sample each {} s, as asked", number(step_s)));
+            return Some(TimeBase::SampleTime(step_s));
+        }
+        let column = match &wish.column {
+            Some(name) => match table.find(name) {
+                Some(column) => Some(column),
+                None => {
+                    let (name, found) = (name.clone(), table.column_names());
+                    self.problems.push(LayoutProblem::NoSuchColumn { name, found });
+                    return None;
+                }
+            },
+            None => TimeBase::find(table),
+        };
+        if let Some(column) = column {
+            let (base, words) = TimeBase::of_column(table, column);
+            self.notes.push(words);
+            return Some(base);
+        }
+        if let Some(step_s) = table.sample_time_s {
+            self.notes.push(format!("one sample each {} s, as the file says", number(step_s)));
+            return Some(TimeBase::SampleTime(step_s));
+        }
+        self.problems.push(LayoutProblem::NoTime { found: table.column_names() });
+        None
+    }
+
+    /// Columns of one side, by name.
+    fn named(
+        &mut self,
+        table: &RecordTable,
+        (side, of_file): (&'static str, ColumnSide),
+        rules: &[ChannelRule],
+        time: Option<usize>,
+    ) -> Vec<Option<ColumnUse>> {
+        let free = |column: &usize| Some(*column) != time;
+        let candidates: Vec<Vec<usize>> =
+            rules.iter().map(|rule| candidates(table, rule, of_file).into_iter().filter(free).collect()).collect();
+        let of_side: Vec<usize> =
+            (0..table.columns.len()).filter(|&column| table.columns[column].side == Some(of_file)).collect();
+        if candidates.iter().all(Vec::is_empty) && of_side.len() == rules.len() && !rules.is_empty() {
+            self.notes.push(format!("the file has {} {side}s under other names: taken in order", rules.len()));
+            return rules.iter().zip(of_side).map(|(rule, column)| self.used(table, rule, column)).collect();
+        }
+        let mut uses = Vec::with_capacity(rules.len());
+        for (rule, candidates) in rules.iter().zip(candidates) {
+            let channel = rule.name.clone();
+            uses.push(match candidates.as_slice() {
+                [column] => self.used(table, rule, *column),
+                [] => {
+                    self.problems.push(LayoutProblem::NoColumn { side, channel, found: table.column_names() });
+                    None
+                }
+                several => {
+                    let found = several.iter().map(|&column| table.quoted(column)).collect::<Vec<_>>().join(", ");
+                    self.problems.push(LayoutProblem::SeveralColumns { side, channel, found });
+                    None
+                }
+            });
+        }
+        uses
+    }
+
+    /// Columns without names: the time, the inputs, the outputs.
+    fn in_order(
+        &mut self,
+        table: &RecordTable,
+        channels: &RecordChannels,
+        time: Option<usize>,
+    ) -> (Vec<Option<ColumnUse>>, Vec<Option<ColumnUse>>) {
+        let rest: Vec<usize> = (0..table.columns.len()).filter(|column| Some(*column) != time).collect();
+        let (m, l) = (channels.inputs.len(), channels.outputs.len());
+        if rest.len() != m + l {
+            let (expected, found) = (1 + m + l, table.columns.len());
+            self.problems.push(LayoutProblem::Unnamed { expected, found });
+            return (vec![None; m], vec![None; l]);
+        }
+        self.notes.push("columns without names: taken in order, inputs before outputs".to_owned());
+        let (inputs, outputs) = rest.split_at(m);
+        let mut of = |rules: &[ChannelRule], columns: &[usize]| -> Vec<Option<ColumnUse>> {
+            rules.iter().zip(columns).map(|(rule, column)| self.used(table, rule, *column)).collect()
+        };
+        (of(&channels.inputs, inputs), of(&channels.outputs, outputs))
+    }
+
+    /// The column with the factor from the file's unit to the channel's, and in words.
+    fn used(&mut self, table: &RecordTable, rule: &ChannelRule, column: usize) -> Option<ColumnUse> {
+        let quoted = table.quoted(column);
+        let said = table.columns[column].unit.as_deref().filter(|unit| !unit.trim().is_empty());
+        let Some(from) = said.or(rule.unit_in_files.as_deref()).filter(|_| !rule.unit.is_empty()) else {
+            let unit = said.map(|unit| format!(", in {unit}")).unwrap_or_default();
+            self.notes.push(format!("{}: column {quoted} as it is{unit}", rule.name));
+            return Some(ColumnUse::as_it_is(column));
+        };
+        let Some(factor) = conversion_factor(from, &rule.unit) else {
+            let (channel, from, to) = (rule.name.clone(), from.to_owned(), rule.unit.clone());
+            self.problems.push(LayoutProblem::Conversion { channel, column: quoted, from, to });
+            return None;
+        };
+        self.notes.push(match (factor == 1.0, said) {
+            (true, Some(unit)) => format!("{}: column {quoted}, in {unit}", rule.name),
+            (true, None) => format!("{}: column {quoted}, taken to be in {from} as the file does not say", rule.name),
+            (false, _) => format!("{}: column {quoted}, {from} → {} (× {})", rule.name, rule.unit, number(factor)),
+        });
+        Some(ColumnUse { column, factor })
+    }
+}
+
+/// The columns that can be a channel.
+fn candidates(table: &RecordTable, rule: &ChannelRule, side: ColumnSide) -> Vec<usize> {
+    let named = |is_it: &dyn Fn(&str) -> bool| -> Vec<usize> {
+        let other_side = |column: usize| table.columns[column].side.is_some_and(|of_file| of_file != side);
+        (0..table.columns.len()).filter(|&column| !other_side(column) && is_it(&table.columns[column].name)).collect()
+    };
+    let mut found = named(&|name| name == rule.name);
+    if found.is_empty() {
+        found = named(&|name| rule.aliases.iter().any(|alias| alias == name));
+    }
+    if found.is_empty() {
+        found =
+            named(&|name| same_channel(name, &rule.name) || rule.aliases.iter().any(|alias| same_channel(name, alias)));
+    }
+    if found.len() > 1 {
+        let fits = |column: &usize| {
+            let unit = table.columns[*column].unit.as_deref();
+            unit.is_some_and(|unit| conversion_factor(unit, &rule.unit).is_some())
+        };
+        let fitting: Vec<usize> = found.iter().copied().filter(fits).collect();
+        if fitting.len() == 1 {
+            return fitting;
+        }
+    }
+    found
+}

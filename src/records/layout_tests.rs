@@ -1,0 +1,228 @@
+//! What is proposed for a record, and what is said against it.
+
+use super::*;
+use crate::assembly::ChannelRule;
+
+fn rule(name: &str, unit: &str) -> ChannelRule {
+    let unit = unit.to_owned();
+    ChannelRule { unit_in_files: Some(unit.clone()), unit, ..ChannelRule::named(name) }
+}
+
+fn channels() -> RecordChannels {
+    RecordChannels {
+        inputs: vec![rule("LON", "%"), rule("LAT", "%")],
+        outputs: vec![rule("P", "deg/s"), rule("NZ", "m/s²")],
+    }
+}
+
+fn column(name: &str, unit: &str, values: impl Fn(f64) -> f64) -> RecordColumn {
+    let values = (0..60).map(|sample| values(f64::from(sample))).collect();
+    RecordColumn { unit: Some(unit.to_owned()).filter(|unit| !unit.is_empty()), ..RecordColumn::new(name, values) }
+}
+
+fn table(columns: Vec<RecordColumn>) -> RecordTable {
+    RecordTable {
+        name: "LON 1".into(),
+        columns,
+        named: true,
+        sample_time_s: None,
+        source: RecordSource { file: "lon_1.csv".into(), sha256: "ab".into(), variable: None },
+        notes: Vec::new(),
+    }
+}
+
+/// A record as another tool names and orders its columns.
+fn record() -> RecordTable {
+    table(vec![
+        column("az", "g", |k| 0.1 * (0.3 * k).sin()),
+        column("Time (s)", "s", |k| 0.02 * k),
+        column("lateral", "%", |k| 50.0 + 5.0 * (0.2 * k).cos()),
+        column("roll rate", "rad/s", |k| 0.2 * (0.2 * k).sin()),
+        column("delta_b", "", |k| 40.0 + k),
+        column("fuel", "kg", |_| 900.0),
+    ])
+}
+
+fn proposed(table: &RecordTable) -> LayoutProposal {
+    RecordLayout::proposed(table, &channels(), &TimeWish::default())
+}
+
+fn told(problems: &[LayoutProblem]) -> String {
+    problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+}
+
+#[test]
+fn channels_are_found_by_the_names_of_the_field_and_converted_in_words() {
+    let (table, channels) = (record(), channels());
+    let proposal = proposed(&table);
+    assert_eq!((proposal.problems.len(), proposal.cautions.len()), (0, 0), "{proposal:?}");
+    assert_eq!(
+        proposal.notes,
+        [
+            "time from column \"Time (s)\", in s",
+            "LON: column \"delta_b\", taken to be in % as the file does not say",
+            "LAT: column \"lateral\", in %",
+            "P: column \"roll rate\", rad/s → deg/s (× 57.29577951308232)",
+            "NZ: column \"az\", g → m/s² (× 9.80665)",
+        ]
+    );
+    let flight = proposal.layout.flight_record(&table, &channels).unwrap();
+    assert_eq!((flight.time_s[3], flight.inputs[(3, 0)], flight.inputs.shape()), (0.06, 43.0, (60, 2)));
+    assert_eq!(flight.outputs[(2, 1)], 9.806_65 * table.columns[0].values[2]);
+    let entry = proposal.layout.condition_record(&table, &RecordGuess::default());
+    assert_eq!((entry.file.as_str(), entry.sha256.as_deref()), ("lon_1.csv", Some("ab")));
+    assert!((entry.sample_time_s.unwrap() - 0.02).abs() < 1e-14, "a difference of two stamps");
+}
+
+#[test]
+fn missing_samples_stay_missing_and_infinite_ones_become_so() {
+    let mut table = record();
+    table.columns[3].values[7] = f64::INFINITY;
+    table.columns[3].values[8] = f64::NAN;
+    let proposal = proposed(&table);
+    assert_eq!(proposal.cautions[0].to_string(), "P (column \"roll rate\"): 2 of 60 samples are missing");
+    let flight = proposal.layout.flight_record(&table, &channels()).unwrap();
+    assert!(flight.outputs[(7, 0)].is_nan() && flight.outputs[(8, 0)].is_nan() && flight.outputs[(9, 0)].is_finite());
+}
+
+#[test]
+fn a_rate_of_thousands_of_degrees_is_refused_with_what_it_may_be() {
+    let mut table = record();
+    table.columns[3] = column("roll rate", "rad/s", |k| 20.0 * (0.2 * k).sin());
+    let words = told(&proposed(&table).problems);
+    assert!(
+        words.contains("P (column \"roll rate\") reaches 1144 deg/s, and no helicopter more than 400 deg/s"),
+        "{words}"
+    );
+    assert!(words.ends_with("the column or its unit is wrong; its samples look like deg/s"), "{words}");
+}
+
+#[test]
+fn rates_that_hardly_move_in_a_file_without_units_may_be_in_radians() {
+    let mut table = record();
+    table.columns[3].unit = None;
+    let words = proposed(&table).cautions[0].to_string();
+    assert_eq!(
+        words,
+        "no rate varies by more than 0.40 deg/s, and the file does not say the unit: perhaps it has rad/s"
+    );
+}
+
+#[test]
+fn a_time_that_falls_stands_still_or_goes_in_minutes_is_refused() {
+    let with = |time: RecordColumn| {
+        let mut table = record();
+        table.columns[1] = time;
+        told(&proposed(&table).problems)
+    };
+    let slip = with(column("t", "s", |k| if k == 30.0 { 0.1 } else { 0.02 * k }));
+    assert!(
+        slip.contains("\"t\" does not increase at 1 of 60 samples, first at sample 31 (0.1 s follows 0.58 s)"),
+        "{slip}"
+    );
+    assert!(with(column("t", "min", |k| 0.1 * k)).contains("goes in steps of 6.000 s"));
+    assert_eq!(with(column("t", "", |k| 20.0 * k)), "", "thousandths of a second, by their steps");
+    let none = with(column("count", "", |k| k));
+    assert!(
+        none.starts_with("no column gives the time; say which does, or the sample rate (columns: az, count"),
+        "{none}"
+    );
+    let rate = TimeWish { sample_time_s: Some(0.02), column: None };
+    let mut table = record();
+    table.columns.remove(1);
+    assert_eq!(RecordLayout::proposed(&table, &channels(), &rate).problems, []);
+    let wrong = TimeWish { sample_time_s: None, column: Some("clock".into()) };
+    let words = told(&RecordLayout::proposed(&table, &channels(), &wrong).problems);
+    assert!(words.starts_with("there is no column \"clock\"; there are az"), "{words}");
+}
+
+#[test]
+fn channels_that_are_missing_doubtful_or_without_a_factor_are_asked_for() {
+    let mut table = record();
+    table.columns[0].name = "vibration".into();
+    table.columns[2].unit = Some("in".into());
+    table.columns.push(column("pb", "deg/s", |k| k.sin()));
+    let words = told(&proposed(&table).problems);
+    assert!(words.contains("no column is the output NZ; say which is (columns: vibration"), "{words}");
+    assert!(words.contains("several columns can be the output P: \"roll rate\", \"pb\""), "{words}");
+    assert!(words.contains("LAT is in in in the file (column \"lateral\") and is wanted in %"), "{words}");
+    // What the engineer says stands.
+    let mut layout = proposed(&table).layout;
+    layout.outputs = vec![Some(ColumnUse::as_it_is(6)), Some(ColumnUse { column: 0, factor: 9.80665 })];
+    layout.inputs[1] = Some(ColumnUse { column: 2, factor: -8.0 });
+    assert!(told(&layout.problems(&table, &channels())).starts_with("LAT (column \"lateral\") reaches 440 %"));
+    layout.inputs[1] = Some(ColumnUse { column: 2, factor: -2.0 });
+    assert_eq!(layout.problems(&table, &channels()), []);
+    assert_eq!(layout.flight_record(&table, &channels()).unwrap().inputs[(0, 1)], -110.0);
+    layout.inputs[1] = Some(ColumnUse::as_it_is(4));
+    assert!(told(&layout.problems(&table, &channels())).contains("LAT and LON are both taken from column \"delta_b\""));
+    layout.inputs[1] = Some(ColumnUse { column: 99, factor: f64::NAN });
+    assert!(layout.flight_record(&table, &channels()).is_err());
+}
+
+#[test]
+fn columns_without_names_are_taken_in_order_only_if_there_are_as_many() {
+    let mut table = table((0..5).map(|of| column("", "", move |k| 0.02 * k * f64::from(of + 1))).collect());
+    table.named = false;
+    for (index, column) in table.columns.iter_mut().enumerate() {
+        column.name = format!("column {}", index + 1);
+    }
+    let proposal = proposed(&table);
+    assert_eq!(proposal.problems, []);
+    let columns = |uses: &[Option<ColumnUse>]| uses.iter().flatten().map(|used| used.column).collect::<Vec<_>>();
+    assert_eq!((columns(&proposal.layout.inputs), columns(&proposal.layout.outputs)), (vec![1, 2], vec![3, 4]));
+    table.columns.pop();
+    assert_eq!(proposed(&table).problems[0], LayoutProblem::Unnamed { expected: 5, found: 4 });
+}
+
+#[test]
+fn inputs_and_outputs_that_the_file_tells_apart_are_taken_in_order() {
+    let side =
+        |name: &str, side, scale: f64| RecordColumn { side: Some(side), ..column(name, "", move |k| scale * k.sin()) };
+    let table = table(vec![
+        column("t", "", |k| 0.01 * k),
+        side("inr_1", ColumnSide::Input, 10.0),
+        side("inr_2", ColumnSide::Input, 20.0),
+        side("outr_1", ColumnSide::Output, 30.0),
+        side("outr_2", ColumnSide::Output, 40.0),
+    ]);
+    let proposal = proposed(&table);
+    assert_eq!(proposal.problems, []);
+    assert_eq!(proposal.layout.outputs[1], Some(ColumnUse::as_it_is(4)));
+    assert!(proposal.notes.iter().any(|note| note == "the file has 2 outputs under other names: taken in order"));
+}
+
+#[test]
+fn channels_without_a_unit_take_the_first_file_s_and_later_files_are_converted() {
+    let mut channels = RecordChannels { inputs: Vec::new(), outputs: vec![ChannelRule::named("P")] };
+    let (first, mut second) = (record(), record());
+    let layout = RecordLayout::proposed(&first, &channels, &TimeWish::default()).layout;
+    channels.take_units(&layout, &first);
+    assert_eq!(channels.outputs[0].unit, "rad/s");
+    second.columns[3].unit = Some("deg/s".into());
+    let proposal = RecordLayout::proposed(&second, &channels, &TimeWish::default());
+    assert_eq!(proposal.layout.outputs[0].unwrap().factor, std::f64::consts::PI / 180.0);
+}
+
+#[test]
+fn a_layout_goes_over_to_a_record_with_the_same_columns_in_another_order() {
+    let (first, mut second) = (record(), record());
+    second.columns.rotate_left(2);
+    let layout = proposed(&first).layout;
+    let carried = layout.carried_to(&second, &first).unwrap();
+    let flight = carried.flight_record(&second, &channels()).unwrap();
+    assert_eq!(flight, layout.flight_record(&first, &channels()).unwrap());
+    second.columns.retain(|column| column.name != "az");
+    assert_eq!(layout.carried_to(&second, &first), None);
+}
+
+#[test]
+fn a_channel_that_stands_still_and_two_that_are_one_are_told() {
+    let mut table = record();
+    table.columns[4] = column("LON", "%", |_| 50.0);
+    let words: Vec<String> = proposed(&table).cautions.iter().map(ToString::to_string).collect();
+    assert_eq!(words, ["LON (column \"LON\") does not change in this record"]);
+    table.columns[4] = RecordColumn { name: "LON".into(), ..table.columns[2].clone() };
+    let words: Vec<String> = proposed(&table).cautions.iter().map(ToString::to_string).collect();
+    assert_eq!(words, ["LON and LAT have the same samples"]);
+}

@@ -1,0 +1,71 @@
+//! What the name of a record says about it.
+
+use crate::assembly::{NamePattern, Row};
+use crate::dataset::RecordKind;
+
+/// What the names of folders and files say about a record.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RecordGuess {
+    /// The manoeuvre.
+    pub kind: RecordKind,
+    /// Whether it is meant for validation.
+    pub held_out: bool,
+    /// The condition.
+    pub condition: Option<i64>,
+    /// True airspeed \[kt\].
+    pub airspeed_kt: Option<f64>,
+}
+
+/// What names of sweeps, of several sines, of steps, and of records for validation hold.
+const SWEEPS: [&str; 3] = ["sweep", "chirp", "swp"];
+const MULTISINES: [&str; 3] = ["multisine", "schroeder", "msine"];
+const STEPS: [&str; 4] = ["3211", "doublet", "dblt", "step"];
+const VALIDATION: [&str; 5] = ["validation", "validate", "verification", "holdout", "heldout"];
+/// Words that say so too, but stand in others ("value", "testbed").
+const VALIDATION_WORDS: [&str; 4] = ["val", "valid", "check", "verif"];
+
+impl RecordGuess {
+    /// Reads a name, such as "c03_045kt/sweep_LON_1.csv", by these patterns.
+    pub fn of(name: &str, patterns: &[NamePattern]) -> Self {
+        let lower = name.to_lowercase();
+        // "3-2-1-1" and "hold_out" are "3211" and "holdout".
+        let joined: String = lower.chars().filter(|c| c.is_alphanumeric()).collect();
+        let holds = |words: &[&str]| words.iter().any(|word| joined.contains(word));
+        let kind = if holds(&SWEEPS) {
+            RecordKind::Sweep
+        } else if holds(&MULTISINES) {
+            RecordKind::Multisine
+        } else if holds(&STEPS) {
+            RecordKind::ThreeTwoOneOne
+        } else {
+            RecordKind::Other
+        };
+        let mut words = lower.split(|c: char| !c.is_alphabetic());
+        let held_out = holds(&VALIDATION) || words.any(|word| VALIDATION_WORDS.contains(&word));
+        let mut row = Row::default();
+        patterns.iter().for_each(|pattern| pattern.read(name, &mut row));
+        Self { kind, held_out, condition: row.condition, airspeed_kt: row.airspeed_kt }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assembly::standard_patterns;
+
+    #[test]
+    fn a_name_says_manoeuvre_condition_and_validation() {
+        let patterns = standard_patterns();
+        let guess = |name: &str| {
+            let guess = RecordGuess::of(name, &patterns);
+            (guess.kind, guess.held_out, guess.condition, guess.airspeed_kt)
+        };
+        assert_eq!(guess("cond01_sweep_LON_1.csv"), (RecordKind::Sweep, false, Some(1), None));
+        assert_eq!(guess("cond11_validation.csv"), (RecordKind::Other, true, Some(11), None));
+        assert_eq!(guess("c03_045kt/LatChirp2.mat"), (RecordKind::Sweep, false, Some(3), Some(45.0)));
+        assert_eq!(guess("fc-7/3-2-1-1 ped.txt"), (RecordKind::ThreeTwoOneOne, false, Some(7), None));
+        assert_eq!(guess("doublet_val_2.csv"), (RecordKind::ThreeTwoOneOne, true, None, None));
+        assert_eq!(guess("multi_sine_1_hold-out"), (RecordKind::Multisine, true, None, None));
+        assert_eq!(guess("values.csv"), (RecordKind::Other, false, None, None));
+    }
+}

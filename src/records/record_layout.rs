@@ -1,0 +1,219 @@
+//! Which columns of a record are its time and its channels.
+
+use nalgebra::DMatrix;
+
+use crate::assembly::ChannelRule;
+use crate::dataset::ConditionRecord;
+use crate::identification::FlightRecord;
+
+use super::column_use::ColumnUse;
+use super::layout_problem::{LayoutCaution, LayoutProblem};
+use super::plausibility::{magnitude, perhaps_other_units};
+use super::record_channels::RecordChannels;
+use super::record_guess::RecordGuess;
+use super::record_table::RecordTable;
+use super::time_base::{LONGEST_STEP_S, TimeBase};
+
+/// Which columns of a record are its time and its channels: proposed by [`RecordLayout::proposed`], and free to be changed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RecordLayout {
+    /// What says when the samples were taken; none where that is still to be said.
+    pub time: Option<TimeBase>,
+    /// One for each input; none where it is still to be said.
+    pub inputs: Vec<Option<ColumnUse>>,
+    /// One for each output; none where it is still to be said.
+    pub outputs: Vec<Option<ColumnUse>>,
+}
+
+impl RecordLayout {
+    /// Everything that keeps the chosen columns from being used; nothing where [`RecordLayout::flight_record`] gives a record.
+    pub fn problems(&self, table: &RecordTable, channels: &RecordChannels) -> Vec<LayoutProblem> {
+        let mut problems = self.time_problems(table);
+        for (side, rules, uses) in
+            [("input", &channels.inputs, &self.inputs), ("output", &channels.outputs, &self.outputs)]
+        {
+            for (index, rule) in rules.iter().enumerate() {
+                match uses.get(index).copied().flatten() {
+                    Some(used) => problems.extend(channel_problem(table, rule, used)),
+                    None => {
+                        let (channel, found) = (rule.name.clone(), table.column_names());
+                        problems.push(LayoutProblem::NoColumn { side, channel, found });
+                    }
+                }
+            }
+        }
+        problems.extend(self.shared_columns(table, channels));
+        problems
+    }
+
+    /// What is odd in the chosen columns, and can be right.
+    pub fn cautions(&self, table: &RecordTable, channels: &RecordChannels) -> Vec<LayoutCaution> {
+        let mut cautions = Vec::new();
+        let samples = table.rows();
+        if let Some(time) = self.time {
+            let count = time.times_s(table).iter().filter(|time| time.is_nan()).count();
+            cautions.extend((count > 0).then_some(LayoutCaution::MissingTime { count, samples }));
+        }
+        let (inputs, outputs) = (chosen(&channels.inputs, &self.inputs), chosen(&channels.outputs, &self.outputs));
+        let all: Vec<_> = inputs.iter().chain(&outputs).copied().collect();
+        for (index, (rule, used)) in all.iter().enumerate() {
+            let Some(values) = table.columns.get(used.column).map(|column| &column.values) else { continue };
+            let (channel, column) = (rule.name.clone(), table.quoted(used.column));
+            let count = values.iter().filter(|value| !value.is_finite()).count();
+            if count > 0 && count < samples {
+                let (channel, column) = (channel.clone(), column.clone());
+                cautions.push(LayoutCaution::Missing { channel, column, count, samples });
+            }
+            let is_constant = table.columns[used.column].range().is_some_and(|(least, most)| least == most);
+            if is_constant {
+                cautions.push(LayoutCaution::Constant { channel, column });
+                continue;
+            }
+            let same = all[..index].iter().find(|(_, other)| {
+                other.column != used.column
+                    && table.columns.get(other.column).is_some_and(|other| same_samples(&other.values, values))
+            });
+            cautions.extend(
+                same.map(|(first, _)| LayoutCaution::Same { first: first.name.clone(), second: rule.name.clone() }),
+            );
+        }
+        cautions.extend(perhaps_other_units(table, &inputs, &outputs));
+        cautions
+    }
+
+    /// The flight record of the chosen columns: each sample times its factor, nothing else; none where a problem is left.
+    pub fn flight_record(
+        &self,
+        table: &RecordTable,
+        channels: &RecordChannels,
+    ) -> Result<FlightRecord, Vec<LayoutProblem>> {
+        let problems = self.problems(table, channels);
+        match self.time {
+            Some(time) if problems.is_empty() => Ok(FlightRecord {
+                name: table.name.clone(),
+                time_s: time.times_s(table),
+                inputs: samples_of(table, &self.inputs),
+                outputs: samples_of(table, &self.outputs),
+            }),
+            _ => Err(problems),
+        }
+    }
+
+    /// The same columns, by name, of another record; none where that lacks one of them.
+    pub fn carried_to(&self, other: &RecordTable, from: &RecordTable) -> Option<Self> {
+        let place = |column: usize| {
+            let name = &from.columns.get(column)?.name;
+            if other.columns.get(column).is_some_and(|same| same.name == *name) {
+                Some(column)
+            } else {
+                other.find(name)
+            }
+        };
+        let carry = |uses: &[Option<ColumnUse>]| -> Option<Vec<Option<ColumnUse>>> {
+            let carried = |used: &Option<ColumnUse>| match used {
+                Some(used) => Some(Some(ColumnUse { column: place(used.column)?, ..*used })),
+                None => Some(None),
+            };
+            uses.iter().map(carried).collect()
+        };
+        let time = match self.time {
+            Some(TimeBase::Column { column, seconds }) => Some(TimeBase::Column { column: place(column)?, seconds }),
+            other => other,
+        };
+        Some(Self { time, inputs: carry(&self.inputs)?, outputs: carry(&self.outputs)? })
+    }
+
+    /// What a dataset says of this record: where it is, and what its name tells.
+    pub fn condition_record(&self, table: &RecordTable, guess: &RecordGuess) -> ConditionRecord {
+        ConditionRecord {
+            variable: table.source.variable.clone(),
+            sha256: Some(table.source.sha256.clone()).filter(|hash| !hash.is_empty()),
+            kind: guess.kind,
+            held_out: guess.held_out,
+            sample_time_s: self.time.and_then(|time| time.step_s(table)).filter(|step_s| *step_s > 0.0),
+            ..ConditionRecord::new(table.name.clone(), table.source.file.clone())
+        }
+    }
+
+    fn time_problems(&self, table: &RecordTable) -> Vec<LayoutProblem> {
+        match self.time {
+            None => vec![LayoutProblem::NoTime { found: table.column_names() }],
+            Some(TimeBase::SampleTime(step_s)) if step_s.is_finite() && step_s > 0.0 => Vec::new(),
+            Some(TimeBase::SampleTime(step_s)) => vec![LayoutProblem::SampleTime { step_s }],
+            Some(TimeBase::Column { column, .. }) if column >= table.columns.len() => {
+                vec![LayoutProblem::NoTime { found: table.column_names() }]
+            }
+            Some(time @ TimeBase::Column { column, .. }) => {
+                let quoted = table.quoted(column);
+                let step = time.step_s(table).filter(|step_s| *step_s > LONGEST_STEP_S);
+                let step = step.map(|step_s| LayoutProblem::TimeStep { column: quoted.clone(), step_s });
+                order_problem(&time.times_s(table), quoted).into_iter().chain(step).collect()
+            }
+        }
+    }
+
+    /// Columns that are two channels at once.
+    fn shared_columns(&self, table: &RecordTable, channels: &RecordChannels) -> Vec<LayoutProblem> {
+        let mut taken: Vec<(usize, String)> = Vec::new();
+        if let Some(TimeBase::Column { column, .. }) = self.time {
+            taken.push((column, "the time".to_owned()));
+        }
+        let mut problems = Vec::new();
+        for (rule, used) in
+            chosen(&channels.inputs, &self.inputs).into_iter().chain(chosen(&channels.outputs, &self.outputs))
+        {
+            if let Some((_, second)) = taken.iter().find(|(column, _)| *column == used.column) {
+                let (first, second, column) = (rule.name.clone(), second.clone(), table.quoted(used.column));
+                problems.push(LayoutProblem::OneColumn { first, second, column });
+            }
+            taken.push((used.column, rule.name.clone()));
+        }
+        problems
+    }
+}
+
+/// The channels for which a column is chosen.
+fn chosen<'r>(rules: &'r [ChannelRule], uses: &[Option<ColumnUse>]) -> Vec<(&'r ChannelRule, ColumnUse)> {
+    rules.iter().zip(uses).filter_map(|(rule, used)| Some((rule, (*used)?))).collect()
+}
+
+fn channel_problem(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option<LayoutProblem> {
+    let (channel, column) = (rule.name.clone(), table.quoted(used.column));
+    if !used.factor.is_finite() || used.factor == 0.0 {
+        return Some(LayoutProblem::Factor { channel, factor: used.factor });
+    }
+    let range = table.columns.get(used.column).and_then(|column| column.range());
+    if range.is_none() { Some(LayoutProblem::Empty { channel, column }) } else { magnitude(table, rule, used) }
+}
+
+fn order_problem(times_s: &[f64], column: String) -> Option<LayoutProblem> {
+    let mut last: Option<f64> = None;
+    let (mut count, mut first) = (0, None);
+    for (sample, &after) in times_s.iter().enumerate().filter(|(_, time)| time.is_finite()) {
+        if let Some(before) = last.filter(|before| after <= *before) {
+            count += 1;
+            first = first.or(Some((sample + 1, before, after)));
+        }
+        last = Some(after);
+    }
+    let samples = times_s.len();
+    first.map(|(sample, before, after)| LayoutProblem::TimeOrder { column, count, samples, sample, before, after })
+}
+
+fn same_samples(first: &[f64], second: &[f64]) -> bool {
+    first.iter().zip(second).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
+}
+
+/// One row a sample, one column a channel; not a number where a sample is missing.
+fn samples_of(table: &RecordTable, uses: &[Option<ColumnUse>]) -> DMatrix<f64> {
+    let mut samples = DMatrix::from_element(table.rows(), uses.len(), f64::NAN);
+    for (mut into, used) in samples.column_iter_mut().zip(uses) {
+        let Some((column, used)) = used.and_then(|used| Some((table.columns.get(used.column)?, used))) else {
+            continue;
+        };
+        for (sample, value) in into.iter_mut().zip(&column.values).filter(|(_, value)| value.is_finite()) {
+            *sample = if used.factor == 1.0 { *value } else { value * used.factor };
+        }
+    }
+    samples
+}

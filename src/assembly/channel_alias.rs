@@ -1,6 +1,6 @@
 //! Names by which the field calls the same channel.
 
-/// Each channel with its other names, all plain (see [`plain`]). A name stands in one row only.
+/// Each channel with its other names, all plain (see [`plain`]); those such as "elevyoke1" are a flight simulator's. A name stands in one row only.
 const ALIASES: &[(&str, &[&str])] = &[
     (
         "lon",
@@ -25,6 +25,7 @@ const ALIASES: &[(&str, &[&str])] = &[
             "elevator",
             "loncyc",
             "longstick",
+            "elevyoke1",
         ],
     ),
     (
@@ -44,6 +45,7 @@ const ALIASES: &[(&str, &[&str])] = &[
             "rollstick",
             "aileron",
             "latstick",
+            "ailrnyoke1",
         ],
     ),
     (
@@ -64,15 +66,19 @@ const ALIASES: &[(&str, &[&str])] = &[
             "rudder",
             "tailrotor",
             "yawpedal",
+            "ruddryoke1",
         ],
     ),
     ("col", &["coll", "collective", "dcol", "deltacol", "dcoll", "dc", "deltac", "xc", "xcol", "theta0", "theta0m"]),
     ("p", &["rollrate", "pb", "pbody", "omegax"]),
     ("q", &["pitchrate", "qb", "qbody", "omegay"]),
     ("r", &["yawrate", "rb", "rbody", "omegaz"]),
-    ("nx", &["ax", "axb", "longitudinalacceleration", "longaccel", "accx"]),
-    ("ny", &["ay", "ayb", "lateralacceleration", "lataccel", "accy"]),
-    ("nz", &["az", "azb", "verticalacceleration", "vertaccel", "normalacceleration", "loadfactor", "accz"]),
+    ("nx", &["ax", "axb", "longitudinalacceleration", "longaccel", "accx", "gloadaxial"]),
+    ("ny", &["ay", "ayb", "lateralacceleration", "lataccel", "accy", "gloadside"]),
+    (
+        "nz",
+        &["az", "azb", "verticalacceleration", "vertaccel", "normalacceleration", "loadfactor", "accz", "gloadnorml"],
+    ),
     ("u", &["ub", "ubody", "forwardspeed"]),
     ("v", &["vb", "vbody", "sidewardspeed", "sidespeed"]),
     ("w", &["wb", "wbody", "heave", "verticalspeed", "heavevelocity"]),

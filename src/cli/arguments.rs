@@ -11,6 +11,7 @@ use crate::schedule::HIGHEST_DEGREE;
 use crate::study::{AcrossRole, DEFAULT_COHERENCE, LEAST_POINTS, MOST_POINTS};
 
 use super::export_arguments::ExportArguments;
+use super::identify_arguments::IdentifyArguments;
 
 /// Gain-Delay Correction Method: matches physics-based helicopter models to flight.
 #[derive(Debug, Parser)]
@@ -39,6 +40,8 @@ pub enum Command {
     Assemble(AssembleArguments),
     /// Write every model and response in any file as JSON.
     Convert(ConvertArguments),
+    /// Identify models from flight records of one condition, with their uncertainty, and write identified.json.
+    Identify(Box<IdentifyArguments>),
     /// Say what a dataset or a study holds, or what is wrong with it and where.
     Check {
         /// Dataset or study.

@@ -26,6 +26,12 @@ pub(super) enum Failure {
     /// Something is still to be said before files are a dataset.
     #[error("no dataset was made: {count} {} still to be said; say it in {rules} and give it with --rules", if *count == 1 { "thing is" } else { "things are" })]
     Incomplete { count: usize, rules: String },
+    /// Records whose columns are not clear, or cannot be what they are taken for; each was told.
+    #[error("{wrong} of {of} {} cannot be taken as they are: say which column is which (--inputs P=COLUMN, --time), or leave them out", if *of == 1 { "record" } else { "records" })]
+    Records { wrong: usize, of: usize },
+    /// No model was identified.
+    #[error("no model was identified: {reason}")]
+    NoModels { reason: String },
     /// No condition has a result.
     #[error("the analysis has no result: {reason}")]
     NoResult { reason: String },
@@ -48,6 +54,7 @@ impl Failure {
         match self {
             Failure::File(FileError::Unwritable { .. })
             | Failure::NoResult { .. }
+            | Failure::NoModels { .. }
             | Failure::Cancelled(_)
             | Failure::StandardOutput { .. } => NOT_DONE,
             Failure::File(FileError::Export { fault, .. }) if fault.is_of_analysis() => NOT_DONE,
@@ -55,6 +62,7 @@ impl Failure {
             | Failure::Option { .. }
             | Failure::Different { .. }
             | Failure::Incomplete { .. }
+            | Failure::Records { .. }
             | Failure::Faulty { .. } => WRONG_INPUT,
         }
     }

@@ -9,6 +9,8 @@ mod export;
 mod export_arguments;
 mod failure;
 mod figure;
+mod identify;
+mod identify_arguments;
 mod models;
 mod opening;
 mod progress;
@@ -38,6 +40,7 @@ pub use arguments::{
     PairList, Rejection, ReportArguments, StudyArguments,
 };
 pub use export_arguments::{Breakpoints, ExportArguments};
+pub use identify_arguments::{ChannelDelay, ChannelList, IdentifyArguments};
 
 /// What the command line asks for.
 #[derive(Debug)]
@@ -70,6 +73,7 @@ pub fn run(command: &Command) -> ExitCode {
         Command::Export(arguments) => export::export(arguments),
         Command::Assemble(arguments) => models::assemble(arguments),
         Command::Convert(arguments) => models::convert(arguments),
+        Command::Identify(arguments) => identify::identify(arguments),
         Command::Check { file, opening } => check::check(file, opening),
         Command::Example { directory, force } => example(directory, existing(*force)),
     })

@@ -22,12 +22,12 @@ use super::text_table::{Side, TextTable};
 const RULES_EXTENSION: &str = "gdcm-rules.json";
 
 /// Which file is read, on a terminal only.
-struct ReadingProgress {
+pub(super) struct ReadingProgress {
     bar: RefCell<ProgressBar>,
 }
 
 impl ReadingProgress {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         // Draws nothing where standard error is no terminal.
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
         if let Ok(style) = ProgressStyle::with_template("reading {pos} of {len}: {msg}") {
@@ -171,6 +171,6 @@ fn table(assembly: &Assembly) -> String {
     table.lines(0)
 }
 
-fn counted(count: usize, what: &str) -> String {
+pub(super) fn counted(count: usize, what: &str) -> String {
     if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
 }

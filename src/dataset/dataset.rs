@@ -115,19 +115,6 @@ impl Dataset {
         Ok(Self { name, description, inputs, outputs, on_axis, band, conditions })
     }
 
-    /// The dataset with this condition in place of its condition of the same id; the others are shared.
-    ///
-    /// # Errors
-    /// A model of another shape than the channels'.
-    pub fn with_condition(&self, condition: Condition) -> Result<Self, DatasetError> {
-        check_conditions(std::slice::from_ref(&condition), self.outputs.len(), self.inputs.len())?;
-        let mut dataset = self.clone();
-        if let Some(place) = dataset.conditions.iter_mut().find(|place| place.id() == condition.id()) {
-            *place = Arc::new(condition);
-        }
-        Ok(dataset)
-    }
-
     /// What describes the dataset, besides its conditions.
     pub fn header(&self) -> DatasetHeader {
         DatasetHeader {
@@ -184,6 +171,17 @@ impl Dataset {
     /// One condition.
     pub fn condition(&self, id: ConditionId) -> Option<&Arc<Condition>> {
         self.conditions.iter().find(|condition| condition.id() == id)
+    }
+
+    /// The same dataset with this condition in place of the one of its id.
+    ///
+    /// # Errors
+    /// [`DatasetError::ModelShape`].
+    pub fn with_condition(&self, condition: Condition) -> Result<Self, DatasetError> {
+        check_conditions(std::slice::from_ref(&condition), self.outputs.len(), self.inputs.len())?;
+        let (id, condition) = (condition.id(), Arc::new(condition));
+        let replaced = |other: &Arc<Condition>| if other.id() == id { condition.clone() } else { other.clone() };
+        Ok(Self { conditions: self.conditions.iter().map(replaced).collect(), ..self.clone() })
     }
 
     /// Whether any identified model is measured with coherence.

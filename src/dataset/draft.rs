@@ -268,6 +268,19 @@ pub(super) fn on_axis_table(
     Ok(table)
 }
 
+impl Dataset {
+    /// The identified model of a draft with this dataset's channels, and what is odd about it.
+    ///
+    /// # Errors
+    /// What keeps the draft from being a model of the dataset, with its place in the model.
+    pub fn identified_model(&self, draft: ModelDraft) -> Result<(Model, Vec<Oddity>), DraftError> {
+        let (outputs, inputs) = (self.outputs().len(), self.inputs().len());
+        let mut checker = Checker { outputs, inputs, oddities: Vec::new() };
+        let model = checker.model(Place::default(), BundleKind::Identified, draft)?;
+        Ok((model, checker.oddities))
+    }
+}
+
 /// What the checks of models need to know, and note.
 pub(super) struct Checker {
     outputs: usize,

@@ -7,7 +7,7 @@ use super::content_fault::ContentFault;
 use super::exports::ExportFault;
 use super::flaw::Flaw;
 use super::json_text::line_of;
-use super::plain::{plain, plain_path};
+use super::plain::{plain, plain_path, quoted};
 use super::variables::VariableFault;
 use crate::dataset::Place;
 
@@ -134,6 +134,16 @@ pub enum FileError {
         /// The folder.
         path: PathBuf,
     },
+    /// A file of records does not hold the one that is asked for.
+    #[error("{}: {}", plain_path(path), no_record_words(record.as_deref(), *held))]
+    NoRecord {
+        /// The file.
+        path: PathBuf,
+        /// The record; none for the only one.
+        record: Option<String>,
+        /// How many records it holds.
+        held: usize,
+    },
     /// A folder holds more files than are looked at.
     #[error("{}: holds more than {most} files; give a folder with fewer", plain_path(path))]
     TooManyFiles {
@@ -233,6 +243,18 @@ impl FileError {
         let Flaw { place, fault } = flaw;
         let line = line_of(text, &place);
         FileError::Content { path: path.to_owned(), place, fault, line }
+    }
+}
+
+fn no_record_words(record: Option<&str>, held: usize) -> String {
+    let held = match held {
+        0 => "holds no record".to_owned(),
+        1 => "holds another record".to_owned(),
+        _ => format!("holds {held} records"),
+    };
+    match record {
+        Some(record) => format!("the record {} is not in it; it {held}", quoted(record)),
+        None => format!("one record is asked for; it {held}"),
     }
 }
 

@@ -11,6 +11,7 @@ mod file_stamp;
 mod first_start;
 mod flaw;
 mod home;
+mod identified_file;
 mod json_text;
 mod list;
 mod mat;
@@ -27,6 +28,7 @@ mod places;
 mod plain;
 mod recent_files;
 mod recognise;
+mod record_files;
 mod recovery_file;
 mod report_file;
 mod rules_file;
@@ -37,6 +39,7 @@ mod study_file;
 mod text;
 mod unknown_keys;
 pub mod variables;
+mod zip_files;
 
 pub use crate::dataset::limits::LARGEST_TEXT;
 pub use content_fault::ContentFault;
@@ -57,6 +60,9 @@ pub use file_error::{FileError, system_words};
 pub use file_stamp::{FileStamp, file_exists, file_sha256};
 pub use first_start::is_first_start;
 pub use home::at_home;
+pub use identified_file::{
+    IdentifiedModels, IdentifiedValidation, MeasuredEstimate, PoleEstimate, RecordReport, add_identified,
+};
 pub use mat::write as write_mat;
 pub use model_files::{FileFormat, FolderProgress, FoundModels, models_of_bytes, read_models};
 pub use models_file::add_models;
@@ -65,6 +71,9 @@ pub use opened::{Opened, load_any};
 pub use output_set::{Existing, OutputSet, make_directory, report_size_limit};
 pub use plain::{plain, plain_path};
 pub use recent_files::{add_recent_file, recent_files};
+pub use record_files::{
+    EXAMPLE_RECORD_CONDITIONS, FoundRecords, example_records, load_record, read_records, records_of_bytes,
+};
 pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
 pub use report_file::{ReportSource, report, save_report};
 pub use rules_file::{add_rules, load_rules};

@@ -22,10 +22,12 @@ struct ModelsText<'m> {
 }
 
 #[derive(Serialize)]
-struct ModelText<'m> {
+pub(super) struct ModelText<'m> {
     name: &'m str,
     #[serde(skip_serializing_if = "Option::is_none")]
     method: Option<&'m str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    order: Option<usize>,
     /// Names; empty where the file has none.
     inputs: Vec<&'m str>,
     outputs: Vec<&'m str>,
@@ -43,6 +45,8 @@ struct ModelText<'m> {
     output_delays_s: Option<&'m [f64]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     frequency_response: Option<ResponseText<'m>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bands: Option<BandsText<'m>>,
     source: SourceText<'m>,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     notes: &'m [String],
@@ -74,6 +78,17 @@ struct SourceText<'m> {
     sha256: Option<&'m str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     variable: Option<&'m str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    made: Option<&'m str>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    records: &'m [String],
+}
+
+#[derive(Serialize)]
+struct BandsText<'m> {
+    omega_rad_s: &'m [f64],
+    sd_db: Nested<3>,
+    sd_deg: Nested<3>,
 }
 
 /// Adds the models as a file to `outputs`.
@@ -85,14 +100,15 @@ pub fn add_models(models: &[FoundModel], path: &Path, outputs: &mut OutputSet) -
     })
 }
 
-fn model_text(model: &FoundModel) -> ModelText<'_> {
+/// The text of a model, entry by entry.
+pub(super) fn model_text(model: &FoundModel) -> ModelText<'_> {
     fn part<'m>(labels: &'m [ChannelLabel], of: impl Fn(&'m ChannelLabel) -> &'m Option<String>) -> Vec<&'m str> {
         labels.iter().map(|label| of(label).as_deref().unwrap_or_default()).collect()
     }
     let draft = &model.draft;
-    let method = match &draft.origin {
-        Origin::Identified { method, .. } => method.as_deref(),
-        Origin::Nominal { .. } | Origin::Perturbed { .. } => None,
+    let (method, order) = match &draft.origin {
+        Origin::Identified { method, order } => (method.as_deref(), *order),
+        Origin::Nominal { .. } | Origin::Perturbed { .. } => (None, None),
     };
     let matrices = match &draft.matrices {
         [Some(a), Some(b), Some(c), Some(d)] => {
@@ -105,6 +121,7 @@ fn model_text(model: &FoundModel) -> ModelText<'_> {
     ModelText {
         name: if draft.name.is_empty() { model.file() } else { &draft.name },
         method,
+        order,
         inputs: part(&model.inputs, |label| &label.name),
         outputs: part(&model.outputs, |label| &label.name),
         input_units: part(&model.inputs, |label| &label.unit),
@@ -120,10 +137,17 @@ fn model_text(model: &FoundModel) -> ModelText<'_> {
             im: array(&response.im),
             coherence: response.coherence.as_ref().map(array),
         }),
+        bands: draft.bands.as_ref().map(|bands| BandsText {
+            omega_rad_s: &bands.omega,
+            sd_db: array(&bands.sd_db),
+            sd_deg: array(&bands.sd_deg),
+        }),
         source: SourceText {
             file: draft.source.as_ref().and_then(|source| source.file.as_deref()),
             sha256: draft.source.as_ref().and_then(|source| source.sha256.as_deref()),
             variable: draft.source.as_ref().and_then(|source| source.variable.as_deref()),
+            made: draft.source.as_ref().and_then(|source| source.made.as_deref()),
+            records: draft.source.as_ref().map(|source| source.records.as_slice()).unwrap_or_default(),
         },
         notes: &model.notes,
     }

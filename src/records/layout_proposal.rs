@@ -37,8 +37,8 @@ impl RecordLayout {
     ///
     /// ```text
     /// time     as wished, else the column of that name, else the file's sample time
-    /// channel  the column of its very name, else of one of its other names, else one that the field calls the same;
-    ///          among several the one whose unit can be converted
+    /// channel  the column of its very name, or of one of its other names where it has some, else one that the field calls the
+    ///          same; among several the one whose unit can be converted
     /// else     columns that the file says are inputs or outputs, or columns without names, in order, if there are as many
     /// factor   from the file's unit to the channel's; a file that says none is taken as the channel's rule says
     /// ```
@@ -187,13 +187,11 @@ fn candidates(table: &RecordTable, rule: &ChannelRule, side: ColumnSide) -> Vec<
         let other_side = |column: usize| table.columns[column].side.is_some_and(|of_file| of_file != side);
         (0..table.columns.len()).filter(|&column| !other_side(column) && is_it(&table.columns[column].name)).collect()
     };
-    let mut found = named(&|name| name == rule.name);
+    let own = std::slice::from_ref(&rule.name);
+    let names = if rule.aliases.is_empty() { own } else { &rule.aliases };
+    let mut found = named(&|name| names.iter().any(|wanted| wanted == name));
     if found.is_empty() {
-        found = named(&|name| rule.aliases.iter().any(|alias| alias == name));
-    }
-    if found.is_empty() {
-        found =
-            named(&|name| same_channel(name, &rule.name) || rule.aliases.iter().any(|alias| same_channel(name, alias)));
+        found = named(&|name| names.iter().any(|wanted| same_channel(name, wanted)));
     }
     if found.len() > 1 {
         let fits = |column: &usize| {

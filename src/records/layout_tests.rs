@@ -91,7 +91,7 @@ fn a_rate_of_thousands_of_degrees_is_refused_with_what_it_may_be() {
     table.columns[3] = column("roll rate", "rad/s", |k| 20.0 * (0.2 * k).sin());
     let words = told(&proposed(&table).problems);
     assert!(
-        words.contains("P (column \"roll rate\") reaches 1144 deg/s, and no helicopter more than 400 deg/s"),
+        words.contains("P (column \"roll rate\") reaches 1146 deg/s, and no helicopter more than 400 deg/s"),
         "{words}"
     );
     assert!(words.ends_with("the column or its unit is wrong; its samples look like deg/s"), "{words}");

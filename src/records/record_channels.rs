@@ -6,7 +6,8 @@ use crate::dataset::{Channel, Dataset};
 use super::record_layout::RecordLayout;
 use super::record_table::RecordTable;
 
-/// Inputs and outputs that records are to give. A channel without a unit is taken in that of the file.
+/// Inputs and outputs that records are to give. A channel without a unit is taken in that of the file; one with other names is looked for
+/// by these alone.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordChannels {
     /// Inputs, in order.

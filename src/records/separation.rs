@@ -133,11 +133,12 @@ fn runs_of(numbers: &[f64]) -> Vec<Range<usize>> {
     runs
 }
 
-/// Ranges of samples between falls of the stamps.
+/// Ranges of samples between restarts: falls of the stamps that are not made good within some samples, as a slip is.
 fn rising_parts(stamps: &[f64]) -> Vec<Range<usize>> {
     let (mut parts, mut start, mut last) = (Vec::new(), 0, f64::NEG_INFINITY);
     for (sample, stamp) in stamps.iter().enumerate().filter(|(_, stamp)| stamp.is_finite()) {
-        if *stamp < last {
+        let stays_below = || stamps[sample..].iter().take(FEWEST / 2).all(|later| later.is_nan() || *later < last);
+        if *stamp < last && stays_below() {
             parts.push(start..sample);
             start = sample;
         }

@@ -1,15 +1,17 @@
-"""Writes the files of `npy` and `mat73` beside this script, and loads the archive that the program wrote.
+"""Writes the files of `npy`, `mat73` and `records` beside this script, and loads the archive that the program wrote.
 
-Needs numpy and h5py. MATLAB's conventions are imitated, after the descriptions of the matio and hdf5storage projects; no file here
+Needs numpy, scipy and h5py. MATLAB's conventions are imitated, after the descriptions of the matio and hdf5storage projects; no file here
 was written by MATLAB itself.
 """
 
 import io
+import json
 import os
 import zipfile
 
 import h5py
 import numpy as np
+from scipy.io import savemat
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 NPY = os.path.join(HERE, "npy")
@@ -295,6 +297,63 @@ def plain_files():
         file[b"\xff\xfe"] = 1.0
 
 
+def record_files():
+    """One flight record of 60 samples at 50 Hz in every format: t, LON, LAT in %, P in rad/s, NZ in g."""
+    folder = os.path.join(HERE, "records")
+    os.makedirs(folder, exist_ok=True)
+    place = lambda name: os.path.join(folder, name)
+    k = np.arange(60)
+    t = np.round(0.02 * k, 2)
+    lon, lat = np.round(50 + 10 * np.sin(0.3 * k), 3), np.round(45 + 8 * np.cos(0.2 * k), 3)
+    p, nz = np.round(0.3 * np.sin(0.25 * k), 4), np.round(1 + 0.2 * np.cos(0.35 * k), 4)
+    columns = np.column_stack([t, lon, lat, p, nz])
+
+    def text(name, head, separator, number, rows=columns, tail="\n", encoding="utf-8"):
+        lines = [separator.join(number(value) for value in row) + tail for row in rows]
+        with open(place(name), "w", encoding=encoding, newline="") as file:
+            file.write(head + "".join(lines))
+
+    plain, comma = lambda value: f"{value:g}", lambda value: f"{value:g}".replace(".", ",")
+    text("units.csv", "time (s),LON (%),LAT (%),P [rad/s],NZ [g]\n", ",", plain)
+    text("comma.csv", '# Höhe 2000 ft\n"t";"longitudinal [%]";"lateral [%]";"roll rate [rad/s]";"az [g]"\r\n', ";", comma, tail="\r\n", encoding="latin-1")
+    text("plain.txt", "", " ", plain)
+    strokes = "    _time,__sec |   _elev,yoke1 |   ailrn,yoke1 |   ____P,rad/s |   Gload,norml | \n"
+    text("strokes.txt", strokes, " | ", lambda value: f"{value:13.5f}", tail=" | \n")
+    runs = np.vstack([np.column_stack([np.full(60, run), columns]) for run in (4, 5)])
+    text("runs.csv", "run,t_ms,LON,LAT,P,NZ\n", ",", plain, rows=runs * [1, 1000, 1, 1, 1, 1])
+    again = np.vstack([columns, columns])
+    text("restart.csv", "t,LON,LAT,P,NZ\n", "\t", plain, rows=again)
+
+    sides = dict(t=t[:, None], inr=columns[:, 1:3], outr=columns[:, 3:], iwo=np.zeros((60, 7)))
+    savemat(place("sides.mat"), sides, do_compression=True)
+    labelled = dict(Ts=0.02, u=columns[:, 1:3].T, y=columns[:, 3:].T, InputName=np.array(["LON", "LAT"], object),
+                    OutputName=np.array(["P", "NZ"], object), OutputUnit=np.array(["rad/s", "g"], object))
+    savemat(place("struct.mat"), dict(rec=labelled, note="a sweep"), do_compression=True)
+    savemat(place("old.mat"), dict(time=t, LON=lon, LAT=lat, P=p, NZ=nz), format="4")
+    experiments = np.empty((1, 2), object)
+    experiments[0, 0], experiments[0, 1] = columns[:, 3:], columns[:40, 3:]
+    inputs = np.empty((1, 2), object)
+    inputs[0, 0], inputs[0, 1] = columns[:, 1:3], columns[:40, 1:3]
+    data = dict(OutputData=experiments, InputData=inputs, Ts=0.02, InputName=np.array(["LON", "LAT"], object),
+                OutputName=np.array(["P", "NZ"], object), ExperimentName=np.array(["up", "down"], object))
+    savemat(place("experiments.mat"), dict(data=data), do_compression=True)
+
+    np.save(place("matrix.npy"), columns)
+    np.savez_compressed(place("arrays.npz"), t=t, LON=lon, LAT=lat, P=p, NZ=nz)
+    table = {name: [None if name == "P" and i == 7 else value for i, value in enumerate(column.tolist())]
+             for name, column in zip(["t", "LON", "LAT", "P", "NZ"], columns.T)}
+    with open(place("columns.json"), "w") as file:
+        json.dump(table, file)
+    with h5py.File(place("matlab73.mat"), "w", userblock_size=512) as file:
+        for name, value in dict(t=t, LON=lon, LAT=lat, P=p, NZ=nz).items():
+            dataset = file.create_dataset(name, data=value[None, :])
+            dataset.attrs["MATLAB_class"] = np.bytes_("double")
+    with zipfile.ZipFile(place("two.zip"), "w", zipfile.ZIP_DEFLATED) as archive:
+        for name in ["units.csv", "sides.mat"]:
+            archive.write(place(name), "records/" + name)
+        archive.writestr("readme.md", "two records")
+
+
 if __name__ == "__main__":
     os.makedirs(NPY, exist_ok=True)
     os.makedirs(MAT, exist_ok=True)
@@ -306,3 +365,4 @@ if __name__ == "__main__":
     matlab_objects()
     matlab_hostile()
     plain_files()
+    record_files()

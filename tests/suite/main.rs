@@ -15,6 +15,7 @@ mod hostile_files;
 mod messages;
 mod optimiser;
 mod outputs;
+mod records;
 mod report;
 mod structure;
 mod window;

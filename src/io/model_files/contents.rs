@@ -18,7 +18,7 @@ use super::json_value::variables_of;
 use super::loose_matrices::matrix_letter;
 
 /// What a file holds.
-pub(super) enum Contents {
+pub(in crate::io) enum Contents {
     /// Values under names.
     Variables {
         /// They.
@@ -33,7 +33,7 @@ pub(super) enum Contents {
 }
 
 /// What the bytes of a file hold.
-pub(super) fn contents_of(bytes: &[u8], path: &Path, meter: &Meter<'_>) -> Result<Contents, FileError> {
+pub(in crate::io) fn contents_of(bytes: &[u8], path: &Path, meter: &Meter<'_>) -> Result<Contents, FileError> {
     let wrong = |fault| FileError::Variables { path: path.to_owned(), fault };
     let plain = |variables| Contents::Variables { variables, notes: Vec::new() };
     match FileFormat::of(bytes, path) {

@@ -31,15 +31,7 @@ pub fn read_models(
     headings: &Headings,
     progress: &dyn FolderProgress,
 ) -> Result<FoundModels, FileError> {
-    let mut files = Vec::new();
-    for path in paths {
-        if path.is_dir() {
-            list(path, path, DEEPEST, &mut files)?;
-        } else {
-            let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-            files.push((path.clone(), name));
-        }
-    }
+    let files = files_of(paths, &ENDINGS)?;
     let mut found = FoundModels { files: files.len(), ..FoundModels::default() };
     let mut loose: Vec<LooseMatrix> = Vec::new();
     for (index, (path, name)) in files.iter().enumerate() {
@@ -67,8 +59,28 @@ pub fn read_models(
     Ok(found)
 }
 
+/// Files, and those of folders whose names end so, in the order of their names: their paths, and their names relative to what was asked
+/// for.
+pub(in crate::io) fn files_of(paths: &[PathBuf], endings: &[&str]) -> Result<Vec<(PathBuf, String)>, FileError> {
+    let mut files = Vec::new();
+    for path in paths {
+        if path.is_dir() {
+            list(path, (path, endings), DEEPEST, &mut files)?;
+        } else {
+            let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+            files.push((path.clone(), name));
+        }
+    }
+    Ok(files)
+}
+
 /// The files below a folder, in the order of their names, with their paths relative to it.
-fn list(folder: &Path, root: &Path, deeper: usize, files: &mut Vec<(PathBuf, String)>) -> Result<(), FileError> {
+fn list(
+    folder: &Path,
+    (root, endings): (&Path, &[&str]),
+    deeper: usize,
+    files: &mut Vec<(PathBuf, String)>,
+) -> Result<(), FileError> {
     let failed = |error: std::io::Error| FileError::reading(folder, &error);
     let mut entries = fs::read_dir(folder).map_err(failed)?.collect::<Result<Vec<_>, _>>().map_err(failed)?;
     entries.sort_by_key(|entry| natural(&entry.file_name().to_string_lossy()));
@@ -84,8 +96,8 @@ fn list(folder: &Path, root: &Path, deeper: usize, files: &mut Vec<(PathBuf, Str
             if deeper == 0 {
                 return Err(FileError::FolderTooDeep { path });
             }
-            list(&path, root, deeper - 1, files)?;
-        } else if has_ending(&path) {
+            list(&path, (root, endings), deeper - 1, files)?;
+        } else if has_ending(&path, endings) {
             let name = path.strip_prefix(root).unwrap_or(&path).to_string_lossy().replace('\\', "/");
             files.push((path, name));
         }
@@ -96,9 +108,9 @@ fn list(folder: &Path, root: &Path, deeper: usize, files: &mut Vec<(PathBuf, Str
     Ok(())
 }
 
-fn has_ending(path: &Path) -> bool {
+fn has_ending(path: &Path, endings: &[&str]) -> bool {
     let ending = path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default();
-    ENDINGS.contains(&ending.as_str()) && !plain_path(path).ends_with(".gdcm-study.json")
+    endings.contains(&ending.as_str()) && !plain_path(path).ends_with(".gdcm-study.json")
 }
 
 /// A key that sorts "c2" before "c10".

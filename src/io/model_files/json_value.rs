@@ -8,7 +8,7 @@ use crate::io::variables::{Array, CellArray, ElementKind, StructArray, TextArray
 const LONGEST: usize = 32 << 20;
 
 /// The members of a JSON object, or a list under the name "models".
-pub(super) fn variables_of(text: &[u8]) -> Result<Vec<Variable>, VariableFault> {
+pub(in crate::io) fn variables_of(text: &[u8]) -> Result<Vec<Variable>, VariableFault> {
     if text.len() > LONGEST {
         return Err(VariableFault::TooLarge { variable: String::new(), most_mib: (LONGEST >> 20) as u64 });
     }

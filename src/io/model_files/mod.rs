@@ -7,11 +7,11 @@
 //! folder -> files -> models; matrices in files of their own go together by name: A.csv, B.csv, C.csv, D.csv
 //! ```
 
-mod contents;
+pub(in crate::io) mod contents;
 mod dataset_models;
-mod folder;
+pub(in crate::io) mod folder;
 mod format;
-mod json_value;
+pub(in crate::io) mod json_value;
 mod loose_matrices;
 mod table_models;
 

@@ -1,109 +1,38 @@
 //! Archives of several arrays.
 
 use std::collections::HashSet;
-use std::io::Read;
-
-use flate2::bufread::DeflateDecoder;
-use rawzip::{CompressionMethod, ZipArchive, ZipFileHeaderRecord, ZipSliceArchive};
 
 use super::array_file::read_npy;
 use crate::io::variables::{Meter, Value, Variable, VariableFault};
+use crate::io::zip_files::{ZipFile, damaged, visit_files};
 
 /// What the name of every array in an archive ends with.
 const SUFFIX: &str = ".npy";
-/// The most bytes that one byte of deflate (RFC 1951) can become.
-const LARGEST_RATIO: u64 = 1032;
 
-/// Reads an `.npz` file of `NumPy`: a zip archive (APPNOTE 6.3) of `.npy` files, stored or deflated, whose names become those of the
-/// variables. Other files in it are named as what cannot be read.
+/// Reads an `.npz` file of `NumPy`: a zip archive of `.npy` files, stored or deflated, whose names become those of the variables.
+/// Other files in it are named as what cannot be read.
 pub fn read_npz(bytes: &[u8], meter: &Meter<'_>) -> Result<Vec<Variable>, VariableFault> {
-    let archive = ZipArchive::from_slice(bytes).map_err(|_| unreadable(bytes))?;
-    let mut entries = archive.entries();
     let (mut names, mut variables) = (HashSet::new(), Vec::new());
-    while let Some(entry) =
-        entries.next_entry().map_err(|error| damaged("", &error.to_string(), archive.directory_offset()))?
-    {
-        if entry.is_dir() {
-            continue;
-        }
+    visit_files(bytes, |file| {
         // A few bytes in the archive's directory become a variable, whatever it holds.
         meter.take(1, size_of::<Variable>() as u64, "")?;
-        let variable = variable(&archive, &entry, meter)?;
+        let variable = variable(file, meter)?;
         if !names.insert(variable.name.clone()) {
             return Err(VariableFault::Duplicate { name: variable.name });
         }
         variables.push(variable);
-    }
+        Ok(())
+    })?;
     Ok(variables)
 }
 
-fn variable(
-    archive: &ZipSliceArchive<&[u8]>,
-    entry: &ZipFileHeaderRecord<'_>,
-    meter: &Meter<'_>,
-) -> Result<Variable, VariableFault> {
-    let path = entry.file_path();
-    let offset = entry.local_header_offset();
-    let file = std::str::from_utf8(path.as_bytes()).map_err(|_| damaged("", "a name is not UTF-8", offset))?;
-    let Some(name) = file.strip_suffix(SUFFIX) else {
+fn variable(file: &ZipFile<'_, '_>, meter: &Meter<'_>) -> Result<Variable, VariableFault> {
+    let Some(name) = file.path.strip_suffix(SUFFIX) else {
         let opaque = Value::Opaque { class: "a file".to_owned(), why: "it is no array of NumPy (.npy)".to_owned() };
-        return Ok(Variable { name: file.to_owned(), value: opaque });
+        return Ok(Variable { name: file.path.to_owned(), value: opaque });
     };
-    let array = unpack(archive, entry, name, meter)?;
-    read_npy(&array, name, meter)?.pop().ok_or_else(|| damaged(name, "there is no array", offset))
-}
-
-/// Unpacks an entry, and no further than the archive says: a few kilobytes can unpack to gigabytes.
-fn unpack(
-    archive: &ZipSliceArchive<&[u8]>,
-    entry: &ZipFileHeaderRecord<'_>,
-    name: &str,
-    meter: &Meter<'_>,
-) -> Result<Vec<u8>, VariableFault> {
-    let offset = entry.local_header_offset();
-    let unsupported = |what: String| {
-        let remedy = "save it with numpy.savez or numpy.savez_compressed".to_owned();
-        VariableFault::Unsupported { variable: name.to_owned(), what, remedy }
-    };
-    if entry.flags().is_encrypted() {
-        return Err(unsupported("an encrypted entry".to_owned()));
-    }
-    let found = archive.get_entry(entry.wayfinder()).map_err(|error| damaged(name, &error.to_string(), offset))?;
-    let (packed, length) = (found.data(), entry.uncompressed_size_hint());
-    if length > (packed.len() as u64).saturating_mul(LARGEST_RATIO) {
-        return Err(damaged(name, "it claims more bytes than it can unpack to", offset));
-    }
-    meter.take(length, 1, name)?;
-    let unpacked = match entry.compression_method() {
-        CompressionMethod::STORE => read_whole(found.verifying_reader(packed), length),
-        CompressionMethod::DEFLATE => read_whole(found.verifying_reader(DeflateDecoder::new(packed)), length),
-        method => return Err(unsupported(format!("an entry packed by method {}", method.as_u16()))),
-    };
-    unpacked.map_err(|error| damaged(name, &error.to_string(), offset))
-}
-
-/// Reads up to the end, where the length and the check sum are compared, or one byte beyond `length`.
-fn read_whole(reader: impl Read, length: u64) -> std::io::Result<Vec<u8>> {
-    let mut unpacked = Vec::new();
-    reader.take(length.saturating_add(1)).read_to_end(&mut unpacked)?;
-    if unpacked.len() as u64 == length {
-        Ok(unpacked)
-    } else {
-        Err(std::io::Error::other("it is not as long as it claims"))
-    }
-}
-
-/// Why there is no archive at all: a file begun as one has lost its end, where the directory stands.
-fn unreadable(bytes: &[u8]) -> VariableFault {
-    if bytes.starts_with(b"PK\x03\x04") {
-        return VariableFault::CutOff { variable: String::new(), offset: bytes.len() as u64 };
-    }
-    let found = if bytes.is_empty() { "nothing" } else { "other bytes" };
-    VariableFault::Format { expected: "an archive of NumPy (.npz)", found: found.to_owned() }
-}
-
-fn damaged(name: &str, what: &str, offset: u64) -> VariableFault {
-    VariableFault::Damaged { variable: name.to_owned(), what: what.to_owned(), offset }
+    let array = file.unpack(name, meter)?;
+    read_npy(&array, name, meter)?.pop().ok_or_else(|| damaged(name, "there is no array", file.offset))
 }
 
 #[cfg(test)]

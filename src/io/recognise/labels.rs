@@ -27,7 +27,7 @@ const STATE_NAMES: &[&str] = &["StateName", "stname", "states", "state_names", "
 const SAMPLE_TIME: &[&str] = &["Ts", "dt", "tsam", "sample_time_s", "sample_time", "Tsample"];
 
 /// Texts in a value: an array of texts, a cell array of them.
-pub(super) fn texts_of(value: &Value) -> Option<Vec<String>> {
+pub(in crate::io) fn texts_of(value: &Value) -> Option<Vec<String>> {
     let trimmed = |text: &String| text.trim().to_owned();
     match value {
         Value::Text(text) => Some(text.texts.iter().map(trimmed).collect()),
@@ -68,7 +68,7 @@ fn labels(record: &Record<'_>, names: &[&str], units: &[&str], count: usize) -> 
 }
 
 /// A label as engineers write it: "P", "P [deg/s]", "P (deg/s)".
-pub(super) fn label_of(text: &str) -> ChannelLabel {
+pub(in crate::io) fn label_of(text: &str) -> ChannelLabel {
     let text = text.trim();
     for (open, close) in [('[', ']'), ('(', ')')] {
         if let Some((name, unit)) = text.strip_suffix(close).and_then(|text| text.split_once(open))

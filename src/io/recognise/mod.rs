@@ -5,9 +5,9 @@
 //! all of these inside structs, cells and arrays.
 
 mod descriptor;
-mod labels;
+pub(super) mod labels;
 mod matrix;
-mod record;
+pub(super) mod record;
 mod response;
 mod search;
 mod state_space;

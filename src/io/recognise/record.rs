@@ -11,24 +11,29 @@ const DEEPEST_PART: usize = 3;
 
 /// Fields that belong together.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Record<'v> {
+pub(in crate::io) struct Record<'v> {
     fields: Vec<(&'v str, &'v Value)>,
     /// The class, where it is an object.
-    pub(super) class: Option<&'v str>,
+    pub(in crate::io) class: Option<&'v str>,
     /// Whether it is a struct or an object, and not the variables of a file.
-    pub(super) stands_alone: bool,
+    pub(in crate::io) stands_alone: bool,
 }
 
 impl<'v> Record<'v> {
     /// The variables of a file.
-    pub(super) fn of_variables(variables: &'v [Variable]) -> Self {
+    pub(in crate::io) fn of_variables(variables: &'v [Variable]) -> Self {
         let fields = variables.iter().map(|variable| (variable.name.as_str(), &variable.value)).collect();
         Self { fields, class: None, stands_alone: false }
     }
 
     /// One record of a struct array. Of an object also what lies in its inner parts, the `page`-th where they are arrays: objects of
     /// MATLAB keep their numbers in `Data_`.
-    pub(super) fn of_struct(records: &'v StructArray, index: usize, class: Option<&'v str>, page: usize) -> Self {
+    pub(in crate::io) fn of_struct(
+        records: &'v StructArray,
+        index: usize,
+        class: Option<&'v str>,
+        page: usize,
+    ) -> Self {
         let mut fields = fields_of(records, index);
         let holds_response = fields.iter().any(|(name, _)| plain(name) == RESPONSE_PART);
         if class.is_some() || holds_response {
@@ -38,7 +43,7 @@ impl<'v> Record<'v> {
     }
 
     /// Number of models that an object is an array of: each has a record of numbers of its own.
-    pub(super) fn pages(records: &StructArray, index: usize) -> usize {
+    pub(in crate::io) fn pages(records: &StructArray, index: usize) -> usize {
         let data = fields_of(records, index).into_iter().find(|(name, _)| plain(name) == "data");
         match data {
             Some((_, Value::Object(object))) => object.records.shape.iter().product(),
@@ -47,19 +52,19 @@ impl<'v> Record<'v> {
     }
 
     /// The field of the first of these names that there is: as it is written, else without case and underscores.
-    pub(super) fn get(&self, names: &[&str]) -> Option<&'v Value> {
+    pub(in crate::io) fn get(&self, names: &[&str]) -> Option<&'v Value> {
         let exact = names.iter().find_map(|name| self.exact(name));
         let loose = || names.iter().find_map(|name| self.fields.iter().find(|(field, _)| plain(field) == plain(name)));
         exact.or_else(|| loose().map(|(_, value)| *value))
     }
 
     /// The field of this very name.
-    pub(super) fn exact(&self, name: &str) -> Option<&'v Value> {
+    pub(in crate::io) fn exact(&self, name: &str) -> Option<&'v Value> {
         self.fields.iter().find(|(field, _)| *field == name).map(|(_, value)| *value)
     }
 
     /// Names and values, in order.
-    pub(super) fn fields(&self) -> impl Iterator<Item = (&'v str, &'v Value)> + '_ {
+    pub(in crate::io) fn fields(&self) -> impl Iterator<Item = (&'v str, &'v Value)> + '_ {
         self.fields.iter().copied()
     }
 }

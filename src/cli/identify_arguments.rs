@@ -1,0 +1,132 @@
+//! The command line of `gdcm identify`.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::Args;
+
+use super::arguments::real_number;
+
+/// Which flight records models are to be identified from, and how.
+#[derive(Debug, Args)]
+pub struct IdentifyArguments {
+    /// Flight records of one condition: files, or folders with all that is in them (text, MATLAB, NumPy, JSON, zip).
+    #[arg(value_name = "RECORD", required = true)]
+    pub records: Vec<PathBuf>,
+    /// Inputs, separated by commas (LON,LAT), each as CHANNEL or CHANNEL=COLUMN; without it, those of the dataset.
+    #[arg(long, value_name = "NAMES", required_unless_present = "into")]
+    pub inputs: Option<ChannelList>,
+    /// Outputs, in the same way.
+    #[arg(long, value_name = "NAMES", required_unless_present = "into")]
+    pub outputs: Option<ChannelList>,
+    /// Band to identify, in rad/s; without it, that of the dataset.
+    #[arg(
+        long,
+        num_args = 2,
+        value_names = ["LO", "HI"],
+        value_parser = real_number,
+        allow_negative_numbers = true,
+        required_unless_present = "into"
+    )]
+    pub band: Option<Vec<f64>>,
+    /// Column of the time; without it, the one that looks like it.
+    #[arg(long, value_name = "NAME")]
+    pub time: Option<String>,
+    /// Samples in a second, in place of a column of the time.
+    #[arg(long, value_name = "HZ", value_parser = real_number, conflicts_with = "time", allow_negative_numbers = true)]
+    pub sample_rate: Option<f64>,
+    /// A record to validate with, kept from identification: its file or its name; may be repeated. Without it, those whose names say so.
+    #[arg(long, value_name = "FILE")]
+    pub hold_out: Vec<String>,
+    /// A known delay of a channel, in seconds, positive where it is logged late; may be repeated.
+    #[arg(long, value_name = "CHANNEL=SECONDS", allow_hyphen_values = true)]
+    pub delay: Vec<ChannelDelay>,
+    /// Dataset that the models are put into; it is written anew, beside identified.json.
+    #[arg(long, value_name = "DATASET", requires = "condition")]
+    pub into: Option<PathBuf>,
+    /// The condition of the dataset, by its id.
+    #[arg(long, value_name = "ID", requires = "into", allow_negative_numbers = true)]
+    pub condition: Option<i64>,
+    /// Directory for identified.json; made where there is none.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Overwrite files that are there already.
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Channels by name, and the columns that they are where the names do not say.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ChannelList {
+    /// Channel and column of each.
+    pub channels: Vec<(String, Option<String>)>,
+}
+
+impl FromStr for ChannelList {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let channel = |words: &str| {
+            let (name, column) = match words.split_once('=') {
+                Some((name, column)) => (name.trim(), Some(column.trim())),
+                None => (words.trim(), None),
+            };
+            if name.is_empty() || column.is_some_and(str::is_empty) {
+                return Err(format!("expected CHANNEL or CHANNEL=COLUMN, as P or P=roll_rate, found \"{words}\""));
+            }
+            Ok((name.to_owned(), column.map(str::to_owned)))
+        };
+        let channels: Vec<_> = text.split(',').map(channel).collect::<Result<_, _>>()?;
+        match channels.iter().enumerate().find(|(at, (name, _))| channels[..*at].iter().any(|(other, _)| other == name))
+        {
+            Some((_, (name, _))) => Err(format!("{name} stands twice")),
+            None => Ok(Self { channels }),
+        }
+    }
+}
+
+/// A known delay of a channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelDelay {
+    /// The channel.
+    pub channel: String,
+    /// The delay \[s\], positive where the channel is logged late.
+    pub delay_s: f64,
+}
+
+impl FromStr for ChannelDelay {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        /// Beyond this a delay is no delay of a sensor or a bus \[s\].
+        const MOST_S: f64 = 2.0;
+        let expected = || format!("expected CHANNEL=SECONDS, as P=0.02, found \"{text}\"");
+        let (channel, seconds) = text.split_once('=').ok_or_else(expected)?;
+        let delay_s: f64 = seconds.trim().parse().map_err(|_| expected())?;
+        if !(-MOST_S..=MOST_S).contains(&delay_s) || channel.trim().is_empty() {
+            return Err(format!("{}; a delay is from -{MOST_S} to {MOST_S} s", expected()));
+        }
+        Ok(Self { channel: channel.trim().to_owned(), delay_s })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn channels_may_say_their_columns() {
+        let list: ChannelList = "LON, P=roll rate".parse().unwrap();
+        assert_eq!(list.channels, [("LON".to_owned(), None), ("P".to_owned(), Some("roll rate".to_owned()))]);
+        assert!("".parse::<ChannelList>().is_err() && "P=".parse::<ChannelList>().is_err());
+        assert_eq!("P,Q,P".parse::<ChannelList>().unwrap_err(), "P stands twice");
+    }
+
+    #[test]
+    fn a_delay_is_of_a_channel_and_short() {
+        assert_eq!("P=-0.02".parse(), Ok(ChannelDelay { channel: "P".into(), delay_s: -0.02 }));
+        for wrong in ["P", "P=x", "P=20", "=0.1", "P=NaN"] {
+            assert!(wrong.parse::<ChannelDelay>().is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Files in zip archives.
+
+use std::io::Read;
+
+use flate2::bufread::DeflateDecoder;
+use rawzip::{CompressionMethod, ZipArchive, ZipFileHeaderRecord, ZipSliceArchive};
+
+use super::variables::{Meter, VariableFault};
+
+/// The most bytes that one byte of deflate (RFC 1951) can become.
+const LARGEST_RATIO: u64 = 1032;
+
+/// A file in a zip archive (APPNOTE 6.3), packed as it is.
+pub(super) struct ZipFile<'z, 'b> {
+    /// Its path in the archive.
+    pub(super) path: &'z str,
+    /// Where it begins \[bytes\].
+    pub(super) offset: u64,
+    archive: &'z ZipSliceArchive<&'b [u8]>,
+    entry: &'z ZipFileHeaderRecord<'b>,
+}
+
+/// Shows every file of an archive to `visit`, in the archive's order.
+pub(super) fn visit_files(
+    bytes: &[u8],
+    mut visit: impl FnMut(&ZipFile<'_, '_>) -> Result<(), VariableFault>,
+) -> Result<(), VariableFault> {
+    let archive = ZipArchive::from_slice(bytes).map_err(|_| unreadable(bytes))?;
+    let mut entries = archive.entries();
+    while let Some(entry) =
+        entries.next_entry().map_err(|error| damaged("", &error.to_string(), archive.directory_offset()))?
+    {
+        if entry.is_dir() {
+            continue;
+        }
+        let path = entry.file_path();
+        let offset = entry.local_header_offset();
+        let path = std::str::from_utf8(path.as_bytes()).map_err(|_| damaged("", "a name is not UTF-8", offset))?;
+        visit(&ZipFile { path, offset, archive: &archive, entry: &entry })?;
+    }
+    Ok(())
+}
+
+impl ZipFile<'_, '_> {
+    /// Unpacks the file, and no further than the archive says: a few kilobytes can unpack to gigabytes. `name` is what faults call it.
+    pub(super) fn unpack(&self, name: &str, meter: &Meter<'_>) -> Result<Vec<u8>, VariableFault> {
+        let unsupported = |what: String| {
+            let remedy = "pack it again by deflate, without a password".to_owned();
+            VariableFault::Unsupported { variable: name.to_owned(), what, remedy }
+        };
+        if self.entry.flags().is_encrypted() {
+            return Err(unsupported("an encrypted entry".to_owned()));
+        }
+        let found = self.archive.get_entry(self.entry.wayfinder());
+        let found = found.map_err(|error| damaged(name, &error.to_string(), self.offset))?;
+        let (packed, length) = (found.data(), self.entry.uncompressed_size_hint());
+        if length > (packed.len() as u64).saturating_mul(LARGEST_RATIO) {
+            return Err(damaged(name, "it claims more bytes than it can unpack to", self.offset));
+        }
+        meter.take(length, 1, name)?;
+        let unpacked = match self.entry.compression_method() {
+            CompressionMethod::STORE => read_whole(found.verifying_reader(packed), length),
+            CompressionMethod::DEFLATE => read_whole(found.verifying_reader(DeflateDecoder::new(packed)), length),
+            method => return Err(unsupported(format!("an entry packed by method {}", method.as_u16()))),
+        };
+        unpacked.map_err(|error| damaged(name, &error.to_string(), self.offset))
+    }
+}
+
+/// Reads up to the end, where the length and the check sum are compared, or one byte beyond `length`.
+fn read_whole(reader: impl Read, length: u64) -> std::io::Result<Vec<u8>> {
+    let mut unpacked = Vec::new();
+    reader.take(length.saturating_add(1)).read_to_end(&mut unpacked)?;
+    if unpacked.len() as u64 == length {
+        Ok(unpacked)
+    } else {
+        Err(std::io::Error::other("it is not as long as it claims"))
+    }
+}
+
+/// Why there is no archive at all: a file begun as one has lost its end, where the directory stands.
+fn unreadable(bytes: &[u8]) -> VariableFault {
+    if bytes.starts_with(b"PK\x03\x04") {
+        return VariableFault::CutOff { variable: String::new(), offset: bytes.len() as u64 };
+    }
+    let found = if bytes.is_empty() { "nothing" } else { "other bytes" };
+    VariableFault::Format { expected: "a zip archive (.npz, .zip)", found: found.to_owned() }
+}
+
+/// A fault of what the archive, or a file in it, holds.
+pub(super) fn damaged(name: &str, what: &str, offset: u64) -> VariableFault {
+    VariableFault::Damaged { variable: name.to_owned(), what: what.to_owned(), offset }
+}

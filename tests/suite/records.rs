@@ -1,0 +1,149 @@
+//! Flight records of the example, and `gdcm identify` up to where records are understood.
+
+use std::fs;
+use std::path::Path;
+
+use gdcm::assembly::standard_patterns;
+use gdcm::dataset::RecordKind;
+use gdcm::io::{embedded_example, example_records, records_of_bytes};
+use gdcm::records::{RecordChannels, RecordGuess, RecordLayout, TimeWish};
+
+use crate::commands::Desk;
+
+/// The 99 records of the example.
+fn archive() -> Vec<u8> {
+    fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/example-records.zip")).unwrap()
+}
+
+#[test]
+fn every_record_of_the_example_is_understood_without_a_word_from_the_engineer() {
+    let found = records_of_bytes(&archive(), "example-records.zip", 1 << 30).unwrap();
+    assert_eq!((found.tables.len(), found.faults.len()), (99, 0));
+    let channels = RecordChannels::of_dataset(&embedded_example().unwrap().dataset);
+    let patterns = standard_patterns();
+    let mut sweeps = [0; 12];
+    for table in &found.tables {
+        let proposal = RecordLayout::proposed(table, &channels, &TimeWish::default());
+        assert_eq!((proposal.problems, proposal.cautions), (vec![], vec![]), "{}", table.name);
+        let record = proposal.layout.flight_record(table, &channels).unwrap();
+        assert!(record.outputs.iter().chain(record.inputs.iter()).all(|sample| sample.is_finite()));
+        let guess = RecordGuess::of(&table.name, &patterns);
+        assert_eq!(guess.held_out, table.name.contains("validation"));
+        sweeps[guess.condition.unwrap() as usize] += usize::from(guess.kind == RecordKind::Sweep);
+    }
+    assert_eq!(sweeps[1..], [8; 11]);
+}
+
+#[test]
+fn the_records_inside_the_program_are_those_beside_it() {
+    let all = records_of_bytes(&archive(), "example-records.zip", 1 << 30).unwrap();
+    for condition in [3, 10] {
+        for table in example_records(condition).unwrap() {
+            let same = all.tables.iter().find(|other| other.name == table.name).unwrap();
+            assert_eq!(same.columns, table.columns, "{}", table.name);
+        }
+    }
+}
+
+/// A desk with two short records of the small dataset's channels, the first in other units and under other names.
+fn desk() -> Desk {
+    let desk = Desk::new();
+    let text = |head: &str, rate: f64| {
+        let row = |k: u32| {
+            let at = f64::from(k);
+            let (stick, roll) = (50.0 + 10.0 * (0.3 * at).sin(), rate * (0.2 * at).cos());
+            format!("{:.2},{stick:.3},{:.3},{roll:.4},{:.4}\n", 0.02 * at, 100.0 - stick, roll / 2.0)
+        };
+        head.to_owned() + &(0..80).map(row).collect::<String>()
+    };
+    fs::write(desk.path("sweep_1.csv"), text("t,lon,lateral,roll rate [rad/s],pitch rate [rad/s]\n", 0.2)).unwrap();
+    fs::write(desk.path("validation.csv"), text("t,LON,LAT,P,Q\n", 0.2)).unwrap();
+    desk
+}
+
+#[test]
+fn records_are_laid_out_in_words_and_held_out_by_name() {
+    let desk = desk();
+    let ended = desk.gdcm(&[
+        "identify",
+        "sweep_1.csv",
+        "validation.csv",
+        "--inputs",
+        "LON,LAT",
+        "--outputs",
+        "P,Q",
+        "--band",
+        "0.5",
+        "12",
+        "--out",
+        "out",
+    ]);
+    for words in [
+        "sweep_1: time from column \"t\", in s",
+        "sweep_1: P: column \"roll rate\" as it is, in rad/s",
+        "validation: P: column \"P\", taken to be in rad/s",
+    ] {
+        assert!(ended.error.contains(words), "{words}: {ended:?}");
+    }
+    let line = ended.out.lines().find(|line| line.starts_with("validation")).unwrap();
+    assert!(line.contains("80") && line.ends_with("held out"), "{line}");
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
+    let desk = desk();
+    fs::write(
+        desk.path("wrong.csv"),
+        fs::read_to_string(desk.path("sweep_1.csv")).unwrap().replace("rad/s", "deg/s").replace("lateral", "lever"),
+    )
+    .unwrap();
+    let refused = |arguments: &[&str], words: &[&str]| {
+        let ended = desk.gdcm(&[&["identify"], arguments, &["--out", "out"]].concat());
+        assert_eq!(ended.status, 2, "{ended:?}");
+        words.iter().for_each(|word| assert!(ended.error.contains(word), "{word}: {ended:?}"));
+        assert!(!desk.path("out").exists());
+    };
+    let names = ["--inputs", "LON,LAT", "--outputs", "P,Q"];
+    let band = ["--band", "0.5", "12"];
+    let all = |record: &'static str, more: &[&'static str]| [&[record], &names[..], &band[..], more].concat();
+    refused(&["sweep_1.csv"], &["--inputs"]);
+    refused(&[&["sweep_1.csv"], &names[..]].concat(), &["--band"]);
+    refused(
+        &all("wrong.csv", &[]),
+        &["wrong: no column is the input LAT; say which is (columns: t, lon, lever", "1 of 1 record cannot be taken"],
+    );
+    refused(&all("sweep_1.csv", &["--time", "clock"]), &["there is no column \"clock\""]);
+    refused(&all("sweep_1.csv", &["--sample-rate", "-50"]), &["the sample time is -0.02 s"]);
+    refused(&all("sweep_1.csv", &["--hold-out", "other.csv"]), &["--hold-out: \"other.csv\" is none of the records"]);
+    refused(&all("sweep_1.csv", &["--hold-out", "sweep_1.csv"]), &["--hold-out: every record is held out"]);
+    refused(&all("sweep_1.csv", &["--delay", "X=0.02"]), &["--delay: X is none of the channels"]);
+    refused(&all("sweep_1.csv", &["--delay", "P"]), &["--delay", "expected CHANNEL=SECONDS"]);
+    refused(&all("missing.csv", &[]), &["missing.csv: there is no such file"]);
+    refused(
+        &["sweep_1.csv", "--into", "small.json", "--condition", "5"],
+        &["--condition: the dataset has no condition 5; it has 7, 10"],
+    );
+    refused(&["sweep_1.csv", "--into", "small.json"], &["--condition"]);
+}
+
+#[test]
+fn channels_units_and_band_are_the_dataset_s_where_one_is_given() {
+    let desk = desk();
+    let ended = desk.gdcm(&[
+        "identify",
+        "sweep_1.csv",
+        "--into",
+        "small.json",
+        "--condition",
+        "7",
+        "--outputs",
+        "P=pitch rate",
+        "--out",
+        "out",
+    ]);
+    assert!(ended.error.contains("P: column \"pitch rate\", rad/s → deg/s"), "{ended:?}");
+    assert!(
+        !ended.error.contains("roll rate\", rad/s"),
+        "the engineer's column stands in place of the name: {ended:?}"
+    );
+}

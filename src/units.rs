@@ -15,6 +15,11 @@ pub fn rad_s_to_hz(omega: f64) -> f64 {
     omega / std::f64::consts::TAU
 }
 
+/// Milliseconds to seconds.
+pub fn ms_to_s(milliseconds: f64) -> f64 {
+    1e-3 * milliseconds
+}
+
 /// Seconds to milliseconds.
 pub fn s_to_ms(seconds: f64) -> f64 {
     1e3 * seconds

@@ -33,6 +33,7 @@ fn wanted(state: &State) -> Beside {
             .map(|analysis| AssessmentJob { analysis: Arc::clone(analysis), choice: assessment_choice(state) }),
         across: is_shown(View::Across).then(|| across_job(state)),
         report: None,
+        identifications: state.records.running.clone(),
         variants: if is_shown(View::Compare) { variant_jobs(state) } else { Vec::new() },
     }
 }

@@ -16,6 +16,8 @@ pub enum DialogPurpose {
     ExportFolder,
     /// A folder of model files.
     ModelFolder,
+    /// A folder of flight records.
+    RecordFolder,
 }
 
 /// How a dialog ended.
@@ -79,6 +81,7 @@ fn dialog(purpose: DialogPurpose, file_name: &str) -> Option<PathBuf> {
             dialog.set_title("Save the study").add_filter("studies", &["json"]).set_file_name(file_name).save_file()
         }
         DialogPurpose::ModelFolder => dialog.set_title("A folder of model files").pick_folder(),
+        DialogPurpose::RecordFolder => dialog.set_title("A folder of flight records").pick_folder(),
         DialogPurpose::ExportFolder => dialog.set_title("Export corrections to a folder").pick_folder(),
     }
 }

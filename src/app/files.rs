@@ -15,6 +15,7 @@ use crate::view::assembling::AssemblingCommand;
 use crate::view::bars::Bar;
 use crate::view::command::{Command, FormKind};
 use crate::view::preferences::Preferences;
+use crate::view::records::RecordsCommand;
 use crate::view::state::State;
 
 use super::dialogs::{DialogAnswer, DialogPurpose};
@@ -238,7 +239,12 @@ impl GdcmApp {
                 DialogAnswer::Chosen(DialogPurpose::ModelFolder, path) => {
                     self.assemble(AssemblingCommand::Add(vec![path]), ctx);
                 }
-                DialogAnswer::Nothing(DialogPurpose::ExportFolder | DialogPurpose::ModelFolder) => {}
+                DialogAnswer::Chosen(DialogPurpose::RecordFolder, path) => {
+                    self.records(RecordsCommand::Add(vec![path]), ctx);
+                }
+                DialogAnswer::Nothing(
+                    DialogPurpose::ExportFolder | DialogPurpose::ModelFolder | DialogPurpose::RecordFolder,
+                ) => {}
             }
         }
     }

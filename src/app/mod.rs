@@ -14,6 +14,7 @@ mod lane;
 mod launch;
 mod pool;
 mod recent;
+mod records;
 mod recovery;
 mod reload;
 mod report;

@@ -117,6 +117,7 @@ impl GdcmApp {
             Command::AskSaveShownTable(table) => self.ask_save_table(&table.title, table.clone()),
             Command::SaveTable(table, path) => self.save_table(table, path, Existing::Keep),
             Command::Assembling(command) => self.assemble(command, ctx),
+            Command::Records(command) => self.records(command, ctx),
             Command::CopyFigure(view) => self.copy_figure(view, ctx),
             Command::AskSaveFigure(view, format) => self.ask_save_figure(view, format),
             Command::SaveFigure(view, width, path) => self.save_figure((view, width), path, Existing::Keep),
@@ -165,7 +166,7 @@ impl GdcmApp {
         }
     }
 
-    fn decide(&mut self, edit: &Edit) {
+    pub(super) fn decide(&mut self, edit: &Edit) {
         let before = self.state.study.clone();
         match self.state.study.apply(edit) {
             Ok(()) if self.state.study == before => {}

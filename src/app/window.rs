@@ -8,11 +8,13 @@ use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, Viewport
 use crate::dataset::ConditionId;
 use crate::io::{LoadedDataset, LostStudy, Opened, is_first_start};
 use crate::study::Study;
+use crate::view::arrangement::View;
 use crate::view::assembling::{AssemblingCommand, assembling_ui};
 use crate::view::bars::Bar;
 use crate::view::command::Command;
 use crate::view::palette::{self, Palette};
 use crate::view::preferences::Preferences;
+use crate::view::records::RecordsCommand;
 use crate::view::state::State;
 use crate::view::{
     bars, centre, conditions_panel, derivation_window, focus_ring, forms, matrix_panel, menu_bar, models_panel,
@@ -28,6 +30,7 @@ use super::files::{Postponed, Readers, SavedStudy};
 use super::key_order::KeyOrder;
 use super::launch::holds_models;
 use super::recent::Recent;
+use super::records::RecordReader;
 use super::recovery::LAST_WAIT;
 use super::report::ReportJob;
 use super::setup::Setup;
@@ -44,6 +47,7 @@ pub struct GdcmApp {
     pub(super) dialogs: Dialogs,
     pub(super) readers: Readers,
     pub(super) model_reader: ModelReader,
+    pub(super) record_reader: RecordReader,
     /// What waits for the answer whether to lose decisions that are not saved.
     pub(super) postponed: Option<Postponed>,
     /// Whether that is done once they are saved.
@@ -96,6 +100,7 @@ impl GdcmApp {
             dialogs: Dialogs::new(),
             readers: Readers::default(),
             model_reader: ModelReader::default(),
+            record_reader: RecordReader::default(),
             postponed: None,
             goes_on_once_saved: false,
             overwriting: None,
@@ -195,6 +200,7 @@ impl GdcmApp {
                     results.variants.push((job, analysis));
                 }
                 Reply::Report(job, outcome) => self.report_written(job, outcome),
+                Reply::Identified(job, found) => self.identified(job, found),
                 Reply::Fault { generation, fault } => self.computing_failed(generation, &fault),
                 // Answers to questions that no longer stand.
                 Reply::Progress { .. } | Reply::Curves(..) => {}
@@ -239,6 +245,10 @@ impl GdcmApp {
             [] => {}
             [path] if self.state.assembling.is_none() && !holds_models(path) => {
                 commands.push(Command::Open(path.clone()))
+            }
+            // Beside the records of a condition, files are more of them.
+            _ if self.state.assembling.is_none() && self.state.display.arrangement.is_shown(View::Records) => {
+                commands.push(RecordsCommand::Add(paths).into());
             }
             _ => commands.push(AssemblingCommand::Add(paths).into()),
         }
@@ -345,6 +355,8 @@ impl eframe::App for GdcmApp {
         self.receive(ctx.input(|input| input.time));
         self.receive_files(ctx);
         self.receive_models();
+        self.receive_records();
+        self.look_for_records(ctx);
         self.receive_disk();
         self.receive_recent();
         self.receive_recovery();

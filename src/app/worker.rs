@@ -10,11 +10,12 @@ use super::lane::{Ending, Lane, PATIENCE};
 use super::report::ReportJob;
 use crate::correction::{Outcome, Problem, Solution};
 use crate::dataset::ConditionId;
+use crate::identification::{Identification, IdentificationError};
 use crate::io::FileError;
 use crate::study::{
     AcrossCurves, AcrossJob, Analysis, AssessmentJob, AssessmentTable, CURVE_POINTS, ConditionAnalysis,
-    ConditionCurves, ConditionFailure, ConditionModes, CurvesJob, Engine, Job, ModesJob, Progress, ProofJob, Study,
-    Toggles, TogglesJob, VariantJob, display_band,
+    ConditionCurves, ConditionFailure, ConditionModes, CurvesJob, Engine, IdentifyJob, Job, ModesJob, Progress,
+    ProofJob, Study, Toggles, TogglesJob, VariantJob, display_band,
 };
 use crate::view::results::{Background, FirstResult};
 
@@ -75,6 +76,8 @@ pub enum Reply {
     Variant(VariantJob, Arc<Analysis>),
     /// What came of writing a report.
     Report(ReportJob, Result<(), FileError>),
+    /// What was identified from flight records.
+    Identified(IdentifyJob, Result<Arc<Identification>, IdentificationError>),
     /// Computing panicked.
     Fault {
         /// Number of the request that has no answer for it; none for a job.
@@ -141,6 +144,7 @@ struct Lanes {
     across: Lane<AcrossJob>,
     variants: Lane<VariantJob>,
     reports: Lane<ReportJob>,
+    identifications: Lane<IdentifyJob>,
 }
 
 /// What the views that are shown need beside the live answer; a job that is not wanted any more is given up.
@@ -156,6 +160,8 @@ pub struct Beside {
     pub variants: Vec<VariantJob>,
     /// The report that is being written.
     pub report: Option<ReportJob>,
+    /// Models to be identified, the first first.
+    pub identifications: Vec<IdentifyJob>,
 }
 
 /// The threads that compute. Dropping it ends them, and waits for none.
@@ -219,13 +225,15 @@ impl Worker {
         self.lanes.across.want(beside.across.into_iter().collect());
         self.lanes.variants.want(beside.variants);
         self.lanes.reports.want(beside.report.into_iter().collect());
+        self.lanes.identifications.want(beside.identifications);
     }
 
     /// Gives up the request under way, the one that waits, and every job.
     pub fn stop(&self) {
         self.shared.newest.store(NOTHING, Ordering::Release);
         self.shared.mailbox().request = None;
-        let Lanes { curves, toggles, proofs, modes, assessments, across, variants, reports } = &*self.lanes;
+        let Lanes { curves, toggles, proofs, modes, assessments, across, variants, reports, identifications } =
+            &*self.lanes;
         curves.stop();
         toggles.stop();
         proofs.stop();
@@ -234,11 +242,13 @@ impl Worker {
         across.stop();
         variants.stop();
         reports.stop();
+        identifications.stop();
     }
 
     /// Lets the jobs that were stopped be begun again.
     pub fn resume(&self) {
-        let Lanes { curves, toggles, proofs, modes, assessments, across, variants, reports } = &*self.lanes;
+        let Lanes { curves, toggles, proofs, modes, assessments, across, variants, reports, identifications } =
+            &*self.lanes;
         curves.resume();
         toggles.resume();
         proofs.resume();
@@ -247,6 +257,7 @@ impl Worker {
         across.resume();
         variants.resume();
         reports.resume();
+        identifications.resume();
     }
 
     /// Whether a report was stopped that is still asked for.
@@ -259,8 +270,19 @@ impl Worker {
         let proofs = self.lanes.proofs.unfinished().into_iter().map(|job| job.problem).collect();
         let curves =
             (!self.lanes.curves.unfinished().is_empty()).then(|| self.lanes.curves.progress().unwrap_or((0, 0)));
-        let Lanes { curves: of_curves, toggles, proofs: of_proofs, modes, assessments, across, variants, reports } =
-            &*self.lanes;
+        let Lanes {
+            curves: of_curves,
+            toggles,
+            proofs: of_proofs,
+            modes,
+            assessments,
+            across,
+            variants,
+            reports,
+            identifications,
+        } = &*self.lanes;
+        let under_way = !identifications.unfinished().is_empty();
+        let identification = under_way.then(|| identifications.progress().unwrap_or((0, 0)));
         let stopped = of_curves.is_stopped()
             || toggles.is_stopped()
             || of_proofs.is_stopped()
@@ -271,7 +293,7 @@ impl Worker {
         let views = modes.unfinished().len() + assessments.unfinished().len() + across.unfinished().len();
         let views = views + variants.unfinished().len();
         let report = (!reports.unfinished().is_empty()).then(|| reports.progress().unwrap_or((0, 0)));
-        Background { proofs, toggles: !toggles.unfinished().is_empty(), curves, views, report, stopped }
+        Background { proofs, toggles: !toggles.unfinished().is_empty(), curves, views, report, identification, stopped }
     }
 
     /// The next reply, if one is there.
@@ -300,6 +322,7 @@ impl Lanes {
             across: lane("conditions", || (), outbox, |job, curves| Some(Reply::Across(job, curves)))?,
             variants: lane("variants", move || for_variants(), outbox, |job, found| Some(Reply::Variant(job, found)))?,
             reports: lane("report", move || for_reports(), outbox, |job, outcome| Some(Reply::Report(job, outcome)))?,
+            identifications: lane("identification", || (), outbox, |job, found| Some(Reply::Identified(job, found)))?,
             proofs: proofs_lane(shared, outbox)?,
         })
     }

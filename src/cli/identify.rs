@@ -4,18 +4,20 @@ use std::path::{Path, PathBuf};
 
 use crate::assembly::{ChannelRule, standard_patterns};
 use crate::dataset::{Band, Condition, ConditionId, ConditionRecord, Dataset, DraftError};
-use crate::identification::FlightRecord;
+use crate::identification::{ChannelPreparation, FlightRecord, Options, Preparation, identify as identify_records};
 use crate::io::{
     FoundRecords, IdentifiedModels, LoadedDataset, Opened, OutputSet, add_dataset, add_identified, load_any,
     make_directory, plain, plain_path, read_records, relative_folder,
 };
 use crate::records::{LayoutProposal, RecordChannels, RecordGuess, RecordLayout, RecordTable, TimeWish};
-use crate::units::{number, telling};
+use crate::units::telling;
 
 use super::existing;
 use super::failure::Failure;
+use super::identification_outcome::identified_models;
 use super::identify_arguments::{ChannelList, IdentifyArguments};
 use super::models::{ReadingProgress, counted};
+use super::progress::TerminalProgress;
 use super::terminal::{say, say_error};
 use super::text_table::{Side, TextTable};
 
@@ -65,7 +67,7 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     let records = held_out(arguments, laid_out(arguments, &mut channels)?)?;
     say(&table(&records))?;
     let task = task(arguments, &records, channels, band)?;
-    let found = identified_models(&task)?;
+    let found = found_in(&task, &records)?;
     make_directory(&arguments.out)?;
     add_identified(&found, &identified, &mut outputs)?;
     if let Some(destination) = &destination {
@@ -78,21 +80,29 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     say(&places.iter().map(|path| format!("{}: {models}\n", plain_path(path))).collect::<String>())
 }
 
-/// Identification proper.
-fn identified_models(task: &IdentificationTask) -> Result<IdentifiedModels, Failure> {
-    let IdentificationTask { records, channels, band, input_delays_s, output_delays_s } = task;
-    let held_out = records.iter().filter(|(_, held_out)| *held_out).count();
-    let reason = format!(
-        "this version reads records and cannot identify yet ({} records, {held_out} held out; {} x {} channels, {} delays; {} to {} \
-         rad/s)",
-        records.len(),
-        channels.outputs.len(),
-        channels.inputs.len(),
-        input_delays_s.iter().chain(output_delays_s).filter(|delay_s| **delay_s != 0.0).count(),
-        number(band.min()),
-        number(band.max()),
-    );
-    Err(Failure::NoModels { reason })
+/// Identification proper, with a word about how far it is on a terminal.
+fn found_in(task: &IdentificationTask, records: &[ReadRecord]) -> Result<IdentifiedModels, Failure> {
+    let IdentificationTask { records: flights, channels, band, input_delays_s, output_delays_s } = task;
+    let prepared = |rules: &[ChannelRule], delays: &[f64]| -> Vec<ChannelPreparation> {
+        let of = |(rule, delay_s): (&ChannelRule, &f64)| ChannelPreparation {
+            delay_s: *delay_s,
+            ..ChannelPreparation::named(rule.name.clone())
+        };
+        rules.iter().zip(delays).map(of).collect()
+    };
+    let preparation = Preparation {
+        inputs: prepared(&channels.inputs, input_delays_s),
+        outputs: prepared(&channels.outputs, output_delays_s),
+        ..Preparation::of(&[], &[])
+    };
+    let held_out = flights.iter().enumerate().filter(|(_, (_, held_out))| *held_out).map(|(index, _)| index);
+    let options = Options { held_out: held_out.collect(), ..Options::new([band.min(), band.max()], preparation) };
+    let all: Vec<FlightRecord> = flights.iter().map(|(flight, _)| flight.clone()).collect();
+    let found = identify_records(&all, &options, &TerminalProgress::new("identifying"))
+        .map_err(|error| Failure::NoModels { reason: error.to_string() })?;
+    let with_tables: Vec<(FlightRecord, &RecordTable)> =
+        all.into_iter().zip(records.iter().map(|record| &record.table)).collect();
+    Ok(identified_models(&found, &options, &with_tables, channels))
 }
 
 impl Destination {

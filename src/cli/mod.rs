@@ -9,6 +9,7 @@ mod export;
 mod export_arguments;
 mod failure;
 mod figure;
+mod identification_outcome;
 mod identify;
 mod identify_arguments;
 mod models;

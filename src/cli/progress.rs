@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use crate::identification::Watch;
 use crate::study::Progress;
 
 /// An analysis that is done sooner needs no progress.
@@ -45,5 +46,16 @@ impl Progress for TerminalProgress {
         }
         self.bar.set_length(total as u64);
         self.bar.set_position(done as u64);
+    }
+}
+
+impl Watch for TerminalProgress {
+    fn progress(&self, done: f64, _what: &str) {
+        const PARTS: f64 = 1000.0;
+        self.advanced((PARTS * done) as usize, PARTS as usize);
+    }
+
+    fn is_stopped(&self) -> bool {
+        false
     }
 }

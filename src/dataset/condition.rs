@@ -124,25 +124,20 @@ impl Condition {
         Ok(self)
     }
 
-    /// The same condition with these identified models and flight records, each in place of the one of its name, or behind the others.
+    /// The same condition with these models for its identified bundle, and these flight records, each in place of the one of its
+    /// name, or behind the others.
     ///
     /// # Errors
     /// Those of [`Condition::new`] and [`Condition::with_records`].
     pub fn with_identified(&self, models: Vec<Model>, records: Vec<ConditionRecord>) -> Result<Self, ConditionError> {
-        let (mut identified, mut kept) = (self.identified.clone(), self.records.clone());
-        for model in models {
-            match identified.iter_mut().find(|other| other.name == model.name) {
-                Some(other) => *other = model,
-                None => identified.push(model),
-            }
-        }
+        let mut kept = self.records.clone();
         for record in records {
             match kept.iter_mut().find(|other| other.name == record.name) {
                 Some(other) => *other = record,
                 None => kept.push(record),
             }
         }
-        Self::new(self.flight_state.clone(), self.physics.clone(), identified)?.with_records(kept)
+        Self::new(self.flight_state.clone(), self.physics.clone(), models)?.with_records(kept)
     }
 
     /// The flight records, in file order; none where the dataset names none.

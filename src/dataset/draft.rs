@@ -228,16 +228,6 @@ impl DatasetDraft {
     }
 }
 
-/// The identified models of drafts at `condition`, of a dataset with this many outputs and inputs.
-pub fn checked_identified(
-    drafts: Vec<ModelDraft>,
-    condition: &Place,
-    (outputs, inputs): (usize, usize),
-) -> Result<Vec<Model>, DraftError> {
-    let mut checker = Checker { outputs, inputs, oddities: Vec::new() };
-    checker.bundle(condition, BundleKind::Identified, drafts)
-}
-
 pub(super) fn check_count(list: &str, found: usize, most: usize) -> Result<(), DraftError> {
     let fault = DraftFault::TooMany { most, found };
     if found > most { Err(DraftError::new(Place::entry(list), fault)) } else { Ok(()) }

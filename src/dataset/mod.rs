@@ -27,7 +27,6 @@ pub use content::ContentHash;
 pub use dataset::{Dataset, DatasetError, DatasetHeader};
 pub use draft::{
     BandsDraft, ConditionDraft, DatasetDraft, DraftError, DraftFault, ModelDraft, Oddity, ResponseArray, ResponseDraft,
-    checked_identified,
 };
 pub use identity::{BundleKind, ConditionId, ModelId};
 pub use measured_response::{Estimate, MeasuredResponse, MeasuredResponseError};

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::dataset::{BundleKind, Condition, ConditionId, ConditionRecord, Dataset, Model};
+use crate::dataset::{BundleKind, ConditionId, ConditionRecord, Dataset, Model};
 
 use super::document::{BundleChoice, Study};
 use super::edit::EditRefusal;
@@ -92,10 +92,8 @@ impl BundleChoice {
 fn with_taken(dataset: &Dataset, id: ConditionId, taken: &TakenModels) -> Result<Dataset, EditRefusal> {
     let before = dataset.condition(id).ok_or(EditRefusal::NoCondition { condition: id })?;
     let refused = |why: String| EditRefusal::Models { condition: id, why };
-    let physics = before.bundle(BundleKind::Physics).to_vec();
-    let condition = Condition::new(before.flight_state().clone(), physics, taken.models.clone())
-        .and_then(|condition| condition.with_records(taken.records.clone()))
-        .map_err(|error| refused(error.to_string()))?;
+    let condition = before.with_identified(taken.models.clone(), taken.records.clone());
+    let condition = condition.map_err(|error| refused(error.to_string()))?;
     dataset.with_condition(condition).map_err(|error| refused(error.to_string()))
 }
 

@@ -25,15 +25,18 @@ pub enum View {
     Compare,
     /// Net gains against airspeed (Figures 6 and 7).
     NetGain,
+    /// Flight records of the condition, and models identified from them.
+    Records,
 }
 
 impl View {
     /// Every view, in the order of the menu.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Bode,
         Self::Overview,
         Self::Across,
         Self::Poles,
+        Self::Records,
         Self::Channels,
         Self::Assessment,
         Self::Compare,
@@ -53,6 +56,7 @@ impl View {
             Self::Channels => "Channels",
             Self::Assessment => "Assessment",
             Self::NetGain => "Net gain",
+            Self::Records => "Records",
         }
     }
 
@@ -69,6 +73,7 @@ impl View {
             Self::Compare => "Variants: decisions kept under names, beside the present ones",
             Self::Channels => "Gain of every channel against airspeed",
             Self::Assessment => "What the correction is worth, condition by condition",
+            Self::Records => "Flight records of the condition, and models identified from them",
             Self::NetGain => "Net gain of the held responses against airspeed, with the schedule",
         }
     }

@@ -57,6 +57,10 @@ impl Views<'_> {
             }
             View::Assessment => views::assessment_header_ui(ui, state, self.commands),
             View::Compare => {}
+            View::Records => {
+                views::records_header_ui(ui, state, self.commands);
+                condition_ui(ui, state, view, palette);
+            }
             View::Bode | View::Error | View::Overview => {
                 if matches!(view, View::Bode | View::Error) {
                     fit_ui(ui, view, self.commands);
@@ -92,6 +96,7 @@ fn header_width(view: View) -> f32 {
         View::Bode | View::Overview => 90.0,
         View::Error => 260.0,
         View::Poles => 180.0,
+        View::Records => 380.0,
         View::Channels | View::Across => 330.0,
         View::NetGain => 480.0,
         View::Assessment => 640.0,
@@ -104,7 +109,7 @@ fn condition_ui(ui: &mut Ui, state: &State, view: View, palette: &Palette) {
     let of_condition = format!("condition {} · {}", condition.id(), condition.flight_state().name);
     let title = match view {
         View::Bode | View::Error => format!("{} · {of_condition}", state.dataset().pair_name(state.display.pair)),
-        View::Overview | View::Poles => of_condition,
+        View::Overview | View::Poles | View::Records => of_condition,
         View::Across | View::NetGain | View::Channels | View::Assessment | View::Compare => return,
     };
     // A title of a few letters says nothing.
@@ -144,6 +149,7 @@ impl Behavior<View> for Views<'_> {
             View::Overview => views::overview_view_ui(ui, state, palette, commands),
             View::Across => views::across_view_ui(ui, state, palette, commands),
             View::Poles => views::poles_view_ui(ui, state, palette, commands),
+            View::Records => views::records_view_ui(ui, state, palette, commands),
             View::Compare => views::compare_view_ui(ui, state, palette, commands),
             View::Channels => views::channels_view_ui(ui, state, palette, commands),
             View::Assessment => views::assessment_view_ui(ui, state, palette, commands),

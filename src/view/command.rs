@@ -18,6 +18,7 @@ use super::curve_display::CurveCommand;
 use super::looks::Looks;
 use super::net_gain_scene::PairSet;
 use super::plot::{Across, FrequencyUnit, Measure};
+use super::records::RecordsCommand;
 use super::tables::TableKind;
 
 /// One wish of the engineer: what a click, a key or a menu entry stands for. Views push them; the window carries them out.
@@ -129,6 +130,8 @@ pub enum Command {
     AskSaveShownTable(Arc<Table>),
     /// Put models of files together.
     Assembling(AssemblingCommand),
+    /// Flight records, and models identified from them.
+    Records(RecordsCommand),
     /// Save a table as CSV.
     SaveTable(Arc<Table>, PathBuf),
     /// Put the numbers of what a view shows on the clipboard, as CSV.
@@ -208,6 +211,12 @@ impl From<CurveCommand> for Command {
 impl From<AssemblingCommand> for Command {
     fn from(command: AssemblingCommand) -> Self {
         Self::Assembling(command)
+    }
+}
+
+impl From<RecordsCommand> for Command {
+    fn from(command: RecordsCommand) -> Self {
+        Self::Records(command)
     }
 }
 

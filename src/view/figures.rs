@@ -51,7 +51,7 @@ fn kind(view: View) -> Option<FigureKind> {
         View::NetGain => Some(FigureKind::NetGain),
         View::Poles => Some(FigureKind::Poles),
         View::Across => Some(FigureKind::Airspeeds),
-        View::Compare => None,
+        View::Compare | View::Records => None,
     }
 }
 

@@ -41,6 +41,7 @@ pub mod palette;
 pub mod plot;
 pub mod preferences;
 mod question_forms;
+pub mod records;
 pub mod region;
 pub mod result_panel;
 pub mod results;

@@ -35,6 +35,8 @@ pub struct Background {
     pub views: usize,
     /// Whether a report is being written: conditions done, of how many.
     pub report: Option<(usize, usize)>,
+    /// Whether models are being identified: parts done, of how many.
+    pub identification: Option<(usize, usize)>,
     /// Whether something of it was stopped, by hand or by a fault.
     pub stopped: bool,
 }
@@ -42,7 +44,12 @@ pub struct Background {
 impl Background {
     /// Whether anything is under way.
     pub fn is_busy(&self) -> bool {
-        !self.proofs.is_empty() || self.toggles || self.curves.is_some() || self.views > 0 || self.report.is_some()
+        !self.proofs.is_empty()
+            || self.toggles
+            || self.curves.is_some()
+            || self.views > 0
+            || self.report.is_some()
+            || self.identification.is_some()
     }
 }
 

@@ -18,6 +18,7 @@ use super::bars::Bar;
 use super::command::FormKind;
 use super::command_palette::PaletteForm;
 use super::display::Display;
+use super::records::RecordsBench;
 use super::results::{FirstResult, Results};
 
 /// How a message is meant.
@@ -150,6 +151,8 @@ pub struct State {
     pub forms: Forms,
     /// The step of the guided tour that is shown.
     pub tour: Option<usize>,
+    /// Flight records, and what was identified from them.
+    pub records: RecordsBench,
     /// Models that are being put together, in the place of the study.
     pub assembling: Option<Workbench>,
 }
@@ -176,6 +179,7 @@ impl State {
             opening: None,
             forms: Forms::default(),
             tour: None,
+            records: RecordsBench::default(),
             assembling: None,
         }
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::dataset::{ConditionId, Place, checked_identified};
+use crate::dataset::{ConditionId, Dataset, Place};
 use crate::io::content_fault::ContentFault;
 use crate::io::dataset_file::{identified_model_of, record_of};
 use crate::io::flaw::Flaw;
@@ -55,16 +55,13 @@ fn present_decisions(start: Settings, text: SettingsEntry, conditions: Vec<Condi
     })
 }
 
-/// The models that a study has taken, for a dataset of this shape.
-pub(super) fn taken_of(
-    text: Vec<TakenText>,
-    shape: (usize, usize),
-) -> Result<Vec<(ConditionId, Arc<TakenModels>)>, Flaw> {
+/// The models that a study has taken, for its dataset.
+pub(super) fn taken_of(text: Vec<TakenText>, dataset: &Dataset) -> Result<Vec<(ConditionId, Arc<TakenModels>)>, Flaw> {
     let of = |(index, text): (usize, TakenText)| {
         let mut place = Place::condition(index + 1, text.condition);
         place.entry = "taken".to_owned();
-        let drafts = text.identified_models.into_iter().map(identified_model_of).collect();
-        let models = checked_identified(drafts, &place, shape)?;
+        let drafts = text.identified_models.into_iter().map(identified_model_of);
+        let models = drafts.map(|draft| Ok(dataset.identified_model(draft)?.0)).collect::<Result<_, Flaw>>()?;
         let records = text.records.into_iter().enumerate();
         let records = records.map(|(index, record)| record_of(&place, index + 1, record)).collect::<Result<_, _>>()?;
         Ok((ConditionId(text.condition), Arc::new(TakenModels { models, records })))

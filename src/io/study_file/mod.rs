@@ -97,9 +97,8 @@ pub(super) fn study_from(source: &Source<'_>, path: &Path, moved: Option<&Path>)
     FORMAT.check_read(&text.format, text.version, path)?;
     let mut loaded = load_referenced(&text.dataset, path, moved)?;
     let start = Settings::of(&loaded.dataset);
-    let shape = (loaded.dataset.outputs().len(), loaded.dataset.inputs().len());
     let decisions = decisions_of(&start, text.settings, text.conditions, text.variants)
-        .and_then(|decisions| Ok(Decisions { taken: taken_of(text.taken, shape)?, ..decisions }))
+        .and_then(|decisions| Ok(Decisions { taken: taken_of(text.taken, &loaded.dataset)?, ..decisions }))
         .map_err(|flaw| FileError::content(path, flaw))?;
     let (study, not_applied) = decisions.applied_to(loaded.dataset.clone());
     let mut differences = match text.dataset.holds {

@@ -5,7 +5,7 @@ use egui::{Id, Key, Role, TextEdit, Ui, WidgetInfo, vec2};
 const HEIGHT: f32 = 20.0;
 
 /// A text field of this accessible name that shows `value`; gives what was typed once the field is left or Enter is pressed.
-pub(super) fn entry_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, width: f32) -> Option<String> {
+pub fn entry_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, width: f32) -> Option<String> {
     let id = Id::unique(("entry", name));
     let held = ui.data(|data| data.get_temp::<String>(id));
     let mut text = held.unwrap_or_else(|| value.to_owned());
@@ -28,7 +28,7 @@ pub(super) fn entry_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, width: 
 }
 
 /// A number as engineers type it, with a decimal comma or a point; nothing for an empty text.
-pub(super) fn typed_number(text: &str) -> Result<Option<f64>, String> {
+pub fn typed_number(text: &str) -> Result<Option<f64>, String> {
     let text = text.trim().replace(',', ".");
     if text.is_empty() {
         return Ok(None);

@@ -10,6 +10,7 @@ mod problems;
 mod table;
 mod workbench;
 
+pub use entry::{entry_ui, typed_number};
 pub use header::assembling_ui;
 pub use table::{Column, cell_text};
 pub use workbench::{AssemblingCommand, Reading, Workbench};

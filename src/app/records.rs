@@ -1,0 +1,315 @@
+//! Flight records in the window: reading them in a thread, and what becomes of the wishes about them.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+use egui::Context;
+
+use crate::assembly::standard_patterns;
+use crate::dataset::{Condition, ConditionId, ConditionRecord, Dataset};
+use crate::identification::{Identification, IdentificationError};
+use crate::io::{DatasetOrigin, FileError, FolderProgress, example_records, load_record, read_records};
+use crate::records::{RecordChannels, RecordGuess, RecordLayout, RecordTable, TimeWish};
+use crate::study::{Edit, IdentifyJob, TakenModels};
+use crate::view::arrangement::View;
+use crate::view::records::{ConditionRecords, RecordRow, RecordsCommand, RecordsPage, RecordsReading, TakenWhat};
+
+use super::dialogs::DialogPurpose;
+use super::fault::{Fault, caught};
+use super::window::GdcmApp;
+
+/// Records that were read, by condition, and what could not be.
+#[derive(Default)]
+struct ReadRecords {
+    rows: BTreeMap<ConditionId, Vec<RecordRow>>,
+    faults: Vec<String>,
+}
+
+/// What a thread that reads records tells: the dataset that they are for, and the records.
+type Told = (Arc<Dataset>, Result<Result<ReadRecords, FileError>, Fault>);
+
+/// The threads that read records, and where their answers arrive.
+pub(super) struct RecordReader {
+    sender: Sender<Told>,
+    receiver: Receiver<Told>,
+}
+
+impl Default for RecordReader {
+    fn default() -> Self {
+        let (sender, receiver) = channel();
+        Self { sender, receiver }
+    }
+}
+
+/// Reads without telling how far it is.
+struct Untold;
+
+impl FolderProgress for Untold {
+    fn reading(&self, _: usize, _: usize, _: &str) {}
+
+    fn stopped(&self, _: u64) -> bool {
+        false
+    }
+}
+
+impl GdcmApp {
+    /// Carries out a wish about flight records.
+    pub(super) fn records(&mut self, command: RecordsCommand, ctx: &Context) {
+        let condition = self.state.condition().id();
+        match command {
+            RecordsCommand::Add(paths) => self.add_records(paths, ctx),
+            RecordsCommand::AskFiles => self.dialogs.ask(DialogPurpose::RecordFolder, String::new(), ctx),
+            RecordsCommand::Show(page) => self.state.records.page = page,
+            RecordsCommand::ShowTimeModel(model, true) => drop(self.state.records.time_models.insert(model)),
+            RecordsCommand::ShowTimeModel(model, false) => drop(self.state.records.time_models.remove(&model)),
+            RecordsCommand::Identify => self.identify_conditions(&[condition]),
+            RecordsCommand::IdentifyAll => {
+                let all = self.state.records.conditions.iter().filter(|(_, of)| of.used_rows().next().is_some());
+                let all: Vec<ConditionId> = all.map(|(id, _)| *id).collect();
+                self.identify_conditions(&all);
+            }
+            RecordsCommand::Stop => self.state.records.running.clear(),
+            RecordsCommand::Take(what) => self.take_identified(&[condition], what),
+            RecordsCommand::TakeAll => {
+                let all: Vec<ConditionId> = self.state.records.conditions.keys().copied().collect();
+                self.take_identified(&all, TakenWhat::Refined);
+            }
+            RecordsCommand::Return => self.give(Edit::ReturnModels { condition }.into(), ctx),
+            said => {
+                if let Some(records) = self.state.records.conditions.get_mut(&condition) {
+                    say(records, said, &RecordChannels::of_dataset(&self.state.study.dataset));
+                }
+            }
+        }
+    }
+
+    /// Reads the records that belong to the condition shown, once its view is shown.
+    pub(super) fn look_for_records(&mut self, ctx: &Context) {
+        let condition = self.state.condition();
+        let id = condition.id();
+        let is_shown = self.state.display.arrangement.is_shown(View::Records);
+        let bench = &self.state.records;
+        if !is_shown || bench.reading.is_some() || bench.conditions.contains_key(&id) {
+            return;
+        }
+        let entries = condition.records().to_vec();
+        let name = format!("the records of condition {id}");
+        match &self.loaded.origin {
+            DatasetOrigin::EmbeddedExample => self.read_in_thread(name, move |dataset| of_example(dataset, id), ctx),
+            DatasetOrigin::File(path) if !entries.is_empty() => {
+                let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+                self.read_in_thread(name, move |dataset| Ok(of_entries(dataset, id, &entries, &folder)), ctx);
+            }
+            DatasetOrigin::File(_) => {
+                let nothing = ConditionRecords::new(Vec::new(), &self.state.study.dataset);
+                self.state.records.conditions.insert(id, nothing);
+            }
+        }
+    }
+
+    fn add_records(&mut self, paths: Vec<PathBuf>, ctx: &Context) {
+        let paths: Vec<PathBuf> = paths.into_iter().map(|path| self.at_home(path)).collect();
+        let name = paths.first().map_or(String::new(), |path| path.display().to_string());
+        let shown = self.state.condition().id();
+        self.read_in_thread(name, move |dataset| of_files(dataset, shown, &paths), ctx);
+    }
+
+    fn read_in_thread(
+        &mut self,
+        name: String,
+        read: impl FnOnce(&Dataset) -> Result<ReadRecords, FileError> + Send + 'static,
+        ctx: &Context,
+    ) {
+        let (sender, ctx) = (self.record_reader.sender.clone(), ctx.clone());
+        let dataset = Arc::clone(self.state.study.file_dataset());
+        self.state.records.reading = Some(RecordsReading { name });
+        let work = move || {
+            let found = caught(|| read(&dataset));
+            // The window may be gone by now.
+            let _ = sender.send((dataset, found));
+            ctx.request_repaint();
+        };
+        if let Err(error) = std::thread::Builder::new().name("records".to_owned()).spawn(work) {
+            self.state.records.reading = None;
+            self.trouble(format!("the records cannot be read: {error}"));
+        }
+    }
+
+    /// Takes the records that were read since the last frame.
+    pub(super) fn receive_records(&mut self) {
+        while let Ok((dataset, found)) = self.record_reader.receiver.try_recv() {
+            if !Arc::ptr_eq(&dataset, self.state.study.file_dataset()) {
+                continue;
+            }
+            self.state.records.reading = None;
+            match found {
+                Ok(Ok(found)) => self.take_records(found),
+                Ok(Err(error)) => self.trouble(error.to_string()),
+                Err(fault) => self.tell_fault("the reading of records", &fault),
+            }
+            // What was looked for is not looked for again, found or not.
+            let (id, dataset) = (self.state.condition().id(), Arc::clone(&self.state.study.dataset));
+            let nothing = || ConditionRecords::new(Vec::new(), &dataset);
+            self.state.records.conditions.entry(id).or_insert_with(nothing);
+        }
+    }
+
+    fn take_records(&mut self, found: ReadRecords) {
+        let dataset = Arc::clone(&self.state.study.dataset);
+        let count: usize = found.rows.values().map(Vec::len).sum();
+        let conditions = found.rows.len();
+        for (id, rows) in found.rows {
+            let nothing = || ConditionRecords::new(Vec::new(), &dataset);
+            let records = self.state.records.conditions.entry(id).or_insert_with(nothing);
+            // A record that is read again takes its place.
+            records.rows.retain(|old| rows.iter().all(|new| new.table.name != old.table.name));
+            records.rows.extend(rows);
+            records.chosen = records.chosen.min(records.rows.len().saturating_sub(1));
+            records.changed = true;
+        }
+        self.state.records.faults = found.faults;
+        let of = if conditions == 1 { String::new() } else { format!(" of {conditions} conditions") };
+        self.done(format!("{count} records{of}"));
+    }
+
+    fn identify_conditions(&mut self, conditions: &[ConditionId]) {
+        let band = self.state.study.settings.band;
+        let mut refusal = None;
+        for id in conditions {
+            let Some(records) = self.state.records.conditions.get(id) else { continue };
+            match records.job(*id, [band.min(), band.max()]) {
+                Ok(job) => {
+                    self.state.records.running.retain(|other| other.condition != *id);
+                    self.state.records.running.push(job);
+                }
+                Err(why) => refusal = Some(format!("condition {id}: {why}")),
+            }
+        }
+        // What an earlier stop gave up is begun again.
+        self.worker.resume();
+        self.state.records.page = match self.state.records.page {
+            RecordsPage::Histories | RecordsPage::Columns | RecordsPage::Inputs => RecordsPage::Response,
+            page => page,
+        };
+        if let Some(why) = refusal {
+            self.trouble(why);
+        }
+    }
+
+    /// Takes what was identified.
+    pub(super) fn identified(&mut self, job: IdentifyJob, found: Result<Arc<Identification>, IdentificationError>) {
+        if !self.state.records.running.contains(&job) {
+            // It was given up meanwhile.
+            return;
+        }
+        self.state.records.running.retain(|other| *other != job);
+        if let Some(records) = self.state.records.conditions.get_mut(&job.condition) {
+            records.changed = false;
+            records.found = Some((job, found.map_err(|error| error.to_string())));
+        }
+    }
+
+    fn take_identified(&mut self, conditions: &[ConditionId], what: TakenWhat) {
+        let of = |id: &ConditionId| Some((*id, self.state.records.conditions.get(id)?.taken(what)?));
+        let taken: Vec<(ConditionId, Arc<TakenModels>)> = conditions.iter().filter_map(of).collect();
+        if taken.is_empty() {
+            return self.trouble("nothing was identified yet".to_owned());
+        }
+        let models: usize = taken.iter().map(|(_, models)| models.models.len()).sum();
+        let names: Vec<String> = taken.iter().map(|(id, _)| id.to_string()).collect();
+        let before = self.state.study.clone();
+        self.decide(&Edit::TakeModels(taken));
+        if self.state.study != before {
+            let conditions = if names.len() == 1 { "condition" } else { "conditions" };
+            self.done(format!("took {models} models into {conditions} {}", names.join(", ")));
+        }
+    }
+}
+
+/// What the engineer says of the records of a condition.
+fn say(records: &mut ConditionRecords, command: RecordsCommand, channels: &RecordChannels) {
+    match command {
+        RecordsCommand::Choose(index) => {
+            records.chosen = index.min(records.rows.len().saturating_sub(1));
+            return;
+        }
+        RecordsCommand::SetKind(index, kind) => {
+            records.rows.get_mut(index).into_iter().for_each(|row| row.guess.kind = kind);
+            return;
+        }
+        RecordsCommand::SetUsed(index, used) => {
+            records.rows.get_mut(index).into_iter().for_each(|row| row.used = used);
+        }
+        RecordsCommand::SetHeldOut(index, held_out) => {
+            records.rows.get_mut(index).into_iter().for_each(|row| row.guess.held_out = held_out);
+        }
+        RecordsCommand::SetLayout(index, layout) => set_layout(records, index, &layout, channels),
+        RecordsCommand::SetDelay(signal, delay_s) => {
+            records.channel_mut(&signal).into_iter().for_each(|channel| channel.delay_s = delay_s);
+        }
+        RecordsCommand::SetHold(signal, hold) => {
+            records.channel_mut(&signal).into_iter().for_each(|channel| channel.hold = hold);
+        }
+        RecordsCommand::SetBand(band) => records.band = band,
+        _ => return,
+    }
+    records.changed = true;
+}
+
+/// The columns of one record, and of all others that have columns of these names.
+fn set_layout(records: &mut ConditionRecords, index: usize, layout: &RecordLayout, channels: &RecordChannels) {
+    let Some(table) = records.rows.get(index).map(|row| Arc::clone(&row.table)) else { return };
+    for row in &mut records.rows {
+        let Some(carried) = layout.carried_to(&row.table, &table) else { continue };
+        let (used, guess) = (row.used, row.guess.clone());
+        *row = RecordRow { used, ..RecordRow::new(Arc::clone(&row.table), carried, guess, channels) };
+    }
+}
+
+fn row_of(table: RecordTable, channels: &RecordChannels) -> RecordRow {
+    let name = format!("{}/{}", table.source.file, table.name);
+    let guess = RecordGuess::of(&name, &standard_patterns());
+    let layout = RecordLayout::proposed(&table, channels, &TimeWish::default()).layout;
+    RecordRow::new(Arc::new(table), layout, guess, channels)
+}
+
+/// The records of a condition of the example that are inside the program.
+fn of_example(dataset: &Dataset, id: ConditionId) -> Result<ReadRecords, FileError> {
+    let channels = RecordChannels::of_dataset(dataset);
+    let rows: Vec<RecordRow> = example_records(id.0)?.into_iter().map(|table| row_of(table, &channels)).collect();
+    Ok(ReadRecords { rows: BTreeMap::from([(id, rows)]), faults: Vec::new() })
+}
+
+/// The records that a dataset names.
+fn of_entries(dataset: &Dataset, id: ConditionId, entries: &[ConditionRecord], folder: &Path) -> ReadRecords {
+    let channels = RecordChannels::of_dataset(dataset);
+    let mut found = ReadRecords::default();
+    for entry in entries {
+        match load_record(&folder.join(&entry.file), entry.variable.as_deref()) {
+            Ok(table) => {
+                let mut row = row_of(RecordTable { name: entry.name.clone(), ..table }, &channels);
+                (row.used, row.guess.kind, row.guess.held_out) = (entry.used, entry.kind, entry.held_out);
+                found.rows.entry(id).or_default().push(row);
+            }
+            Err(error) => found.faults.push(error.to_string()),
+        }
+    }
+    found
+}
+
+/// The records of files: each of the condition that its name says, or else of the one shown.
+fn of_files(dataset: &Dataset, shown: ConditionId, paths: &[PathBuf]) -> Result<ReadRecords, FileError> {
+    let channels = RecordChannels::of_dataset(dataset);
+    let read = read_records(paths, &Untold)?;
+    let mut found = ReadRecords { faults: read.faults, ..ReadRecords::default() };
+    found.faults.extend(read.passed_over.into_iter().map(|words| format!("no record: {words}")));
+    let is_there = |id: &ConditionId| dataset.condition(*id).map(|of| of.as_ref()).map(Condition::id).is_some();
+    for table in read.tables {
+        let row = row_of(table, &channels);
+        let id = row.guess.condition.map(ConditionId).filter(is_there).unwrap_or(shown);
+        found.rows.entry(id).or_default().push(row);
+    }
+    Ok(found)
+}

@@ -1,0 +1,142 @@
+//! Models that CT-PBSID proposes, and the cheapest of them for every order (M14, section 3).
+//!
+//! ```text
+//! 1  R for each Laguerre pole a
+//! 2  for each a and past window p: the model of order 18, its cost
+//! 3  for the two cheapest (a, p): the models of all orders; of one order the cheaper is kept
+//! ```
+
+use super::blocks::BlockModel;
+use super::data_matrix::Projections;
+use super::likelihood::Likelihood;
+use super::polish::Fit;
+use super::steps::Steps;
+use super::subspace::{PredictorSettings, Subspace};
+use super::triangular_factor::TriangularFactor;
+use super::{IdentificationError, Piece, StateSpaceMatrices};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Order at which poles and past windows are compared.
+const RANKING_ORDER: usize = 18;
+/// How many poles and past windows propose models of all orders.
+const KEPT: usize = 2;
+/// Modes beyond this many times the upper end of the band are images of z near -1.
+const FASTEST: f64 = 8.0;
+/// Time between instants is this over the upper end of the band.
+const SPACING: f64 = 1.2;
+/// Share of the whole work that the candidates are.
+const SHARE: f64 = 0.2;
+/// Rows over columns of a data matrix at least.
+const LEAST_ROWS: usize = 2;
+/// How a predictor is made.
+const PREDICTOR: PredictorSettings = PredictorSettings { longest_future: 12, ridge: 1e-8 };
+
+/// What CT-PBSID is run with.
+#[derive(Clone, Debug)]
+pub(super) struct SubspaceSettings {
+    /// Upper end of the band \[rad/s\].
+    pub(super) highest: f64,
+    /// Laguerre poles \[rad/s\].
+    pub(super) poles: Vec<f64>,
+    /// Past windows.
+    pub(super) pasts: Vec<usize>,
+    /// Orders, ascending.
+    pub(super) orders: Vec<usize>,
+}
+
+/// The states that one pole and past window propose.
+#[derive(Clone, Debug)]
+pub(super) struct Candidate {
+    /// Laguerre pole \[rad/s\].
+    pub(super) pole: f64,
+    /// Past window.
+    pub(super) past: usize,
+    /// Cost at the order of the comparison.
+    cost: f64,
+    subspace: Subspace,
+}
+
+impl SubspaceSettings {
+    /// The two cheapest poles and past windows, the cheaper first.
+    pub(super) fn candidates(
+        &self,
+        pieces: &[Piece],
+        likelihood: &Likelihood,
+        steps: &Steps,
+    ) -> Result<Vec<Candidate>, IdentificationError> {
+        let pasts: Vec<usize> = self.pasts.iter().copied().filter(|&past| self.is_fed(pieces, past)).collect();
+        let Some(&longest) = pasts.iter().max() else { return Ok(Vec::new()) };
+        let share = SHARE / (self.poles.len() * (pasts.len() + 1)) as f64;
+        let of_pole = |(k, &pole): (usize, &f64)| {
+            let told = format!("pole {} of {}", k + 1, self.poles.len());
+            steps.advance(share, &format!("{told}, projections"))?;
+            let factor = self.projections(pole, longest).factor(pieces);
+            let of_past = |&past: &usize| {
+                steps.advance(share, &format!("{told}, past {past}"))?;
+                Ok(self.candidate(&factor, pole, past, pieces, likelihood))
+            };
+            pasts.par_iter().map(of_past).collect::<Result<Vec<_>, IdentificationError>>()
+        };
+        let all: Vec<_> = self.poles.par_iter().enumerate().map(of_pole).collect::<Result<_, IdentificationError>>()?;
+        let mut found: Vec<Candidate> = all.into_iter().flatten().flatten().collect();
+        found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        found.truncate(KEPT);
+        Ok(found)
+    }
+
+    /// For each order the cheaper of the models of `candidates`, with its cost.
+    pub(super) fn starts(&self, candidates: &[Candidate], likelihood: &Likelihood) -> BTreeMap<usize, Fit> {
+        let cheapest = |&order: &usize| {
+            let models = candidates.iter().filter_map(|candidate| self.model(&candidate.subspace, order));
+            let fits = models.filter_map(|model| Fit::start(likelihood, model));
+            fits.min_by(|a, b| a.cost.total_cmp(&b.cost)).map(|fit| (order, fit))
+        };
+        self.orders.par_iter().filter_map(cheapest).collect()
+    }
+
+    /// The poles of the models of each order that a candidate proposes.
+    pub(super) fn poles_by_order(&self, candidate: &Candidate) -> Vec<(usize, Vec<nalgebra::Complex<f64>>)> {
+        let of_order = |&order: &usize| {
+            let model = self.slow(&candidate.subspace, order)?;
+            Some((order, model.poles()?))
+        };
+        self.orders.par_iter().filter_map(of_order).collect()
+    }
+
+    fn projections(&self, pole: f64, past: usize) -> Projections {
+        Projections { pole, past, spacing_s: SPACING / self.highest }
+    }
+
+    /// Whether the pieces give rows enough for a past window.
+    fn is_fed(&self, pieces: &[Piece], past: usize) -> bool {
+        let channels = pieces.first().map_or(0, |piece| piece.inputs.ncols() + piece.outputs.ncols());
+        let slowest = self.poles.iter().copied().fold(f64::INFINITY, f64::min);
+        self.projections(slowest, past).count(pieces) >= LEAST_ROWS * (past + 1) * channels
+    }
+
+    fn candidate(
+        &self,
+        factor: &TriangularFactor,
+        pole: f64,
+        past: usize,
+        pieces: &[Piece],
+        likelihood: &Likelihood,
+    ) -> Option<Candidate> {
+        let piece = pieces.first()?;
+        let channels = (piece.inputs.ncols(), piece.outputs.ncols());
+        let subspace = Subspace::new(factor, pole, channels, past, PREDICTOR)?;
+        let order = self.orders.iter().copied().min_by_key(|order| order.abs_diff(RANKING_ORDER))?;
+        let cost = likelihood.cost(&self.model(&subspace, order)?)?;
+        Some(Candidate { pole, past, cost, subspace })
+    }
+
+    /// The model of an order without modes far above the band.
+    fn slow(&self, subspace: &Subspace, order: usize) -> Option<StateSpaceMatrices> {
+        subspace.model(order)?.continuous()?.without_fast_modes(FASTEST * self.highest)
+    }
+
+    fn model(&self, subspace: &Subspace, order: usize) -> Option<BlockModel> {
+        BlockModel::of(&self.slow(subspace, order)?)
+    }
+}

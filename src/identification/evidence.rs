@@ -1,0 +1,160 @@
+//! What models are made from and judged by, in scaled units.
+
+use super::identification_caution::IdentificationCaution;
+use super::likelihood::{Likelihood, Lines};
+use super::steps::Steps;
+use super::{
+    CutOff, FlightRecord, IdentificationError, MeasuredResponse, NoiseCovariance, Options, Piece, RecordUse, Role,
+    Scales, Signal, Spectrum, local_polynomial, log_spaced, prepare, spectra,
+};
+use nalgebra::DMatrix;
+
+/// Points of the measured response.
+const MEASURED_POINTS: usize = 40;
+/// Lines for the measured response reach this factor beyond those used, at both ends.
+const BEYOND: f64 = 1.3;
+/// Condition number of the inputs' correlations above which one is a copy of the others.
+const COPY: f64 = 1e9;
+
+/// Records, prepared, transformed and weighed.
+pub(super) struct Evidence {
+    /// What was used of every record.
+    pub(super) record_uses: Vec<RecordUse>,
+    /// Units of the records over scaled units.
+    pub(super) scales: Scales,
+    /// Pieces to fit, low-passed for the projections.
+    pub(super) pieces: Vec<Piece>,
+    /// Held-out pieces in the units of the records.
+    pub(super) held_out_pieces: Vec<Piece>,
+    /// Lines to fit.
+    pub(super) spectra: Vec<Spectrum>,
+    /// The response without a model.
+    pub(super) measured: MeasuredResponse,
+    /// The noise that it leaves.
+    pub(super) noise: NoiseCovariance,
+    /// The cost over the records of the fit.
+    pub(super) likelihood: Likelihood,
+    /// The cost over the held-out records.
+    pub(super) held_out: Likelihood,
+    /// What speaks against the records.
+    pub(super) cautions: Vec<IdentificationCaution>,
+}
+
+impl Evidence {
+    /// Prepares the records, measures the response and the noise, and filters for the projections (M14, sections 1 and 2).
+    pub(super) fn new(records: &[FlightRecord], options: &Options, steps: &Steps) -> Result<Self, IdentificationError> {
+        if let Some(&record) = options.held_out.iter().find(|record| **record >= records.len()) {
+            return Err(IdentificationError::HeldOutMissing { record, records: records.len() });
+        }
+        let prepared = prepare(records, &options.preparation)?;
+        check_sampling(&prepared.pieces, options)?;
+        let (held_out_pieces, pieces): (Vec<Piece>, Vec<Piece>) =
+            prepared.pieces.into_iter().partition(|piece| options.held_out.contains(&piece.record));
+        if pieces.is_empty() {
+            return Err(IdentificationError::NothingToFit);
+        }
+        let scales = Scales::of(&pieces)?;
+        let scaled = |pieces: &[Piece]| pieces.iter().map(|piece| scales.scaled(piece)).collect::<Vec<_>>();
+        let pieces = scaled(&pieces);
+        check_inputs(&pieces, options)?;
+
+        steps.next(0.02, "measured response")?;
+        let (lowest, highest) = (options.lowest(), options.highest());
+        let between = |pieces: &[Piece], highest: f64| {
+            let lines = spectra(pieces, highest).into_iter().map(|lines| lines.between(lowest / BEYOND, highest));
+            lines.filter(|lines| !lines.omega.is_empty()).collect::<Vec<_>>()
+        };
+        let wide = between(&pieces, BEYOND * highest);
+        let measured = local_polynomial(&wide, &log_spaced(lowest, highest, MEASURED_POINTS))?;
+        let noise = NoiseCovariance::of(&measured).ok_or(IdentificationError::OutputsDepend)?;
+        let likelihood = |spectra: &[Spectrum]| {
+            let pieces: Option<_> = spectra.iter().map(|lines| Lines::new(lines, &noise)).collect();
+            pieces.map(|pieces| Likelihood { pieces }).ok_or(IdentificationError::OutputsDepend)
+        };
+        let narrow: Vec<Spectrum> = wide.iter().map(|lines| lines.between(lowest, highest)).collect();
+        let (fit, held_out) = (likelihood(&narrow)?, likelihood(&between(&scaled(&held_out_pieces), highest))?);
+
+        steps.next(0.07, "low-pass")?;
+        let cut_off = CutOff::choose(&pieces, highest);
+        let mut cautions: Vec<_> = prepared.cautions.into_iter().map(IdentificationCaution::Records).collect();
+        cautions.extend(vibration_cautions(&cut_off, options));
+        cautions.extend(excitation_cautions(&measured, options));
+        Ok(Self {
+            record_uses: prepared.records,
+            scales,
+            pieces: cut_off.apply(&pieces),
+            held_out_pieces,
+            spectra: narrow,
+            measured,
+            noise,
+            likelihood: fit,
+            held_out,
+            cautions,
+        })
+    }
+
+    /// That no model came of this.
+    pub(super) fn no_model(&self) -> IdentificationError {
+        IdentificationError::NoModel {
+            lines: self.spectra.iter().map(|spectrum| spectrum.omega.len()).sum(),
+            seconds: self.spectra.iter().map(|spectrum| spectrum.duration_s).sum(),
+        }
+    }
+}
+
+fn check_sampling(pieces: &[Piece], options: &Options) -> Result<(), IdentificationError> {
+    let sample_time_s = pieces.iter().map(|piece| piece.sample_time_s).fold(0.0, f64::max);
+    let seen = std::f64::consts::PI / sample_time_s;
+    if options.highest() <= seen {
+        return Ok(());
+    }
+    Err(IdentificationError::SampledTooSlowly { highest: options.band[1], sample_time_s, limit: 0.75 * seen })
+}
+
+/// Refuses inputs of which one is a sum of others, by the condition of their correlations.
+fn check_inputs(pieces: &[Piece], options: &Options) -> Result<(), IdentificationError> {
+    let inputs = options.preparation.inputs.len();
+    let mut gram = DMatrix::<f64>::zeros(inputs, inputs);
+    for piece in pieces {
+        let mut centred = piece.inputs.clone();
+        for mut column in centred.column_iter_mut() {
+            let mean = column.mean();
+            column.add_scalar_mut(-mean);
+        }
+        gram += centred.transpose() * centred;
+    }
+    let scales = gram.diagonal().map(f64::sqrt);
+    let correlation = gram.component_div(&(&scales * scales.transpose()));
+    let eigen = correlation.symmetric_eigen();
+    let least = eigen.eigenvalues.imin();
+    if eigen.eigenvalues[least] * COPY > eigen.eigenvalues.max() {
+        return Ok(());
+    }
+    let vector = eigen.eigenvectors.column(least);
+    let involved = (0..inputs).filter(|&input| vector[input].abs() > 0.1 * vector.amax());
+    let signals = involved.map(|input| options.signal(Role::Input, input)).collect();
+    Err(IdentificationError::InputsDepend { signals })
+}
+
+fn vibration_cautions(cut_off: &CutOff, options: &Options) -> Vec<IdentificationCaution> {
+    let caution = |&(output, share): &(usize, f64)| IdentificationCaution::Vibration {
+        signal: options.signal(Role::Output, output),
+        percent: 100.0 * share,
+        cut_off: cut_off.omega,
+    };
+    cut_off.vibrating.iter().map(caution).collect()
+}
+
+fn excitation_cautions(measured: &MeasuredResponse, options: &Options) -> Vec<IdentificationCaution> {
+    let excitation = measured.excitation();
+    let signal = |input| -> Signal { options.signal(Role::Input, input) };
+    let not_swept = |input| IdentificationCaution::NotSwept {
+        signal: signal(input),
+        partial_coherence: excitation.partial_coherence[input],
+    };
+    let mut cautions: Vec<_> = excitation.not_identified().map(not_swept).collect();
+    if excitation.moved_together() {
+        cautions.push(IdentificationCaution::MovedTogether { condition: excitation.condition });
+    }
+    cautions
+}

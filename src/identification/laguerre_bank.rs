@@ -1,0 +1,79 @@
+//! Laguerre projections of a record onto its own future (M14, section 3).
+//!
+//! ```text
+//! s_k(t) = int_0^inf l_k(tau) s(t + tau) dtau,   l_k <-> sqrt(2a)/(s + a) ((a - s)/(a + s))^k,   k = 0 ... p
+//!
+//! 1  c = 2/dt, g = sqrt(2a)/(a + c), alpha = (a - c)/(a + c)                  (bilinear rule)
+//! 2  x = the record less its last sample, from its end to its beginning
+//! 3  y_0[n] = g (x[n] + x[n-1]) - alpha y_0[n-1]                              zero initial state
+//! 4  y_k[n] = alpha y_{k-1}[n] + y_{k-1}[n-1] - alpha y_k[n-1]                k = 1 ... p
+//! 5  each y_k from its end to its beginning
+//! ```
+//!
+//! Bergamasco & Lovera, "Continuous-time predictor-based subspace identification using Laguerre filters", IET Control
+//! Theory & Applications 5(7), 2011.
+
+use nalgebra::DMatrix;
+
+/// The filters of one Laguerre pole at one sample time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LaguerreBank {
+    /// Gain of the first filter.
+    gain: f64,
+    /// Pole of every filter with its sign changed, and zero of the all-pass filters.
+    alpha: f64,
+}
+
+impl LaguerreBank {
+    /// The filters with the pole `-pole` rad/s for samples every `sample_time_s`.
+    pub(super) fn new(pole: f64, sample_time_s: f64) -> Self {
+        let c = 2.0 / sample_time_s;
+        Self { gain: (2.0 * pole).sqrt() / (pole + c), alpha: (pole - c) / (pole + c) }
+    }
+
+    /// Projections at every sample of a signal that ends near 0, one column for each of k = 0 ... `past`.
+    pub(super) fn projections(self, signal: &[f64], past: usize) -> DMatrix<f64> {
+        let samples = signal.len();
+        let mut projections = DMatrix::zeros(samples, past + 1);
+        let (mut before, mut state) = (0.0, 0.0);
+        for (&now, to) in signal.iter().zip(projections.column_mut(0).iter_mut()).rev() {
+            state = self.gain * (now + before) - self.alpha * state;
+            before = now;
+            *to = state;
+        }
+        let all = projections.as_mut_slice();
+        for k in 1..=past {
+            let (done, rest) = all.split_at_mut(k * samples);
+            let (mut before, mut state) = (0.0, 0.0);
+            for (&now, to) in done[(k - 1) * samples..].iter().zip(&mut rest[..samples]).rev() {
+                state = self.alpha * (now - state) + before;
+                before = now;
+                *to = state;
+            }
+        }
+        projections
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identification::known_answers::{answers, matrix, number};
+
+    #[test]
+    fn projections_are_those_of_independent_code() {
+        let known = &answers()["bank"];
+        let signals = matrix(&known["x"]);
+        let bank = LaguerreBank::new(number(&known["a"]), number(&known["dt"]));
+        let count = number(&known["nk"]) as usize;
+        for channel in 0..signals.ncols() {
+            let projections = bank.projections(signals.column(channel).as_slice(), count - 1);
+            for (sample, expected) in known["expected"].as_array().unwrap().iter().enumerate() {
+                for k in 0..count {
+                    // Independent numpy code; the tolerance stands in its file.
+                    assert!((projections[(sample, k)] - number(&expected[k][channel])).abs() < 1e-12);
+                }
+            }
+        }
+    }
+}

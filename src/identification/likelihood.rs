@@ -1,0 +1,227 @@
+//! The cost of a model over the lines of the records, transients eliminated (M14, section 4).
+//!
+//! ```text
+//! J = sum_r sum_k | W_k (Y_r - G U_r - C (j omega - A)^-1 tau_r - c1_r/(j omega) - c0_r) |^2
+//!
+//! 1  once a record: orthonormal bases of the columns W (real parts) and W/omega (imaginary parts): c0 and c1 are gone
+//! 2  T = W C (j omega - A)^-1, e0 = W (Y - G U), both less their projections on these bases
+//! 3  tau = argmin |e0 - T tau|^2 from the Gram matrix of the scaled columns, its eigenvalues below 1e-12 dropped
+//! 4  e = e0 - T tau,   J_r = |e|^2
+//! ```
+//!
+//! Nothing is simulated, so that unstable models have a cost like any other. The trims, the drift, the step at the record's
+//! end and its initial and final states are what tau, c1 and c0 stand for. `J` over its degrees of freedom is 1 where the
+//! model is adequate, because W makes the noise white with real and imaginary parts of variance one.
+
+use super::blocks::BlockModel;
+use super::{NoiseCovariance, Spectrum};
+use nalgebra::{Complex, DMatrix, DVector};
+use rayon::prelude::*;
+
+/// Share of the greatest eigenvalue of a transient's Gram matrix below which its columns depend on each other.
+pub(super) const DEPENDENT: f64 = 1e-12;
+
+/// The lines of one piece of a record, whitened.
+#[derive(Clone, Debug)]
+pub(super) struct Lines {
+    /// Which of the records it is of, counted from 0.
+    pub(super) record: usize,
+    /// \[rad/s\].
+    pub(super) omega: Vec<f64>,
+    /// `U`, inputs x lines.
+    pub(super) inputs: DMatrix<Complex<f64>>,
+    /// `W Y`, outputs x lines.
+    pub(super) outputs: DMatrix<Complex<f64>>,
+    /// `W`, lower triangular, one for each line.
+    pub(super) weights: Vec<DMatrix<f64>>,
+    /// Orthonormal basis of the real parts that `c0` can make, (outputs lines) x outputs.
+    constant: DMatrix<f64>,
+    /// Orthonormal basis of the imaginary parts that `c1 / (j omega)` can make, (outputs lines) x outputs.
+    drift: DMatrix<f64>,
+}
+
+/// A piece's part of the cost.
+#[derive(Clone, Debug)]
+pub(super) struct PieceCost {
+    /// `J_r`.
+    pub(super) cost: f64,
+    /// `tau_r`.
+    pub(super) transient: DVector<f64>,
+    /// `e`, outputs x lines.
+    pub(super) residual: DMatrix<Complex<f64>>,
+}
+
+impl Lines {
+    /// The lines of a spectrum in scaled units with the weights of `noise`; none where it has no weight.
+    pub(super) fn new(spectrum: &Spectrum, noise: &NoiseCovariance) -> Option<Self> {
+        let weights = spectrum.omega.iter().map(|&omega| noise.weight(omega)).collect::<Option<Vec<_>>>()?;
+        Some(Self::weighted(spectrum, weights))
+    }
+
+    /// The lines of a spectrum with given weights, lower triangular.
+    pub(super) fn weighted(spectrum: &Spectrum, weights: Vec<DMatrix<f64>>) -> Self {
+        let (outputs, lines) = spectrum.outputs.shape();
+        let mut whitened = DMatrix::zeros(outputs, lines);
+        let (mut constant, mut drift) =
+            (DMatrix::zeros(outputs * lines, outputs), DMatrix::zeros(outputs * lines, outputs));
+        for (k, weight) in weights.iter().enumerate() {
+            let white = NoiseCovariance::whitened(weight, spectrum.outputs.column(k).as_slice());
+            whitened.column_mut(k).copy_from_slice(&white);
+            constant.rows_mut(k * outputs, outputs).copy_from(weight);
+            drift.rows_mut(k * outputs, outputs).copy_from(&(weight / spectrum.omega[k]));
+        }
+        Self {
+            record: spectrum.record,
+            omega: spectrum.omega.clone(),
+            inputs: spectrum.inputs.clone(),
+            outputs: whitened,
+            weights,
+            constant: orthonormal(constant),
+            drift: orthonormal(drift),
+        }
+    }
+
+    /// The same lines with the noise `factor` times as strong.
+    pub(super) fn with_noise(&self, factor: f64) -> Self {
+        let share = 1.0 / factor.sqrt();
+        let weights = self.weights.iter().map(|weight| weight * share).collect();
+        Self { outputs: self.outputs.scale(share), weights, ..self.clone() }
+    }
+
+    /// Degrees of freedom for a model of an order: real numbers measured less the transient's.
+    pub(super) fn freedom(&self, order: usize) -> usize {
+        let outputs = self.outputs.nrows();
+        (2 * outputs * self.omega.len()).saturating_sub(order + 2 * outputs)
+    }
+
+    /// This piece's part of the cost; none where it is not finite.
+    pub(super) fn cost(&self, model: &BlockModel) -> Option<PieceCost> {
+        let (outputs, lines) = self.outputs.shape();
+        let order = model.order();
+        // Real and imaginary parts of [T e0], one row for each output of each line.
+        let (mut real, mut imaginary) =
+            (DMatrix::zeros(outputs * lines, order + 1), DMatrix::zeros(outputs * lines, order + 1));
+        let mut cr = vec![Complex::default(); outputs * order];
+        let mut state = vec![Complex::default(); order];
+        let mut output = vec![Complex::default(); outputs];
+        for (k, (&omega, weight)) in self.omega.iter().zip(&self.weights).enumerate() {
+            model.output_resolvent(omega, &mut cr);
+            let input = self.inputs.column(k);
+            multiply(&model.b, input.as_slice(), &mut state);
+            multiply(&model.d, input.as_slice(), &mut output);
+            for (column, x) in cr.chunks_exact(outputs).zip(&state) {
+                column.iter().zip(&mut output).for_each(|(c, y)| *y += c * x);
+            }
+            let row = k * outputs;
+            for (column, values) in cr.chunks_exact(outputs).chain([&output[..]]).enumerate() {
+                whiten(weight, values, |o, value| {
+                    real[(row + o, column)] = value.re;
+                    imaginary[(row + o, column)] = value.im;
+                });
+            }
+            for (o, y) in self.outputs.column(k).iter().enumerate() {
+                real[(row + o, order)] = y.re - real[(row + o, order)];
+                imaginary[(row + o, order)] = y.im - imaginary[(row + o, order)];
+            }
+        }
+        project_out(&self.constant, &mut real);
+        project_out(&self.drift, &mut imaginary);
+        let mut gram = real.transpose() * &real;
+        gram.gemm(1.0, &imaginary.transpose(), &imaginary, 1.0);
+        let root = pseudo_inverse_root(gram.view((0, 0), (order, order)).into_owned(), DEPENDENT)?;
+        let transient = &root * (root.transpose() * gram.view((0, order), (order, 1)));
+        let transient = DVector::from_column_slice(transient.as_slice());
+        let left = |part: &DMatrix<f64>| part.column(order) - part.columns(0, order) * &transient;
+        let (real, imaginary) = (left(&real), left(&imaginary));
+        let cost = real.norm_squared() + imaginary.norm_squared();
+        let residual = real.iter().zip(imaginary.iter()).map(|(re, im)| Complex::new(*re, *im));
+        let residual = DMatrix::from_iterator(outputs, lines, residual);
+        cost.is_finite().then_some(PieceCost { cost, transient, residual })
+    }
+}
+
+/// The pieces of all records that a model is fitted to.
+#[derive(Clone, Debug)]
+pub(super) struct Likelihood {
+    /// In the order of the pieces.
+    pub(super) pieces: Vec<Lines>,
+}
+
+impl Likelihood {
+    /// `N`: degrees of freedom for a model of an order.
+    pub(super) fn freedom(&self, order: usize) -> usize {
+        self.pieces.iter().map(|piece| piece.freedom(order)).sum()
+    }
+
+    /// Each piece's part of the cost; none where one is not finite.
+    pub(super) fn parts(&self, model: &BlockModel) -> Option<Vec<PieceCost>> {
+        self.pieces.par_iter().map(|piece| piece.cost(model)).collect()
+    }
+
+    /// `J`, summed in the order of the pieces.
+    pub(super) fn cost(&self, model: &BlockModel) -> Option<f64> {
+        Some(self.parts(model)?.iter().map(|part| part.cost).sum())
+    }
+
+    /// Numbers of the records that have pieces, ascending.
+    pub(super) fn records(&self) -> Vec<usize> {
+        let mut records: Vec<usize> = self.pieces.iter().map(|piece| piece.record).collect();
+        records.sort_unstable();
+        records.dedup();
+        records
+    }
+
+    /// The pieces of all records but one.
+    pub(super) fn without(&self, record: usize) -> Self {
+        Self { pieces: self.pieces.iter().filter(|piece| piece.record != record).cloned().collect() }
+    }
+}
+
+/// `y = A x`.
+fn multiply(a: &DMatrix<f64>, x: &[Complex<f64>], y: &mut [Complex<f64>]) {
+    y.fill(Complex::default());
+    for (column, x) in a.column_iter().zip(x) {
+        column.iter().zip(y.iter_mut()).for_each(|(a, y)| *y += x * *a);
+    }
+}
+
+/// `W x` for a lower triangular `W`, entry by entry to `take`.
+pub(super) fn whiten(weight: &DMatrix<f64>, x: &[Complex<f64>], mut take: impl FnMut(usize, Complex<f64>)) {
+    for o in 0..x.len() {
+        let mut sum = Complex::default();
+        for (k, x) in x.iter().enumerate().take(o + 1) {
+            sum += x * weight[(o, k)];
+        }
+        take(o, sum);
+    }
+}
+
+/// An orthonormal basis of the columns.
+fn orthonormal(columns: DMatrix<f64>) -> DMatrix<f64> {
+    columns.qr().q()
+}
+
+/// Takes off every column its projection on an orthonormal basis.
+fn project_out(basis: &DMatrix<f64>, columns: &mut DMatrix<f64>) {
+    let products = basis.transpose() * &*columns;
+    columns.gemm(-1.0, basis, &products, 1.0);
+}
+
+/// `F` with `F F' = G^+` for a Gram matrix `G`, by the eigenvectors of its scaled columns: those whose eigenvalue is at most
+/// `dependent` times the greatest are left out. None where an iteration does not end.
+pub(super) fn pseudo_inverse_root(mut gram: DMatrix<f64>, dependent: f64) -> Option<DMatrix<f64>> {
+    let scales = gram.diagonal().map(|square| if square > 0.0 { 1.0 / square.sqrt() } else { 0.0 });
+    gram.iter_mut().enumerate().for_each(|(at, entry)| *entry *= scales[at % scales.len()] * scales[at / scales.len()]);
+    if !gram.iter().all(|entry| entry.is_finite()) {
+        return None;
+    }
+    let eigen = gram.try_symmetric_eigen(f64::EPSILON, 10_000)?;
+    let least = dependent * eigen.eigenvalues.max();
+    let kept: Vec<usize> = (0..scales.len()).filter(|&k| eigen.eigenvalues[k] > least).collect();
+    let mut root = eigen.eigenvectors.select_columns(&kept);
+    for (mut column, &k) in root.column_iter_mut().zip(&kept) {
+        column.component_mul_assign(&scales);
+        column.unscale_mut(eigen.eigenvalues[k].sqrt());
+    }
+    Some(root)
+}

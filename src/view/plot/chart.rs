@@ -1,0 +1,259 @@
+//! A plain plot: lines, bands and marks with error bars over a linear or a logarithmic axis.
+
+use egui::{Align2, Color32, Id, Rect, Response, Sense, Stroke, Ui, UiBuilder, Vec2b, WidgetInfo, pos2, vec2};
+use egui_plot::{Axis, FilledArea, Line, LineStyle, MarkerShape, Plot, PlotPoints, PlotUi, Points, Span, VLine};
+
+use super::axes::{LABELLED_HEIGHT, TICKS_HEIGHT, VERTICAL_TICK_GAP, axis_hints, caption_font, quiet_plot};
+use super::linear_axis::{Ladder, tick_text};
+use super::log_axis::FrequencyUnit;
+use crate::view::palette::Palette;
+
+const TITLE_HEIGHT: f32 = 18.0;
+const VALUE_AXIS_WIDTH: f32 = 46.0;
+const RIGHT_MARGIN: f32 = 8.0;
+const TICK_GAP: f64 = 60.0;
+
+/// What the horizontal axis of a chart is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChartAxis {
+    /// Values as they are.
+    Linear,
+    /// Angular frequencies \[rad/s\], drawn by their logarithm, read in this unit.
+    Frequency(FrequencyUnit),
+}
+
+impl ChartAxis {
+    fn place(self, value: f64) -> f64 {
+        match self {
+            Self::Linear => value,
+            Self::Frequency(_) => value.log10(),
+        }
+    }
+}
+
+/// A line of a chart.
+#[derive(Clone, Debug)]
+pub struct ChartLine {
+    /// Its points.
+    pub points: Vec<[f64; 2]>,
+    /// Its colour.
+    pub color: Color32,
+    /// Its width \[pt\].
+    pub width: f32,
+    /// Whether it is dashed.
+    pub dashed: bool,
+}
+
+/// The area between two lines over the same places.
+#[derive(Clone, Debug)]
+pub struct ChartBand {
+    /// Places, lower and upper values.
+    pub points: Vec<[f64; 3]>,
+    /// Its colour.
+    pub color: Color32,
+}
+
+/// Marks of one look.
+#[derive(Clone, Debug)]
+pub struct ChartMarks {
+    /// Places and values, and how far the error bar goes to either side of each value; 0 for none.
+    pub points: Vec<[f64; 3]>,
+    /// How far an error bar goes to either side along the horizontal axis; empty for none.
+    pub sideways: Vec<f64>,
+    /// Their colour.
+    pub color: Color32,
+    /// Whether they are filled.
+    pub filled: bool,
+    /// Whether they are crosses, and not circles.
+    pub crosses: bool,
+}
+
+/// A stretch of the horizontal axis that is marked.
+#[derive(Clone, Debug)]
+pub struct ChartSpan {
+    /// Its ends.
+    pub ends: [f64; 2],
+    /// Its colour.
+    pub color: Color32,
+}
+
+/// What a chart shows.
+#[derive(Clone, Debug)]
+pub struct Chart<'a> {
+    /// Its title, which is its name too.
+    pub title: &'a str,
+    /// What its horizontal axis is.
+    pub across: ChartAxis,
+    /// What stands below the horizontal axis; nothing keeps it low.
+    pub across_label: &'a str,
+    /// What stands beside the vertical axis.
+    pub value_label: &'a str,
+    /// Charts of one group show the same stretch of the horizontal axis.
+    pub group: Option<Id>,
+    /// Stretches that are marked.
+    pub spans: Vec<ChartSpan>,
+    /// Areas, below all lines.
+    pub bands: Vec<ChartBand>,
+    /// Lines, the last on top.
+    pub lines: Vec<ChartLine>,
+    /// Marks, on top of the lines.
+    pub marks: Vec<ChartMarks>,
+    /// Vertical lines.
+    pub verticals: Vec<f64>,
+}
+
+impl<'a> Chart<'a> {
+    /// An empty chart.
+    pub fn new(title: &'a str, across: ChartAxis, across_label: &'a str, value_label: &'a str) -> Self {
+        Self {
+            title,
+            across,
+            across_label,
+            value_label,
+            group: None,
+            spans: Vec::new(),
+            bands: Vec::new(),
+            lines: Vec::new(),
+            marks: Vec::new(),
+            verticals: Vec::new(),
+        }
+    }
+}
+
+/// Draws a chart into `rect`: dragging pans, the wheel zooms, a double click shows all.
+pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -> Response {
+    let id = ui.make_persistent_id(chart.title);
+    let plot_rect = Rect::from_min_max(rect.min + vec2(0.0, TITLE_HEIGHT), rect.max - vec2(RIGHT_MARGIN, 0.0));
+    let shown = ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(plot_rect), |ui| {
+        empty_chart(id, plot_rect, chart, palette).show(ui, |plot| draw(plot, chart, palette))
+    });
+    let response = shown.inner.response;
+    ui.painter().text(
+        pos2(shown.inner.transform.frame().left(), rect.top() + 0.5 * TITLE_HEIGHT),
+        Align2::LEFT_CENTER,
+        chart.title,
+        caption_font(),
+        palette.text,
+    );
+    let description = format!("{}: {} lines, {} marks", chart.title, chart.lines.len(), count(chart));
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, description.clone()));
+    response
+}
+
+fn count(chart: &Chart<'_>) -> usize {
+    chart.marks.iter().map(|marks| marks.points.len()).sum()
+}
+
+fn empty_chart<'a>(id: Id, rect: Rect, chart: &Chart<'_>, palette: &Palette) -> Plot<'a> {
+    let height = if chart.across_label.is_empty() { TICKS_HEIGHT } else { LABELLED_HEIGHT };
+    let plot = quiet_plot(id, palette)
+        .sense(Sense::click_and_drag())
+        .auto_bounds(true)
+        .allow_drag(true)
+        .allow_zoom(true)
+        .allow_axis_zoom_drag(true)
+        .allow_double_click_reset(true)
+        .set_margin_fraction(egui::vec2(0.01, 0.08))
+        .width(rect.width())
+        .height(rect.height())
+        .y_grid_spacer(Ladder::Decimal.spacer(VERTICAL_TICK_GAP))
+        .custom_y_axes(vec![axis_hints(Axis::Y, chart.value_label, VALUE_AXIS_WIDTH, palette, tick_text)]);
+    let plot = match chart.across {
+        ChartAxis::Linear => plot.x_grid_spacer(Ladder::Decimal.spacer(TICK_GAP)).custom_x_axes(vec![axis_hints(
+            Axis::X,
+            chart.across_label,
+            height,
+            palette,
+            tick_text,
+        )]),
+        ChartAxis::Frequency(unit) => {
+            let text = move |mark| unit.tick_text(mark);
+            plot.x_grid_spacer(unit.spacer()).custom_x_axes(vec![axis_hints(
+                Axis::X,
+                chart.across_label,
+                height,
+                palette,
+                text,
+            )])
+        }
+    };
+    match chart.group {
+        Some(group) => plot.link_axis(group, Vec2b::new(true, false)).link_cursor(group, Vec2b::new(true, false)),
+        None => plot,
+    }
+}
+
+fn draw<'a>(plot: &mut PlotUi<'a>, chart: &Chart<'_>, palette: &Palette) {
+    let place = |value: f64| chart.across.place(value);
+    for span in &chart.spans {
+        plot.span(Span::new("", place(span.ends[0])..=place(span.ends[1])).fill(span.color).border_width(0.0));
+    }
+    for band in &chart.bands {
+        let column = |index: usize| band.points.iter().map(|point| point[index]).collect::<Vec<f64>>();
+        let places: Vec<f64> = band.points.iter().map(|point| place(point[0])).collect();
+        plot.add(FilledArea::new("", &places, &column(1), &column(2)).fill_color(band.color).allow_hover(false));
+    }
+    for vertical in &chart.verticals {
+        let style = LineStyle::Dotted { spacing: 4.0 };
+        plot.vline(VLine::new("", place(*vertical)).color(palette.dim_text).width(0.8).style(style));
+    }
+    for line in &chart.lines {
+        let points: PlotPoints<'_> = line.points.iter().map(|[x, y]| [place(*x), *y]).collect();
+        let style = if line.dashed { LineStyle::dashed_dense() } else { LineStyle::Solid };
+        let width = line.width * palette.line_width;
+        plot.line(Line::new("", points).color(line.color).width(width).style(style).allow_hover(false));
+    }
+    for marks in &chart.marks {
+        draw_marks(plot, chart, marks);
+    }
+}
+
+fn draw_marks(plot: &mut PlotUi<'_>, chart: &Chart<'_>, marks: &ChartMarks) {
+    let place = |value: f64| chart.across.place(value);
+    let bar = |from: [f64; 2], to: [f64; 2]| {
+        Line::new("", vec![from, to]).stroke(Stroke::new(1.0, marks.color)).allow_hover(false)
+    };
+    for [x, y, error] in marks.points.iter().filter(|point| point[2] > 0.0) {
+        plot.line(bar([place(*x), y - error], [place(*x), y + error]));
+    }
+    for ([x, y, _], error) in marks.points.iter().zip(&marks.sideways).filter(|(_, error)| **error > 0.0) {
+        plot.line(bar([place(x - error), *y], [place(x + error), *y]));
+    }
+    let points: PlotPoints<'_> = marks.points.iter().map(|[x, y, _]| [place(*x), *y]).collect();
+    let shape = if marks.crosses { MarkerShape::Cross } else { MarkerShape::Circle };
+    let points = Points::new("", points).shape(shape).filled(marks.filled).radius(3.0).color(marks.color);
+    plot.points(points.allow_hover(false));
+}
+
+/// At most about `most` points that show what a long line shows: of each stretch the least and the greatest.
+pub fn thinned(points: Vec<[f64; 2]>, most: usize) -> Vec<[f64; 2]> {
+    let stretch = (2 * points.len()).div_ceil(most.max(4));
+    if stretch < 3 {
+        return points;
+    }
+    let extremes = |part: &[[f64; 2]]| {
+        let by_value = |a: &&[f64; 2], b: &&[f64; 2]| a[1].total_cmp(&b[1]);
+        let (low, high) = (part.iter().min_by(by_value), part.iter().max_by(by_value));
+        let mut both: Vec<[f64; 2]> = low.into_iter().chain(high).copied().collect();
+        both.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        both
+    };
+    points.chunks(stretch).flat_map(extremes).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thinned_line_keeps_every_peak_and_short_ones_stay_as_they_are() {
+        let mut points: Vec<[f64; 2]> = (0..10_000).map(|k| [f64::from(k), 0.0]).collect();
+        points[4321][1] = 7.0;
+        points[8765][1] = -3.0;
+        let thin = thinned(points.clone(), 1000);
+        assert!(thin.len() <= 1010, "{}", thin.len());
+        assert!(thin.contains(&[4321.0, 7.0]) && thin.contains(&[8765.0, -3.0]));
+        assert!(thin.is_sorted_by(|a, b| a[0] <= b[0]));
+        assert_eq!(thinned(points[..900].to_vec(), 1000).len(), 900);
+    }
+}

@@ -1,0 +1,147 @@
+//! What came of an identification, in words, with a button beside each caution that something can be done about.
+
+use egui::{Label, ProgressBar, RichText, Ui};
+
+use crate::identification::{Caution, Hold, Identification, IdentificationCaution, Role};
+use crate::units::s_to_ms;
+use crate::view::command::Command;
+use crate::view::palette::{Palette, SMALL_SIZE};
+use crate::view::state::State;
+
+use super::bench::{ConditionRecords, RecordsCommand};
+
+/// Above this the held-out records speak against the model (M14, section 4).
+const HELD_OUT: f64 = 1.15;
+
+/// How far the identification is, or what came of it.
+pub(super) fn outcome_ui(
+    ui: &mut Ui,
+    state: &State,
+    records: &ConditionRecords,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    ui.add_space(6.0);
+    let small = |text: String, color| RichText::new(text).size(SMALL_SIZE).color(color);
+    let with_records = state.records.conditions.values().filter(|of| of.used_rows().next().is_some()).count();
+    if with_records > 1 && state.records.running.is_empty() {
+        let all = format!("Identify all {with_records} conditions");
+        if ui.button(all).on_hover_text("One after the other, beside the live answer").clicked() {
+            commands.push(RecordsCommand::IdentifyAll.into());
+        }
+        let found = state.records.conditions.values().filter(|of| of.identification().is_some()).count();
+        if found > 1 && ui.button(format!("Take the models of {found} conditions")).clicked() {
+            commands.push(RecordsCommand::TakeAll.into());
+        }
+    }
+    if let Some(job) = state.records.running(state.condition().id()) {
+        let told = job.told();
+        let (done, total) = state.results.background.identification.unwrap_or((0, 0));
+        let part = if total > 0 { done as f32 / total as f32 } else { 0.0 };
+        ui.add(ProgressBar::new(part).desired_height(6.0));
+        ui.label(small(told.step, palette.dim_text));
+        if told.first_model.is_some() {
+            ui.label(small("The first model is drawn; it is being refined".to_owned(), palette.dim_text));
+        }
+        return;
+    }
+    match &records.found {
+        None => {}
+        Some((_, Err(why))) => {
+            ui.add(Label::new(RichText::new(why).color(palette.warning)).wrap());
+        }
+        Some((_, Ok(found))) => {
+            if records.changed {
+                ui.label(small("Of other records or settings than those chosen now".to_owned(), palette.warning));
+            }
+            summary_ui(ui, found, palette);
+            for caution in &found.cautions {
+                caution_ui(ui, records, caution, palette, commands);
+            }
+        }
+    }
+}
+
+fn summary_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
+    let order = found.refined.matrices.order();
+    ui.label(RichText::new(format!("CT-PBSID, refined: order {order}")).strong());
+    let color = |is_good: bool| if is_good { palette.good } else { palette.warning };
+    ui.horizontal_wrapped(|ui| {
+        ui.label("J/dof");
+        ui.label(RichText::new(format!("{:.2}", found.cost)).color(color(found.cost <= super::record_list::BAD)))
+            .on_hover_text(
+                "Cost per degree of freedom over the records of the fit; 1 is what noise explains (M14, section 6)",
+            );
+        if let Some(held_out) = found.held_out_cost {
+            ui.label(", held out");
+            ui.label(RichText::new(format!("{held_out:.2}")).color(color(held_out <= HELD_OUT * found.cost)))
+                .on_hover_text(
+                    "The same over the records that were held out: the sharp test. Green up to 1.15 times the fit's",
+                );
+        }
+    });
+    let small = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
+    ui.label(small(format!(
+        "Laguerre pole {:.2} rad/s, past window {}; {} models in the bundle",
+        found.laguerre_pole,
+        found.past,
+        1 + found.bundle.len(),
+    )));
+}
+
+/// A caution in its words, and what can be done about it.
+fn caution_ui(
+    ui: &mut Ui,
+    records: &ConditionRecords,
+    caution: &IdentificationCaution,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    ui.add_space(3.0);
+    ui.add(Label::new(RichText::new(format!("⚠ {caution}")).size(SMALL_SIZE).color(palette.text)).wrap());
+    ui.horizontal_wrapped(|ui| {
+        for (text, command) in actions(records, caution) {
+            if ui.small_button(text).clicked() {
+                commands.push(command.into());
+            }
+        }
+    });
+}
+
+fn actions(records: &ConditionRecords, caution: &IdentificationCaution) -> Vec<(String, RecordsCommand)> {
+    let leave_out = |record: usize, name: &str| {
+        let row = records.row_of_record(record);
+        row.map(|row| (format!("Leave {name} out"), RecordsCommand::SetUsed(row, false)))
+    };
+    match caution {
+        IdentificationCaution::UnlikeRecord { record, name, .. }
+        | IdentificationCaution::DecisiveRecord { record, name, .. } => leave_out(*record, name).into_iter().collect(),
+        IdentificationCaution::Late { record, name, signal, delay_s } => {
+            let known = match signal.role {
+                Role::Input => records.inputs.get(signal.index),
+                Role::Output => records.outputs.get(signal.index),
+            };
+            let delay_s = known.map_or(0.0, |channel| channel.delay_s) + delay_s;
+            let text = format!("Take {:.0} ms out of {}", s_to_ms(delay_s), signal.name);
+            let delay = (text, RecordsCommand::SetDelay(signal.clone(), delay_s));
+            std::iter::once(delay).chain(leave_out(*record, name)).collect()
+        }
+        IdentificationCaution::OrderLimit { highest, .. } => {
+            let lowest = records.found.as_ref().map_or(0.0, |(job, _)| job.options.band[0]);
+            let band = [lowest, *highest];
+            vec![(format!("End the band at {highest:.1} rad/s"), RecordsCommand::SetBand(Some(band)))]
+        }
+        IdentificationCaution::Records(Caution::Stair { signal, hold_s, .. }) => {
+            let hold_s = *hold_s;
+            let set = |text: &str, hold| (text.to_owned(), RecordsCommand::SetHold(signal.clone(), hold));
+            let command = (signal.role == Role::Input)
+                .then(|| set(&format!("{} is a held command", signal.name), Hold::Command { hold_s }));
+            let others = [
+                set(&format!("{} is a slow sensor", signal.name), Hold::FreshSamples),
+                set(&format!("{} is right as it is", signal.name), Hold::Acts),
+            ];
+            command.into_iter().chain(others).collect()
+        }
+        _ => Vec::new(),
+    }
+}

@@ -1,0 +1,103 @@
+//! The records of a condition, line by line.
+
+use egui::{Grid, Label, RichText, Role, Sense, Ui, WidgetInfo};
+
+use crate::dataset::RecordKind;
+use crate::view::command::Command;
+use crate::view::palette::{Palette, SMALL_SIZE};
+
+use super::bench::{ConditionRecords, RecordsCommand};
+
+/// Cost per degree of freedom up to which a record is fitted well, and from which it is not (M14, section 6).
+pub(super) const GOOD: f64 = 1.2;
+/// See [`GOOD`].
+pub(super) const BAD: f64 = 1.5;
+
+/// A line a record: whether it is used and held out, and how well the model fits it.
+pub(super) fn record_list_ui(ui: &mut Ui, records: &ConditionRecords, palette: &Palette, commands: &mut Vec<Command>) {
+    let small = |text: &str| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
+    if records.rows.is_empty() {
+        let text = "No flight records of this condition yet. Add files above: one record each, with a heading that names its columns.";
+        ui.add(Label::new(small(text)).wrap());
+        return;
+    }
+    Grid::new("flight records").num_columns(5).spacing([6.0, 2.0]).striped(true).show(ui, |ui| {
+        for (heading, hint) in [
+            ("use", "Whether anything is done with the record"),
+            ("hold", "Held out: kept from the fit, to judge the model by"),
+            ("record", "A click shows it"),
+            ("kind", "The manoeuvre"),
+            ("J", "Cost per degree of freedom of the recommended model; 1 is what noise explains"),
+        ] {
+            ui.label(small(heading)).on_hover_text(hint);
+        }
+        ui.end_row();
+        for index in 0..records.rows.len() {
+            row_ui(ui, records, index, palette, commands);
+            ui.end_row();
+        }
+    });
+    let Some(row) = records.rows.get(records.chosen) else { return };
+    for (words, color) in row
+        .problems
+        .iter()
+        .map(|words| (words, palette.warning))
+        .chain(row.cautions.iter().map(|words| (words, palette.dim_text)))
+    {
+        ui.add(Label::new(RichText::new(words).size(SMALL_SIZE).color(color)).wrap());
+    }
+}
+
+fn row_ui(ui: &mut Ui, records: &ConditionRecords, index: usize, palette: &Palette, commands: &mut Vec<Command>) {
+    let row = &records.rows[index];
+    let name = &row.table.name;
+    for (label, before, command) in [
+        (format!("Use {name}"), row.used, RecordsCommand::SetUsed as fn(usize, bool) -> RecordsCommand),
+        (format!("Hold out {name}"), row.guess.held_out, RecordsCommand::SetHeldOut),
+    ] {
+        let mut value = before;
+        let enabled = row.flight.is_some();
+        let shown = ui.add_enabled(enabled, egui::Checkbox::without_text(&mut value));
+        shown.widget_info(|| WidgetInfo::selected(Role::CheckBox, enabled, value, &label));
+        if shown.changed() {
+            commands.push(command(index, value).into());
+        }
+    }
+    let is_chosen = index == records.chosen;
+    let color = if row.problems.is_empty() { palette.text } else { palette.warning };
+    let text = RichText::new(name).color(color);
+    let text = if is_chosen { text.strong().background_color(palette.selected) } else { text };
+    let label = format!("Record {name}");
+    let shown = ui.add(Label::new(text).truncate().sense(Sense::click()));
+    shown.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &label));
+    if shown.clicked() {
+        commands.push(RecordsCommand::Choose(index).into());
+    }
+    let kinds = egui::ComboBox::from_id_salt(("kind", index)).width(70.0).selected_text(row.guess.kind.word());
+    let kinds = kinds.show_ui(ui, |ui| {
+        for kind in RecordKind::ALL {
+            if ui.selectable_label(kind == row.guess.kind, kind.word()).clicked() {
+                commands.push(RecordsCommand::SetKind(index, kind).into());
+            }
+        }
+    });
+    kinds.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, format!("Kind of {name}")));
+    match cost_of(records, index) {
+        Some(cost) => {
+            let color = match cost {
+                cost if cost <= GOOD => palette.good,
+                cost if cost <= BAD => palette.text,
+                _ => palette.warning,
+            };
+            ui.label(RichText::new(format!("{cost:.2}")).color(color))
+        }
+        None => ui.label(""),
+    };
+}
+
+/// Cost per degree of freedom of a row under the recommended model.
+fn cost_of(records: &ConditionRecords, index: usize) -> Option<f64> {
+    let found = records.identification().filter(|_| !records.changed)?;
+    let fit = found.record_fits.iter().find(|fit| records.row_of_record(fit.record) == Some(index))?;
+    Some(fit.cost)
+}

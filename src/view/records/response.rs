@@ -1,0 +1,175 @@
+//! The measured response of the pair in focus, under the models identified from it.
+
+use std::sync::Arc;
+
+use egui::{Color32, Rect, RichText, Ui, vec2};
+
+use crate::dataset::Pair;
+use crate::identification::{Identification, MeasuredPoint, StateSpaceMatrices};
+use crate::view::palette::{Palette, SMALL_SIZE};
+use crate::view::plot::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, chart_ui};
+use crate::view::state::State;
+
+use super::bench::ConditionRecords;
+use super::kept::kept;
+
+/// Partial coherence from which a point is trusted (M14, section 2).
+const TRUSTED: f64 = 0.6;
+/// Standard deviations that hold 95 %.
+const TWO_SIDED_95: f64 = 1.96;
+/// dB of a natural logarithm.
+const DB_PER_NEPER: f64 = 8.685_889_638_065_037;
+/// Frequencies of a model's curve.
+const POINTS: usize = 200;
+/// How far curves reach beyond the band.
+const BEYOND: f64 = 1.5;
+
+/// A response by its frequencies \[rad/s\], magnitudes \[dB\] and unwrapped phases \[deg\].
+#[derive(Clone, Debug, Default)]
+struct Curve(Vec<[f64; 3]>);
+
+/// What is drawn of one pair.
+#[derive(Clone, Debug, Default)]
+struct DrawnResponse {
+    /// Frequency, dB, deg, standard deviation of each, and whether it is trusted.
+    measured: Vec<([f64; 5], bool)>,
+    recommended: Curve,
+    /// Frequency, standard deviations \[dB, deg\].
+    bands: Vec<[f64; 3]>,
+    plain: Curve,
+}
+
+/// Magnitude above, phase below; the first model while it is being refined.
+pub(super) fn response_ui(ui: &mut Ui, state: &State, records: &ConditionRecords, palette: &Palette) {
+    let pair = state.display.pair;
+    let running = state.records.running(state.condition().id());
+    let first = running.and_then(|job| job.told().first_model);
+    let drawn = match (records.identification(), first) {
+        (_, Some(first)) => {
+            let job = running.map_or([0.1, 10.0], |job| job.options.band);
+            kept(ui, "first model", (Arc::as_ptr(&first) as usize, pair), || DrawnResponse {
+                plain: model_curve(&first, job, pair, None),
+                ..DrawnResponse::default()
+            })
+        }
+        (Some(found), None) => {
+            let band = records.found.as_ref().map_or([0.1, 10.0], |(job, _)| job.options.band);
+            kept(ui, "response", (Arc::as_ptr(found) as usize, pair), || drawn(found, band, pair))
+        }
+        (None, None) => {
+            let text = "Nothing was identified yet: choose Identify above. The measured response, the models and their bands stand here then.";
+            ui.label(RichText::new(text).color(palette.dim_text));
+            return;
+        }
+    };
+    legend_ui(ui, palette);
+    let area = ui.available_rect_before_wrap();
+    ui.allocate_rect(area, egui::Sense::hover());
+    let height = 0.5 * area.height();
+    let name = state.dataset().pair_name(pair);
+    for (row, (part, label)) in [(1, "Magnitude [dB]"), (2, "Phase [deg]")].into_iter().enumerate() {
+        let title = format!("{name}: {}", if row == 0 { "magnitude" } else { "phase" });
+        let across = if row == 1 { state.display.unit.axis_label() } else { String::new() };
+        let chart = chart_of((&title, &across, label), &drawn, part, state, palette);
+        let corner = area.min + vec2(0.0, row as f32 * height);
+        chart_ui(ui, Rect::from_min_size(corner, vec2(area.width(), height)), &chart, palette);
+    }
+}
+
+fn legend_ui(ui: &mut Ui, palette: &Palette) {
+    ui.horizontal_wrapped(|ui| {
+        for (text, color) in [
+            ("— CT-PBSID, refined, with its 95 % band", palette.identified),
+            ("- - CT-PBSID", palette.accent),
+            ("● measured (local polynomial), ± 1.96 sd", palette.text),
+            ("○ partial coherence below 0.6", palette.dim_text),
+        ] {
+            ui.label(RichText::new(text).size(SMALL_SIZE).color(color));
+        }
+    });
+}
+
+fn chart_of<'a>(
+    (title, across, label): (&'a str, &'a str, &'a str),
+    drawn: &DrawnResponse,
+    part: usize,
+    state: &State,
+    palette: &Palette,
+) -> Chart<'a> {
+    let mut chart = Chart::new(title, ChartAxis::Frequency(state.display.unit), across, label);
+    chart.group = Some(egui::Id::unique("identified response"));
+    let band = drawn.recommended.0.iter().zip(&drawn.bands).map(|(at, sd)| {
+        let half = TWO_SIDED_95 * sd[part];
+        [at[0], at[part] - half, at[part] + half]
+    });
+    chart.bands.push(ChartBand { points: band.collect(), color: palette.identified.gamma_multiply(0.28) });
+    let line = |curve: &Curve, color: Color32, dashed: bool| ChartLine {
+        points: curve.0.iter().map(|at| [at[0], at[part]]).collect(),
+        color,
+        width: if dashed { 1.2 } else { 2.0 },
+        dashed,
+    };
+    chart.lines = vec![line(&drawn.plain, palette.accent, true), line(&drawn.recommended, palette.identified, false)];
+    for trusted in [false, true] {
+        let points = drawn.measured.iter().filter(|(_, of)| *of == trusted);
+        let points = points.map(|(at, _)| [at[0], at[part], TWO_SIDED_95 * at[part + 2]]).collect();
+        let color = if trusted { palette.text } else { palette.dim_text };
+        chart.marks.push(ChartMarks { points, sideways: Vec::new(), color, filled: trusted, crosses: false });
+    }
+    chart
+}
+
+fn drawn(found: &Identification, band: [f64; 2], pair: Pair) -> DrawnResponse {
+    let measured = measured_points(&found.measured.points, pair);
+    let reference = measured.iter().find(|(_, trusted)| *trusted).map(|(at, _)| (at[0], at[2]));
+    let omegas = found.bands.omega.iter();
+    let recommended = omegas.filter_map(|omega| Some((*omega, entry(&found.refined.matrices, *omega, pair)?)));
+    let recommended = Curve(shape(recommended, reference));
+    let at = |matrices: &[nalgebra::DMatrix<f64>], k: usize| matrices[k][(pair.output, pair.input)];
+    let bands = &found.bands;
+    let sd = |k: usize| [bands.omega[k], at(&bands.sd_db, k), at(&bands.sd_deg, k)];
+    DrawnResponse {
+        recommended,
+        bands: (0..bands.omega.len()).map(sd).collect(),
+        plain: model_curve(&found.plain.matrices, band, pair, reference),
+        measured,
+    }
+}
+
+fn entry(model: &StateSpaceMatrices, omega: f64, pair: Pair) -> Option<nalgebra::Complex<f64>> {
+    Some(model.response(omega)?[(pair.output, pair.input)])
+}
+
+fn model_curve(model: &StateSpaceMatrices, band: [f64; 2], pair: Pair, reference: Option<(f64, f64)>) -> Curve {
+    let (low, high) = ((band[0] / BEYOND).ln(), (band[1] * BEYOND).ln());
+    let omegas = (0..POINTS).map(|k| (low + (high - low) * k as f64 / (POINTS - 1) as f64).exp());
+    Curve(shape(omegas.filter_map(|omega| Some((omega, entry(model, omega, pair)?))), reference))
+}
+
+/// Magnitude and phase, the phase unwrapped and on the branch nearest to `reference`, a frequency and its phase \[deg\].
+fn shape(values: impl Iterator<Item = (f64, nalgebra::Complex<f64>)>, reference: Option<(f64, f64)>) -> Vec<[f64; 3]> {
+    let mut points: Vec<[f64; 3]> = Vec::new();
+    for (omega, value) in values {
+        let (db, wrapped) = (20.0 * value.norm().max(f64::MIN_POSITIVE).log10(), value.arg().to_degrees());
+        let phase = points.last().map_or(wrapped, |last| wrapped + 360.0 * ((last[2] - wrapped) / 360.0).round());
+        points.push([omega, db, phase]);
+    }
+    let Some((omega, phase)) = reference else { return points };
+    let distance = |point: &&[f64; 3]| (point[0] / omega).ln().abs();
+    let nearest = points.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let shift = nearest.map_or(0.0, |nearest| 360.0 * ((phase - nearest[2]) / 360.0).round());
+    points.iter_mut().for_each(|point| point[2] += shift);
+    points
+}
+
+fn measured_points(points: &[MeasuredPoint], pair: Pair) -> Vec<([f64; 5], bool)> {
+    let at = (pair.output, pair.input);
+    let shapes = shape(points.iter().map(|point| (point.omega, point.response[at])), None);
+    let with = |(shape, point): ([f64; 3], &MeasuredPoint)| {
+        let neper = (0.5 * point.variance[at]).sqrt() / point.response[at].norm();
+        let sd = if neper.is_finite() { neper } else { 0.0 };
+        let [omega, db, phase] = shape;
+        ([omega, db, phase, DB_PER_NEPER * sd, sd.to_degrees()], point.partial_coherence[at] >= TRUSTED)
+    };
+    shapes.into_iter().zip(points).map(with).collect()
+}

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::dataset::{BundleKind, Channel, Condition, Dataset, Dynamics, Model};
+use crate::dataset::{BundleKind, Channel, Condition, ConditionRecord, Dataset, Dynamics, Model, RecordKind};
 use crate::io::{FileError, LoadedDataset, Opened, OpenedStudy, dataset_faults, plain, plain_path};
 use crate::study::{Execution, Study, Unobserved, cautions_of_models};
 use crate::units::number;
@@ -62,6 +62,7 @@ fn contents(loaded: &LoadedDataset) -> String {
     text.push_str(&labelled(0, "Conditions", LABEL, &dataset.conditions().len().to_string()));
     text.push_str(&condition_table(dataset));
     text.push_str(&timings(dataset));
+    text.push_str(&records(dataset));
     for caution in &loaded.cautions {
         text.push_str(&labelled(0, "Caution", LABEL, &plain(caution)));
     }
@@ -120,6 +121,22 @@ fn timings(dataset: &Dataset) -> String {
                 text.push_str(&labelled(0, "Timing", LABEL, &words));
             }
         }
+    }
+    text
+}
+
+/// The flight records of each condition that has some: how many, of which manoeuvre, and what is done with them.
+fn records(dataset: &Dataset) -> String {
+    let mut text = String::new();
+    for condition in dataset.conditions().iter().filter(|condition| !condition.records().is_empty()) {
+        let count = |is_it: &dyn Fn(&ConditionRecord) -> bool, what: &str| {
+            let count = condition.records().iter().filter(|record| is_it(record)).count();
+            (count > 0).then(|| format!("{count} {what}"))
+        };
+        let kinds = RecordKind::ALL.into_iter().filter_map(|kind| count(&|record| record.kind == kind, kind.word()));
+        let rest = [count(&|record| record.held_out, "held out"), count(&|record| !record.used, "not used")];
+        let words: Vec<String> = kinds.chain(rest.into_iter().flatten()).collect();
+        text.push_str(&labelled(0, "Records", LABEL, &format!("condition {}: {}", condition.id(), words.join(", "))));
     }
     text
 }

@@ -26,7 +26,7 @@ use super::model_files::json_value::variables_of;
 use super::model_files::{FileFormat, FolderProgress};
 use super::npy::read_npy;
 use super::source::{Source, read_bytes};
-use super::text::{TextTable, decode, read_table};
+use super::text::{NumberedText, TextTable, decode, numbered_words, read_table};
 use super::variables::{Meter, Variable, VariableFault};
 use super::zip_files::visit_files;
 
@@ -202,19 +202,18 @@ fn of_archive(
 
 fn of_single(bytes: &[u8], path: &Path, place: (&str, &str), meter: &Meter<'_>) -> Result<FoundRecords, FileError> {
     let wrong = |fault| FileError::Variables { path: path.to_owned(), fault };
-    let of_text = |bytes: &[u8]| {
-        let text = decode(bytes, meter)?.text;
+    let decoded = |bytes: &[u8]| {
         let mut found = FoundRecords::default();
-        found.add(of_table(read_table(&text, meter)?).of_file(place.0, place.1));
+        found.add(of_text(&decode(bytes, meter)?.text, meter)?.of_file(place.0, place.1));
         Ok(found)
     };
     match FileFormat::of(bytes, path) {
-        FileFormat::Text => of_text(bytes).map_err(wrong),
+        FileFormat::Text => decoded(bytes).map_err(wrong),
         FileFormat::Json => {
             let source = Source::of(bytes, path)?;
             let first = source.text().iter().find(|byte| !byte.is_ascii_whitespace());
             if !matches!(first, Some(b'{' | b'[')) {
-                return of_text(source.text()).map_err(wrong);
+                return decoded(source.text()).map_err(wrong);
             }
             Ok(of_variables(&variables_of(source.text()).map_err(wrong)?, Vec::new(), place))
         }
@@ -241,6 +240,19 @@ fn of_variables(variables: &[Variable], notes: Vec<String>, (name, sha256): (&st
         found.add(columns.of_file(name, sha256));
     }
     found
+}
+
+/// The columns of a text: of one with words or times of the clock among its numbers, with numbers in their place.
+fn of_text(text: &str, meter: &Meter<'_>) -> Result<Columns, VariableFault> {
+    let first = match read_table(text, meter) {
+        Ok(table) => return Ok(of_table(table)),
+        Err(fault @ (VariableFault::Stopped | VariableFault::TooLarge { .. })) => return Err(fault),
+        Err(fault) => fault,
+    };
+    let Some(NumberedText { text, notes }) = numbered_words(text, meter)? else { return Err(first) };
+    let mut columns = of_table(read_table(&text, meter)?);
+    columns.notes.extend(notes);
+    Ok(columns)
 }
 
 /// The columns of a table of text.

@@ -130,6 +130,27 @@ fn a_record_is_found_again_by_what_the_dataset_calls_it() {
     assert!(words.ends_with("runs.csv: the record \"run 6\" is not in it; it holds 2 records"), "{words}");
 }
 
+#[test]
+fn words_and_times_of_the_clock_stand_among_the_numbers_of_a_log() {
+    let row = |k: usize, run: &str| {
+        let (at, cs) = (k as f64, 2 * k);
+        let stick = (50.0 + 10.0 * (0.3 * at).sin(), 45.0 + 8.0 * (0.2 * at).cos());
+        let aircraft = (0.3 * (0.25 * at).sin(), 1.0 + 0.2 * (0.35 * at).cos());
+        let clock = format!("2026-03-01 12:30:{:02}.{:02}", cs / 100, cs % 100);
+        format!("{clock},{run},{:.4},{:.4},{:.4},{:.4}\n", stick.0, stick.1, aircraft.0, aircraft.1)
+    };
+    let head = "time,manoeuvre,LON,LAT,P,NZ\n".to_owned();
+    let log = (0..60)
+        .map(|k| row(k, "LON sweep"))
+        .chain((0..60).map(|k| row(k, "LAT sweep")))
+        .fold(head, |log, row| log + &row);
+    let found = records_of_bytes(log.as_bytes(), "log.csv", 1 << 24).unwrap();
+    let names: Vec<&str> = found.tables.iter().map(|table| table.name.as_str()).collect();
+    assert_eq!(names, ["log, manoeuvre 1", "log, manoeuvre 2"]);
+    assert!(found.tables[1].notes.iter().any(|note| note.contains("1 is LON sweep, 2 is LAT sweep")), "{found:?}");
+    found.tables.iter().for_each(|table| assert_record(table, 3));
+}
+
 fn numbers(rows: usize, columns: usize, value: impl Fn(usize) -> f64) -> Value {
     Value::Array(Array::matrix(rows, columns, (0..rows * columns).map(value).collect()))
 }

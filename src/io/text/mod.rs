@@ -1,6 +1,7 @@
 //! Texts that hold numbers: tables in columns, frequency responses, matrices and MATLAB literals.
 
 mod cell_number;
+mod clock;
 mod column_guess;
 mod column_meaning;
 mod columns;
@@ -17,6 +18,7 @@ mod response_columns;
 mod response_label;
 mod separator;
 mod unit_word;
+mod word_columns;
 
 pub use column_meaning::says_quantity;
 pub use columns::{TextTable, read_table};
@@ -25,3 +27,4 @@ pub use frequency_columns::{FrequencyColumns, RecognisedResponse};
 pub use frequency_values::ResponsePoints;
 pub use literals::read_literals;
 pub use matrix_text::{read_matrices, read_matrix};
+pub use word_columns::{NumberedText, numbered_words};

@@ -3,10 +3,9 @@
 use crate::assembly::{ChannelRule, conversion_factor, same_channel};
 use crate::units::number;
 
-use super::column_use::ColumnUse;
 use super::layout_problem::{LayoutCaution, LayoutProblem};
 use super::record_channels::RecordChannels;
-use super::record_layout::RecordLayout;
+use super::record_layout::{ColumnUse, RecordLayout};
 use super::record_table::{ColumnSide, RecordTable};
 use super::time_base::TimeBase;
 

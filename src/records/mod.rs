@@ -8,7 +8,6 @@
 //!
 //! Nothing is resampled, filtered or taken off here: samples are the file's, times a factor.
 
-mod column_use;
 mod layout_problem;
 mod layout_proposal;
 #[cfg(test)]
@@ -21,12 +20,11 @@ mod record_table;
 mod separation;
 mod time_base;
 
-pub use column_use::ColumnUse;
 pub use layout_problem::{LayoutCaution, LayoutProblem};
 pub use layout_proposal::{LayoutProposal, TimeWish};
 pub use record_channels::RecordChannels;
 pub use record_guess::RecordGuess;
-pub use record_layout::RecordLayout;
+pub use record_layout::{ColumnUse, RecordLayout};
 pub use record_table::{ColumnSide, RecordColumn, RecordSource, RecordTable};
 pub use separation::Separation;
 pub use time_base::TimeBase;

@@ -2,8 +2,8 @@
 
 use crate::assembly::{ChannelRule, Dimension, PhysicalUnit, conversion_factor};
 
-use super::column_use::ColumnUse;
 use super::layout_problem::{LayoutCaution, LayoutProblem};
+use super::record_layout::ColumnUse;
 use super::record_table::RecordTable;
 
 /// The most that a helicopter has of a dimension, in a unit of that dimension.

@@ -6,13 +6,28 @@ use crate::assembly::ChannelRule;
 use crate::dataset::ConditionRecord;
 use crate::identification::FlightRecord;
 
-use super::column_use::ColumnUse;
 use super::layout_problem::{LayoutCaution, LayoutProblem};
 use super::plausibility::{magnitude, perhaps_other_units};
 use super::record_channels::RecordChannels;
 use super::record_guess::RecordGuess;
 use super::record_table::RecordTable;
 use super::time_base::{LONGEST_STEP_S, TimeBase};
+
+/// A column of a record that is a channel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ColumnUse {
+    /// Index of the column.
+    pub column: usize,
+    /// How many of the channel's units one of the column's is; negative where the sign is the other one.
+    pub factor: f64,
+}
+
+impl ColumnUse {
+    /// The column as it is.
+    pub fn as_it_is(column: usize) -> Self {
+        Self { column, factor: 1.0 }
+    }
+}
 
 /// Which columns of a record are its time and its channels: proposed by [`RecordLayout::proposed`], and free to be changed.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -23,17 +23,18 @@ pub(super) fn timetable_columns(record: &Record<'_>, variable: &str) -> Option<C
             let Value::Cell(data) = inner.get(&["data"])? else { return None };
             let mut columns = columns(&data.values, &names, units.as_deref());
             let rows = columns.first()?.values.len();
-            let (time, sample_time_s, note) = row_times(inner.get(&["rowTimes"])?)?;
-            if let Some(values) = time.filter(|values| values.len() == rows) {
-                columns.insert(0, RecordColumn { unit: Some("s".to_owned()), ..RecordColumn::new("Time", values) });
+            let (mut sample_time_s, mut notes) = (None, Vec::new());
+            match row_times(inner.get(&["rowTimes"])?)? {
+                RowTimes::Step(step_s) => sample_time_s = Some(step_s),
+                RowTimes::Stamps(values, note) => {
+                    notes.extend(note);
+                    if values.len() == rows {
+                        let time = RecordColumn { unit: Some("s".to_owned()), ..RecordColumn::new("Time", values) };
+                        columns.insert(0, time);
+                    }
+                }
             }
-            Some(Columns {
-                variable: variable.to_owned(),
-                columns,
-                named: true,
-                sample_time_s,
-                notes: note.into_iter().collect(),
-            })
+            Some(Columns { variable: variable.to_owned(), columns, named: true, sample_time_s, notes })
         }
         "table" => {
             let names = texts_of(record.get(&["varnames"])?)?;
@@ -77,11 +78,17 @@ fn columns(data: &[Value], names: &[String], units: Option<&[String]>) -> Vec<Re
     columns
 }
 
-/// Times of the rows \[s\], or the sample time, and how they were read.
-#[expect(clippy::type_complexity, reason = "three answers to one question, used once")]
-fn row_times(value: &Value) -> Option<(Option<Vec<f64>>, Option<f64>, Option<String>)> {
+/// When the rows of a timetable were taken.
+enum RowTimes {
+    /// At these times \[s\], of the clock or not.
+    Stamps(Vec<f64>, Option<String>),
+    /// One each so many seconds.
+    Step(f64),
+}
+
+fn row_times(value: &Value) -> Option<RowTimes> {
     if let Some(millis) = millis_of(value) {
-        return Some((Some(millis.iter().map(|ms| ms * MILLISECOND).collect()), None, None));
+        return Some(RowTimes::Stamps(millis.iter().map(|ms| ms * MILLISECOND).collect(), None));
     }
     let record = inner(value)?;
     if let Some(clock) = record.get(&["data"]).and_then(|data| samples_of(data, None)) {
@@ -89,14 +96,14 @@ fn row_times(value: &Value) -> Option<(Option<Vec<f64>>, Option<f64>, Option<Str
         let start = clock.iter().copied().find(|ms| ms.is_finite())?;
         // Taken off before the factor: a clock of milliseconds since 1970 has few digits left.
         let seconds = clock.iter().map(|ms| (ms - start) * MILLISECOND).collect();
-        return Some((Some(seconds), None, Some("times are of the clock, counted from the first".to_owned())));
+        return Some(RowTimes::Stamps(seconds, Some("times are of the clock, counted from the first".to_owned())));
     }
     let number = |value: &Value| samples_of(value, None)?.values.first()?.first().copied();
     let by_rate = record.get(&["specifiedAsRate"]).and_then(number).is_some_and(|by_rate| by_rate != 0.0);
     let rate = || record.get(&["sampleRate"]).and_then(number).filter(|rate| *rate > 0.0).map(|rate| 1.0 / rate);
     let step = || record.get(&["stepSize"]).and_then(millis_of).and_then(|step| Some(step.first()? * MILLISECOND));
-    let sample_time_s = if by_rate { rate() } else { step().or_else(rate) };
-    sample_time_s.map(|step_s| (None, Some(step_s), None))
+    let step_s = if by_rate { rate() } else { step().or_else(rate) };
+    step_s.map(RowTimes::Step)
 }
 
 /// The milliseconds of a `duration`.

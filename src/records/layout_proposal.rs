@@ -113,7 +113,8 @@ impl LayoutProposal {
         let of_side: Vec<usize> =
             (0..table.columns.len()).filter(|&column| table.columns[column].side == Some(of_file)).collect();
         if candidates.iter().all(Vec::is_empty) && of_side.len() == rules.len() && !rules.is_empty() {
-            self.notes.push(format!("the file has {} {side}s under other names: taken in order", rules.len()));
+            self.notes
+                .push(format!("the file has as many {side}s under other names ({}): taken in order", rules.len()));
             return rules.iter().zip(of_side).map(|(rule, column)| self.used(table, rule, column)).collect();
         }
         let mut uses = Vec::with_capacity(rules.len());

@@ -189,7 +189,9 @@ fn inputs_and_outputs_that_the_file_tells_apart_are_taken_in_order() {
     let proposal = proposed(&table);
     assert_eq!(proposal.problems, []);
     assert_eq!(proposal.layout.outputs[1], Some(ColumnUse::as_it_is(4)));
-    assert!(proposal.notes.iter().any(|note| note == "the file has 2 outputs under other names: taken in order"));
+    assert!(
+        proposal.notes.iter().any(|note| note == "the file has as many outputs under other names (2): taken in order")
+    );
 }
 
 #[test]

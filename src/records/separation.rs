@@ -18,8 +18,6 @@ pub enum Separation {
     ByTime(usize),
 }
 
-/// Fewer samples than these are no record: a slip among stamps is not the beginning of another.
-const FEWEST: usize = 20;
 /// Names of columns that number records.
 const NUMBERS: [&str; 15] = [
     "record",
@@ -40,6 +38,9 @@ const NUMBERS: [&str; 15] = [
 ];
 
 impl Separation {
+    /// Fewer samples than these are no record of several in a file.
+    pub const FEWEST: usize = 20;
+
     /// What tells the records of a table apart, as far as names of columns and stamps say.
     pub fn proposed(table: &RecordTable) -> Self {
         let numbers = |index: &usize| {
@@ -48,7 +49,8 @@ impl Separation {
                 column.name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
             NUMBERS.contains(&name.as_str()) && {
                 let runs = runs_of(&column.values);
-                runs.len() > 1 && runs.iter().all(|run| run.len() >= FEWEST && column.values[run.start].fract() == 0.0)
+                runs.len() > 1
+                    && runs.iter().all(|run| run.len() >= Self::FEWEST && column.values[run.start].fract() == 0.0)
             }
         };
         if let Some(column) = (0..table.columns.len()).find(numbers) {
@@ -58,7 +60,7 @@ impl Separation {
             Some(column)
                 if {
                     let parts = rising_parts(&table.columns[column].values);
-                    parts.len() > 1 && parts.iter().all(|part| part.len() >= FEWEST)
+                    parts.len() > 1 && parts.iter().all(|part| part.len() >= Self::FEWEST)
                 } =>
             {
                 Self::ByTime(column)
@@ -137,7 +139,8 @@ fn runs_of(numbers: &[f64]) -> Vec<Range<usize>> {
 fn rising_parts(stamps: &[f64]) -> Vec<Range<usize>> {
     let (mut parts, mut start, mut last) = (Vec::new(), 0, f64::NEG_INFINITY);
     for (sample, stamp) in stamps.iter().enumerate().filter(|(_, stamp)| stamp.is_finite()) {
-        let stays_below = || stamps[sample..].iter().take(FEWEST / 2).all(|later| later.is_nan() || *later < last);
+        let stays_below =
+            || stamps[sample..].iter().take(Separation::FEWEST / 2).all(|later| later.is_nan() || *later < last);
         if *stamp < last && stays_below() {
             parts.push(start..sample);
             start = sample;

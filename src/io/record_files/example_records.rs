@@ -34,7 +34,7 @@ mod tests {
         for condition in EXAMPLE_RECORD_CONDITIONS {
             let records = example_records(condition).unwrap();
             let rows: Vec<usize> = records.iter().map(RecordTable::rows).collect();
-            assert_eq!(rows, [[3000; 8].as_slice(), &[3300]].concat(), "60 s and 66 s at 50 Hz");
+            assert_eq!(rows, [[3001; 8].as_slice(), &[3301]].concat(), "60 s and 66 s at 50 Hz");
             assert!(records.iter().all(|record| record.columns.len() == 11 && record.named));
         }
         assert!(example_records(1).unwrap().is_empty());

@@ -26,7 +26,7 @@ use super::model_files::json_value::variables_of;
 use super::model_files::{FileFormat, FolderProgress};
 use super::npy::read_npy;
 use super::source::{Source, read_bytes};
-use super::text::{NumberedText, TextTable, decode, numbered_words, read_table};
+use super::text::{NumberedText, TextTable, decode, numbered_words, read_table, sections};
 use super::variables::{Meter, Variable, VariableFault};
 use super::zip_files::visit_files;
 
@@ -204,7 +204,9 @@ fn of_single(bytes: &[u8], path: &Path, place: (&str, &str), meter: &Meter<'_>) 
     let wrong = |fault| FileError::Variables { path: path.to_owned(), fault };
     let decoded = |bytes: &[u8]| {
         let mut found = FoundRecords::default();
-        found.add(of_text(&decode(bytes, meter)?.text, meter)?.of_file(place.0, place.1));
+        for columns in of_text(&decode(bytes, meter)?.text, meter)? {
+            found.add(columns.of_file(place.0, place.1));
+        }
         Ok(found)
     };
     match FileFormat::of(bytes, path) {
@@ -242,15 +244,38 @@ fn of_variables(variables: &[Variable], notes: Vec<String>, (name, sha256): (&st
     found
 }
 
-/// The columns of a text: of one with words or times of the clock among its numbers, with numbers in their place.
-fn of_text(text: &str, meter: &Meter<'_>) -> Result<Columns, VariableFault> {
+/// The columns of a text; where these change on the way, of every part that is long enough to be a record.
+fn of_text(text: &str, meter: &Meter<'_>) -> Result<Vec<Columns>, VariableFault> {
+    let first = match of_whole_text(text, meter) {
+        Err(fault @ (VariableFault::Line { .. } | VariableFault::Format { .. })) => fault,
+        whole => return whole.map(|columns| vec![columns]),
+    };
+    let parts = sections(text);
+    let count = parts.len();
+    let mut found = Vec::new();
+    for (index, (line, part)) in parts.into_iter().enumerate().filter(|_| count > 1) {
+        match of_whole_text(part, meter) {
+            Ok(columns) if columns.columns.first().is_some_and(|column| column.values.len() >= Separation::FEWEST) => {
+                let note = format!("one of {count} tables in the file, from line {line}");
+                let notes = [vec![note], columns.notes].concat();
+                found.push(Columns { variable: format!("table {}", index + 1), notes, ..columns });
+            }
+            Err(fault @ (VariableFault::Stopped | VariableFault::TooLarge { .. })) => return Err(fault),
+            _ => {}
+        }
+    }
+    if found.is_empty() { Err(first) } else { Ok(found) }
+}
+
+/// The columns of one table: of one with words or times of the clock among its numbers, with numbers in their place.
+fn of_whole_text(text: &str, meter: &Meter<'_>) -> Result<Columns, VariableFault> {
     let first = match read_table(text, meter) {
-        Ok(table) => return Ok(of_table(table)),
-        Err(fault @ (VariableFault::Stopped | VariableFault::TooLarge { .. })) => return Err(fault),
-        Err(fault) => fault,
+        Err(fault @ (VariableFault::Line { .. } | VariableFault::Format { .. })) => fault,
+        table => return table.map(of_table),
     };
     let Some(NumberedText { text, notes }) = numbered_words(text, meter)? else { return Err(first) };
-    let mut columns = of_table(read_table(&text, meter)?);
+    // What is wrong in the text as it stands says more than what is wrong in this one.
+    let mut columns = of_table(read_table(&text, meter).map_err(|_| first)?);
     columns.notes.extend(notes);
     Ok(columns)
 }

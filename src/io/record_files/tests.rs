@@ -117,7 +117,7 @@ fn files_in_an_archive_are_records_of_it() {
     let sources: Vec<(&str, Option<&str>)> =
         found.tables.iter().map(|table| (table.source.file.as_str(), table.source.variable.as_deref())).collect();
     assert_eq!(sources, [("two.zip", Some("records/units.csv")), ("two.zip", Some("records/sides.mat"))]);
-    assert_eq!(found.passed_over, ["two.zip: readme.md: no file of records"]);
+    assert_eq!(found.passed_over, ["readme.md: no file of records"]);
     found.tables.iter().for_each(|table| assert_record(table, 3));
 }
 
@@ -149,6 +149,22 @@ fn words_and_times_of_the_clock_stand_among_the_numbers_of_a_log() {
     assert_eq!(names, ["log, manoeuvre 1", "log, manoeuvre 2"]);
     assert!(found.tables[1].notes.iter().any(|note| note.contains("1 is LON sweep, 2 is LAT sweep")), "{found:?}");
     found.tables.iter().for_each(|table| assert_record(table, 3));
+}
+
+#[test]
+fn a_log_that_is_begun_anew_with_other_columns_is_two_tables() {
+    let log = |columns: &str, rows: usize| {
+        let cells = columns.split('|').count();
+        let row = |k: usize| {
+            (0..cells).map(|cell| format!(" {} |", (k * (cell + 1)) as f64 * 0.02)).collect::<String>() + "\n"
+        };
+        format!("{columns} |\n") + &(0..rows).map(row).collect::<String>()
+    };
+    let text = log("time,s | P,rad/s", 3) + "\n" + &log("time,s | P,rad/s | Q,rad/s", 50);
+    let found = records_of_bytes(text.as_bytes(), "log.txt", 1 << 24).unwrap();
+    assert_eq!((found.tables.len(), found.tables[0].rows(), found.tables[0].columns.len()), (1, 50, 3));
+    assert_eq!(found.tables[0].notes[0], "one of 2 tables in the file, from line 6");
+    assert_eq!(found.tables[0].source.variable.as_deref(), Some("table 2"));
 }
 
 fn numbers(rows: usize, columns: usize, value: impl Fn(usize) -> f64) -> Value {

@@ -1,7 +1,8 @@
 //! Flight records of conditions, and the bands of models that were identified from them.
 
-use gdcm::dataset::{BundleKind, Pair, RecordKind};
+use gdcm::dataset::{BundleKind, ConditionRecord, ModelDraft, Origin, Pair, RecordKind, Timing};
 use gdcm::io::save_dataset;
+use nalgebra::DMatrix;
 
 use super::*;
 
@@ -118,4 +119,34 @@ fn bands_that_cannot_be_are_named_with_their_place() {
         "\"name\": \"sweeps\", \"bands\": {\"omega_rad_s\": [1, 1e999], \"sd_db\": [], \"sd_deg\": []},",
         &["bands, omega_rad_s"],
     );
+}
+
+#[test]
+fn identified_models_and_records_take_the_place_of_those_of_their_name() {
+    let dataset = load(&small(with_all)).unwrap().dataset;
+    let condition = &dataset.conditions()[0];
+    let before = condition.bundle(BundleKind::Identified).len();
+    let scalar = |rows: usize, columns: usize, value: f64| Some(DMatrix::from_element(rows, columns, value));
+    let draft = |name: &str, inputs: usize| ModelDraft {
+        name: name.to_owned(),
+        origin: Origin::Identified { method: None, order: None },
+        matrices: [scalar(1, 1, -1.0), scalar(1, inputs, 1.0), scalar(2, 1, 1.0), scalar(2, inputs, 0.0)],
+        timing: Timing::default(),
+        response: None,
+        source: None,
+        states: Vec::new(),
+        bands: None,
+    };
+    let model = |name: &str| dataset.identified_model(draft(name, 2)).unwrap().0;
+    let records = vec![ConditionRecord::new("LON 1", "elsewhere.csv"), ConditionRecord::new("LON 2", "lon_2.csv")];
+    let filled = condition.with_identified(vec![model("sweeps"), model("new")], records).unwrap();
+    let names: Vec<&str> = filled.bundle(BundleKind::Identified).iter().map(|model| model.name.as_str()).collect();
+    assert_eq!((names.len(), names[0], names[before]), (before + 1, "sweeps", "new"));
+    assert_eq!(filled.bundle(BundleKind::Identified)[0].order(), Some(1), "the new one");
+    let files: Vec<&str> = filled.records().iter().map(|record| record.file.as_str()).collect();
+    assert_eq!(files, ["elsewhere.csv", "records/all.mat", "rest.csv", "lon_2.csv"]);
+    let changed = dataset.with_condition(filled.clone()).unwrap();
+    assert_eq!((changed.conditions()[0].as_ref(), &changed.conditions()[1]), (&filled, &dataset.conditions()[1]));
+    let words = dataset.identified_model(draft("narrow", 1)).unwrap_err().fault.to_string();
+    assert_eq!(words, "expected 2 x 2 (outputs x inputs), found 2 x 1");
 }

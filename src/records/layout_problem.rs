@@ -41,7 +41,7 @@ pub enum LayoutProblem {
     },
     /// Steps of time are too long for a manoeuvre.
     #[error(
-        "the time in column {column} goes in steps of {} s; it cannot be in the unit that it is taken in (s, ms), or it is no time",
+        "the time in column {column} goes in steps of {} s: its unit is another, or it is no time",
         telling(*step_s, 3)
     )]
     TimeStep {

@@ -134,8 +134,8 @@ impl Column {
             now += DAY_S * ((last - now) / DAY_S).round();
         }
         self.clock = Some((first, now));
-        // A thousandth of a microsecond: finer than any clock, and no digits of the subtraction's rounding.
-        format!("{:.9}", now - first)
+        // Whole nanoseconds, finer than any clock: they need no decimal mark, which may be either one in this text.
+        format!("{:.0}e-9", (now - first) * 1e9)
     }
 }
 
@@ -212,7 +212,7 @@ mod tests {
         let text = "time;P;Q\n23:59:59,90;1,5;2\n23:59:59,95;1,5;2\n00:00:00,00;1,5;2\n00:00:00,05;1,5;2\n";
         let found = numbered(text).unwrap();
         let table = read_table(&found.text, &Meter::new(1 << 20, &|| false)).unwrap();
-        // Nine digits were written.
+        // Nanoseconds were written.
         assert!(table.columns[0].iter().zip([0.0, 0.05, 0.1, 0.15]).all(|(a, b)| (a - b).abs() < 1e-9), "{table:?}");
         assert_eq!(table.columns[1], [1.5; 4]);
     }

@@ -200,7 +200,7 @@ fn errors(source: &ConditionSource<'_>, pair: Pair, omega: &[f64], options: &Bod
         Some(ErrorLine {
             name,
             role,
-            ratio_db: correction.magnitudes_db(&mismatch_db).map(|db| -db).collect(),
+            ratio_db: correction.magnitudes_db(&mismatch_db, omega).map(|db| -db).collect(),
             phase: correction
                 .phases(&phase, omega)
                 .zip(omega)

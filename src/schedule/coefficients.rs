@@ -53,7 +53,8 @@ impl Schedule {
         };
         let gains = with_channels(&self.inputs, &self.outputs).map(|of| row(of, symbol, ""));
         let delays = self.delays.iter().flat_map(|delays| with_channels(&delays.inputs, &delays.outputs));
-        let delays = delays.map(|of| row(of, "τ", " [s]"));
+        let leads = self.leads.iter().flat_map(|leads| with_channels(&leads.inputs, &leads.outputs));
+        let delays = delays.chain(leads).map(|of| row(of, "τ", " [s]"));
         CoefficientTable { columns, rows: gains.chain(delays).collect(), scale }
     }
 }
@@ -79,6 +80,7 @@ mod tests {
             output_gains: vec![1.0],
             input_delays_s: vec![0.02],
             output_delays_s: vec![0.0],
+            leads: None,
         });
         let points: Vec<ScheduledPoint<'_>> = [60.0, 90.0, 120.0]
             .into_iter()

@@ -7,7 +7,7 @@ use crate::correction::ChannelCorrection;
 use crate::dataset::{BundleKind, ConditionId, Dataset, Pair, PairTable};
 use crate::fidelity::CostAverage;
 use crate::response::GainDelay;
-use crate::schedule::CostChange;
+use crate::schedule::{CostChange, corrected_cost};
 use crate::units::signed;
 
 use super::analysis::Analysis;
@@ -173,10 +173,10 @@ fn changes(
     omega: &[f64],
     average: CostAverage,
 ) -> PairTable<Option<CostChange>> {
-    models.mismatch.map(|pair, mismatch| {
-        let mismatch = mismatch.as_ref()?;
-        let corrected = mismatch.cost(omega, correction.on(pair)?, average);
-        Some(CostChange { uncorrected: mismatch.cost(omega, GainDelay::NONE, average), corrected })
+    let corrected = corrected_cost(&models.mismatch, correction, omega, average);
+    corrected.map(|pair, corrected| {
+        let uncorrected = models.mismatch[pair].as_ref()?.cost(omega, GainDelay::NONE, average);
+        Some(CostChange { uncorrected, corrected: (*corrected)? })
     })
 }
 

@@ -45,7 +45,7 @@ impl ErrorShape {
     fn drawn(&self, correction: GainDelay, omega: &[f64], unit: PhaseErrorUnit) -> DrawnError {
         let phase = correction.phases(&self.phase, omega).zip(omega);
         DrawnError {
-            magnitude_db: correction.magnitudes_db(&self.mismatch_db).map(|db| -db).collect(),
+            magnitude_db: correction.magnitudes_db(&self.mismatch_db, omega).map(|db| -db).collect(),
             phase: match unit {
                 PhaseErrorUnit::Degree => phase.map(|(phase, _)| phase.to_degrees()).collect(),
                 PhaseErrorUnit::Millisecond => phase.map(|(phase, omega)| s_to_ms(phase / omega)).collect(),

@@ -84,7 +84,13 @@ fn edits() -> impl Strategy<Value = Vec<Edit>> {
         (0_usize..=3, any::<bool>(), any::<bool>(), 0.0..100.0_f64).prop_map(|(degree, table, delays, tolerance)| {
             let kind = if table { ScheduleKind::Table } else { ScheduleKind::Polynomial { degree } };
             let quantity = if delays { ScheduledQuantity::Gain } else { ScheduledQuantity::LnGain };
-            Setting::Schedule(ScheduleSettings { kind, quantity, delays, airspeed_tolerance_kt: tolerance })
+            Setting::Schedule(ScheduleSettings {
+                kind,
+                quantity,
+                delays,
+                airspeed_tolerance_kt: tolerance,
+                tau_degree: degree % 4,
+            })
         }),
     ];
     prop::collection::vec(setting.prop_map(Edit::Set), 0..12)

@@ -53,8 +53,8 @@ pub struct SettingsEntry {
     #[serde(default, with = "DelayFromWord")]
     pub delay_from: DelayFrom,
     /// What lead filters have in common; absent where that is what it is before any decision.
-    #[serde(default, skip_serializing_if = "LeadEntry::is_default")]
-    pub lead: LeadEntry,
+    #[serde(default, skip_serializing_if = "LeadSettingsEntry::is_default")]
+    pub lead: LeadSettingsEntry,
     /// Mismatch up to which a loop of held gains counts as agreeing \[dB\]; files of older programs do not say it.
     #[serde(default = "default_agreement_db")]
     pub agreement_db: f64,
@@ -85,7 +85,7 @@ pub struct ScheduleEntry {
 
 /// What lead filters have in common (M15.3).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LeadEntry {
+pub struct LeadSettingsEntry {
     /// Order, 1 or 2.
     pub order: usize,
     /// `n`: the lag time constant is `1 / (n omega_B)`.
@@ -94,13 +94,13 @@ pub struct LeadEntry {
     pub r_max: f64,
 }
 
-impl Default for LeadEntry {
+impl Default for LeadSettingsEntry {
     fn default() -> Self {
         Self::of(LeadSettings::default())
     }
 }
 
-impl LeadEntry {
+impl LeadSettingsEntry {
     fn of(settings: LeadSettings) -> Self {
         Self { order: settings.order.number(), n: settings.pole, r_max: settings.limit }
     }
@@ -206,7 +206,7 @@ impl SettingsEntry {
             delay_upper_s: settings.delay_upper_s,
             phase: settings.phase,
             delay_from: settings.delay_from,
-            lead: LeadEntry::of(settings.lead),
+            lead: LeadSettingsEntry::of(settings.lead),
             agreement_db: settings.agreement_db,
             schedule: ScheduleEntry::of(settings.schedule),
         }

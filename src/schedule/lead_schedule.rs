@@ -42,6 +42,12 @@ impl LeadSchedule {
         })
     }
 
+    /// Degree of its polynomials.
+    pub fn degree(&self) -> usize {
+        let channels = self.inputs.iter().chain(&self.outputs);
+        channels.map(|regression| regression.figures().len().saturating_sub(1)).max().unwrap_or(0)
+    }
+
     /// The signed delays at an airspeed \[kt\], cut to the bounds.
     pub fn at(&self, airspeeds: &Airspeeds, airspeed_kt: f64) -> ChannelLeads {
         let [lower_s, upper_s] = self.bounds_s;

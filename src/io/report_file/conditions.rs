@@ -120,7 +120,15 @@ fn facts<'a>(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<(&'a str, S
         ("Physics models", representative(analysis, result, BundleKind::Physics)),
         ("Identified models", representative(analysis, result, BundleKind::Identified)),
         ("Bounds of the gains", format!("{} to {}", decimals(bounds.lower, 4), decimals(bounds.upper, 4))),
-        ("Bounds of the delays", format!("0 to {} ms", decimals(s_to_ms(result.delay_upper_s()), 2))),
+        (
+            "Bounds of the delays",
+            // Adding zero turns minus zero into zero.
+            format!(
+                "{} to {} ms",
+                compact(s_to_ms(result.delay_problem.bounds.lower) + 0.0),
+                decimals(s_to_ms(result.delay_upper_s()), 2)
+            ),
+        ),
         ("Objective of the gains", format!("{}{at_least}; {}", compact(gains.objective), proof_word(result))),
         ("Objective of the delays", format!("{} s²; the least, for the program is convex", compact(delays.objective))),
         ("In the schedule", scheduled.to_owned()),
@@ -151,9 +159,10 @@ fn channel_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
     let (dataset, correction) = (&analysis.study.dataset, &result.correction);
     let title = format!("Condition {}: gain and delay of each channel", result.condition.id());
     let mut table = Table::new(title, ["channel", "side", "gain k", "delay τ [ms]"]);
+    let [inputs_s, outputs_s] = correction.signed_delays_s();
     let sides = [
-        ("input", dataset.inputs(), &correction.input_gains, &correction.input_delays_s),
-        ("output", dataset.outputs(), &correction.output_gains, &correction.output_delays_s),
+        ("input", dataset.inputs(), &correction.input_gains, inputs_s),
+        ("output", dataset.outputs(), &correction.output_gains, outputs_s),
     ];
     for (side, channels, gains, delays_s) in sides {
         for ((channel, gain), delay_s) in channels.iter().zip(gains).zip(delays_s) {

@@ -162,7 +162,7 @@ pub(super) fn schedule_section(analysis: &Analysis) -> String {
     text.push_str(&schedule_table(analysis, schedule, |correction, pair| {
         figure(Some(correction.net_gain(pair).value()), 3)
     }));
-    if schedule.delays.is_some() || schedule.leads.is_some() {
+    if schedule.has_delays() {
         text.push_str(&labelled(0, "", LABEL, "net delays in ms:"));
         text.push_str(&schedule_table(analysis, schedule, |correction, pair| {
             figure(Some(s_to_ms(correction.net_delay(pair).value_s())), 1)

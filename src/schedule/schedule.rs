@@ -230,6 +230,11 @@ impl Schedule {
         Ok(Self { settings, airspeeds, inputs, outputs, delays, leads, cautions: Vec::new() })
     }
 
+    /// Whether delays, or delays and leads, are scheduled.
+    pub fn has_delays(&self) -> bool {
+        self.delays.is_some() || self.leads.is_some()
+    }
+
     /// Degree of the polynomial, which may be less than was asked for; `None` for a table.
     pub fn degree(&self) -> Option<usize> {
         match self.settings.kind {

@@ -62,6 +62,12 @@ impl ConditionAnalysis {
         self.gain_problem.bounds
     }
 
+    /// Least and greatest delay of every channel \[s\]; leads are negative (M15.4).
+    pub fn delay_bounds_s(&self) -> [f64; 2] {
+        // Adding zero turns minus zero into zero.
+        [self.delay_problem.bounds.lower + 0.0, self.delay_problem.bounds.upper]
+    }
+
     /// Upper bound of every channel delay \[s\].
     pub fn delay_upper_s(&self) -> f64 {
         self.delay_problem.bounds.upper

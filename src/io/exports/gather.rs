@@ -109,7 +109,7 @@ fn notes(schedule: &Schedule, dataset: &Dataset) -> Vec<String> {
     let unscheduled = "delays are not scheduled in this study: they are zero here".to_owned();
     let (inputs, outputs) = dataset.names_of_channels();
     let cautions = schedule.cautions.iter().map(|caution| caution.words(&inputs, &outputs));
-    (schedule.delays.is_none() && schedule.leads.is_none()).then_some(unscheduled).into_iter().chain(cautions).collect()
+    (!schedule.has_delays()).then_some(unscheduled).into_iter().chain(cautions).collect()
 }
 
 fn curve(regression: &Regression, of_logarithm: bool) -> Curve {

@@ -122,10 +122,9 @@ fn facts<'a>(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<(&'a str, S
         ("Bounds of the gains", format!("{} to {}", decimals(bounds.lower, 4), decimals(bounds.upper, 4))),
         (
             "Bounds of the delays",
-            // Adding zero turns minus zero into zero.
             format!(
                 "{} to {} ms",
-                compact(s_to_ms(result.delay_problem.bounds.lower) + 0.0),
+                compact(s_to_ms(result.delay_bounds_s()[0])),
                 decimals(s_to_ms(result.delay_upper_s()), 2)
             ),
         ),

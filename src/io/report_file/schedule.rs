@@ -82,7 +82,7 @@ fn add_schedule(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
     add_coefficients(page, schedule, (&inputs, &outputs));
     add_gains(page, analysis, schedule);
     let measures =
-        [(Measure::Gain, "gains")].into_iter().chain(has_delays(schedule).then_some((Measure::Delay, "delays")));
+        [(Measure::Gain, "gains")].into_iter().chain(schedule.has_delays().then_some((Measure::Delay, "delays")));
     for (measure, what) in measures {
         let title = format!("Channel {what} over airspeed, and their schedule");
         add_channels(page, analysis, channels, (measure, Across::Airspeed), &title);
@@ -92,11 +92,6 @@ fn add_schedule(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
         let caption = "Each condition's optimum with its number, and the schedule; dashed: no correction.";
         page.figure(&figure, "Net gains against airspeed", caption);
     }
-}
-
-/// Whether delays, or delays and leads, are scheduled.
-fn has_delays(schedule: &Schedule) -> bool {
-    schedule.delays.is_some() || schedule.leads.is_some()
 }
 
 /// The conditions that have a result and are left out of the schedule by hand.
@@ -154,7 +149,7 @@ fn add_gains(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
         (dataset.pair_name(pair), Box::new(gain) as Cell)
     });
     add_over_airspeed(page, schedule, &airspeeds_kt, "Scheduled net gains", net.collect());
-    if has_delays(schedule) {
+    if schedule.has_delays() {
         let delays = all_channels(dataset).into_iter().map(|channel| {
             let delay = move |correction: &ChannelCorrection| decimals(s_to_ms(correction.delay_s(channel)), 2);
             (format!("τ_{}", channel.name(&inputs, &outputs)), Box::new(delay) as Cell)

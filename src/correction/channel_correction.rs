@@ -82,6 +82,11 @@ impl ChannelCorrection {
         self.leads.as_ref()?.filter(channel)
     }
 
+    /// The same without its lead filters: its gains and what is positive of its delays.
+    pub fn without_leads(self) -> Self {
+        Self { leads: None, ..self }
+    }
+
     /// Net delay of a response.
     pub fn net_delay(&self, pair: Pair) -> NetDelay {
         let (output, input) = (Channel::Output(pair.output), Channel::Input(pair.input));

@@ -33,6 +33,8 @@ pub enum AssessedCorrection {
     /// The schedule at the condition's airspeed (the paper).
     #[default]
     Scheduled,
+    /// The schedule without the lead filters of its signed delays (M15).
+    ScheduledWithoutLeads,
     /// The condition's own optimum.
     Own,
 }
@@ -159,6 +161,9 @@ pub(super) fn assessed(
     let correction = match choice.correction {
         AssessedCorrection::Own => result.correction.clone(),
         AssessedCorrection::Scheduled => analysis.schedule.as_ref().map_err(ToString::to_string)?.at(airspeed_kt),
+        AssessedCorrection::ScheduledWithoutLeads => {
+            analysis.schedule.as_ref().map_err(ToString::to_string)?.at(airspeed_kt).without_leads()
+        }
     };
     let models = if by_nominal { &result.comparison.nominal } else { &result.comparison.representative };
     let changes = changes(models, &correction, &analysis.omega, choice.average);

@@ -125,7 +125,7 @@ pub(super) fn corrected_faces(state: &State, condition: &Condition, pair: Pair) 
         face(CurveId::Scheduled, label, Role::Scheduled, &correction)
     });
     let without = shown.led.as_ref().and_then(|_| {
-        let correction = ChannelCorrection { leads: None, ..shown.correction.clone() };
+        let correction = shown.correction.clone().without_leads();
         face(CurveId::WithoutLeads, format!("{name}, corrected without leads"), Role::WithoutLeads, &correction)
     });
     own.into_iter().chain(scheduled).chain(without).collect()

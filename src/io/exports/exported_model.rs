@@ -68,6 +68,7 @@ fn exported_model(
         name: model.name.clone(),
         correction: match request.correction {
             AssessedCorrection::Scheduled => "scheduled",
+            AssessedCorrection::ScheduledWithoutLeads => "scheduled, without leads,",
             AssessedCorrection::Own => "own",
         },
         states: state_names(analysis, model, &corrected),
@@ -98,9 +99,10 @@ fn correction_of(
 ) -> Result<ChannelCorrection, ExportFault> {
     match which {
         AssessedCorrection::Own => Ok(result_of(analysis, condition)?.correction.clone()),
-        AssessedCorrection::Scheduled => {
+        AssessedCorrection::Scheduled | AssessedCorrection::ScheduledWithoutLeads => {
             let schedule = analysis.schedule.as_ref().map_err(|error| ExportFault::Schedule(*error))?;
-            Ok(schedule.at(condition.flight_state().airspeed_kt))
+            let correction = schedule.at(condition.flight_state().airspeed_kt);
+            Ok(if which == AssessedCorrection::Scheduled { correction } else { correction.without_leads() })
         }
     }
 }

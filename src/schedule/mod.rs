@@ -3,6 +3,7 @@
 mod assessment;
 mod coefficients;
 mod evidence;
+mod lead_evidence;
 mod lead_schedule;
 mod regression;
 #[expect(clippy::module_inception, reason = "the folder is named for its noun, and so is the file that holds it")]
@@ -11,6 +12,7 @@ mod schedule;
 pub use assessment::{CostChange, assess, corrected_cost};
 pub use coefficients::{CoefficientRow, CoefficientTable};
 pub use evidence::{Evidence, FitEvidence, KindEvidence, Residual, SCHEDULE_KINDS, evidence};
+pub use lead_evidence::{LeadEvidence, LeadFit, lead_evidence};
 pub use lead_schedule::LeadSchedule;
 pub use regression::{Airspeeds, Regression};
 pub use schedule::{

@@ -6,7 +6,7 @@ use egui::{Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo
 use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
 use crate::study::{Edit, PhaseCorrection, Setting};
 use crate::view::command::Command;
-use crate::view::evidence_scene::{coefficient_table, evidence_table, residual_table};
+use crate::view::evidence_scene::{coefficient_table, evidence_table, lead_evidence_table, residual_table};
 use crate::view::net_gain_scene::{PairSet, dot_key, net_gain_panels};
 use crate::view::number_field::NumberField;
 use crate::view::palette::{Palette, SMALL_SIZE};
@@ -116,7 +116,9 @@ fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
                 commands.push(Edit::Set(Setting::Schedule(ScheduleSettings { kind, ..schedule })).into());
             }
             let plain = TableLook { color: &|_, _| None, selected: &|_| false };
-            for table in residual_table(state, conditions, evidence).into_iter().chain(coefficient_table(state)) {
+            let leads = lead_evidence_table(state, cached.leads());
+            let residuals = residual_table(state, conditions, evidence);
+            for table in leads.into_iter().chain(residuals).chain(coefficient_table(state)) {
                 ui.label(RichText::new(&table.title).size(SMALL_SIZE).strong());
                 table_ui(ui, &table, &mut Sorting::default(), &plain, palette, commands);
             }

@@ -112,7 +112,7 @@ fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
         (words != "0.0").then(|| format!("{name} {words} ms"))
     });
 
-    let label = if correction.leads.is_some() { "delays, leads" } else { "delays" };
+    let label = if correction.leads.is_some() { "delay/lead" } else { "delays" };
     let mut text = detail_list("gains", gains) + &detail_list(label, delays.collect());
     for words in lead_words(&analysis.study, result) {
         text.push_str(&detail("lead", &plain(&words)));

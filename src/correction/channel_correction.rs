@@ -72,7 +72,7 @@ impl ChannelCorrection {
     /// Delay of each input and of each output \[s\]; a negative one is a lead (M15).
     pub fn signed_delays_s(&self) -> [&[f64]; 2] {
         match &self.leads {
-            Some(leads) => [&leads.inputs_s, &leads.outputs_s],
+            Some(leads) => [leads.inputs_s(), leads.outputs_s()],
             None => [&self.input_delays_s, &self.output_delays_s],
         }
     }

@@ -9,7 +9,6 @@ use crate::units::number;
 
 use super::channel::Channel;
 use super::channel_correction::ChannelCorrection;
-use super::channel_leads::ChannelLeads;
 use super::channel_model::ChannelModel;
 use super::pade::Pade;
 
@@ -120,7 +119,7 @@ impl CorrectedModel {
         };
         let inputs = delayed(&input_delays_s, Channel::Input)?;
         let outputs = delayed(&output_delays_s, Channel::Output)?;
-        let leads = correction.leads.as_ref().map_or_else(Default::default, ChannelLeads::filters);
+        let leads = correction.leads.as_ref().map(|leads| leads.filters().clone()).unwrap_or_default();
         let [input_leads, output_leads] = [lead_models(&leads[0], sampling)?, lead_models(&leads[1], sampling)?];
         let states_of = |models: &[ChannelModel]| models.iter().map(ChannelModel::order).collect::<Vec<_>>();
         let (input_lead_states, output_lead_states) = (states_of(&input_leads), states_of(&output_leads));
@@ -283,7 +282,7 @@ mod tests {
     use nalgebra::Complex;
 
     use super::*;
-    use crate::correction::{LeadDesign, LeadSettings};
+    use crate::correction::{ChannelLeads, LeadDesign, LeadSettings};
     use crate::dataset::{Band, Dynamics, Pair};
     use crate::response::{FrequencyGrid, LeadOrder, PreparedModel};
 

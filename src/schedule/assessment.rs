@@ -1,6 +1,6 @@
 //! What a correction is worth: J before and after (M12).
 
-use crate::correction::ChannelCorrection;
+use crate::correction::{ChannelCorrection, ChannelLeads};
 use crate::dataset::PairTable;
 use crate::fidelity::{Cost, CostAverage, Mismatch};
 
@@ -53,7 +53,7 @@ pub fn corrected_cost(
     average: CostAverage,
 ) -> PairTable<Option<Cost>> {
     // A filter is computed once for its channel, not for each of its responses.
-    let leads = correction.leads.as_ref().map(|leads| leads.curves(omega));
+    let leads = correction.leads.as_ref().map(ChannelLeads::curves);
     mismatch.map(|pair, mismatch| {
         let (mismatch, correction) = (mismatch.as_ref()?, correction.without_leads_on(pair)?);
         let led = leads.as_ref().and_then(|leads| leads.on(pair));

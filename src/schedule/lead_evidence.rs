@@ -70,7 +70,7 @@ fn of_degree(
         };
         LeadFit { rms_s: rms_s(&scheduled), left_out_rms_s: unseen.as_deref().map(rms_s) }
     };
-    let (inputs, outputs) = (own[0].inputs_s.len(), own[0].outputs_s.len());
+    let (inputs, outputs) = (own[0].inputs_s().len(), own[0].outputs_s().len());
     let of_channel = |channel: Channel| fit(&move |leads| leads.tau_s(channel));
     let of_pair = |pair: Pair| {
         fit(&move |leads| leads.tau_s(Channel::Output(pair.output)) + leads.tau_s(Channel::Input(pair.input)))

@@ -19,6 +19,8 @@ pub struct LeadSchedule {
     pub outputs: Vec<Regression>,
     /// The widest of the conditions' bounds \[s\]: no scheduled signed delay is outside.
     pub bounds_s: [f64; 2],
+    /// The same for all airspeeds, where it is: its filters are computed once.
+    constant: Option<ChannelLeads>,
 }
 
 impl LeadSchedule {
@@ -34,12 +36,10 @@ impl LeadSchedule {
         let design = Arc::clone(leads.first()?.design());
         let upper_s = points.iter().map(|point| point.delay_upper_s).fold(0.0, f64::max);
         let lower_s = leads.iter().map(|leads| leads.design().lower_s()).fold(0.0, f64::min);
-        Some(Self {
-            design,
-            inputs: fit(|leads| &leads.inputs_s),
-            outputs: fit(|leads| &leads.outputs_s),
-            bounds_s: [lower_s, upper_s],
-        })
+        let (inputs, outputs) = (fit(ChannelLeads::inputs_s), fit(ChannelLeads::outputs_s));
+        let mut schedule = Self { design, inputs, outputs, bounds_s: [lower_s, upper_s], constant: None };
+        schedule.constant = (schedule.degree() == 0).then(|| schedule.made_at(airspeeds, airspeeds.mean_kt));
+        Some(schedule)
     }
 
     /// Degree of its polynomials.
@@ -50,6 +50,10 @@ impl LeadSchedule {
 
     /// The signed delays at an airspeed \[kt\], cut to the bounds.
     pub fn at(&self, airspeeds: &Airspeeds, airspeed_kt: f64) -> ChannelLeads {
+        self.constant.clone().unwrap_or_else(|| self.made_at(airspeeds, airspeed_kt))
+    }
+
+    fn made_at(&self, airspeeds: &Airspeeds, airspeed_kt: f64) -> ChannelLeads {
         let [lower_s, upper_s] = self.bounds_s;
         let cut = |regression: &Regression| regression.at(airspeeds, airspeed_kt).clamp(lower_s, upper_s);
         let of = |channels: &[Regression]| channels.iter().map(cut).collect();

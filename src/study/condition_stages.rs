@@ -233,7 +233,7 @@ impl ConditionStages {
         };
         let led = leads.clone().map(|leads| {
             let mismatch = &asked.comparison.representative.mismatch;
-            self.led.get((asked.key.clone(), leads), |(_, leads)| Led::of(mismatch, leads, asked.omega))
+            self.led.get((asked.key.clone(), leads), |(_, leads)| Led::of(mismatch, leads))
         });
         let bounds_key = (asked.key.clone(), leads, settings.quantile, settings.gain_bounds);
         let bounds = self.gain_bounds.get(bounds_key, |_| asked.gain_bounds(led.as_deref()));

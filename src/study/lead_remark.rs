@@ -34,7 +34,7 @@ pub fn lead_words(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
         };
         let gain_db: f64 = [output, input]
             .iter()
-            .filter_map(|channel| led.filter(*channel))
+            .filter_map(|channel| led.leads.filter(*channel))
             .map(LeadFilter::gain_at_infinity_db)
             .sum();
         let price = if gain_db > 0.05 { format!("; {} dB above the band", signed(gain_db, 1)) } else { String::new() };
@@ -50,7 +50,7 @@ pub fn lead_words(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     };
     let channels = (0..inputs.len()).map(Channel::Input).chain((0..outputs.len()).map(Channel::Output));
     let filters: Vec<(Channel, LeadFilter)> =
-        channels.filter_map(|channel| Some((channel, led.filter(channel)?))).collect();
+        channels.filter_map(|channel| Some((channel, led.leads.filter(channel)?))).collect();
     let replaced = filters.iter().map(|(channel, filter)| {
         let at_above = filter.magnitude_db(ABOVE * top);
         format!(
@@ -75,6 +75,12 @@ pub fn servo_words(filter: LeadFilter) -> String {
         telling(filter.lag_rad_s(), 0),
         signed(filter.gain_at_infinity_db(), 1)
     )
+}
+
+/// What has to be known of leads, where they are asked for, in words (M15.6).
+pub fn lead_cautions(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
+    let remarks = if result.led.is_some() { lead_remarks(study, result) } else { Vec::new() };
+    remarks.into_iter().filter(|remark| remark.kind != RemarkKind::Good).map(|remark| remark.text).collect()
 }
 
 /// What leads do and what has to be asked before them; of a study without leads, whether they would help.

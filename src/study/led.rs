@@ -2,18 +2,16 @@
 
 use std::sync::Arc;
 
-use crate::correction::{Channel, ChannelLeads, delta_gains};
+use crate::correction::{ChannelLeads, delta_gains};
 use crate::dataset::{Pair, PairTable};
 use crate::fidelity::{Cost, CostAverage, Mismatch};
-use crate::response::{GainDelay, LeadFilter};
+use crate::response::GainDelay;
 
 /// The physics representative with the leads of its channels against the identified one: what the gains are found on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Led {
     /// The signed delays with their filters.
     pub leads: ChannelLeads,
-    /// The filter of each input and of each output, where it has one.
-    pub filters: [Vec<Option<LeadFilter>>; 2],
     /// Difference of every response that both models have; the pure delays among the leads are not in it.
     pub mismatch: PairTable<Option<Mismatch>>,
     /// G of the led representative, `[output, input]`.
@@ -21,8 +19,8 @@ pub struct Led {
 }
 
 impl Led {
-    pub(super) fn of(mismatch: &PairTable<Option<Mismatch>>, leads: &ChannelLeads, omega: &[f64]) -> Arc<Self> {
-        let curves = leads.curves(omega);
+    pub(super) fn of(mismatch: &PairTable<Option<Mismatch>>, leads: &ChannelLeads) -> Arc<Self> {
+        let curves = leads.curves();
         let mismatch = mismatch.map(|pair, mismatch| {
             let lead = curves.on(pair);
             lead.map_or_else(
@@ -32,15 +30,7 @@ impl Led {
         });
         // A pure delay leaves every magnitude.
         let gain = delta_gains(&mismatch);
-        Arc::new(Self { leads: leads.clone(), filters: leads.filters(), mismatch, gain })
-    }
-
-    /// The filter of a channel, where it has one.
-    pub fn filter(&self, channel: Channel) -> Option<LeadFilter> {
-        match channel {
-            Channel::Input(input) => self.filters[0][input],
-            Channel::Output(output) => self.filters[1][output],
-        }
+        Arc::new(Self { leads: leads.clone(), mismatch, gain })
     }
 
     /// J of every response under what the gains and the pure delays, `correction`, add to the leads.

@@ -63,7 +63,7 @@ pub use history::History;
 pub use inventory::{ConditionInventory, Inventory};
 pub use job::{CurvesJob, Job, ModesJob, ProofJob, TogglesJob};
 pub use lead_offer::LeadOffer;
-pub use lead_remark::{lead_words, servo_words};
+pub use lead_remark::{lead_cautions, lead_words, servo_words};
 pub use led::Led;
 pub use progress::{Cancelled, Progress, Unobserved};
 pub use remark::{Remark, RemarkKind, details, remarks};

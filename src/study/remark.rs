@@ -8,7 +8,7 @@ use crate::units::{number, s_to_ms, telling, told_apart};
 use super::caution::Caution;
 use super::condition_analysis::ConditionAnalysis;
 use super::document::Study;
-use super::lead_remark::{lead_remarks, lead_words};
+use super::lead_remark::lead_remarks;
 use super::settings::PhaseCorrection;
 
 /// How a remark is meant.
@@ -190,7 +190,6 @@ pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     }));
     let top = study.settings.band.max();
     if study.settings.phase == PhaseCorrection::Lead {
-        details.extend(lead_words(study, result));
         let residual_s = kkt_residual(&result.delay_problem, &result.delays);
         details.push(format!(
             "The program of delays and leads is convex: KKT residual {residual_s:.0e} s, which proves its optimum."

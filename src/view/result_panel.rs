@@ -171,7 +171,7 @@ fn channel_table_ui(
             let text = if delay_ms == 0.0 { "0".to_owned() } else { format!("{delay_ms:.1}") };
             let color = if delay_ms == 0.0 { palette.dim_text } else { palette.text };
             let asked = AskedFigure::Delay(id, side.channel(index));
-            let filter = shown.led.as_ref().and_then(|led| led.filter(side.channel(index)));
+            let filter = shown.led.as_ref().and_then(|led| led.leads.filter(side.channel(index)));
             let filter = filter.map(|filter| format!("\nlead: {}", servo_words(filter))).unwrap_or_default();
             let hint = format!("{delay_ms} ms{filter}\nclick: how was this computed?");
             right(ui, |ui| figure_ui(ui, RichText::new(text).color(color), asked, commands)).on_hover_text(hint);

@@ -7,7 +7,7 @@ use crate::dataset::{BundleKind, Condition, ConditionId, Model, PairTable, Prove
 use crate::fidelity::Cost;
 use crate::io::settings_entry::SettingsEntry;
 use crate::schedule::{Regression, Schedule, ScheduleKind, ScheduledQuantity};
-use crate::study::{Analysis, Assessed, Caution, ConditionAnalysis, ConditionChoice};
+use crate::study::{Analysis, Assessed, Caution, ConditionAnalysis, ConditionChoice, lead_cautions};
 
 use super::explanation::Explanation;
 use super::names::{ByName, ChannelNames, rows};
@@ -105,6 +105,7 @@ impl Gather<'_> {
                 .cautions
                 .iter()
                 .map(|caution| caution.words(|pair| study.dataset.pair_name(pair)))
+                .chain(lead_cautions(study, result))
                 .collect(),
         }
     }

@@ -93,7 +93,7 @@ impl ChannelNames {
 
     /// The signed delay and the filter of each channel.
     pub(super) fn leads(&self, leads: &ChannelLeads) -> LeadChannels {
-        let entry = |(&tau_s, filter): (&f64, Option<LeadFilter>)| LeadEntry {
+        let entry = |(&tau_s, filter): (&f64, &Option<LeadFilter>)| LeadEntry {
             tau_s,
             lead_s: filter.map(LeadFilter::lead_s),
             zero_rad_s: filter.map(LeadFilter::zero_rad_s),
@@ -102,8 +102,8 @@ impl ChannelNames {
         };
         let [inputs, outputs] = leads.filters();
         LeadChannels {
-            inputs: self.by_input(leads.inputs_s.iter().zip(inputs).map(entry)),
-            outputs: self.by_output(leads.outputs_s.iter().zip(outputs).map(entry)),
+            inputs: self.by_input(leads.inputs_s().iter().zip(inputs).map(entry)),
+            outputs: self.by_output(leads.outputs_s().iter().zip(outputs).map(entry)),
         }
     }
 

@@ -6,7 +6,7 @@ use crate::figure::ConditionSource;
 use crate::figure::number::{compact, decimals};
 use crate::study::{
     Analysis, CURVE_POINTS, Cancelled, ConditionAnalysis, Engine, Progress, RemarkKind, Table, details, display_band,
-    remarks,
+    lead_words, remarks,
 };
 use crate::units::{number, s_to_ms};
 
@@ -96,6 +96,10 @@ fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) 
     page.heading_within("What was matched, what was not and why");
     page.list(said);
     page.fine_list(details(study, result));
+    if result.led.is_some() {
+        page.heading_within("What the leads do and what they cost");
+        page.list(lead_words(study, result));
+    }
     add_responses(page, study, result);
     page.table(&channel_table(analysis, result));
     BundleKind::BOTH.into_iter().for_each(|kind| add_models(page, study, result, kind));

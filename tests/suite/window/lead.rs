@@ -15,7 +15,9 @@ fn one_click_takes_the_lead_that_the_result_offers_and_undo_gives_it_back() {
     let mut window = window();
     let before = state(&window).shown().unwrap().correction.clone();
     assert!(before.leads.is_none());
-    click(&mut window, "Correct the phase by delay or lead");
+    // It may stand below what the panel shows.
+    window.get_by_label("Correct the phase by delay or lead").click_accesskit();
+    settle(&mut window);
     assert_eq!(state(&window).study.settings.phase, PhaseCorrection::Lead);
     let shown = state(&window).shown().unwrap();
     assert!(shown.correction.leads.is_some() && shown.offer.is_none());

@@ -210,8 +210,8 @@ impl<'a> Cell<'a> {
         let strong = if self.fitted { palette.text } else { palette.rejected };
         text(13.0, &format!("{gain:.2}"), 14.5, strong);
         let beside = self.other_delay_s().filter(|other| (other - delay).abs() >= APART_S);
-        let beside = beside.map(|other| format!(" ({:.0})", s_to_ms(other))).unwrap_or_default();
-        text(28.0, &format!("{:.0}{beside} ms", s_to_ms(delay)), 10.5, palette.dim_text);
+        let beside = beside.map_or(" ms".to_owned(), |other| format!(" ({:.0})", s_to_ms(other)));
+        text(28.0, &format!("{:.0}{beside}", s_to_ms(delay)), 10.5, palette.dim_text);
         if let Some(cost) = shown.cost[self.pair] {
             let (before, after) = (cost.uncorrected.total(), cost.corrected.total());
             text(

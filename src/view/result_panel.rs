@@ -37,7 +37,6 @@ fn outcome_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
             header_ui(ui, state, shown, palette, commands);
             ui.scope(|ui| channels_ui(ui, state, shown, palette, commands));
             objective_ui(ui, shown, palette, commands);
-            lead_ui(ui, state, shown, palette);
             for remark in remarks_shown(state, shown) {
                 remark_ui(ui, palette, &remark);
                 if let Some(pair) = remark.ignore {
@@ -47,6 +46,7 @@ fn outcome_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
                     offer_ui(ui, phase, commands);
                 }
             }
+            lead_ui(ui, state, shown, palette);
             let header = RichText::new("In detail").size(SMALL_SIZE).color(palette.dim_text);
             CollapsingHeader::new(header).id_salt("details").show(ui, |ui| {
                 for sentence in details_shown(state, shown) {

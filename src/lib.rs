@@ -37,8 +37,16 @@
 //! J = 20 median(e_dB^2) + 20 * 0.0175 median(e_deg^2),                                            (eq. 14-19, M4)
 //! ```
 //!
-//! and the gains of many conditions become one correction by regressing `ln k` on airspeed (M11). The numbers M1 to M12 are
+//! and the gains of many conditions become one correction by regressing `ln k` on airspeed (M11). The numbers M1 to M15 are
 //! the sections of the method's description in the README.
+//!
+//! Where a delay cannot help, because the physics model lags, the channels get *signed* delays on wish, `tau >= 0` left out of
+//! eq. (11); a negative one becomes a filter `L(s)` that acts as a faster servo and has that delay over the band, and the gains are
+//! found on what the filters leave:
+//!
+//! ```text
+//! D_oi = sum W omega Delta phi / sum W omega^2,   L(s) = (1 + sqrt(2) a s + a^2 s^2) / (1 + sqrt(2) b s + b^2 s^2).   (M15)
+//! ```
 //!
 //! # Notation
 //!
@@ -50,6 +58,7 @@
 //! | `G`, `D` | `Delta::gain`, `Delta::delay_s` | delta gain \[-\], delta delay \[s\] |
 //! | `k_o`, `k_i` | `output_gains`, `input_gains` | channel gains \[-\] |
 //! | `tau_o`, `tau_i` | `output_delays_s`, `input_delays_s` | channel delays \[s\] |
+//! | `tau < 0`, `l`, `a`, `b` | `ChannelLeads`, `lead_s`, `zero_s`, `lag_s` | signed delays, lead time, time constants of a lead filter \[s\] |
 //! | `LB`, `UB` | `Bounds` | bounds of the channels |
 //! | `alpha` | `alpha_gain`, `alpha_delay` | weight of the regularisation |
 //! | `J`, `Delta J` | `Cost`, `CostChange` | cost, its change; negative is better |
@@ -70,7 +79,7 @@
 //! | [`fidelity`] | cost J, distances in a bundle, representative, discontinuity, modes from model to model |
 //! | [`identification`] | identified models from flight records (M14) |
 //! | [`records`] | from the columns of record files to flight records: time, channels, units |
-//! | [`correction`] | G, D, bounds, gains, delays, and what they do to a response |
+//! | [`correction`] | G, D, bounds, gains, delays, leads, and what they do to a response |
 //! | [`schedule`] | regression over airspeed, what speaks for it, assessment |
 //! | [`study`] | what the engineer does: settings, rejections, pins, variants, undo; the staged analysis, and how each figure came about |
 //! | [`figure`] | figures: what plots show, laid out on paper |

@@ -8,7 +8,7 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::figure::{ColumnWidth, FigureKind, Role};
 use crate::schedule::HIGHEST_DEGREE;
-use crate::study::{AcrossRole, DEFAULT_COHERENCE, LEAST_POINTS, MOST_POINTS};
+use crate::study::{AcrossRole, DEFAULT_COHERENCE, DelayFrom, LEAST_POINTS, MOST_POINTS, PhaseCorrection};
 
 use super::export_arguments::ExportArguments;
 use super::identify_arguments::IdentifyArguments;
@@ -123,6 +123,12 @@ pub struct StudyArguments {
     /// Degree of the schedule's polynomial, 0 to 3.
     #[arg(long, value_name = "D", value_parser = whole_number::<0, HIGHEST_DEGREE>, allow_negative_numbers = true)]
     pub degree: Option<usize>,
+    /// How the phase is corrected: not at all, by delays, or by a delay or a lead filter a channel.
+    #[arg(long, value_name = "none|delay|lead", value_parser = phase_correction)]
+    pub phase: Option<PhaseCorrection>,
+    /// Which D the delays are fitted to: the median of phase over frequency, or a straight line over the band.
+    #[arg(long, value_name = "median|band", value_parser = delay_from)]
+    pub delay_from: Option<DelayFrom>,
     /// Schedule the delays with airspeed too.
     #[arg(long)]
     pub schedule_delays: bool,
@@ -279,6 +285,16 @@ pub(super) fn real_number(text: &str) -> Result<f64, String> {
 pub(super) fn whole_number<const LEAST: usize, const MOST: usize>(text: &str) -> Result<usize, String> {
     let number = text.trim().parse().ok().filter(|number| (LEAST..=MOST).contains(number));
     number.ok_or_else(|| format!("expected a whole number from {LEAST} to {MOST}, found {text}"))
+}
+
+fn phase_correction(text: &str) -> Result<PhaseCorrection, String> {
+    let found = PhaseCorrection::ALL.into_iter().find(|phase| phase.name() == text);
+    found.ok_or_else(|| format!("expected none, delay or lead, found {text}"))
+}
+
+fn delay_from(text: &str) -> Result<DelayFrom, String> {
+    let found = DelayFrom::ALL.into_iter().find(|from| from.name() == text);
+    found.ok_or_else(|| format!("expected median or band, found {text}"))
 }
 
 /// Whether coherence counts.

@@ -4,7 +4,7 @@ use crate::correction::{ChannelCorrection, Outcome};
 use crate::dataset::{BundleKind, Condition, Pair};
 use crate::io::plain;
 use crate::schedule::{Schedule, ScheduledQuantity};
-use crate::study::{Analysis, ConditionAnalysis, RemarkKind, Study, remarks};
+use crate::study::{Analysis, ConditionAnalysis, RemarkKind, Study, lead_words, remarks};
 use crate::units::{number, s_to_ms};
 
 use super::summary::LABEL;
@@ -74,15 +74,14 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> TextTable<
         ("J after", Right),
     ]);
     let dataset = &analysis.study.dataset;
-    let delta = &result.comparison.delta;
     for pair in shown_pairs(&analysis.study) {
         let cost = result.cost[pair];
         table.row([
             plain(&dataset.pair_name(pair)),
             if result.held()[pair] { "yes" } else { "no" }.to_owned(),
-            figure(delta.gain[pair], 3),
+            figure(result.wanted_gain(pair), 3),
             figure(Some(result.correction.net_gain(pair).value()), 3),
-            figure(delta.delay_s[pair].map(s_to_ms), 1),
+            figure(result.wanted_delay_s(pair).map(s_to_ms), 1),
             figure(Some(s_to_ms(result.correction.net_delay(pair).value_s())), 1),
             figure(cost.map(|cost| cost.uncorrected.total()), 1),
             figure(cost.map(|cost| cost.corrected.total()), 1),
@@ -106,13 +105,19 @@ fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let gains = correction.input_gains.iter().chain(&correction.output_gains);
     let gains: Vec<String> =
         channels().zip(gains).map(|(name, gain)| format!("{name} {}", figure(Some(*gain), 3))).collect();
-    let delays = correction.input_delays_s.iter().chain(&correction.output_delays_s);
+    let [inputs_s, outputs_s] = correction.signed_delays_s();
+    let delays = inputs_s.iter().chain(outputs_s);
     let delays = channels().zip(delays).filter_map(|(name, delay)| {
         let words = figure(Some(s_to_ms(*delay)), 1);
         (words != "0.0").then(|| format!("{name} {words} ms"))
     });
 
-    detail_list("gains", gains) + &detail_list("delays", delays.collect())
+    let label = if correction.leads.is_some() { "delay/lead" } else { "delays" };
+    let mut text = detail_list("gains", gains) + &detail_list(label, delays.collect());
+    for words in lead_words(&analysis.study, result) {
+        text.push_str(&detail("lead", &plain(&words)));
+    }
+    text
 }
 
 /// What could not be matched and why, entry by entry, what is not proven, and the other cautions.
@@ -157,7 +162,7 @@ pub(super) fn schedule_section(analysis: &Analysis) -> String {
     text.push_str(&schedule_table(analysis, schedule, |correction, pair| {
         figure(Some(correction.net_gain(pair).value()), 3)
     }));
-    if schedule.delays.is_some() {
+    if schedule.has_delays() {
         text.push_str(&labelled(0, "", LABEL, "net delays in ms:"));
         text.push_str(&schedule_table(analysis, schedule, |correction, pair| {
             figure(Some(s_to_ms(correction.net_delay(pair).value_s())), 1)

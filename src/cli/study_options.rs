@@ -60,6 +60,12 @@ fn take_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Fai
     if let Some(points) = arguments.points {
         set("--points", Setting::Points(points))?;
     }
+    if let Some(phase) = arguments.phase {
+        set("--phase", Setting::Phase(phase))?;
+    }
+    if let Some(from) = arguments.delay_from {
+        set("--delay-from", Setting::DelayFrom(from))?;
+    }
     if let Some(agreement_db) = arguments.agreement {
         set("--agreement", Setting::Agreement(agreement_db))?;
     }

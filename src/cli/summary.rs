@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::io::{LoadedDataset, RESULT_FILES, plain, plain_path};
 use crate::schedule::Schedule;
-use crate::study::{Analysis, Assessed};
+use crate::study::{Analysis, Assessed, PhaseCorrection};
 use crate::units::number;
 
 use super::sections::{condition_section, schedule_section};
@@ -40,7 +40,20 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
         number(settings.alpha_delay)
     );
     let dataset = format!("{}, {}", plain(study.dataset.name()), loaded.origin);
-    labelled(0, "Dataset", LABEL, &dataset) + &labelled(0, "Band", LABEL, &band) + &labelled(0, "Held", LABEL, &held)
+    let phase = match settings.phase {
+        PhaseCorrection::None => "left as it is".to_owned(),
+        PhaseCorrection::Delay => format!("corrected by delays; D is the {}", settings.delay_from.words()),
+        PhaseCorrection::Lead => format!(
+            "corrected by a delay or a lead filter a channel: order {}, n {}, R_max {}",
+            settings.lead.order.number(),
+            number(settings.lead.pole),
+            number(settings.lead.limit)
+        ),
+    };
+    labelled(0, "Dataset", LABEL, &dataset)
+        + &labelled(0, "Band", LABEL, &band)
+        + &labelled(0, "Phase", LABEL, &phase)
+        + &labelled(0, "Held", LABEL, &held)
 }
 
 /// How far the scheduled correction brings the nominal models, and which conditions it is not judged in.

@@ -10,7 +10,7 @@ use crate::units::{s_to_ms, telling, told_apart};
 /// A smallest set of held entries and bounds that cannot hold together: without any one of them the rest can.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conflict {
-    /// What is held: gains, or delays in seconds.
+    /// What is held: gains, or delays or signed delays in seconds.
     pub quantity: Quantity,
     /// The held entries: freeing any one of them resolves the conflict.
     pub entries: Vec<Pair>,
@@ -67,20 +67,24 @@ impl Conflict {
     /// The conflict of `problem` behind a clash of its held entries in its coordinate.
     pub(crate) fn new(clash: Clash, problem: &Problem) -> Self {
         let (quantity, bounds, coordinate) = (problem.quantity, problem.bounds, problem.coordinate());
-        let of_gains = |lower: f64| matches!(quantity, Quantity::Gain(_)).then(|| three_digits_down(lower));
+        let movable = |lower: f64| quantity.has_lower_bound().then(|| three_digits_down(lower));
         let kind = match clash.kind {
             ClashKind::SumAbove { channels, sum } => {
                 let upper = three_digits_up(coordinate.value(0.5 * sum));
                 ConflictKind::AboveUpper { channels, asked: coordinate.value(sum), upper }
             }
             ClashKind::SumBelow { channels, sum } => {
-                let lower = of_gains(coordinate.value(0.5 * sum));
+                let lower = movable(coordinate.value(0.5 * sum));
                 ConflictKind::BelowLower { channels, asked: coordinate.value(sum), lower }
             }
             ClashKind::Apart { greater, lesser, difference } => {
                 let asked = coordinate.value(difference);
                 let upper = three_digits_up(quantity.net(bounds.lower, asked));
-                ConflictKind::TooFarApart { greater, lesser, asked, upper, lower: of_gains(bounds.upper / asked) }
+                let lower = match quantity {
+                    Quantity::Gain(_) => bounds.upper / asked,
+                    Quantity::Delay | Quantity::SignedDelay => bounds.upper - asked,
+                };
+                ConflictKind::TooFarApart { greater, lesser, asked, upper, lower: movable(lower) }
             }
             ClashKind::Loop { mismatch } => ConflictKind::Loop { mismatch: quantity.difference(mismatch, coordinate) },
         };
@@ -117,7 +121,7 @@ impl Conflict {
             (Quantity::Gain(_), ConflictKind::Loop { mismatch }) => {
                 ("ratios", format!("{} dB", telling(mismatch.abs(), 1)))
             }
-            (Quantity::Delay, ConflictKind::Loop { mismatch }) => {
+            (Quantity::Delay | Quantity::SignedDelay, ConflictKind::Loop { mismatch }) => {
                 ("delays", format!("{} ms", telling(s_to_ms(mismatch.abs()), 1)))
             }
             _ => return String::new(),
@@ -142,10 +146,14 @@ impl Conflict {
         let sentence = match self.quantity {
             Quantity::Gain(_) => self.gain_sentence(&entries, names),
             Quantity::Delay => self.delay_sentence(&entries, names),
+            Quantity::SignedDelay => self.signed_delay_sentence(&entries, names),
         };
         match self.kind {
             ConflictKind::Loop { .. } => format!("{sentence}; free one of them."),
             ConflictKind::Unclear => format!("{cannot}; free one of them."),
+            ConflictKind::BelowLower { .. } if self.quantity == Quantity::SignedDelay => {
+                format!("{cannot}: {sentence} or {free}.")
+            }
             _ if self.is_lone_lead() => format!("{sentence}; {free}."),
             ConflictKind::BelowLower { lower: None, .. } => format!("{cannot}: {sentence}; {free}."),
             ConflictKind::TooFarApart { lower: Some(_), .. } => format!("{cannot}: {sentence}, or {free}."),
@@ -214,6 +222,37 @@ impl Conflict {
                 format!("{entries} form a loop: their delays disagree by {} ms", ms(mismatch.abs()))
             }
             ConflictKind::Unclear => String::new(),
+        }
+    }
+
+    fn signed_delay_sentence(&self, entries: &str, names: impl Fn((Channel, Channel)) -> (String, String)) -> String {
+        const HELP: &str = "a larger R_max or a smaller n gives more";
+        let ms = |seconds: f64| telling(s_to_ms(seconds), 1);
+        let Bounds { lower: low, upper: high } = self.bounds;
+        match self.kind {
+            ConflictKind::BelowLower { channels, asked, .. } => {
+                let (first, second) = names(channels);
+                let (most, asked) = told_apart(s_to_ms(-2.0 * low), s_to_ms(-asked), 1);
+                format!("R_max lets {first} and {second} give {most} ms of lead together, not {asked}: {HELP},")
+            }
+            ConflictKind::AboveUpper { channels, asked, upper } => {
+                let (first, second) = names(channels);
+                let (most, asked) = told_apart(s_to_ms(2.0 * high), s_to_ms(asked), 1);
+                format!(
+                    "{first} and {second} give at most {most} ms of delay together, not {asked}; set the upper bound to {upper} s"
+                )
+            }
+            ConflictKind::TooFarApart { greater, lesser, asked, upper, .. } => {
+                let (greater, lesser) = names((greater, lesser));
+                let (most, asked) = told_apart(s_to_ms(high - low), s_to_ms(asked), 1);
+                format!(
+                    "{greater} cannot be {asked} ms above {lesser}: with at most {} ms of lead and {} ms of delay a channel it is \
+                     {most} ms; set the upper bound to {upper} s; {HELP}",
+                    ms(-low),
+                    ms(high)
+                )
+            }
+            ConflictKind::Loop { .. } | ConflictKind::Unclear => self.delay_sentence(entries, names),
         }
     }
 }

@@ -4,11 +4,12 @@ use nalgebra::DMatrix;
 
 use crate::dataset::limits::MOST_STATES;
 use crate::dataset::{StateSpace, StateSpaceError, Timing};
+use crate::response::LeadFilter;
 use crate::units::number;
 
 use super::channel::Channel;
 use super::channel_correction::ChannelCorrection;
-use super::delay_model::DelayModel;
+use super::channel_model::ChannelModel;
 use super::pade::Pade;
 
 /// How far a delay may lie from a whole number of samples: parts of one. Delays that were computed are rounded.
@@ -21,7 +22,8 @@ const LEAST_DELAY_S: f64 = 1e-9;
 /// `M_O H M_I` without delays: those of the correction and of the model itself have become states (M10, M2a).
 ///
 /// In continuous time each delayed channel has the states of a Pade approximant, in discrete time one for each sample, exactly.
-/// Gains are exact; a channel without a delay adds no state. States of the inputs come first, then the model's, then the outputs'.
+/// Gains are exact, and so in continuous time are lead filters (M15.3); in discrete time these follow Tustin's rule. A channel without
+/// either adds no state. States of the inputs come first, then the model's, then the outputs'.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CorrectedModel {
     /// The matrices, with the model's sample time.
@@ -30,6 +32,14 @@ pub struct CorrectedModel {
     pub input_states: Vec<usize>,
     /// Number of states that each output's delay has become.
     pub output_states: Vec<usize>,
+    /// Number of states of each input's lead filter, before those of its delay.
+    pub input_lead_states: Vec<usize>,
+    /// Number of states of each output's lead filter, after those of its delay.
+    pub output_lead_states: Vec<usize>,
+    /// The lead filters of the inputs, of the outputs.
+    leads: [Vec<Option<LeadFilter>>; 2],
+    /// Sample time of the model \[s\].
+    sample_time_s: Option<f64>,
     /// Delay of each input \[s\], the model's own and the correction's.
     input_delays_s: Vec<f64>,
     /// Delay of each output \[s\], likewise.
@@ -50,6 +60,13 @@ pub enum CorrectedModelError {
         delay_s: f64,
         /// The sample time \[s\].
         sample_time_s: f64,
+    },
+    /// A lead filter is too fast for the sample time.
+    SlowSamples {
+        /// Its sample time \[s\].
+        sample_time_s: f64,
+        /// The longest sample time that does \[s\].
+        longest_s: f64,
     },
     /// The delays would become more states than a model may have.
     TooManyStates {
@@ -72,6 +89,11 @@ impl CorrectedModelError {
                 number((delay_s / sample_time_s * 1e6).round() / 1e6),
                 number(*sample_time_s)
             ),
+            Self::SlowSamples { sample_time_s, longest_s } => format!(
+                "its sample time of {} s is too long for the lead filters; at most {} s, half of their lag, is allowed",
+                number(*sample_time_s),
+                number(*longest_s)
+            ),
             Self::TooManyStates { states } => {
                 format!("with its delays as states it would have {states} of them; at most {MOST_STATES} are written")
             }
@@ -91,28 +113,54 @@ impl CorrectedModel {
         let input_delays_s = added(&correction.input_delays_s, timing.input_delays_s.as_deref());
         let output_delays_s = added(&correction.output_delays_s, timing.output_delays_s.as_deref());
         let sampling = timing.sample_time_s;
-        let delayed = |delays_s: &[f64], channel: fn(usize) -> Channel| -> Result<Vec<DelayModel>, _> {
+        let delayed = |delays_s: &[f64], channel: fn(usize) -> Channel| -> Result<Vec<ChannelModel>, _> {
             let states = |(at, &delay_s): (usize, &f64)| delay_model(channel(at), delay_s, sampling, pade);
             delays_s.iter().enumerate().map(states).collect()
         };
         let inputs = delayed(&input_delays_s, Channel::Input)?;
         let outputs = delayed(&output_delays_s, Channel::Output)?;
-        let states_of = |models: &[DelayModel]| models.iter().map(DelayModel::order).collect::<Vec<_>>();
+        let leads = correction.leads.as_ref().map(|leads| leads.filters().clone()).unwrap_or_default();
+        let [input_leads, output_leads] = [lead_models(&leads[0], sampling)?, lead_models(&leads[1], sampling)?];
+        let states_of = |models: &[ChannelModel]| models.iter().map(ChannelModel::order).collect::<Vec<_>>();
+        let (input_lead_states, output_lead_states) = (states_of(&input_leads), states_of(&output_leads));
         let (input_states, output_states) = (states_of(&inputs), states_of(&outputs));
-        let states = input_states.iter().chain(&output_states).sum::<usize>() + model.order();
+        let added = [&input_states, &output_states, &input_lead_states, &output_lead_states];
+        let states = added.into_iter().flatten().sum::<usize>() + model.order();
         if states > MOST_STATES {
             return Err(CorrectedModelError::TooManyStates { states });
         }
         let plant = Blocks::of_gained(model, correction);
-        let whole = Blocks::beside(&inputs).then(&plant).then(&Blocks::beside(&outputs));
+        let mut whole = Blocks::beside(&inputs).then(&plant).then(&Blocks::beside(&outputs));
+        if correction.leads.is_some() {
+            whole = Blocks::beside(&input_leads).then(&whole).then(&Blocks::beside(&output_leads));
+        }
         let timing = Timing { sample_time_s: sampling, ..Timing::default() };
         let model = StateSpace::new(whole.a, whole.b, whole.c, whole.d)?.timed(timing)?;
         let pade = sampling.is_none().then_some(pade);
-        Ok(Self { model, input_states, output_states, input_delays_s, output_delays_s, pade })
+        Ok(Self {
+            model,
+            input_states,
+            output_states,
+            input_lead_states,
+            output_lead_states,
+            leads,
+            sample_time_s: sampling,
+            input_delays_s,
+            output_delays_s,
+            pade,
+        })
     }
 
-    /// The greatest phase error \[rad\] of its responses at `omega` \[rad/s\]: what the approximated delays lag too little.
+    /// The greatest phase error \[rad\] of its responses at `omega` \[rad/s\]: what the approximated delays lag too little, or what
+    /// Tustin's rule takes from the lead filters of a discrete-time model.
     pub fn phase_error(&self, omega: f64) -> f64 {
+        if let Some(sample_time_s) = self.sample_time_s {
+            // What the rule makes of omega.
+            let warped = (0.5 * omega * sample_time_s).tan() * 2.0 / sample_time_s;
+            let error = |filter: &LeadFilter| (filter.phase(warped) - filter.phase(omega)).abs();
+            let greatest = |filters: &Vec<Option<LeadFilter>>| filters.iter().flatten().map(error).fold(0.0, f64::max);
+            return self.leads.iter().map(greatest).sum();
+        }
         let Some(pade) = self.pade else { return 0.0 };
         // The error grows with the delay, and that of a response is the sum of its two channels'.
         let longest = |delays_s: &[f64]| delays_s.iter().copied().fold(0.0, f64::max);
@@ -135,9 +183,9 @@ fn delay_model(
     delay_s: f64,
     sample_time_s: Option<f64>,
     pade: Pade,
-) -> Result<DelayModel, CorrectedModelError> {
+) -> Result<ChannelModel, CorrectedModelError> {
     let Some(sample_time_s) = sample_time_s else {
-        return Ok(if delay_s > 0.0 { pade.model(delay_s) } else { DelayModel::none() });
+        return Ok(if delay_s > 0.0 { pade.model(delay_s) } else { ChannelModel::none() });
     };
     let samples = (delay_s / sample_time_s).round();
     if (delay_s / sample_time_s - samples).abs() > SAMPLE_TOLERANCE {
@@ -147,7 +195,23 @@ fn delay_model(
     if samples > MOST_STATES as f64 {
         return Err(CorrectedModelError::TooManyStates { states: samples as usize });
     }
-    Ok(DelayModel::samples(samples as usize))
+    Ok(ChannelModel::samples(samples as usize))
+}
+
+/// The lead filters of channels as states.
+fn lead_models(
+    filters: &[Option<LeadFilter>],
+    sample_time_s: Option<f64>,
+) -> Result<Vec<ChannelModel>, CorrectedModelError> {
+    let model = |filter: &Option<LeadFilter>| {
+        let (Some(filter), Some(sample_time_s)) = (*filter, sample_time_s) else {
+            return Ok(filter.map_or_else(ChannelModel::none, ChannelModel::lead));
+        };
+        let longest_s = 0.5 * filter.lag_s();
+        let sampled = ChannelModel::sampled_lead(filter, sample_time_s).filter(|_| sample_time_s <= longest_s);
+        sampled.ok_or(CorrectedModelError::SlowSamples { sample_time_s, longest_s })
+    };
+    filters.iter().map(model).collect()
 }
 
 /// Four matrices, in continuous or discrete time.
@@ -175,8 +239,8 @@ impl Blocks {
     }
 
     /// Channels beside one another, each with its own delay.
-    fn beside(channels: &[DelayModel]) -> Self {
-        let (states, count) = (channels.iter().map(DelayModel::order).sum(), channels.len());
+    fn beside(channels: &[ChannelModel]) -> Self {
+        let (states, count) = (channels.iter().map(ChannelModel::order).sum(), channels.len());
         let mut blocks = Self {
             a: DMatrix::zeros(states, states),
             b: DMatrix::zeros(states, count),
@@ -218,8 +282,9 @@ mod tests {
     use nalgebra::Complex;
 
     use super::*;
+    use crate::correction::{ChannelLeads, LeadDesign, LeadSettings};
     use crate::dataset::{Band, Dynamics, Pair};
-    use crate::response::{FrequencyGrid, PreparedModel};
+    use crate::response::{FrequencyGrid, LeadOrder, PreparedModel};
 
     /// Two inputs, two outputs, three states; poles of 1 to 5 rad/s.
     fn plant() -> StateSpace {
@@ -235,6 +300,7 @@ mod tests {
             output_gains: vec![0.9, -1.1],
             input_delays_s: vec![0.03, 0.0],
             output_delays_s: vec![0.0, 0.011],
+            leads: None,
         }
     }
 
@@ -310,5 +376,54 @@ mod tests {
         let none = ChannelCorrection { input_delays_s: vec![0.0; 2], output_delays_s: vec![0.0; 2], ..correction() };
         let corrected = CorrectedModel::of(&plant(), &none, Pade::new(4).unwrap()).unwrap();
         assert_eq!((corrected.model.a(), corrected.phase_error(12.0)), (plant().a(), 0.0));
+    }
+
+    /// The plant's correction with a lead of 30 ms on the first input and of 50 ms on the second output.
+    fn led(order: LeadOrder) -> ChannelCorrection {
+        let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 50);
+        let design = LeadDesign::new(LeadSettings { order, ..LeadSettings::default() }, grid.omega().into());
+        let leads = ChannelLeads::new(design.into(), vec![-0.03, 0.0], vec![0.0, -0.05]);
+        let none = || vec![0.0; 2];
+        ChannelCorrection { input_delays_s: none(), output_delays_s: none(), leads: Some(leads), ..correction() }
+    }
+
+    #[test]
+    fn lead_filters_are_exact_states_of_which_the_gain_at_infinity_is_direct() {
+        for (order, states) in [(LeadOrder::First, 1), (LeadOrder::Second, 2)] {
+            let correction = led(order);
+            let corrected = CorrectedModel::of(&plant(), &correction, Pade::default()).unwrap();
+            assert_eq!(
+                (corrected.input_lead_states.as_slice(), corrected.output_lead_states.as_slice()),
+                (&[states, 0][..], &[0, states][..])
+            );
+            let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 12);
+            let [found, plain] = [&corrected.model, &plant()]
+                .map(|model| PreparedModel::of(&Dynamics::StateSpace(model.clone())).response(&grid));
+            for pair in [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(output, input)| Pair { output, input }) {
+                let filters = [Channel::Output(pair.output), Channel::Input(pair.input)];
+                for (at, &omega) in grid.omega().iter().enumerate() {
+                    let filters = filters.iter().filter_map(|channel| correction.lead(*channel));
+                    let lead: Complex<f64> = filters.map(|filter| filter.at(omega)).product();
+                    let expected = plain.curve(pair)[at] * lead * correction.net_gain(pair).value();
+                    assert!((found.curve(pair)[at] - expected).norm() <= 1e-12 * expected.norm(), "{pair:?}");
+                }
+            }
+            let r = correction.lead(Channel::Input(0)).unwrap().gain_at_infinity();
+            assert!((corrected.model.d()[(0, 0)] / (0.1 * 1.3 * 0.9) - r).abs() < 1e-12);
+            assert_eq!(corrected.phase_error(12.0), 0.0);
+        }
+    }
+
+    #[test]
+    fn lead_filters_of_a_sampled_model_follow_tustins_rule_and_say_how_far_off_they_are() {
+        let sampled = |sample_time_s: f64| {
+            plant().timed(Timing { sample_time_s: Some(sample_time_s), ..Timing::default() }).unwrap()
+        };
+        let correction = led(LeadOrder::Second);
+        let corrected = CorrectedModel::of(&sampled(0.01), &correction, Pade::default()).unwrap();
+        // 36 rad/s and a step of 10 ms: less than a quarter of a degree a channel at 12 rad/s.
+        assert!((0.01..0.5).contains(&corrected.phase_error(12.0).to_degrees()), "{}", corrected.phase_error(12.0));
+        let refused = CorrectedModel::of(&sampled(0.02), &correction, Pade::default()).unwrap_err();
+        assert!(matches!(refused, CorrectedModelError::SlowSamples { .. }), "{refused}");
     }
 }

@@ -8,7 +8,7 @@ use crate::units::db_to_ratio;
 
 use super::GainBounds;
 
-/// `G = median |H_ref| / |H_sim|` and `D = median Delta phi(H_sim, H_ref) / omega` of every response (M6).
+/// `G = median |H_ref| / |H_sim|` and `D = median Delta phi(H_sim, H_ref) / omega` of every response (M6), and its band delay (M15.2).
 ///
 /// `None` where the ratio is zero or not finite at some frequency, or where none counts. The medians are weighted where the
 /// reference is measured with coherence (M4a).
@@ -18,15 +18,41 @@ pub struct Delta {
     pub gain: PairTable<Option<f64>>,
     /// D, `[output, input]` \[s\]; positive where the physics model leads, so that delay must be added.
     pub delay_s: PairTable<Option<f64>>,
+    /// Band delay, `[output, input]` \[s\]: the straight line of least squares through the missing phase (M15.2).
+    pub band_delay_s: PairTable<Option<f64>>,
 }
 
 impl Delta {
     /// G and D of the mismatch of two representatives.
     pub fn of(mismatch: &PairTable<Option<Mismatch>>, omega: &[f64]) -> Self {
-        let gain = mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.median(&mut ratios(entry))));
-        let delay_s = mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.median(&mut delays(entry, omega))));
-        Self { gain, delay_s }
+        let phases = mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.phase_difference(omega)));
+        let delay_s = mismatch.map(|pair, entry| {
+            let (entry, phase) = (entry.as_ref()?, phases[pair].as_ref()?);
+            Some(entry.median(&mut delays(phase, entry.omega(omega))))
+        });
+        let band_delay_s = mismatch.map(|pair, entry| {
+            let (entry, phase) = (entry.as_ref()?, phases[pair].as_ref()?);
+            Some(band_delay_s(phase.iter().copied(), entry.omega(omega), entry.weights()))
+        });
+        Self { gain: delta_gains(mismatch), delay_s, band_delay_s }
     }
+}
+
+/// `G = median |H_ref| / |H_sim|` of every response (M6).
+pub fn delta_gains(mismatch: &PairTable<Option<Mismatch>>) -> PairTable<Option<f64>> {
+    mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.median(&mut ratios(entry))))
+}
+
+/// `sum W omega phase / sum W omega^2` \[s\] of a phase \[rad\] at each frequency \[rad/s\]: the delay that leaves the least phase in
+/// the mean of squares (M15.2). Linear in the phase; W = 1 where there are no weights.
+pub(crate) fn band_delay_s(phase: impl Iterator<Item = f64>, omega: &[f64], weights: Option<&[f64]>) -> f64 {
+    let weight = |place: usize| weights.map_or(1.0, |weights| weights[place]);
+    let (mut moment, mut square) = (0.0, 0.0);
+    for (place, (phase, omega)) in phase.zip(omega).enumerate() {
+        moment += weight(place) * omega * phase;
+        square += weight(place) * omega * omega;
+    }
+    moment / square
 }
 
 /// A ratio beyond this (1e50 and 1e-50), of which the objective cannot take the square, counts as infinite or zero (M6).
@@ -51,9 +77,9 @@ fn ratios(mismatch: &Mismatch) -> Vec<f64> {
     mismatch.magnitude_db.iter().map(|error| db_to_ratio(-error)).collect()
 }
 
-/// `Delta phi(H_sim, H_ref) / omega` \[s\] at each frequency, on the branch nearest to a pure delay (M6b).
-fn delays(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
-    mismatch.phase_difference(omega).iter().zip(mismatch.omega(omega)).map(|(phase, omega)| phase / omega).collect()
+/// `Delta phi(H_sim, H_ref) / omega` \[s\] at each frequency.
+fn delays(phase: &[f64], omega: &[f64]) -> Vec<f64> {
+    phase.iter().zip(omega).map(|(phase, omega)| phase / omega).collect()
 }
 
 /// The mismatches that are pooled: those marked in `measuring`, or all where none of the marked is defined.
@@ -81,6 +107,7 @@ pub fn delay_upper_s(
     omega: &[f64],
     q: f64,
 ) -> f64 {
-    let mut pool: Vec<f64> = pooled(mismatch, measuring).flat_map(|mismatch| delays(mismatch, omega)).collect();
+    let of = |mismatch: &Mismatch| delays(&mismatch.phase_difference(omega), mismatch.omega(omega));
+    let mut pool: Vec<f64> = pooled(mismatch, measuring).flat_map(of).collect();
     quantile(&mut pool, 1.0 - q).max(0.0)
 }

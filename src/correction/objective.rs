@@ -24,7 +24,15 @@ pub(crate) fn objective(problem: &Problem, components: &Components) -> Objective
         delta: quantity.neutral(),
         offset: output.offset,
     });
-    let entries: Vec<SquareEntry> = fit.chain(departure).collect();
+    let regularised = problem.alpha > 0.0 && quantity.regularises_inputs();
+    let departure_of_inputs = components.inputs.iter().filter(|_| regularised).map(|input| SquareEntry {
+        output: ground,
+        input: input.component,
+        weight: problem.alpha,
+        delta: quantity.neutral(),
+        offset: input.offset,
+    });
+    let entries: Vec<SquareEntry> = fit.chain(departure).chain(departure_of_inputs).collect();
     let in_coordinate = |factor: f64| -> Vec<SquareEntry> {
         let square = |entry: &SquareEntry| SquareEntry {
             weight: factor * entry.weight,
@@ -36,7 +44,7 @@ pub(crate) fn objective(problem: &Problem, components: &Components) -> Objective
     let (terms, constant) = match quantity {
         Quantity::Gain(GainObjective::Ratio) => ratio_terms(&entries, ground + 1),
         Quantity::Gain(GainObjective::Decibel) => quadratic_terms(&in_coordinate(SQUARED_DECIBEL), ground + 1),
-        Quantity::Delay => quadratic_terms(&in_coordinate(1.0), ground + 1),
+        Quantity::Delay | Quantity::SignedDelay => quadratic_terms(&in_coordinate(1.0), ground + 1),
     };
     let (mut lower, mut upper) = (components.lower.clone(), components.upper.clone());
     lower.push(0.0);
@@ -78,7 +86,7 @@ pub(crate) fn floor(problem: &Problem) -> f64 {
     let square = |delta: f64| match problem.quantity {
         Quantity::Gain(GainObjective::Ratio) => delta * delta,
         Quantity::Gain(GainObjective::Decibel) => SQUARED_DECIBEL * (delta.ln().powi(2) + 1.0),
-        Quantity::Delay => coordinate.of(delta).powi(2),
+        Quantity::Delay | Quantity::SignedDelay => coordinate.of(delta).powi(2),
     };
     let energy: f64 = problem.fit_entries().map(|(_, delta)| square(delta)).sum();
     (1e-9 * energy + 1e-20 * problem.alpha * problem.delta.outputs() as f64).max(f64::MIN_POSITIVE)

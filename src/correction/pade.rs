@@ -2,7 +2,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector, RowDVector};
 
-use super::delay_model::DelayModel;
+use super::channel_model::ChannelModel;
 
 /// Highest order of an approximation that is offered.
 pub const HIGHEST_PADE_ORDER: usize = 8;
@@ -44,11 +44,11 @@ impl Pade {
     /// The ladder is `t = e_1' (L/z + S)^-1 e_1` with `L = diag(1, 3, 5, ...)` and `S` of 1 above and -1 below the diagonal. With
     /// `R = S + e_1 e_1'` and `K = L^(-1/2) R L^(-1/2)` this gives `A = -(2/tau) K^-1`, `B = 2/sqrt(tau) K^-1 e_1`,
     /// `C = 2/sqrt(tau) e_1' K^-1`, `D = (-1)^N`.
-    pub fn model(self, delay_s: f64) -> DelayModel {
+    pub fn model(self, delay_s: f64) -> ChannelModel {
         let root = |place: usize| ((2 * place + 1) as f64).sqrt();
         let inverse = |row: usize, column: usize| root(row) * root(column) * self.ladder_inverse(row, column);
         let gain = 2.0 / delay_s.sqrt();
-        DelayModel {
+        ChannelModel {
             a: DMatrix::from_fn(self.order, self.order, |row, column| -2.0 / delay_s * inverse(row, column)),
             b: DVector::from_fn(self.order, |row, _| gain * inverse(row, 0)),
             c: RowDVector::from_fn(self.order, |_, column| gain * inverse(0, column)),
@@ -96,7 +96,7 @@ mod tests {
         value(-x) / value(x)
     }
 
-    fn response(model: &DelayModel, s: Complex<f64>) -> Complex<f64> {
+    fn response(model: &ChannelModel, s: Complex<f64>) -> Complex<f64> {
         let n = model.order();
         let pencil = DMatrix::from_fn(n, n, |row, column| {
             let a = Complex::from(model.a[(row, column)]);

@@ -4,7 +4,8 @@ use super::branch_and_bound::SearchStopped;
 use super::quantity::{Coordinate, GainObjective, Quantity};
 use crate::dataset::{Pair, PairTable};
 
-/// Least and greatest value of every channel (M7): gains `0 < lower <= upper`, delays \[s\] `lower = 0`.
+/// Least and greatest value of every channel (M7): gains `0 < lower <= upper`, delays \[s\] `lower = 0`, signed delays \[s\]
+/// `lower <= 0 <= upper` (M15.4).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Least value.
@@ -16,7 +17,7 @@ pub struct Bounds {
 /// Mismatch of a loop of held delays that counts as agreement \[s\]: half of the last digit in which delays are told.
 pub const DELAY_AGREEMENT_S: f64 = 5e-5;
 
-/// The gains (eq. (7), M8) or the delays \[s\] (eq. (11), M9) that a condition's correction is to have.
+/// The gains (eq. (7), M8), the delays \[s\] (eq. (11), M9) or the signed delays \[s\] (M15.4) that a condition's correction is to have.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     /// What is asked for.
@@ -30,8 +31,8 @@ pub struct Problem {
     pub fitted: PairTable<bool>,
     /// Bounds of every channel.
     pub bounds: Bounds,
-    /// Weight of the departure of the output gains from 1, or of the output delays; `alpha = 0` stands for the limit
-    /// `alpha -> 0+`.
+    /// Weight of the departure of the output gains from 1, of the output delays, or of all signed delays; `alpha = 0` stands for the
+    /// limit `alpha -> 0+`.
     pub alpha: f64,
     /// Greatest mismatch of a loop of held entries that counts as agreement: dB of gain, or seconds of delay.
     pub agreement: f64,
@@ -100,6 +101,16 @@ pub enum ProblemError {
         /// Upper bound.
         upper_s: f64,
     },
+    /// The bounds of the signed delays are not `lower <= 0 <= upper`.
+    #[error(
+        "the signed delays are bounded by {lower_s} s and {upper_s} s; it must be a number from -1e50 to 0 and one from 0 to 1e50 s"
+    )]
+    SignedDelayBounds {
+        /// Lower bound.
+        lower_s: f64,
+        /// Upper bound.
+        upper_s: f64,
+    },
     /// `alpha` is negative or not a number.
     #[error("alpha is {alpha}; it must be a number from 0 to 1e12")]
     Alpha {
@@ -143,6 +154,11 @@ impl Problem {
         Self { quantity: Quantity::Delay, ..Self::gains(delta_s, constrained, bounds) }
     }
 
+    /// The convex program of M15.4 that fits every entry, with `alpha = 1`; all times in seconds.
+    pub fn signed_delays(delta_s: PairTable<Option<f64>>, constrained: PairTable<bool>, bounds: Bounds) -> Self {
+        Self { quantity: Quantity::SignedDelay, ..Self::gains(delta_s, constrained, bounds) }
+    }
+
     /// Checks shapes and figures.
     ///
     /// # Errors
@@ -164,7 +180,7 @@ impl Problem {
                 (Some(gain), Quantity::Gain(_)) if !GAINS.contains(&gain) => {
                     return Err(ProblemError::Gain { pair, gain });
                 }
-                (Some(delay_s), Quantity::Delay) if !(-1e50..=1e50).contains(&delay_s) => {
+                (Some(delay_s), Quantity::Delay | Quantity::SignedDelay) if !(-1e50..=1e50).contains(&delay_s) => {
                     return Err(ProblemError::Delay { pair, delay_s });
                 }
                 _ => {}
@@ -183,6 +199,9 @@ impl Problem {
             Quantity::Delay if !(lower == 0.0 && (0.0..=1e50).contains(&upper)) => {
                 Err(ProblemError::DelayBounds { lower_s: lower, upper_s: upper })
             }
+            Quantity::SignedDelay if !((-1e50..=0.0).contains(&lower) && (0.0..=1e50).contains(&upper)) => {
+                Err(ProblemError::SignedDelayBounds { lower_s: lower, upper_s: upper })
+            }
             _ => Ok(()),
         }
     }
@@ -197,7 +216,8 @@ impl Problem {
         }
         let neutral = self.quantity.neutral();
         let departure = |output: &f64| self.quantity.miss(neutral, *output, neutral).powi(2);
-        fit + self.alpha * outputs.iter().map(departure).sum::<f64>()
+        let inputs = if self.quantity.regularises_inputs() { inputs } else { &[] };
+        fit + self.alpha * outputs.iter().chain(inputs).map(departure).sum::<f64>()
     }
 
     /// The entries that count in the objective, with their delta.
@@ -220,7 +240,7 @@ impl Problem {
         let asked =
             self.delta.iter().filter_map(|(_, delay)| *delay).fold(0.0_f64, |most, delay| most.max(delay.abs()));
         // A bound far above what any channel could be asked for says nothing about the size of the answer.
-        let unit_s = if asked > 0.0 { asked } else { self.bounds.upper };
+        let unit_s = if asked > 0.0 { asked } else { self.bounds.upper.max(-self.bounds.lower) };
         Coordinate::Time { unit_s: if unit_s > 0.0 { unit_s } else { 1.0 } }
     }
 
@@ -231,7 +251,10 @@ impl Problem {
         match coordinate {
             Coordinate::Logarithm => (low, high),
             // No path of held entries asks a channel for more than one unit each: a bound above that never acts.
-            Coordinate::Time { .. } => (low, high.min((self.delta.outputs() + self.delta.inputs()) as f64)),
+            Coordinate::Time { .. } => {
+                let most = (self.delta.outputs() + self.delta.inputs()) as f64;
+                (low.max(-most), high.min(most))
+            }
         }
     }
 }

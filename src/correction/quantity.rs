@@ -1,4 +1,4 @@
-//! What a channel has of each: a gain or a delay.
+//! What a channel has of each: a gain, a delay or a signed delay.
 
 use std::fmt;
 
@@ -20,6 +20,8 @@ pub enum Quantity {
     Gain(GainObjective),
     /// Delays in seconds (equation (11), M9).
     Delay,
+    /// Signed delays in seconds, of which a negative one is a lead; both sides are regularised (M15.4).
+    SignedDelay,
 }
 
 /// dB in a natural logarithm.
@@ -33,15 +35,25 @@ impl Quantity {
     pub(crate) fn neutral(self) -> f64 {
         match self {
             Quantity::Gain(_) => 1.0,
-            Quantity::Delay => 0.0,
+            Quantity::Delay | Quantity::SignedDelay => 0.0,
         }
+    }
+
+    /// Whether departures of the inputs are regularised besides those of the outputs.
+    pub(crate) fn regularises_inputs(self) -> bool {
+        self == Quantity::SignedDelay
+    }
+
+    /// Whether its lower bound can be moved: a delay's is 0.
+    pub(crate) fn has_lower_bound(self) -> bool {
+        self != Quantity::Delay
     }
 
     /// `k_o k_i` or `tau_o + tau_i`.
     pub(crate) fn net(self, output: f64, input: f64) -> f64 {
         match self {
             Quantity::Gain(_) => output * input,
-            Quantity::Delay => output + input,
+            Quantity::Delay | Quantity::SignedDelay => output + input,
         }
     }
 
@@ -50,7 +62,7 @@ impl Quantity {
         match self {
             Quantity::Gain(GainObjective::Ratio) => delta - output * input,
             Quantity::Gain(GainObjective::Decibel) => 20.0 * (delta / (output * input)).log10(),
-            Quantity::Delay => delta - output - input,
+            Quantity::Delay | Quantity::SignedDelay => delta - output - input,
         }
     }
 
@@ -60,7 +72,7 @@ impl Quantity {
         match self {
             Quantity::Gain(GainObjective::Ratio) => 2.0 * net * (net - delta),
             Quantity::Gain(GainObjective::Decibel) => 2.0 * SQUARED_DECIBEL * (net / delta).ln(),
-            Quantity::Delay => 2.0 * (net - delta),
+            Quantity::Delay | Quantity::SignedDelay => 2.0 * (net - delta),
         }
     }
 
@@ -68,7 +80,7 @@ impl Quantity {
     pub(crate) fn difference(self, difference: f64, coordinate: Coordinate) -> f64 {
         match self {
             Quantity::Gain(_) => difference * DECIBEL,
-            Quantity::Delay => coordinate.value(difference),
+            Quantity::Delay | Quantity::SignedDelay => coordinate.value(difference),
         }
     }
 
@@ -76,7 +88,7 @@ impl Quantity {
     pub(crate) fn per_unit(self, slope: f64) -> f64 {
         match self {
             Quantity::Gain(_) => slope / DECIBEL,
-            Quantity::Delay => 1e-3 * slope,
+            Quantity::Delay | Quantity::SignedDelay => 1e-3 * slope,
         }
     }
 
@@ -84,7 +96,7 @@ impl Quantity {
     pub(crate) fn symbol(self) -> &'static str {
         match self {
             Quantity::Gain(_) => "k",
-            Quantity::Delay => "tau",
+            Quantity::Delay | Quantity::SignedDelay => "tau",
         }
     }
 
@@ -92,7 +104,7 @@ impl Quantity {
     pub(crate) fn unit(self) -> &'static str {
         match self {
             Quantity::Gain(_) => "",
-            Quantity::Delay => " s",
+            Quantity::Delay | Quantity::SignedDelay => " s",
         }
     }
 }
@@ -102,6 +114,7 @@ impl fmt::Display for Quantity {
         f.write_str(match self {
             Quantity::Gain(_) => "gain",
             Quantity::Delay => "delay",
+            Quantity::SignedDelay => "signed delay",
         })
     }
 }

@@ -34,7 +34,7 @@ impl Remedy {
         // A bound that is not the obstacle stays as it is.
         let upper = upper.map(|upper| three_digits_up(coordinate.value(upper)).max(problem.bounds.upper));
         let lower = lower.map(|lower| three_digits_down(coordinate.value(lower)).min(problem.bounds.lower));
-        Ok(Self { quantity, upper, lower: lower.filter(|_| quantity != Quantity::Delay), free })
+        Ok(Self { quantity, upper, lower: lower.filter(|_| quantity.has_lower_bound()), free })
     }
 
     /// The remedies in words; empty where there is none.

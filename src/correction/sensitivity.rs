@@ -52,14 +52,17 @@ impl Sensitivity {
                 let change = if is_dear { "lowering" } else { "raising" };
                 format!("{} is {}: {change} {} by 1 dB {effect}.", what.0, what.1, what.2)
             }
-            (Quantity::Delay, Restraint::Held(pair)) => {
+            (Quantity::Delay | Quantity::SignedDelay, Restraint::Held(pair)) => {
                 let change = if is_dear { "less" } else { "more" };
                 format!("{} is held: 1 ms {change} delay {effect}.", pair_name(pair, inputs, outputs))
             }
             (Quantity::Delay, Restraint::LowerBound(channel)) => {
                 format!("τ_{} is 0: 1 ms of lead {effect}.", channel.name(inputs, outputs))
             }
-            (Quantity::Delay, Restraint::UpperBound(channel)) => {
+            (Quantity::SignedDelay, Restraint::LowerBound(channel)) => {
+                format!("τ_{} is at its most lead: 1 ms more of it {effect}.", channel.name(inputs, outputs))
+            }
+            (Quantity::Delay | Quantity::SignedDelay, Restraint::UpperBound(channel)) => {
                 let channel = channel.name(inputs, outputs);
                 format!("τ_{channel} is on its upper bound: raising the bound by 1 ms {effect}.")
             }
@@ -77,9 +80,7 @@ fn gain_name(channel: Channel, inputs: &[String], outputs: &[String]) -> String 
 pub fn sensitivities(problem: &Problem, solution: &Solution) -> Vec<Sensitivity> {
     let held: Vec<Pair> = problem.held_entries().map(|(pair, _)| pair).collect();
     let inputs = solution.inputs.len();
-    let on = |value: &f64| (*value == problem.bounds.lower, *value == problem.bounds.upper);
-    let at_bounds = solution.inputs.iter().chain(&solution.outputs).map(on).collect();
-    let found = multipliers(&Restrained { inputs, slopes: slopes(problem, solution), at_bounds, held: &held });
+    let found = multipliers(&Restrained::of(problem, solution, &held));
     let sensitivity = |restraint: Restraint, slope: f64| {
         let per_unit = problem.quantity.per_unit(slope);
         let share_per_unit = if solution.objective > 0.0 { per_unit / solution.objective } else { 0.0 };
@@ -110,7 +111,22 @@ fn slopes(problem: &Problem, solution: &Solution) -> Vec<f64> {
     for (output, value) in solution.outputs.iter().enumerate() {
         slopes[inputs + output] += problem.alpha * quantity.slope(neutral, *value, neutral);
     }
+    for (input, value) in solution.inputs.iter().enumerate().filter(|_| quantity.regularises_inputs()) {
+        slopes[input] += problem.alpha * quantity.slope(neutral, *value, neutral);
+    }
     slopes
+}
+
+/// How far an answer is from what Karush, Kuhn and Tucker ask of a minimum: the greatest slope of the objective along which
+/// channels could still move together, inside the bounds and with the held entries held. For a convex problem zero is a proof.
+///
+/// In the objective's unit for each unit of the channels: for delays s² / s. `solution` is the solution of `problem`
+/// ([`super::solve`]).
+pub fn kkt_residual(problem: &Problem, solution: &Solution) -> f64 {
+    let held: Vec<Pair> = problem.held_entries().map(|(pair, _)| pair).collect();
+    let minimum = Restrained::of(problem, solution, &held);
+    let pushes = pieces(&minimum).into_iter().map(|piece| minimum.push(&piece));
+    pushes.filter(|(_, stopping)| stopping.is_empty()).fold(0.0, |most, (push, _)| most.max(push.abs()))
 }
 
 /// A minimum seen from its channels: inputs first, then outputs.
@@ -125,6 +141,30 @@ struct Restrained<'a> {
     held: &'a [Pair],
 }
 
+impl<'a> Restrained<'a> {
+    fn of(problem: &Problem, solution: &Solution, held: &'a [Pair]) -> Self {
+        let on = |value: &f64| (*value == problem.bounds.lower, *value == problem.bounds.upper);
+        let at_bounds = solution.inputs.iter().chain(&solution.outputs).map(on).collect();
+        Self { inputs: solution.inputs.len(), slopes: slopes(problem, solution), at_bounds, held }
+    }
+
+    /// 1 of an input, -1 of an output: an output falls where the inputs tied to it rise.
+    fn sign(&self, channel: usize) -> f64 {
+        if channel < self.inputs { 1.0 } else { -1.0 }
+    }
+
+    /// The slope of the objective along which a piece of tied channels moves, and the channels whose bounds stop it.
+    fn push(&self, piece: &[usize]) -> (f64, Vec<usize>) {
+        let push: f64 = piece.iter().map(|&channel| self.sign(channel) * self.slopes[channel]).sum();
+        // The piece would move against the slope: an input on its upper bound stops a rise, an output on its lower one too.
+        let stops = |channel: &&usize| {
+            let rises = self.sign(**channel) * push < 0.0;
+            if rises { self.at_bounds[**channel].1 } else { self.at_bounds[**channel].0 }
+        };
+        (push, piece.iter().filter(stops).copied().collect())
+    }
+}
+
 /// Change of the least objective with each restraint's value.
 struct Multipliers {
     /// By the sum at which each held entry is held.
@@ -137,18 +177,11 @@ struct Multipliers {
 /// are on that bound, in equal parts; the held entries carry the rest, in a loop with the least squares.
 fn multipliers(minimum: &Restrained<'_>) -> Multipliers {
     let channels = minimum.slopes.len();
-    let sign = |channel: usize| if channel < minimum.inputs { 1.0 } else { -1.0 };
     let mut bounds = vec![0.0; channels];
     for piece in pieces(minimum) {
-        let push: f64 = piece.iter().map(|&channel| sign(channel) * minimum.slopes[channel]).sum();
-        // The piece would move against the slope: an input on its upper bound stops a rise, an output on its lower one too.
-        let stops = |channel: &&usize| {
-            let rises = sign(**channel) * push < 0.0;
-            if rises { minimum.at_bounds[**channel].1 } else { minimum.at_bounds[**channel].0 }
-        };
-        let stopping: Vec<usize> = piece.iter().filter(stops).copied().collect();
+        let (push, stopping) = minimum.push(&piece);
         for &channel in &stopping {
-            bounds[channel] = sign(channel) * push / stopping.len() as f64;
+            bounds[channel] = minimum.sign(channel) * push / stopping.len() as f64;
         }
     }
     let left = DVector::from_fn(channels, |channel, _| minimum.slopes[channel] - bounds[channel]);

@@ -6,7 +6,7 @@ use super::conflict::Conflict;
 use super::quantity::Quantity;
 use super::remedy::Remedy;
 use crate::dataset::{Pair, PairTable};
-use crate::units::{telling, told_apart};
+use crate::units::{s_to_ms, telling, told_apart};
 
 /// Whether the answer is known to be the best there is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,7 +82,7 @@ pub struct Proof {
 /// A held entry that the bounds or the other held entries do not allow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unmatched {
-    /// What is held: a gain, or a delay in seconds.
+    /// What is held: a gain, or a delay or a signed delay in seconds.
     pub quantity: Quantity,
     /// The entry.
     pub pair: Pair,
@@ -111,6 +111,13 @@ impl Unmatched {
             let sign = if self.excess > 0.0 { "+" } else { "" };
             return format!("{pair} is held at {target} instead of {delta} ({sign}{} dB).", telling(self.excess, 1));
         }
+        if self.quantity == Quantity::SignedDelay && self.delta < 0.0 {
+            let (target, delta) = told_apart(s_to_ms(-self.target), s_to_ms(-self.delta), 1);
+            let left = telling(self.phase_left_deg(omega_top).abs(), 0);
+            return format!(
+                "{pair} gets {target} of the {delta} ms of lead it wants; {left}° of phase error remain at {omega_top} rad/s."
+            );
+        }
         let lead_ms = 1e3 * self.excess;
         let left = telling(self.phase_left_deg(omega_top).abs(), 0);
         let why = if self.why.is_lone_lead() && self.why.entries == [self.pair] {
@@ -124,7 +131,7 @@ impl Unmatched {
     }
 }
 
-/// The channel gains of equation (7), or the channel delays of equation (11) in seconds, with the proof.
+/// The channel gains of equation (7), the channel delays of equation (11) or the signed delays of M15.4 in seconds, with the proof.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
     /// What was minimised.

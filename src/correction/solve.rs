@@ -1,4 +1,4 @@
-//! The solution of equations (7) and (11).
+//! The solution of equations (7) and (11), and of the program of signed delays (M15.4).
 
 use super::branch_and_bound::{Effort, Minima, Newton, Objective, ProofBudget, SearchStopped, search};
 use super::clash::clashes;
@@ -17,7 +17,7 @@ use crate::dataset::{Pair, PairTable};
 /// matched (M8).
 const MATCHED: f64 = 1e-8;
 
-/// Finds the channel gains (equation (7), M8) or delays (equation (11), M9) of least objective, with a proof that no others are
+/// Finds the channel gains (equation (7), M8), delays (equation (11), M9) or signed delays (M15.4) of least objective, with a proof that no others are
 /// better.
 ///
 /// Entries that the bounds or their own loops do not allow are held at the nearest products or sums that are possible (least
@@ -64,7 +64,7 @@ pub fn solve(problem: &Problem, budget: ProofBudget, stop: &dyn Fn() -> bool) ->
 fn start(objective: &Objective, quantity: Quantity) -> Result<Vec<f64>, ProblemError> {
     match quantity {
         Quantity::Gain(_) => Ok(objective.nearest_to_zero()),
-        Quantity::Delay => interior_point(objective),
+        Quantity::Delay | Quantity::SignedDelay => interior_point(objective),
     }
 }
 
@@ -78,7 +78,7 @@ fn minimise(objective: &Objective, quantity: Quantity, effort: &Effort<'_>) -> R
 }
 
 /// The limit `alpha -> 0+`: a free common scale goes where the outputs are nearest to a gain of 1 or to no delay (the inputs,
-/// where there is no output).
+/// where there is no output); of signed delays where the sum of all their squares is least.
 fn settle(quantity: Quantity, components: &Components, objective: &Objective, scales: &mut [f64]) {
     objective.shift_floating_pieces(scales, |piece, scales| {
         let (inputs, outputs) = components.channels(scales);
@@ -88,6 +88,10 @@ fn settle(quantity: Quantity, components: &Components, objective: &Objective, sc
         };
         let (inputs, outputs) = (of_piece(&components.inputs, &inputs), of_piece(&components.outputs, &outputs));
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        if quantity.regularises_inputs() {
+            let apart = outputs.iter().sum::<f64>() - inputs.iter().sum::<f64>();
+            return apart / (inputs.len() + outputs.len()).max(1) as f64;
+        }
         match (quantity, outputs.is_empty(), inputs.is_empty()) {
             (_, true, true) => 0.0,
             (_, true, false) => -mean(&inputs),
@@ -195,7 +199,7 @@ fn misses(
         let (delta, target) = (coordinate.value(*delta_at), coordinate.value(*target_at));
         let excess = match quantity {
             Quantity::Gain(_) => quantity.difference(target_at - delta_at, coordinate),
-            Quantity::Delay => target - delta,
+            Quantity::Delay | Quantity::SignedDelay => target - delta,
         };
         Unmatched { quantity, pair: *pair, delta, target, excess, why: why(*pair) }
     });

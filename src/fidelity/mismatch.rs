@@ -59,7 +59,8 @@ impl Mismatch {
         }
     }
 
-    fn weights(&self) -> Option<&[f64]> {
+    /// What each frequency at which it stands counts, where not all count alike (M4a).
+    pub fn weights(&self) -> Option<&[f64]> {
         self.counted.as_ref().map(CountedFrequencies::weights)
     }
 
@@ -68,8 +69,20 @@ impl Mismatch {
     pub fn cost(&self, omega: &[f64], correction: GainDelay, average: CostAverage) -> Cost {
         let omega = self.omega(omega);
         let phase = correction.phases(&self.phase, omega).map(wrap);
-        let magnitude = correction.magnitudes_db(&self.magnitude_db);
+        let magnitude = correction.magnitudes_db(&self.magnitude_db, omega);
         Cost::of(magnitude, phase, self.weights(), average, &mut Vec::with_capacity(omega.len()))
+    }
+
+    /// What is left of it after the simulated response has been multiplied by a factor of these magnitudes \[dB\] and phases \[rad\]
+    /// at each frequency of the grid (M15.5).
+    pub fn multiplied(&self, magnitude_db: &[f64], phase: &[f64]) -> Self {
+        let on = |own: &[f64], factor: &[f64]| -> Vec<f64> {
+            let sum = |factor: &[f64]| own.iter().zip(factor).map(|(own, factor)| own + factor).collect();
+            self.counted.as_ref().map_or_else(|| sum(factor), |counted| sum(&counted.pick(factor)))
+        };
+        let mut phase = on(&self.phase, phase);
+        phase.iter_mut().for_each(|angle| *angle = wrap(*angle));
+        Self { magnitude_db: on(&self.magnitude_db, magnitude_db), phase, counted: self.counted.clone() }
     }
 
     /// Whether the unwrapped `Delta phi` of M3 leaves half a turn somewhere, so that M6b decides on the turns.

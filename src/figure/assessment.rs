@@ -40,6 +40,7 @@ pub fn assessment_figure(analysis: &Analysis, pairs: &[Pair], choice: Assessment
     };
     let correction = match choice.correction {
         AssessedCorrection::Scheduled => "the schedule",
+        AssessedCorrection::ScheduledWithoutLeads => "the schedule without its leads",
         AssessedCorrection::Own => "each condition's own optimum",
     };
     let figure = Figure::new(format!("Change of J of the {model} model under {correction}"));
@@ -74,7 +75,7 @@ fn panel(analysis: &Analysis, table: &AssessmentTable, pair: Pair) -> Panel {
 fn caption(analysis: &Analysis, table: &AssessmentTable) -> String {
     let study = &analysis.study;
     let mut caption = settings_words(&study.dataset, &study.settings);
-    if table.choice.correction == AssessedCorrection::Scheduled {
+    if table.choice.correction != AssessedCorrection::Own {
         caption.push_str(&format!(" Schedule: {}.", schedule_words(&study.settings.schedule)));
     }
     caption.push_str(match table.choice.average {

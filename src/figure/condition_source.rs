@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::dataset::{BundleKind, ConditionId, Dataset, FlightState, Model, ModelId, Pair};
 use crate::response::{GainDelay, ResponseShape};
 use crate::schedule::{Schedule, ScheduleKind, ScheduleSettings, ScheduledQuantity};
-use crate::study::{ConditionAnalysis, ConditionCurves, Settings, Study};
+use crate::study::{ConditionAnalysis, ConditionCurves, PhaseCorrection, Settings, Study};
 
 use super::bode::BodeOptions;
 use super::number::compact;
@@ -33,6 +33,8 @@ pub enum CurveId {
     Corrected,
     /// The representative physics model with the scheduled correction.
     Scheduled,
+    /// The representative physics model with the condition's own correction, its lead filters left out.
+    WithoutLeads,
 }
 
 /// A model of the condition.
@@ -117,7 +119,8 @@ impl<'a> ConditionSource<'a> {
         condition.bundle(kind).iter().enumerate().map(of_model).collect()
     }
 
-    /// The representative physics model with the condition's own correction, and with that of the schedule.
+    /// The representative physics model with the condition's own correction, with that of the schedule, and where there are leads
+    /// without them.
     pub(super) fn corrected_models(&self, pair: Pair) -> Vec<CorrectedModel> {
         let name = self.analysis.representative_name(BundleKind::Physics);
         let Some(model) = self.curves.condition.position(BundleKind::Physics, name) else {
@@ -126,15 +129,20 @@ impl<'a> ConditionSource<'a> {
         let airspeed_kt = self.curves.condition.flight_state().airspeed_kt;
         let own = self.analysis.correction.on(pair).map(|correction| (CurveId::Corrected, Role::Corrected, correction));
         let scheduled = self.schedule.and_then(|schedule| schedule.at(airspeed_kt).on(pair));
-        let both = own.into_iter().chain(scheduled.map(|correction| (CurveId::Scheduled, Role::Scheduled, correction)));
-        both.map(|(id, role, correction)| CorrectedModel {
-            id,
-            name: format!("{name}, {}", role.name()),
-            role,
-            model,
-            correction,
-        })
-        .collect()
+        let scheduled = scheduled.map(|correction| (CurveId::Scheduled, Role::Scheduled, correction));
+        let without = self.analysis.led.as_ref().and_then(|_| self.analysis.correction.without_leads_on(pair));
+        let without = without.map(|correction| (CurveId::WithoutLeads, Role::WithoutLeads, correction));
+        own.into_iter()
+            .chain(scheduled)
+            .chain(without)
+            .map(|(id, role, correction)| CorrectedModel {
+                id,
+                name: format!("{name}, {}", role.name()),
+                role,
+                model,
+                correction,
+            })
+            .collect()
     }
 
     /// The lines of a response's plot that are shown, what matters most last; phases are laid on that of the reference.
@@ -172,8 +180,13 @@ impl<'a> ConditionSource<'a> {
 /// The dataset, and the settings that every figure of the analysis rests on.
 pub(super) fn settings_words(dataset: &Dataset, settings: &Settings) -> String {
     let (low, high) = (compact(settings.band.min()), compact(settings.band.max()));
+    let phase = match settings.phase {
+        PhaseCorrection::Delay => "",
+        PhaseCorrection::None => " No correction of the phase.",
+        PhaseCorrection::Lead => " A delay or a lead filter in each channel.",
+    };
     format!(
-        "{}. Band {low} to {high} rad/s, {} frequencies; \u{3b1} {} for gains, {} for delays.",
+        "{}. Band {low} to {high} rad/s, {} frequencies; \u{3b1} {} for gains, {} for delays.{phase}",
         dataset.name(),
         settings.points,
         compact(settings.alpha_gain),

@@ -90,15 +90,15 @@ fn plot(source: &ConditionSource<'_>, pair: Pair, title: &str, options: &BodeOpt
         lines.iter().map(curve).collect()
     };
     let axis = || options.frequency_axis();
-    let (delta, bounds) = (&source.analysis.comparison.delta, source.analysis.gain_bounds());
-    let gain = delta.gain[pair].map(|gain| {
+    let bounds = source.analysis.gain_bounds();
+    let gain = source.analysis.wanted_gain(pair).map(|gain| {
         let label = format!("G {} ({} dB)", decimals(gain, 3), decimals(ratio_to_db(gain), 1));
         Rule::horizontal(ratio_to_db(gain), DELTA).label(label)
     });
     let bounds = [("LB", bounds.lower), ("UB", bounds.upper)].map(|(name, bound)| {
         Rule::horizontal(ratio_to_db(bound), BOUND).label(format!("{name} {}", decimals(bound, 3)))
     });
-    let delay = delta.delay_s[pair].map(|delay_s| {
+    let delay = source.analysis.wanted_delay_s(pair).map(|delay_s| {
         let values: Arc<[f64]> = omega.iter().map(|&at| options.phase_error.of(delay_s * at, at)).collect();
         let name = format!("D {} ms", decimals(s_to_ms(delay_s), 1));
         Curve::new(name.clone(), DELTA, Arc::clone(&frequency), values).key("delta gain, delta delay")
@@ -200,7 +200,7 @@ fn errors(source: &ConditionSource<'_>, pair: Pair, omega: &[f64], options: &Bod
         Some(ErrorLine {
             name,
             role,
-            ratio_db: correction.magnitudes_db(&mismatch_db).map(|db| -db).collect(),
+            ratio_db: correction.magnitudes_db(&mismatch_db, omega).map(|db| -db).collect(),
             phase: correction
                 .phases(&phase, omega)
                 .zip(omega)

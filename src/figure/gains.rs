@@ -129,13 +129,12 @@ pub fn channels_figure(analysis: &Analysis, channels: &[Channel], measure: Measu
     let plots = channels.iter().map(|&channel| {
         let bounds: BoundsOf<'_> = Box::new(move |result| match measure {
             Measure::Gain => [result.gain_bounds().lower, result.gain_bounds().upper],
-            Measure::Delay => [0.0, s_to_ms(result.delay_upper_s())],
+            Measure::Delay => result.delay_bounds_s().map(s_to_ms),
         });
         let of: FigureOf<'_> = Box::new(move |correction| match (measure, channel) {
             (Measure::Gain, Channel::Input(input)) => correction.input_gains[input],
             (Measure::Gain, Channel::Output(output)) => correction.output_gains[output],
-            (Measure::Delay, Channel::Input(input)) => s_to_ms(correction.input_delays_s[input]),
-            (Measure::Delay, Channel::Output(output)) => s_to_ms(correction.output_delays_s[output]),
+            (Measure::Delay, channel) => s_to_ms(correction.delay_s(channel)),
         });
         let panel = Quantity { measure, of, bounds: Some(bounds) }.panel(analysis, across, measure.axis_label());
         Plot::new(channel.name(&inputs, &outputs)).panel(panel)
@@ -163,7 +162,7 @@ pub fn scheduled_samples(schedule: &Schedule, figure: impl Fn(&ChannelCorrection
 
 /// Whether a schedule has values of this measure, over this axis.
 pub fn is_scheduled(schedule: &Schedule, measure: Measure, across: Across) -> bool {
-    across == Across::Airspeed && (measure == Measure::Gain || schedule.settings.delays)
+    across == Across::Airspeed && (measure == Measure::Gain || schedule.has_delays())
 }
 
 fn caption(analysis: &Analysis, across: Across, measure: Measure) -> String {

@@ -23,6 +23,8 @@ pub enum Role {
     Corrected,
     /// The physics model with the correction of the schedule.
     Scheduled,
+    /// The representative physics model with the condition's own correction, its lead filters left out.
+    WithoutLeads,
     /// A model left out, whatever it was.
     Rejected,
     /// A model of one of several conditions: 0 is the slowest, 255 the fastest.
@@ -42,7 +44,7 @@ pub const GREY: Color = Color::new(0x76, 0x7e, 0x8a);
 
 impl Role {
     /// Every role of one condition, in the order of a legend.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Nominal,
         Self::Perturbed,
         Self::Representative,
@@ -50,6 +52,7 @@ impl Role {
         Self::IdentifiedRepresentative,
         Self::Corrected,
         Self::Scheduled,
+        Self::WithoutLeads,
         Self::Rejected,
     ];
 
@@ -80,6 +83,7 @@ impl Role {
             Self::IdentifiedRepresentative => "identified representative",
             Self::Corrected => "corrected",
             Self::Scheduled => "scheduled",
+            Self::WithoutLeads => "without leads",
             Self::Rejected => "rejected",
             Self::OfAirspeed(_) => "condition",
         }
@@ -89,6 +93,7 @@ impl Role {
     pub fn word(self) -> &'static str {
         match self {
             Self::IdentifiedRepresentative => "identified-representative",
+            Self::WithoutLeads => "without-leads",
             _ => self.name(),
         }
     }
@@ -110,6 +115,7 @@ impl Role {
             Self::IdentifiedRepresentative => Stroke::solid(AMBER.tint(0.75), 2.6),
             Self::Corrected => Stroke::dashed(GREEN, 1.3, Dash::Long),
             Self::Scheduled => Stroke::dashed(GREEN, 1.2, Dash::DashDotDot),
+            Self::WithoutLeads => Stroke::solid(GREEN, 0.75),
             Self::Rejected => Stroke::dashed(GREY, 0.6, Dash::Dotted),
             // From blue to amber, as in scales made for colour-blind eyes.
             Self::OfAirspeed(step) => Stroke::solid(BLUE.mixed(AMBER, f64::from(step) / 255.0), 1.1),
@@ -133,8 +139,9 @@ impl Role {
             Self::Nominal => 3,
             Self::Representative => 4,
             Self::IdentifiedRepresentative => 5,
-            Self::Scheduled => 6,
-            Self::Corrected => 7,
+            Self::WithoutLeads => 6,
+            Self::Scheduled => 7,
+            Self::Corrected => 8,
         }
     }
 }

@@ -2,12 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::correction::{GainBounds, GainObjective};
+use crate::correction::{GainBounds, GainObjective, LeadSettings};
 use crate::dataset::limits::MOST_PAIRS;
 use crate::dataset::{Band, Dataset, PairTable, Place};
 use crate::fidelity::CostAverage;
+use crate::response::LeadOrder;
 use crate::schedule::{DEFAULT_TOLERANCE_KT, ScheduleKind, ScheduleSettings, ScheduledQuantity};
-use crate::study::{DEFAULT_AGREEMENT_DB, Setting, Settings};
+use crate::study::{DEFAULT_AGREEMENT_DB, DelayFrom, EditRefusal, PhaseCorrection, Setting, Settings};
 
 use super::content_fault::ContentFault;
 use super::flaw::Flaw;
@@ -45,6 +46,15 @@ pub struct SettingsEntry {
     pub gain_bounds: Option<[f64; 2]>,
     /// Upper bound of the delays set by hand \[s\].
     pub delay_upper_s: Option<f64>,
+    /// `none`, `delay` or `lead`: how the phase is corrected; files of older programs do not say it.
+    #[serde(default, with = "PhaseWord")]
+    pub phase: PhaseCorrection,
+    /// `median` or `band`: which D the delays are fitted to; files of older programs do not say it.
+    #[serde(default, with = "DelayFromWord")]
+    pub delay_from: DelayFrom,
+    /// What lead filters have in common; absent where that is what it is before any decision.
+    #[serde(default, skip_serializing_if = "LeadSettingsEntry::is_default")]
+    pub lead: LeadSettingsEntry,
     /// Mismatch up to which a loop of held gains counts as agreeing \[dB\]; files of older programs do not say it.
     #[serde(default = "default_agreement_db")]
     pub agreement_db: f64,
@@ -68,6 +78,49 @@ pub struct ScheduleEntry {
     /// Airspeeds nearer to one another are one \[kt\].
     #[serde(default = "default_tolerance_kt")]
     pub airspeed_tolerance_kt: f64,
+    /// Degree of the polynomial of signed delays; absent where it is 0.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub tau_degree: usize,
+}
+
+/// What lead filters have in common (M15.3).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LeadSettingsEntry {
+    /// Order, 1 or 2.
+    pub order: usize,
+    /// `n`: the lag time constant is `1 / (n omega_B)`.
+    pub n: f64,
+    /// Greatest gain of a filter at high frequency (ratio).
+    pub r_max: f64,
+}
+
+impl Default for LeadSettingsEntry {
+    fn default() -> Self {
+        Self::of(LeadSettings::default())
+    }
+}
+
+impl LeadSettingsEntry {
+    fn of(settings: LeadSettings) -> Self {
+        Self { order: settings.order.number(), n: settings.pole, r_max: settings.limit }
+    }
+
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+
+    fn order(&self) -> Result<LeadOrder, Flaw> {
+        let orders = [LeadOrder::First, LeadOrder::Second];
+        orders.into_iter().find(|order| order.number() == self.order).ok_or_else(|| {
+            let (expected, found) = ("1 or 2".to_owned(), self.order as f64);
+            let refusal = EditRefusal::OutOfRange { setting: "order of the lead filters", expected, found };
+            Flaw::new(Place::entry("settings, lead, order"), refusal)
+        })
+    }
+}
+
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 impl Default for ScheduleEntry {
@@ -99,6 +152,21 @@ pub enum KindWord {
 enum CostAverageWord {
     Median,
     Mean,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "PhaseCorrection", rename_all = "lowercase")]
+enum PhaseWord {
+    None,
+    Delay,
+    Lead,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "DelayFrom", rename_all = "lowercase")]
+enum DelayFromWord {
+    Median,
+    Band,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -136,6 +204,9 @@ impl SettingsEntry {
             gain_objective: settings.gain_objective,
             gain_bounds: settings.gain_bounds.map(|bounds| [bounds.lower, bounds.upper]),
             delay_upper_s: settings.delay_upper_s,
+            phase: settings.phase,
+            delay_from: settings.delay_from,
+            lead: LeadSettingsEntry::of(settings.lead),
             agreement_db: settings.agreement_db,
             schedule: ScheduleEntry::of(settings.schedule),
         }
@@ -158,6 +229,11 @@ impl SettingsEntry {
             ("quantile", Setting::Quantile(self.quantile)),
             ("gain_bounds", Setting::GainBounds(bounds)),
             ("delay_upper_s", Setting::DelayUpper(self.delay_upper_s)),
+            ("phase", Setting::Phase(self.phase)),
+            ("delay_from", Setting::DelayFrom(self.delay_from)),
+            ("lead, order", Setting::LeadOrder(self.lead.order()?)),
+            ("lead, n", Setting::LeadPole(self.lead.n)),
+            ("lead, r_max", Setting::LeadLimit(self.lead.r_max)),
             ("agreement_db", Setting::Agreement(self.agreement_db)),
             ("schedule", Setting::Schedule(self.schedule.settings()?)),
         ];
@@ -174,8 +250,8 @@ impl ScheduleEntry {
             ScheduleKind::Polynomial { degree } => (KindWord::Polynomial, Some(degree)),
             ScheduleKind::Table => (KindWord::Table, None),
         };
-        let ScheduleSettings { quantity: of, delays, airspeed_tolerance_kt, .. } = settings;
-        Self { kind, degree, of, delays, airspeed_tolerance_kt }
+        let ScheduleSettings { quantity: of, delays, airspeed_tolerance_kt, tau_degree, .. } = settings;
+        Self { kind, degree, of, delays, airspeed_tolerance_kt, tau_degree }
     }
 
     fn settings(&self) -> Result<ScheduleSettings, Flaw> {
@@ -187,7 +263,7 @@ impl ScheduleEntry {
                 return Err(Flaw::new(Place::entry("settings, schedule"), fault));
             }
         };
-        let (quantity, delays, airspeed_tolerance_kt) = (self.of, self.delays, self.airspeed_tolerance_kt);
-        Ok(ScheduleSettings { kind, quantity, delays, airspeed_tolerance_kt })
+        let Self { of: quantity, delays, airspeed_tolerance_kt, tau_degree, .. } = *self;
+        Ok(ScheduleSettings { kind, quantity, delays, airspeed_tolerance_kt, tau_degree })
     }
 }

@@ -43,11 +43,11 @@ impl ResponseShape {
         Self { phase_deg: self.phase_deg.iter().map(|phase| phase + offset).collect(), ..self }
     }
 
-    /// The shape after a gain and a delay (M10).
+    /// The shape after a correction (M10).
     pub fn corrected(&self, omega: &[f64], correction: GainDelay) -> Self {
         let phase: Vec<f64> = self.phase_deg.iter().map(|degrees| degrees.to_radians()).collect();
         Self {
-            magnitude_db: correction.magnitudes_db(&self.magnitude_db).collect(),
+            magnitude_db: correction.magnitudes_db(&self.magnitude_db, omega).collect(),
             phase_deg: correction.phases(&phase, omega).map(f64::to_degrees).collect(),
         }
     }

@@ -1,6 +1,6 @@
 //! What a correction is worth: J before and after (M12).
 
-use crate::correction::ChannelCorrection;
+use crate::correction::{ChannelCorrection, ChannelLeads};
 use crate::dataset::PairTable;
 use crate::fidelity::{Cost, CostAverage, Mismatch};
 
@@ -40,8 +40,24 @@ pub fn assess(
     omega: &[f64],
     average: CostAverage,
 ) -> PairTable<Option<CostChange>> {
+    let corrected = corrected_cost(mismatch, correction, omega, average);
+    corrected.map(|pair, corrected| Some(CostChange { uncorrected: uncorrected[pair]?, corrected: (*corrected)? }))
+}
+
+/// J of every response of a model after `correction`, against the model it was compared with in `mismatch`; none where [`assess`]
+/// has none.
+pub fn corrected_cost(
+    mismatch: &PairTable<Option<Mismatch>>,
+    correction: &ChannelCorrection,
+    omega: &[f64],
+    average: CostAverage,
+) -> PairTable<Option<Cost>> {
+    // A filter is computed once for its channel, not for each of its responses.
+    let leads = correction.leads.as_ref().map(ChannelLeads::curves);
     mismatch.map(|pair, mismatch| {
-        let corrected = mismatch.as_ref()?.cost(omega, correction.on(pair)?, average);
-        Some(CostChange { uncorrected: uncorrected[pair]?, corrected })
+        let (mismatch, correction) = (mismatch.as_ref()?, correction.without_leads_on(pair)?);
+        let led = leads.as_ref().and_then(|leads| leads.on(pair));
+        let led = led.map(|lead| mismatch.multiplied(&lead.magnitude_db, &lead.phase));
+        Some(led.as_ref().unwrap_or(mismatch).cost(omega, correction, average))
     })
 }

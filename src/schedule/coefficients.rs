@@ -2,6 +2,7 @@
 
 use crate::correction::Channel;
 
+use super::lead_schedule::LeadSchedule;
 use super::regression::Regression;
 use super::schedule::{Schedule, ScheduledQuantity};
 
@@ -31,8 +32,9 @@ impl Schedule {
     /// The figures that it is made of; channels have these names.
     pub fn coefficients(&self, inputs: &[String], outputs: &[String]) -> CoefficientTable {
         const POWERS: [&str; 4] = ["1", "v", "v²", "v³"];
-        let (columns, scale) = match self.degree() {
+        let (columns, scale): (Vec<String>, String) = match self.degree() {
             Some(degree) => {
+                let degree = degree.max(self.leads.as_ref().map_or(0, LeadSchedule::degree));
                 let columns = POWERS[..=degree].iter().map(|&power| power.to_owned()).collect();
                 let (mean_kt, half_kt) = (self.airspeeds.mean_kt, self.airspeeds.half_range_kt);
                 (columns, format!("v = (V − {mean_kt:.2} kt) / {half_kt:.2} kt"))
@@ -46,15 +48,29 @@ impl Schedule {
             ScheduledQuantity::LnGain => "ln k",
             ScheduledQuantity::Gain => "k",
         };
+        let count = columns.len();
         let row = |(channel, regression): (Channel, &Regression), symbol: &str, unit: &str| CoefficientRow {
             channel,
             name: format!("{symbol}_{}{unit}", channel.name(inputs, outputs)),
-            figures: regression.figures().to_vec(),
+            figures: match (self.degree(), regression) {
+                // Signed delays are a polynomial beside a table of gains.
+                (None, Regression::Polynomial { .. }) => {
+                    self.airspeeds.clusters_kt().iter().map(|&kt| regression.at(&self.airspeeds, kt)).collect()
+                }
+                // The power of which there is none has the coefficient 0.
+                _ => {
+                    let none = std::iter::repeat(0.0);
+                    let figures = regression.figures().iter().copied().chain(none);
+                    figures.take(count).collect()
+                }
+            },
         };
         let gains = with_channels(&self.inputs, &self.outputs).map(|of| row(of, symbol, ""));
         let delays = self.delays.iter().flat_map(|delays| with_channels(&delays.inputs, &delays.outputs));
-        let delays = delays.map(|of| row(of, "τ", " [s]"));
-        CoefficientTable { columns, rows: gains.chain(delays).collect(), scale }
+        let leads = self.leads.iter().flat_map(|leads| with_channels(&leads.inputs, &leads.outputs));
+        let delays = delays.chain(leads).map(|of| row(of, "τ", " [s]"));
+        let rows = gains.chain(delays).collect();
+        CoefficientTable { columns, rows, scale }
     }
 }
 
@@ -79,6 +95,7 @@ mod tests {
             output_gains: vec![1.0],
             input_delays_s: vec![0.02],
             output_delays_s: vec![0.0],
+            leads: None,
         });
         let points: Vec<ScheduledPoint<'_>> = [60.0, 90.0, 120.0]
             .into_iter()

@@ -169,6 +169,7 @@ mod tests {
             output_gains: vec![2.0 / gain, 1.0],
             input_delays_s: vec![0.0],
             output_delays_s: vec![0.0; 2],
+            leads: None,
         };
         gains.iter().map(of).collect()
     }

@@ -1,7 +1,10 @@
 //! The correction scheduled with airspeed (M11).
 
 use crate::correction::{Channel, ChannelCorrection};
+use crate::dataset::ConditionId;
+use crate::units::{s_to_ms, signed};
 
+use super::lead_schedule::LeadSchedule;
 use super::regression::{Airspeeds, Regression};
 
 /// Places between two airspeeds at which a schedule is looked at.
@@ -43,6 +46,9 @@ pub struct ScheduleSettings {
     pub quantity: ScheduledQuantity,
     /// Whether delays are scheduled too.
     pub delays: bool,
+    /// Degree of the polynomial of signed delays, where leads are asked for, 0 to [`HIGHEST_DEGREE`]: servo, sensor and computing
+    /// lags do not depend on airspeed (M15.5).
+    pub tau_degree: usize,
     /// Airspeeds this close to the next one are one cluster \[kt\] (M11b).
     pub airspeed_tolerance_kt: f64,
 }
@@ -53,6 +59,7 @@ impl Default for ScheduleSettings {
             kind: ScheduleKind::Polynomial { degree: 2 },
             quantity: ScheduledQuantity::LnGain,
             delays: false,
+            tau_degree: 0,
             airspeed_tolerance_kt: DEFAULT_TOLERANCE_KT,
         }
     }
@@ -82,6 +89,8 @@ pub struct Schedule {
     pub outputs: Vec<Regression>,
     /// Delays as functions of airspeed, where delays are scheduled.
     pub delays: Option<DelaySchedule>,
+    /// Signed delays as functions of airspeed, where the conditions' corrections have leads (M15).
+    pub leads: Option<LeadSchedule>,
     /// What has to be known about it.
     pub cautions: Vec<ScheduleCaution>,
 }
@@ -120,6 +129,17 @@ pub enum ScheduleCaution {
         /// Least and greatest of the conditions' gains.
         range: [f64; 2],
     },
+    /// A channel's signed delay in one condition is far from that of the others, or of another sign (M15.6).
+    SignedDelayApart {
+        /// The channel.
+        channel: Channel,
+        /// The condition.
+        condition: ConditionId,
+        /// Its signed delay there \[s\].
+        tau_s: f64,
+        /// The mean of it in the other conditions \[s\].
+        elsewhere_s: f64,
+    },
     /// A gain is not positive somewhere between, which only a regression of `k` itself can give.
     NotPositive,
 }
@@ -146,6 +166,12 @@ impl ScheduleCaution {
                      where the conditions' gains go from {least:.3} to {most:.3}; lower the degree or take a table"
                 )
             }
+            ScheduleCaution::SignedDelayApart { channel, condition, tau_s, elsewhere_s } => format!(
+                "{}: {} ms in condition {condition} against {} ms elsewhere: not schedulable over airspeed",
+                channel.name(inputs, outputs),
+                signed(s_to_ms(*tau_s), 0),
+                signed(s_to_ms(*elsewhere_s), 0)
+            ),
             ScheduleCaution::NotPositive => "a scheduled gain is not positive somewhere in this range".to_owned(),
         }
     }
@@ -191,7 +217,8 @@ impl Schedule {
         };
         let inputs = fit_channels(|correction| &correction.input_gains, &quantity);
         let outputs = fit_channels(|correction| &correction.output_gains, &quantity);
-        let delays = settings.delays.then(|| {
+        let leads = LeadSchedule::of(points, &airspeeds, settings.tau_degree);
+        let delays = (settings.delays && leads.is_none()).then(|| {
             let same = |delay: f64| delay;
             let uppers: Vec<f64> = points.iter().map(|point| point.delay_upper_s).collect();
             DelaySchedule {
@@ -200,7 +227,12 @@ impl Schedule {
                 upper_s: Regression::table(&airspeeds, &uppers),
             }
         });
-        Ok(Self { settings, airspeeds, inputs, outputs, delays, cautions: Vec::new() })
+        Ok(Self { settings, airspeeds, inputs, outputs, delays, leads, cautions: Vec::new() })
+    }
+
+    /// Whether delays, or delays and leads, are scheduled.
+    pub fn has_delays(&self) -> bool {
+        self.delays.is_some() || self.leads.is_some()
     }
 
     /// Degree of the polynomial, which may be less than was asked for; `None` for a table.
@@ -213,7 +245,10 @@ impl Schedule {
 
     /// Whether it is nothing to go by between the conditions: a gain overshoots there, or is not positive.
     pub fn fails_between(&self) -> bool {
-        self.cautions.iter().any(|caution| !matches!(caution, ScheduleCaution::DegreeLowered { .. }))
+        let fails = |caution: &ScheduleCaution| {
+            matches!(caution, ScheduleCaution::Overshoot { .. } | ScheduleCaution::NotPositive)
+        };
+        self.cautions.iter().any(fails)
     }
 
     fn find_cautions(&self, points: &[ScheduledPoint<'_>]) -> Vec<ScheduleCaution> {
@@ -275,19 +310,22 @@ impl Schedule {
                 ScheduledQuantity::Gain => value,
             }
         };
-        let (input_delays_s, output_delays_s) = match &self.delays {
-            Some(DelaySchedule { inputs, outputs, upper_s }) => {
+        let leads = self.leads.as_ref().map(|leads| leads.at(&self.airspeeds, airspeed_kt));
+        let [input_delays_s, output_delays_s] = match (&self.delays, &leads) {
+            (_, Some(leads)) => leads.delays_s(),
+            (Some(DelaySchedule { inputs, outputs, upper_s }), None) => {
                 let upper_s = upper_s.at(&self.airspeeds, airspeed_kt);
                 let cut = |regression: &Regression| regression.at(&self.airspeeds, airspeed_kt).min(upper_s).max(0.0);
-                (inputs.iter().map(cut).collect(), outputs.iter().map(cut).collect())
+                [inputs, outputs].map(|channels| channels.iter().map(cut).collect())
             }
-            None => (vec![0.0; self.inputs.len()], vec![0.0; self.outputs.len()]),
+            (None, None) => [vec![0.0; self.inputs.len()], vec![0.0; self.outputs.len()]],
         };
         ChannelCorrection {
             input_gains: self.inputs.iter().map(gain).collect(),
             output_gains: self.outputs.iter().map(gain).collect(),
             input_delays_s,
             output_delays_s,
+            leads,
         }
     }
 }
@@ -303,6 +341,7 @@ mod tests {
             output_gains: vec![gain * gain],
             input_delays_s: vec![0.01],
             output_delays_s: vec![0.0],
+            leads: None,
         }
     }
 

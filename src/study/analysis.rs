@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::dataset::{ConditionId, PairTable};
-use crate::schedule::{CostChange, Evidence, Schedule, ScheduleError, evidence};
+use crate::schedule::{CostChange, Evidence, LeadEvidence, Schedule, ScheduleError, evidence, lead_evidence};
 
 use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
 use super::document::Study;
@@ -56,5 +56,10 @@ impl Analysis {
     /// [`ScheduleError`] where there is no schedule.
     pub fn evidence(&self) -> Result<Evidence, ScheduleError> {
         evidence(&scheduled_points(&self.study, &self.conditions), self.study.settings.schedule)
+    }
+
+    /// What speaks for each degree of the scheduled signed delays; none where leads are not asked for (M15.5).
+    pub fn lead_evidence(&self) -> Vec<LeadEvidence> {
+        lead_evidence(&scheduled_points(&self.study, &self.conditions), self.study.settings.schedule)
     }
 }

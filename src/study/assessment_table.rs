@@ -7,7 +7,7 @@ use crate::correction::ChannelCorrection;
 use crate::dataset::{BundleKind, ConditionId, Dataset, Pair, PairTable};
 use crate::fidelity::CostAverage;
 use crate::response::GainDelay;
-use crate::schedule::CostChange;
+use crate::schedule::{CostChange, corrected_cost};
 use crate::units::signed;
 
 use super::analysis::Analysis;
@@ -33,6 +33,8 @@ pub enum AssessedCorrection {
     /// The schedule at the condition's airspeed (the paper).
     #[default]
     Scheduled,
+    /// The schedule without the lead filters of its signed delays (M15).
+    ScheduledWithoutLeads,
     /// The condition's own optimum.
     Own,
 }
@@ -159,6 +161,9 @@ pub(super) fn assessed(
     let correction = match choice.correction {
         AssessedCorrection::Own => result.correction.clone(),
         AssessedCorrection::Scheduled => analysis.schedule.as_ref().map_err(ToString::to_string)?.at(airspeed_kt),
+        AssessedCorrection::ScheduledWithoutLeads => {
+            analysis.schedule.as_ref().map_err(ToString::to_string)?.at(airspeed_kt).without_leads()
+        }
     };
     let models = if by_nominal { &result.comparison.nominal } else { &result.comparison.representative };
     let changes = changes(models, &correction, &analysis.omega, choice.average);
@@ -173,10 +178,10 @@ fn changes(
     omega: &[f64],
     average: CostAverage,
 ) -> PairTable<Option<CostChange>> {
-    models.mismatch.map(|pair, mismatch| {
-        let mismatch = mismatch.as_ref()?;
-        let corrected = mismatch.cost(omega, correction.on(pair)?, average);
-        Some(CostChange { uncorrected: mismatch.cost(omega, GainDelay::NONE, average), corrected })
+    let corrected = corrected_cost(&models.mismatch, correction, omega, average);
+    corrected.map(|pair, corrected| {
+        let uncorrected = models.mismatch[pair].as_ref()?.cost(omega, GainDelay::NONE, average);
+        Some(CostChange { uncorrected, corrected: (*corrected)? })
     })
 }
 

@@ -3,12 +3,14 @@
 use std::sync::Arc;
 
 use crate::correction::{ChannelCorrection, GainBounds, Problem, ProblemError, Solution};
-use crate::dataset::{BundleKind, Condition, PairTable};
+use crate::dataset::{BundleKind, Condition, Pair, PairTable};
 use crate::fidelity::{Discontinuity, Representative};
 use crate::schedule::CostChange;
 
 use super::caution::Caution;
 use super::comparison::{BundleFigures, Comparison};
+use super::lead_offer::LeadOffer;
+use super::led::Led;
 
 /// Everything the analysis says of one condition.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,12 +23,16 @@ pub struct ConditionAnalysis {
     pub comparison: Arc<Comparison>,
     /// What the gains were asked to do.
     pub gain_problem: Arc<Problem>,
-    /// What the delays were asked to do.
+    /// What the delays, or the signed delays, were asked to do.
     pub delay_problem: Arc<Problem>,
     /// Optimal gains, eq. (7).
     pub gains: Arc<Solution>,
-    /// Optimal delays, eq. (11).
+    /// Optimal delays, eq. (11), or signed delays, M15.4.
     pub delays: Arc<Solution>,
+    /// What the leads leave, where leads are asked for (M15.5).
+    pub led: Option<Arc<Led>>,
+    /// What leads would buy, where all held responses want lead and leads are not asked for.
+    pub offer: Option<LeadOffer>,
     /// Both as one correction.
     pub correction: ChannelCorrection,
     /// J of the physics representative before and after this correction.
@@ -41,9 +47,25 @@ impl ConditionAnalysis {
         &self.gain_problem.constrained
     }
 
+    /// G of a response as the gains were asked for it: of what the leads leave, where there are any.
+    pub fn wanted_gain(&self, pair: Pair) -> Option<f64> {
+        self.gain_problem.delta[pair]
+    }
+
+    /// D of a response as the delays were asked for it \[s\]: of eq. (9), or of M15.2.
+    pub fn wanted_delay_s(&self, pair: Pair) -> Option<f64> {
+        self.delay_problem.delta[pair]
+    }
+
     /// Bounds of every channel gain.
     pub fn gain_bounds(&self) -> GainBounds {
         self.gain_problem.bounds
+    }
+
+    /// Least and greatest delay of every channel \[s\]; leads are negative (M15.4).
+    pub fn delay_bounds_s(&self) -> [f64; 2] {
+        // Adding zero turns minus zero into zero.
+        [self.delay_problem.bounds.lower + 0.0, self.delay_problem.bounds.upper]
     }
 
     /// Upper bound of every channel delay \[s\].

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::correction::{
-    Bounds, ChannelCorrection, DELAY_AGREEMENT_S, GainBounds, Problem, ProblemError, ProofBudget, Quantity, Solution,
-    delay_upper_s, gain_bounds, solve,
+    Bounds, ChannelCorrection, ChannelLeads, DELAY_AGREEMENT_S, GainBounds, LeadDesign, Problem, ProblemError,
+    ProofBudget, Quantity, Solution, delay_upper_s, gain_bounds, solve,
 };
 use crate::dataset::{BundleKind, Condition, Pair, PairTable};
 use crate::fidelity::CostAverage;
@@ -17,16 +17,20 @@ use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
 use super::condition_responses::{ConditionModels, ConditionResponses, GridKey, Purpose};
 use super::document::{ConditionChoice, Study};
 use super::executor::Execution;
+use super::lead_offer::{LeadOffer, OfferKey};
+use super::led::Led;
 use super::memo::Memo;
 use super::progress::Cancelled;
-use super::settings::Settings;
+use super::settings::{DelayFrom, PhaseCorrection, Settings};
 
 /// What the distances depend on, besides the models: the grid, the responses that measure them, and the coherence that counts.
 type FiguresKey = (GridKey, PairTable<bool>, Option<f64>);
 /// What the comparison of the representatives depends on, besides the models.
 type ComparisonKey = (FiguresKey, ConditionChoice, CostAverage);
-/// What the bounds depend on: the comparison, the quantile, and the bounds set by hand.
-type BoundsKey = (ComparisonKey, f64, Option<GainBounds>, Option<f64>);
+/// What the upper bound of the delays depends on: the comparison, the quantile, and the bound set by hand.
+type DelayBoundKey = (ComparisonKey, f64, Option<f64>);
+/// What the bounds of the gains depend on: the comparison, the leads, the quantile, and the bounds set by hand.
+type GainBoundsKey = (ComparisonKey, Option<ChannelLeads>, f64, Option<GainBounds>);
 
 /// The last result of each stage of a condition.
 #[derive(Clone, Debug)]
@@ -34,7 +38,10 @@ pub(super) struct ConditionStages {
     models: ConditionModels,
     figures: Memo<FiguresKey, Arc<BundleFigures>>,
     comparison: Memo<ComparisonKey, Result<Arc<Comparison>, ConditionFailure>>,
-    bounds: Memo<BoundsKey, (GainBounds, f64)>,
+    delay_upper_s: Memo<DelayBoundKey, f64>,
+    led: Memo<(ComparisonKey, ChannelLeads), Arc<Led>>,
+    gain_bounds: Memo<GainBoundsKey, GainBounds>,
+    offer: Memo<(ComparisonKey, OfferKey), PhaseLeft>,
     gains: Memo<Arc<Problem>, Solved>,
     delays: Memo<Arc<Problem>, Solved>,
     cost: Memo<(ComparisonKey, ChannelCorrection), Arc<PairTable<Option<CostChange>>>>,
@@ -47,7 +54,10 @@ impl ConditionStages {
             models,
             figures: Memo::default(),
             comparison: Memo::default(),
-            bounds: Memo::default(),
+            delay_upper_s: Memo::default(),
+            led: Memo::default(),
+            gain_bounds: Memo::default(),
+            offer: Memo::default(),
             gains: Memo::default(),
             delays: Memo::default(),
             cost: Memo::default(),
@@ -131,19 +141,31 @@ impl ConditionStages {
             Ok(comparison) => comparison,
             Err(failure) => return Ok(Err(failure)),
         };
-        let bounds_key = (key.clone(), settings.quantile, settings.gain_bounds, settings.delay_upper_s);
-        let bounds = self.bounds.get(bounds_key, |_| bounds_of(&comparison, settings, &measuring, grid));
-        let solved = match self.solve(&comparison, settings, bounds, proofs, execution)? {
+        let cost_key = key.clone();
+        let asked = Asked { settings, measuring: &measuring, omega: grid.omega(), comparison: &comparison, key: &key };
+        let solved = match self.solve(&asked, proofs, execution)? {
             Ok(solved) => solved,
             Err(failure) => return Ok(Err(failure)),
         };
         let correction = solved.correction();
-        let cost = self.cost.get((key, correction.clone()), |(_, correction)| {
-            let models = &comparison.representative;
-            Arc::new(assess(&models.mismatch, &models.cost, correction, grid.omega(), settings.cost_average))
+        let cost = self.cost.get((cost_key, correction.clone()), |(_, correction)| {
+            let (models, omega, average) = (&comparison.representative, grid.omega(), settings.cost_average);
+            Arc::new(match &solved.led {
+                None => assess(&models.mismatch, &models.cost, correction, omega, average),
+                Some(led) => {
+                    let corrected = led.cost(|pair| correction.without_leads_on(pair), omega, average);
+                    corrected
+                        .map(|pair, cost| Some(CostChange { uncorrected: models.cost[pair]?, corrected: (*cost)? }))
+                }
+            })
         });
+        let offer = match self.phase_left(&asked, &solved, execution)? {
+            Ok(Some(left)) => LeadOffer::of(&left, &cost),
+            // An offer that cannot be made is none.
+            Ok(None) | Err(_) => None,
+        };
         let cautions = cautions_of(settings, &comparison, &figures);
-        let Optima { gain_problem, delay_problem, gains, delays } = solved;
+        let Optima { gain_problem, delay_problem, gains, delays, led } = solved;
         Ok(Ok(ConditionAnalysis {
             condition: Arc::clone(condition),
             figures,
@@ -152,53 +174,134 @@ impl ConditionStages {
             delay_problem,
             gains,
             delays,
+            led,
+            offer,
             correction,
             cost,
             cautions,
         }))
     }
 
+    /// The phase that leads would leave, where they are not asked for.
+    fn phase_left(
+        &mut self,
+        asked: &Asked<'_>,
+        solved: &Optima,
+        execution: &Execution<'_>,
+    ) -> Result<PhaseLeft, Cancelled> {
+        let settings = asked.settings;
+        if settings.phase == PhaseCorrection::Lead {
+            return Ok(Ok(None));
+        }
+        let bound_key = (asked.key.clone(), settings.quantile, settings.delay_upper_s);
+        let upper_s = self.delay_upper_s.get(bound_key, |_| asked.delay_upper_s());
+        let key = (asked.key.clone(), OfferKey::of(settings, &solved.gain_problem.constrained, upper_s));
+        let stop = || execution.progress().cancelled();
+        self.offer.get_or_fail(key, |(_, key)| {
+            match key.phase_left(asked.comparison, (asked.omega, settings.cost_average), &stop) {
+                Err(ProblemError::Stopped) => Err(Cancelled),
+                left => Ok(left),
+            }
+        })
+    }
+
+    /// The delays, then the gains on what leads leave (M15.5).
     fn solve(
         &mut self,
-        comparison: &Comparison,
-        settings: &Settings,
-        (bounds, upper_s): (GainBounds, f64),
+        asked: &Asked<'_>,
         proofs: ProofBudget,
         execution: &Execution<'_>,
     ) -> Result<Result<Optima, ConditionFailure>, Cancelled> {
-        let delta = &comparison.delta;
-        let held = settings.constrained.map(|pair, constrained| *constrained && delta.gain[pair].is_some());
-        let gain_problem = Arc::new(Problem {
-            quantity: Quantity::Gain(settings.gain_objective),
-            delta: delta.gain.clone(),
-            constrained: held,
-            fitted: settings.fitted.clone(),
-            bounds,
-            alpha: settings.alpha_gain,
-            agreement: settings.agreement_db,
-        });
-        let delay_problem = Arc::new(Problem {
-            quantity: Quantity::Delay,
-            delta: delta.delay_s.clone(),
-            bounds: Bounds { lower: 0.0, upper: upper_s },
-            alpha: settings.alpha_delay,
-            agreement: DELAY_AGREEMENT_S,
-            ..Problem::clone(&gain_problem)
-        });
+        let settings = asked.settings;
         let stop = || execution.progress().cancelled();
         let solve = |problem: &Arc<Problem>| match solve(problem, proofs, &stop) {
             Err(ProblemError::Stopped) => Err(Cancelled),
             solved => Ok(solved.map(Arc::new)),
         };
-        let gains = self.gains.get_or_fail(Arc::clone(&gain_problem), solve)?;
+        let bound_key = (asked.key.clone(), settings.quantile, settings.delay_upper_s);
+        let upper_s = self.delay_upper_s.get(bound_key, |_| asked.delay_upper_s());
+        let design = (settings.phase == PhaseCorrection::Lead)
+            .then(|| Arc::new(LeadDesign::new(settings.lead, asked.omega.into())));
+        let delay_problem = Arc::new(asked.delay_problem(upper_s, design.as_deref()));
         let delays = self.delays.get_or_fail(Arc::clone(&delay_problem), solve)?;
+        let leads = match (&delays, design) {
+            (Err(error), Some(_)) => return Ok(Err(ConditionFailure::Delays(error.clone()))),
+            (Ok(delays), Some(design)) => {
+                Some(ChannelLeads::new(design, delays.inputs.clone(), delays.outputs.clone()))
+            }
+            (_, None) => None,
+        };
+        let led = leads.clone().map(|leads| {
+            let mismatch = &asked.comparison.representative.mismatch;
+            self.led.get((asked.key.clone(), leads), |(_, leads)| Led::of(mismatch, leads))
+        });
+        let bounds_key = (asked.key.clone(), leads, settings.quantile, settings.gain_bounds);
+        let bounds = self.gain_bounds.get(bounds_key, |_| asked.gain_bounds(led.as_deref()));
+        let gain_problem = Arc::new(asked.gain_problem(bounds, led.as_deref()));
+        let gains = self.gains.get_or_fail(Arc::clone(&gain_problem), solve)?;
         Ok(match (gains, delays) {
-            (Ok(gains), Ok(delays)) => Ok(Optima { gain_problem, delay_problem, gains, delays }),
+            (Ok(gains), Ok(delays)) => Ok(Optima { gain_problem, delay_problem, gains, delays, led }),
             (Err(error), _) => Err(ConditionFailure::Gains(error)),
             (_, Err(error)) => Err(ConditionFailure::Delays(error)),
         })
     }
 }
+
+/// What the optima of a condition are asked for.
+struct Asked<'a> {
+    settings: &'a Settings,
+    measuring: &'a PairTable<bool>,
+    omega: &'a [f64],
+    comparison: &'a Comparison,
+    key: &'a ComparisonKey,
+}
+
+impl Asked<'_> {
+    fn delay_upper_s(&self) -> f64 {
+        let (settings, mismatch) = (self.settings, &self.comparison.representative.mismatch);
+        let by_quantile = || delay_upper_s(mismatch, self.measuring, self.omega, settings.quantile);
+        settings.delay_upper_s.unwrap_or_else(by_quantile)
+    }
+
+    fn gain_bounds(&self, led: Option<&Led>) -> GainBounds {
+        let mismatch = led.map_or(&self.comparison.representative.mismatch, |led| &led.mismatch);
+        self.settings.gain_bounds.unwrap_or_else(|| gain_bounds(mismatch, self.measuring, self.settings.quantile))
+    }
+
+    fn gain_problem(&self, bounds: GainBounds, led: Option<&Led>) -> Problem {
+        let (settings, delta) = (self.settings, &self.comparison.delta);
+        Problem {
+            quantity: Quantity::Gain(settings.gain_objective),
+            delta: led.map_or(&delta.gain, |led| &led.gain).clone(),
+            constrained: settings.constrained.map(|pair, held| *held && delta.gain[pair].is_some()),
+            fitted: settings.fitted.clone(),
+            bounds,
+            alpha: settings.alpha_gain,
+            agreement: settings.agreement_db,
+        }
+    }
+
+    /// Delays of the D that is chosen, signed ones of the band delay; none at all where the phase is left as it is.
+    fn delay_problem(&self, upper_s: f64, design: Option<&LeadDesign>) -> Problem {
+        let (settings, delta) = (self.settings, &self.comparison.delta);
+        let upper_s = if settings.phase == PhaseCorrection::None { 0.0 } else { upper_s };
+        let held =
+            |pair: Pair, held: &bool| *held && delta.gain[pair].is_some() && settings.phase != PhaseCorrection::None;
+        let from_band = design.is_some() || settings.delay_from == DelayFrom::Band;
+        Problem {
+            quantity: if design.is_some() { Quantity::SignedDelay } else { Quantity::Delay },
+            delta: if from_band { delta.band_delay_s.clone() } else { delta.delay_s.clone() },
+            constrained: settings.constrained.map(held),
+            fitted: settings.fitted.clone(),
+            bounds: Bounds { lower: design.map_or(0.0, LeadDesign::lower_s), upper: upper_s },
+            alpha: settings.alpha_delay,
+            agreement: DELAY_AGREEMENT_S,
+        }
+    }
+}
+
+/// J_phase of each response that leads would leave, where all held responses want lead.
+type PhaseLeft = Result<Option<Arc<PairTable<Option<f64>>>>, ProblemError>;
 
 /// What came of one problem.
 type Solved = Result<Arc<Solution>, ProblemError>;
@@ -209,15 +312,20 @@ struct Optima {
     delay_problem: Arc<Problem>,
     gains: Arc<Solution>,
     delays: Arc<Solution>,
+    led: Option<Arc<Led>>,
 }
 
 impl Optima {
     fn correction(&self) -> ChannelCorrection {
+        let leads = self.led.as_ref().map(|led| led.leads.clone());
+        let of_delays = || [self.delays.inputs.clone(), self.delays.outputs.clone()];
+        let [input_delays_s, output_delays_s] = leads.as_ref().map_or_else(of_delays, ChannelLeads::delays_s);
         ChannelCorrection {
             input_gains: self.gains.inputs.clone(),
             output_gains: self.gains.outputs.clone(),
-            input_delays_s: self.delays.inputs.clone(),
-            output_delays_s: self.delays.outputs.clone(),
+            input_delays_s,
+            output_delays_s,
+            leads,
         }
     }
 }
@@ -237,19 +345,6 @@ fn check_comparable(
         identified: name(BundleKind::Identified, comparison.identified.model),
         because,
     })
-}
-
-fn bounds_of(
-    comparison: &Comparison,
-    settings: &Settings,
-    measuring: &PairTable<bool>,
-    grid: &FrequencyGrid,
-) -> (GainBounds, f64) {
-    let mismatch = &comparison.representative.mismatch;
-    let gains = settings.gain_bounds.unwrap_or_else(|| gain_bounds(mismatch, measuring, settings.quantile));
-    let delay =
-        settings.delay_upper_s.unwrap_or_else(|| delay_upper_s(mismatch, measuring, grid.omega(), settings.quantile));
-    (gains, delay)
 }
 
 fn cautions_of(settings: &Settings, comparison: &Comparison, figures: &BundleFigures) -> Vec<Caution> {

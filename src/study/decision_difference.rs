@@ -86,6 +86,11 @@ fn setting_words(settings: &Settings) -> Vec<(&'static str, String)> {
         ("coherence", coherence),
         ("α of the gains", number(settings.alpha_gain)),
         ("α of the delays", number(settings.alpha_delay)),
+        ("phase correction", settings.phase.words().to_owned()),
+        ("D of the delays", settings.delay_from.words().to_owned()),
+        ("order of the lead filters", settings.lead.order.number().to_string()),
+        ("n of the lead filters", number(settings.lead.pole)),
+        ("R_max of the lead filters", number(settings.lead.limit)),
         ("objective of the gains", objective.to_owned()),
         ("quantile of the bounds", format!("{} %", number(100.0 * settings.quantile))),
         ("gain bounds", gain_bounds),
@@ -96,7 +101,7 @@ fn setting_words(settings: &Settings) -> Vec<(&'static str, String)> {
     words
 }
 
-fn schedule_words(schedule: ScheduleSettings) -> [(&'static str, String); 4] {
+fn schedule_words(schedule: ScheduleSettings) -> [(&'static str, String); 5] {
     let kind = match schedule.kind {
         ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree}"),
         ScheduleKind::Table => "table".to_owned(),
@@ -110,6 +115,7 @@ fn schedule_words(schedule: ScheduleSettings) -> [(&'static str, String); 4] {
         ("schedule", kind),
         ("what is scheduled", quantity.to_owned()),
         ("delays", delays.to_owned()),
+        ("degree of the signed delays", schedule.tau_degree.to_string()),
         ("airspeed tolerance", format!("{} kt", number(schedule.airspeed_tolerance_kt))),
     ]
 }

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::correction::{Problem, ProofBudget, Solution};
+use crate::correction::{Channel, ChannelLeads, Problem, ProofBudget, Solution};
 use crate::dataset::{Band, BundleKind, Condition, ConditionId, Dataset};
 use crate::response::FrequencyGrid;
-use crate::schedule::{Schedule, ScheduleError, ScheduledPoint, assess};
+use crate::schedule::{Schedule, ScheduleCaution, ScheduleError, ScheduledPoint, assess};
 
 use super::analysis::{Analysis, Assessed};
 use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
@@ -93,7 +93,10 @@ impl Engine {
         let total = study.dataset.conditions().iter().map(|of| ConditionStages::steps(of)).sum();
         let execution = Execution::new(self.executor.as_ref(), progress, total);
         let conditions = analyze_conditions(&mut self.conditions, study, &grid, self.proofs, &execution)?;
-        let schedule = Schedule::of(&scheduled_points(study, &conditions), study.settings.schedule);
+        let mut schedule = Schedule::of(&scheduled_points(study, &conditions), study.settings.schedule);
+        if let Ok(schedule) = &mut schedule {
+            schedule.cautions.extend(signed_delays_apart(study, &conditions));
+        }
         let all = study.dataset.conditions();
         let assess = |index: usize| assessed(study, &all[index], conditions.get(&all[index].id()), &schedule, &grid);
         let assessment = execution.each(all.len(), 0, assess)?;
@@ -190,6 +193,34 @@ pub(super) fn scheduled_points<'a>(study: &Study, outcomes: &'a Outcomes) -> Vec
             Some(ScheduledPoint { airspeed_kt, correction: &analysis.correction, delay_upper_s })
         })
         .collect()
+}
+
+/// The channels of which no schedule can hold the signed delays of all conditions (M15.6).
+fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCaution> {
+    /// Farther than this \[s\] from the mean a signed delay is not scheduled.
+    const APART_S: f64 = 0.02;
+    /// Below this \[s\] a sign says nothing.
+    const NOTHING_S: f64 = 2e-3;
+    let chosen = study.dataset.conditions().iter().filter(|condition| study.choice(condition.id()).scheduled);
+    let leads = chosen.filter_map(|condition| {
+        let led = outcomes.get(&condition.id())?.as_ref().ok()?.led.as_ref()?;
+        Some((condition.id(), &led.leads))
+    });
+    let leads: Vec<(ConditionId, &ChannelLeads)> = leads.collect();
+    let (inputs, outputs) = (study.dataset.inputs().len(), study.dataset.outputs().len());
+    let channels = (0..inputs).map(Channel::Input).chain((0..outputs).map(Channel::Output));
+    let caution = |channel: Channel| {
+        let taus_s: Vec<(ConditionId, f64)> = leads.iter().map(|(id, leads)| (*id, leads.tau_s(channel))).collect();
+        let sum_s: f64 = taus_s.iter().map(|(_, tau_s)| tau_s).sum();
+        let mean_s = sum_s / taus_s.len() as f64;
+        let apart = |tau_s: f64| (tau_s - mean_s).abs();
+        let &(condition, tau_s) = taus_s.iter().max_by(|a, b| apart(a.1).total_cmp(&apart(b.1)))?;
+        let signs = [-1.0, 1.0].map(|sign| taus_s.iter().any(|(_, tau_s)| sign * tau_s > NOTHING_S));
+        let elsewhere_s = (sum_s - tau_s) / (taus_s.len() as f64 - 1.0);
+        (taus_s.len() > 1 && (apart(tau_s) > APART_S || signs == [true; 2]))
+            .then_some(ScheduleCaution::SignedDelayApart { channel, condition, tau_s, elsewhere_s })
+    };
+    channels.filter_map(caution).collect()
 }
 
 fn assessed(

@@ -25,6 +25,9 @@ mod identified_bundle;
 mod identify_job;
 mod inventory;
 mod job;
+mod lead_offer;
+mod lead_remark;
+mod led;
 mod memo;
 mod progress;
 mod remark;
@@ -63,12 +66,16 @@ pub use identified_bundle::{OfferedModels, identified_bundle, pieces_used};
 pub use identify_job::{IdentificationNews, IdentifyJob};
 pub use inventory::{ConditionInventory, Inventory};
 pub use job::{CurvesJob, Job, ModesJob, ProofJob, TogglesJob};
+pub use lead_offer::LeadOffer;
+pub use lead_remark::{lead_cautions, lead_words, servo_words};
+pub use led::Led;
 pub use progress::{Cancelled, Progress, Unobserved};
 pub use remark::{Remark, RemarkKind, details, remarks};
 pub use setting::Setting;
 pub use settings::{
-    DEFAULT_AGREEMENT_DB, DEFAULT_COHERENCE, GREATEST_AGREEMENT_DB, GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE,
-    LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, Settings,
+    DEFAULT_AGREEMENT_DB, DEFAULT_COHERENCE, DelayFrom, GREATEST_AGREEMENT_DB, GREATEST_DELAY_S, GREATEST_GAIN,
+    GREATEST_QUANTILE, LARGEST_ALPHA, LEAD_LIMITS, LEAD_POLES, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, PhaseCorrection,
+    Settings,
 };
 pub use table::Table;
 pub use taken_models::{Taken, TakenModels};

@@ -1,6 +1,6 @@
 //! What the result of a condition says, in the engineer's words: the same in the window and in a terminal.
 
-use crate::correction::{Sensitivity, sensitivities};
+use crate::correction::{Sensitivity, kkt_residual, sensitivities};
 use crate::dataset::Pair;
 use crate::schedule::Schedule;
 use crate::units::{number, s_to_ms, telling, told_apart};
@@ -8,6 +8,8 @@ use crate::units::{number, s_to_ms, telling, told_apart};
 use super::caution::Caution;
 use super::condition_analysis::ConditionAnalysis;
 use super::document::Study;
+use super::lead_remark::lead_remarks;
+use super::settings::PhaseCorrection;
 
 /// How a remark is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,22 +31,28 @@ pub struct Remark {
     pub text: String,
     /// The response that the engineer may want to ignore in the objective.
     pub ignore: Option<Pair>,
+    /// The correction of the phase that the engineer may want in place of the present one.
+    pub phase: Option<PhaseCorrection>,
 }
 
 impl Remark {
     /// A remark that offers nothing.
     pub fn new(kind: RemarkKind, text: String) -> Self {
-        Self { kind, text, ignore: None }
+        Self { kind, text, ignore: None, phase: None }
     }
 }
 
 /// Which held gains and delays were matched, which were not and why, and the cautions of the condition and of the schedule.
 pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Schedule>) -> Vec<Remark> {
     let mut remarks = gain_remarks(study, result);
-    remarks.extend(delay_remarks(study, result));
+    if study.settings.phase == PhaseCorrection::Delay {
+        remarks.extend(delay_remarks(study, result));
+    }
+    remarks.extend(lead_remarks(study, result));
     remarks.extend(agreement_remarks(study, result));
     remarks.extend(coherence_remark(result));
     remarks.extend(worse_remark(study, result));
+    remarks.extend(others_worse_remark(study, result));
     if !study.choice(result.condition.id()).scheduled {
         let text = "This condition is left out of the schedule: its gains do not count in it.".to_owned();
         remarks.push(Remark::new(RemarkKind::Caution, text));
@@ -54,6 +62,7 @@ pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Sche
         kind: RemarkKind::Caution,
         text: caution.words(pair_name),
         ignore: caution.offers_to_ignore(),
+        phase: None,
     }));
     if let Some(schedule) = schedule {
         let (inputs, outputs) = study.dataset.names_of_channels();
@@ -104,16 +113,30 @@ fn coherence_remark(result: &ConditionAnalysis) -> Option<Remark> {
 
 /// The held responses that the correction takes away from flight.
 fn worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
-    /// A rise of J that nobody sees.
-    const NOTABLE: f64 = 0.5;
+    // Half is a rise of J that nobody sees; of leads every one is told (M15.6).
+    let notable = if study.settings.phase == PhaseCorrection::Lead { 0.0 } else { 0.5 };
     let worse = result.held().marked().filter_map(|pair| {
         let change = result.cost[pair]?;
         let (before, after) = told_apart(change.uncorrected.total(), change.corrected.total(), 0);
-        (change.total() > NOTABLE).then(|| format!("{} (J {before} → {after})", study.dataset.pair_name(pair)))
+        (change.total() > notable).then(|| format!("{} (J {before} → {after})", study.dataset.pair_name(pair)))
     });
     let worse: Vec<String> = worse.collect();
     (!worse.is_empty()).then(|| {
         let text = format!("Held, yet farther from flight than without a correction: {}.", worse.join(", "));
+        Remark::new(RemarkKind::Caution, text)
+    })
+}
+
+/// How many of the responses that are not held leads take away from flight (M15.6).
+fn others_worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
+    let others = result.cost.iter().filter(|(pair, _)| !result.held()[*pair]);
+    let changes: Vec<f64> = others.filter_map(|(_, change)| Some(change.as_ref()?.total())).collect();
+    let worse = changes.iter().filter(|change| **change > 0.0).count();
+    (study.settings.phase == PhaseCorrection::Lead && worse > 0).then(|| {
+        let text = format!(
+            "{worse} of the {} responses that are not held are farther from flight than without.",
+            changes.len()
+        );
         Remark::new(RemarkKind::Caution, text)
     })
 }
@@ -166,6 +189,12 @@ pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
         format!("Another set of gains is only {worse:.2} % worse: {of_inputs}; {of_outputs}.")
     }));
     let top = study.settings.band.max();
+    if study.settings.phase == PhaseCorrection::Lead {
+        let residual_s = kkt_residual(&result.delay_problem, &result.delays);
+        details.push(format!(
+            "The program of delays and leads is convex: KKT residual {residual_s:.0e} s, which proves its optimum."
+        ));
+    }
     details.extend(result.delays.unmatched.iter().map(|unmatched| unmatched.words(top, &inputs, &outputs)));
     let notable = |sensitivity: &Sensitivity| sensitivity.share_per_unit.abs() > NOTABLE;
     for (problem, solution) in [(&result.gain_problem, &result.gains), (&result.delay_problem, &result.delays)] {

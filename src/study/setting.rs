@@ -3,13 +3,14 @@
 use crate::correction::{GainBounds, GainObjective};
 use crate::dataset::{Band, Dataset, Pair, PairTable};
 use crate::fidelity::CostAverage;
+use crate::response::LeadOrder;
 use crate::schedule::{HIGHEST_DEGREE, ScheduleKind, ScheduleSettings};
 use crate::units::number;
 
 use super::edit::EditRefusal;
 use super::settings::{
-    GREATEST_AGREEMENT_DB, GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE, LARGEST_ALPHA, LEAST_GAIN, LEAST_POINTS,
-    MOST_POINTS, Settings,
+    DelayFrom, GREATEST_AGREEMENT_DB, GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE, LARGEST_ALPHA, LEAD_LIMITS,
+    LEAD_POLES, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, PhaseCorrection, Settings,
 };
 
 /// Widest gap \[kt\] within which airspeeds may be taken as one.
@@ -34,6 +35,16 @@ pub enum Setting {
     CostAverage(CostAverage),
     /// Least coherence that counts; `None` lets coherence count for nothing.
     Coherence(Option<f64>),
+    /// How the phase is corrected.
+    Phase(PhaseCorrection),
+    /// Which D the delays are fitted to.
+    DelayFrom(DelayFrom),
+    /// Order of the lead filters.
+    LeadOrder(LeadOrder),
+    /// `n` of the lead filters.
+    LeadPole(f64),
+    /// Greatest gain of a lead filter at high frequency.
+    LeadLimit(f64),
     /// What the gains minimise.
     GainObjective(GainObjective),
     /// Quantile that sets the bounds.
@@ -71,6 +82,11 @@ impl Setting {
             Setting::Points(_) => "number of frequencies",
             Setting::CostAverage(_) => "average in J",
             Setting::Coherence(_) => "coherence threshold",
+            Setting::Phase(_) => "phase correction",
+            Setting::DelayFrom(_) => "D of the delays",
+            Setting::LeadOrder(_) => "order of the lead filters",
+            Setting::LeadPole(_) => "n of the lead filters",
+            Setting::LeadLimit(_) => "R_max of the lead filters",
             Setting::GainObjective(_) => "objective of the gains",
             Setting::Quantile(_) => "quantile of the bounds",
             Setting::GainBounds(_) => "gain bounds",
@@ -99,7 +115,10 @@ impl Setting {
             Setting::AlphaGain(alpha) | Setting::AlphaDelay(alpha) => {
                 self.check_range("a number", *alpha, 0.0, LARGEST_ALPHA)
             }
-            Setting::Schedule(ScheduleSettings { kind, airspeed_tolerance_kt, .. }) => {
+            Setting::LeadPole(pole) => self.check_range("a number", *pole, LEAD_POLES[0], LEAD_POLES[1]),
+            Setting::LeadLimit(limit) => self.check_range("a ratio", *limit, LEAD_LIMITS[0], LEAD_LIMITS[1]),
+            Setting::Schedule(ScheduleSettings { kind, airspeed_tolerance_kt, tau_degree, .. }) => {
+                self.check_range("a whole number", *tau_degree as f64, 0.0, HIGHEST_DEGREE as f64)?;
                 if let ScheduleKind::Polynomial { degree } = kind {
                     self.check_range("a whole number", *degree as f64, 0.0, HIGHEST_DEGREE as f64)?;
                 }
@@ -135,6 +154,11 @@ impl Settings {
             Setting::Points(points) => self.points = *points,
             Setting::CostAverage(average) => self.cost_average = *average,
             Setting::Coherence(threshold) => self.coherence_threshold = *threshold,
+            Setting::Phase(phase) => self.phase = *phase,
+            Setting::DelayFrom(from) => self.delay_from = *from,
+            Setting::LeadOrder(order) => self.lead.order = *order,
+            Setting::LeadPole(pole) => self.lead.pole = *pole,
+            Setting::LeadLimit(limit) => self.lead.limit = *limit,
             Setting::GainObjective(objective) => self.gain_objective = *objective,
             Setting::Quantile(quantile) => self.quantile = *quantile,
             Setting::GainBounds(bounds) => self.gain_bounds = *bounds,

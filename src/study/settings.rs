@@ -1,6 +1,6 @@
 //! Every setting that changes a result.
 
-use crate::correction::{GainBounds, GainObjective};
+use crate::correction::{GainBounds, GainObjective, LeadSettings};
 use crate::dataset::{Band, Dataset, PairTable};
 use crate::fidelity::CostAverage;
 use crate::schedule::ScheduleSettings;
@@ -28,6 +28,77 @@ pub const DEFAULT_AGREEMENT_DB: f64 = 0.05;
 /// Least coherence of a frequency that counts before any decision (M4a).
 pub const DEFAULT_COHERENCE: f64 = 0.6;
 
+/// Least and greatest `n` of the lead filters, of which the lag time constant is `1 / (n omega_B)` (M15.3).
+pub const LEAD_POLES: [f64; 2] = [2.0, 10.0];
+/// Least and greatest limit of the gain of a lead filter at high frequency (0 and 40 dB).
+pub const LEAD_LIMITS: [f64; 2] = [1.0, 100.0];
+
+/// How the phase is corrected.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum PhaseCorrection {
+    /// Not at all: gains alone.
+    None,
+    /// By delays (the paper, M9).
+    #[default]
+    Delay,
+    /// By one signed delay a channel: a delay, or a lead filter where it is negative (M15).
+    Lead,
+}
+
+impl PhaseCorrection {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::None, Self::Delay, Self::Lead];
+
+    /// Its name in files and on a command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Delay => "delay",
+            Self::Lead => "lead",
+        }
+    }
+
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Delay => "delay",
+            Self::Lead => "delay or lead",
+        }
+    }
+}
+
+/// Which D the delays are fitted to. Leads are always fitted to the band delay (M15.5).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum DelayFrom {
+    /// The median of `Delta phi / omega`, eq. (9) (the paper).
+    #[default]
+    Median,
+    /// The band delay: the straight line of least squares through `Delta phi` (M15.2).
+    Band,
+}
+
+impl DelayFrom {
+    /// Both of them.
+    pub const ALL: [Self; 2] = [Self::Median, Self::Band];
+
+    /// Its name in files and on a command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Median => "median",
+            Self::Band => "band",
+        }
+    }
+
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Median => "median of Δφ/ω, eq. (9)",
+            Self::Band => "line through Δφ over the band",
+        }
+    }
+}
+
 /// Every setting that changes a result; the same for all conditions of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -42,8 +113,14 @@ pub struct Settings {
     pub coherence_threshold: Option<f64>,
     /// Weight of the regularisation of the output gains, eq. (7).
     pub alpha_gain: f64,
-    /// Weight of the regularisation of the output delays, eq. (11).
+    /// Weight of the regularisation of the output delays, eq. (11), or of all signed delays (M15.4).
     pub alpha_delay: f64,
+    /// How the phase is corrected (M9, M15).
+    pub phase: PhaseCorrection,
+    /// Which D the delays are fitted to (M15.2).
+    pub delay_from: DelayFrom,
+    /// What lead filters have in common (M15.3).
+    pub lead: LeadSettings,
     /// What the gains minimise.
     pub gain_objective: GainObjective,
     /// Which responses are held exactly; they start as the on-axis pairs.
@@ -73,6 +150,9 @@ impl Settings {
             coherence_threshold: dataset.has_coherence().then_some(DEFAULT_COHERENCE),
             alpha_gain: 1.0,
             alpha_delay: 1.0,
+            phase: PhaseCorrection::default(),
+            delay_from: DelayFrom::default(),
+            lead: LeadSettings::default(),
             gain_objective: GainObjective::Ratio,
             constrained: dataset.on_axis().clone(),
             fitted: PairTable::filled(outputs, inputs, true),

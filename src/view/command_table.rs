@@ -4,7 +4,7 @@ use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
 
 use crate::dataset::Pair;
 use crate::figure::FigureFormat;
-use crate::study::{Edit, Setting};
+use crate::study::{Edit, PhaseCorrection, Setting};
 
 use super::arrangement::{Preset, View};
 use super::assembling::AssemblingCommand;
@@ -96,6 +96,7 @@ pub fn command_table(state: &State) -> Vec<Entry> {
     entries.extend(edit_entries(state));
     entries.extend(view_entries(state));
     entries.extend(curve_entries(state));
+    entries.extend(phase_entries(state));
     entries.extend(field_entries());
     entries.extend(TableKind::ALL.map(|kind| {
         Entry::new(format!("Copy table: {}", kind.name()), "As text, one line a row", Command::CopyTable(kind))
@@ -325,6 +326,15 @@ const FIELDS: [(&str, &str); 11] = [
     ("Set the agreement tolerance…", "Agreement tolerance"),
     ("Set the airspeed tolerance…", "Airspeed tolerance"),
 ];
+
+fn phase_entries(state: &State) -> impl Iterator<Item = Entry> {
+    let now = state.study.settings.phase;
+    PhaseCorrection::ALL.into_iter().map(move |phase| {
+        let meaning = "How the phase is corrected, in every condition (M9, M15)";
+        let command = Edit::Set(Setting::Phase(phase)).into();
+        Entry::new(format!("Phase correction: {}", phase.words()), meaning, command).enabled(phase != now)
+    })
+}
 
 fn field_entries() -> impl Iterator<Item = Entry> {
     FIELDS.into_iter().map(|(name, field)| Entry::new(name, "Goes to its field", Command::FocusField(field)))

@@ -2,6 +2,7 @@
 
 use egui::{Color32, Rect, RichText, Sense, Ui, vec2};
 
+use crate::correction::Unmatched;
 use crate::dataset::{Condition, ConditionId, FlightState};
 use crate::study::Edit;
 
@@ -103,7 +104,7 @@ struct Marks {
     suggested: usize,
     /// Held gains that are not matched.
     unmatched_gains: usize,
-    /// Held delays that are not matched, though a delay could: not those that need lead, which no decision can give.
+    /// Held delays that are not matched, though a decision could match them: not those that need lead where leads are not asked for.
     unmatched_delays: usize,
     left_out: bool,
     failure: Option<String>,
@@ -121,8 +122,8 @@ impl Marks {
                 let is_open = |model: &String| !choice.physics.rejected.contains(model);
                 marks.suggested = result.suggested().iter().filter(|model| is_open(model)).count();
                 marks.unmatched_gains = result.gains.unmatched.len();
-                marks.unmatched_delays =
-                    result.delays.unmatched.iter().filter(|unmatched| unmatched.delta >= 0.0).count();
+                let is_open = |missed: &&Unmatched| result.led.is_some() || missed.delta >= 0.0;
+                marks.unmatched_delays = result.delays.unmatched.iter().filter(is_open).count();
             }
         }
         marks

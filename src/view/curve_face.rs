@@ -102,7 +102,8 @@ fn detail(shown: Option<&ConditionAnalysis>, model: &Model, id: &ModelId, reject
     ratio.into_iter().chain(source).chain([action.to_owned()]).collect::<Vec<_>>().join(" · ")
 }
 
-/// The physics representative under the condition's own correction, and under the schedule's.
+/// The physics representative under the condition's own correction, under the schedule's, and where there are leads under its own
+/// without them.
 pub(super) fn corrected_faces(state: &State, condition: &Condition, pair: Pair) -> Vec<CorrectedFace> {
     let Some(shown) = state.shown() else { return Vec::new() };
     let name = shown.representative_name(BundleKind::Physics);
@@ -123,5 +124,9 @@ pub(super) fn corrected_faces(state: &State, condition: &Condition, pair: Pair) 
         let correction = schedule.at(state.condition().flight_state().airspeed_kt);
         face(CurveId::Scheduled, label, Role::Scheduled, &correction)
     });
-    own.into_iter().chain(scheduled).collect()
+    let without = shown.led.as_ref().and_then(|_| {
+        let correction = shown.correction.clone().without_leads();
+        face(CurveId::WithoutLeads, format!("{name}, corrected without leads"), Role::WithoutLeads, &correction)
+    });
+    own.into_iter().chain(scheduled).chain(without).collect()
 }

@@ -45,7 +45,7 @@ impl ErrorShape {
     fn drawn(&self, correction: GainDelay, omega: &[f64], unit: PhaseErrorUnit) -> DrawnError {
         let phase = correction.phases(&self.phase, omega).zip(omega);
         DrawnError {
-            magnitude_db: correction.magnitudes_db(&self.mismatch_db).map(|db| -db).collect(),
+            magnitude_db: correction.magnitudes_db(&self.mismatch_db, omega).map(|db| -db).collect(),
             phase: match unit {
                 PhaseErrorUnit::Degree => phase.map(|(phase, _)| phase.to_degrees()).collect(),
                 PhaseErrorUnit::Millisecond => phase.map(|(phase, omega)| s_to_ms(phase / omega)).collect(),
@@ -250,12 +250,11 @@ fn signed(value: f64) -> String {
 }
 
 fn delta_rules(shown: &ConditionAnalysis, pair: Pair, unit: PhaseErrorUnit) -> Vec<Rule> {
-    let delta = &shown.comparison.delta;
-    let gain = delta.gain[pair].map(|gain| {
+    let gain = shown.wanted_gain(pair).map(|gain| {
         let label = format!("G {gain:.3} ({} dB), median over the band", signed(ratio_to_db(gain)));
         gain_rule(RuleKind::Delta, label, gain)
     });
-    let delay = delta.delay_s[pair].map(|delay_s| {
+    let delay = shown.wanted_delay_s(pair).map(|delay_s| {
         let meaning = if delay_s < 0.0 { ": lead is missing" } else { "" };
         let label = format!("D {} ms{meaning}", signed(s_to_ms(delay_s)));
         delay_rule(RuleKind::Delta, label, delay_s, unit)

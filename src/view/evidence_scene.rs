@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use crate::dataset::{ConditionId, Pair};
-use crate::schedule::{Evidence, KindEvidence, ScheduleKind};
+use crate::schedule::{Evidence, KindEvidence, LeadEvidence, LeadFit, ScheduleKind};
 use crate::study::{Analysis, Table};
-use crate::units::signed;
+use crate::units::{s_to_ms, signed};
 
 use super::net_gain_scene::net_gain_pairs;
 use super::state::State;
@@ -15,6 +15,7 @@ use super::state::State;
 pub struct CachedEvidence {
     analysis: Option<Arc<Analysis>>,
     found: Option<(Vec<ConditionId>, Evidence)>,
+    leads: Vec<LeadEvidence>,
 }
 
 impl CachedEvidence {
@@ -25,15 +26,43 @@ impl CachedEvidence {
             return;
         };
         if !self.analysis.as_ref().is_some_and(|known| Arc::ptr_eq(known, analysis)) {
+            self.leads = analysis.lead_evidence();
             self.found = analysis.evidence().ok().map(|evidence| (analysis.scheduled(), evidence));
             self.analysis = Some(Arc::clone(analysis));
         }
+    }
+
+    /// The evidence for each degree of the signed delays.
+    pub fn leads(&self) -> &[LeadEvidence] {
+        &self.leads
     }
 
     /// The conditions of the schedule, and the evidence in their order.
     pub fn found(&self) -> Option<(&[ConditionId], &Evidence)> {
         self.found.as_ref().map(|(conditions, evidence)| (conditions.as_slice(), evidence))
     }
+}
+
+/// For each degree of the scheduled signed delays what it misses of each response shown, and what it would have missed of a condition
+/// that it has not seen; none where there are no leads.
+pub fn lead_evidence_table(state: &State, evidence: &[LeadEvidence]) -> Option<Table> {
+    let pairs = net_gain_pairs(state);
+    let names = pairs.iter().flat_map(|pair| {
+        let name = state.dataset().pair_name(*pair);
+        [format!("{name}, fit [ms]"), format!("{name}, unseen [ms]")]
+    });
+    let columns = std::iter::once("signed delays".to_owned()).chain(names);
+    let mut table = Table::new("Errors of each degree of the signed delays", columns);
+    for of in evidence {
+        let figure =
+            |error_s: Option<f64>| error_s.map_or("–".to_owned(), |error_s| format!("{:.2}", s_to_ms(error_s)));
+        let cells = pairs.iter().flat_map(|pair| {
+            let LeadFit { rms_s, left_out_rms_s } = of.pairs[*pair];
+            [figure(Some(rms_s)), figure(left_out_rms_s)]
+        });
+        table.row(std::iter::once(kind_name(ScheduleKind::Polynomial { degree: of.degree })).chain(cells));
+    }
+    (!evidence.is_empty()).then_some(table)
 }
 
 /// What a form of the schedule is called in the table.

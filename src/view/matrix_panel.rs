@@ -25,6 +25,8 @@ const LEAST_CELL_WIDTH: f32 = 58.0;
 const ROW_LABEL_WIDTH: f32 = 30.0;
 const HEADER_HEIGHT: f32 = 18.0;
 const LOCK_SIZE: f32 = 15.0;
+/// Two figures of D this far apart \[s\] stand beside one another.
+const APART_S: f64 = 2e-3;
 
 /// Every response as a cell. A click on the cell chooses the response for the large plot; a click on its box, a double click or
 /// the space bar holds or frees it; the secondary button offers more.
@@ -103,7 +105,14 @@ impl<'a> Cell<'a> {
     }
 
     fn gain(&self) -> Option<f64> {
-        self.shown?.comparison.delta.gain[self.pair]
+        self.shown?.wanted_gain(self.pair)
+    }
+
+    /// The D that is not fitted: of the band (M15.2), or of eq. (9) where the delays are fitted to the band.
+    fn other_delay_s(&self) -> Option<f64> {
+        let delta = &self.shown?.comparison.delta;
+        let (median_s, band_s) = (delta.delay_s[self.pair]?, delta.band_delay_s[self.pair]?);
+        Some(if self.shown?.wanted_delay_s(self.pair) == Some(band_s) { median_s } else { band_s })
     }
 
     /// Why it has no G, once that is known.
@@ -193,14 +202,16 @@ impl<'a> Cell<'a> {
             ui.painter().text(place, Align2::CENTER_CENTER, text, FontId::proportional(size), color);
         };
         let Some(shown) = self.shown else { return };
-        let (Some(gain), Some(delay)) = (self.gain(), shown.comparison.delta.delay_s[self.pair]) else {
+        let (Some(gain), Some(delay)) = (self.gain(), shown.wanted_delay_s(self.pair)) else {
             let nothing = matches!(self.undefined(), Some(Undefined::NumericallyNothing(_)));
             text(0.5 * CELL_HEIGHT, if nothing { "nothing" } else { "no G" }, SMALL_SIZE, palette.dim_text);
             return;
         };
         let strong = if self.fitted { palette.text } else { palette.rejected };
         text(13.0, &format!("{gain:.2}"), 14.5, strong);
-        text(28.0, &format!("{:.0} ms", s_to_ms(delay)), 10.5, palette.dim_text);
+        let beside = self.other_delay_s().filter(|other| (other - delay).abs() >= APART_S);
+        let beside = beside.map_or(" ms".to_owned(), |other| format!(" ({:.0})", s_to_ms(other)));
+        text(28.0, &format!("{:.0}{beside}", s_to_ms(delay)), 10.5, palette.dim_text);
         if let Some(cost) = shown.cost[self.pair] {
             let (before, after) = (cost.uncorrected.total(), cost.corrected.total());
             text(
@@ -250,13 +261,18 @@ impl<'a> Cell<'a> {
         }
         ui.label(words.join(" · "));
         let Some(shown) = self.shown else { return };
-        let (Some(gain), Some(delay)) = (self.gain(), shown.comparison.delta.delay_s[self.pair]) else {
+        let (Some(gain), Some(delay)) = (self.gain(), shown.wanted_delay_s(self.pair)) else {
             let why = self.undefined().map(|why| format!("No G, no D and no J: {}", why.words()));
             ui.label(why.unwrap_or_default());
             return;
         };
         ui.label(format!("G = {gain:.4}: the gain that would match the magnitude"));
         ui.label(format!("D = {:.1} ms: the delay that would match the phase (negative: lead)", s_to_ms(delay)));
+        let delta = &shown.comparison.delta;
+        if let (Some(median_s), Some(band_s)) = (delta.delay_s[self.pair], delta.band_delay_s[self.pair]) {
+            let (median_ms, band_ms) = (s_to_ms(median_s), s_to_ms(band_s));
+            ui.label(format!("D of eq. (9): {median_ms:.1} ms; of the line through the phase, M15.2: {band_ms:.1} ms"));
+        }
         ui.label(format!("net gain k_o k_i = {:.4}", shown.correction.net_gain(self.pair).value()));
         ui.label(format!("net delay τ_o + τ_i = {:.1} ms", s_to_ms(shown.correction.net_delay(self.pair).value_s())));
         for sentence in &self.toggle_costs {

@@ -38,6 +38,7 @@ pub mod modes_scene;
 pub mod net_gain_scene;
 pub mod number_field;
 pub mod palette;
+mod phase_setting;
 pub mod plot;
 pub mod preferences;
 mod question_forms;

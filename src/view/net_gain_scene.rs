@@ -94,20 +94,20 @@ pub fn channel_panels(state: &State, measure: Measure, across: Across) -> (Vec<G
     let of_input = |index: usize| -> FigureOf {
         match measure {
             Measure::Gain => Box::new(move |correction| correction.input_gains[index]),
-            Measure::Delay => Box::new(move |correction| s_to_ms(correction.input_delays_s[index])),
+            Measure::Delay => Box::new(move |correction| s_to_ms(correction.delay_s(CorrectedChannel::Input(index)))),
         }
     };
     let of_output = |index: usize| -> FigureOf {
         match measure {
             Measure::Gain => Box::new(move |correction| correction.output_gains[index]),
-            Measure::Delay => Box::new(move |correction| s_to_ms(correction.output_delays_s[index])),
+            Measure::Delay => Box::new(move |correction| s_to_ms(correction.delay_s(CorrectedChannel::Output(index)))),
         }
     };
     let panels = |channels: &[Channel], of: &dyn Fn(usize) -> FigureOf, side: fn(usize) -> CorrectedChannel| {
         let figure = |(index, channel): (usize, &Channel)| {
             let bounds: Option<BoundsOf> = Some(Box::new(move |result| match measure {
                 Measure::Gain => [result.gain_bounds().lower, result.gain_bounds().upper],
-                Measure::Delay => [0.0, s_to_ms(result.delay_upper_s())],
+                Measure::Delay => result.delay_bounds_s().map(s_to_ms),
             }));
             let asked = asked_of_channel(measure, side(index));
             Figure { title: channel.name.clone(), measure, of: of(index), bounds, asked }.panel(state, analysis, across)

@@ -2,9 +2,11 @@
 
 use egui::{Align, Button, CollapsingHeader, Color32, Grid, Layout, RichText, Role, Ui, WidgetInfo, vec2};
 
-use crate::correction::{self, GainObjective, Outcome, Quantity};
+use crate::correction::{self, GainObjective, Outcome, Quantity, kkt_residual};
 use crate::dataset::{Channel, Pair};
-use crate::study::{AskedFigure, ConditionAnalysis, Edit, Remark, RemarkKind, Setting};
+use crate::study::{
+    AskedFigure, ConditionAnalysis, Edit, PhaseCorrection, Remark, RemarkKind, Setting, lead_words, servo_words,
+};
 use crate::units::s_to_ms;
 
 use super::command::{Command, FormKind};
@@ -40,7 +42,11 @@ fn outcome_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
                 if let Some(pair) = remark.ignore {
                     ignore_ui(ui, state, pair, commands);
                 }
+                if let Some(phase) = remark.phase {
+                    offer_ui(ui, phase, commands);
+                }
             }
+            lead_ui(ui, state, shown, palette);
             let header = RichText::new("In detail").size(SMALL_SIZE).color(palette.dim_text);
             CollapsingHeader::new(header).id_salt("details").show(ui, |ui| {
                 for sentence in details_shown(state, shown) {
@@ -165,7 +171,9 @@ fn channel_table_ui(
             let text = if delay_ms == 0.0 { "0".to_owned() } else { format!("{delay_ms:.1}") };
             let color = if delay_ms == 0.0 { palette.dim_text } else { palette.text };
             let asked = AskedFigure::Delay(id, side.channel(index));
-            let hint = format!("{delay_ms} ms\nclick: how was this computed?");
+            let filter = shown.led.as_ref().and_then(|led| led.leads.filter(side.channel(index)));
+            let filter = filter.map(|filter| format!("\nlead: {}", servo_words(filter))).unwrap_or_default();
+            let hint = format!("{delay_ms} ms{filter}\nclick: how was this computed?");
             right(ui, |ui| figure_ui(ui, RichText::new(text).color(color), asked, commands)).on_hover_text(hint);
             ui.end_row();
         }
@@ -189,8 +197,34 @@ fn objective_ui(ui: &mut Ui, shown: &ConditionAnalysis, palette: &Palette, comma
             shown.gains.objective, shown.gains.proof.lower_bound
         ));
         let label = figure_ui(ui, dim(delays), AskedFigure::DelayObjective(id), commands);
-        label.on_hover_text(format!("eq. (11): {} s²", shown.delays.objective));
+        let equation = if shown.led.is_some() { "M15.4" } else { "eq. (11)" };
+        label.on_hover_text(format!(
+            "{equation}: {} s², a convex program; KKT residual {:.0e} s",
+            shown.delays.objective,
+            kkt_residual(&shown.delay_problem, &shown.delays)
+        ));
     });
+}
+
+/// What each held response gets and each filter costs, in words.
+fn lead_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Palette) {
+    if shown.led.is_none() {
+        return;
+    }
+    let header = RichText::new("Leads in words").size(SMALL_SIZE).color(palette.dim_text);
+    CollapsingHeader::new(header).id_salt("leads").default_open(true).show(ui, |ui| {
+        for sentence in lead_words(&state.study, shown) {
+            ui.label(RichText::new(sentence).size(SMALL_SIZE));
+        }
+    });
+}
+
+/// The click that corrects the phase as a remark offers.
+fn offer_ui(ui: &mut Ui, phase: PhaseCorrection, commands: &mut Vec<Command>) {
+    let button = ui.small_button(format!("Correct the phase by {}", phase.words()));
+    if button.on_hover_text("In every condition; undo takes it back").clicked() {
+        commands.push(Edit::Set(Setting::Phase(phase)).into());
+    }
 }
 
 /// The click that takes a response out of the objective.

@@ -7,7 +7,7 @@ use crate::dataset::{Band, GREATEST_OMEGA, LEAST_OMEGA};
 use crate::fidelity::CostAverage;
 use crate::study::{
     Edit, GREATEST_AGREEMENT_DB, GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE, LARGEST_ALPHA, LEAST_GAIN,
-    LEAST_POINTS, MOST_POINTS, Setting,
+    LEAST_POINTS, MOST_POINTS, PhaseCorrection, Setting,
 };
 use crate::units::s_to_ms;
 
@@ -16,6 +16,7 @@ use super::command::Command;
 use super::heading::heading_ui;
 use super::number_field::{Entered, NumberField, gain_text};
 use super::palette::{Palette, SMALL_SIZE};
+use super::phase_setting::phase_ui;
 use super::region::{Region, region_ui};
 use super::state::State;
 
@@ -36,7 +37,13 @@ pub fn settings_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
 fn fields_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let mut settings = Panel { ui, state, palette, commands };
     settings.alpha_ui("α gains", state.study.settings.alpha_gain, "output gains, eq. (7)", Setting::AlphaGain);
-    settings.alpha_ui("α delays", state.study.settings.alpha_delay, "output delays, eq. (11)", Setting::AlphaDelay);
+    let of = if state.study.settings.phase == PhaseCorrection::Lead {
+        "signed delays, M15"
+    } else {
+        "output delays, eq. (11)"
+    };
+    settings.alpha_ui("α delays", state.study.settings.alpha_delay, of, Setting::AlphaDelay);
+    phase_ui(settings.ui, state, palette, settings.commands);
     Grid::new("settings").num_columns(2).spacing([8.0, 5.0]).show(settings.ui, |ui| {
         let mut settings = Panel { ui, state, palette, commands: settings.commands };
         settings.band_ui();

@@ -172,12 +172,11 @@ fn matrix(state: &State) -> Table {
 
 /// G, D, net gain, net delay, and J, J_mag and J_phase before and after.
 fn response_figures(shown: &ConditionAnalysis, pair: Pair) -> [Option<f64>; 10] {
-    let delta = &shown.comparison.delta;
     let cost = shown.cost[pair];
     let (before, after) = (cost.map(|cost| cost.uncorrected), cost.map(|cost| cost.corrected));
     [
-        delta.gain[pair],
-        delta.delay_s[pair].map(s_to_ms),
+        shown.wanted_gain(pair),
+        shown.wanted_delay_s(pair).map(s_to_ms),
         Some(shown.correction.net_gain(pair).value()),
         Some(s_to_ms(shown.correction.net_delay(pair).value_s())),
         before.map(|cost| cost.total()),
@@ -192,7 +191,7 @@ fn response_figures(shown: &ConditionAnalysis, pair: Pair) -> [Option<f64>; 10] 
 fn channels(state: &State) -> Table {
     let mut table = Table::new(title(state, TableKind::Channels.name()), ["side", "channel", "k [-]", "τ [ms]"]);
     let correction = state.shown().map(|shown| &shown.correction);
-    let mut add = |side: &str, channels: &[Channel], gains: Option<&Vec<f64>>, delays_s: Option<&Vec<f64>>| {
+    let mut add = |side: &str, channels: &[Channel], gains: Option<&Vec<f64>>, delays_s: Option<&[f64]>| {
         for (index, channel) in channels.iter().enumerate() {
             let gain = gains.map(|gains| gains[index]);
             let delay_ms = delays_s.map(|delays_s| s_to_ms(delays_s[index]));
@@ -200,7 +199,8 @@ fn channels(state: &State) -> Table {
         }
     };
     let (inputs, outputs) = (state.dataset().inputs(), state.dataset().outputs());
-    add("input", inputs, correction.map(|of| &of.input_gains), correction.map(|of| &of.input_delays_s));
-    add("output", outputs, correction.map(|of| &of.output_gains), correction.map(|of| &of.output_delays_s));
+    let delays_s = correction.map(|of| of.signed_delays_s());
+    add("input", inputs, correction.map(|of| &of.input_gains), delays_s.map(|[inputs_s, _]| inputs_s));
+    add("output", outputs, correction.map(|of| &of.output_gains), delays_s.map(|[_, outputs_s]| outputs_s));
     table
 }

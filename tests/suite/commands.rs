@@ -166,6 +166,44 @@ fn delays_are_scheduled_and_a_tolerance_is_set_by_options() {
 }
 
 #[test]
+fn the_phase_is_corrected_as_an_option_says() {
+    let desk = Desk::new();
+    let analyze = |more: &[&str]| desk.gdcm(&[&["analyze", "--out", "out", "--force"][..], more].concat());
+    let read = || read_corrections(&desk.path("out/corrections.json")).unwrap();
+    let ended = analyze(&["--phase", "lead"]);
+    ended.assert_done();
+    for words in [
+        "Phase",
+        "corrected by a delay or a lead filter a channel: order 2, n 3, R_max 10",
+        "as if a servo of 18 rad/s",
+    ] {
+        assert!(ended.out.split_whitespace().collect::<Vec<_>>().join(" ").contains(words), "{}", ended.out);
+    }
+    let led = read();
+    assert_eq!((led.settings.phase.name(), led.settings.delay_from.name()), ("lead", "median"));
+    let condition = &led.conditions[0];
+    let lat = condition.lead.as_ref().unwrap().inputs.get("LAT").unwrap();
+    // From independent numpy code.
+    assert!((lat.tau_s + 0.041_244_995_923_2).abs() < 1e-9 && (lat.lead_s.unwrap() - 0.037_522_384_891_1).abs() < 1e-9);
+    assert!((lat.lag_rad_s.unwrap() - 36.0).abs() < 1e-9 && (lat.gain_at_infinity_db.unwrap() - 11.647).abs() < 1e-3);
+    assert_eq!(condition.delays_s.inputs.get("LAT"), Some(&0.0), "the positive part");
+    assert!(condition.delay_solution.kkt_residual_s.unwrap() < 1e-14);
+    let tau_s = led.schedule.unwrap().tau_s.unwrap();
+    assert!((tau_s.inputs.get("LAT").unwrap()[0] + 0.037_896_231_201_2).abs() < 1e-9);
+    let text = fs::read_to_string(desk.path("out/corrections.csv")).unwrap();
+    assert!(
+        text.lines().next().unwrap().ends_with("tau_s,lead_s,zero_rad_s,lag_rad_s,gain_at_infinity_db,scheduled_tau_s")
+    );
+    analyze(&["--phase", "none"]).assert_done();
+    assert!(
+        read().conditions.iter().all(|of| of.lead.is_none() && of.delays_s.outputs.0.iter().all(|(_, s)| *s == 0.0))
+    );
+    analyze(&["--delay-from", "band"]).assert_done();
+    assert_eq!((read().settings.phase.name(), read().settings.delay_from.name()), ("delay", "band"));
+    analyze(&["--phase", "later"]).assert_failed(2, &["expected none, delay or lead, found later"]);
+}
+
+#[test]
 fn coherence_is_switched_by_an_option() {
     let desk = Desk::new();
     for (choice, threshold) in [("off", None), ("on", Some(0.6)), ("0.85", Some(0.85))] {

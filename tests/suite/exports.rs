@@ -172,6 +172,105 @@ fn corrected_models_are_the_program_s_in_every_format() {
     assert!(delayed > 0, "some responses are delayed");
 }
 
+/// A corrected model with leads is the model between its channels' filters, exactly; programs give the filters themselves.
+#[test]
+fn leads_are_exact_in_corrected_models_and_in_programs() {
+    let desk = Desk::new();
+    let export = |format: &str, name: &str| {
+        let options = ["--phase", "lead", "--as", format, "--out", name];
+        let ended = desk.gdcm(&[&["export"][..], &options].concat());
+        ended.assert_done();
+        ended.out
+    };
+    let words = export("state-space", "m.json");
+    assert!(words.contains("gains and lead filters exact"), "{words}");
+    let found = models(&desk.path("m.json"));
+    assert_eq!(found[0].draft.states[..2], ["LON lead 1", "LON lead 2"]);
+    desk.gdcm(&["analyze", "--phase", "lead", "--out", "."]).assert_done();
+    let corrections = read_corrections(&desk.path("corrections.json")).unwrap();
+    let at = corrections.schedule.as_ref().unwrap().table.iter().find(|row| row.airspeed_kt == 120.0).unwrap();
+    let filter = |of: &gdcm::io::LeadEntry, s: nalgebra::Complex<f64>| {
+        let side = |omega: Option<f64>| {
+            let x = s / omega.unwrap();
+            x * x + x * 2.0_f64.sqrt() + 1.0
+        };
+        side(of.zero_rad_s) / side(of.lag_rad_s)
+    };
+    let physics = &crate::EXAMPLE.dataset.conditions()[0];
+    let nominal = &physics.bundle(gdcm::dataset::BundleKind::Physics)[physics.nominal()];
+    let gdcm::dataset::Dynamics::StateSpace(plain) = &nominal.dynamics else { panic!("no matrices") };
+    let omega = [0.5, 3.0, 12.0, 120.0];
+    let (corrected, plain) = (evaluate(&state_space(&found[0]), &omega), evaluate(plain, &omega));
+    let leads = at.lead.as_ref().unwrap();
+    for (output, (_, output_gain)) in at.outputs.0.iter().enumerate() {
+        for (input, (_, input_gain)) in at.inputs.0.iter().enumerate() {
+            let pair = Pair { output, input };
+            for (place, omega) in omega.into_iter().enumerate() {
+                let s = nalgebra::Complex::new(0.0, omega);
+                let filters = filter(&leads.outputs.0[output].1, s) * filter(&leads.inputs.0[input].1, s);
+                let expected = plain.curve(pair)[place] * filters * *output_gain * *input_gain;
+                // Ten times above the band a response is the small difference of large terms.
+                let allowed = if omega > 12.0 { 1e-6 } else { 1e-9 };
+                assert!(
+                    (corrected.curve(pair)[place] - expected).norm() <= allowed * expected.norm(),
+                    "{pair:?} {omega}"
+                );
+            }
+        }
+    }
+    for (format, name, parts) in [
+        ("m", "c.m", ["[Mi, Mo, tau_i, tau_o, lead_i, lead_o]", "tf([a^2 sqrt(2)*a 1], [b^2 sqrt(2)*b 1])"]),
+        ("py", "c.py", ["def gdcm_leads(airspeed_kt):", "def gdcm_lead_state_space(zero_s):"]),
+        ("h", "c.h", ["#define GDCM_LEAD_ORDER 2", "static inline double gdcm_lead_step("]),
+        ("table-csv", "t.csv", ["lead numerator of input LAT", "# Lead: each input"]),
+    ] {
+        export(format, name);
+        let text = fs::read_to_string(desk.path(name)).unwrap();
+        assert!(parts.iter().all(|part| text.contains(part)), "{name}: {text}");
+    }
+    let zero_s = 1.0 / leads.inputs.get("LAT").unwrap().zero_rad_s.unwrap();
+    let program = "import c\nzi, zo = c.gdcm_leads(120.0)\nA, B, C, D = c.gdcm_lead_state_space(zi[1])\n\
+                   print(repr(zi[1]), repr(D[0][0]), len(zo), len(A))";
+    if let Ok(output) = Command::new("python3").args(["-c", program]).current_dir(&desk.directory).output() {
+        let text = String::from_utf8(output.stdout).unwrap();
+        let numbers: Vec<f64> = text.split_whitespace().map(|word| word.parse().unwrap()).collect();
+        let r = (36.0 * zero_s).powi(2);
+        assert!((numbers[0] - zero_s).abs() < 1e-15 && (numbers[1] / r - 1.0).abs() < 1e-12, "{text}");
+        assert_eq!(numbers[2..], [6.0, 2.0]);
+    }
+}
+
+/// The filter of the header, step by step, against the filter's own gain: 1 at rest, and its gain at a frequency of the band.
+#[test]
+fn the_filter_of_the_c_header_leads_a_sine() {
+    let desk = Desk::new();
+    desk.gdcm(&["export", "--phase", "lead", "--as", "h", "--out", "c.h"]).assert_done();
+    let program = "#include \"c.h\"\n#include <stdio.h>\nint main(void) { double zi[4], zo[6], c = 0, s = 0; long k;\n\
+        struct gdcm_lead f = {0.0, 0.0}; const double h = 0.001, w = 6.283185307179586;\n\
+        if (gdcm_leads(120.0, zi, zo) != 0) return 1;\n\
+        for (k = 0; k < 4000; k++) { double y = gdcm_lead_step(&f, zi[1], h, sin(w * k * h));\n\
+        if (k >= 2000) { s += y * sin(w * k * h) * 0.001; c += y * cos(w * k * h) * 0.001; } }\n\
+        printf(\"%.12g %.12g %.12g\", zi[1], s, c); return 0; }\n";
+    fs::write(desk.path("main.c"), program).unwrap();
+    let flags = ["-std=c99", "-Wall", "-Wextra", "-Wshadow", "-Werror", "-pedantic", "-o", "main", "main.c", "-lm"];
+    let Ok(built) = Command::new("cc").args(flags).current_dir(&desk.directory).output() else {
+        eprintln!("SKIPPED: cc is not installed");
+        return;
+    };
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    let output = Command::new(desk.path("main")).output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    let [zero_s, s, c] = [0, 1, 2].map(|at| text.split_whitespace().nth(at).unwrap().parse::<f64>().unwrap());
+    let filter = gdcm::response::LeadFilter::new(
+        gdcm::response::LeadOrder::Second,
+        2.0_f64.sqrt() * (zero_s - 1.0 / 36.0),
+        1.0 / 36.0,
+    );
+    let expected = filter.at(std::f64::consts::TAU);
+    // Tustin's rule takes 6.2832 rad/s for 6.2832 (1 + (w h)^2 / 12): 3e-6 of it.
+    assert!((s - expected.re).abs() < 1e-4 && (c - expected.im).abs() < 1e-4, "{text} {expected}");
+}
+
 #[test]
 fn delays_of_discrete_time_are_exact_or_refused() {
     let desk = Desk::new();

@@ -2,19 +2,19 @@
 
 use std::collections::BTreeSet;
 
-use crate::correction::Outcome;
+use crate::correction::{Outcome, Quantity, kkt_residual};
 use crate::dataset::{BundleKind, Condition, ConditionId, Model, PairTable, Provenance};
 use crate::fidelity::Cost;
 use crate::io::settings_entry::SettingsEntry;
 use crate::schedule::{Regression, Schedule, ScheduleKind, ScheduledQuantity};
-use crate::study::{Analysis, Assessed, Caution, ConditionAnalysis, ConditionChoice};
+use crate::study::{Analysis, Assessed, Caution, ConditionAnalysis, ConditionChoice, lead_cautions};
 
 use super::explanation::Explanation;
 use super::names::{ByName, ChannelNames, rows};
 use super::schema::{
     Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
-    DelayOutcome, GainOutcome, NetGain, ReasonEntry, ScheduleUsed, ScheduledDelays, ScheduledGains, SetAsideEntry,
-    SourceEntry, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
+    DelayOutcome, GainOutcome, NetGain, ReasonEntry, ScheduleUsed, ScheduledDelays, ScheduledGains, ScheduledTaus,
+    SetAsideEntry, SourceEntry, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
 };
 use super::{NAME, VERSION};
 
@@ -89,12 +89,14 @@ impl Gather<'_> {
             sources: sources_of(condition),
             scheduled: study.choice(condition.id()).scheduled,
             held: names.marked(result.held()),
-            delta_gain: rows(&result.comparison.delta.gain, |gain| *gain),
+            delta_gain: rows(&result.gain_problem.delta, |gain| *gain),
             delta_delay_s: rows(&result.comparison.delta.delay_s, |delay| *delay),
+            band_delay_s: rows(&result.comparison.delta.band_delay_s, |delay| *delay),
             gain_bounds: [result.gain_bounds().lower, result.gain_bounds().upper],
             delay_upper_s: result.delay_upper_s(),
             gains: names.channels(&correction.input_gains, &correction.output_gains),
             delays_s: names.channels(&correction.input_delays_s, &correction.output_delays_s),
+            lead: correction.leads.as_ref().map(|leads| names.leads(leads)),
             gain_solution: self.gain_outcome(result),
             delay_solution: self.delay_outcome(result),
             net_gains: self.net_gains(result),
@@ -103,6 +105,7 @@ impl Gather<'_> {
                 .cautions
                 .iter()
                 .map(|caution| caution.words(|pair| study.dataset.pair_name(pair)))
+                .chain(lead_cautions(study, result))
                 .collect(),
         }
     }
@@ -167,8 +170,10 @@ impl Gather<'_> {
                 why,
             }
         });
+        let is_signed = delays.quantity == Quantity::SignedDelay;
         DelayOutcome {
             objective: delays.objective,
+            kkt_residual_s: is_signed.then(|| kkt_residual(&result.delay_problem, delays)),
             matched: delays.matched,
             unmatched: unmatched.collect(),
             explanation: Explanation::of(&result.delay_problem, delays, names),
@@ -196,7 +201,8 @@ impl Gather<'_> {
                 .delays
                 .as_ref()
                 .map(|_| names.channels(&correction.input_delays_s, &correction.output_delays_s));
-            ScheduledGains { airspeed_kt, inputs, outputs, delays_s }
+            let lead = correction.leads.as_ref().map(|leads| names.leads(leads));
+            ScheduledGains { airspeed_kt, inputs, outputs, delays_s, lead }
         });
         ScheduleUsed {
             kind: kind.to_owned(),
@@ -212,6 +218,11 @@ impl Gather<'_> {
                 inputs: names.by_input(figures(&delays.inputs)),
                 outputs: names.by_output(figures(&delays.outputs)),
                 upper_s: Some(delays.upper_s.figures().to_vec()),
+            }),
+            tau_s: schedule.leads.as_ref().map(|leads| ScheduledTaus {
+                inputs: names.by_input(figures(&leads.inputs)),
+                outputs: names.by_output(figures(&leads.outputs)),
+                bounds_s: leads.bounds_s,
             }),
             table: table.collect(),
             cautions: schedule.cautions.iter().map(|caution| caution.words(&names.inputs, &names.outputs)).collect(),

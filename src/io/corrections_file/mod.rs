@@ -25,8 +25,9 @@ pub use explanation::{ConflictEntry, Explanation, RemedyEntry, SensitivityEntry}
 pub use names::ByName;
 pub use schema::{
     Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
-    DelayOutcome, GainOutcome, NetGain, ReasonEntry, ScheduleUsed, ScheduledDelays, ScheduledGains, SetAsideEntry,
-    SourceEntry, Table, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
+    DelayOutcome, GainOutcome, LeadChannels, LeadEntry, NetGain, ReasonEntry, ScheduleUsed, ScheduledDelays,
+    ScheduledGains, ScheduledTaus, SetAsideEntry, SourceEntry, Table, UnmatchedDelayEntry, UnmatchedGainEntry,
+    WithoutResult,
 };
 
 const NAME: &str = "gdcm-corrections";

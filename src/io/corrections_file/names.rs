@@ -7,10 +7,11 @@ use serde::de::{Deserializer, MapAccess, Visitor};
 use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
 
-use crate::correction;
+use crate::correction::{self, ChannelLeads};
 use crate::dataset::{Channel, Dataset, Pair, PairTable};
+use crate::response::LeadFilter;
 
-use super::schema::{Channels, Table};
+use super::schema::{Channels, LeadChannels, LeadEntry, Table};
 
 /// One figure for each channel or model, by name, in the dataset's order: `{"LON": 1.1, "LAT": 1.0}`.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,6 +89,22 @@ impl ChannelNames {
     /// One figure for each output.
     pub(super) fn by_output<T>(&self, figures: impl IntoIterator<Item = T>) -> ByName<T> {
         ByName(self.outputs.iter().cloned().zip(figures).collect())
+    }
+
+    /// The signed delay and the filter of each channel.
+    pub(super) fn leads(&self, leads: &ChannelLeads) -> LeadChannels {
+        let entry = |(&tau_s, filter): (&f64, &Option<LeadFilter>)| LeadEntry {
+            tau_s,
+            lead_s: filter.map(LeadFilter::lead_s),
+            zero_rad_s: filter.map(LeadFilter::zero_rad_s),
+            lag_rad_s: filter.map(LeadFilter::lag_rad_s),
+            gain_at_infinity_db: filter.map(LeadFilter::gain_at_infinity_db),
+        };
+        let [inputs, outputs] = leads.filters();
+        LeadChannels {
+            inputs: self.by_input(leads.inputs_s().iter().zip(inputs).map(entry)),
+            outputs: self.by_output(leads.outputs_s().iter().zip(outputs).map(entry)),
+        }
     }
 
     /// One figure for each channel.

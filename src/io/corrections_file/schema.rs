@@ -82,6 +82,9 @@ pub struct ConditionCorrections {
     /// Delta delay \[s\].
     #[serde(rename = "D_s")]
     pub delta_delay_s: Table,
+    /// Band delay \[s\] (M15.2); results of older programs do not have it.
+    #[serde(rename = "D_band_s", default)]
+    pub band_delay_s: Table,
     /// Least and greatest channel gain.
     pub gain_bounds: [f64; 2],
     /// Greatest channel delay \[s\].
@@ -90,6 +93,9 @@ pub struct ConditionCorrections {
     pub gains: Channels,
     /// Channel delays \[s\].
     pub delays_s: Channels,
+    /// Signed delays and lead filters, where leads were asked for (M15); `delays_s` then holds what is positive.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lead: Option<LeadChannels>,
     /// How good the gains are.
     pub gain_solution: GainOutcome,
     /// How good the delays are.
@@ -130,6 +136,31 @@ pub struct Channels {
     pub inputs: ByName<f64>,
     /// Of each output.
     pub outputs: ByName<f64>,
+}
+
+/// The lead of each channel.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LeadChannels {
+    /// Of each input.
+    pub inputs: ByName<LeadEntry>,
+    /// Of each output.
+    pub outputs: ByName<LeadEntry>,
+}
+
+/// The signed delay of a channel and, where it is negative, its lead filter `L(s) = (1 + sqrt(2) s/w1 + (s/w1)^2) / (1 + sqrt(2) s/w2 +
+/// (s/w2)^2)`, of first order `(1 + s/w1) / (1 + s/w2)`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LeadEntry {
+    /// Signed delay \[s\].
+    pub tau_s: f64,
+    /// Lead time at low frequency \[s\].
+    pub lead_s: Option<f64>,
+    /// `w1` \[rad/s\].
+    pub zero_rad_s: Option<f64>,
+    /// `w2` \[rad/s\].
+    pub lag_rad_s: Option<f64>,
+    /// `20 log10 R`.
+    pub gain_at_infinity_db: Option<f64>,
 }
 
 /// How good the gains are.
@@ -173,8 +204,11 @@ pub struct UnmatchedGainEntry {
 /// How good the delays are.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DelayOutcome {
-    /// The objective of eq. (11) \[s²\].
+    /// The objective of eq. (11), or of M15.4 \[s²\].
     pub objective: f64,
+    /// How far the answer is from what a minimum needs \[s\]; the program is convex, so that 0 is a proof.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kkt_residual_s: Option<f64>,
     /// Whether every held response is held at its D.
     pub matched: bool,
     /// The responses that are not.
@@ -263,6 +297,9 @@ pub struct ScheduleUsed {
     pub outputs: ByName<Vec<f64>>,
     /// The same of the delays \[s\], where they are scheduled.
     pub delays_s: Option<ScheduledDelays>,
+    /// Coefficients of the signed delays \[s\] in the scaled airspeed, lowest power first, where leads were asked for (M15).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tau_s: Option<ScheduledTaus>,
     /// The scheduled gains at the mean of each cluster of the conditions' airspeeds.
     pub table: Vec<ScheduledGains>,
     /// What has to be known about the schedule.
@@ -287,6 +324,17 @@ pub struct ScheduledDelays {
     pub upper_s: Option<Vec<f64>>,
 }
 
+/// Signed delays as functions of airspeed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ScheduledTaus {
+    /// Of each input.
+    pub inputs: ByName<Vec<f64>>,
+    /// Of each output.
+    pub outputs: ByName<Vec<f64>>,
+    /// Least and greatest scheduled value \[s\]: what is outside is cut to them.
+    pub bounds_s: [f64; 2],
+}
+
 /// The scheduled gains at one airspeed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScheduledGains {
@@ -299,6 +347,9 @@ pub struct ScheduledGains {
     /// The scheduled delays \[s\], where they are scheduled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub delays_s: Option<Channels>,
+    /// The scheduled signed delays and filters, where leads were asked for (M15).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lead: Option<LeadChannels>,
 }
 
 /// What the scheduled correction is worth.

@@ -3,17 +3,33 @@
 use std::collections::BTreeSet;
 use std::io::{self, Write};
 
-use crate::correction::ChannelCorrection;
+use crate::correction::{self, ChannelCorrection};
 use crate::dataset::{Channel, Condition, ConditionId, Pair};
+use crate::response::LeadFilter;
 use crate::study::{Analysis, Assessed};
 
 use super::super::csv_table::write_records;
 
-const CHANNEL_HEADER: [&str; 8] =
-    ["condition", "airspeed_kt", "kind", "channel", "gain", "delay_s", "scheduled_gain", "scheduled_delay_s"];
+const CHANNEL_HEADER: [&str; 14] = [
+    "condition",
+    "airspeed_kt",
+    "kind",
+    "channel",
+    "gain",
+    "delay_s",
+    "scheduled_gain",
+    "scheduled_delay_s",
+    "tau_s",
+    "lead_s",
+    "zero_rad_s",
+    "lag_rad_s",
+    "gain_at_infinity_db",
+    "scheduled_tau_s",
+];
 
 /// `corrections.csv`: the channel gains (ratios) and delays \[s\] of the chosen conditions, and the scheduled ones at the same
-/// airspeed. A figure that does not exist is an empty cell.
+/// airspeed; where leads were asked for, the signed delays and the filters of the negative ones. A figure that does not exist is an
+/// empty cell.
 pub(in crate::io) fn channel_table(
     analysis: &Analysis,
     chosen: &BTreeSet<ConditionId>,
@@ -25,40 +41,46 @@ pub(in crate::io) fn channel_table(
     write_records(file, std::iter::once(CHANNEL_HEADER.map(str::to_owned)).chain(rows))
 }
 
-fn channel_rows(analysis: &Analysis, condition: &Condition) -> Vec<[String; 8]> {
+fn channel_rows(analysis: &Analysis, condition: &Condition) -> Vec<[String; 14]> {
     let airspeed_kt = condition.flight_state().airspeed_kt;
     let own = analysis.condition(condition.id()).map(|result| &result.correction);
     let scheduled = analysis.schedule.as_ref().ok().map(|schedule| schedule.at(airspeed_kt));
     let scheduled = scheduled.as_ref();
-    let row = |kind: &str, channel: &Channel, figures: [Option<f64>; 4]| {
-        let [gain, delay_s, scheduled_gain, scheduled_delay_s] = figures.map(cell);
+    let row = |kind: &str, name: &Channel, channel: correction::Channel| {
+        let figures = |of: &ChannelCorrection| match channel {
+            correction::Channel::Input(at) => [of.input_gains[at], of.input_delays_s[at]],
+            correction::Channel::Output(at) => [of.output_gains[at], of.output_delays_s[at]],
+        };
+        let tau_s = |of: Option<&ChannelCorrection>| of?.leads.as_ref().map(|leads| leads.tau_s(channel));
+        let filter = own.and_then(|own| own.lead(channel));
+        let [of_own, of_schedule] = [own, scheduled].map(|of| of.map(figures));
+        let figure = |of: Option<[f64; 2]>, at: usize| cell(of.map(|of| of[at]));
         [
             condition.id().to_string(),
             airspeed_kt.to_string(),
             kind.to_owned(),
-            channel.name.clone(),
-            gain,
-            delay_s,
-            scheduled_gain,
-            scheduled_delay_s,
+            name.name.clone(),
+            figure(of_own, 0),
+            figure(of_own, 1),
+            figure(of_schedule, 0),
+            figure(of_schedule, 1),
+            cell(tau_s(own)),
+            cell(filter.map(LeadFilter::lead_s)),
+            cell(filter.map(LeadFilter::zero_rad_s)),
+            cell(filter.map(LeadFilter::lag_rad_s)),
+            cell(filter.map(LeadFilter::gain_at_infinity_db)),
+            cell(tau_s(scheduled)),
         ]
     };
-    let inputs = analysis.study.dataset.inputs().iter().enumerate().map(|(at, channel)| {
-        let figures = |of: &ChannelCorrection| (of.input_gains[at], of.input_delays_s[at]);
-        let ((gain, delay), (scheduled_gain, scheduled_delay)) =
-            (own.map(figures).unzip(), scheduled.map(figures).unzip());
-        row("input", channel, [gain, delay, scheduled_gain, scheduled_delay])
-    });
-    let outputs = analysis.study.dataset.outputs().iter().enumerate().map(|(at, channel)| {
-        let figures = |of: &ChannelCorrection| (of.output_gains[at], of.output_delays_s[at]);
-        let ((gain, delay), (scheduled_gain, scheduled_delay)) =
-            (own.map(figures).unzip(), scheduled.map(figures).unzip());
-        row("output", channel, [gain, delay, scheduled_gain, scheduled_delay])
-    });
+    let dataset = &analysis.study.dataset;
+    let inputs =
+        dataset.inputs().iter().enumerate().map(|(at, name)| row("input", name, correction::Channel::Input(at)));
+    let outputs =
+        dataset.outputs().iter().enumerate().map(|(at, name)| row("output", name, correction::Channel::Output(at)));
     inputs.chain(outputs).collect()
 }
 
-const RESPONSE_HEADER: [&str; 20] = [
+const RESPONSE_HEADER: [&str; 21] = [
     "condition",
     "airspeed_kt",
     "output",
@@ -79,10 +101,12 @@ const RESPONSE_HEADER: [&str; 20] = [
     "dJ_phase",
     "dJ",
     "left_out",
+    "D_band_s",
 ];
 
 /// `assessment.csv`: G, D \[s\], net gains and J of the nominal model before and under the scheduled correction, of every response of the
-/// chosen conditions. A figure that does not exist is an empty cell; `left_out` says why a condition is not assessed.
+/// chosen conditions. A figure that does not exist is an empty cell; `left_out` says why a condition is not
+/// assessed, `D_band_s` is the band delay (M15.2).
 pub(super) fn response_table(
     analysis: &Analysis,
     chosen: &BTreeSet<ConditionId>,
@@ -104,7 +128,7 @@ fn response_row(
     condition: &Condition,
     scheduled: Option<&ChannelCorrection>,
     pair: Pair,
-) -> [String; 20] {
+) -> [String; 21] {
     let dataset = &analysis.study.dataset;
     let result = analysis.condition(condition.id());
     let delta = result.map(|result| &result.comparison.delta);
@@ -121,7 +145,7 @@ fn response_row(
         dataset.inputs()[pair.input].name.clone(),
         dataset.on_axis()[pair].to_string(),
         result.is_some_and(|result| result.held()[pair]).to_string(),
-        cell(delta.and_then(|delta| delta.gain[pair])),
+        cell(result.and_then(|result| result.wanted_gain(pair))),
         cell(delta.and_then(|delta| delta.delay_s[pair])),
         cell(own.map(|correction| correction.net_gain(pair).value())),
         cell(own.map(|correction| correction.net_delay(pair).value_s())),
@@ -135,6 +159,7 @@ fn response_row(
         cell(change.map(|change| change.phase())),
         cell(change.map(|change| change.total())),
         left_out.to_owned(),
+        cell(delta.and_then(|delta| delta.band_delay_s[pair])),
     ]
 }
 

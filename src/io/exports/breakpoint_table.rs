@@ -8,7 +8,7 @@ use super::table_error::TableError;
 pub(super) struct BreakpointTable<'c> {
     /// Airspeeds \[kt\], increasing.
     pub(super) airspeed_kt: Vec<f64>,
-    /// One for each gain and each delay.
+    /// One for each gain, each delay and each lead filter.
     pub(super) columns: Vec<BreakpointColumn<'c>>,
 }
 
@@ -16,9 +16,9 @@ pub(super) struct BreakpointTable<'c> {
 pub(super) struct BreakpointColumn<'c> {
     /// The curve, and what it is of.
     pub(super) of: NamedCurve<'c>,
-    /// Its values: gains, or delays \[s\].
+    /// Its values: gains, or times \[s\].
     pub(super) values: Vec<f64>,
-    /// How far the table lies from it at most: \[%\] of a gain, \[ms\] of a delay.
+    /// How far the table lies from it at most: \[%\] of a gain, \[ms\] of a time.
     pub(super) error: TableError,
 }
 
@@ -44,7 +44,7 @@ impl<'c> BreakpointTable<'c> {
 impl BreakpointColumn<'_> {
     /// The greatest error in words: "1.200e0 % at 62.000 kt".
     pub(super) fn error_words(&self) -> String {
-        let unit = if self.of.is_delay() { "ms" } else { "%" };
+        let unit = if self.of.is_time() { "ms" } else { "%" };
         let TableError { error, airspeed_kt } = self.error;
         let place = if error > 0.0 { format!(" at {airspeed_kt:.3} kt") } else { String::new() };
         format!("{error:.3e} {unit}{place}")
@@ -54,7 +54,7 @@ impl BreakpointColumn<'_> {
 fn error(correction: &ScheduledCorrection, points: &[f64], of: &NamedCurve) -> TableError {
     let truth = |airspeed: f64| of.curve.at(correction.cut(airspeed));
     let range = correction.airspeed_range_kt;
-    if of.is_delay() {
+    if of.is_time() {
         let milliseconds = |value: f64, truth: f64| 1e3 * (value - truth).abs();
         return TableError::greatest(points, range, truth, milliseconds);
     }

@@ -44,7 +44,45 @@ static inline int gdcm_correction(double airspeed_kt, double gain_in[], double g
 {
 ";
 
-/// Writes a header with the function `gdcm_correction`, which fills arrays of gains and delays \[s\] (C99, `-lm`).
+/// The time constants of the lead filters.
+const LEADS: &str = "
+/* Time constants a [s] of the lead filters at an airspeed [kt]; b is GDCM_LEAD_LAG_S. Gives what gdcm_correction gives. */
+static inline int gdcm_leads(double airspeed_kt, double zero_in[], double zero_out[])
+{
+";
+
+/// One step of a lead filter by Tustin's rule, in the transposed direct form II.
+const LEAD_STEP: &str = "
+/* What a lead filter remembers; all zero at rest. */
+struct gdcm_lead {
+    double s1;
+    double s2;
+};
+
+/* One step of step_s seconds (at most half of GDCM_LEAD_LAG_S) of the lead filter whose time constant is a = zero_s. */
+static inline double gdcm_lead_step(struct gdcm_lead *lead, double zero_s, double step_s, double u)
+{
+    const double root = GDCM_LEAD_ORDER == 1 ? 1.0 : 1.4142135623730951;
+    const double square = GDCM_LEAD_ORDER == 1 ? 0.0 : 1.0;
+    double p = 2.0 * zero_s / step_s, q = 2.0 * GDCM_LEAD_LAG_S / step_s;
+    double n0 = 1.0 + root * p + square * p * p, n1 = 2.0 - 2.0 * square * p * p, n2 = 1.0 - root * p + square * p * p;
+    double d0 = 1.0 + root * q + square * q * q, d1 = 2.0 - 2.0 * square * q * q, d2 = 1.0 - root * q + square * q * q;
+    double y;
+    if (GDCM_LEAD_ORDER == 1) {
+        n1 = n2;
+        d1 = d2;
+        n2 = 0.0;
+        d2 = 0.0;
+    }
+    y = (n0 * u + lead->s1) / d0;
+    lead->s1 = n1 * u - d1 * y + lead->s2;
+    lead->s2 = n2 * u - d2 * y;
+    return y;
+}
+";
+
+/// Writes a header with the function `gdcm_correction`, which fills arrays of gains and delays \[s\] (C99, `-lm`); of a correction with
+/// leads also `gdcm_leads` and `gdcm_lead_step`.
 pub fn c_header(correction: &ScheduledCorrection) -> Result<String, ExportFault> {
     correction.check()?;
     let mut text = String::from("/*\n");
@@ -74,17 +112,39 @@ pub fn c_header(correction: &ScheduledCorrection) -> Result<String, ExportFault>
             write_channel(&mut text, side, index, channel);
         }
     }
-    text.push_str("    return a != airspeed_kt;\n}\n\n#endif\n");
+    text.push_str("    return a != airspeed_kt;\n}\n");
+    if let Some(lead) = correction.lead {
+        let _ = write!(
+            text,
+            "\n#define GDCM_LEAD_ORDER {}\n#define GDCM_LEAD_LAG_S {}\n{LEADS}    \
+             double a = airspeed_kt < {least} ? {least} : (airspeed_kt > {most} ? {most} : airspeed_kt);\n    \
+             double v = {scaled};\n    if (airspeed_kt != airspeed_kt) {{\n        return -1;\n    }}\n    \
+             (void)v;\n    (void)zero_in;\n    (void)zero_out;\n",
+            lead.order,
+            number(lead.lag_s)
+        );
+        for (side, channels) in [("in", &correction.inputs), ("out", &correction.outputs)] {
+            for (index, zero_s) in channels.iter().enumerate().filter_map(|(at, of)| Some((at, of.zero_s.as_ref()?))) {
+                write_curve(&mut text, &format!("zero_{side}[{index}]"), zero_s);
+            }
+        }
+        text.push_str("    return a != airspeed_kt;\n}\n");
+        text.push_str(LEAD_STEP);
+    }
+    text.push_str("\n#endif\n");
     Ok(text)
 }
 
 fn write_channel(text: &mut String, side: &str, index: usize, channel: &ScheduledChannel) {
     let _ = writeln!(text, "    /* {side}put {}: {} . */", index + 1, comment(&channel.name));
     for (target, curve) in [("gain", &channel.gain), ("delay", &channel.delay_s)] {
-        let body: String =
-            lines(&format!("{target}_{side}[{index}]"), curve).iter().map(|line| format!("        {line}\n")).collect();
-        let _ = write!(text, "    {{\n{body}    }}\n");
+        write_curve(text, &format!("{target}_{side}[{index}]"), curve);
     }
+}
+
+fn write_curve(text: &mut String, target: &str, curve: &Curve) {
+    let body: String = lines(target, curve).iter().map(|line| format!("        {line}\n")).collect();
+    let _ = write!(text, "    {{\n{body}    }}\n");
 }
 
 /// The statements, of a block of their own, that give `target` the value of a curve.

@@ -5,8 +5,8 @@ use crate::correction::GainObjective;
 use crate::dataset::{Channel, Dataset};
 use crate::fidelity::CostAverage;
 use crate::io::corrections_file::{
-    Assessment, ByName, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, ScheduleUsed,
-    Table, WithoutResult,
+    Assessment, ByName, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, LeadChannels,
+    LeadEntry, ScheduleUsed, Table, WithoutResult,
 };
 use crate::io::settings_entry::SettingsEntry;
 use crate::io::variables::{ElementKind, Value, Variable};
@@ -59,6 +59,8 @@ fn settings(settings: &SettingsEntry, dataset: &Dataset) -> Value {
     fields.add("gain_bounds", row(settings.gain_bounds.unwrap_or([f64::NAN; 2]).to_vec()));
     fields.add("delay_upper_s", scalar(settings.delay_upper_s));
     fields.add("agreement_db", scalar(settings.agreement_db));
+    fields.add("phase", text(settings.phase.name()));
+    fields.add("delay_from", text(settings.delay_from.name()));
     fields.record()
 }
 
@@ -75,10 +77,14 @@ fn condition(of: &ConditionCorrections, dataset: &Dataset) -> Fields {
     fields.add("held", marked(&of.held, dataset));
     fields.add("G", table(&of.delta_gain));
     fields.add("D_s", table(&of.delta_delay_s));
+    fields.add("D_band_s", table(&of.band_delay_s));
     fields.add("gain_bounds", row(of.gain_bounds.to_vec()));
     fields.add("delay_upper_s", scalar(of.delay_upper_s));
     fields.add("gains", channels(&of.gains));
     fields.add("delays_s", channels(&of.delays_s));
+    if let Some(lead) = &of.lead {
+        fields.add("lead", leads(lead));
+    }
     fields.add("gain_objective", scalar(of.gain_solution.objective));
     fields.add("gain_lower_bound", scalar(of.gain_solution.lower_bound));
     fields.add("gain_proven", truth(of.gain_solution.proven));
@@ -114,6 +120,13 @@ fn schedule(of: &ScheduleUsed) -> Value {
         of_delays.add("outputs", rows(delays.outputs.0.iter().map(|(_, figures)| figures.clone())));
         of_delays.add("upper_s", column(delays.upper_s.iter().flatten().copied()));
         fields.add("delays_s", of_delays.record());
+    }
+    if let Some(tau_s) = &of.tau_s {
+        let mut of_taus = Fields::default();
+        of_taus.add("inputs", rows(tau_s.inputs.0.iter().map(|(_, figures)| figures.clone())));
+        of_taus.add("outputs", rows(tau_s.outputs.0.iter().map(|(_, figures)| figures.clone())));
+        of_taus.add("bounds_s", row(tau_s.bounds_s.to_vec()));
+        fields.add("tau_s", of_taus.record());
     }
     let mut table = Fields::default();
     table.add("airspeed_kt", column(of.table.iter().map(|row| row.airspeed_kt)));
@@ -167,6 +180,26 @@ fn channels(of: &Channels) -> Value {
     let mut fields = Fields::default();
     fields.add("inputs", column(of.inputs.0.iter().map(|(_, figure)| *figure)));
     fields.add("outputs", column(of.outputs.0.iter().map(|(_, figure)| *figure)));
+    fields.record()
+}
+
+/// A column of each figure of the channels' leads, NaN where there is no filter.
+fn leads(of: &LeadChannels) -> Value {
+    let side = |entries: &ByName<LeadEntry>| {
+        let all = |figure: fn(&LeadEntry) -> Option<f64>| {
+            column(entries.0.iter().map(move |(_, entry)| figure(entry).unwrap_or(f64::NAN)))
+        };
+        let mut fields = Fields::default();
+        fields.add("tau_s", all(|entry| Some(entry.tau_s)));
+        fields.add("lead_s", all(|entry| entry.lead_s));
+        fields.add("zero_rad_s", all(|entry| entry.zero_rad_s));
+        fields.add("lag_rad_s", all(|entry| entry.lag_rad_s));
+        fields.add("gain_at_infinity_db", all(|entry| entry.gain_at_infinity_db));
+        fields.record()
+    };
+    let mut fields = Fields::default();
+    fields.add("inputs", side(&of.inputs));
+    fields.add("outputs", side(&of.outputs));
     fields.record()
 }
 

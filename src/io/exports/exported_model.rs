@@ -23,6 +23,8 @@ pub(super) struct ExportedModel {
     pub(super) states: Vec<String>,
     /// How many of them are of delays.
     delay_states: usize,
+    /// How many of them are of lead filters.
+    lead_states: usize,
     /// Order of the approximants of its delays; 0 in discrete time, where delays are exact.
     pub(super) pade_order: usize,
     /// Greatest phase error at the top of the band \[deg\].
@@ -66,10 +68,12 @@ fn exported_model(
         name: model.name.clone(),
         correction: match request.correction {
             AssessedCorrection::Scheduled => "scheduled",
+            AssessedCorrection::ScheduledWithoutLeads => "scheduled, without leads,",
             AssessedCorrection::Own => "own",
         },
         states: state_names(analysis, model, &corrected),
-        delay_states: corrected.model.order() - dynamics.order(),
+        delay_states: corrected.input_states.iter().chain(&corrected.output_states).sum(),
+        lead_states: corrected.input_lead_states.iter().chain(&corrected.output_lead_states).sum(),
         pade_order: if is_sampled { 0 } else { request.pade.order() },
         phase_error_deg: corrected.phase_error(band_top_rad_s).to_degrees(),
         band_top_rad_s,
@@ -95,9 +99,10 @@ fn correction_of(
 ) -> Result<ChannelCorrection, ExportFault> {
     match which {
         AssessedCorrection::Own => Ok(result_of(analysis, condition)?.correction.clone()),
-        AssessedCorrection::Scheduled => {
+        AssessedCorrection::Scheduled | AssessedCorrection::ScheduledWithoutLeads => {
             let schedule = analysis.schedule.as_ref().map_err(|error| ExportFault::Schedule(*error))?;
-            Ok(schedule.at(condition.flight_state().airspeed_kt))
+            let correction = schedule.at(condition.flight_state().airspeed_kt);
+            Ok(if which == AssessedCorrection::Scheduled { correction } else { correction.without_leads() })
         }
     }
 }
@@ -111,21 +116,23 @@ fn result_of<'a>(analysis: &'a Analysis, condition: &Condition) -> Result<&'a Co
     }
 }
 
-/// "LON delay 1" of the inputs, the model's own names, "Q delay 1" of the outputs.
+/// "LON lead 1" and "LON delay 1" of the inputs, the model's own names, "Q delay 1" and "Q lead 1" of the outputs.
 fn state_names(analysis: &Analysis, model: &Model, corrected: &CorrectedModel) -> Vec<String> {
     let dataset = &analysis.study.dataset;
-    let delays = |channels: &[Channel], counts: &[usize]| -> Vec<String> {
+    let of_channels = |channels: &[Channel], what: &str, counts: &[usize]| -> Vec<String> {
         let of = |(channel, &count): (&Channel, &usize)| {
             let name = channel.name.clone();
-            (1..=count).map(move |place| format!("{name} delay {place}")).collect::<Vec<_>>()
+            (1..=count).map(move |place| format!("{name} {what} {place}")).collect::<Vec<_>>()
         };
         channels.iter().zip(counts).flat_map(of).collect()
     };
-    let added: usize = corrected.input_states.iter().chain(&corrected.output_states).sum();
-    let own = (0..corrected.model.order() - added).map(|state| model.state_name(state));
-    let mut names = delays(dataset.inputs(), &corrected.input_states);
-    names.extend(own);
-    names.extend(delays(dataset.outputs(), &corrected.output_states));
+    let mut names = of_channels(dataset.inputs(), "lead", &corrected.input_lead_states);
+    names.extend(of_channels(dataset.inputs(), "delay", &corrected.input_states));
+    let mut last = of_channels(dataset.outputs(), "delay", &corrected.output_states);
+    last.extend(of_channels(dataset.outputs(), "lead", &corrected.output_lead_states));
+    let own = corrected.model.order() - names.len() - last.len();
+    names.extend((0..own).map(|state| model.state_name(state)));
+    names.extend(last);
     names
 }
 
@@ -138,11 +145,22 @@ impl ExportedModel {
 
     /// How exact its delays are.
     pub(super) fn delay_words(&self) -> String {
+        if self.pade_order == 0 && self.lead_states > 0 {
+            return format!(
+                "gains and delays exact, lead filters by Tustin's rule, phase error up to {} deg at {} rad/s",
+                telling(self.phase_error_deg, 3),
+                number(self.band_top_rad_s)
+            );
+        }
+        if self.lead_states > 0 && self.delay_states == 0 {
+            return "gains and lead filters exact".to_owned();
+        }
         if self.pade_order == 0 || self.delay_states == 0 {
             return "gains and delays exact".to_owned();
         }
         format!(
-            "gains exact, delays by Pade approximants of order {}, phase error up to {} deg at {} rad/s",
+            "{} exact, delays by Pade approximants of order {}, phase error up to {} deg at {} rad/s",
+            if self.lead_states > 0 { "gains and lead filters" } else { "gains" },
             self.pade_order,
             telling(self.phase_error_deg, 3),
             number(self.band_top_rad_s)

@@ -2,9 +2,13 @@
 
 use super::curve::Curve;
 use super::lookup_table::LookupTable;
-use super::scheduled_correction::{ScheduledChannel, ScheduledCorrection};
+use super::scheduled_correction::{ExportedLead, ScheduledChannel, ScheduledCorrection};
 use crate::dataset::{Channel, Dataset};
-use crate::schedule::{Regression, Schedule, ScheduledQuantity};
+use crate::response::LeadFilter;
+use crate::schedule::{LeadSchedule, Regression, Schedule, ScheduledQuantity};
+
+/// Intervals of airspeed in which a lead filter that depends on it is linear.
+const LEAD_POINTS: u32 = 100;
 
 /// Where a correction comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,6 +23,52 @@ impl ScheduledCorrection {
     /// The correction that a schedule makes at each airspeed, see [`Schedule::at`]. Delays that are not scheduled are zero, and a note
     /// says so; another repeats each caution of the schedule.
     pub fn of(schedule: &Schedule, dataset: &Dataset, source: &ExportSource) -> Self {
+        let correction = Self::with_delays(schedule, dataset, source);
+        match &schedule.leads {
+            None => correction,
+            Some(leads) => correction.led(schedule, leads),
+        }
+    }
+
+    /// The same with the lead filters and delays of scheduled signed delays.
+    fn led(mut self, schedule: &Schedule, leads: &LeadSchedule) -> Self {
+        let [least, most] = [schedule.airspeeds.min_kt, schedule.airspeeds.max_kt];
+        let design = &leads.design;
+        let is_constant = |regression: &Regression| regression.figures().len() == 1 || least == most;
+        let tau_s = |regression: &Regression, kt: f64| {
+            regression.at(&schedule.airspeeds, kt).clamp(leads.bounds_s[0], leads.bounds_s[1])
+        };
+        // The numerator that a signed delay has is no polynomial of it.
+        let zero_s = |tau_s: f64| design.filter(tau_s).map_or(design.lag_s(), LeadFilter::zero_s);
+        let zero_curve = |regression: &Regression| {
+            if is_constant(regression) {
+                return Curve::Constant(zero_s(tau_s(regression, least)));
+            }
+            let kt = |place: u32| least + (most - least) * f64::from(place) / f64::from(LEAD_POINTS);
+            let airspeed_kt: Vec<f64> = (0..=LEAD_POINTS).map(kt).collect();
+            let values = airspeed_kt.iter().map(|&kt| zero_s(tau_s(regression, kt))).collect();
+            Curve::Table { of_logarithm: false, table: LookupTable { airspeed_kt, values } }
+        };
+        let delay_curve = |regression: &Regression| Curve::Cut {
+            curve: Box::new(curve(regression, false)),
+            least: 0.0,
+            most: LookupTable { airspeed_kt: vec![least], values: vec![leads.bounds_s[1]] },
+        };
+        for (channels, regressions) in [(&mut self.inputs, &leads.inputs), (&mut self.outputs, &leads.outputs)] {
+            for (channel, regression) in channels.iter_mut().zip(regressions) {
+                channel.delay_s = delay_curve(regression);
+                channel.zero_s = Some(zero_curve(regression));
+            }
+        }
+        self.lead = Some(ExportedLead { order: design.settings().order.number(), lag_s: design.lag_s() });
+        if !leads.inputs.iter().chain(&leads.outputs).all(is_constant) {
+            let points = LEAD_POINTS + 1;
+            self.notes.push(format!("the lead filters are tables over airspeed, linear between {points} points"));
+        }
+        self
+    }
+
+    fn with_delays(schedule: &Schedule, dataset: &Dataset, source: &ExportSource) -> Self {
         let (airspeeds, delays) = (&schedule.airspeeds, schedule.delays.as_ref());
         let delay = |regressions: Option<&[Regression]>, at: usize| match (delays, regressions) {
             (Some(delays), Some(regressions)) => Curve::Cut {
@@ -35,6 +85,7 @@ impl ScheduledCorrection {
                 name: names[at].name.clone(),
                 gain: curve(&gains[at], of_logarithm),
                 delay_s: delay(delays, at),
+                zero_s: None,
             };
             (0..gains.len()).map(channel).collect()
         };
@@ -45,6 +96,7 @@ impl ScheduledCorrection {
             sha256: source.sha256.clone(),
             inputs: channels(dataset.inputs(), &schedule.inputs, delays.map(|delays| delays.inputs.as_slice())),
             outputs: channels(dataset.outputs(), &schedule.outputs, delays.map(|delays| delays.outputs.as_slice())),
+            lead: None,
             airspeed_range_kt: (airspeeds.min_kt, airspeeds.max_kt),
             airspeed_mean_kt: airspeeds.mean_kt,
             airspeed_half_range_kt: airspeeds.half_range_kt,
@@ -57,7 +109,7 @@ fn notes(schedule: &Schedule, dataset: &Dataset) -> Vec<String> {
     let unscheduled = "delays are not scheduled in this study: they are zero here".to_owned();
     let (inputs, outputs) = dataset.names_of_channels();
     let cautions = schedule.cautions.iter().map(|caution| caution.words(&inputs, &outputs));
-    schedule.delays.is_none().then_some(unscheduled).into_iter().chain(cautions).collect()
+    (!schedule.has_delays()).then_some(unscheduled).into_iter().chain(cautions).collect()
 }
 
 fn curve(regression: &Regression, of_logarithm: bool) -> Curve {
@@ -80,7 +132,7 @@ mod tests {
     use super::*;
     use crate::io::embedded_example;
     use crate::schedule::{ScheduleKind, ScheduleSettings};
-    use crate::study::{Analysis, Edit, Engine, Setting, Study, Unobserved};
+    use crate::study::{Analysis, Edit, Engine, PhaseCorrection, Setting, Study, Unobserved};
     use std::process::Command;
 
     /// The example under every form of the schedule: kind, quantity, delays.
@@ -98,6 +150,15 @@ mod tests {
                     analyses.push((format!("{kind:?}, {quantity:?}, delays {delays}"), analysis));
                 }
             }
+        }
+        // Leads, of one signed delay for all airspeeds and of one that follows them.
+        for tau_degree in [0, 2] {
+            let mut study = Study::new(embedded_example().unwrap().dataset);
+            let schedule = ScheduleSettings { tau_degree, ..ScheduleSettings::default() };
+            study.apply(&Edit::Set(Setting::Phase(PhaseCorrection::Lead))).unwrap();
+            study.apply(&Edit::Set(Setting::Schedule(schedule))).unwrap();
+            let analysis = engine.analyze(&study, &Unobserved).unwrap();
+            analyses.push((format!("leads of degree {tau_degree}"), analysis));
         }
         // One airspeed: the range is none.
         let mut study = Study::new(embedded_example().unwrap().dataset);
@@ -172,7 +233,9 @@ mod tests {
             let found: Vec<f64> = airspeeds().into_iter().flat_map(of).collect();
             assert_same(&words, &found, &expected(&analysis));
             let says_zero = correction.notes.iter().any(|note| note.contains("delays are not scheduled"));
-            assert_eq!(says_zero, !analysis.study.settings.schedule.delays, "{words}");
+            let settings = &analysis.study.settings;
+            let has_delays = settings.schedule.delays || settings.phase == PhaseCorrection::Lead;
+            assert_eq!(says_zero, !has_delays, "{words}");
         }
     }
 

@@ -1,5 +1,6 @@
 //! What an exported file is, for the comment at its start.
 
+use super::number::number;
 use super::quoted::comment;
 use super::scheduled_correction::ScheduledCorrection;
 
@@ -16,6 +17,23 @@ pub(super) fn heading(correction: &ScheduledCorrection) -> Vec<String> {
         format!("SHA-256 of the dataset: {}", comment(&correction.sha256)),
         format!("Written by: {}", comment(&correction.software)),
     ];
+    if let Some(lead) = correction.lead {
+        let filter = match lead.order {
+            1 => "L(s) = (1 + a*s)/(1 + b*s)",
+            _ => "L(s) = (1 + sqrt(2)*a*s + a^2*s^2)/(1 + sqrt(2)*b*s + b^2*s^2)",
+        };
+        lines.push(format!(
+            "Lead: each input, after its gain and delay, and each output, before them, passes {filter},"
+        ));
+        lines.push(format!(
+            "with b = {} s for all, and a in seconds for each; where a = b there is no lead.",
+            number(lead.lag_s)
+        ));
+        lines.push(format!(
+            "In fixed-step code use Tustin's rule and a step of at most {} s.",
+            number(0.5 * lead.lag_s)
+        ));
+    }
     lines.extend(correction.notes.iter().map(|note| format!("Note: {}", comment(note))));
     lines
 }

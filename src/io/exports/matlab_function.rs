@@ -39,14 +39,15 @@ end
 const LONGEST_NAME: usize = 63;
 
 /// Writes the file `name.m` with the function `[Mi, Mo, tau_i, tau_o] = name(airspeed_kt)`: diagonal matrices of gains, columns of
-/// delays \[s\]. MATLAB calls a function by the name of its file.
+/// delays \[s\]; of a correction with leads followed by `lead_i, lead_o`, time constants \[s\] of the filters. MATLAB calls a function by the name of its file.
 ///
 /// # Errors
 /// [`ExportFault::FunctionName`] where MATLAB could not.
 pub fn matlab_function(correction: &ScheduledCorrection, name: &str) -> Result<String, ExportFault> {
     correction.check()?;
     check_function_name(name)?;
-    let mut text = format!("function [Mi, Mo, tau_i, tau_o] = {name}(airspeed_kt)\n");
+    let leads = if correction.lead.is_some() { ", lead_i, lead_o" } else { "" };
+    let mut text = format!("function [Mi, Mo, tau_i, tau_o{leads}] = {name}(airspeed_kt)\n");
     let _ = writeln!(
         text,
         "%{} Gain matrices Mi and Mo, delays tau_i and tau_o [s] at an airspeed [kt].",
@@ -54,6 +55,13 @@ pub fn matlab_function(correction: &ScheduledCorrection, name: &str) -> Result<S
     );
     for line in heading(correction) {
         let _ = writeln!(text, "% {line}");
+    }
+    if let Some(lead) = correction.lead {
+        let tf = match lead.order {
+            1 => "tf([a 1], [b 1])",
+            _ => "tf([a^2 sqrt(2)*a 1], [b^2 sqrt(2)*b 1])",
+        };
+        let _ = writeln!(text, "% Rows of lead_i and lead_o: [a b] in seconds, the filter {tf}.");
     }
     for (side, channels) in [("Input", &correction.inputs), ("Output", &correction.outputs)] {
         for (index, channel) in channels.iter().enumerate() {
@@ -75,6 +83,12 @@ pub fn matlab_function(correction: &ScheduledCorrection, name: &str) -> Result<S
         let _ = write!(text, "  M{name} = zeros({count}, {count});\n  tau_{name} = zeros({count}, 1);\n");
         for (index, channel) in channels.iter().enumerate() {
             write_channel(&mut text, name, index + 1, channel);
+        }
+        if let Some(lead) = correction.lead {
+            let _ = writeln!(text, "  lead_{name} = repmat({}, {count}, 2);", number(lead.lag_s));
+            for (index, zero_s) in channels.iter().enumerate().filter_map(|(at, of)| Some((at, of.zero_s.as_ref()?))) {
+                let _ = writeln!(text, "  lead_{name}({}, 1) = {};", index + 1, FUNCTIONS.expression(zero_s));
+            }
         }
     }
     text.push_str("end\n");

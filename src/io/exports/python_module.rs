@@ -43,8 +43,31 @@ def gdcm_correction(airspeed_kt):
     a = min(max(float(airspeed_kt), AIRSPEED_RANGE_KT[0]), AIRSPEED_RANGE_KT[1])
 "#;
 
-/// Writes a module with the function `gdcm_correction(airspeed_kt)`, which gives `(Mi, Mo, tau_i, tau_o)`; it needs nothing but
-/// `math`.
+/// The time constants of the lead filters.
+const LEADS: &str = r#"
+
+def gdcm_leads(airspeed_kt):
+    """Time constants a in seconds of the inputs' and of the outputs' lead filters, at an airspeed in knots; b is LEAD_LAG_S."""
+    if airspeed_kt != airspeed_kt:
+        raise ValueError("the airspeed is not a number")
+    a = min(max(float(airspeed_kt), AIRSPEED_RANGE_KT[0]), AIRSPEED_RANGE_KT[1])
+"#;
+
+/// A lead filter as states (M15.3).
+const LEAD_STATES: &str = r#"
+
+def gdcm_lead_state_space(zero_s):
+    """Matrices A, B, C, D (lists of rows) of the lead filter whose numerator has the time constant zero_s."""
+    w1, w2 = 1.0 / zero_s, 1.0 / LEAD_LAG_S
+    r = (zero_s / LEAD_LAG_S) ** LEAD_ORDER
+    if LEAD_ORDER == 1:
+        return [[-w2]], [[1.0]], [[r * (w1 - w2)]], [[r]]
+    root = math.sqrt(2.0)
+    return [[0.0, 1.0], [-w2 * w2, -root * w2]], [[0.0], [1.0]], [[r * (w1 * w1 - w2 * w2), r * root * (w1 - w2)]], [[r]]
+"#;
+
+/// Writes a module with the function `gdcm_correction(airspeed_kt)`, which gives `(Mi, Mo, tau_i, tau_o)`; of a correction with leads
+/// also `gdcm_leads(airspeed_kt)` and `gdcm_lead_state_space(zero_s)`. It needs nothing but `math`.
 pub fn python_module(correction: &ScheduledCorrection) -> Result<String, ExportFault> {
     correction.check()?;
     let mut text = String::new();
@@ -68,6 +91,17 @@ pub fn python_module(correction: &ScheduledCorrection) -> Result<String, ExportF
         let _ = write!(text, "    tau_{name} = [\n{}    ]\n", curves(channels, |channel| &channel.delay_s));
     }
     text.push_str("    return _diagonal(gain_i), _diagonal(gain_o), tau_i, tau_o\n");
+    if let Some(lead) = correction.lead {
+        let _ = write!(text, "\n\nLEAD_ORDER = {}\nLEAD_LAG_S = {}\n{LEADS}", lead.order, number(lead.lag_s));
+        let _ = writeln!(text, "    v = {}", correction.scaled_expression());
+        for (name, channels) in [("i", &correction.inputs), ("o", &correction.outputs)] {
+            let zeros = channels.iter().filter_map(|channel| channel.zero_s.as_ref());
+            let zeros: String = zeros.map(|zero_s| format!("        {},\n", FUNCTIONS.expression(zero_s))).collect();
+            let _ = write!(text, "    zero_{name} = [\n{zeros}    ]\n");
+        }
+        text.push_str("    return zero_i, zero_o\n");
+        text.push_str(LEAD_STATES);
+    }
     Ok(text)
 }
 

@@ -14,6 +14,18 @@ pub struct ScheduledChannel {
     pub gain: Curve,
     /// The delay \[s\].
     pub delay_s: Curve,
+    /// Time constant `a` of the lead filter's numerator \[s\]: equal to `b` where there is no lead. None of a correction without
+    /// leads.
+    pub zero_s: Option<Curve>,
+}
+
+/// What the lead filters of a correction have in common (M15.3).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExportedLead {
+    /// Order, 1 or 2.
+    pub order: usize,
+    /// Time constant `b` of the denominators \[s\].
+    pub lag_s: f64,
 }
 
 /// A correction of a model: y(t) = Mo ym(t - tau_o), with Mi u(t - tau_i) as the input of the model.
@@ -31,6 +43,8 @@ pub struct ScheduledCorrection {
     pub inputs: Vec<ScheduledChannel>,
     /// The outputs.
     pub outputs: Vec<ScheduledChannel>,
+    /// The lead filters, where there are any.
+    pub lead: Option<ExportedLead>,
     /// Least and greatest airspeed \[kt\]; airspeeds outside are cut to them.
     pub airspeed_range_kt: (f64, f64),
     /// Airspeed at which the scaled airspeed is 0 \[kt\].
@@ -50,9 +64,9 @@ pub(super) struct NamedCurve<'c> {
 }
 
 impl NamedCurve<'_> {
-    /// Whether it is a delay \[s\]; otherwise it is a gain.
-    pub(super) fn is_delay(&self) -> bool {
-        self.kind == "delay"
+    /// Whether it is a time \[s\]: a delay, or the numerator of a lead filter; otherwise it is a gain.
+    pub(super) fn is_time(&self) -> bool {
+        self.kind != "gain"
     }
 
     /// What it is: "gain of input LON".
@@ -82,12 +96,14 @@ impl ScheduledCorrection {
         format!("(a - ({})) / {}", number(self.airspeed_mean_kt), number(self.airspeed_half_range_kt))
     }
 
-    /// All curves: for every input, then every output, the gain and the delay.
+    /// All curves: for every input, then every output, the gain and the delay, and the numerator of the lead filter where there are
+    /// any.
     pub(super) fn curves(&self) -> impl Iterator<Item = NamedCurve<'_>> {
         let inputs = self.inputs.iter().map(|channel| ("input", channel));
         inputs.chain(self.outputs.iter().map(|channel| ("output", channel))).flat_map(|(side, channel)| {
             let named = |kind, curve| NamedCurve { side, kind, name: &channel.name, curve };
-            [named("gain", &channel.gain), named("delay", &channel.delay_s)]
+            let zero = channel.zero_s.as_ref().map(|zero_s| named("lead numerator", zero_s));
+            [named("gain", &channel.gain), named("delay", &channel.delay_s)].into_iter().chain(zero)
         })
     }
 
@@ -127,7 +143,8 @@ pub(super) mod tests {
             least,
             most: LookupTable { airspeed_kt: vec![10.0, 70.0], values: most.to_vec() },
         };
-        let channel = |name: &str, gain, delay_s| ScheduledChannel { name: name.to_owned(), gain, delay_s };
+        let channel =
+            |name: &str, gain, delay_s| ScheduledChannel { name: name.to_owned(), gain, delay_s, zero_s: None };
         let table = |of_logarithm, airspeed_kt: &[f64], values: &[f64]| {
             let table = LookupTable { airspeed_kt: airspeed_kt.to_vec(), values: values.to_vec() };
             Curve::Table { of_logarithm, table }
@@ -150,6 +167,7 @@ pub(super) mod tests {
                 table(false, &[0.0, 40.0, 61.3], &[0.9, 1.1 / 3.0, 2.0]),
                 cut(table(false, &[30.0], &[0.1]), 0.0, &[0.2, 0.05]),
             )],
+            lead: None,
             airspeed_range_kt: (0.0, 80.0),
             airspeed_mean_kt: 40.0,
             airspeed_half_range_kt: 40.0,

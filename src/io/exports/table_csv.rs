@@ -25,7 +25,7 @@ pub fn table_csv(correction: &ScheduledCorrection, breakpoints_kt: &[f64]) -> Re
     }
     text.push_str("airspeed [kt]");
     for BreakpointColumn { of, .. } in &table.columns {
-        let unit = if of.is_delay() { " [s]" } else { " [-]" };
+        let unit = if of.is_time() { " [s]" } else { " [-]" };
         let NamedCurve { side, kind, name, .. } = of;
         let _ = write!(text, ",\"{kind} of {side} {}{unit}\"", comment(name).replace('"', "\"\""));
     }

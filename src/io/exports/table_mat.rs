@@ -2,36 +2,40 @@
 
 use super::breakpoint_table::{BreakpointColumn, BreakpointTable};
 use super::export_fault::ExportFault;
-use super::fields::{Fields, cell_of_texts, column, matrix, text};
+use super::fields::{Fields, cell_of_texts, column, matrix, scalar, text};
 use super::heading::heading;
 use super::scheduled_correction::ScheduledCorrection;
 use crate::io::variables::{Value, Variable};
 
 /// The variable `gdcm_table`: the airspeeds `breakpoints_kt`, and for each input and output a column of gains and one of delays \[s\],
-/// to be interpolated linearly between them; with the greatest error of that.
+/// where there are leads one of their numerators \[s\] too, to be interpolated linearly between them; with the greatest error of that.
 pub(super) fn table_variable(
     correction: &ScheduledCorrection,
     breakpoints_kt: &[f64],
 ) -> Result<Variable, ExportFault> {
     let table = BreakpointTable::of(correction, breakpoints_kt)?;
     let rows = table.airspeed_kt.len();
-    let of = |side: &str, is_delay: bool| -> Vec<&BreakpointColumn<'_>> {
-        let columns = table.columns.iter();
-        columns.filter(|column| column.of.side == side && column.of.is_delay() == is_delay).collect()
+    let of = |side: &str, kind: &str| -> Vec<&BreakpointColumn<'_>> {
+        table.columns.iter().filter(|column| column.of.side == side && column.of.kind == kind).collect()
     };
     let mut fields = Fields::default();
     fields.add("about", cell_of_texts(heading(correction)));
     fields.add("airspeed_kt", column(table.airspeed_kt.iter().copied()));
     for (side, channels) in [("input", &correction.inputs), ("output", &correction.outputs)] {
         fields.add(&format!("{side}s"), cell_of_texts(channels.iter().map(|channel| channel.name.clone())));
-        for (kind, unit, is_delay) in [("gain", "percent", false), ("delay", "ms", true)] {
-            let columns = of(side, is_delay);
+        let kinds = [("gain", "gain", "percent"), ("delay", "delay", "ms"), ("lead numerator", "lead_numerator", "ms")];
+        for (kind, field, unit) in kinds.into_iter().take(if correction.lead.is_some() { 3 } else { 2 }) {
+            let columns = of(side, kind);
             let values = columns.iter().flat_map(|column| column.values.iter().copied()).collect();
-            let suffix = if is_delay { "_s" } else { "" };
-            fields.add(&format!("{side}_{kind}s{suffix}"), matrix(rows, columns.len(), values));
+            let suffix = if kind == "gain" { "" } else { "_s" };
+            fields.add(&format!("{side}_{field}s{suffix}"), matrix(rows, columns.len(), values));
             let errors = columns.iter().map(|column| column.error.error);
-            fields.add(&format!("{side}_{kind}_error_{unit}"), column_of_row(errors));
+            fields.add(&format!("{side}_{field}_error_{unit}"), column_of_row(errors));
         }
+    }
+    if let Some(lead) = correction.lead {
+        fields.add("lead_order", scalar(lead.order as f64));
+        fields.add("lead_lag_s", scalar(lead.lag_s));
     }
     fields.add("interpolation", text("linear between the airspeeds, the end values outside"));
     Ok(Variable { name: "gdcm_table".to_owned(), value: fields.record() })

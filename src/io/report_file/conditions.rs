@@ -6,7 +6,7 @@ use crate::figure::ConditionSource;
 use crate::figure::number::{compact, decimals};
 use crate::study::{
     Analysis, CURVE_POINTS, Cancelled, ConditionAnalysis, Engine, Progress, RemarkKind, Table, details, display_band,
-    remarks,
+    lead_words, remarks,
 };
 use crate::units::{number, s_to_ms};
 
@@ -96,6 +96,10 @@ fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) 
     page.heading_within("What was matched, what was not and why");
     page.list(said);
     page.fine_list(details(study, result));
+    if result.led.is_some() {
+        page.heading_within("What the leads do and what they cost");
+        page.list(lead_words(study, result));
+    }
     add_responses(page, study, result);
     page.table(&channel_table(analysis, result));
     BundleKind::BOTH.into_iter().for_each(|kind| add_models(page, study, result, kind));
@@ -120,7 +124,14 @@ fn facts<'a>(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<(&'a str, S
         ("Physics models", representative(analysis, result, BundleKind::Physics)),
         ("Identified models", representative(analysis, result, BundleKind::Identified)),
         ("Bounds of the gains", format!("{} to {}", decimals(bounds.lower, 4), decimals(bounds.upper, 4))),
-        ("Bounds of the delays", format!("0 to {} ms", decimals(s_to_ms(result.delay_upper_s()), 2))),
+        (
+            "Bounds of the delays",
+            format!(
+                "{} to {} ms",
+                compact(s_to_ms(result.delay_bounds_s()[0])),
+                decimals(s_to_ms(result.delay_upper_s()), 2)
+            ),
+        ),
         ("Objective of the gains", format!("{}{at_least}; {}", compact(gains.objective), proof_word(result))),
         ("Objective of the delays", format!("{} s²; the least, for the program is convex", compact(delays.objective))),
         ("In the schedule", scheduled.to_owned()),
@@ -151,9 +162,10 @@ fn channel_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
     let (dataset, correction) = (&analysis.study.dataset, &result.correction);
     let title = format!("Condition {}: gain and delay of each channel", result.condition.id());
     let mut table = Table::new(title, ["channel", "side", "gain k", "delay τ [ms]"]);
+    let [inputs_s, outputs_s] = correction.signed_delays_s();
     let sides = [
-        ("input", dataset.inputs(), &correction.input_gains, &correction.input_delays_s),
-        ("output", dataset.outputs(), &correction.output_gains, &correction.output_delays_s),
+        ("input", dataset.inputs(), &correction.input_gains, inputs_s),
+        ("output", dataset.outputs(), &correction.output_gains, outputs_s),
     ];
     for (side, channels, gains, delays_s) in sides {
         for ((channel, gain), delay_s) in channels.iter().zip(gains).zip(delays_s) {

@@ -43,8 +43,8 @@ pub(super) fn add_responses(page: &mut Page, study: &Study, result: &ConditionAn
 }
 
 fn cells(study: &Study, result: &ConditionAnalysis, pair: Pair) -> [String; 11] {
-    let (delta, cost) = (&result.comparison.delta, result.cost[pair]);
-    let is_defined = delta.gain[pair].is_some();
+    let cost = result.cost[pair];
+    let is_defined = result.wanted_gain(pair).is_some();
     let treated = match (is_defined, result.held()[pair], study.settings.fitted[pair]) {
         (false, ..) => "no G, no D",
         (true, true, _) => "held",
@@ -57,9 +57,9 @@ fn cells(study: &Study, result: &ConditionAnalysis, pair: Pair) -> [String; 11] 
         study.dataset.pair_name(pair),
         if study.dataset.on_axis()[pair] { "yes" } else { "no" }.to_owned(),
         treated.to_owned(),
-        of(delta.gain[pair], 3),
+        of(result.wanted_gain(pair), 3),
         of(Some(result.correction.net_gain(pair).value()), 3),
-        of(delta.delay_s[pair].map(s_to_ms), 1),
+        of(result.wanted_delay_s(pair).map(s_to_ms), 1),
         of(Some(s_to_ms(result.correction.net_delay(pair).value_s())), 1),
         of(cost.map(|cost| cost.uncorrected.total()), 1),
         of(cost.map(|cost| cost.corrected.total()), 1),

@@ -82,7 +82,7 @@ fn add_schedule(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
     add_coefficients(page, schedule, (&inputs, &outputs));
     add_gains(page, analysis, schedule);
     let measures =
-        [(Measure::Gain, "gains")].into_iter().chain(schedule.settings.delays.then_some((Measure::Delay, "delays")));
+        [(Measure::Gain, "gains")].into_iter().chain(schedule.has_delays().then_some((Measure::Delay, "delays")));
     for (measure, what) in measures {
         let title = format!("Channel {what} over airspeed, and their schedule");
         add_channels(page, analysis, channels, (measure, Across::Airspeed), &title);
@@ -149,12 +149,9 @@ fn add_gains(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
         (dataset.pair_name(pair), Box::new(gain) as Cell)
     });
     add_over_airspeed(page, schedule, &airspeeds_kt, "Scheduled net gains", net.collect());
-    if schedule.settings.delays {
+    if schedule.has_delays() {
         let delays = all_channels(dataset).into_iter().map(|channel| {
-            let delay = move |correction: &ChannelCorrection| match channel {
-                Channel::Input(input) => decimals(s_to_ms(correction.input_delays_s[input]), 2),
-                Channel::Output(output) => decimals(s_to_ms(correction.output_delays_s[output]), 2),
-            };
+            let delay = move |correction: &ChannelCorrection| decimals(s_to_ms(correction.delay_s(channel)), 2);
             (format!("τ_{}", channel.name(&inputs, &outputs)), Box::new(delay) as Cell)
         });
         add_over_airspeed(page, schedule, &airspeeds_kt, "Scheduled delays of the channels [ms]", delays.collect());

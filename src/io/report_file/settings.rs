@@ -5,7 +5,7 @@ use crate::dataset::{Pair, PairTable};
 use crate::fidelity::CostAverage;
 use crate::figure::number::compact;
 use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
-use crate::study::{Settings, Study};
+use crate::study::{DelayFrom, PhaseCorrection, Settings, Study};
 use crate::units::{number, s_to_ms};
 
 use super::extent::names;
@@ -28,6 +28,7 @@ pub(super) fn add(page: &mut Page, study: &Study) {
         ("Held exactly", pairs(&settings.constrained, true)),
         ("Ignored in the objective", pairs(&settings.fitted, false)),
         ("α of the gains, of the delays", format!("{}, {}", number(*alpha_gain), number(*alpha_delay))),
+        ("The phase is corrected by", phase_words(settings)),
         ("The gains minimise", objective_words(settings.gain_objective).to_owned()),
         ("Bounds of the gains", gain_bound_words(settings)),
         ("Upper bound of the delays", delay_bound_words(settings)),
@@ -43,6 +44,20 @@ pub(super) fn average_word(average: CostAverage) -> &'static str {
     match average {
         CostAverage::Median => "the median",
         CostAverage::Mean => "the mean",
+    }
+}
+
+fn phase_words(settings: &Settings) -> String {
+    match settings.phase {
+        PhaseCorrection::None => "nothing".to_owned(),
+        PhaseCorrection::Delay => format!("delays; D is the {}", settings.delay_from.words()),
+        PhaseCorrection::Lead => format!(
+            "a delay or a lead filter a channel: order {}, n {}, R_max {}; D is the {}",
+            settings.lead.order.number(),
+            number(settings.lead.pole),
+            number(settings.lead.limit),
+            DelayFrom::Band.words()
+        ),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::correction::{Channel, Problem, Quantity, Solution};
 use crate::dataset::Pair;
+use crate::study::lead_remark::servo_words;
 use crate::units::{number, s_to_ms};
 
 use super::context::{Context, digits};
@@ -20,7 +21,7 @@ pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
             digits(net.input),
             digits(value)
         )],
-        rests_on: vec![held_at(context, pair, &context.result.gains, context.result.comparison.delta.gain[pair])],
+        rests_on: vec![held_at(context, pair, &context.result.gains, context.result.wanted_gain(pair))],
         section: "M11, eq. (12)",
         value,
     }
@@ -31,7 +32,7 @@ pub(super) fn net_delay(context: &Context<'_>, pair: Pair) -> Derivation {
     let (input, output) = (context.channel(Channel::Input(pair.input)), context.channel(Channel::Output(pair.output)));
     let value = s_to_ms(net.value_s());
     let parts = format!("{} + {}", digits(s_to_ms(net.output_s)), digits(s_to_ms(net.input_s)));
-    let delta_ms = context.result.comparison.delta.delay_s[pair].map(s_to_ms);
+    let delta_ms = context.result.wanted_delay_s(pair).map(s_to_ms);
     Derivation {
         title: context.title(&format!("net delay of {}", context.pair(pair))),
         equation: "τ_o + τ_i".to_owned(),
@@ -72,22 +73,31 @@ pub(super) fn gain(context: &Context<'_>, channel: Channel) -> Option<Derivation
 
 pub(super) fn delay(context: &Context<'_>, channel: Channel) -> Option<Derivation> {
     let value = s_to_ms(of_channel(&context.result.delays, channel)?);
-    let problem = &context.result.delay_problem;
+    let (problem, solution) = (&context.result.delay_problem, &context.result.delays);
     let name = format!("τ_{}", context.channel(channel));
+    let (objective, section) = delay_equation(problem.quantity);
+    let bounds = if problem.quantity == Quantity::SignedDelay { "LB" } else { "0" };
+    let mut with_numbers = steps(context, channel, problem, solution, &format!("{name} = {} ms", digits(value)));
+    with_numbers.extend(context.result.correction.lead(channel).map(|filter| {
+        let lead_ms = digits(s_to_ms(filter.lead_s()));
+        format!("its filter has {lead_ms} ms of lead at low frequency: {}", servo_words(filter))
+    }));
     Some(Derivation {
         title: context.title(&name),
-        equation: "min Σ w (D − τ_o − τ_i)² + α Σ τ_o², subject to τ_o + τ_i = D (held), 0 ≤ τ ≤ UB".to_owned(),
-        with_numbers: steps(
-            context,
-            channel,
-            problem,
-            &context.result.delays,
-            &format!("{name} = {} ms", digits(value)),
-        ),
-        rests_on: optimum_rests_on(context, problem, &context.result.delays),
-        section: "M9, eq. (11)",
+        equation: format!("min {objective}, subject to τ_o + τ_i = D (held), {bounds} ≤ τ ≤ UB"),
+        with_numbers,
+        rests_on: optimum_rests_on(context, problem, solution),
+        section,
         value,
     })
+}
+
+/// The objective of delays or signed delays, and where it stands.
+fn delay_equation(quantity: Quantity) -> (&'static str, &'static str) {
+    match quantity {
+        Quantity::SignedDelay => ("Σ w (D − τ_o − τ_i)² + α (Σ τ_o² + Σ τ_i²)", "M15.4"),
+        _ => ("Σ w (D − τ_o − τ_i)² + α Σ τ_o²", "M9, eq. (11)"),
+    }
 }
 
 fn of_channel(solution: &Solution, channel: Channel) -> Option<f64> {
@@ -142,8 +152,9 @@ pub(super) fn gain_objective(context: &Context<'_>) -> Derivation {
 }
 
 pub(super) fn delay_objective(context: &Context<'_>) -> Derivation {
-    let equation = ("Σ w (D − τ_o − τ_i)² + α Σ τ_o²", " ms²", 1e6);
-    objective(context, equation, (&context.result.delay_problem, &context.result.delays), "M9, eq. (11)")
+    let (problem, solution) = (&context.result.delay_problem, &context.result.delays);
+    let (equation, section) = delay_equation(problem.quantity);
+    objective(context, (equation, " ms²", 1e6), (problem, solution), section)
 }
 
 fn objective(

@@ -49,6 +49,14 @@ impl<'a> Context<'a> {
         self.result.comparison.representative.mismatch.get(pair)?.as_ref()
     }
 
+    /// The same after the leads of the channels, where there are any (M15.5).
+    pub(super) fn led_mismatch(&self, pair: Pair) -> Option<&'a Mismatch> {
+        match &self.result.led {
+            Some(led) => led.mismatch.get(pair)?.as_ref(),
+            None => self.mismatch(pair),
+        }
+    }
+
     /// The two representatives.
     pub(super) fn models(&self) -> Vec<String> {
         let of = |kind| self.result.representative_name(kind);

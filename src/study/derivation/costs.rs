@@ -74,6 +74,10 @@ pub(super) fn change(context: &Context<'_>, pair: Pair, choice: AssessmentChoice
             let from = format!("the schedule at {} kt", number(found.airspeed_kt));
             (context.analysis.schedule.as_ref().ok()?.at(found.airspeed_kt), from)
         }
+        AssessedCorrection::ScheduledWithoutLeads => {
+            let from = format!("the schedule at {} kt, its leads left out", number(found.airspeed_kt));
+            (context.analysis.schedule.as_ref().ok()?.at(found.airspeed_kt).without_leads(), from)
+        }
     };
     let role = match choice.model {
         AssessedModel::Nominal => "nominal model",

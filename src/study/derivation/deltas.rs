@@ -27,21 +27,28 @@ fn middle_words(mismatch: &Mismatch, values: &[f64]) -> String {
 }
 
 pub(super) fn gain(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
-    let value = context.result.comparison.delta.gain[pair]?;
-    let mismatch = context.mismatch(pair)?;
+    let value = context.result.wanted_gain(pair)?;
+    let mismatch = context.led_mismatch(pair)?;
+    let (equation, section) = match context.result.led {
+        None => ("G = median_ω |H_ref| / |H_sim|", "M6, eq. (5)"),
+        Some(_) => ("G = median_ω |H_ref| / |L_o H_sim L_i|", "M15.5, eq. (5)"),
+    };
     Some(Derivation {
         title: context.title(&format!("G of {}", context.pair(pair))),
-        equation: "G = median_ω |H_ref| / |H_sim|".to_owned(),
+        equation: equation.to_owned(),
         with_numbers: vec![format!("G = {} = {}", middle_words(mismatch, &ratios(mismatch)), digits(value))],
         rests_on: context.models_and_frequencies(mismatch),
-        section: "M6, eq. (5)",
+        section,
         value,
     })
 }
 
 pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
-    let value = s_to_ms(context.result.comparison.delta.delay_s[pair]?);
+    let value = s_to_ms(context.result.wanted_delay_s(pair)?);
     let mismatch = context.mismatch(pair)?;
+    if context.result.delay_problem.delta == context.result.comparison.delta.band_delay_s {
+        return Some(band_delay(context, pair, mismatch, value));
+    }
     let mut rests_on = context.models_and_frequencies(mismatch);
     if mismatch.leaves_half_a_turn() {
         rests_on.push("at each frequency the turn nearest to the pure delay that fits best (M6b)".to_owned());
@@ -60,11 +67,34 @@ pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     })
 }
 
+/// The straight line of least squares through the missing phase (M15.2).
+fn band_delay(context: &Context<'_>, pair: Pair, mismatch: &Mismatch, value: f64) -> Derivation {
+    let omega = mismatch.omega(context.omega());
+    let weight = |place: usize| mismatch.weights().map_or(1.0, |weights| weights[place]);
+    let sum = |of: &dyn Fn(usize) -> f64| (0..omega.len()).map(|place| weight(place) * of(place)).sum::<f64>();
+    let phase = mismatch.phase_difference(context.omega());
+    let moment = sum(&|place| omega[place] * phase[place]);
+    let square = sum(&|place| omega[place] * omega[place]);
+    Derivation {
+        title: context.title(&format!("D of {}", context.pair(pair))),
+        equation: "D = Σ W ω Δφ(H_sim, H_ref) / Σ W ω²".to_owned(),
+        with_numbers: vec![format!(
+            "D = {} rad²/s / {} rad²/s² = {} ms",
+            digits(moment),
+            digits(square),
+            digits(value)
+        )],
+        rests_on: context.models_and_frequencies(mismatch),
+        section: "M15.2",
+        value,
+    }
+}
+
 /// The mismatches that are pooled: of the measuring responses, or of all where none of those is defined.
-fn pooled<'a>(context: &Context<'a>) -> Vec<&'a Mismatch> {
+fn pooled<'a>(context: &Context<'a>, mismatch: impl Fn(Pair) -> Option<&'a Mismatch>) -> Vec<&'a Mismatch> {
     let measuring = context.analysis.study.dataset.measuring_pairs();
-    let marked: Vec<&Mismatch> = measuring.marked().filter_map(|pair| context.mismatch(pair)).collect();
-    if marked.is_empty() { measuring.pairs().filter_map(|pair| context.mismatch(pair)).collect() } else { marked }
+    let marked: Vec<&Mismatch> = measuring.marked().filter_map(&mismatch).collect();
+    if marked.is_empty() { measuring.pairs().filter_map(&mismatch).collect() } else { marked }
 }
 
 fn pool_rests_on(context: &Context<'_>) -> Vec<String> {
@@ -79,7 +109,8 @@ pub(super) fn gain_bounds(context: &Context<'_>) -> Derivation {
     let (with_numbers, rests_on) = match context.settings().gain_bounds {
         Some(_) => (vec![format!("LB = {lower}"), format!("UB = {upper}")], vec!["set by hand".to_owned()]),
         None => {
-            let pool: Vec<f64> = pooled(context).into_iter().flat_map(ratios).collect();
+            let pool = pooled(context, |pair| context.led_mismatch(pair));
+            let pool: Vec<f64> = pool.into_iter().flat_map(ratios).collect();
             let pool = spread(&pool);
             let steps = vec![
                 format!("LB = min(1, {} % quantile of {pool}) = {lower}", percent(quantile)),
@@ -104,8 +135,8 @@ pub(super) fn delay_bound(context: &Context<'_>) -> Derivation {
     let (with_numbers, rests_on) = match context.settings().delay_upper_s {
         Some(_) => (vec![format!("UB = {} ms", digits(value))], vec!["set by hand".to_owned()]),
         None => {
-            let pool: Vec<f64> =
-                pooled(context).into_iter().flat_map(|mismatch| delays_ms(mismatch, context.omega())).collect();
+            let pool = pooled(context, |pair| context.mismatch(pair));
+            let pool: Vec<f64> = pool.into_iter().flat_map(|mismatch| delays_ms(mismatch, context.omega())).collect();
             let percent = number((1e6 * (1.0 - quantile)).round() / 1e4);
             let step = format!("UB = max(0, {percent} % quantile of {}) = {} ms", spread(&pool), digits(value));
             (vec![step], pool_rests_on(context))

@@ -33,6 +33,7 @@ impl Role {
             }
             Self::Corrected => look(palette.corrected, 2.2, LinePattern::Solid),
             Self::Scheduled => look(palette.corrected, 2.2, dashed(9.0)),
+            Self::WithoutLeads => look(palette.corrected, 1.4, LinePattern::DashDotted { length: 5.0 }),
             Self::Rejected => look(palette.rejected, 1.0, DOTTED),
             // From blue over grey to amber, as in scales made for colour-blind eyes.
             Self::OfAirspeed(step) => {

@@ -50,6 +50,11 @@ fn choices_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
     choice_ui(ui, "Average of the assessment", &mut chosen.average, &averages);
     let corrections = [
         (AssessedCorrection::Scheduled, "scheduled", "The schedule at the condition's airspeed"),
+        (
+            AssessedCorrection::ScheduledWithoutLeads,
+            "scheduled, no leads",
+            "The schedule with its lead filters left out (M15)",
+        ),
         (AssessedCorrection::Own, "own optimum", "The condition's own correction"),
     ];
     choice_ui(ui, "Correction assessed", &mut chosen.correction, &corrections);

@@ -54,7 +54,7 @@ fn command_of(state: &State, event: BodeEvent) -> Option<Command> {
         BodeEvent::Boxed(curves) => {
             let models = curves.into_iter().filter_map(|curve| match curve {
                 CurveId::Model(id) => Some(id),
-                CurveId::Corrected | CurveId::Scheduled => None,
+                CurveId::Corrected | CurveId::Scheduled | CurveId::WithoutLeads => None,
             });
             Some(CurveCommand::Select(models.collect()).into())
         }
@@ -83,7 +83,7 @@ pub(super) fn wished(state: &State, id: CurveId, wish: CurveWish) -> Option<Comm
         (CurveWish::Pin, CurveId::Model(id)) => Some(Edit::Pin(id).into()),
         (CurveWish::Isolate, CurveId::Model(id)) => Some(Command::Isolate(id)),
         (CurveWish::Hide, CurveId::Model(id)) => Some(CurveCommand::HideModel(id).into()),
-        (_, CurveId::Model(_) | CurveId::Corrected | CurveId::Scheduled) => None,
+        (_, CurveId::Model(_) | CurveId::Corrected | CurveId::Scheduled | CurveId::WithoutLeads) => None,
     }
 }
 

@@ -4,9 +4,9 @@ use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
 use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
-use crate::study::{Edit, Setting};
+use crate::study::{Edit, PhaseCorrection, Setting};
 use crate::view::command::Command;
-use crate::view::evidence_scene::{coefficient_table, evidence_table, residual_table};
+use crate::view::evidence_scene::{coefficient_table, evidence_table, lead_evidence_table, residual_table};
 use crate::view::net_gain_scene::{PairSet, dot_key, net_gain_panels};
 use crate::view::number_field::NumberField;
 use crate::view::palette::{Palette, SMALL_SIZE};
@@ -41,7 +41,7 @@ pub fn net_gain_header_ui(ui: &mut Ui, state: &State, palette: &Palette, command
 }
 
 fn controls_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    schedule_ui(ui, state.study.settings.schedule, commands);
+    schedule_ui(ui, state.study.settings.schedule, state.study.settings.phase, commands);
     ui.label(RichText::new("schedule").size(SMALL_SIZE).color(palette.dim_text));
     let mut shown = state.display.show_evidence;
     let hint =
@@ -116,7 +116,9 @@ fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
                 commands.push(Edit::Set(Setting::Schedule(ScheduleSettings { kind, ..schedule })).into());
             }
             let plain = TableLook { color: &|_, _| None, selected: &|_| false };
-            for table in residual_table(state, conditions, evidence).into_iter().chain(coefficient_table(state)) {
+            let leads = lead_evidence_table(state, cached.leads());
+            let residuals = residual_table(state, conditions, evidence);
+            for table in leads.into_iter().chain(residuals).chain(coefficient_table(state)) {
                 ui.label(RichText::new(&table.title).size(SMALL_SIZE).strong());
                 table_ui(ui, &table, &mut Sorting::default(), &plain, palette, commands);
             }
@@ -140,7 +142,7 @@ pub(super) fn gain_command(state: &State, event: GainEvent) -> Option<Command> {
 }
 
 /// The form of the schedule. Laid out from right to left.
-fn schedule_ui(ui: &mut Ui, settings: ScheduleSettings, commands: &mut Vec<Command>) {
+fn schedule_ui(ui: &mut Ui, settings: ScheduleSettings, phase: PhaseCorrection, commands: &mut Vec<Command>) {
     let mut chosen = settings;
     choice_ui(
         ui,
@@ -174,8 +176,22 @@ fn schedule_ui(ui: &mut Ui, settings: ScheduleSettings, commands: &mut Vec<Comma
     };
     let entered = tolerance.ui(ui, chosen.airspeed_tolerance_kt);
     chosen.airspeed_tolerance_kt = entered.value.unwrap_or(chosen.airspeed_tolerance_kt);
-    let hint = "Schedule the delays of the channels too, cut to their bounds (M11)";
-    ui.checkbox(&mut chosen.delays, "delays too").on_hover_text(hint);
+    if phase == PhaseCorrection::Lead {
+        let degrees = [
+            (
+                0,
+                "τ constant",
+                "One signed delay for all airspeeds: lags of servos and sensors do not depend on them (M15.5)",
+            ),
+            (1, "τ degree 1", "Polynomial of degree 1 in airspeed"),
+            (2, "τ degree 2", "Polynomial of degree 2 in airspeed"),
+            (3, "τ degree 3", "Polynomial of degree 3 in airspeed"),
+        ];
+        choice_ui(ui, "Schedule of the signed delays", &mut chosen.tau_degree, &degrees);
+    } else {
+        let hint = "Schedule the delays of the channels too, cut to their bounds (M11)";
+        ui.checkbox(&mut chosen.delays, "delays too").on_hover_text(hint);
+    }
     if chosen != settings {
         commands.push(Edit::Set(Setting::Schedule(chosen)).into());
     }

@@ -128,7 +128,12 @@ fn equal_coherence_gives_the_medians_of_no_coherence_to_the_last_digit() {
             (with(&equal, std::slice::from_ref(&points)), with(&equal, &[points, Setting::Coherence(None)]));
         assert_eq!(on.study.settings.coherence_threshold, Some(DEFAULT_COHERENCE), "it is on by default");
         let (on, off) = (only(&on), only(&off));
-        assert_eq!(on.comparison.delta, off.comparison.delta);
+        let [of_on, of_off] = [&on, &off].map(|of| &of.comparison.delta);
+        assert_eq!((&of_on.gain, &of_on.delay_s), (&of_off.gain, &of_off.delay_s));
+        for (pair, delay_s) in of_on.band_delay_s.iter() {
+            // A weighted sum over a sum of weights, of 200 terms.
+            assert!((delay_s.unwrap() - of_off.band_delay_s[pair].unwrap()).abs() < 1e-14);
+        }
         assert_eq!((&on.gain_problem, &on.delay_problem), (&off.gain_problem, &off.delay_problem));
         assert_eq!((&on.correction, &on.cost), (&off.correction, &off.cost));
     }

@@ -15,6 +15,7 @@ mod derivations;
 mod edges;
 mod example;
 mod known_answer;
+mod lead;
 mod modes;
 mod remarks;
 mod response_paths;

@@ -9,8 +9,9 @@ use gdcm::fidelity::CostAverage;
 use gdcm::io::{
     FileError, LoadedDataset, Opened, embedded_example, load_any, load_dataset, open_study, open_study_of, save_study,
 };
+use gdcm::response::LeadOrder;
 use gdcm::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
-use gdcm::study::{Edit, Setting, Study};
+use gdcm::study::{DelayFrom, Edit, PhaseCorrection, Setting, Study};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
@@ -80,11 +81,22 @@ fn edits() -> impl Strategy<Value = Vec<Edit>> {
         (0.1..1.0_f64, 1.0..3.0_f64).prop_map(|(lower, upper)| Setting::GainBounds(Some(GainBounds { lower, upper }))),
         prop::option::of(number()).prop_map(Setting::DelayUpper),
         (0.0..3.0_f64).prop_map(Setting::Agreement),
+        prop::sample::select(PhaseCorrection::ALL.to_vec()).prop_map(Setting::Phase),
+        prop::sample::select(DelayFrom::ALL.to_vec()).prop_map(Setting::DelayFrom),
+        prop::sample::select(vec![LeadOrder::First, LeadOrder::Second]).prop_map(Setting::LeadOrder),
+        (2.0..10.0_f64).prop_map(Setting::LeadPole),
+        (1.0..100.0_f64).prop_map(Setting::LeadLimit),
         prop::option::of(0.0..=1.0_f64).prop_map(Setting::Coherence),
         (0_usize..=3, any::<bool>(), any::<bool>(), 0.0..100.0_f64).prop_map(|(degree, table, delays, tolerance)| {
             let kind = if table { ScheduleKind::Table } else { ScheduleKind::Polynomial { degree } };
             let quantity = if delays { ScheduledQuantity::Gain } else { ScheduledQuantity::LnGain };
-            Setting::Schedule(ScheduleSettings { kind, quantity, delays, airspeed_tolerance_kt: tolerance })
+            Setting::Schedule(ScheduleSettings {
+                kind,
+                quantity,
+                delays,
+                airspeed_tolerance_kt: tolerance,
+                tau_degree: degree,
+            })
         }),
     ];
     prop::collection::vec(setting.prop_map(Edit::Set), 0..12)

@@ -11,6 +11,7 @@ mod properties;
 mod random;
 mod reference_delays;
 mod reference_gains;
+mod reference_leads;
 
 use gdcm::correction::{Problem, ProofBudget, Solution, solve};
 

@@ -11,6 +11,7 @@ mod files;
 mod forms;
 mod hands;
 mod keyboard;
+mod lead;
 mod lists;
 mod plots;
 mod recovery;

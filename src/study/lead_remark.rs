@@ -1,0 +1,182 @@
+//! What has to be said of signed delays and lead filters (M15.6).
+
+use crate::correction::Channel;
+use crate::dataset::Pair;
+use crate::response::LeadFilter;
+use crate::units::{number, ratio_to_db, s_to_ms, signed, telling};
+
+use super::condition_analysis::ConditionAnalysis;
+use super::document::Study;
+use super::remark::{Remark, RemarkKind};
+use super::settings::PhaseCorrection;
+
+/// Two figures of D this far apart \[s\] are not those of a delay.
+const APART_S: f64 = 0.02;
+/// Signed delays below this \[s\] are nothing to correct.
+const NOTHING_S: f64 = 2e-3;
+/// Multiple of the band's top at which the price is told.
+const ABOVE: f64 = 10.0;
+
+/// The responses and the channels that get lead, in words: "P from LAT wants 65 ms of lead over the band: 24 on P, 41 on LAT"; "LAT: as if
+/// a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB above the band".
+pub fn lead_words(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
+    let Some(led) = &result.led else { return Vec::new() };
+    let (inputs, outputs) = study.dataset.names_of_channels();
+    let top = study.settings.band.max();
+    let wants = |pair: Pair| {
+        let (output, input) = (Channel::Output(pair.output), Channel::Input(pair.input));
+        let wanted_s = result.wanted_delay_s(pair)?;
+        let ms = |tau_s: f64| telling(s_to_ms(tau_s.abs()), 0);
+        let part = |channel: Channel| {
+            let tau_s = led.leads.tau_s(channel);
+            let sign = if (tau_s > 0.0) == (wanted_s > 0.0) || tau_s == 0.0 { "" } else { "−" };
+            format!("{sign}{} on {}", ms(tau_s), channel.name(&inputs, &outputs))
+        };
+        let gain_db: f64 = [output, input]
+            .iter()
+            .filter_map(|channel| led.leads.filter(*channel))
+            .map(LeadFilter::gain_at_infinity_db)
+            .sum();
+        let price = if gain_db > 0.05 { format!("; {} dB above the band", signed(gain_db, 1)) } else { String::new() };
+        Some(format!(
+            "{} from {} wants {} ms of {} over the band: {}, {}{price}",
+            output.name(&inputs, &outputs),
+            input.name(&inputs, &outputs),
+            ms(wanted_s),
+            if wanted_s < 0.0 { "lead" } else { "delay" },
+            part(output),
+            part(input)
+        ))
+    };
+    let channels = (0..inputs.len()).map(Channel::Input).chain((0..outputs.len()).map(Channel::Output));
+    let filters: Vec<(Channel, LeadFilter)> =
+        channels.filter_map(|channel| Some((channel, led.leads.filter(channel)?))).collect();
+    let replaced = filters.iter().map(|(channel, filter)| {
+        let at_above = filter.magnitude_db(ABOVE * top);
+        format!(
+            "{}: {}; {} dB at {} rad/s",
+            channel.name(&inputs, &outputs),
+            servo_words(*filter),
+            signed(at_above, 1),
+            number(ABOVE * top)
+        )
+    });
+    let states: usize = filters.iter().map(|(_, filter)| filter.order().number()).sum();
+    let price = (states > 0)
+        .then(|| format!("The leads add {states} states. Do not use the corrected model above {} rad/s.", number(top)));
+    result.held().marked().filter_map(wants).chain(replaced).chain(price).collect()
+}
+
+/// "as if a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB above the band".
+pub fn servo_words(filter: LeadFilter) -> String {
+    format!(
+        "as if a servo of {} rad/s were replaced by one of {} rad/s; {} dB above the band",
+        telling(filter.zero_rad_s(), 0),
+        telling(filter.lag_rad_s(), 0),
+        signed(filter.gain_at_infinity_db(), 1)
+    )
+}
+
+/// What has to be known of leads, where they are asked for, in words (M15.6).
+pub fn lead_cautions(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
+    let remarks = if result.led.is_some() { lead_remarks(study, result) } else { Vec::new() };
+    remarks.into_iter().filter(|remark| remark.kind != RemarkKind::Good).map(|remark| remark.text).collect()
+}
+
+/// What leads do and what has to be asked before them; of a study without leads, whether they would help.
+pub(super) fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
+    let caution = |text: String| Remark::new(RemarkKind::Caution, text);
+    let mut remarks: Vec<Remark> = common_lead(result).map(caution).into_iter().collect();
+    if study.settings.phase == PhaseCorrection::Lead {
+        remarks.extend(achieved(study, result));
+        remarks.extend(first_order_words(study, result).map(caution));
+    }
+    remarks.extend(not_of_a_delay(study, result).map(caution));
+    remarks.extend(result.offer.map(|offer| {
+        let (without, with) = (telling(offer.without, 0), telling(offer.with, 0));
+        let text = format!(
+            "All held responses want lead: with a delay or lead in each channel their J would be about {with} in the mean, in place \
+             of {without}."
+        );
+        Remark { phase: Some(PhaseCorrection::Lead), ..Remark::new(RemarkKind::Caution, text) }
+    }));
+    remarks
+}
+
+/// That all held responses want about the same lead, and what to check first.
+fn common_lead(result: &ConditionAnalysis) -> Option<String> {
+    let held = result.held().marked();
+    let mut wanted_s: Vec<f64> = held.filter_map(|pair| result.comparison.delta.band_delay_s[pair]).collect();
+    let (least, most) = wanted_s.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(*at), b.max(*at)));
+    let middle = crate::response::median(&mut wanted_s);
+    let is_common = wanted_s.len() > 1 && most < 0.0 && most - least <= 0.5 * middle.abs() && -middle >= NOTHING_S;
+    is_common.then(|| {
+        format!(
+            "All held responses want about {} ms of lead: check first the time alignment of the records, the simulation's \
+             integration and sampling delay, then servo and sensor models; a common lag is better taken out where it arises than \
+             corrected.",
+            telling(-s_to_ms(middle), 0)
+        )
+    })
+}
+
+/// Whether every held response gets what it wants; which does not and why.
+fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
+    let (held, delays) = (result.held().marked().count(), &result.delays);
+    let all = delays.inputs.iter().chain(&delays.outputs);
+    if all.clone().all(|tau_s| tau_s.abs() < NOTHING_S) {
+        let text = "Nothing to do for the phase: every delay or lead is less than 2 ms.".to_owned();
+        return vec![Remark::new(RemarkKind::Good, text)];
+    }
+    if delays.unmatched.is_empty() {
+        let text = match held {
+            0 => "No delay or lead is held.".to_owned(),
+            1 => "The held response gets the delay or lead that it wants.".to_owned(),
+            count => format!("All {count} held responses get the delay or lead that they want."),
+        };
+        return vec![Remark::new(RemarkKind::Good, text)];
+    }
+    let (inputs, outputs) = study.dataset.names_of_channels();
+    let top = study.settings.band.max();
+    let misses: Vec<String> =
+        delays.unmatched.iter().map(|unmatched| unmatched.words(top, &inputs, &outputs)).collect();
+    let conflicts = delays.conflicts.iter().map(|conflict| conflict.words(&inputs, &outputs));
+    std::iter::once(misses.join(" ")).chain(conflicts).map(|text| Remark::new(RemarkKind::Caution, text)).collect()
+}
+
+/// What filters of first order add to the gain within the band, which the gains take back.
+fn first_order_words(study: &Study, result: &ConditionAnalysis) -> Option<String> {
+    let led = result.led.as_ref()?;
+    let rises = result.held().marked().filter_map(|pair| {
+        let rise = result.comparison.delta.gain[pair]? / led.gain[pair]?;
+        Some((pair, ratio_to_db(rise)))
+    });
+    let (pair, rise_db) = rises.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    (rise_db.abs() >= 0.05).then(|| {
+        format!(
+            "The lead filters raise the gain within the band, which the gains take back: by up to {} dB ({}).",
+            telling(rise_db.abs(), 1),
+            study.dataset.pair_name(pair)
+        )
+    })
+}
+
+/// The held responses of which the two figures of D are far apart.
+fn not_of_a_delay(study: &Study, result: &ConditionAnalysis) -> Option<String> {
+    let delta = &result.comparison.delta;
+    let apart = result.held().marked().filter_map(|pair| {
+        let (median_s, band_s) = (delta.delay_s[pair]?, delta.band_delay_s[pair]?);
+        let ms = |delay_s: f64| signed(s_to_ms(delay_s), 0);
+        let name = study.dataset.pair_name(pair);
+        ((median_s - band_s).abs() > APART_S)
+            .then(|| format!("{name} {} ms by eq. (9), {} ms over the band", ms(median_s), ms(band_s)))
+    });
+    let apart: Vec<String> = apart.collect();
+    (!apart.is_empty()).then(|| {
+        let lead = if study.settings.phase == PhaseCorrection::Lead { ": no lead filter mends it" } else { "" };
+        format!(
+            "The missing phase is not that of a delay, but of a zero or a mode in the band{lead}: {}.",
+            apart.join("; ")
+        )
+    })
+}

@@ -1,0 +1,94 @@
+//! Leads by hand: taken, seen, and undone (M15).
+
+use gdcm::study::{AssessedCorrection, PhaseCorrection};
+
+use super::*;
+
+fn choose(window: &mut Window, list: &str, choice: &str) {
+    window.get_by_role_and_label(Role::ComboBox, list).click();
+    window.run_steps(3);
+    click(window, choice);
+}
+
+#[test]
+fn one_click_takes_the_lead_that_the_result_offers_and_undo_gives_it_back() {
+    let mut window = window();
+    let before = state(&window).shown().unwrap().correction.clone();
+    assert!(before.leads.is_none());
+    // It may stand below what the panel shows.
+    window.get_by_label("Correct the phase by delay or lead").click_accesskit();
+    settle(&mut window);
+    assert_eq!(state(&window).study.settings.phase, PhaseCorrection::Lead);
+    let shown = state(&window).shown().unwrap();
+    assert!(shown.correction.leads.is_some() && shown.offer.is_none());
+    assert!(window.query_by_label("Correct the phase by delay or lead").is_none(), "it is taken");
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(&mut window);
+    assert_eq!(state(&window).shown().unwrap().correction, before, "to the last digit");
+}
+
+#[test]
+fn the_phase_is_chosen_beside_alpha_with_what_belongs_to_it() {
+    let mut window = window();
+    assert!(window.query_by_label("n of the lead filters").is_none(), "there are no filters yet");
+    choose(&mut window, "Phase correction", "delay or lead");
+    assert_eq!(state(&window).study.settings.phase, PhaseCorrection::Lead);
+    for label in ["n of the lead filters", "R_max of the lead filters", "Order of the lead filters"] {
+        window.get_by_label(label);
+    }
+    choose(&mut window, "Phase correction", "none");
+    assert!(window.query_by_label("n of the lead filters").is_none());
+    let correction = &state(&window).shown().unwrap().correction;
+    assert!(correction.input_delays_s.iter().chain(&correction.output_delays_s).all(|delay_s| *delay_s == 0.0));
+}
+
+#[test]
+fn the_phase_without_leads_lies_beside_the_corrected_one_and_the_result_tells_servos() {
+    let mut window = window();
+    let gains_alone = drawn(&window, CurveRole::Corrected);
+    choose(&mut window, "Phase correction", "delay or lead");
+    let (with, without) = (drawn(&window, CurveRole::Corrected), drawn(&window, CurveRole::WithoutLeads));
+    let top = state(&window).study.settings.band.max();
+    let at_top = with.omega.iter().position(|omega| *omega >= top).unwrap();
+    assert!(with.phase_deg[at_top] > without.phase_deg[at_top] + 10.0, "lead turns the phase up");
+    // The gains differ a little, the phase is that of gains alone: the example's delays are none.
+    assert!((without.phase_deg[at_top] - gains_alone.phase_deg[at_top]).abs() < 1e-9);
+    let told = window.query_all_by_label_contains("as if a servo of").count();
+    assert_eq!(told, 10, "a sentence for each channel");
+    assert!(window.query_by_label_contains("Do not use the corrected model above 12 rad/s.").is_some());
+    assert!(!remarks_shown(state(&window), state(&window).shown().unwrap()).is_empty());
+}
+
+#[test]
+fn channels_show_signed_delays_within_their_bounds() {
+    let mut window = window();
+    choose(&mut window, "Phase correction", "delay or lead");
+    let (inputs, outputs) = channel_panels(state(&window), Measure::Delay, Across::Conditions);
+    let taus: Vec<f64> = inputs.iter().chain(&outputs).flat_map(|panel| &panel.dots).map(|dot| dot.value).collect();
+    assert_eq!(taus.len(), 110);
+    assert!(taus.iter().any(|tau| *tau < -20.0), "lead is down");
+    assert!(taus.iter().any(|tau| *tau > 20.0), "NX wants delay in condition 4");
+}
+
+#[test]
+fn the_assessment_is_had_without_the_leads_too() {
+    let mut window = window();
+    choose(&mut window, "Phase correction", "delay or lead");
+    click(&mut window, "Assessment");
+    let mean = |window: &Window| {
+        let table = state(window).assessment().unwrap();
+        let measuring = state(window).dataset().measuring_pairs();
+        let changes = table.conditions.iter().flat_map(|of| measuring.marked().filter_map(|pair| of.changes[pair]));
+        let after: Vec<f64> = changes.map(|change| change.corrected.total()).collect();
+        after.iter().sum::<f64>() / after.len() as f64
+    };
+    let with = mean(&window);
+    choose(&mut window, "Correction assessed", "scheduled, no leads");
+    wait_until(&mut window, "the assessment", |window| {
+        state(window)
+            .assessment()
+            .is_some_and(|table| table.choice.correction == AssessedCorrection::ScheduledWithoutLeads)
+    });
+    let without = mean(&window);
+    assert!(with < 0.4 * without, "{with} with leads, {without} without");
+}

@@ -95,6 +95,7 @@ impl GdcmApp {
             return;
         }
         let entries = condition.records().to_vec();
+        self.state.records.is_example = self.loaded.origin == DatasetOrigin::EmbeddedExample;
         let name = format!("the records of condition {id}");
         match &self.loaded.origin {
             DatasetOrigin::EmbeddedExample => self.read_in_thread(name, move |dataset| of_example(dataset, id), ctx),
@@ -170,6 +171,9 @@ impl GdcmApp {
             records.changed = true;
         }
         self.state.records.faults = found.faults;
+        if count == 0 {
+            return;
+        }
         let of = if conditions == 1 { String::new() } else { format!(" of {conditions} conditions") };
         self.done(format!("{count} records{of}"));
     }

@@ -118,8 +118,16 @@ impl Default for Arrangement {
 }
 
 /// Views that stand in the first group of tabs; the others stand in the second.
-const UPPER: [View; 7] =
-    [View::Bode, View::Overview, View::Across, View::Poles, View::Channels, View::Assessment, View::Compare];
+const UPPER: [View; 8] = [
+    View::Bode,
+    View::Overview,
+    View::Across,
+    View::Poles,
+    View::Records,
+    View::Channels,
+    View::Assessment,
+    View::Compare,
+];
 /// Part of the room that the first group gets.
 const UPPER_PART: f32 = 0.66;
 

@@ -53,4 +53,5 @@ pub mod status_bar;
 pub mod table_view;
 pub mod tables;
 pub mod tour;
+pub mod uncertainty_bands;
 mod views;

@@ -75,6 +75,9 @@ fn background_words(background: &Background) -> String {
     if let Some((done, total)) = background.report {
         return format!("writing the report, {} % …", 100 * done / total.max(1));
     }
+    if let Some((done, total)) = background.identification {
+        return format!("identifying, {} % …", 100 * done / total.max(1));
+    }
     match (background.proofs.len(), background.curves) {
         (1, _) => "proving the gains of 1 condition …".to_owned(),
         (2.., _) => format!("proving the gains of {} conditions …", background.proofs.len()),

@@ -7,6 +7,7 @@ use egui_plot::PlotPoint;
 
 use super::axes::{caption_font, use_frame_colors};
 use super::band_handle::{BandChange, band_handles_ui};
+use super::bode_band::BodeBand;
 use super::bode_pane::{Emphasis, pane_ui};
 use super::bode_view::BodeView;
 use super::chip::{Chip, chips_ui};
@@ -41,6 +42,8 @@ pub struct BodeScene<'a> {
     pub curves: &'a [BodeCurve],
     /// Labelled lines across the panes.
     pub rules: &'a [Rule],
+    /// Areas around curves.
+    pub bands: &'a [BodeBand],
     /// Frequencies marked along the lower edge of each pane \[rad/s\].
     pub strips: &'a [(f64, f64)],
     /// The frequencies that fitting shows \[rad/s\]; those of the curves where there are none.
@@ -75,6 +78,7 @@ impl<'a> BodeScene<'a> {
             pair_title,
             curves,
             rules: &[],
+            bands: &[],
             strips: &[],
             omega_range: None,
             cursor: None,

@@ -52,6 +52,7 @@ pub(super) fn pane_ui(
             let transform = PlotTransform::new(*plot.transform().frame(), bounds, false);
             let pixel = Pixel::of(&transform, plot.ctx().pixels_per_point(), TOLERANCE);
             drawn.update(scene.curves, pane, (bounds, pixel), palette);
+            scene.bands.iter().for_each(|band| band.draw(plot, pane, palette));
             draw_curves(plot, scene, drawn, emphasis, palette);
             outside_shade(plot, scene.band, palette);
             draw_cursors(plot, scene.pinned, emphasis.cursor, palette);

@@ -249,6 +249,8 @@ pub struct RecordsReading {
 pub struct RecordsBench {
     /// Records by condition; a condition without an entry was not looked at yet.
     pub conditions: BTreeMap<ConditionId, ConditionRecords>,
+    /// Whether the dataset is the example, of which the program holds some records.
+    pub is_example: bool,
     /// The page shown.
     pub page: RecordsPage,
     /// Models whose responses to the same inputs are drawn.

@@ -8,19 +8,35 @@ use crate::view::palette::{Palette, SMALL_SIZE};
 
 use super::bench::{ConditionRecords, RecordsCommand};
 
+/// Width of all columns but the names \[pt\].
+const OTHER_COLUMNS: f32 = 208.0;
+/// Least width of the names \[pt\].
+const LEAST_NAME: f32 = 60.0;
 /// Cost per degree of freedom up to which a record is fitted well, and from which it is not (M14, section 6).
 pub(super) const GOOD: f64 = 1.2;
 /// See [`GOOD`].
 pub(super) const BAD: f64 = 1.5;
 
 /// A line a record: whether it is used and held out, and how well the model fits it.
-pub(super) fn record_list_ui(ui: &mut Ui, records: &ConditionRecords, palette: &Palette, commands: &mut Vec<Command>) {
+pub(super) fn record_list_ui(
+    ui: &mut Ui,
+    (records, is_example): (&ConditionRecords, bool),
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let small = |text: &str| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
     if records.rows.is_empty() {
-        let text = "No flight records of this condition yet. Add files above: one record each, with a heading that names its columns.";
+        let text = "No flight records of this condition yet. Add files or a folder above, or drop them here: CSV, text, .mat, \
+                    .npz or .zip, with names for the columns.";
         ui.add(Label::new(small(text)).wrap());
+        if is_example {
+            let text = "Of the example, the program holds the records of conditions 3 and 10; those of all are in \
+                        assets/example-records.zip of its source.";
+            ui.add(Label::new(small(text)).wrap());
+        }
         return;
     }
+    let width = (ui.available_width() - OTHER_COLUMNS).max(LEAST_NAME);
     Grid::new("flight records").num_columns(5).spacing([6.0, 2.0]).striped(true).show(ui, |ui| {
         for (heading, hint) in [
             ("use", "Whether anything is done with the record"),
@@ -33,7 +49,7 @@ pub(super) fn record_list_ui(ui: &mut Ui, records: &ConditionRecords, palette: &
         }
         ui.end_row();
         for index in 0..records.rows.len() {
-            row_ui(ui, records, index, palette, commands);
+            row_ui(ui, records, (index, width), palette, commands);
             ui.end_row();
         }
     });
@@ -48,7 +64,13 @@ pub(super) fn record_list_ui(ui: &mut Ui, records: &ConditionRecords, palette: &
     }
 }
 
-fn row_ui(ui: &mut Ui, records: &ConditionRecords, index: usize, palette: &Palette, commands: &mut Vec<Command>) {
+fn row_ui(
+    ui: &mut Ui,
+    records: &ConditionRecords,
+    (index, width): (usize, f32),
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let row = &records.rows[index];
     let name = &row.table.name;
     for (label, before, command) in [
@@ -68,7 +90,8 @@ fn row_ui(ui: &mut Ui, records: &ConditionRecords, index: usize, palette: &Palet
     let text = RichText::new(name).color(color);
     let text = if is_chosen { text.strong().background_color(palette.selected) } else { text };
     let label = format!("Record {name}");
-    let shown = ui.add(Label::new(text).truncate().sense(Sense::click()));
+    let size = egui::vec2(width, ui.spacing().interact_size.y);
+    let shown = ui.add_sized(size, Label::new(text).truncate().halign(egui::Align::LEFT).sense(Sense::click()));
     shown.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &label));
     if shown.clicked() {
         commands.push(RecordsCommand::Choose(index).into());

@@ -18,7 +18,7 @@ use super::response::response_ui;
 use super::stabilisation::stabilisation_ui;
 
 /// Width of the list \[pt\].
-const LIST_WIDTH: f32 = 290.0;
+const LIST_WIDTH: f32 = 340.0;
 
 /// What is done with all records. Laid out from right to left.
 pub fn records_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
@@ -69,7 +69,7 @@ pub fn records_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comman
     panel.show(ui, |ui| {
         ScrollArea::vertical().id_salt("records").auto_shrink(false).show(ui, |ui| {
             source_ui(ui, state, &mut path, palette, commands);
-            record_list_ui(ui, records, palette, commands);
+            record_list_ui(ui, (records, state.records.is_example), palette, commands);
             outcome_ui(ui, state, records, palette, commands);
         });
     });

@@ -9,6 +9,7 @@ use crate::view::cursor_readout::cursor_readout;
 use crate::view::palette::Palette;
 use crate::view::plot::{BodeQuantity, BodeScene, ResponsePlace, bode_ui};
 use crate::view::state::State;
+use crate::view::uncertainty_bands::uncertainty_bands;
 
 /// Magnitude and phase of the response in focus, of every model of the condition shown.
 pub fn bode_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
@@ -28,8 +29,10 @@ pub fn bode_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands:
     let readout = if display.lists_values { cursor_readout(&curves, quantity, state.display.unit, at) } else { None };
     let chips: Vec<_> = chips(state).into_iter().map(|(chip, _)| chip).collect();
     let band = state.study.settings.band;
+    let bands = uncertainty_bands(state, pair, &curves);
     let scene = BodeScene {
         quantity,
+        bands: &bands,
         cursor: display.cursor,
         pinned: &display.pinned,
         readout: readout.as_ref(),

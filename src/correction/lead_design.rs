@@ -109,13 +109,13 @@ impl LeadDesign {
     /// repeat
     ///     miss = d(l) - tau;  low or high = l, by the sign of miss: d falls
     ///     l' = l - miss / d'(l);  the middle of low and high where l' is not between them
-    ///     end where l' differs from l by a rounding;  l = l'
+    ///     l = l';  end where it changed by less than 1e-9 of itself: Newton's error is then the square of that
     /// ```
     ///
     /// Newton's method kept inside a bracket (Press et al., "Numerical Recipes", 3rd ed. 2007, 9.4).
     pub fn lead_s(&self, tau_s: f64) -> f64 {
         const STEPS: usize = 100;
-        const ROUNDING: f64 = 1e-15;
+        const SMALL: f64 = 1e-9;
         let (mut low, mut high) = (0.0, self.longest_lead_s());
         if tau_s >= 0.0 {
             return 0.0;
@@ -135,7 +135,7 @@ impl LeadDesign {
             let next_s = if (low..=high).contains(&newton_s) { newton_s } else { 0.5 * (low + high) };
             let step_s = (next_s - lead_s).abs();
             lead_s = next_s;
-            if step_s <= ROUNDING * lead_s {
+            if step_s <= SMALL * lead_s {
                 break;
             }
         }

@@ -60,3 +60,56 @@ impl LeadSchedule {
         ChannelLeads::new(Arc::clone(&self.design), of(&self.inputs), of(&self.outputs))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::correction::{ChannelCorrection, LeadSettings};
+
+    fn corrections(taus_s: &[[f64; 2]]) -> Vec<ChannelCorrection> {
+        let design = Arc::new(LeadDesign::new(LeadSettings::default(), [0.5, 3.0, 12.0].into()));
+        let of = |&[input_s, output_s]: &[f64; 2]| ChannelCorrection {
+            input_gains: vec![1.0],
+            output_gains: vec![1.0],
+            input_delays_s: vec![0.0],
+            output_delays_s: vec![0.0],
+            leads: Some(ChannelLeads::new(Arc::clone(&design), vec![input_s], vec![output_s])),
+        };
+        taus_s.iter().map(of).collect()
+    }
+
+    fn points<'a>(airspeeds_kt: &[f64], corrections: &'a [ChannelCorrection]) -> Vec<ScheduledPoint<'a>> {
+        let pairs = airspeeds_kt.iter().zip(corrections);
+        pairs
+            .map(|(&airspeed_kt, correction)| ScheduledPoint { airspeed_kt, correction, delay_upper_s: 0.01 })
+            .collect()
+    }
+
+    #[test]
+    fn the_sum_of_two_channels_is_the_regression_of_the_sums() {
+        let airspeeds_kt = [60.0, 80.0, 100.0, 130.0];
+        let taus_s = [[-0.02, -0.03], [-0.04, 0.004], [-0.01, -0.02], [-0.03, -0.05]];
+        let corrections = corrections(&taus_s);
+        let airspeeds = Airspeeds::new(airspeeds_kt.to_vec(), 2.0).unwrap();
+        for degree in 0..=2 {
+            let schedule = LeadSchedule::of(&points(&airspeeds_kt, &corrections), &airspeeds, degree).unwrap();
+            let sums: Vec<f64> = taus_s.iter().map(|[input, output]| input + output).collect();
+            let direct = Regression::polynomial(&airspeeds, &sums, degree);
+            let at = schedule.at(&airspeeds, 93.0);
+            // Least squares in another order of rounding.
+            assert!((at.inputs_s()[0] + at.outputs_s()[0] - direct.at(&airspeeds, 93.0)).abs() < 1e-15);
+            assert_eq!(schedule.degree(), degree);
+        }
+    }
+
+    #[test]
+    fn a_scheduled_signed_delay_stays_within_the_widest_bounds() {
+        let corrections = corrections(&[[-0.09, 0.01], [-0.09, 0.01], [0.01, -0.05], [0.01, -0.05]]);
+        let airspeeds_kt = [60.0, 80.0, 100.0, 120.0];
+        let airspeeds = Airspeeds::new(airspeeds_kt.to_vec(), 2.0).unwrap();
+        let schedule = LeadSchedule::of(&points(&airspeeds_kt, &corrections), &airspeeds, 3).unwrap();
+        let uncut_s = schedule.inputs[0].at(&airspeeds, 110.0);
+        assert!(uncut_s > 0.011, "the cubic swings over: {uncut_s}");
+        assert_eq!(schedule.at(&airspeeds, 110.0).inputs_s(), [0.01]);
+    }
+}

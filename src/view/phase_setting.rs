@@ -11,12 +11,21 @@ use super::palette::{Palette, SMALL_SIZE};
 use super::settings_panel::choice_ui;
 use super::state::State;
 
+/// M15 in five lines.
+const IN_SHORT: &str = "1  For each response, one straight line through the origin is fitted to the phase that is missing over the band: its \
+                        slope is a delay or, where negative, a lead.\n\
+                        2  Each channel gets one signed delay τ, so that the held responses get exactly theirs.\n\
+                        3  A positive τ is a pure delay; a negative τ is a filter that acts as a faster servo or sensor put in \
+                        place of a slower one.\n\
+                        4  Then the gains are found as before, on what is left.\n\
+                        5  The price is gain above the band: it is told in dB.";
+
 /// The choice, and below it what belongs to it.
 pub(super) fn phase_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let settings = &state.study.settings;
     let (mut phase, mut from) = (settings.phase, settings.delay_from);
     ui.horizontal(|ui| {
-        ui.label(RichText::new("Phase").color(palette.dim_text));
+        ui.label(RichText::new("Phase").color(palette.dim_text)).on_hover_text(format!("Delay or lead:\n{IN_SHORT}"));
         let phases = [
             (PhaseCorrection::None, "none", "Gains alone"),
             (PhaseCorrection::Delay, "delay", "Each channel gets a delay, eq. (11) (the paper)"),

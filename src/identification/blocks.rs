@@ -11,6 +11,9 @@ use super::StateSpaceMatrices;
 use super::eigenvectors::ComplexSchur;
 use nalgebra::{Complex, DMatrix, DVector};
 
+/// Imaginary part over modulus below which an eigenvalue is real: what the Schur iteration leaves of it.
+const REAL: f64 = 1e-9;
+
 /// One block of `A`, and what of it is free.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Block {
@@ -217,23 +220,13 @@ impl BlockModel {
         self.output_resolvent(omega, cr.as_mut_slice());
         cr * self.b.map(Complex::from) + self.d.map(Complex::from)
     }
-
-    /// The poles, in the order of the blocks.
-    pub(super) fn poles(&self) -> Vec<Complex<f64>> {
-        self.blocks.iter().flat_map(|block| block.poles()).collect()
-    }
-
-    /// Whether every entry is finite.
-    pub(super) fn is_finite(&self) -> bool {
-        self.matrices().is_finite()
-    }
 }
 
 /// The eigenvalues of `A` with their eigenvectors.
 struct Modes {
     /// One of each complex pair (positive imaginary part), by modulus.
     complex: Vec<(Complex<f64>, DVector<Complex<f64>>)>,
-    /// Real ones, by modulus; each eigenvector as long as its row of `B` is short, so that neighbours compare.
+    /// Real ones, by modulus; signs such that the outputs of neighbours agree.
     real: Vec<(f64, DVector<f64>)>,
 }
 
@@ -241,7 +234,6 @@ impl Modes {
     fn of(model: &StateSpaceMatrices) -> Option<Self> {
         let order = model.order();
         let schur = ComplexSchur::of(&model.a)?;
-        let tiny = 1e-9;
         let (mut complex, mut real) = (Vec::new(), Vec::new());
         for at in 0..order {
             let eigenvalue = schur.t[(at, at)];
@@ -249,7 +241,7 @@ impl Modes {
             let largest = vector[vector.icamax()];
             // Turned so that its largest entry is real.
             let vector = vector * (largest.conj() / largest.norm());
-            if eigenvalue.im.abs() <= tiny * eigenvalue.norm() {
+            if eigenvalue.im.abs() <= REAL * eigenvalue.norm() {
                 real.push((eigenvalue.re, vector.map(|entry| entry.re)));
             } else if eigenvalue.im > 0.0 {
                 complex.push((eigenvalue, vector));
@@ -320,7 +312,8 @@ mod tests {
             assert!((blocks.matrices().response(omega).unwrap() - expected).camax() < 1e-12);
         }
         for pole in model().poles().unwrap() {
-            assert!(blocks.poles().iter().any(|found| (found - pole).norm() < 1e-12), "{pole}");
+            let mut poles = blocks.blocks.iter().flat_map(|block| block.poles());
+            assert!(poles.any(|found| (found - pole).norm() < 1e-12), "{pole}");
         }
     }
 
@@ -343,6 +336,6 @@ mod tests {
             c: dmatrix![1.0, 1.0],
             d: dmatrix![0.0],
         };
-        assert!(BlockModel::of(&twice).is_none_or(|model| model.is_finite()));
+        assert!(BlockModel::of(&twice).is_none_or(|model| model.matrices().is_finite()));
     }
 }

@@ -30,8 +30,8 @@ pub(super) struct ChannelDelay {
     pub(super) index: usize,
     /// How late \[s\]; negative when it is early.
     pub(super) delay_s: f64,
-    /// Share of the cost that it explains.
-    pub(super) share: f64,
+    /// By how much it lowers the cost.
+    pub(super) gain: f64,
 }
 
 /// The channel of a record whose delay explains most of what `model` leaves of its spectra; none where no delay explains much.
@@ -61,7 +61,7 @@ pub(super) fn channel_delay(
     let ratio = delay_s.abs() * last.square[channel].sqrt();
     let (role, index) = if channel < inputs { (Role::Input, channel) } else { (Role::Output, channel - inputs) };
     let told = delay_s.is_finite() && share >= LEAST_SHARE && ratio >= LEAST_RATIO;
-    told.then_some(ChannelDelay { role, index, delay_s, share })
+    told.then_some(ChannelDelay { role, index, delay_s, gain: first.cost - last.cost })
 }
 
 /// Moves a channel `seconds` earlier.

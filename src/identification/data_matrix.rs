@@ -42,7 +42,7 @@ impl Projections {
         let mut rows = DMatrix::zeros(instants.len(), (self.past + 1) * channels);
         let bank = LaguerreBank::new(self.pole, piece.sample_time_s);
         for (channel, signal) in piece.inputs.column_iter().chain(piece.outputs.column_iter()).enumerate() {
-            let end = signal.iter().last().copied().unwrap_or_default();
+            let end = signal.iter().next_back().copied().unwrap_or_default();
             let signal: Vec<f64> = signal.iter().map(|sample| sample - end).collect();
             let projections = bank.projections(&signal, self.past);
             for (k, projection) in projections.column_iter().enumerate() {

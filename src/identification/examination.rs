@@ -15,7 +15,7 @@ const HELD_OUT: f64 = 1.15;
 /// Distance of a model without a record over the median of the others above which the record is named.
 const DECISIVE: f64 = 10.0;
 /// Models without a record among which one can stand out.
-const COMPARED: usize = 3;
+const COMPARED: usize = 5;
 
 /// The recommended model and what it is examined with.
 pub(super) struct Examination<'a> {
@@ -83,20 +83,21 @@ impl Examination<'_> {
         self.without.iter().enumerate().filter_map(caution).collect()
     }
 
-    /// Channels that seem to be late in records that the model does not fit.
-    pub(super) fn late_channels(&self, fits: &[RecordFit]) -> Vec<IdentificationCaution> {
+    /// The channel that seems to be late in a record that the model does not fit, of several the one that explains most: it
+    /// spoils the models for the others.
+    pub(super) fn late_channel(&self, fits: &[RecordFit]) -> Option<IdentificationCaution> {
         let fitted = fits.iter().filter(|fit| !fit.held_out);
         let least = fitted.map(|fit| fit.cost).fold(f64::INFINITY, f64::min);
         let late = |fit: &RecordFit| {
             let spectra: Vec<&Spectrum> =
                 self.evidence.spectra.iter().filter(|spectrum| spectrum.record == fit.record).collect();
             let model = &self.without.iter().find(|one| one.record == fit.record)?.model;
-            let late = channel_delay(&spectra, &self.evidence.noise, model)?;
-            let signal = self.options.signal(late.role, late.index);
-            let (record, name, delay_s) = (fit.record, self.record_name(fit.record), late.delay_s);
-            Some(IdentificationCaution::Late { record, name, signal, delay_s })
+            Some((fit.record, channel_delay(&spectra, &self.evidence.noise, model)?))
         };
-        fits.iter().filter(|fit| !fit.held_out && fit.cost > UNLIKE * least).filter_map(late).collect()
+        let unlike = fits.iter().filter(|fit| !fit.held_out && fit.cost > UNLIKE * least);
+        let (record, late) = unlike.filter_map(late).max_by(|a, b| a.1.gain.total_cmp(&b.1.gain))?;
+        let (name, signal) = (self.record_name(record), self.options.signal(late.role, late.index));
+        Some(IdentificationCaution::Late { record, name, signal, delay_s: late.delay_s })
     }
 
     /// Responses that are not identified, in words.

@@ -17,14 +17,26 @@ pub struct RecordFit {
 }
 
 /// The fit of each record that has degrees of freedom, by record.
-pub(super) fn record_fits(likelihood: &Likelihood, model: &BlockModel, parts: &[PieceCost]) -> Vec<RecordFit> {
+pub(super) fn fits_of_records(
+    likelihood: &Likelihood,
+    model: &BlockModel,
+    parts: &[PieceCost],
+    held_out: bool,
+) -> Vec<RecordFit> {
     let of_record = |record: usize| {
         let pieces = || likelihood.pieces.iter().zip(parts).filter(move |(piece, _)| piece.record == record);
         let freedom = pieces().map(|(piece, _)| piece.freedom(model.order())).sum();
         let cost = pieces().map(|(_, part)| part.cost).sum::<f64>() / freedom as f64;
-        (freedom > 0).then_some(RecordFit { record, cost, freedom, held_out: false })
+        (freedom > 0).then_some(RecordFit { record, cost, freedom, held_out })
     };
     likelihood.records().into_iter().filter_map(of_record).collect()
+}
+
+/// `J` per degree of freedom over records; none where they have none.
+pub(super) fn mean_cost(fits: &[RecordFit]) -> Option<f64> {
+    let freedom: f64 = fits.iter().map(|fit| fit.freedom as f64).sum();
+    let cost: f64 = fits.iter().map(|fit| fit.cost * fit.freedom as f64).sum();
+    (freedom > 0.0).then(|| cost / freedom)
 }
 
 /// `J` per degree of freedom of each output by itself: `sum |E_o|^2 / (Cv_oo / 2)` over its share of the degrees of freedom.

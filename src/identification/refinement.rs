@@ -6,7 +6,7 @@ use super::identification_caution::IdentificationCaution;
 use super::likelihood::Likelihood;
 use super::order::{OrderSearch, search_order};
 use super::polish::Fit;
-use super::record_fit::record_fits;
+use super::record_fit::fits_of_records;
 use super::stabilisation::{StabilisationPoint, stabilisation};
 use super::steps::Steps;
 use super::{IdentificationError, Options, StateSpaceMatrices};
@@ -95,7 +95,8 @@ fn reweighed(
     fit: &Fit,
     steps: &Steps,
 ) -> Result<Option<(Likelihood, Fit, IdentificationCaution)>, IdentificationError> {
-    let costs: Vec<f64> = record_fits(likelihood, &fit.model, &fit.parts).iter().map(|record| record.cost).collect();
+    let costs: Vec<f64> =
+        fits_of_records(likelihood, &fit.model, &fit.parts, false).iter().map(|record| record.cost).collect();
     let (least, greatest) = costs.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), cost| (a.min(*cost), b.max(*cost)));
     if !(least > 0.0 && greatest > ALIKE * least) {
         return Ok(None);

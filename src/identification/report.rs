@@ -6,7 +6,7 @@ use super::evidence::Evidence;
 use super::examination::Examination;
 use super::normal_system::NormalSystem;
 use super::order::effective_parameters;
-use super::record_fit::{RecordFit, output_costs, record_fits};
+use super::record_fit::{fits_of_records, mean_cost, output_costs};
 use super::refinement::{Proposal, Refinement, in_units};
 use super::steps::Steps;
 use super::uncertainty::{Bands, ParameterCovariance};
@@ -46,15 +46,21 @@ pub(super) fn report(
     steps.next(0.88, "models without each record")?;
     let without = without_each_record(likelihood, fit, &systems);
     steps.next(0.93, "validation")?;
-    let (record_fits, held_out_cost) = all_record_fits(evidence, refinement).ok_or_else(|| evidence.no_model())?;
-    let cost = fit.cost / freedom as f64;
-    let output_costs = output_costs(likelihood, &fit.model, &fit.parts);
+    let parts = evidence.likelihood.parts(&fit.model).ok_or_else(|| evidence.no_model())?;
+    let held_out_parts = evidence.held_out.parts(&fit.model).ok_or_else(|| evidence.no_model())?;
+    let mut record_fits = fits_of_records(&evidence.likelihood, &fit.model, &parts, false);
+    let cost = mean_cost(&record_fits).ok_or_else(|| evidence.no_model())?;
+    let held_out_fits = fits_of_records(&evidence.held_out, &fit.model, &held_out_parts, true);
+    let held_out_cost = mean_cost(&held_out_fits);
+    record_fits.extend(held_out_fits);
+    record_fits.sort_by_key(|fit| fit.record);
+    let output_costs = output_costs(&evidence.likelihood, &fit.model, &parts);
     let examination = Examination { records, options, evidence, fit, without: &without };
     let mut cautions = evidence.cautions.clone();
     cautions.extend(refinement.cautions.iter().cloned());
     cautions.extend(examination.adequacy(cost, held_out_cost, &record_fits, &output_costs));
     cautions.extend(examination.decisive_records(&omegas, &not_identified));
-    cautions.extend(examination.late_channels(&record_fits));
+    cautions.extend(examination.late_channel(&record_fits));
     if search.still_falls {
         cautions.push(IdentificationCaution::OrderLimit { order: search.order, highest: options.band[1] });
     }
@@ -109,16 +115,4 @@ fn not_identified(bands: &Bands) -> Vec<(usize, usize)> {
     let Some(middle) = bands.sd_db.get(bands.sd_db.len() / 2) else { return Vec::new() };
     let pairs = (0..middle.len()).map(|at| (at % middle.nrows(), at / middle.nrows()));
     pairs.filter(|pair| middle[*pair] > NOT_IDENTIFIED).collect()
-}
-
-/// The fits of all records, and the cost per degree of freedom over those held out.
-fn all_record_fits(evidence: &Evidence, refinement: &Refinement) -> Option<(Vec<RecordFit>, Option<f64>)> {
-    let Refinement { fit, likelihood, .. } = refinement;
-    let mut fits = record_fits(likelihood, &fit.model, &fit.parts);
-    let held_out = record_fits(&evidence.held_out, &fit.model, &evidence.held_out.parts(&fit.model)?);
-    let freedom: f64 = held_out.iter().map(|fit| fit.freedom as f64).sum();
-    let cost: f64 = held_out.iter().map(|fit| fit.cost * fit.freedom as f64).sum();
-    fits.extend(held_out.into_iter().map(|fit| RecordFit { held_out: true, ..fit }));
-    fits.sort_by_key(|fit| fit.record);
-    Some((fits, (freedom > 0.0).then(|| cost / freedom)))
 }

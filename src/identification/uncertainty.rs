@@ -188,3 +188,81 @@ impl Gradients {
         gradient.into_iter().map(|value| finite(value / response)).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identification::candidate::SubspaceSettings;
+    use crate::identification::evidence::Evidence;
+    use crate::identification::known_answers::{answers, matrix, number, numbers};
+    use crate::identification::order::effective_parameters;
+    use crate::identification::polish::Fit;
+    use crate::identification::steps::Steps;
+    use crate::identification::{FlightRecord, Options, Preparation, Unwatched};
+    use nalgebra::dmatrix;
+
+    /// Turns the second of two real modes of a block around, which a model does not show but the path of its polish does.
+    fn turned(model: &BlockModel) -> BlockModel {
+        let Block::Pair { a0, a1 } = model.blocks[0] else { panic!("a pair") };
+        let poles = model.blocks[0].poles();
+        // alpha + beta F has the eigenvalues 1 and -1.
+        let beta = 2.0 / (poles[0].re - poles[1].re);
+        let alpha = 1.0 - beta * poles[0].re;
+        let turn = dmatrix![alpha, beta; -beta * a0, alpha - beta * a1];
+        let mut turned = model.clone();
+        turned.b.copy_from(&(turn.clone().try_inverse().unwrap() * &model.b));
+        turned.c.copy_from(&(&model.c * turn));
+        let ratio = (turned.c.norm() / turned.b.norm()).sqrt();
+        turned.b *= ratio;
+        turned.c /= ratio;
+        turned
+    }
+
+    #[test]
+    fn bands_are_those_of_independent_code() {
+        let known = &answers()["noisy"];
+        let records: Vec<FlightRecord> = known["records"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|known| {
+                let (inputs, outputs) = (matrix(&known["u"]), matrix(&known["y"]));
+                let time_s = (0..inputs.nrows()).map(|sample| sample as f64 * number(&known["dt"])).collect();
+                FlightRecord { name: String::new(), time_s, inputs, outputs }
+            })
+            .collect();
+        let band = numbers(&known["band"]);
+        let preparation = Preparation::of(&["U1", "U2"], &["Y1", "Y2"]);
+        let options = Options { held_out: vec![4], ..Options::new([band[0], band[1]], preparation) };
+        let steps = Steps::new(&Unwatched);
+        let evidence = Evidence::new(&records, &options, &steps).unwrap();
+        let likelihood = &evidence.likelihood;
+        let whole = |name: &str| numbers(&known[name]).into_iter().map(|value| value as usize).collect::<Vec<_>>();
+        let (poles, pasts, orders) = (numbers(&known["poles_a"]), whole("pasts"), whole("orders"));
+        let settings = SubspaceSettings { highest: band[1], poles, pasts, orders };
+        let candidates = settings.candidates(&evidence.pieces, likelihood, &steps).unwrap();
+        let starts = settings.starts(&candidates, likelihood);
+        let polished =
+            |model: BlockModel, count| Fit::start(likelihood, model).unwrap().polished(likelihood, count, &steps);
+        let fit = polished(starts[&4].model.clone(), 8).unwrap();
+        let below = polished(turned(&starts[&2].model), 3).unwrap();
+        let above = polished(starts[&6].model.clone(), 3).unwrap();
+
+        let mut system = NormalSystem::zero(fit.model.parameters());
+        fit.systems(likelihood).unwrap().iter().for_each(|part| system.add(part));
+        let spare = likelihood.freedom(4) - effective_parameters(&fit);
+        let covariance = ParameterCovariance::new(&system, fit.cost / spare as f64).unwrap();
+        let expected = &known["expected"];
+        let bands = covariance.bands(&fit.model, &[&below.model, &above.model], &numbers(&expected["w"]));
+        let tolerance = number(&expected["sd_tolerance_relative"]);
+        for k in 0..bands.omega.len() {
+            for (found, name) in [(&bands.sd_db[k], "sd_db"), (&bands.sd_deg[k], "sd_deg")] {
+                let expected = matrix(&expected[name][k]);
+                for (found, expected) in found.iter().zip(expected.iter()) {
+                    // Independent numpy code; the tolerance stands in its file.
+                    assert!((found / expected - 1.0).abs() < tolerance, "{name} {k}: {found}, not {expected}");
+                }
+            }
+        }
+    }
+}

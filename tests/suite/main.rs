@@ -12,6 +12,7 @@ mod dataset_file;
 mod exports;
 mod figures;
 mod hostile_files;
+mod identification;
 mod messages;
 mod optimiser;
 mod outputs;

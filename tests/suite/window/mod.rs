@@ -14,6 +14,7 @@ mod keyboard;
 mod lead;
 mod lists;
 mod plots;
+mod records;
 mod recovery;
 mod reload;
 mod views;

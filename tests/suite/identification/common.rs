@@ -1,0 +1,52 @@
+//! The known answers of M14 (source: independent numpy code), and small made-up systems.
+
+use gdcm::identification::Piece;
+use nalgebra::{Complex, DMatrix};
+use serde_json::Value;
+
+/// The known answers.
+pub fn known() -> Value {
+    serde_json::from_str(include_str!("../../data/identification-known-answers.json"))
+        .expect("the known answers are JSON")
+}
+
+/// A list of numbers; null is not a number.
+pub fn list(value: &Value) -> Vec<f64> {
+    value.as_array().expect("a list").iter().map(|x| x.as_f64().unwrap_or(f64::NAN)).collect()
+}
+
+/// A list of rows of numbers.
+pub fn matrix(value: &Value) -> DMatrix<f64> {
+    let rows: Vec<Vec<f64>> = value.as_array().expect("a list of rows").iter().map(list).collect();
+    DMatrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j])
+}
+
+/// Matrices of real and imaginary parts.
+pub fn complex(value: &Value) -> DMatrix<Complex<f64>> {
+    matrix(&value["re"]).zip_map(&matrix(&value["im"]), Complex::new)
+}
+
+/// The first `count` records of the case `noisy` as pieces.
+pub fn noisy(known: &Value, count: usize) -> Vec<Piece> {
+    let records = known["noisy"]["records"].as_array().expect("records");
+    let piece = |(record, value): (usize, &Value)| Piece {
+        record,
+        start_s: 0.0,
+        sample_time_s: value["dt"].as_f64().expect("a sample time"),
+        inputs: matrix(&value["u"]),
+        outputs: matrix(&value["y"]),
+    };
+    records.iter().take(count).enumerate().map(piece).collect()
+}
+
+/// Numbers between -1 and 1 that look random, the same ones for the same seed.
+pub fn noise(seed: u64, count: usize) -> Vec<f64> {
+    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(1);
+    let mut next = || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
+    (0..count).map(|_| next()).collect()
+}

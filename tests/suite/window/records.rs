@@ -1,0 +1,118 @@
+//! Flight records in the window: from the example's records to corrected models, by the controls.
+
+use gdcm::dataset::RecordKind;
+use gdcm::view::arrangement::View;
+use gdcm::view::records::{RecordsCommand, RecordsPage};
+
+use super::views::{give, show};
+use super::*;
+
+const CONDITION_10_ID: ConditionId = ConditionId(10);
+
+/// The window on the records of condition 10 of the example.
+fn records_window() -> Window {
+    let mut window = window();
+    click(&mut window, CONDITION_10);
+    show(&mut window, View::Records);
+    wait_until(&mut window, "the records", |window| rows(window) == 9);
+    window
+}
+
+fn rows(window: &Window) -> usize {
+    state(window).records.conditions.get(&CONDITION_10_ID).map_or(0, |records| records.rows.len())
+}
+
+fn identified_models(window: &Window) -> Vec<String> {
+    let condition = state(window).dataset().condition(CONDITION_10_ID).expect("the example has it");
+    condition.bundle(BundleKind::Identified).iter().map(|model| model.name.clone()).collect()
+}
+
+#[test]
+fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_labels() {
+    let mut window = records_window();
+    let records = &state(&window).records.conditions[&CONDITION_10_ID];
+    let held_out: Vec<&str> =
+        records.rows.iter().filter(|row| row.guess.held_out).map(|row| row.table.name.as_str()).collect();
+    assert_eq!(held_out, ["cond10_validation"], "its name says so");
+    let before = identified_models(&window);
+    window.get_by_label("Identify").click();
+    wait_until(&mut window, "the first model or the models", |window| {
+        let running = state(window).records.running(CONDITION_10_ID);
+        running.is_none_or(|job| job.told().first_model.is_some())
+    });
+    wait_until(&mut window, "the models", |window| {
+        state(window).records.conditions[&CONDITION_10_ID].identification().is_some()
+    });
+    let found = state(&window).records.conditions[&CONDITION_10_ID].identification().unwrap().clone();
+    // The known figure of this condition is 0.86, of the held-out record 0.92 (M14, a trial in numpy: 0.86).
+    assert!((found.cost - 0.86).abs() < 0.05, "J/dof {}", found.cost);
+    let held_out = found.held_out_cost.expect("the validation record is held out");
+    assert!(held_out <= 1.15 * found.cost, "held out {held_out} of {}", found.cost);
+    for page in RecordsPage::ALL {
+        click(&mut window, &format!("Page {}", page.name()));
+        assert_eq!(state(&window).records.page, page);
+    }
+    click(&mut window, "Take these models");
+    click(&mut window, "The refined models");
+    let taken = identified_models(&window);
+    assert!(taken[0].starts_with("CT-PBSID, refined"), "{taken:?}");
+    assert_eq!(taken.len(), 1 + found.bundle.len());
+    assert!(state(&window).study.dataset.condition(CONDITION_10_ID).unwrap().records().len() == 9);
+    let bands =
+        state(&window).dataset().condition(CONDITION_10_ID).unwrap().bundle(BundleKind::Identified)[0].bands.clone();
+    assert!(bands.is_some(), "the recommended model says how sure it is");
+    settle(&mut window);
+    assert!(state(&window).shown().is_some(), "the correction follows the models taken");
+    click(&mut window, "Put the file's models back");
+    assert_eq!(identified_models(&window), before);
+    give(&mut window, gdcm::view::command::Command::Undo);
+    assert_eq!(identified_models(&window), taken);
+}
+
+#[test]
+fn records_are_chosen_held_out_and_left_out_and_an_identification_is_stopped() {
+    let mut window = records_window();
+    click(&mut window, "Record cond10_sweep_LON_1");
+    let chosen = |window: &Window| state(window).records.conditions[&CONDITION_10_ID].chosen;
+    assert_eq!(
+        state(&window).records.conditions[&CONDITION_10_ID].rows[chosen(&window)].table.name,
+        "cond10_sweep_LON_1"
+    );
+    click(&mut window, "Use cond10_sweep_LON_1");
+    click(&mut window, "Hold out cond10_sweep_LON_2");
+    let index = chosen(&window);
+    give(&mut window, RecordsCommand::SetKind(index, RecordKind::Multisine));
+    let records = &state(&window).records.conditions[&CONDITION_10_ID];
+    assert!(!records.rows[index].used && records.rows[index].guess.kind == RecordKind::Multisine);
+    assert_eq!(records.rows.iter().filter(|row| row.guess.held_out).count(), 2);
+    window.get_by_label("Identify").click();
+    window.run_steps(2);
+    assert!(state(&window).records.running(CONDITION_10_ID).is_some());
+    window.get_by_label("Stop identifying").click();
+    window.run_steps(3);
+    assert!(state(&window).records.running.is_empty());
+    assert!(
+        state(&window).records.conditions[&CONDITION_10_ID].identification().is_none(),
+        "nothing half made is shown"
+    );
+}
+
+#[test]
+fn files_of_records_go_to_the_condition_that_their_names_say_and_what_is_wrong_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = |columns: &str| {
+        let rows: String =
+            (0..40).map(|k| format!("{},{k},1,2,3,4,5,6,7,8,{}\n", 0.02 * f64::from(k), k % 3)).collect();
+        format!("{columns}\n{rows}")
+    };
+    let columns = "time_s,LON,LAT,PED,COL,P,Q,R,NX,NY,NZ";
+    std::fs::write(folder.path().join("cond03_sweep_LON_9.csv"), text(columns)).unwrap();
+    std::fs::write(folder.path().join("flight.csv"), text("time_s,LON,LAT,PED,COL,P,Q,R,NX,NY,speed")).unwrap();
+    let mut window = records_window();
+    give(&mut window, RecordsCommand::Add(vec![folder.path().to_owned()]));
+    wait_until(&mut window, "the files", |window| rows(window) == 10);
+    let records = &state(&window).records;
+    assert_eq!(records.conditions[&ConditionId(3)].rows[0].table.name, "cond03_sweep_LON_9");
+    let wrong = records.conditions[&CONDITION_10_ID].rows.iter().find(|row| row.table.name == "flight").unwrap();
+    assert!(wrong.flight.is_none() && wrong.problems.iter().any(|words| words.contains("NZ")), "{:?}", wrong.problems);
+}

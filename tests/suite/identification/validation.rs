@@ -1,6 +1,6 @@
 //! Models against records in time.
 
-use super::common::{known, matrix, noise, noisy};
+use super::common::{known, list, matrix, noise, noisy};
 use gdcm::identification::*;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -148,12 +148,12 @@ fn the_system_that_made_the_known_record_fits_it_about_as_well_as_the_identified
         // The reference's figures are of an identified model, this is the system behind the record but for the hold of its
         // inputs: 3 % between them is what the noise of one record does.
         assert!(
-            (validation.fit_percent[o].unwrap() - common::list(&expected["held_out_fit_percent"])[o]).abs() < 3.0,
+            (validation.fit_percent[o].unwrap() - list(&expected["held_out_fit_percent"])[o]).abs() < 3.0,
             "{:?} {:?}",
             validation.fit_percent,
             validation.theil
         );
-        assert!((validation.theil[o].unwrap() - common::list(&expected["held_out_theil"])[o]).abs() < 0.02);
+        assert!((validation.theil[o].unwrap() - list(&expected["held_out_theil"])[o]).abs() < 0.02);
     }
 }
 

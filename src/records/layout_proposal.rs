@@ -181,6 +181,11 @@ impl LayoutProposal {
     }
 }
 
+/// A name without case and marks.
+fn plain(name: &str) -> String {
+    name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+}
+
 /// The columns that can be a channel.
 fn candidates(table: &RecordTable, rule: &ChannelRule, side: ColumnSide) -> Vec<usize> {
     let named = |is_it: &dyn Fn(&str) -> bool| -> Vec<usize> {
@@ -190,6 +195,10 @@ fn candidates(table: &RecordTable, rule: &ChannelRule, side: ColumnSide) -> Vec<
     let own = std::slice::from_ref(&rule.name);
     let names = if rule.aliases.is_empty() { own } else { &rule.aliases };
     let mut found = named(&|name| names.iter().any(|wanted| wanted == name));
+    if found.is_empty() {
+        // What the engineer says, however it is typed: "elev_yoke1" is "elev,yoke1", and no other name of the stick.
+        found = named(&|name| rule.aliases.iter().any(|wanted| plain(name) == plain(wanted)));
+    }
     if found.is_empty() {
         found = named(&|name| names.iter().any(|wanted| same_channel(name, wanted)));
     }

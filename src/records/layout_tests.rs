@@ -207,6 +207,23 @@ fn channels_without_a_unit_take_the_first_file_s_and_later_files_are_converted()
 }
 
 #[test]
+fn a_column_that_the_engineer_names_is_taken_however_its_marks_are_typed() {
+    let table = table(vec![
+        column("t", "s", |k| 0.1 * k),
+        column("elev,yoke1", "", |k| k.sin()),
+        column("lon", "deg", |k| 2.0 + 0.001 * k),
+    ]);
+    let with = |aliases: &[&str]| {
+        let aliases = aliases.iter().map(|alias| (*alias).to_owned()).collect();
+        let channels =
+            RecordChannels { inputs: vec![ChannelRule { aliases, ..ChannelRule::named("LON") }], outputs: Vec::new() };
+        RecordLayout::proposed(&table, &channels, &TimeWish::default())
+    };
+    assert!(matches!(with(&[]).problems[..], [LayoutProblem::SeveralColumns { .. }]), "a stick and a longitude");
+    assert_eq!(with(&["elev_yoke1"]).layout.inputs, [Some(ColumnUse::as_it_is(1))]);
+}
+
+#[test]
 fn a_layout_goes_over_to_a_record_with_the_same_columns_in_another_order() {
     let (first, mut second) = (record(), record());
     second.columns.rotate_left(2);

@@ -209,12 +209,9 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
                 let s = nalgebra::Complex::new(0.0, omega);
                 let filters = filter(&leads.outputs.0[output].1, s) * filter(&leads.inputs.0[input].1, s);
                 let expected = plain.curve(pair)[place] * filters * *output_gain * *input_gain;
-                // Ten times above the band a response is the small difference of large terms.
-                let allowed = if omega > 12.0 { 1e-6 } else { 1e-9 };
-                assert!(
-                    (corrected.curve(pair)[place] - expected).norm() <= allowed * expected.norm(),
-                    "{pair:?} {omega}"
-                );
+                // Responses are evaluated to a part of the greatest one, of order 1; far above the band most are 1e-6 of it.
+                let allowed = 1e-9 * expected.norm() + 1e-11;
+                assert!((corrected.curve(pair)[place] - expected).norm() <= allowed, "{pair:?} at {omega} rad/s");
             }
         }
     }

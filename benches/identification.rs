@@ -1,0 +1,125 @@
+//! `cargo bench --bench identification`: models of the example's eleven conditions from their flight records, stage by stage, and
+//! beside it the normal matrix of the polish as a plain product.
+//!
+//! Figures to reach, two cores, 9 records of 60 s at 50 Hz, 4 inputs, 6 outputs: the first model in 0.4 s, everything in 1 s, all eleven
+//! conditions in 12 s.
+
+#![expect(missing_docs, reason = "a program that measures")]
+
+use std::path::Path;
+use std::sync::Mutex;
+use std::time::Instant;
+
+use nalgebra::DMatrix;
+
+use gdcm::assembly::standard_patterns;
+use gdcm::dataset::ConditionId;
+use gdcm::identification::{FlightRecord, Options, Preparation, StateSpaceMatrices, Watch, identify};
+use gdcm::io::{FolderProgress, embedded_example, read_records};
+use gdcm::records::{RecordChannels, RecordGuess, RecordLayout, TimeWish};
+
+struct Silent;
+
+impl FolderProgress for Silent {
+    fn reading(&self, _: usize, _: usize, _: &str) {}
+
+    fn stopped(&self, _: u64) -> bool {
+        false
+    }
+}
+
+/// Notes when each step begins.
+struct Stages {
+    start: Instant,
+    steps: Mutex<Vec<(f64, String)>>,
+    first_model: Mutex<Option<f64>>,
+}
+
+impl Stages {
+    fn new() -> Self {
+        Self { start: Instant::now(), steps: Mutex::default(), first_model: Mutex::default() }
+    }
+
+    fn now_ms(&self) -> f64 {
+        1e3 * self.start.elapsed().as_secs_f64()
+    }
+}
+
+impl Watch for Stages {
+    fn progress(&self, _done: f64, what: &str) {
+        self.steps.lock().expect("nothing panics").push((self.now_ms(), what.to_owned()));
+    }
+
+    fn is_stopped(&self) -> bool {
+        false
+    }
+
+    fn first_model(&self, _model: &StateSpaceMatrices) {
+        *self.first_model.lock().expect("nothing panics") = Some(self.now_ms());
+    }
+}
+
+fn main() {
+    let dataset = embedded_example().expect("the embedded example is a dataset").dataset;
+    let channels = RecordChannels::of_dataset(&dataset);
+    let archive = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/example-records.zip");
+    let tables = read_records(&[archive], &Silent).expect("the archive is there").tables;
+    let patterns = standard_patterns();
+    let (mut all_ms, mut worst) = (0.0, 0.0f64);
+    for condition in dataset.conditions() {
+        let of = |table: &&_| ConditionId(guess(table, &patterns).condition.unwrap_or(0)) == condition.id();
+        let tables: Vec<_> = tables.iter().filter(of).collect();
+        let flights: Vec<FlightRecord> = tables
+            .iter()
+            .map(|table| {
+                let layout = RecordLayout::proposed(table, &channels, &TimeWish::default()).layout;
+                layout.flight_record(table, &channels).expect("the columns are named")
+            })
+            .collect();
+        let held_out = (0..tables.len()).filter(|index| guess(tables[*index], &patterns).held_out).collect();
+        let names = |channels: &[gdcm::dataset::Channel]| channels.iter().map(|of| of.name.clone()).collect::<Vec<_>>();
+        let (inputs, outputs) = (names(dataset.inputs()), names(dataset.outputs()));
+        let borrowed = |names: &[String]| -> Vec<&str> { names.iter().map(String::as_str).collect() };
+        let preparation = Preparation::of(&borrowed(&inputs), &borrowed(&outputs));
+        let band = dataset.band();
+        let options = Options { held_out, ..Options::new([band.min(), band.max()], preparation) };
+        let stages = Stages::new();
+        let found = identify(&flights, &options, &stages).expect("the example's flights are good");
+        let ms = stages.now_ms();
+        all_ms += ms;
+        let ratio = found.held_out_cost.unwrap_or(f64::NAN) / found.cost;
+        worst = worst.max(ratio);
+        println!(
+            "condition {:2}: order {:2}, J/dof {:.3}, held out {ratio:.2} times that; first model {:4.0} ms, everything {ms:4.0} ms",
+            condition.id(),
+            found.refined.matrices.order(),
+            found.cost,
+            stages.first_model.lock().expect("nothing panics").unwrap_or(f64::NAN),
+        );
+        if condition.id() == ConditionId(10) {
+            let steps = stages.steps.lock().expect("nothing panics");
+            for (at, next) in steps.iter().zip(steps.iter().skip(1).map(|next| next.0).chain([ms])) {
+                println!("    {:6.1} ms  {}", next - at.0, at.1);
+            }
+        }
+    }
+    println!("all {} conditions {:.1} s; worst held-out ratio {worst:.2}", dataset.conditions().len(), 1e-3 * all_ms);
+    plain_normal_matrix();
+}
+
+fn guess(table: &gdcm::records::RecordTable, patterns: &[gdcm::assembly::NamePattern]) -> RecordGuess {
+    RecordGuess::of(&table.name, patterns)
+}
+
+/// The normal matrix of one Gauss-Newton step as the product of a stored Jacobian: 8 records of 150 lines, 6 outputs, real and
+/// imaginary parts, 200 parameters. A refinement takes some 30 of them.
+fn plain_normal_matrix() {
+    let jacobian =
+        DMatrix::from_fn(8 * 150 * 6 * 2, 200, |row, column| ((row * 31 + column * 17) % 101) as f64 / 101.0);
+    let shortest = (0..5).map(|_| {
+        let start = Instant::now();
+        std::hint::black_box(jacobian.tr_mul(&jacobian));
+        1e3 * start.elapsed().as_secs_f64()
+    });
+    println!("plain normal matrix of one step: {:.1} ms", shortest.fold(f64::INFINITY, f64::min));
+}

@@ -189,5 +189,35 @@ fn replaced_model(_: &mut Criterion) {
     );
 }
 
-criterion_group!(benches, stages, live_loop, ratios, replaced_model);
+/// How sure every figure is: a swap for each model of all conditions. Figure to reach: 150 ms on two cores after a rejection.
+fn bars(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("error bars of all conditions");
+    group.sample_size(10);
+    let mut study = Study::new(example());
+    let mut engine = Engine::with_executor(Box::new(Pool));
+    let reps = |study: &Study, engine: &mut Engine| engine.analyze(study, &Unobserved).expect("nobody stops it");
+    group.bench_function("all swaps anew, responses kept", |bencher| {
+        let mut turn = 0.0;
+        bencher.iter(|| {
+            turn += 1.0;
+            // What every swap depends on, and no response.
+            study.apply(&Edit::Set(Setting::AlphaGain(1.0 + 1e-6 * turn))).expect("within its range");
+            let analysis = reps(&study, &mut engine);
+            engine.uncertainty(&analysis, &Unobserved)
+        });
+    });
+    group.bench_function("after a rejection", |bencher| {
+        let mut turn = 0;
+        bencher.iter(|| {
+            turn += 1;
+            let id = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
+            study.apply(&if turn % 2 == 0 { Edit::Reject(id) } else { Edit::Restore(id) }).expect("others are kept");
+            let analysis = reps(&study, &mut engine);
+            engine.uncertainty(&analysis, &Unobserved)
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, stages, live_loop, ratios, replaced_model, bars);
 criterion_main!(benches);

@@ -81,6 +81,7 @@
 //! | [`records`] | from the columns of record files to flight records: time, channels, units |
 //! | [`correction`] | G, D, bounds, gains, delays, leads, and what they do to a response |
 //! | [`schedule`] | regression over airspeed, what speaks for it, assessment |
+//! | [`uncertainty`] | how sure each figure is, what the scatter over the conditions is made of |
 //! | [`study`] | what the engineer does: settings, rejections, pins, variants, undo; the staged analysis, and how each figure came about |
 //! | [`figure`] | figures: what plots show, laid out on paper |
 //! | [`io`] | files: datasets, studies, corrections, figures |
@@ -117,5 +118,6 @@ pub mod records;
 pub mod response;
 pub mod schedule;
 pub mod study;
+pub mod uncertainty;
 pub mod units;
 pub mod view;

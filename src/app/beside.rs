@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::study::{AssessmentJob, ModesJob};
+use crate::study::{AssessmentJob, ModesJob, UncertaintyJob};
 use crate::view::across_scene::across_job;
 use crate::view::arrangement::View;
 use crate::view::assessment_scene::assessment_choice;
@@ -32,6 +32,9 @@ fn wanted(state: &State) -> Beside {
             .filter(|_| is_shown(View::Assessment))
             .map(|analysis| AssessmentJob { analysis: Arc::clone(analysis), choice: assessment_choice(state) }),
         across: is_shown(View::Across).then(|| across_job(state)),
+        uncertainty: analysis
+            .filter(|_| !state.results.is_behind())
+            .map(|analysis| UncertaintyJob { analysis: Arc::clone(analysis) }),
         report: None,
         identifications: state.records.running.clone(),
         variants: if is_shown(View::Compare) { variant_jobs(state) } else { Vec::new() },

@@ -62,6 +62,9 @@ impl GdcmApp {
 
     /// The analysis of what is shown, proven; where it is not there yet, that is said.
     fn complete_results(&mut self) -> Option<Arc<Analysis>> {
-        self.analysis_to_write("export").map_err(|why| self.trouble(why)).ok()
+        let analysis = self.analysis_to_write("export").map_err(|why| self.trouble(why)).ok()?;
+        // With how sure its figures are, as far as that is computed.
+        let of_this = |bars: &Analysis| bars.study == analysis.study;
+        Some(self.state.analysis_with_bars().filter(of_this).map_or(analysis.clone(), Arc::new))
     }
 }

@@ -85,6 +85,7 @@ impl GdcmApp {
             Command::ShowChannels(measure, across) => display.channel_figure = (measure, across),
             Command::Explain(asked) => display.asked = asked,
             Command::ShowZeros(shown) => display.show_zeros = shown,
+            Command::ShowBars(shown) => display.show_bars = shown,
             Command::ShowEvidence(shown) => display.show_evidence = shown,
             Command::ShowAcross(role) => {
                 display.across_role = role;

@@ -199,6 +199,7 @@ impl GdcmApp {
                     results.variants.retain(|(known, _)| *known != job);
                     results.variants.push((job, analysis));
                 }
+                Reply::Uncertainty(job, uncertainty) => results.uncertainty = Some((job, uncertainty)),
                 Reply::Report(job, outcome) => self.report_written(job, outcome),
                 Reply::Identified(job, found) => self.identified(job, found),
                 Reply::Fault { generation, fault } => self.computing_failed(generation, &fault),

@@ -15,7 +15,7 @@ use crate::io::FileError;
 use crate::study::{
     AcrossCurves, AcrossJob, Analysis, AssessmentJob, AssessmentTable, CURVE_POINTS, ConditionAnalysis,
     ConditionCurves, ConditionFailure, ConditionModes, CurvesJob, Engine, IdentifyJob, Job, ModesJob, Progress,
-    ProofJob, Study, Toggles, TogglesJob, VariantJob, display_band,
+    ProofJob, Study, Toggles, TogglesJob, Uncertainty, UncertaintyJob, VariantJob, display_band,
 };
 use crate::view::results::{Background, FirstResult};
 
@@ -74,6 +74,8 @@ pub enum Reply {
     Across(AcrossJob, Arc<AcrossCurves>),
     /// The analysis of a variant.
     Variant(VariantJob, Arc<Analysis>),
+    /// How sure the figures of an analysis are.
+    Uncertainty(UncertaintyJob, Arc<Uncertainty>),
     /// What came of writing a report.
     Report(ReportJob, Result<(), FileError>),
     /// What was identified from flight records.
@@ -143,6 +145,7 @@ struct Lanes {
     assessments: Lane<AssessmentJob>,
     across: Lane<AcrossJob>,
     variants: Lane<VariantJob>,
+    uncertainties: Lane<UncertaintyJob>,
     reports: Lane<ReportJob>,
     identifications: Lane<IdentifyJob>,
 }
@@ -158,6 +161,8 @@ pub struct Beside {
     pub across: Option<AcrossJob>,
     /// The variants.
     pub variants: Vec<VariantJob>,
+    /// How sure the figures shown are.
+    pub uncertainty: Option<UncertaintyJob>,
     /// The report that is being written.
     pub report: Option<ReportJob>,
     /// Models to be identified, the first first.
@@ -213,6 +218,8 @@ impl Worker {
         let grid = (display_band(request.study.settings.band), CURVE_POINTS);
         let dataset = Arc::clone(&request.study.dataset);
         self.lanes.curves.want(vec![CurvesJob { dataset, condition: request.condition, grid }]);
+        // The answer has both cores: bars of the answer before are of no use.
+        self.lanes.uncertainties.want(Vec::new());
         self.shared.newest.store(request.generation, Ordering::Release);
         self.shared.mailbox().request = Some(request);
         self.shared.filled.notify_one();
@@ -224,6 +231,7 @@ impl Worker {
         self.lanes.assessments.want(beside.assessment.into_iter().collect());
         self.lanes.across.want(beside.across.into_iter().collect());
         self.lanes.variants.want(beside.variants);
+        self.lanes.uncertainties.want(beside.uncertainty.into_iter().collect());
         self.lanes.reports.want(beside.report.into_iter().collect());
         self.lanes.identifications.want(beside.identifications);
     }
@@ -232,8 +240,18 @@ impl Worker {
     pub fn stop(&self) {
         self.shared.newest.store(NOTHING, Ordering::Release);
         self.shared.mailbox().request = None;
-        let Lanes { curves, toggles, proofs, modes, assessments, across, variants, reports, identifications } =
-            &*self.lanes;
+        let Lanes {
+            curves,
+            toggles,
+            proofs,
+            modes,
+            assessments,
+            across,
+            variants,
+            uncertainties,
+            reports,
+            identifications,
+        } = &*self.lanes;
         curves.stop();
         toggles.stop();
         proofs.stop();
@@ -241,14 +259,25 @@ impl Worker {
         assessments.stop();
         across.stop();
         variants.stop();
+        uncertainties.stop();
         reports.stop();
         identifications.stop();
     }
 
     /// Lets the jobs that were stopped be begun again.
     pub fn resume(&self) {
-        let Lanes { curves, toggles, proofs, modes, assessments, across, variants, reports, identifications } =
-            &*self.lanes;
+        let Lanes {
+            curves,
+            toggles,
+            proofs,
+            modes,
+            assessments,
+            across,
+            variants,
+            uncertainties,
+            reports,
+            identifications,
+        } = &*self.lanes;
         curves.resume();
         toggles.resume();
         proofs.resume();
@@ -256,6 +285,7 @@ impl Worker {
         assessments.resume();
         across.resume();
         variants.resume();
+        uncertainties.resume();
         reports.resume();
         identifications.resume();
     }
@@ -278,6 +308,7 @@ impl Worker {
             assessments,
             across,
             variants,
+            uncertainties,
             reports,
             identifications,
         } = &*self.lanes;
@@ -289,9 +320,10 @@ impl Worker {
             || modes.is_stopped()
             || assessments.is_stopped()
             || across.is_stopped()
-            || variants.is_stopped();
+            || variants.is_stopped()
+            || uncertainties.is_stopped();
         let views = modes.unfinished().len() + assessments.unfinished().len() + across.unfinished().len();
-        let views = views + variants.unfinished().len();
+        let views = views + variants.unfinished().len() + uncertainties.unfinished().len();
         let report = (!reports.unfinished().is_empty()).then(|| reports.progress().unwrap_or((0, 0)));
         Background { proofs, toggles: !toggles.unfinished().is_empty(), curves, views, report, identification, stopped }
     }
@@ -313,7 +345,7 @@ impl Drop for Worker {
 
 impl Lanes {
     fn start(shared: &Arc<Shared>, make_engine: &EngineMaker, outbox: &Outbox) -> std::io::Result<Self> {
-        let [for_curves, for_variants, for_reports] = std::array::from_fn(|_| Arc::clone(make_engine));
+        let [for_curves, for_variants, for_bars, for_reports] = std::array::from_fn(|_| Arc::clone(make_engine));
         Ok(Self {
             curves: lane("curves", move || for_curves(), outbox, |job, curves| Some(Reply::Curves(job, curves?)))?,
             toggles: lane("toggles", || (), outbox, |job, toggles| Some(Reply::Toggles(job, Arc::new(toggles?))))?,
@@ -321,6 +353,7 @@ impl Lanes {
             assessments: lane("assessment", || (), outbox, |job, table| Some(Reply::Assessment(job, table)))?,
             across: lane("conditions", || (), outbox, |job, curves| Some(Reply::Across(job, curves)))?,
             variants: lane("variants", move || for_variants(), outbox, |job, found| Some(Reply::Variant(job, found)))?,
+            uncertainties: lane("error bars", move || for_bars(), outbox, |job, of| Some(Reply::Uncertainty(job, of)))?,
             reports: lane("report", move || for_reports(), outbox, |job, outcome| Some(Reply::Report(job, outcome)))?,
             identifications: lane("identification", || (), outbox, |job, found| Some(Reply::Identified(job, found)))?,
             proofs: proofs_lane(shared, outbox)?,

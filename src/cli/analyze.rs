@@ -1,9 +1,12 @@
 //! `gdcm analyze`.
 
+use std::sync::Arc;
+
 use crate::io::{OutputSet, make_directory, result_paths, write_results};
 use crate::study::{Analysis, Engine};
 
 use super::arguments::AnalyzeArguments;
+use super::evidence_sections::leave_one_out_section;
 use super::existing;
 use super::failure::Failure;
 use super::progress::TerminalProgress;
@@ -20,12 +23,14 @@ pub(super) fn analyze(arguments: &AnalyzeArguments) -> Result<(), Failure> {
     make_directory(&arguments.out)?;
     let mut engine = Engine::with_executor(Box::new(crate::app::Pool));
     let progress = TerminalProgress::new("analysing");
-    let analysis = analysis_of(&mut study, &arguments.study, &mut engine, &progress)?;
+    let mut analysis = analysis_of(&mut study, &arguments.study, &mut engine, &progress)?;
+    analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &progress)?));
     drop(progress);
     check_result(&analysis)?;
     let all = analysis.conditions.keys().copied().collect();
     write_results(&analysis, &loaded.sha256, &all, &arguments.out, outputs)?;
-    say(&summary(&analysis, &loaded, &arguments.out))
+    say(&summary(&analysis, &loaded, &arguments.out))?;
+    if arguments.leave_one_out { say(&leave_one_out_section(&analysis)) } else { Ok(()) }
 }
 
 /// Refuses an analysis without any result; says which conditions of another have none.

@@ -144,6 +144,18 @@ pub struct StudyArguments {
     /// How a study is opened.
     #[command(flatten)]
     pub opening: OpeningArguments,
+    /// Conditions, by their ids, separated by commas, to keep from the schedule and to judge it by.
+    #[arg(long, value_name = "IDS", value_delimiter = ',', allow_negative_numbers = true)]
+    pub hold_out: Vec<i64>,
+    /// Schedule gains with a second variable beside airspeed.
+    #[arg(long, value_name = "altitude|mass")]
+    pub second_variable: Option<SecondVariableChoice>,
+    /// What G is taken from: the two representatives, or the mean over all pairs of kept models.
+    #[arg(long, value_name = "representatives|mean")]
+    pub gain_from: Option<GainSourceChoice>,
+    /// Level of error bars, intervals and tests, from 0.5 to 0.999.
+    #[arg(long, value_name = "L", value_parser = real_number, allow_negative_numbers = true)]
+    pub level: Option<f64>,
     /// Reject every physics model that is suggested as an outlier.
     #[arg(long)]
     pub reject_suggested: bool,
@@ -161,9 +173,30 @@ pub struct AnalyzeArguments {
     /// Directory for the results; made where there is none.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+    /// Judge the schedule by each condition in turn, made without it: print the change of J of each.
+    #[arg(long)]
+    pub leave_one_out: bool,
     /// Overwrite results that are there already.
     #[arg(long)]
     pub force: bool,
+}
+
+/// A variable besides airspeed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum SecondVariableChoice {
+    /// Altitude, in ft.
+    Altitude,
+    /// Mass, in kg.
+    Mass,
+}
+
+/// What G is taken from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum GainSourceChoice {
+    /// The two representatives.
+    Representatives,
+    /// The mean of ln G over all kept pairs.
+    Mean,
 }
 
 /// Which figure is to be made, of what, and where it goes.
@@ -194,6 +227,9 @@ pub struct FigureArguments {
     /// Roles to leave out of bode, error and overview, separated by commas (perturbed,identified,rejected).
     #[arg(long, value_name = "ROLES", value_delimiter = ',', value_parser = roles())]
     pub hide: Vec<Role>,
+    /// Error bars and the bands of the schedule, in net-gain and channels.
+    #[arg(long)]
+    pub bars: bool,
     /// Frequencies in Hz in place of rad/s.
     #[arg(long)]
     pub hertz: bool,

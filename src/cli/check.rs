@@ -191,6 +191,9 @@ fn decisions(file: &Path, study: &Study) -> String {
                 text.push_str(&labelled(0, "Pinned", LABEL, &words));
             }
         }
+        if choice.held_out {
+            text.push_str(&labelled(0, "Held out", LABEL, &format!("condition {}", condition.id())));
+        }
         if !choice.scheduled {
             text.push_str(&labelled(0, "Unscheduled", LABEL, &format!("condition {}", condition.id())));
         }

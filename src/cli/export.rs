@@ -1,5 +1,7 @@
 //! `gdcm export`.
 
+use std::sync::Arc;
+
 use crate::correction::Pade;
 use crate::dataset::ConditionId;
 use crate::io::{ExportSource, OutputSet, check_export, plain, plain_path, write_export};
@@ -24,7 +26,8 @@ pub(super) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     outputs.check(&[&arguments.out])?;
     let mut engine = Engine::with_executor(Box::new(crate::app::Pool));
     let progress = TerminalProgress::new("analysing");
-    let analysis = analysis_of(&mut study, &arguments.study, &mut engine, &progress)?;
+    let mut analysis = analysis_of(&mut study, &arguments.study, &mut engine, &progress)?;
+    analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &progress)?));
     drop(progress);
     check_result(&analysis)?;
     let source = ExportSource { name: name(&arguments.study), sha256: loaded.sha256.clone() };

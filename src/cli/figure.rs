@@ -1,5 +1,7 @@
 //! `gdcm figure`.
 
+use std::sync::Arc;
+
 use crate::correction::Channel;
 use crate::dataset::{ConditionId, Dataset, Pair};
 use crate::figure::{
@@ -26,7 +28,10 @@ pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     let condition = condition(&study, arguments)?;
     let mut engine = Engine::with_executor(Box::new(crate::app::Pool));
     let progress = TerminalProgress::new("analysing");
-    let analysis = analysis_of(&mut study, &arguments.study, &mut engine, &progress)?;
+    let mut analysis = analysis_of(&mut study, &arguments.study, &mut engine, &progress)?;
+    if arguments.bars {
+        analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &progress)?));
+    }
     let figure = match condition {
         None => request.figure(Some(&analysis), None),
         Some(condition) => figure_of_condition(&request, &analysis, condition, (&mut engine, &progress))?,

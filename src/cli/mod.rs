@@ -5,6 +5,7 @@
 mod analyze;
 mod arguments;
 mod check;
+mod evidence_sections;
 mod export;
 mod export_arguments;
 mod failure;

@@ -5,6 +5,7 @@ use crate::dataset::{BundleKind, Condition, Pair};
 use crate::io::plain;
 use crate::schedule::{Schedule, ScheduledQuantity};
 use crate::study::{Analysis, ConditionAnalysis, RemarkKind, Study, lead_words, remarks};
+use crate::uncertainty::Scalar;
 use crate::units::{number, s_to_ms};
 
 use super::summary::LABEL;
@@ -61,27 +62,37 @@ fn shown_pairs(study: &Study) -> impl Iterator<Item = Pair> {
     shown.marked().collect::<Vec<_>>().into_iter()
 }
 
-fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> TextTable<8> {
+fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> TextTable<11> {
     use Side::{Left, Right};
     let mut table = TextTable::new([
         ("response", Left),
         ("held", Left),
         ("G", Right),
+        ("± %", Right),
         ("net gain", Right),
+        ("± %", Right),
         ("D [ms]", Right),
+        ("± ms", Right),
         ("net delay [ms]", Right),
         ("J before", Right),
         ("J after", Right),
     ]);
     let dataset = &analysis.study.dataset;
+    let half = |scalar: Scalar, factor: f64| {
+        let uncertainty = analysis.uncertainty.as_ref()?;
+        Some(factor * uncertainty.bar(result.condition.id(), scalar)?.half_width(uncertainty.level)?)
+    };
     for pair in shown_pairs(&analysis.study) {
         let cost = result.cost[pair];
         table.row([
             plain(&dataset.pair_name(pair)),
             if result.held()[pair] { "yes" } else { "no" }.to_owned(),
             figure(result.wanted_gain(pair), 3),
+            figure(half(Scalar::Gain(pair), 100.0), 1),
             figure(Some(result.correction.net_gain(pair).value()), 3),
+            figure(half(Scalar::NetGain(pair), 100.0), 1),
             figure(result.wanted_delay_s(pair).map(s_to_ms), 1),
+            figure(half(Scalar::Delay(pair), 1e3), 1),
             figure(Some(s_to_ms(result.correction.net_delay(pair).value_s())), 1),
             figure(cost.map(|cost| cost.uncorrected.total()), 1),
             figure(cost.map(|cost| cost.corrected.total()), 1),
@@ -90,7 +101,7 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> TextTable<
     table
 }
 
-fn figure(value: Option<f64>, digits: usize) -> String {
+pub(super) fn figure(value: Option<f64>, digits: usize) -> String {
     // Adding zero turns a rounded minus zero into zero.
     let rounded = |value: f64| (value * 10_f64.powi(digits as i32)).round() / 10_f64.powi(digits as i32) + 0.0;
     value.map_or("-".to_owned(), |value| match value.abs() {
@@ -154,7 +165,15 @@ pub(super) fn schedule_section(analysis: &Analysis) -> String {
         None => format!("lookup table in airspeed, of {of}"),
     };
     let range = format!("{} to {} kt", number(schedule.airspeeds.min_kt), number(schedule.airspeeds.max_kt));
-    let mut text = labelled(0, "Schedule", LABEL, &format!("{kind}, {range}; net gains:"));
+    let second = schedule.second.as_ref().map_or_else(String::new, |term| {
+        format!(
+            "; with {}, here in the middle of its range, {} {}",
+            term.variable,
+            number(term.middle()),
+            term.variable.unit()
+        )
+    });
+    let mut text = labelled(0, "Schedule", LABEL, &format!("{kind}, {range}{second}; net gains:"));
     let (inputs, outputs) = analysis.study.dataset.names_of_channels();
     for caution in &schedule.cautions {
         text.push_str(&detail("caution", &plain(&caution.words(&inputs, &outputs))));

@@ -1,11 +1,13 @@
 //! The study that a command is about, with what the command line says on top of it.
 
+use crate::correction::GainSource;
 use crate::dataset::{Band, BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
 use crate::io::{LoadedDataset, embedded_example};
-use crate::schedule::{ScheduleKind, ScheduleSettings};
+use crate::schedule::{ScheduleKind, ScheduleSettings, SecondVariable};
 use crate::study::{Analysis, Edit, Engine, Progress, Setting, Study};
+use crate::uncertainty::UncertaintySettings;
 
-use super::arguments::{CoherenceChoice, PairList, Rejection, StudyArguments};
+use super::arguments::{CoherenceChoice, GainSourceChoice, PairList, Rejection, SecondVariableChoice, StudyArguments};
 use super::failure::Failure;
 use super::opening::open as open_file;
 use super::terminal::say_error;
@@ -79,6 +81,29 @@ fn take_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Fai
     if let Some(degree) = arguments.degree {
         let schedule = ScheduleSettings { kind: ScheduleKind::Polynomial { degree }, ..study.settings.schedule };
         study.apply(&Edit::Set(Setting::Schedule(schedule))).map_err(Failure::refused("--degree"))?;
+    }
+    if let Some(choice) = arguments.second_variable {
+        let variable = match choice {
+            SecondVariableChoice::Altitude => SecondVariable::Altitude,
+            SecondVariableChoice::Mass => SecondVariable::Mass,
+        };
+        let schedule = ScheduleSettings { second: Some(variable), ..study.settings.schedule };
+        study.apply(&Edit::Set(Setting::Schedule(schedule))).map_err(Failure::refused("--second-variable"))?;
+    }
+    if let Some(choice) = arguments.gain_from {
+        let source = match choice {
+            GainSourceChoice::Representatives => GainSource::Representatives,
+            GainSourceChoice::Mean => GainSource::MeanOfPairs,
+        };
+        study.apply(&Edit::Set(Setting::GainSource(source))).map_err(Failure::refused("--gain-from"))?;
+    }
+    if let Some(level) = arguments.level {
+        let uncertainty = UncertaintySettings { level, ..study.settings.uncertainty };
+        study.apply(&Edit::Set(Setting::Uncertainty(uncertainty))).map_err(Failure::refused("--level"))?;
+    }
+    for &id in &arguments.hold_out {
+        let edit = Edit::SetHeldOut { condition: ConditionId(id), held_out: true };
+        study.apply(&edit).map_err(Failure::refused("--hold-out"))?;
     }
     if let Some(list) = &arguments.on {
         hold(study, list)?;

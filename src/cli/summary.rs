@@ -7,6 +7,7 @@ use crate::schedule::Schedule;
 use crate::study::{Analysis, Assessed, PhaseCorrection};
 use crate::units::number;
 
+use super::evidence_sections::{evidence_section, held_out_lines};
 use super::sections::{condition_section, schedule_section};
 use super::text_table::labelled;
 
@@ -23,6 +24,8 @@ pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -
     text.push('\n');
     text.push_str(&schedule_section(analysis));
     text.push_str(&assessment_lines(analysis));
+    text.push_str(&held_out_lines(analysis));
+    text.push_str(&evidence_section(analysis));
     text.push_str(&labelled(0, "Written", LABEL, &format!("{} in {}", RESULT_FILES.join(", "), plain_path(out))));
     text
 }

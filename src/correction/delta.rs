@@ -8,6 +8,26 @@ use crate::units::db_to_ratio;
 
 use super::GainBounds;
 
+/// Which models G is taken from; D is always that of the representatives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum GainSource {
+    /// The two representatives (the paper).
+    #[default]
+    Representatives,
+    /// Every pair of a kept physics and a kept identified model: `G = exp(mean of ln G)`.
+    MeanOfPairs,
+}
+
+impl GainSource {
+    /// "the representatives", "the mean over all kept pairs".
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Representatives => "the representatives",
+            Self::MeanOfPairs => "the mean over all kept pairs",
+        }
+    }
+}
+
 /// `G = median |H_ref| / |H_sim|` and `D = median Delta phi(H_sim, H_ref) / omega` of every response (M6), and its band delay (M15.2).
 ///
 /// `None` where the ratio is zero or not finite at some frequency, or where none counts. The medians are weighted where the

@@ -35,7 +35,7 @@ pub use channel_leads::{ChannelLeads, LeadCurve, LeadCurves};
 pub use channel_model::ChannelModel;
 pub use conflict::{Conflict, ConflictKind};
 pub use corrected_model::{CorrectedModel, CorrectedModelError};
-pub use delta::{Delta, delay_upper_s, delta_gains, gain_bounds, mismatch_table};
+pub use delta::{Delta, GainSource, delay_upper_s, delta_gains, gain_bounds, mismatch_table};
 pub use lead_design::{LeadDesign, LeadSettings};
 pub use pade::{HIGHEST_PADE_ORDER, Pade};
 pub use problem::{Bounds, DELAY_AGREEMENT_S, Problem, ProblemError};

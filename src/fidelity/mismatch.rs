@@ -19,6 +19,9 @@ pub struct Mismatch {
     /// At which frequencies those stand and what each counts, where the reference's coherence says so (M4a); otherwise they stand
     /// at each frequency of the grid and count alike.
     pub counted: Option<CountedFrequencies>,
+    /// Angle \[rad\], a multiple of 2 pi, that `Delta phi` is shifted by once its turns are decided on: none of the
+    /// representatives' (M13.1).
+    pub turn: f64,
 }
 
 impl Mismatch {
@@ -27,7 +30,12 @@ impl Mismatch {
         let difference = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>();
         let mut phase = difference(&simulated.phase, &reference.phase);
         phase.iter_mut().for_each(|angle| *angle = wrap(*angle));
-        Self { magnitude_db: difference(&simulated.magnitude_db, &reference.magnitude_db), phase, counted: None }
+        Self {
+            magnitude_db: difference(&simulated.magnitude_db, &reference.magnitude_db),
+            phase,
+            counted: None,
+            turn: 0.0,
+        }
     }
 
     /// What is left of it at the frequencies that count, as if there were no others: all, where coherence does not say; none
@@ -35,7 +43,7 @@ impl Mismatch {
     pub fn counting(self, counted: Option<&CountedFrequencies>) -> Option<Self> {
         let Some(counted) = counted else { return Some(self) };
         let (magnitude_db, phase) = (counted.pick(&self.magnitude_db), counted.pick(&self.phase));
-        (!counted.is_empty()).then(|| Self { magnitude_db, phase, counted: Some(counted.clone()) })
+        (!counted.is_empty()).then(|| Self { magnitude_db, phase, counted: Some(counted.clone()), turn: self.turn })
     }
 
     /// The frequencies \[rad/s\] at which it stands: all of the grid, or those that count.
@@ -82,7 +90,12 @@ impl Mismatch {
         };
         let mut phase = on(&self.phase, phase);
         phase.iter_mut().for_each(|angle| *angle = wrap(*angle));
-        Self { magnitude_db: on(&self.magnitude_db, magnitude_db), phase, counted: self.counted.clone() }
+        Self {
+            magnitude_db: on(&self.magnitude_db, magnitude_db),
+            phase,
+            counted: self.counted.clone(),
+            turn: self.turn,
+        }
     }
 
     /// Whether the unwrapped `Delta phi` of M3 leaves half a turn somewhere, so that M6b decides on the turns.
@@ -107,7 +120,22 @@ impl Mismatch {
                 *phase += TAU * ((omega * delay_s - *phase) / TAU).round();
             }
         }
+        if self.turn != 0.0 {
+            phase.iter_mut().for_each(|phase| *phase += self.turn);
+        }
         phase
+    }
+
+    /// Median \[rad\] of `Delta phi` over the frequencies at which it stands.
+    pub fn median_phase(&self, omega: &[f64]) -> f64 {
+        median(&mut self.phase_difference(omega))
+    }
+
+    /// The same difference, its phase shifted by whole turns so that its median is the nearest to `median_phase` \[rad\]: that of
+    /// a swapped pair beside the representatives' (M13.1).
+    pub fn beside(mut self, omega: &[f64], median_phase: f64) -> Self {
+        self.turn += TAU * ((median_phase - self.median_phase(omega)) / TAU).round();
+        self
     }
 }
 
@@ -166,7 +194,7 @@ mod tests {
         let omega: Vec<f64> = (1..=120).map(|k| 0.1 * f64::from(k)).collect();
         let turn = |omega: f64| TAU / (1.0 + (-40.0 * (omega - 2.0)).exp());
         let phase = omega.iter().map(|omega| wrap(-0.07 * omega + turn(*omega))).collect();
-        let mismatch = Mismatch { magnitude_db: vec![0.0; 120], phase, counted: None };
+        let mismatch = Mismatch { magnitude_db: vec![0.0; 120], phase, counted: None, turn: 0.0 };
         let cost = mismatch.cost(&omega, GainDelay::new(1.0, -0.07), CostAverage::Median);
         // Squares of what is left of the turn at 6 rad/s: e^-160.
         assert!(cost.phase < 1e-20, "{cost:?}");

@@ -41,6 +41,7 @@ pub fn assessment_figure(analysis: &Analysis, pairs: &[Pair], choice: Assessment
     let correction = match choice.correction {
         AssessedCorrection::Scheduled => "the schedule",
         AssessedCorrection::ScheduledWithoutLeads => "the schedule without its leads",
+        AssessedCorrection::ScheduleOfOthers => "the schedule of the other conditions",
         AssessedCorrection::Own => "each condition's own optimum",
     };
     let figure = Figure::new(format!("Change of J of the {model} model under {correction}"));

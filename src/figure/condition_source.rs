@@ -126,9 +126,9 @@ impl<'a> ConditionSource<'a> {
         let Some(model) = self.curves.condition.position(BundleKind::Physics, name) else {
             return Vec::new();
         };
-        let airspeed_kt = self.curves.condition.flight_state().airspeed_kt;
         let own = self.analysis.correction.on(pair).map(|correction| (CurveId::Corrected, Role::Corrected, correction));
-        let scheduled = self.schedule.and_then(|schedule| schedule.at(airspeed_kt).on(pair));
+        let scheduled =
+            self.schedule.and_then(|schedule| schedule.at_state(self.curves.condition.flight_state()).on(pair));
         let scheduled = scheduled.map(|correction| (CurveId::Scheduled, Role::Scheduled, correction));
         let without = self.analysis.led.as_ref().and_then(|_| self.analysis.correction.without_leads_on(pair));
         let without = without.map(|correction| (CurveId::WithoutLeads, Role::WithoutLeads, correction));
@@ -204,5 +204,7 @@ pub(super) fn schedule_words(settings: &ScheduleSettings) -> String {
         ScheduledQuantity::LnGain => "ln k",
         ScheduledQuantity::Gain => "k",
     };
-    format!("{kind} of {quantity}")
+    let second =
+        settings.second.map_or_else(String::new, |variable| format!(", with {variable} in the middle of its range"));
+    format!("{kind} of {quantity}{second}")
 }

@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use crate::correction::{Channel, ChannelCorrection};
 use crate::dataset::{Dataset, FlightState, Pair};
 use crate::schedule::Schedule;
-use crate::study::{Analysis, ConditionAnalysis};
+use crate::study::{Analysis, ConditionAnalysis, ConditionChoice};
+use crate::uncertainty::{BandWidths, Bar, Scalar};
 use crate::units::s_to_ms;
 
 use super::axis::Axis;
@@ -115,6 +116,7 @@ pub fn net_gain_figure(analysis: &Analysis, pairs: &[Pair]) -> Figure {
             measure: Measure::Gain,
             of: Box::new(move |correction| correction.net_gain(pair).value()),
             bounds: None,
+            scalar: Scalar::NetGain(pair),
         };
         let panel = quantity.panel(analysis, Across::Airspeed, "Net gain [-]");
         Plot::new(analysis.study.dataset.pair_name(pair)).panel(panel)
@@ -136,7 +138,12 @@ pub fn channels_figure(analysis: &Analysis, channels: &[Channel], measure: Measu
             (Measure::Gain, Channel::Output(output)) => correction.output_gains[output],
             (Measure::Delay, channel) => s_to_ms(correction.delay_s(channel)),
         });
-        let panel = Quantity { measure, of, bounds: Some(bounds) }.panel(analysis, across, measure.axis_label());
+        let scalar = match measure {
+            Measure::Gain => Scalar::ChannelGain(channel),
+            Measure::Delay => Scalar::ChannelDelay(channel),
+        };
+        let panel =
+            Quantity { measure, of, bounds: Some(bounds), scalar }.panel(analysis, across, measure.axis_label());
         Plot::new(channel.name(&inputs, &outputs)).panel(panel)
     });
     let title = match measure {
@@ -184,6 +191,8 @@ struct Quantity<'a> {
     measure: Measure,
     of: FigureOf<'a>,
     bounds: Option<BoundsOf<'a>>,
+    /// The same, as bars know it.
+    scalar: Scalar,
 }
 
 impl Quantity<'_> {
@@ -204,8 +213,50 @@ impl Quantity<'_> {
             Curve::new("schedule", stroke, x, y).key("schedule")
         });
         let panel = Panel::new(x, y).with_all(self.spans(analysis, across));
-        let panel = panel.with(Rule::horizontal(self.measure.null(), NULL)).with_all(curve);
-        panel.with_all(self.dots(analysis, across))
+        let bands = schedule.map(|schedule| self.bands(analysis, schedule)).unwrap_or_default();
+        let panel = panel.with(Rule::horizontal(self.measure.null(), NULL)).with_all(bands).with_all(curve);
+        panel.with_all(self.bars(analysis, across)).with_all(self.dots(analysis, across))
+    }
+
+    /// The bar of each condition, where that was computed: thin with not knowing the trim flown, thick for the model chosen (M13).
+    fn bars(&self, analysis: &Analysis, across: Across) -> Vec<Spans> {
+        let Some(uncertainty) = &analysis.uncertainty else { return Vec::new() };
+        let told = |end: f64| if self.scalar.is_delay() { s_to_ms(end) } else { end.exp() };
+        let spans = |of: &dyn Fn(&Bar) -> Option<[f64; 2]>| -> Vec<[f64; 3]> {
+            let bar = |(x, state, _): (f64, &FlightState, &ConditionAnalysis)| {
+                let [low, high] = of(uncertainty.bar(state.id, self.scalar)?)?.map(told);
+                Some([x, low, high])
+            };
+            places(analysis, across).filter_map(bar).collect()
+        };
+        let level = uncertainty.level;
+        let unit = if across == Across::Airspeed { 1.0 } else { BOUNDS_WIDTHS[1] / BOUNDS_WIDTHS[0] };
+        let names = [format!("bar of {:.0} %", 100.0 * level), "identification".to_owned()];
+        let [whole, inner] = names;
+        let outer = Spans { name: whole, color: BLUE, width: 0.5 * unit, spans: spans(&|bar| bar.interval(level)) };
+        let inner =
+            Spans { name: inner, color: BLUE, width: 1.6 * unit, spans: spans(&|bar| bar.inner_interval(level)) };
+        vec![outer, inner].into_iter().filter(|bars| !bars.spans.is_empty()).collect()
+    }
+
+    /// The ends of both bands of the schedule, where they were computed.
+    fn bands(&self, analysis: &Analysis, schedule: &Schedule) -> Vec<Curve> {
+        let Some(bands) = analysis.uncertainty.as_ref().and_then(|of| of.bands.as_ref()) else { return Vec::new() };
+        let color = Role::Scheduled.stroke(false).color;
+        let of = |name: &str, dash: Dash, width: fn(&BandWidths) -> f64| {
+            let ends = [-1.0, 1.0].map(|side| {
+                let samples = scheduled_samples(schedule, &self.of).into_iter();
+                let end = |[airspeed_kt, value]: [f64; 2]| {
+                    let half = bands.at(schedule, self.scalar, airspeed_kt).map(|widths| width(&widths));
+                    Some((airspeed_kt, value * (side * half?).exp()))
+                };
+                let (x, y): (Vec<f64>, Vec<f64>) = samples.filter_map(end).unzip();
+                Curve::new(name, Stroke::dashed(color, 0.6, dash), x, y).key(name)
+            });
+            ends.into_iter().filter(|curve| !curve.x.is_empty()).collect::<Vec<_>>()
+        };
+        let confidence = of("confidence band", Dash::Long, |widths| widths.confidence);
+        confidence.into_iter().chain(of("scatter band", Dash::Dotted, |widths| widths.scatter)).collect()
     }
 
     /// Where each optimum was looked for.
@@ -227,8 +278,9 @@ impl Quantity<'_> {
         let classes = Classes::of(&analysis.study.dataset);
         let mut groups: Vec<Dots> = Vec::new();
         for (x, state, result) in places(analysis, across) {
-            let chosen = analysis.study.choice(state.id).scheduled;
-            let name = class_words(state, chosen);
+            let choice = analysis.study.choice(state.id);
+            let chosen = choice.is_in_schedule();
+            let name = class_words(state, choice);
             // Over conditions the axis has their numbers.
             let label = if across == Across::Airspeed { state.id.to_string() } else { String::new() };
             let dot = Dot { x, y: (self.of)(&result.correction), label };
@@ -237,7 +289,9 @@ impl Quantity<'_> {
                 None => {
                     let shape = if classes.is_first_altitude(state) { DotShape::Circle } else { DotShape::Diamond };
                     let color = if chosen { BLUE } else { GREY };
-                    let group = Dots::new(&name, shape, color).filled(classes.is_first_weight(state)).key(&name);
+                    let group = Dots::new(&name, shape, color)
+                        .filled(classes.is_first_weight(state) && !choice.held_out)
+                        .key(&name);
                     groups.push(Dots { dots: vec![dot], ..group });
                 }
             }
@@ -261,14 +315,16 @@ fn places(analysis: &Analysis, across: Across) -> impl Iterator<Item = (f64, &Fl
 }
 
 /// `low altitude, high weight`; `optimum` of a condition without classes.
-fn class_words(state: &FlightState, chosen: bool) -> String {
+fn class_words(state: &FlightState, choice: &ConditionChoice) -> String {
     let class = |name: &Option<String>, what: &str| name.as_ref().map(|name| format!("{name} {what}"));
     let mut words: Vec<String> =
         [class(&state.altitude, "altitude"), class(&state.weight, "weight")].into_iter().flatten().collect();
     if words.is_empty() {
         words.push("optimum".to_owned());
     }
-    if !chosen {
+    if choice.held_out {
+        words.push("held out".to_owned());
+    } else if !choice.scheduled {
         words.push("not in the schedule".to_owned());
     }
     words.join(", ")

@@ -44,11 +44,12 @@ mod zip_files;
 pub use crate::dataset::limits::LARGEST_TEXT;
 pub use content_fault::ContentFault;
 pub use corrections_file::{
-    Assessment, ByName, Channels, ConditionAssessment, ConditionCorrections, ConflictEntry, Corrections, CostTable,
-    CostTables, DatasetLabel, DelayOutcome, Explanation, GainOutcome, LeadChannels, LeadEntry, NetGain, RESULT_FILES,
-    ReasonEntry, RemedyEntry, ScheduleUsed, ScheduledDelays, ScheduledGains, ScheduledTaus, SensitivityEntry,
-    SetAsideEntry, SourceEntry, Table, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult, read_corrections,
-    result_paths, write_results,
+    Assessment, BarEntry, BarsEntry, ByName, ChannelBars, Channels, ConditionAssessment, ConditionCorrections,
+    ConflictEntry, Corrections, CostTable, CostTables, DatasetLabel, DelayOutcome, DifferenceEntry, Explanation,
+    GainOutcome, LeadChannels, LeadEntry, NetGain, RESULT_FILES, ReasonEntry, RemedyEntry, ScatterEntry,
+    ScheduleBandEntry, ScheduleUsed, ScheduledDelays, ScheduledGains, ScheduledSecond, ScheduledTaus,
+    SecondVariableEntry, SensitivityEntry, SetAsideEntry, SourceEntry, SplitEntry, Table, UncertaintyEntry,
+    UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult, read_corrections, result_paths, write_results,
 };
 pub use csv_table::{csv_text, save_table};
 pub use dataset_file::{
@@ -78,5 +79,7 @@ pub use record_files::{
 pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
 pub use report_file::{ReportSource, report, save_report};
 pub use rules_file::{add_rules, load_rules};
-pub use settings_entry::{KindWord, LeadSettingsEntry, ScheduleEntry, SettingsEntry};
+pub use settings_entry::{
+    ErrorBarsEntry, KindWord, LeadSettingsEntry, ScheduleEntry, SecondVariableWord, SettingsEntry,
+};
 pub use study_file::{OpenedStudy, STUDY_EXTENSION, open_study, open_study_of, relative_folder, save_study};

@@ -2,13 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::correction::{GainBounds, GainObjective, LeadSettings};
+use crate::correction::{GainBounds, GainObjective, GainSource, LeadSettings};
 use crate::dataset::limits::MOST_PAIRS;
 use crate::dataset::{Band, Dataset, PairTable, Place};
 use crate::fidelity::CostAverage;
 use crate::response::LeadOrder;
-use crate::schedule::{DEFAULT_TOLERANCE_KT, ScheduleKind, ScheduleSettings, ScheduledQuantity};
+use crate::schedule::{DEFAULT_TOLERANCE_KT, ScheduleKind, ScheduleSettings, ScheduledQuantity, SecondVariable};
 use crate::study::{DEFAULT_AGREEMENT_DB, DelayFrom, EditRefusal, PhaseCorrection, Setting, Settings};
+use crate::uncertainty::UncertaintySettings;
 
 use super::content_fault::ContentFault;
 use super::flaw::Flaw;
@@ -61,6 +62,48 @@ pub struct SettingsEntry {
     /// How gains are scheduled; results of older programs do not say it.
     #[serde(default)]
     pub schedule: ScheduleEntry,
+    /// `representatives` or `mean`: what G is taken from; files of older programs do not say it.
+    #[serde(default, with = "GainSourceWord")]
+    pub gain_from: GainSource,
+    /// How error bars are made; files of older programs do not say it.
+    #[serde(default)]
+    pub error_bars: ErrorBarsEntry,
+}
+
+/// How error bars are made.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ErrorBarsEntry {
+    /// Level of every bar, interval and test.
+    pub level: f64,
+    /// Degrees of freedom that a condition's identification part borrows at most.
+    pub prior_degrees: f64,
+    /// Averages of measured responses that do not say it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub averages: Option<f64>,
+    /// Length of the windows of measured responses that do not say it \[s\].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub window_s: Option<f64>,
+    /// Whether those windows overlap by half.
+    #[serde(default)]
+    pub half_overlap: bool,
+}
+
+impl Default for ErrorBarsEntry {
+    fn default() -> Self {
+        Self::of(UncertaintySettings::default())
+    }
+}
+
+impl ErrorBarsEntry {
+    fn of(settings: UncertaintySettings) -> Self {
+        let UncertaintySettings { level, prior_degrees, averages, window_s, half_overlap } = settings;
+        Self { level, prior_degrees, averages, window_s, half_overlap }
+    }
+
+    fn settings(&self) -> UncertaintySettings {
+        let Self { level, prior_degrees, averages, window_s, half_overlap } = *self;
+        UncertaintySettings { level, prior_degrees, averages, window_s, half_overlap }
+    }
 }
 
 /// How gains are scheduled with airspeed.
@@ -78,6 +121,9 @@ pub struct ScheduleEntry {
     /// Airspeeds nearer to one another are one \[kt\].
     #[serde(default = "default_tolerance_kt")]
     pub airspeed_tolerance_kt: f64,
+    /// `altitude` or `mass`: what is scheduled beside airspeed, where something is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub second_variable: Option<SecondVariableWord>,
     /// Degree of the polynomial of signed delays; absent where it is 0.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub tau_degree: usize,
@@ -154,6 +200,41 @@ enum CostAverageWord {
     Mean,
 }
 
+/// A variable besides airspeed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SecondVariableWord {
+    /// Altitude.
+    Altitude,
+    /// Mass.
+    Mass,
+}
+
+impl SecondVariableWord {
+    pub(super) fn of(variable: SecondVariable) -> Self {
+        match variable {
+            SecondVariable::Altitude => Self::Altitude,
+            SecondVariable::Mass => Self::Mass,
+        }
+    }
+
+    fn variable(self) -> SecondVariable {
+        match self {
+            Self::Altitude => SecondVariable::Altitude,
+            Self::Mass => SecondVariable::Mass,
+        }
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "GainSource")]
+enum GainSourceWord {
+    #[serde(rename = "representatives")]
+    Representatives,
+    #[serde(rename = "mean")]
+    MeanOfPairs,
+}
+
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "PhaseCorrection", rename_all = "lowercase")]
 enum PhaseWord {
@@ -209,6 +290,8 @@ impl SettingsEntry {
             lead: LeadSettingsEntry::of(settings.lead),
             agreement_db: settings.agreement_db,
             schedule: ScheduleEntry::of(settings.schedule),
+            gain_from: settings.gain_source,
+            error_bars: ErrorBarsEntry::of(settings.uncertainty),
         }
     }
 
@@ -236,6 +319,8 @@ impl SettingsEntry {
             ("lead, r_max", Setting::LeadLimit(self.lead.r_max)),
             ("agreement_db", Setting::Agreement(self.agreement_db)),
             ("schedule", Setting::Schedule(self.schedule.settings()?)),
+            ("gain_from", Setting::GainSource(self.gain_from)),
+            ("error_bars", Setting::Uncertainty(self.error_bars.settings())),
         ];
         for (key, setting) in decided {
             settings.apply(&setting).map_err(|refusal| Flaw::new(place(key), refusal))?;
@@ -250,8 +335,9 @@ impl ScheduleEntry {
             ScheduleKind::Polynomial { degree } => (KindWord::Polynomial, Some(degree)),
             ScheduleKind::Table => (KindWord::Table, None),
         };
-        let ScheduleSettings { quantity: of, delays, airspeed_tolerance_kt, tau_degree, .. } = settings;
-        Self { kind, degree, of, delays, airspeed_tolerance_kt, tau_degree }
+        let ScheduleSettings { quantity: of, delays, airspeed_tolerance_kt, tau_degree, second, .. } = settings;
+        let second_variable = second.map(SecondVariableWord::of);
+        Self { kind, degree, of, delays, airspeed_tolerance_kt, tau_degree, second_variable }
     }
 
     fn settings(&self) -> Result<ScheduleSettings, Flaw> {
@@ -264,6 +350,7 @@ impl ScheduleEntry {
             }
         };
         let Self { of: quantity, delays, airspeed_tolerance_kt, tau_degree, .. } = *self;
-        Ok(ScheduleSettings { kind, quantity, delays, airspeed_tolerance_kt, tau_degree })
+        let second = self.second_variable.map(SecondVariableWord::variable);
+        Ok(ScheduleSettings { kind, quantity, delays, airspeed_tolerance_kt, tau_degree, second })
     }
 }

@@ -100,7 +100,12 @@ mod tests {
         let points: Vec<ScheduledPoint<'_>> = [60.0, 90.0, 120.0]
             .into_iter()
             .zip(&corrections)
-            .map(|(airspeed_kt, correction)| ScheduledPoint { airspeed_kt, correction, delay_upper_s: 0.1 })
+            .map(|(airspeed_kt, correction)| ScheduledPoint {
+                airspeed_kt,
+                correction,
+                delay_upper_s: 0.1,
+                second: None,
+            })
             .collect();
         let names = (["LON".to_owned()], ["Q".to_owned()]);
         let of = |settings| Schedule::of(&points, settings).unwrap().coefficients(&names.0, &names.1);

@@ -102,7 +102,12 @@ mod tests {
         let points: Vec<ScheduledPoint<'_>> = [60.0, 90.0, 120.0]
             .into_iter()
             .zip(&corrections)
-            .map(|(airspeed_kt, correction)| ScheduledPoint { airspeed_kt, correction, delay_upper_s: 0.02 })
+            .map(|(airspeed_kt, correction)| ScheduledPoint {
+                airspeed_kt,
+                correction,
+                delay_upper_s: 0.02,
+                second: None,
+            })
             .collect();
         let found = lead_evidence(&points, ScheduleSettings::default());
         assert_eq!(found.len(), 1 + HIGHEST_DEGREE);

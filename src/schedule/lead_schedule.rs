@@ -81,7 +81,12 @@ mod tests {
     fn points<'a>(airspeeds_kt: &[f64], corrections: &'a [ChannelCorrection]) -> Vec<ScheduledPoint<'a>> {
         let pairs = airspeeds_kt.iter().zip(corrections);
         pairs
-            .map(|(&airspeed_kt, correction)| ScheduledPoint { airspeed_kt, correction, delay_upper_s: 0.01 })
+            .map(|(&airspeed_kt, correction)| ScheduledPoint {
+                airspeed_kt,
+                correction,
+                delay_upper_s: 0.01,
+                second: None,
+            })
             .collect()
     }
 

@@ -1,11 +1,13 @@
 //! The correction scheduled with airspeed (M11).
 
 use crate::correction::{Channel, ChannelCorrection};
-use crate::dataset::ConditionId;
+use crate::dataset::{ConditionId, FlightState};
 use crate::units::{s_to_ms, signed};
 
+use super::basis;
 use super::lead_schedule::LeadSchedule;
 use super::regression::{Airspeeds, Regression};
+use super::second_variable::{SecondTerm, SecondVariable};
 
 /// Places between two airspeeds at which a schedule is looked at.
 const STEPS: u32 = 100;
@@ -51,6 +53,8 @@ pub struct ScheduleSettings {
     pub tau_degree: usize,
     /// Airspeeds this close to the next one are one cluster \[kt\] (M11b).
     pub airspeed_tolerance_kt: f64,
+    /// Variable whose effect on the gains is scheduled beside that of airspeed (M13.7).
+    pub second: Option<SecondVariable>,
 }
 
 impl Default for ScheduleSettings {
@@ -61,6 +65,7 @@ impl Default for ScheduleSettings {
             delays: false,
             tau_degree: 0,
             airspeed_tolerance_kt: DEFAULT_TOLERANCE_KT,
+            second: None,
         }
     }
 }
@@ -74,6 +79,8 @@ pub struct ScheduledPoint<'a> {
     pub correction: &'a ChannelCorrection,
     /// The condition's upper bound of the delays \[s\].
     pub delay_upper_s: f64,
+    /// The condition's value of the second variable, where there is one.
+    pub second: Option<f64>,
 }
 
 /// Every channel's gain (and delay, where asked for) as a function of airspeed.
@@ -87,6 +94,8 @@ pub struct Schedule {
     pub inputs: Vec<Regression>,
     /// Regression of each output's gain, or of its logarithm.
     pub outputs: Vec<Regression>,
+    /// What the second variable adds to each of them, where there is one.
+    pub second: Option<SecondTerm>,
     /// Delays as functions of airspeed, where delays are scheduled.
     pub delays: Option<DelaySchedule>,
     /// Signed delays as functions of airspeed, where the conditions' corrections have leads (M15).
@@ -183,6 +192,12 @@ pub enum ScheduleError {
     /// No condition was chosen, or none could be solved.
     #[error("no schedule: no condition that could be solved is chosen for it")]
     NoCondition,
+    /// A condition does not say the second variable.
+    #[error("no schedule with {0}: a condition that is chosen for it does not say its {0}")]
+    NoSecondValue(SecondVariable),
+    /// The second variable is a function of airspeed in these conditions, or the same in all of them.
+    #[error("no schedule with {0}: these conditions cannot tell its effect and that of airspeed apart")]
+    NotToldApart(SecondVariable),
 }
 
 impl Schedule {
@@ -206,28 +221,45 @@ impl Schedule {
             ScheduledQuantity::LnGain => gain.ln(),
             ScheduledQuantity::Gain => gain,
         };
-        let fit_channels = |of: fn(&ChannelCorrection) -> &[f64], transform: &dyn Fn(f64) -> f64| -> Vec<Regression> {
-            (0..of(points[0].correction).len())
-                .map(|channel| {
-                    let figures: Vec<f64> =
-                        points.iter().map(|point| transform(of(point.correction)[channel])).collect();
-                    fit(&figures)
-                })
-                .collect()
+        let second = settings.second.map(|variable| {
+            let values: Option<Vec<f64>> = points.iter().map(|point| point.second).collect();
+            let values = values.ok_or(ScheduleError::NoSecondValue(variable))?;
+            let figures = |of: fn(&ChannelCorrection) -> &[f64]| -> Vec<Vec<f64>> {
+                let of_channel = |channel| points.iter().map(|point| quantity(of(point.correction)[channel])).collect();
+                (0..of(points[0].correction).len()).map(of_channel).collect()
+            };
+            let columns = basis::design(&airspeeds, settings.kind);
+            let term = SecondTerm::of(variable, values, &columns)?;
+            Ok(term.fitted(&figures(|of| &of.input_gains), &figures(|of| &of.output_gains)))
+        });
+        let second = second.transpose()?;
+        let fit_gains = |of: fn(&ChannelCorrection) -> &[f64], slope: fn(&SecondTerm) -> &[f64]| -> Vec<Regression> {
+            let of_channel = |channel: usize| {
+                let beside = |place| second.as_ref().map_or(0.0, |term| slope(term)[channel] * term.scaled[place]);
+                let points = points.iter().enumerate();
+                fit(&points
+                    .map(|(place, point)| quantity(of(point.correction)[channel]) - beside(place))
+                    .collect::<Vec<_>>())
+            };
+            (0..of(points[0].correction).len()).map(of_channel).collect()
         };
-        let inputs = fit_channels(|correction| &correction.input_gains, &quantity);
-        let outputs = fit_channels(|correction| &correction.output_gains, &quantity);
+        let inputs = fit_gains(|correction| &correction.input_gains, |term| &term.inputs);
+        let outputs = fit_gains(|correction| &correction.output_gains, |term| &term.outputs);
         let leads = LeadSchedule::of(points, &airspeeds, settings.tau_degree);
         let delays = (settings.delays && leads.is_none()).then(|| {
-            let same = |delay: f64| delay;
+            let fit_channels = |of: fn(&ChannelCorrection) -> &[f64]| -> Vec<Regression> {
+                let of_channel =
+                    |channel| points.iter().map(|point| of(point.correction)[channel]).collect::<Vec<f64>>();
+                (0..of(points[0].correction).len()).map(|channel| fit(&of_channel(channel))).collect()
+            };
             let uppers: Vec<f64> = points.iter().map(|point| point.delay_upper_s).collect();
             DelaySchedule {
-                inputs: fit_channels(|correction| &correction.input_delays_s, &same),
-                outputs: fit_channels(|correction| &correction.output_delays_s, &same),
+                inputs: fit_channels(|correction| &correction.input_delays_s),
+                outputs: fit_channels(|correction| &correction.output_delays_s),
                 upper_s: Regression::table(&airspeeds, &uppers),
             }
         });
-        Ok(Self { settings, airspeeds, inputs, outputs, delays, leads, cautions: Vec::new() })
+        Ok(Self { settings, airspeeds, inputs, outputs, second, delays, leads, cautions: Vec::new() })
     }
 
     /// Whether delays, or delays and leads, are scheduled.
@@ -301,14 +333,30 @@ impl Schedule {
 
     /// The scheduled correction at an airspeed \[kt\]; outside the conditions' range the end value holds.
     ///
-    /// Scheduled delays are cut to their bounds: from zero to the conditions' upper bounds, linear between them.
+    /// Scheduled delays are cut to their bounds: from zero to the conditions' upper bounds, linear between them. A second variable
+    /// is in the middle of its range.
     pub fn at(&self, airspeed_kt: f64) -> ChannelCorrection {
-        let gain = |regression: &Regression| {
-            let value = regression.at(&self.airspeeds, airspeed_kt);
+        self.at_both(airspeed_kt, None)
+    }
+
+    /// The scheduled correction at the airspeed and the second variable of a condition.
+    pub fn at_state(&self, state: &FlightState) -> ChannelCorrection {
+        self.at_both(state.airspeed_kt, self.settings.second.and_then(|variable| variable.value(state)))
+    }
+
+    /// As [`Schedule::at`], at a value of the second variable; beyond the range of the conditions' the end value holds.
+    pub fn at_both(&self, airspeed_kt: f64, second: Option<f64>) -> ChannelCorrection {
+        let gain = |regression: &Regression, beside: f64| {
+            let value = regression.at(&self.airspeeds, airspeed_kt) + beside;
             match self.settings.quantity {
                 ScheduledQuantity::LnGain => value.exp(),
                 ScheduledQuantity::Gain => value,
             }
+        };
+        let scaled = self.second.as_ref().zip(second).map_or(0.0, |(term, value)| term.scale(value));
+        let gains = |regressions: &[Regression], slopes: fn(&SecondTerm) -> &[f64]| -> Vec<f64> {
+            let slope = |channel: usize| self.second.as_ref().map_or(0.0, |term| slopes(term)[channel]);
+            regressions.iter().enumerate().map(|(channel, of)| gain(of, slope(channel) * scaled)).collect()
         };
         let leads = self.leads.as_ref().map(|leads| leads.at(&self.airspeeds, airspeed_kt));
         let [input_delays_s, output_delays_s] = match (&self.delays, &leads) {
@@ -321,8 +369,8 @@ impl Schedule {
             (None, None) => [vec![0.0; self.inputs.len()], vec![0.0; self.outputs.len()]],
         };
         ChannelCorrection {
-            input_gains: self.inputs.iter().map(gain).collect(),
-            output_gains: self.outputs.iter().map(gain).collect(),
+            input_gains: gains(&self.inputs, |term| &term.inputs),
+            output_gains: gains(&self.outputs, |term| &term.outputs),
             input_delays_s,
             output_delays_s,
             leads,
@@ -352,7 +400,12 @@ mod tests {
         let points: Vec<_> = corrections
             .iter()
             .zip(airspeeds)
-            .map(|(correction, airspeed_kt)| ScheduledPoint { airspeed_kt, correction, delay_upper_s: 1.0 })
+            .map(|(correction, airspeed_kt)| ScheduledPoint {
+                airspeed_kt,
+                correction,
+                delay_upper_s: 1.0,
+                second: None,
+            })
             .collect();
         let schedule = Schedule::of(&points, ScheduleSettings::default()).unwrap();
         let products: Vec<f64> = corrections.iter().map(|c| c.net_gain(Pair::new(0, 0)).value().ln()).collect();
@@ -376,7 +429,12 @@ mod tests {
             let points: Vec<_> = corrections
                 .iter()
                 .zip(airspeeds_kt)
-                .map(|(correction, airspeed_kt)| ScheduledPoint { airspeed_kt, correction, delay_upper_s: 1.0 })
+                .map(|(correction, airspeed_kt)| ScheduledPoint {
+                    airspeed_kt,
+                    correction,
+                    delay_upper_s: 1.0,
+                    second: None,
+                })
                 .collect();
             Schedule::of(&points, ScheduleSettings { airspeed_tolerance_kt, ..ScheduleSettings::default() }).unwrap()
         };
@@ -397,7 +455,7 @@ mod tests {
     #[test]
     fn delays_are_scheduled_only_where_asked_for() {
         let own = correction(1.0);
-        let points = [ScheduledPoint { airspeed_kt: 60.0, correction: &own, delay_upper_s: 1.0 }];
+        let points = [ScheduledPoint { airspeed_kt: 60.0, correction: &own, delay_upper_s: 1.0, second: None }];
         assert_eq!(Schedule::of(&points, ScheduleSettings::default()).unwrap().at(60.0).input_delays_s, [0.0]);
         let settings = ScheduleSettings { delays: true, ..ScheduleSettings::default() };
         assert_eq!(Schedule::of(&points, settings).unwrap().at(60.0).input_delays_s, [0.01]);
@@ -411,7 +469,12 @@ mod tests {
             .into_iter()
             .zip(&corrections)
             .zip([0.01, 0.02, 0.03, 0.03])
-            .map(|((airspeed_kt, correction), delay_upper_s)| ScheduledPoint { airspeed_kt, correction, delay_upper_s })
+            .map(|((airspeed_kt, correction), delay_upper_s)| ScheduledPoint {
+                airspeed_kt,
+                correction,
+                delay_upper_s,
+                second: None,
+            })
             .collect();
         let kind = ScheduleKind::Polynomial { degree: 3 };
         let settings = ScheduleSettings { kind, delays: true, ..ScheduleSettings::default() };

@@ -9,6 +9,7 @@ use crate::schedule::{CostChange, Evidence, LeadEvidence, Schedule, ScheduleErro
 use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
 use super::document::Study;
 use super::engine::scheduled_points;
+use super::uncertainty::Uncertainty;
 
 /// The nominal model of a condition under the scheduled correction (M12).
 #[derive(Clone, Debug, PartialEq)]
@@ -35,6 +36,8 @@ pub struct Analysis {
     pub schedule: Result<Schedule, ScheduleError>,
     /// Assessment of each condition.
     pub assessment: BTreeMap<ConditionId, Assessed>,
+    /// How sure its figures are, once that has been asked for ([`Engine::uncertainty`](super::Engine::uncertainty)).
+    pub uncertainty: Option<Arc<Uncertainty>>,
 }
 
 impl Analysis {
@@ -46,7 +49,19 @@ impl Analysis {
     /// The conditions that the schedule is made of, in the dataset's order: the chosen ones that have a result.
     pub fn scheduled(&self) -> Vec<ConditionId> {
         let all = self.study.dataset.conditions().iter().map(|condition| condition.id());
-        all.filter(|id| self.study.choice(*id).scheduled && self.condition(*id).is_some()).collect()
+        all.filter(|id| self.study.choice(*id).is_in_schedule() && self.condition(*id).is_some()).collect()
+    }
+
+    /// The schedule of the chosen conditions without one of them.
+    ///
+    /// # Errors
+    /// [`ScheduleError`] where there is none.
+    pub fn schedule_without(&self, left_out: ConditionId) -> Result<Schedule, ScheduleError> {
+        let mut others = self.study.clone();
+        if let Some(choice) = others.choices.get_mut(&left_out) {
+            choice.scheduled = false;
+        }
+        Schedule::of(&scheduled_points(&others, &self.conditions), self.study.settings.schedule)
     }
 
     /// What speaks for each form of the schedule, its lists in the order of [`Analysis::scheduled`] (M11). Some hundred small

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use crate::correction::{Delta, mismatch_table};
+use crate::correction::{Delta, delta_gains, mismatch_table};
 use crate::dataset::{BundleKind, Condition, ConditionId, Dynamics, Pair, PairTable};
 use crate::fidelity::{
     BundleDistance, ComparedModel, Cost, CostAverage, CountedFrequencies, Discontinuity, DiscontinuityError, FitError,
@@ -180,8 +180,7 @@ impl Comparison {
         };
         let (physics, identified) = (representative(BundleKind::Physics)?, representative(BundleKind::Identified)?);
         let flight = &condition.bundle(BundleKind::Identified)[identified.model].dynamics;
-        let mut reference = Compared::of(&responses.identified[identified.model]);
-        reference.counted = CountedFrequencies::of_model(flight, grid.omega(), coherence);
+        let reference = Compared::of_identified(&responses.identified[identified.model], flight, grid, coherence);
         let simulated = Compared::of(&responses.physics[physics.model]);
         let against = |simulated: &Compared| ModelMismatch::of(simulated, &reference, grid.omega(), average);
         let representative = against(&simulated);
@@ -205,6 +204,71 @@ impl Comparison {
             }
         }
         Ok(Self { physics, identified, representative, nominal, delta, undefined, cautions })
+    }
+}
+
+impl Comparison {
+    /// The same comparison, G of each response the mean (of its logarithm) over every pair of a kept physics and a kept identified
+    /// model that have it.
+    pub(super) fn with_mean_gains(
+        mut self,
+        condition: &Condition,
+        responses: &ConditionResponses,
+        grid: &FrequencyGrid,
+        coherence: Option<f64>,
+    ) -> Self {
+        let kept = |scores: &[Option<f64>]| -> Vec<usize> {
+            (0..scores.len()).filter(|&model| scores[model].is_some()).collect()
+        };
+        let flight = condition.bundle(BundleKind::Identified);
+        let physics = kept(&self.physics.scores).into_iter().map(|model| Compared::of(&responses.physics[model]));
+        let identified = kept(&self.identified.scores).into_iter().map(|model| {
+            Compared::of_identified(&responses.identified[model], &flight[model].dynamics, grid, coherence)
+        });
+        let (physics, identified): (Vec<Compared>, Vec<Compared>) = (physics.collect(), identified.collect());
+        let mut sums = self.delta.gain.map(|_, _| (0.0, 0_usize));
+        for (simulated, reference) in physics.iter().flat_map(|a| identified.iter().map(move |b| (a, b))) {
+            let mismatch = mismatch_table(&simulated.polar, &reference.polar, reference.counted.as_ref());
+            for (pair, gain) in delta_gains(&mismatch).iter() {
+                let Some(gain) = gain else { continue };
+                let (sum, count) = &mut sums[pair];
+                *sum += gain.ln();
+                *count += 1;
+            }
+        }
+        let mean = |(sum, count): (f64, usize)| (sum / count as f64).exp();
+        self.delta.gain = self.delta.gain.map(|pair, gain| gain.and(Some(mean(sums[pair]))));
+        self
+    }
+
+    /// The comparison of another pair of models in place of the representatives, as if it were pinned: each phase difference is
+    /// laid beside that of the representatives (M13.1). Costs, the nominal model and cautions are left out.
+    pub(super) fn swapped(
+        &self,
+        [physics, identified]: [usize; 2],
+        simulated: &Compared,
+        reference: &Compared,
+        omega: &[f64],
+        median_phases: &PairTable<Option<f64>>,
+    ) -> Self {
+        let mut mismatch = mismatch_table(&simulated.polar, &reference.polar, reference.counted.as_ref());
+        for (pair, entry) in mismatch.iter_mut() {
+            *entry = entry.take().map(|entry| match median_phases[pair] {
+                Some(median_phase) => entry.beside(omega, median_phase),
+                None => entry,
+            });
+        }
+        let delta = Delta::of(&mismatch, omega);
+        let none = ModelMismatch { mismatch: mismatch.map(|_, _| None), cost: mismatch.map(|_, _| None) };
+        Self {
+            physics: Representative { model: physics, ..self.physics.clone() },
+            identified: Representative { model: identified, ..self.identified.clone() },
+            representative: ModelMismatch { mismatch, cost: none.cost.clone() },
+            nominal: none,
+            undefined: delta.gain.map(|_, _| None),
+            delta,
+            cautions: Vec::new(),
+        }
     }
 }
 
@@ -242,7 +306,7 @@ fn coherence_caution(
 }
 
 /// A model as it is compared: without the responses that are numerically nothing.
-struct Compared {
+pub(super) struct Compared {
     polar: PolarResponse,
     nothing: PairTable<bool>,
     /// Which frequencies count, where coherence says that.
@@ -250,11 +314,21 @@ struct Compared {
 }
 
 impl Compared {
-    fn of(response: &FrequencyResponse) -> Self {
+    pub(super) fn of(response: &FrequencyResponse) -> Self {
         let mut polar = PolarResponse::of(response);
         let nothing = polar.numerically_nothing();
         polar.clear(&nothing);
         Self { polar, nothing, counted: None }
+    }
+
+    /// An identified model, by its coherence where there is a threshold for it (M4a).
+    pub(super) fn of_identified(
+        response: &FrequencyResponse,
+        flight: &Dynamics,
+        grid: &FrequencyGrid,
+        coherence: Option<f64>,
+    ) -> Self {
+        Self { counted: CountedFrequencies::of_model(flight, grid.omega(), coherence), ..Self::of(response) }
     }
 
     fn has(&self, pair: Pair) -> bool {

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use crate::correction::{
-    Bounds, ChannelCorrection, ChannelLeads, DELAY_AGREEMENT_S, GainBounds, LeadDesign, Problem, ProblemError,
-    ProofBudget, Quantity, Solution, delay_upper_s, gain_bounds, solve,
+    Bounds, ChannelCorrection, ChannelLeads, DELAY_AGREEMENT_S, GainBounds, GainSource, LeadDesign, Problem,
+    ProblemError, ProofBudget, Quantity, Solution, delay_upper_s, gain_bounds, solve,
 };
-use crate::dataset::{BundleKind, Condition, Pair, PairTable};
+use crate::dataset::{BundleKind, Condition, ConditionId, Pair, PairTable};
 use crate::fidelity::CostAverage;
 use crate::response::FrequencyGrid;
 use crate::schedule::{CostChange, assess};
@@ -22,11 +22,12 @@ use super::led::Led;
 use super::memo::Memo;
 use super::progress::Cancelled;
 use super::settings::{DelayFrom, PhaseCorrection, Settings};
+use super::swaps::{ConditionSwaps, SwapMemo, SwapOptimum, Swapping};
 
 /// What the distances depend on, besides the models: the grid, the responses that measure them, and the coherence that counts.
 type FiguresKey = (GridKey, PairTable<bool>, Option<f64>);
 /// What the comparison of the representatives depends on, besides the models.
-type ComparisonKey = (FiguresKey, ConditionChoice, CostAverage);
+type ComparisonKey = (FiguresKey, ConditionChoice, CostAverage, GainSource);
 /// What the upper bound of the delays depends on: the comparison, the quantile, and the bound set by hand.
 type DelayBoundKey = (ComparisonKey, f64, Option<f64>);
 /// What the bounds of the gains depend on: the comparison, the leads, the quantile, and the bounds set by hand.
@@ -45,6 +46,7 @@ pub(super) struct ConditionStages {
     gains: Memo<Arc<Problem>, Solved>,
     delays: Memo<Arc<Problem>, Solved>,
     cost: Memo<(ComparisonKey, ChannelCorrection), Arc<PairTable<Option<CostChange>>>>,
+    swaps: SwapMemo,
 }
 
 impl ConditionStages {
@@ -61,6 +63,7 @@ impl ConditionStages {
             gains: Memo::default(),
             delays: Memo::default(),
             cost: Memo::default(),
+            swaps: SwapMemo::default(),
         }
     }
 
@@ -114,6 +117,43 @@ impl ConditionStages {
         Ok(outcome)
     }
 
+    /// How the figures of the condition change when other models stand in for the representatives of `analysis` (M13.1); what is
+    /// kept of that is not computed again.
+    pub(super) fn swaps(
+        &mut self,
+        study: &Study,
+        analysis: &ConditionAnalysis,
+        grid: &FrequencyGrid,
+        execution: &Execution<'_>,
+    ) -> Result<ConditionSwaps, Cancelled> {
+        let grid_key = (study.settings.band, study.settings.points);
+        let responses = self.models.responses(Purpose::Comparison, grid_key, grid, execution)?;
+        let swapping = Swapping { study, analysis, grid, responses: &responses };
+        let models = &self.models;
+        self.swaps.complete(&swapping, execution, |comparison, execution| {
+            Self::of(models.clone()).optimum(comparison, &swapping, execution)
+        })
+    }
+
+    /// The correction of a comparison of models that stand in for the representatives; none where there is none.
+    fn optimum(
+        &mut self,
+        comparison: &Comparison,
+        swapping: &Swapping<'_>,
+        execution: &Execution<'_>,
+    ) -> Result<Option<SwapOptimum>, Cancelled> {
+        let (settings, measuring) = (&swapping.study.settings, swapping.study.dataset.measuring_pairs());
+        let key = comparison_key(swapping.study, swapping.analysis.condition.id());
+        let omega = swapping.grid.omega();
+        let asked = Asked { settings, measuring: &measuring, omega, comparison, key: &key };
+        let solved = self.solve(&asked, SWAP_PROOF, execution)?;
+        Ok(solved.ok().map(|solved| SwapOptimum {
+            correction: solved.correction(),
+            gain: solved.gain_problem.delta.clone(),
+            delay_s: solved.delay_problem.delta.clone(),
+        }))
+    }
+
     fn compare_and_solve(
         &mut self,
         study: &Study,
@@ -126,11 +166,14 @@ impl ConditionStages {
         let settings = &study.settings;
         let measuring = study.dataset.measuring_pairs();
         let choice = study.choice(condition.id());
-        let figures_key = ((settings.band, settings.points), measuring.clone(), settings.coherence_threshold);
-        let key: ComparisonKey = (figures_key, choice.without_reasons(), settings.cost_average);
+        let key = comparison_key(study, condition.id());
         let comparison = self.comparison.get(key.clone(), |_| {
             let averaging = (settings.cost_average, settings.coherence_threshold);
             let comparison = Comparison::of(condition, responses, &figures, grid, choice, averaging);
+            let comparison = comparison.map(|comparison| match settings.gain_source {
+                GainSource::Representatives => comparison,
+                GainSource::MeanOfPairs => comparison.with_mean_gains(condition, responses, grid, averaging.1),
+            });
             comparison.map(Arc::new)
         });
         let compared = comparison.and_then(|comparison| {
@@ -246,6 +289,16 @@ impl ConditionStages {
         })
     }
 }
+
+/// What the comparison of the representatives of a condition depends on.
+fn comparison_key(study: &Study, condition: ConditionId) -> ComparisonKey {
+    let settings = &study.settings;
+    let figures_key = ((settings.band, settings.points), study.dataset.measuring_pairs(), settings.coherence_threshold);
+    (figures_key, study.choice(condition).of_models(), settings.cost_average, settings.gain_source)
+}
+
+/// The budget of the proof of a swap's gains: as far as that of a live answer, without a look for other minima.
+const SWAP_PROOF: ProofBudget = ProofBudget { work: 1_000_000, listing: 0, bytes: 64_000_000 };
 
 /// What the optima of a condition are asked for.
 struct Asked<'a> {

@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use crate::correction::GainObjective;
 use crate::dataset::{BundleKind, ConditionId, PairTable};
 use crate::fidelity::CostAverage;
-use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
+use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity, SecondVariable};
+use crate::uncertainty::UncertaintySettings;
 use crate::units::{number, s_to_ms};
 
 use super::document::{BundleChoice, Study};
@@ -46,6 +47,10 @@ pub fn decision_differences(before: &Study, after: &Study) -> Vec<DecisionDiffer
         if a.scheduled != b.scheduled {
             let word = |scheduled| if scheduled { "in the schedule" } else { "left out of the schedule" };
             differences.push(DecisionDifference::new(format!("condition {id}"), word(a.scheduled), word(b.scheduled)));
+        }
+        if a.held_out != b.held_out {
+            let word = |held_out| if held_out { "held out" } else { "not held out" };
+            differences.push(DecisionDifference::new(format!("condition {id}"), word(a.held_out), word(b.held_out)));
         }
         for kind in BundleKind::BOTH {
             differences.extend(bundle_differences(id, kind, a.bundle(kind), b.bundle(kind)));
@@ -97,11 +102,26 @@ fn setting_words(settings: &Settings) -> Vec<(&'static str, String)> {
         ("upper delay bound", delay_upper),
         ("agreement tolerance", format!("{} dB", number(settings.agreement_db))),
     ];
+    words.push(("G from", settings.gain_source.words().to_owned()));
     words.extend(schedule_words(settings.schedule));
+    words.extend(error_bar_words(settings.uncertainty));
     words
 }
 
-fn schedule_words(schedule: ScheduleSettings) -> [(&'static str, String); 5] {
+fn error_bar_words(settings: UncertaintySettings) -> [(&'static str, String); 5] {
+    let known = |figure: Option<f64>, unit: &str| {
+        figure.map_or_else(|| "as the files say".to_owned(), |figure| format!("{}{unit}", number(figure)))
+    };
+    [
+        ("level of error bars", format!("{} %", number(100.0 * settings.level))),
+        ("degrees of freedom borrowed", number(settings.prior_degrees)),
+        ("averages of measured responses", known(settings.averages, "")),
+        ("windows of measured responses", known(settings.window_s, " s")),
+        ("windows overlap", if settings.half_overlap { "by half" } else { "not" }.to_owned()),
+    ]
+}
+
+fn schedule_words(schedule: ScheduleSettings) -> [(&'static str, String); 6] {
     let kind = match schedule.kind {
         ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree}"),
         ScheduleKind::Table => "table".to_owned(),
@@ -117,6 +137,7 @@ fn schedule_words(schedule: ScheduleSettings) -> [(&'static str, String); 5] {
         ("delays", delays.to_owned()),
         ("degree of the signed delays", schedule.tau_degree.to_string()),
         ("airspeed tolerance", format!("{} kt", number(schedule.airspeed_tolerance_kt))),
+        ("second variable", schedule.second.map_or("none", SecondVariable::name).to_owned()),
     ]
 }
 

@@ -46,6 +46,8 @@ pub struct ConditionChoice {
     pub identified: BundleChoice,
     /// Whether the condition enters the schedule.
     pub scheduled: bool,
+    /// Whether the condition is held out: analysed and assessed, but kept from the schedule, which it is to judge.
+    pub held_out: bool,
 }
 
 impl Default for ConditionChoice {
@@ -57,7 +59,7 @@ impl Default for ConditionChoice {
 impl ConditionChoice {
     /// Every model kept, none pinned, the condition scheduled.
     const fn none() -> Self {
-        Self { physics: BundleChoice::none(), identified: BundleChoice::none(), scheduled: true }
+        Self { physics: BundleChoice::none(), identified: BundleChoice::none(), scheduled: true, held_out: false }
     }
 
     /// Puts every model of both bundles back.
@@ -72,6 +74,16 @@ impl ConditionChoice {
         choice.physics.reasons.clear();
         choice.identified.reasons.clear();
         choice
+    }
+
+    /// What of the choices the comparison of the models depends on.
+    pub(super) fn of_models(&self) -> Self {
+        Self { scheduled: true, held_out: false, ..self.without_reasons() }
+    }
+
+    /// Whether the schedule is made of the condition: chosen for it, and not held out.
+    pub fn is_in_schedule(&self) -> bool {
+        self.scheduled && !self.held_out
     }
 
     /// The choices in one bundle.

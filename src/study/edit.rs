@@ -57,6 +57,13 @@ pub enum Edit {
         /// Whether it enters the schedule.
         scheduled: bool,
     },
+    /// Hold a condition out, to judge the schedule by it, or let it be one of the others again.
+    SetHeldOut {
+        /// The condition.
+        condition: ConditionId,
+        /// Whether it is held out.
+        held_out: bool,
+    },
     /// Hold exactly the dataset's on-axis responses.
     ConstrainOnAxis,
     /// Change a setting of the whole study.
@@ -204,6 +211,8 @@ impl Edit {
             Edit::Unpin { condition, .. } => format!("unpin (condition {condition})"),
             Edit::SetScheduled { condition, scheduled: true } => format!("schedule condition {condition}"),
             Edit::SetScheduled { condition, .. } => format!("leave condition {condition} out"),
+            Edit::SetHeldOut { condition, held_out: true } => format!("hold condition {condition} out"),
+            Edit::SetHeldOut { condition, .. } => format!("hold condition {condition} out no more"),
             Edit::ConstrainOnAxis => "hold the on-axis responses".to_owned(),
             Edit::Set(setting) => setting.label(&study.dataset),
             Edit::TakeModels(taken) => match taken.as_slice() {
@@ -252,6 +261,7 @@ impl Study {
             Edit::SetReason(id, reason) => return self.set_reason(id, reason),
             Edit::Unpin { condition, bundle } => self.condition(*condition)?.1.bundle_mut(*bundle).pinned = None,
             Edit::SetScheduled { condition, scheduled } => self.condition(*condition)?.1.scheduled = *scheduled,
+            Edit::SetHeldOut { condition, held_out } => self.condition(*condition)?.1.held_out = *held_out,
             Edit::ConstrainOnAxis => self.settings.constrained = self.dataset.on_axis().clone(),
             Edit::Set(setting) => return self.settings.apply(setting),
             Edit::TakeModels(taken) => return self.take_models(taken),

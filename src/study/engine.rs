@@ -17,6 +17,7 @@ use super::document::Study;
 use super::executor::{Execution, Executor, Sequential};
 use super::memo::Memo;
 use super::progress::{Cancelled, Progress};
+use super::uncertainty::Uncertainty;
 
 /// Computes analyses and keeps each stage's last result by what it is computed from, never by where that came from: of a dataset
 /// with one other model, one response is computed.
@@ -101,7 +102,25 @@ impl Engine {
         let assess = |index: usize| assessed(study, &all[index], conditions.get(&all[index].id()), &schedule, &grid);
         let assessment = execution.each(all.len(), 0, assess)?;
         let assessment = all.iter().map(|condition| condition.id()).zip(assessment).collect();
-        Ok(Analysis { study: study.clone(), omega: grid.omega().into(), conditions, schedule, assessment })
+        let (study, omega) = (study.clone(), grid.omega().into());
+        Ok(Analysis { study, omega, conditions, schedule, assessment, uncertainty: None })
+    }
+
+    /// How sure each figure of `analysis` is (M13). Swaps of models that do not depend on what changed since the last call are not
+    /// computed again.
+    pub fn uncertainty(&mut self, analysis: &Analysis, progress: &dyn Progress) -> Result<Uncertainty, Cancelled> {
+        let study = &analysis.study;
+        self.take(&study.dataset);
+        let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
+        // A response and a swap for each model.
+        let total = study.dataset.conditions().iter().map(|of| 2 * model_count(of)).sum();
+        let execution = Execution::new(self.executor.as_ref(), progress, total);
+        let analysed =
+            self.conditions.iter_mut().filter_map(|(id, stages)| Some((*id, stages, analysis.condition(*id)?)));
+        let swaps = execution.each_mut(analysed.collect(), |(id, stages, condition)| {
+            Ok((id, stages.swaps(study, condition, &grid, &execution)?))
+        })?;
+        Ok(Uncertainty::of(analysis, &swaps))
     }
 
     /// The curves of every model of one condition on `points` frequencies of `band`; none of a condition that is not there.
@@ -184,13 +203,14 @@ fn analyze_conditions(
 
 /// The scheduled conditions that have a result, in the dataset's order.
 pub(super) fn scheduled_points<'a>(study: &Study, outcomes: &'a Outcomes) -> Vec<ScheduledPoint<'a>> {
-    let chosen = study.dataset.conditions().iter().filter(|condition| study.choice(condition.id()).scheduled);
+    let chosen = study.dataset.conditions().iter().filter(|condition| study.choice(condition.id()).is_in_schedule());
     chosen
         .filter_map(|condition| {
             let analysis = outcomes.get(&condition.id())?.as_ref().ok()?;
             let airspeed_kt = condition.flight_state().airspeed_kt;
             let delay_upper_s = analysis.delay_upper_s();
-            Some(ScheduledPoint { airspeed_kt, correction: &analysis.correction, delay_upper_s })
+            let second = study.settings.schedule.second.and_then(|variable| variable.value(condition.flight_state()));
+            Some(ScheduledPoint { airspeed_kt, correction: &analysis.correction, delay_upper_s, second })
         })
         .collect()
 }
@@ -241,7 +261,7 @@ fn assessed(
         (_, Err(error)) => left_out(error.to_string()),
         (Some(Ok(analysis)), Ok(schedule)) => {
             let models = &analysis.comparison.nominal;
-            let correction = schedule.at(condition.flight_state().airspeed_kt);
+            let correction = schedule.at_state(condition.flight_state());
             let average = study.settings.cost_average;
             Assessed::Nominal(assess(&models.mismatch, &models.cost, &correction, grid.omega(), average))
         }

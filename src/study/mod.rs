@@ -2,8 +2,10 @@
 
 mod across_job;
 mod across_role;
+mod airspeed_difference;
 mod analysis;
 mod assessment_table;
+mod bar_source;
 mod carry_over;
 mod caution;
 mod comparison;
@@ -33,18 +35,23 @@ mod progress;
 mod remark;
 mod setting;
 mod settings;
+mod swaps;
 mod table;
 mod taken_models;
 mod toggles;
+mod uncertainty;
+mod uncertainty_job;
+mod uncertainty_tables;
 mod variant;
 mod variant_job;
 
 pub use across_job::{AcrossCurves, AcrossJob};
 pub use across_role::AcrossRole;
+pub use airspeed_difference::AirspeedDifference;
 pub use analysis::{Analysis, Assessed};
 pub use assessment_table::{
     AssessedCondition, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentJob, AssessmentSummary,
-    AssessmentTable, LeftOut,
+    AssessmentTable, LeftOut, held_out_verdict,
 };
 pub use carry_over::{Decisions, Difference};
 pub use caution::{BundleModel, Caution, NotFinite, Undefined};
@@ -77,8 +84,12 @@ pub use settings::{
     GREATEST_QUANTILE, LARGEST_ALPHA, LEAD_LIMITS, LEAD_POLES, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, PhaseCorrection,
     Settings,
 };
+pub use swaps::ConditionSwaps;
 pub use table::Table;
 pub use taken_models::{Taken, TakenModels};
 pub use toggles::Toggles;
+pub use uncertainty::{ConditionUncertainty, PairScatter, ScheduleBands, SecondVariableTest, Uncertainty};
+pub use uncertainty_job::UncertaintyJob;
+pub use uncertainty_tables::{bar_table, difference_table, scatter_table, second_variable_table};
 pub use variant::{LONGEST_VARIANT_NAME, Variant};
 pub use variant_job::VariantJob;

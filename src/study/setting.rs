@@ -1,10 +1,11 @@
 //! One change of a setting, its range, and its name.
 
-use crate::correction::{GainBounds, GainObjective};
+use crate::correction::{GainBounds, GainObjective, GainSource};
 use crate::dataset::{Band, Dataset, Pair, PairTable};
 use crate::fidelity::CostAverage;
 use crate::response::LeadOrder;
 use crate::schedule::{HIGHEST_DEGREE, ScheduleKind, ScheduleSettings};
+use crate::uncertainty::{GREATEST_MEASUREMENT, GREATEST_PRIOR, LEVELS, UncertaintySettings};
 use crate::units::number;
 
 use super::edit::EditRefusal;
@@ -35,6 +36,8 @@ pub enum Setting {
     CostAverage(CostAverage),
     /// Least coherence that counts; `None` lets coherence count for nothing.
     Coherence(Option<f64>),
+    /// Which models G is taken from.
+    GainSource(GainSource),
     /// How the phase is corrected.
     Phase(PhaseCorrection),
     /// Which D the delays are fitted to.
@@ -57,6 +60,8 @@ pub enum Setting {
     Agreement(f64),
     /// How gains are scheduled.
     Schedule(ScheduleSettings),
+    /// How bars are made.
+    Uncertainty(UncertaintySettings),
 }
 
 impl Setting {
@@ -82,6 +87,7 @@ impl Setting {
             Setting::Points(_) => "number of frequencies",
             Setting::CostAverage(_) => "average in J",
             Setting::Coherence(_) => "coherence threshold",
+            Setting::GainSource(_) => "source of G",
             Setting::Phase(_) => "phase correction",
             Setting::DelayFrom(_) => "D of the delays",
             Setting::LeadOrder(_) => "order of the lead filters",
@@ -93,6 +99,7 @@ impl Setting {
             Setting::DelayUpper(_) => "upper delay bound",
             Setting::Agreement(_) => "agreement tolerance",
             Setting::Schedule(_) => "schedule",
+            Setting::Uncertainty(_) => "error bars",
         }
     }
 
@@ -135,6 +142,14 @@ impl Setting {
             }
             Setting::DelayUpper(Some(upper)) => self.check_range("a number of seconds", *upper, 0.0, GREATEST_DELAY_S),
             Setting::Agreement(tolerance) => self.check_range("a number of dB", *tolerance, 0.0, GREATEST_AGREEMENT_DB),
+            Setting::Uncertainty(UncertaintySettings { level, prior_degrees, averages, window_s, .. }) => {
+                self.check_range("a level", *level, LEVELS[0], LEVELS[1])?;
+                self.check_range("a number of degrees of freedom", *prior_degrees, 0.0, GREATEST_PRIOR)?;
+                let measured = [("a number of averages", averages), ("a number of seconds", window_s)];
+                measured.into_iter().try_for_each(|(what, found)| {
+                    found.map_or(Ok(()), |found| self.check_range(what, found, 1e-6, GREATEST_MEASUREMENT))
+                })
+            }
             // A band is checked where it is made.
             _ => Ok(()),
         }
@@ -154,6 +169,7 @@ impl Settings {
             Setting::Points(points) => self.points = *points,
             Setting::CostAverage(average) => self.cost_average = *average,
             Setting::Coherence(threshold) => self.coherence_threshold = *threshold,
+            Setting::GainSource(source) => self.gain_source = *source,
             Setting::Phase(phase) => self.phase = *phase,
             Setting::DelayFrom(from) => self.delay_from = *from,
             Setting::LeadOrder(order) => self.lead.order = *order,
@@ -165,6 +181,7 @@ impl Settings {
             Setting::DelayUpper(upper) => self.delay_upper_s = *upper,
             Setting::Agreement(tolerance) => self.agreement_db = *tolerance,
             Setting::Schedule(schedule) => self.schedule = *schedule,
+            Setting::Uncertainty(uncertainty) => self.uncertainty = *uncertainty,
         }
         Ok(())
     }

@@ -1,9 +1,10 @@
 //! Every setting that changes a result.
 
-use crate::correction::{GainBounds, GainObjective, LeadSettings};
+use crate::correction::{GainBounds, GainObjective, GainSource, LeadSettings};
 use crate::dataset::{Band, Dataset, PairTable};
 use crate::fidelity::CostAverage;
 use crate::schedule::ScheduleSettings;
+use crate::uncertainty::UncertaintySettings;
 
 /// Fewest frequencies of a band.
 pub const LEAST_POINTS: usize = 2;
@@ -115,6 +116,8 @@ pub struct Settings {
     pub alpha_gain: f64,
     /// Weight of the regularisation of the output delays, eq. (11), or of all signed delays (M15.4).
     pub alpha_delay: f64,
+    /// Which models G is taken from.
+    pub gain_source: GainSource,
     /// How the phase is corrected (M9, M15).
     pub phase: PhaseCorrection,
     /// Which D the delays are fitted to (M15.2).
@@ -137,6 +140,8 @@ pub struct Settings {
     pub agreement_db: f64,
     /// How channel gains are scheduled with airspeed (M11).
     pub schedule: ScheduleSettings,
+    /// How bars are made (M13).
+    pub uncertainty: UncertaintySettings,
 }
 
 impl Settings {
@@ -150,6 +155,7 @@ impl Settings {
             coherence_threshold: dataset.has_coherence().then_some(DEFAULT_COHERENCE),
             alpha_gain: 1.0,
             alpha_delay: 1.0,
+            gain_source: GainSource::default(),
             phase: PhaseCorrection::default(),
             delay_from: DelayFrom::default(),
             lead: LeadSettings::default(),
@@ -161,6 +167,7 @@ impl Settings {
             delay_upper_s: None,
             agreement_db: DEFAULT_AGREEMENT_DB,
             schedule: ScheduleSettings::default(),
+            uncertainty: UncertaintySettings::default(),
         }
     }
 }

@@ -21,6 +21,8 @@ pub enum View {
     Channels,
     /// What the correction is worth (Figures 8 to 19).
     Assessment,
+    /// What the scatter of the gains is made of, and what speaks for the schedule.
+    Evidence,
     /// Decisions kept under names, beside the present ones.
     Compare,
     /// Net gains against airspeed (Figures 6 and 7).
@@ -31,7 +33,7 @@ pub enum View {
 
 impl View {
     /// Every view, in the order of the menu.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Bode,
         Self::Overview,
         Self::Across,
@@ -39,6 +41,7 @@ impl View {
         Self::Records,
         Self::Channels,
         Self::Assessment,
+        Self::Evidence,
         Self::Compare,
         Self::NetGain,
         Self::Error,
@@ -52,6 +55,7 @@ impl View {
             Self::Overview => "Overview",
             Self::Across => "Airspeeds",
             Self::Poles => "Poles",
+            Self::Evidence => "Evidence",
             Self::Compare => "Compare",
             Self::Channels => "Channels",
             Self::Assessment => "Assessment",
@@ -70,6 +74,9 @@ impl View {
             Self::Overview => "Every response of the condition, small",
             Self::Across => "The response in focus in every condition, coloured by airspeed",
             Self::Poles => "Poles of every model of the condition in the s-plane, and the modes in a table",
+            Self::Evidence => {
+                "What the scatter of the net gains is made of, which differences are in earnest, and what the schedule needs"
+            }
             Self::Compare => "Variants: decisions kept under names, beside the present ones",
             Self::Channels => "Gain of every channel against airspeed",
             Self::Assessment => "What the correction is worth, condition by condition",
@@ -118,7 +125,7 @@ impl Default for Arrangement {
 }
 
 /// Views that stand in the first group of tabs; the others stand in the second.
-const UPPER: [View; 8] = [
+const UPPER: [View; 9] = [
     View::Bode,
     View::Overview,
     View::Across,
@@ -126,6 +133,7 @@ const UPPER: [View; 8] = [
     View::Records,
     View::Channels,
     View::Assessment,
+    View::Evidence,
     View::Compare,
 ];
 /// Part of the room that the first group gets.

@@ -3,7 +3,9 @@
 use crate::dataset::{Condition, ConditionId, Pair};
 use crate::fidelity::CostAverage;
 use crate::schedule::CostChange;
-use crate::study::{AskedFigure, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, Table};
+use crate::study::{
+    AskedFigure, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, Table, held_out_verdict,
+};
 use crate::units::signed;
 
 use super::plot::{AssessmentBar, AssessmentPanel, BarValue};
@@ -156,6 +158,8 @@ pub fn assessment_sentences(state: &State, table: &AssessmentTable) -> Vec<Strin
     let pairs = assessed_pairs(state);
     let marked = state.dataset().on_axis().map(|pair, _| pairs.contains(&pair));
     let mut sentences = vec![table.summary(&marked).words(state.dataset())];
+    let verdict = state.analysis().and_then(|analysis| held_out_verdict(analysis, table.choice));
+    sentences.extend(verdict);
     for left_out in &table.left_out {
         sentences.push(format!("condition {} is left out: {}", left_out.condition, left_out.why));
     }

@@ -56,7 +56,7 @@ impl Views<'_> {
                 condition_ui(ui, state, view, palette);
             }
             View::Assessment => views::assessment_header_ui(ui, state, self.commands),
-            View::Compare => {}
+            View::Compare | View::Evidence => {}
             View::Records => {
                 views::records_header_ui(ui, state, self.commands);
                 condition_ui(ui, state, view, palette);
@@ -71,7 +71,7 @@ impl Views<'_> {
                 condition_ui(ui, state, view, palette);
             }
         }
-        if matches!(view, View::NetGain | View::Channels | View::Assessment) {
+        if matches!(view, View::NetGain | View::Channels | View::Assessment | View::Evidence) {
             older_ui(ui, state, palette);
         }
     }
@@ -92,13 +92,14 @@ fn fit_ui(ui: &mut Ui, view: View, commands: &mut Vec<Command>) {
 /// The width that the controls of a view's header need \[pt\]; its title takes what is left.
 fn header_width(view: View) -> f32 {
     match view {
-        View::Compare => 0.0,
+        View::Compare | View::Evidence => 0.0,
         View::Bode | View::Overview => 90.0,
         View::Error => 260.0,
         View::Poles => 180.0,
         View::Records => 380.0,
-        View::Channels | View::Across => 330.0,
-        View::NetGain => 480.0,
+        View::Channels => 410.0,
+        View::Across => 330.0,
+        View::NetGain => 660.0,
         View::Assessment => 640.0,
     }
 }
@@ -110,7 +111,7 @@ fn condition_ui(ui: &mut Ui, state: &State, view: View, palette: &Palette) {
     let title = match view {
         View::Bode | View::Error => format!("{} · {of_condition}", state.dataset().pair_name(state.display.pair)),
         View::Overview | View::Poles | View::Records => of_condition,
-        View::Across | View::NetGain | View::Channels | View::Assessment | View::Compare => return,
+        View::Across | View::NetGain | View::Channels | View::Assessment | View::Evidence | View::Compare => return,
     };
     // A title of a few letters says nothing.
     if ui.available_width() > LEAST_TITLE {
@@ -150,6 +151,7 @@ impl Behavior<View> for Views<'_> {
             View::Across => views::across_view_ui(ui, state, palette, commands),
             View::Poles => views::poles_view_ui(ui, state, palette, commands),
             View::Records => views::records_view_ui(ui, state, palette, commands),
+            View::Evidence => views::evidence_view_ui(ui, state, palette, commands),
             View::Compare => views::compare_view_ui(ui, state, palette, commands),
             View::Channels => views::channels_view_ui(ui, state, palette, commands),
             View::Assessment => views::assessment_view_ui(ui, state, palette, commands),

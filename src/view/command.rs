@@ -56,6 +56,8 @@ pub enum Command {
     ShowChannels(Measure, Across),
     /// Show zeros among the poles, or not.
     ShowZeros(bool),
+    /// Show error bars and bands in the plots of gains, or not.
+    ShowBars(bool),
     /// Show the evidence for the schedule beside the net gains, or not.
     ShowEvidence(bool),
     /// Lay other models of the conditions over one another.

@@ -42,7 +42,7 @@ fn list_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
         if response.clicked() {
             commands.push(Command::SelectCondition(id));
         }
-        response.context_menu(|ui| menu_ui(ui, id, !marks.left_out, commands));
+        response.context_menu(|ui| menu_ui(ui, id, (!marks.left_out, marks.held_out), commands));
         response.on_hover_ui(|ui| tooltip_ui(ui, condition, &marks));
     }
 }
@@ -90,7 +90,12 @@ fn paint_flight_state(ui: &Ui, row: Rect, marked_from: f32, condition: &Conditio
     }
 }
 
-fn menu_ui(ui: &mut Ui, condition: ConditionId, scheduled: bool, commands: &mut Vec<Command>) {
+fn menu_ui(ui: &mut Ui, condition: ConditionId, (scheduled, held_out): (bool, bool), commands: &mut Vec<Command>) {
+    let text = if held_out { "Hold out no more" } else { "Hold out, to judge the schedule" };
+    if ui.button(format!("{text}: condition {condition}")).clicked() {
+        commands.push(Edit::SetHeldOut { condition, held_out: !held_out }.into());
+        ui.close();
+    }
     let text = if scheduled { "Leave out of the schedule" } else { "Take into the schedule" };
     if ui.button(format!("{text}: condition {condition}")).clicked() {
         commands.push(Edit::SetScheduled { condition, scheduled: !scheduled }.into());
@@ -107,14 +112,21 @@ struct Marks {
     /// Held delays that are not matched, though a decision could match them: not those that need lead where leads are not asked for.
     unmatched_delays: usize,
     left_out: bool,
+    held_out: bool,
     failure: Option<String>,
 }
 
 impl Marks {
     fn of(state: &State, condition: ConditionId) -> Self {
         let choice = state.study.choice(condition);
-        let mut marks =
-            Self { suggested: 0, unmatched_gains: 0, unmatched_delays: 0, left_out: !choice.scheduled, failure: None };
+        let mut marks = Self {
+            suggested: 0,
+            unmatched_gains: 0,
+            unmatched_delays: 0,
+            left_out: !choice.scheduled,
+            held_out: choice.held_out,
+            failure: None,
+        };
         match state.analysis().and_then(|analysis| analysis.conditions.get(&condition)) {
             None => {}
             Some(Err(failure)) => marks.failure = Some(failure.to_string()),
@@ -131,7 +143,11 @@ impl Marks {
 
     /// What the accessible name of the row says after the flight state.
     fn after_name(&self) -> &'static str {
-        if self.left_out { ", left out of the schedule" } else { "" }
+        match (self.held_out, self.left_out) {
+            (true, _) => ", held out",
+            (false, true) => ", left out of the schedule",
+            (false, false) => "",
+        }
     }
 
     /// Paints the marks from the right; returns where they begin \[pt from the row's left edge\].
@@ -149,7 +165,9 @@ impl Marks {
                 mark(format!("{symbol} {count}"), palette.warning);
             }
         }
-        if self.left_out {
+        if self.held_out {
+            mark("held out".to_owned(), palette.accent);
+        } else if self.left_out {
             mark("left out".to_owned(), palette.dim_text);
         }
         row.width() + right + 8.0
@@ -167,6 +185,10 @@ impl Marks {
         say(
             self.unmatched_delays > 0,
             format!("τ {}: held delays that could not be matched, besides those that need lead", self.unmatched_delays),
+        );
+        say(
+            self.held_out,
+            "Held out: analysed, and the schedule is judged by it; the secondary button ends that".to_owned(),
         );
         say(self.left_out, "Left out of the schedule; the secondary button takes it in".to_owned());
         sentences.extend(self.failure.clone());

@@ -121,7 +121,7 @@ pub(super) fn corrected_faces(state: &State, condition: &Condition, pair: Pair) 
     let scheduled = state.analysis().and_then(|analysis| analysis.schedule.as_ref().ok()).and_then(|schedule| {
         let older = if state.others_are_older() { " of older settings" } else { "" };
         let label = format!("{name}, scheduled{older}");
-        let correction = schedule.at(state.condition().flight_state().airspeed_kt);
+        let correction = schedule.at_state(state.condition().flight_state());
         face(CurveId::Scheduled, label, Role::Scheduled, &correction)
     });
     let without = shown.led.as_ref().and_then(|_| {

@@ -15,7 +15,7 @@ pub const QUESTION: &str = "How was this computed?";
 pub fn derivation_window_ui(ctx: &Context, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(asked) = &state.display.asked else { return };
     let mut open = true;
-    let found = state.analysis().and_then(|analysis| derivation(analysis, asked));
+    let found = state.analysis_with_bars().and_then(|analysis| derivation(&analysis, asked));
     let title = found.as_ref().map_or("There is no such figure now", |found| found.title.as_str());
     let window = Window::new(RichText::new(title).size(BODY_SIZE).strong());
     let window = window.id(Id::unique("derivation")).open(&mut open).default_width(420.0).resizable(true);

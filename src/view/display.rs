@@ -70,6 +70,10 @@ pub struct Display {
     pub assessed: AssessedFigures,
     /// Order of the table of the assessment.
     pub assessment_sorting: Sorting,
+    /// Whether the plots of gains show error bars and bands.
+    pub show_bars: bool,
+    /// Orders of the tables of the evidence: differences, second variables, forms of the schedule.
+    pub evidence_tables: [Sorting; 3],
     /// Whether the evidence for the schedule stands beside the net gains.
     pub show_evidence: bool,
     /// What speaks for each form of the schedule, kept from frame to frame.
@@ -127,6 +131,8 @@ impl Display {
             modes_sorting: Sorting::default(),
             assessed: AssessedFigures::default(),
             assessment_sorting: Sorting::default(),
+            show_bars: true,
+            evidence_tables: [Sorting::default(); 3],
             show_evidence: false,
             evidence: CachedEvidence::default(),
             evidence_sorting: Sorting::default(),

@@ -15,7 +15,8 @@ use super::state::State;
 
 /// The figure that a view shows; none until its results are there.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {
-    let analysis = state.analysis();
+    let with_bars = if state.display.show_bars { state.analysis_with_bars() } else { state.analysis().cloned() };
+    let analysis = with_bars.as_ref();
     let source = state.shown().zip(state.curves()).map(|(shown, curves)| ConditionSource {
         study: &state.study,
         analysis: shown,
@@ -51,7 +52,7 @@ fn kind(view: View) -> Option<FigureKind> {
         View::NetGain => Some(FigureKind::NetGain),
         View::Poles => Some(FigureKind::Poles),
         View::Across => Some(FigureKind::Airspeeds),
-        View::Compare | View::Records => None,
+        View::Compare | View::Records | View::Evidence => None,
     }
 }
 

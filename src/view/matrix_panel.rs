@@ -8,12 +8,14 @@ use egui::{
 use crate::correction::Channel;
 use crate::dataset::Pair;
 use crate::fidelity::{ACCEPTABLE, INDISTINGUISHABLE};
-use crate::study::{AskedFigure, ConditionAnalysis, Edit, Setting, Undefined};
+use crate::study::{AskedFigure, ConditionAnalysis, Edit, Setting, Uncertainty, Undefined};
+use crate::uncertainty::{Bar, Scalar};
 use crate::units::s_to_ms;
 
 use super::command::Command;
 use super::derivation_window::question_menu_ui;
 use super::explanation::{gain_conflict_marks, toggle_costs};
+use super::gain_bars::bar_words;
 use super::heading::table_heading_ui;
 use super::palette::{Palette, SMALL_SIZE};
 use super::region::{Region, region_ui};
@@ -85,6 +87,8 @@ struct Cell<'a> {
     /// Whether it is not matched, or keeps others from being matched.
     in_conflict: bool,
     shown: Option<&'a ConditionAnalysis>,
+    /// How sure its figures are; none until that is computed, or where it is of older settings.
+    uncertainty: Option<&'a Uncertainty>,
     /// What holding or freeing it would cost, in words; empty until that is known.
     toggle_costs: Vec<String>,
 }
@@ -100,8 +104,20 @@ impl<'a> Cell<'a> {
             fitted: state.study.settings.fitted[pair],
             in_conflict,
             shown: state.shown(),
+            uncertainty: state.uncertainty().filter(|_| !state.others_are_older()).map(|of| of.as_ref()),
             toggle_costs: toggle_costs(state, pair),
         }
+    }
+
+    /// How sure one of its figures is.
+    fn bar(&self, scalar: Scalar) -> Option<(&'a Bar, f64)> {
+        let uncertainty = self.uncertainty?;
+        Some((uncertainty.bar(self.shown?.condition.id(), scalar)?, uncertainty.level))
+    }
+
+    /// Half-width of its bar.
+    fn half(&self, scalar: Scalar) -> Option<f64> {
+        self.bar(scalar).and_then(|(bar, level)| bar.half_width(level))
     }
 
     fn gain(&self) -> Option<f64> {
@@ -209,8 +225,15 @@ impl<'a> Cell<'a> {
         };
         let strong = if self.fitted { palette.text } else { palette.rejected };
         text(13.0, &format!("{gain:.2}"), 14.5, strong);
+        if let Some(half) = self.half(Scalar::Gain(self.pair)) {
+            let place = pos2(rect.right() - 3.0, rect.top() + 13.0);
+            let words = format!("±{:.0}%", 100.0 * half);
+            ui.painter().text(place, Align2::RIGHT_CENTER, words, FontId::proportional(9.0), palette.dim_text);
+        }
         let beside = self.other_delay_s().filter(|other| (other - delay).abs() >= APART_S);
-        let beside = beside.map_or(" ms".to_owned(), |other| format!(" ({:.0})", s_to_ms(other)));
+        let about =
+            self.half(Scalar::Delay(self.pair)).map_or_else(String::new, |half| format!(" ±{:.0}", s_to_ms(half)));
+        let beside = beside.map_or(format!("{about} ms"), |other| format!(" ({:.0})", s_to_ms(other)));
         text(28.0, &format!("{:.0}{beside}", s_to_ms(delay)), 10.5, palette.dim_text);
         if let Some(cost) = shown.cost[self.pair] {
             let (before, after) = (cost.uncorrected.total(), cost.corrected.total());
@@ -274,6 +297,13 @@ impl<'a> Cell<'a> {
             ui.label(format!("D of eq. (9): {median_ms:.1} ms; of the line through the phase, M15.2: {band_ms:.1} ms"));
         }
         ui.label(format!("net gain k_o k_i = {:.4}", shown.correction.net_gain(self.pair).value()));
+        for (name, scalar) in
+            [("G", Scalar::Gain(self.pair)), ("D", Scalar::Delay(self.pair)), ("net gain", Scalar::NetGain(self.pair))]
+        {
+            if let Some((bar, level)) = self.bar(scalar) {
+                ui.label(format!("{name} {}", bar_words(bar, scalar, level)));
+            }
+        }
         ui.label(format!("net delay τ_o + τ_i = {:.1} ms", s_to_ms(shown.correction.net_delay(self.pair).value_s())));
         for sentence in &self.toggle_costs {
             ui.label(sentence);

@@ -28,6 +28,7 @@ pub mod figures;
 pub mod focus_ring;
 mod form;
 pub mod forms;
+mod gain_bars;
 mod heading;
 mod keys_page;
 pub mod looks;

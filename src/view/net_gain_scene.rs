@@ -6,8 +6,10 @@ use crate::correction::{Channel as CorrectedChannel, ChannelCorrection};
 use crate::dataset::{Channel, ConditionId, FlightState, Pair};
 use crate::figure::{Classes, is_scheduled, scheduled_samples};
 use crate::study::{Analysis, AskedFigure, ConditionAnalysis};
+use crate::uncertainty::Scalar;
 use crate::units::s_to_ms;
 
+use super::gain_bars::{bar_sentences, brackets, dot_bar, gain_bands};
 use super::plot::{Across, Dot, DotShape, GainPanel, Measure, NamedFigure};
 use super::state::State;
 
@@ -79,6 +81,7 @@ pub fn net_gain_panels(state: &State) -> Vec<GainPanel> {
             measure: Measure::Gain,
             of: Box::new(move |correction: &ChannelCorrection| correction.net_gain(pair).value()),
             bounds: None,
+            scalar: Scalar::NetGain(pair),
             asked: Box::new(move |id, _| vec![(format!("Net gain, condition {id}"), AskedFigure::NetGain(id, pair))]),
         };
         figure.panel(state, analysis, Across::Airspeed)
@@ -110,7 +113,12 @@ pub fn channel_panels(state: &State, measure: Measure, across: Across) -> (Vec<G
                 Measure::Delay => result.delay_bounds_s().map(s_to_ms),
             }));
             let asked = asked_of_channel(measure, side(index));
-            Figure { title: channel.name.clone(), measure, of: of(index), bounds, asked }.panel(state, analysis, across)
+            let scalar = match measure {
+                Measure::Gain => Scalar::ChannelGain(side(index)),
+                Measure::Delay => Scalar::ChannelDelay(side(index)),
+            };
+            let figure = Figure { title: channel.name.clone(), measure, of: of(index), bounds, scalar, asked };
+            figure.panel(state, analysis, across)
         };
         channels.iter().enumerate().map(figure).collect()
     };
@@ -149,12 +157,15 @@ struct Figure {
     measure: Measure,
     of: FigureOf,
     bounds: Option<BoundsOf>,
+    /// The same, as bars know it.
+    scalar: Scalar,
     asked: AskedOf,
 }
 
 impl Figure {
     fn panel(self, state: &State, analysis: &Analysis, across: Across) -> GainPanel {
         let classes = Classes::of(state.dataset());
+        let uncertainty = state.uncertainty().filter(|_| state.display.show_bars).map(|of| of.as_ref());
         let place = |index: usize, flight_state: &FlightState| match across {
             Across::Airspeed => flight_state.airspeed_kt,
             Across::Conditions => index as f64,
@@ -170,17 +181,27 @@ impl Figure {
                 airspeed_kt: flight_state.airspeed_kt,
                 value: (self.of)(&result.correction),
                 bounds: self.bounds.as_ref().map(|bounds| bounds(result)),
+                bar: uncertainty.and_then(|of| dot_bar(of.bar(id, self.scalar)?, self.scalar, of.level)),
                 shape: if classes.is_first_altitude(flight_state) { DotShape::Circle } else { DotShape::Diamond },
                 filled: classes.is_first_weight(flight_state),
                 selected: id == state.condition().id(),
-                chosen: analysis.study.choice(id).scheduled,
+                chosen: analysis.study.choice(id).is_in_schedule(),
+                held_out: analysis.study.choice(id).held_out,
                 detail: flight_state.name.clone(),
+                sentences: uncertainty.map_or_else(Vec::new, |of| bar_sentences(of, self.scalar, id)),
                 figures: (self.asked)(id, flight_state.airspeed_kt),
             })
         });
         let schedule = analysis.schedule.as_ref().ok().filter(|schedule| is_scheduled(schedule, self.measure, across));
+        let bands = schedule.zip(uncertainty).map(|(schedule, of)| gain_bands(schedule, of, self.scalar, &self.of));
         let schedule = schedule.map(|schedule| scheduled_samples(schedule, &self.of)).unwrap_or_default();
-        GainPanel { title: self.title, measure: self.measure, across, dots: dots.collect(), schedule }
+        let dots: Vec<Dot> = dots.collect();
+        let brackets = match across {
+            Across::Airspeed => uncertainty.map_or_else(Vec::new, |of| brackets(of, self.scalar, &dots)),
+            Across::Conditions => Vec::new(),
+        };
+        let (title, measure, bands) = (self.title, self.measure, bands.unwrap_or_default());
+        GainPanel { title, measure, across, dots, schedule, bands, brackets }
     }
 }
 

@@ -7,16 +7,21 @@ use crate::dataset::{Channel, Pair};
 use crate::study::{
     AskedFigure, ConditionAnalysis, Edit, PhaseCorrection, Remark, RemarkKind, Setting, lead_words, servo_words,
 };
+use crate::uncertainty::Scalar;
 use crate::units::s_to_ms;
 
 use super::command::{Command, FormKind};
 use super::derivation_window::figure_ui;
 use super::explanation::{details_shown, remarks_shown};
+use super::gain_bars::bar_words;
 use super::heading::{heading_ui, table_menu_ui};
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 use super::region::{Region, region_ui};
 use super::state::State;
 use super::tables::TableKind;
+
+/// Size of the half-widths of bars \[pt\].
+const HALF_SIZE: f32 = 9.5;
 
 /// Outcome, channel gains and delays, objective, and what could not be matched and why.
 pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
@@ -115,8 +120,24 @@ fn badge_ui(ui: &mut Ui, word: &str, color: Color32, palette: &Palette) -> egui:
 fn channels_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Palette, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.x = 18.0;
     ui.columns(2, |columns| {
-        channel_table_ui(&mut columns[0], "input", state.dataset().inputs(), Side::Input, shown, palette, commands);
-        channel_table_ui(&mut columns[1], "output", state.dataset().outputs(), Side::Output, shown, palette, commands);
+        channel_table_ui(
+            &mut columns[0],
+            "input",
+            state.dataset().inputs(),
+            Side::Input,
+            (state, shown),
+            palette,
+            commands,
+        );
+        channel_table_ui(
+            &mut columns[1],
+            "output",
+            state.dataset().outputs(),
+            Side::Output,
+            (state, shown),
+            palette,
+            commands,
+        );
     });
 }
 
@@ -151,10 +172,22 @@ fn channel_table_ui(
     title: &str,
     channels: &[Channel],
     side: Side,
-    shown: &ConditionAnalysis,
+    (state, shown): (&State, &ConditionAnalysis),
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
+    let uncertainty = state.uncertainty().filter(|_| !state.others_are_older());
+    let words = |scalar: Scalar| {
+        let bar = uncertainty.and_then(|of| Some(bar_words(of.bar(shown.condition.id(), scalar)?, scalar, of.level)));
+        bar.map_or_else(String::new, |words| format!("\n{words}"))
+    };
+    let half =
+        |scalar: Scalar| {
+            let half = uncertainty.and_then(|of| of.bar(shown.condition.id(), scalar)?.half_width(of.level));
+            half.map(|half| {
+                if scalar.is_delay() { format!("±{:.0}", s_to_ms(half)) } else { format!("±{:.0}%", 100.0 * half) }
+            })
+        };
     let (width, id) = (ui.available_width(), shown.condition.id());
     Grid::new(title).num_columns(3).spacing([6.0, 3.0]).min_col_width(0.3 * width - 6.0).show(ui, |ui| {
         let head = |ui: &mut Ui, text: &str| ui.label(RichText::new(text).size(SMALL_SIZE).color(palette.dim_text));
@@ -166,18 +199,35 @@ fn channel_table_ui(
             let (gain, delay_ms) = side.figures(shown, index);
             ui.label(RichText::new(&channel.name).size(BODY_SIZE));
             let asked = AskedFigure::Gain(id, side.channel(index));
-            let hint = format!("{gain}\nclick: how was this computed?");
-            right(ui, |ui| figure_ui(ui, format!("{gain:.3}"), asked, commands)).on_hover_text(hint);
+            let of_gain = Scalar::ChannelGain(side.channel(index));
+            let hint = format!("{gain}{}\nclick: how was this computed?", words(of_gain));
+            right(ui, |ui| {
+                half_ui(ui, half(of_gain), palette);
+                figure_ui(ui, format!("{gain:.3}"), asked, commands)
+            })
+            .on_hover_text(hint);
             let text = if delay_ms == 0.0 { "0".to_owned() } else { format!("{delay_ms:.1}") };
             let color = if delay_ms == 0.0 { palette.dim_text } else { palette.text };
             let asked = AskedFigure::Delay(id, side.channel(index));
             let filter = shown.led.as_ref().and_then(|led| led.leads.filter(side.channel(index)));
             let filter = filter.map(|filter| format!("\nlead: {}", servo_words(filter))).unwrap_or_default();
-            let hint = format!("{delay_ms} ms{filter}\nclick: how was this computed?");
-            right(ui, |ui| figure_ui(ui, RichText::new(text).color(color), asked, commands)).on_hover_text(hint);
+            let of_delay = Scalar::ChannelDelay(side.channel(index));
+            let hint = format!("{delay_ms} ms{filter}{}\nclick: how was this computed?", words(of_delay));
+            right(ui, |ui| {
+                half_ui(ui, half(of_delay).filter(|_| delay_ms != 0.0), palette);
+                figure_ui(ui, RichText::new(text).color(color), asked, commands)
+            })
+            .on_hover_text(hint);
             ui.end_row();
         }
     });
+}
+
+/// The half-width of a figure's bar beside it, small.
+fn half_ui(ui: &mut Ui, half: Option<String>, palette: &Palette) {
+    if let Some(half) = half {
+        ui.label(RichText::new(half).size(HALF_SIZE).color(palette.dim_text));
+    }
 }
 
 fn right<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {

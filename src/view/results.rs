@@ -6,7 +6,8 @@ use crate::correction::Problem;
 use crate::dataset::{ConditionId, Dataset};
 use crate::study::{
     AcrossCurves, AcrossJob, Analysis, AssessmentJob, AssessmentTable, ConditionAnalysis, ConditionCurves,
-    ConditionFailure, ConditionModes, CurvesJob, ModesJob, Toggles, TogglesJob, VariantJob,
+    ConditionFailure, ConditionModes, CurvesJob, ModesJob, Toggles, TogglesJob, Uncertainty, UncertaintyJob,
+    VariantJob,
 };
 
 /// The result of the condition shown, ahead of the others'.
@@ -70,6 +71,8 @@ pub struct Results {
     pub assessment: Option<(AssessmentJob, Arc<AssessmentTable>)>,
     /// Responses of one model of each condition, and of which; see [`super::state::State::across`].
     pub across: Option<(AcrossJob, Arc<AcrossCurves>)>,
+    /// How sure the figures of an analysis are, and of which; see [`super::state::State::uncertainty`].
+    pub uncertainty: Option<(UncertaintyJob, Arc<Uncertainty>)>,
     /// Analyses of the variants.
     pub variants: Vec<(VariantJob, Arc<Analysis>)>,
     /// What is under way beside the live answer.

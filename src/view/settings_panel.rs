@@ -2,13 +2,14 @@
 
 use egui::{ComboBox, Grid, RichText, Role, Slider, Ui, WidgetInfo};
 
-use crate::correction::{GainBounds, GainObjective};
+use crate::correction::{GainBounds, GainObjective, GainSource};
 use crate::dataset::{Band, GREATEST_OMEGA, LEAST_OMEGA};
 use crate::fidelity::CostAverage;
 use crate::study::{
     Edit, GREATEST_AGREEMENT_DB, GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE, LARGEST_ALPHA, LEAST_GAIN,
     LEAST_POINTS, MOST_POINTS, PhaseCorrection, Setting,
 };
+use crate::uncertainty::{GREATEST_PRIOR, LEVELS, UncertaintySettings};
 use crate::units::s_to_ms;
 
 use super::coherence_setting::coherence_ui;
@@ -24,6 +25,9 @@ use super::state::State;
 const SLIDER_ALPHA: f64 = 1e3;
 /// Alpha below which the slider goes to zero.
 const SMALLEST_ALPHA: f64 = 1e-3;
+
+/// Levels of error bars \[%\].
+const LEVELS_PERCENT: std::ops::RangeInclusive<f64> = 100.0 * LEVELS[0]..=100.0 * LEVELS[1];
 
 const LABEL_WIDTH: f32 = 60.0;
 const TYPED_WIDTH: f32 = 62.0;
@@ -52,6 +56,7 @@ fn fields_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
         settings.delay_bound_ui();
         settings.agreement_ui();
         settings.method_ui();
+        settings.error_bars_ui();
         coherence_ui(settings.ui, state, palette, settings.commands);
     });
 }
@@ -280,6 +285,35 @@ impl Panel<'_, '_> {
         self.ui.end_row();
     }
 
+    /// The level of the error bars, and how much a condition's identification borrows from the others.
+    fn error_bars_ui(&mut self) {
+        let settings = self.state.study.settings.uncertainty;
+        self.label("Bars");
+        let level = NumberField {
+            unit: "%",
+            shows_unit: true,
+            step: 0.5,
+            text: |percent| format!("{percent:.1}"),
+            ..NumberField::new("Level of error bars", "Level of every error bar, interval and test [%]", LEVELS_PERCENT)
+        };
+        let hint = "Degrees of freedom that a condition's identification part borrows from the other conditions at most; 0 trusts \
+                    the condition alone";
+        let prior =
+            NumberField { step: 0.1, ..NumberField::new("Borrowed degrees of freedom", hint, 0.0..=GREATEST_PRIOR) };
+        let palette = self.palette;
+        let (level, prior) = self
+            .ui
+            .horizontal(|ui| {
+                let level = level.ui(ui, 100.0 * settings.level);
+                Self::unit(ui, palette, "borrow");
+                (level, prior.ui(ui, settings.prior_degrees))
+            })
+            .inner;
+        self.take(level, |percent| Setting::Uncertainty(UncertaintySettings { level: 0.01 * percent, ..settings }));
+        self.take(prior, |prior_degrees| Setting::Uncertainty(UncertaintySettings { prior_degrees, ..settings }));
+        self.ui.end_row();
+    }
+
     fn method_ui(&mut self) {
         let settings = &self.state.study.settings;
         self.label("Method");
@@ -304,6 +338,21 @@ impl Panel<'_, '_> {
                 ],
             );
         });
+        let (of_study, mut source) = (settings.gain_source, settings.gain_source);
+        self.ui.end_row();
+        self.label("G from");
+        choice_ui(
+            self.ui,
+            "Source of G",
+            &mut source,
+            &[
+                (GainSource::Representatives, "representatives", "G of the two representatives (the paper)"),
+                (GainSource::MeanOfPairs, "mean of pairs", "G is the mean of ln G over all pairs of kept models"),
+            ],
+        );
+        if source != of_study {
+            self.set(Setting::GainSource(source));
+        }
         if average != settings.cost_average {
             self.set(Setting::CostAverage(average));
         }

@@ -8,7 +8,7 @@ use crate::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
 use crate::figure::ColumnWidth;
 use crate::study::{
     AcrossCurves, Analysis, AssessmentTable, ConditionAnalysis, ConditionCurves, ConditionFailure, ConditionModes,
-    Difference, ExportFormat, History, Study, Table, Toggles,
+    Difference, ExportFormat, History, Study, Table, Toggles, Uncertainty,
 };
 
 use super::arrangement::View;
@@ -278,6 +278,19 @@ impl State {
     pub fn analysis(&self) -> Option<&Analysis> {
         let analysis = self.results.analysis.as_deref()?;
         Arc::ptr_eq(&analysis.study.dataset, &self.study.dataset).then_some(analysis)
+    }
+
+    /// How sure the figures of the newest analysis are; none until that is computed, beside the live answer.
+    pub fn uncertainty(&self) -> Option<&Arc<Uncertainty>> {
+        let (job, uncertainty) = self.results.uncertainty.as_ref()?;
+        self.analysis()?;
+        Arc::ptr_eq(&job.analysis, self.results.analysis.as_ref()?).then_some(uncertainty)
+    }
+
+    /// The newest analysis with how sure its figures are, as far as that is computed: what files and derivations are made of.
+    pub fn analysis_with_bars(&self) -> Option<Analysis> {
+        let analysis = self.analysis()?.clone();
+        Some(Analysis { uncertainty: self.uncertainty().cloned(), ..analysis })
     }
 
     /// What giving up a computation leaves, in words.

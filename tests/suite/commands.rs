@@ -537,3 +537,22 @@ fn check_tells_every_fault_of_a_dataset_at_once_each_with_its_place() {
     assert!(lines[2].contains("identified model"), "{}", lines[2]);
     assert!(lines[3].contains("3 faults"), "{}", lines[3]);
 }
+
+#[test]
+fn conditions_can_be_held_out_and_each_be_left_out_in_turn() {
+    let desk = Desk::new();
+    let ran = desk.gdcm(&["analyze", "--hold-out", "3,8", "--leave-one-out", "--out", "out"]);
+    ran.assert_done();
+    let text = &ran.out;
+    assert!(text.contains("held out (3, 8): better in "), "{text}");
+    assert!(text.contains("schedule of all") && text.contains("of the others"), "{text}");
+    let corrections = read_corrections(&desk.path("out/corrections.json")).unwrap();
+    let held_out: Vec<i64> = corrections.conditions.iter().filter(|of| of.held_out).map(|of| of.id).collect();
+    assert_eq!(held_out, [3, 8]);
+    let uncertainty = corrections.uncertainty.unwrap();
+    assert_eq!((uncertainty.level, uncertainty.differences.len(), uncertainty.scatter.len()), (0.9, 35, 5));
+    let net = &corrections.conditions[0].net_gains[0];
+    let [low, high] = net.bar.interval.unwrap();
+    assert!(low < net.gain && net.gain < high, "{low} {} {high}", net.gain);
+    desk.gdcm(&["analyze", "--hold-out", "99", "--out", "other"]).assert_failed(2, &["--hold-out", "no condition 99"]);
+}

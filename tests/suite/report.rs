@@ -15,16 +15,17 @@ use crate::EXAMPLE;
 use crate::commands::Desk;
 use crate::window::{click, settle, state, window};
 
-const SECTIONS: [&str; 9] = [
+const SECTIONS: [&str; 10] = [
     "1 Summary",
     "2 Settings",
     "3 Provenance",
     "4 Models left out",
     "5 Conditions",
     "6 Channels and schedule",
-    "7 Assessment",
-    "8 The method",
-    "9 Sources of the models",
+    "7 How sure each number is",
+    "8 Assessment",
+    "9 The method",
+    "10 Sources of the models",
 ];
 const REASON: &str = "steps at 2 rad/s <see the & bode plot>";
 

@@ -13,9 +13,10 @@ use super::explanation::Explanation;
 use super::names::{ByName, ChannelNames, rows};
 use super::schema::{
     Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
-    DelayOutcome, GainOutcome, NetGain, ReasonEntry, ScheduleUsed, ScheduledDelays, ScheduledGains, ScheduledTaus,
-    SetAsideEntry, SourceEntry, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
+    DelayOutcome, GainOutcome, NetGain, ReasonEntry, ScheduleUsed, ScheduledDelays, ScheduledGains, ScheduledSecond,
+    ScheduledTaus, SetAsideEntry, SourceEntry, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
 };
+use super::uncertainty::{BarEntry, BarsEntry, UncertaintyEntry};
 use super::{NAME, VERSION};
 
 impl Corrections {
@@ -35,6 +36,7 @@ impl Corrections {
             failed: Vec::new(),
             schedule: analysis.schedule.as_ref().ok().map(|schedule| gather.schedule(schedule)),
             assessment: Assessment { conditions: Vec::new(), left_out: Vec::new() },
+            uncertainty: UncertaintyEntry::of(analysis, &gather.names),
         };
         for condition in dataset.conditions().iter().filter(|condition| chosen.contains(&condition.id())) {
             gather.add(&mut corrections, condition);
@@ -88,6 +90,7 @@ impl Gather<'_> {
             set_aside: self.set_aside(result),
             sources: sources_of(condition),
             scheduled: study.choice(condition.id()).scheduled,
+            held_out: study.choice(condition.id()).held_out,
             held: names.marked(result.held()),
             delta_gain: rows(&result.gain_problem.delta, |gain| *gain),
             delta_delay_s: rows(&result.comparison.delta.delay_s, |delay| *delay),
@@ -100,6 +103,7 @@ impl Gather<'_> {
             gain_solution: self.gain_outcome(result),
             delay_solution: self.delay_outcome(result),
             net_gains: self.net_gains(result),
+            bars: BarsEntry::of(self.analysis, condition.id(), names),
             cost: cost_tables(result),
             cautions: result
                 .cautions
@@ -126,7 +130,8 @@ impl Gather<'_> {
         pairs
             .map(|pair| {
                 let (output, input) = self.names.pair(pair);
-                NetGain { output, input, gain: result.correction.net_gain(pair).value() }
+                let bar = BarEntry::of_net_gain(self.analysis, result.condition.id(), pair).unwrap_or_default();
+                NetGain { output, input, gain: result.correction.net_gain(pair).value(), bar }
             })
             .collect()
     }
@@ -214,6 +219,14 @@ impl Gather<'_> {
             airspeed_range_kt: [airspeeds.min_kt, airspeeds.max_kt],
             inputs: names.by_input(figures(&schedule.inputs)),
             outputs: names.by_output(figures(&schedule.outputs)),
+            second_variable: schedule.second.as_ref().map(|term| ScheduledSecond {
+                variable: term.variable.name().to_owned(),
+                unit: term.variable.unit().to_owned(),
+                middle: term.middle(),
+                half_range: term.half_range(),
+                inputs: names.by_input(term.inputs.clone()),
+                outputs: names.by_output(term.outputs.clone()),
+            }),
             delays_s: schedule.delays.as_ref().map(|delays| ScheduledDelays {
                 inputs: names.by_input(figures(&delays.inputs)),
                 outputs: names.by_output(figures(&delays.outputs)),

@@ -5,6 +5,7 @@ mod gather;
 mod names;
 mod schema;
 mod tables;
+mod uncertainty;
 
 use std::collections::BTreeSet;
 use std::io::{self, Write};
@@ -26,8 +27,12 @@ pub use names::ByName;
 pub use schema::{
     Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
     DelayOutcome, GainOutcome, LeadChannels, LeadEntry, NetGain, ReasonEntry, ScheduleUsed, ScheduledDelays,
-    ScheduledGains, ScheduledTaus, SetAsideEntry, SourceEntry, Table, UnmatchedDelayEntry, UnmatchedGainEntry,
-    WithoutResult,
+    ScheduledGains, ScheduledSecond, ScheduledTaus, SetAsideEntry, SourceEntry, Table, UnmatchedDelayEntry,
+    UnmatchedGainEntry, WithoutResult,
+};
+pub use uncertainty::{
+    BarEntry, BarsEntry, ChannelBars, DifferenceEntry, ScatterEntry, ScheduleBandEntry, SecondVariableEntry,
+    SplitEntry, UncertaintyEntry,
 };
 
 const NAME: &str = "gdcm-corrections";

@@ -7,6 +7,7 @@ use crate::schedule::DEFAULT_TOLERANCE_KT;
 
 use super::explanation::Explanation;
 use super::names::ByName;
+use super::uncertainty::{BarEntry, BarsEntry, UncertaintyEntry};
 
 /// A table `[output][input]` in the dataset's channel order; `None` (null) where a response has no such figure.
 pub type Table = Vec<Vec<Option<f64>>>;
@@ -33,6 +34,9 @@ pub struct Corrections {
     pub schedule: Option<ScheduleUsed>,
     /// What the schedule is worth.
     pub assessment: Assessment,
+    /// What follows from how sure the figures are; results of older programs do not say it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub uncertainty: Option<UncertaintyEntry>,
 }
 
 /// Which dataset was analysed.
@@ -74,6 +78,9 @@ pub struct ConditionCorrections {
     pub sources: Vec<SourceEntry>,
     /// Whether the condition enters the schedule.
     pub scheduled: bool,
+    /// Whether it is held out of the schedule, to judge it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub held_out: bool,
     /// Responses held in this condition, `[output, input]`: the constrained ones that are defined here.
     pub held: Vec<(String, String)>,
     /// Delta gain.
@@ -102,6 +109,9 @@ pub struct ConditionCorrections {
     pub delay_solution: DelayOutcome,
     /// `k_o k_i` of every response, output by output.
     pub net_gains: Vec<NetGain>,
+    /// How sure the other figures are; results of older programs do not say it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bars: Option<BarsEntry>,
     /// J of the representative physics model.
     #[serde(rename = "J")]
     pub cost: CostTables,
@@ -243,6 +253,9 @@ pub struct NetGain {
     pub input: String,
     /// `k_o k_i`.
     pub gain: f64,
+    /// How sure it is; results of older programs do not say it.
+    #[serde(flatten)]
+    pub bar: BarEntry,
 }
 
 /// J before and after a correction.
@@ -295,6 +308,9 @@ pub struct ScheduleUsed {
     pub inputs: ByName<Vec<f64>>,
     /// Of each output, likewise.
     pub outputs: ByName<Vec<f64>>,
+    /// What a second variable adds, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub second_variable: Option<ScheduledSecond>,
     /// The same of the delays \[s\], where they are scheduled.
     pub delays_s: Option<ScheduledDelays>,
     /// Coefficients of the signed delays \[s\] in the scaled airspeed, lowest power first, where leads were asked for (M15).
@@ -309,6 +325,23 @@ pub struct ScheduleUsed {
 
 fn default_tolerance_kt() -> f64 {
     DEFAULT_TOLERANCE_KT
+}
+
+/// What a second variable `z` adds to each figure: its coefficient times `(z - middle) / half_range`, `z` within the range.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ScheduledSecond {
+    /// `altitude` or `mass`.
+    pub variable: String,
+    /// `ft` or `kg`.
+    pub unit: String,
+    /// Middle of the range of the scheduled conditions.
+    pub middle: f64,
+    /// Half of that range.
+    pub half_range: f64,
+    /// Coefficient of each input.
+    pub inputs: ByName<f64>,
+    /// Coefficient of each output.
+    pub outputs: ByName<f64>,
 }
 
 /// Delays as functions of airspeed.

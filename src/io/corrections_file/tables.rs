@@ -7,10 +7,11 @@ use crate::correction::{self, ChannelCorrection};
 use crate::dataset::{Channel, Condition, ConditionId, Pair};
 use crate::response::LeadFilter;
 use crate::study::{Analysis, Assessed};
+use crate::uncertainty::{Bar, Part, Scalar};
 
 use super::super::csv_table::write_records;
 
-const CHANNEL_HEADER: [&str; 14] = [
+const CHANNEL_HEADER: [&str; 20] = [
     "condition",
     "airspeed_kt",
     "kind",
@@ -25,6 +26,12 @@ const CHANNEL_HEADER: [&str; 14] = [
     "lag_rad_s",
     "gain_at_infinity_db",
     "scheduled_tau_s",
+    "gain_low",
+    "gain_high",
+    "delay_low_s",
+    "delay_high_s",
+    "u_gain_physics",
+    "u_gain_identification",
 ];
 
 /// `corrections.csv`: the channel gains (ratios) and delays \[s\] of the chosen conditions, and the scheduled ones at the same
@@ -41,10 +48,10 @@ pub(in crate::io) fn channel_table(
     write_records(file, std::iter::once(CHANNEL_HEADER.map(str::to_owned)).chain(rows))
 }
 
-fn channel_rows(analysis: &Analysis, condition: &Condition) -> Vec<[String; 14]> {
+fn channel_rows(analysis: &Analysis, condition: &Condition) -> Vec<[String; 20]> {
     let airspeed_kt = condition.flight_state().airspeed_kt;
     let own = analysis.condition(condition.id()).map(|result| &result.correction);
-    let scheduled = analysis.schedule.as_ref().ok().map(|schedule| schedule.at(airspeed_kt));
+    let scheduled = analysis.schedule.as_ref().ok().map(|schedule| schedule.at_state(condition.flight_state()));
     let scheduled = scheduled.as_ref();
     let row = |kind: &str, name: &Channel, channel: correction::Channel| {
         let figures = |of: &ChannelCorrection| match channel {
@@ -55,6 +62,10 @@ fn channel_rows(analysis: &Analysis, condition: &Condition) -> Vec<[String; 14]>
         let filter = own.and_then(|own| own.lead(channel));
         let [of_own, of_schedule] = [own, scheduled].map(|of| of.map(figures));
         let figure = |of: Option<[f64; 2]>, at: usize| cell(of.map(|of| of[at]));
+        let bars = Bars { analysis, condition: condition.id() };
+        let [gain_low, gain_high] = bars.ends(Scalar::ChannelGain(channel));
+        let [delay_low_s, delay_high_s] = bars.ends(Scalar::ChannelDelay(channel));
+        let [u_physics, u_identification, _] = bars.parts(Scalar::ChannelGain(channel));
         [
             condition.id().to_string(),
             airspeed_kt.to_string(),
@@ -70,6 +81,12 @@ fn channel_rows(analysis: &Analysis, condition: &Condition) -> Vec<[String; 14]>
             cell(filter.map(LeadFilter::lag_rad_s)),
             cell(filter.map(LeadFilter::gain_at_infinity_db)),
             cell(tau_s(scheduled)),
+            gain_low,
+            gain_high,
+            delay_low_s,
+            delay_high_s,
+            u_physics,
+            u_identification,
         ]
     };
     let dataset = &analysis.study.dataset;
@@ -80,7 +97,7 @@ fn channel_rows(analysis: &Analysis, condition: &Condition) -> Vec<[String; 14]>
     inputs.chain(outputs).collect()
 }
 
-const RESPONSE_HEADER: [&str; 21] = [
+const RESPONSE_HEADER: [&str; 32] = [
     "condition",
     "airspeed_kt",
     "output",
@@ -102,6 +119,17 @@ const RESPONSE_HEADER: [&str; 21] = [
     "dJ",
     "left_out",
     "D_band_s",
+    "held_out",
+    "G_low",
+    "G_high",
+    "D_low_s",
+    "D_high_s",
+    "net_gain_low",
+    "net_gain_high",
+    "u_net_gain_physics",
+    "u_net_gain_identification",
+    "degrees_of_freedom",
+    "left_in_band",
 ];
 
 /// `assessment.csv`: G, D \[s\], net gains and J of the nominal model before and under the scheduled correction, of every response of the
@@ -115,8 +143,7 @@ pub(super) fn response_table(
     let conditions = analysis.study.dataset.conditions();
     let chosen = conditions.iter().filter(|condition| chosen.contains(&condition.id()));
     let rows = chosen.flat_map(|condition| {
-        let scheduled =
-            analysis.schedule.as_ref().ok().map(|schedule| schedule.at(condition.flight_state().airspeed_kt));
+        let scheduled = analysis.schedule.as_ref().ok().map(|schedule| schedule.at_state(condition.flight_state()));
         let pairs = analysis.study.dataset.on_axis().pairs();
         pairs.map(move |pair| response_row(analysis, condition, scheduled.as_ref(), pair))
     });
@@ -128,7 +155,7 @@ fn response_row(
     condition: &Condition,
     scheduled: Option<&ChannelCorrection>,
     pair: Pair,
-) -> [String; 21] {
+) -> [String; 32] {
     let dataset = &analysis.study.dataset;
     let result = analysis.condition(condition.id());
     let delta = result.map(|result| &result.comparison.delta);
@@ -138,6 +165,11 @@ fn response_row(
         Some(Assessed::LeftOut { why }) => (None, why.as_str()),
         None => (None, ""),
     };
+    let bars = Bars { analysis, condition: condition.id() };
+    let [gain_low, gain_high] = bars.ends(Scalar::Gain(pair));
+    let [delay_low_s, delay_high_s] = bars.ends(Scalar::Delay(pair));
+    let [net_low, net_high] = bars.ends(Scalar::NetGain(pair));
+    let [u_physics, u_identification, degrees] = bars.parts(Scalar::NetGain(pair));
     [
         condition.id().to_string(),
         condition.flight_state().airspeed_kt.to_string(),
@@ -160,7 +192,53 @@ fn response_row(
         cell(change.map(|change| change.total())),
         left_out.to_owned(),
         cell(delta.and_then(|delta| delta.band_delay_s[pair])),
+        analysis.study.choice(condition.id()).held_out.to_string(),
+        gain_low,
+        gain_high,
+        delay_low_s,
+        delay_high_s,
+        net_low,
+        net_high,
+        u_physics,
+        u_identification,
+        degrees,
+        cell(bars.left_in_band(pair)),
     ]
+}
+
+/// The bars of one condition as cells.
+struct Bars<'a> {
+    analysis: &'a Analysis,
+    condition: ConditionId,
+}
+
+impl Bars<'_> {
+    fn bar(&self, scalar: Scalar) -> Option<&Bar> {
+        self.analysis.uncertainty.as_ref()?.bar(self.condition, scalar)
+    }
+
+    /// Both ends of the whole bar, of a gain as ratios.
+    fn ends(&self, scalar: Scalar) -> [String; 2] {
+        let level = self.analysis.study.settings.uncertainty.level;
+        let ends = self.bar(scalar).and_then(|bar| bar.interval(level));
+        let told = |end: f64| if scalar.is_delay() { end } else { end.exp() };
+        [0, 1].map(|end| cell(ends.map(|ends| told(ends[end]))))
+    }
+
+    /// Deviations of trim and identification, and degrees of freedom.
+    fn parts(&self, scalar: Scalar) -> [String; 3] {
+        let bar = self.bar(scalar);
+        let deviation = |part: Option<Part>| part.map(|part| part.variance.sqrt());
+        [
+            cell(bar.and_then(|bar| deviation(bar.trim))),
+            cell(bar.and_then(|bar| deviation(bar.identification))),
+            cell(bar.and_then(Bar::degrees)),
+        ]
+    }
+
+    fn left_in_band(&self, pair: Pair) -> Option<f64> {
+        self.analysis.uncertainty.as_ref()?.conditions.get(&self.condition)?.left_in_band[pair]
+    }
 }
 
 /// A figure to the last digit; an empty cell where there is none, or none that is finite.

@@ -37,9 +37,9 @@ static inline double gdcm_polynomial(int count, const double coefficients[], dou
     return value;
 }
 
-/* Gains and delays [s] at an airspeed [kt]. Gives 0, or 1 where the airspeed was cut to the range, or -1 and no values where
- * it is not a number. */
-static inline int gdcm_correction(double airspeed_kt, double gain_in[], double gain_out[], double delay_in[],
+/* Gains and delays [s] at an airspeed [kt]@words. Gives 0, or 1 where an argument was cut to its range, or -1 and no values
+ * where one is not a number. */
+static inline int gdcm_correction(double airspeed_kt@argument, double gain_in[], double gain_out[], double delay_in[],
                                   double delay_out[])
 {
 ";
@@ -96,7 +96,10 @@ pub fn c_header(correction: &ScheduledCorrection) -> Result<String, ExportFault>
             let _ = writeln!(text, "#define GDCM_{side}_NAME_{index} {}", c_text(&channel.name));
         }
     }
-    text.push_str(TABLE);
+    let second = correction.second.as_ref();
+    let argument = second.map_or_else(String::new, |second| format!(", double {}", second.name));
+    let words = second.map_or_else(String::new, |second| format!(" and a second variable, {}", second.words));
+    text.push_str(&TABLE.replacen("@words", &words, 1).replacen("@argument", &argument, 1));
     let (least, most) = correction.airspeed_range_kt;
     let (least, most) = (number(least), number(most));
     let scaled = correction.scaled_expression();
@@ -107,12 +110,24 @@ pub fn c_header(correction: &ScheduledCorrection) -> Result<String, ExportFault>
          if (airspeed_kt != airspeed_kt) {{\n        return -1;\n    }}\n    \
          (void)v;\n    (void)gain_in;\n    (void)gain_out;\n    (void)delay_in;\n    (void)delay_out;\n"
     );
+    let mut cut = "a != airspeed_kt".to_owned();
+    if let Some(second) = second {
+        let ((least, most), name) = (second.range, second.name);
+        let (least, most) = (number(least), number(most));
+        let _ = write!(
+            text,
+            "    const double b = {name} < {least} ? {least} : ({name} > {most} ? {most} : {name});\n    \
+             const double z = {};\n    if ({name} != {name}) {{\n        return -1;\n    }}\n    (void)z;\n",
+            second.scaled_expression(),
+        );
+        cut.push_str(&format!(" || b != {name}"));
+    }
     for (side, channels) in [("in", &correction.inputs), ("out", &correction.outputs)] {
         for (index, channel) in channels.iter().enumerate() {
             write_channel(&mut text, side, index, channel);
         }
     }
-    text.push_str("    return a != airspeed_kt;\n}\n");
+    let _ = write!(text, "    return {cut};\n}}\n");
     if let Some(lead) = correction.lead {
         let _ = write!(
             text,
@@ -161,6 +176,11 @@ fn lines(target: &str, curve: &Curve) -> Vec<String> {
         Curve::Table { of_logarithm, table } => {
             let [points, values] = arrays(table);
             vec![points, values, format!("{target} = {};", value(*of_logarithm, looked_up(table)))]
+        }
+        Curve::Beside { curve, of_logarithm, slope } => {
+            let inner: String = lines(target, curve).iter().map(|line| format!(" {line}")).collect();
+            let sum = format!("{target} + ({}) * z", number(*slope));
+            vec![format!("{{{inner} }}"), format!("{target} = {};", value(*of_logarithm, sum))]
         }
         Curve::Constant(value) => vec![format!("{target} = {};", number(*value))],
         Curve::Cut { curve, least, most } => {

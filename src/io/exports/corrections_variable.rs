@@ -5,8 +5,8 @@ use crate::correction::GainObjective;
 use crate::dataset::{Channel, Dataset};
 use crate::fidelity::CostAverage;
 use crate::io::corrections_file::{
-    Assessment, ByName, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, LeadChannels,
-    LeadEntry, ScheduleUsed, Table, WithoutResult,
+    Assessment, BarEntry, ByName, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable,
+    LeadChannels, LeadEntry, ScheduleUsed, Table, WithoutResult,
 };
 use crate::io::settings_entry::SettingsEntry;
 use crate::io::variables::{ElementKind, Value, Variable};
@@ -96,6 +96,18 @@ fn condition(of: &ConditionCorrections, dataset: &Dataset) -> Fields {
         found.map_or(f64::NAN, |net| net.gain)
     };
     fields.add("net_gains", of_pairs(dataset, net));
+    // The bars of those: both ends as factors, both parts as standard deviations of the logarithm.
+    let bar = |part: fn(&BarEntry) -> Option<f64>| {
+        of_pairs(dataset, |output, input| {
+            let found = of.net_gains.iter().find(|net| net.output == output && net.input == input);
+            found.and_then(|net| part(&net.bar)).unwrap_or(f64::NAN)
+        })
+    };
+    fields.add("net_gains_low", bar(|bar| bar.interval.map(|[low, _]| low)));
+    fields.add("net_gains_high", bar(|bar| bar.interval.map(|[_, high]| high)));
+    fields.add("u_physics", bar(|bar| bar.u_physics));
+    fields.add("u_identification", bar(|bar| bar.u_identification));
+    fields.add("held_out", truth(of.held_out));
     let mut cost = Fields::default();
     cost.add("uncorrected", cost_table(&of.cost.uncorrected));
     cost.add("corrected", cost_table(&of.cost.corrected));

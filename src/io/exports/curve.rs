@@ -20,6 +20,15 @@ pub enum Curve {
         /// The table.
         table: LookupTable,
     },
+    /// Another curve with what a second variable adds to it.
+    Beside {
+        /// The curve, of the logarithm of the value where `of_logarithm` says so.
+        curve: Box<Curve>,
+        /// Whether the sum is the natural logarithm of the value.
+        of_logarithm: bool,
+        /// What the scaled second variable is multiplied by.
+        slope: f64,
+    },
     /// The same at every airspeed.
     Constant(f64),
     /// Another curve, cut to its bounds.
@@ -43,6 +52,9 @@ impl Curve {
                 value(*of_logarithm, sum)
             }
             Curve::Table { of_logarithm, table } => value(*of_logarithm, table.at(airspeed.kt)),
+            Curve::Beside { curve, of_logarithm, slope } => {
+                value(*of_logarithm, curve.at(airspeed) + slope * airspeed.second_scaled)
+            }
             Curve::Constant(value) => *value,
             Curve::Cut { curve, least, most } => curve.at(airspeed).min(most.at(airspeed.kt)).max(*least),
         }
@@ -59,6 +71,8 @@ impl Curve {
                 (!coefficients.iter().all(|coefficient| coefficient.is_finite())).then_some(NOT_FINITE)
             }
             Curve::Table { table, .. } => table.flaw(),
+            Curve::Beside { slope, .. } if !slope.is_finite() => Some(NOT_FINITE),
+            Curve::Beside { curve, .. } => curve.flaw(),
             Curve::Constant(value) => (!value.is_finite()).then_some(NOT_FINITE),
             Curve::Cut { least, .. } if !least.is_finite() => Some(NOT_FINITE),
             Curve::Cut { curve, least, most } => {
@@ -75,7 +89,7 @@ mod tests {
     use super::*;
 
     fn at(curve: &Curve, kt: f64) -> f64 {
-        curve.at(CutAirspeed { kt, scaled: (kt - 50.0) / 50.0 })
+        curve.at(CutAirspeed { kt, scaled: (kt - 50.0) / 50.0, second_scaled: 0.0 })
     }
 
     fn polynomial(of_logarithm: bool) -> Curve {

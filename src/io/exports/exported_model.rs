@@ -69,6 +69,7 @@ fn exported_model(
         correction: match request.correction {
             AssessedCorrection::Scheduled => "scheduled",
             AssessedCorrection::ScheduledWithoutLeads => "scheduled, without leads,",
+            AssessedCorrection::ScheduleOfOthers => "of the other conditions",
             AssessedCorrection::Own => "own",
         },
         states: state_names(analysis, model, &corrected),
@@ -101,8 +102,12 @@ fn correction_of(
         AssessedCorrection::Own => Ok(result_of(analysis, condition)?.correction.clone()),
         AssessedCorrection::Scheduled | AssessedCorrection::ScheduledWithoutLeads => {
             let schedule = analysis.schedule.as_ref().map_err(|error| ExportFault::Schedule(*error))?;
-            let correction = schedule.at(condition.flight_state().airspeed_kt);
+            let correction = schedule.at_state(condition.flight_state());
             Ok(if which == AssessedCorrection::Scheduled { correction } else { correction.without_leads() })
+        }
+        AssessedCorrection::ScheduleOfOthers => {
+            let schedule = analysis.schedule_without(condition.id()).map_err(ExportFault::Schedule)?;
+            Ok(schedule.at_state(condition.flight_state()))
         }
     }
 }

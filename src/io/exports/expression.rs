@@ -14,7 +14,7 @@ pub(super) struct Functions {
 }
 
 impl Functions {
-    /// The value of a curve at the airspeed `a`, the scaled airspeed `v`.
+    /// The value of a curve at the airspeed `a`, the scaled airspeed `v` and the scaled second variable `z`.
     pub(super) fn expression(&self, curve: &Curve) -> String {
         let value = |of_logarithm: bool, figure: String| {
             if of_logarithm { format!("{}({figure})", self.exp) } else { figure }
@@ -24,6 +24,9 @@ impl Functions {
                 value(*of_logarithm, format!("{}([{}], v)", self.polynomial, list(coefficients)))
             }
             Curve::Table { of_logarithm, table } => value(*of_logarithm, self.table(table)),
+            Curve::Beside { curve, of_logarithm, slope } => {
+                value(*of_logarithm, format!("{} + ({}) * z", self.expression(curve), number(*slope)))
+            }
             Curve::Constant(value) => number(*value),
             Curve::Cut { curve, least, most } => {
                 format!("max(min({}, {}), {})", self.expression(curve), self.table(most), number(*least))

@@ -2,10 +2,10 @@
 
 use super::curve::Curve;
 use super::lookup_table::LookupTable;
-use super::scheduled_correction::{ExportedLead, ScheduledChannel, ScheduledCorrection};
+use super::scheduled_correction::{ExportedLead, ScheduledChannel, ScheduledCorrection, SecondArgument};
 use crate::dataset::{Channel, Dataset};
 use crate::response::LeadFilter;
-use crate::schedule::{LeadSchedule, Regression, Schedule, ScheduledQuantity};
+use crate::schedule::{LeadSchedule, Regression, Schedule, ScheduledQuantity, SecondVariable};
 
 /// Intervals of airspeed in which a lead filter that depends on it is linear.
 const LEAD_POINTS: u32 = 100;
@@ -79,27 +79,50 @@ impl ScheduledCorrection {
             },
             _ => Curve::Constant(0.0),
         };
+        let second = schedule.second.as_ref();
         let of_logarithm = schedule.settings.quantity == ScheduledQuantity::LnGain;
-        let channels = |names: &[Channel], gains: &[Regression], delays: Option<&[Regression]>| {
-            let channel = |at: usize| ScheduledChannel {
-                name: names[at].name.clone(),
-                gain: curve(&gains[at], of_logarithm),
-                delay_s: delay(delays, at),
-                zero_s: None,
+        let channels =
+            |names: &[Channel], gains: &[Regression], slopes: Option<&[f64]>, delays: Option<&[Regression]>| {
+                let gain = |at: usize| match slopes.and_then(|slopes| slopes.get(at)) {
+                    Some(&slope) => Curve::Beside { curve: Box::new(curve(&gains[at], false)), of_logarithm, slope },
+                    None => curve(&gains[at], of_logarithm),
+                };
+                let channel = |at: usize| ScheduledChannel {
+                    name: names[at].name.clone(),
+                    gain: gain(at),
+                    delay_s: delay(delays, at),
+                    zero_s: None,
+                };
+                (0..gains.len()).map(channel).collect()
             };
-            (0..gains.len()).map(channel).collect()
-        };
         Self {
             name: source.name.clone(),
             dataset: dataset.name().to_owned(),
             software: concat!("gdcm ", env!("CARGO_PKG_VERSION")).to_owned(),
             sha256: source.sha256.clone(),
-            inputs: channels(dataset.inputs(), &schedule.inputs, delays.map(|delays| delays.inputs.as_slice())),
-            outputs: channels(dataset.outputs(), &schedule.outputs, delays.map(|delays| delays.outputs.as_slice())),
+            inputs: channels(
+                dataset.inputs(),
+                &schedule.inputs,
+                second.map(|term| term.inputs.as_slice()),
+                delays.map(|delays| delays.inputs.as_slice()),
+            ),
+            outputs: channels(
+                dataset.outputs(),
+                &schedule.outputs,
+                second.map(|term| term.outputs.as_slice()),
+                delays.map(|delays| delays.outputs.as_slice()),
+            ),
             lead: None,
             airspeed_range_kt: (airspeeds.min_kt, airspeeds.max_kt),
             airspeed_mean_kt: airspeeds.mean_kt,
             airspeed_half_range_kt: airspeeds.half_range_kt,
+            second: second.map(|term| {
+                let (name, words) = match term.variable {
+                    SecondVariable::Altitude => ("altitude_ft", "altitude [ft]"),
+                    SecondVariable::Mass => ("mass_kg", "mass [kg]"),
+                };
+                SecondArgument { name, words, range: (term.range[0], term.range[1]) }
+            }),
             notes: notes(schedule, dataset),
         }
     }
@@ -297,6 +320,66 @@ mod tests {
                 listed()
             );
             assert_run(&words, "octave-cli", &["--eval", &program], folder.path(), &expected(&analysis));
+        }
+    }
+
+    /// The example with altitude as its second variable, and what it says at fifty airspeeds and three altitudes.
+    fn with_altitude(kind: ScheduleKind) -> (ScheduledCorrection, Vec<f64>) {
+        let mut study = Study::new(embedded_example().unwrap().dataset);
+        let schedule = ScheduleSettings { kind, second: Some(SecondVariable::Altitude), ..ScheduleSettings::default() };
+        study.apply(&Edit::Set(Setting::Schedule(schedule))).unwrap();
+        let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
+        let schedule = analysis.schedule.as_ref().unwrap();
+        let values = |airspeed: f64, altitude: f64| {
+            let at = schedule.at_both(airspeed, Some(altitude));
+            [at.input_gains, at.output_gains, at.input_delays_s, at.output_delays_s].concat()
+        };
+        let pairs = || airspeeds().into_iter().flat_map(|airspeed| ALTITUDES.map(|altitude| (airspeed, altitude)));
+        (correction(&analysis), pairs().flat_map(|(airspeed, altitude)| values(airspeed, altitude)).collect())
+    }
+
+    /// Below the range of the example, in it, and above \[ft\].
+    const ALTITUDES: [f64; 3] = [0.0, 4321.0, 20_000.0];
+
+    #[test]
+    fn a_second_variable_is_the_second_argument_of_every_program() {
+        for kind in [ScheduleKind::Polynomial { degree: 2 }, ScheduleKind::Table] {
+            let (correction, expected) = with_altitude(kind);
+            let words = format!("{kind:?} and altitude");
+            if is_there("python3") {
+                let folder = tempfile::tempdir().unwrap();
+                std::fs::write(folder.path().join("c.py"), python_module(&correction).unwrap()).unwrap();
+                let program = format!(
+                    "import c\nfor a in [{}]:\n  for h in {ALTITUDES:?}:\n    mi, mo, ti, to = c.gdcm_correction(a, h)\n    \
+                     print(*[repr(m[k][k]) for m in (mi, mo) for k in range(len(m))], *map(repr, ti + to))",
+                    listed()
+                );
+                assert_run(&words, "python3", &["-c", &program], folder.path(), &expected);
+            }
+            if is_there("cc") {
+                let folder = tempfile::tempdir().unwrap();
+                let header = c_header(&correction).unwrap();
+                let main = format!(
+                    "{header}\n#include <stdio.h>\nint main(void) {{ static const double s[] = {{{}}}, h[] = {{0, 4321, 20000}};\n\
+                     double v[2 * (GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT)]; unsigned k, l, j;\n\
+                     for (k = 0; k < sizeof s / sizeof *s; k++) for (l = 0; l < 3; l++) {{\n\
+                     gdcm_correction(s[k], h[l], v, v + GDCM_INPUT_COUNT, v + GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT,\n\
+                     v + 2 * GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT);\n\
+                     for (j = 0; j < sizeof v / sizeof *v; j++) printf(\"%.17g \", v[j]); }}\nreturn 0; }}\n",
+                    listed()
+                );
+                std::fs::write(folder.path().join("main.c"), main).unwrap();
+                let flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-o", "main", "main.c", "-lm"];
+                let built = Command::new("cc").args(flags).current_dir(&folder).output().unwrap();
+                assert!(built.status.success(), "{words}: {}", String::from_utf8_lossy(&built.stderr));
+                let program = folder.path().join("main").display().to_string();
+                assert_run(&words, &program, &[], folder.path(), &expected);
+            }
+            let function = matlab_function(&correction, "my_study").unwrap();
+            assert!(function.contains("my_study(airspeed_kt, altitude_ft)"), "{function}");
+            let text = super::super::table_csv::table_csv(&correction, &[45.0, 90.0, 140.0]).unwrap();
+            let rows = text.lines().filter(|line| !line.starts_with('#')).count();
+            assert_eq!(rows, 1 + 3 * 3, "a heading, and each airspeed at three altitudes");
         }
     }
 }

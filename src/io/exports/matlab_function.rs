@@ -46,8 +46,10 @@ const LONGEST_NAME: usize = 63;
 pub fn matlab_function(correction: &ScheduledCorrection, name: &str) -> Result<String, ExportFault> {
     correction.check()?;
     check_function_name(name)?;
+    let second = correction.second.as_ref();
+    let argument = second.map_or_else(String::new, |second| format!(", {}", second.name));
     let leads = if correction.lead.is_some() { ", lead_i, lead_o" } else { "" };
-    let mut text = format!("function [Mi, Mo, tau_i, tau_o{leads}] = {name}(airspeed_kt)\n");
+    let mut text = format!("function [Mi, Mo, tau_i, tau_o{leads}] = {name}(airspeed_kt{argument})\n");
     let _ = writeln!(
         text,
         "%{} Gain matrices Mi and Mo, delays tau_i and tau_o [s] at an airspeed [kt].",
@@ -78,6 +80,20 @@ pub fn matlab_function(correction: &ScheduledCorrection, name: &str) -> Result<S
         number(most),
         correction.scaled_expression(),
     );
+    if let Some(second) = second {
+        let (least, most) = second.range;
+        let _ = write!(
+            text,
+            "  if ~(isscalar({0}) && isreal({0})) || isnan({0})\n    \
+             error('gdcm:second', 'The {1} must be one real number.');\n  end\n  \
+             b = min(max(double({0}), {2}), {3});\n  z = {4};\n",
+            second.name,
+            second.words,
+            number(least),
+            number(most),
+            second.scaled_expression(),
+        );
+    }
     for (name, channels) in [("i", &correction.inputs), ("o", &correction.outputs)] {
         let count = channels.len();
         let _ = write!(text, "  M{name} = zeros({count}, {count});\n  tau_{name} = zeros({count}, 1);\n");

@@ -36,7 +36,7 @@ def _diagonal(values):
     return [[value if row == column else 0.0 for column in range(len(values))] for row, value in enumerate(values)]
 
 
-def gdcm_correction(airspeed_kt):
+def gdcm_correction(airspeed_kt@):
     """Gain matrices Mi and Mo (lists of rows), delays tau_i and tau_o in seconds, at an airspeed in knots."""
     if airspeed_kt != airspeed_kt:
         raise ValueError("the airspeed is not a number")
@@ -81,8 +81,23 @@ pub fn python_module(correction: &ScheduledCorrection) -> Result<String, ExportF
     let _ = write!(text, "\nimport math\n\nINPUTS = [\n{}]\n", names(&correction.inputs));
     let _ = write!(text, "OUTPUTS = [\n{}]\n", names(&correction.outputs));
     let _ = writeln!(text, "AIRSPEED_RANGE_KT = ({}, {})", number(least), number(most));
-    text.push_str(CURVES);
+    if let Some(second) = &correction.second {
+        let (least, most) = second.range;
+        let _ = writeln!(text, "{}_RANGE = ({}, {})", second.name.to_uppercase(), number(least), number(most));
+    }
+    let argument = correction.second.as_ref().map_or_else(String::new, |second| format!(", {}", second.name));
+    text.push_str(&CURVES.replacen('@', &argument, 1));
     let _ = writeln!(text, "    v = {}", correction.scaled_expression());
+    if let Some(second) = &correction.second {
+        let (name, range) = (second.name, format!("{}_RANGE", second.name.to_uppercase()));
+        let _ = write!(
+            text,
+            "    if {name} != {name}:\n        raise ValueError(\"the {} is not a number\")\n    \
+             b = min(max(float({name}), {range}[0]), {range}[1])\n    z = {}\n",
+            second.words,
+            second.scaled_expression(),
+        );
+    }
     let curves = |channels: &[ScheduledChannel], of: fn(&ScheduledChannel) -> &Curve| -> String {
         channels.iter().map(|channel| format!("        {},\n", FUNCTIONS.expression(of(channel)))).collect()
     };

@@ -51,8 +51,40 @@ pub struct ScheduledCorrection {
     pub airspeed_mean_kt: f64,
     /// Airspeed above the mean at which it is 1 \[kt\]; zero where there is one airspeed only: it is 0 there.
     pub airspeed_half_range_kt: f64,
+    /// The second variable, where there is one.
+    pub second: Option<SecondArgument>,
     /// What has to be known about it.
     pub notes: Vec<String>,
+}
+
+/// A second variable of a correction: the second argument of its functions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SecondArgument {
+    /// Its name with its unit, as an argument is called: `altitude_ft`.
+    pub name: &'static str,
+    /// The same in words: "altitude [ft]".
+    pub words: &'static str,
+    /// Least and greatest value; values outside are cut to them.
+    pub range: (f64, f64),
+}
+
+impl SecondArgument {
+    /// A value on the scale from -1 to 1, cut to the range; what is not a number stays so.
+    pub fn scaled(&self, value: f64) -> f64 {
+        let (least, most) = self.range;
+        let within = match value {
+            low if low < least => least,
+            high if high > most => most,
+            within => within,
+        };
+        (within - 0.5 * (least + most)) / (0.5 * (most - least))
+    }
+
+    /// The same of the variable `b`, which is cut already, in every language.
+    pub(super) fn scaled_expression(&self) -> String {
+        let (least, most) = self.range;
+        format!("(b - ({})) / {}", number(0.5 * (least + most)), number(0.5 * (most - least)))
+    }
 }
 
 /// A curve of a correction, with what it is.
@@ -85,7 +117,19 @@ impl ScheduledCorrection {
             within => within,
         };
         let half_kt = self.airspeed_half_range_kt;
-        CutAirspeed { kt, scaled: if half_kt == 0.0 { 0.0 } else { (kt - self.airspeed_mean_kt) / half_kt } }
+        let scaled = if half_kt == 0.0 { 0.0 } else { (kt - self.airspeed_mean_kt) / half_kt };
+        CutAirspeed { kt, scaled, second_scaled: 0.0 }
+    }
+
+    /// The same with a value of the second variable.
+    pub fn cut_both(&self, airspeed_kt: f64, second: f64) -> CutAirspeed {
+        let second_scaled = self.second.as_ref().map_or(0.0, |argument| argument.scaled(second));
+        CutAirspeed { second_scaled, ..self.cut(airspeed_kt) }
+    }
+
+    /// The one or the other, as far as there is a second value.
+    pub(super) fn at(&self, airspeed_kt: f64, second: Option<f64>) -> CutAirspeed {
+        second.map_or_else(|| self.cut(airspeed_kt), |second| self.cut_both(airspeed_kt, second))
     }
 
     /// The scaled airspeed of the airspeed `a`, in every language.
@@ -112,6 +156,9 @@ impl ScheduledCorrection {
         let (least, most) = self.airspeed_range_kt;
         let numbers = [least, most, self.airspeed_mean_kt, self.airspeed_half_range_kt];
         if !numbers.iter().all(|number| number.is_finite()) || least > most || self.airspeed_half_range_kt < 0.0 {
+            return Err(ExportFault::Range);
+        }
+        if self.second.as_ref().is_some_and(|second| !(second.range.0 < second.range.1)) {
             return Err(ExportFault::Range);
         }
         for NamedCurve { side, kind, name, curve } in self.curves() {
@@ -171,6 +218,7 @@ pub(super) mod tests {
             airspeed_range_kt: (0.0, 80.0),
             airspeed_mean_kt: 40.0,
             airspeed_half_range_kt: 40.0,
+            second: None,
             notes: vec![NASTY[0].to_owned()],
         }
     }
@@ -204,10 +252,10 @@ pub(super) mod tests {
     #[test]
     fn airspeeds_are_cut_to_the_range() {
         let correction = example();
-        assert_eq!(correction.cut(-3.0), CutAirspeed { kt: 0.0, scaled: -1.0 });
-        assert_eq!(correction.cut(100.0), CutAirspeed { kt: 80.0, scaled: 1.0 });
+        assert_eq!(correction.cut(-3.0), CutAirspeed { kt: 0.0, scaled: -1.0, second_scaled: 0.0 });
+        assert_eq!(correction.cut(100.0), CutAirspeed { kt: 80.0, scaled: 1.0, second_scaled: 0.0 });
         let single = ScheduledCorrection { airspeed_range_kt: (40.0, 40.0), airspeed_half_range_kt: 0.0, ..correction };
-        assert_eq!(single.cut(100.0), CutAirspeed { kt: 40.0, scaled: 0.0 });
+        assert_eq!(single.cut(100.0), CutAirspeed { kt: 40.0, scaled: 0.0, second_scaled: 0.0 });
     }
 
     #[test]

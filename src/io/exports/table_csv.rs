@@ -24,14 +24,20 @@ pub fn table_csv(correction: &ScheduledCorrection, breakpoints_kt: &[f64]) -> Re
         let _ = writeln!(text, "# {}: {}", comment(&column.of.words()), column.error_words());
     }
     text.push_str("airspeed [kt]");
+    if let Some(second) = &correction.second {
+        let _ = write!(text, ",{}", second.words);
+    }
     for BreakpointColumn { of, .. } in &table.columns {
         let unit = if of.is_time() { " [s]" } else { " [-]" };
         let NamedCurve { side, kind, name, .. } = of;
         let _ = write!(text, ",\"{kind} of {side} {}{unit}\"", comment(name).replace('"', "\"\""));
     }
     text.push('\n');
-    for (row, &airspeed) in table.airspeed_kt.iter().enumerate() {
+    for (row, (airspeed, second)) in table.rows().into_iter().enumerate() {
         text.push_str(&number(airspeed));
+        if let Some(second) = second {
+            let _ = write!(text, ",{}", number(second));
+        }
         for column in &table.columns {
             let _ = write!(text, ",{}", number(column.values[row]));
         }

@@ -14,13 +14,16 @@ pub(super) fn table_variable(
     breakpoints_kt: &[f64],
 ) -> Result<Variable, ExportFault> {
     let table = BreakpointTable::of(correction, breakpoints_kt)?;
-    let rows = table.airspeed_kt.len();
+    let rows = table.rows().len();
     let of = |side: &str, kind: &str| -> Vec<&BreakpointColumn<'_>> {
         table.columns.iter().filter(|column| column.of.side == side && column.of.kind == kind).collect()
     };
     let mut fields = Fields::default();
     fields.add("about", cell_of_texts(heading(correction)));
-    fields.add("airspeed_kt", column(table.airspeed_kt.iter().copied()));
+    fields.add("airspeed_kt", column(table.rows().into_iter().map(|(airspeed, _)| airspeed)));
+    if let Some(second) = &correction.second {
+        fields.add(second.name, column(table.rows().into_iter().filter_map(|(_, second)| second)));
+    }
     for (side, channels) in [("input", &correction.inputs), ("output", &correction.outputs)] {
         fields.add(&format!("{side}s"), cell_of_texts(channels.iter().map(|channel| channel.name.clone())));
         let kinds = [("gain", "gain", "percent"), ("delay", "delay", "ms"), ("lead numerator", "lead_numerator", "ms")];

@@ -2,6 +2,7 @@
 
 mod assessment;
 mod conditions;
+mod evidence;
 mod extent;
 mod left_out;
 mod markup;
@@ -59,6 +60,7 @@ pub fn report(
     engine: &mut Engine,
     progress: &dyn Progress,
 ) -> Result<String, Cancelled> {
+    let analysis = &evidence::with_bars(analysis, engine, progress)?;
     let mut page = Page::default();
     summary::add(&mut page, analysis);
     settings::add(&mut page, &analysis.study);
@@ -66,6 +68,7 @@ pub fn report(
     left_out::add(&mut page, analysis);
     conditions::add(&mut page, analysis, engine, progress)?;
     schedule::add(&mut page, analysis);
+    evidence::add(&mut page, analysis);
     assessment::add(&mut page, analysis);
     method::add(&mut page);
     sources::add_models(&mut page, &analysis.study);

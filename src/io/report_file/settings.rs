@@ -35,7 +35,9 @@ pub(super) fn add(page: &mut Page, study: &Study) {
         ("Loops of held gains agree within", format!("{} dB", number(*agreement_db))),
         ("J takes over frequency", average_word(settings.cost_average).to_owned()),
         ("Coherence counts from", coherence_words(settings.coherence_threshold)),
+        ("G is taken from", settings.gain_source.words().to_owned()),
         ("Schedule", schedule_words(schedule)),
+        ("Level of error bars", percent(settings.uncertainty.level)),
     ]);
 }
 
@@ -104,5 +106,6 @@ pub(super) fn schedule_words(settings: &ScheduleSettings) -> String {
         ScheduledQuantity::Gain => "k",
     };
     let delays = if settings.delays { "delays are scheduled too" } else { "delays are not scheduled" };
-    format!("{kind}, of {of}; airspeeds within {} kt are one; {delays}", number(settings.airspeed_tolerance_kt))
+    let second = settings.second.map_or_else(String::new, |variable| format!(" and {variable}"));
+    format!("{kind}{second}, of {of}; airspeeds within {} kt are one; {delays}", number(settings.airspeed_tolerance_kt))
 }

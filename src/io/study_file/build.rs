@@ -40,6 +40,7 @@ fn present_decisions(start: Settings, text: SettingsEntry, conditions: Vec<Condi
             physics: bundle_choice(condition.physics),
             identified: bundle_choice(condition.identified),
             scheduled: condition.scheduled,
+            held_out: condition.held_out,
         };
         if choices.insert(ConditionId(id), choice).is_some() {
             return Err(Flaw::new(Place::condition(index + 1, id), ContentFault::DuplicateCondition { id }));

@@ -47,6 +47,7 @@ fn condition_texts(study: &Study) -> Vec<ConditionText> {
             physics: bundle_text(condition.bundle(BundleKind::Physics), &choice.physics),
             identified: bundle_text(condition.bundle(BundleKind::Identified), &choice.identified),
             scheduled: choice.scheduled,
+            held_out: choice.held_out,
         }
     };
     study.dataset.conditions().iter().map(text).collect()

@@ -81,6 +81,9 @@ pub(super) struct ConditionText {
     pub(super) physics: BundleText,
     pub(super) identified: BundleText,
     pub(super) scheduled: bool,
+    /// Whether it is held out; absent in studies of older programs.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(super) held_out: bool,
 }
 
 /// The choices in one bundle, by model name.

@@ -72,11 +72,25 @@ pub(super) fn change(context: &Context<'_>, pair: Pair, choice: AssessmentChoice
         AssessedCorrection::Own => (context.result.correction.clone(), "the condition's own optimum".to_owned()),
         AssessedCorrection::Scheduled => {
             let from = format!("the schedule at {} kt", number(found.airspeed_kt));
-            (context.analysis.schedule.as_ref().ok()?.at(found.airspeed_kt), from)
+            (context.analysis.schedule.as_ref().ok()?.at_state(context.result.condition.flight_state()), from)
+        }
+        AssessedCorrection::ScheduleOfOthers => {
+            let from = format!("the schedule of the other conditions at {} kt", number(found.airspeed_kt));
+            let schedule = context.analysis.schedule_without(id).ok()?;
+            (schedule.at_state(context.result.condition.flight_state()), from)
         }
         AssessedCorrection::ScheduledWithoutLeads => {
             let from = format!("the schedule at {} kt, its leads left out", number(found.airspeed_kt));
-            (context.analysis.schedule.as_ref().ok()?.at(found.airspeed_kt).without_leads(), from)
+            (
+                context
+                    .analysis
+                    .schedule
+                    .as_ref()
+                    .ok()?
+                    .at_state(context.result.condition.flight_state())
+                    .without_leads(),
+                from,
+            )
         }
     };
     let role = match choice.model {

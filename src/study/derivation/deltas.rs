@@ -1,6 +1,7 @@
 //! How G, D and the bounds were computed (M6, M7).
 
-use crate::dataset::Pair;
+use crate::correction::GainSource;
+use crate::dataset::{BundleKind, Pair};
 use crate::fidelity::Mismatch;
 use crate::units::{db_to_ratio, number, s_to_ms};
 
@@ -29,6 +30,9 @@ fn middle_words(mismatch: &Mismatch, values: &[f64]) -> String {
 pub(super) fn gain(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let value = context.result.wanted_gain(pair)?;
     let mismatch = context.led_mismatch(pair)?;
+    if context.settings().gain_source == GainSource::MeanOfPairs && context.result.led.is_none() {
+        return Some(mean_gain(context, pair, value));
+    }
     let (equation, section) = match context.result.led {
         None => ("G = median_ω |H_ref| / |H_sim|", "M6, eq. (5)"),
         Some(_) => ("G = median_ω |H_ref| / |L_o H_sim L_i|", "M15.5, eq. (5)"),
@@ -41,6 +45,20 @@ pub(super) fn gain(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
         section,
         value,
     })
+}
+
+/// G as the mean over every pair of a kept physics and a kept identified model.
+fn mean_gain(context: &Context<'_>, pair: Pair, value: f64) -> Derivation {
+    let kept = |kind| context.result.representative(kind).scores.iter().flatten().count();
+    let (physics, identified) = (kept(BundleKind::Physics), kept(BundleKind::Identified));
+    Derivation {
+        title: context.title(&format!("G of {}", context.pair(pair))),
+        equation: "G = exp mean ln median_ω |H_ref| / |H_sim|, the mean over all pairs of kept models".to_owned(),
+        with_numbers: vec![format!("G = {}", digits(value))],
+        rests_on: vec![format!("{physics} physics and {identified} identified models that are kept"), context.band()],
+        section: "M6, eq. (5)",
+        value,
+    }
 }
 
 pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {

@@ -6,6 +6,7 @@ mod context;
 mod costs;
 mod deltas;
 mod schedules;
+mod swaps;
 
 use crate::correction::{Channel, GainObjective};
 use crate::dataset::{ConditionId, ModelId, Pair};
@@ -77,7 +78,7 @@ pub fn derivation(analysis: &Analysis, asked: &AskedFigure) -> Option<Derivation
         analysis.study.dataset.on_axis().get(*pair)?;
         of(condition)
     };
-    match asked {
+    let found = match asked {
         AskedFigure::DeltaGain(id, pair) => deltas::gain(&of_pair(id, pair)?, *pair),
         AskedFigure::DeltaDelay(id, pair) => deltas::delay(&of_pair(id, pair)?, *pair),
         AskedFigure::GainBounds(id) => Some(deltas::gain_bounds(&of(id)?)),
@@ -94,7 +95,11 @@ pub fn derivation(analysis: &Analysis, asked: &AskedFigure) -> Option<Derivation
         AskedFigure::DiscontinuityRatio(model) => bundles::ratio(&of(&model.condition)?, model),
         AskedFigure::Score(model) => bundles::score(&of(&model.condition)?, model),
         AskedFigure::ScheduledGain(channel, airspeed_kt) => schedules::gain(analysis, *channel, *airspeed_kt),
-    }
+    };
+    found.map(|mut found| {
+        found.rests_on.extend(swaps::sure(analysis, asked));
+        found
+    })
 }
 
 /// The average over frequency, as an equation writes it.

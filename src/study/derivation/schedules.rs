@@ -30,10 +30,16 @@ pub(super) fn gain(analysis: &Analysis, channel: Channel, airspeed_kt: f64) -> O
         title: format!("scheduled {name} at {} kt", number(airspeed_kt)),
         equation: equation(regression, &symbol),
         with_numbers,
-        rests_on: vec![
+        rests_on: [
             format!("the optima of the conditions {}", ids.join(", ")),
             format!("airspeeds {} to {} kt", number(schedule.airspeeds.min_kt), number(schedule.airspeeds.max_kt)),
-        ],
+        ]
+        .into_iter()
+        .chain(schedule.second.as_ref().map(|term| {
+            let (middle, unit) = (number(term.middle()), term.variable.unit());
+            format!("with {}, here in the middle of its range, {middle} {unit}", term.variable)
+        }))
+        .collect(),
         section: "M11",
         value,
     })

@@ -77,6 +77,8 @@ pub struct Dot {
     pub value: f64,
     /// Between which values the optimum was looked for, in the same unit.
     pub bounds: Option<[f64; 2]>,
+    /// How sure the figure is, in the same unit; drawn where it is there.
+    pub bar: Option<DotBar>,
     /// Outline: the class of a first property.
     pub shape: DotShape,
     /// Filled or open: the class of a second property.
@@ -85,26 +87,57 @@ pub struct Dot {
     pub selected: bool,
     /// Whether the schedule is fitted to it.
     pub chosen: bool,
+    /// Whether it is held out of the schedule, to judge it: drawn hollow.
+    pub held_out: bool,
     /// A further line for hovering: what the caller wants to say. May be empty.
     pub detail: String,
+    /// Sentences for hovering: how sure it is, and how it differs from others.
+    pub sentences: Vec<String>,
     /// The figures that can be asked about here.
     pub figures: Vec<NamedFigure>,
+}
+
+/// How sure a figure is, in its unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DotBar {
+    /// For the physics model chosen; none where the identification is not included.
+    pub inner: Option<[f64; 2]>,
+    /// With not knowing the trim flown.
+    pub outer: [f64; 2],
+}
+
+impl DotBar {
+    /// Draws the bar at the horizontal place `x`; `y` says where a value is.
+    pub(super) fn paint(&self, painter: &Painter, x: f32, y: impl Fn(f64) -> f32, color: Color32) {
+        let line = |[low, high]: [f64; 2], width: f32| {
+            painter.line_segment([Pos2::new(x, y(low)), Pos2::new(x, y(high))], Stroke::new(width, color));
+        };
+        line(self.outer, 1.2);
+        if let Some(inner) = self.inner {
+            line(inner, 3.6);
+        }
+    }
 }
 
 impl Dot {
     /// Draws the dot at `center`.
     pub(super) fn paint(&self, painter: &Painter, center: Pos2, is_hovered: bool, palette: &Palette) {
-        let color = if self.chosen { palette.perturbed } else { palette.rejected };
+        let color = self.color(palette);
         let radius = if is_hovered { DOT_RADIUS + 1.2 } else { DOT_RADIUS };
         if self.selected {
             painter.circle_stroke(center, radius + RING_GAP, Stroke::new(1.6, palette.text));
         }
-        if self.filled {
+        if self.filled && !self.held_out {
             self.shape.paint(painter, center, radius, color, Stroke::NONE);
         } else {
             // An open dot hides the lines that run through it, and looks as large as a filled one.
             self.shape.paint(painter, center, radius - 0.75, palette.background, Stroke::new(1.5, color));
         }
+    }
+
+    /// Its colour, and that of its bar.
+    pub(super) fn color(&self, palette: &Palette) -> Color32 {
+        if self.chosen { palette.perturbed } else { palette.rejected }
     }
 
     /// How far from its centre a label must stay \[pt\].

@@ -152,8 +152,13 @@ fn dot_tooltip_ui(answer: &PanelAnswer, panel: &GainPanel, dot: &Dot, palette: &
         if let Some([lower, upper]) = dot.bounds {
             ui.label(dim(format!("bounds {} to {}", panel.measure.text(lower), panel.measure.text(upper))));
         }
-        if !dot.chosen {
+        if dot.held_out {
+            ui.label(dim("held out of the schedule, to judge it".to_owned()));
+        } else if !dot.chosen {
             ui.label(dim("not in the schedule".to_owned()));
+        }
+        for sentence in &dot.sentences {
+            ui.label(RichText::new(sentence).size(SMALL_SIZE));
         }
         if !dot.detail.is_empty() {
             ui.label(dim(dot.detail.clone()));

@@ -10,6 +10,7 @@ use crate::dataset::ConditionId;
 use super::axes::{LABELLED_HEIGHT, axis_hints, caption_font, quiet_plot};
 use super::dot::{DOT_RADIUS, Dot};
 use super::dot_label::{LabelledDot, PlacedLabels, Surroundings};
+use super::gain_band::{Bracket, GainBand, paint_bands, paint_bracket};
 use super::line_look::LinePattern;
 use super::linear_axis::{Ladder, tick_text};
 use super::number::decimals;
@@ -25,6 +26,8 @@ const AIRSPEED_TICK_GAP: f64 = 25.0;
 const GAIN_TICK_GAP: f64 = 26.0;
 /// How far from a dot the pointer may be to mean it \[pt\].
 const PICK_RADIUS: f32 = 10.0;
+/// How far bars and bands may widen the range of the dots, as a part of it.
+const OF_BARS: f64 = 0.35;
 const LABEL_FONT: FontId = FontId::proportional(10.5);
 /// Height that a row of label text has above and below its figures \[pt\].
 const LABEL_LEADING: f32 = 4.0;
@@ -52,6 +55,10 @@ pub struct GainPanel {
     pub dots: Vec<Dot>,
     /// The schedule, sampled: place on the horizontal axis, and value. Empty where there is none.
     pub schedule: Vec<[f64; 2]>,
+    /// The bands of the schedule, rising along the horizontal axis. Empty where there are none.
+    pub bands: Vec<GainBand>,
+    /// Differences at one airspeed.
+    pub brackets: Vec<Bracket>,
 }
 
 impl GainPanel {
@@ -93,6 +100,12 @@ impl SharedRanges {
             Across::Conditions => Range::new(x.min - 0.6, x.max + 0.6),
         };
         let value = Range::of(dots().map(|dot| dot.value).chain(scheduled))?;
+        // Bars and bands are seen as far as they leave the dots their room.
+        let spare = OF_BARS * (value.max - value.min);
+        let bars = dots().filter_map(|dot| dot.bar).flat_map(|bar| bar.outer);
+        let bands = panels.iter().flat_map(|panel| panel.bands.iter().flat_map(|band| band.confidence));
+        let beyond = bars.chain(bands).map(|end| end.clamp(value.min - spare, value.max + spare));
+        let value = beyond.filter(|end| end.is_finite()).fold(value, Range::including);
         let value = value.including(first.measure.null()).with_margin(0.09, first.measure.least_height());
         Some(Self { x, value })
     }
@@ -131,6 +144,14 @@ pub(super) fn gain_panel_ui(
     ui.painter().text(title_place, Align2::CENTER_CENTER, &panel.title, caption_font(), palette.text);
     let position = |dot: &Dot| transform.position_from_point(&PlotPoint::new(dot.x, dot.value));
     let placed: Vec<(&Dot, Pos2)> = panel.drawable_dots().map(|dot| (dot, position(dot))).collect();
+    let inside = ui.painter().with_clip_rect(frame);
+    paint_bands(&inside, &panel.bands, ranges.x, &transform, palette);
+    for (dot, center) in &placed {
+        if let Some(bar) = &dot.bar {
+            bar.paint(&inside, center.x, |value| transform.position_from_point_y(value), dot.color(palette));
+        }
+    }
+    panel.brackets.iter().for_each(|bracket| paint_bracket(&inside, bracket, &transform, palette));
     paint_labels(ui, &placed, panel, (&transform, labels), palette);
     let painter = ui.painter().with_clip_rect(frame.expand(DOT_RADIUS));
     paint_bounds(&painter.with_clip_rect(frame), &placed, &transform, palette);
@@ -291,7 +312,10 @@ mod tests {
             filled: true,
             selected: false,
             chosen: true,
+            held_out: false,
+            bar: None,
             detail: String::new(),
+            sentences: Vec::new(),
             figures: Vec::new(),
         };
         let panel = GainPanel { dots: vec![dot], ..GainPanel::default() };

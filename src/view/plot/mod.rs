@@ -21,6 +21,7 @@ mod dot;
 mod dot_label;
 mod drawn_box;
 mod drawn_curves;
+mod gain_band;
 mod gain_group;
 mod gain_panel;
 mod grid_strength;
@@ -66,7 +67,8 @@ pub use chart::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan, c
 pub use chip::Chip;
 pub use curve::{BodeCurve, CurveId, Pane};
 pub use curve_menu::CurveWish;
-pub use dot::{Dot, DotShape};
+pub use dot::{Dot, DotBar, DotShape};
+pub use gain_band::{Bracket, GainBand};
 pub use gain_group::{GainEvent, GainView};
 pub use gain_panel::{Across, GainPanel, Measure};
 pub use line_look::{LineLook, LinePattern};

@@ -51,6 +51,11 @@ fn choices_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
     let corrections = [
         (AssessedCorrection::Scheduled, "scheduled", "The schedule at the condition's airspeed"),
         (
+            AssessedCorrection::ScheduleOfOthers,
+            "of the others",
+            "The schedule of the other conditions, which has not seen this one",
+        ),
+        (
             AssessedCorrection::ScheduledWithoutLeads,
             "scheduled, no leads",
             "The schedule with its lead filters left out (M15)",

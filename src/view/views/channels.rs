@@ -9,7 +9,7 @@ use crate::view::plot::{Across, ChannelsScene, Measure, channels_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 
-use super::net_gain::gain_command;
+use super::net_gain::{bars_switch_ui, gain_command};
 
 /// Gains or delays, over airspeed or over conditions. Laid out from right to left.
 pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
@@ -25,6 +25,7 @@ pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command
         (Measure::Delay, "delays", "Delay τ of every channel [ms], its bounds, and 0: no correction"),
     ];
     choice_ui(ui, "Figure of the channels", &mut measure, &figures);
+    bars_switch_ui(ui, state, "bars of the channels", commands);
     if (measure, across) != shown {
         commands.push(Command::ShowChannels(measure, across));
     }

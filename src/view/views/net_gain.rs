@@ -3,7 +3,7 @@
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
-use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
+use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity, SecondVariable};
 use crate::study::{Edit, PhaseCorrection, Setting};
 use crate::view::command::Command;
 use crate::view::evidence_scene::{coefficient_table, evidence_table, lead_evidence_table, residual_table};
@@ -21,7 +21,7 @@ const WIDEST_TOLERANCE_KT: f64 = 100.0;
 /// The key of the dots is not narrower \[pt\].
 const LEAST_KEY: f32 = 120.0;
 /// Room \[pt\] in which the controls of this view stand in one line.
-const ONE_LINE: f32 = 480.0;
+const ONE_LINE: f32 = 660.0;
 
 /// What the plots show, the form of the schedule, and the key of the dots, laid out from right to left; behind a button where they
 /// have no room.
@@ -49,7 +49,21 @@ fn controls_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
     if ui.checkbox(&mut shown, "evidence").on_hover_text(hint).changed() {
         commands.push(Command::ShowEvidence(shown));
     }
+    bars_switch_ui(ui, state, "error bars", commands);
     pair_set_ui(ui, state, commands);
+}
+
+/// The switch of error bars and bands, by this name.
+pub(super) fn bars_switch_ui(ui: &mut Ui, state: &State, name: &str, commands: &mut Vec<Command>) {
+    let mut shown = state.display.show_bars;
+    let level = 100.0 * state.study.settings.uncertainty.level;
+    let hint = format!(
+        "Bars of {level:.0} %: thick for the physics model chosen (identification), thin with not knowing the trim flown. Bands of the \
+         schedule: where it may lie, and where another condition would fall"
+    );
+    if ui.checkbox(&mut shown, name).on_hover_text(hint).changed() {
+        commands.push(Command::ShowBars(shown));
+    }
 }
 
 /// Which responses are shown. Laid out from right to left.
@@ -164,6 +178,16 @@ fn schedule_ui(ui: &mut Ui, settings: ScheduleSettings, phase: PhaseCorrection, 
             (polynomial(2), "degree 2", "Polynomial of degree 2 in airspeed"),
             (polynomial(3), "degree 3", "Polynomial of degree 3 in airspeed"),
             (ScheduleKind::Table, "table", "Mean of each cluster of airspeeds, linear between"),
+        ],
+    );
+    choice_ui(
+        ui,
+        "Second variable of the schedule",
+        &mut chosen.second,
+        &[
+            (None, "airspeed only", "The paper"),
+            (Some(SecondVariable::Altitude), "and altitude", "Only where the view Evidence says that it is needed"),
+            (Some(SecondVariable::Mass), "and mass", "Only where the view Evidence says that it is needed"),
         ],
     );
     let hint = "Airspeeds this close to the next one [kt] count as one, for the table and for the degree";

@@ -22,6 +22,7 @@ mod response_paths;
 mod responses;
 mod studies;
 mod timing;
+mod uncertainty;
 mod variants;
 
 fn json(text: &str) -> Value {

@@ -95,6 +95,7 @@ fn edits() -> impl Strategy<Value = Vec<Edit>> {
                 quantity,
                 delays,
                 airspeed_tolerance_kt: tolerance,
+                second: None,
                 tau_degree: degree,
             })
         }),

@@ -55,10 +55,11 @@ fn example() -> Opened {
     Opened::Dataset(crate::EXAMPLE.clone())
 }
 
-/// An engine that has analysed the example: most windows begin with that, and none has to wait for it again.
+/// An engine that has analysed the example, error bars and all: most windows begin with that, and none has to wait for it again.
 static WARM: LazyLock<Engine> = LazyLock::new(|| {
     let mut engine = Engine::default().with_proofs_within(LIVE_PROOF);
-    engine.analyze(&Study::new(crate::EXAMPLE.dataset.clone()), &Unobserved).expect("nothing stops it");
+    let analysis = engine.analyze(&Study::new(crate::EXAMPLE.dataset.clone()), &Unobserved).expect("nothing stops it");
+    engine.uncertainty(&analysis, &Unobserved).expect("nothing stops it");
     engine
 });
 

@@ -164,6 +164,56 @@ fn a_degree_is_chosen_on_evidence() {
     assert!(!state(&window).unsaved);
 }
 
+/// Draws frames until how sure the figures are is there.
+fn wait_for_bars(window: &mut Window) {
+    wait_until(window, "the error bars", |window| state(window).uncertainty().is_some());
+}
+
+#[test]
+fn the_evidence_answers_which_differences_are_in_earnest() {
+    let mut window = window();
+    show(&mut window, View::Evidence);
+    wait_for_bars(&mut window);
+    // The independent numpy code finds the ratio 5.39 with the three suggested models of condition 10 rejected, which 3 and 5 lack.
+    let sentence =
+        "COL → NZ: conditions 3 and 5 (45 kt) differ by 13 %, 5.4 times what the bundles explain: real, or model form";
+    window.get_by_label(sentence);
+    let split = window.query_by_label_contains("LON → Q at equal airspeed: ").is_some();
+    assert!(split, "what the scatter is made of has a line for each response");
+    let uncertainty = state(&window).uncertainty().unwrap();
+    assert_eq!(uncertainty.differences.len(), 35, "five responses, seven pairs of conditions");
+}
+
+#[test]
+fn error_bars_come_beside_the_answer_and_can_be_switched_off() {
+    let mut window = window();
+    show(&mut window, View::NetGain);
+    wait_for_bars(&mut window);
+    let panels = |window: &Window| gdcm::view::net_gain_scene::net_gain_panels(state(window));
+    let shown = panels(&window);
+    assert!(shown.iter().all(|panel| panel.dots.iter().all(|dot| dot.bar.is_some()) && !panel.bands.is_empty()));
+    assert!(shown.iter().any(|panel| panel.brackets.iter().any(|bracket| bracket.beyond)));
+    click(&mut window, "error bars");
+    let bare = panels(&window);
+    assert!(bare.iter().all(|panel| panel.dots.iter().all(|dot| dot.bar.is_none()) && panel.bands.is_empty()));
+}
+
+#[test]
+fn a_condition_that_is_held_out_leaves_the_schedule_and_judges_it() {
+    let mut window = window();
+    let held_out = ConditionId(3);
+    let edit = Edit::SetHeldOut { condition: held_out, held_out: true };
+    let ctx = window.ctx.clone();
+    window.state_mut().give(edit.into(), &ctx);
+    settle(&mut window);
+    let analysis = state(&window).analysis().unwrap();
+    assert_eq!((analysis.scheduled().len(), analysis.conditions.len()), (10, 11));
+    show(&mut window, View::Assessment);
+    let choice = gdcm::view::assessment_scene::assessment_choice(state(&window));
+    let words = gdcm::study::held_out_verdict(state(&window).analysis().unwrap(), choice).unwrap();
+    assert!(words.starts_with("held out (3): better in ") && words.contains("; the others: better in "), "{words}");
+}
+
 #[test]
 fn an_assessment_can_be_had_for_every_model_correction_and_response() {
     let mut window = window();

@@ -27,6 +27,9 @@ fn dot(number: usize, airspeed_kt: f64, gain: f64) -> Dot {
         filled: number.is_multiple_of(2),
         selected: number == 2,
         chosen: true,
+        held_out: false,
+        bar: None,
+        sentences: Vec::new(),
         detail: String::new(),
         figures: Vec::new(),
     }

@@ -1,0 +1,221 @@
+//! How sure the figures of an analysis are, what their scatter over the conditions is made of, and what follows for the schedule
+//! (M13).
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::dataset::{ConditionId, FlightState, Pair, PairTable};
+use crate::schedule::{Schedule, ScheduledQuantity, SecondVariable, airspeed_indicators};
+use crate::uncertainty::{
+    BandWidths, Bar, BarSource, Design, Scalar, ScalarTable, ScheduleBand, SecondVariableDesign, SecondVariableEffect,
+    SecondVariableError, Split, bars,
+};
+
+use super::airspeed_difference::{AirspeedDifference, EQUAL_AIRSPEED_KT, differences, holm_where_known};
+use super::analysis::Analysis;
+use super::bar_source::{bar_source, left_in_band};
+use super::condition_analysis::ConditionAnalysis;
+use super::swaps::ConditionSwaps;
+
+/// How sure the figures of an analysis are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Uncertainty {
+    /// Level of every bar, interval and test.
+    pub level: f64,
+    /// Each condition that was analysed.
+    pub conditions: BTreeMap<ConditionId, ConditionUncertainty>,
+    /// The differences of the on-axis net gains of every two conditions at equal airspeed, response by response.
+    pub differences: Vec<AirspeedDifference>,
+    /// How many differences there are where they are too many to compare; none is kept then.
+    pub too_many_differences: Option<usize>,
+    /// What the scatter of each on-axis net gain is made of.
+    pub scatter: Vec<PairScatter>,
+    /// The bands of the schedule, where it is one of `ln k` with degrees of freedom left.
+    pub bands: Option<ScheduleBands>,
+    /// Whether the schedule needs a second variable, for each on-axis response and each variable.
+    pub second_variables: Vec<SecondVariableTest>,
+}
+
+/// How sure the figures of one condition are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConditionUncertainty {
+    /// The bar of each figure that exists.
+    pub bars: ScalarTable<Option<Bar>>,
+    /// `(Q84 - Q16) / 2` over the band of `ln |H_ref| / |H_sim|` of the representatives: what one gain leaves over.
+    pub left_in_band: PairTable<Option<f64>>,
+    /// What the bars are made of.
+    pub swaps: ConditionSwaps,
+}
+
+/// What the scatter of one on-axis net gain is made of (M13.5).
+#[derive(Clone, Debug, PartialEq)]
+pub struct PairScatter {
+    /// The response.
+    pub pair: Pair,
+    /// At equal airspeed; none where no two conditions share one.
+    pub same_airspeed: Option<Split>,
+    /// About the schedule; none where it goes through every condition.
+    pub about_schedule: Option<Split>,
+}
+
+/// Whether the schedule of one on-axis net gain needs a second variable (M13.7).
+#[derive(Clone, Debug, PartialEq)]
+pub struct SecondVariableTest {
+    /// The response.
+    pub pair: Pair,
+    /// The variable.
+    pub variable: SecondVariable,
+    /// Its effect, or why it cannot be told.
+    pub effect: Result<SecondVariableEffect, SecondVariableError>,
+    /// The probability of so great an effect where there is none, after Holm's correction over all responses and variables.
+    pub p_holm: Option<f64>,
+    /// Whether the schedule needs it.
+    pub needed: bool,
+}
+
+impl SecondVariableTest {
+    /// The test in words: "from the lowest to the highest altitude −7 % ± 6 %: not needed; an effect smaller than ± 6 % could not have
+    /// been seen".
+    pub fn words(&self) -> String {
+        let variable = self.variable.name();
+        let effect = match &self.effect {
+            Ok(effect) => effect,
+            Err(error) => return format!("{variable}: {error}"),
+        };
+        let (percent, visible) = (100.0 * effect.effect, 100.0 * effect.visible);
+        let verdict = if self.needed { "needed" } else { "not needed" };
+        let sign = if percent < 0.0 { "−" } else { "+" };
+        format!(
+            "from the lowest to the highest {variable} {sign}{:.1} %: {verdict}; an effect smaller than ± {visible:.1} % could not have been seen",
+            percent.abs()
+        )
+    }
+}
+
+/// The bands of a schedule of `ln k` (M13.6).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScheduleBands {
+    of: Vec<(Scalar, ScheduleBand)>,
+}
+
+impl ScheduleBands {
+    /// The half-widths about the scheduled figure, the logarithm of a channel's gain or of a net gain, at an airspeed \[kt\].
+    pub fn at(&self, schedule: &Schedule, figure: Scalar, airspeed_kt: f64) -> Option<BandWidths> {
+        let (_, band) = self.of.iter().find(|(scalar, _)| *scalar == figure)?;
+        let widths = band.at(&schedule.design_row(airspeed_kt));
+        (widths.confidence.is_finite() && widths.scatter.is_finite()).then_some(widths)
+    }
+
+    fn of(schedule: &Schedule, conditions: &[&ConditionUncertainty], level: f64) -> Option<Self> {
+        if schedule.settings.quantity != ScheduledQuantity::LnGain {
+            return None;
+        }
+        let design = Arc::new(Design::new(&schedule.design())?);
+        let scalars = conditions.first()?.bars.iter().map(|(scalar, _)| scalar);
+        let scheduled = scalars.filter(|scalar| matches!(scalar, Scalar::NetGain(_) | Scalar::ChannelGain(_)));
+        let band = |scalar| {
+            let bars = bars_of(conditions, scalar)?;
+            Some((scalar, ScheduleBand::of(&design, &Split::of(&design, &bars)?, level)))
+        };
+        Some(Self { of: scheduled.filter_map(band).collect() })
+    }
+}
+
+impl Uncertainty {
+    /// What the swaps of the conditions of an analysis say.
+    pub(super) fn of(analysis: &Analysis, swaps: &[(ConditionId, ConditionSwaps)]) -> Self {
+        let (study, level) = (&analysis.study, analysis.study.settings.uncertainty.level);
+        let analysed: Vec<(&ConditionAnalysis, &ConditionSwaps)> =
+            swaps.iter().filter_map(|(id, swaps)| Some((analysis.condition(*id)?, swaps))).collect();
+        let sources: Vec<BarSource<'_>> =
+            analysed.iter().map(|(result, swaps)| bar_source(analysis, result, swaps)).collect();
+        let made = bars(&sources, study.settings.uncertainty.prior_degrees);
+        let of_condition =
+            |((result, swaps), bars): (&(&ConditionAnalysis, &ConditionSwaps), ScalarTable<Option<Bar>>)| {
+                let swaps = ConditionSwaps::clone(swaps);
+                (result.condition.id(), ConditionUncertainty { bars, left_in_band: left_in_band(result), swaps })
+            };
+        let conditions: BTreeMap<ConditionId, ConditionUncertainty> =
+            analysed.iter().zip(made).map(of_condition).collect();
+        let scheduled = analysis.scheduled();
+        let of_schedule: Vec<&ConditionUncertainty> = scheduled.iter().filter_map(|id| conditions.get(id)).collect();
+        let schedule = analysis.schedule.as_ref().ok().filter(|_| of_schedule.len() == scheduled.len());
+        let pairs: Vec<Pair> = study.dataset.measuring_pairs().marked().collect();
+        let designs = Designs::of(schedule);
+        let compared = differences(&study.dataset, &conditions, &pairs);
+        Self {
+            level,
+            too_many_differences: compared.as_ref().err().copied(),
+            differences: compared.unwrap_or_default(),
+            scatter: pairs.iter().map(|&pair| designs.scatter(&of_schedule, pair)).collect(),
+            bands: schedule.and_then(|schedule| ScheduleBands::of(schedule, &of_schedule, level)),
+            second_variables: schedule.map_or_else(Vec::new, |schedule| {
+                let states: Vec<&FlightState> =
+                    scheduled.iter().filter_map(|id| Some(study.dataset.condition(*id)?.flight_state())).collect();
+                second_variables(schedule, &states, &of_schedule, &pairs, level)
+            }),
+            conditions,
+        }
+    }
+
+    /// The bar of one figure of one condition.
+    pub fn bar(&self, condition: ConditionId, figure: Scalar) -> Option<&Bar> {
+        self.conditions.get(&condition)?.bars[figure].as_ref()
+    }
+}
+
+/// The bars of one figure in several conditions; none where one has none.
+fn bars_of(conditions: &[&ConditionUncertainty], scalar: Scalar) -> Option<Vec<Bar>> {
+    conditions.iter().map(|condition| condition.bars[scalar]).collect()
+}
+
+/// What the figures of the schedule's conditions are fitted with.
+struct Designs {
+    same_airspeed: Option<Design>,
+    schedule: Option<Design>,
+}
+
+impl Designs {
+    fn of(schedule: Option<&Schedule>) -> Self {
+        let airspeeds = schedule.map(|schedule| schedule.airspeeds.values_kt.clone());
+        Self {
+            same_airspeed: airspeeds.and_then(|of| Design::new(&airspeed_indicators(of, EQUAL_AIRSPEED_KT))),
+            schedule: schedule.and_then(|schedule| Design::new(&schedule.design())),
+        }
+    }
+
+    fn scatter(&self, conditions: &[&ConditionUncertainty], pair: Pair) -> PairScatter {
+        let bars = bars_of(conditions, Scalar::NetGain(pair));
+        let split = |design: &Option<Design>| Split::of(design.as_ref()?, bars.as_ref()?);
+        PairScatter { pair, same_airspeed: split(&self.same_airspeed), about_schedule: split(&self.schedule) }
+    }
+}
+
+fn second_variables(
+    schedule: &Schedule,
+    states: &[&FlightState],
+    conditions: &[&ConditionUncertainty],
+    pairs: &[Pair],
+    level: f64,
+) -> Vec<SecondVariableTest> {
+    let rows = schedule.airspeed_design();
+    let designs = SecondVariable::BOTH.map(|variable| {
+        let values = variable.values(states).ok_or(SecondVariableError::NotVaried);
+        values.and_then(|values| SecondVariableDesign::of(&rows, &values))
+    });
+    let mut tests = Vec::new();
+    for &pair in pairs {
+        let Some(bars) = bars_of(conditions, Scalar::NetGain(pair)) else { continue };
+        let figures: Vec<f64> = bars.iter().map(|bar| bar.value).collect();
+        for (variable, design) in SecondVariable::BOTH.into_iter().zip(&designs) {
+            let effect = design.as_ref().map(|design| design.effect(&figures, level)).map_err(|error| *error);
+            tests.push(SecondVariableTest { pair, variable, effect, p_holm: None, needed: false });
+        }
+    }
+    let probabilities: Vec<Option<f64>> = tests.iter().map(|test| Some(test.effect.as_ref().ok()?.p)).collect();
+    for (test, p) in tests.iter_mut().zip(holm_where_known(&probabilities)) {
+        test.p_holm = p;
+        test.needed = test.effect.as_ref().ok().zip(p).is_some_and(|(effect, p)| effect.is_needed(p, level));
+    }
+    tests
+}

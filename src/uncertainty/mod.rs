@@ -1,0 +1,41 @@
+//! How sure each number is (M13): bars, differences of conditions, what the scatter is made of, bands of a schedule, and whether it
+//! needs a second variable.
+//!
+//! ```text
+//!  1  for each condition c: q_0 <- the analysis with the representatives (a^, b^)
+//!  2     s_phys^2 <- mean of (q(a, b^) - q_0)^2 over the other kept physics models a
+//!  3     s_own^2  <- mean of (q(a^, b) - q_0)^2 over the other kept identified models b, n of them
+//!  4  s_pooled^2 <- sum n s_own^2 / sum n,  over the conditions
+//!  5  for each c: s_id^2 <- (n s_own^2 + d_0 s_pooled^2) / (n + d_0),  d_0 = min(4, the others' n);  at least s_coh^2
+//!  6     u^2 <- s_phys^2 + s_id^2;  nu <- u^4 / sum s^4/nu;  bar <- q_0 +- t(nu) u
+//!  7  differences at equal airspeed: |delta| / sqrt(u_c^2 + u_c'^2), Holm over all of them
+//!  8  split: S^2 of the residuals <-> B = sum (1 - h_c)(s_phys^2 + s_id^2) / f;  rest^2 = S^2 - B
+//!  9  bands: t(f) S' sqrt(h), t(f) S' sqrt(1 + h),  S'^2 = max(S^2, B)
+//! 10  second variable: its coefficient beside the schedule's columns, and leave-one-out errors with and without it
+//! ```
+
+mod bar;
+mod coherence;
+mod difference;
+mod least_squares;
+mod part;
+mod quantiles;
+mod scalar;
+mod scatter;
+mod schedule_band;
+mod second_variable;
+mod settings;
+mod spread;
+
+pub use bar::{Bar, IdentificationSource};
+pub use coherence::{CoherenceError, Measurement};
+pub use difference::{Difference, holm};
+pub use least_squares::{Design, Fit, MOST_COLUMNS};
+pub use part::{Part, pooled, satterthwaite};
+pub use quantiles::{chi_squared_quantile, fisher_upper, student_quantile, student_two_sided};
+pub use scalar::{Scalar, ScalarTable};
+pub use scatter::Split;
+pub use schedule_band::{BandWidths, ScheduleBand};
+pub use second_variable::{SecondVariableDesign, SecondVariableEffect, SecondVariableError, scaled};
+pub use settings::{GREATEST_MEASUREMENT, GREATEST_PRIOR, LEVELS, UncertaintySettings};
+pub use spread::{BarSource, ConditionSpread, Figures, ToldError, bars};

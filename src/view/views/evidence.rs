@@ -1,0 +1,164 @@
+//! What the scatter of the net gains is made of, which differences are in earnest, and what the schedule needs.
+
+use egui::{Align2, Color32, FontId, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
+
+use crate::study::{Edit, Setting, Uncertainty, difference_table, second_variable_table};
+use crate::uncertainty::Split;
+use crate::view::command::Command;
+use crate::view::evidence_scene::evidence_table;
+use crate::view::palette::{Palette, SMALL_SIZE};
+use crate::view::state::State;
+use crate::view::table_view::{TableLook, table_ui};
+
+/// Height of the bar of one scatter \[pt\].
+const BAR_HEIGHT: f32 = 15.0;
+/// Width of what stands before the bars, and of what stands behind them \[pt\].
+const LABELS: [f32; 2] = [170.0, 230.0];
+
+/// The paper's question on one screen: is the scatter at one airspeed trim, identification, or real?
+pub fn evidence_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    let Some(uncertainty) = state.uncertainty().cloned() else {
+        ui.label(RichText::new(state.results.absence()).color(palette.dim_text));
+        return;
+    };
+    let mut sorting = state.display.evidence_tables;
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        answer_ui(ui, state, &uncertainty, palette);
+        scatter_ui(ui, state, &uncertainty, palette);
+        tables_ui(ui, state, &uncertainty, (&mut sorting, palette), commands);
+    });
+    state.display.evidence_tables = sorting;
+}
+
+/// What the differences come to, in a sentence each.
+fn answer_ui(ui: &mut Ui, state: &State, uncertainty: &Uncertainty, palette: &Palette) {
+    let beyond: Vec<_> = uncertainty.differences.iter().filter(|of| of.is_beyond(uncertainty.level)).collect();
+    let all = uncertainty.differences.len();
+    let words = match (all, beyond.len()) {
+        (0, _) if uncertainty.too_many_differences.is_some() => {
+            let count = uncertainty.too_many_differences.unwrap_or_default();
+            format!("{count} differences at equal airspeed are too many to compare.")
+        }
+        (0, _) => "No two conditions fly at equal airspeed.".to_owned(),
+        (_, 0) => format!("All {all} differences at equal airspeed are within what the bundles can make."),
+        (_, found) => format!("{found} of {all} differences at equal airspeed are more than the bundles explain:"),
+    };
+    ui.label(RichText::new(words).strong());
+    for of in beyond {
+        let words = format!("{}: {}", state.dataset().pair_name(of.pair), of.words(uncertainty.level));
+        ui.label(RichText::new(words).size(SMALL_SIZE).color(palette.text));
+    }
+    if let Some(variable) = state.study.settings.schedule.second {
+        let tests = uncertainty.second_variables.iter().filter(|test| test.variable == variable);
+        if !tests.clone().any(|test| test.needed) {
+            let words =
+                format!("The schedule is one of airspeed and {variable}, though no response is found to need it.");
+            ui.label(RichText::new(words).size(SMALL_SIZE).color(palette.warning));
+        }
+    }
+    ui.add_space(4.0);
+}
+
+/// A stacked bar for each response, at equal airspeed and about the schedule.
+fn scatter_ui(ui: &mut Ui, state: &State, uncertainty: &Uncertainty, palette: &Palette) {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("What the scatter is made of").size(SMALL_SIZE).strong());
+        for (name, color) in ["trim", "identification", "rest: real, or model form"].into_iter().zip(colors(palette)) {
+            let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+            ui.painter().rect_filled(rect, 2.0, color);
+            ui.label(RichText::new(name).size(SMALL_SIZE).color(palette.dim_text));
+        }
+    });
+    for scatter in &uncertainty.scatter {
+        let name = state.dataset().pair_name(scatter.pair);
+        for (about, split) in
+            [("at equal airspeed", &scatter.same_airspeed), ("about the schedule", &scatter.about_schedule)]
+        {
+            split_ui(ui, &format!("{name} {about}"), split.as_ref(), uncertainty.level, palette);
+        }
+    }
+    ui.add_space(6.0);
+}
+
+fn colors(palette: &Palette) -> [Color32; 3] {
+    [palette.perturbed, palette.identified, palette.nominal]
+}
+
+fn split_ui(ui: &mut Ui, name: &str, split: Option<&Split>, level: f64, palette: &Palette) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), BAR_HEIGHT + 3.0), Sense::hover());
+    let words = split.map_or_else(|| "no degrees of freedom".to_owned(), |split| split_words(split, level));
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, format!("{name}: {words}")));
+    let painter = ui.painter();
+    let font = FontId::proportional(SMALL_SIZE);
+    painter.text(rect.left_center(), Align2::LEFT_CENTER, name, font.clone(), palette.dim_text);
+    let [left, right] = [rect.left() + LABELS[0], (rect.right() - LABELS[1]).max(rect.left() + LABELS[0] + 60.0)];
+    painter.text(pos2(right + 8.0, rect.center().y), Align2::LEFT_CENTER, &words, font, palette.text);
+    let mut from = left;
+    for (share, color) in split.and_then(Split::shares).unwrap_or_default().into_iter().zip(colors(palette)) {
+        let to = from + (right - left) * share as f32;
+        let part = Rect::from_x_y_ranges(from..=to, rect.top() + 1.0..=rect.top() + 1.0 + BAR_HEIGHT);
+        painter.rect_filled(part, 0.0, color);
+        from = to;
+    }
+    response.on_hover_text(format!("{name}: {words}"));
+}
+
+/// "6.2 %, 2.7 times; rest 5.8 % (3.6 to 11.6)".
+fn split_words(split: &Split, level: f64) -> String {
+    let percent = |variance: f64| 100.0 * variance.sqrt();
+    let times = split.ratio().map_or_else(String::new, |ratio| format!(", {ratio:.1} times"));
+    let interval =
+        split.rest_interval(level).map(|[low, high]| format!(" ({:.1} to {:.1})", 100.0 * low, 100.0 * high));
+    format!(
+        "{:.1} %{times}; rest {:.1} %{}",
+        percent(split.scatter),
+        percent(split.rest()),
+        interval.unwrap_or_default()
+    )
+}
+
+/// Differences, second variables, and what each form of the schedule would have said of a condition that it has not seen.
+fn tables_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    uncertainty: &Uncertainty,
+    (sorting, palette): (&mut [crate::view::table_view::Sorting; 3], &Palette),
+    commands: &mut Vec<Command>,
+) {
+    let heading = |ui: &mut Ui, text: &str| ui.label(RichText::new(text).size(SMALL_SIZE).strong());
+    let (table, differences) = difference_table(state.dataset(), uncertainty);
+    heading(ui, &table.title);
+    let color = |row: usize, column: usize| {
+        let beyond = differences.get(row).is_some_and(|of| of.is_beyond(uncertainty.level));
+        (column == 6 && beyond).then_some(palette.warning)
+    };
+    let look = TableLook { color: &color, selected: &|_| false };
+    if let Some(click) = table_ui(ui, &table, &mut sorting[0], &look, palette, commands)
+        && let Some(of) = differences.get(click.row)
+    {
+        commands.push(Command::SelectCondition(of.conditions[0]));
+        commands.push(Command::FocusPair(of.pair));
+    }
+    let plain = TableLook { color: &|_, _| None, selected: &|_| false };
+    let table = second_variable_table(state.dataset(), uncertainty);
+    heading(ui, &table.title);
+    table_ui(ui, &table, &mut sorting[1], &plain, palette, commands);
+    let mut cached = std::mem::take(&mut state.display.evidence);
+    cached.refresh(state);
+    if let Some((_, evidence)) = cached.found() {
+        let (table, kinds) = evidence_table(state, evidence);
+        heading(
+            ui,
+            "Error of each form of the schedule, fitted and of a condition it has not seen [% of the net gain]",
+        );
+        let schedule = state.study.settings.schedule;
+        let look = TableLook { color: &|_, _| None, selected: &|row| kinds.get(row) == Some(&schedule.kind) };
+        if let Some(click) = table_ui(ui, &table, &mut sorting[2], &look, palette, commands)
+            && let Some(&kind) = kinds.get(click.row)
+        {
+            let schedule = crate::schedule::ScheduleSettings { kind, ..schedule };
+            commands.push(Edit::Set(Setting::Schedule(schedule)).into());
+        }
+    }
+    state.display.evidence = cached;
+}

@@ -79,7 +79,6 @@ fn main() {
         let held_out = (0..tables.len()).filter(|index| guess(tables[*index], &patterns).held_out).collect();
         let names = |channels: &[gdcm::dataset::Channel]| channels.iter().map(|of| of.name.clone()).collect::<Vec<_>>();
         let (inputs, outputs) = (names(dataset.inputs()), names(dataset.outputs()));
-        let borrowed = |names: &[String]| -> Vec<&str> { names.iter().map(String::as_str).collect() };
         let preparation = Preparation::of(&borrowed(&inputs), &borrowed(&outputs));
         let band = dataset.band();
         let options = Options { held_out, ..Options::new([band.min(), band.max()], preparation) };
@@ -105,6 +104,10 @@ fn main() {
     }
     println!("all {} conditions {:.1} s; worst held-out ratio {worst:.2}", dataset.conditions().len(), 1e-3 * all_ms);
     plain_normal_matrix();
+}
+
+fn borrowed(names: &[String]) -> Vec<&str> {
+    names.iter().map(String::as_str).collect()
 }
 
 fn guess(table: &gdcm::records::RecordTable, patterns: &[gdcm::assembly::NamePattern]) -> RecordGuess {

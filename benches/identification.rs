@@ -4,8 +4,6 @@
 //! Figures to reach, two cores, 9 records of 60 s at 50 Hz, 4 inputs, 6 outputs: the first model in 0.4 s, everything in 1 s, all eleven
 //! conditions in 12 s.
 
-#![expect(missing_docs, reason = "a program that measures")]
-
 use std::path::Path;
 use std::sync::Mutex;
 use std::time::Instant;

@@ -221,7 +221,7 @@ fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCautio
     const APART_S: f64 = 0.02;
     /// Below this \[s\] a sign says nothing.
     const NOTHING_S: f64 = 2e-3;
-    let chosen = study.dataset.conditions().iter().filter(|condition| study.choice(condition.id()).scheduled);
+    let chosen = study.dataset.conditions().iter().filter(|condition| study.choice(condition.id()).is_in_schedule());
     let leads = chosen.filter_map(|condition| {
         let led = outcomes.get(&condition.id())?.as_ref().ok()?.led.as_ref()?;
         Some((condition.id(), &led.leads))

@@ -12,6 +12,7 @@ use super::command::{Command, FormKind};
 use super::curve_entries::curve_entries;
 use super::figures::views_with_figure;
 use super::plot::FrequencyUnit;
+use super::records::{RecordsCommand, TakenWhat};
 use super::state::State;
 use super::tables::TableKind;
 
@@ -90,6 +91,40 @@ impl Entry {
 const CTRL: Modifiers = Modifiers::COMMAND;
 const CTRL_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
 
+/// What can be done with the flight records of the condition shown.
+fn record_entries(state: &State) -> Vec<Entry> {
+    let condition = state.condition().id();
+    let of = |id| state.records.conditions.get(&id);
+    let has_records = of(condition).is_some_and(|records| records.used_rows().next().is_some());
+    let is_found = of(condition).is_some_and(|records| records.identification().is_some());
+    let is_taken = state.study.taken_models().any(|(id, _)| id == condition);
+    let all = state.records.conditions.values().any(|records| records.used_rows().next().is_some());
+    let entry =
+        |name, meaning, command: RecordsCommand, enabled| Entry::new(name, meaning, command.into()).enabled(enabled);
+    vec![
+        Entry::new(
+            "Add flight records…",
+            "Of the condition that their names say, or of the one shown",
+            RecordsCommand::AskFiles.into(),
+        )
+        .within(Menu::File, 1),
+        entry(
+            "Identify models",
+            "Of the condition shown, from its flight records",
+            RecordsCommand::Identify,
+            has_records,
+        ),
+        entry("Identify models of all conditions", "From their flight records", RecordsCommand::IdentifyAll, all),
+        entry(
+            "Take the identified models",
+            "Into the condition shown",
+            RecordsCommand::Take(TakenWhat::Refined),
+            is_found,
+        ),
+        entry("Put the file's identified models back", "Into the condition shown", RecordsCommand::Return, is_taken),
+    ]
+}
+
 /// The commands of the menus and of the keys, in the order in which menus and the page of keys show them.
 pub fn command_table(state: &State) -> Vec<Entry> {
     let mut entries = file_entries(state);
@@ -97,6 +132,7 @@ pub fn command_table(state: &State) -> Vec<Entry> {
     entries.extend(view_entries(state));
     entries.extend(curve_entries(state));
     entries.extend(phase_entries(state));
+    entries.extend(record_entries(state));
     entries.extend(field_entries());
     entries.extend(TableKind::ALL.map(|kind| {
         Entry::new(format!("Copy table: {}", kind.name()), "As text, one line a row", Command::CopyTable(kind))

@@ -33,6 +33,7 @@ pub(super) fn stays_within(command: &Wish) -> bool {
             | Wish::SaveStudy
             | Wish::AskOpen
             | Wish::Assembling(_)
+            | Wish::Records(_)
             | Wish::AskSaveStudy
             | Wish::AskSaveTable(_)
             | Wish::AskSaveShownTable(_)

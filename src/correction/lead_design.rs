@@ -174,8 +174,8 @@ mod tests {
             let design = design(if second { LeadOrder::Second } else { LeadOrder::First }, pole);
             let tau_s = share * design.lower_s();
             let lead_s = design.lead_s(tau_s);
-            // Rounding of a sum of 200 phases, at a slope of order 1.
-            prop_assert!((design.band_delay_s(lead_s) / tau_s - 1.0).abs() < 2e-14, "{tau_s}");
+            // Rounding of a sum of 200 phases, whose errors may all have one sign: 200 times 2.2e-16, and the same of what divides it.
+            prop_assert!((design.band_delay_s(lead_s) / tau_s - 1.0).abs() < 1e-13, "{tau_s}");
         }
     }
 }

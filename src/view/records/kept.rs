@@ -30,8 +30,7 @@ mod tests {
     #[test]
     fn it_is_computed_once_for_a_key() {
         let mut computed = 0;
-        let ctx = egui::Context::default();
-        let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
+        egui::__run_test_ui(|ui| {
             computed = 0;
             for (key, expected) in [(1, 10), (1, 10), (2, 20), (1, 10)] {
                 let value = kept(ui, "test", key, || {

@@ -122,7 +122,7 @@ fn bands_that_cannot_be_are_named_with_their_place() {
 }
 
 #[test]
-fn identified_models_and_records_take_the_place_of_those_of_their_name() {
+fn identified_models_take_the_place_of_the_bundle_and_records_of_those_of_their_name() {
     let dataset = load(&small(with_all)).unwrap().dataset;
     let condition = &dataset.conditions()[0];
     let before = condition.bundle(BundleKind::Identified).len();
@@ -141,7 +141,7 @@ fn identified_models_and_records_take_the_place_of_those_of_their_name() {
     let records = vec![ConditionRecord::new("LON 1", "elsewhere.csv"), ConditionRecord::new("LON 2", "lon_2.csv")];
     let filled = condition.with_identified(vec![model("sweeps"), model("new")], records).unwrap();
     let names: Vec<&str> = filled.bundle(BundleKind::Identified).iter().map(|model| model.name.as_str()).collect();
-    assert_eq!((names.len(), names[0], names[before]), (before + 1, "sweeps", "new"));
+    assert_eq!(names, ["sweeps", "new"], "in place of the {before} that were there");
     assert_eq!(filled.bundle(BundleKind::Identified)[0].order(), Some(1), "the new one");
     let files: Vec<&str> = filled.records().iter().map(|record| record.file.as_str()).collect();
     assert_eq!(files, ["elsewhere.csv", "records/all.mat", "rest.csv", "lon_2.csv"]);

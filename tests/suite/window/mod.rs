@@ -13,6 +13,7 @@ mod hands;
 mod keyboard;
 mod lead;
 mod lists;
+mod pictures;
 mod plots;
 mod records;
 mod recovery;

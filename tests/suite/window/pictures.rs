@@ -1,0 +1,176 @@
+//! A picture of every view in both themes, as it was looked at and found good.
+//!
+//! `GDCM_PICTURES=write cargo test pictures` makes them anew, to be looked at again before they are kept.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::fs::File;
+use std::path::PathBuf;
+use std::rc::Rc;
+
+use dream_soft_render::{ClipRect, Color, Mesh, SoftwareRenderer, TextureId, Vertex};
+use egui::epaint::{ColorImage, ImageData, ImageDelta, Primitive};
+use egui::{TexturesDelta, ThemePreference};
+use egui_kittest::TestRenderer;
+use gdcm::study::Edit;
+use gdcm::view::arrangement::{Preset, View};
+use gdcm::view::command::Command as Wish;
+
+use super::views::{give, show};
+use super::*;
+
+const WIDTH: usize = 1280;
+const HEIGHT: usize = 720;
+/// Pixels of the window on either side of one of the saved picture: letters stay legible, files small.
+const SCALE: usize = 2;
+/// Difference of a channel from which a pixel is another: below it lie other roundings of the last digit of a curve.
+const OTHER: u8 = 40;
+/// Part of the pixels that may be others: a digit or two. A line of text or a curve that is missing is more.
+const MOST_OTHERS: f64 = 0.002;
+
+/// The textures of a window, as the frames before have left them.
+#[derive(Clone, Default)]
+struct Textures(Rc<RefCell<HashMap<egui::TextureId, ColorImage>>>);
+
+impl TestRenderer for Textures {
+    fn handle_delta(&mut self, delta: &mut TexturesDelta) {
+        let mut textures = self.0.borrow_mut();
+        for (id, changes) in std::mem::take(&mut delta.set) {
+            for ImageDelta { image: ImageData::Color(image), pos, .. } in changes {
+                match (pos, textures.get_mut(&id)) {
+                    (Some([left, top]), Some(whole)) => {
+                        for (row, line) in image.pixels.chunks(image.size[0]).enumerate() {
+                            let start = (top + row) * whole.size[0] + left;
+                            whole.pixels[start..start + line.len()].copy_from_slice(line);
+                        }
+                    }
+                    _ => drop(textures.insert(id, (*image).clone())),
+                }
+            }
+        }
+        delta.free.clear();
+    }
+}
+
+fn colour(of: egui::Color32) -> Color {
+    let [r, g, b, a] = of.to_array();
+    Color::from_rgba_premultiplied(r, g, b, a)
+}
+
+/// The pixels of what the window shows, red, green and blue, averaged over squares of [`SCALE`].
+fn picture(window: &Window, textures: &Textures) -> Vec<u8> {
+    let mut renderer = SoftwareRenderer::default();
+    let known: HashMap<egui::TextureId, TextureId> = textures
+        .0
+        .borrow()
+        .iter()
+        .map(|(id, image)| {
+            let pixels: Vec<u8> = image.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
+            (*id, renderer.create_texture(image.size[0], image.size[1], &pixels).expect("a texture of letters"))
+        })
+        .collect();
+    let shapes = window.ctx.tessellate(window.output().shapes.clone(), 1.0);
+    let mut frame = renderer.begin_frame(WIDTH, HEIGHT).expect("the size is allowed");
+    frame.clear(Color::BLACK);
+    for of in shapes {
+        let Primitive::Mesh(mesh) = of.primitive else { continue };
+        let corner = |at: Pos2| [at.x.round().max(0.0) as u32, at.y.round().max(0.0) as u32];
+        let ([min_x, min_y], [max_x, max_y]) = (corner(of.clip_rect.min), corner(of.clip_rect.max));
+        let vertices: Vec<Vertex> =
+            mesh.vertices.iter().map(|at| Vertex::new(at.pos.into(), at.uv.into(), colour(at.color))).collect();
+        let texture = known.get(&mesh.texture_id).copied();
+        let mesh = Mesh { vertices: &vertices, indices: &mesh.indices, texture };
+        frame.mesh(mesh, ClipRect { min_x, min_y, max_x, max_y }).expect("a mesh of the window");
+    }
+    let pixels = &frame.surface().pixels;
+    let average = |x: usize, y: usize, channel: usize| {
+        let square = (0..SCALE * SCALE).map(|at| (x * SCALE + at % SCALE, y * SCALE + at / SCALE));
+        let sum: usize = square.map(|(x, y)| usize::from(pixels[4 * (y * WIDTH + x) + channel])).sum();
+        (sum / (SCALE * SCALE)) as u8
+    };
+    let places = (0..HEIGHT / SCALE).flat_map(|y| (0..WIDTH / SCALE).map(move |x| (x, y)));
+    places.flat_map(|(x, y)| [0, 1, 2].map(|channel| average(x, y, channel))).collect()
+}
+
+fn saved(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data/pictures").join(format!("{name}.png"))
+}
+
+fn write(name: &str, pixels: &[u8]) {
+    let path = saved(name);
+    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+    let mut encoder = png::Encoder::new(File::create(path).unwrap(), (WIDTH / SCALE) as u32, (HEIGHT / SCALE) as u32);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_compression(png::Compression::High);
+    encoder.write_header().unwrap().write_image_data(pixels).unwrap();
+}
+
+fn read(name: &str) -> Vec<u8> {
+    let path = saved(name);
+    let file = File::open(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut pixels).unwrap();
+    pixels
+}
+
+/// Part of the pixels that differ.
+fn others(one: &[u8], other: &[u8]) -> f64 {
+    assert_eq!(one.len(), other.len());
+    let pairs = one.chunks(3).zip(other.chunks(3));
+    let differing = pairs.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > OTHER)).count();
+    differing as f64 / (one.len() / 3) as f64
+}
+
+fn pictured_window(textures: &Textures) -> Window {
+    let build = |creation: &mut eframe::CreationContext<'static>| {
+        GdcmApp::with(&creation.egui_ctx, example(), warm()).expect("a thread can be started")
+    };
+    let size = vec2(WIDTH as f32, HEIGHT as f32);
+    let mut window = Harness::builder().with_size(size).renderer(textures.clone()).build_eframe(build);
+    settle(&mut window);
+    window
+}
+
+#[test]
+fn every_view_looks_as_it_did_in_both_themes() {
+    let writes = std::env::var("GDCM_PICTURES").is_ok_and(|what| what == "write");
+    let textures = Textures::default();
+    let mut window = pictured_window(&textures);
+    give(&mut window, Wish::Arrange(Preset::Single));
+    give(&mut window, Edit::KeepVariant { name: "all models".to_owned() });
+    let mut misses = Vec::new();
+    for (theme, preference) in [("dark", ThemePreference::Dark), ("light", ThemePreference::Light)] {
+        give(&mut window, Wish::SetTheme(preference));
+        for view in View::ALL {
+            show(&mut window, view);
+            wait_until(&mut window, "what the view shows", |window| match view {
+                View::Across => state(window).across().is_some(),
+                View::Poles => state(window).modes().is_some(),
+                _ => true,
+            });
+            // Tooltips, fades and the bars of a scroll area come to rest.
+            window.run_steps(8);
+            let (name, found) =
+                (format!("{}-{theme}", view.name().to_lowercase().replace(' ', "-")), picture(&window, &textures));
+            if writes {
+                write(&name, &found);
+            }
+            let part = others(&found, &read(&name));
+            if part > MOST_OTHERS {
+                misses.push(format!("{name}: {:.2} % of the pixels are others", 100.0 * part));
+            }
+        }
+    }
+    assert!(misses.is_empty(), "{}", misses.join("\n"));
+}
+
+#[test]
+fn a_missing_line_of_text_is_another_picture() {
+    let textures = Textures::default();
+    let mut window = pictured_window(&textures);
+    let before = picture(&window, &textures);
+    assert_eq!(others(&before, &picture(&window, &textures)), 0.0, "a picture is the same twice");
+    click(&mut window, CONDITION_10);
+    assert!(others(&before, &picture(&window, &textures)) > MOST_OTHERS);
+}

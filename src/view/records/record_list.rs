@@ -1,15 +1,15 @@
 //! The records of a condition, line by line.
 
-use egui::{Grid, Label, RichText, Role, Sense, Ui, WidgetInfo};
+use egui::{Align, ComboBox, Grid, Label, Layout, RichText, Role, Sense, Ui, WidgetInfo};
 
 use crate::dataset::RecordKind;
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
 
-use super::bench::{ConditionRecords, RecordsCommand};
+use super::bench::{ConditionRecords, RecordRow, RecordsCommand};
 
 /// Width of all columns but the names \[pt\].
-const OTHER_COLUMNS: f32 = 208.0;
+const OTHER_COLUMNS: f32 = 124.0;
 /// Least width of the names \[pt\].
 const LEAST_NAME: f32 = 60.0;
 /// Cost per degree of freedom up to which a record is fitted well, and from which it is not (M14, section 6).
@@ -37,12 +37,11 @@ pub(super) fn record_list_ui(
         return;
     }
     let width = (ui.available_width() - OTHER_COLUMNS).max(LEAST_NAME);
-    Grid::new("flight records").num_columns(5).spacing([6.0, 2.0]).striped(true).show(ui, |ui| {
+    Grid::new("flight records").num_columns(4).spacing([6.0, 2.0]).striped(true).show(ui, |ui| {
         for (heading, hint) in [
             ("use", "Whether anything is done with the record"),
             ("hold", "Held out: kept from the fit, to judge the model by"),
             ("record", "A click shows it"),
-            ("kind", "The manoeuvre"),
             ("J", "Cost per degree of freedom of the recommended model; 1 is what noise explains"),
         ] {
             ui.label(small(heading)).on_hover_text(hint);
@@ -54,6 +53,7 @@ pub(super) fn record_list_ui(
         }
     });
     let Some(row) = records.rows.get(records.chosen) else { return };
+    kind_ui(ui, records.chosen, row, palette, commands);
     for (words, color) in row
         .problems
         .iter()
@@ -91,20 +91,16 @@ fn row_ui(
     let text = if is_chosen { text.strong().background_color(palette.selected) } else { text };
     let label = format!("Record {name}");
     let size = egui::vec2(width, ui.spacing().interact_size.y);
-    let shown = ui.add_sized(size, Label::new(text).truncate().halign(egui::Align::LEFT).sense(Sense::click()));
+    let layout = Layout::left_to_right(Align::Center);
+    let shown = ui.allocate_ui_with_layout(size, layout, |ui| {
+        ui.set_min_width(width);
+        ui.add(Label::new(text).truncate().sense(Sense::click()))
+    });
+    let shown = shown.inner;
     shown.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &label));
     if shown.clicked() {
         commands.push(RecordsCommand::Choose(index).into());
     }
-    let kinds = egui::ComboBox::from_id_salt(("kind", index)).width(70.0).selected_text(row.guess.kind.word());
-    let kinds = kinds.show_ui(ui, |ui| {
-        for kind in RecordKind::ALL {
-            if ui.selectable_label(kind == row.guess.kind, kind.word()).clicked() {
-                commands.push(RecordsCommand::SetKind(index, kind).into());
-            }
-        }
-    });
-    kinds.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, format!("Kind of {name}")));
     match cost_of(records, index) {
         Some(cost) => {
             let color = match cost {
@@ -116,6 +112,22 @@ fn row_ui(
         }
         None => ui.label(""),
     };
+}
+
+/// Which manoeuvre a record is of.
+fn kind_ui(ui: &mut Ui, index: usize, row: &RecordRow, palette: &Palette, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(format!("{}: a", row.table.name)).size(SMALL_SIZE).color(palette.dim_text));
+        let kinds = ComboBox::from_id_salt("kind of a record").width(90.0).selected_text(row.guess.kind.word());
+        let kinds = kinds.show_ui(ui, |ui| {
+            for kind in RecordKind::ALL {
+                if ui.selectable_label(kind == row.guess.kind, kind.word()).clicked() {
+                    commands.push(RecordsCommand::SetKind(index, kind).into());
+                }
+            }
+        });
+        kinds.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Manoeuvre of the record"));
+    });
 }
 
 /// Cost per degree of freedom of a row under the recommended model.

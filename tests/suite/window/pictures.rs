@@ -139,6 +139,8 @@ fn every_view_looks_as_it_did_in_both_themes() {
     let mut window = pictured_window(&textures);
     give(&mut window, Wish::Arrange(Preset::Single));
     give(&mut window, Edit::KeepVariant { name: "all models".to_owned() });
+    click(&mut window, CONDITION_10);
+    wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
     let mut misses = Vec::new();
     for (theme, preference) in [("dark", ThemePreference::Dark), ("light", ThemePreference::Light)] {
         give(&mut window, Wish::SetTheme(preference));
@@ -147,6 +149,9 @@ fn every_view_looks_as_it_did_in_both_themes() {
             wait_until(&mut window, "what the view shows", |window| match view {
                 View::Across => state(window).across().is_some(),
                 View::Poles => state(window).modes().is_some(),
+                View::Records => {
+                    state(window).records.conditions.get(&ConditionId(10)).is_some_and(|of| of.rows.len() == 9)
+                }
                 _ => true,
             });
             // Tooltips, fades and the bars of a scroll area come to rest.

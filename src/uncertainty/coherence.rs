@@ -53,7 +53,7 @@ impl Measurement {
         let measured = || omega.iter().zip(coherence).filter(|(_, coherence)| is_measured(**coherence));
         let mut gains: Vec<f64> = measured().map(|(_, &coherence)| self.deviation(coherence)).collect();
         let mut delays: Vec<f64> = measured().map(|(omega, &coherence)| self.deviation(coherence) / omega).collect();
-        if gains.is_empty() || !(self.averages > 0.0) {
+        if gains.is_empty() || self.averages.is_nan() || self.averages <= 0.0 {
             return None;
         }
         let kappa = self.averaging(omega);

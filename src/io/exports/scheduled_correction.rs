@@ -158,7 +158,7 @@ impl ScheduledCorrection {
         if !numbers.iter().all(|number| number.is_finite()) || least > most || self.airspeed_half_range_kt < 0.0 {
             return Err(ExportFault::Range);
         }
-        if self.second.as_ref().is_some_and(|second| !(second.range.0 < second.range.1)) {
+        if self.second.as_ref().is_some_and(|second| second.range.0.total_cmp(&second.range.1).is_ge()) {
             return Err(ExportFault::Range);
         }
         for NamedCurve { side, kind, name, curve } in self.curves() {

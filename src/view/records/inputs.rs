@@ -17,6 +17,9 @@ const LEAST_HEIGHT: f32 = 140.0;
 /// Lines of a spectrum that are averaged into one point.
 const SMOOTHED: usize = 5;
 
+/// Amplitude of each input over frequency: \[rad/s\] and \[dB\].
+type Amplitudes = Vec<Vec<[f64; 2]>>;
+
 /// A chart for each input: its spectrum in every record, the chosen one on top.
 pub(super) fn inputs_ui(ui: &mut Ui, state: &State, records: &ConditionRecords, palette: &Palette) {
     let dataset = state.dataset();
@@ -24,7 +27,7 @@ pub(super) fn inputs_ui(ui: &mut Ui, state: &State, records: &ConditionRecords, 
     let band = records
         .band
         .map_or(state.study.settings.band, |band| Band::new(band[0], band[1]).unwrap_or(state.study.settings.band));
-    let of_rows: Vec<(bool, Arc<Vec<Vec<[f64; 2]>>>)> = records
+    let of_rows: Vec<(bool, Arc<Amplitudes>)> = records
         .rows
         .iter()
         .enumerate()
@@ -65,7 +68,7 @@ pub(super) fn inputs_ui(ui: &mut Ui, state: &State, records: &ConditionRecords, 
 }
 
 /// Amplitude of each input over frequency \[dB\].
-fn amplitude(flight: &FlightRecord, highest: f64) -> Vec<Vec<[f64; 2]>> {
+fn amplitude(flight: &FlightRecord, highest: f64) -> Amplitudes {
     let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
     let steps: Vec<f64> = flight.time_s.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0).collect();
     let Some(step) = steps.get(steps.len() / 2).copied() else { return Vec::new() };

@@ -125,7 +125,7 @@ fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
 
     let label = if correction.leads.is_some() { "delay/lead" } else { "delays" };
     let mut text = detail_list("gains", gains) + &detail_list(label, delays.collect());
-    for words in lead_words(&analysis.study, result) {
+    for words in lead_words(&analysis.study, result, analysis.uncertainty.as_deref()) {
         text.push_str(&detail("lead", &plain(&words)));
     }
     text

@@ -3,12 +3,14 @@
 use crate::correction::Channel;
 use crate::dataset::Pair;
 use crate::response::LeadFilter;
+use crate::uncertainty::Scalar;
 use crate::units::{number, ratio_to_db, s_to_ms, signed, telling};
 
 use super::condition_analysis::ConditionAnalysis;
 use super::document::Study;
 use super::remark::{Remark, RemarkKind};
 use super::settings::PhaseCorrection;
+use super::uncertainty::Uncertainty;
 
 /// Two figures of D this far apart \[s\] are not those of a delay.
 const APART_S: f64 = 0.02;
@@ -18,11 +20,16 @@ const NOTHING_S: f64 = 2e-3;
 const ABOVE: f64 = 10.0;
 
 /// The responses and the channels that get lead, in words: "P from LAT wants 65 ms of lead over the band: 24 on P, 41 on LAT"; "LAT: as if
-/// a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB above the band".
-pub fn lead_words(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
+/// a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB above the band". What a response wants has its bar, where `sure` knows
+/// it: "65 ± 4 ms" (M13).
+pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncertainty>) -> Vec<String> {
     let Some(led) = &result.led else { return Vec::new() };
     let (inputs, outputs) = study.dataset.names_of_channels();
     let top = study.settings.band.max();
+    let half_ms = |pair: Pair| {
+        let bar = sure?.conditions.get(&result.condition.id())?.bars[Scalar::Delay(pair)].as_ref()?;
+        Some(format!(" ± {}", telling(s_to_ms(bar.half_width(sure?.level)?), 0)))
+    };
     let wants = |pair: Pair| {
         let (output, input) = (Channel::Output(pair.output), Channel::Input(pair.input));
         let wanted_s = result.wanted_delay_s(pair)?;
@@ -39,10 +46,11 @@ pub fn lead_words(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
             .sum();
         let price = if gain_db > 0.05 { format!("; {} dB above the band", signed(gain_db, 1)) } else { String::new() };
         Some(format!(
-            "{} from {} wants {} ms of {} over the band: {}, {}{price}",
+            "{} from {} wants {}{} ms of {} over the band: {}, {}{price}",
             output.name(&inputs, &outputs),
             input.name(&inputs, &outputs),
             ms(wanted_s),
+            half_ms(pair).unwrap_or_default(),
             if wanted_s < 0.0 { "lead" } else { "delay" },
             part(output),
             part(input)

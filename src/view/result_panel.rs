@@ -263,7 +263,7 @@ fn lead_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Pale
     }
     let header = RichText::new("Leads in words").size(SMALL_SIZE).color(palette.dim_text);
     CollapsingHeader::new(header).id_salt("leads").default_open(true).show(ui, |ui| {
-        for sentence in lead_words(&state.study, shown) {
+        for sentence in lead_words(&state.study, shown, state.uncertainty().map(AsRef::as_ref)) {
             ui.label(RichText::new(sentence).size(SMALL_SIZE));
         }
     });

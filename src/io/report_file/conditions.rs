@@ -98,7 +98,7 @@ fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) 
     page.fine_list(details(study, result));
     if result.led.is_some() {
         page.heading_within("What the leads do and what they cost");
-        page.list(lead_words(study, result));
+        page.list(lead_words(study, result, analysis.uncertainty.as_deref()));
     }
     add_responses(page, study, result);
     page.table(&channel_table(analysis, result));

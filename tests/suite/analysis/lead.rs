@@ -3,13 +3,16 @@
 use std::sync::Arc;
 
 use gdcm::correction::{Channel as CorrectedChannel, LeadDesign, LeadSettings};
-use gdcm::dataset::{Band, Channel, Condition, Dataset, DatasetHeader, FlightState, MeasuredResponse, Model, Origin};
+use gdcm::dataset::{
+    Band, Channel, Condition, Dataset, DatasetHeader, FlightState, MeasuredResponse, Model, ModelId, Origin,
+};
 use gdcm::response::LeadOrder;
 use gdcm::schedule::ScheduleCaution;
 use gdcm::study::{
     AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, DelayFrom, PhaseCorrection, lead_words,
     remarks,
 };
+use gdcm::uncertainty::Scalar;
 
 use super::*;
 
@@ -168,7 +171,7 @@ fn what_leads_do_and_cost_is_told_and_what_to_check_first() {
     let first = said.iter().find(|text| text.contains("check first the time alignment of the records")).unwrap();
     assert!(first.starts_with("All held responses want about"), "{first}");
     assert!(said.contains(&"All 5 held responses get the delay or lead that they want.".to_owned()), "{said:?}");
-    let words = lead_words(study, result);
+    let words = lead_words(study, result, None);
     // From the reference: P from LAT wants 65.4 ms, 24.1 on P, 41.2 on LAT.
     assert!(
         words.iter().any(|of| of.starts_with("P from LAT wants 65 ms of lead over the band: 24 on P, 41 on LAT; +")),
@@ -296,4 +299,51 @@ fn known_signed_delays_and_gains_are_found_again() {
         }
         assert_eq!(leads.filter(CorrectedChannel::Input(0)).is_some(), leads.inputs_s()[0] < 0.0);
     }
+}
+
+#[test]
+fn what_a_response_wants_has_the_bar_of_whole_analyses_with_each_model_pinned() {
+    let mut engine = Engine::default();
+    let analysis = analyze(&mut engine, &with_leads());
+    let sure = engine.uncertainty(&analysis, &Unobserved).unwrap();
+    let id = ConditionId(1);
+    let (study, result) = (&analysis.study, analysis.condition(id).unwrap());
+    let words = lead_words(study, result, Some(&sure));
+    let with_bar = |of: &String| {
+        of.starts_with("P from LAT wants 65 ± ") && of.contains(" ms of lead over the band: 24 on P, 41 on LAT")
+    };
+    assert!(words.iter().any(with_bar), "{words:?}");
+    // One physics model in place of the representative: tau of a channel is that of the whole analysis with it pinned.
+    let channel = CorrectedChannel::Input(study.dataset.find_pair("P", "LAT").unwrap().input);
+    let representative = result.representative_name(BundleKind::Physics);
+    let condition = study.dataset.condition(id).unwrap();
+    let others: Vec<&str> = condition
+        .bundle(BundleKind::Physics)
+        .iter()
+        .map(|model| model.name.as_str())
+        .filter(|name| *name != representative)
+        .collect();
+    // The condition by itself: no other has a part in it.
+    let alone = Dataset::new(study.dataset.header(), vec![condition.as_ref().clone()]).unwrap();
+    let mut alone = Study::new(Arc::new(alone));
+    alone.settings = study.settings.clone();
+    let mut engine = Engine::default();
+    let mut tau_s = |study: &Study| {
+        let analysis = analyze(&mut engine, study);
+        analysis.condition(id).unwrap().correction.leads.as_ref().unwrap().tau_s(channel)
+    };
+    let own_s = tau_s(&alone);
+    let squares = others.iter().map(|name| {
+        let mut pinned = alone.clone();
+        let identified = result.representative_name(BundleKind::Identified);
+        pinned.apply(&Edit::Pin(ModelId::new(id, BundleKind::Physics, *name))).unwrap();
+        pinned.apply(&Edit::Pin(ModelId::new(id, BundleKind::Identified, identified))).unwrap();
+        (tau_s(&pinned) - own_s).powi(2)
+    });
+    let variance = squares.sum::<f64>() / others.len() as f64;
+    let bar = sure.conditions[&id].bars[Scalar::ChannelDelay(channel)].as_ref().unwrap();
+    let trim = bar.trim.as_ref().unwrap().variance;
+    assert!(bar.value < 0.0 && (bar.value - own_s).abs() < 1e-12, "a lead: {}", bar.value);
+    // The same analyses: what differs is the rounding of the convex program.
+    assert!((trim - variance).abs() <= 1e-6 * variance, "{trim} {variance}");
 }

@@ -149,11 +149,14 @@ fn every_view_looks_as_it_did_in_both_themes() {
             wait_until(&mut window, "what the view shows", |window| match view {
                 View::Across => state(window).across().is_some(),
                 View::Poles => state(window).modes().is_some(),
+                View::Compare => !state(window).results.variants.is_empty(),
                 View::Records => {
                     state(window).records.conditions.get(&ConditionId(10)).is_some_and(|of| of.rows.len() == 9)
                 }
                 _ => true,
             });
+            // What is under way is told in the status bar.
+            wait_until(&mut window, "rest", |window| !state(window).results.background.is_busy());
             // Tooltips, fades and the bars of a scroll area come to rest.
             window.run_steps(8);
             let (name, found) =

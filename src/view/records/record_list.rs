@@ -4,7 +4,8 @@ use egui::{Align, ComboBox, Grid, Label, Layout, RichText, Role, Sense, Ui, Widg
 
 use crate::dataset::RecordKind;
 use crate::view::command::Command;
-use crate::view::palette::{Palette, SMALL_SIZE};
+use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE};
+use crate::view::row::elided_among;
 
 use super::bench::{ConditionRecords, RecordRow, RecordsCommand};
 
@@ -87,7 +88,10 @@ fn row_ui(
     }
     let is_chosen = index == records.chosen;
     let color = if row.problems.is_empty() { palette.text } else { palette.warning };
-    let text = RichText::new(name).color(color);
+    let neighbour = |at: Option<usize>| Some(records.rows.get(at?)?.table.name.as_str());
+    let neighbours = [neighbour(index.checked_sub(1)), neighbour(index.checked_add(1))];
+    let shown_name = elided_among(ui, name, neighbours, width, BODY_SIZE);
+    let text = RichText::new(&shown_name).size(BODY_SIZE).color(color);
     let text = if is_chosen { text.strong().background_color(palette.selected) } else { text };
     let label = format!("Record {name}");
     let size = egui::vec2(width, ui.spacing().interact_size.y);
@@ -98,6 +102,7 @@ fn row_ui(
     });
     let shown = shown.inner;
     shown.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &label));
+    let shown = if shown_name == *name { shown } else { shown.on_hover_text(name) };
     if shown.clicked() {
         commands.push(RecordsCommand::Choose(index).into());
     }

@@ -201,7 +201,7 @@ mod tests {
     #[test]
     fn what_stands_still_for_a_frame_becomes_an_image_until_it_moves() {
         let ctx = Context::default();
-        let _ = ctx.run_ui(RawInput::default(), |_| {});
+        ctx.run_ui(RawInput::default(), |_| {}).drop_without_applying_deltas();
         let mut still = StillImage::default();
         assert_eq!(image(&mut still, &ctx, scene(&[1, 2], 10.2)), None, "it may be moving");
         let area = image(&mut still, &ctx, scene(&[1, 2], 10.2)).expect("it stands still");

@@ -120,8 +120,11 @@ impl<'a> ModelRow<'a> {
         }
         self.keep_ui(ui, rect, commands);
         self.star_ui(ui, rect, palette, commands);
-        let figure_width = self.paint_figure(ui, rect, palette);
-        self.paint_name(ui, rect, figure_width, palette);
+        // Of a thousand rows few are in sight.
+        if ui.is_rect_visible(rect) {
+            let figure_width = self.paint_figure(ui, rect, palette);
+            self.paint_name(ui, rect, figure_width, palette);
+        }
         if response.contains_pointer() {
             commands.push(Command::Hover(self.id.clone()));
         }

@@ -98,6 +98,8 @@ pub struct Bars {
     pub width: f64,
     /// Where each stands along x, and its value.
     pub bars: Vec<[f64; 2]>,
+    /// What each stands on, so that bars are stacked; without it on 0.
+    pub feet: Vec<f64>,
     /// How far they stand beside that place, so that others find room, in units of x.
     pub beside: f64,
 }
@@ -238,6 +240,14 @@ impl Dots {
     }
 }
 
+impl Bars {
+    /// Foot and top of each.
+    pub(super) fn ends(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+        let feet = self.feet.iter().copied().chain(std::iter::repeat(0.0));
+        self.bars.iter().zip(feet).map(|([_, value], foot)| [foot, foot + value])
+    }
+}
+
 impl Rule {
     /// A horizontal line at the value `y`.
     pub fn horizontal(y: f64, stroke: Stroke) -> Self {
@@ -264,7 +274,7 @@ impl Mark {
                 curve.points().filter(|point| point.iter().all(|c| c.is_finite())).map(pick).collect()
             }
             Mark::Dots(dots) => dots.dots.iter().map(|dot| pick([dot.x, dot.y])).collect(),
-            Mark::Bars(bars) if along == Along::Y => bars.bars.iter().map(|bar| bar[1]).chain([0.0]).collect(),
+            Mark::Bars(bars) if along == Along::Y => bars.ends().flatten().chain([0.0]).collect(),
             Mark::Bars(bars) => bars.bars.iter().map(|bar| bar[0]).collect(),
             Mark::Band(_) | Mark::Rule(_) | Mark::Spans(_) | Mark::Guide(_) | Mark::Note(_) => Vec::new(),
         }

@@ -26,6 +26,7 @@ mod condition_source;
 mod dot_labels;
 mod drawing;
 mod error;
+mod evidence;
 #[expect(clippy::module_inception, reason = "the room is named by what it makes")]
 mod figure;
 mod format;
@@ -55,6 +56,7 @@ pub use bode::{BodeOptions, bode_figure};
 pub use condition_source::{ConditionSource, CurveId};
 pub use drawing::{Anchor, Area, Drawing, PT_PER_MM, Shape, Text};
 pub use error::error_figure;
+pub use evidence::evidence_figure;
 pub use figure::{ColumnWidth, Figure, Shared};
 pub use format::FigureFormat;
 pub use gains::{

@@ -114,9 +114,9 @@ fn unit_of(label: &str) -> &str {
     label.rfind(" [").map(|at| &label[at..]).unwrap_or_default()
 }
 
-/// The name of a place on an axis of names, else the number.
+/// The name of a place on an axis of names, of what stands beside it too; else the number.
 fn place(axis: &Axis, value: f64) -> String {
-    let name = axis.names.iter().flatten().find(|(at, _)| *at == value).map(|(_, name)| name.clone());
+    let name = axis.names.iter().flatten().find(|(at, _)| (at - value).abs() < 0.5).map(|(_, name)| name.clone());
     name.unwrap_or_else(|| figure(value))
 }
 
@@ -168,6 +168,7 @@ mod tests {
             color: Color::INK,
             width: 0.2,
             bars: vec![[0.0, -4.0], [1.0, 2.0]],
+            feet: Vec::new(),
             beside: 0.0,
         };
         let table = table_of(Panel::new(Axis::named("Condition", ["3", "7"]), Axis::linear("ΔJ [-]")).with(bars));

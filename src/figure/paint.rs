@@ -212,12 +212,12 @@ fn curve_lines(placed: &Placed<'_>, curve: &Curve) -> Vec<Shape> {
 }
 
 fn bar_shapes(placed: &Placed<'_>, bars: &Bars) -> Vec<Shape> {
-    let bar = |&[x, value]: &[f64; 2]| {
+    let bar = |(&[x, _], [foot, top]): (&[f64; 2], [f64; 2])| {
         let left = x + bars.beside - 0.5 * bars.width;
-        let (foot, top) = (placed.at([left, 0.0])?, placed.at([left + bars.width, value])?);
+        let (foot, top) = (placed.at([left, foot])?, placed.at([left + bars.width, top])?);
         Some(rectangle(foot, top, bars.color, Some(Stroke::solid(Color::DIM, 0.3))))
     };
-    bars.bars.iter().filter_map(bar).collect()
+    bars.bars.iter().zip(bars.ends()).filter_map(bar).collect()
 }
 
 /// Dots are drawn whole where their middle is in the frame, with their texts around them.

@@ -158,6 +158,21 @@ impl Uncertainty {
         }
     }
 
+    /// What the differences at equal airspeed come to, in a sentence.
+    pub fn differences_in_words(&self) -> String {
+        let beyond = self.differences.iter().filter(|of| of.is_beyond(self.level)).count();
+        match (self.differences.len(), beyond) {
+            (0, _) => self.too_many_differences.map_or_else(
+                || "No two conditions fly at equal airspeed.".to_owned(),
+                |count| format!("{count} differences at equal airspeed are too many to compare."),
+            ),
+            (all, 0) => format!("All {all} differences at equal airspeed are within what the bundles can make."),
+            (all, found) => {
+                format!("{found} of {all} differences at equal airspeed are more than the bundles explain.")
+            }
+        }
+    }
+
     /// The bar of one figure of one condition.
     pub fn bar(&self, condition: ConditionId, figure: Scalar) -> Option<&Bar> {
         self.conditions.get(&condition)?.bars[figure].as_ref()

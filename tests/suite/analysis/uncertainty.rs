@@ -437,3 +437,50 @@ fn bars_of_a_population_cover_the_truth_as_often_as_they_say() {
     let covered = found.conditions.values().filter(|of| covers(of)).count() as f64 / DRAWS as f64;
     assert!((0.86..=0.99).contains(&covered), "{covered}");
 }
+
+/// The known spread, the flight's model of the first condition with a band of this deviation \[dB\].
+fn dataset_with_band(sd_db: f64) -> Value {
+    let (_, case) = study_of_known_spread();
+    let mut dataset = case["dataset"].clone();
+    let model = &mut dataset["conditions"][0]["identified_models"][0];
+    let (outputs, inputs) = (list(&model["D"]).len(), list(&model["D"][0]).len());
+    let table = |deviation: f64| vec![vec![vec![deviation; 2]; inputs]; outputs];
+    model["bands"] =
+        serde_json::json!({"omega_rad_s": [1.0, 5.0], "sd_db": table(sd_db), "sd_deg": table(6.0 * sd_db)});
+    dataset
+}
+
+#[test]
+fn the_bars_of_a_dataset_with_other_bands_are_made_anew() {
+    let mut engine = Engine::default();
+    let study = |sd_db: f64| {
+        let mut study = study_of(&dataset_with_band(sd_db));
+        for (bundle, name) in [(BundleKind::Physics, "nominal"), (BundleKind::Identified, "i0")] {
+            study.apply(&Edit::Pin(ModelId::new(ConditionId(1), bundle, name))).unwrap();
+        }
+        study
+    };
+    let mut bars = |study: &Study| {
+        let analysis = analyze(&mut engine, study);
+        engine.uncertainty(&analysis, &Unobserved).unwrap()
+    };
+    let scalar = Scalar::Gain(Pair::new(0, 0));
+    let half = |of: &Uncertainty| of.bar(ConditionId(1), scalar).unwrap().inner_half_width(0.9).unwrap();
+    let (wide, narrow) = (study(3.0), study(1.5));
+    let (of_wide, of_narrow) = (bars(&wide), bars(&narrow));
+    assert_eq!(of_narrow, uncertainty_of(&narrow).1, "as of an engine that knows no other");
+    // The band's deviations are taken as known: half of them is half the bar.
+    assert!((half(&of_wide) / half(&of_narrow) - 2.0).abs() < 1e-9, "{} {}", half(&of_wide), half(&of_narrow));
+    assert_eq!(of_wide, bars(&wide), "and back again");
+}
+
+#[test]
+fn a_model_with_another_band_is_another_model() {
+    let [wide, narrow, again] = [3.0, 1.5, 3.0].map(|sd_db| study_of(&dataset_with_band(sd_db)));
+    let changed = |dataset: &Study| {
+        let (_, differences) = wide.carried_over(Arc::clone(&dataset.dataset));
+        differences.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    assert_eq!(changed(&again), Vec::<String>::new());
+    assert!(changed(&narrow).iter().any(|words| words.contains("i0") && words.ends_with("has changed")));
+}

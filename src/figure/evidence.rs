@@ -7,20 +7,22 @@ use crate::uncertainty::Split;
 use super::axis::Axis;
 use super::condition_source::{schedule_words, settings_words};
 use super::figure::Figure;
-use super::mark::{Bars, DotShape, Dots, Note, Place, Spans};
+use super::mark::{Bars, DotShape, Dots, Intervals, Note, Place};
 use super::panel::{Panel, Plot};
 use super::range::Range;
 use super::role::{AMBER, BLUE, RED};
-use super::stroke::Color;
+use super::stroke::{Color, Stroke};
 
 /// Width of a stacked bar, where places are 1 apart.
 const BAR: f64 = 0.56;
 /// How far the dots of one place stand apart.
 const APART: f64 = 0.24;
-/// Width of an interval.
-const INTERVAL: f64 = 0.07;
+/// The interval of the rest.
+const INTERVAL: Stroke = Stroke::solid(Color::new(0xe2, 0x99, 0x99), 2.4);
+/// Intervals are seen up to so many times the scatter.
+const MOST_SEEN: f64 = 4.0;
 /// The shares end at 100 %; the numbers above them have the rest \[%\].
-const SHARES: Range = Range { min: 0.0, max: 120.0 };
+const SHARES: Range = Range { min: 0.0, max: 118.0 };
 /// Where those numbers stand \[%\].
 const ABOVE: f64 = 109.0;
 
@@ -73,7 +75,7 @@ fn shares(scatter: &PairScatter) -> Panel {
     let missing = [&scatter.same_airspeed, &scatter.about_schedule].into_iter().zip([0.0, 1.0]);
     let missing = missing.filter(|(split, _)| split.is_none());
     let missing = missing.map(|(_, x)| note(x, 50.0, "no freedom".to_owned(), true));
-    let y = Axis::linear("Share of the variance [%]").showing(Some(SHARES));
+    let y = Axis::linear("Variance [%]").showing(Some(SHARES));
     Panel::new(axis(), y).with_all(bars).with_all(times).with_all(missing)
 }
 
@@ -93,20 +95,21 @@ fn deviations(scatter: &PairScatter, level: f64) -> Panel {
         let [low, high] = split.rest_interval(level)?;
         Some([x + APART, 100.0 * low, 100.0 * high])
     };
-    let spans: Vec<[f64; 3]> = splits(scatter).filter_map(interval).collect();
-    let y = Axis::linear("Scatter of the net gain [%]").including(0.0).at_least(1.0);
-    let y = spans.iter().fold(y, |y, [_, _, high]| y.including(*high));
+    let ends: Vec<[f64; 3]> = splits(scatter).filter_map(interval).collect();
+    let y = Axis::linear("Scatter [%]").including(0.0).at_least(1.0);
+    let most = splits(scatter).map(|(_, split)| MOST_SEEN * percent(split.scatter)).fold(0.0, f64::max);
+    let y = ends.iter().fold(y, |y, [_, _, high]| y.including(high.min(most)));
     let name = format!("rest, interval of {:.0} %", 100.0 * level);
-    let spans = (!spans.is_empty()).then(|| Spans { name, color: RED.tint(0.6), width: INTERVAL, spans });
-    Panel::new(axis(), y).with_all(spans).with_all(dots)
+    let intervals = (!ends.is_empty()).then(|| Intervals { name, stroke: INTERVAL, ends });
+    Panel::new(axis(), y).with_all(intervals).with_all(dots)
 }
 
 /// What the differences come to, what the parts are, the schedule and the settings.
 fn caption(analysis: &Analysis, uncertainty: &Uncertainty) -> String {
     let settings = &analysis.study.settings;
     format!(
-        "{} Standard deviations of ln(k_o k_i) about the mean of each airspeed, and about the schedule: {}. Trim, identification: \
-         expected from the bundles; rest: what neither makes. Above the bars: scatter, times what the bundles explain. {}",
+        "{} Of ln(k_o k_i), about the mean of each airspeed and about the schedule ({}): shares of the variance, and standard \
+         deviations. Trim, identification: expected from the bundles; rest: what neither makes. Above the bars: scatter, times what the bundles explain. {}",
         uncertainty.differences_in_words(),
         schedule_words(&settings.schedule),
         settings_words(&analysis.study.dataset, settings)

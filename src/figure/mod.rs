@@ -23,7 +23,6 @@ mod assessment;
 mod axis;
 mod bode;
 mod condition_source;
-mod dot_labels;
 mod drawing;
 mod error;
 mod evidence;
@@ -31,6 +30,7 @@ mod evidence;
 mod figure;
 mod format;
 mod gains;
+mod label_places;
 mod layout;
 mod legend;
 mod letters;
@@ -62,9 +62,12 @@ pub use format::FigureFormat;
 pub use gains::{
     Across, Classes, Measure, all_channels, channels_figure, is_scheduled, net_gain_figure, scheduled_samples,
 };
+pub use label_places::{LabelPlace, LabelledDot, Surroundings, place_labels};
 pub use legend::{Entry, Sample};
 pub use letters::{FONTS, Letter, letters, width};
-pub use mark::{Along, Band, Bars, Curve, Dot, DotShape, Dots, Guide, Mark, Note, Place, Rule, Spans};
+pub use mark::{
+    Along, Band, Bars, Bracket, Brackets, Curve, Dot, DotShape, Dots, Guide, Intervals, Mark, Note, Place, Rule, Spans,
+};
 pub use overview::overview_figure;
 pub use panel::{Panel, Plot};
 pub use poles::poles_figure;

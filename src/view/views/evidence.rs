@@ -18,7 +18,7 @@ const LABELS: [f32; 2] = [170.0, 230.0];
 /// The paper's question on one screen: is the scatter at one airspeed trim, identification, or real?
 pub fn evidence_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(uncertainty) = state.uncertainty().cloned() else {
-        ui.label(RichText::new(state.results.absence()).color(palette.dim_text));
+        ui.label(RichText::new(state.results.absence_of_bars()).color(palette.dim_text));
         return;
     };
     let mut sorting = state.display.evidence_tables;

@@ -1,12 +1,13 @@
 //! How sure each figure is, against independent figures, and what may never happen to a bar (M13).
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use gdcm::correction::Channel;
 use gdcm::dataset::ModelId;
 use gdcm::io::{DatasetOrigin, load_dataset_bytes};
 use gdcm::schedule::{ScheduleKind, ScheduleSettings, SecondVariable};
-use gdcm::study::{AirspeedDifference, PairScatter, Uncertainty};
+use gdcm::study::{AirspeedDifference, Cancelled, PairScatter, Progress, Uncertainty};
 use gdcm::uncertainty::{
     Bar, Design, Difference, IdentificationSource, Part, Scalar, ScheduleBand, SecondVariableDesign, Split, holm,
 };
@@ -483,4 +484,39 @@ fn a_model_with_another_band_is_another_model() {
     };
     assert_eq!(changed(&again), Vec::<String>::new());
     assert!(changed(&narrow).iter().any(|words| words.contains("i0") && words.ends_with("has changed")));
+}
+
+/// Stops when so many steps are told, and keeps what it hears.
+#[derive(Default)]
+struct StopsAt {
+    steps: usize,
+    told: AtomicUsize,
+    total: AtomicUsize,
+}
+
+impl Progress for StopsAt {
+    fn cancelled(&self) -> bool {
+        self.told.load(Ordering::Relaxed) >= self.steps
+    }
+
+    fn advanced(&self, done: usize, total: usize) {
+        self.told.fetch_max(done, Ordering::Relaxed);
+        self.total.store(total, Ordering::Relaxed);
+    }
+}
+
+#[test]
+fn swaps_are_counted_one_by_one_and_stop_between_two_of_them() {
+    let study = study_of_example();
+    let mut engine = Engine::default();
+    let analysis = analyze(&mut engine, &study);
+    // The responses of all 242 models are there: the steps from 242 on are swaps.
+    let progress = StopsAt { steps: 100, ..StopsAt::default() };
+    assert_eq!(engine.uncertainty(&analysis, &progress).err(), Some(Cancelled));
+    let (told, total) = (progress.told.into_inner(), progress.total.into_inner());
+    assert_eq!(total, 2 * 242);
+    // Steps are told by hundredths of the whole; 22 responses of a condition come at once.
+    assert!((100..=100 + 22 + 5).contains(&told), "{told}");
+    let whole = engine.uncertainty(&analysis, &Unobserved).unwrap();
+    assert_eq!(whole, uncertainty_of(&study).1, "what was stopped is taken up again");
 }

@@ -323,9 +323,11 @@ impl Worker {
             || variants.is_stopped()
             || uncertainties.is_stopped();
         let views = modes.unfinished().len() + assessments.unfinished().len() + across.unfinished().len();
-        let views = views + variants.unfinished().len() + uncertainties.unfinished().len();
+        let views = views + variants.unfinished().len();
+        let bars = (!uncertainties.unfinished().is_empty()).then(|| uncertainties.progress().unwrap_or((0, 0)));
         let report = (!reports.unfinished().is_empty()).then(|| reports.progress().unwrap_or((0, 0)));
-        Background { proofs, toggles: !toggles.unfinished().is_empty(), curves, views, report, identification, stopped }
+        let toggles = !toggles.unfinished().is_empty();
+        Background { proofs, toggles, curves, bars, views, report, identification, stopped }
     }
 
     /// The next reply, if one is there.

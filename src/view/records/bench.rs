@@ -50,6 +50,15 @@ impl RecordsPage {
         }
     }
 
+    /// Its name where there is little room: all of them stand in one line.
+    pub fn short_name(self) -> &'static str {
+        match self {
+            Self::Stabilisation => "Orders",
+            Self::Poles => "Poles",
+            _ => self.name(),
+        }
+    }
+
     /// What it shows, in a sentence.
     pub fn purpose(self) -> &'static str {
         match self {

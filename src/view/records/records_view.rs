@@ -1,5 +1,6 @@
 //! The Records view: the records at the left, one page about them at the right.
 
+use egui::scroll_area::ScrollBarVisibility;
 use egui::{Button, Label, Panel, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 use crate::view::command::Command;
@@ -86,17 +87,24 @@ pub fn records_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comman
     state.records.path = path;
 }
 
-/// One tab for each page.
+/// One tab for each page, in one line that scrolls where it is too long.
 fn pages_ui(ui: &mut Ui, shown: RecordsPage, commands: &mut Vec<Command>) {
-    ui.horizontal_wrapped(|ui| {
-        for page in RecordsPage::ALL {
-            let label = format!("Page {}", page.name());
-            let tab = ui.selectable_label(page == shown, page.name());
-            tab.widget_info(|| WidgetInfo::selected(Role::Button, true, page == shown, &label));
-            if tab.on_hover_text(page.purpose()).clicked() {
-                commands.push(RecordsCommand::Show(page).into());
+    let tabs = ScrollArea::horizontal().id_salt("pages").scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
+    tabs.show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 2.0;
+            for page in RecordsPage::ALL {
+                let label = format!("Page {}", page.name());
+                let tab = ui.selectable_label(page == shown, page.short_name());
+                tab.widget_info(|| WidgetInfo::selected(Role::Button, true, page == shown, &label));
+                if tab.gained_focus() {
+                    tab.scroll_to_me(None);
+                }
+                if tab.on_hover_text(format!("{}: {}", page.name(), page.purpose())).clicked() {
+                    commands.push(RecordsCommand::Show(page).into());
+                }
             }
-        }
+        });
     });
 }
 

@@ -16,6 +16,7 @@ mod edges;
 mod example;
 mod known_answer;
 mod lead;
+mod mean_gain;
 mod modes;
 mod remarks;
 mod response_paths;

@@ -13,6 +13,6 @@ mod records_view;
 mod response;
 mod stabilisation;
 
-pub use bench::{ConditionRecords, RecordRow, RecordsBench, RecordsCommand, RecordsPage, RecordsReading, TakenWhat};
+pub use bench::{ConditionRecords, RecordRow, RecordsBench, RecordsCommand, RecordsPage, RecordsReading};
 pub use fit::TimeModel;
 pub use records_view::{records_header_ui, records_view_ui};

@@ -7,12 +7,12 @@ use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::state::State;
 
-use super::bench::{ConditionRecords, RecordsCommand, RecordsPage, TakenWhat};
+use super::bench::{ConditionRecords, RecordsCommand, RecordsPage};
 use super::channel_rows::columns_ui;
 use super::fit::fit_ui;
 use super::histories::histories_ui;
 use super::inputs::inputs_ui;
-use super::outcome::outcome_ui;
+use super::outcome::{offered_menu_ui, outcome_ui};
 use super::poles::identified_poles_ui;
 use super::record_list::record_list_ui;
 use super::response::response_ui;
@@ -39,20 +39,8 @@ pub fn records_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>
         commands.push(RecordsCommand::Identify.into());
     }
     if records.is_some_and(|records| records.identification().is_some()) {
-        ui.menu_button("Take these models", |ui| {
-            for (text, what) in [
-                ("The refined models", TakenWhat::Refined),
-                ("The refined models, and CT-PBSID as it is", TakenWhat::WithPlain),
-                ("The measured response", TakenWhat::Measured),
-            ] {
-                if ui.button(text).clicked() {
-                    commands.push(RecordsCommand::Take(what).into());
-                    ui.close();
-                }
-            }
-        })
-        .response
-        .on_hover_text("In place of the identified models of this condition; one step to undo");
+        let hint = "In place of the identified models of this condition; one step to undo";
+        offered_menu_ui(ui, ("Take these models", hint), |offered| commands.push(RecordsCommand::Take(offered).into()));
     }
     if state.study.taken_models().any(|(id, _)| id == condition) && ui.button("Put the file's models back").clicked() {
         commands.push(RecordsCommand::Return.into());

@@ -50,8 +50,9 @@ fn analyze(engine: &mut Engine, study: &Study) -> Analysis {
     engine.analyze(study, &Unobserved).unwrap()
 }
 
+/// The example as the reference figures were computed from it.
 fn study_of_example() -> Study {
-    Study::new(crate::EXAMPLE.dataset.clone())
+    Study::new(crate::REFERENCE_DATASET.dataset.clone())
 }
 
 /// The example analysed, its suggested outliers rejected, and analysed again.

@@ -7,9 +7,11 @@ use std::time::Instant;
 
 use super::fault::{Fault, caught};
 use super::lane::{Ending, Lane, PATIENCE};
+use super::pool::Pool;
 use super::report::ReportJob;
 use crate::correction::{Outcome, Problem, Solution};
 use crate::dataset::ConditionId;
+use crate::executor::Executor;
 use crate::identification::{Identification, IdentificationError};
 use crate::io::FileError;
 use crate::study::{
@@ -355,10 +357,15 @@ impl Lanes {
             variants: lane("variants", move || for_variants(), outbox, |job, found| Some(Reply::Variant(job, found)))?,
             uncertainties: lane("error bars", move || for_bars(), outbox, |job, of| Some(Reply::Uncertainty(job, of)))?,
             reports: lane("report", move || for_reports(), outbox, |job, outcome| Some(Reply::Report(job, outcome)))?,
-            identifications: lane("identification", || (), outbox, |job, found| Some(Reply::Identified(job, found)))?,
+            identifications: lane("identification", pool, outbox, |job, found| Some(Reply::Identified(job, found)))?,
             proofs: proofs_lane(shared, outbox)?,
         })
     }
+}
+
+/// The pool as the tool of a job.
+fn pool() -> Box<dyn Executor> {
+    Box::new(Pool)
 }
 
 /// A lane whose outputs become replies.

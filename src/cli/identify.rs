@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::app::Pool;
 use crate::assembly::{ChannelRule, standard_patterns};
 use crate::dataset::{Band, Condition, ConditionId, ConditionRecord, Dataset, DraftError};
 use crate::identification::{ChannelPreparation, FlightRecord, Options, Preparation, identify as identify_records};
@@ -98,7 +99,7 @@ fn found_in(task: &IdentificationTask, records: &[ReadRecord]) -> Result<Identif
     let held_out = flights.iter().enumerate().filter(|(_, (_, held_out))| *held_out).map(|(index, _)| index);
     let options = Options { held_out: held_out.collect(), ..Options::new([band.min(), band.max()], preparation) };
     let all: Vec<FlightRecord> = flights.iter().map(|(flight, _)| flight.clone()).collect();
-    let found = identify_records(&all, &options, &TerminalProgress::new("identifying"))
+    let found = identify_records(&all, &options, &Pool, &TerminalProgress::new("identifying"))
         .map_err(|error| Failure::NoModels { reason: error.to_string() })?;
     let with_tables: Vec<(FlightRecord, &RecordTable)> =
         all.into_iter().zip(records.iter().map(|record| &record.table)).collect();

@@ -31,6 +31,7 @@ pub(super) fn report(
 ) -> Result<Identification, IdentificationError> {
     steps.next(0.8, "uncertainty")?;
     let Refinement { search, fit, likelihood, .. } = refinement;
+    let executor = likelihood.executor;
     let systems = fit.systems(likelihood).ok_or_else(|| evidence.no_model())?;
     let freedom = likelihood.freedom(fit.model.order());
     let spare =
@@ -40,7 +41,7 @@ pub(super) fn report(
     let covariance = ParameterCovariance::new(&system, fit.cost / spare as f64).ok_or_else(|| evidence.no_model())?;
     let neighbours = search.neighbours();
     let omegas = log_spaced(options.band[0], options.band[1], BAND_POINTS);
-    let bands = covariance.bands(&fit.model, &neighbours, &omegas);
+    let bands = covariance.bands(&fit.model, &neighbours, &omegas, executor);
     let not_identified = not_identified(&bands);
 
     steps.next(0.88, "models without each record")?;
@@ -76,7 +77,8 @@ pub(super) fn report(
     let validation = match evidence.held_out_pieces.as_slice() {
         [] => None,
         pieces => {
-            let validation = validate(&main.matrices, pieces, &ValidationSettings::filtered(options.highest()));
+            let validation =
+                validate(&main.matrices, pieces, &ValidationSettings::filtered(options.highest()), executor);
             validation.map_err(|why| cautions.push(IdentificationCaution::NotValidated { why })).ok()
         }
     };

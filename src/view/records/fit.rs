@@ -6,6 +6,7 @@ use egui::{Color32, Grid, RichText, ScrollArea, Ui};
 
 use crate::correction::{CorrectedModel, Pade};
 use crate::dataset::{BundleKind, Dynamics, StateSpace};
+use crate::executor::Sequential;
 use crate::identification::{
     FlightRecord, Preparation, StateSpaceMatrices, Validation, ValidationSettings, prepare, validate,
 };
@@ -101,8 +102,10 @@ fn compared(
 ) -> Result<Validation, String> {
     let preparation =
         Preparation { inputs: records.inputs.clone(), outputs: records.outputs.clone(), ..Preparation::of(&[], &[]) };
-    let prepared = prepare(std::slice::from_ref(flight), &preparation).map_err(|error| error.to_string())?;
-    validate(matrices, &prepared.pieces, &ValidationSettings::unfiltered()).map_err(|error| error.to_string())
+    let prepared =
+        prepare(std::slice::from_ref(flight), &preparation, &Sequential).map_err(|error| error.to_string())?;
+    validate(matrices, &prepared.pieces, &ValidationSettings::unfiltered(), &Sequential)
+        .map_err(|error| error.to_string())
 }
 
 /// The matrices of a model; none where it is not there, or is not one of continuous time.

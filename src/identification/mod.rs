@@ -66,6 +66,6 @@ pub use signal::{Role, Signal};
 pub use spectrum::{Spectrum, spectra};
 pub use stabilisation::StabilisationPoint;
 pub use state_space_matrices::StateSpaceMatrices;
-pub use uncertainty::{Bands, PoleEstimate};
+pub use uncertainty::{Bands, PoleEstimate, TWO_SIDED_95};
 pub use validation::{Validation, ValidationError, ValidationSettings, ValidationWindow, validate};
 pub use watch::{Unwatched, Watch};

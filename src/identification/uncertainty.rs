@@ -13,14 +13,15 @@ use super::blocks::{Block, BlockModel};
 use super::likelihood::pseudo_inverse_root;
 use super::normal_system::NormalSystem;
 use crate::executor::{Executor, each};
+use crate::units::neper_to_db;
 use nalgebra::{Complex, DMatrix};
 
+/// Standard deviations that hold 95 %.
+pub const TWO_SIDED_95: f64 = 1.96;
 /// Share of the greatest eigenvalue below which a direction is a freedom of scale.
 const FREEDOM_OF_SCALE: f64 = 1e-9;
 /// Factor of the variance that makes bands hold what they say.
 const MEASURED_FACTOR: f64 = 2.0;
-/// dB in one neper.
-const DECIBELS: f64 = 8.685_889_638_065_037;
 /// No standard deviation is said to be more than this many times the modulus of the pole and the band: it is not known at all.
 const UNKNOWN: f64 = 1e3;
 
@@ -136,7 +137,7 @@ impl ParameterCovariance {
         let sd = |column: usize, order: f64| (MEASURED_FACTOR * (variance(column) + order)).sqrt().min(UNKNOWN);
         let bands = |(k, gradients): (usize, &Gradients)| {
             let order = gradients.order_variance[(output, input)];
-            (DECIBELS * sd(k, order.re), sd(at.len() + k, order.im).to_degrees())
+            (neper_to_db(sd(k, order.re)), sd(at.len() + k, order.im).to_degrees())
         };
         at.iter().enumerate().map(bands).collect()
     }

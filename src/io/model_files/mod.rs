@@ -30,7 +30,7 @@ use super::variables::{Meter, Variable};
 use contents::{Contents, contents_of};
 use loose_matrices::LooseMatrix;
 
-pub use folder::{FolderProgress, read_models};
+pub use folder::{FolderProgress, read_models, sources_folder};
 pub use format::FileFormat;
 
 /// Memory that the variables of one file may take \[bytes\].

@@ -103,7 +103,7 @@ fn of_bytes(
             FileModels { recognised, headings: Some(table.headings()), ..FileModels::default() }
         }
         Contents::Dataset(dataset) => {
-            let recognised = Recognised { models: dataset_models::models_of(&dataset), ..Recognised::default() };
+            let recognised = Recognised { models: dataset_models::models_of(&dataset, name), ..Recognised::default() };
             FileModels { recognised, ..FileModels::default() }
         }
     };

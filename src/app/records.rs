@@ -192,7 +192,7 @@ impl GdcmApp {
             }
         }
         // What an earlier stop gave up is begun again.
-        self.worker.resume();
+        self.worker.resume_identifications();
         self.state.records.page = match self.state.records.page {
             RecordsPage::Histories | RecordsPage::Columns | RecordsPage::Inputs => RecordsPage::Response,
             page => page,

@@ -35,6 +35,7 @@ mod progress;
 mod remark;
 mod setting;
 mod settings;
+mod simulation_job;
 mod swaps;
 mod table;
 mod taken_models;
@@ -84,6 +85,7 @@ pub use settings::{
     GREATEST_QUANTILE, LARGEST_ALPHA, LEAD_LIMITS, LEAD_POLES, LEAST_GAIN, LEAST_POINTS, MOST_POINTS, PhaseCorrection,
     Settings,
 };
+pub use simulation_job::SimulationJob;
 pub use swaps::ConditionSwaps;
 pub use table::Table;
 pub use taken_models::{Taken, TakenModels};

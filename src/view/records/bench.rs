@@ -4,13 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::fit::TimeModel;
 use crate::dataset::{ConditionId, ConditionRecord, Dataset, RecordKind};
 use crate::identification::{
     ChannelPreparation, FlightRecord, Hold, Identification, Options, Preparation, Role, Signal,
 };
 use crate::records::{RecordChannels, RecordGuess, RecordLayout, RecordTable};
 use crate::study::{IdentifyJob, OfferedModels, TakenModels, identified_bundle, pieces_used};
+
+use super::simulation::TimeModel;
 
 /// What a page of the view shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -116,3 +116,16 @@ fn files_of_records_go_to_the_condition_that_their_names_say_and_what_is_wrong_i
     let wrong = records.conditions[&CONDITION_10_ID].rows.iter().find(|row| row.table.name == "flight").unwrap();
     assert!(wrong.flight.is_none() && wrong.problems.iter().any(|words| words.contains("NZ")), "{:?}", wrong.problems);
 }
+
+#[test]
+fn a_simulation_is_computed_beside_the_window() {
+    let mut window = records_window();
+    click(&mut window, "physics model");
+    wait_until(&mut window, "the simulation", |window| state(window).results.simulations.len() == 1);
+    let (job, outcome) = &state(&window).results.simulations[0];
+    let validation = outcome.as_ref().unwrap();
+    let simulated: usize = validation.windows.iter().map(|window| window.simulated.nrows()).sum();
+    assert_eq!(simulated, job.record.time_s.len(), "all samples are in some window");
+    click(&mut window, "physics model");
+    assert!(state(&window).results.simulations.is_empty(), "what is not asked for is not kept");
+}

@@ -211,7 +211,7 @@ impl GdcmApp {
         self.state.records.running.retain(|other| *other != job);
         if let Some(records) = self.state.records.conditions.get_mut(&job.condition) {
             records.changed = false;
-            records.found = Some((job, found.map_err(|error| error.to_string())));
+            records.found = Some((job, found));
         }
     }
 

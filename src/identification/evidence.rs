@@ -2,10 +2,11 @@
 
 use super::identification_caution::IdentificationCaution;
 use super::likelihood::{Likelihood, Lines};
+use super::local_polynomial::is_measurable;
 use super::steps::Steps;
 use super::{
-    CutOff, FlightRecord, IdentificationError, MeasuredResponse, NoiseCovariance, Options, Piece, RecordUse, Role,
-    Scales, Signal, Spectrum, local_polynomial, log_spaced, prepare, spectra,
+    CutOff, FlightRecord, IdentificationError, LocalPolynomialError, MeasuredResponse, NoiseCovariance, Options, Piece,
+    RecordUse, Role, Scales, Signal, Spectrum, local_polynomial, log_spaced, prepare, spectra,
 };
 use crate::executor::Executor;
 use nalgebra::DMatrix;
@@ -72,7 +73,8 @@ impl<'a> Evidence<'a> {
             lines.filter(|lines| !lines.omega.is_empty()).collect::<Vec<_>>()
         };
         let wide = between(&pieces, BEYOND * highest);
-        let measured = local_polynomial(&wide, &log_spaced(lowest, highest, MEASURED_POINTS), executor)?;
+        let omegas = log_spaced(lowest, highest, MEASURED_POINTS);
+        let measured = local_polynomial(&wide, &omegas, executor).map_err(|why| unmeasured(why, &wide, &omegas))?;
         let noise = NoiseCovariance::of(&measured).ok_or(IdentificationError::OutputsDepend)?;
         let likelihood = |spectra: &[Spectrum]| {
             let pieces: Option<_> = spectra.iter().map(|lines| Lines::new(lines, &noise)).collect();
@@ -86,6 +88,7 @@ impl<'a> Evidence<'a> {
         let mut cautions: Vec<_> = prepared.cautions.into_iter().map(IdentificationCaution::Records).collect();
         cautions.extend(vibration_cautions(&cut_off, options));
         cautions.extend(excitation_cautions(&measured, options));
+        cautions.extend(band_caution(&measured, options));
         Ok(Self {
             record_uses: prepared.records,
             scales,
@@ -116,6 +119,28 @@ fn check_sampling(pieces: &[Piece], options: &Options) -> Result<(), Identificat
         return Ok(());
     }
     Err(IdentificationError::SampledTooSlowly { highest: options.band[1], sample_time_s, limit: 0.75 * seen })
+}
+
+/// That there is no measured response; where that is because the records are too short, with the lower end of the band that would do:
+/// the lowest of `omegas` from which on there are lines enough, of those that belong to it.
+fn unmeasured(why: LocalPolynomialError, spectra: &[Spectrum], omegas: &[f64]) -> IdentificationError {
+    let is_enough = |from: usize| {
+        let lines: Vec<Spectrum> =
+            spectra.iter().map(|lines| lines.between(omegas[from] / BEYOND, f64::INFINITY)).collect();
+        omegas[from..].iter().all(|omega| is_measurable(&lines, *omega))
+    };
+    // Lines are used from half the lower end of the band on; the windows of another band lie a little differently.
+    const MARGIN: f64 = 1.05;
+    let lowest = |from: usize| 2.0 * MARGIN * omegas[from];
+    let widest = omegas.last().map_or(0.0, |highest| 0.5 * highest);
+    match why {
+        LocalPolynomialError::TooFewLines { .. } => (0..omegas.len())
+            .find(|from| is_enough(*from))
+            .map(lowest)
+            .filter(|lowest| *lowest < widest)
+            .map_or(IdentificationError::Measurement(why), |lowest| IdentificationError::TooShort { why, lowest }),
+        _ => IdentificationError::Measurement(why),
+    }
 }
 
 /// Refuses inputs of which one is a sum of others, by the condition of their correlations.
@@ -150,6 +175,11 @@ fn vibration_cautions(cut_off: &CutOff, options: &Options) -> Vec<Identification
         cut_off: cut_off.omega,
     };
     cut_off.vibrating.iter().map(caution).collect()
+}
+
+fn band_caution(measured: &MeasuredResponse, options: &Options) -> Option<IdentificationCaution> {
+    let shown = measured.shown_band(options.band)?;
+    Some(IdentificationCaution::BandNotShown { band: options.band, shown })
 }
 
 fn excitation_cautions(measured: &MeasuredResponse, options: &Options) -> Vec<IdentificationCaution> {

@@ -114,6 +114,11 @@ pub fn local_polynomial(
     Ok(MeasuredResponse { points })
 }
 
+/// Whether the lines around `omega` \[rad/s\] are enough; false where there are no spectra.
+pub(super) fn is_measurable(spectra: &[Spectrum], omega: f64) -> bool {
+    !spectra.is_empty() && Window::around(spectra, omega).is_ok()
+}
+
 /// The lines around a frequency.
 struct Window {
     omega: f64,

@@ -56,7 +56,7 @@ pub use identified::{Identification, IdentifiedModel, Origin};
 pub use identify::identify;
 pub use local_polynomial::{LocalPolynomialError, local_polynomial, log_spaced};
 pub use low_pass::{CutOff, LowPass};
-pub use measured_response::{Excitation, MeasuredPoint, MeasuredResponse};
+pub use measured_response::{Excitation, MeasuredPoint, MeasuredResponse, TRUSTED_COHERENCE};
 pub use noise_covariance::NoiseCovariance;
 pub use options::Options;
 pub use preparation::{ChannelPreparation, Hold, Preparation, PreparationError, Prepared, RecordUse, prepare};

@@ -17,6 +17,8 @@ use super::{
 
 /// Points of the bands.
 const BAND_POINTS: usize = 60;
+/// Upper end of the band that is offered where the highest order is not enough, over the present one.
+const NARROWER: f64 = 0.7;
 /// Standard deviation \[dB\] above which a response is not identified.
 const NOT_IDENTIFIED: f64 = 3.0;
 
@@ -63,7 +65,8 @@ pub(super) fn report(
     cautions.extend(examination.decisive_records(&omegas, &not_identified));
     cautions.extend(examination.late_channel(&record_fits));
     if search.still_falls {
-        cautions.push(IdentificationCaution::OrderLimit { order: search.order, highest: options.band[1] });
+        let narrower = [options.band[0], NARROWER * options.band[1]];
+        cautions.push(IdentificationCaution::OrderLimit { order: search.order, narrower });
     }
     cautions.extend(examination.unidentified_pairs(&not_identified));
 

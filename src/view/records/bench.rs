@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::dataset::{ConditionId, ConditionRecord, Dataset, RecordKind};
 use crate::identification::{
-    ChannelPreparation, FlightRecord, Hold, Identification, Options, Preparation, Role, Signal,
+    ChannelPreparation, FlightRecord, Hold, Identification, IdentificationError, Options, Preparation, Role, Signal,
 };
 use crate::records::{RecordChannels, RecordGuess, RecordLayout, RecordTable};
 use crate::study::{IdentifyJob, OfferedModels, TakenModels, identified_bundle, pieces_used};
@@ -170,7 +170,7 @@ pub struct ConditionRecords {
     /// Band \[rad/s\]; none is the study's.
     pub band: Option<[f64; 2]>,
     /// What was identified last, and from what.
-    pub found: Option<(IdentifyJob, Result<Arc<Identification>, String>)>,
+    pub found: Option<(IdentifyJob, Result<Arc<Identification>, IdentificationError>)>,
     /// Whether something else was said since.
     pub changed: bool,
 }

@@ -1,18 +1,10 @@
 //! Scales, low-pass, lines and the measured response.
 
-use super::common::{Threads, complex, known, list, matrix, noise, noisy};
+use super::common::{Threads, complex, known, list, matrix, noise, noisy, noisy_spectra};
 use gdcm::executor::Sequential;
 use gdcm::identification::*;
 use nalgebra::{Complex, DMatrix, DVector};
 use proptest::prelude::*;
-
-/// The scaled pieces of the case `noisy`, and its spectra to 1.3 whi.
-fn noisy_spectra() -> Vec<Spectrum> {
-    let pieces = noisy(&known(), 4);
-    let scales = Scales::of(&pieces).unwrap();
-    let scaled: Vec<_> = pieces.iter().map(|piece| scales.scaled(piece)).collect();
-    spectra(&scaled, 1.3 * 4.0 / 3.0 * 6.0, &Sequential)
-}
 
 #[test]
 fn scales_are_those_of_the_known_answer() {

@@ -1,8 +1,9 @@
 //! Identification from flight records: known answers of independent numpy code, properties, and simulated flights.
 
+mod bands;
 mod common;
-mod flight;
+pub mod flight;
 mod lines;
 mod preparation;
 mod validation;
-mod whole;
+pub mod whole;

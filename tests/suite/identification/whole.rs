@@ -71,7 +71,7 @@ fn a_noisy_closed_loop_gives_what_independent_code_gives() {
 }
 
 /// Options for the made-up flights: one Laguerre pole and past window, so that many fit into a test.
-fn quick(channels: (usize, usize)) -> Options {
+pub fn quick(channels: (usize, usize)) -> Options {
     const INPUTS: [&str; 3] = ["LON", "LAT", "PED"];
     const OUTPUTS: [&str; 3] = ["P", "Q", "R"];
     Options {
@@ -82,7 +82,7 @@ fn quick(channels: (usize, usize)) -> Options {
     }
 }
 
-fn stable_aircraft() -> StateSpaceMatrices {
+pub fn stable_aircraft() -> StateSpaceMatrices {
     StateSpaceMatrices {
         a: dmatrix![-0.4, 2.1, 0.0, 0.0; -2.1, -0.4, 0.0, 0.3; 0.0, 0.0, -1.5, 0.8; 0.2, 0.0, -1.1, -0.6],
         b: dmatrix![1.0, 0.2; 0.0, 0.6; 0.5, -1.0; -0.3, 0.8],

@@ -1,14 +1,19 @@
 //! What came of an identification, in words, with a button beside each caution that something can be done about.
 
+use std::sync::Arc;
+
 use egui::{Label, ProgressBar, RichText, Ui};
 
+use crate::dataset::BundleKind;
 use crate::identification::{Caution, Hold, Identification, IdentificationCaution, IdentificationError, Role, Signal};
+use crate::study::LateChannel;
 use crate::units::s_to_ms;
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::state::State;
 
 use super::bench::{ConditionRecords, RecordsCommand};
+use super::kept::kept;
 
 /// Above this the held-out records speak against the model (M14, section 4).
 const HELD_OUT: f64 = 1.15;
@@ -59,6 +64,7 @@ pub(super) fn outcome_ui(
             for caution in &found.cautions {
                 caution_ui(ui, (&caution.to_string(), actions(records, caution)), palette, commands);
             }
+            late_channel_ui(ui, state, records, palette, commands);
         }
     }
 }
@@ -95,6 +101,27 @@ fn caution_ui(ui: &mut Ui, (words, actions): (&str, Vec<Action>), palette: &Pale
     ui.add_space(3.0);
     ui.add(Label::new(RichText::new(format!("⚠ {words}")).size(SMALL_SIZE).color(palette.text)).wrap());
     actions_ui(ui, actions, commands);
+}
+
+/// A channel that is late in all records alike, which only a physics model can tell.
+fn late_channel_ui(
+    ui: &mut Ui,
+    state: &State,
+    records: &ConditionRecords,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let Some((job, Ok(found))) = &records.found else { return };
+    let (dataset, condition) = (state.dataset(), state.condition());
+    let Some(physics) = condition.bundle(BundleKind::Physics).get(condition.nominal()) else { return };
+    let key = (Arc::as_ptr(found) as usize, std::ptr::from_ref(physics) as usize);
+    let late = kept(ui, "late channel", key, || LateChannel::of(&found.measured, job.options.band, &physics.dynamics));
+    let Some(late) = *late else { return };
+    let channels = if late.role == Role::Input { dataset.inputs() } else { dataset.outputs() };
+    let Some(name) = channels.get(late.index).map(|channel| channel.name.clone()) else { return };
+    let words = late.words(&name, &physics.name);
+    let signal = Signal { role: late.role, index: late.index, name };
+    caution_ui(ui, (&words, vec![taken_out(records, &signal, late.delay_s)]), palette, commands);
 }
 
 /// Takes a delay out of a channel, beside what is taken out of it already.

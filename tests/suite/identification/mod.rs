@@ -3,6 +3,7 @@
 mod bands;
 mod common;
 pub mod flight;
+mod late;
 mod lines;
 mod preparation;
 mod validation;

@@ -210,8 +210,8 @@ fn an_unstable_aircraft_flown_in_closed_loop_comes_back_unstable() {
 
 #[test]
 fn bands_hold_what_they_say() {
-    // The factor of M14, section 5, was measured on an aircraft of 39 states. Here four states are the whole truth: without it
-    // the bands hold what they say, and with it more.
+    // The factor of M14, section 5, was measured on an aircraft of 39 states, where bands without it hold too little. Here four states
+    // are the whole truth: bands of nominally 95 % hold that without it, and more, nearly all, with it.
     let factor = std::f64::consts::SQRT_2;
     let aircraft = stable_aircraft();
     let flight = Flight::of(aircraft.clone(), Gusts { states: 0.03, sensors: 0.05 });
@@ -232,7 +232,8 @@ fn bands_hold_what_they_say() {
     let share = |width: f64| ratios.iter().filter(|ratio| **ratio < width).count() as f64 / ratios.len() as f64;
     // 40 flights of a few independent errors each leave the share uncertain by about 1 %.
     assert!((0.90..=0.99).contains(&share(1.96 / factor)), "{}", share(1.96 / factor));
-    assert!(share(1.96) > 0.95, "{}", share(1.96));
+    // What is offered has the factor, and errs on the safe side (docs/identification.md says so).
+    assert!((0.98..1.0).contains(&share(1.96)), "{}", share(1.96));
 }
 
 #[test]

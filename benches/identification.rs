@@ -10,6 +10,7 @@ use std::time::Instant;
 
 use nalgebra::DMatrix;
 
+use gdcm::app::Pool;
 use gdcm::assembly::standard_patterns;
 use gdcm::dataset::ConditionId;
 use gdcm::identification::{FlightRecord, Options, Preparation, StateSpaceMatrices, Watch, identify};
@@ -81,7 +82,7 @@ fn main() {
         let band = dataset.band();
         let options = Options { held_out, ..Options::new([band.min(), band.max()], preparation) };
         let stages = Stages::new();
-        let found = identify(&flights, &options, &stages).expect("the example's flights are good");
+        let found = identify(&flights, &options, &Pool, &stages).expect("the example's flights are good");
         let ms = stages.now_ms();
         all_ms += ms;
         let ratio = found.held_out_cost.unwrap_or(f64::NAN) / found.cost;

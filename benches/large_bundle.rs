@@ -8,8 +8,9 @@ use std::sync::Arc;
 use criterion::Criterion;
 use gdcm::app::Pool;
 use gdcm::dataset::{Band, Condition, ConditionId, Dynamics, FlightState, Model, Origin, Pair, PairTable, StateSpace};
+use gdcm::executor::{Executor, Sequential};
 use gdcm::response::FrequencyGrid;
-use gdcm::study::{BundleFigures, ConditionResponses, Execution, Executor, Sequential, Unobserved};
+use gdcm::study::{BundleFigures, ConditionResponses, Execution, Unobserved};
 use nalgebra::DMatrix;
 
 #[path = "random_model/mod.rs"]

@@ -73,6 +73,7 @@
 //! | module | holds |
 //! |---|---|
 //! | [`units`] | every conversion of units |
+//! | [`executor`] | who carries out pieces of work that do not depend on one another |
 //! | [`dataset`] | what the engineer loads: channels, models, flight conditions; checked once |
 //! | [`assembly`] | from the models of many files to one dataset: names, channels, units |
 //! | [`response`] | frequency responses, phase, poles and zeros, order statistics |
@@ -110,6 +111,7 @@ pub mod assembly;
 pub mod cli;
 pub mod correction;
 pub mod dataset;
+pub mod executor;
 pub mod fidelity;
 pub mod figure;
 pub mod identification;

@@ -10,6 +10,12 @@ pub fn db_to_ratio(db: f64) -> f64 {
     10.0_f64.powf(db / 20.0)
 }
 
+/// Natural logarithm of a magnitude ratio to decibels, as of small relative errors: `20 neper / ln 10`.
+pub fn neper_to_db(neper: f64) -> f64 {
+    const DB_PER_NEPER: f64 = 8.685_889_638_065_037;
+    DB_PER_NEPER * neper
+}
+
 /// Angular frequency \[rad/s\] to frequency \[Hz\]: `f = omega / 2 pi`.
 pub fn rad_s_to_hz(omega: f64) -> f64 {
     omega / std::f64::consts::TAU

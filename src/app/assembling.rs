@@ -11,7 +11,7 @@ use egui::Context;
 use crate::assembly::Rules;
 use crate::io::{
     Existing, FileError, FolderProgress, FoundModels, OutputSet, add_dataset, add_rules, load_rules, plain_path,
-    read_models, relative_folder,
+    read_models, relative_folder, rules_path, sources_folder,
 };
 use crate::view::assembling::{AssemblingCommand, Reading, Workbench};
 use crate::view::command::{Command, FormKind};
@@ -19,9 +19,6 @@ use crate::view::command::{Command, FormKind};
 use super::dialogs::DialogPurpose;
 use super::fault::{Fault, caught};
 use super::window::GdcmApp;
-
-/// How the name of a rules file ends.
-const RULES_EXTENSION: &str = "gdcm-rules.json";
 
 /// Bytes of values between two words about how far a file is read.
 const TOLD_EVERY: u64 = 16 << 20;
@@ -244,10 +241,8 @@ impl GdcmApp {
     pub(super) fn make_dataset(&mut self, path: PathBuf, existing: Existing, ctx: &Context) {
         let Some(bench) = &self.state.assembling else { return };
         let path = self.at_home(path);
-        let source = bench.sources.first().map_or(Path::new("."), PathBuf::as_path);
-        // Models name their files from the folder that was given; a file alone lies in its folder.
-        let folder = if source.is_dir() { source } else { source.parent().unwrap_or(Path::new(".")) };
-        let Some(dataset) = bench.assembly().dataset(&relative_folder(folder, &path)) else {
+        let folder = relative_folder(sources_folder(&bench.sources), &path);
+        let Some(dataset) = bench.assembly().dataset(&folder) else {
             return self.trouble("some things are still to be said before the dataset can be made".to_owned());
         };
         let rules = bench.assembly().rules().clone();
@@ -271,10 +266,4 @@ impl GdcmApp {
             Err(error) => self.trouble(error.to_string()),
         }
     }
-}
-
-fn rules_path(dataset: &Path) -> PathBuf {
-    let name = dataset.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let stem = name.trim_end_matches(".gz").trim_end_matches(".json");
-    dataset.with_file_name(format!("{stem}.{RULES_EXTENSION}"))
 }

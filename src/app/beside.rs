@@ -7,6 +7,7 @@ use crate::view::across_scene::across_job;
 use crate::view::arrangement::View;
 use crate::view::assessment_scene::assessment_choice;
 use crate::view::compare_scene::variant_jobs;
+use crate::view::records::simulation_jobs;
 use crate::view::state::State;
 
 use super::window::GdcmApp;
@@ -18,6 +19,8 @@ impl GdcmApp {
         let beside = Beside { report: self.reporting.clone(), ..wanted(&self.state) };
         let variants = &beside.variants;
         self.state.results.variants.retain(|(known, _)| variants.contains(known));
+        let simulations = &beside.simulations;
+        self.state.results.simulations.retain(|(known, _)| simulations.contains(known));
         self.worker.want_beside(beside);
     }
 }
@@ -37,6 +40,7 @@ fn wanted(state: &State) -> Beside {
             .map(|analysis| UncertaintyJob { analysis: Arc::clone(analysis) }),
         report: None,
         identifications: state.records.running.clone(),
+        simulations: if is_shown(View::Records) { simulation_jobs(state) } else { Vec::new() },
         variants: if is_shown(View::Compare) { variant_jobs(state) } else { Vec::new() },
     }
 }

@@ -134,32 +134,48 @@ impl<J: Job> Lane<J> {
         self.shared.changed.notify_one();
     }
 
+    /// The jobs that are asked for and not done.
+    pub(super) fn unfinished(&self) -> Vec<J> {
+        self.shared.mailbox().unfinished().cloned().collect()
+    }
+}
+
+/// A lane, whatever its jobs.
+pub(super) trait AnyLane {
     /// Gives up what is under way and what waits.
-    pub(super) fn stop(&self) {
+    fn stop(&self);
+    /// Lets what was stopped be begun again.
+    fn resume(&self);
+    /// Whether something that is asked for was stopped.
+    fn is_stopped(&self) -> bool;
+    /// How many jobs are asked for and not done.
+    fn left(&self) -> usize;
+    /// Steps done of how many, of the job under way.
+    fn progress(&self) -> Option<(usize, usize)>;
+}
+
+impl<J: Job> AnyLane for Lane<J> {
+    fn stop(&self) {
         let mut mailbox = self.shared.mailbox();
         let left: Vec<J> = mailbox.unfinished().cloned().collect();
         mailbox.stop_running();
         mailbox.stopped.extend(left);
     }
 
-    /// Lets what was stopped be begun again.
-    pub(super) fn resume(&self) {
+    fn resume(&self) {
         self.shared.mailbox().stopped.clear();
         self.shared.changed.notify_one();
     }
 
-    /// The jobs that are asked for and not done.
-    pub(super) fn unfinished(&self) -> Vec<J> {
-        self.shared.mailbox().unfinished().cloned().collect()
-    }
-
-    /// Whether something that is asked for was stopped.
-    pub(super) fn is_stopped(&self) -> bool {
+    fn is_stopped(&self) -> bool {
         !self.shared.mailbox().stopped.is_empty()
     }
 
-    /// Steps done of how many, of the job under way.
-    pub(super) fn progress(&self) -> Option<(usize, usize)> {
+    fn left(&self) -> usize {
+        self.shared.mailbox().unfinished().count()
+    }
+
+    fn progress(&self) -> Option<(usize, usize)> {
         let mailbox = self.shared.mailbox();
         let (_, run) = mailbox.running.as_ref()?;
         Some((run.done.load(Ordering::Relaxed), run.total.load(Ordering::Relaxed)))

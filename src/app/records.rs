@@ -192,7 +192,7 @@ impl GdcmApp {
             }
         }
         // What an earlier stop gave up is begun again.
-        self.worker.resume();
+        self.worker.resume_identifications();
         self.state.records.page = match self.state.records.page {
             RecordsPage::Histories | RecordsPage::Columns | RecordsPage::Inputs => RecordsPage::Response,
             page => page,
@@ -211,7 +211,7 @@ impl GdcmApp {
         self.state.records.running.retain(|other| *other != job);
         if let Some(records) = self.state.records.conditions.get_mut(&job.condition) {
             records.changed = false;
-            records.found = Some((job, found.map_err(|error| error.to_string())));
+            records.found = Some((job, found));
         }
     }
 

@@ -199,6 +199,10 @@ impl GdcmApp {
                     results.variants.retain(|(known, _)| *known != job);
                     results.variants.push((job, analysis));
                 }
+                Reply::Simulated(job, outcome) => {
+                    results.simulations.retain(|(known, _)| *known != job);
+                    results.simulations.push((job, outcome));
+                }
                 Reply::Uncertainty(job, uncertainty) => results.uncertainty = Some((job, uncertainty)),
                 Reply::Report(job, outcome) => self.report_written(job, outcome),
                 Reply::Identified(job, found) => self.identified(job, found),

@@ -6,16 +6,18 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use super::fault::{Fault, caught};
-use super::lane::{Ending, Lane, PATIENCE};
+use super::lane::{AnyLane, Ending, Lane, PATIENCE};
+use super::pool::Pool;
 use super::report::ReportJob;
 use crate::correction::{Outcome, Problem, Solution};
 use crate::dataset::ConditionId;
-use crate::identification::{Identification, IdentificationError};
+use crate::executor::Executor;
+use crate::identification::{Identification, IdentificationError, Validation};
 use crate::io::FileError;
 use crate::study::{
     AcrossCurves, AcrossJob, Analysis, AssessmentJob, AssessmentTable, CURVE_POINTS, ConditionAnalysis,
     ConditionCurves, ConditionFailure, ConditionModes, CurvesJob, Engine, IdentifyJob, Job, ModesJob, Progress,
-    ProofJob, Study, Toggles, TogglesJob, Uncertainty, UncertaintyJob, VariantJob, display_band,
+    ProofJob, SimulationJob, Study, Toggles, TogglesJob, Uncertainty, UncertaintyJob, VariantJob, display_band,
 };
 use crate::view::results::{Background, FirstResult};
 
@@ -80,6 +82,8 @@ pub enum Reply {
     Report(ReportJob, Result<(), FileError>),
     /// What was identified from flight records.
     Identified(IdentifyJob, Result<Arc<Identification>, IdentificationError>),
+    /// A model against a record in time; or, in words, why that cannot be had.
+    Simulated(SimulationJob, Result<Arc<Validation>, String>),
     /// Computing panicked.
     Fault {
         /// Number of the request that has no answer for it; none for a job.
@@ -148,6 +152,7 @@ struct Lanes {
     uncertainties: Lane<UncertaintyJob>,
     reports: Lane<ReportJob>,
     identifications: Lane<IdentifyJob>,
+    simulations: Lane<SimulationJob>,
 }
 
 /// What the views that are shown need beside the live answer; a job that is not wanted any more is given up.
@@ -167,6 +172,8 @@ pub struct Beside {
     pub report: Option<ReportJob>,
     /// Models to be identified, the first first.
     pub identifications: Vec<IdentifyJob>,
+    /// Models against a record in time.
+    pub simulations: Vec<SimulationJob>,
 }
 
 /// The threads that compute. Dropping it ends them, and waits for none.
@@ -234,60 +241,24 @@ impl Worker {
         self.lanes.uncertainties.want(beside.uncertainty.into_iter().collect());
         self.lanes.reports.want(beside.report.into_iter().collect());
         self.lanes.identifications.want(beside.identifications);
+        self.lanes.simulations.want(beside.simulations);
     }
 
     /// Gives up the request under way, the one that waits, and every job.
     pub fn stop(&self) {
         self.shared.newest.store(NOTHING, Ordering::Release);
         self.shared.mailbox().request = None;
-        let Lanes {
-            curves,
-            toggles,
-            proofs,
-            modes,
-            assessments,
-            across,
-            variants,
-            uncertainties,
-            reports,
-            identifications,
-        } = &*self.lanes;
-        curves.stop();
-        toggles.stop();
-        proofs.stop();
-        modes.stop();
-        assessments.stop();
-        across.stop();
-        variants.stop();
-        uncertainties.stop();
-        reports.stop();
-        identifications.stop();
+        self.lanes.all().iter().for_each(|lane| lane.stop());
     }
 
     /// Lets the jobs that were stopped be begun again.
     pub fn resume(&self) {
-        let Lanes {
-            curves,
-            toggles,
-            proofs,
-            modes,
-            assessments,
-            across,
-            variants,
-            uncertainties,
-            reports,
-            identifications,
-        } = &*self.lanes;
-        curves.resume();
-        toggles.resume();
-        proofs.resume();
-        modes.resume();
-        assessments.resume();
-        across.resume();
-        variants.resume();
-        uncertainties.resume();
-        reports.resume();
-        identifications.resume();
+        self.lanes.all().iter().for_each(|lane| lane.resume());
+    }
+
+    /// Lets the identifications that were stopped be begun again.
+    pub fn resume_identifications(&self) {
+        self.lanes.identifications.resume();
     }
 
     /// Whether a report was stopped that is still asked for.
@@ -297,37 +268,18 @@ impl Worker {
 
     /// What is under way beside the live answer.
     pub fn background(&self) -> Background {
-        let proofs = self.lanes.proofs.unfinished().into_iter().map(|job| job.problem).collect();
-        let curves =
-            (!self.lanes.curves.unfinished().is_empty()).then(|| self.lanes.curves.progress().unwrap_or((0, 0)));
-        let Lanes {
-            curves: of_curves,
-            toggles,
-            proofs: of_proofs,
-            modes,
-            assessments,
-            across,
-            variants,
-            uncertainties,
-            reports,
-            identifications,
-        } = &*self.lanes;
-        let under_way = !identifications.unfinished().is_empty();
-        let identification = under_way.then(|| identifications.progress().unwrap_or((0, 0)));
-        let stopped = of_curves.is_stopped()
-            || toggles.is_stopped()
-            || of_proofs.is_stopped()
-            || modes.is_stopped()
-            || assessments.is_stopped()
-            || across.is_stopped()
-            || variants.is_stopped()
-            || uncertainties.is_stopped();
-        let views = modes.unfinished().len() + assessments.unfinished().len() + across.unfinished().len();
-        let views = views + variants.unfinished().len();
-        let bars = (!uncertainties.unfinished().is_empty()).then(|| uncertainties.progress().unwrap_or((0, 0)));
-        let report = (!reports.unfinished().is_empty()).then(|| reports.progress().unwrap_or((0, 0)));
-        let toggles = !toggles.unfinished().is_empty();
-        Background { proofs, toggles, curves, bars, views, report, identification, stopped }
+        let lanes = &self.lanes;
+        let told = |lane: &dyn AnyLane| (lane.left() > 0).then(|| lane.progress().unwrap_or((0, 0)));
+        Background {
+            proofs: lanes.proofs.unfinished().into_iter().map(|job| job.problem).collect(),
+            toggles: lanes.toggles.left() > 0,
+            curves: told(&lanes.curves),
+            bars: told(&lanes.uncertainties),
+            views: lanes.of_views().iter().map(|lane| lane.left()).sum(),
+            report: told(&lanes.reports),
+            identification: told(&lanes.identifications),
+            stopped: lanes.computing().iter().any(|lane| lane.is_stopped()),
+        }
     }
 
     /// The next reply, if one is there.
@@ -357,10 +309,38 @@ impl Lanes {
             variants: lane("variants", move || for_variants(), outbox, |job, found| Some(Reply::Variant(job, found)))?,
             uncertainties: lane("error bars", move || for_bars(), outbox, |job, of| Some(Reply::Uncertainty(job, of)))?,
             reports: lane("report", move || for_reports(), outbox, |job, outcome| Some(Reply::Report(job, outcome)))?,
-            identifications: lane("identification", || (), outbox, |job, found| Some(Reply::Identified(job, found)))?,
+            identifications: lane(
+                "identification",
+                || -> Box<dyn Executor> { Box::new(Pool) },
+                outbox,
+                |job, found| Some(Reply::Identified(job, found)),
+            )?,
+            simulations: lane("simulation", pool, outbox, |job, outcome| Some(Reply::Simulated(job, outcome)))?,
             proofs: proofs_lane(shared, outbox)?,
         })
     }
+
+    /// What only the views shown wait for.
+    fn of_views(&self) -> [&dyn AnyLane; 5] {
+        [&self.modes, &self.assessments, &self.across, &self.variants, &self.simulations]
+    }
+
+    /// What computing anew begins again: all but what is asked for by a button of its own.
+    fn computing(&self) -> Vec<&dyn AnyLane> {
+        let live: [&dyn AnyLane; 4] = [&self.curves, &self.toggles, &self.proofs, &self.uncertainties];
+        live.into_iter().chain(self.of_views()).collect()
+    }
+
+    /// Every lane.
+    fn all(&self) -> Vec<&dyn AnyLane> {
+        let with_buttons: [&dyn AnyLane; 2] = [&self.reports, &self.identifications];
+        self.computing().into_iter().chain(with_buttons).collect()
+    }
+}
+
+/// The pool as the tool of a job.
+fn pool() -> Box<dyn Executor> {
+    Box::new(Pool)
 }
 
 /// A lane whose outputs become replies.

@@ -92,17 +92,19 @@ impl Assembly {
         kinds.into_iter().map(words).collect()
     }
 
-    /// The dataset; none while there are problems. Models name their files with `folder` before them, which leads to the files from
-    /// where the dataset is to lie.
+    /// The dataset; none while there are problems. Models and flight records name their files with `folder` before them, which
+    /// leads to the files from where the dataset is to lie.
     pub fn dataset(&self, folder: &str) -> Option<Dataset> {
         if !self.problems.is_empty() {
             return None;
         }
         let mut draft = self.draft();
-        let bundles =
-            draft.conditions.iter_mut().flat_map(|condition| [&mut condition.physics, &mut condition.identified]);
-        for source in bundles.flatten().filter_map(|model| model.source.as_mut()) {
-            if let Some(file) = source.file.as_mut().filter(|_| !folder.is_empty()) {
+        for condition in &mut draft.conditions {
+            let models = condition.physics.iter_mut().chain(&mut condition.identified);
+            let of_models = models.filter_map(|model| model.source.as_mut()?.file.as_mut());
+            let of_records = condition.records.iter_mut().map(|record| &mut record.file);
+            for file in of_models.chain(of_records).filter(|file| !folder.is_empty() && !Path::new(file).is_absolute())
+            {
                 *file = format!("{folder}/{file}");
             }
         }

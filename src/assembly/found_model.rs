@@ -1,6 +1,6 @@
 //! A model as some file gave it.
 
-use crate::dataset::{ModelDraft, ResponseDraft};
+use crate::dataset::{ConditionRecord, ModelDraft, ResponseDraft};
 
 /// What a file says of one channel.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -29,6 +29,8 @@ pub struct Facts {
     pub altitude_ft: Option<f64>,
     /// Mass \[kg\].
     pub mass_kg: Option<f64>,
+    /// Its flight records, their files relative to what was asked for.
+    pub records: Vec<ConditionRecord>,
 }
 
 /// A model as some file gave it: its channels are the file's, in the file's order and units.

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::dataset::{
-    Channel, ConditionDraft, ConditionId, DatasetDraft, FlightState, ModelDraft, Origin, Provenance, ResponseArray,
-    ResponseDraft,
+    Channel, ConditionDraft, ConditionId, ConditionRecord, DatasetDraft, FlightState, ModelDraft, Origin, Provenance,
+    ResponseArray, ResponseDraft,
 };
 use crate::units::number;
 
@@ -59,8 +59,31 @@ fn condition_of(id: i64, parts: &[&Part]) -> ConditionDraft {
         flight_state: state,
         physics: physics.iter().map(|part| physics_model(part, &coordinates)).collect(),
         identified: identified_models(&of_role(&[RowRole::Identified])),
-        records: Vec::new(),
+        records: records_of(parts),
     }
+}
+
+/// The flight records that the files of the models name, once each, as the file says it that says which pieces are used; of different
+/// ones of one name the later gets a number.
+fn records_of(parts: &[&Part]) -> Vec<ConditionRecord> {
+    let mut records: Vec<ConditionRecord> = Vec::new();
+    let mut known: Vec<(&String, &String, &Option<String>)> = Vec::new();
+    for record in parts.iter().flat_map(|part| &part.found.facts.records) {
+        let key = (&record.name, &record.file, &record.variable);
+        if let Some(place) = known.iter().position(|other| *other == key) {
+            if records[place].used_s.is_empty() {
+                records[place] = ConditionRecord { name: records[place].name.clone(), ..record.clone() };
+            }
+            continue;
+        }
+        known.push(key);
+        let numbers = std::iter::successors(Some(2_usize), |number| Some(number + 1));
+        let names = numbers.map(|number| format!("{} ({number})", record.name));
+        let free = |name: &String| records.iter().all(|other| other.name != *name);
+        let name = std::iter::once(record.name.clone()).chain(names).find(free);
+        records.push(ConditionRecord { name: name.unwrap_or_default(), ..record.clone() });
+    }
+    records
 }
 
 /// "45 kt, high altitude, low weight".

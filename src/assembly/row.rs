@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::units::number;
+
 /// The role of a model in its condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RowRole {
@@ -57,4 +59,21 @@ pub struct Row {
     pub method: Option<String>,
     /// Offsets of the trim, by coordinate ("roll_deg").
     pub perturbation: BTreeMap<String, f64>,
+}
+
+impl Row {
+    /// "45 kt"; none where it is not said.
+    pub fn airspeed_words(&self) -> Option<String> {
+        self.airspeed_kt.map(|airspeed| format!("{} kt", number(airspeed)))
+    }
+
+    /// "high", or else "2000 ft"; nothing where neither is said.
+    pub fn altitude_words(&self) -> String {
+        self.altitude.clone().or(self.altitude_ft.map(|feet| format!("{} ft", number(feet)))).unwrap_or_default()
+    }
+
+    /// "low", or else "6600 kg"; nothing where neither is said.
+    pub fn weight_words(&self) -> String {
+        self.weight.clone().or(self.mass_kg.map(|mass| format!("{} kg", number(mass)))).unwrap_or_default()
+    }
 }

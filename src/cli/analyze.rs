@@ -2,26 +2,24 @@
 
 use std::sync::Arc;
 
-use crate::io::{OutputSet, make_directory, result_paths, write_results};
-use crate::study::{Analysis, Engine};
+use crate::io::{make_directory, result_paths, write_results};
+use crate::study::Analysis;
 
 use super::arguments::AnalyzeArguments;
 use super::evidence_sections::leave_one_out_section;
-use super::existing;
 use super::failure::Failure;
 use super::progress::TerminalProgress;
-use super::study_options::{analysis_of, study_of};
+use super::study_options::{analysis_of, engine, outputs_of, study_of};
 use super::summary::summary;
 use super::terminal::{say, say_error};
 
 /// Analyses, writes the results, and prints a summary.
 pub(super) fn analyze(arguments: &AnalyzeArguments) -> Result<(), Failure> {
     let (mut study, loaded) = study_of(&arguments.study)?;
-    let inputs = arguments.study.file.iter().cloned().chain(loaded.origin.file());
-    let outputs = OutputSet::new(existing(arguments.force), inputs.collect());
+    let outputs = outputs_of(&arguments.study, &loaded, arguments.force);
     outputs.check(&result_paths(&arguments.out))?;
     make_directory(&arguments.out)?;
-    let mut engine = Engine::with_executor(Box::new(crate::app::Pool));
+    let mut engine = engine();
     let progress = TerminalProgress::new("analysing");
     let mut analysis = analysis_of(&mut study, &arguments.study, &mut engine, &progress)?;
     analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &progress)?));

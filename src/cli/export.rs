@@ -4,27 +4,25 @@ use std::sync::Arc;
 
 use crate::correction::Pade;
 use crate::dataset::ConditionId;
-use crate::io::{ExportSource, OutputSet, check_export, plain, plain_path, write_export};
-use crate::study::{Engine, ExportFormat, ExportRequest, ExportedRole, Study};
+use crate::io::{ExportSource, check_export, plain, plain_path, write_export};
+use crate::study::{ExportFormat, ExportRequest, ExportedRole, Study};
 
 use super::analyze::check_result;
 use super::arguments::StudyArguments;
-use super::existing;
 use super::export_arguments::ExportArguments;
 use super::failure::Failure;
 use super::progress::TerminalProgress;
-use super::study_options::{analysis_of, study_of};
+use super::study_options::{analysis_of, engine, outputs_of, study_of};
 use super::terminal::say;
 
 /// Analyses, writes what is asked for, and says what is to be known of it.
 pub(super) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     let (mut study, loaded) = study_of(&arguments.study)?;
-    let inputs = arguments.study.file.iter().cloned().chain(loaded.origin.file());
-    let outputs = OutputSet::new(existing(arguments.force), inputs.collect());
+    let outputs = outputs_of(&arguments.study, &loaded, arguments.force);
     let request = request(&study, arguments)?;
     check_export(request.format, &arguments.out)?;
     outputs.check(&[&arguments.out])?;
-    let mut engine = Engine::with_executor(Box::new(crate::app::Pool));
+    let mut engine = engine();
     let progress = TerminalProgress::new("analysing");
     let mut analysis = analysis_of(&mut study, &arguments.study, &mut engine, &progress)?;
     analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &progress)?));

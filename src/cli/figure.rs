@@ -7,26 +7,24 @@ use crate::dataset::{ConditionId, Dataset, Pair};
 use crate::figure::{
     Across, BodeOptions, ConditionSource, Figure, FigureKind, FigureRequest, FrequencyUnit, Measure, all_channels,
 };
-use crate::io::{OutputSet, figure_format, plain_path, write_figure};
+use crate::io::{figure_format, plain_path, write_figure};
 use crate::study::{Analysis, CURVE_POINTS, Engine, Study, display_band};
 
 use super::arguments::{FigureArguments, PairChoice};
-use super::existing;
 use super::failure::Failure;
 use super::progress::TerminalProgress;
-use super::study_options::{analysis_of, names, pairs_of, study_of};
+use super::study_options::{analysis_of, engine, names, outputs_of, pairs_of, study_of};
 use super::terminal::say;
 
 /// Makes one figure as a file, and says so.
 pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     let (mut study, loaded) = study_of(&arguments.study)?;
-    let inputs = arguments.study.file.iter().cloned().chain(loaded.origin.file());
-    let outputs = OutputSet::new(existing(arguments.force), inputs.collect());
+    let outputs = outputs_of(&arguments.study, &loaded, arguments.force);
     figure_format(&arguments.out)?;
     outputs.check(&[&arguments.out])?;
     let request = request(&study, arguments)?;
     let condition = condition(&study, arguments)?;
-    let mut engine = Engine::with_executor(Box::new(crate::app::Pool));
+    let mut engine = engine();
     let progress = TerminalProgress::new("analysing");
     let mut analysis = analysis_of(&mut study, &arguments.study, &mut engine, &progress)?;
     if arguments.bars || arguments.view.needs_bars() {

@@ -11,9 +11,8 @@ use crate::identification::{
 use crate::io::{IdentifiedModels, IdentifiedValidation, MeasuredEstimate, PoleEstimate, RecordReport};
 use crate::records::{RecordChannels, RecordTable};
 use crate::study::pieces_used;
+use crate::units::neper_to_db;
 
-/// dB of a natural logarithm.
-const DB_PER_NEPER: f64 = 8.685_889_638_065_037;
 /// Methods, as models carry them (M14).
 const REFINED: &str = "CT-PBSID, refined";
 const PLAIN: &str = "CT-PBSID";
@@ -106,7 +105,7 @@ fn measured(measured: &MeasuredResponse) -> MeasuredEstimate {
         values,
         coherence: (0..outputs).map(|output| points.iter().map(|point| point.coherence[output]).collect()).collect(),
         partial_coherence: table(&|point, at| point.partial_coherence[at]),
-        sd_db: table(&|point, at| DB_PER_NEPER * neper(point, at)),
+        sd_db: table(&|point, at| neper_to_db(neper(point, at))),
         sd_deg: table(&|point, at| neper(point, at).to_degrees()),
     }
 }

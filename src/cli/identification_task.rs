@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::app::Pool;
 use crate::assembly::ChannelRule;
 use crate::dataset::{Band, ConditionId, ConditionRecord};
 use crate::identification::{
@@ -54,7 +55,7 @@ impl IdentificationTask {
     /// Identification proper, with a word about how far it is on a terminal.
     pub(super) fn run(&self) -> Result<Identification, IdentificationError> {
         let doing = self.condition.map_or_else(|| "identifying".to_owned(), |id| format!("identifying condition {id}"));
-        identify(&self.flights, &self.options, &TerminalProgress::new(&doing))
+        identify(&self.flights, &self.options, &Pool, &TerminalProgress::new(&doing))
     }
 
     /// What was found, as its file says it.

@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use crate::assembly::{Assembly, Headings, proposed_rules};
 use crate::io::{
     FolderProgress, FoundModels, OutputSet, add_dataset, add_models, add_rules, load_rules, plain, plain_path,
-    read_models, relative_folder,
+    read_models, relative_folder, rules_path, sources_folder,
 };
 use crate::units::number;
 
@@ -17,9 +17,6 @@ use super::existing;
 use super::failure::Failure;
 use super::terminal::{say, say_error};
 use super::text_table::{Side, TextTable};
-
-/// How the name of a rules file ends.
-const RULES_EXTENSION: &str = "gdcm-rules.json";
 
 /// Which file is read, on a terminal only.
 pub(super) struct ReadingProgress {
@@ -99,7 +96,7 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     if is_proposed {
         add_rules(assembly.rules(), &rules_path, &mut outputs)?;
     }
-    let folder = relative_folder(arguments.folders.first().map_or(Path::new("."), PathBuf::as_path), &arguments.out);
+    let folder = relative_folder(sources_folder(&arguments.folders), &arguments.out);
     let dataset = assembly.dataset(&folder);
     if let Some(dataset) = &dataset {
         add_dataset(dataset, &arguments.out, &mut outputs)?;
@@ -134,12 +131,6 @@ fn name_of(folders: &[PathBuf]) -> String {
     name.map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
-fn rules_path(out: &Path) -> PathBuf {
-    let name = out.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let stem = name.trim_end_matches(".gz").trim_end_matches(".json");
-    out.with_file_name(format!("{stem}.{RULES_EXTENSION}"))
-}
-
 /// A line a model: what it is to be.
 fn table(assembly: &Assembly) -> String {
     use Side::{Left, Right};
@@ -161,9 +152,9 @@ fn table(assembly: &Assembly) -> String {
             or_dash(row.condition.map(|condition| condition.to_string())),
             if row.left_out { "left out".to_owned() } else { or_dash(row.role.map(|role| role.word().to_owned())) },
             plain(&row.name),
-            or_dash(row.airspeed_kt.map(|airspeed| format!("{} kt", number(airspeed)))),
-            row.altitude.clone().or(row.altitude_ft.map(|feet| format!("{} ft", number(feet)))).unwrap_or_default(),
-            row.weight.clone().or(row.mass_kg.map(|mass| format!("{} kg", number(mass)))).unwrap_or_default(),
+            or_dash(row.airspeed_words()),
+            row.altitude_words(),
+            row.weight_words(),
             trim.collect::<Vec<_>>().join(", "),
             plain(&part.found.key()),
         ]);

@@ -1,29 +1,25 @@
 //! `gdcm report`.
 
-use crate::io::{OutputSet, ReportSource, plain_path, report as report_of, save_report};
-use crate::study::Engine;
+use crate::io::{ReportSource, plain_path, report as report_of, save_report};
 
 use super::analyze::check_result;
 use super::arguments::ReportArguments;
-use super::existing;
 use super::failure::Failure;
 use super::progress::TerminalProgress;
-use super::study_options::{analysis_of, study_of};
+use super::study_options::{analysis_of, engine, outputs_of, study_of};
 use super::terminal::say;
 
 /// Analyses, and writes all that was found and done as one page.
 pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     let (mut study, loaded) = study_of(&arguments.study)?;
-    let file = arguments.study.file.as_ref();
-    let inputs = file.cloned().into_iter().chain(loaded.origin.file());
-    let outputs = OutputSet::new(existing(arguments.force), inputs.collect());
+    let outputs = outputs_of(&arguments.study, &loaded, arguments.force);
     outputs.check(&[&arguments.out])?;
-    let mut engine = Engine::with_executor(Box::new(crate::app::Pool));
+    let mut engine = engine();
     let progress = TerminalProgress::new("analysing");
     let analysis = analysis_of(&mut study, &arguments.study, &mut engine, &progress)?;
     drop(progress);
     check_result(&analysis)?;
-    let study_file = file.filter(|file| loaded.path() != Some(file.as_path()));
+    let study_file = arguments.study.file.as_ref().filter(|file| loaded.path() != Some(file.as_path()));
     let source = ReportSource::of(&loaded, study_file.map(|file| file.as_path()));
     let progress = TerminalProgress::new("drawing");
     let report = report_of(&analysis, &source, &mut engine, &progress)?;

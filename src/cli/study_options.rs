@@ -1,13 +1,15 @@
 //! The study that a command is about, with what the command line says on top of it.
 
+use crate::app::Pool;
 use crate::correction::GainSource;
 use crate::dataset::{Band, BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
-use crate::io::{LoadedDataset, embedded_example};
+use crate::io::{LoadedDataset, OutputSet, embedded_example};
 use crate::schedule::{ScheduleKind, ScheduleSettings, SecondVariable};
 use crate::study::{Analysis, Edit, Engine, Progress, Setting, Study};
 use crate::uncertainty::UncertaintySettings;
 
 use super::arguments::{CoherenceChoice, GainSourceChoice, PairList, Rejection, SecondVariableChoice, StudyArguments};
+use super::existing;
 use super::failure::Failure;
 use super::opening::open as open_file;
 use super::terminal::say_error;
@@ -29,6 +31,17 @@ pub(super) fn study_of(arguments: &StudyArguments) -> Result<(Study, LoadedDatas
     }
     take_options(&mut study, arguments)?;
     Ok((study, loaded))
+}
+
+/// The files that a command about a study writes: none of those that it reads is overwritten.
+pub(super) fn outputs_of(arguments: &StudyArguments, loaded: &LoadedDataset, force: bool) -> OutputSet {
+    let inputs = arguments.file.iter().cloned().chain(loaded.origin.file());
+    OutputSet::new(existing(force), inputs.collect())
+}
+
+/// An engine on all cores.
+pub(super) fn engine() -> Engine {
+    Engine::with_executor(Box::new(Pool))
 }
 
 /// The analysis of a study, after what it suggests has been rejected where that is asked for.

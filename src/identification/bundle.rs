@@ -4,7 +4,7 @@ use super::blocks::BlockModel;
 use super::likelihood::Likelihood;
 use super::normal_system::NormalSystem;
 use super::polish::{Fit, damped};
-use rayon::prelude::*;
+use crate::executor::each;
 
 /// Damping at the beginning of a step that leaves a record out.
 const FIRST_DAMPING: f64 = 1e-4;
@@ -46,7 +46,7 @@ pub(super) fn without_each_record(likelihood: &Likelihood, fit: &Fit, systems: &
         let stepped = damped(&rest, &fit.model, &system, cost, FIRST_DAMPING);
         WithoutRecord { record, model: stepped.map_or_else(|| fit.model.clone(), |(model, ..)| model) }
     };
-    records.par_iter().map(without).collect()
+    each(likelihood.executor, &records, without)
 }
 
 /// How far two models are apart: the cost `J` of M4 (medians over frequency), averaged over the pairs that are identified.

@@ -14,7 +14,7 @@ use super::steps::Steps;
 use super::subspace::{PredictorSettings, Subspace};
 use super::triangular_factor::TriangularFactor;
 use super::{IdentificationError, Piece, StateSpaceMatrices};
-use rayon::prelude::*;
+use crate::executor::{Executor, each};
 use std::collections::BTreeMap;
 
 /// Order at which poles and past windows are compared.
@@ -67,18 +67,19 @@ impl SubspaceSettings {
     ) -> Result<Vec<Candidate>, IdentificationError> {
         let pasts: Vec<usize> = self.pasts.iter().copied().filter(|&past| self.is_fed(pieces, past)).collect();
         let Some(&longest) = pasts.iter().max() else { return Ok(Vec::new()) };
+        let executor = likelihood.executor;
         let share = SHARE / (self.poles.len() * (pasts.len() + 1)) as f64;
         let of_pole = |(k, &pole): (usize, &f64)| {
             let told = format!("pole {} of {}", k + 1, self.poles.len());
             steps.advance(share, &format!("{told}, projections"))?;
-            let factor = self.projections(pole, longest).factor(pieces);
+            let factor = self.projections(pole, longest).factor(pieces, executor);
             let of_past = |&past: &usize| {
                 steps.advance(share, &format!("{told}, past {past}"))?;
                 Ok(self.candidate(&factor, pole, past, pieces, likelihood))
             };
-            pasts.par_iter().map(of_past).collect::<Result<Vec<_>, IdentificationError>>()
+            each(executor, &pasts, of_past).into_iter().collect::<Result<Vec<_>, IdentificationError>>()
         };
-        let all: Vec<_> = self.poles.par_iter().enumerate().map(of_pole).collect::<Result<_, IdentificationError>>()?;
+        let all = each(executor, self.poles.iter().enumerate(), of_pole).into_iter().collect::<Result<Vec<_>, _>>()?;
         let mut found: Vec<Candidate> = all.into_iter().flatten().flatten().collect();
         found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         found.truncate(KEPT);
@@ -92,16 +93,20 @@ impl SubspaceSettings {
             let fits = models.filter_map(|model| Fit::start(likelihood, model));
             fits.min_by(|a, b| a.cost.total_cmp(&b.cost)).map(|fit| (order, fit))
         };
-        self.orders.par_iter().filter_map(cheapest).collect()
+        each(likelihood.executor, &self.orders, cheapest).into_iter().flatten().collect()
     }
 
     /// The poles of the models of each order that a candidate proposes.
-    pub(super) fn poles_by_order(&self, candidate: &Candidate) -> Vec<(usize, Vec<nalgebra::Complex<f64>>)> {
+    pub(super) fn poles_by_order(
+        &self,
+        candidate: &Candidate,
+        executor: &dyn Executor,
+    ) -> Vec<(usize, Vec<nalgebra::Complex<f64>>)> {
         let of_order = |&order: &usize| {
             let model = self.slow(&candidate.subspace, order)?;
             Some((order, model.poles()?))
         };
-        self.orders.par_iter().filter_map(of_order).collect()
+        each(executor, &self.orders, of_order).into_iter().flatten().collect()
     }
 
     fn projections(&self, pole: f64, past: usize) -> Projections {

@@ -11,8 +11,8 @@
 use super::Piece;
 use super::laguerre_bank::LaguerreBank;
 use super::triangular_factor::TriangularFactor;
+use crate::executor::{Executor, each};
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 /// Share of a piece that the projections' unfinished ends may cost at most.
 const LARGEST_END: f64 = 0.3;
@@ -56,7 +56,7 @@ impl Projections {
     /// The triangular factor of the data matrix of all pieces.
     ///
     /// The same to the last bit on any number of threads: which pieces are factored together does not depend on it.
-    pub(super) fn factor(&self, pieces: &[Piece]) -> TriangularFactor {
+    pub(super) fn factor(&self, pieces: &[Piece], executor: &dyn Executor) -> TriangularFactor {
         /// Two parts keep two cores busy with three poles; merging a further one costs as much as a piece of 6 s.
         const PARTS: usize = 2;
         let part = |pieces: &[Piece]| {
@@ -69,8 +69,7 @@ impl Projections {
             }
             factor
         };
-        let parts: Vec<_> = pieces.par_chunks(pieces.len().div_ceil(PARTS).max(1)).map(part).collect();
-        let mut parts = parts.into_iter();
+        let mut parts = each(executor, pieces.chunks(pieces.len().div_ceil(PARTS).max(1)), part).into_iter();
         let Some(mut factor) = parts.next() else { return TriangularFactor::empty(0) };
         for other in parts {
             factor.merge(&other);

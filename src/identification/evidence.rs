@@ -2,11 +2,13 @@
 
 use super::identification_caution::IdentificationCaution;
 use super::likelihood::{Likelihood, Lines};
+use super::local_polynomial::is_measurable;
 use super::steps::Steps;
 use super::{
-    CutOff, FlightRecord, IdentificationError, MeasuredResponse, NoiseCovariance, Options, Piece, RecordUse, Role,
-    Scales, Signal, Spectrum, local_polynomial, log_spaced, prepare, spectra,
+    CutOff, FlightRecord, IdentificationError, LocalPolynomialError, MeasuredResponse, NoiseCovariance, Options, Piece,
+    RecordUse, Role, Scales, Signal, Spectrum, local_polynomial, log_spaced, prepare, spectra,
 };
+use crate::executor::Executor;
 use nalgebra::DMatrix;
 
 /// Points of the measured response.
@@ -17,7 +19,7 @@ const BEYOND: f64 = 1.3;
 const COPY: f64 = 1e9;
 
 /// Records, prepared, transformed and weighed.
-pub(super) struct Evidence {
+pub(super) struct Evidence<'a> {
     /// What was used of every record.
     pub(super) record_uses: Vec<RecordUse>,
     /// Units of the records over scaled units.
@@ -33,20 +35,25 @@ pub(super) struct Evidence {
     /// The noise that it leaves.
     pub(super) noise: NoiseCovariance,
     /// The cost over the records of the fit.
-    pub(super) likelihood: Likelihood,
+    pub(super) likelihood: Likelihood<'a>,
     /// The cost over the held-out records.
-    pub(super) held_out: Likelihood,
+    pub(super) held_out: Likelihood<'a>,
     /// What speaks against the records.
     pub(super) cautions: Vec<IdentificationCaution>,
 }
 
-impl Evidence {
+impl<'a> Evidence<'a> {
     /// Prepares the records, measures the response and the noise, and filters for the projections (M14, sections 1 and 2).
-    pub(super) fn new(records: &[FlightRecord], options: &Options, steps: &Steps) -> Result<Self, IdentificationError> {
+    pub(super) fn new(
+        records: &[FlightRecord],
+        options: &Options,
+        executor: &'a dyn Executor,
+        steps: &Steps,
+    ) -> Result<Self, IdentificationError> {
         if let Some(&record) = options.held_out.iter().find(|record| **record >= records.len()) {
             return Err(IdentificationError::HeldOutMissing { record, records: records.len() });
         }
-        let prepared = prepare(records, &options.preparation)?;
+        let prepared = prepare(records, &options.preparation, executor)?;
         check_sampling(&prepared.pieces, options)?;
         let (held_out_pieces, pieces): (Vec<Piece>, Vec<Piece>) =
             prepared.pieces.into_iter().partition(|piece| options.held_out.contains(&piece.record));
@@ -61,28 +68,31 @@ impl Evidence {
         steps.next(0.02, "measured response")?;
         let (lowest, highest) = (options.lowest(), options.highest());
         let between = |pieces: &[Piece], highest: f64| {
-            let lines = spectra(pieces, highest).into_iter().map(|lines| lines.between(lowest / BEYOND, highest));
+            let lines =
+                spectra(pieces, highest, executor).into_iter().map(|lines| lines.between(lowest / BEYOND, highest));
             lines.filter(|lines| !lines.omega.is_empty()).collect::<Vec<_>>()
         };
         let wide = between(&pieces, BEYOND * highest);
-        let measured = local_polynomial(&wide, &log_spaced(lowest, highest, MEASURED_POINTS))?;
+        let omegas = log_spaced(lowest, highest, MEASURED_POINTS);
+        let measured = local_polynomial(&wide, &omegas, executor).map_err(|why| unmeasured(why, &wide, &omegas))?;
         let noise = NoiseCovariance::of(&measured).ok_or(IdentificationError::OutputsDepend)?;
         let likelihood = |spectra: &[Spectrum]| {
             let pieces: Option<_> = spectra.iter().map(|lines| Lines::new(lines, &noise)).collect();
-            pieces.map(|pieces| Likelihood { pieces }).ok_or(IdentificationError::OutputsDepend)
+            pieces.map(|pieces| Likelihood { pieces, executor }).ok_or(IdentificationError::OutputsDepend)
         };
         let narrow: Vec<Spectrum> = wide.iter().map(|lines| lines.between(lowest, highest)).collect();
         let (fit, held_out) = (likelihood(&narrow)?, likelihood(&between(&scaled(&held_out_pieces), highest))?);
 
         steps.next(0.07, "low-pass")?;
-        let cut_off = CutOff::choose(&pieces, highest);
+        let cut_off = CutOff::choose(&pieces, highest, executor);
         let mut cautions: Vec<_> = prepared.cautions.into_iter().map(IdentificationCaution::Records).collect();
         cautions.extend(vibration_cautions(&cut_off, options));
         cautions.extend(excitation_cautions(&measured, options));
+        cautions.extend(band_caution(&measured, options));
         Ok(Self {
             record_uses: prepared.records,
             scales,
-            pieces: cut_off.apply(&pieces),
+            pieces: cut_off.apply(&pieces, executor),
             held_out_pieces,
             spectra: narrow,
             measured,
@@ -109,6 +119,28 @@ fn check_sampling(pieces: &[Piece], options: &Options) -> Result<(), Identificat
         return Ok(());
     }
     Err(IdentificationError::SampledTooSlowly { highest: options.band[1], sample_time_s, limit: 0.75 * seen })
+}
+
+/// That there is no measured response; where that is because the records are too short, with the lower end of the band that would do:
+/// the lowest of `omegas` from which on there are lines enough, of those that belong to it.
+fn unmeasured(why: LocalPolynomialError, spectra: &[Spectrum], omegas: &[f64]) -> IdentificationError {
+    let is_enough = |from: usize| {
+        let lines: Vec<Spectrum> =
+            spectra.iter().map(|lines| lines.between(omegas[from] / BEYOND, f64::INFINITY)).collect();
+        omegas[from..].iter().all(|omega| is_measurable(&lines, *omega))
+    };
+    // Lines are used from half the lower end of the band on; the windows of another band lie a little differently.
+    const MARGIN: f64 = 1.05;
+    let lowest = |from: usize| 2.0 * MARGIN * omegas[from];
+    let widest = omegas.last().map_or(0.0, |highest| 0.5 * highest);
+    match why {
+        LocalPolynomialError::TooFewLines { .. } => (0..omegas.len())
+            .find(|from| is_enough(*from))
+            .map(lowest)
+            .filter(|lowest| *lowest < widest)
+            .map_or(IdentificationError::Measurement(why), |lowest| IdentificationError::TooShort { why, lowest }),
+        _ => IdentificationError::Measurement(why),
+    }
 }
 
 /// Refuses inputs of which one is a sum of others, by the condition of their correlations.
@@ -143,6 +175,11 @@ fn vibration_cautions(cut_off: &CutOff, options: &Options) -> Vec<Identification
         cut_off: cut_off.omega,
     };
     cut_off.vibrating.iter().map(caution).collect()
+}
+
+fn band_caution(measured: &MeasuredResponse, options: &Options) -> Option<IdentificationCaution> {
+    let shown = measured.shown_band(options.band)?;
+    Some(IdentificationCaution::BandNotShown { band: options.band, shown })
 }
 
 fn excitation_cautions(measured: &MeasuredResponse, options: &Options) -> Vec<IdentificationCaution> {

@@ -24,7 +24,7 @@ pub(super) struct Examination<'a> {
     /// For names of channels.
     pub(super) options: &'a Options,
     /// What the model was made from.
-    pub(super) evidence: &'a Evidence,
+    pub(super) evidence: &'a Evidence<'a>,
     /// The model.
     pub(super) fit: &'a Fit,
     /// The models without each record.

@@ -1,6 +1,6 @@
 //! What the engineer should know of an identified model, and what can be done about it (M14, section 10).
 
-use super::{Caution, Signal, ValidationError};
+use super::{Caution, Signal, TRUSTED_COHERENCE, ValidationError};
 use std::fmt;
 
 /// Something that speaks against the model or a part of it, with what an action against it needs.
@@ -19,6 +19,13 @@ pub enum IdentificationCaution {
     MovedTogether {
         /// Median condition number of their spectral matrix.
         condition: f64,
+    },
+    /// An end of the band shows nothing: no input moves any output there.
+    BandNotShown {
+        /// The band asked for \[rad/s\].
+        band: [f64; 2],
+        /// The part of it that is shown \[rad/s\].
+        shown: [f64; 2],
     },
     /// An output vibrates above the band, so that the projections were filtered lower.
     Vibration {
@@ -71,8 +78,8 @@ pub enum IdentificationCaution {
     OrderLimit {
         /// The highest order.
         order: usize,
-        /// Upper end of the band \[rad/s\].
-        highest: f64,
+        /// The band that is offered in place of this one \[rad/s\].
+        narrower: [f64; 2],
     },
     /// The model fits what was held out less well than what it was fitted to.
     HeldOut {
@@ -111,6 +118,16 @@ impl fmt::Display for IdentificationCaution {
                 write!(f, "the inputs were not moved independently (condition number {condition:.0}): ")?;
                 f.write_str("sweep them one after another")
             }
+            Self::BandNotShown { band, shown } => {
+                let above = (shown[1] < band[1]).then(|| format!("above {:.1} rad/s", shown[1]));
+                let below = (shown[0] > band[0]).then(|| format!("below {:.2} rad/s", shown[0]));
+                let places: Vec<String> = below.into_iter().chain(above).collect();
+                write!(f, "{} no input moves any output enough to be seen ", places.join(" and "))?;
+                write!(
+                    f,
+                    "(partial coherence below {TRUSTED_COHERENCE}): the models are guesses there. Narrow the band"
+                )
+            }
             Self::Vibration { signal, percent, cut_off } => {
                 write!(
                     f,
@@ -139,9 +156,12 @@ impl fmt::Display for IdentificationCaution {
                 let (size, how) = (1e3 * delay_s.abs(), if *delay_s < 0.0 { "early" } else { "late" });
                 write!(f, "{name}: {signal} seems to be logged {size:.0} ms {how}. That delay can be taken out")
             }
-            Self::OrderLimit { order, highest } => {
-                write!(f, "a higher order than {order} would fit still better: raise the limit, ")?;
-                write!(f, "or end the band below {highest:.1} rad/s")
+            Self::OrderLimit { order, narrower } => {
+                write!(
+                    f,
+                    "a higher order than {order} would fit still better: there is more in the band than that many "
+                )?;
+                write!(f, "states. Narrow the band, say to {:.1} rad/s", narrower[1])
             }
             Self::HeldOut { ratio } => {
                 write!(f, "what was held out fits {ratio:.2} times less well than the records of the fit: ")?;

@@ -20,6 +20,14 @@ pub enum IdentificationError {
     /// The response cannot be measured.
     #[error(transparent)]
     Measurement(#[from] LocalPolynomialError),
+    /// The records are too short for the lower end of the band, and would do for a higher one.
+    #[error("{why}. They are long enough for a band from {lowest:.2} rad/s on")]
+    TooShort {
+        /// Where there are too few lines.
+        why: LocalPolynomialError,
+        /// Lower end of the band for which there are enough \[rad/s\].
+        lowest: f64,
+    },
     /// The band is no band.
     #[error(
         "a band from {lowest} to {highest} rad/s: its lower end must be greater than 0, and its upper end above it"

@@ -6,6 +6,7 @@ use super::refinement::{propose, refine};
 use super::report::report;
 use super::steps::Steps;
 use super::{FlightRecord, Identification, IdentificationError, Options, Watch};
+use crate::executor::Executor;
 
 /// Identifies one flight condition from its records (M14, section 7).
 ///
@@ -16,7 +17,7 @@ use super::{FlightRecord, Identification, IdentificationError, Options, Watch};
 /// 4  covariance, bands, bundle, validation                                                            100 %
 /// ```
 ///
-/// The same to the last bit on any number of threads. A first model is shown to `watch` after step 2.
+/// The same to the last bit whoever carries out its pieces. A first model is shown to `watch` after step 2.
 ///
 /// # Errors
 /// Records that cannot be prepared, a band that they do not show, settings out of range, channels that depend on each other,
@@ -24,12 +25,13 @@ use super::{FlightRecord, Identification, IdentificationError, Options, Watch};
 pub fn identify(
     records: &[FlightRecord],
     options: &Options,
+    executor: &dyn Executor,
     watch: &dyn Watch,
 ) -> Result<Identification, IdentificationError> {
     check(options)?;
     let steps = Steps::new(watch);
     steps.next(0.0, "records")?;
-    let evidence = Evidence::new(records, options, &steps)?;
+    let evidence = Evidence::new(records, options, executor, &steps)?;
     let proposal = propose(&evidence, options, &steps)?;
     let refinement = refine(&evidence, &proposal, &steps)?;
     report(records, options, &evidence, proposal, &refinement, &steps)

@@ -15,8 +15,8 @@
 
 use super::blocks::BlockModel;
 use super::{NoiseCovariance, Spectrum};
+use crate::executor::{Executor, each};
 use nalgebra::{Complex, DMatrix, DVector};
-use rayon::prelude::*;
 
 /// Share of the greatest eigenvalue of a transient's Gram matrix below which its columns depend on each other.
 pub(super) const DEPENDENT: f64 = 1e-12;
@@ -141,13 +141,15 @@ impl Lines {
 }
 
 /// The pieces of all records that a model is fitted to.
-#[derive(Clone, Debug)]
-pub(super) struct Likelihood {
+#[derive(Clone)]
+pub(super) struct Likelihood<'a> {
     /// In the order of the pieces.
     pub(super) pieces: Vec<Lines>,
+    /// Who works out the parts of the pieces.
+    pub(super) executor: &'a dyn Executor,
 }
 
-impl Likelihood {
+impl Likelihood<'_> {
     /// `N`: degrees of freedom for a model of an order.
     pub(super) fn freedom(&self, order: usize) -> usize {
         self.pieces.iter().map(|piece| piece.freedom(order)).sum()
@@ -155,7 +157,7 @@ impl Likelihood {
 
     /// Each piece's part of the cost; none where one is not finite.
     pub(super) fn parts(&self, model: &BlockModel) -> Option<Vec<PieceCost>> {
-        self.pieces.par_iter().map(|piece| piece.cost(model)).collect()
+        each(self.executor, &self.pieces, |piece| piece.cost(model)).into_iter().collect()
     }
 
     /// `J`, summed in the order of the pieces.
@@ -173,7 +175,8 @@ impl Likelihood {
 
     /// The pieces of all records but one.
     pub(super) fn without(&self, record: usize) -> Self {
-        Self { pieces: self.pieces.iter().filter(|piece| piece.record != record).cloned().collect() }
+        let pieces = self.pieces.iter().filter(|piece| piece.record != record).cloned().collect();
+        Self { pieces, executor: self.executor }
     }
 }
 

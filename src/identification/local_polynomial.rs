@@ -1,8 +1,8 @@
 //! The local polynomial method: the frequency response straight from the lines, without a model.
 
 use super::{MeasuredPoint, MeasuredResponse, Spectrum};
+use crate::executor::{Executor, each};
 use nalgebra::{Complex, DMatrix, DVector};
-use rayon::prelude::*;
 
 /// Terms of a local polynomial: 1, x, x^2.
 pub(super) const TERMS: usize = 3;
@@ -90,7 +90,11 @@ pub fn log_spaced(lowest: f64, highest: f64, count: usize) -> Vec<f64> {
 ///
 /// # Errors
 /// No lines, differing channels, values that are not finite, records too short for a window.
-pub fn local_polynomial(spectra: &[Spectrum], omegas: &[f64]) -> Result<MeasuredResponse, LocalPolynomialError> {
+pub fn local_polynomial(
+    spectra: &[Spectrum],
+    omegas: &[f64],
+    executor: &dyn Executor,
+) -> Result<MeasuredResponse, LocalPolynomialError> {
     let first = spectra.first().ok_or(LocalPolynomialError::Nothing)?;
     let channels = |s: &Spectrum| (s.inputs.nrows(), s.outputs.nrows());
     if omegas.is_empty() || first.inputs.nrows() == 0 || first.outputs.nrows() == 0 {
@@ -104,12 +108,15 @@ pub fn local_polynomial(spectra: &[Spectrum], omegas: &[f64]) -> Result<Measured
     if !finite || !omegas.iter().all(|w| w.is_finite() && *w > 0.0) {
         return Err(LocalPolynomialError::NotFinite);
     }
-    let mut points: Vec<_> = omegas
-        .par_iter()
-        .map(|&omega| Ok(estimate(spectra, &Window::around(spectra, omega)?)))
-        .collect::<Result<_, LocalPolynomialError>>()?;
+    let point = |&omega: &f64| Ok(estimate(spectra, &Window::around(spectra, omega)?));
+    let mut points = each(executor, omegas, point).into_iter().collect::<Result<Vec<_>, LocalPolynomialError>>()?;
     points.sort_by(|a, b| a.omega.total_cmp(&b.omega));
     Ok(MeasuredResponse { points })
+}
+
+/// Whether the lines around `omega` \[rad/s\] are enough; false where there are no spectra.
+pub(super) fn is_measurable(spectra: &[Spectrum], omega: f64) -> bool {
+    !spectra.is_empty() && Window::around(spectra, omega).is_ok()
 }
 
 /// The lines around a frequency.

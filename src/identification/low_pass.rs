@@ -2,8 +2,8 @@
 
 use super::Piece;
 use super::spectrum::spectra;
+use crate::executor::{Executor, each};
 use nalgebra::DMatrix;
-use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 /// Cut-off over the highest line used, where there is no vibration (M14, 1.5).
@@ -114,10 +114,10 @@ impl CutOff {
     /// The cut-off for `pieces` when lines up to `highest` \[rad/s\] are used: 5 `highest`, or 2 `highest` when more than 30 %
     /// of the variance of an output lies above that (M14, 1.5).
     #[must_use]
-    pub fn choose(pieces: &[Piece], highest: f64) -> Self {
+    pub fn choose(pieces: &[Piece], highest: f64, executor: &dyn Executor) -> Self {
         let outputs = pieces.first().map_or(0, |piece| piece.outputs.ncols());
         let (mut all, mut above) = (vec![0.0; outputs], vec![0.0; outputs]);
-        for spectrum in spectra(pieces, f64::INFINITY) {
+        for spectrum in spectra(pieces, f64::INFINITY, executor) {
             for (k, omega) in spectrum.omega.iter().enumerate() {
                 for (output, line) in spectrum.outputs.column(k).iter().enumerate().take(outputs) {
                     all[output] += line.norm_sqr();
@@ -132,11 +132,11 @@ impl CutOff {
 
     /// `pieces`, every channel through the low-pass of this cut-off; as they are where there is nothing to take off.
     #[must_use]
-    pub fn apply(&self, pieces: &[Piece]) -> Vec<Piece> {
+    pub fn apply(&self, pieces: &[Piece], executor: &dyn Executor) -> Vec<Piece> {
         let filter = |piece: &Piece| match LowPass::new(self.omega, piece.sample_time_s) {
             Some(low_pass) => low_pass.piece(piece),
             None => piece.clone(),
         };
-        pieces.par_iter().map(filter).collect()
+        each(executor, pieces, filter)
     }
 }

@@ -8,6 +8,11 @@ const LEAST_PARTIAL_COHERENCE: f64 = 0.3;
 /// Above this condition number of the inputs' spectral matrix the inputs were moved together (M14, 2).
 const GREATEST_CONDITION: f64 = 1e3;
 
+/// Partial coherence from which a point is trusted (M14, 2).
+pub const TRUSTED_COHERENCE: f64 = 0.6;
+/// A band of which this share, in logarithm, shows nothing at an end, is too wide there (M14, 10).
+const END: f64 = 0.2;
+
 /// The measured response at one frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredPoint {
@@ -63,24 +68,45 @@ impl Excitation {
     }
 }
 
+impl MeasuredPoint {
+    /// The partial coherence of an input with the output that it moves most, free of the share that as many columns of mere noise
+    /// would explain, `1 - (1 - c) (freedom + 3) / freedom`: the greatest of many outputs is never small by chance.
+    fn greatest_coherence(&self, input: usize) -> f64 {
+        let columns = super::local_polynomial::TERMS as f64;
+        let freedom = self.freedom.max(1) as f64;
+        let greatest = self.partial_coherence.column(input).iter().fold(0.0, |a: f64, b| a.max(*b));
+        (1.0 - (1.0 - greatest) * (freedom + columns) / freedom).max(0.0)
+    }
+}
+
 impl MeasuredResponse {
+    /// The part of a band \[rad/s\] that the records show, where its upper or its lower fifth (in logarithm) shows nothing: no input
+    /// is coherent with any output there. It ends at the last frequencies where one is.
+    #[must_use]
+    pub fn shown_band(&self, band: [f64; 2]) -> Option<[f64; 2]> {
+        let inside = self.points.iter().filter(|point| (band[0]..=band[1]).contains(&point.omega));
+        let is_shown = |point: &&MeasuredPoint| {
+            (0..point.response.ncols()).any(|input| point.greatest_coherence(input) >= TRUSTED_COHERENCE)
+        };
+        let mut shown = inside.filter(is_shown).map(|point| point.omega);
+        let first = shown.next()?;
+        let last = shown.next_back()?;
+        let fifth = (band[1] / band[0]).powf(END);
+        let part = [
+            if first > band[0] * fifth { first } else { band[0] },
+            if last < band[1] / fifth { last } else { band[1] },
+        ];
+        (part != band && part[1] > part[0] * fifth).then_some(part)
+    }
+
     /// How far the inputs were moved, each by itself.
     ///
     /// A coupled response may be weak though its input was moved well: for each input and frequency the output with the
-    /// greatest partial coherence counts. It is taken free of the share that as many columns of mere noise would explain,
-    /// `1 - (1 - c) (freedom + 3) / freedom`, for the greatest of many outputs is never small by chance.
+    /// greatest partial coherence counts.
     #[must_use]
     pub fn excitation(&self) -> Excitation {
         let inputs = self.points.first().map_or(0, |point| point.response.ncols());
-        let of_input = |i: usize| {
-            let of_point = |point: &MeasuredPoint| {
-                let columns = super::local_polynomial::TERMS as f64;
-                let freedom = point.freedom.max(1) as f64;
-                let greatest = point.partial_coherence.column(i).iter().fold(0.0, |a: f64, b| a.max(*b));
-                (1.0 - (1.0 - greatest) * (freedom + columns) / freedom).max(0.0)
-            };
-            median(self.points.iter().map(of_point).collect())
-        };
+        let of_input = |i: usize| median(self.points.iter().map(|point| point.greatest_coherence(i)).collect());
         Excitation {
             partial_coherence: (0..inputs).map(of_input).collect(),
             condition: median(self.points.iter().map(|point| point.condition).collect()),

@@ -14,8 +14,8 @@
 
 use super::blocks::{Block, BlockModel};
 use super::likelihood::{DEPENDENT, Likelihood, Lines, PieceCost, pseudo_inverse_root, whiten};
+use crate::executor::each;
 use nalgebra::{Complex, DMatrix, DVector};
-use rayon::prelude::*;
 
 /// `G`, `g` and the cost: a step `d` changes the cost by `-2 g'd + d'G d`.
 #[derive(Clone, Debug)]
@@ -64,7 +64,8 @@ pub(super) fn normal_systems(
     model: &BlockModel,
     parts: &[PieceCost],
 ) -> Option<Vec<NormalSystem>> {
-    likelihood.pieces.par_iter().zip(parts).map(|(lines, part)| Gram::new(lines, model, part).system()).collect()
+    let pieces = likelihood.pieces.iter().zip(parts);
+    each(likelihood.executor, pieces, |(lines, part)| Gram::new(lines, model, part).system()).into_iter().collect()
 }
 
 /// The vectors and scalars of one piece, and the Gram matrix that comes of them.
@@ -346,11 +347,12 @@ fn parts(scalars: &DMatrix<Complex<f64>>) -> DMatrix<f64> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::executor::Sequential;
     use crate::identification::Spectrum;
     use crate::identification::known_answers::{answers, complex_matrix, matrix, number, numbers};
     use serde_json::Value;
 
-    pub(in crate::identification) fn known_records(known: &Value) -> Likelihood {
+    pub(in crate::identification) fn known_records(known: &Value) -> Likelihood<'static> {
         let pieces = known["records"].as_array().unwrap().iter().enumerate().map(|(record, known)| {
             let spectrum = Spectrum {
                 record,
@@ -362,7 +364,7 @@ pub(super) mod tests {
             let weights = vec![DMatrix::identity(2, 2); spectrum.omega.len()];
             Lines::weighted(&spectrum, weights)
         });
-        Likelihood { pieces: pieces.collect() }
+        Likelihood { pieces: pieces.collect(), executor: &Sequential }
     }
 
     fn known_start(known: &Value) -> BlockModel {

@@ -13,7 +13,7 @@ use super::blocks::BlockModel;
 use super::likelihood::Likelihood;
 use super::polish::Fit;
 use super::steps::Steps;
-use rayon::prelude::*;
+use crate::executor::each;
 use std::collections::BTreeMap;
 
 /// Order at which the search begins.
@@ -81,9 +81,9 @@ pub(super) fn search_order(
         let near = [Some(order), order.checked_sub(STEP), order.checked_add(STEP)];
         let new: Vec<usize> =
             near.into_iter().flatten().filter(|n| starts.contains_key(n) && !fits.contains_key(n)).collect();
-        let polish = |&n: &usize| Ok((n, starts[&n].clone().polished(likelihood, STEPS, steps)?));
-        let polished: Vec<_> = new.par_iter().map(polish).collect::<Result<_, IdentificationError>>()?;
-        for (n, fit) in polished {
+        let polish = |n: &usize| starts[n].clone().polished(likelihood, STEPS, steps);
+        for (&n, fit) in new.iter().zip(each(likelihood.executor, &new, polish)) {
+            let fit = fit?;
             if let Some(value) = criterion(&fit, likelihood) {
                 criteria.insert(n, value);
             }

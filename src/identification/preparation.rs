@@ -6,8 +6,8 @@ use super::gap::{Cause, Gap, Treatment};
 use super::signal::names;
 use super::track::Track;
 use super::{FlightRecord, Piece, Role, Signal};
+use crate::executor::{Executor, each};
 use nalgebra::DMatrix;
-use rayon::prelude::*;
 
 /// The longest shift of a channel that is a delay and not an error \[s\].
 const LONGEST_SHIFT_S: f64 = 10.0;
@@ -276,19 +276,20 @@ pub enum PreparationError {
 /// # Errors
 /// Settings out of range, records that do not fit them, time that does not increase or is uneven, no piece left, a constant
 /// channel.
-pub fn prepare(records: &[FlightRecord], preparation: &Preparation) -> Result<Prepared, PreparationError> {
+pub fn prepare(
+    records: &[FlightRecord],
+    preparation: &Preparation,
+    executor: &dyn Executor,
+) -> Result<Prepared, PreparationError> {
     preparation.checked()?;
     if records.is_empty() {
         return Err(PreparationError::NoRecords);
     }
-    let each: Vec<_> = records
-        .par_iter()
-        .enumerate()
-        .map(|(k, record)| prepare_record(k, record, preparation))
-        .collect::<Result<_, _>>()?;
-    let longest_s = each.iter().map(|one| one.longest_s).fold(0.0, f64::max);
+    let prepared = each(executor, records.iter().enumerate(), |(k, record)| prepare_record(k, record, preparation));
+    let prepared = prepared.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let longest_s = prepared.iter().map(|one| one.longest_s).fold(0.0, f64::max);
     let (mut pieces, mut uses, mut cautions) = (Vec::new(), Vec::new(), Vec::new());
-    for one in each {
+    for one in prepared {
         pieces.extend(one.pieces);
         uses.push(one.used);
         cautions.extend(one.cautions);

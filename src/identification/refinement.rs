@@ -32,13 +32,13 @@ pub(super) struct Proposal {
 }
 
 /// The chosen order, refined.
-pub(super) struct Refinement {
+pub(super) struct Refinement<'a> {
     /// The orders that were compared.
     pub(super) search: OrderSearch,
     /// The recommended model.
     pub(super) fit: Fit,
     /// The cost that it is the minimum of.
-    pub(super) likelihood: Likelihood,
+    pub(super) likelihood: Likelihood<'a>,
     /// What was done to the weights.
     pub(super) cautions: Vec<IdentificationCaution>,
 }
@@ -61,17 +61,17 @@ pub(super) fn propose(evidence: &Evidence, options: &Options, steps: &Steps) -> 
     let starts = settings.starts(&candidates, &evidence.likelihood);
     let first = OrderSearch::first(&starts).ok_or_else(|| evidence.no_model())?;
     steps.show(&in_units(evidence, &first.model.matrices()));
-    let stabilisation = stabilisation(&settings.poles_by_order(best));
+    let stabilisation = stabilisation(&settings.poles_by_order(best, evidence.likelihood.executor));
     let &Candidate { pole: laguerre_pole, past, .. } = best;
     Ok(Proposal { laguerre_pole, past, starts, stabilisation })
 }
 
 /// Chooses the order and polishes its model further.
-pub(super) fn refine(
-    evidence: &Evidence,
+pub(super) fn refine<'a>(
+    evidence: &Evidence<'a>,
     proposal: &Proposal,
     steps: &Steps,
-) -> Result<Refinement, IdentificationError> {
+) -> Result<Refinement<'a>, IdentificationError> {
     steps.next(0.4, "order")?;
     let search = search_order(&proposal.starts, &evidence.likelihood, &evidence.held_out, steps)?;
     let search = search.ok_or_else(|| evidence.no_model())?;
@@ -90,11 +90,11 @@ pub(super) fn refine(
 /// ```text
 /// Cv_r <- Cv_r (J_r/dof_r) / geometric mean of J/dof
 /// ```
-fn reweighed(
-    likelihood: &Likelihood,
+fn reweighed<'a>(
+    likelihood: &Likelihood<'a>,
     fit: &Fit,
     steps: &Steps,
-) -> Result<Option<(Likelihood, Fit, IdentificationCaution)>, IdentificationError> {
+) -> Result<Option<(Likelihood<'a>, Fit, IdentificationCaution)>, IdentificationError> {
     let costs: Vec<f64> =
         fits_of_records(likelihood, &fit.model, &fit.parts, false).iter().map(|record| record.cost).collect();
     let (least, greatest) = costs.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), cost| (a.min(*cost), b.max(*cost)));
@@ -107,7 +107,7 @@ fn reweighed(
         let cost = records.iter().position(|record| *record == piece.record).and_then(|k| costs.get(k));
         cost.map_or_else(|| piece.clone(), |cost| piece.with_noise(cost / mean))
     };
-    let weighed = Likelihood { pieces: likelihood.pieces.iter().map(weigh).collect() };
+    let weighed = Likelihood { pieces: likelihood.pieces.iter().map(weigh).collect(), executor: likelihood.executor };
     let Some(start) = Fit::start(&weighed, fit.model.clone()) else { return Ok(None) };
     let fit = start.polished(&weighed, STEPS_AFTER_WEIGHING, steps)?;
     Ok(Some((weighed, fit, IdentificationCaution::Reweighed { ratio: greatest / least })))

@@ -17,6 +17,8 @@ use super::{
 
 /// Points of the bands.
 const BAND_POINTS: usize = 60;
+/// Upper end of the band that is offered where the highest order is not enough, over the present one.
+const NARROWER: f64 = 0.7;
 /// Standard deviation \[dB\] above which a response is not identified.
 const NOT_IDENTIFIED: f64 = 3.0;
 
@@ -31,6 +33,7 @@ pub(super) fn report(
 ) -> Result<Identification, IdentificationError> {
     steps.next(0.8, "uncertainty")?;
     let Refinement { search, fit, likelihood, .. } = refinement;
+    let executor = likelihood.executor;
     let systems = fit.systems(likelihood).ok_or_else(|| evidence.no_model())?;
     let freedom = likelihood.freedom(fit.model.order());
     let spare =
@@ -40,7 +43,7 @@ pub(super) fn report(
     let covariance = ParameterCovariance::new(&system, fit.cost / spare as f64).ok_or_else(|| evidence.no_model())?;
     let neighbours = search.neighbours();
     let omegas = log_spaced(options.band[0], options.band[1], BAND_POINTS);
-    let bands = covariance.bands(&fit.model, &neighbours, &omegas);
+    let bands = covariance.bands(&fit.model, &neighbours, &omegas, executor);
     let not_identified = not_identified(&bands);
 
     steps.next(0.88, "models without each record")?;
@@ -62,7 +65,8 @@ pub(super) fn report(
     cautions.extend(examination.decisive_records(&omegas, &not_identified));
     cautions.extend(examination.late_channel(&record_fits));
     if search.still_falls {
-        cautions.push(IdentificationCaution::OrderLimit { order: search.order, highest: options.band[1] });
+        let narrower = [options.band[0], NARROWER * options.band[1]];
+        cautions.push(IdentificationCaution::OrderLimit { order: search.order, narrower });
     }
     cautions.extend(examination.unidentified_pairs(&not_identified));
 
@@ -76,7 +80,8 @@ pub(super) fn report(
     let validation = match evidence.held_out_pieces.as_slice() {
         [] => None,
         pieces => {
-            let validation = validate(&main.matrices, pieces, &ValidationSettings::filtered(options.highest()));
+            let validation =
+                validate(&main.matrices, pieces, &ValidationSettings::filtered(options.highest()), executor);
             validation.map_err(|why| cautions.push(IdentificationCaution::NotValidated { why })).ok()
         }
     };

@@ -1,8 +1,8 @@
 //! The lines of a piece's Fourier transform.
 
 use super::Piece;
+use crate::executor::{Executor, each};
 use nalgebra::{Complex, DMatrix};
-use rayon::prelude::*;
 use realfft::{RealFftPlanner, RealToComplex};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -46,10 +46,10 @@ impl Spectrum {
 
 /// The lines of every piece up to `highest` \[rad/s\] and below half the sampling frequency, in the order of the pieces.
 #[must_use]
-pub fn spectra(pieces: &[Piece], highest: f64) -> Vec<Spectrum> {
+pub fn spectra(pieces: &[Piece], highest: f64, executor: &dyn Executor) -> Vec<Spectrum> {
     let mut planner = RealFftPlanner::new();
     let plans: Vec<_> = pieces.iter().map(|piece| planner.plan_fft_forward(piece.inputs.nrows())).collect();
-    pieces.par_iter().zip(plans).map(|(piece, plan)| spectrum(piece, highest, &plan)).collect()
+    each(executor, pieces.iter().zip(plans), |(piece, plan)| spectrum(piece, highest, &plan))
 }
 
 /// The lines of one piece up to `highest`, by the transform `plan` of its length.

@@ -12,15 +12,16 @@
 use super::blocks::{Block, BlockModel};
 use super::likelihood::pseudo_inverse_root;
 use super::normal_system::NormalSystem;
+use crate::executor::{Executor, each};
+use crate::units::neper_to_db;
 use nalgebra::{Complex, DMatrix};
-use rayon::prelude::*;
 
+/// Standard deviations that hold 95 %.
+pub const TWO_SIDED_95: f64 = 1.96;
 /// Share of the greatest eigenvalue below which a direction is a freedom of scale.
 const FREEDOM_OF_SCALE: f64 = 1e-9;
 /// Factor of the variance that makes bands hold what they say.
 const MEASURED_FACTOR: f64 = 2.0;
-/// dB in one neper.
-const DECIBELS: f64 = 8.685_889_638_065_037;
 /// No standard deviation is said to be more than this many times the modulus of the pole and the band: it is not known at all.
 const UNKNOWN: f64 = 1e3;
 
@@ -96,13 +97,18 @@ impl ParameterCovariance {
     }
 
     /// Standard deviations of the response of `model` at `omegas`, those of the neighbours `n - 2` and `n + 2` included.
-    pub(super) fn bands(&self, model: &BlockModel, neighbours: &[&BlockModel], omegas: &[f64]) -> Bands {
+    pub(super) fn bands(
+        &self,
+        model: &BlockModel,
+        neighbours: &[&BlockModel],
+        omegas: &[f64],
+        executor: &dyn Executor,
+    ) -> Bands {
         let (outputs, inputs) = (model.c.nrows(), model.b.ncols());
         let at: Vec<_> = omegas.iter().map(|&omega| Gradients::new(model, neighbours, omega)).collect();
-        let pairs: Vec<_> = (0..outputs * inputs).collect();
         // Of each pair over frequency: dB and degrees.
-        let of_pair = |pair: &usize| self.pair_bands(model, &at, pair % outputs, pair / outputs);
-        let all: Vec<Vec<(f64, f64)>> = pairs.par_iter().map(of_pair).collect();
+        let of_pair = |pair: usize| self.pair_bands(model, &at, pair % outputs, pair / outputs);
+        let all: Vec<Vec<(f64, f64)>> = each(executor, 0..outputs * inputs, of_pair);
         let of = |k: usize, part: fn(&(f64, f64)) -> f64| {
             DMatrix::from_fn(outputs, inputs, |output, input| part(&all[input * outputs + output][k]))
         };
@@ -131,7 +137,7 @@ impl ParameterCovariance {
         let sd = |column: usize, order: f64| (MEASURED_FACTOR * (variance(column) + order)).sqrt().min(UNKNOWN);
         let bands = |(k, gradients): (usize, &Gradients)| {
             let order = gradients.order_variance[(output, input)];
-            (DECIBELS * sd(k, order.re), sd(at.len() + k, order.im).to_degrees())
+            (neper_to_db(sd(k, order.re)), sd(at.len() + k, order.im).to_degrees())
         };
         at.iter().enumerate().map(bands).collect()
     }
@@ -192,6 +198,7 @@ impl Gradients {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::executor::Sequential;
     use crate::identification::candidate::SubspaceSettings;
     use crate::identification::evidence::Evidence;
     use crate::identification::known_answers::{answers, matrix, number, numbers};
@@ -235,7 +242,7 @@ mod tests {
         let preparation = Preparation::of(&["U1", "U2"], &["Y1", "Y2"]);
         let options = Options { held_out: vec![4], ..Options::new([band[0], band[1]], preparation) };
         let steps = Steps::new(&Unwatched);
-        let evidence = Evidence::new(&records, &options, &steps).unwrap();
+        let evidence = Evidence::new(&records, &options, &Sequential, &steps).unwrap();
         let likelihood = &evidence.likelihood;
         let whole = |name: &str| numbers(&known[name]).into_iter().map(|value| value as usize).collect::<Vec<_>>();
         let (poles, pasts, orders) = (numbers(&known["poles_a"]), whole("pasts"), whole("orders"));
@@ -253,7 +260,7 @@ mod tests {
         let spare = likelihood.freedom(4) - effective_parameters(&fit);
         let covariance = ParameterCovariance::new(&system, fit.cost / spare as f64).unwrap();
         let expected = &known["expected"];
-        let bands = covariance.bands(&fit.model, &[&below.model, &above.model], &numbers(&expected["w"]));
+        let bands = covariance.bands(&fit.model, &[&below.model, &above.model], &numbers(&expected["w"]), &Sequential);
         let tolerance = number(&expected["sd_tolerance_relative"]);
         for k in 0..bands.omega.len() {
             for (found, name) in [(&bands.sd_db[k], "sd_db"), (&bands.sd_deg[k], "sd_deg")] {

@@ -1,8 +1,8 @@
 //! A model against a record in time.
 
 use super::{FirstOrderHold, LowPass, Piece, StateSpaceMatrices};
+use crate::executor::{Executor, each};
 use nalgebra::{DMatrix, DVector, RowDVector};
-use rayon::prelude::*;
 
 /// Time constants of the fastest diverging mode that a window lasts (M14, 6).
 const TIME_CONSTANTS: f64 = 3.0;
@@ -108,6 +108,7 @@ pub fn validate(
     model: &StateSpaceMatrices,
     pieces: &[Piece],
     settings: &ValidationSettings,
+    executor: &dyn Executor,
 ) -> Result<Validation, ValidationError> {
     if pieces.is_empty() {
         return Err(ValidationError::NoPieces);
@@ -120,11 +121,11 @@ pub fn validate(
         return Err(ValidationError::NoWindow);
     }
     let window_s = window_s(model, settings.longest_window_s).ok_or(ValidationError::NotSimulated)?;
-    let filtered: Vec<Piece> = pieces.par_iter().map(|piece| filtered(piece, settings.low_pass)).collect();
+    let filtered = each(executor, pieces, |piece| filtered(piece, settings.low_pass));
     let std = deviations(filtered.iter().map(|piece| &piece.outputs));
-    let each: Vec<_> =
-        filtered.par_iter().map(|piece| windows(model, piece, window_s, &std)).collect::<Result<_, _>>()?;
-    let windows: Vec<ValidationWindow> = each.into_iter().flatten().collect();
+    let windows = each(executor, &filtered, |piece| windows(model, piece, window_s, &std));
+    let windows: Vec<ValidationWindow> =
+        windows.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
     if windows.is_empty() {
         return Err(ValidationError::TooShort { window_s });
     }

@@ -66,7 +66,7 @@ pub use identified_file::{
     IdentifiedModels, IdentifiedValidation, MeasuredEstimate, PoleEstimate, RecordReport, add_identified,
 };
 pub use mat::write as write_mat;
-pub use model_files::{FileFormat, FolderProgress, FoundModels, models_of_bytes, read_models};
+pub use model_files::{FileFormat, FolderProgress, FoundModels, models_of_bytes, read_models, sources_folder};
 pub use models_file::add_models;
 pub use npy::write_npz;
 pub use opened::{Opened, load_any};
@@ -78,7 +78,7 @@ pub use record_files::{
 };
 pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
 pub use report_file::{ReportSource, report, save_report};
-pub use rules_file::{add_rules, load_rules};
+pub use rules_file::{add_rules, load_rules, rules_path};
 pub use settings_entry::{
     ErrorBarsEntry, KindWord, LeadSettingsEntry, ScheduleEntry, SecondVariableWord, SettingsEntry,
 };

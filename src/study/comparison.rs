@@ -15,7 +15,7 @@ use super::caution::{self, BundleModel, Caution, Undefined};
 use super::condition_analysis::ConditionFailure;
 use super::condition_responses::ConditionResponses;
 use super::document::{BundleChoice, ConditionChoice, Study};
-use super::executor::Execution;
+use super::execution::Execution;
 use super::progress::Cancelled;
 
 /// Distances within each bundle and discontinuity ratios of the physics bundle; they do not depend on what is rejected.

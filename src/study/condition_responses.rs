@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 use crate::dataset::{Band, BundleKind, Condition, ContentHash, Model};
 use crate::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
 
-use super::executor::Execution;
+use super::execution::Execution;
 use super::memo::Memo;
 use super::progress::Cancelled;
 

@@ -16,7 +16,7 @@ use super::comparison::{BundleFigures, Comparison};
 use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
 use super::condition_responses::{ConditionModels, ConditionResponses, GridKey, Purpose};
 use super::document::{ConditionChoice, Study};
-use super::executor::Execution;
+use super::execution::Execution;
 use super::lead_offer::{LeadOffer, OfferKey};
 use super::led::Led;
 use super::memo::Memo;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::correction::{Channel, ChannelLeads, Problem, ProofBudget, Solution};
 use crate::dataset::{Band, BundleKind, Condition, ConditionId, Dataset};
+use crate::executor::{Executor, Sequential};
 use crate::response::FrequencyGrid;
 use crate::schedule::{Schedule, ScheduleCaution, ScheduleError, ScheduledPoint, assess};
 
@@ -14,7 +15,7 @@ use super::condition_responses::{ConditionModels, KnownModels, Purpose};
 use super::condition_stages::{ConditionStages, model_count};
 use super::curves::ConditionCurves;
 use super::document::Study;
-use super::executor::{Execution, Executor, Sequential};
+use super::execution::Execution;
 use super::memo::Memo;
 use super::progress::{Cancelled, Progress};
 use super::uncertainty::Uncertainty;

@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::dataset::ConditionId;
+use crate::executor::Executor;
 use crate::identification::{
     FlightRecord, Identification, IdentificationError, Options, StateSpaceMatrices, Watch, identify,
 };
@@ -84,11 +85,12 @@ impl Watch for Bridge<'_> {
 }
 
 impl Job for IdentifyJob {
-    type Tools = ();
+    /// Who carries out its pieces.
+    type Tools = Box<dyn Executor>;
     type Output = Result<Arc<Identification>, IdentificationError>;
 
-    fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        match identify(&self.records, &self.options, &Bridge { progress, news: &self.news }) {
+    fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        match identify(&self.records, &self.options, executor.as_ref(), &Bridge { progress, news: &self.news }) {
             Err(IdentificationError::Stopped) => Err(Cancelled),
             found => Ok(found.map(Arc::new)),
         }

@@ -12,7 +12,7 @@ use super::comparison::{Compared, Comparison};
 use super::condition_analysis::ConditionAnalysis;
 use super::condition_responses::ConditionResponses;
 use super::document::Study;
-use super::executor::Execution;
+use super::execution::Execution;
 use super::progress::Cancelled;
 use super::settings::Settings;
 

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use crate::correction::Problem;
 use crate::dataset::{ConditionId, Dataset};
+use crate::identification::Validation;
 use crate::study::{
     AcrossCurves, AcrossJob, Analysis, AssessmentJob, AssessmentTable, ConditionAnalysis, ConditionCurves,
-    ConditionFailure, ConditionModes, CurvesJob, ModesJob, Toggles, TogglesJob, Uncertainty, UncertaintyJob,
-    VariantJob,
+    ConditionFailure, ConditionModes, CurvesJob, ModesJob, SimulationJob, Toggles, TogglesJob, Uncertainty,
+    UncertaintyJob, VariantJob,
 };
 
 /// The result of the condition shown, ahead of the others'.
@@ -79,6 +80,8 @@ pub struct Results {
     pub uncertainty: Option<(UncertaintyJob, Arc<Uncertainty>)>,
     /// Analyses of the variants.
     pub variants: Vec<(VariantJob, Arc<Analysis>)>,
+    /// Models against a record in time, or in words why not.
+    pub simulations: Vec<(SimulationJob, Result<Arc<Validation>, String>)>,
     /// What is under way beside the live answer.
     pub background: Background,
     /// Since when something has been \[s of the window's clock\].

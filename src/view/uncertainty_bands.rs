@@ -1,12 +1,10 @@
 //! The bands of identified models around their curves.
 
 use crate::dataset::{BundleKind, ModelBands, Pair};
+use crate::identification::TWO_SIDED_95;
 
 use super::plot::{BodeBand, BodeCurve, CurveId};
 use super::state::State;
-
-/// Standard deviations that hold 95 %.
-const TWO_SIDED_95: f64 = 1.96;
 
 /// The 95 % band of every identified model that is drawn, is kept, and says how uncertain it is.
 pub fn uncertainty_bands(state: &State, pair: Pair, curves: &[BodeCurve]) -> Vec<BodeBand> {

@@ -1,15 +1,16 @@
 //! Datasets out of folders of files, by the command line and by the library.
 
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
 
 use gdcm::assembly::{Assembly, Headings, ProblemKind, RowRole, UnitRule, proposed_rules};
-use gdcm::dataset::{BundleKind, Condition, Dataset, Dynamics, Model, StateSpace};
+use gdcm::dataset::{BundleKind, Condition, ConditionRecord, Dataset, Dynamics, Model, StateSpace};
 use gdcm::io::variables::{Array, CellArray, StructArray, TextArray, Value, Variable};
 use gdcm::io::{FolderProgress, FoundModels, load_dataset, read_models, write_mat, write_npz};
 use nalgebra::DMatrix;
+use serde_json::json;
 
 use crate::commands::Ended;
 
@@ -393,4 +394,42 @@ fn names_are_said_for_the_channels_of_one_model_and_a_wrong_number_of_them_is_to
     let told = |assembly: &Assembly| assembly.told().into_iter().map(|(_, words)| words).collect::<Vec<_>>().join("\n");
     assert!(told(&with(&["NZ"])).contains("NZ"), "the model has another output now: {}", told(&with(&["NZ"])));
     assert!(told(&with(&["Q", "P"])).contains("2 names are said for the 1 outputs"), "{}", told(&with(&["Q", "P"])));
+}
+
+#[test]
+fn the_flight_records_of_a_dataset_stay_with_its_condition_and_are_found_from_where_the_new_one_lies() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut text: serde_json::Value = serde_json::from_str(include_str!("../data/small-dataset.json")).unwrap();
+    text["conditions"][0]["records"] = json!([
+        {"name": "LON 1", "file": "records/lon_1.csv", "kind": "sweep", "used_s": [[0.0, 30.5]]},
+        {"name": "steps", "file": "all.mat", "variable": "run 2", "held_out": true}
+    ]);
+    text["conditions"][0]["identified_models"][0]["source"] = json!({"records": ["LON 1"]});
+    let old = folder.path().join("flights/old.json");
+    std::fs::create_dir_all(old.parent().unwrap()).unwrap();
+    std::fs::write(&old, text.to_string()).unwrap();
+    let before = load_dataset(&old).unwrap().dataset;
+    let made = |source: &Path, name: &str| {
+        let path = folder.path().join(name);
+        let ended = run(&["assemble", source.to_str().unwrap(), "--out", path.to_str().unwrap()]);
+        assert_eq!(ended.status, 0, "{}", ended.error);
+        let made = load_dataset(&path).unwrap().dataset;
+        let files: Vec<PathBuf> =
+            made.conditions()[0].records().iter().map(|record| path.parent().unwrap().join(&record.file)).collect();
+        let beside = old.parent().unwrap();
+        let expected = ["records/lon_1.csv", "all.mat"].map(|file| beside.join(file));
+        let plain = |path: &PathBuf| path.components().filter(|part| part.as_os_str() != ".").collect::<PathBuf>();
+        assert_eq!(files.iter().map(plain).collect::<Vec<_>>(), expected, "from {}", source.display());
+        made
+    };
+    for (source, name) in [(folder.path().join("flights"), "of_folder.json"), (old.clone(), "of_file.json")] {
+        let made = made(&source, name);
+        let (condition, old) = (&made.conditions()[0], &before.conditions()[0]);
+        let unplaced = |records: &[ConditionRecord]| -> Vec<ConditionRecord> {
+            records.iter().map(|record| ConditionRecord { file: String::new(), ..record.clone() }).collect()
+        };
+        assert_eq!(unplaced(condition.records()), unplaced(old.records()));
+        assert_eq!(condition.bundle(BundleKind::Identified)[0].source.as_ref().unwrap().records, ["LON 1"]);
+        assert_eq!(made.conditions()[1].records(), []);
+    }
 }

@@ -7,20 +7,35 @@ use std::path::{Path, PathBuf};
 /// For each module of the crate, the modules it may name. The order is that of the crate's documentation.
 const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("units", &[]),
+    ("executor", &[]),
     ("dataset", &["units"]),
     ("assembly", &["units", "dataset"]),
     ("response", &["units", "dataset"]),
     ("fidelity", &["units", "dataset", "response"]),
-    ("identification", &["units", "dataset", "response", "fidelity"]),
+    ("identification", &["units", "executor", "dataset", "response", "fidelity"]),
     ("records", &["units", "dataset", "assembly", "identification"]),
     ("correction", &["units", "dataset", "response", "fidelity"]),
     ("schedule", &["units", "dataset", "response", "fidelity", "correction"]),
     ("uncertainty", &["units", "dataset", "response", "fidelity", "correction", "schedule"]),
-    ("study", &["units", "dataset", "response", "fidelity", "identification", "correction", "schedule", "uncertainty"]),
+    (
+        "study",
+        &[
+            "units",
+            "executor",
+            "dataset",
+            "response",
+            "fidelity",
+            "identification",
+            "correction",
+            "schedule",
+            "uncertainty",
+        ],
+    ),
     (
         "figure",
         &[
             "units",
+            "executor",
             "dataset",
             "response",
             "fidelity",
@@ -35,6 +50,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         "io",
         &[
             "units",
+            "executor",
             "dataset",
             "assembly",
             "response",
@@ -52,6 +68,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         "view",
         &[
             "units",
+            "executor",
             "dataset",
             "assembly",
             "response",
@@ -70,6 +87,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         "cli",
         &[
             "units",
+            "executor",
             "dataset",
             "assembly",
             "response",
@@ -89,6 +107,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         "app",
         &[
             "units",
+            "executor",
             "dataset",
             "assembly",
             "response",
@@ -115,8 +134,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("std::fs", &["io"]),
     ("fs::File", &["io"]),
     ("std::thread", &["app"]),
-    // Identification adds up per record or per candidate and in a fixed order: the same bits on any number of threads.
-    ("rayon::", &["app", "identification"]),
+    ("rayon::", &["app"]),
     ("clap::", &["cli"]),
     // The known answers of its tests.
     ("serde_json::", &["io", "identification"]),

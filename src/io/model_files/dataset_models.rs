@@ -1,23 +1,47 @@
 //! The models of a dataset of this program, to be put together with others.
 
+use std::path::Path;
+
 use crate::assembly::{ChannelLabel, Facts, FoundModel};
 use crate::dataset::{
-    BandsDraft, BundleKind, Channel, Condition, Dataset, Dynamics, Model, ModelBands, ModelDraft, PairTable,
-    Provenance, ResponseArray, ResponseDraft, Timing,
+    BandsDraft, BundleKind, Channel, Condition, ConditionRecord, Dataset, Dynamics, Model, ModelBands, ModelDraft,
+    PairTable, Provenance, ResponseArray, ResponseDraft, Timing,
 };
 
-/// Every model, with what the dataset says about it.
-pub(super) fn models_of(dataset: &Dataset) -> Vec<FoundModel> {
+/// Every model, with what the dataset says about it and its condition; `name` is the name of the dataset's file, relative to what was
+/// asked for.
+pub(super) fn models_of(dataset: &Dataset, name: &str) -> Vec<FoundModel> {
     let mut models = Vec::new();
     for condition in dataset.conditions() {
+        let facts = facts(condition, name);
         for kind in BundleKind::BOTH {
-            models.extend(condition.bundle(kind).iter().map(|model| found(dataset, condition, kind, model)));
+            let found = |model: &Model| found(dataset, facts.clone(), (condition, kind), model);
+            models.extend(condition.bundle(kind).iter().map(found));
         }
     }
     models
 }
 
-fn found(dataset: &Dataset, condition: &Condition, kind: BundleKind, model: &Model) -> FoundModel {
+/// What is said of the condition; its records' files are relative to the dataset's folder, and become relative to what was asked for.
+fn facts(condition: &Condition, name: &str) -> Facts {
+    let state = condition.flight_state();
+    let beside = |record: &ConditionRecord| {
+        let file = match name.rsplit_once('/') {
+            Some((folder, _)) if !Path::new(&record.file).is_absolute() => format!("{folder}/{}", record.file),
+            _ => record.file.clone(),
+        };
+        ConditionRecord { file, ..record.clone() }
+    };
+    Facts {
+        condition: Some(state.id.0),
+        airspeed_kt: Some(state.airspeed_kt),
+        altitude_ft: state.altitude_ft,
+        mass_kg: state.mass_kg,
+        records: condition.records().iter().map(beside).collect(),
+    }
+}
+
+fn found(dataset: &Dataset, facts: Facts, (condition, kind): (&Condition, BundleKind), model: &Model) -> FoundModel {
     let state = condition.flight_state();
     let label = |channel: &Channel| ChannelLabel { name: Some(channel.name.clone()), unit: Some(channel.unit.clone()) };
     let (matrices, timing, response) = match &model.dynamics {
@@ -50,6 +74,7 @@ fn found(dataset: &Dataset, condition: &Condition, kind: BundleKind, model: &Mod
             response,
             source: Some(Provenance {
                 variable: Some(format!("{}/{kind}/{}", state.id, model.name)),
+                records: model.source.as_ref().map(|source| source.records.clone()).unwrap_or_default(),
                 ..Provenance::default()
             }),
             states: model.states.to_vec(),
@@ -57,12 +82,7 @@ fn found(dataset: &Dataset, condition: &Condition, kind: BundleKind, model: &Mod
         },
         inputs: dataset.inputs().iter().map(label).collect(),
         outputs: dataset.outputs().iter().map(label).collect(),
-        facts: Facts {
-            condition: Some(state.id.0),
-            airspeed_kt: Some(state.airspeed_kt),
-            altitude_ft: state.altitude_ft,
-            mass_kg: state.mass_kg,
-        },
+        facts,
         notes: Vec::new(),
     }
 }

@@ -24,6 +24,15 @@ pub trait FolderProgress {
     fn stopped(&self, taken: u64) -> bool;
 }
 
+/// The folder from which the models of these files and folders name their files: that which was given first; a file alone lies in its
+/// folder.
+pub fn sources_folder(sources: &[PathBuf]) -> &Path {
+    let here = Path::new(".");
+    let first = sources.first().map_or(here, PathBuf::as_path);
+    let folder = if first.is_dir() { first } else { first.parent().unwrap_or(here) };
+    if folder.as_os_str().is_empty() { here } else { folder }
+}
+
 /// The models of files and folders, folders with all that is in them; tables of columns by the headings that are said of them. A
 /// file that cannot be read is a fault, and the rest is read.
 pub fn read_models(

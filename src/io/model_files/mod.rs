@@ -30,7 +30,7 @@ use super::variables::{Meter, Variable};
 use contents::{Contents, contents_of};
 use loose_matrices::LooseMatrix;
 
-pub use folder::{FolderProgress, read_models};
+pub use folder::{FolderProgress, read_models, sources_folder};
 pub use format::FileFormat;
 
 /// Memory that the variables of one file may take \[bytes\].
@@ -103,7 +103,7 @@ fn of_bytes(
             FileModels { recognised, headings: Some(table.headings()), ..FileModels::default() }
         }
         Contents::Dataset(dataset) => {
-            let recognised = Recognised { models: dataset_models::models_of(&dataset), ..Recognised::default() };
+            let recognised = Recognised { models: dataset_models::models_of(&dataset, name), ..Recognised::default() };
             FileModels { recognised, ..FileModels::default() }
         }
     };

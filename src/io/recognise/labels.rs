@@ -159,5 +159,6 @@ pub(super) fn facts_of(record: &Record<'_>) -> Facts {
         airspeed_kt: figure(&["airspeed_kt", "V_kt", "airspeed_knots", "speed_kt", "KTAS"]),
         altitude_ft: figure(&["altitude_ft", "alt_ft", "h_ft"]),
         mass_kg: figure(&["mass_kg", "m_kg"]),
+        records: Vec::new(),
     }
 }

@@ -2,7 +2,7 @@
 
 mod schema;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::assembly::{ChannelRule, NamePattern, RowRole, RowRule, Rules, UnitRule};
 use crate::dataset::Place;
@@ -14,6 +14,16 @@ use super::output_set::OutputSet;
 use super::source::Source;
 
 use schema::{ChannelText, FORMAT, RowText, RulesText, UnitText};
+
+/// How the name of a rules file ends.
+const RULES_EXTENSION: &str = "gdcm-rules.json";
+
+/// The place of the rules beside a dataset: "week.gdcm-rules.json" beside "week.json.gz".
+pub fn rules_path(dataset: &Path) -> PathBuf {
+    let name = dataset.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let stem = name.trim_end_matches(".gz").trim_end_matches(".json");
+    dataset.with_file_name(format!("{stem}.{RULES_EXTENSION}"))
+}
 
 /// Reads a rules file; whole, or not at all. Keys that are not known are cautions.
 pub fn load_rules(path: &Path) -> Result<(Rules, Vec<String>), FileError> {

@@ -95,13 +95,9 @@ pub fn cell_text(column: Column, part: &Part) -> String {
         Column::Role if row.left_out => "left out".to_owned(),
         Column::Role => asked(row.role.map(|role| role.word().to_owned())),
         Column::Name => row.name.clone(),
-        Column::Airspeed => asked(row.airspeed_kt.map(|airspeed| format!("{} kt", number(airspeed)))),
-        Column::Altitude => {
-            row.altitude.clone().or(row.altitude_ft.map(|feet| format!("{} ft", number(feet)))).unwrap_or_default()
-        }
-        Column::Weight => {
-            row.weight.clone().or(row.mass_kg.map(|mass| format!("{} kg", number(mass)))).unwrap_or_default()
-        }
+        Column::Airspeed => asked(row.airspeed_words()),
+        Column::Altitude => row.altitude_words(),
+        Column::Weight => row.weight_words(),
         Column::Trim => trim_text(part),
         Column::Model => part.found.words(),
         Column::File => part.found.key(),

@@ -4,13 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::fit::TimeModel;
 use crate::dataset::{ConditionId, ConditionRecord, Dataset, RecordKind};
 use crate::identification::{
-    ChannelPreparation, FlightRecord, Hold, Identification, Options, Preparation, Role, Signal,
+    ChannelPreparation, FlightRecord, Hold, Identification, IdentificationError, Options, Preparation, Role, Signal,
 };
 use crate::records::{RecordChannels, RecordGuess, RecordLayout, RecordTable};
 use crate::study::{IdentifyJob, OfferedModels, TakenModels, identified_bundle, pieces_used};
+
+use super::simulation::TimeModel;
 
 /// What a page of the view shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -157,7 +158,7 @@ pub struct ConditionRecords {
     /// Band \[rad/s\]; none is the study's.
     pub band: Option<[f64; 2]>,
     /// What was identified last, and from what.
-    pub found: Option<(IdentifyJob, Result<Arc<Identification>, String>)>,
+    pub found: Option<(IdentifyJob, Result<Arc<Identification>, IdentificationError>)>,
     /// Whether something else was said since.
     pub changed: bool,
 }

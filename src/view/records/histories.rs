@@ -4,12 +4,12 @@ use egui::{Id, Rect, RichText, ScrollArea, Sense, Ui, vec2};
 
 use crate::identification::{FlightRecord, Treatment};
 use crate::view::command::Command;
-use crate::view::palette::Palette;
+use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{Chart, ChartAxis, ChartLine, ChartSpan, chart_ui, thinned};
 use crate::view::state::State;
 
 use super::bench::ConditionRecords;
-use super::fit::{simulated, time_models_ui};
+use super::simulation::{simulated, time_models_ui};
 
 /// Least height of a chart \[pt\]; more of them scroll.
 const LEAST_HEIGHT: f32 = 84.0;
@@ -35,7 +35,10 @@ pub(super) fn histories_ui(
     let names: Vec<String> = names.collect();
     let gaps = spans(records, palette);
     time_models_ui(ui, state, palette, commands);
-    let models = simulated(ui, state, records, palette);
+    let models = simulated(state, palette);
+    if models.iter().any(|model| model.result.is_none()) {
+        ui.label(RichText::new(state.results.absence()).size(SMALL_SIZE).color(palette.dim_text));
+    }
     ScrollArea::vertical().id_salt("histories").auto_shrink(false).show(ui, |ui| {
         let rows = names.len().div_ceil(2).max(1);
         let height = ((ui.available_height() - 6.0) / rows as f32).max(LEAST_HEIGHT);

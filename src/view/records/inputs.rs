@@ -5,6 +5,7 @@ use std::sync::Arc;
 use egui::{Rect, ScrollArea, Sense, Ui, vec2};
 
 use crate::dataset::Band;
+use crate::executor::Sequential;
 use crate::identification::{FlightRecord, Piece, spectra};
 use crate::view::palette::Palette;
 use crate::view::plot::{Chart, ChartAxis, ChartLine, ChartSpan, chart_ui};
@@ -78,7 +79,7 @@ fn amplitude(flight: &FlightRecord, highest: f64) -> Amplitudes {
         column.add_scalar_mut(-mean);
     }
     let piece = Piece { record: 0, start_s: 0.0, sample_time_s: step, inputs, outputs: flight.outputs.map(finite) };
-    let Some(spectrum) = spectra(&[piece], 2.0 * highest).into_iter().next() else { return Vec::new() };
+    let Some(spectrum) = spectra(&[piece], 2.0 * highest, &Sequential).into_iter().next() else { return Vec::new() };
     (0..flight.inputs.ncols())
         .map(|input| {
             let lines: Vec<[f64; 2]> = spectrum

@@ -11,8 +11,9 @@ mod poles;
 mod record_list;
 mod records_view;
 mod response;
+mod simulation;
 mod stabilisation;
 
 pub use bench::{ConditionRecords, RecordRow, RecordsBench, RecordsCommand, RecordsPage, RecordsReading};
-pub use fit::TimeModel;
 pub use records_view::{records_header_ui, records_view_ui};
+pub use simulation::{TimeModel, simulation_jobs};

@@ -1,15 +1,19 @@
 //! What came of an identification, in words, with a button beside each caution that something can be done about.
 
+use std::sync::Arc;
+
 use egui::{Label, ProgressBar, RichText, Ui};
 
-use crate::identification::{Caution, Hold, Identification, IdentificationCaution, Role};
-use crate::study::OfferedModels;
+use crate::dataset::BundleKind;
+use crate::identification::{Caution, Hold, Identification, IdentificationCaution, IdentificationError, Role, Signal};
+use crate::study::{LateChannel, OfferedModels};
 use crate::units::s_to_ms;
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::state::State;
 
 use super::bench::{ConditionRecords, RecordsCommand};
+use super::kept::kept;
 
 /// Above this the held-out records speak against the model (M14, section 4).
 const HELD_OUT: f64 = 1.15;
@@ -50,8 +54,9 @@ pub(super) fn outcome_ui(
     }
     match &records.found {
         None => {}
-        Some((_, Err(why))) => {
-            ui.add(Label::new(RichText::new(why).color(palette.warning)).wrap());
+        Some((job, Err(why))) => {
+            ui.add(Label::new(RichText::new(why.to_string()).color(palette.warning)).wrap());
+            actions_ui(ui, band_action(why, job.options.band).into_iter().collect(), commands);
         }
         Some((_, Ok(found))) => {
             if records.changed {
@@ -59,8 +64,9 @@ pub(super) fn outcome_ui(
             }
             summary_ui(ui, found, palette);
             for caution in &found.cautions {
-                caution_ui(ui, records, caution, palette, commands);
+                caution_ui(ui, (&caution.to_string(), actions(records, caution)), palette, commands);
             }
+            late_channel_ui(ui, state, records, palette, commands);
         }
     }
 }
@@ -111,17 +117,50 @@ fn summary_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
 }
 
 /// A caution in its words, and what can be done about it.
-fn caution_ui(
+fn caution_ui(ui: &mut Ui, (words, actions): (&str, Vec<Action>), palette: &Palette, commands: &mut Vec<Command>) {
+    ui.add_space(3.0);
+    ui.add(Label::new(RichText::new(format!("⚠ {words}")).size(SMALL_SIZE).color(palette.text)).wrap());
+    actions_ui(ui, actions, commands);
+}
+
+/// A channel that is late in all records alike, which only a physics model can tell.
+fn late_channel_ui(
     ui: &mut Ui,
+    state: &State,
     records: &ConditionRecords,
-    caution: &IdentificationCaution,
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    ui.add_space(3.0);
-    ui.add(Label::new(RichText::new(format!("⚠ {caution}")).size(SMALL_SIZE).color(palette.text)).wrap());
+    let Some((job, Ok(found))) = &records.found else { return };
+    let (dataset, condition) = (state.dataset(), state.condition());
+    let Some(physics) = condition.bundle(BundleKind::Physics).get(condition.nominal()) else { return };
+    let key = (Arc::as_ptr(found) as usize, std::ptr::from_ref(physics) as usize);
+    let late = kept(ui, "late channel", key, || LateChannel::of(&found.measured, job.options.band, &physics.dynamics));
+    let Some(late) = *late else { return };
+    let channels = if late.role == Role::Input { dataset.inputs() } else { dataset.outputs() };
+    let Some(name) = channels.get(late.index).map(|channel| channel.name.clone()) else { return };
+    let words = late.words(&name, &physics.name);
+    let signal = Signal { role: late.role, index: late.index, name };
+    caution_ui(ui, (&words, vec![taken_out(records, &signal, late.delay_s)]), palette, commands);
+}
+
+/// Takes a delay out of a channel, beside what is taken out of it already.
+fn taken_out(records: &ConditionRecords, signal: &Signal, delay_s: f64) -> Action {
+    let known = match signal.role {
+        Role::Input => records.inputs.get(signal.index),
+        Role::Output => records.outputs.get(signal.index),
+    };
+    let delay_s = known.map_or(0.0, |channel| channel.delay_s) + delay_s;
+    let text = format!("Take {:.0} ms out of {}", s_to_ms(delay_s), signal.name);
+    (text, RecordsCommand::SetDelay(signal.clone(), delay_s))
+}
+
+/// What a button says, and what it asks for.
+type Action = (String, RecordsCommand);
+
+fn actions_ui(ui: &mut Ui, actions: Vec<Action>, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
-        for (text, command) in actions(records, caution) {
+        for (text, command) in actions {
             if ui.small_button(text).clicked() {
                 commands.push(command.into());
             }
@@ -129,7 +168,21 @@ fn caution_ui(
     });
 }
 
-fn actions(records: &ConditionRecords, caution: &IdentificationCaution) -> Vec<(String, RecordsCommand)> {
+/// Another band, where that is what an identification without a model needs.
+fn band_action(why: &IdentificationError, [lowest, highest]: [f64; 2]) -> Option<Action> {
+    match why {
+        IdentificationError::TooShort { lowest: enough, .. } => Some(narrower([*enough, highest])),
+        IdentificationError::SampledTooSlowly { limit, .. } if *limit > lowest => Some(narrower([lowest, *limit])),
+        _ => None,
+    }
+}
+
+fn narrower(band: [f64; 2]) -> Action {
+    let text = format!("Identify from {:.2} to {:.1} rad/s", band[0], band[1]);
+    (text, RecordsCommand::SetBand(Some(band)))
+}
+
+fn actions(records: &ConditionRecords, caution: &IdentificationCaution) -> Vec<Action> {
     let leave_out = |record: usize, name: &str| {
         let row = records.row_of_record(record);
         row.map(|row| (format!("Leave {name} out"), RecordsCommand::SetUsed(row, false)))
@@ -138,20 +191,11 @@ fn actions(records: &ConditionRecords, caution: &IdentificationCaution) -> Vec<(
         IdentificationCaution::UnlikeRecord { record, name, .. }
         | IdentificationCaution::DecisiveRecord { record, name, .. } => leave_out(*record, name).into_iter().collect(),
         IdentificationCaution::Late { record, name, signal, delay_s } => {
-            let known = match signal.role {
-                Role::Input => records.inputs.get(signal.index),
-                Role::Output => records.outputs.get(signal.index),
-            };
-            let delay_s = known.map_or(0.0, |channel| channel.delay_s) + delay_s;
-            let text = format!("Take {:.0} ms out of {}", s_to_ms(delay_s), signal.name);
-            let delay = (text, RecordsCommand::SetDelay(signal.clone(), delay_s));
+            let delay = taken_out(records, signal, *delay_s);
             std::iter::once(delay).chain(leave_out(*record, name)).collect()
         }
-        IdentificationCaution::OrderLimit { highest, .. } => {
-            let lowest = records.found.as_ref().map_or(0.0, |(job, _)| job.options.band[0]);
-            let band = [lowest, *highest];
-            vec![(format!("End the band at {highest:.1} rad/s"), RecordsCommand::SetBand(Some(band)))]
-        }
+        IdentificationCaution::BandNotShown { shown: band, .. }
+        | IdentificationCaution::OrderLimit { narrower: band, .. } => vec![narrower(*band)],
         IdentificationCaution::Records(Caution::Stair { signal, hold_s, .. }) => {
             let hold_s = *hold_s;
             let set = |text: &str, hold| (text.to_owned(), RecordsCommand::SetHold(signal.clone(), hold));

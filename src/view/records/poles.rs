@@ -2,14 +2,11 @@
 
 use egui::{RichText, Ui};
 
-use crate::identification::PoleEstimate;
+use crate::identification::{PoleEstimate, TWO_SIDED_95};
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{Chart, ChartAxis, ChartMarks, chart_ui};
 
 use super::bench::ConditionRecords;
-
-/// Standard deviations that hold 95 %.
-const TWO_SIDED_95: f64 = 1.96;
 
 /// The s-plane with an error bar on every pole.
 pub(super) fn identified_poles_ui(ui: &mut Ui, records: &ConditionRecords, palette: &Palette) {

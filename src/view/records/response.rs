@@ -5,7 +5,8 @@ use std::sync::Arc;
 use egui::{Color32, Rect, RichText, Ui, vec2};
 
 use crate::dataset::Pair;
-use crate::identification::{Identification, MeasuredPoint, StateSpaceMatrices};
+use crate::identification::{Identification, MeasuredPoint, StateSpaceMatrices, TRUSTED_COHERENCE, TWO_SIDED_95};
+use crate::units::neper_to_db;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, chart_ui};
 use crate::view::state::State;
@@ -13,12 +14,6 @@ use crate::view::state::State;
 use super::bench::ConditionRecords;
 use super::kept::kept;
 
-/// Partial coherence from which a point is trusted (M14, section 2).
-const TRUSTED: f64 = 0.6;
-/// Standard deviations that hold 95 %.
-const TWO_SIDED_95: f64 = 1.96;
-/// dB of a natural logarithm.
-const DB_PER_NEPER: f64 = 8.685_889_638_065_037;
 /// Frequencies of a model's curve.
 const POINTS: usize = 200;
 /// How far curves reach beyond the band.
@@ -169,7 +164,7 @@ fn measured_points(points: &[MeasuredPoint], pair: Pair) -> Vec<([f64; 5], bool)
         let neper = (0.5 * point.variance[at]).sqrt() / point.response[at].norm();
         let sd = if neper.is_finite() { neper } else { 0.0 };
         let [omega, db, phase] = shape;
-        ([omega, db, phase, DB_PER_NEPER * sd, sd.to_degrees()], point.partial_coherence[at] >= TRUSTED)
+        ([omega, db, phase, neper_to_db(sd), sd.to_degrees()], point.partial_coherence[at] >= TRUSTED_COHERENCE)
     };
     shapes.into_iter().zip(points).map(with).collect()
 }

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use gdcm::dataset::{Dataset, Timing};
+use gdcm::executor::Sequential;
 use gdcm::io::{DatasetOrigin, load_dataset_bytes};
-use gdcm::study::{ConditionAnalysis, Execution, Sequential, cautions_of_models};
+use gdcm::study::{ConditionAnalysis, Execution, cautions_of_models};
 use serde_json::json;
 
 use super::*;

@@ -1,8 +1,30 @@
 //! The known answers of M14 (source: independent numpy code), and small made-up systems.
 
-use gdcm::identification::Piece;
+use gdcm::executor::{Executor, Sequential, Task};
+use gdcm::identification::{MeasuredResponse, Piece, Scales, Spectrum, local_polynomial, log_spaced, spectra};
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
+use std::sync::Mutex;
+
+/// So many threads, which take the last piece of work first.
+pub struct Threads(pub usize);
+
+impl Executor for Threads {
+    fn carry_out(&self, tasks: Vec<Task<'_>>) {
+        let left = Mutex::new(tasks);
+        let next = || left.lock().expect("no piece of work holds the lock").pop();
+        let work = || {
+            while let Some(task) = next() {
+                task();
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 0..self.0 {
+                scope.spawn(work);
+            }
+        });
+    }
+}
 
 /// The known answers.
 pub fn known() -> Value {
@@ -37,6 +59,19 @@ pub fn noisy(known: &Value, count: usize) -> Vec<Piece> {
         outputs: matrix(&value["y"]),
     };
     records.iter().take(count).enumerate().map(piece).collect()
+}
+
+/// The spectra of the case `noisy` in scaled units, to 1.3 whi.
+pub fn noisy_spectra() -> Vec<Spectrum> {
+    let pieces = noisy(&known(), 4);
+    let scales = Scales::of(&pieces).expect("its channels move");
+    let scaled: Vec<_> = pieces.iter().map(|piece| scales.scaled(piece)).collect();
+    spectra(&scaled, 1.3 * 4.0 / 3.0 * 6.0, &Sequential)
+}
+
+/// The measured response of the case `noisy`, in scaled units.
+pub fn noisy_measured() -> MeasuredResponse {
+    local_polynomial(&noisy_spectra(), &log_spaced(0.3, 8.0, 40), &Sequential).expect("its records are long enough")
 }
 
 /// Numbers between -1 and 1 that look random, the same ones for the same seed.

@@ -4,6 +4,7 @@ use std::sync::LazyLock;
 
 use gdcm::assembly::standard_patterns;
 use gdcm::dataset::{BundleKind, ConditionId, Dynamics, Model, Pair};
+use gdcm::executor::Sequential;
 use gdcm::identification::{
     FlightRecord, Identification, Options, Preparation, StateSpaceMatrices, Unwatched, identify,
 };
@@ -35,7 +36,7 @@ fn identified(id: ConditionId) -> Identification {
     let preparation = Preparation::of(&borrowed(&inputs), &borrowed(&outputs));
     let band = dataset.band();
     let options = Options { held_out, ..Options::new([band.min(), band.max()], preparation) };
-    identify(&flights, &options, &Unwatched).expect("the example's flights are good")
+    identify(&flights, &options, &Sequential, &Unwatched).expect("the example's flights are good")
 }
 
 fn borrowed(names: &[String]) -> Vec<&str> {

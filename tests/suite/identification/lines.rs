@@ -1,17 +1,10 @@
 //! Scales, low-pass, lines and the measured response.
 
-use super::common::{complex, known, list, matrix, noise, noisy};
+use super::common::{Threads, complex, known, list, matrix, noise, noisy, noisy_spectra};
+use gdcm::executor::Sequential;
 use gdcm::identification::*;
 use nalgebra::{Complex, DMatrix, DVector};
 use proptest::prelude::*;
-
-/// The scaled pieces of the case `noisy`, and its spectra to 1.3 whi.
-fn noisy_spectra() -> Vec<Spectrum> {
-    let pieces = noisy(&known(), 4);
-    let scales = Scales::of(&pieces).unwrap();
-    let scaled: Vec<_> = pieces.iter().map(|piece| scales.scaled(piece)).collect();
-    spectra(&scaled, 1.3 * 4.0 / 3.0 * 6.0)
-}
 
 #[test]
 fn scales_are_those_of_the_known_answer() {
@@ -39,8 +32,8 @@ fn the_low_pass_gives_the_known_answer() {
 fn lines_are_those_of_the_known_answer() {
     let known = known();
     let case = &known["noisy"]["spectra_r1"];
-    let lines =
-        spectra(&noisy(&known, 1), 100.0)[0].between(case["lo"].as_f64().unwrap(), case["hi"].as_f64().unwrap());
+    let lines = spectra(&noisy(&known, 1), 100.0, &Sequential)[0]
+        .between(case["lo"].as_f64().unwrap(), case["hi"].as_f64().unwrap());
     assert_eq!(lines.omega.len(), 4);
     for (omega, expected) in lines.omega.iter().zip(list(&case["w"])) {
         assert!((omega - expected).abs() < 1e-12);
@@ -53,7 +46,7 @@ fn lines_are_those_of_the_known_answer() {
 fn the_measured_response_is_that_of_the_known_answer() {
     let known = known();
     let case = &known["noisy"]["lpm"];
-    let measured = local_polynomial(&noisy_spectra(), &list(&case["w"])).unwrap();
+    let measured = local_polynomial(&noisy_spectra(), &list(&case["w"]), &Sequential).unwrap();
     let coherence = matrix(&case["coherence"]);
     for (k, point) in measured.points.iter().enumerate() {
         let response = matrix(&case["G_scaled"]["re"][k]).zip_map(&matrix(&case["G_scaled"]["im"][k]), Complex::new);
@@ -91,7 +84,8 @@ fn exact(records: usize, samples: usize) -> (StateSpaceMatrices, Vec<Piece>) {
 #[test]
 fn the_response_of_an_exact_record_is_that_of_the_system() {
     let (model, pieces) = exact(4, 1500);
-    let measured = local_polynomial(&spectra(&pieces, 10.4), &log_spaced(0.5, 8.0, 12)).unwrap();
+    let measured =
+        local_polynomial(&spectra(&pieces, 10.4, &Sequential), &log_spaced(0.5, 8.0, 12), &Sequential).unwrap();
     for point in &measured.points {
         let error = (&point.response - model.response(point.omega).unwrap()).camax();
         // The polynomial of second degree over a window of +-0.45 rad/s beside modes of damping 0.4 rad/s and more.
@@ -105,7 +99,9 @@ fn the_response_of_an_exact_record_is_that_of_the_system() {
 fn the_variance_of_the_response_is_the_spread_of_many_trials() {
     let (model, pieces) = exact(2, 1000);
     let omegas = [3.0];
-    let truth = local_polynomial(&spectra(&pieces, 10.4), &omegas).unwrap().points[0].response.clone();
+    let truth = local_polynomial(&spectra(&pieces, 10.4, &Sequential), &omegas, &Sequential).unwrap().points[0]
+        .response
+        .clone();
     let (trials, mut predicted, mut spread) = (200, DMatrix::zeros(2, 2), DMatrix::zeros(2, 2));
     for trial in 0..trials {
         let mut noisy = pieces.clone();
@@ -113,7 +109,7 @@ fn the_variance_of_the_response_is_the_spread_of_many_trials() {
             let seed = 1000 + (10 * trial + k) as u64;
             piece.outputs.iter_mut().zip(noise(seed, 2000)).for_each(|(y, v)| *y += 10.0 * v);
         }
-        let point = &local_polynomial(&spectra(&noisy, 10.4), &omegas).unwrap().points[0];
+        let point = &local_polynomial(&spectra(&noisy, 10.4, &Sequential), &omegas, &Sequential).unwrap().points[0];
         predicted += &point.variance / trials as f64;
         spread += (&point.response - &truth).map(|e| e.norm_sqr() / trials as f64);
     }
@@ -135,7 +131,8 @@ fn the_noise_covariance_is_that_of_the_noise_put_in() {
             piece.outputs[(n, 1)] += 10.0 * noise[n] + 5.0 * noise[2000 + n];
         }
     }
-    let measured = local_polynomial(&spectra(&pieces, 10.4), &log_spaced(0.5, 8.0, 40)).unwrap();
+    let measured =
+        local_polynomial(&spectra(&pieces, 10.4, &Sequential), &log_spaced(0.5, 8.0, 40), &Sequential).unwrap();
     let covariance = NoiseCovariance::of(&measured).unwrap();
     // White noise of variance 100/3 has lines of power 100 dt / 3.
     let line = 4.0 / 3.0;
@@ -151,7 +148,7 @@ fn the_noise_covariance_is_that_of_the_noise_put_in() {
 
 #[test]
 fn the_covariance_is_smoothed_over_neighbours_and_straight_in_log_frequency_between() {
-    let mut measured = local_polynomial(&noisy_spectra(), &log_spaced(0.5, 8.0, 9)).unwrap();
+    let mut measured = local_polynomial(&noisy_spectra(), &log_spaced(0.5, 8.0, 9), &Sequential).unwrap();
     for (k, point) in measured.points.iter_mut().enumerate() {
         point.noise = DMatrix::identity(2, 2) * if k == 4 { 9.0 } else { 0.0 };
         point.power.fill(0.0);
@@ -176,7 +173,8 @@ fn exact_and_dependent_outputs_still_have_a_weight() {
         piece.outputs =
             DMatrix::from_columns(&[piece.outputs.column(0).into_owned(), piece.outputs.column(1).into_owned(), sum]);
     }
-    let measured = local_polynomial(&spectra(&pieces, 10.4), &log_spaced(0.5, 8.0, 40)).unwrap();
+    let measured =
+        local_polynomial(&spectra(&pieces, 10.4, &Sequential), &log_spaced(0.5, 8.0, 40), &Sequential).unwrap();
     let covariance = NoiseCovariance::of(&measured).unwrap();
     assert!([0.5, 1.0, 3.3, 8.0].iter().all(|&w| covariance.weight(w).is_some()));
 }
@@ -185,7 +183,7 @@ fn exact_and_dependent_outputs_still_have_a_weight() {
 fn an_input_that_copies_another_is_not_identified() {
     let (_, mut pieces) = exact(4, 1500);
     assert_eq!(
-        local_polynomial(&spectra(&pieces, 10.4), &log_spaced(0.5, 8.0, 12))
+        local_polynomial(&spectra(&pieces, 10.4, &Sequential), &log_spaced(0.5, 8.0, 12), &Sequential)
             .unwrap()
             .excitation()
             .not_identified()
@@ -198,7 +196,8 @@ fn an_input_that_copies_another_is_not_identified() {
         let noise = noise(k as u64, 3000);
         piece.outputs.iter_mut().zip(noise).for_each(|(y, v)| *y += 0.05 * v);
     }
-    let measured = local_polynomial(&spectra(&pieces, 10.4), &log_spaced(0.5, 8.0, 12)).unwrap();
+    let measured =
+        local_polynomial(&spectra(&pieces, 10.4, &Sequential), &log_spaced(0.5, 8.0, 12), &Sequential).unwrap();
     let excitation = measured.excitation();
     assert!(excitation.moved_together());
     assert_eq!(excitation.not_identified().collect::<Vec<_>>(), [0, 1]);
@@ -214,22 +213,23 @@ fn an_input_without_effect_is_not_identified() {
             DMatrix::from_columns(&[piece.inputs.column(0).into_owned(), piece.inputs.column(1).into_owned(), blind]);
         piece.outputs.iter_mut().zip(noise(k as u64, 3000)).for_each(|(y, v)| *y += 0.05 * v);
     }
-    let measured = local_polynomial(&spectra(&pieces, 10.4), &log_spaced(0.5, 8.0, 40)).unwrap();
+    let measured =
+        local_polynomial(&spectra(&pieces, 10.4, &Sequential), &log_spaced(0.5, 8.0, 40), &Sequential).unwrap();
     assert_eq!(measured.excitation().not_identified().collect::<Vec<_>>(), [2]);
 }
 
 #[test]
 fn vibration_lowers_the_cut_off_and_is_named() {
     let (_, mut pieces) = exact(2, 1500);
-    assert_eq!(CutOff::choose(&pieces, 8.0), CutOff { omega: 40.0, vibrating: vec![] });
+    assert_eq!(CutOff::choose(&pieces, 8.0, &Sequential), CutOff { omega: 40.0, vibrating: vec![] });
     let vibration = pieces[0].outputs.column(1).amax();
     for piece in &mut pieces {
         (0..1500).for_each(|n| piece.outputs[(n, 1)] += vibration * (50.0 * 0.04 * n as f64).sin());
     }
-    let cut_off = CutOff::choose(&pieces, 8.0);
+    let cut_off = CutOff::choose(&pieces, 8.0, &Sequential);
     assert_eq!((cut_off.omega, cut_off.vibrating.len(), cut_off.vibrating[0].0), (16.0, 1, 1));
-    let filtered = cut_off.apply(&pieces);
-    let share = CutOff::choose(&filtered, 8.0).vibrating;
+    let filtered = cut_off.apply(&pieces, &Sequential);
+    let share = CutOff::choose(&filtered, 8.0, &Sequential).vibrating;
     assert_eq!(share, []);
 }
 
@@ -253,7 +253,7 @@ fn the_low_pass_passes_straight_lines_and_is_none_near_half_the_sampling_frequen
 #[test]
 fn short_records_say_how_long_they_should_be() {
     let (_, pieces) = exact(1, 250);
-    let refused = local_polynomial(&spectra(&pieces, 10.4), &[0.3]).unwrap_err();
+    let refused = local_polynomial(&spectra(&pieces, 10.4, &Sequential), &[0.3], &Sequential).unwrap_err();
     assert!(matches!(refused, LocalPolynomialError::TooFewLines { .. }));
     assert!(refused.to_string().contains("at least 21 s, better 52 s"), "{refused}");
 }
@@ -271,33 +271,34 @@ fn records_cut_into_pieces_of_twenty_seconds_still_have_a_response() {
             })
         })
         .collect();
-    let measured = local_polynomial(&spectra(&cut, 10.4), &log_spaced(0.25, 8.0, 40)).unwrap();
+    let measured =
+        local_polynomial(&spectra(&cut, 10.4, &Sequential), &log_spaced(0.25, 8.0, 40), &Sequential).unwrap();
     let point = measured.points.last().unwrap();
     assert!((&point.response - model.response(8.0).unwrap()).camax() < 0.05 * point.response.camax());
 }
 
 #[test]
 fn hostile_lines_are_refused() {
-    assert_eq!(local_polynomial(&[], &[1.0]), Err(LocalPolynomialError::Nothing));
+    assert_eq!(local_polynomial(&[], &[1.0], &Sequential), Err(LocalPolynomialError::Nothing));
     let good = noisy_spectra();
-    assert_eq!(local_polynomial(&good, &[]), Err(LocalPolynomialError::Nothing));
+    assert_eq!(local_polynomial(&good, &[], &Sequential), Err(LocalPolynomialError::Nothing));
     for omega in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
-        assert_eq!(local_polynomial(&good, &[omega]), Err(LocalPolynomialError::NotFinite));
+        assert_eq!(local_polynomial(&good, &[omega], &Sequential), Err(LocalPolynomialError::NotFinite));
     }
-    assert!(matches!(local_polynomial(&good, &[1e9]), Err(LocalPolynomialError::TooFewLines { .. })));
+    assert!(matches!(local_polynomial(&good, &[1e9], &Sequential), Err(LocalPolynomialError::TooFewLines { .. })));
     for value in [f64::NAN, f64::INFINITY, 1e200] {
         let mut bad = good.clone();
         bad[1].outputs[(0, 3)].im = value;
-        assert_eq!(local_polynomial(&bad, &[1.0]), Err(LocalPolynomialError::NotFinite));
+        assert_eq!(local_polynomial(&bad, &[1.0], &Sequential), Err(LocalPolynomialError::NotFinite));
     }
     let mut bad = good.clone();
     bad[2].inputs = DMatrix::zeros(3, bad[2].omega.len());
-    assert_eq!(local_polynomial(&bad, &[1.0]), Err(LocalPolynomialError::ChannelsDiffer { record: 2 }));
+    assert_eq!(local_polynomial(&bad, &[1.0], &Sequential), Err(LocalPolynomialError::ChannelsDiffer { record: 2 }));
     let silent: Vec<Spectrum> = good
         .iter()
         .map(|s| Spectrum { inputs: s.inputs.scale(0.0), outputs: s.outputs.scale(0.0), ..s.clone() })
         .collect();
-    let measured = local_polynomial(&silent, &[1.0, 3.0]).unwrap();
+    let measured = local_polynomial(&silent, &[1.0, 3.0], &Sequential).unwrap();
     assert!(
         measured
             .points
@@ -320,7 +321,7 @@ fn hostile_pieces_have_no_scales_and_no_lines() {
     assert_eq!(Scales::of(&[piece(9, f64::NAN)]), Err(ScalingError::NotFinite { piece: 0 }));
     assert_eq!(Scales::of(&[piece(0, 0.0)]), Err(ScalingError::InputConstant { input: 0 }));
     for rows in 0..3 {
-        assert_eq!(spectra(&[piece(rows, 1.0)], 1e9)[0].omega.len(), 0);
+        assert_eq!(spectra(&[piece(rows, 1.0)], 1e9, &Sequential)[0].omega.len(), 0);
     }
     let other = Piece { outputs: DMatrix::zeros(9, 2), ..piece(9, 1.0) };
     assert_eq!(Scales::of(&[piece(9, 1.0), other]), Err(ScalingError::ChannelsDiffer { piece: 1 }));
@@ -329,12 +330,15 @@ fn hostile_pieces_have_no_scales_and_no_lines() {
 #[test]
 fn results_are_the_same_to_the_last_bit_for_any_number_of_threads() {
     let pieces = noisy(&known(), 4);
-    let run = || {
-        let scaled: Vec<_> = pieces.iter().map(|piece| Scales::of(&pieces).unwrap().scaled(piece)).collect();
-        (CutOff::choose(&scaled, 8.0), local_polynomial(&spectra(&scaled, 10.4), &log_spaced(0.3, 8.0, 40)).unwrap())
+    let scales = Scales::of(&pieces).unwrap();
+    let scaled: Vec<_> = pieces.iter().map(|piece| scales.scaled(piece)).collect();
+    let on = |threads: usize| {
+        let executor = Threads(threads);
+        let lines = spectra(&scaled, 10.4, &executor);
+        let measured = local_polynomial(&lines, &log_spaced(0.3, 8.0, 40), &executor).unwrap();
+        (CutOff::choose(&scaled, 8.0, &executor), measured)
     };
-    let threads = |count| rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap().install(run);
-    assert_eq!(threads(1), threads(5));
+    assert_eq!(on(1), on(5));
 }
 
 proptest! {
@@ -344,14 +348,14 @@ proptest! {
     fn trims_and_drifts_do_not_change_the_response(trim in -100.0..100.0, drift in -1.0..1.0, record in 0_usize..4, channel in 0_usize..4) {
         let pieces = noisy(&known(), 4);
         let omegas = log_spaced(0.3, 8.0, 12);
-        let before = local_polynomial(&spectra(&pieces, 10.4), &omegas).unwrap();
+        let before = local_polynomial(&spectra(&pieces, 10.4, &Sequential), &omegas, &Sequential).unwrap();
         let mut moved = pieces.clone();
         let piece = &mut moved[record];
         let samples = if channel < 2 { &mut piece.inputs } else { &mut piece.outputs };
         // A constant for every channel; a ramp for outputs, where it is a transient: G of an input's ramp is an output's ramp.
         let drift = if channel < 2 { 0.0 } else { drift };
         samples.column_mut(channel % 2).iter_mut().enumerate().for_each(|(n, x)| *x += trim + 0.04 * drift * n as f64);
-        let after = local_polynomial(&spectra(&moved, 10.4), &omegas).unwrap();
+        let after = local_polynomial(&spectra(&moved, 10.4, &Sequential), &omegas, &Sequential).unwrap();
         for (before, after) in before.points.iter().zip(&after.points) {
             // A ramp's lines are 1/(j omega), which a polynomial of second degree holds but in part where the window reaches
             // down to the first line: well above it 2 % of a drift of 40 in a record are left, beside noise of 0.1.
@@ -366,13 +370,13 @@ proptest! {
     fn records_and_channels_in_another_order_give_the_response_in_that_order(order in Just(vec![0_usize, 1, 2, 3]).prop_shuffle()) {
         let pieces = noisy(&known(), 4);
         let omegas = log_spaced(0.5, 8.0, 7);
-        let before = local_polynomial(&spectra(&pieces, 10.4), &omegas).unwrap();
+        let before = local_polynomial(&spectra(&pieces, 10.4, &Sequential), &omegas, &Sequential).unwrap();
         let swapped: Vec<Piece> = order.iter().map(|&k| Piece {
             inputs: pieces[k].inputs.select_columns(&[1, 0]),
             outputs: pieces[k].outputs.select_columns(&[1, 0]),
             ..pieces[k].clone()
         }).collect();
-        let after = local_polynomial(&spectra(&swapped, 10.4), &omegas).unwrap();
+        let after = local_polynomial(&spectra(&swapped, 10.4, &Sequential), &omegas, &Sequential).unwrap();
         for (before, after) in before.points.iter().zip(&after.points) {
             for (o, i) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 prop_assert!((before.response[(o, i)] - after.response[(1 - o, 1 - i)]).norm() < 1e-9);
@@ -389,7 +393,7 @@ proptest! {
         let response = |pieces: &[Piece]| {
             let scales = Scales::of(pieces).unwrap();
             let scaled: Vec<_> = pieces.iter().map(|piece| scales.scaled(piece)).collect();
-            local_polynomial(&spectra(&scaled, 10.4), &omegas).unwrap().in_units(&scales)
+            local_polynomial(&spectra(&scaled, 10.4, &Sequential), &omegas, &Sequential).unwrap().in_units(&scales)
         };
         let before = response(&pieces);
         let mut other = pieces.clone();

@@ -1,6 +1,7 @@
 //! From records as logged to pieces.
 
 use super::common::{known, list, matrix, noise};
+use gdcm::executor::Sequential;
 use gdcm::identification::*;
 use nalgebra::DMatrix;
 use proptest::prelude::*;
@@ -31,7 +32,7 @@ fn settings() -> Preparation {
 }
 
 fn prepared(record: &FlightRecord, settings: &Preparation) -> Prepared {
-    prepare(std::slice::from_ref(record), settings).unwrap()
+    prepare(std::slice::from_ref(record), settings, &Sequential).unwrap()
 }
 
 fn words(cautions: &[Caution]) -> String {
@@ -230,7 +231,7 @@ fn uneven_stamps_are_refused_unless_resampling_is_allowed() {
     let jitter = noise(5, 1000);
     record.time_s.iter_mut().zip(&jitter).for_each(|(t, x)| *t += 0.008 * x);
     (0..1000).for_each(|n| record.outputs[(n, 0)] = record.time_s[n].sin());
-    let refused = prepare(std::slice::from_ref(&record), &settings()).unwrap_err();
+    let refused = prepare(std::slice::from_ref(&record), &settings(), &Sequential).unwrap_err();
     assert!(matches!(refused, PreparationError::UnevenSampling { percent, .. } if percent > 20.0));
     let allowed = Preparation { resample: true, ..settings() };
     let prepared = prepared(&record, &allowed);
@@ -253,7 +254,7 @@ fn one_late_stamp_is_no_jitter() {
 fn time_that_does_not_go_on_is_refused_with_its_row() {
     let mut record = wandering(1000);
     record.time_s[617] = record.time_s[616];
-    let text = prepare(std::slice::from_ref(&record), &settings()).unwrap_err().to_string();
+    let text = prepare(std::slice::from_ref(&record), &settings(), &Sequential).unwrap_err().to_string();
     assert!(text.contains("time goes from 12.32 s to 12.32 s in row 618"), "{text}");
 }
 
@@ -262,7 +263,7 @@ fn channels_that_do_not_move_are_named() {
     let mut record = wandering(1000);
     record.inputs.column_mut(1).fill(50.0);
     record.outputs.column_mut(0).fill(0.1);
-    let text = prepare(&[record], &settings()).unwrap_err().to_string();
+    let text = prepare(&[record], &settings(), &Sequential).unwrap_err().to_string();
     assert_eq!(text, "PED and P never moved in any record: leave them out");
 }
 
@@ -284,7 +285,7 @@ fn copies_twins_and_wrong_units_raise_cautions() {
 
 #[test]
 fn records_that_are_too_short_say_how_short() {
-    let text = prepare(&[wandering(300)], &settings()).unwrap_err().to_string();
+    let text = prepare(&[wandering(300)], &settings(), &Sequential).unwrap_err().to_string();
     assert!(
         text.starts_with("nothing is left: the longest piece without a gap lasts 6.0 s, and 10.0 s are the least"),
         "{text}"
@@ -296,7 +297,7 @@ fn an_unused_record_does_not_spoil_the_others() {
     let mut lost = wandering(1000);
     lost.name = "lost".into();
     lost.outputs.fill(f64::NAN);
-    let prepared = prepare(&[lost, wandering(1000)], &settings()).unwrap();
+    let prepared = prepare(&[lost, wandering(1000)], &settings(), &Sequential).unwrap();
     assert_eq!(prepared.pieces.len(), 1);
     assert_eq!(prepared.pieces[0].record, 1);
     assert!(words(&prepared.cautions).contains("lost: nothing of it could be used"));
@@ -306,10 +307,10 @@ fn an_unused_record_does_not_spoil_the_others() {
 #[test]
 fn hostile_records_are_refused_or_cut_and_never_panic() {
     let good = wandering(1000);
-    let of = |record: FlightRecord| prepare(&[record], &settings());
-    assert_eq!(prepare(&[], &settings()), Err(PreparationError::NoRecords));
+    let of = |record: FlightRecord| prepare(&[record], &settings(), &Sequential);
+    assert_eq!(prepare(&[], &settings(), &Sequential), Err(PreparationError::NoRecords));
     assert!(matches!(
-        prepare(std::slice::from_ref(&good), &Preparation::of(&[], &["P"])),
+        prepare(std::slice::from_ref(&good), &Preparation::of(&[], &["P"]), &Sequential),
         Err(PreparationError::NoChannels { .. })
     ));
     let part = |rows: usize| FlightRecord {
@@ -341,16 +342,22 @@ fn hostile_records_are_refused_or_cut_and_never_panic() {
     for seconds in [f64::NAN, f64::INFINITY, 1e9] {
         let mut shifted = settings();
         shifted.inputs[0].delay_s = seconds;
-        assert!(matches!(prepare(std::slice::from_ref(&good), &shifted), Err(PreparationError::Shift { .. })));
+        assert!(matches!(
+            prepare(std::slice::from_ref(&good), &shifted, &Sequential),
+            Err(PreparationError::Shift { .. })
+        ));
         let least = Preparation { least_piece_s: -seconds, ..settings() };
-        assert!(matches!(prepare(std::slice::from_ref(&good), &least), Err(PreparationError::LeastPiece { .. })));
+        assert!(matches!(
+            prepare(std::slice::from_ref(&good), &least, &Sequential),
+            Err(PreparationError::LeastPiece { .. })
+        ));
     }
     let bridge = Preparation { longest_bridge: usize::MAX, ..settings() };
-    assert!(matches!(prepare(std::slice::from_ref(&good), &bridge), Err(PreparationError::Bridge { .. })));
+    assert!(matches!(prepare(std::slice::from_ref(&good), &bridge, &Sequential), Err(PreparationError::Bridge { .. })));
     let mut huge = good;
     huge.outputs[(3, 0)] = 1e300;
     assert!(
-        prepare(&[huge], &settings())
+        prepare(&[huge], &settings(), &Sequential)
             .is_ok_and(|prepared| prepared.pieces.iter().all(|p| p.outputs.iter().all(|y| y.is_finite())))
     );
 }
@@ -404,9 +411,9 @@ proptest! {
             record.outputs.scale_mut(1.0 + k as f64);
             record
         }).collect();
-        let straight = prepare(&records, &settings()).unwrap();
+        let straight = prepare(&records, &settings(), &Sequential).unwrap();
         let shuffled: Vec<_> = order.iter().map(|&k| records[k].clone()).collect();
-        let prepared = prepare(&shuffled, &settings()).unwrap();
+        let prepared = prepare(&shuffled, &settings(), &Sequential).unwrap();
         for (piece, &k) in prepared.pieces.iter().zip(&order) {
             prop_assert_eq!(&piece.outputs, &straight.pieces[k].outputs);
         }

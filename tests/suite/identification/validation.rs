@@ -1,6 +1,7 @@
 //! Models against records in time.
 
 use super::common::{known, list, matrix, noise, noisy};
+use gdcm::executor::Sequential;
 use gdcm::identification::*;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -62,7 +63,7 @@ fn a_ramp_and_a_step_are_answered_as_in_the_textbook() {
 fn the_exact_model_fits_a_record_whole_from_any_state_and_trim() {
     let model = system();
     let piece = record(&model, &[1.0, -2.0, 0.5, 3.0], 1234, 0.04);
-    let validation = validate(&model, &[piece], &ValidationSettings::unfiltered()).unwrap();
+    let validation = validate(&model, &[piece], &ValidationSettings::unfiltered(), &Sequential).unwrap();
     for (fit, theil) in validation.fit_percent.iter().zip(&validation.theil) {
         // Rounding of a least-squares problem with columns of condition about 1e3.
         assert!(fit.unwrap() > 100.0 - 1e-7 && theil.unwrap() < 1e-9);
@@ -73,7 +74,8 @@ fn the_exact_model_fits_a_record_whole_from_any_state_and_trim() {
 fn windows_follow_each_other_and_leave_no_sample_out() {
     let model = system();
     let piece = record(&model, &[0.0; 4], 1234, 0.04);
-    let validation = validate(&model, std::slice::from_ref(&piece), &ValidationSettings::unfiltered()).unwrap();
+    let validation =
+        validate(&model, std::slice::from_ref(&piece), &ValidationSettings::unfiltered(), &Sequential).unwrap();
     assert_eq!(validation.windows.len(), 5, "49.36 s take five windows of at most 10 s");
     let mut next = 5.0;
     let mut rows = 0;
@@ -90,7 +92,7 @@ fn windows_follow_each_other_and_leave_no_sample_out() {
 fn an_unstable_model_has_windows_of_three_time_constants() {
     let model = unstable(0.5);
     let piece = record(&model, &[1e-6, 0.0], 600, 0.05);
-    let validation = validate(&model, &[piece], &ValidationSettings::unfiltered()).unwrap();
+    let validation = validate(&model, &[piece], &ValidationSettings::unfiltered(), &Sequential).unwrap();
     assert_eq!(validation.windows.len(), 5, "30 s in windows of 3 / 0.5 = 6 s");
     assert!(validation.fit_percent.iter().all(|fit| fit.unwrap() > 99.999));
 }
@@ -100,7 +102,7 @@ fn a_model_that_diverges_within_a_few_samples_is_refused_in_words() {
     let model = unstable(40.0);
     let mut piece = record(&unstable(-1.0), &[0.0, 0.0], 600, 0.05);
     piece.outputs.column_mut(0).add_scalar_mut(1.0);
-    let refused = validate(&model, &[piece], &ValidationSettings::unfiltered()).unwrap_err();
+    let refused = validate(&model, &[piece], &ValidationSettings::unfiltered(), &Sequential).unwrap_err();
     assert!(matches!(refused, ValidationError::TooShort { window_s } if (window_s - 0.075).abs() < 1e-12));
     assert!(refused.to_string().contains("too short to compare in time"));
 }
@@ -116,7 +118,7 @@ fn noise_lowers_the_fit_by_its_share() {
         let noise = noise(99 + o as u64, 2500);
         piece.outputs.column_mut(o).iter_mut().zip(noise).for_each(|(y, v)| *y += 0.1 * std * 3.0_f64.sqrt() * v);
     }
-    let validation = validate(&model, &[piece], &ValidationSettings::unfiltered()).unwrap();
+    let validation = validate(&model, &[piece], &ValidationSettings::unfiltered(), &Sequential).unwrap();
     for (fit, theil) in validation.fit_percent.iter().zip(&validation.theil) {
         // 90 % less what the state and offset of each of ten windows take of the noise; Theil is half of the error's share.
         assert!((fit.unwrap() - 90.0).abs() < 0.6, "{fit:?}");
@@ -131,8 +133,8 @@ fn vibration_above_the_low_pass_does_not_count() {
     for n in 0..2500 {
         piece.outputs[(n, 0)] += 5.0 * (100.0 * 0.02 * n as f64).sin();
     }
-    let raw = validate(&model, std::slice::from_ref(&piece), &ValidationSettings::unfiltered()).unwrap();
-    let filtered = validate(&model, &[piece], &ValidationSettings::filtered(8.0)).unwrap();
+    let raw = validate(&model, std::slice::from_ref(&piece), &ValidationSettings::unfiltered(), &Sequential).unwrap();
+    let filtered = validate(&model, &[piece], &ValidationSettings::filtered(8.0), &Sequential).unwrap();
     assert!(raw.fit_percent[0].unwrap() < 50.0);
     // The ends of the record, reflected in the middle of a vibration, keep a little of it.
     assert!(filtered.fit_percent[0].unwrap() > 95.0, "{:?}", filtered.fit_percent);
@@ -142,7 +144,7 @@ fn vibration_above_the_low_pass_does_not_count() {
 fn the_system_that_made_the_known_record_fits_it_about_as_well_as_the_identified_model() {
     let known = known();
     let held_out = noisy(&known, 5).split_off(4);
-    let validation = validate(&system(), &held_out, &ValidationSettings::filtered(8.0)).unwrap();
+    let validation = validate(&system(), &held_out, &ValidationSettings::filtered(8.0), &Sequential).unwrap();
     let expected = &known["noisy"]["expected"];
     for o in 0..2 {
         // The reference's figures are of an identified model, this is the system behind the record but for the hold of its
@@ -161,7 +163,7 @@ fn the_system_that_made_the_known_record_fits_it_about_as_well_as_the_identified
 fn an_output_that_does_not_move_has_no_fit() {
     let mut piece = record(&system(), &[0.0; 4], 600, 0.04);
     piece.outputs.column_mut(1).fill(2.0);
-    let validation = validate(&system(), &[piece], &ValidationSettings::unfiltered()).unwrap();
+    let validation = validate(&system(), &[piece], &ValidationSettings::unfiltered(), &Sequential).unwrap();
     assert_eq!(validation.fit_percent[1], None);
     assert!(validation.fit_percent[0].is_some());
 }
@@ -171,10 +173,11 @@ fn hostile_models_and_records_are_refused() {
     let good = system();
     let piece = record(&good, &[0.0; 4], 600, 0.04);
     let settings = ValidationSettings::unfiltered();
-    let of = |model: &StateSpaceMatrices| validate(model, std::slice::from_ref(&piece), &settings).map(|_| ());
-    assert_eq!(validate(&good, &[], &settings), Err(ValidationError::NoPieces));
+    let of =
+        |model: &StateSpaceMatrices| validate(model, std::slice::from_ref(&piece), &settings, &Sequential).map(|_| ());
+    assert_eq!(validate(&good, &[], &settings, &Sequential), Err(ValidationError::NoPieces));
     let no_window = ValidationSettings { longest_window_s: f64::NAN, low_pass: None };
-    assert_eq!(validate(&good, std::slice::from_ref(&piece), &no_window), Err(ValidationError::NoWindow));
+    assert_eq!(validate(&good, std::slice::from_ref(&piece), &no_window, &Sequential), Err(ValidationError::NoWindow));
 
     for value in [f64::NAN, f64::INFINITY, 1e300, -1e300] {
         let mut model = good.clone();
@@ -190,12 +193,12 @@ fn hostile_models_and_records_are_refused() {
 
     let mut broken = piece.clone();
     broken.outputs[(30, 0)] = f64::NAN;
-    assert_eq!(validate(&good, &[broken], &settings), Err(ValidationError::NotFinite));
+    assert_eq!(validate(&good, &[broken], &settings, &Sequential), Err(ValidationError::NotFinite));
     let short =
         Piece { inputs: piece.inputs.rows(0, 3).into(), outputs: piece.outputs.rows(0, 3).into(), ..piece.clone() };
-    assert!(matches!(validate(&good, &[short], &settings), Err(ValidationError::TooShort { .. })));
+    assert!(matches!(validate(&good, &[short], &settings, &Sequential), Err(ValidationError::TooShort { .. })));
     let empty = Piece { inputs: DMatrix::zeros(0, 2), outputs: DMatrix::zeros(0, 2), ..piece };
-    assert!(matches!(validate(&good, &[empty], &settings), Err(ValidationError::TooShort { .. })));
+    assert!(matches!(validate(&good, &[empty], &settings, &Sequential), Err(ValidationError::TooShort { .. })));
 }
 
 proptest! {
@@ -207,14 +210,14 @@ proptest! {
         let mut piece = record(&model, &[0.3, 0.0, -1.0, 0.0], 700, 0.04);
         piece.outputs.column_mut(0).iter_mut().zip(noise(seed, 700)).for_each(|(y, v)| *y += 0.2 * v);
         let settings = ValidationSettings::unfiltered();
-        let before = validate(&model, std::slice::from_ref(&piece), &settings).unwrap();
+        let before = validate(&model, std::slice::from_ref(&piece), &settings, &Sequential).unwrap();
         let mut other = model.clone();
         other.c.row_mut(0).scale_mut(gain);
         other.d.row_mut(0).scale_mut(gain);
         piece.outputs.column_mut(0).scale_mut(gain);
         piece.outputs.add_scalar_mut(trim);
         piece.inputs.add_scalar_mut(trim);
-        let after = validate(&other, &[piece], &settings).unwrap();
+        let after = validate(&other, &[piece], &settings, &Sequential).unwrap();
         for (before, after) in before.fit_percent.iter().zip(&after.fit_percent) {
             // Trims of 1e3 beside outputs of 1 cost three digits of the sixteen, the least squares as many.
             prop_assert!((before.unwrap() - after.unwrap()).abs() < 1e-5, "{:?} {:?}", before, after);

@@ -1,7 +1,8 @@
 //! Identification from flight records, from outside.
 
-use super::common::{known, list, matrix};
+use super::common::{Threads, known, list, matrix};
 use super::flight::{Flight, Gusts};
+use gdcm::executor::Sequential;
 use gdcm::identification::{
     FlightRecord, Identification, IdentificationCaution, IdentificationError, Options, Preparation, Role,
     StateSpaceMatrices, Unwatched, Watch, identify,
@@ -37,7 +38,7 @@ fn known_options(known: &Value) -> Options {
 #[test]
 fn a_noisy_closed_loop_gives_what_independent_code_gives() {
     let known = &known()["noisy"];
-    let found = identify(&known_records(known), &known_options(known), &Unwatched).unwrap();
+    let found = identify(&known_records(known), &known_options(known), &Sequential, &Unwatched).unwrap();
     let expected = &known["expected"];
     // Independent numpy code; the tolerances stand in its file.
     assert_eq!(found.refined.matrices.order() as f64, expected["order"].as_f64().unwrap());
@@ -70,7 +71,7 @@ fn a_noisy_closed_loop_gives_what_independent_code_gives() {
 }
 
 /// Options for the made-up flights: one Laguerre pole and past window, so that many fit into a test.
-fn quick(channels: (usize, usize)) -> Options {
+pub fn quick(channels: (usize, usize)) -> Options {
     const INPUTS: [&str; 3] = ["LON", "LAT", "PED"];
     const OUTPUTS: [&str; 3] = ["P", "Q", "R"];
     Options {
@@ -81,7 +82,7 @@ fn quick(channels: (usize, usize)) -> Options {
     }
 }
 
-fn stable_aircraft() -> StateSpaceMatrices {
+pub fn stable_aircraft() -> StateSpaceMatrices {
     StateSpaceMatrices {
         a: dmatrix![-0.4, 2.1, 0.0, 0.0; -2.1, -0.4, 0.0, 0.3; 0.0, 0.0, -1.5, 0.8; 0.2, 0.0, -1.1, -0.6],
         b: dmatrix![1.0, 0.2; 0.0, 0.6; 0.5, -1.0; -0.3, 0.8],
@@ -112,7 +113,7 @@ fn difference(one: &Identification, other: impl Fn(usize, usize, usize) -> Compl
 fn exact_records_give_the_exact_model() {
     let aircraft = stable_aircraft();
     let flight = Flight { sample_time_s: 0.02, ..Flight::of(aircraft.clone(), Gusts::none()) };
-    let found = identify(&flight.records(1, 3), &quick((2, 2)), &Unwatched).unwrap();
+    let found = identify(&flight.records(1, 3), &quick((2, 2)), &Sequential, &Unwatched).unwrap();
     let mut worst = 0.0_f64;
     for (omega, response) in found.bands.omega.iter().zip(responses(&found)) {
         let truth = aircraft.response(*omega).unwrap();
@@ -125,13 +126,13 @@ fn exact_records_give_the_exact_model() {
 #[test]
 fn units_of_a_channel_only_scale_its_row_or_column() {
     let records = Flight::of(stable_aircraft(), Gusts::light()).records(2, 3);
-    let found = identify(&records, &quick((2, 2)), &Unwatched).unwrap();
+    let found = identify(&records, &quick((2, 2)), &Sequential, &Unwatched).unwrap();
     let mut other = records;
     for record in &mut other {
         record.inputs.column_mut(0).scale_mut(1024.0);
         record.outputs.column_mut(1).scale_mut(0.125);
     }
-    let scaled = identify(&other, &quick((2, 2)), &Unwatched).unwrap();
+    let scaled = identify(&other, &quick((2, 2)), &Sequential, &Unwatched).unwrap();
     let all = responses(&scaled);
     // Powers of two change no digit of the scaled channels.
     let factor = |o: usize, i: usize| [1.0, 0.125][o] / [1024.0, 1.0][i];
@@ -142,13 +143,13 @@ fn units_of_a_channel_only_scale_its_row_or_column() {
 #[test]
 fn the_order_of_records_and_channels_does_not_matter() {
     let records = Flight::of(stable_aircraft(), Gusts::light()).records(3, 3);
-    let found = identify(&records, &quick((2, 2)), &Unwatched).unwrap();
+    let found = identify(&records, &quick((2, 2)), &Sequential, &Unwatched).unwrap();
     let mut other: Vec<FlightRecord> = records.into_iter().rev().collect();
     for record in &mut other {
         record.inputs.swap_columns(0, 1);
         record.outputs.swap_columns(0, 1);
     }
-    let turned = identify(&other, &quick((2, 2)), &Unwatched).unwrap();
+    let turned = identify(&other, &quick((2, 2)), &Sequential, &Unwatched).unwrap();
     let all = responses(&turned);
     // The same minimum from another side: the polish stops at a gain of 1e-3 of the cost, so a small part of a standard
     // deviation is left.
@@ -164,13 +165,13 @@ fn the_order_of_records_and_channels_does_not_matter() {
 #[test]
 fn trims_change_nothing_and_drifts_next_to_nothing() {
     let records = Flight::of(stable_aircraft(), Gusts::light()).records(4, 3);
-    let found = identify(&records, &quick((2, 2)), &Unwatched).unwrap();
+    let found = identify(&records, &quick((2, 2)), &Sequential, &Unwatched).unwrap();
     let mut other = records.clone();
     for record in &mut other {
         record.inputs.column_mut(0).add_scalar_mut(64.0);
         record.outputs.column_mut(0).add_scalar_mut(-16.0);
     }
-    let trimmed = identify(&other, &quick((2, 2)), &Unwatched).unwrap();
+    let trimmed = identify(&other, &quick((2, 2)), &Sequential, &Unwatched).unwrap();
     let all = responses(&trimmed);
     // Rounding of samples of 64 to 1e-14, against noise of 1e-2.
     assert!(difference(&found, |k, o, i| all[k][(o, i)]) < 1e-6);
@@ -180,7 +181,7 @@ fn trims_change_nothing_and_drifts_next_to_nothing() {
         let drift: Vec<f64> = record.time_s.iter().map(|time| 0.01 * time).collect();
         record.outputs.column_mut(1).iter_mut().zip(drift).for_each(|(sample, drift)| *sample += drift);
     }
-    let drifting = identify(&other, &quick((2, 2)), &Unwatched).unwrap();
+    let drifting = identify(&other, &quick((2, 2)), &Sequential, &Unwatched).unwrap();
     let all = responses(&drifting);
     for (k, (drifting, straight)) in all.iter().zip(responses(&found)).enumerate() {
         for (at, (drifting, straight)) in drifting.iter().zip(straight.iter()).enumerate() {
@@ -201,7 +202,7 @@ fn an_unstable_aircraft_flown_in_closed_loop_comes_back_unstable() {
     };
     let flight = Flight { feedback: dmatrix![0.0, 2.0; 0.0, -3.0], ..Flight::of(aircraft, Gusts::light()) };
     let options = Options { orders: vec![2, 3, 4, 5], ..quick((2, 2)) };
-    let found = identify(&flight.records(5, 4), &options, &Unwatched).unwrap();
+    let found = identify(&flight.records(5, 4), &options, &Sequential, &Unwatched).unwrap();
     let unstable: Vec<_> = found.poles.iter().filter(|pole| pole.pole.re > 0.0 && pole.determined).collect();
     assert_eq!(unstable.len(), 1, "{:?}", found.poles);
     assert!((unstable[0].pole.re - 0.9).abs() < 3.0 * unstable[0].sd_re.max(0.02), "{:?}", unstable[0]);
@@ -209,13 +210,13 @@ fn an_unstable_aircraft_flown_in_closed_loop_comes_back_unstable() {
 
 #[test]
 fn bands_hold_what_they_say() {
-    // The factor of M14, section 5, was measured on an aircraft of 39 states. Here four states are the whole truth: without it
-    // the bands hold what they say, and with it more.
+    // The factor of M14, section 5, was measured on an aircraft of 39 states, where bands without it hold too little. Here four states
+    // are the whole truth: bands of nominally 95 % hold that without it, and more, nearly all, with it.
     let factor = std::f64::consts::SQRT_2;
     let aircraft = stable_aircraft();
     let flight = Flight::of(aircraft.clone(), Gusts { states: 0.03, sensors: 0.05 });
     let run = |seed: u64| {
-        let found = identify(&flight.records(100 + seed, 3), &quick((2, 2)), &Unwatched).unwrap();
+        let found = identify(&flight.records(100 + seed, 3), &quick((2, 2)), &Sequential, &Unwatched).unwrap();
         let mut ratios = Vec::new();
         for (k, response) in responses(&found).iter().enumerate() {
             let truth = aircraft.response(found.bands.omega[k]).unwrap();
@@ -231,17 +232,15 @@ fn bands_hold_what_they_say() {
     let share = |width: f64| ratios.iter().filter(|ratio| **ratio < width).count() as f64 / ratios.len() as f64;
     // 40 flights of a few independent errors each leave the share uncertain by about 1 %.
     assert!((0.90..=0.99).contains(&share(1.96 / factor)), "{}", share(1.96 / factor));
-    assert!(share(1.96) > 0.95, "{}", share(1.96));
+    // What is offered has the factor, and errs on the safe side (docs/identification.md says so).
+    assert!((0.98..1.0).contains(&share(1.96)), "{}", share(1.96));
 }
 
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     let known = &known()["noisy"];
     let (records, options) = (known_records(known), known_options(known));
-    let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| identify(&records, &options, &Unwatched).unwrap())
-    };
+    let on = |threads: usize| identify(&records, &options, &Threads(threads), &Unwatched).unwrap();
     let one = on(1);
     assert!(one == on(4));
     assert!(one == on(3));
@@ -255,7 +254,7 @@ fn a_late_channel_of_one_record_is_named_with_its_delay() {
     for sample in 3..late.len() {
         records[2].outputs[(sample, 1)] = late[sample - 3];
     }
-    let found = identify(&records, &quick((2, 2)), &Unwatched).unwrap();
+    let found = identify(&records, &quick((2, 2)), &Sequential, &Unwatched).unwrap();
     let late: Vec<_> = found
         .cautions
         .iter()
@@ -279,7 +278,8 @@ fn a_late_channel_of_one_record_is_named_with_its_delay() {
 #[test]
 fn clean_records_raise_no_caution() {
     let found =
-        identify(&Flight::of(stable_aircraft(), Gusts::light()).records(7, 5), &quick((2, 2)), &Unwatched).unwrap();
+        identify(&Flight::of(stable_aircraft(), Gusts::light()).records(7, 5), &quick((2, 2)), &Sequential, &Unwatched)
+            .unwrap();
     assert_eq!(found.cautions, []);
     assert_eq!(found.validation, None);
 }
@@ -287,7 +287,7 @@ fn clean_records_raise_no_caution() {
 #[test]
 fn the_bundle_has_its_neighbours_and_a_model_without_each_record() {
     let records = Flight::of(stable_aircraft(), Gusts::light()).records(8, 3);
-    let found = identify(&records, &quick((2, 2)), &Unwatched).unwrap();
+    let found = identify(&records, &quick((2, 2)), &Sequential, &Unwatched).unwrap();
     let names: Vec<_> = found.bundle.iter().map(|model| model.name.as_str()).collect();
     for record in &records {
         assert!(names.iter().any(|name| name.ends_with(&record.name)), "{names:?}");
@@ -326,7 +326,8 @@ impl Watch for Listener {
 #[test]
 fn progress_goes_forward_to_its_end_and_shows_a_first_model() {
     let listener = Listener::new(usize::MAX);
-    identify(&Flight::of(stable_aircraft(), Gusts::light()).records(9, 3), &quick((2, 2)), &listener).unwrap();
+    identify(&Flight::of(stable_aircraft(), Gusts::light()).records(9, 3), &quick((2, 2)), &Sequential, &listener)
+        .unwrap();
     let heard = listener.heard.into_inner().unwrap();
     assert!(heard.windows(2).all(|pair| pair[0].0 <= pair[1].0), "{heard:?}");
     assert!(heard.iter().any(|(_, what)| what == "pole 1 of 1, past 6"), "{heard:?}");
@@ -338,17 +339,21 @@ fn progress_goes_forward_to_its_end_and_shows_a_first_model() {
 fn an_identification_stops_between_any_two_steps() {
     let records = Flight::of(stable_aircraft(), Gusts::light()).records(9, 3);
     let all = Listener::new(usize::MAX);
-    identify(&records, &quick((2, 2)), &all).unwrap();
+    identify(&records, &quick((2, 2)), &Sequential, &all).unwrap();
     let steps = all.heard.into_inner().unwrap().len();
     for stop_after in 0..steps {
         let listener = Listener::new(stop_after);
-        assert_eq!(identify(&records, &quick((2, 2)), &listener), Err(IdentificationError::Stopped), "{stop_after}");
+        assert_eq!(
+            identify(&records, &quick((2, 2)), &Sequential, &listener),
+            Err(IdentificationError::Stopped),
+            "{stop_after}"
+        );
     }
 }
 
 /// An identification that ends well has finite models, one that does not has words.
 fn ends_in_words(records: &[FlightRecord], options: &Options) -> String {
-    match identify(records, options, &Unwatched) {
+    match identify(records, options, &Sequential, &Unwatched) {
         Ok(found) => {
             let models = found.bundle.iter().chain([&found.refined, &found.plain]);
             assert!(models.into_iter().all(|model| model.matrices.is_finite()));
@@ -412,7 +417,7 @@ fn records_that_are_too_short_or_too_slow_are_refused_in_words() {
 #[test]
 fn impossible_settings_are_refused_in_words() {
     let records = Flight::of(stable_aircraft(), Gusts::light()).records(13, 2);
-    let refused = |options: Options| identify(&records, &options, &Unwatched).unwrap_err();
+    let refused = |options: Options| identify(&records, &options, &Sequential, &Unwatched).unwrap_err();
     for band in [[0.0, 6.0], [6.0, 0.6], [f64::NAN, 6.0], [0.6, f64::INFINITY]] {
         assert!(matches!(refused(Options { band, ..quick((2, 2)) }), IdentificationError::Band { .. }));
     }

@@ -5,7 +5,8 @@ use std::sync::{Arc, Condvar, Mutex, Once};
 
 use gdcm::app::{Pool, fault};
 use gdcm::correction::{Outcome, ProofBudget};
-use gdcm::study::{Engine, Executor, LIVE_PROOF, Study, Task, Unobserved};
+use gdcm::executor::{Executor, Task};
+use gdcm::study::{Engine, LIVE_PROOF, Study, Unobserved};
 
 use super::views::show;
 use super::*;

@@ -1,11 +1,18 @@
 //! Flight records in the window: from the example's records to corrected models, by the controls.
 
+use std::path::PathBuf;
+
 use gdcm::dataset::RecordKind;
 use gdcm::view::arrangement::View;
 use gdcm::view::records::{RecordsCommand, RecordsPage};
 
+use nalgebra::DMatrix;
+use serde_json::{Value, json};
+
 use super::views::{give, show};
 use super::*;
+use crate::identification::flight::{Flight, Gusts};
+use crate::identification::whole::stable_aircraft;
 
 const CONDITION_10_ID: ConditionId = ConditionId(10);
 
@@ -115,4 +122,69 @@ fn files_of_records_go_to_the_condition_that_their_names_say_and_what_is_wrong_i
     assert_eq!(records.conditions[&ConditionId(3)].rows[0].table.name, "cond03_sweep_LON_9");
     let wrong = records.conditions[&CONDITION_10_ID].rows.iter().find(|row| row.table.name == "flight").unwrap();
     assert!(wrong.flight.is_none() && wrong.problems.iter().any(|words| words.contains("NZ")), "{:?}", wrong.problems);
+}
+
+/// A dataset of which condition 7 has a known aircraft for its physics model and four flights of it for records, in all of which Q is
+/// logged three samples of 40 ms late; the band reaches far beyond the sweeps, which end at 8 rad/s.
+fn late_dataset(folder: &Path) -> PathBuf {
+    let aircraft = stable_aircraft();
+    let mut entries = Vec::new();
+    for (number, record) in Flight::of(aircraft.clone(), Gusts::light()).records(31, 4).iter().enumerate() {
+        let rows: String = (0..record.time_s.len())
+            .map(|at| {
+                let (u, y) = (&record.inputs, &record.outputs);
+                let late = y[(at.saturating_sub(3), 1)];
+                format!("{},{},{},{},{late}\n", record.time_s[at], u[(at, 0)], u[(at, 1)], y[(at, 0)])
+            })
+            .collect();
+        let file = format!("flight_{number}.csv");
+        std::fs::write(folder.join(&file), format!("time_s,LON,LAT,P,Q\n{rows}")).unwrap();
+        entries.push(json!({"name": format!("flight {number}"), "file": file}));
+    }
+    let rows = |matrix: &DMatrix<f64>| -> Vec<Vec<f64>> {
+        matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
+    };
+    let mut dataset: Value = serde_json::from_str(include_str!("../../data/small-dataset.json")).unwrap();
+    dataset["frequency_band"]["max"] = json!(24.0);
+    let condition = &mut dataset["conditions"][0];
+    condition["records"] = json!(entries);
+    condition["physics_models"] = json!([{"name": "nominal", "role": "nominal", "A": rows(&aircraft.a), "B": rows(&aircraft.b),
+        "C": rows(&aircraft.c), "D": rows(&aircraft.d)}]);
+    let path = folder.join("late.json");
+    std::fs::write(&path, dataset.to_string()).unwrap();
+    path
+}
+
+#[test]
+fn what_is_late_in_all_records_and_a_band_that_they_do_not_show_are_mended_by_their_buttons() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = window();
+    open_by_path(&mut window, &late_dataset(folder.path()));
+    show(&mut window, View::Records);
+    let records = |window: &Window| state(window).records.conditions.get(&ConditionId(7)).cloned();
+    wait_until(&mut window, "the records", |window| records(window).is_some_and(|of| of.rows.len() == 4));
+    window.get_by_label("Identify").click();
+    wait_until(&mut window, "the models", |window| records(window).is_some_and(|of| of.found.is_some()));
+    settle(&mut window);
+    window.get_by_label_contains("ms out of Q").click();
+    window.run_steps(2);
+    let delay_s = records(&window).unwrap().outputs[1].delay_s;
+    assert!((delay_s - 0.12).abs() < 0.01, "{delay_s}");
+    window.get_by_label_contains("Identify from 0.50 to").click();
+    window.run_steps(2);
+    let [low, high] = records(&window).unwrap().band.expect("the band was taken");
+    assert!(low == 0.5 && (7.0..=11.0).contains(&high), "{high}");
+}
+
+#[test]
+fn a_simulation_is_computed_beside_the_window() {
+    let mut window = records_window();
+    click(&mut window, "physics model");
+    wait_until(&mut window, "the simulation", |window| state(window).results.simulations.len() == 1);
+    let (job, outcome) = &state(&window).results.simulations[0];
+    let validation = outcome.as_ref().unwrap();
+    let simulated: usize = validation.windows.iter().map(|window| window.simulated.nrows()).sum();
+    assert_eq!(simulated, job.record.time_s.len(), "all samples are in some window");
+    click(&mut window, "physics model");
+    assert!(state(&window).results.simulations.is_empty(), "what is not asked for is not kept");
 }

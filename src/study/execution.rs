@@ -2,26 +2,9 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use crate::executor::{Executor, Sequential, each};
+
 use super::progress::{Cancelled, Progress, Unobserved};
-
-/// One piece of work that depends on no other.
-pub type Task<'a> = Box<dyn FnOnce() + Send + 'a>;
-
-/// Carries out independent pieces of work, in any order and on as many threads as it has; returns when all are done.
-pub trait Executor: Send + Sync {
-    /// Carries out `tasks`.
-    fn carry_out(&self, tasks: Vec<Task<'_>>);
-}
-
-/// One thread: the caller's.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Sequential;
-
-impl Executor for Sequential {
-    fn carry_out(&self, tasks: Vec<Task<'_>>) {
-        tasks.into_iter().for_each(|task| task());
-    }
-}
 
 /// Carries out the pieces of one analysis, stops between two of them, and tells how far it is.
 pub struct Execution<'a> {
@@ -63,27 +46,20 @@ impl<'a> Execution<'a> {
         steps: usize,
         of: impl Fn(usize) -> T + Sync,
     ) -> Result<Vec<T>, Cancelled> {
-        let mut results: Vec<Option<T>> = Vec::new();
-        results.resize_with(count, || None);
-        let of = &of;
-        let task = |(index, result)| self.task(steps, move || of(index), result);
-        self.executor.carry_out(results.iter_mut().enumerate().map(task).collect());
-        results.into_iter().collect::<Option<Vec<_>>>().ok_or(Cancelled)
+        each(self.executor, 0..count, |index| self.piece(steps, || of(index)))
+            .into_iter()
+            .collect::<Option<_>>()
+            .ok_or(Cancelled)
     }
 
-    /// One piece of work, given up if it is not wanted any more.
-    fn task<'b, T: Send>(
-        &'b self,
-        steps: usize,
-        work: impl FnOnce() -> T + Send + 'b,
-        result: &'b mut Option<T>,
-    ) -> Task<'b> {
-        Box::new(move || {
-            if !self.progress.cancelled() {
-                *result = Some(work());
-                self.step(steps);
-            }
-        })
+    /// One piece of work; none if it is not wanted any more.
+    fn piece<T>(&self, steps: usize, work: impl FnOnce() -> T) -> Option<T> {
+        if self.progress.cancelled() {
+            return None;
+        }
+        let result = work();
+        self.step(steps);
+        Some(result)
     }
 
     /// As [`Execution::each`] for work on things that change, which may itself be stopped.
@@ -92,12 +68,8 @@ impl<'a> Execution<'a> {
         things: Vec<S>,
         of: impl Fn(S) -> Result<T, Cancelled> + Sync,
     ) -> Result<Vec<T>, Cancelled> {
-        let mut results: Vec<Option<Result<T, Cancelled>>> = Vec::new();
-        results.resize_with(things.len(), || None);
-        let of = &of;
-        let tasks = things.into_iter().zip(&mut results).map(|(thing, result)| self.task(0, move || of(thing), result));
-        self.executor.carry_out(tasks.collect());
-        results.into_iter().map(|result| result.unwrap_or(Err(Cancelled))).collect()
+        let pieces = each(self.executor, things, |thing| self.piece(0, || of(thing)).unwrap_or(Err(Cancelled)));
+        pieces.into_iter().collect()
     }
 }
 

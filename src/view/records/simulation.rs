@@ -1,0 +1,145 @@
+//! Models beside a record in time: which are asked for, and what they give.
+
+use std::sync::Arc;
+
+use egui::{Color32, RichText, Ui};
+
+use crate::correction::{CorrectedModel, Pade};
+use crate::dataset::{BundleKind, Dynamics, StateSpace};
+use crate::identification::{Preparation, StateSpaceMatrices, Validation};
+use crate::study::SimulationJob;
+use crate::view::command::Command;
+use crate::view::palette::{Palette, SMALL_SIZE};
+use crate::view::plot::{ChartLine, thinned};
+use crate::view::state::State;
+
+use super::bench::{ConditionRecords, RecordsCommand};
+
+/// A model that can be compared with a record in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum TimeModel {
+    /// The recommended identified model.
+    Identified,
+    /// The physics representative.
+    Physics,
+    /// The same, corrected.
+    Corrected,
+}
+
+impl TimeModel {
+    /// Every one.
+    pub const ALL: [Self; 3] = [Self::Identified, Self::Physics, Self::Corrected];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Identified => "identified",
+            Self::Physics => "physics",
+            Self::Corrected => "corrected",
+        }
+    }
+
+    fn color(self, palette: &Palette) -> Color32 {
+        match self {
+            Self::Identified => palette.accent,
+            Self::Physics => palette.nominal,
+            Self::Corrected => palette.corrected,
+        }
+    }
+}
+
+/// A model beside the record shown.
+pub(super) struct Simulated<'a> {
+    /// Which.
+    pub(super) model: TimeModel,
+    /// The colour of its lines.
+    pub(super) color: Color32,
+    /// What it gives, or in words why it gives nothing; none while that is computed.
+    pub(super) result: Option<&'a Result<Arc<Validation>, String>>,
+}
+
+impl Simulated<'_> {
+    /// What it gives, once that is computed.
+    pub(super) fn validation(&self) -> Option<&Validation> {
+        Some(self.result?.as_ref().ok()?.as_ref())
+    }
+
+    /// The lines of an output, one a window, each from an initial state of its own.
+    pub(super) fn lines(&self, output: usize) -> Vec<ChartLine> {
+        let Some(validation) = self.validation() else { return Vec::new() };
+        let windows = validation.windows.iter().map(|window| {
+            let at = |sample: usize| window.start_s + sample as f64 * window.sample_time_s;
+            let values = window.simulated.column(output);
+            let points = values.iter().enumerate().map(|(sample, value)| [at(sample), *value]).collect();
+            let dashed = self.model == TimeModel::Physics;
+            ChartLine { points: thinned(points, 1000), color: self.color, width: 1.3, dashed }
+        });
+        windows.collect()
+    }
+}
+
+/// The models asked for beside the record shown, with the job that computes what each gives.
+fn jobs(state: &State) -> Vec<(TimeModel, SimulationJob)> {
+    let Some(records) = state.records.conditions.get(&state.condition().id()) else { return Vec::new() };
+    let Some(record) = records.rows.get(records.chosen).and_then(|row| row.flight.as_ref()) else { return Vec::new() };
+    let preparation =
+        Preparation { inputs: records.inputs.clone(), outputs: records.outputs.clone(), ..Preparation::of(&[], &[]) };
+    let of = |model: &TimeModel| {
+        let (record, preparation) = (Arc::clone(record), preparation.clone());
+        Some((*model, SimulationJob { record, preparation, model: matrices(state, records, *model)? }))
+    };
+    state.records.time_models.iter().filter_map(of).collect()
+}
+
+/// What the models asked for beside the record shown wait for.
+pub fn simulation_jobs(state: &State) -> Vec<SimulationJob> {
+    jobs(state).into_iter().map(|(_, job)| job).collect()
+}
+
+/// The models asked for beside the record shown.
+pub(super) fn simulated<'a>(state: &'a State, palette: &Palette) -> Vec<Simulated<'a>> {
+    let of = |(model, job): (TimeModel, SimulationJob)| {
+        let known = state.results.simulations.iter().find(|(known, _)| *known == job);
+        Simulated { model, color: model.color(palette), result: known.map(|(_, result)| result) }
+    };
+    jobs(state).into_iter().map(of).collect()
+}
+
+/// The matrices of a model; none where it is not there, or is not one of continuous time.
+fn matrices(state: &State, records: &ConditionRecords, model: TimeModel) -> Option<StateSpaceMatrices> {
+    let plain = |of: &StateSpace| {
+        let is_plain = of.timing().is_plain();
+        is_plain.then(|| StateSpaceMatrices {
+            a: of.a().clone(),
+            b: of.b().clone(),
+            c: of.c().clone(),
+            d: of.d().clone(),
+        })
+    };
+    if model == TimeModel::Identified {
+        return Some(records.identification()?.refined.matrices.clone());
+    }
+    let shown = state.shown()?;
+    let name = shown.representative_name(BundleKind::Physics);
+    let physics = state.condition().model(BundleKind::Physics, name)?;
+    let Dynamics::StateSpace(physics) = &physics.dynamics else { return None };
+    match model {
+        TimeModel::Corrected => plain(&CorrectedModel::of(physics, &shown.correction, Pade::default()).ok()?.model),
+        TimeModel::Identified | TimeModel::Physics => plain(physics),
+    }
+}
+
+/// Which models are drawn beside the record.
+pub(super) fn time_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| {
+        ui.label(RichText::new("response to the same inputs of:").size(SMALL_SIZE).color(palette.dim_text));
+        for model in TimeModel::ALL {
+            let mut shown = state.records.time_models.contains(&model);
+            let text = RichText::new(format!("{} model", model.name())).size(SMALL_SIZE).color(model.color(palette));
+            let hint = "In windows of 10 s, or shorter where the model is unstable, each from an initial state and offsets of its own";
+            if ui.checkbox(&mut shown, text).on_hover_text(hint).changed() {
+                commands.push(RecordsCommand::ShowTimeModel(model, shown).into());
+            }
+        }
+    });
+}

@@ -39,6 +39,10 @@ pub(super) fn outcome_ui(
             commands.push(RecordsCommand::TakeAll.into());
         }
     }
+    if let Some([low, high]) = records.band {
+        ui.label(small(format!("Band from {low:.2} to {high:.1} rad/s, not the study's"), palette.dim_text));
+        actions_ui(ui, vec![("Take the study's band".to_owned(), RecordsCommand::SetBand(None))], commands);
+    }
     if let Some(job) = state.records.running(state.condition().id()) {
         let told = job.told();
         let (done, total) = state.results.background.identification.unwrap_or((0, 0));

@@ -8,13 +8,13 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use egui::Context;
 
 use crate::assembly::standard_patterns;
-use crate::dataset::{Condition, ConditionId, ConditionRecord, Dataset};
+use crate::dataset::{ConditionId, ConditionRecord, Dataset};
 use crate::identification::{Identification, IdentificationError};
-use crate::io::{DatasetOrigin, FileError, FolderProgress, example_records, load_record, read_records};
+use crate::io::{DatasetOrigin, FileError, FolderProgress, example_records, load_records, read_records};
 use crate::records::{RecordChannels, RecordGuess, RecordLayout, RecordTable, TimeWish};
-use crate::study::{Edit, IdentifyJob, TakenModels};
+use crate::study::{Edit, IdentifyJob, OfferedModels, TakenModels};
 use crate::view::arrangement::View;
-use crate::view::records::{ConditionRecords, RecordRow, RecordsCommand, RecordsPage, RecordsReading, TakenWhat};
+use crate::view::records::{ConditionRecords, RecordRow, RecordsCommand, RecordsPage, RecordsReading};
 
 use super::dialogs::DialogPurpose;
 use super::fault::{Fault, caught};
@@ -71,10 +71,10 @@ impl GdcmApp {
                 self.identify_conditions(&all);
             }
             RecordsCommand::Stop => self.state.records.running.clear(),
-            RecordsCommand::Take(what) => self.take_identified(&[condition], what),
-            RecordsCommand::TakeAll => {
+            RecordsCommand::Take(offered) => self.take_identified(&[condition], offered),
+            RecordsCommand::TakeAll(offered) => {
                 let all: Vec<ConditionId> = self.state.records.conditions.keys().copied().collect();
-                self.take_identified(&all, TakenWhat::Refined);
+                self.take_identified(&all, offered);
             }
             RecordsCommand::Return => self.give(Edit::ReturnModels { condition }.into(), ctx),
             said => {
@@ -215,8 +215,8 @@ impl GdcmApp {
         }
     }
 
-    fn take_identified(&mut self, conditions: &[ConditionId], what: TakenWhat) {
-        let of = |id: &ConditionId| Some((*id, self.state.records.conditions.get(id)?.taken(what)?));
+    fn take_identified(&mut self, conditions: &[ConditionId], offered: OfferedModels) {
+        let of = |id: &ConditionId| Some((*id, self.state.records.conditions.get(id)?.taken(offered)?));
         let taken: Vec<(ConditionId, Arc<TakenModels>)> = conditions.iter().filter_map(of).collect();
         if taken.is_empty() {
             return self.trouble("nothing was identified yet".to_owned());
@@ -273,8 +273,7 @@ fn set_layout(records: &mut ConditionRecords, index: usize, layout: &RecordLayou
 }
 
 fn row_of(table: RecordTable, channels: &RecordChannels) -> RecordRow {
-    let name = format!("{}/{}", table.source.file, table.name);
-    let guess = RecordGuess::of(&name, &standard_patterns());
+    let guess = RecordGuess::of_table(&table, &standard_patterns());
     let layout = RecordLayout::proposed(&table, channels, &TimeWish::default()).layout;
     RecordRow::new(Arc::new(table), layout, guess, channels)
 }
@@ -290,14 +289,22 @@ fn of_example(dataset: &Dataset, id: ConditionId) -> Result<ReadRecords, FileErr
 fn of_entries(dataset: &Dataset, id: ConditionId, entries: &[ConditionRecord], folder: &Path) -> ReadRecords {
     let channels = RecordChannels::of_dataset(dataset);
     let mut found = ReadRecords::default();
-    for entry in entries {
-        match load_record(&folder.join(&entry.file), entry.variable.as_deref()) {
-            Ok(table) => {
-                let mut row = row_of(RecordTable { name: entry.name.clone(), ..table }, &channels);
-                (row.used, row.guess.kind, row.guess.held_out) = (entry.used, entry.kind, entry.held_out);
-                found.rows.entry(id).or_default().push(row);
+    let mut left: Vec<&ConditionRecord> = entries.iter().collect();
+    // A file that holds many of them is read once.
+    while let Some(file) = left.first().map(|entry| entry.file.as_str()) {
+        let of_file: Vec<&ConditionRecord> = left.extract_if(.., |entry| entry.file == file).collect();
+        let variables: Vec<Option<&str>> = of_file.iter().map(|entry| entry.variable.as_deref()).collect();
+        let tables = load_records(&folder.join(file), &variables);
+        found.faults.extend(tables.as_ref().err().map(ToString::to_string));
+        for (entry, table) in of_file.into_iter().zip(tables.into_iter().flatten()) {
+            match table {
+                Ok(table) => {
+                    let mut row = row_of(RecordTable { name: entry.name.clone(), ..table }, &channels);
+                    (row.used, row.guess.kind, row.guess.held_out) = (entry.used, entry.kind, entry.held_out);
+                    found.rows.entry(id).or_default().push(row);
+                }
+                Err(error) => found.faults.push(error.to_string()),
             }
-            Err(error) => found.faults.push(error.to_string()),
         }
     }
     found
@@ -309,10 +316,9 @@ fn of_files(dataset: &Dataset, shown: ConditionId, paths: &[PathBuf]) -> Result<
     let read = read_records(paths, &Untold)?;
     let mut found = ReadRecords { faults: read.faults, ..ReadRecords::default() };
     found.faults.extend(read.passed_over.into_iter().map(|words| format!("no record: {words}")));
-    let is_there = |id: &ConditionId| dataset.condition(*id).map(|of| of.as_ref()).map(Condition::id).is_some();
     for table in read.tables {
         let row = row_of(table, &channels);
-        let id = row.guess.condition.map(ConditionId).filter(is_there).unwrap_or(shown);
+        let id = row.guess.condition_of(dataset).unwrap_or(shown);
         found.rows.entry(id).or_default().push(row);
     }
     Ok(found)

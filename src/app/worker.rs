@@ -274,6 +274,7 @@ impl Worker {
             proofs: lanes.proofs.unfinished().into_iter().map(|job| job.problem).collect(),
             toggles: lanes.toggles.left() > 0,
             curves: told(&lanes.curves),
+            bars: told(&lanes.uncertainties),
             views: lanes.of_views().iter().map(|lane| lane.left()).sum(),
             report: told(&lanes.reports),
             identification: told(&lanes.identifications),
@@ -320,13 +321,13 @@ impl Lanes {
     }
 
     /// What only the views shown wait for.
-    fn of_views(&self) -> [&dyn AnyLane; 6] {
-        [&self.modes, &self.assessments, &self.across, &self.variants, &self.uncertainties, &self.simulations]
+    fn of_views(&self) -> [&dyn AnyLane; 5] {
+        [&self.modes, &self.assessments, &self.across, &self.variants, &self.simulations]
     }
 
     /// What computing anew begins again: all but what is asked for by a button of its own.
     fn computing(&self) -> Vec<&dyn AnyLane> {
-        let live: [&dyn AnyLane; 3] = [&self.curves, &self.toggles, &self.proofs];
+        let live: [&dyn AnyLane; 4] = [&self.curves, &self.toggles, &self.proofs, &self.uncertainties];
         live.into_iter().chain(self.of_views()).collect()
     }
 

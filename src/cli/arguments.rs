@@ -227,7 +227,7 @@ pub struct FigureArguments {
     /// Roles to leave out of bode, error and overview, separated by commas (perturbed,identified,rejected).
     #[arg(long, value_name = "ROLES", value_delimiter = ',', value_parser = roles())]
     pub hide: Vec<Role>,
-    /// Error bars and the bands of the schedule, in net-gain and channels.
+    /// Error bars and the bands of the schedule, in net-gain and channels; evidence is made of them anyway.
     #[arg(long)]
     pub bars: bool,
     /// Frequencies in Hz in place of rad/s.

@@ -27,7 +27,7 @@ pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     let mut engine = engine();
     let progress = TerminalProgress::new("analysing");
     let mut analysis = analysis_of(&mut study, &arguments.study, &mut engine, &progress)?;
-    if arguments.bars {
+    if arguments.bars || arguments.view.needs_bars() {
         analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &progress)?));
     }
     let figure = match condition {

@@ -5,7 +5,8 @@ use nalgebra::Complex;
 use crate::assembly::{ChannelLabel, ChannelRule, Facts, FoundModel};
 use crate::dataset::{BandsDraft, ModelDraft, Origin, Pair, PairTable, Provenance, ResponseArray, Timing};
 use crate::identification::{
-    Bands, FlightRecord, Identification, IdentifiedModel, MeasuredPoint, MeasuredResponse, Options, StateSpaceMatrices,
+    Bands, FlightRecord, Identification, IdentifiedModel, MeasuredPoint, MeasuredResponse, Options,
+    Origin as IdentifiedOrigin, StateSpaceMatrices,
 };
 use crate::io::{IdentifiedModels, IdentifiedValidation, MeasuredEstimate, PoleEstimate, RecordReport};
 use crate::records::{RecordChannels, RecordTable};
@@ -20,12 +21,18 @@ const PLAIN: &str = "CT-PBSID";
 pub(super) fn identified_models(
     found: &Identification,
     options: &Options,
-    records: &[(FlightRecord, &RecordTable)],
+    records: &[(&FlightRecord, &RecordTable)],
     channels: &RecordChannels,
 ) -> IdentifiedModels {
-    let fitted = |index: &usize| !options.held_out.contains(index);
-    let names: Vec<String> = (0..records.len()).filter(fitted).map(|index| records[index].0.name.clone()).collect();
-    let of = |model: &IdentifiedModel, method: &str| found_model(model, method, &names, channels);
+    let of = |model: &IdentifiedModel, method: &str| {
+        let without = match model.origin {
+            IdentifiedOrigin::WithoutRecord(record) => Some(record),
+            IdentifiedOrigin::Refined | IdentifiedOrigin::Plain | IdentifiedOrigin::Neighbour => None,
+        };
+        let fitted = |index: &usize| !options.held_out.contains(index) && Some(*index) != without;
+        let names = (0..records.len()).filter(fitted).map(|index| records[index].0.name.clone());
+        found_model(model, method, names.collect(), channels)
+    };
     let mut models = vec![of(&found.refined, REFINED), of(&found.plain, PLAIN)];
     models[0].draft.bands = bands(&found.bands);
     models.extend(found.bundle.iter().map(|model| of(model, REFINED)));
@@ -45,7 +52,7 @@ pub(super) fn identified_models(
     }
 }
 
-fn found_model(model: &IdentifiedModel, method: &str, names: &[String], channels: &RecordChannels) -> FoundModel {
+fn found_model(model: &IdentifiedModel, method: &str, records: Vec<String>, channels: &RecordChannels) -> FoundModel {
     let StateSpaceMatrices { a, b, c, d } = model.matrices.clone();
     let label = |rule: &ChannelRule| ChannelLabel {
         name: Some(rule.name.clone()),
@@ -59,7 +66,7 @@ fn found_model(model: &IdentifiedModel, method: &str, names: &[String], channels
             matrices: [Some(a), Some(b), Some(c), Some(d)],
             timing: Timing::default(),
             response: None,
-            source: Some(Provenance { records: names.to_vec(), ..Provenance::default() }),
+            source: Some(Provenance { records, ..Provenance::default() }),
             states: Vec::new(),
             bands: None,
         },
@@ -121,7 +128,7 @@ fn report(
     found: &Identification,
     options: &Options,
     index: usize,
-    (flight, table): &(FlightRecord, &RecordTable),
+    (flight, table): &(&FlightRecord, &RecordTable),
 ) -> RecordReport {
     let used = found.record_uses.get(index);
     let gaps: Vec<String> = used.iter().flat_map(|used| &used.gaps).map(ToString::to_string).collect();

@@ -3,14 +3,16 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
+
+use crate::study::OfferedModels;
 
 use super::arguments::real_number;
 
 /// Which flight records models are to be identified from, and how.
 #[derive(Debug, Args)]
 pub struct IdentifyArguments {
-    /// Flight records of one condition: files, or folders with all that is in them (text, MATLAB, NumPy, JSON, zip).
+    /// Flight records of one condition, or with --every-condition of many: files, or folders with all that is in them (text, MATLAB, NumPy, JSON, zip).
     #[arg(value_name = "RECORD", required = true)]
     pub records: Vec<PathBuf>,
     /// Inputs, separated by commas (LON,LAT), each as CHANNEL or CHANNEL=COLUMN; without it, those of the dataset.
@@ -42,17 +44,49 @@ pub struct IdentifyArguments {
     #[arg(long, value_name = "CHANNEL=SECONDS", allow_hyphen_values = true)]
     pub delay: Vec<ChannelDelay>,
     /// Dataset that the models are put into; it is written anew, beside identified.json.
-    #[arg(long, value_name = "DATASET", requires = "condition")]
+    #[arg(long, value_name = "DATASET", requires = "where")]
     pub into: Option<PathBuf>,
     /// The condition of the dataset, by its id.
-    #[arg(long, value_name = "ID", requires = "into", allow_negative_numbers = true)]
+    #[arg(long, value_name = "ID", requires = "into", allow_negative_numbers = true, group = "where")]
     pub condition: Option<i64>,
-    /// Directory for identified.json; made where there is none.
+    /// Every condition of the dataset: each record goes to the one that its name, or that of its folder, says.
+    #[arg(long, requires = "into", group = "where")]
+    pub every_condition: bool,
+    /// Which of the models are put into the dataset.
+    #[arg(long, value_enum, value_name = "WHICH", default_value_t, requires = "into")]
+    pub take: OfferedChoice,
+    /// Description of the dataset that is written; without it, as it was.
+    #[arg(long, value_name = "TEXT", requires = "into")]
+    pub description: Option<String>,
+    /// Directory for identified.json (identified-condition-ID.json with --every-condition); made where there is none.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
     /// Overwrite files that are there already.
     #[arg(long)]
     pub force: bool,
+}
+
+/// Which models of an identification are put into a dataset.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum OfferedChoice {
+    /// The refined model, its neighbours in order, and the models without each record.
+    #[default]
+    Refined,
+    /// The same, and CT-PBSID as it is.
+    WithPlain,
+    /// The measured response alone.
+    Measured,
+}
+
+impl OfferedChoice {
+    /// The models.
+    pub fn offered(self) -> OfferedModels {
+        match self {
+            Self::Refined => OfferedModels::REFINED,
+            Self::WithPlain => OfferedModels::WITH_PLAIN,
+            Self::Measured => OfferedModels::MEASURED,
+        }
+    }
 }
 
 /// Channels by name, and the columns that they are where the names do not say.

@@ -5,17 +5,20 @@
 mod analyze;
 mod arguments;
 mod check;
+mod destination;
 mod evidence_sections;
 mod export;
 mod export_arguments;
 mod failure;
 mod figure;
 mod identification_outcome;
+mod identification_task;
 mod identify;
 mod identify_arguments;
 mod models;
 mod opening;
 mod progress;
+mod read_record;
 mod report;
 mod sections;
 mod study_options;
@@ -42,7 +45,7 @@ pub use arguments::{
     PairList, Rejection, ReportArguments, StudyArguments,
 };
 pub use export_arguments::{Breakpoints, ExportArguments};
-pub use identify_arguments::{ChannelDelay, ChannelList, IdentifyArguments};
+pub use identify_arguments::{ChannelDelay, ChannelList, IdentifyArguments, OfferedChoice};
 
 /// What the command line asks for.
 #[derive(Debug)]

@@ -34,6 +34,8 @@ pub struct Condition {
     identified: Vec<Model>,
     nominal: usize,
     records: Vec<ConditionRecord>,
+    /// Indices of the physics and of the identified models in the order of their names: a list of a thousand models asks for each by name.
+    by_name: [Vec<usize>; 2],
 }
 
 /// Why two bundles are not a condition.
@@ -109,7 +111,10 @@ impl Condition {
         check_bundle(BundleKind::Identified, &identified)?;
         let nominal: Vec<usize> = (0..physics.len()).filter(|&index| physics[index].is_nominal()).collect();
         match nominal[..] {
-            [nominal] => Ok(Self { flight_state, physics, identified, nominal, records: Vec::new() }),
+            [nominal] => {
+                let by_name = [by_name(&physics), by_name(&identified)];
+                Ok(Self { flight_state, physics, identified, nominal, records: Vec::new(), by_name })
+            }
             _ => Err(ConditionError::Nominal { found: nominal.len(), names: names_of(&physics, &nominal) }),
         }
     }
@@ -165,7 +170,11 @@ impl Condition {
 
     /// Position of the model of this name in its bundle, in file order.
     pub fn position(&self, kind: BundleKind, name: &str) -> Option<usize> {
-        self.bundle(kind).iter().position(|model| model.name == name)
+        let models = self.bundle(kind);
+        let [physics, identified] = &self.by_name;
+        let order = if kind == BundleKind::Physics { physics } else { identified };
+        let place = order.binary_search_by(|index| models[*index].name.as_str().cmp(name)).ok()?;
+        Some(order[place])
     }
 
     /// The model of a bundle of this name.
@@ -177,6 +186,12 @@ impl Condition {
     pub fn nominal(&self) -> usize {
         self.nominal
     }
+}
+
+fn by_name(models: &[Model]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..models.len()).collect();
+    order.sort_by(|a, b| models[*a].name.cmp(&models[*b].name));
+    order
 }
 
 fn check_flight_state(state: &FlightState) -> Result<(), ConditionError> {

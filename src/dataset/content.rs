@@ -30,7 +30,8 @@ impl ContentHash {
     }
 }
 
-fn add_numbers(hash: &mut Sha256, numbers: &[f64]) {
+/// Adds numbers after how many there are.
+pub(super) fn add_numbers(hash: &mut Sha256, numbers: &[f64]) {
     hash.update((numbers.len() as u64).to_le_bytes());
     let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
     hash.update(&bytes);

@@ -125,7 +125,7 @@ impl Model {
         }
     }
 
-    /// What tells this model from another of its name: its numbers, its role and its trim, as 16 hexadecimal digits.
+    /// What tells this model from another of its name: its numbers, its bands, its role and its trim, as 16 hexadecimal digits.
     pub fn fingerprint(&self) -> String {
         let mut hash = Sha256::new();
         hash.update(ContentHash::of(&self.dynamics).bytes());
@@ -133,6 +133,10 @@ impl Model {
         for (coordinate, offset) in self.perturbation().into_iter().flatten() {
             hash.update(coordinate.as_bytes());
             hash.update(offset.to_le_bytes());
+        }
+        // Nothing is added where there are none: most models keep the fingerprint that they always had.
+        if let Some(bands) = &self.bands {
+            bands.add_to(&mut hash);
         }
         hash.finalize()[..8].iter().map(|byte| format!("{byte:02x}")).collect()
     }

@@ -1,5 +1,8 @@
 //! How uncertain the response of an identified model is.
 
+use sha2::{Digest, Sha256};
+
+use super::content::add_numbers;
 use super::measured_response::{MeasuredResponseError, check_frequencies, check_values};
 use super::pair::PairTable;
 
@@ -45,6 +48,15 @@ impl ModelBands {
     /// Standard deviation of the phase \[deg\], one for each frequency.
     pub fn sd_deg(&self) -> &PairTable<Vec<f64>> {
         &self.sd_deg
+    }
+
+    /// Adds every number to a hash.
+    pub(super) fn add_to(&self, hash: &mut Sha256) {
+        hash.update(b"bands");
+        add_numbers(hash, &self.omega);
+        for table in [&self.sd_db, &self.sd_deg] {
+            table.iter().for_each(|(_, deviations)| add_numbers(hash, deviations));
+        }
     }
 }
 

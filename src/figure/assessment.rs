@@ -61,7 +61,7 @@ fn panel(analysis: &Analysis, table: &AssessmentTable, pair: Pair) -> Panel {
     let bars = PARTS.into_iter().zip([-BAR, 0.0, BAR]).map(|(part, beside)| {
         let value = |(index, change): (usize, &Option<CostChange>)| Some([index as f64, (part.of)((*change)?)]);
         let bars = changes.iter().enumerate().filter_map(value).collect();
-        Bars { name: part.name.to_owned(), color: part.color, width: BAR, bars, beside }
+        Bars { name: part.name.to_owned(), color: part.color, width: BAR, bars, feet: Vec::new(), beside }
     });
     let left_out = changes.iter().enumerate().filter(|(_, change)| change.is_none()).map(|(index, _)| Note {
         at: Place::Value { x: index as f64, y: 0.0, upright: true },

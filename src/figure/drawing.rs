@@ -135,6 +135,22 @@ impl Area {
         (self.left..=self.right()).contains(&x) && (self.top..=self.bottom()).contains(&y)
     }
 
+    /// How large it is.
+    pub fn size(&self) -> f64 {
+        self.width * self.height
+    }
+
+    /// The rectangle that is larger by `by` on every side.
+    pub fn expanded(&self, by: f64) -> Self {
+        Self::new(self.left - by, self.top - by, self.width + 2.0 * by, self.height + 2.0 * by)
+    }
+
+    /// How far a point is from it; 0 within.
+    pub fn distance(&self, [x, y]: [f64; 2]) -> f64 {
+        let beyond = |value: f64, low: f64, high: f64| (low - value).max(value - high).max(0.0);
+        beyond(x, self.left, self.right()).hypot(beyond(y, self.top, self.bottom()))
+    }
+
     /// The area that both have in common, 0 where there is none.
     pub fn overlap(&self, other: &Self) -> f64 {
         let along = |a: f64, b: f64, c: f64, d: f64| (b.min(d) - a.max(c)).max(0.0);

@@ -5,21 +5,34 @@ use std::collections::BTreeSet;
 use crate::correction::{Channel, ChannelCorrection};
 use crate::dataset::{Dataset, FlightState, Pair};
 use crate::schedule::Schedule;
-use crate::study::{Analysis, ConditionAnalysis, ConditionChoice};
+use crate::study::{AirspeedDifference, Analysis, ConditionAnalysis, ConditionChoice};
 use crate::uncertainty::{BandWidths, Bar, Scalar};
 use crate::units::s_to_ms;
 
 use super::axis::Axis;
 use super::condition_source::{schedule_words, settings_words};
 use super::figure::Figure;
-use super::mark::{Curve, Dot, DotShape, Dots, Rule, Spans};
+use super::mark::{Bracket, Brackets, Curve, Dot, DotShape, Dots, Intervals, Rule, Spans};
 use super::panel::{Panel, Plot};
-use super::role::{BLUE, GREY, Role};
+use super::range::Range;
+use super::role::{BLUE, GREY, RED, Role};
 use super::stroke::{Color, Dash, Stroke};
 
 /// Samples of a schedule between its ends.
 const SAMPLES: usize = 120;
 const NULL: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
+/// A bar, and that of the identification in it.
+const BAR: Stroke = Stroke::solid(BLUE, 0.6);
+const INNER_BAR: Stroke = Stroke { color: Color::new(0x9b, 0xb3, 0xe4), width_pt: 2.4, dash: Dash::Solid };
+/// How far bars may widen the range of the dots, as a part of it.
+const OF_BARS: f64 = 0.5;
+/// Brackets of differences at one airspeed.
+const BRACKET_BEYOND: Stroke = Stroke::solid(RED, 0.7);
+const BRACKET_WITHIN: Stroke = Stroke::solid(GREY, 0.4);
+const BEYOND: &str = "times what the bundles explain";
+const WITHIN: &str = "within what they can make";
+/// Height of a plot as a part of its width, and where bars and brackets stand in it.
+const ASPECTS: [f64; 2] = [0.95, 1.3];
 /// The ground of the bounds.
 const BOUNDS: Color = Color::new(0xe2, 0xea, 0xf3);
 /// Width of that ground over airspeed \[kt\], and over conditions.
@@ -122,7 +135,7 @@ pub fn net_gain_figure(analysis: &Analysis, pairs: &[Pair]) -> Figure {
         Plot::new(analysis.study.dataset.pair_name(pair)).panel(panel)
     });
     let figure = Figure::new("Net gains against airspeed").caption(caption(analysis, Across::Airspeed, Measure::Gain));
-    figure.plots(plots).columns(5).shared_x().shared_y().aspect(0.95)
+    figure.plots(plots).columns(5).shared_x().shared_y().aspect(aspect(analysis))
 }
 
 /// Gain or delay of each of `channels` in each condition's optimum, and the schedule (Figures 3 and 4).
@@ -151,7 +164,7 @@ pub fn channels_figure(analysis: &Analysis, channels: &[Channel], measure: Measu
         Measure::Delay => "Channel delays",
     };
     let figure = Figure::new(title).caption(caption(analysis, across, measure)).plots(plots);
-    figure.columns(6).shared_x().shared_y().aspect(0.95)
+    figure.columns(6).shared_x().shared_y().aspect(aspect(analysis))
 }
 
 /// Every channel, inputs first.
@@ -170,6 +183,11 @@ pub fn scheduled_samples(schedule: &Schedule, figure: impl Fn(&ChannelCorrection
 /// Whether a schedule has values of this measure, over this axis.
 pub fn is_scheduled(schedule: &Schedule, measure: Measure, across: Across) -> bool {
     across == Across::Airspeed && (measure == Measure::Gain || schedule.has_delays())
+}
+
+/// Bars and brackets need room.
+fn aspect(analysis: &Analysis) -> f64 {
+    ASPECTS[usize::from(analysis.uncertainty.is_some())]
 }
 
 fn caption(analysis: &Analysis, across: Across, measure: Measure) -> String {
@@ -204,7 +222,7 @@ impl Quantity<'_> {
                 Axis::named("Condition", conditions.iter().map(|condition| condition.id().to_string()))
             }
         };
-        let y = Axis::linear(label).including(self.measure.null()).at_least(self.measure.least_height());
+        let y = self.value_axis(analysis, across, label);
         let schedule = analysis.schedule.as_ref().ok().filter(|schedule| is_scheduled(schedule, self.measure, across));
         let curve = schedule.map(|schedule| {
             let (x, y): (Vec<f64>, Vec<f64>) =
@@ -215,14 +233,15 @@ impl Quantity<'_> {
         let panel = Panel::new(x, y).with_all(self.spans(analysis, across));
         let bands = schedule.map(|schedule| self.bands(analysis, schedule)).unwrap_or_default();
         let panel = panel.with(Rule::horizontal(self.measure.null(), NULL)).with_all(bands).with_all(curve);
-        panel.with_all(self.bars(analysis, across)).with_all(self.dots(analysis, across))
+        let panel = panel.with_all(self.bars(analysis, across)).with_all(self.brackets(analysis, across));
+        panel.with_all(self.dots(analysis, across))
     }
 
     /// The bar of each condition, where that was computed: thin with not knowing the trim flown, thick for the model chosen (M13).
-    fn bars(&self, analysis: &Analysis, across: Across) -> Vec<Spans> {
+    fn bars(&self, analysis: &Analysis, across: Across) -> Vec<Intervals> {
         let Some(uncertainty) = &analysis.uncertainty else { return Vec::new() };
         let told = |end: f64| if self.scalar.is_delay() { s_to_ms(end) } else { end.exp() };
-        let spans = |of: &dyn Fn(&Bar) -> Option<[f64; 2]>| -> Vec<[f64; 3]> {
+        let ends = |of: &dyn Fn(&Bar) -> Option<[f64; 2]>| -> Vec<[f64; 3]> {
             let bar = |(x, state, _): (f64, &FlightState, &ConditionAnalysis)| {
                 let [low, high] = of(uncertainty.bar(state.id, self.scalar)?)?.map(told);
                 Some([x, low, high])
@@ -230,13 +249,44 @@ impl Quantity<'_> {
             places(analysis, across).filter_map(bar).collect()
         };
         let level = uncertainty.level;
-        let unit = if across == Across::Airspeed { 1.0 } else { BOUNDS_WIDTHS[1] / BOUNDS_WIDTHS[0] };
-        let names = [format!("bar of {:.0} %", 100.0 * level), "identification".to_owned()];
-        let [whole, inner] = names;
-        let outer = Spans { name: whole, color: BLUE, width: 0.5 * unit, spans: spans(&|bar| bar.interval(level)) };
-        let inner =
-            Spans { name: inner, color: BLUE, width: 1.6 * unit, spans: spans(&|bar| bar.inner_interval(level)) };
-        vec![outer, inner].into_iter().filter(|bars| !bars.spans.is_empty()).collect()
+        let whole = format!("bar of {:.0} %", 100.0 * level);
+        let inner = ends(&|bar| bar.inner_interval(level));
+        let inner = Intervals { name: "identification in it".to_owned(), stroke: INNER_BAR, ends: inner };
+        let outer = Intervals { name: whole, stroke: BAR, ends: ends(&|bar| bar.interval(level)) };
+        [inner, outer].into_iter().filter(|bars| !bars.ends.is_empty()).collect()
+    }
+
+    /// For each airspeed the difference that is the most times what the bundles explain (M13.4).
+    fn brackets(&self, analysis: &Analysis, across: Across) -> Vec<Brackets> {
+        let (Some(uncertainty), Scalar::NetGain(pair), Across::Airspeed) = (&analysis.uncertainty, self.scalar, across)
+        else {
+            return Vec::new();
+        };
+        let level = uncertainty.level;
+        let of = |beyond: bool| {
+            let found = uncertainty.greatest_differences(pair).into_iter();
+            let bracket = |difference: &AirspeedDifference| {
+                let value = |id| Some((self.of)(&analysis.condition(id)?.correction));
+                let [one, other] = difference.conditions.map(value);
+                let label = difference.difference.ratio().filter(|_| beyond).map(|ratio| format!("{ratio:.1}×"));
+                Some(Bracket { x: difference.airspeed_kt, ends: [one?, other?], label: label.unwrap_or_default() })
+            };
+            found.filter(|of| of.is_beyond(level) == beyond).filter_map(bracket).collect::<Vec<Bracket>>()
+        };
+        let within = Brackets { name: WITHIN.to_owned(), stroke: BRACKET_WITHIN, brackets: of(false) };
+        let beyond = Brackets { name: BEYOND.to_owned(), stroke: BRACKET_BEYOND, brackets: of(true) };
+        [within, beyond].into_iter().filter(|brackets| !brackets.brackets.is_empty()).collect()
+    }
+
+    /// The axis of values: bars are seen as far as they leave the dots their room.
+    fn value_axis(&self, analysis: &Analysis, across: Across, label: &str) -> Axis {
+        let axis = Axis::linear(label).including(self.measure.null()).at_least(self.measure.least_height());
+        let values = places(analysis, across).map(|(.., result)| (self.of)(&result.correction));
+        let Some(range) = Range::of(values.filter(|value| value.is_finite())) else { return axis };
+        let spare = OF_BARS * range.width();
+        let ends = self.bars(analysis, across).into_iter().flat_map(|bars| bars.ends);
+        ends.flat_map(|[_, low, high]| [low, high])
+            .fold(axis, |axis, end| axis.including(end.clamp(range.min - spare, range.max + spare)))
     }
 
     /// The ends of both bands of the schedule, where they were computed.

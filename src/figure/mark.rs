@@ -20,6 +20,10 @@ pub enum Mark {
     Rule(Rule),
     /// Parts of the vertical axis, one at each place.
     Spans(Spans),
+    /// How sure values are.
+    Intervals(Intervals),
+    /// Pairs of values that differ.
+    Brackets(Brackets),
     /// A line that helps to read values and is none itself.
     Guide(Guide),
     /// Words at a place.
@@ -98,6 +102,8 @@ pub struct Bars {
     pub width: f64,
     /// Where each stands along x, and its value.
     pub bars: Vec<[f64; 2]>,
+    /// What each stands on, so that bars are stacked; without it on 0.
+    pub feet: Vec<f64>,
     /// How far they stand beside that place, so that others find room, in units of x.
     pub beside: f64,
 }
@@ -126,6 +132,39 @@ pub struct Spans {
     pub width: f64,
     /// Where each stands along x, its lower end, its upper end.
     pub spans: Vec<[f64; 3]>,
+}
+
+/// How sure values are: an upright line at each. They widen no range.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Intervals {
+    /// What they are: heads their numbers and is their entry in the legend.
+    pub name: String,
+    /// How they are drawn.
+    pub stroke: Stroke,
+    /// Where each stands along x, its lower end, its upper end.
+    pub ends: Vec<[f64; 3]>,
+}
+
+/// Pairs of values at one place that differ: a bracket at each. They widen no range.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Brackets {
+    /// What they say: heads their numbers and is their entry in the legend.
+    pub name: String,
+    /// How they are drawn.
+    pub stroke: Stroke,
+    /// The brackets.
+    pub brackets: Vec<Bracket>,
+}
+
+/// A bracket between two values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bracket {
+    /// Where both stand along x.
+    pub x: f64,
+    /// The values.
+    pub ends: [f64; 2],
+    /// The text beside it. May be empty.
+    pub label: String,
 }
 
 /// A line across the panel at one value.
@@ -196,7 +235,7 @@ macro_rules! into_mark {
     };
 }
 
-into_mark!(Curve, Dots, Bars, Band, Rule, Spans, Guide, Note);
+into_mark!(Curve, Dots, Bars, Band, Rule, Spans, Intervals, Brackets, Guide, Note);
 
 impl Curve {
     /// A line through the points `x[k]`, `y[k]`.
@@ -238,6 +277,14 @@ impl Dots {
     }
 }
 
+impl Bars {
+    /// Foot and top of each.
+    pub(super) fn ends(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+        let feet = self.feet.iter().copied().chain(std::iter::repeat(0.0));
+        self.bars.iter().zip(feet).map(|([_, value], foot)| [foot, foot + value])
+    }
+}
+
 impl Rule {
     /// A horizontal line at the value `y`.
     pub fn horizontal(y: f64, stroke: Stroke) -> Self {
@@ -264,9 +311,15 @@ impl Mark {
                 curve.points().filter(|point| point.iter().all(|c| c.is_finite())).map(pick).collect()
             }
             Mark::Dots(dots) => dots.dots.iter().map(|dot| pick([dot.x, dot.y])).collect(),
-            Mark::Bars(bars) if along == Along::Y => bars.bars.iter().map(|bar| bar[1]).chain([0.0]).collect(),
+            Mark::Bars(bars) if along == Along::Y => bars.ends().flatten().chain([0.0]).collect(),
             Mark::Bars(bars) => bars.bars.iter().map(|bar| bar[0]).collect(),
-            Mark::Band(_) | Mark::Rule(_) | Mark::Spans(_) | Mark::Guide(_) | Mark::Note(_) => Vec::new(),
+            Mark::Band(_)
+            | Mark::Rule(_)
+            | Mark::Spans(_)
+            | Mark::Intervals(_)
+            | Mark::Brackets(_)
+            | Mark::Guide(_)
+            | Mark::Note(_) => Vec::new(),
         }
     }
 }

@@ -23,13 +23,14 @@ mod assessment;
 mod axis;
 mod bode;
 mod condition_source;
-mod dot_labels;
 mod drawing;
 mod error;
+mod evidence;
 #[expect(clippy::module_inception, reason = "the room is named by what it makes")]
 mod figure;
 mod format;
 mod gains;
+mod label_places;
 mod layout;
 mod legend;
 mod letters;
@@ -55,14 +56,18 @@ pub use bode::{BodeOptions, bode_figure};
 pub use condition_source::{ConditionSource, CurveId};
 pub use drawing::{Anchor, Area, Drawing, PT_PER_MM, Shape, Text};
 pub use error::error_figure;
+pub use evidence::evidence_figure;
 pub use figure::{ColumnWidth, Figure, Shared};
 pub use format::FigureFormat;
 pub use gains::{
     Across, Classes, Measure, all_channels, channels_figure, is_scheduled, net_gain_figure, scheduled_samples,
 };
+pub use label_places::{LabelPlace, LabelledDot, Surroundings, place_labels};
 pub use legend::{Entry, Sample};
 pub use letters::{FONTS, Letter, letters, width};
-pub use mark::{Along, Band, Bars, Curve, Dot, DotShape, Dots, Guide, Mark, Note, Place, Rule, Spans};
+pub use mark::{
+    Along, Band, Bars, Bracket, Brackets, Curve, Dot, DotShape, Dots, Guide, Intervals, Mark, Note, Place, Rule, Spans,
+};
 pub use overview::overview_figure;
 pub use panel::{Panel, Plot};
 pub use poles::poles_figure;

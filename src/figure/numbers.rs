@@ -6,7 +6,7 @@ use crate::study::Table;
 
 use super::axis::Axis;
 use super::figure::Figure;
-use super::mark::{Along, Mark};
+use super::mark::{Along, Bracket, Intervals, Mark, Spans};
 use super::panel::Panel;
 
 impl Figure {
@@ -91,12 +91,17 @@ fn series(mark: &Mark) -> Vec<Series> {
             vec![of(&dots.name, dots.dots.iter().map(|dot| [dot.x, dot.y]).collect(), Some(labels))]
         }
         Mark::Bars(bars) => vec![of(&bars.name, bars.bars.clone(), None)],
-        Mark::Spans(spans) => [("lower", 1), ("upper", 2)]
-            .map(|(end, at)| {
-                let points = spans.spans.iter().map(|span| [span[0], span[at]]).collect();
-                of(&format!("{}, {end}", spans.name), points, None)
-            })
-            .into(),
+        Mark::Spans(Spans { name, spans: ends, .. }) | Mark::Intervals(Intervals { name, ends, .. }) => {
+            let end = |(end, at): (&str, usize)| {
+                of(&format!("{name}, {end}"), ends.iter().map(|ends| [ends[0], ends[at]]).collect(), None)
+            };
+            [("lower", 1), ("upper", 2)].map(end).into()
+        }
+        Mark::Brackets(brackets) => {
+            let both = |of: &Bracket| of.ends.map(|end| ([of.x, end], of.label.clone()));
+            let (points, labels) = brackets.brackets.iter().flat_map(both).unzip();
+            vec![of(&brackets.name, points, Some(labels))]
+        }
         Mark::Rule(_) | Mark::Band(_) | Mark::Guide(_) | Mark::Note(_) => Vec::new(),
     }
 }
@@ -114,9 +119,9 @@ fn unit_of(label: &str) -> &str {
     label.rfind(" [").map(|at| &label[at..]).unwrap_or_default()
 }
 
-/// The name of a place on an axis of names, else the number.
+/// The name of a place on an axis of names, of what stands beside it too; else the number.
 fn place(axis: &Axis, value: f64) -> String {
-    let name = axis.names.iter().flatten().find(|(at, _)| *at == value).map(|(_, name)| name.clone());
+    let name = axis.names.iter().flatten().find(|(at, _)| (at - value).abs() < 0.5).map(|(_, name)| name.clone());
     name.unwrap_or_else(|| figure(value))
 }
 
@@ -168,6 +173,7 @@ mod tests {
             color: Color::INK,
             width: 0.2,
             bars: vec![[0.0, -4.0], [1.0, 2.0]],
+            feet: Vec::new(),
             beside: 0.0,
         };
         let table = table_of(Panel::new(Axis::named("Condition", ["3", "7"]), Axis::linear("ΔJ [-]")).with(bars));

@@ -1,16 +1,18 @@
 //! A figure becomes shapes and texts at their places.
 
 use super::axis::Axis;
-use super::dot_labels::places;
 use super::drawing::{Anchor, Area, Drawing, PT_PER_MM, Shape, Text};
 use super::figure::{ColumnWidth, Figure};
+use super::label_places::{LabelledDot, Surroundings, place_labels};
 use super::layout::{LABEL_LINE, LABEL_PT, Layout, Placed, SMALL_LINE, SMALL_PT, Side, TICK};
 use super::legend::{Entry, Sample};
 use super::letters::{width, wrapped};
-use super::mark::{Along, Bars, Curve, DotShape, Dots, Guide, Mark, Note, Place, Rule, Spans};
+use super::mark::{
+    Along, Bars, Bracket, Brackets, Curve, DotShape, Dots, Guide, Intervals, Mark, Note, Place, Rule, Spans,
+};
 use super::range::Range;
 use super::simplify::simplified;
-use super::stroke::{Color, Stroke};
+use super::stroke::{Color, Dash, Stroke};
 
 /// Size of the title \[pt\].
 const TITLE_PT: f64 = 8.5;
@@ -24,9 +26,16 @@ const TOLERANCE: f64 = 0.04;
 const HALF_HEIGHT: f64 = 0.34;
 const FRAME: Stroke = Stroke::solid(Color::DIM, 0.6);
 const GRID: Stroke = Stroke::solid(Color::GRID, 0.4);
+/// From a dot to its label, where that stands away from it.
+const LEADER: Stroke = Stroke::solid(Color::new(0x8a, 0x91, 0x9c), 0.4);
 const GUIDE: Stroke = Stroke::solid(Color::new(0xb4, 0xba, 0xc4), 0.4);
 /// Half the width of a dot \[pt\].
 const DOT: f64 = 2.1;
+/// Distance of a bracket from its values, and length of its ends \[pt\].
+const BRACKET: f64 = 5.0;
+const HOOK: f64 = 1.8;
+/// Height of a line of figures as a part of their size: they have no descenders.
+const FIGURE_HEIGHT: f64 = 0.74;
 /// Width of the line of an open dot, of a cross and of a plus \[pt\].
 const DOT_LINE: f64 = 0.9;
 /// Width of the piece of line in the legend \[pt\].
@@ -40,13 +49,19 @@ impl Figure {
         let mut shapes = Vec::new();
         let mut y = lines(&mut shapes, &self.title, MARGIN, inner, (TITLE_PT, TITLE_LINE, Color::INK));
         let layout = Layout::of(self, inner, y);
-        let moved = |placed: Placed<'_>| {
+        let mut left_out = 0;
+        for placed in layout.panels {
             let frame = Area { left: placed.frame.left + MARGIN, ..placed.frame };
-            panel_shapes(&Placed { frame, ..placed })
-        };
-        shapes.extend(layout.panels.into_iter().flat_map(moved));
+            let (panel, without_label) = panel_shapes(&Placed { frame, ..placed });
+            shapes.extend(panel);
+            left_out += without_label;
+        }
         y = legend(&mut shapes, &self.legend(), layout.bottom + 3.0, inner);
-        y = lines(&mut shapes, &self.caption, y + 1.0, inner, (SMALL_PT, SMALL_LINE, Color::DIM));
+        let caption = match left_out {
+            0 => self.caption.clone(),
+            count => format!("{} Without room, and left out: {count} of the labels.", self.caption),
+        };
+        y = lines(&mut shapes, &caption, y + 1.0, inner, (SMALL_PT, SMALL_LINE, Color::DIM));
         Drawing { title: self.title.clone(), size: [width_pt, y + MARGIN], shapes }
     }
 }
@@ -91,7 +106,8 @@ fn legend(shapes: &mut Vec<Shape>, entries: &[Entry], top: f64, inner: f64) -> f
     if entries.is_empty() { top } else { y + 0.5 * LABEL_LINE }
 }
 
-fn panel_shapes(placed: &Placed<'_>) -> Vec<Shape> {
+/// What a panel shows, and how many labels have no room in it.
+fn panel_shapes(placed: &Placed<'_>) -> (Vec<Shape>, usize) {
     let frame = placed.frame;
     let mut within = grounds(placed);
     within.extend(grid(placed));
@@ -104,10 +120,11 @@ fn panel_shapes(placed: &Placed<'_>) -> Vec<Shape> {
         let [x, y] = frame.at(0.5, 1.0);
         shapes.push(text([x, y - 4.0], placed.title, LABEL_PT, Anchor::Middle, Color::INK));
     }
-    shapes.extend(dots_and_labels(placed));
+    let (dots, left_out) = dots_and_labels(placed);
+    shapes.extend(dots);
     shapes.extend(placed.panel.marks.iter().flat_map(|mark| rule_label(placed, mark)));
     shapes.extend(placed.panel.marks.iter().filter_map(|mark| words(placed, mark)));
-    shapes
+    (shapes, left_out)
 }
 
 impl Placed<'_> {
@@ -129,6 +146,16 @@ impl Placed<'_> {
                 [self.frame.at(0.0, y), self.frame.at(1.0, y)]
             }
         })
+    }
+
+    /// Where a bracket is on paper: the ends of its spine and those of its hooks; at the right of its values where it has no room at
+    /// their left.
+    fn bracket(&self, bracket: &Bracket) -> Option<[[[f64; 2]; 2]; 2]> {
+        let [from, to] = bracket.ends.map(|end| self.at([bracket.x, end]));
+        let ends = [from?, to?];
+        let side = if ends[0][0] - BRACKET < self.frame.left + 1.0 { 1.0 } else { -1.0 };
+        let moved = |by: f64| ends.map(|[x, y]| [x + side * by, y]);
+        Some([moved(BRACKET), moved(BRACKET - HOOK)])
     }
 
     /// Whether a place on paper is in the frame, or on its edge up to rounding.
@@ -198,6 +225,14 @@ fn lines_of(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
             let points: Vec<[f64; 2]> = points.iter().filter_map(|point| placed.at(*point)).collect();
             vec![Shape::line(points, GUIDE)]
         }
+        Mark::Intervals(Intervals { stroke, ends, .. }) => {
+            let ends = ends.iter().filter_map(|&[x, low, high]| Some([placed.at([x, low])?, placed.at([x, high])?]));
+            ends.map(|ends| Shape::line(ends, *stroke)).collect()
+        }
+        Mark::Brackets(Brackets { stroke, brackets, .. }) => {
+            let places = brackets.iter().filter_map(|bracket| placed.bracket(bracket));
+            places.map(|[spine, hooks]| bracket_line(spine, hooks, *stroke)).collect()
+        }
         Mark::Dots(_) | Mark::Band(_) | Mark::Spans(_) | Mark::Note(_) => Vec::new(),
     }
 }
@@ -212,34 +247,88 @@ fn curve_lines(placed: &Placed<'_>, curve: &Curve) -> Vec<Shape> {
 }
 
 fn bar_shapes(placed: &Placed<'_>, bars: &Bars) -> Vec<Shape> {
-    let bar = |&[x, value]: &[f64; 2]| {
+    let bar = |(&[x, _], [foot, top]): (&[f64; 2], [f64; 2])| {
         let left = x + bars.beside - 0.5 * bars.width;
-        let (foot, top) = (placed.at([left, 0.0])?, placed.at([left + bars.width, value])?);
+        let (foot, top) = (placed.at([left, foot])?, placed.at([left + bars.width, top])?);
         Some(rectangle(foot, top, bars.color, Some(Stroke::solid(Color::DIM, 0.3))))
     };
-    bars.bars.iter().filter_map(bar).collect()
+    bars.bars.iter().zip(bars.ends()).filter_map(bar).collect()
 }
 
-/// Dots are drawn whole where their middle is in the frame, with their texts around them.
-fn dots_and_labels(placed: &Placed<'_>) -> Vec<Shape> {
-    let groups = placed.panel.marks.iter().filter_map(|mark| match mark {
-        Mark::Dots(dots) => Some(dots),
-        _ => None,
-    });
+/// A bracket as one line: from the end of one hook along the spine to that of the other.
+fn bracket_line([from, to]: [[f64; 2]; 2], [near, far]: [[f64; 2]; 2], stroke: Stroke) -> Shape {
+    Shape::line([near, from, to, far], stroke)
+}
+
+/// Dots are drawn whole where their middle is in the frame, with their texts around them, and those of brackets beside these; how
+/// many texts have no room.
+fn dots_and_labels(placed: &Placed<'_>) -> (Vec<Shape>, usize) {
     let (mut shapes, mut labels) = (Vec::new(), Vec::new());
-    for Dots { shape, color, filled, dots, .. } in groups {
-        for one in dots {
-            let Some(center) = placed.at([one.x, one.y]).filter(|center| placed.shows(*center)) else { continue };
-            shapes.extend(dot(center, *shape, *color, *filled));
-            labels.push((center, one.label.as_str()));
+    for mark in &placed.panel.marks {
+        match mark {
+            Mark::Dots(Dots { shape, color, filled, dots, .. }) => {
+                for one in dots {
+                    let Some(center) = placed.at([one.x, one.y]).filter(|center| placed.shows(*center)) else {
+                        continue;
+                    };
+                    shapes.extend(dot(center, *shape, *color, *filled));
+                    labels.push((labelled(center, DOT, &one.label), &one.label, Color::DIM));
+                }
+            }
+            Mark::Brackets(Brackets { stroke, brackets, .. }) => {
+                for bracket in brackets {
+                    let Some([[from, to], _]) = placed.bracket(bracket) else { continue };
+                    let middle = [from[0], 0.5 * (from[1] + to[1])];
+                    let label = labelled(middle, 0.5 * stroke.width_pt, &bracket.label);
+                    labels.push((label, &bracket.label, stroke.color));
+                }
+            }
+            _ => {}
         }
     }
-    for (area, (_, label)) in places(&labels, &placed.frame).into_iter().zip(&labels) {
-        if !label.is_empty() {
-            shapes.push(text([area.left, area.bottom()], *label, SMALL_PT, Anchor::Start, Color::DIM));
+    let dots: Vec<LabelledDot> = labels.iter().map(|(dot, ..)| *dot).collect();
+    let (mut leaders, mut texts, mut left_out) = (Vec::new(), Vec::new(), 0);
+    for (place, (dot, label, color)) in place_labels(&dots, &surroundings(placed)).into_iter().zip(labels) {
+        let Some(place) = place else {
+            left_out += usize::from(!label.is_empty());
+            continue;
+        };
+        leaders.extend(place.leader.map(|end| Shape::line([dot.center, end], LEADER)));
+        texts.push(text([place.area.left, place.area.bottom()], label, SMALL_PT, Anchor::Start, color));
+    }
+    (leaders.into_iter().chain(shapes).chain(texts).collect(), left_out)
+}
+
+fn labelled(center: [f64; 2], radius: f64, label: &str) -> LabelledDot {
+    LabelledDot { center, radius, size: [SMALL_PT * width(label), SMALL_PT * FIGURE_HEIGHT] }
+}
+
+/// What the labels of a panel keep clear of.
+fn surroundings(placed: &Placed<'_>) -> Surroundings {
+    let (mut path, mut bars) = (Vec::new(), Vec::new());
+    let mut upright = |from: [f64; 2], to: [f64; 2], width: f64| {
+        let (top, bottom) = (from[1].min(to[1]), from[1].max(to[1]));
+        bars.push(Area::new(from[0] - 0.5 * width, top, width, bottom - top));
+    };
+    for mark in &placed.panel.marks {
+        match mark {
+            // The first curve with an entry in the legend is what the dots are about.
+            Mark::Curve(curve) if path.is_empty() && curve.key.is_some() && curve.stroke.dash == Dash::Solid => {
+                path = curve.points().filter_map(|point| placed.at(point)).collect();
+            }
+            Mark::Intervals(Intervals { stroke, ends, .. }) => {
+                let ends =
+                    ends.iter().filter_map(|&[x, low, high]| Some((placed.at([x, low])?, placed.at([x, high])?)));
+                ends.for_each(|(from, to)| upright(from, to, stroke.width_pt));
+            }
+            Mark::Brackets(Brackets { brackets, .. }) => {
+                let spines = brackets.iter().filter_map(|bracket| placed.bracket(bracket));
+                spines.for_each(|[[from, to], _]| upright(from, to, HOOK));
+            }
+            _ => {}
         }
     }
-    shapes
+    Surroundings { bounds: placed.frame, path, bars }
 }
 
 /// A dot of a shape; all shapes cover about the same area.

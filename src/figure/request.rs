@@ -9,6 +9,7 @@ use super::assessment::{assessment_figure, usual_choice};
 use super::bode::{BodeOptions, bode_figure};
 use super::condition_source::ConditionSource;
 use super::error::error_figure;
+use super::evidence::evidence_figure;
 use super::figure::Figure;
 use super::gains::{Across, Measure, channels_figure, net_gain_figure};
 use super::overview::overview_figure;
@@ -27,6 +28,8 @@ pub enum FigureKind {
     NetGain,
     /// Gains or delays of the channels (Figures 3 and 4).
     Channels,
+    /// What the scatter of the net gains is made of.
+    Evidence,
     /// What the correction is worth (Figures 8 to 19).
     Assessment,
     /// Poles of every model of one condition.
@@ -37,12 +40,13 @@ pub enum FigureKind {
 
 impl FigureKind {
     /// Every kind.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Bode,
         Self::Error,
         Self::Overview,
         Self::NetGain,
         Self::Channels,
+        Self::Evidence,
         Self::Assessment,
         Self::Poles,
         Self::Airspeeds,
@@ -56,10 +60,16 @@ impl FigureKind {
             Self::Overview => "overview",
             Self::NetGain => "net-gain",
             Self::Channels => "channels",
+            Self::Evidence => "evidence",
             Self::Assessment => "assessment",
             Self::Poles => "poles",
             Self::Airspeeds => "airspeeds",
         }
+    }
+
+    /// Whether it is made of error bars, which are then computed for it.
+    pub fn needs_bars(self) -> bool {
+        self == Self::Evidence
     }
 
     /// Whether it is a figure of one condition.
@@ -106,6 +116,7 @@ impl FigureRequest {
             FigureKind::Overview => overview_figure(condition?, &self.bode),
             FigureKind::NetGain => net_gain_figure(analysis?, &self.pairs),
             FigureKind::Channels => channels_figure(analysis?, &self.channels, self.measure, self.across),
+            FigureKind::Evidence => return evidence_figure(analysis?, &self.pairs),
             FigureKind::Assessment => {
                 let analysis = analysis?;
                 assessment_figure(analysis, &self.pairs, self.assessed.unwrap_or_else(|| usual_choice(analysis)))

@@ -74,7 +74,7 @@ pub use output_set::{Existing, OutputSet, make_directory, report_size_limit};
 pub use plain::{plain, plain_path};
 pub use recent_files::{add_recent_file, recent_files};
 pub use record_files::{
-    EXAMPLE_RECORD_CONDITIONS, FoundRecords, example_records, load_record, read_records, records_of_bytes,
+    EXAMPLE_RECORD_CONDITIONS, FoundRecords, example_records, load_records, read_records, records_of_bytes,
 };
 pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
 pub use report_file::{ReportSource, report, save_report};

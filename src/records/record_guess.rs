@@ -1,7 +1,9 @@
 //! What the name of a record says about it.
 
 use crate::assembly::{NamePattern, Row};
-use crate::dataset::RecordKind;
+use crate::dataset::{ConditionId, Dataset, RecordKind};
+
+use super::record_table::RecordTable;
 
 /// What the names of folders and files say about a record.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,6 +27,19 @@ const VALIDATION: [&str; 5] = ["validation", "validate", "verification", "holdou
 const VALIDATION_WORDS: [&str; 4] = ["val", "valid", "check", "verif"];
 
 impl RecordGuess {
+    /// Reads the names of a record, of its file, and of the file in an archive that it is.
+    pub fn of_table(table: &RecordTable, patterns: &[NamePattern]) -> Self {
+        let source = &table.source;
+        let names = [Some(source.file.as_str()), source.variable.as_deref(), Some(table.name.as_str())];
+        Self::of(&names.into_iter().flatten().collect::<Vec<_>>().join("/"), patterns)
+    }
+
+    /// The condition that the name says; none where it says none, or one that `dataset` does not have.
+    pub fn condition_of(&self, dataset: &Dataset) -> Option<ConditionId> {
+        let said = ConditionId(self.condition?);
+        dataset.condition(said).map(|condition| condition.id())
+    }
+
     /// Reads a name, such as "c03_045kt/sweep_LON_1.csv", by these patterns.
     pub fn of(name: &str, patterns: &[NamePattern]) -> Self {
         let lower = name.to_lowercase();

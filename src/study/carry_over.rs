@@ -40,7 +40,7 @@ pub enum Difference {
     ModelAdded(ModelId),
     /// A bundle has lost a model.
     ModelRemoved(ModelId),
-    /// A model has other numbers, or another trim.
+    /// A model has other numbers, other bands, or another trim.
     ModelChanged(ModelId),
     /// A decision no longer applies.
     NotApplied {

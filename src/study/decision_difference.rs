@@ -102,7 +102,7 @@ fn setting_words(settings: &Settings) -> Vec<(&'static str, String)> {
         ("upper delay bound", delay_upper),
         ("agreement tolerance", format!("{} dB", number(settings.agreement_db))),
     ];
-    words.push(("G from", settings.gain_source.words().to_owned()));
+    words.push(("G from", settings.gain_source_words()));
     words.extend(schedule_words(settings.schedule));
     words.extend(error_bar_words(settings.uncertainty));
     words

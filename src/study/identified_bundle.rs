@@ -30,9 +30,11 @@ pub struct OfferedModels {
 
 impl OfferedModels {
     /// The bundle that M14 gives to M5.
-    pub const BUNDLE: Self = Self { refined: true, plain: false, measured: false };
-    /// Everything there is.
-    pub const ALL: Self = Self { refined: true, plain: true, measured: true };
+    pub const REFINED: Self = Self { refined: true, plain: false, measured: false };
+    /// The same, and CT-PBSID as it is.
+    pub const WITH_PLAIN: Self = Self { refined: true, plain: true, measured: false };
+    /// The measured response alone.
+    pub const MEASURED: Self = Self { refined: false, plain: false, measured: true };
 }
 
 /// The offered models of an identification of `records`, the recommended one first; those that are no model of the program are

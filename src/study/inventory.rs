@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::dataset::{BundleKind, Condition, ConditionId, Dataset};
 
-/// The models of one condition: name, and fingerprint of the numbers and the trim.
+/// The models of one condition: name, and fingerprint of the numbers, the bands and the trim.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionInventory {
     /// True airspeed \[kt\].

@@ -145,6 +145,16 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// Which models G is taken from, in words; and that the setting has no effect where the gains are found on what leads leave,
+    /// which is a matter of the representatives (M15.5).
+    pub fn gain_source_words(&self) -> String {
+        let words = self.gain_source.words();
+        if self.gain_source == GainSource::MeanOfPairs && self.phase == PhaseCorrection::Lead {
+            return format!("{words}, without effect: with leads, G is that of what they leave of the representatives");
+        }
+        words.to_owned()
+    }
+
     /// The settings a dataset starts with.
     pub fn of(dataset: &Dataset) -> Self {
         let (outputs, inputs) = (dataset.outputs().len(), dataset.inputs().len());

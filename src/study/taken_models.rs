@@ -17,6 +17,20 @@ pub struct TakenModels {
     pub records: Vec<ConditionRecord>,
 }
 
+impl TakenModels {
+    /// The dataset with these models for the identified bundle of a condition, and these records among its own.
+    ///
+    /// # Errors
+    /// [`EditRefusal::NoCondition`], and [`EditRefusal::Models`] where they cannot be the condition's.
+    pub fn put_into(&self, dataset: &Dataset, id: ConditionId) -> Result<Dataset, EditRefusal> {
+        let before = dataset.condition(id).ok_or(EditRefusal::NoCondition { condition: id })?;
+        let refused = |why: String| EditRefusal::Models { condition: id, why };
+        let condition = before.with_identified(self.models.clone(), self.records.clone());
+        let condition = condition.map_err(|error| refused(error.to_string()))?;
+        dataset.with_condition(condition).map_err(|error| refused(error.to_string()))
+    }
+}
+
 /// What a study has taken, and the dataset as its file has it.
 #[derive(Clone, Debug)]
 pub struct Taken {
@@ -52,7 +66,7 @@ impl Study {
         let file = Arc::clone(self.file_dataset());
         let mut dataset = Arc::clone(&file);
         for (id, taken) in &models {
-            dataset = Arc::new(with_taken(&dataset, *id, taken)?);
+            dataset = Arc::new(taken.put_into(&dataset, *id)?);
         }
         self.dataset = dataset;
         self.taken = (!models.is_empty()).then_some(Taken { file, models });
@@ -87,14 +101,6 @@ impl BundleChoice {
         self.reasons.retain(|name, _| is_there(name));
         self.pinned = self.pinned.take().filter(|name| is_there(name));
     }
-}
-
-fn with_taken(dataset: &Dataset, id: ConditionId, taken: &TakenModels) -> Result<Dataset, EditRefusal> {
-    let before = dataset.condition(id).ok_or(EditRefusal::NoCondition { condition: id })?;
-    let refused = |why: String| EditRefusal::Models { condition: id, why };
-    let condition = before.with_identified(taken.models.clone(), taken.records.clone());
-    let condition = condition.map_err(|error| refused(error.to_string()))?;
-    dataset.with_condition(condition).map_err(|error| refused(error.to_string()))
 }
 
 #[cfg(test)]

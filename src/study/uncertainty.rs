@@ -158,6 +158,37 @@ impl Uncertainty {
         }
     }
 
+    /// For each airspeed the difference of a net gain that is the most times what the bundles explain; none where they have no spread.
+    pub fn greatest_differences(&self, pair: Pair) -> Vec<&AirspeedDifference> {
+        let mut greatest: Vec<&AirspeedDifference> = Vec::new();
+        let compared = |of: &&AirspeedDifference| of.pair == pair && of.difference.ratio().is_some();
+        for found in self.differences.iter().filter(compared) {
+            let at_its_airspeed =
+                |of: &&mut &AirspeedDifference| (of.airspeed_kt - found.airspeed_kt).abs() <= EQUAL_AIRSPEED_KT;
+            match greatest.iter_mut().find(at_its_airspeed) {
+                Some(known) if known.difference.ratio() < found.difference.ratio() => *known = found,
+                Some(_) => {}
+                None => greatest.push(found),
+            }
+        }
+        greatest
+    }
+
+    /// What the differences at equal airspeed come to, in a sentence.
+    pub fn differences_in_words(&self) -> String {
+        let beyond = self.differences.iter().filter(|of| of.is_beyond(self.level)).count();
+        match (self.differences.len(), beyond) {
+            (0, _) => self.too_many_differences.map_or_else(
+                || "No two conditions fly at equal airspeed.".to_owned(),
+                |count| format!("{count} differences at equal airspeed are too many to compare."),
+            ),
+            (all, 0) => format!("All {all} differences at equal airspeed are within what the bundles can make."),
+            (all, found) => {
+                format!("{found} of {all} differences at equal airspeed are more than the bundles explain.")
+            }
+        }
+    }
+
     /// The bar of one figure of one condition.
     pub fn bar(&self, condition: ConditionId, figure: Scalar) -> Option<&Bar> {
         self.conditions.get(&condition)?.bars[figure].as_ref()

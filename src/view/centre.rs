@@ -141,7 +141,7 @@ impl Behavior<View> for Views<'_> {
             let size = egui::vec2(ui.available_width(), TAB_HEIGHT);
             ui.allocate_ui_with_layout(size, layout, |ui| self.header_ui(ui, *view));
         }
-        let frame = Frame::new().fill(self.palette.background).inner_margin(Margin { top: 4, ..Margin::ZERO });
+        let frame = Frame::new().inner_margin(Margin { top: 4, ..Margin::ZERO });
         let (state, palette) = (&mut *self.state, self.palette);
         let commands = &mut *self.commands;
         let view_ui = |ui: &mut Ui| match view {

@@ -4,7 +4,7 @@ use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
 
 use crate::dataset::Pair;
 use crate::figure::FigureFormat;
-use crate::study::{Edit, PhaseCorrection, Setting};
+use crate::study::{Edit, OfferedModels, PhaseCorrection, Setting};
 
 use super::arrangement::{Preset, View};
 use super::assembling::AssemblingCommand;
@@ -12,7 +12,7 @@ use super::command::{Command, FormKind};
 use super::curve_entries::curve_entries;
 use super::figures::views_with_figure;
 use super::plot::FrequencyUnit;
-use super::records::{RecordsCommand, TakenWhat};
+use super::records::RecordsCommand;
 use super::state::State;
 use super::tables::TableKind;
 
@@ -118,7 +118,7 @@ fn record_entries(state: &State) -> Vec<Entry> {
         entry(
             "Take the identified models",
             "Into the condition shown",
-            RecordsCommand::Take(TakenWhat::Refined),
+            RecordsCommand::Take(OfferedModels::REFINED),
             is_found,
         ),
         entry("Put the file's identified models back", "Into the condition shown", RecordsCommand::Return, is_taken),

@@ -15,7 +15,8 @@ use super::state::State;
 
 /// The figure that a view shows; none until its results are there.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {
-    let with_bars = if state.display.show_bars { state.analysis_with_bars() } else { state.analysis().cloned() };
+    let bars = state.display.show_bars || kind(view).is_some_and(FigureKind::needs_bars);
+    let with_bars = if bars { state.analysis_with_bars() } else { state.analysis().cloned() };
     let analysis = with_bars.as_ref();
     let source = state.shown().zip(state.curves()).map(|(shown, curves)| ConditionSource {
         study: &state.study,
@@ -41,7 +42,7 @@ pub fn figure_name(state: &State, view: View) -> String {
     parts.join("-").chars().map(|letter| if is_plain(letter) { letter } else { '_' }).collect()
 }
 
-/// The figure of a view; that of variants consists of tables, which are saved as such.
+/// The figure of a view; that of variants consists of tables, which are saved as such, and records are saved as what is identified.
 fn kind(view: View) -> Option<FigureKind> {
     match view {
         View::Bode => Some(FigureKind::Bode),
@@ -52,7 +53,8 @@ fn kind(view: View) -> Option<FigureKind> {
         View::NetGain => Some(FigureKind::NetGain),
         View::Poles => Some(FigureKind::Poles),
         View::Across => Some(FigureKind::Airspeeds),
-        View::Compare | View::Records | View::Evidence => None,
+        View::Evidence => Some(FigureKind::Evidence),
+        View::Compare | View::Records => None,
     }
 }
 
@@ -69,6 +71,7 @@ fn request(state: &State, view: View) -> Option<FigureRequest> {
         View::Bode | View::Error | View::Across => vec![display.pair],
         View::NetGain => net_gain_pairs(state),
         View::Assessment => assessed_pairs(state),
+        View::Evidence => dataset.measuring_pairs().marked().collect(),
         _ => Vec::new(),
     };
     let (measure, across) = display.channel_figure;

@@ -3,7 +3,7 @@
 use crate::correction::ChannelCorrection;
 use crate::dataset::ConditionId;
 use crate::schedule::Schedule;
-use crate::study::Uncertainty;
+use crate::study::{AirspeedDifference, Uncertainty};
 use crate::uncertainty::{Bar, Scalar};
 use crate::units::s_to_ms;
 
@@ -33,21 +33,13 @@ pub(super) fn gain_bands(
 /// For each airspeed the difference that is the most times what the bundles explain.
 pub(super) fn brackets(uncertainty: &Uncertainty, scalar: Scalar, dots: &[Dot]) -> Vec<Bracket> {
     let Scalar::NetGain(pair) = scalar else { return Vec::new() };
-    let of_pair = uncertainty.differences.iter().filter(|difference| difference.pair == pair);
-    let mut greatest: Vec<(f64, f64, Bracket)> = Vec::new();
-    for difference in of_pair {
-        let Some(ratio) = difference.difference.ratio() else { continue };
-        let value = |id: ConditionId| dots.iter().find(|dot| dot.condition == id).map(|dot| dot.value);
-        let [Some(one), Some(other)] = difference.conditions.map(value) else { continue };
-        let (x, beyond) = (difference.airspeed_kt, difference.is_beyond(uncertainty.level));
-        let found = (x, ratio, Bracket { x, ends: [one, other], label: format!("{ratio:.1}×"), beyond });
-        match greatest.iter_mut().find(|(known, ..)| (known - x).abs() <= 1.0) {
-            Some(known) if known.1 < ratio => *known = found,
-            Some(_) => {}
-            None => greatest.push(found),
-        }
-    }
-    greatest.into_iter().map(|(.., bracket)| bracket).collect()
+    let value = |id: ConditionId| dots.iter().find(|dot| dot.condition == id).map(|dot| dot.value);
+    let bracket = |of: &AirspeedDifference| {
+        let ([one, other], ratio) = (of.conditions.map(value), of.difference.ratio()?);
+        let (label, beyond) = (format!("{ratio:.1}×"), of.is_beyond(uncertainty.level));
+        Some(Bracket { x: of.airspeed_kt, ends: [one?, other?], label, beyond })
+    };
+    uncertainty.greatest_differences(pair).into_iter().filter_map(bracket).collect()
 }
 
 /// The bar of a figure in the unit of its plot: ratios, or \[ms\].

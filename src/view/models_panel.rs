@@ -60,9 +60,10 @@ fn bundle_ui(ui: &mut Ui, state: &State, palette: &Palette, kind: BundleKind, co
     };
     let figure = format!("{} of {}", models.len() - rejected.len(), models.len());
     table_heading_ui(ui, palette, (&title, &figure), TableKind::of_bundle(kind), commands);
+    let names = short_names(models);
     for (place, model) in models.iter().enumerate() {
-        let neighbours = [place.checked_sub(1), Some(place + 1)].map(|place| models.get(place?).map(short_name));
-        let row = ModelRow::of(state, kind, model, neighbours);
+        let neighbours = [place.checked_sub(1), Some(place + 1)].map(|place| names.get(place?).copied());
+        let row = ModelRow::of(state, (kind, model), names[place], neighbours);
         row.ui(ui, palette, commands);
     }
 }
@@ -73,6 +74,8 @@ const LEAST_WITH_BAR: f32 = 205.0;
 struct ModelRow<'a> {
     id: ModelId,
     model: &'a Model,
+    /// Its name as it is shown.
+    name: &'a str,
     /// Names of the models above and below it.
     neighbours: [Option<&'a str>; 2],
     kept: bool,
@@ -88,11 +91,17 @@ struct ModelRow<'a> {
 }
 
 impl<'a> ModelRow<'a> {
-    fn of(state: &State, kind: BundleKind, model: &'a Model, neighbours: [Option<&'a str>; 2]) -> Self {
+    fn of(
+        state: &State,
+        (kind, model): (BundleKind, &'a Model),
+        name: &'a str,
+        neighbours: [Option<&'a str>; 2],
+    ) -> Self {
         let id = state.model_id(kind, &model.name);
         let shown = state.shown();
         Self {
             model,
+            name,
             neighbours,
             kept: !state.study.is_rejected(&id),
             reason: state.study.reason(&id).map(str::to_owned),
@@ -120,8 +129,11 @@ impl<'a> ModelRow<'a> {
         }
         self.keep_ui(ui, rect, commands);
         self.star_ui(ui, rect, palette, commands);
-        let figure_width = self.paint_figure(ui, rect, palette);
-        self.paint_name(ui, rect, figure_width, palette);
+        // Of a thousand rows few are in sight.
+        if ui.is_rect_visible(rect) {
+            let figure_width = self.paint_figure(ui, rect, palette);
+            self.paint_name(ui, rect, figure_width, palette);
+        }
         if response.contains_pointer() {
             commands.push(Command::Hover(self.id.clone()));
         }
@@ -240,7 +252,7 @@ impl<'a> ModelRow<'a> {
         let color = if self.kept { palette.text } else { palette.rejected };
         let left = rect.left() + 42.0;
         let room = rect.right() - figure_width - left;
-        let name = elided_among(ui, short_name(self.model), self.neighbours, room, BODY_SIZE);
+        let name = elided_among(ui, self.name, self.neighbours, room, BODY_SIZE);
         let mut job = egui::text::LayoutJob::simple_singleline(name, egui::FontId::proportional(BODY_SIZE), color);
         if !self.kept {
             job.sections[0].format.strikethrough = egui::Stroke::new(1.0, color);
@@ -289,12 +301,48 @@ impl<'a> ModelRow<'a> {
     }
 }
 
-/// The name without the method that every model of an identified bundle repeats.
-fn short_name(model: &Model) -> &str {
+/// The names without the method that every model of an identified bundle repeats: without "CT-PBSID" where some are of "CT-PBSID" and the
+/// others of "CT-PBSID, refined".
+fn short_names(models: &[Model]) -> Vec<&str> {
+    let repeated = models.iter().filter_map(method).min_by_key(|method| method.len()).unwrap_or_default();
+    let is_repeated = models.iter().all(|model| model.name.starts_with(repeated));
+    let names = models.iter().map(|model| {
+        let rest = model.name.strip_prefix(repeated).filter(|_| is_repeated);
+        let rest = rest.map(|rest| rest.trim_start_matches([',', ' '])).filter(|rest| !rest.is_empty());
+        rest.unwrap_or(&model.name)
+    });
+    names.collect()
+}
+
+fn method(model: &Model) -> Option<&str> {
     match &model.origin {
-        Origin::Identified { method: Some(method), .. } => {
-            model.name.strip_prefix(method.as_str()).map_or(model.name.as_str(), str::trim_start)
-        }
-        _ => &model.name,
+        Origin::Identified { method, .. } => method.as_deref(),
+        Origin::Nominal { .. } | Origin::Perturbed { .. } => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::dataset::StateSpace;
+
+    #[test]
+    fn names_are_shown_without_the_method_that_all_of_them_repeat() {
+        let gain = || DMatrix::from_element(1, 1, 1.0);
+        let model = |name: &str, method: &str| {
+            let origin = Origin::Identified { method: Some(method.to_owned()), order: None };
+            Model::new(name, origin, Dynamics::StateSpace(StateSpace::new(gain(), gain(), gain(), gain()).unwrap()))
+        };
+        let refined = "CT-PBSID, refined";
+        let of_refined =
+            [model("CT-PBSID, refined, order 16", refined), model("CT-PBSID, refined, without LON 1", refined)];
+        assert_eq!(short_names(&of_refined), ["order 16", "without LON 1"]);
+        let of_both = [model("CT-PBSID, refined, order 16", refined), model("CT-PBSID, order 16", "CT-PBSID")];
+        assert_eq!(short_names(&of_both), ["refined, order 16", "order 16"]);
+        let others = [model("CT-PBSID n=12 sweeps A", "CT-PBSID"), model("by hand", "CT-PBSID")];
+        assert_eq!(short_names(&others), ["CT-PBSID n=12 sweeps A", "by hand"]);
+        assert_eq!(short_names(&[model("CT-PBSID", "CT-PBSID")]), ["CT-PBSID"]);
     }
 }

@@ -205,8 +205,8 @@ impl Figure {
     }
 }
 
-/// What shapes and fills of the dots mean: "altitude ● low ◆ high · weight filled low, open high"; empty where the dataset has no
-/// classes.
+/// What shapes and fills of the dots mean: "altitude ● low ◆ high · weight filled low, open high", where the dataset has classes; and
+/// where numbers are that have no room.
 pub fn dot_key(state: &State) -> String {
     let classes = Classes::of(state.dataset());
     let mut words = Vec::new();
@@ -217,6 +217,9 @@ pub fn dot_key(state: &State) -> String {
     if let Some((first, others)) = classes.weights.split_first() {
         let others = if others.is_empty() { String::new() } else { format!(", open {}", others.join(", ")) };
         words.push(format!("weight filled {first}{others}"));
+    }
+    if state.display.net_gain.leaves_numbers_out() {
+        words.push("number without room: point at the dot".to_owned());
     }
     words.join(" · ")
 }

@@ -22,6 +22,8 @@ use super::tables::TableKind;
 
 /// Size of the half-widths of bars \[pt\].
 const HALF_SIZE: f32 = 9.5;
+/// Room of that text: "±100%" \[pt\].
+const HALF_WIDTH: f32 = 28.0;
 
 /// Outcome, channel gains and delays, objective, and what could not be matched and why.
 pub fn result_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
@@ -118,7 +120,7 @@ fn badge_ui(ui: &mut Ui, word: &str, color: Color32, palette: &Palette) -> egui:
 
 /// Inputs beside outputs.
 fn channels_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Palette, commands: &mut Vec<Command>) {
-    ui.spacing_mut().item_spacing.x = 18.0;
+    ui.spacing_mut().item_spacing.x = 12.0;
     ui.columns(2, |columns| {
         channel_table_ui(
             &mut columns[0],
@@ -189,7 +191,7 @@ fn channel_table_ui(
             })
         };
     let (width, id) = (ui.available_width(), shown.condition.id());
-    Grid::new(title).num_columns(3).spacing([6.0, 3.0]).min_col_width(0.3 * width - 6.0).show(ui, |ui| {
+    Grid::new(title).num_columns(3).spacing([4.0, 3.0]).min_col_width(0.2 * width).show(ui, |ui| {
         let head = |ui: &mut Ui, text: &str| ui.label(RichText::new(text).size(SMALL_SIZE).color(palette.dim_text));
         head(ui, title);
         right(ui, |ui| head(ui, "k"));
@@ -223,11 +225,15 @@ fn channel_table_ui(
     });
 }
 
-/// The half-width of a figure's bar beside it, small.
+/// The half-width of a figure's bar beside it, small; its room is kept free until it is there.
 fn half_ui(ui: &mut Ui, half: Option<String>, palette: &Palette) {
-    if let Some(half) = half {
-        ui.label(RichText::new(half).size(HALF_SIZE).color(palette.dim_text));
-    }
+    let size = vec2(HALF_WIDTH, ui.spacing().interact_size.y);
+    ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+        ui.set_min_width(HALF_WIDTH);
+        if let Some(half) = half {
+            ui.label(RichText::new(half).size(HALF_SIZE).color(palette.dim_text));
+        }
+    });
 }
 
 fn right<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {

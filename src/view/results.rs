@@ -33,6 +33,9 @@ pub struct Background {
     pub toggles: bool,
     /// Whether curves are being computed: models done, of how many.
     pub curves: Option<(usize, usize)>,
+    /// Whether error bars are being computed: steps done, of how many (for each model its response, and the analysis with it in place
+    /// of the representative).
+    pub bars: Option<(usize, usize)>,
     /// Jobs that the views shown wait for.
     pub views: usize,
     /// Whether a report is being written: conditions done, of how many.
@@ -49,6 +52,7 @@ impl Background {
         !self.proofs.is_empty()
             || self.toggles
             || self.curves.is_some()
+            || self.bars.is_some()
             || self.views > 0
             || self.report.is_some()
             || self.identification.is_some()
@@ -112,6 +116,15 @@ impl Results {
         if self.stopped { "not computed" } else { "computing …" }
     }
 
+    /// What stands in the place of error bars that are not there.
+    pub fn absence_of_bars(&self) -> String {
+        match self.background.bars {
+            Some(progress) if !self.is_behind() => bar_words(progress),
+            None if self.background.stopped => "Error bars: stopped; Compute, below, goes on with them".to_owned(),
+            _ => self.absence().to_owned(),
+        }
+    }
+
     /// Whether what is shown is older than the settings.
     pub fn is_behind(&self) -> bool {
         self.requested > self.received
@@ -131,4 +144,9 @@ impl Results {
     pub fn is_stale(&self, now: f64) -> bool {
         self.stopped || self.waiting_since.is_some_and(|since| now - since > STALE_AFTER_S)
     }
+}
+
+/// How far error bars are, in words.
+pub(super) fn bar_words((done, total): (usize, usize)) -> String {
+    if total == 0 { "error bars …".to_owned() } else { format!("error bars, {done} of {total} steps …") }
 }

@@ -353,6 +353,12 @@ impl Panel<'_, '_> {
         if source != of_study {
             self.set(Setting::GainSource(source));
         }
+        if of_study == GainSource::MeanOfPairs && settings.phase == PhaseCorrection::Lead {
+            self.ui.end_row();
+            self.label("");
+            let text = RichText::new("No effect with leads").size(SMALL_SIZE).color(self.palette.warning);
+            self.ui.label(text).on_hover_text(format!("G from {}", settings.gain_source_words()));
+        }
         if average != settings.cost_average {
             self.set(Setting::CostAverage(average));
         }

@@ -7,7 +7,7 @@ use crate::study::Assessed;
 
 use super::command::Command;
 use super::palette::{Palette, SMALL_SIZE};
-use super::results::Background;
+use super::results::{Background, bar_words};
 use super::state::{NoticeKind, State};
 
 /// State of the computation on the left, message or standing remark on the right.
@@ -83,6 +83,7 @@ fn background_words(background: &Background) -> String {
         (2.., _) => format!("proving the gains of {} conditions …", background.proofs.len()),
         (0, Some((done, total))) if total > 0 => format!("curves, {} % …", 100 * done / total),
         (0, Some(_)) => "curves …".to_owned(),
+        (0, None) if background.bars.is_some() => bar_words(background.bars.unwrap_or_default()),
         (0, None) if background.views > 0 => "what the views show …".to_owned(),
         (0, None) => "what holding and freeing would cost …".to_owned(),
     }

@@ -1,8 +1,10 @@
 //! The tables of the window as texts, to be copied and saved.
 
-use crate::dataset::{BundleKind, Channel, Pair};
+use crate::correction::Channel as CorrectedChannel;
+use crate::dataset::{BundleKind, ConditionId, Pair};
 use crate::fidelity::SUGGESTION_RATIO;
-use crate::study::{ConditionAnalysis, Table};
+use crate::study::{ConditionAnalysis, Table, Uncertainty};
+use crate::uncertainty::Scalar;
 use crate::units::s_to_ms;
 
 use super::state::State;
@@ -149,8 +151,14 @@ fn matrix(state: &State) -> Table {
         "held",
         "fitted",
         "G [-]",
+        "G ± [%]",
+        "G ± of identification [%]",
         "D [ms]",
+        "D ± [ms]",
+        "D ± of identification [ms]",
         "net gain [-]",
+        "net gain ± [%]",
+        "net gain ± of identification [%]",
         "net delay [ms]",
         "J before",
         "J after",
@@ -159,25 +167,63 @@ fn matrix(state: &State) -> Table {
         "J_phase before",
         "J_phase after",
     ];
-    let mut table = Table::new(title(state, TableKind::Matrix.name()), columns);
+    let sure = Sureness::of(state);
+    let mut table = Table::new(title(state, &sure.title(TableKind::Matrix)), columns);
     for pair in state.dataset().on_axis().pairs() {
         let (output, input) = state.dataset().channel_names(pair);
         let settings = &state.study.settings;
         let flags = [state.dataset().on_axis()[pair], settings.constrained[pair], settings.fitted[pair]].map(yes);
-        let figures = state.shown().map_or([None; 10], |shown| response_figures(shown, pair));
+        let figures = state.shown().map_or([None; 16], |shown| response_figures(shown, &sure, pair));
         table.row([output, input].into_iter().chain(flags).chain(figures.map(figure)));
     }
     table
 }
 
-/// G, D, net gain, net delay, and J, J_mag and J_phase before and after.
-fn response_figures(shown: &ConditionAnalysis, pair: Pair) -> [Option<f64>; 10] {
+/// How sure the figures of the condition shown are; nothing of it until that is computed, or where it is of older settings.
+struct Sureness<'a> {
+    condition: ConditionId,
+    uncertainty: Option<&'a Uncertainty>,
+}
+
+impl<'a> Sureness<'a> {
+    fn of(state: &'a State) -> Self {
+        let uncertainty = state.uncertainty().filter(|_| !state.others_are_older());
+        Self { condition: state.condition().id(), uncertainty: uncertainty.map(AsRef::as_ref) }
+    }
+
+    /// What the table is of, with the level of its bars.
+    fn title(&self, kind: TableKind) -> String {
+        let level = self.uncertainty.map(|of| format!(", ± of {:.0} %", 100.0 * of.level));
+        format!("{}{}", kind.name(), level.unwrap_or_default())
+    }
+
+    /// Half-width of the bar of a figure, and of its inner bar, "for this physics model": \[%\], of delays \[ms\].
+    fn halves(&self, scalar: Scalar) -> [Option<f64>; 2] {
+        let Some((bar, level)) = self.uncertainty.and_then(|of| Some((of.bar(self.condition, scalar)?, of.level)))
+        else {
+            return [None; 2];
+        };
+        let shown = |half: f64| if scalar.is_delay() { s_to_ms(half) } else { 100.0 * half };
+        [bar.half_width(level), bar.inner_half_width(level)].map(|half| half.map(shown))
+    }
+}
+
+/// G, D, net gain, each with its bars, net delay, and J, J_mag and J_phase before and after.
+fn response_figures(shown: &ConditionAnalysis, sure: &Sureness<'_>, pair: Pair) -> [Option<f64>; 16] {
     let cost = shown.cost[pair];
     let (before, after) = (cost.map(|cost| cost.uncorrected), cost.map(|cost| cost.corrected));
+    let [[gain, gain_inner], [delay, delay_inner], [net, net_inner]] =
+        [Scalar::Gain(pair), Scalar::Delay(pair), Scalar::NetGain(pair)].map(|scalar| sure.halves(scalar));
     [
         shown.wanted_gain(pair),
+        gain,
+        gain_inner,
         shown.wanted_delay_s(pair).map(s_to_ms),
+        delay,
+        delay_inner,
         Some(shown.correction.net_gain(pair).value()),
+        net,
+        net_inner,
         Some(s_to_ms(shown.correction.net_delay(pair).value_s())),
         before.map(|cost| cost.total()),
         after.map(|cost| cost.total()),
@@ -189,18 +235,32 @@ fn response_figures(shown: &ConditionAnalysis, pair: Pair) -> [Option<f64>; 10] 
 }
 
 fn channels(state: &State) -> Table {
-    let mut table = Table::new(title(state, TableKind::Channels.name()), ["side", "channel", "k [-]", "τ [ms]"]);
+    let columns = [
+        "side",
+        "channel",
+        "k [-]",
+        "k ± [%]",
+        "k ± of identification [%]",
+        "τ [ms]",
+        "τ ± [ms]",
+        "τ ± of identification [ms]",
+    ];
+    let sure = Sureness::of(state);
+    let mut table = Table::new(title(state, &sure.title(TableKind::Channels)), columns);
     let correction = state.shown().map(|shown| &shown.correction);
-    let mut add = |side: &str, channels: &[Channel], gains: Option<&Vec<f64>>, delays_s: Option<&[f64]>| {
-        for (index, channel) in channels.iter().enumerate() {
-            let gain = gains.map(|gains| gains[index]);
-            let delay_ms = delays_s.map(|delays_s| s_to_ms(delays_s[index]));
-            table.row([side.to_owned(), channel.name.clone(), figure(gain), figure(delay_ms)]);
-        }
-    };
     let (inputs, outputs) = (state.dataset().inputs(), state.dataset().outputs());
-    let delays_s = correction.map(|of| of.signed_delays_s());
-    add("input", inputs, correction.map(|of| &of.input_gains), delays_s.map(|[inputs_s, _]| inputs_s));
-    add("output", outputs, correction.map(|of| &of.output_gains), delays_s.map(|[_, outputs_s]| outputs_s));
+    let of_inputs = (0..inputs.len()).map(CorrectedChannel::Input);
+    let of_outputs = (0..outputs.len()).map(CorrectedChannel::Output);
+    for (channel, named) in of_inputs.chain(of_outputs).zip(inputs.iter().chain(outputs)) {
+        let (side, gain) = match channel {
+            CorrectedChannel::Input(input) => ("input", correction.map(|of| of.input_gains[input])),
+            CorrectedChannel::Output(output) => ("output", correction.map(|of| of.output_gains[output])),
+        };
+        let delay_ms = correction.map(|of| s_to_ms(of.delay_s(channel)));
+        let [half, inner] = sure.halves(Scalar::ChannelGain(channel));
+        let [delay_half, delay_inner] = sure.halves(Scalar::ChannelDelay(channel));
+        let figures = [gain, half, inner, delay_ms, delay_half, delay_inner].map(figure);
+        table.row([side.to_owned(), named.name.clone()].into_iter().chain(figures));
+    }
     table
 }

@@ -480,6 +480,7 @@ fn a_figure_of_every_view_is_written() {
         ("overview", &["--condition", "10", "--width", "single"]),
         ("net-gain", &["--pair", "all"]),
         ("channels", &["--channel", "inputs", "--over-conditions", "--delays"]),
+        ("evidence", &[]),
         ("assessment", &[]),
         ("poles", &["--condition", "7", "--hide", "identified,rejected"]),
     ] {

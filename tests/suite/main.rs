@@ -1,9 +1,10 @@
 //! Every test that is not beside the code it tests, as one program: linking the window library is what building tests spends
 //! its time on.
 
+use std::path::Path;
 use std::sync::LazyLock;
 
-use gdcm::io::{LoadedDataset, embedded_example};
+use gdcm::io::{LoadedDataset, embedded_example, load_dataset};
 
 mod analysis;
 mod assembling;
@@ -24,3 +25,10 @@ mod window;
 /// The embedded example, read once: most tests of the window and of whole studies start from it.
 static EXAMPLE: LazyLock<LoadedDataset> =
     LazyLock::new(|| embedded_example().expect("the embedded example is a dataset"));
+
+/// The dataset that reference figures were computed from by independent code: the example's physics models, and three identified
+/// models a condition that are not the program's.
+static REFERENCE_DATASET: LazyLock<LoadedDataset> = LazyLock::new(|| {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/reference/example-dataset.json.gz");
+    load_dataset(&path).expect("it is a dataset")
+});

@@ -4,14 +4,14 @@ use std::fs;
 use std::path::Path;
 
 use gdcm::assembly::standard_patterns;
-use gdcm::dataset::RecordKind;
-use gdcm::io::{embedded_example, example_records, records_of_bytes};
+use gdcm::dataset::{BundleKind, RecordKind};
+use gdcm::io::{embedded_example, example_records, load_dataset, records_of_bytes};
 use gdcm::records::{RecordChannels, RecordGuess, RecordLayout, TimeWish};
 
 use crate::commands::Desk;
 
 /// The 99 records of the example.
-fn archive() -> Vec<u8> {
+pub(crate) fn archive() -> Vec<u8> {
     fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/example-records.zip")).unwrap()
 }
 
@@ -27,7 +27,7 @@ fn every_record_of_the_example_is_understood_without_a_word_from_the_engineer() 
         assert_eq!((proposal.problems, proposal.cautions), (vec![], vec![]), "{}", table.name);
         let record = proposal.layout.flight_record(table, &channels).unwrap();
         assert!(record.outputs.iter().chain(record.inputs.iter()).all(|sample| sample.is_finite()));
-        let guess = RecordGuess::of(&table.name, &patterns);
+        let guess = RecordGuess::of_table(table, &patterns);
         assert_eq!(guess.held_out, table.name.contains("validation"));
         sweeps[guess.condition.unwrap() as usize] += usize::from(guess.kind == RecordKind::Sweep);
     }
@@ -116,7 +116,65 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
         &["sweep_1.csv", "--into", "small.json", "--condition", "5"],
         &["--condition: the dataset has no condition 5; it has 7, 10"],
     );
-    refused(&["sweep_1.csv", "--into", "small.json"], &["--condition"]);
+    refused(&["sweep_1.csv", "--into", "small.json"], &["--condition", "--every-condition"]);
+    refused(&["sweep_1.csv", "--every-condition"], &["--into"]);
+    refused(&all("sweep_1.csv", &["--take", "with-plain"]), &["--into"]);
+    refused(
+        &["sweep_1.csv", "--into", "small.json", "--condition", "7", "--every-condition"],
+        &["cannot be used with"],
+    );
+    refused(
+        &["sweep_1.csv", "--into", "small.json", "--every-condition"],
+        &[
+            "sweep_1: left out: its name says no condition of the dataset",
+            "condition 10: no records; its identified models stay as they are",
+            "RECORD: no name says a condition of the dataset (7, 10), as cond03 does",
+        ],
+    );
+    fs::rename(desk.path("validation.csv"), desk.path("cond7_validation.csv")).unwrap();
+    refused(
+        &["cond7_validation.csv", "--into", "small.json", "--every-condition"],
+        &["--hold-out: condition 7: every record is held out"],
+    );
+}
+
+#[test]
+fn records_of_many_conditions_fill_each_its_own_and_leave_the_others_as_they_are() {
+    let desk = Desk::new();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let records = root.join("assets/example-records-3-and-10.zip");
+    let into = root.join("tests/data/reference/example-dataset.json.gz");
+    let (records, into) = (records.to_str().unwrap(), into.to_str().unwrap());
+    let of_every = ["--every-condition", "--take", "with-plain", "--description", "anew", "--out", "out"];
+    let ended = desk.gdcm(&[&["identify", records, "--into", into], &of_every[..]].concat());
+    assert_eq!(ended.status, 0, "{ended:?}");
+    assert!(ended.error.contains("condition 4: no records; its identified models stay as they are"), "{}", ended.error);
+    assert!(ended.out.contains("identified models of 2 conditions"), "{}", ended.out);
+    let (before, after) =
+        (&crate::REFERENCE_DATASET.dataset, load_dataset(&desk.path("out/example-dataset.json.gz")).unwrap());
+    assert_eq!((after.dataset.description(), after.cautions), ("anew", vec![]));
+    for (old, new) in before.conditions().iter().zip(after.dataset.conditions()) {
+        let id = new.id();
+        if [3, 10].contains(&id.0) {
+            let file = format!("out/identified-condition-{id}.json");
+            assert!(
+                ended.out.contains(&format!("condition {id}: {file}: ")) && desk.path(&file).exists(),
+                "{}",
+                ended.out
+            );
+            // What the window takes, in its order: the refined models, then CT-PBSID as it is.
+            let names: Vec<&str> = new.bundle(BundleKind::Identified).iter().map(|model| model.name.as_str()).collect();
+            assert!(
+                names[0].starts_with("CT-PBSID, refined, order ")
+                    && names.last().unwrap().starts_with("CT-PBSID, order ")
+            );
+            assert_eq!(names.iter().filter(|name| name.contains(", without cond")).count(), 8, "{names:?}");
+            assert!(new.records().iter().all(|record| record.file.ends_with("assets/example-records-3-and-10.zip")));
+            assert_eq!(new.bundle(BundleKind::Physics), old.bundle(BundleKind::Physics));
+        } else {
+            assert_eq!(new, old);
+        }
+    }
 }
 
 #[test]

@@ -86,17 +86,20 @@ pub fn records_of_bytes(bytes: &[u8], name: &str, most: u64) -> Result<FoundReco
     Ok(found)
 }
 
-/// One record of a file again: the one that a dataset calls `variable`, or the only one.
+/// Records of a file again, which is read once: those that a dataset calls by these variables; none is the only one.
 ///
 /// # Errors
-/// Those of reading, and [`FileError::NoRecord`] where the file does not hold it.
-pub fn load_record(path: &Path, variable: Option<&str>) -> Result<RecordTable, FileError> {
+/// Those of reading; of a record that the file does not hold [`FileError::NoRecord`].
+pub fn load_records(path: &Path, variables: &[Option<&str>]) -> Result<Vec<Result<RecordTable, FileError>>, FileError> {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let bytes = read_bytes(path, LARGEST_FILE)?;
     let found = of_bytes(&bytes, path, &name, &Meter::new(MOST_MEMORY, &|_| false))?;
     let held = found.tables.len();
-    let record = found.tables.into_iter().find(|table| table.source.variable.as_deref() == variable);
-    record.ok_or_else(|| FileError::NoRecord { path: path.to_owned(), record: variable.map(str::to_owned), held })
+    let record = |variable: &Option<&str>| {
+        let record = found.tables.iter().find(|table| table.source.variable.as_deref() == *variable).cloned();
+        record.ok_or_else(|| FileError::NoRecord { path: path.to_owned(), record: variable.map(str::to_owned), held })
+    };
+    Ok(variables.iter().map(record).collect())
 }
 
 impl FoundRecords {

@@ -122,11 +122,14 @@ fn files_in_an_archive_are_records_of_it() {
 }
 
 #[test]
-fn a_record_is_found_again_by_what_the_dataset_calls_it() {
-    let load = |name: &str, variable| load_record(Path::new(&format!("{FOLDER}{name}")), variable);
-    assert_eq!(load("runs.csv", Some("run 5")).unwrap(), read("runs.csv").tables[1]);
-    assert_eq!(load("units.csv", None).unwrap(), read("units.csv").tables[0]);
-    let words = load("runs.csv", Some("run 6")).unwrap_err().to_string();
+fn records_are_found_again_by_what_the_dataset_calls_them() {
+    let load = |name: &str, variables: &[Option<&str>]| {
+        load_records(Path::new(&format!("{FOLDER}{name}")), variables).unwrap()
+    };
+    let of_runs = load("runs.csv", &[Some("run 5"), Some("run 6")]);
+    assert_eq!(of_runs[0].as_ref().unwrap(), &read("runs.csv").tables[1]);
+    assert_eq!(load("units.csv", &[None])[0].as_ref().unwrap(), &read("units.csv").tables[0]);
+    let words = of_runs[1].as_ref().unwrap_err().to_string();
     assert!(words.ends_with("runs.csv: the record \"run 6\" is not in it; it holds 2 records"), "{words}");
 }
 

@@ -2,12 +2,15 @@
 
 use std::sync::Arc;
 
+use crate::dataset::Pair;
+use crate::figure::evidence_figure;
 use crate::study::{
     Analysis, Cancelled, Engine, Progress, bar_table, difference_table, held_out_verdict, scatter_table,
     second_variable_table,
 };
 
 use super::assessment::usual_choice;
+use super::extent::PAIRS_DRAWN;
 use super::page::Page;
 
 /// The analysis with how sure its figures are.
@@ -38,14 +41,14 @@ pub(super) fn add(page: &mut Page, analysis: &Analysis) {
          real, or model form. An error common to all identified models is not seen, and a bar is not a bound.",
     );
     let beyond: Vec<_> = uncertainty.differences.iter().filter(|of| of.is_beyond(uncertainty.level)).collect();
-    if !uncertainty.differences.is_empty() {
-        page.paragraph(&format!(
-            "Of {} differences at equal airspeed {} are more than the bundles explain.",
-            uncertainty.differences.len(),
-            beyond.len()
-        ));
-    }
+    page.paragraph(&uncertainty.differences_in_words());
     page.list(beyond.iter().map(|of| format!("{}: {}.", dataset.pair_name(of.pair), of.words(uncertainty.level))));
+    let pairs: Vec<Pair> = dataset.measuring_pairs().marked().take(PAIRS_DRAWN).collect();
+    if let Some(figure) = evidence_figure(analysis, &pairs) {
+        let caption = "Shares of the variance, and standard deviations of ln k_o k_i, about the mean of each airspeed and about the \
+                       schedule; above the bars, scatter, times what the bundles explain.";
+        page.figure(&figure, &figure.title, caption);
+    }
     page.table(&scatter_table(dataset, uncertainty));
     page.table(&difference_table(dataset, uncertainty).0);
     page.table(&second_variable_table(dataset, uncertainty));

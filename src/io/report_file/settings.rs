@@ -35,7 +35,7 @@ pub(super) fn add(page: &mut Page, study: &Study) {
         ("Loops of held gains agree within", format!("{} dB", number(*agreement_db))),
         ("J takes over frequency", average_word(settings.cost_average).to_owned()),
         ("Coherence counts from", coherence_words(settings.coherence_threshold)),
-        ("G is taken from", settings.gain_source.words().to_owned()),
+        ("G is taken from", settings.gain_source_words()),
         ("Schedule", schedule_words(schedule)),
         ("Level of error bars", percent(settings.uncertainty.level)),
     ]);

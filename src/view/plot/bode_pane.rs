@@ -1,6 +1,6 @@
 //! One of the two stacked plots: axes, band, curves and cursor.
 
-use egui::{Id, PointerButton, Rect, Response, Ui, UiBuilder, WidgetInfo};
+use egui::{Context, Id, PointerButton, Rect, Response, Ui, UiBuilder, WidgetInfo};
 use egui_plot::{Axis, LineStyle, PlotTransform, PlotUi, Span, VLine};
 
 use super::axes::{LABELLED_HEIGHT, TICKS_HEIGHT, axis_hints, quiet_plot};
@@ -13,7 +13,9 @@ use super::drawn_box::drawn_box_ui;
 use super::drawn_curves::DrawnCurves;
 use super::pixel::Pixel;
 use super::plot_keys::plot_keys;
+use super::role::Role;
 use super::rule::{rules_ui, strips_ui};
+use super::still_image::{ImageItem, MANY, StillImage, StillScene};
 use super::wheel::{Turn, turned};
 use crate::view::palette::Palette;
 
@@ -21,6 +23,9 @@ use crate::view::palette::Palette;
 const VALUE_AXIS_WIDTH: f32 = 52.0;
 /// How far from a curve its drawn line may be \[pt\].
 const TOLERANCE: f64 = 0.1;
+
+/// What is left of the strength of curves that are being computed anew.
+const STALE: f32 = 0.5;
 
 /// What the panes draw beside the scene's own.
 pub(super) struct Emphasis {
@@ -42,8 +47,9 @@ pub(super) fn pane_ui(
     let name = scene.quantity.name(pane);
     let id = ui.make_persistent_id(name);
     let builder = UiBuilder::new().id_salt(name).max_rect(rect);
-    let mut kept = std::mem::take(view.drawn_curves(pane));
-    let drawn = &mut kept;
+    let (drawn, image) = view.drawn(pane);
+    let (mut kept, mut kept_image) = (std::mem::take(drawn), std::mem::take(image));
+    let (drawn, image) = (&mut kept, &mut kept_image);
     let shown = ui.scope_builder(builder, |ui| {
         let bounds = view.bounds(pane);
         pane_plot(id, pane, rect, scene, palette).show(ui, move |plot| {
@@ -53,13 +59,14 @@ pub(super) fn pane_ui(
             let pixel = Pixel::of(&transform, plot.ctx().pixels_per_point(), TOLERANCE);
             drawn.update(scene.curves, pane, (bounds, pixel), palette);
             scene.bands.iter().for_each(|band| band.draw(plot, pane, palette));
-            draw_curves(plot, scene, drawn, emphasis, palette);
+            let image = image_of_many(plot.ctx(), scene, drawn, image, &transform, palette);
+            draw_curves(plot, scene, drawn, image, emphasis, palette);
             outside_shade(plot, scene.band, palette);
             draw_cursors(plot, scene.pinned, emphasis.cursor, palette);
         })
     });
     let shown = shown.inner;
-    *view.drawn_curves(pane) = kept;
+    (*view.drawn(pane).0, *view.drawn(pane).1) = (kept, kept_image);
     view.remember(pane, shown.transform);
     drag(ui, pane, &shown.response, view, palette);
     zoom_by_scrolling(ui, pane, &shown.response, view);
@@ -122,25 +129,65 @@ fn outside_shade(plot: &mut PlotUi<'_>, (min, max): (f64, f64), palette: &Palett
     }
 }
 
+/// Draws the curves, what matters most on top. Where very many lie at the bottom, those are one image, and lines once more
+/// while the pointer means them.
 fn draw_curves<'a>(
     plot: &mut PlotUi<'a>,
     scene: &BodeScene<'_>,
     drawn: &'a DrawnCurves,
+    image: Option<ImageItem>,
     emphasis: &Emphasis,
     palette: &Palette,
 ) {
     let is_emphasized = |curve: &BodeCurve| curve.highlighted || emphasis.curve.as_ref() == Some(&curve.id);
     let mut curves: Vec<(usize, &BodeCurve)> = scene.curves.iter().enumerate().collect();
+    if let Some(image) = image {
+        plot.add(image);
+        curves.retain(|(_, curve)| !lies_at_the_bottom(curve) || is_emphasized(curve));
+    }
     curves.sort_by_key(|(_, curve)| (is_emphasized(curve), curve.role.layer(curve.rejected)));
     for (index, curve) in curves {
         let mut look = curve.role.look(curve.rejected, palette);
         if is_emphasized(curve) {
             look = look.emphasized();
         } else if scene.stale {
-            look.color = look.color.gamma_multiply(0.5);
+            look.color = look.color.gamma_multiply(STALE);
         }
         plot.add(CurveItem::new(drawn.runs(index), look));
     }
+}
+
+/// The image of the curves at the bottom, if there are very many and they stand still.
+fn image_of_many(
+    ctx: &Context,
+    scene: &BodeScene<'_>,
+    drawn: &DrawnCurves,
+    image: &mut StillImage,
+    transform: &PlotTransform,
+    palette: &Palette,
+) -> Option<ImageItem> {
+    let mut curves: Vec<_> = scene.curves.iter().enumerate().filter(|(_, curve)| lies_at_the_bottom(curve)).collect();
+    if curves.len() < MANY {
+        return None;
+    }
+    curves.sort_by_key(|(_, curve)| curve.role.layer(curve.rejected));
+    let look = |curve: &BodeCurve| curve.role.look(curve.rejected, palette);
+    let still = StillScene {
+        frame: *transform.frame(),
+        pixels_per_point: ctx.pixels_per_point(),
+        curves: curves.iter().map(|(index, curve)| (drawn.serial(*index), look(curve))).collect(),
+    };
+    let image = image.of(ctx, still, || {
+        let lines =
+            |(index, curve): &(usize, &BodeCurve)| CurveItem::new(drawn.runs(*index), look(curve)).lines(transform);
+        curves.iter().flat_map(lines).collect()
+    });
+    image.map(|image| if scene.stale { image.faded(STALE) } else { image })
+}
+
+/// Whether a curve is one of many that only say how far their bundle reaches.
+fn lies_at_the_bottom(curve: &BodeCurve) -> bool {
+    curve.role.layer(curve.rejected) <= Role::Perturbed.layer(false)
 }
 
 fn draw_cursors(plot: &mut PlotUi<'_>, pinned: &[f64], cursor: Option<f64>, palette: &Palette) {

@@ -11,6 +11,7 @@ use super::drawn_curves::DrawnCurves;
 use super::legend::LegendState;
 use super::plot_axis::PlotAxis;
 use super::range::Range;
+use super::still_image::StillImage;
 use super::value_unit::ValueUnit;
 use super::viewed_range::ViewedRange;
 
@@ -51,6 +52,8 @@ pub struct BodeView {
     phase_transform: Option<PlotTransform>,
     magnitude_curves: DrawnCurves,
     phase_curves: DrawnCurves,
+    magnitude_image: StillImage,
+    phase_image: StillImage,
 }
 
 impl Default for BodeView {
@@ -73,6 +76,8 @@ impl Default for BodeView {
             phase_transform: None,
             magnitude_curves: DrawnCurves::default(),
             phase_curves: DrawnCurves::default(),
+            magnitude_image: StillImage::default(),
+            phase_image: StillImage::default(),
         }
     }
 }
@@ -189,11 +194,11 @@ impl BodeView {
         Some(transform.position_from_point(&PlotPoint::new(omega.log10(), value)))
     }
 
-    /// What a pane drew last.
-    pub(super) fn drawn_curves(&mut self, pane: Pane) -> &mut DrawnCurves {
+    /// What a pane drew last: its lines, and the image of those that stand still.
+    pub(super) fn drawn(&mut self, pane: Pane) -> (&mut DrawnCurves, &mut StillImage) {
         match pane {
-            Pane::Magnitude => &mut self.magnitude_curves,
-            Pane::Phase => &mut self.phase_curves,
+            Pane::Magnitude => (&mut self.magnitude_curves, &mut self.magnitude_image),
+            Pane::Phase => (&mut self.phase_curves, &mut self.phase_image),
         }
     }
 

@@ -19,14 +19,21 @@ impl<'a> CurveItem<'a> {
     pub(super) fn new(runs: &'a [Vec<PlotPoint>], look: LineLook) -> Self {
         Self { base: PlotItemBase::new(String::new()), runs, look }
     }
+
+    /// What it is drawn of, in screen coordinates.
+    pub(super) fn lines(&self, transform: &PlotTransform) -> Vec<Shape> {
+        let mut shapes = Vec::new();
+        for run in self.runs {
+            let path: Vec<Pos2> = run.iter().map(|point| transform.position_from_point(point)).collect();
+            self.look.add_shapes(path, &mut shapes);
+        }
+        shapes
+    }
 }
 
 impl PlotItem for CurveItem<'_> {
     fn shapes(&self, _: &Ui, transform: &PlotTransform, shapes: &mut Vec<Shape>) {
-        for run in self.runs {
-            let path: Vec<Pos2> = run.iter().map(|point| transform.position_from_point(point)).collect();
-            self.look.add_shapes(path, shapes);
-        }
+        shapes.append(&mut self.lines(transform));
     }
 
     fn initialize(&mut self, _: RangeInclusive<f64>) {}

@@ -1,6 +1,6 @@
 //! One condition in a plot over airspeed: a dot whose shape and filling tell its class.
 
-use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 
 use crate::dataset::ConditionId;
 use crate::view::palette::Palette;
@@ -10,6 +10,9 @@ use super::questions::NamedFigure;
 /// Radius of a dot \[pt\].
 pub(super) const DOT_RADIUS: f32 = 4.0;
 
+/// Widths of a bar, and of the thick one in it \[pt\].
+const OUTER_WIDTH: f32 = 1.2;
+const INNER_WIDTH: f32 = 3.6;
 /// Distance of the ring around the condition in focus from its dot \[pt\].
 const RING_GAP: f32 = 3.0;
 
@@ -109,13 +112,18 @@ pub struct DotBar {
 impl DotBar {
     /// Draws the bar at the horizontal place `x`; `y` says where a value is.
     pub(super) fn paint(&self, painter: &Painter, x: f32, y: impl Fn(f64) -> f32, color: Color32) {
-        let line = |[low, high]: [f64; 2], width: f32| {
-            painter.line_segment([Pos2::new(x, y(low)), Pos2::new(x, y(high))], Stroke::new(width, color));
-        };
-        line(self.outer, 1.2);
-        if let Some(inner) = self.inner {
-            line(inner, 3.6);
+        for area in self.areas(x, y) {
+            painter.rect_filled(area, 0.0, color);
         }
+    }
+
+    /// What it covers at the horizontal place `x`: the thin bar, and the thick one in it.
+    pub(super) fn areas(&self, x: f32, y: impl Fn(f64) -> f32) -> Vec<Rect> {
+        let area = |[low, high]: [f64; 2], width: f32| {
+            Rect::from_two_pos(Pos2::new(x - 0.5 * width, y(low)), Pos2::new(x + 0.5 * width, y(high)))
+        };
+        let inner = self.inner.map(|inner| area(inner, INNER_WIDTH));
+        std::iter::once(area(self.outer, OUTER_WIDTH)).chain(inner).collect()
     }
 }
 

@@ -21,6 +21,8 @@ pub(super) struct DrawnCurves {
     drawn: Option<(PlotBounds, Pixel)>,
     /// In the order of the curves.
     curves: Vec<DrawnCurve>,
+    /// How many curves were made so far.
+    made: u64,
 }
 
 /// The points of one curve, and from what they were made.
@@ -29,6 +31,8 @@ struct DrawnCurve {
     numbers: CurveNumbers,
     margin: f64,
     runs: Vec<Vec<PlotPoint>>,
+    /// Which of all that were made it is.
+    serial: u64,
 }
 
 impl DrawnCurves {
@@ -53,6 +57,7 @@ impl DrawnCurves {
         }
         self.drawn = Some((bounds, pixel));
         let mut axis = LogFrequencies::default();
+        let made = &mut self.made;
         let drawn = |(index, curve): (usize, &BodeCurve)| {
             let margin = margin(curve, palette);
             let is_same = |kept: &Option<DrawnCurve>| kept.as_ref().is_some_and(|kept| kept.is_of(curve, pane, margin));
@@ -62,7 +67,9 @@ impl DrawnCurves {
             place.and_then(|place| kept[place].take()).unwrap_or_else(|| {
                 let runs = runs_in_view(curve.points_on(&mut axis, pane), &bounds, margin);
                 let points = |run: &Vec<[f64; 2]>| thinned(run, pixel).into_iter().map(PlotPoint::from).collect();
-                DrawnCurve { numbers: CurveNumbers::of(curve, pane), margin, runs: runs.iter().map(points).collect() }
+                *made += 1;
+                let (numbers, runs) = (CurveNumbers::of(curve, pane), runs.iter().map(points).collect());
+                DrawnCurve { numbers, margin, runs, serial: *made }
             })
         };
         self.curves = curves.iter().enumerate().map(drawn).collect();
@@ -71,6 +78,11 @@ impl DrawnCurves {
     /// The lines of the curve at an index.
     pub(super) fn runs(&self, index: usize) -> &[Vec<PlotPoint>] {
         self.curves.get(index).map_or(&[], |curve| &curve.runs)
+    }
+
+    /// The number of the lines of the curve at an index: another one as soon as they are made anew.
+    pub(super) fn serial(&self, index: usize) -> u64 {
+        self.curves.get(index).map_or(0, |curve| curve.serial)
     }
 }
 
@@ -119,6 +131,7 @@ mod tests {
         update(&mut drawn, &curves, 10.0);
         assert_eq!(places(&drawn)[1], first[0]);
         assert_eq!(drawn.runs(0)[0][0].y, 2.0);
+        assert_eq!([drawn.serial(0), drawn.serial(1)], [3, 1], "what is made anew has a number of its own");
         // Of the curve that goes up to 9 and back to 5, the steps up to 6 and farther are out of sight.
         update(&mut drawn, &curves[1..], 0.5);
         assert!(drawn.runs(0).is_empty());

@@ -1,6 +1,6 @@
 //! What stands about a schedule in a plot of gains: its bands, and the brackets of differences at one airspeed.
 
-use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Shape, Stroke, pos2};
+use egui::{Color32, Mesh, Painter, Pos2, Shape, Stroke, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
 
 use super::range::Range;
@@ -71,24 +71,26 @@ fn strip(bands: &[GainBand], of: fn(&GainBand) -> [f64; 2], transform: &PlotTran
     Shape::mesh(mesh)
 }
 
-/// Draws a bracket beside its dots, with its factor where that is more than the bundles explain; pointing at a dot tells the others.
-pub(super) fn paint_bracket(painter: &Painter, bracket: &Bracket, transform: &PlotTransform, palette: &Palette) {
-    let [low, high] = bracket.ends.map(|value| transform.position_from_point(&PlotPoint::new(bracket.x, value)));
-    let color = if bracket.beyond { palette.warning } else { palette.dim_text };
-    let stroke = Stroke::new(1.0, color);
-    let x = low.x - BRACKET[0];
-    let end = |from: Pos2| [pos2(x, from.y), pos2(x + BRACKET[1], from.y)];
-    painter.line_segment([pos2(x, low.y), pos2(x, high.y)], stroke);
-    painter.line_segment(end(low), stroke);
-    painter.line_segment(end(high), stroke);
-    if !bracket.beyond {
-        return;
+impl Bracket {
+    /// The ends of its upright line on the screen: at the left of its dots, or at their right where there is no room.
+    pub(super) fn spine(&self, transform: &PlotTransform) -> [Pos2; 2] {
+        let ends = self.ends.map(|value| transform.position_from_point(&PlotPoint::new(self.x, value)));
+        let x = ends[0].x - BRACKET[0];
+        let x = if x > transform.frame().left() + 1.0 { x } else { ends[0].x + BRACKET[0] };
+        ends.map(|end| pos2(x, end.y))
     }
-    let (middle, font) = (pos2(x - 2.0, 0.5 * (low.y + high.y)), FontId::proportional(9.5));
-    // No room at the left edge: the factor stands below.
-    if middle.x - 24.0 > painter.clip_rect().left() {
-        painter.text(middle, Align2::RIGHT_CENTER, &bracket.label, font, color);
-    } else {
-        painter.text(pos2(x, low.y.max(high.y) + 4.0), Align2::LEFT_TOP, &bracket.label, font, color);
+
+    /// Draws it; its factor stands among the numbers of the dots where it is more than the bundles explain, and pointing at a dot tells
+    /// the others.
+    pub(super) fn paint(&self, painter: &Painter, transform: &PlotTransform, palette: &Palette) {
+        let color = if self.beyond { palette.warning } else { palette.dim_text };
+        let stroke = Stroke::new(1.0, color);
+        let [from, to] = self.spine(transform);
+        let dots = transform.position_from_point_x(self.x);
+        let hook = vec2(BRACKET[1] * (dots - from.x).signum(), 0.0);
+        painter.line_segment([from, to], stroke);
+        for end in [from, to] {
+            painter.line_segment([end, end + hook], stroke);
+        }
     }
 }

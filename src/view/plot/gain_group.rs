@@ -55,6 +55,11 @@ impl GainView {
         self.highlighted = condition;
     }
 
+    /// Whether a number has no room and is only told where its dot is pointed at.
+    pub fn leaves_numbers_out(&self) -> bool {
+        self.labels.iter().any(PlacedLabels::leaves_some_out)
+    }
+
     fn emphasized(&self) -> Option<ConditionId> {
         self.hovered.or(self.highlighted)
     }

@@ -1,7 +1,10 @@
 //! One small plot of gains or delays: the optimum of each condition as a dot, and the schedule as a line.
 
+use std::sync::Arc;
+
 use egui::{
-    Align2, FontId, Id, Painter, Pos2, Rect, Response, Sense, Stroke, Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
+    Align2, FontId, Galley, Id, Painter, Pos2, Rect, Response, Sense, Stroke, Ui, UiBuilder, Vec2, WidgetInfo, pos2,
+    vec2,
 };
 use egui_plot::{Axis, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotTransform, PlotUi};
 
@@ -9,14 +12,15 @@ use crate::dataset::ConditionId;
 
 use super::axes::{LABELLED_HEIGHT, axis_hints, caption_font, quiet_plot};
 use super::dot::{DOT_RADIUS, Dot};
-use super::dot_label::{LabelledDot, PlacedLabels, Surroundings};
-use super::gain_band::{Bracket, GainBand, paint_bands, paint_bracket};
+use super::dot_label::{PlacedLabels, area, point, position};
+use super::gain_band::{Bracket, GainBand, paint_bands};
 use super::line_look::LinePattern;
 use super::linear_axis::{Ladder, tick_text};
 use super::number::decimals;
 use super::range::Range;
 use super::role::Role;
 pub use crate::figure::{Across, Measure};
+use crate::figure::{LabelledDot, Surroundings};
 use crate::view::palette::Palette;
 
 const TITLE_HEIGHT: f32 = 18.0;
@@ -151,7 +155,7 @@ pub(super) fn gain_panel_ui(
             bar.paint(&inside, center.x, |value| transform.position_from_point_y(value), dot.color(palette));
         }
     }
-    panel.brackets.iter().for_each(|bracket| paint_bracket(&inside, bracket, &transform, palette));
+    panel.brackets.iter().for_each(|bracket| bracket.paint(&inside, &transform, palette));
     paint_labels(ui, &placed, panel, (&transform, labels), palette);
     let painter = ui.painter().with_clip_rect(frame.expand(DOT_RADIUS));
     paint_bounds(&painter.with_clip_rect(frame), &placed, &transform, palette);
@@ -235,6 +239,7 @@ fn draw_lines(plot: &mut PlotUi<'_>, panel: &GainPanel, palette: &Palette) {
     plot.line(Line::new("", schedule).color(look.color).width(look.width).style(style));
 }
 
+/// The numbers of the conditions, and the factors of the brackets beside them: each where it covers nothing else.
 fn paint_labels(
     ui: &Ui,
     placed: &[(&Dot, Pos2)],
@@ -242,30 +247,42 @@ fn paint_labels(
     (transform, labels): (&PlotTransform, &mut PlacedLabels),
     palette: &Palette,
 ) {
-    let painter = ui.painter().with_clip_rect(*transform.frame());
-    let layout = |dot: &Dot| {
+    let frame = *transform.frame();
+    let painter = ui.painter().with_clip_rect(frame);
+    let of_dots = placed.iter().map(|(dot, center)| {
         let color = if dot.selected { palette.text } else { palette.dim_text };
-        painter.layout_no_wrap(dot.label.clone(), LABEL_FONT, color)
+        (painter.layout_no_wrap(dot.label.clone(), LABEL_FONT, color), *center, dot.clearance())
+    });
+    let spines: Vec<(&Bracket, [Pos2; 2])> =
+        panel.brackets.iter().map(|bracket| (bracket, bracket.spine(transform))).collect();
+    let of_brackets = spines.iter().filter(|(bracket, _)| bracket.beyond).map(|(bracket, [from, to])| {
+        let galley = painter.layout_no_wrap(bracket.label.clone(), LABEL_FONT, palette.warning);
+        (galley, from.lerp(*to, 0.5), 1.0)
+    });
+    let texts: Vec<(Arc<Galley>, Pos2, f32)> = of_dots.chain(of_brackets).collect();
+    let labelled = |(galley, center, radius): &(Arc<Galley>, Pos2, f32)| LabelledDot {
+        center: point(*center),
+        radius: (*radius).into(),
+        // What a row of text leaves free above and below its figures need not be kept clear.
+        size: [galley.size().x.into(), (galley.size().y - LABEL_LEADING).into()],
     };
-    let galleys: Vec<_> = placed.iter().map(|(dot, _)| layout(dot)).collect();
-    let dots: Vec<LabelledDot> = placed
-        .iter()
-        .zip(&galleys)
-        .map(|((dot, center), galley)| LabelledDot {
-            center: *center,
-            radius: dot.clearance(),
-            // What a row of text leaves free above and below its figures need not be kept clear.
-            label: galley.size() - vec2(0.0, LABEL_LEADING),
-        })
-        .collect();
-    let path: Vec<Pos2> =
-        panel.drawable_schedule().map(|[x, y]| transform.position_from_point(&PlotPoint::new(x, y))).collect();
-    let around = Surroundings { bounds: transform.frame().shrink(1.0), path: &path };
-    for ((place, galley), (_, center)) in labels.places(&dots, around).iter().zip(galleys).zip(placed) {
+    let path = panel.drawable_schedule().map(|[x, y]| transform.position_from_point(&PlotPoint::new(x, y)));
+    let y = |value: f64| transform.position_from_point_y(value);
+    let of_bars = placed.iter().filter_map(|(dot, center)| Some(dot.bar?.areas(center.x, y)));
+    let of_spines = spines.iter().map(|(_, [from, to])| Rect::from_two_pos(*from, *to).expand2(vec2(1.5, 0.0)));
+    let around = Surroundings {
+        bounds: area(frame.shrink(1.0)),
+        path: path.map(point).collect(),
+        bars: of_bars.flatten().chain(of_spines).map(|rect| area(rect.intersect(frame))).collect(),
+    };
+    let places = labels.places(texts.iter().map(labelled).collect(), around);
+    for (place, (galley, center, _)) in places.iter().zip(texts) {
+        let Some(place) = place else { continue };
         if let Some(end) = place.leader {
-            painter.line_segment([*center, end], Stroke::new(0.8, palette.dim_text.gamma_multiply(0.6)));
+            painter.line_segment([center, position(end)], Stroke::new(0.8, palette.dim_text.gamma_multiply(0.6)));
         }
-        painter.galley(place.rect.min - vec2(0.0, 0.5 * LABEL_LEADING), galley, palette.dim_text);
+        let corner = position([place.area.left, place.area.top]);
+        painter.galley(corner - vec2(0.0, 0.5 * LABEL_LEADING), galley, palette.dim_text);
     }
 }
 

@@ -47,6 +47,7 @@ mod rule;
 mod s_plane;
 mod sketch;
 mod sparkline;
+mod still_image;
 #[cfg(test)]
 mod tests;
 mod thinning;

@@ -51,6 +51,15 @@ impl RecordsPage {
         }
     }
 
+    /// Its name where there is little room: all of them stand in one line.
+    pub fn short_name(self) -> &'static str {
+        match self {
+            Self::Stabilisation => "Orders",
+            Self::Poles => "Poles",
+            _ => self.name(),
+        }
+    }
+
     /// What it shows, in a sentence.
     pub fn purpose(self) -> &'static str {
         match self {
@@ -61,27 +70,6 @@ impl RecordsPage {
             Self::Poles => "Poles of the recommended model with their standard deviations; grey: not determined",
             Self::Fit => "How well the model fits each record and output, in frequency and in time",
             Self::Columns => "Which columns of the chosen record are its time and its channels",
-        }
-    }
-}
-
-/// What is taken into the condition.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TakenWhat {
-    /// The refined models.
-    Refined,
-    /// The refined models, and CT-PBSID as it is.
-    WithPlain,
-    /// The measured response.
-    Measured,
-}
-
-impl TakenWhat {
-    fn offered(self) -> OfferedModels {
-        match self {
-            Self::Refined => OfferedModels::BUNDLE,
-            Self::WithPlain => OfferedModels { plain: true, ..OfferedModels::BUNDLE },
-            Self::Measured => OfferedModels { refined: false, plain: false, measured: true },
         }
     }
 }
@@ -120,9 +108,9 @@ pub enum RecordsCommand {
     /// Give up what is being identified.
     Stop,
     /// Put what was identified into the condition shown.
-    Take(TakenWhat),
+    Take(OfferedModels),
     /// Put what was identified into every condition that has something.
-    TakeAll,
+    TakeAll(OfferedModels),
     /// Put the models of the dataset's file back into the condition shown.
     Return,
 }
@@ -226,7 +214,7 @@ impl ConditionRecords {
     }
 
     /// What is taken into the condition, where something was identified.
-    pub fn taken(&self, what: TakenWhat) -> Option<Arc<TakenModels>> {
+    pub fn taken(&self, offered: OfferedModels) -> Option<Arc<TakenModels>> {
         let found = self.identification()?;
         let used = self.used_rows().map(|(_, row)| row).zip(&found.record_uses);
         let entry = |(row, found): (&RecordRow, &crate::identification::RecordUse)| ConditionRecord {
@@ -234,7 +222,7 @@ impl ConditionRecords {
             ..row.layout.condition_record(&row.table, &row.guess)
         };
         let entries: Vec<ConditionRecord> = used.map(entry).collect();
-        Some(Arc::new(identified_bundle(found, what.offered(), entries)))
+        Some(Arc::new(identified_bundle(found, offered, entries)))
     }
 }
 

@@ -14,6 +14,6 @@ mod response;
 mod simulation;
 mod stabilisation;
 
-pub use bench::{ConditionRecords, RecordRow, RecordsBench, RecordsCommand, RecordsPage, RecordsReading, TakenWhat};
+pub use bench::{ConditionRecords, RecordRow, RecordsBench, RecordsCommand, RecordsPage, RecordsReading};
 pub use records_view::{records_header_ui, records_view_ui};
 pub use simulation::{TimeModel, simulation_jobs};

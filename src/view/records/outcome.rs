@@ -6,7 +6,7 @@ use egui::{Label, ProgressBar, RichText, Ui};
 
 use crate::dataset::BundleKind;
 use crate::identification::{Caution, Hold, Identification, IdentificationCaution, IdentificationError, Role, Signal};
-use crate::study::LateChannel;
+use crate::study::{LateChannel, OfferedModels};
 use crate::units::s_to_ms;
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
@@ -35,8 +35,10 @@ pub(super) fn outcome_ui(
             commands.push(RecordsCommand::IdentifyAll.into());
         }
         let found = state.records.conditions.values().filter(|of| of.identification().is_some()).count();
-        if found > 1 && ui.button(format!("Take the models of {found} conditions")).clicked() {
-            commands.push(RecordsCommand::TakeAll.into());
+        if found > 1 {
+            let hint = "In place of the identified models of these conditions; one step to undo";
+            let take = format!("Take the models of {found} conditions");
+            offered_menu_ui(ui, (&take, hint), |offered| commands.push(RecordsCommand::TakeAll(offered).into()));
         }
     }
     if let Some([low, high]) = records.band {
@@ -70,6 +72,24 @@ pub(super) fn outcome_ui(
             }
             late_channel_ui(ui, state, records, palette, commands);
         }
+    }
+}
+
+/// A button that asks which of the models are taken.
+pub(super) fn offered_menu_ui(ui: &mut Ui, (text, hint): (&str, &str), take: impl FnOnce(OfferedModels)) {
+    let menu = ui.menu_button(text, |ui| {
+        let choices = [
+            ("The refined models", OfferedModels::REFINED),
+            ("The refined models, and CT-PBSID as it is", OfferedModels::WITH_PLAIN),
+            ("The measured response", OfferedModels::MEASURED),
+        ];
+        let chosen = choices.into_iter().find(|(words, _)| ui.button(*words).clicked())?;
+        ui.close();
+        Some(chosen.1)
+    });
+    menu.response.on_hover_text(hint);
+    if let Some(offered) = menu.inner.flatten() {
+        take(offered);
     }
 }
 

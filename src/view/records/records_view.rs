@@ -1,17 +1,18 @@
 //! The Records view: the records at the left, one page about them at the right.
 
+use egui::scroll_area::ScrollBarVisibility;
 use egui::{Button, Label, Panel, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::state::State;
 
-use super::bench::{ConditionRecords, RecordsCommand, RecordsPage, TakenWhat};
+use super::bench::{ConditionRecords, RecordsCommand, RecordsPage};
 use super::channel_rows::columns_ui;
 use super::fit::fit_ui;
 use super::histories::histories_ui;
 use super::inputs::inputs_ui;
-use super::outcome::outcome_ui;
+use super::outcome::{offered_menu_ui, outcome_ui};
 use super::poles::identified_poles_ui;
 use super::record_list::record_list_ui;
 use super::response::response_ui;
@@ -38,20 +39,8 @@ pub fn records_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>
         commands.push(RecordsCommand::Identify.into());
     }
     if records.is_some_and(|records| records.identification().is_some()) {
-        ui.menu_button("Take these models", |ui| {
-            for (text, what) in [
-                ("The refined models", TakenWhat::Refined),
-                ("The refined models, and CT-PBSID as it is", TakenWhat::WithPlain),
-                ("The measured response", TakenWhat::Measured),
-            ] {
-                if ui.button(text).clicked() {
-                    commands.push(RecordsCommand::Take(what).into());
-                    ui.close();
-                }
-            }
-        })
-        .response
-        .on_hover_text("In place of the identified models of this condition; one step to undo");
+        let hint = "In place of the identified models of this condition; one step to undo";
+        offered_menu_ui(ui, ("Take these models", hint), |offered| commands.push(RecordsCommand::Take(offered).into()));
     }
     if state.study.taken_models().any(|(id, _)| id == condition) && ui.button("Put the file's models back").clicked() {
         commands.push(RecordsCommand::Return.into());
@@ -86,17 +75,24 @@ pub fn records_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comman
     state.records.path = path;
 }
 
-/// One tab for each page.
+/// One tab for each page, in one line that scrolls where it is too long.
 fn pages_ui(ui: &mut Ui, shown: RecordsPage, commands: &mut Vec<Command>) {
-    ui.horizontal_wrapped(|ui| {
-        for page in RecordsPage::ALL {
-            let label = format!("Page {}", page.name());
-            let tab = ui.selectable_label(page == shown, page.name());
-            tab.widget_info(|| WidgetInfo::selected(Role::Button, true, page == shown, &label));
-            if tab.on_hover_text(page.purpose()).clicked() {
-                commands.push(RecordsCommand::Show(page).into());
+    let tabs = ScrollArea::horizontal().id_salt("pages").scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
+    tabs.show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 2.0;
+            for page in RecordsPage::ALL {
+                let label = format!("Page {}", page.name());
+                let tab = ui.selectable_label(page == shown, page.short_name());
+                tab.widget_info(|| WidgetInfo::selected(Role::Button, true, page == shown, &label));
+                if tab.gained_focus() {
+                    tab.scroll_to_me(None);
+                }
+                if tab.on_hover_text(format!("{}: {}", page.name(), page.purpose())).clicked() {
+                    commands.push(RecordsCommand::Show(page).into());
+                }
             }
-        }
+        });
     });
 }
 

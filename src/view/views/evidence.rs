@@ -18,7 +18,7 @@ const LABELS: [f32; 2] = [170.0, 230.0];
 /// The paper's question on one screen: is the scatter at one airspeed trim, identification, or real?
 pub fn evidence_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(uncertainty) = state.uncertainty().cloned() else {
-        ui.label(RichText::new(state.results.absence()).color(palette.dim_text));
+        ui.label(RichText::new(state.results.absence_of_bars()).color(palette.dim_text));
         return;
     };
     let mut sorting = state.display.evidence_tables;
@@ -33,17 +33,7 @@ pub fn evidence_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
 /// What the differences come to, in a sentence each.
 fn answer_ui(ui: &mut Ui, state: &State, uncertainty: &Uncertainty, palette: &Palette) {
     let beyond: Vec<_> = uncertainty.differences.iter().filter(|of| of.is_beyond(uncertainty.level)).collect();
-    let all = uncertainty.differences.len();
-    let words = match (all, beyond.len()) {
-        (0, _) if uncertainty.too_many_differences.is_some() => {
-            let count = uncertainty.too_many_differences.unwrap_or_default();
-            format!("{count} differences at equal airspeed are too many to compare.")
-        }
-        (0, _) => "No two conditions fly at equal airspeed.".to_owned(),
-        (_, 0) => format!("All {all} differences at equal airspeed are within what the bundles can make."),
-        (_, found) => format!("{found} of {all} differences at equal airspeed are more than the bundles explain:"),
-    };
-    ui.label(RichText::new(words).strong());
+    ui.label(RichText::new(uncertainty.differences_in_words()).strong());
     for of in beyond {
         let words = format!("{}: {}", state.dataset().pair_name(of.pair), of.words(uncertainty.level));
         ui.label(RichText::new(words).size(SMALL_SIZE).color(palette.text));

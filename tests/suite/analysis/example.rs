@@ -1,4 +1,4 @@
-//! The embedded example against the independent analysis of it.
+//! The reference dataset against the independent analysis of it.
 
 use std::collections::BTreeSet;
 

@@ -16,6 +16,7 @@ mod edges;
 mod example;
 mod known_answer;
 mod lead;
+mod mean_gain;
 mod modes;
 mod remarks;
 mod response_paths;
@@ -49,8 +50,9 @@ fn analyze(engine: &mut Engine, study: &Study) -> Analysis {
     engine.analyze(study, &Unobserved).unwrap()
 }
 
+/// The example as the reference figures were computed from it.
 fn study_of_example() -> Study {
-    Study::new(crate::EXAMPLE.dataset.clone())
+    Study::new(crate::REFERENCE_DATASET.dataset.clone())
 }
 
 /// The example analysed, its suggested outliers rejected, and analysed again.

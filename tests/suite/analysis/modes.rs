@@ -99,7 +99,7 @@ fn the_envelopes_are_those_of_independent_code() {
 
 /// The models of a condition of the example at which some mode jumps, by name.
 fn jumping(id: i64) -> Vec<String> {
-    let dataset = &crate::EXAMPLE.dataset;
+    let dataset = &crate::REFERENCE_DATASET.dataset;
     let modes = ConditionModes::of(dataset.condition(ConditionId(id)).unwrap(), &Unobserved).unwrap();
     let names = modes.condition.bundle(BundleKind::Physics);
     let suggested = EXAMPLE_WITH_SUGGESTIONS_REJECTED.condition(ConditionId(id)).unwrap().suggested();
@@ -121,7 +121,7 @@ fn the_modes_jump_where_the_physics_model_has_a_step_near_the_trim() {
 
 #[test]
 fn states_take_part_in_the_modes_by_their_names() {
-    let condition = crate::EXAMPLE.dataset.conditions()[0].clone();
+    let condition = crate::REFERENCE_DATASET.dataset.conditions()[0].clone();
     let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()];
     assert_eq!(
         (nominal.states.len(), nominal.state_name(4).as_str(), nominal.state_name(39).as_str()),
@@ -156,8 +156,8 @@ fn states_take_part_in_the_modes_by_their_names() {
 
 #[test]
 fn the_zeros_of_a_response_are_had_of_every_model_of_a_condition() {
-    let condition = crate::EXAMPLE.dataset.conditions()[0].clone();
-    let pair = crate::EXAMPLE.dataset.find_pair("Q", "LON").unwrap();
+    let condition = crate::REFERENCE_DATASET.dataset.conditions()[0].clone();
+    let pair = crate::REFERENCE_DATASET.dataset.find_pair("Q", "LON").unwrap();
     for kind in BundleKind::BOTH {
         for model in condition.bundle(kind) {
             let Dynamics::StateSpace(space) = &model.dynamics else { continue };

@@ -42,7 +42,7 @@ pub fn dynamics_of(case: &Value) -> Dynamics {
         "identified_models" => BundleKind::Identified,
         kind => panic!("no bundle {kind}"),
     };
-    let dataset = crate::EXAMPLE.dataset.clone();
+    let dataset = crate::REFERENCE_DATASET.dataset.clone();
     let condition = dataset.conditions().iter().find(|condition| condition.id() == ConditionId(id)).unwrap();
     condition.bundle(bundle).iter().find(|model| model.name == name).unwrap().dynamics.clone()
 }

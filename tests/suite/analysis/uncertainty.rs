@@ -1,12 +1,13 @@
 //! How sure each figure is, against independent figures, and what may never happen to a bar (M13).
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use gdcm::correction::Channel;
 use gdcm::dataset::ModelId;
 use gdcm::io::{DatasetOrigin, load_dataset_bytes};
 use gdcm::schedule::{ScheduleKind, ScheduleSettings, SecondVariable};
-use gdcm::study::{AirspeedDifference, PairScatter, Uncertainty};
+use gdcm::study::{AirspeedDifference, Cancelled, PairScatter, Progress, Uncertainty};
 use gdcm::uncertainty::{
     Bar, Design, Difference, IdentificationSource, Part, Scalar, ScheduleBand, SecondVariableDesign, Split, holm,
 };
@@ -436,4 +437,86 @@ fn bars_of_a_population_cover_the_truth_as_often_as_they_say() {
     };
     let covered = found.conditions.values().filter(|of| covers(of)).count() as f64 / DRAWS as f64;
     assert!((0.86..=0.99).contains(&covered), "{covered}");
+}
+
+/// The known spread, the flight's model of the first condition with a band of this deviation \[dB\].
+fn dataset_with_band(sd_db: f64) -> Value {
+    let (_, case) = study_of_known_spread();
+    let mut dataset = case["dataset"].clone();
+    let model = &mut dataset["conditions"][0]["identified_models"][0];
+    let (outputs, inputs) = (list(&model["D"]).len(), list(&model["D"][0]).len());
+    let table = |deviation: f64| vec![vec![vec![deviation; 2]; inputs]; outputs];
+    model["bands"] =
+        serde_json::json!({"omega_rad_s": [1.0, 5.0], "sd_db": table(sd_db), "sd_deg": table(6.0 * sd_db)});
+    dataset
+}
+
+#[test]
+fn the_bars_of_a_dataset_with_other_bands_are_made_anew() {
+    let mut engine = Engine::default();
+    let study = |sd_db: f64| {
+        let mut study = study_of(&dataset_with_band(sd_db));
+        for (bundle, name) in [(BundleKind::Physics, "nominal"), (BundleKind::Identified, "i0")] {
+            study.apply(&Edit::Pin(ModelId::new(ConditionId(1), bundle, name))).unwrap();
+        }
+        study
+    };
+    let mut bars = |study: &Study| {
+        let analysis = analyze(&mut engine, study);
+        engine.uncertainty(&analysis, &Unobserved).unwrap()
+    };
+    let scalar = Scalar::Gain(Pair::new(0, 0));
+    let half = |of: &Uncertainty| of.bar(ConditionId(1), scalar).unwrap().inner_half_width(0.9).unwrap();
+    let (wide, narrow) = (study(3.0), study(1.5));
+    let (of_wide, of_narrow) = (bars(&wide), bars(&narrow));
+    assert_eq!(of_narrow, uncertainty_of(&narrow).1, "as of an engine that knows no other");
+    // The band's deviations are taken as known: half of them is half the bar.
+    assert!((half(&of_wide) / half(&of_narrow) - 2.0).abs() < 1e-9, "{} {}", half(&of_wide), half(&of_narrow));
+    assert_eq!(of_wide, bars(&wide), "and back again");
+}
+
+#[test]
+fn a_model_with_another_band_is_another_model() {
+    let [wide, narrow, again] = [3.0, 1.5, 3.0].map(|sd_db| study_of(&dataset_with_band(sd_db)));
+    let changed = |dataset: &Study| {
+        let (_, differences) = wide.carried_over(Arc::clone(&dataset.dataset));
+        differences.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    assert_eq!(changed(&again), Vec::<String>::new());
+    assert!(changed(&narrow).iter().any(|words| words.contains("i0") && words.ends_with("has changed")));
+}
+
+/// Stops when so many steps are told, and keeps what it hears.
+#[derive(Default)]
+struct StopsAt {
+    steps: usize,
+    told: AtomicUsize,
+    total: AtomicUsize,
+}
+
+impl Progress for StopsAt {
+    fn cancelled(&self) -> bool {
+        self.told.load(Ordering::Relaxed) >= self.steps
+    }
+
+    fn advanced(&self, done: usize, total: usize) {
+        self.told.fetch_max(done, Ordering::Relaxed);
+        self.total.store(total, Ordering::Relaxed);
+    }
+}
+
+#[test]
+fn swaps_are_counted_one_by_one_and_stop_between_two_of_them() {
+    let study = study_of_example();
+    let mut engine = Engine::default();
+    let analysis = analyze(&mut engine, &study);
+    // The responses of all 242 models are there: the steps from 242 on are swaps.
+    let progress = StopsAt { steps: 100, ..StopsAt::default() };
+    assert_eq!(engine.uncertainty(&analysis, &progress).err(), Some(Cancelled));
+    let (told, total) = (progress.told.into_inner(), progress.total.into_inner());
+    assert_eq!(total, 2 * 242);
+    // Steps are told by hundredths of the whole; 22 responses of a condition come at once.
+    assert!((100..=100 + 22 + 5).contains(&told), "{told}");
+    let whole = engine.uncertainty(&analysis, &Unobserved).unwrap();
+    assert_eq!(whole, uncertainty_of(&study).1, "what was stopped is taken up again");
 }

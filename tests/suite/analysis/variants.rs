@@ -21,7 +21,7 @@ fn keep(name: &str) -> Edit {
 
 /// The example without its last condition, as if the file had been changed.
 fn shorter_example() -> Arc<Dataset> {
-    let dataset = &crate::EXAMPLE.dataset;
+    let dataset = &crate::REFERENCE_DATASET.dataset;
     let conditions = dataset.conditions().iter().filter(|condition| condition.id() != ConditionId(10));
     Arc::new(Dataset::new(dataset.header(), conditions.map(|condition| (**condition).clone()).collect()).unwrap())
 }

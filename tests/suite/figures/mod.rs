@@ -5,8 +5,8 @@ use std::sync::{Arc, LazyLock};
 use gdcm::correction::Channel;
 use gdcm::dataset::{ConditionId, Pair};
 use gdcm::figure::{
-    Axis, Color, ColumnWidth, ConditionSource, Curve, Dash, Figure, FigureFormat, FigureKind, FigureRequest, Panel,
-    Plot, Range, Stroke, all_channels,
+    Axis, Bars, Color, ColumnWidth, ConditionSource, Curve, Dash, Figure, FigureFormat, FigureKind, FigureRequest,
+    Panel, Plot, Range, Stroke, all_channels,
 };
 use gdcm::io::write_as;
 use gdcm::study::{Analysis, CURVE_POINTS, ConditionCurves, Edit, Engine, Study, Unobserved, display_band};
@@ -16,7 +16,7 @@ mod numbers;
 mod pages;
 mod views;
 
-/// What the figures of condition 10 of the example are made of, its suggested outliers rejected.
+/// What the figures of condition 10 of the example are made of, its suggested outliers rejected, with error bars.
 struct Example {
     analysis: Analysis,
     curves: Arc<ConditionCurves>,
@@ -27,7 +27,8 @@ static EXAMPLE: LazyLock<Example> = LazyLock::new(|| {
     let first = engine.analyze(&study, &Unobserved).unwrap();
     let models = first.condition(CONDITION).unwrap().suggested();
     study.apply(&Edit::RejectAll { condition: CONDITION, models }).unwrap();
-    let analysis = engine.analyze(&study, &Unobserved).unwrap();
+    let mut analysis = engine.analyze(&study, &Unobserved).unwrap();
+    analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &Unobserved).unwrap()));
     let grid = (display_band(study.settings.band), CURVE_POINTS);
     let curves = engine.curves(&study.dataset, CONDITION, grid, &Unobserved).unwrap().unwrap();
     Example { analysis, curves }

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use gdcm::figure::{Across, BodeOptions, FrequencyUnit, Mark, Measure, Role};
+use gdcm::uncertainty::Split;
 
 use super::*;
 
@@ -136,4 +137,54 @@ fn the_error_of_the_reference_is_nothing_and_a_correction_moves_the_median_of_a_
     let mut errors = column(&format!("{physics}, corrected"));
     // The curves have their own frequencies: a fifth as far apart as those that the median was taken of, and as many at the ends.
     assert!(gdcm::response::median(&mut errors).abs() < 0.02);
+}
+
+#[test]
+fn evidence_stacks_the_shares_of_each_split_and_shows_the_rest_with_its_interval() {
+    let example = &*EXAMPLE;
+    let figure = example.figure(FigureKind::Evidence, example.on_axis());
+    let uncertainty = example.analysis.uncertainty.as_ref().unwrap();
+    assert_eq!((figure.plots.len(), figure.plots[1].title.as_str()), (5, "LON → Q"));
+    assert!(figure.caption.starts_with(&uncertainty.differences_in_words()), "{}", figure.caption);
+    let names = ["trim", "identification", "rest: real, or model form", "rest, interval of 90 %", "scatter"];
+    assert_eq!(legend(&figure)[..5], names);
+    for (plot, scatter) in figure.plots.iter().zip(&uncertainty.scatter) {
+        let bars: Vec<&Bars> = plot.panels[0]
+            .marks
+            .iter()
+            .filter_map(|mark| if let Mark::Bars(bars) = mark { Some(bars) } else { None })
+            .collect();
+        for (place, split) in [&scatter.same_airspeed, &scatter.about_schedule].into_iter().enumerate() {
+            let shares = split.as_ref().and_then(Split::shares).unwrap();
+            let mut foot = 0.0;
+            for (bars, share) in bars.iter().zip(shares) {
+                assert_eq!((bars.feet[place], bars.bars[place]), (foot, [place as f64, 100.0 * share]));
+                foot += 100.0 * share;
+            }
+            // Sums of three quotients by the same number.
+            assert!((foot - 100.0).abs() < 1e-9, "{foot}");
+        }
+    }
+}
+
+#[test]
+fn the_numbers_of_evidence_name_what_the_scatter_is_about() {
+    let example = &*EXAMPLE;
+    let figure = example.figure(FigureKind::Evidence, example.on_axis());
+    let split = example.analysis.uncertainty.as_ref().unwrap().scatter[0].about_schedule.unwrap();
+    let [_, high] = split.rest_interval(0.9).unwrap();
+    let rows = figure.tables().swap_remove(1).rows;
+    let row = |series: &str| rows.iter().find(|row| row[0] == series && row[2] == "schedule").unwrap();
+    assert_eq!(row("scatter")[3], format!("{:?}", 100.0 * split.scatter.sqrt()));
+    assert_eq!(row("rest, interval of 90 %, upper")[3], format!("{:?}", 100.0 * high));
+}
+
+#[test]
+fn without_error_bars_there_is_no_evidence() {
+    let example = &*EXAMPLE;
+    let request = FigureRequest::new(FigureKind::Evidence, example.on_axis(), Vec::new());
+    let bare = Analysis { uncertainty: None, ..example.analysis.clone() };
+    assert_eq!(request.figure(Some(&bare), None), None);
+    let off_axis = FigureRequest { pairs: vec![example.pair("P", "LON")], ..request };
+    assert_eq!(off_axis.figure(Some(&example.analysis), None), None, "an off-axis response has no split");
 }

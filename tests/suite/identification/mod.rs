@@ -2,6 +2,7 @@
 
 mod bands;
 mod common;
+mod example;
 pub mod flight;
 mod late;
 mod lines;

@@ -1,8 +1,12 @@
 //! The table of commands: the palette, the page of keys, tables and the tour.
 
+use gdcm::correction::Channel;
+use gdcm::study::Table;
+use gdcm::uncertainty::Scalar;
 use gdcm::view::command::FormKind;
 use gdcm::view::command_table::command_table;
 use gdcm::view::every_command::every_command;
+use gdcm::view::tables::{TableKind, table_of};
 
 use super::*;
 
@@ -180,6 +184,32 @@ fn a_table_is_saved_as_csv_and_an_existing_file_is_asked_about() {
     let gain = shown.comparison.delta.gain[pair(&window, "Q", "LON")].unwrap();
     let line = text.lines().find(|line| line.starts_with("Q,LON,yes,yes,yes,")).expect("the response has its line");
     assert!(line.contains(&format!(",{gain:?},")), "{line}");
+}
+
+#[test]
+fn tables_of_the_matrix_and_the_result_have_the_bars_of_their_figures() {
+    let mut window = window();
+    wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
+    let uncertainty = state(&window).uncertainty().unwrap();
+    let (condition, pair) = (state(&window).condition().id(), pair(&window, "Q", "LON"));
+    let bar = |scalar: Scalar| uncertainty.bar(condition, scalar).unwrap();
+    let percent = |half: Option<f64>| format!("{:?}", 100.0 * half.unwrap());
+    let matrix = table_of(state(&window), TableKind::Matrix);
+    assert!(matrix.title.ends_with(", ± of 90 %"), "{}", matrix.title);
+    let cell = |table: &Table, row: &[String], column: &str| {
+        row[table.columns.iter().position(|name| name == column).unwrap()].clone()
+    };
+    let row = matrix.rows.iter().find(|row| row[..2] == ["Q", "LON"]).unwrap();
+    assert_eq!(cell(&matrix, row, "G ± [%]"), percent(bar(Scalar::Gain(pair)).half_width(0.9)));
+    let inner = bar(Scalar::NetGain(pair)).inner_half_width(0.9);
+    assert_eq!(cell(&matrix, row, "net gain ± of identification [%]"), percent(inner));
+    let delay = bar(Scalar::Delay(pair)).half_width(0.9).unwrap();
+    assert_eq!(cell(&matrix, row, "D ± [ms]"), format!("{:?}", 1e3 * delay));
+    let channels = table_of(state(&window), TableKind::Channels);
+    let row = channels.rows.iter().find(|row| row[..2] == ["output", "Q"]).unwrap();
+    let gain = bar(Scalar::ChannelGain(Channel::Output(pair.output)));
+    assert_eq!(cell(&channels, row, "k ± [%]"), percent(gain.half_width(0.9)));
+    assert_eq!(cell(&channels, row, "k ± of identification [%]"), percent(gain.inner_half_width(0.9)));
 }
 
 /// Opens a form by the palette.

@@ -8,7 +8,9 @@ use gdcm::correction::{Outcome, ProofBudget};
 use gdcm::executor::{Executor, Task};
 use gdcm::study::{Engine, LIVE_PROOF, Study, Unobserved};
 
+use super::views::show;
 use super::*;
+use gdcm::view::arrangement::View;
 
 /// Executes as the program does; while it is armed it panics inside one of the tasks, or keeps them waiting.
 #[derive(Clone, Default)]
@@ -176,6 +178,29 @@ fn a_long_computation_can_be_stopped_and_taken_up_again() {
     click(&mut window, "Compute");
     assert!(!state(&window).results.is_behind());
     assert_eq!(state(&window).analysis().map(|analysis| analysis.omega.len()), Some(2000));
+}
+
+#[test]
+fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
+    let mut window = window_with(example(), Setup::default());
+    show(&mut window, View::Evidence);
+    // Five times the points: far more work than the frames until the click give it time for.
+    window.get_by_role_and_label(Role::SpinButton, "Frequencies in the band").set_value_accesskit(1000.0);
+    settle(&mut window);
+    let counts = |window: &Window| state(window).results.background.bars;
+    wait_until(&mut window, "a part of the error bars", |window| {
+        counts(window).is_some_and(|(done, total)| done > 0 && total == 2 * 242)
+    });
+    wait_until(&mut window, "the button", |window| window.query_by_label("Stop").is_some());
+    let told = window.query_all_by_label_contains(" of 484 steps …").count();
+    assert_eq!(told, 2, "in the view that waits for them, and below");
+    window.get_by_label("Stop").click();
+    window.run_steps(3);
+    assert!(state(&window).uncertainty().is_none() && counts(&window).is_none());
+    window.get_by_label("Error bars: stopped; Compute, below, goes on with them");
+    click(&mut window, "Compute");
+    wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
+    assert!(window.query_by_label_contains("Error bars: stopped").is_none());
 }
 
 #[test]

@@ -33,6 +33,7 @@ fn assert_saved(window: &mut Window, view: View, format: FigureFormat, folder: &
 fn every_view_is_saved_from_its_header() {
     let mut window = window();
     let folder = tempfile::tempdir().unwrap();
+    wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
     for view in views_with_figure() {
         click(&mut window, view.name());
         assert_saved(&mut window, view, FigureFormat::Svg, folder.path());

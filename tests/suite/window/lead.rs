@@ -43,6 +43,17 @@ fn the_phase_is_chosen_beside_alpha_with_what_belongs_to_it() {
 }
 
 #[test]
+fn the_settings_say_that_g_from_the_mean_has_no_effect_with_leads() {
+    let mut window = window();
+    choose(&mut window, "Source of G", "mean of pairs");
+    assert!(window.query_by_label("No effect with leads").is_none());
+    choose(&mut window, "Phase correction", "delay or lead");
+    assert!(window.query_by_label("No effect with leads").is_some());
+    choose(&mut window, "Source of G", "representatives");
+    assert!(window.query_by_label("No effect with leads").is_none());
+}
+
+#[test]
 fn the_phase_without_leads_lies_beside_the_corrected_one_and_the_result_tells_servos() {
     let mut window = window();
     let gains_alone = drawn(&window, CurveRole::Corrected);

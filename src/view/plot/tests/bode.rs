@@ -377,3 +377,31 @@ fn a_secondary_click_on_the_ground_marks_the_frequency_there() {
     });
     assert!(marked.is_some_and(|marked| (marked / omega - 1.0).abs() < 1e-3), "{marked:?} {omega}");
 }
+
+/// Lines of many points that the last frame drew in place of an image.
+fn long_lines(harness: &Harness<'_, Model>) -> usize {
+    let is_long = |shape: &egui::Shape| matches!(shape, egui::Shape::Path(path) if path.points.len() > 10);
+    harness.output().shapes.iter().filter(|clipped| is_long(&clipped.shape)).count()
+}
+
+#[test]
+fn three_hundred_perturbed_curves_at_rest_are_one_image_and_the_one_pointed_at_a_line_on_top() {
+    let mut curves = three_curves();
+    curves.extend((0..300u32).map(|k| lag(u64::from(k) + 10, -3.0 - 0.01 * f64::from(k), 1.0, Role::Perturbed)));
+    let mut harness = harness(curves);
+    // Corrected, in both panes; dashes and dots of the nominal model are short.
+    assert_eq!(long_lines(&harness), 2);
+    let at = point_on(&harness, 1, 60);
+    harness.hover_at(at);
+    harness.run();
+    assert_eq!(harness.state().view.hovered(), Some(&numbered(2)));
+    assert_eq!(long_lines(&harness), 4, "and the curve meant");
+    click(&mut harness, at);
+    assert_eq!(clicks(&harness), [BodeEvent::Clicked(numbered(2))]);
+    harness.event(wheel(vec2(0.0, 40.0)));
+    harness.step();
+    assert!(long_lines(&harness) > 300, "what moves is drawn as lines");
+    // The zoom glides.
+    harness.run_steps(20);
+    assert!(long_lines(&harness) < 5);
+}

@@ -1,0 +1,105 @@
+//! Where in a dataset identified models go.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::dataset::{ConditionId, Dataset, DatasetHeader};
+use crate::io::{Opened, OutputSet, add_dataset, load_any, plain};
+use crate::study::TakenModels;
+
+use super::failure::Failure;
+use super::identify_arguments::IdentifyArguments;
+use super::read_record::ReadRecord;
+use super::terminal::say_error;
+
+/// Records that models are identified from together, and the condition that they are of; none without a dataset.
+pub(super) type Group = (Option<ConditionId>, Vec<ReadRecord>);
+
+/// A dataset that models are put into.
+pub(super) struct Destination {
+    pub(super) dataset: Arc<Dataset>,
+    /// Where it is written.
+    pub(super) path: PathBuf,
+    /// The condition; none where each record goes to the one that its name says.
+    condition: Option<ConditionId>,
+}
+
+impl Destination {
+    /// The dataset that the command line names, if any.
+    pub(super) fn asked(arguments: &IdentifyArguments) -> Result<Option<Self>, Failure> {
+        let Some(path) = arguments.into.as_deref() else { return Ok(None) };
+        let dataset = match load_any(path)? {
+            Opened::Dataset(loaded) => loaded.dataset,
+            Opened::Study(_) => {
+                let reason = "expected a dataset, found a study; give the study's dataset".to_owned();
+                return Err(Failure::Option { option: "--into", reason });
+            }
+        };
+        let condition = arguments.condition.map(ConditionId);
+        if let Some(condition) = condition.filter(|id| dataset.condition(*id).is_none()) {
+            let reason = format!("the dataset has no condition {condition}; it has {}", ids(&dataset));
+            return Err(Failure::Option { option: "--condition", reason });
+        }
+        let dataset = match &arguments.description {
+            Some(description) => Arc::new(described(&dataset, description)?),
+            None => dataset,
+        };
+        let path = arguments.out.join(path.file_name().unwrap_or_default());
+        Ok(Some(Self { dataset, path, condition }))
+    }
+
+    /// The records of each condition, in the order of the dataset; what is left out is told on standard error.
+    pub(super) fn groups(&self, records: Vec<ReadRecord>) -> Result<Vec<Group>, Failure> {
+        if self.condition.is_some() {
+            return Ok(vec![(self.condition, records)]);
+        }
+        let mut groups: Vec<(ConditionId, Vec<ReadRecord>)> =
+            self.dataset.conditions().iter().map(|condition| (condition.id(), Vec::new())).collect();
+        for record in records {
+            let id = record.guess.condition_of(&self.dataset);
+            match groups.iter_mut().find(|(condition, _)| Some(*condition) == id) {
+                Some((_, of_condition)) => of_condition.push(record),
+                None => say_error(&format!(
+                    "{}: left out: its name says no condition of the dataset",
+                    plain(&record.table.name)
+                )),
+            }
+        }
+        for (id, _) in groups.iter().filter(|(_, records)| records.is_empty()) {
+            say_error(&format!("condition {id}: no records; its identified models stay as they are"));
+        }
+        groups.retain(|(_, records)| !records.is_empty());
+        if groups.is_empty() {
+            let reason = format!("no name says a condition of the dataset ({}), as cond03 does", ids(&self.dataset));
+            return Err(Failure::Option { option: "RECORD", reason });
+        }
+        Ok(groups.into_iter().map(|(id, records)| (Some(id), records)).collect())
+    }
+
+    /// Puts models and records into a condition.
+    pub(super) fn take(&mut self, condition: ConditionId, taken: &TakenModels) -> Result<(), Failure> {
+        let refused =
+            |reason: String| Failure::NoModels { reason: format!("the dataset does not take the models: {reason}") };
+        let dataset = taken.put_into(&self.dataset, condition).map_err(|error| refused(error.to_string()))?;
+        self.dataset = Arc::new(dataset);
+        Ok(())
+    }
+
+    /// Adds the dataset to what is written.
+    pub(super) fn add(&self, outputs: &mut OutputSet) -> Result<&Path, Failure> {
+        add_dataset(&self.dataset, &self.path, outputs)?;
+        Ok(&self.path)
+    }
+}
+
+fn ids(dataset: &Dataset) -> String {
+    let ids: Vec<String> = dataset.conditions().iter().map(|condition| condition.id().to_string()).collect();
+    ids.join(", ")
+}
+
+fn described(dataset: &Dataset, description: &str) -> Result<Dataset, Failure> {
+    let header = DatasetHeader { description: description.to_owned(), ..dataset.header() };
+    let conditions = dataset.conditions().iter().map(|condition| condition.as_ref().clone()).collect();
+    Dataset::new(header, conditions)
+        .map_err(|error| Failure::Option { option: "--description", reason: error.to_string() })
+}

@@ -475,3 +475,53 @@ impl Progress for RequestProgress<'_> {
         self.desk.outbox.send(Reply::First(FirstResult { generation, dataset, condition, outcome: outcome.clone() }));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dataset::{Band, BundleKind, ModelId};
+    use crate::identification::{FlightRecord, Options, Preparation};
+    use crate::io::embedded_example;
+    use nalgebra::DMatrix;
+
+    /// One model of every condition at so many frequencies that it takes its time.
+    fn long_across() -> AcrossJob {
+        let dataset = embedded_example().unwrap().dataset;
+        let nominal = |condition: &Arc<crate::dataset::Condition>| {
+            ModelId::new(
+                condition.id(),
+                BundleKind::Physics,
+                &condition.bundle(BundleKind::Physics)[condition.nominal()].name,
+            )
+        };
+        let models = dataset.conditions().iter().map(nominal).collect();
+        AcrossJob { dataset, models, grid: (Band::new(0.5, 12.0).unwrap(), 30_000) }
+    }
+
+    /// An identification that does not end at once: 400 s at 50 Hz.
+    fn long_identification() -> IdentifyJob {
+        let wave = |rate: f64| move |sample: usize, _: usize| (rate * (sample as f64).powf(1.3)).sin();
+        let record = FlightRecord {
+            name: "long".to_owned(),
+            time_s: (0..20_000).map(|sample| 0.02 * sample as f64).collect(),
+            inputs: DMatrix::from_fn(20_000, 1, wave(1e-3)),
+            outputs: DMatrix::from_fn(20_000, 1, wave(2e-3)),
+        };
+        let options = Options::new([0.5, 12.0], Preparation::of(&["LON"], &["Q"]));
+        IdentifyJob::new(ConditionId(1), vec![record].into(), options)
+    }
+
+    #[test]
+    fn identifying_anew_begins_nothing_else_again_that_was_stopped() {
+        let worker = Worker::start(Arc::new(Engine::default), Arc::new(|| ())).unwrap();
+        let (across, identifications) = (Some(long_across()), vec![long_identification()]);
+        worker.want_beside(Beside { across, identifications, ..Beside::default() });
+        worker.stop();
+        assert!(worker.background().stopped && worker.background().identification.is_none());
+        worker.resume_identifications();
+        assert!(worker.background().identification.is_some(), "it is begun again");
+        assert!(worker.background().stopped && worker.background().views == 0, "what a view waits for is not");
+        worker.resume();
+        assert!(!worker.background().stopped && worker.background().views == 1);
+    }
+}

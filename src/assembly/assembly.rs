@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use crate::dataset::{Dataset, DatasetDraft, Origin};
+use crate::dataset::{Dataset, DatasetDraft, Origin, ResponseDraft};
 
 use super::channel_match::ChannelMatch;
 use super::found_model::{ChannelLabel, FoundModel};
@@ -347,8 +347,13 @@ fn name_problems(condition: i64, parts: &[(usize, &Part)]) -> Vec<Problem> {
         match (earlier.found.response(), part.found.response()) {
             (Some(a), Some(b)) if a.omega == b.omega => {}
             (Some(_), Some(_)) => {
+                let grid = |of: &ResponseDraft| {
+                    let end = |omega: Option<&f64>| omega.copied().unwrap_or(f64::NAN);
+                    (of.omega.len(), [end(of.omega.first()), end(of.omega.last())])
+                };
                 let (first, second) = (earlier.found.key(), part.found.key());
-                problems.push(Problem::of(*index, ProblemKind::Grids { first, second }));
+                let kind = ProblemKind::Grids { first, first_grid: grid(a), second, second_grid: grid(b) };
+                problems.push(Problem::of(*index, kind));
             }
             _ => {
                 let bundle = if is_identified { "identified" } else { "physics" };

@@ -121,16 +121,29 @@ pub enum ProblemKind {
     #[error("a {} model needs matrices; this is measured data", .0.word())]
     MeasuredPhysics(RowRole),
     /// Measured parts of one model are on different frequencies.
-    #[error("measured responses of one model must be at the same frequencies; those of {first} and {second} are not")]
+    #[error(
+        "measured responses of one model must be at the same frequencies; {first} has {} and {second} has {}. Estimate them at the same ones, \
+         or give one of them another name: it is a model of its own then",
+        grid_words(*first_grid), grid_words(*second_grid)
+    )]
     Grids {
         /// One file.
         first: String,
-        /// The other.
+        /// How many frequencies it has, the lowest and the highest \[rad/s\].
+        first_grid: (usize, [f64; 2]),
+        /// The other file.
         second: String,
+        /// Its frequencies.
+        second_grid: (usize, [f64; 2]),
     },
     /// What the dataset itself refuses.
     #[error("{0}")]
     Dataset(String),
+}
+
+/// "40 from 0.3 to 12.3 rad/s".
+fn grid_words((count, [lowest, highest]): (usize, [f64; 2])) -> String {
+    format!("{count} from {lowest:.1} to {highest:.1} rad/s")
 }
 
 /// A problem, and the model that has it.

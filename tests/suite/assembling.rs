@@ -397,6 +397,22 @@ fn names_are_said_for_the_channels_of_one_model_and_a_wrong_number_of_them_is_to
 }
 
 #[test]
+fn measured_responses_of_one_model_at_differing_frequencies_are_told_with_what_mends_it() {
+    let folder = tempfile::tempdir().unwrap();
+    small_folder(folder.path());
+    let frf: String = (1..=30).map(|step| format!("{},0,-10\n", 0.5 * f64::from(step))).collect();
+    let text = format!("omega [rad/s],mag [dB],phase [deg]\n{frf}");
+    std::fs::write(folder.path().join("c1_60kt/frf_P_LAT.csv"), text).unwrap();
+    let found = found_in(folder.path());
+    let rules = proposed_rules("small", &found.models);
+    let told: Vec<String> = Assembly::new(found.models, rules).told().into_iter().map(|(_, words)| words).collect();
+    let words = told.iter().find(|words| words.contains("same frequencies")).unwrap_or_else(|| panic!("{told:#?}"));
+    assert!(words.contains("frf_P_LAT.csv has 30 from 0.5 to 15.0 rad/s"), "{words}");
+    assert!(words.contains("frf_Q_LON.csv has 40 from 0.3 to 12.3 rad/s"), "{words}");
+    assert!(words.ends_with("or give one of them another name: it is a model of its own then"), "{words}");
+}
+
+#[test]
 fn the_flight_records_of_a_dataset_stay_with_its_condition_and_are_found_from_where_the_new_one_lies() {
     let folder = tempfile::tempdir().unwrap();
     let mut text: serde_json::Value = serde_json::from_str(include_str!("../data/small-dataset.json")).unwrap();

@@ -41,6 +41,10 @@ pub(super) fn outcome_ui(
             offered_menu_ui(ui, (&take, hint), |offered| commands.push(RecordsCommand::TakeAll(offered).into()));
         }
     }
+    if let Some([low, high]) = records.band {
+        ui.label(small(format!("Band from {low:.2} to {high:.1} rad/s, not the study's"), palette.dim_text));
+        actions_ui(ui, vec![("Take the study's band".to_owned(), RecordsCommand::SetBand(None))], commands);
+    }
     if let Some(job) = state.records.running(state.condition().id()) {
         let told = job.told();
         let (done, total) = state.results.background.identification.unwrap_or((0, 0));

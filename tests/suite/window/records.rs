@@ -188,6 +188,8 @@ fn what_is_late_in_all_records_and_a_band_that_they_do_not_show_are_mended_by_th
     window.run_steps(2);
     let [low, high] = records(&window).unwrap().band.expect("the band was taken");
     assert!(low == 0.5 && (7.0..=11.0).contains(&high), "{high}");
+    click(&mut window, "Take the study's band");
+    assert_eq!(records(&window).unwrap().band, None);
 }
 
 #[test]

@@ -439,10 +439,12 @@ fn bars_of_a_population_cover_the_truth_as_often_as_they_say() {
     assert!((0.86..=0.99).contains(&covered), "{covered}");
 }
 
-/// The known spread, the flight's model of the first condition with a band of this deviation \[dB\].
+/// The known spread, the first condition with one model of the flight that has a band of this deviation \[dB\]: it takes the place of
+/// the spread that one model has not.
 fn dataset_with_band(sd_db: f64) -> Value {
     let (_, case) = study_of_known_spread();
     let mut dataset = case["dataset"].clone();
+    dataset["conditions"][0]["identified_models"].as_array_mut().unwrap().truncate(1);
     let model = &mut dataset["conditions"][0]["identified_models"][0];
     let (outputs, inputs) = (list(&model["D"]).len(), list(&model["D"][0]).len());
     let table = |deviation: f64| vec![vec![vec![deviation; 2]; inputs]; outputs];

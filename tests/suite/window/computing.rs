@@ -5,6 +5,7 @@ use std::sync::{Arc, Condvar, Mutex, Once};
 
 use gdcm::app::{Pool, fault};
 use gdcm::correction::{Outcome, ProofBudget};
+use gdcm::dataset::Condition;
 use gdcm::executor::{Executor, Task};
 use gdcm::study::{Engine, LIVE_PROOF, Study, Unobserved};
 
@@ -188,11 +189,13 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     window.get_by_role_and_label(Role::SpinButton, "Frequencies in the band").set_value_accesskit(1000.0);
     settle(&mut window);
     let counts = |window: &Window| state(window).results.background.bars;
+    let bundles = |of: &Condition| of.bundle(BundleKind::Physics).len() + of.bundle(BundleKind::Identified).len();
+    let models: usize = state(&window).dataset().conditions().iter().map(|of| bundles(of)).sum();
     wait_until(&mut window, "a part of the error bars", |window| {
-        counts(window).is_some_and(|(done, total)| done > 0 && total == 2 * 242)
+        counts(window).is_some_and(|(done, total)| done > 0 && total == 2 * models)
     });
     wait_until(&mut window, "the button", |window| window.query_by_label("Stop").is_some());
-    let told = window.query_all_by_label_contains(" of 484 steps …").count();
+    let told = window.query_all_by_label_contains(&format!(" of {} steps …", 2 * models)).count();
     assert_eq!(told, 2, "in the view that waits for them, and below");
     window.get_by_label("Stop").click();
     window.run_steps(3);

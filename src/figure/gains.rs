@@ -29,8 +29,8 @@ const OF_BARS: f64 = 0.5;
 /// Brackets of differences at one airspeed.
 const BRACKET_BEYOND: Stroke = Stroke::solid(RED, 0.7);
 const BRACKET_WITHIN: Stroke = Stroke::solid(GREY, 0.4);
-const BEYOND: &str = "times what the bundles explain";
-const WITHIN: &str = "within what they can make";
+const BEYOND: &str = "difference, times what the bundles explain";
+const WITHIN: &str = "difference within what they can make";
 /// Height of a plot as a part of its width, and where bars and brackets stand in it.
 const ASPECTS: [f64; 2] = [0.95, 1.3];
 /// The ground of the bounds.
@@ -253,7 +253,7 @@ impl Quantity<'_> {
         let inner = ends(&|bar| bar.inner_interval(level));
         let inner = Intervals { name: "identification in it".to_owned(), stroke: INNER_BAR, ends: inner };
         let outer = Intervals { name: whole, stroke: BAR, ends: ends(&|bar| bar.interval(level)) };
-        [inner, outer].into_iter().filter(|bars| !bars.ends.is_empty()).collect()
+        [outer, inner].into_iter().filter(|bars| !bars.ends.is_empty()).collect()
     }
 
     /// For each airspeed the difference that is the most times what the bundles explain (M13.4).
@@ -275,7 +275,7 @@ impl Quantity<'_> {
         };
         let within = Brackets { name: WITHIN.to_owned(), stroke: BRACKET_WITHIN, brackets: of(false) };
         let beyond = Brackets { name: BEYOND.to_owned(), stroke: BRACKET_BEYOND, brackets: of(true) };
-        [within, beyond].into_iter().filter(|brackets| !brackets.brackets.is_empty()).collect()
+        [beyond, within].into_iter().filter(|brackets| !brackets.brackets.is_empty()).collect()
     }
 
     /// The axis of values: bars are seen as far as they leave the dots their room.

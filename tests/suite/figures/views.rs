@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use gdcm::figure::{Across, BodeOptions, FrequencyUnit, Mark, Measure, Role};
-use gdcm::uncertainty::Split;
+use gdcm::figure::{Across, Area, BodeOptions, FrequencyUnit, Mark, Measure, Role, Shape};
+use gdcm::uncertainty::{Scalar, Split};
 
 use super::*;
 
@@ -187,4 +187,54 @@ fn without_error_bars_there_is_no_evidence() {
     assert_eq!(request.figure(Some(&bare), None), None);
     let off_axis = FigureRequest { pairs: vec![example.pair("P", "LON")], ..request };
     assert_eq!(off_axis.figure(Some(&example.analysis), None), None, "an off-axis response has no split");
+}
+
+/// Where the numbers of dots and the factors of brackets stand on paper.
+fn labels_on_paper(figure: &Figure, width: ColumnWidth) -> Vec<(String, Area)> {
+    let label = |shape: &Shape| match shape {
+        Shape::Text(text) if text.color != Color::INK && text.words.len() <= 6 => {
+            let length = gdcm::figure::width(&text.words) * text.size_pt;
+            // Figures have no descenders.
+            let height = 0.74 * text.size_pt;
+            Some((text.words.clone(), Area::new(text.at[0], text.at[1] - height, length, height)))
+        }
+        _ => None,
+    };
+    figure.drawing(width).shapes.iter().filter_map(label).collect()
+}
+
+#[test]
+fn numbers_and_factors_of_net_gains_do_not_cover_one_another_on_paper() {
+    let example = &*EXAMPLE;
+    let figure = example.figure(FigureKind::NetGain, example.on_axis());
+    let uncertainty = example.analysis.uncertainty.as_ref().unwrap();
+    let greatest = example.on_axis().into_iter().flat_map(|pair| uncertainty.greatest_differences(pair));
+    let factors = greatest.filter(|of| of.is_beyond(uncertainty.level)).count();
+    for width in ColumnWidth::BOTH {
+        let labels = labels_on_paper(&figure, width);
+        assert_eq!(labels.iter().filter(|(words, _)| words.ends_with('×')).count(), factors, "{width:?}");
+        assert_eq!(labels.len(), 5 * 11 + factors, "every condition of every response has its number: {width:?}");
+        for (index, (words, area)) in labels.iter().enumerate() {
+            for (other, beside) in &labels[..index] {
+                assert!(area.overlap(beside) < 0.05 * area.size(), "{width:?}: {words} at {area:?} and {other}");
+            }
+        }
+    }
+}
+
+#[test]
+fn net_gains_on_paper_have_their_bars_and_brackets() {
+    let example = &*EXAMPLE;
+    let pair = example.pair("NZ", "COL");
+    let figure = example.figure(FigureKind::NetGain, vec![pair]);
+    let [beyond, within] = ["difference, times what the bundles explain", "difference within what they can make"];
+    let names = ["bar of 90 %", "identification in it", beyond, within];
+    assert!(names.iter().all(|name| legend(&figure).iter().any(|text| text == name)), "{:?}", legend(&figure));
+    let uncertainty = example.analysis.uncertainty.as_ref().unwrap();
+    let [low, _] = uncertainty.bar(CONDITION, Scalar::NetGain(pair)).unwrap().interval(0.9).unwrap();
+    let rows = figure.tables().remove(0).rows;
+    let lower: Vec<&String> = rows.iter().filter(|row| row[0] == "bar of 90 %, lower").map(|row| &row[3]).collect();
+    assert!(lower.len() == 11 && lower.contains(&&format!("{:?}", low.exp())), "{low} in {lower:?}");
+    let bracket: Vec<&Vec<String>> = rows.iter().filter(|row| row[0] == beyond).collect();
+    assert!(bracket.len() >= 2 && bracket.iter().all(|row| row[1].ends_with('×')), "{bracket:?}");
 }

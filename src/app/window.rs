@@ -297,7 +297,7 @@ impl GdcmApp {
         let side = Frame::new().fill(palette.panel).inner_margin(Margin { left: 10, right: 4, top: 4, bottom: 4 });
         let width = ui.available_width();
         // The sides give way before the plots do, but have room for error bars from the start: nothing moves when these come.
-        let (left, right) = ((0.19 * width).clamp(215.0, 330.0), (0.27 * width).clamp(352.0, 430.0));
+        let (left, right) = ((0.19 * width).clamp(215.0, 330.0), (0.27 * width).clamp(366.0, 430.0));
         let panel = Panel::left("conditions and models").frame(side).default_size(left).size_range(190.0..=460.0);
         panel.show(ui, |ui| left_ui(ui, state, palette, commands));
         let panel = Panel::right("constraints and result").frame(side).default_size(right).size_range(250.0..=620.0);

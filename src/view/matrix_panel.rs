@@ -27,6 +27,10 @@ const LEAST_CELL_WIDTH: f32 = 58.0;
 const ROW_LABEL_WIDTH: f32 = 30.0;
 const HEADER_HEIGHT: f32 = 18.0;
 const LOCK_SIZE: f32 = 15.0;
+/// The middle of G is so far from the left and from the right edge of its cell at least, beside the box and the bar \[pt\].
+const GAIN_PLACES: [f32; 2] = [34.0, 44.0];
+/// In a narrower cell the bar has no room beside G, and is told where the pointer is \[pt\].
+const LEAST_WITH_BAR: f32 = 74.0;
 /// Two figures of D this far apart \[s\] stand beside one another.
 const APART_S: f64 = 2e-3;
 
@@ -212,9 +216,11 @@ impl<'a> Cell<'a> {
 
     fn paint_figures(&self, ui: &Ui, rect: Rect, palette: &Palette) {
         let text = |y: f32, text: &str, size: f32, color: Color32| {
-            // Clear of the box in the corner, where the cell is narrow.
-            let aside = if y < LOCK_SIZE + 4.0 { (40.0 - 0.5 * rect.width()).max(0.0) } else { 0.0 };
-            let place = pos2(rect.center().x + aside, rect.top() + y);
+            // Clear of the box in the left corner and of the bar's room in the right one, where the cell is narrow.
+            let is_first = y < LOCK_SIZE + 4.0;
+            let [least, most] = [rect.left() + GAIN_PLACES[0], rect.right() - GAIN_PLACES[1]];
+            let x = if is_first { rect.center().x.min(most).max(least) } else { rect.center().x };
+            let place = pos2(x, rect.top() + y);
             ui.painter().text(place, Align2::CENTER_CENTER, text, FontId::proportional(size), color);
         };
         let Some(shown) = self.shown else { return };
@@ -225,7 +231,7 @@ impl<'a> Cell<'a> {
         };
         let strong = if self.fitted { palette.text } else { palette.rejected };
         text(13.0, &format!("{gain:.2}"), 14.5, strong);
-        if let Some(half) = self.half(Scalar::Gain(self.pair)) {
+        if let Some(half) = self.half(Scalar::Gain(self.pair)).filter(|_| rect.width() >= LEAST_WITH_BAR) {
             let place = pos2(rect.right() - 3.0, rect.top() + 13.0);
             let words = format!("±{:.0}%", 100.0 * half);
             ui.painter().text(place, Align2::RIGHT_CENTER, words, FontId::proportional(9.0), palette.dim_text);

@@ -46,7 +46,10 @@ struct Views<'a> {
 impl Views<'_> {
     fn header_ui(&mut self, ui: &mut Ui, view: View) {
         let (state, palette) = (&*self.state, self.palette);
-        figure_button_ui(ui, view, self.commands);
+        // That of the evidence stands in its first line: it has no other controls.
+        if view != View::Evidence {
+            figure_button_ui(ui, view, self.commands);
+        }
         match view {
             View::NetGain => views::net_gain_header_ui(ui, state, palette, self.commands),
             View::Channels => views::channels_header_ui(ui, state, self.commands),
@@ -99,7 +102,7 @@ fn header_width(view: View) -> f32 {
         View::Records => 380.0,
         View::Channels => 410.0,
         View::Across => 330.0,
-        View::NetGain => 660.0,
+        View::NetGain => views::NET_GAIN_CONTROLS,
         View::Assessment => 640.0,
     }
 }

@@ -39,6 +39,11 @@ impl Tiles {
         (self.size.x / ASPECT).min(self.size.y) - PRICE_OF_GAP * gaps as f32
     }
 
+    /// Size of all tiles together.
+    fn all(self) -> Vec2 {
+        vec2(self.columns as f32 * self.size.x, self.rows as f32 * self.size.y)
+    }
+
     /// The place of a tile in an area that begins at `origin`.
     fn rect(self, index: usize, origin: egui::Pos2) -> Rect {
         let (column, row) = (index % self.columns, index / self.columns);
@@ -56,11 +61,15 @@ pub(super) fn tiles_ui(
     least: Vec2,
     mut tile_ui: impl FnMut(&mut Ui, usize, Rect),
 ) {
-    let tiles = Tiles::arrange(count, rect.size(), least);
-    let size = vec2(tiles.columns as f32 * tiles.size.x, tiles.rows as f32 * tiles.size.y);
+    let mut tiles = Tiles::arrange(count, rect.size(), least);
+    let fits = tiles.all().x <= rect.width() + 0.5 && tiles.all().y <= rect.height() + 0.5;
+    if !fits {
+        // What is wider than the room leaves some of its height to the scroll bar.
+        tiles.size.y = (tiles.size.y - ui.spacing().scroll.allocated_width()).max(least.y);
+    }
+    let size = tiles.all();
     let builder = UiBuilder::new().id_salt(name).max_rect(rect);
     ui.scope_builder(builder, |ui| {
-        let fits = size.x <= rect.width() + 0.5 && size.y <= rect.height() + 0.5;
         let mut draw = |ui: &mut Ui| {
             let origin = pos2(ui.max_rect().left(), ui.max_rect().top());
             ui.allocate_rect(Rect::from_min_size(origin, size), egui::Sense::hover());

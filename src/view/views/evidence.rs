@@ -1,17 +1,21 @@
 //! What the scatter of the net gains is made of, which differences are in earnest, and what the schedule needs.
 
-use egui::{Align2, Color32, FontId, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align, Align2, Color32, FontId, Layout, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
 
-use crate::study::{Edit, Setting, Uncertainty, difference_table, second_variable_table};
+use crate::study::{Edit, Setting, Table, Uncertainty, difference_table, second_variable_table};
 use crate::uncertainty::Split;
+use crate::view::arrangement::View;
 use crate::view::command::Command;
 use crate::view::evidence_scene::evidence_table;
+use crate::view::figures::figure_button_ui;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::state::State;
-use crate::view::table_view::{TableLook, table_ui};
+use crate::view::table_view::{Sorting, TableClick, TableLook, table_ui};
 
 /// Height of the bar of one scatter \[pt\].
 const BAR_HEIGHT: f32 = 15.0;
+/// A table is not higher; it scrolls by itself then \[pt\].
+const MOST_TABLE: f32 = 330.0;
 /// Width of what stands before the bars, and of what stands behind them \[pt\].
 const LABELS: [f32; 2] = [170.0, 230.0];
 
@@ -22,6 +26,10 @@ pub fn evidence_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
         return;
     };
     let mut sorting = state.display.evidence_tables;
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(uncertainty.differences_in_words()).strong());
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| figure_button_ui(ui, View::Evidence, commands));
+    });
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         answer_ui(ui, state, &uncertainty, palette);
         scatter_ui(ui, state, &uncertainty, palette);
@@ -33,7 +41,6 @@ pub fn evidence_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
 /// What the differences come to, in a sentence each.
 fn answer_ui(ui: &mut Ui, state: &State, uncertainty: &Uncertainty, palette: &Palette) {
     let beyond: Vec<_> = uncertainty.differences.iter().filter(|of| of.is_beyond(uncertainty.level)).collect();
-    ui.label(RichText::new(uncertainty.differences_in_words()).strong());
     for of in beyond {
         let words = format!("{}: {}", state.dataset().pair_name(of.pair), of.words(uncertainty.level));
         ui.label(RichText::new(words).size(SMALL_SIZE).color(palette.text));
@@ -66,6 +73,7 @@ fn scatter_ui(ui: &mut Ui, state: &State, uncertainty: &Uncertainty, palette: &P
         {
             split_ui(ui, &format!("{name} {about}"), split.as_ref(), uncertainty.level, palette);
         }
+        ui.add_space(3.0);
     }
     ui.add_space(6.0);
 }
@@ -112,7 +120,7 @@ fn tables_ui(
     ui: &mut Ui,
     state: &mut State,
     uncertainty: &Uncertainty,
-    (sorting, palette): (&mut [crate::view::table_view::Sorting; 3], &Palette),
+    (sorting, palette): (&mut [Sorting; 3], &Palette),
     commands: &mut Vec<Command>,
 ) {
     let heading = |ui: &mut Ui, text: &str| ui.label(RichText::new(text).size(SMALL_SIZE).strong());
@@ -123,7 +131,7 @@ fn tables_ui(
         (column == 6 && beyond).then_some(palette.warning)
     };
     let look = TableLook { color: &color, selected: &|_| false };
-    if let Some(click) = table_ui(ui, &table, &mut sorting[0], &look, palette, commands)
+    if let Some(click) = whole_table_ui(ui, &table, &mut sorting[0], &look, palette, commands)
         && let Some(of) = differences.get(click.row)
     {
         commands.push(Command::SelectCondition(of.conditions[0]));
@@ -132,7 +140,7 @@ fn tables_ui(
     let plain = TableLook { color: &|_, _| None, selected: &|_| false };
     let table = second_variable_table(state.dataset(), uncertainty);
     heading(ui, &table.title);
-    table_ui(ui, &table, &mut sorting[1], &plain, palette, commands);
+    whole_table_ui(ui, &table, &mut sorting[1], &plain, palette, commands);
     let mut cached = std::mem::take(&mut state.display.evidence);
     cached.refresh(state);
     if let Some((_, evidence)) = cached.found() {
@@ -143,7 +151,7 @@ fn tables_ui(
         );
         let schedule = state.study.settings.schedule;
         let look = TableLook { color: &|_, _| None, selected: &|row| kinds.get(row) == Some(&schedule.kind) };
-        if let Some(click) = table_ui(ui, &table, &mut sorting[2], &look, palette, commands)
+        if let Some(click) = whole_table_ui(ui, &table, &mut sorting[2], &look, palette, commands)
             && let Some(&kind) = kinds.get(click.row)
         {
             let schedule = crate::schedule::ScheduleSettings { kind, ..schedule };
@@ -151,4 +159,19 @@ fn tables_ui(
         }
     }
     state.display.evidence = cached;
+}
+
+/// A table among others in something that scrolls: as high as its rows.
+fn whole_table_ui(
+    ui: &mut Ui,
+    table: &Table,
+    sorting: &mut Sorting,
+    look: &TableLook<'_>,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) -> Option<TableClick> {
+    let row = ui.spacing().interact_size.y + 3.0;
+    let bar = ui.spacing().scroll.allocated_width();
+    let height = (row * (table.rows.len() + 1) as f32 + bar + 4.0).min(MOST_TABLE);
+    ui.allocate_ui(vec2(ui.available_width(), height), |ui| table_ui(ui, table, sorting, look, palette, commands)).inner
 }

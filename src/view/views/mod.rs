@@ -20,6 +20,6 @@ pub use channels::{channels_header_ui, channels_view_ui};
 pub use compare::compare_view_ui;
 pub use error::{error_header_ui, error_view_ui};
 pub use evidence::evidence_view_ui;
-pub use net_gain::{net_gain_header_ui, net_gain_view_ui};
+pub use net_gain::{NET_GAIN_CONTROLS, net_gain_header_ui, net_gain_view_ui};
 pub use overview::overview_view_ui;
 pub use poles::{poles_header_ui, poles_view_ui};

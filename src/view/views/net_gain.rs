@@ -21,12 +21,12 @@ const WIDEST_TOLERANCE_KT: f64 = 100.0;
 /// The key of the dots is not narrower \[pt\].
 const LEAST_KEY: f32 = 120.0;
 /// Room \[pt\] in which the controls of this view stand in one line.
-const ONE_LINE: f32 = 660.0;
+pub const NET_GAIN_CONTROLS: f32 = 760.0;
 
 /// What the plots show, the form of the schedule, and the key of the dots, laid out from right to left; behind a button where they
 /// have no room.
 pub fn net_gain_header_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    if ui.available_width() < ONE_LINE {
+    if ui.available_width() < NET_GAIN_CONTROLS {
         let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
         MenuButton::new("Schedule ▾").config(config).ui(ui, |ui| controls_ui(ui, state, palette, commands));
     } else {

@@ -346,7 +346,7 @@ fn name_problems(condition: i64, parts: &[(usize, &Part)]) -> Vec<Problem> {
         let Some(earlier) = seen.insert((is_identified, &part.row.name), part) else { continue };
         match (earlier.found.response(), part.found.response()) {
             (Some(a), Some(b)) if a.omega == b.omega => {}
-            (Some(_), Some(_)) => {
+            (Some(a), Some(b)) => {
                 let grid = |of: &ResponseDraft| {
                     let end = |omega: Option<&f64>| omega.copied().unwrap_or(f64::NAN);
                     (of.omega.len(), [end(of.omega.first()), end(of.omega.last())])

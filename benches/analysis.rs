@@ -34,7 +34,7 @@ fn example() -> Arc<Dataset> {
     embedded_example().expect("the embedded example is a dataset").dataset
 }
 
-/// One condition: 19 physics and 3 identified models, 200 frequencies.
+/// One condition: 19 physics and 12 identified models, 200 frequencies.
 fn stages(criterion: &mut Criterion) {
     let dataset = example();
     let condition = &dataset.conditions()[9];

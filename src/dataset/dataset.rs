@@ -193,7 +193,7 @@ impl Dataset {
 
     /// One model.
     pub fn model(&self, id: &ModelId) -> Option<&Model> {
-        self.condition(id.condition)?.bundle(id.bundle).iter().find(|model| model.name == id.name)
+        self.condition(id.condition)?.model(id.bundle, &id.name)
     }
 
     /// A response in words, input first: "LON → Q".

@@ -142,8 +142,9 @@ fn held_gains_out_of_reach_are_explained_and_the_explanation_is_exported() {
     assert!(!solution.matched && solution.proven);
     let conflict = solution.explanation.conflicts.iter().find(|c| c.entries == [("Q".to_owned(), "LON".to_owned())]);
     let upper = conflict.and_then(|conflict| conflict.upper).expect("the bound that would do is written");
-    // k_Q k_LON = 1.15 needs a bound of at least its square root, 1.0723, rounded up to three digits.
-    assert_eq!(upper, 1.08);
+    // k_Q k_LON = G needs a bound of at least its square root, rounded up to three digits.
+    let gain = state(&window).shown().unwrap().comparison.delta.gain[pair(&window, "Q", "LON")].unwrap();
+    assert_eq!(upper, (100.0 * gain.sqrt()).ceil() / 100.0);
 }
 
 #[test]

@@ -105,6 +105,20 @@ fn records_are_chosen_held_out_and_left_out_and_an_identification_is_stopped() {
 }
 
 #[test]
+fn the_records_that_a_dataset_names_are_read_out_of_their_archive() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/example-dataset.json.gz");
+    let mut window = window_with(load_any(&path).unwrap(), warm());
+    click(&mut window, CONDITION_10);
+    show(&mut window, View::Records);
+    wait_until(&mut window, "the records", |window| rows(window) == 9);
+    let records = &state(&window).records.conditions[&CONDITION_10_ID];
+    let held_out: Vec<&str> =
+        records.rows.iter().filter(|row| row.guess.held_out).map(|row| row.table.name.as_str()).collect();
+    assert_eq!((held_out, state(&window).records.faults.len()), (vec!["cond10_validation"], 0));
+    assert!(records.rows.iter().all(|row| row.problems.is_empty() && row.used));
+}
+
+#[test]
 fn files_of_records_go_to_the_condition_that_their_names_say_and_what_is_wrong_is_told() {
     let folder = tempfile::tempdir().unwrap();
     let text = |columns: &str| {

@@ -171,7 +171,7 @@ fn wait_for_bars(window: &mut Window) {
 
 #[test]
 fn the_evidence_answers_which_differences_are_in_earnest() {
-    let mut window = window();
+    let mut window = window_with(Opened::Dataset(crate::REFERENCE_DATASET.clone()), warm());
     show(&mut window, View::Evidence);
     wait_for_bars(&mut window);
     // The independent numpy code finds the ratio 5.39 with the three suggested models of condition 10 rejected, which 3 and 5 lack.

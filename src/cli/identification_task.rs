@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use crate::app::Pool;
 use crate::assembly::ChannelRule;
-use crate::dataset::{Band, ConditionId, ConditionRecord};
+use crate::dataset::{Band, BundleKind, ConditionId, ConditionRecord, Dataset};
 use crate::identification::{
-    ChannelPreparation, FlightRecord, Identification, IdentificationError, Options, Preparation, identify,
+    ChannelPreparation, FlightRecord, Identification, IdentificationError, Options, Preparation, Role, identify,
 };
 use crate::io::IdentifiedModels;
 use crate::records::{RecordChannels, RecordTable};
-use crate::study::pieces_used;
+use crate::study::{LateChannel, pieces_used};
 
 use super::destination::Group;
 use super::failure::Failure;
@@ -65,6 +65,18 @@ impl IdentificationTask {
         identified_models(found, &self.options, &with_tables, channels)
     }
 
+    /// A channel that is late in all records by what the nominal physics model of the condition says, and the option that takes its
+    /// delay out.
+    pub(super) fn late_channel(&self, found: &Identification, dataset: &Dataset) -> Option<String> {
+        let condition = dataset.condition(self.condition?)?;
+        let late = LateChannel::of_condition(&found.measured, self.options.band, condition)?;
+        let signal = late.signal(dataset)?;
+        let Preparation { inputs, outputs, .. } = &self.options.preparation;
+        let known = if late.role == Role::Input { inputs } else { outputs }.get(late.index)?.delay_s;
+        let words = late.words(&signal.name, &condition.bundle(BundleKind::Physics).get(condition.nominal())?.name);
+        Some(format!("{words} (--delay {}={:.3})", signal.name, known + late.delay_s))
+    }
+
     /// What the dataset at `dataset` says of the records.
     pub(super) fn entries(&self, found: &Identification, asked: &[PathBuf], dataset: &Path) -> Vec<ConditionRecord> {
         let used = self.flights.iter().zip(&found.record_uses).map(|(flight, used)| pieces_used(flight, used));
@@ -88,8 +100,9 @@ impl IdentificationTask {
 
 /// How the channels are prepared: their known delays are taken out.
 pub(super) fn preparation(channels: &RecordChannels, delays: &[ChannelDelay]) -> Result<Preparation, Failure> {
-    let mut all = channels.inputs.iter().chain(&channels.outputs);
-    if let Some(unknown) = delays.iter().find(|delay| all.all(|rule| rule.name != delay.channel)) {
+    let is_known =
+        |delay: &ChannelDelay| channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == delay.channel);
+    if let Some(unknown) = delays.iter().find(|delay| !is_known(delay)) {
         let reason = format!("{} is none of the channels", unknown.channel);
         return Err(Failure::Option { option: "--delay", reason });
     }

@@ -42,7 +42,8 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
                 continue;
             }
         };
-        let models = task.models(&found, &channels);
+        let mut models = task.models(&found, &channels);
+        models.cautions.extend(destination.as_ref().and_then(|of| task.late_channel(&found, &of.dataset)));
         models.cautions.iter().for_each(|caution| say_error(&format!("{}{}", task.label(), plain(caution))));
         make_directory(&arguments.out)?;
         add_identified(&models, file, &mut outputs)?;

@@ -16,8 +16,8 @@
 //!
 //! `rest`, what all channels have in common, is no matter of one channel: the leads say it (M15, section 6).
 
-use crate::dataset::{Band, Dynamics, Pair};
-use crate::identification::{MeasuredResponse, Role, TRUSTED_COHERENCE};
+use crate::dataset::{Band, BundleKind, Condition, Dataset, Dynamics, Pair};
+use crate::identification::{MeasuredResponse, Role, Signal, TRUSTED_COHERENCE};
 use crate::response::{FrequencyGrid, FrequencyResponse, median, unwrap};
 use crate::units::{s_to_ms, telling};
 
@@ -56,6 +56,19 @@ impl LateChannel {
         let most = suspects.iter().map(|suspect| suspect.explained).fold(0.0, f64::max);
         let suspects = suspects.into_iter().filter(|suspect| suspect.explained >= 0.5 * most);
         suspects.min_by(|a, b| a.rest_s.abs().total_cmp(&b.rest_s.abs())).map(|suspect| suspect.channel)
+    }
+
+    /// The same against the nominal physics model of a condition.
+    pub fn of_condition(measured: &MeasuredResponse, band: [f64; 2], condition: &Condition) -> Option<Self> {
+        let nominal = condition.bundle(BundleKind::Physics).get(condition.nominal())?;
+        Self::of(measured, band, &nominal.dynamics)
+    }
+
+    /// The channel of a dataset.
+    pub fn signal(&self, dataset: &Dataset) -> Option<Signal> {
+        let channels = if self.role == Role::Input { dataset.inputs() } else { dataset.outputs() };
+        let name = channels.get(self.index)?.name.clone();
+        Some(Signal { role: self.role, index: self.index, name })
     }
 
     /// What is said of it; `name` is the channel's, `physics` the physics model's.

@@ -9,6 +9,7 @@ use gdcm::io::{embedded_example, example_records, load_dataset, records_of_bytes
 use gdcm::records::{RecordChannels, RecordGuess, RecordLayout, TimeWish};
 
 use crate::commands::Desk;
+use crate::window::records::late_dataset;
 
 /// The 99 records of the example.
 pub(crate) fn archive() -> Vec<u8> {
@@ -110,6 +111,10 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
     refused(&all("sweep_1.csv", &["--hold-out", "other.csv"]), &["--hold-out: \"other.csv\" is none of the records"]);
     refused(&all("sweep_1.csv", &["--hold-out", "sweep_1.csv"]), &["--hold-out: every record is held out"]);
     refused(&all("sweep_1.csv", &["--delay", "X=0.02"]), &["--delay: X is none of the channels"]);
+    refused(
+        &all("sweep_1.csv", &["--delay", "P=0.02", "--delay", "LON=0.01", "--delay", "X=0.02"]),
+        &["--delay: X is none of the channels"],
+    );
     refused(&all("sweep_1.csv", &["--delay", "P"]), &["--delay", "expected CHANNEL=SECONDS"]);
     refused(&all("missing.csv", &[]), &["missing.csv: there is no such file"]);
     refused(
@@ -197,4 +202,24 @@ fn channels_units_and_band_are_the_dataset_s_where_one_is_given() {
         !ended.error.contains("roll rate\", rad/s"),
         "the engineer's column stands in place of the name: {ended:?}"
     );
+}
+
+#[test]
+fn a_channel_that_is_late_in_all_records_is_told_with_the_option_that_takes_its_delay_out() {
+    let desk = Desk::new();
+    late_dataset(&desk.path("."));
+    let identified = |more: &[&str], out: &str| {
+        let files = ["flight_0.csv", "flight_1.csv", "flight_2.csv", "flight_3.csv"];
+        let into = ["--into", "late.json", "--condition", "7", "--out", out];
+        let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], more].concat());
+        assert_eq!(ended.status, 0, "{ended:?}");
+        ended.error
+    };
+    let said = identified(&[], "first");
+    let line = said.lines().find(|line| line.contains("Q seems to be logged")).unwrap_or_else(|| panic!("{said}"));
+    // Three samples of 40 ms.
+    let option = line.rsplit_once("(--delay Q=").unwrap().1.trim_end_matches(')');
+    assert!((option.parse::<f64>().unwrap() - 0.12).abs() < 0.01, "{line}");
+    let again = identified(&["--delay", &format!("Q={option}")], "again");
+    assert!(!again.contains("seems to be logged"), "{again}");
 }

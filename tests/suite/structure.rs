@@ -139,7 +139,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     // The known answers of its tests.
     ("serde_json::", &["io", "identification"]),
     ("skrifa::", &["figure", "io"]),
-    ("vello_cpu::", &["io"]),
+    ("vello_cpu::", &["io", "view"]),
     ("pdf_writer::", &["io"]),
 ];
 

@@ -139,21 +139,20 @@ fn late_channel_ui(
     let (dataset, condition) = (state.dataset(), state.condition());
     let Some(physics) = condition.bundle(BundleKind::Physics).get(condition.nominal()) else { return };
     let key = (Arc::as_ptr(found) as usize, std::ptr::from_ref(physics) as usize);
-    let late = kept(ui, "late channel", key, || LateChannel::of(&found.measured, job.options.band, &physics.dynamics));
-    let Some(late) = *late else { return };
-    let channels = if late.role == Role::Input { dataset.inputs() } else { dataset.outputs() };
-    let Some(name) = channels.get(late.index).map(|channel| channel.name.clone()) else { return };
-    let words = late.words(&name, &physics.name);
-    let signal = Signal { role: late.role, index: late.index, name };
+    let of_condition = || LateChannel::of_condition(&found.measured, job.options.band, condition);
+    let Some(late) = *kept(ui, "late channel", key, of_condition) else { return };
+    let Some(signal) = late.signal(dataset) else { return };
+    let words = late.words(&signal.name, &physics.name);
     caution_ui(ui, (&words, vec![taken_out(records, &signal, late.delay_s)]), palette, commands);
 }
 
-/// Takes a delay out of a channel, beside what is taken out of it already.
+/// Takes a delay out of a channel, beside what had been taken out of it when that was found.
 fn taken_out(records: &ConditionRecords, signal: &Signal, delay_s: f64) -> Action {
-    let known = match signal.role {
-        Role::Input => records.inputs.get(signal.index),
-        Role::Output => records.outputs.get(signal.index),
-    };
+    let preparation = records.found.as_ref().map(|(job, _)| &job.options.preparation);
+    let known = preparation.and_then(|of| match signal.role {
+        Role::Input => of.inputs.get(signal.index),
+        Role::Output => of.outputs.get(signal.index),
+    });
     let delay_s = known.map_or(0.0, |channel| channel.delay_s) + delay_s;
     let text = format!("Take {:.0} ms out of {}", s_to_ms(delay_s), signal.name);
     (text, RecordsCommand::SetDelay(signal.clone(), delay_s))

@@ -15,7 +15,7 @@ mod lead;
 mod lists;
 mod pictures;
 mod plots;
-mod records;
+pub(crate) mod records;
 mod recovery;
 mod reload;
 mod views;

@@ -140,7 +140,7 @@ fn files_of_records_go_to_the_condition_that_their_names_say_and_what_is_wrong_i
 
 /// A dataset of which condition 7 has a known aircraft for its physics model and four flights of it for records, in all of which Q is
 /// logged three samples of 40 ms late; the band reaches far beyond the sweeps, which end at 8 rad/s.
-fn late_dataset(folder: &Path) -> PathBuf {
+pub(crate) fn late_dataset(folder: &Path) -> PathBuf {
     let aircraft = stable_aircraft();
     let mut entries = Vec::new();
     for (number, record) in Flight::of(aircraft.clone(), Gusts::light()).records(31, 4).iter().enumerate() {
@@ -180,10 +180,13 @@ fn what_is_late_in_all_records_and_a_band_that_they_do_not_show_are_mended_by_th
     window.get_by_label("Identify").click();
     wait_until(&mut window, "the models", |window| records(window).is_some_and(|of| of.found.is_some()));
     settle(&mut window);
-    window.get_by_label_contains("ms out of Q").click();
-    window.run_steps(2);
-    let delay_s = records(&window).unwrap().outputs[1].delay_s;
-    assert!((delay_s - 0.12).abs() < 0.01, "{delay_s}");
+    for _ in 0..2 {
+        // Once more does not take it out twice.
+        window.get_by_label_contains("ms out of Q").click();
+        window.run_steps(2);
+        let delay_s = records(&window).unwrap().outputs[1].delay_s;
+        assert!((delay_s - 0.12).abs() < 0.01, "{delay_s}");
+    }
     window.get_by_label_contains("Identify from 0.50 to").click();
     window.run_steps(2);
     let [low, high] = records(&window).unwrap().band.expect("the band was taken");

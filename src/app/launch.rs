@@ -84,7 +84,7 @@ fn run(opened: Opened, models: Option<PathBuf>, setup: Setup, opening: &Arc<Once
         .with_app_id(APP_ID)
         .with_inner_size([1440.0, 900.0])
         .with_min_inner_size([900.0, 560.0]);
-    // There are no gradients to smooth, and where the processor draws, the noise for it is a third of the work on a pixel.
+    // There are no gradients to smooth, and without a graphics processor every pixel's noise is computed.
     let options = NativeOptions { viewport, dithering: false, ..NativeOptions::default() };
     let opening = Arc::clone(opening);
     let build = move |creation: &eframe::CreationContext<'_>| -> Result<Box<dyn App>, Box<dyn Error + Send + Sync>> {

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 
 use eframe::{App, Frame, NativeOptions};
-use egui::{Context, Ui, ViewportBuilder};
+use egui::{Context, Ui, ViewportBuilder, Visuals};
 
 use crate::io::{FileError, Opened, embedded_example, load_any};
 use crate::view::assembling::AssemblingCommand;
@@ -106,6 +106,10 @@ struct Guarded {
 }
 
 impl App for Guarded {
+    fn clear_color(&self, visuals: &Visuals) -> [f32; 4] {
+        self.app.clear_color(visuals)
+    }
+
     fn logic(&mut self, ctx: &Context, frame: &mut Frame) {
         self.app.logic(ctx, frame);
     }

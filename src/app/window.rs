@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, ViewportCommand};
+use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, ViewportCommand, Visuals};
 
 use crate::dataset::ConditionId;
 use crate::io::{LoadedDataset, LostStudy, Opened, is_first_start};
@@ -302,7 +302,8 @@ impl GdcmApp {
         panel.show(ui, |ui| left_ui(ui, state, palette, commands));
         let panel = Panel::right("constraints and result").frame(side).default_size(right).size_range(250.0..=620.0);
         panel.show(ui, |ui| right_ui(ui, state, palette, commands));
-        let middle = Frame::new().fill(palette.background).inner_margin(Margin::symmetric(8, 4));
+        // On the ground that the whole window is cleared with.
+        let middle = Frame::new().inner_margin(Margin::symmetric(8, 4));
         CentralPanel::default().frame(middle).show(ui, |ui| centre::centre_ui(ui, state, palette, commands));
     }
 }
@@ -354,6 +355,10 @@ pub(super) const PREFERENCES: &str = "preferences";
 impl eframe::App for GdcmApp {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         eframe::set_value(storage, PREFERENCES, &Preferences::of(&self.state.display));
+    }
+
+    fn clear_color(&self, visuals: &Visuals) -> [f32; 4] {
+        Palette::of(visuals).background.to_normalized_gamma_f32()
     }
 
     fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {

@@ -72,7 +72,7 @@ pub fn bars(conditions: &[BarSource<'_>], prior_degrees: f64) -> Vec<ScalarTable
         of.figures.map(|scalar, value| {
             let changes = of.spread.changes[scalar];
             let spread = identification[scalar][place];
-            let told = of.told[scalar].filter(|told| told.replaces(spread, changes.own.is_some()));
+            let told = of.told[scalar].filter(|told| told.replaces(spread));
             Some(Bar {
                 value: (*value)?,
                 trim: changes.trim,
@@ -87,11 +87,10 @@ pub fn bars(conditions: &[BarSource<'_>], prior_degrees: f64) -> Vec<ScalarTable
 }
 
 impl ToldError {
-    /// Whether it takes the place of the spread: where it is the larger, and the band of a model only where the condition has no
-    /// spread of its own.
-    fn replaces(&self, spread: Option<Part>, has_own: bool) -> bool {
-        let is_asked = self.source != IdentificationSource::ModelBand || !has_own;
-        is_asked && spread.is_none_or(|spread| self.part.variance > spread.variance)
+    /// Whether it takes the place of the spread: where it is the larger. Models that each leave one record out spread less than any of
+    /// them errs, by about the root of the number of records (Efron's jackknife); the band that they carry does not.
+    fn replaces(&self, spread: Option<Part>) -> bool {
+        spread.is_none_or(|spread| self.part.variance > spread.variance)
     }
 }
 
@@ -99,5 +98,20 @@ fn range(scalar: Scalar, delay_bounds_s: [f64; 2]) -> [f64; 2] {
     match scalar {
         Scalar::ChannelDelay(_) => delay_bounds_s,
         _ => [f64::NEG_INFINITY, f64::INFINITY],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_larger_of_the_spread_and_of_what_a_model_says_of_itself_counts() {
+        let part = |variance: f64| Part { variance, degrees: 3.0 };
+        for source in [IdentificationSource::ModelBand, IdentificationSource::Coherence] {
+            let told = ToldError { part: part(0.04), source };
+            assert!(told.replaces(None) && told.replaces(Some(part(0.01))));
+            assert!(!told.replaces(Some(part(0.09))));
+        }
     }
 }

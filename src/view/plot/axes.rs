@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{FontId, Id, RichText, Ui};
+use egui::{Color32, FontId, Id, RichText, Ui};
 use egui_plot::{Axis, AxisHints, GridMark, Plot};
 
 use super::grid_strength::{GRID_SPACING, LABEL_SPACING};
@@ -42,6 +42,12 @@ pub fn quiet_plot<'a>(id: Id, palette: &Palette) -> Plot<'a> {
         .grid_spacing(GRID_SPACING)
         .grid_color(palette.grid)
         .auto_bounds(false)
+}
+
+/// Leaves the ground of the plots in `ui` as it is: theirs has its very colour, and without a graphics processor every pixel that is
+/// filled twice counts.
+pub(super) fn keep_ground(ui: &mut Ui) {
+    ui.visuals_mut().extreme_bg_color = Color32::TRANSPARENT;
 }
 
 /// The look of one axis: tick texts from `text`, and `label` beside it (none where empty), `thickness` points in all.

@@ -3,7 +3,7 @@
 use egui::{Context, Id, PointerButton, Rect, Response, Ui, UiBuilder, WidgetInfo};
 use egui_plot::{Axis, LineStyle, PlotTransform, PlotUi, Span, VLine};
 
-use super::axes::{LABELLED_HEIGHT, TICKS_HEIGHT, axis_hints, quiet_plot};
+use super::axes::{LABELLED_HEIGHT, TICKS_HEIGHT, axis_hints, keep_ground, quiet_plot};
 use super::axis_strip::axis_strips_ui;
 use super::bode::BodeScene;
 use super::bode_view::BodeView;
@@ -51,6 +51,7 @@ pub(super) fn pane_ui(
     let (mut kept, mut kept_image) = (std::mem::take(drawn), std::mem::take(image));
     let (drawn, image) = (&mut kept, &mut kept_image);
     let shown = ui.scope_builder(builder, |ui| {
+        keep_ground(ui);
         let bounds = view.bounds(pane);
         pane_plot(id, pane, rect, scene, palette).show(ui, move |plot| {
             plot.set_plot_bounds(bounds);

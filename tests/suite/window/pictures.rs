@@ -15,6 +15,7 @@ use egui_kittest::TestRenderer;
 use gdcm::study::Edit;
 use gdcm::view::arrangement::{Preset, View};
 use gdcm::view::command::Command as Wish;
+use gdcm::view::palette::Palette;
 
 use super::views::{give, show};
 use super::*;
@@ -71,7 +72,8 @@ fn picture(window: &Window, textures: &Textures) -> Vec<u8> {
         .collect();
     let shapes = window.ctx.tessellate(window.output().shapes.clone(), 1.0);
     let mut frame = renderer.begin_frame(WIDTH, HEIGHT).expect("the size is allowed");
-    frame.clear(Color::BLACK);
+    let ground = Palette::of(&window.ctx.global_style().visuals).background;
+    frame.clear(colour(ground));
     for of in shapes {
         let Primitive::Mesh(mesh) = of.primitive else { continue };
         let corner = |at: Pos2| [at.x.round().max(0.0) as u32, at.y.round().max(0.0) as u32];

@@ -20,7 +20,8 @@ fn net_gains_are_those_of_the_analysis() {
     assert_eq!(rows[0], vec!["series", "label", "Airspeed [kt]", "Net gain [-]"]);
     let mut compared = 0;
     for row in rows.iter().filter(|row| !row[1].is_empty() && &row[1] != "label") {
-        let id = ConditionId(row[1].parse().unwrap());
+        // A bracket's label says how many times the difference is what the bundles explain.
+        let Ok(id) = row[1].parse().map(ConditionId) else { continue };
         let expected = example.analysis.condition(id).unwrap().correction.net_gain(pair).value();
         assert_eq!(row[3].parse::<f64>().unwrap(), expected);
         compared += 1;

@@ -168,7 +168,8 @@ fn delays_are_scheduled_and_a_tolerance_is_set_by_options() {
 #[test]
 fn the_phase_is_corrected_as_an_option_says() {
     let desk = Desk::new();
-    let analyze = |more: &[&str]| desk.gdcm(&[&["analyze", "--out", "out", "--force"][..], more].concat());
+    let reference = crate::REFERENCE_DATASET.path().unwrap().to_str().unwrap();
+    let analyze = |more: &[&str]| desk.gdcm(&[&["analyze", reference, "--out", "out", "--force"][..], more].concat());
     let read = || read_corrections(&desk.path("out/corrections.json")).unwrap();
     let ended = analyze(&["--phase", "lead"]);
     ended.assert_done();

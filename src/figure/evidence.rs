@@ -82,8 +82,9 @@ fn shares(scatter: &PairScatter) -> Panel {
 /// The standard deviations themselves, of `ln k_o k_i` in percent, and the interval of the rest.
 fn deviations(scatter: &PairScatter, level: f64) -> Panel {
     let percent = |variance: f64| 100.0 * variance.sqrt();
-    let figures: [(&str, DotShape, Color, fn(&Split) -> f64); 3] = [
-        ("scatter", DotShape::Circle, Color::INK, |split| split.scatter),
+    let scatter_of: fn(&Split) -> f64 = |split| split.scatter;
+    let figures = [
+        ("scatter", DotShape::Circle, Color::INK, scatter_of),
         ("what the bundles explain", DotShape::Diamond, BLUE, Split::explained),
         ("rest", DotShape::Square, RED, Split::rest),
     ];
@@ -100,7 +101,7 @@ fn deviations(scatter: &PairScatter, level: f64) -> Panel {
     let most = splits(scatter).map(|(_, split)| MOST_SEEN * percent(split.scatter)).fold(0.0, f64::max);
     let y = ends.iter().fold(y, |y, [_, _, high]| y.including(high.min(most)));
     let name = format!("rest, interval of {:.0} %", 100.0 * level);
-    let intervals = (!ends.is_empty()).then(|| Intervals { name, stroke: INTERVAL, ends });
+    let intervals = (!ends.is_empty()).then_some(Intervals { name, stroke: INTERVAL, ends });
     Panel::new(axis(), y).with_all(intervals).with_all(dots)
 }
 

@@ -5,13 +5,30 @@ use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, St
 /// Degrees of freedom from which Student's distribution is taken for the normal one: they differ by 2e-8 there.
 const NORMAL_FROM: f64 = 1e8;
 
+/// Degrees of freedom from which Student's quantile is expanded about the normal one: four terms leave 1e-12 there, and the inverse of
+/// the incomplete beta function does not end for some that are larger.
+const EXPANDED_FROM: f64 = 1e3;
+
 /// Student's quantile `t(nu)` at `(1 + level) / 2`, `nu` any number from 1 up; the normal one where it is infinite.
+///
+/// Beyond [`EXPANDED_FROM`] by M. Abramowitz, I. A. Stegun, "Handbook of Mathematical Functions", 26.7.5.
 pub fn student_quantile(level: f64, degrees: f64) -> f64 {
     let p = 0.5 * (1.0 + level);
     match StudentsT::new(0.0, 1.0, degrees.max(1.0)) {
-        Ok(student) if degrees < NORMAL_FROM => student.inverse_cdf(p),
-        _ => Normal::standard().inverse_cdf(p),
+        Ok(student) if degrees < EXPANDED_FROM => student.inverse_cdf(p),
+        _ => expanded(Normal::standard().inverse_cdf(p), degrees),
     }
+}
+
+fn expanded(z: f64, degrees: f64) -> f64 {
+    let square = z * z;
+    let terms = [
+        (square + 1.0) / 4.0,
+        ((5.0 * square + 16.0) * square + 3.0) / 96.0,
+        (((3.0 * square + 19.0) * square + 17.0) * square - 15.0) / 384.0,
+        ((((79.0 * square + 776.0) * square + 1482.0) * square - 1920.0) * square - 945.0) / 92160.0,
+    ];
+    z * terms.iter().rev().fold(0.0, |sum, term| (sum + term) / degrees) + z
 }
 
 /// How likely a ratio this large or larger, of either sign, is where there is nothing: `2 (1 - T_nu(|ratio|))`.
@@ -48,7 +65,10 @@ mod tests {
             (12.3, 1.77867254624),
             (24.0, 1.71088207991),
             (48.6, 1.67681682504),
+            (999.0, 1.64638034543),
             (1000.0, 1.64637881729),
+            (2.5e5, 1.64485972205),
+            (1.8e7, 1.64485371161),
             (f64::INFINITY, 1.64485362695),
             (1e12, 1.64485362695),
         ];

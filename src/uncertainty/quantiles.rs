@@ -11,7 +11,7 @@ const EXPANDED_FROM: f64 = 1e3;
 
 /// Student's quantile `t(nu)` at `(1 + level) / 2`, `nu` any number from 1 up; the normal one where it is infinite.
 ///
-/// Beyond [`EXPANDED_FROM`] by M. Abramowitz, I. A. Stegun, "Handbook of Mathematical Functions", 26.7.5.
+/// From a thousand degrees on by M. Abramowitz, I. A. Stegun, "Handbook of Mathematical Functions", 26.7.5.
 pub fn student_quantile(level: f64, degrees: f64) -> f64 {
     let p = 0.5 * (1.0 + level);
     match StudentsT::new(0.0, 1.0, degrees.max(1.0)) {

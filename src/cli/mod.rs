@@ -87,7 +87,11 @@ pub fn run(command: &Command) -> ExitCode {
 /// Writes the embedded example into a directory and says where.
 fn example(directory: &Path, existing: Existing) -> Result<(), Failure> {
     let path = write_example(directory, existing)?;
-    say(&format!("{}: the example dataset (synthetic data)\n", plain_path(&path)))
+    say(&format!(
+        "{}: the example dataset (synthetic data)\nthe flight records that it names, example-records.zip, are under assets in the \
+         program's source; the window finds them beside the dataset\n",
+        plain_path(&path)
+    ))
 }
 
 fn existing(force: bool) -> Existing {

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::correction::GainSource;
 use crate::io::{LoadedDataset, RESULT_FILES, plain, plain_path};
 use crate::schedule::Schedule;
 use crate::study::{Analysis, Assessed, PhaseCorrection};
@@ -53,10 +54,11 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
             number(settings.lead.limit)
         ),
     };
-    labelled(0, "Dataset", LABEL, &dataset)
-        + &labelled(0, "Band", LABEL, &band)
-        + &labelled(0, "Phase", LABEL, &phase)
-        + &labelled(0, "Held", LABEL, &held)
+    let mut text = labelled(0, "Dataset", LABEL, &dataset) + &labelled(0, "Band", LABEL, &band);
+    if settings.gain_source != GainSource::default() {
+        text.push_str(&labelled(0, "G from", LABEL, &settings.gain_source_words()));
+    }
+    text + &labelled(0, "Phase", LABEL, &phase) + &labelled(0, "Held", LABEL, &held)
 }
 
 /// How far the scheduled correction brings the nominal models, and which conditions it is not judged in.

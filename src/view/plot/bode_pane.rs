@@ -59,7 +59,7 @@ pub(super) fn pane_ui(
             let transform = PlotTransform::new(*plot.transform().frame(), bounds, false);
             let pixel = Pixel::of(&transform, plot.ctx().pixels_per_point(), TOLERANCE);
             drawn.update(scene.curves, pane, (bounds, pixel), palette);
-            scene.bands.iter().for_each(|band| band.draw(plot, pane, palette));
+            scene.bands.iter().for_each(|band| band.draw(plot, pane, &bounds, palette));
             let image = image_of_many(plot.ctx(), scene, drawn, image, &transform, palette);
             draw_curves(plot, scene, drawn, image, emphasis, palette);
             outside_shade(plot, scene.band, palette);

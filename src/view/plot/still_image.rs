@@ -132,7 +132,8 @@ fn take_color(context: &mut RenderContext, color: Color32) {
     context.set_paint(AlphaColor::from_rgba8(red, green, blue, alpha));
 }
 
-/// The image among the items of a plot.
+/// The image among the items of a plot, on whole pixels. (A `PlotImage` lies below every other item, bands too, and has its
+/// size in the plot's coordinates.)
 pub(super) struct ImageItem {
     base: PlotItemBase,
     texture: TextureHandle,

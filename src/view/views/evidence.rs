@@ -2,7 +2,7 @@
 
 use egui::{Align, Align2, Color32, FontId, Layout, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
 
-use crate::study::{Edit, Setting, Table, Uncertainty, difference_table, second_variable_table};
+use crate::study::{Edit, Setting, Uncertainty, difference_table, second_variable_table};
 use crate::uncertainty::Split;
 use crate::view::arrangement::View;
 use crate::view::command::Command;
@@ -10,7 +10,7 @@ use crate::view::evidence_scene::evidence_table;
 use crate::view::figures::figure_button_ui;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::state::State;
-use crate::view::table_view::{Sorting, TableClick, TableLook, table_ui};
+use crate::view::table_view::{Sorting, TableLook, table_ui};
 
 /// Height of the bar of one scatter \[pt\].
 const BAR_HEIGHT: f32 = 15.0;
@@ -131,7 +131,8 @@ fn tables_ui(
         (column == 6 && beyond).then_some(palette.warning)
     };
     let look = TableLook { color: &color, selected: &|_| false };
-    if let Some(click) = whole_table_ui(ui, &table, &mut sorting[0], &look, palette, commands)
+    let click = rows_high(ui, table.rows.len(), |ui| table_ui(ui, &table, &mut sorting[0], &look, palette, commands));
+    if let Some(click) = click
         && let Some(of) = differences.get(click.row)
     {
         commands.push(Command::SelectCondition(of.conditions[0]));
@@ -140,7 +141,7 @@ fn tables_ui(
     let plain = TableLook { color: &|_, _| None, selected: &|_| false };
     let table = second_variable_table(state.dataset(), uncertainty);
     heading(ui, &table.title);
-    whole_table_ui(ui, &table, &mut sorting[1], &plain, palette, commands);
+    rows_high(ui, table.rows.len(), |ui| table_ui(ui, &table, &mut sorting[1], &plain, palette, commands));
     let mut cached = std::mem::take(&mut state.display.evidence);
     cached.refresh(state);
     if let Some((_, evidence)) = cached.found() {
@@ -151,7 +152,9 @@ fn tables_ui(
         );
         let schedule = state.study.settings.schedule;
         let look = TableLook { color: &|_, _| None, selected: &|row| kinds.get(row) == Some(&schedule.kind) };
-        if let Some(click) = whole_table_ui(ui, &table, &mut sorting[2], &look, palette, commands)
+        let rows = table.rows.len();
+        let click = rows_high(ui, rows, |ui| table_ui(ui, &table, &mut sorting[2], &look, palette, commands));
+        if let Some(click) = click
             && let Some(&kind) = kinds.get(click.row)
         {
             let schedule = crate::schedule::ScheduleSettings { kind, ..schedule };
@@ -161,17 +164,10 @@ fn tables_ui(
     state.display.evidence = cached;
 }
 
-/// A table among others in something that scrolls: as high as its rows.
-fn whole_table_ui(
-    ui: &mut Ui,
-    table: &Table,
-    sorting: &mut Sorting,
-    look: &TableLook<'_>,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) -> Option<TableClick> {
+/// Where a table of so many rows goes that is one among others in something that scrolls: as high as its rows.
+fn rows_high<R>(ui: &mut Ui, rows: usize, add: impl FnOnce(&mut Ui) -> R) -> R {
     let row = ui.spacing().interact_size.y + 3.0;
     let bar = ui.spacing().scroll.allocated_width();
-    let height = (row * (table.rows.len() + 1) as f32 + bar + 4.0).min(MOST_TABLE);
-    ui.allocate_ui(vec2(ui.available_width(), height), |ui| table_ui(ui, table, sorting, look, palette, commands)).inner
+    let height = (row * (rows + 1) as f32 + bar + 4.0).min(MOST_TABLE);
+    ui.allocate_ui(vec2(ui.available_width(), height), add).inner
 }

@@ -154,6 +154,11 @@ fn wait_for_toggles(window: &mut Window) {
     wait_until(window, "the costs", |window| state(window).toggles().is_some());
 }
 
+/// Draws frames until nothing is computed beside the window either.
+fn wait_for_background(window: &mut Window) {
+    wait_until(window, "what is computed beside", |window| state(window).results.background_since.is_none());
+}
+
 /// Saves the study as the form does.
 pub(crate) fn save_as(window: &mut Window, path: &Path) {
     let ctx = window.ctx.clone();

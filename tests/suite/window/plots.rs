@@ -166,9 +166,9 @@ fn a_click_on_a_net_gain_dot_goes_to_its_condition() {
 #[test]
 fn an_idle_window_draws_no_frames() {
     let mut window = window();
-    wait_for_toggles(&mut window);
     for tab in ["Bode", "Overview", "Channels", "Assessment"] {
         click(&mut window, tab);
+        wait_for_background(&mut window);
         let frames = window.run();
         assert!(frames < 60, "{tab} settled after {frames} frames");
         assert_asks_for_no_frame(&mut window, tab);
@@ -196,8 +196,7 @@ fn assert_asks_for_no_frame(window: &mut Window, what: &str) {
 
 #[test]
 fn what_is_out_of_sight_is_not_tessellated() {
-    // Its identified models carry no bands, which are drawn whole.
-    let mut window = window_with(Opened::Dataset(crate::REFERENCE_DATASET.clone()), warm());
+    let mut window = window();
     for tab in ["Overview", "Channels", "Assessment", "Bode"] {
         click(&mut window, tab);
         assert_little_is_hidden(&window, tab);

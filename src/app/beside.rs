@@ -39,7 +39,7 @@ fn wanted(state: &State) -> Beside {
             .filter(|_| !state.results.is_behind())
             .map(|analysis| UncertaintyJob { analysis: Arc::clone(analysis) }),
         report: None,
-        identifications: state.records.running.clone(),
+        identifications: state.records.by_urgency(state.condition().id()),
         simulations: if is_shown(View::Records) { simulation_jobs(state) } else { Vec::new() },
         variants: if is_shown(View::Compare) { variant_jobs(state) } else { Vec::new() },
     }

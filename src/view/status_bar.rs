@@ -7,6 +7,7 @@ use crate::study::Assessed;
 
 use super::command::Command;
 use super::palette::{Palette, SMALL_SIZE};
+use super::records::RecordsBench;
 use super::results::{Background, bar_words};
 use super::state::{NoticeKind, State};
 
@@ -43,7 +44,8 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
         (None, false, _) => ("● up to date".to_owned(), palette.good),
     };
     ui.label(RichText::new(text).size(SMALL_SIZE).color(color));
-    let beside = state.results.is_background_told(now).then(|| background_words(&state.results.background));
+    let beside =
+        state.results.is_background_told(now).then(|| background_words(&state.results.background, &state.records));
     let is_stopped = state.results.background.stopped;
     let beside = if is_stopped { Some("the rest was stopped".to_owned()) } else { beside };
     if let Some(words) = &beside {
@@ -71,12 +73,18 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
 }
 
 /// What is under way beside the live answer, the longest first.
-fn background_words(background: &Background) -> String {
+fn background_words(background: &Background, records: &RecordsBench) -> String {
     if let Some((done, total)) = background.report {
         return format!("writing the report, {} % …", 100 * done / total.max(1));
     }
     if let Some((done, total)) = background.identification {
-        return format!("identifying, {} % …", 100 * done / total.max(1));
+        let percent = 100 * done / total.max(1);
+        return match (records.under_way(), records.running.len()) {
+            (Some(job), jobs @ 2..) => {
+                format!("identifying condition {}, {percent} %, {} more after it …", job.condition, jobs - 1)
+            }
+            _ => format!("identifying, {percent} % …"),
+        };
     }
     match (background.proofs.len(), background.curves) {
         (1, _) => "proving the gains of 1 condition …".to_owned(),

@@ -259,4 +259,16 @@ impl RecordsBench {
     pub fn running(&self, condition: ConditionId) -> Option<&IdentifyJob> {
         self.running.iter().find(|job| job.condition == condition)
     }
+
+    /// The job under way, once it has told of a step.
+    pub fn under_way(&self) -> Option<&IdentifyJob> {
+        self.running.iter().find(|job| !job.told().step.is_empty())
+    }
+
+    /// What is to be identified, that of the condition shown first.
+    pub fn by_urgency(&self, shown: ConditionId) -> Vec<IdentifyJob> {
+        let mut jobs = self.running.clone();
+        jobs.sort_by_key(|job| job.condition != shown);
+        jobs
+    }
 }

@@ -47,10 +47,20 @@ pub(super) fn outcome_ui(
     }
     if let Some(job) = state.records.running(state.condition().id()) {
         let told = job.told();
-        let (done, total) = state.results.background.identification.unwrap_or((0, 0));
-        let part = if total > 0 { done as f32 / total as f32 } else { 0.0 };
+        let (part, step) = if told.step.is_empty() {
+            (
+                0.0,
+                state
+                    .records
+                    .under_way()
+                    .map_or_else(String::new, |of| format!("Waits for condition {}", of.condition)),
+            )
+        } else {
+            let (done, total) = state.results.background.identification.unwrap_or((0, 0));
+            (done as f32 / total.max(1) as f32, told.step)
+        };
         ui.add(ProgressBar::new(part).desired_height(6.0));
-        ui.label(small(told.step, palette.dim_text));
+        ui.label(small(step, palette.dim_text));
         if told.first_model.is_some() {
             ui.label(small("The first model is drawn; it is being refined".to_owned(), palette.dim_text));
         }

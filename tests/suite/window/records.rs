@@ -105,6 +105,24 @@ fn records_are_chosen_held_out_and_left_out_and_an_identification_is_stopped() {
 }
 
 #[test]
+fn of_several_conditions_the_one_shown_is_identified_first_and_the_others_say_what_they_wait_for() {
+    let condition_3 = "Condition 3: 45 kt, low altitude, low weight";
+    let mut window = records_window();
+    click(&mut window, condition_3);
+    wait_until(&mut window, "its records", |window| state(window).records.conditions.contains_key(&ConditionId(3)));
+    click(&mut window, CONDITION_10);
+    window.get_by_label("Identify all 2 conditions").click();
+    wait_until(&mut window, "a step of the first", |window| state(window).records.under_way().is_some());
+    assert_eq!(state(&window).records.under_way().map(|job| job.condition), Some(CONDITION_10_ID));
+    window.get_by_label(condition_3).click();
+    window.run_steps(3);
+    window.get_by_label("Waits for condition 10");
+    window.get_by_label("Stop identifying").click();
+    window.run_steps(2);
+    assert!(state(&window).records.running.is_empty());
+}
+
+#[test]
 fn the_records_that_a_dataset_names_are_read_out_of_their_archive() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/example-dataset.json.gz");
     let mut window = window_with(load_any(&path).unwrap(), warm());

@@ -196,7 +196,7 @@ impl State {
     }
 
     /// The condition shown; the first one where the dataset does not have that any more.
-    pub fn condition(&self) -> &Condition {
+    pub fn condition(&self) -> &Arc<Condition> {
         let found = self.study.dataset.condition(self.display.condition);
         found.unwrap_or(&self.study.dataset.conditions()[0])
     }
@@ -242,7 +242,7 @@ impl State {
     /// The modes of every model of the condition shown.
     pub fn modes(&self) -> Option<&Arc<ConditionModes>> {
         let (job, modes) = self.results.modes.as_ref()?;
-        std::ptr::eq(job.condition.as_ref(), self.condition()).then_some(modes)
+        Arc::ptr_eq(&job.condition, self.condition()).then_some(modes)
     }
 
     /// The assessment that is asked for; one of an older analysis of the same dataset until it is there.

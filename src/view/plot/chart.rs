@@ -1,17 +1,26 @@
 //! A plain plot: lines, bands and marks with error bars over a linear or a logarithmic axis.
 
+use std::sync::Arc;
+
 use egui::{Align2, Color32, Id, Rect, Response, Sense, Stroke, Ui, UiBuilder, Vec2b, WidgetInfo, pos2, vec2};
 use egui_plot::{Axis, FilledArea, Line, LineStyle, MarkerShape, Plot, PlotPoints, PlotUi, Points, Span, VLine};
 
 use super::axes::{LABELLED_HEIGHT, TICKS_HEIGHT, VERTICAL_TICK_GAP, axis_hints, caption_font, quiet_plot};
 use super::linear_axis::{Ladder, tick_text};
 use super::log_axis::FrequencyUnit;
+use super::pixel::Pixel;
+use super::thinning::thinned;
 use crate::view::palette::Palette;
 
 const TITLE_HEIGHT: f32 = 18.0;
 const VALUE_AXIS_WIDTH: f32 = 46.0;
 const RIGHT_MARGIN: f32 = 8.0;
+const NOTE_GAP: f32 = 8.0;
 const TICK_GAP: f64 = 60.0;
+/// How far from a line the drawn one may be \[pt\].
+const TOLERANCE: f64 = 0.1;
+/// No screen is wider \[pixels\].
+const MOST_PIXELS: f64 = 10_000.0;
 
 /// What the horizontal axis of a chart is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,8 +43,8 @@ impl ChartAxis {
 /// A line of a chart.
 #[derive(Clone, Debug)]
 pub struct ChartLine {
-    /// Its points.
-    pub points: Vec<[f64; 2]>,
+    /// Its points, ascending along the horizontal axis; what is out of view or finer than a pixel is not drawn.
+    pub points: Arc<[[f64; 2]]>,
     /// Its colour.
     pub color: Color32,
     /// Its width \[pt\].
@@ -82,6 +91,8 @@ pub struct ChartSpan {
 pub struct Chart<'a> {
     /// Its title, which is its name too.
     pub title: &'a str,
+    /// Words at the right end of the title's line, and their colours.
+    pub notes: Vec<(String, Color32)>,
     /// What its horizontal axis is.
     pub across: ChartAxis,
     /// What stands below the horizontal axis; nothing keeps it low.
@@ -107,6 +118,7 @@ impl<'a> Chart<'a> {
     pub fn new(title: &'a str, across: ChartAxis, across_label: &'a str, value_label: &'a str) -> Self {
         Self {
             title,
+            notes: Vec::new(),
             across,
             across_label,
             value_label,
@@ -125,17 +137,27 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
     let id = ui.make_persistent_id(chart.title);
     let plot_rect = Rect::from_min_max(rect.min + vec2(0.0, TITLE_HEIGHT), rect.max - vec2(RIGHT_MARGIN, 0.0));
     let shown = ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(plot_rect), |ui| {
-        empty_chart(id, plot_rect, chart, palette).show(ui, |plot| draw(plot, chart, palette))
+        empty_chart(id, plot_rect, chart, palette).show(ui, |plot| {
+            draw(plot, chart, palette);
+            view_of(plot)
+        })
     });
+    let bounds = shown.inner.transform.bounds();
+    let is_whole = shown.inner.inner[0] == f64::NEG_INFINITY;
+    if !is_whole && shown.inner.inner != [bounds.min()[0], bounds.max()[0]] {
+        // The lines were drawn for the view of the frame before.
+        ui.request_repaint();
+    }
     let response = shown.inner.response;
-    ui.painter().text(
-        pos2(shown.inner.transform.frame().left(), rect.top() + 0.5 * TITLE_HEIGHT),
-        Align2::LEFT_CENTER,
-        chart.title,
-        caption_font(),
-        palette.text,
-    );
-    let description = format!("{}: {} lines, {} marks", chart.title, chart.lines.len(), count(chart));
+    let frame = shown.inner.transform.frame();
+    let mut at = pos2(frame.left(), rect.top() + 0.5 * TITLE_HEIGHT);
+    ui.painter().text(at, Align2::LEFT_CENTER, chart.title, caption_font(), palette.text);
+    at.x = frame.right();
+    for (words, color) in chart.notes.iter().rev() {
+        at.x = ui.painter().text(at, Align2::RIGHT_CENTER, words, caption_font(), *color).left() - NOTE_GAP;
+    }
+    let mut description = format!("{}: {} lines, {} marks", chart.title, chart.lines.len(), count(chart));
+    chart.notes.iter().for_each(|(words, _)| description.extend(["; ", words.as_str()]));
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, description.clone()));
     response
 }
@@ -197,15 +219,40 @@ fn draw<'a>(plot: &mut PlotUi<'a>, chart: &Chart<'_>, palette: &Palette) {
         let style = LineStyle::Dotted { spacing: 4.0 };
         plot.vline(VLine::new("", place(*vertical)).color(palette.dim_text).width(0.8).style(style));
     }
+    let ends = view_of(plot);
     for line in &chart.lines {
-        let points: PlotPoints<'_> = line.points.iter().map(|[x, y]| [place(*x), *y]).collect();
+        let points = match chart.across {
+            ChartAxis::Linear => in_view(&line.points, ends, pixel_of(plot, &line.points)),
+            ChartAxis::Frequency(_) => line.points.iter().map(|[x, y]| [place(*x), *y]).collect(),
+        };
         let style = if line.dashed { LineStyle::dashed_dense() } else { LineStyle::Solid };
         let width = line.width * palette.line_width;
-        plot.line(Line::new("", points).color(line.color).width(width).style(style).allow_hover(false));
+        plot.line(
+            Line::new("", PlotPoints::from(points)).color(line.color).width(width).style(style).allow_hover(false),
+        );
     }
     for marks in &chart.marks {
         draw_marks(plot, chart, marks);
     }
+}
+
+/// The ends of the horizontal axis in view: all of it where that is what the plot is to show, wherever that is.
+fn view_of(plot: &PlotUi<'_>) -> [f64; 2] {
+    if plot.auto_bounds().x {
+        return [f64::NEG_INFINITY, f64::INFINITY];
+    }
+    let bounds = plot.plot_bounds();
+    [bounds.min()[0], bounds.max()[0]]
+}
+
+/// The pixel of the plot as it was drawn last; where it never was, one of so many that no screen has more.
+fn pixel_of(plot: &PlotUi<'_>, points: &[[f64; 2]]) -> Pixel {
+    let pixel = Pixel::of(plot.transform(), plot.ctx().pixels_per_point(), TOLERANCE);
+    if pixel.width.is_finite() && pixel.width > 0.0 {
+        return pixel;
+    }
+    let length = points.first().zip(points.last()).map_or(0.0, |(first, last)| last[0] - first[0]);
+    Pixel { width: length / MOST_PIXELS, tolerance: 0.0 }
 }
 
 fn draw_marks(plot: &mut PlotUi<'_>, chart: &Chart<'_>, marks: &ChartMarks) {
@@ -225,20 +272,11 @@ fn draw_marks(plot: &mut PlotUi<'_>, chart: &Chart<'_>, marks: &ChartMarks) {
     plot.points(points.allow_hover(false));
 }
 
-/// At most about `most` points that show what a long line shows: of each stretch the least and the greatest.
-pub fn thinned(points: Vec<[f64; 2]>, most: usize) -> Vec<[f64; 2]> {
-    let stretch = (2 * points.len()).div_ceil(most.max(4));
-    if stretch < 3 {
-        return points;
-    }
-    let extremes = |part: &[[f64; 2]]| {
-        let by_value = |a: &&[f64; 2], b: &&[f64; 2]| a[1].total_cmp(&b[1]);
-        let (low, high) = (part.iter().min_by(by_value), part.iter().max_by(by_value));
-        let mut both: Vec<[f64; 2]> = low.into_iter().chain(high).copied().collect();
-        both.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        both
-    };
-    points.chunks(stretch).flat_map(extremes).collect()
+/// What of a line shows in a plot: the stretch between `ends` with a point to either side, no finer than its pixels.
+fn in_view(points: &[[f64; 2]], ends: [f64; 2], pixel: Pixel) -> Vec<[f64; 2]> {
+    let from = points.partition_point(|point| point[0] < ends[0]).saturating_sub(1);
+    let to = (points.partition_point(|point| point[0] <= ends[1]) + 1).min(points.len());
+    thinned(points.get(from..to).unwrap_or_default(), pixel)
 }
 
 #[cfg(test)]
@@ -246,14 +284,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_thinned_line_keeps_every_peak_and_short_ones_stay_as_they_are() {
-        let mut points: Vec<[f64; 2]> = (0..10_000).map(|k| [f64::from(k), 0.0]).collect();
+    fn a_line_keeps_every_peak_in_view_and_every_sample_that_the_screen_can_tell_apart() {
+        let mut points: Vec<[f64; 2]> = (0..10_000).map(|k| [f64::from(k), f64::from(k % 2)]).collect();
         points[4321][1] = 7.0;
         points[8765][1] = -3.0;
-        let thin = thinned(points.clone(), 1000);
-        assert!(thin.len() <= 1010, "{}", thin.len());
-        assert!(thin.contains(&[4321.0, 7.0]) && thin.contains(&[8765.0, -3.0]));
-        assert!(thin.is_sorted_by(|a, b| a[0] <= b[0]));
-        assert_eq!(thinned(points[..900].to_vec(), 1000).len(), 900);
+        let shown = |ends, width| in_view(&points, ends, Pixel { width, tolerance: 1e-3 });
+        let all = shown([f64::NEG_INFINITY, f64::INFINITY], 20.0);
+        assert!(all.len() <= 4 * 10_000 / 20, "{}", all.len());
+        assert!(all.contains(&[4321.0, 7.0]) && all.contains(&[8765.0, -3.0]));
+        assert_eq!((all.first(), all.last()), (points.first(), points.last()));
+        assert!(all.is_sorted_by(|a, b| a[0] < b[0]));
+        assert_eq!(shown([4310.5, 4330.5], 0.1), &points[4310..=4331], "with the lines that leave the view");
+        assert!(shown([20_000.0, 20_001.0], 0.1).len() < 2, "nothing to draw");
     }
 }

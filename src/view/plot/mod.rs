@@ -64,7 +64,7 @@ pub use bode::{BodeEvent, BodeScene, bode_ui};
 pub use bode_band::BodeBand;
 pub use bode_view::BodeView;
 pub use channels::{ChannelsScene, ChannelsView, channels_ui};
-pub use chart::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan, chart_ui, thinned};
+pub use chart::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan, chart_ui};
 pub use chip::Chip;
 pub use curve::{BodeCurve, CurveId, Pane};
 pub use curve_menu::CurveWish;

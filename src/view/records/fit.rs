@@ -74,11 +74,8 @@ fn time_ui(ui: &mut Ui, state: &State, records: &ConditionRecords, palette: &Pal
         for (index, output) in state.dataset().outputs().iter().enumerate() {
             ui.label(&output.name);
             for model in &models {
-                let figures = model.validation();
-                let figure = |of: Option<&Option<f64>>| of.copied().flatten();
-                let fit = figures.and_then(|of| figure(of.fit_percent.get(index)));
-                let theil = figures.and_then(|of| figure(of.theil.get(index)));
-                ui.label(fit.map_or("–".to_owned(), |fit| format!("{fit:.1} %")));
+                let theil = model.validation().and_then(|of| of.theil.get(index).copied().flatten());
+                ui.label(model.fit_words(index).unwrap_or_else(|| "–".to_owned()));
                 let color =
                     theil.map_or(palette.dim_text, |of| if of < GOOD_THEIL { palette.good } else { palette.warning });
                 ui.label(RichText::new(theil.map_or("–".to_owned(), |of| format!("{of:.3}"))).color(color));
@@ -87,16 +84,7 @@ fn time_ui(ui: &mut Ui, state: &State, records: &ConditionRecords, palette: &Pal
         }
     });
     for model in &models {
-        match &model.result {
-            Some(Ok(_)) => {}
-            Some(Err(why)) => {
-                ui.label(RichText::new(format!("{}: {why}", model.model.name())).color(palette.warning));
-            }
-            None => {
-                let text = format!("{}: {}", model.model.name(), state.results.absence());
-                ui.label(RichText::new(text).color(palette.dim_text));
-            }
-        }
+        model.absence_ui(ui, state, palette);
     }
     let text = "A fit in time hardly tells models apart: rank them by the cost of what was held out.";
     ui.label(RichText::new(text).size(SMALL_SIZE).color(palette.dim_text));

@@ -1,20 +1,21 @@
 //! Every channel of a record over time.
 
+use std::sync::Arc;
+
 use egui::{Id, Rect, RichText, ScrollArea, Sense, Ui, vec2};
 
 use crate::identification::{FlightRecord, Treatment};
 use crate::view::command::Command;
-use crate::view::palette::{Palette, SMALL_SIZE};
-use crate::view::plot::{Chart, ChartAxis, ChartLine, ChartSpan, chart_ui, thinned};
+use crate::view::palette::Palette;
+use crate::view::plot::{Chart, ChartAxis, ChartLine, ChartSpan, chart_ui};
 use crate::view::state::State;
 
 use super::bench::ConditionRecords;
+use super::kept::kept;
 use super::simulation::{simulated, time_models_ui};
 
 /// Least height of a chart \[pt\]; more of them scroll.
 const LEAST_HEIGHT: f32 = 84.0;
-/// Points of a line: two for each column of pixels of a wide screen.
-const MOST_POINTS: usize = 4000;
 
 /// A chart for each input and output, with the responses of models to the same inputs where those are asked for.
 pub(super) fn histories_ui(
@@ -36,8 +37,8 @@ pub(super) fn histories_ui(
     let gaps = spans(records, palette);
     time_models_ui(ui, state, palette, commands);
     let models = simulated(state, palette);
-    if models.iter().any(|model| model.result.is_none()) {
-        ui.label(RichText::new(state.results.absence()).size(SMALL_SIZE).color(palette.dim_text));
+    for model in &models {
+        model.absence_ui(ui, state, palette);
     }
     ScrollArea::vertical().id_salt("histories").auto_shrink(false).show(ui, |ui| {
         let rows = names.len().div_ceil(2).max(1);
@@ -53,14 +54,14 @@ pub(super) fn histories_ui(
             chart.group = Some(Id::unique("flight record"));
             chart.spans.clone_from(&gaps);
             let color = if place < dataset.inputs().len() { palette.text } else { palette.identified };
-            chart.lines.extend(lines_of(flight, place).map(|points| ChartLine {
-                points: thinned(points, MOST_POINTS),
-                color,
-                width: 1.0,
-                dashed: false,
-            }));
+            let points =
+                kept(ui, &format!("channel {place}"), &[Arc::clone(flight) as _], (), || points_of(flight, place));
+            let line =
+                |points: &Arc<[[f64; 2]]>| ChartLine { points: Arc::clone(points), color, width: 1.0, dashed: false };
+            chart.lines.extend(points.iter().map(line));
             if let Some(output) = place.checked_sub(dataset.inputs().len()) {
-                chart.lines.extend(models.iter().flat_map(|model| model.lines(output)));
+                chart.lines.extend(models.iter().flat_map(|model| model.lines(ui, output)));
+                chart.notes.extend(models.iter().filter_map(|model| Some((model.fit_words(output)?, model.color))));
             }
             chart_ui(ui, Rect::from_min_size(corner, vec2(width, height)), &chart, palette);
         }
@@ -68,15 +69,15 @@ pub(super) fn histories_ui(
 }
 
 /// The samples of a channel as unbroken lines: what is missing stays a gap.
-fn lines_of(flight: &FlightRecord, place: usize) -> impl Iterator<Item = Vec<[f64; 2]>> {
+fn points_of(flight: &FlightRecord, place: usize) -> Vec<Arc<[[f64; 2]]>> {
     let inputs = flight.inputs.ncols();
-    let value = move |sample: usize| match place.checked_sub(inputs) {
+    let value = |sample: usize| match place.checked_sub(inputs) {
         None => flight.inputs[(sample, place)],
         Some(output) => flight.outputs[(sample, output)],
     };
     let points: Vec<[f64; 2]> = flight.time_s.iter().enumerate().map(|(at, time)| [*time, value(at)]).collect();
-    let runs = points.split(|point| point.iter().any(|value| !value.is_finite())).map(<[_]>::to_vec);
-    runs.filter(|run| !run.is_empty()).collect::<Vec<_>>().into_iter()
+    let runs = points.split(|point| point.iter().any(|value| !value.is_finite()));
+    runs.filter(|run| !run.is_empty()).map(Arc::from).collect()
 }
 
 /// What was bridged and what was cut out of the record shown.

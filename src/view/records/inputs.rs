@@ -19,7 +19,7 @@ const LEAST_HEIGHT: f32 = 140.0;
 const SMOOTHED: usize = 5;
 
 /// Amplitude of each input over frequency: \[rad/s\] and \[dB\].
-type Amplitudes = Vec<Vec<[f64; 2]>>;
+type Amplitudes = Vec<Arc<[[f64; 2]]>>;
 
 /// A chart for each input: its spectrum in every record, the chosen one on top.
 pub(super) fn inputs_ui(ui: &mut Ui, state: &State, records: &ConditionRecords, palette: &Palette) {
@@ -34,8 +34,8 @@ pub(super) fn inputs_ui(ui: &mut Ui, state: &State, records: &ConditionRecords, 
         .enumerate()
         .filter_map(|(index, row)| {
             let flight = row.flight.as_ref()?;
-            let key = (Arc::as_ptr(flight) as usize, band.max().to_bits());
-            let spectra = kept(ui, &format!("amplitude {index}"), key, || amplitude(flight, band.max()));
+            let (name, source) = (format!("amplitude {index}"), Arc::clone(flight));
+            let spectra = kept(ui, &name, &[source], band.max().to_bits(), || amplitude(flight, band.max()));
             Some((index == records.chosen, spectra))
         })
         .collect();
@@ -57,7 +57,7 @@ pub(super) fn inputs_ui(ui: &mut Ui, state: &State, records: &ConditionRecords, 
             for is_chosen in [false, true] {
                 let lines = of_rows.iter().filter(|(chosen, _)| *chosen == is_chosen);
                 chart.lines.extend(lines.filter_map(|(_, spectra)| spectra.get(input)).map(|points| ChartLine {
-                    points: points.clone(),
+                    points: Arc::clone(points),
                     color: if is_chosen { palette.identified } else { palette.perturbed.gamma_multiply(0.6) },
                     width: if is_chosen { 1.8 } else { 1.0 },
                     dashed: false,

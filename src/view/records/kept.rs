@@ -1,25 +1,41 @@
 //! What a page computes once and keeps until what it depends on changes.
 
+use std::any::Any;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
 use egui::{Id, Ui};
 
-/// What `compute` gives for `key`, computed when the key of this name changes.
-pub(super) fn kept<K, T>(ui: &Ui, name: &str, key: K, compute: impl FnOnce() -> T) -> Arc<T>
-where
-    K: Hash,
-    T: Send + Sync + 'static,
-{
+/// What something is computed from: held as long as what came of it, so that nothing else can take its place in memory.
+pub(super) type Source = Arc<dyn Any + Send + Sync>;
+
+struct Kept<T> {
+    sources: Vec<Source>,
+    key: u64,
+    value: Arc<T>,
+}
+
+/// What `compute` gives for these very sources and `key`, computed when those of this name change.
+pub(super) fn kept<T: Send + Sync + 'static>(
+    ui: &Ui,
+    name: &str,
+    sources: &[Source],
+    key: impl Hash,
+    compute: impl FnOnce() -> T,
+) -> Arc<T> {
     let mut hasher = DefaultHasher::new();
     key.hash(&mut hasher);
     let (place, key) = (Id::unique(("records page", name)), hasher.finish());
-    let known = ui.data(|data| data.get_temp::<(u64, Arc<T>)>(place)).filter(|(known, _)| *known == key);
-    if let Some((_, value)) = known {
-        return value;
+    let are_same = |known: &[Source]| {
+        known.len() == sources.len() && known.iter().zip(sources).all(|(known, source)| Arc::ptr_eq(known, source))
+    };
+    let known = ui.data(|data| data.get_temp::<Arc<Kept<T>>>(place));
+    if let Some(known) = known.filter(|known| known.key == key && are_same(&known.sources)) {
+        return Arc::clone(&known.value);
     }
     let value = Arc::new(compute());
-    ui.data_mut(|data| data.insert_temp(place, (key, Arc::clone(&value))));
+    let kept = Arc::new(Kept { sources: sources.to_vec(), key, value: Arc::clone(&value) });
+    ui.data_mut(|data| data.insert_temp(place, kept));
     value
 }
 
@@ -28,18 +44,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_is_computed_once_for_a_key() {
+    fn it_is_computed_once_for_its_sources_and_key() {
         let mut computed = 0;
         egui::__run_test_ui(|ui| {
             computed = 0;
-            for (key, expected) in [(1, 10), (1, 10), (2, 20), (1, 10)] {
-                let value = kept(ui, "test", key, || {
+            let sources: [Source; 2] = [Arc::new(1_i64), Arc::new(1_i64)];
+            for (source, key) in [(0, 1), (0, 1), (0, 2), (1, 2), (0, 2)] {
+                let value = kept(ui, "test", &[Arc::clone(&sources[source])], key, || {
                     computed += 1;
-                    10 * key
+                    (source, key)
                 });
-                assert_eq!(*value, expected);
+                assert_eq!(*value, (source, key));
             }
         });
-        assert_eq!(computed, 3, "once for each change of the key");
+        assert_eq!(computed, 4, "once for each change");
     }
 }

@@ -13,7 +13,7 @@ use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::state::State;
 
 use super::bench::{ConditionRecords, RecordsCommand};
-use super::kept::kept;
+use super::kept::{Source, kept};
 
 /// Above this the held-out records speak against the model (M14, section 4).
 const HELD_OUT: f64 = 1.15;
@@ -114,7 +114,7 @@ fn summary_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
                 "Cost per degree of freedom over the records of the fit; 1 is what noise explains (M14, section 6)",
             );
         if let Some(held_out) = found.held_out_cost {
-            ui.label(", held out");
+            ui.label("· held out");
             ui.label(RichText::new(format!("{held_out:.2}")).color(color(held_out <= HELD_OUT * found.cost)))
                 .on_hover_text(
                     "The same over the records that were held out: the sharp test. Green up to 1.15 times the fit's",
@@ -148,9 +148,9 @@ fn late_channel_ui(
     let Some((job, Ok(found))) = &records.found else { return };
     let (dataset, condition) = (state.dataset(), state.condition());
     let Some(physics) = condition.bundle(BundleKind::Physics).get(condition.nominal()) else { return };
-    let key = (Arc::as_ptr(found) as usize, std::ptr::from_ref(physics) as usize);
+    let sources: [Source; 2] = [Arc::clone(found) as _, Arc::clone(condition) as _];
     let of_condition = || LateChannel::of_condition(&found.measured, job.options.band, condition);
-    let Some(late) = *kept(ui, "late channel", key, of_condition) else { return };
+    let Some(late) = *kept(ui, "late channel", &sources, (), of_condition) else { return };
     let Some(signal) = late.signal(dataset) else { return };
     let words = late.words(&signal.name, &physics.name);
     caution_ui(ui, (&words, vec![taken_out(records, &signal, late.delay_s)]), palette, commands);

@@ -1,7 +1,7 @@
 //! The Records view: the records at the left, one page about them at the right.
 
 use egui::scroll_area::ScrollBarVisibility;
-use egui::{Button, Label, Panel, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
+use egui::{Button, Frame, Label, Margin, Panel, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
@@ -62,16 +62,19 @@ pub fn records_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comman
             outcome_ui(ui, state, records, palette, commands);
         });
     });
-    pages_ui(ui, state.records.page, commands);
-    match state.records.page {
-        RecordsPage::Histories => histories_ui(ui, state, records, palette, commands),
-        RecordsPage::Inputs => inputs_ui(ui, state, records, palette),
-        RecordsPage::Response => response_ui(ui, state, records, palette),
-        RecordsPage::Stabilisation => stabilisation_ui(ui, state, records, palette),
-        RecordsPage::Poles => identified_poles_ui(ui, records, palette),
-        RecordsPage::Fit => fit_ui(ui, state, records, palette, commands),
-        RecordsPage::Columns => columns_ui(ui, state, records, palette, commands),
-    }
+    // Clear of the line between list and page.
+    Frame::new().inner_margin(Margin { left: 6, ..Margin::ZERO }).show(ui, |ui| {
+        pages_ui(ui, state.records.page, commands);
+        match state.records.page {
+            RecordsPage::Histories => histories_ui(ui, state, records, palette, commands),
+            RecordsPage::Inputs => inputs_ui(ui, state, records, palette),
+            RecordsPage::Response => response_ui(ui, state, records, palette),
+            RecordsPage::Stabilisation => stabilisation_ui(ui, state, records, palette),
+            RecordsPage::Poles => identified_poles_ui(ui, records, palette),
+            RecordsPage::Fit => fit_ui(ui, state, records, palette, commands),
+            RecordsPage::Columns => columns_ui(ui, state, records, palette, commands),
+        }
+    });
     state.records.path = path;
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{Color32, Rect, RichText, Ui, vec2};
+use egui::{Color32, Label, Rect, RichText, Ui, vec2};
 
 use crate::dataset::Pair;
 use crate::identification::{Identification, MeasuredPoint, StateSpaceMatrices, TRUSTED_COHERENCE, TWO_SIDED_95};
@@ -42,14 +42,14 @@ pub(super) fn response_ui(ui: &mut Ui, state: &State, records: &ConditionRecords
     let drawn = match (records.identification(), first) {
         (_, Some(first)) => {
             let job = running.map_or([0.1, 10.0], |job| job.options.band);
-            kept(ui, "first model", (Arc::as_ptr(&first) as usize, pair), || DrawnResponse {
+            kept(ui, "first model", &[Arc::clone(&first) as _], pair, || DrawnResponse {
                 plain: model_curve(&first, job, pair, None),
                 ..DrawnResponse::default()
             })
         }
         (Some(found), None) => {
             let band = records.found.as_ref().map_or([0.1, 10.0], |(job, _)| job.options.band);
-            kept(ui, "response", (Arc::as_ptr(found) as usize, pair), || drawn(found, band, pair))
+            kept(ui, "response", &[Arc::clone(found) as _], pair, || drawn(found, band, pair))
         }
         (None, None) => {
             let text = "Nothing was identified yet: choose Identify above. The measured response, the models and their bands stand here then.";
@@ -79,7 +79,7 @@ fn legend_ui(ui: &mut Ui, palette: &Palette) {
             ("● measured (local polynomial), ± 1.96 sd", palette.text),
             ("○ partial coherence below 0.6", palette.dim_text),
         ] {
-            ui.label(RichText::new(text).size(SMALL_SIZE).color(color));
+            ui.add(Label::new(RichText::new(text).size(SMALL_SIZE).color(color)).extend());
         }
     });
 }
@@ -99,7 +99,7 @@ fn chart_of<'a>(
     });
     chart.bands.push(ChartBand { points: band.collect(), color: palette.identified.gamma_multiply(0.28) });
     let line = |curve: &Curve, color: Color32, dashed: bool| ChartLine {
-        points: curve.0.iter().map(|at| [at[0], at[part]]).collect(),
+        points: curve.0.iter().map(|at| [at[0], at[part]]).collect::<Vec<_>>().into(),
         color,
         width: if dashed { 1.2 } else { 2.0 },
         dashed,

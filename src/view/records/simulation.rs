@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{Color32, RichText, Ui};
+use egui::{Color32, Label, RichText, Ui};
 
 use crate::correction::{CorrectedModel, Pade};
 use crate::dataset::{BundleKind, Dynamics, StateSpace};
@@ -10,10 +10,11 @@ use crate::identification::{Preparation, StateSpaceMatrices, Validation};
 use crate::study::SimulationJob;
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
-use crate::view::plot::{ChartLine, thinned};
+use crate::view::plot::ChartLine;
 use crate::view::state::State;
 
 use super::bench::{ConditionRecords, RecordsCommand};
+use super::kept::kept;
 
 /// A model that can be compared with a record in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -64,18 +65,42 @@ impl Simulated<'_> {
         Some(self.result?.as_ref().ok()?.as_ref())
     }
 
-    /// The lines of an output, one a window, each from an initial state of its own.
-    pub(super) fn lines(&self, output: usize) -> Vec<ChartLine> {
-        let Some(validation) = self.validation() else { return Vec::new() };
-        let windows = validation.windows.iter().map(|window| {
-            let at = |sample: usize| window.start_s + sample as f64 * window.sample_time_s;
-            let values = window.simulated.column(output);
-            let points = values.iter().enumerate().map(|(sample, value)| [at(sample), *value]).collect();
-            let dashed = self.model == TimeModel::Physics;
-            ChartLine { points: thinned(points, 1000), color: self.color, width: 1.3, dashed }
-        });
-        windows.collect()
+    /// How well it fits an output; none where that is not known.
+    pub(super) fn fit_words(&self, output: usize) -> Option<String> {
+        let fit = self.validation()?.fit_percent.get(output).copied().flatten()?;
+        Some(format!("{fit:.1} %"))
     }
+
+    /// Says why it gives nothing, or that it is being computed.
+    pub(super) fn absence_ui(&self, ui: &mut Ui, state: &State, palette: &Palette) {
+        let (words, color) = match self.result {
+            Some(Ok(_)) => return,
+            Some(Err(why)) => (why.as_str(), palette.warning),
+            None => (state.results.absence(), palette.dim_text),
+        };
+        let words = format!("{} model: {words}", self.model.name());
+        ui.add(Label::new(RichText::new(words).size(SMALL_SIZE).color(color)).wrap());
+    }
+
+    /// The lines of an output, one a window, each from an initial state of its own.
+    pub(super) fn lines(&self, ui: &Ui, output: usize) -> Vec<ChartLine> {
+        let Some(Ok(validation)) = self.result else { return Vec::new() };
+        let name = format!("{} {output}", self.model.name());
+        let points = kept(ui, &name, &[Arc::clone(validation) as _], (), || simulated_points(validation, output));
+        let dashed = self.model == TimeModel::Physics;
+        let line =
+            |points: &Arc<[[f64; 2]]>| ChartLine { points: Arc::clone(points), color: self.color, width: 1.3, dashed };
+        points.iter().map(line).collect()
+    }
+}
+
+fn simulated_points(validation: &Validation, output: usize) -> Vec<Arc<[[f64; 2]]>> {
+    let windows = validation.windows.iter().map(|window| {
+        let at = |sample: usize| window.start_s + sample as f64 * window.sample_time_s;
+        let values = window.simulated.column(output);
+        values.iter().enumerate().map(|(sample, value)| [at(sample), *value]).collect()
+    });
+    windows.collect()
 }
 
 /// The models asked for beside the record shown, with the job that computes what each gives.

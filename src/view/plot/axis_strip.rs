@@ -58,7 +58,7 @@ fn take_hold(ui: &Ui, (axis, pane): (PlotAxis, Pane), response: &Response, view:
         view.pan_axis(axis, pane, drag);
         ui.ctx().request_repaint();
     }
-    if let Some((turn, pointer)) = turned(ui, response) {
+    if let Some((turn, pointer)) = turned(ui.ctx(), response) {
         view.zoom_axis(axis, pane, pointer, f64::from(turn.along_one_axis()));
         ui.ctx().request_repaint();
     }

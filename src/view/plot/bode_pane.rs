@@ -203,7 +203,7 @@ fn draw_cursors(plot: &mut PlotUi<'_>, pinned: &[f64], cursor: Option<f64>, pale
 
 /// The wheel zooms about the pointer, and so do two fingers; the sideways wheel only along the frequency axis.
 fn zoom_by_scrolling(ui: &Ui, pane: Pane, response: &Response, view: &mut BodeView) {
-    if let Some((Turn { both, sideways }, pointer)) = turned(ui, response) {
+    if let Some((Turn { both, sideways }, pointer)) = turned(ui.ctx(), response) {
         view.zoom(pane, pointer, f64::from(both.x * sideways), f64::from(both.y));
         ui.ctx().request_repaint();
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{Align2, Color32, Id, Rect, Response, Sense, Stroke, Ui, UiBuilder, Vec2b, WidgetInfo, pos2, vec2};
+use egui::{Align2, Color32, Id, Rect, Response, Sense, Stroke, Ui, UiBuilder, Vec2, Vec2b, WidgetInfo, pos2, vec2};
 use egui_plot::{Axis, FilledArea, Line, LineStyle, MarkerShape, Plot, PlotPoints, PlotUi, Points, Span, VLine};
 
 use super::axes::{LABELLED_HEIGHT, TICKS_HEIGHT, VERTICAL_TICK_GAP, axis_hints, caption_font, quiet_plot};
@@ -10,6 +10,7 @@ use super::linear_axis::{Ladder, tick_text};
 use super::log_axis::FrequencyUnit;
 use super::pixel::Pixel;
 use super::thinning::thinned;
+use super::wheel::{Turn, turned};
 use crate::view::palette::Palette;
 
 const TITLE_HEIGHT: f32 = 18.0;
@@ -99,6 +100,8 @@ pub struct Chart<'a> {
     pub across_label: &'a str,
     /// What stands beside the vertical axis.
     pub value_label: &'a str,
+    /// Whether the values in view fill its height: then only the horizontal axis is zoomed and dragged.
+    pub fits_values: bool,
     /// Charts of one group show the same stretch of the horizontal axis.
     pub group: Option<Id>,
     /// Stretches that are marked.
@@ -122,6 +125,7 @@ impl<'a> Chart<'a> {
             across,
             across_label,
             value_label,
+            fits_values: false,
             group: None,
             spans: Vec::new(),
             bands: Vec::new(),
@@ -139,6 +143,7 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
     let shown = ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(plot_rect), |ui| {
         empty_chart(id, plot_rect, chart, palette).show(ui, |plot| {
             draw(plot, chart, palette);
+            zoom_by_scrolling(plot, chart.fits_values);
             view_of(plot)
         })
     });
@@ -162,6 +167,22 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
     response
 }
 
+/// The wheel zooms about the pointer, and so do two fingers.
+fn zoom_by_scrolling(plot: &mut PlotUi<'_>, fits_values: bool) {
+    if let Some((turn, pointer)) = turned(plot.ctx(), plot.response()) {
+        let Turn { both, sideways } = turn;
+        let factor = if fits_values { vec2(turn.along_one_axis(), 1.0) } else { vec2(both.x * sideways, both.y) };
+        let fixed = plot.plot_from_screen(pointer);
+        plot.zoom_bounds(factor, fixed);
+        plot.set_auto_bounds(Vec2b::new(false, fits_values));
+        // What the chart lies in does not scroll by it too.
+        plot.ctx().input_mut(|input| input.smooth_scroll_delta = Vec2::ZERO);
+    } else if fits_values && !plot.auto_bounds().y {
+        // Dragging has ended the fit.
+        plot.set_auto_bounds(Vec2b::new(plot.auto_bounds().x, true));
+    }
+}
+
 fn count(chart: &Chart<'_>) -> usize {
     chart.marks.iter().map(|marks| marks.points.len()).sum()
 }
@@ -171,8 +192,7 @@ fn empty_chart<'a>(id: Id, rect: Rect, chart: &Chart<'_>, palette: &Palette) -> 
     let plot = quiet_plot(id, palette)
         .sense(Sense::click_and_drag())
         .auto_bounds(true)
-        .allow_drag(true)
-        .allow_zoom(true)
+        .allow_drag(Vec2b::new(true, !chart.fits_values))
         .allow_axis_zoom_drag(true)
         .allow_double_click_reset(true)
         .set_margin_fraction(egui::vec2(0.01, 0.08))

@@ -7,6 +7,7 @@ use super::axes::{LABELLED_HEIGHT, VERTICAL_TICK_GAP, axis_hints, caption_font, 
 use super::linear_axis::{Ladder, tick_text};
 use super::pole_mark::PoleMark;
 use super::range::Range;
+use super::wheel::turned;
 use crate::figure::step_above;
 use crate::view::palette::Palette;
 
@@ -164,15 +165,11 @@ fn paint_marks(
     }
 }
 
-/// The wheel zooms about the pointer.
+/// The wheel zooms about the pointer, and so do two fingers.
 fn zoom_by_scrolling(ui: &Ui, response: &Response, view: &mut PlaneView) {
-    /// Scrolled points that make a factor of e: about four clicks of a wheel.
-    const POINTS_PER_E: f32 = 200.0;
-    let Some(pointer) = response.hover_pos() else { return };
-    let scrolled = ui.input(|input| input.smooth_scroll_delta()).y;
     let (Some((real, imaginary)), Some(transform)) = (view.ranges, view.transform) else { return };
-    if scrolled != 0.0 {
-        let (factor, fixed) = (f64::from((scrolled / POINTS_PER_E).exp()), transform.value_from_position(pointer));
+    if let Some((turn, pointer)) = turned(ui.ctx(), response) {
+        let (factor, fixed) = (f64::from(turn.along_one_axis()), transform.value_from_position(pointer));
         view.set(real.zoomed(factor, fixed.x), imaginary.zoomed(factor, fixed.y));
         ui.ctx().request_repaint();
     }

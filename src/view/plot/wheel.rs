@@ -1,6 +1,6 @@
 //! What the wheel and two fingers ask of a plot.
 
-use egui::{Pos2, Response, Ui, Vec2};
+use egui::{Context, Pos2, Response, Vec2};
 
 /// Scrolled points that make a factor of e: about four clicks of a wheel.
 const POINTS_PER_E: f32 = 200.0;
@@ -23,9 +23,9 @@ impl Turn {
 }
 
 /// What the wheel and two fingers ask of the widget under the pointer, and where; nothing where they rest.
-pub(super) fn turned(ui: &Ui, response: &Response) -> Option<(Turn, Pos2)> {
+pub(super) fn turned(ctx: &Context, response: &Response) -> Option<(Turn, Pos2)> {
     let pointer = response.hover_pos()?;
-    let (scrolled, pinched) = ui.input(|input| (input.smooth_scroll_delta(), input.zoom_delta_2d()));
+    let (scrolled, pinched) = ctx.input(|input| (input.smooth_scroll_delta(), input.zoom_delta_2d()));
     if scrolled == Vec2::ZERO && pinched == Vec2::splat(1.0) {
         return None;
     }

@@ -52,6 +52,7 @@ pub(super) fn histories_ui(
             let is_last = line + 1 == rows || place + 1 == names.len();
             let mut chart = Chart::new(name, ChartAxis::Linear, if is_last { "time [s]" } else { "" }, "");
             chart.group = Some(Id::unique("flight record"));
+            chart.fits_values = true;
             chart.spans.clone_from(&gaps);
             let color = if place < dataset.inputs().len() { palette.text } else { palette.identified };
             let points =

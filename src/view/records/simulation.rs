@@ -157,7 +157,7 @@ fn matrices(state: &State, records: &ConditionRecords, model: TimeModel) -> Opti
 /// Which models are drawn beside the record.
 pub(super) fn time_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
-        ui.label(RichText::new("response to the same inputs of:").size(SMALL_SIZE).color(palette.dim_text));
+        ui.label(RichText::new("response to the same inputs, and fit, of:").size(SMALL_SIZE).color(palette.dim_text));
         for model in TimeModel::ALL {
             let mut shown = state.records.time_models.contains(&model);
             let text = RichText::new(format!("{} model", model.name())).size(SMALL_SIZE).color(model.color(palette));

@@ -2,6 +2,7 @@
 
 mod axes;
 mod bode;
+mod charts;
 mod gains;
 mod tables;
 

@@ -26,6 +26,12 @@ impl Trap {
         Setup { engine: Arc::new(move || Engine::with_executor(Box::new(trap.clone()))), ..Setup::default() }
     }
 
+    /// As [`Trap::setup`], with nothing left to compute beside the first results, which could run into the trap before them.
+    fn warm_setup(&self) -> Setup {
+        let trap = self.clone();
+        Setup { engine: Arc::new(move || WARM.fork(Box::new(trap.clone()))), ..Setup::default() }
+    }
+
     fn close(&self, closed: bool) {
         *self.closed.0.lock().unwrap() = closed;
         self.closed.1.notify_all();
@@ -63,7 +69,8 @@ fn set_alpha(window: &mut Window, alpha: f64) {
 fn a_panic_while_computing_is_told_with_what_to_send_and_the_study_stays() {
     note_panics();
     let trap = Trap::default();
-    let mut window = window_with(example(), trap.setup());
+    let mut window = window_with(example(), trap.warm_setup());
+    wait_for_background(&mut window);
     let before = state(&window).results.received;
     trap.panics.store(true, Ordering::Relaxed);
     set_alpha(&mut window, 12.5);
@@ -90,7 +97,8 @@ fn a_panic_while_computing_is_told_with_what_to_send_and_the_study_stays() {
 #[test]
 fn after_a_panic_the_same_can_be_computed_again() {
     let trap = Trap::default();
-    let mut window = window_with(example(), trap.setup());
+    let mut window = window_with(example(), trap.warm_setup());
+    wait_for_background(&mut window);
     trap.panics.store(true, Ordering::Relaxed);
     set_alpha(&mut window, 12.5);
     wait_until(&mut window, "the fault is told", |window| window.query_by_label("Compute again").is_some());

@@ -13,14 +13,16 @@ use std::time::Duration;
 use criterion::{Criterion, criterion_group, criterion_main};
 
 use gdcm::app::Pool;
-use gdcm::correction::{Delta, delay_upper_s, gain_bounds, mismatch_table};
-use gdcm::dataset::{Band, BundleKind, Condition, ConditionId, Dataset, Dynamics, Model, ModelId, Origin, StateSpace};
-use gdcm::fidelity::Discontinuity;
-use gdcm::io::{embedded_example, load_dataset};
-use gdcm::response::{FrequencyGrid, PolarResponse};
-use gdcm::study::{
+use gdcm_core::correction::{Delta, delay_upper_s, gain_bounds, mismatch_table};
+use gdcm_core::dataset::{
+    Band, BundleKind, Condition, ConditionId, Dataset, Dynamics, Model, ModelId, Origin, StateSpace,
+};
+use gdcm_core::fidelity::Discontinuity;
+use gdcm_core::response::{FrequencyGrid, PolarResponse};
+use gdcm_core::study::{
     BundleFigures, ConditionResponses, Edit, Engine, Execution, PhaseCorrection, Setting, Study, Unobserved,
 };
+use gdcm_files::{embedded_example, load_dataset};
 
 #[path = "random_model/mod.rs"]
 #[expect(dead_code, reason = "other benches use the rest of it")]

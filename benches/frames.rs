@@ -12,9 +12,9 @@ use criterion::Criterion;
 use egui::{Context, Event, FullOutput, RawInput, Rect, Ui, pos2, vec2};
 use egui_plot::{Line, Plot};
 
-use gdcm::dataset::{BundleKind, ConditionId, ModelId};
 use gdcm::view::palette::Palette;
 use gdcm::view::plot::{BodeCurve, BodeScene, BodeView, CurveId, Role, bode_ui};
+use gdcm_core::dataset::{BundleKind, ConditionId, ModelId};
 
 use window::Window;
 

@@ -11,11 +11,11 @@ use std::time::Instant;
 use nalgebra::DMatrix;
 
 use gdcm::app::Pool;
-use gdcm::assembly::standard_patterns;
-use gdcm::dataset::ConditionId;
-use gdcm::identification::{FlightRecord, Options, Preparation, StateSpaceMatrices, Watch, identify};
-use gdcm::io::{FolderProgress, embedded_example, read_records};
-use gdcm::records::{RecordChannels, RecordGuess, RecordLayout, TimeWish};
+use gdcm_core::assembly::standard_patterns;
+use gdcm_core::dataset::ConditionId;
+use gdcm_core::identification::{FlightRecord, Options, Preparation, StateSpaceMatrices, Watch, identify};
+use gdcm_core::records::{RecordChannels, RecordGuess, RecordLayout, TimeWish};
+use gdcm_files::{FolderProgress, embedded_example, read_records};
 
 struct Silent;
 
@@ -76,7 +76,8 @@ fn main() {
             })
             .collect();
         let held_out = (0..tables.len()).filter(|index| guess(tables[*index], &patterns).held_out).collect();
-        let names = |channels: &[gdcm::dataset::Channel]| channels.iter().map(|of| of.name.clone()).collect::<Vec<_>>();
+        let names =
+            |channels: &[gdcm_core::dataset::Channel]| channels.iter().map(|of| of.name.clone()).collect::<Vec<_>>();
         let (inputs, outputs) = (names(dataset.inputs()), names(dataset.outputs()));
         let preparation = Preparation::of(&borrowed(&inputs), &borrowed(&outputs));
         let band = dataset.band();
@@ -109,7 +110,7 @@ fn borrowed(names: &[String]) -> Vec<&str> {
     names.iter().map(String::as_str).collect()
 }
 
-fn guess(table: &gdcm::records::RecordTable, patterns: &[gdcm::assembly::NamePattern]) -> RecordGuess {
+fn guess(table: &gdcm_core::records::RecordTable, patterns: &[gdcm_core::assembly::NamePattern]) -> RecordGuess {
     RecordGuess::of(&table.name, patterns)
 }
 

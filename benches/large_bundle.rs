@@ -7,10 +7,12 @@ use std::sync::Arc;
 
 use criterion::Criterion;
 use gdcm::app::Pool;
-use gdcm::dataset::{Band, Condition, ConditionId, Dynamics, FlightState, Model, Origin, Pair, PairTable, StateSpace};
-use gdcm::executor::{Executor, Sequential};
-use gdcm::response::FrequencyGrid;
-use gdcm::study::{BundleFigures, ConditionResponses, Execution, Unobserved};
+use gdcm_core::dataset::{
+    Band, Condition, ConditionId, Dynamics, FlightState, Model, Origin, Pair, PairTable, StateSpace,
+};
+use gdcm_core::executor::{Executor, Sequential};
+use gdcm_core::response::FrequencyGrid;
+use gdcm_core::study::{BundleFigures, ConditionResponses, Execution, Unobserved};
 use nalgebra::DMatrix;
 
 #[path = "random_model/mod.rs"]

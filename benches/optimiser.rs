@@ -9,7 +9,7 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use gdcm::correction::{Problem, ProofBudget, Solution, solve};
+use gdcm_core::correction::{Problem, ProofBudget, Solution, solve};
 
 #[path = "../tests/suite/optimiser/instances.rs"]
 // The tests use more of it.

@@ -17,8 +17,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use criterion::{Criterion, Throughput};
-use gdcm::dataset::{Band, Pair, StateSpace};
-use gdcm::response::{FrequencyGrid, FrequencyResponse, evaluate, evaluate_on};
+use gdcm_core::dataset::{Band, Pair, StateSpace};
+use gdcm_core::response::{FrequencyGrid, FrequencyResponse, evaluate, evaluate_on};
 use nalgebra::{Complex, DMatrix};
 use pulp::{Arch, Simd, WithSimd};
 use serde_json::json;

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use gdcm::cli::{self, Request};
 
 fn main() -> ExitCode {
-    gdcm::io::report_size_limit();
+    gdcm_files::report_size_limit();
     match cli::request(std::env::args_os()) {
         Ok(Request::Window(file)) => gdcm::app::open(file),
         Ok(Request::Command(command)) => cli::run(&command),

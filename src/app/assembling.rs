@@ -1,5 +1,6 @@
 //! Putting models of files together: reading them in a thread, and what becomes of them.
 
+use gdcm_core::message_text::sanitized_path;
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -8,13 +9,13 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use egui::Context;
 
-use crate::assembly::Rules;
-use crate::io::{
-    Existing, FileError, FolderProgress, FoundModels, OutputSet, add_dataset, add_rules, load_rules, plain_path,
-    read_models, relative_folder, rules_path, sources_folder,
-};
 use crate::view::assembling::{AssemblingCommand, Reading, Workbench};
 use crate::view::command::{Command, FormKind};
+use gdcm_core::assembly::Rules;
+use gdcm_files::{
+    Existing, FileError, FolderProgress, FoundModels, OutputSet, add_dataset, add_rules, load_rules, read_models,
+    relative_folder, rules_path, sources_folder,
+};
 
 use super::dialogs::DialogPurpose;
 use super::fault::{Fault, caught};
@@ -209,7 +210,7 @@ impl GdcmApp {
                     bench.change(rules);
                 }
                 let cautions: String = cautions.iter().map(|caution| format!("; {caution}")).collect();
-                self.done(format!("took the rules of {}{cautions}", plain_path(&path)));
+                self.done(format!("took the rules of {}{cautions}", sanitized_path(&path)));
             }
             Err(error) => self.trouble(error.to_string()),
         }
@@ -227,7 +228,7 @@ impl GdcmApp {
         match add_rules(&rules, &path, &mut outputs).and_then(|()| outputs.persist()) {
             Ok(()) => {
                 self.state.forms.shown = None;
-                self.done(format!("saved {}", plain_path(&path)));
+                self.done(format!("saved {}", sanitized_path(&path)));
             }
             Err(FileError::Exists { paths }) => {
                 let command = AssemblingCommand::SaveRules(path).into();

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
 
-use crate::io::{FileError, LoadedDataset, LostStudy, RecoveryFile, lost_studies};
-use crate::study::Study;
+use gdcm_core::study::Study;
+use gdcm_files::{FileError, LoadedDataset, LostStudy, RecoveryFile, lost_studies};
 
 /// Folder of the recovery files in the program's directory.
 const FOLDER: &str = "recovery";

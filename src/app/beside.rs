@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use crate::study::{AssessmentJob, ModesJob, UncertaintyJob};
 use crate::view::across_scene::across_job;
 use crate::view::arrangement::View;
 use crate::view::assessment_scene::assessment_choice;
 use crate::view::compare_scene::variant_jobs;
 use crate::view::records::simulation_jobs;
 use crate::view::state::State;
+use gdcm_core::study::{AssessmentJob, ModesJob, UncertaintyJob};
 
 use super::window::GdcmApp;
 use super::worker::Beside;

@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use crate::io::{FileStamp, file_sha256};
+use gdcm_files::{FileStamp, file_sha256};
 
 /// What a file holds now, told when that is new.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,11 +1,12 @@
 //! Writing corrections to files.
 
+use gdcm_core::message_text::sanitized_path;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::io::{Existing, ExportSource, FileError, OutputSet, plain_path, write_export, write_results};
-use crate::study::{Analysis, ExportFormat, ExportRequest};
 use crate::view::command::{Command, FormKind};
+use gdcm_core::study::{Analysis, ExportFormat, ExportRequest};
+use gdcm_files::{Existing, ExportSource, FileError, OutputSet, write_export, write_results};
 
 use super::window::GdcmApp;
 
@@ -20,7 +21,7 @@ impl GdcmApp {
         match write_results(&analysis, &self.loaded.sha256, &chosen, &folder, outputs) {
             Ok(()) => {
                 self.state.forms.shown = None;
-                self.done(format!("exported {} conditions to {}", chosen.len(), plain_path(&folder)));
+                self.done(format!("exported {} conditions to {}", chosen.len(), sanitized_path(&folder)));
             }
             Err(FileError::Exists { paths }) => self.ask_to_overwrite(&paths, FormKind::Export, Command::Export),
             Err(error) => self.trouble(error.to_string()),
@@ -51,7 +52,7 @@ impl GdcmApp {
                     [remark] => format!(" ({remark})"),
                     several => format!(" ({} remarks, in the file)", several.len()),
                 };
-                self.done(format!("exported {}{remark}", plain_path(&path)));
+                self.done(format!("exported {}{remark}", sanitized_path(&path)));
             }
             Err(FileError::Exists { paths }) => {
                 self.ask_to_overwrite(&paths, FormKind::ExportAs, Command::ExportAs(format, path));

@@ -1,14 +1,15 @@
 //! What a view shows, copied and saved as a figure on paper.
 
+use gdcm_core::message_text::sanitized_path;
 use std::path::{Path, PathBuf};
 
 use egui::Context;
 
-use crate::figure::{ColumnWidth, Figure, FigureFormat};
-use crate::io::{Existing, FileError, OutputSet, csv_text, plain_path, write_figure};
 use crate::view::arrangement::View;
 use crate::view::command::{Command, FormKind};
 use crate::view::figures::{figure_name, figure_of};
+use gdcm_files::figure::{ColumnWidth, Figure, FigureFormat};
+use gdcm_files::{Existing, FileError, OutputSet, csv_text, write_figure};
 
 use super::window::GdcmApp;
 
@@ -37,7 +38,7 @@ impl GdcmApp {
         match write_figure(&figure, width, &path, OutputSet::new(existing, self.inputs())) {
             Ok(()) => {
                 self.state.forms.shown = None;
-                self.done(format!("saved {}", plain_path(&path)));
+                self.done(format!("saved {}", sanitized_path(&path)));
             }
             Err(FileError::Exists { paths }) => {
                 self.ask_to_overwrite(&paths, FormKind::SaveFigure, Command::SaveFigure(view, width, path));

@@ -1,22 +1,23 @@
 //! Opening and saving.
 
+use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use egui::Context;
 
-use crate::io::{
-    Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, at_home, embedded_example, load_any,
-    open_study_of, plain, plain_path, save_study, save_table,
-};
-use crate::study::{Analysis, Difference, Study, Table};
 use crate::view::assembling::AssemblingCommand;
 use crate::view::bars::Bar;
 use crate::view::command::{Command, FormKind};
 use crate::view::preferences::Preferences;
 use crate::view::records::RecordsCommand;
 use crate::view::state::State;
+use gdcm_core::study::{Analysis, Difference, Study, Table};
+use gdcm_files::{
+    Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, at_home, embedded_example, load_any,
+    open_study_of, save_study, save_table,
+};
 
 use super::dialogs::{DialogAnswer, DialogPurpose};
 use super::fault::{Fault, caught};
@@ -117,7 +118,7 @@ impl GdcmApp {
         let lost = self.offers.iter().position(|lost| lost.as_ref().is_some_and(|lost| lost.path() == path));
         let purpose = lost.map_or(ReadFor::Opening, ReadFor::Restoring);
         self.state.forms.shown = None;
-        let name = plain_path(&path);
+        let name = sanitized_path(&path);
         let read = move || match moved {
             Some(dataset) => open_study_of(&path, &dataset).map(Opened::Study),
             None => load_any(&path),
@@ -267,7 +268,7 @@ impl GdcmApp {
                 self.state.forms.shown = None;
                 self.state.study_name = study_name(Some(&path));
                 self.state.unsaved = false;
-                self.done(format!("saved {}", plain_path(&path)));
+                self.done(format!("saved {}", sanitized_path(&path)));
                 self.saved = SavedStudy { path: Some(path), study: Some(self.state.study.clone()) };
                 self.keep_unsaved();
                 self.look_for_recent(ctx);
@@ -289,7 +290,7 @@ impl GdcmApp {
 
     /// Asks in a form whether to overwrite files, which `command` would do.
     pub(super) fn ask_to_overwrite(&mut self, paths: &[PathBuf], form: FormKind, command: Command) {
-        self.state.forms.existing = paths.iter().map(|path| plain_path(path)).collect();
+        self.state.forms.existing = paths.iter().map(|path| sanitized_path(path)).collect();
         self.state.forms.shown = Some(form);
         self.overwriting = Some(command);
     }
@@ -328,7 +329,7 @@ impl GdcmApp {
         match save_table(&table, &path, OutputSet::new(existing, self.inputs())) {
             Ok(()) => {
                 self.state.forms.shown = None;
-                self.done(format!("saved {}", plain_path(&path)));
+                self.done(format!("saved {}", sanitized_path(&path)));
             }
             Err(FileError::Exists { paths }) => {
                 self.ask_to_overwrite(&paths, FormKind::SaveTable, Command::SaveTable(table, path));
@@ -353,7 +354,7 @@ impl GdcmApp {
 }
 
 pub(super) fn study_name(path: Option<&Path>) -> String {
-    let name = path.and_then(|path| path.file_name()).map(|name| plain(&name.to_string_lossy()));
+    let name = path.and_then(|path| path.file_name()).map(|name| sanitized(&name.to_string_lossy()));
     name.unwrap_or_else(|| "untitled study".to_owned())
 }
 

@@ -5,7 +5,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::fault::{Fault, caught};
-use crate::study::{Cancelled, Job, Progress};
+use gdcm_core::study::{Cancelled, Job, Progress};
 
 /// How a job ended; nothing is told of a job that was given up.
 pub(super) type Ending<J> = Result<<J as Job>::Output, Fault>;

@@ -8,8 +8,8 @@ use std::sync::{Arc, OnceLock};
 use eframe::{App, Frame, NativeOptions};
 use egui::{Context, Ui, ViewportBuilder, Visuals};
 
-use crate::io::{FileError, Opened, embedded_example, load_any};
 use crate::view::assembling::AssemblingCommand;
+use gdcm_files::{FileError, Opened, embedded_example, load_any};
 
 use super::autosave::Autosave;
 use super::fault::{self, Fault, caught};

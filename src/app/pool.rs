@@ -1,6 +1,6 @@
 //! All processor cores as an executor.
 
-use crate::executor::{Executor, Task};
+use gdcm_core::executor::{Executor, Task};
 
 /// The threads of the global pool: one for each core.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,12 +1,13 @@
 //! The files opened and saved of late.
 
+use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use egui::Context;
 
-use crate::io::{FileError, add_recent_file, file_exists, plain, plain_path, recent_files};
 use crate::view::state::RecentFile;
+use gdcm_files::{FileError, add_recent_file, file_exists, recent_files};
 
 use super::window::GdcmApp;
 
@@ -48,8 +49,8 @@ impl Recent {
 }
 
 fn seen(path: PathBuf) -> RecentFile {
-    let name = path.file_name().map(|name| plain(&name.to_string_lossy())).unwrap_or_default();
-    let folder = path.parent().map(plain_path).unwrap_or_default();
+    let name = path.file_name().map(|name| sanitized(&name.to_string_lossy())).unwrap_or_default();
+    let folder = path.parent().map(sanitized_path).unwrap_or_default();
     RecentFile { missing: !file_exists(&path), path, name, folder }
 }
 

@@ -7,14 +7,14 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use egui::Context;
 
-use crate::assembly::standard_patterns;
-use crate::dataset::{ConditionId, ConditionRecord, Dataset};
-use crate::identification::{Identification, IdentificationError};
-use crate::io::{DatasetOrigin, FileError, FolderProgress, example_records, load_records, read_records};
-use crate::records::{RecordChannels, RecordGuess, RecordLayout, RecordTable, TimeWish};
-use crate::study::{Edit, IdentifyJob, OfferedModels, TakenModels};
 use crate::view::arrangement::View;
 use crate::view::records::{ConditionRecords, RecordRow, RecordsCommand, RecordsPage, RecordsReading};
+use gdcm_core::assembly::standard_patterns;
+use gdcm_core::dataset::{ConditionId, ConditionRecord, Dataset};
+use gdcm_core::identification::{Identification, IdentificationError};
+use gdcm_core::records::{RecordChannels, RecordGuess, RecordLayout, RecordTable, TimeWish};
+use gdcm_core::study::{Edit, IdentifyJob, OfferedModels, TakenModels};
+use gdcm_files::{DatasetOrigin, FileError, FolderProgress, example_records, load_records, read_records};
 
 use super::dialogs::DialogPurpose;
 use super::fault::{Fault, caught};

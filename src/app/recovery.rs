@@ -1,13 +1,14 @@
 //! Offering what a window lost that ended without saving, and opening it again.
 
+use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::time::{Duration, SystemTime};
 
 use egui::Context;
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
-use crate::io::{LostStudy, Opened, open_study, plain, plain_path};
 use crate::view::bars::Bar;
+use gdcm_files::{LostStudy, Opened, open_study};
 
 use super::autosave::{Kept, Unsaved};
 use super::files::ReadFor;
@@ -79,8 +80,8 @@ impl GdcmApp {
 /// "Decisions of 14:32 on 21 Nov 2026 for data.json.gz (study mine.gdcm-study.json) were not saved."
 fn offer_words(lost: &LostStudy, zone: &TimeZone) -> String {
     let study = lost.saved_as.as_ref().and_then(|path| path.file_name());
-    let study = study.map_or(String::new(), |name| format!(" (study {})", plain(&name.to_string_lossy())));
-    format!("Decisions of {} for {}{study} were not saved.", when(lost.kept_at, zone), plain(&lost.dataset))
+    let study = study.map_or(String::new(), |name| format!(" (study {})", sanitized(&name.to_string_lossy())));
+    format!("Decisions of {} for {}{study} were not saved.", when(lost.kept_at, zone), sanitized(&lost.dataset))
 }
 
 /// "14:32 on 21 Nov 2026", in the given zone.
@@ -95,7 +96,7 @@ pub(super) fn end_words(fault: &str, kept: &Result<Option<Kept>, String>) -> Str
     match kept {
         Ok(Some(Kept { path, at })) => {
             let time = when(*at, &TimeZone::system());
-            format!("{fault}; your decisions up to {time} are in {}", plain_path(path))
+            format!("{fault}; your decisions up to {time} are in {}", sanitized_path(path))
         }
         Ok(None) => format!("{fault}; every decision was saved"),
         Err(why) => format!("{fault}; the decisions that were not saved are lost: {why}"),

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use egui::Context;
 
-use crate::io::{LoadedDataset, Opened, load_dataset};
 use crate::view::bars::Bar;
+use gdcm_files::{LoadedDataset, Opened, load_dataset};
 
 use super::files::ReadFor;
 use super::window::GdcmApp;

@@ -1,11 +1,12 @@
 //! The report, written beside what the window goes on with.
 
+use gdcm_core::message_text::sanitized_path;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::io::{Existing, FileError, OutputSet, ReportSource, plain_path, report, save_report};
-use crate::study::{Analysis, Cancelled, Engine, Job, Progress};
 use crate::view::command::{Command, FormKind};
+use gdcm_core::study::{Analysis, Cancelled, Engine, Job, Progress};
+use gdcm_files::{Existing, FileError, OutputSet, ReportSource, report, save_report};
 
 use super::files::study_name;
 use super::window::GdcmApp;
@@ -82,7 +83,7 @@ impl GdcmApp {
     pub(super) fn report_written(&mut self, job: ReportJob, outcome: Result<(), FileError>) {
         self.reporting = None;
         match outcome {
-            Ok(()) => self.done(format!("wrote the report {}", plain_path(&job.path))),
+            Ok(()) => self.done(format!("wrote the report {}", sanitized_path(&job.path))),
             Err(error) => self.report_failed(job.path, error),
         }
     }
@@ -99,7 +100,7 @@ impl GdcmApp {
     /// Says that a report under way was given up, by hand or by a fault.
     pub(super) fn give_up_report(&mut self) {
         if let Some(job) = self.reporting.take() {
-            self.trouble(format!("{} was not written: it was stopped", plain_path(&job.path)));
+            self.trouble(format!("{} was not written: it was stopped", sanitized_path(&job.path)));
         }
     }
 }

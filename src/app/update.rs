@@ -1,10 +1,8 @@
 //! Carrying out commands: the only code that changes what the window shows.
 
 use egui::{Context, ViewportCommand};
+use gdcm_core::message_text::sanitized;
 
-use crate::dataset::ConditionId;
-use crate::io::{Existing, plain};
-use crate::study::Edit;
 use crate::view::arrangement::Arrangement;
 use crate::view::assembling::AssemblingCommand;
 use crate::view::command::{Command, FormKind};
@@ -16,6 +14,9 @@ use crate::view::plot::Pane;
 use crate::view::region::leave_region;
 use crate::view::state::{Notice, NoticeKind};
 use crate::view::tables::table_of;
+use gdcm_core::dataset::ConditionId;
+use gdcm_core::study::Edit;
+use gdcm_files::Existing;
 
 use super::dialogs::DialogPurpose;
 use super::files::Postponed;
@@ -272,12 +273,12 @@ impl GdcmApp {
 
     /// Tells the engineer that something was done.
     pub(super) fn done(&mut self, text: String) {
-        self.state.notice = Some(Notice { kind: NoticeKind::Done, text: plain(&text) });
+        self.state.notice = Some(Notice { kind: NoticeKind::Done, text: sanitized(&text) });
     }
 
     /// Tells the engineer that something could not be done.
     pub(super) fn trouble(&mut self, text: String) {
-        self.state.notice = Some(Notice { kind: NoticeKind::Trouble, text: plain(&text) });
+        self.state.notice = Some(Notice { kind: NoticeKind::Trouble, text: sanitized(&text) });
     }
 }
 

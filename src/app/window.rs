@@ -5,9 +5,6 @@ use std::sync::Arc;
 
 use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, ViewportCommand, Visuals};
 
-use crate::dataset::ConditionId;
-use crate::io::{LoadedDataset, LostStudy, Opened, is_first_start};
-use crate::study::Study;
 use crate::view::arrangement::View;
 use crate::view::assembling::{AssemblingCommand, assembling_ui};
 use crate::view::bars::Bar;
@@ -20,6 +17,9 @@ use crate::view::{
     bars, centre, conditions_panel, derivation_window, focus_ring, forms, matrix_panel, menu_bar, models_panel,
     result_panel, settings_panel, status_bar, tour,
 };
+use gdcm_core::dataset::ConditionId;
+use gdcm_core::study::Study;
+use gdcm_files::{LoadedDataset, LostStudy, Opened, is_first_start};
 
 use super::assembling::ModelReader;
 use super::autosave::Autosave;

@@ -9,17 +9,17 @@ use super::fault::{Fault, caught};
 use super::lane::{AnyLane, Ending, Lane, PATIENCE};
 use super::pool::Pool;
 use super::report::ReportJob;
-use crate::correction::{Outcome, Problem, Solution};
-use crate::dataset::ConditionId;
-use crate::executor::Executor;
-use crate::identification::{Identification, IdentificationError, Validation};
-use crate::io::FileError;
-use crate::study::{
+use crate::view::results::{Background, FirstResult};
+use gdcm_core::correction::{Outcome, Problem, Solution};
+use gdcm_core::dataset::ConditionId;
+use gdcm_core::executor::Executor;
+use gdcm_core::identification::{Identification, IdentificationError, Validation};
+use gdcm_core::study::{
     AcrossCurves, AcrossJob, Analysis, AssessmentJob, AssessmentTable, CURVE_POINTS, ConditionAnalysis,
     ConditionCurves, ConditionFailure, ConditionModes, CurvesJob, Engine, IdentifyJob, Job, ModesJob, Progress,
     ProofJob, SimulationJob, Study, Toggles, TogglesJob, Uncertainty, UncertaintyJob, VariantJob, display_band,
 };
-use crate::view::results::{Background, FirstResult};
+use gdcm_files::FileError;
 
 /// What is to be computed. All of it is shared, so that a request costs next to nothing.
 #[derive(Clone, Debug)]
@@ -479,15 +479,15 @@ impl Progress for RequestProgress<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dataset::{Band, BundleKind, ModelId};
-    use crate::identification::{FlightRecord, Options, Preparation};
-    use crate::io::embedded_example;
+    use gdcm_core::dataset::{Band, BundleKind, ModelId};
+    use gdcm_core::identification::{FlightRecord, Options, Preparation};
+    use gdcm_files::embedded_example;
     use nalgebra::DMatrix;
 
     /// One model of every condition at so many frequencies that it takes its time.
     fn long_across() -> AcrossJob {
         let dataset = embedded_example().unwrap().dataset;
-        let nominal = |condition: &Arc<crate::dataset::Condition>| {
+        let nominal = |condition: &Arc<gdcm_core::dataset::Condition>| {
             ModelId::new(
                 condition.id(),
                 BundleKind::Physics,

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::io::{make_directory, result_paths, write_results};
-use crate::study::Analysis;
+use gdcm_core::study::Analysis;
+use gdcm_files::{make_directory, result_paths, write_results};
 
 use super::arguments::AnalyzeArguments;
 use super::evidence_sections::leave_one_out_section;

@@ -6,9 +6,9 @@ use std::str::FromStr;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 
-use crate::figure::{ColumnWidth, FigureKind, Role};
-use crate::schedule::HIGHEST_DEGREE;
-use crate::study::{AcrossRole, DEFAULT_COHERENCE, DelayFrom, LEAST_POINTS, MOST_POINTS, PhaseCorrection};
+use gdcm_core::schedule::HIGHEST_DEGREE;
+use gdcm_core::study::{AcrossRole, DEFAULT_COHERENCE, DelayFrom, LEAST_POINTS, MOST_POINTS, PhaseCorrection};
+use gdcm_files::figure::{ColumnWidth, FigureKind, Role};
 
 use super::export_arguments::ExportArguments;
 use super::identify_arguments::IdentifyArguments;

@@ -1,12 +1,13 @@
 //! `gdcm check`.
 
+use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::dataset::{BundleKind, Channel, Condition, ConditionRecord, Dataset, Dynamics, Model, RecordKind};
-use crate::io::{FileError, LoadedDataset, Opened, OpenedStudy, dataset_faults, plain, plain_path};
-use crate::study::{Execution, Study, Unobserved, cautions_of_models};
-use crate::units::number;
+use gdcm_core::dataset::{BundleKind, Channel, Condition, ConditionRecord, Dataset, Dynamics, Model, RecordKind};
+use gdcm_core::study::{Execution, Study, Unobserved, cautions_of_models};
+use gdcm_core::units::number;
+use gdcm_files::{FileError, LoadedDataset, Opened, OpenedStudy, dataset_faults};
 
 use super::arguments::OpeningArguments;
 use super::failure::Failure;
@@ -35,7 +36,7 @@ fn all_faults(file: &Path, first: FileError) -> Failure {
     match dataset_faults(file) {
         Ok(faults) if faults.len() > 1 => {
             faults.iter().for_each(|fault| say_error(&fault.to_string()));
-            Failure::Faulty { path: plain_path(file), count: faults.len() }
+            Failure::Faulty { path: sanitized_path(file), count: faults.len() }
         }
         // One, or a study: what was said first is all there is.
         _ => Failure::File(first),
@@ -44,14 +45,14 @@ fn all_faults(file: &Path, first: FileError) -> Failure {
 
 fn contents(loaded: &LoadedDataset) -> String {
     let dataset = &loaded.dataset;
-    let on_axis: Vec<String> = dataset.on_axis().marked().map(|pair| plain(&dataset.pair_name(pair))).collect();
+    let on_axis: Vec<String> = dataset.on_axis().marked().map(|pair| sanitized(&dataset.pair_name(pair))).collect();
     let on_axis = if on_axis.is_empty() { "none given: every response counts".to_owned() } else { on_axis.join(", ") };
     let band = format!("{} to {} rad/s", number(dataset.band().min()), number(dataset.band().max()));
-    let name = format!("{}, {}", plain(dataset.name()), loaded.origin);
+    let name = format!("{}, {}", sanitized(dataset.name()), loaded.origin);
     let mut text = labelled(0, "Dataset", LABEL, &name);
     for (label, words) in [
         ("SHA-256", loaded.sha256.clone()),
-        ("About", plain(dataset.description())),
+        ("About", sanitized(dataset.description())),
         ("Inputs", channel_words(dataset.inputs())),
         ("Outputs", channel_words(dataset.outputs())),
         ("On-axis", on_axis),
@@ -64,7 +65,7 @@ fn contents(loaded: &LoadedDataset) -> String {
     text.push_str(&timings(dataset));
     text.push_str(&records(dataset));
     for caution in &loaded.cautions {
-        text.push_str(&labelled(0, "Caution", LABEL, &plain(caution)));
+        text.push_str(&labelled(0, "Caution", LABEL, &sanitized(caution)));
     }
     text
 }
@@ -75,13 +76,13 @@ fn model_cautions(study: &Study) -> Result<String, Failure> {
     let mut text = String::new();
     for (id, caution) in cautions_of_models(study, &execution)? {
         let words = caution.words(|pair| study.dataset.pair_name(pair));
-        text.push_str(&labelled(0, "Caution", LABEL, &plain(&format!("condition {id}: {words}"))));
+        text.push_str(&labelled(0, "Caution", LABEL, &sanitized(&format!("condition {id}: {words}"))));
     }
     Ok(text)
 }
 
 fn channel_words(channels: &[Channel]) -> String {
-    let words = channels.iter().map(|channel| format!("{} [{}]", plain(&channel.name), plain(&channel.unit)));
+    let words = channels.iter().map(|channel| format!("{} [{}]", sanitized(&channel.name), sanitized(&channel.unit)));
     words.collect::<Vec<_>>().join(", ")
 }
 
@@ -113,7 +114,7 @@ fn timings(dataset: &Dataset) -> String {
             for model in condition.bundle(kind) {
                 let Dynamics::StateSpace(matrices) = &model.dynamics else { continue };
                 if !matrices.timing().is_plain() {
-                    named.entry(matrices.timing().words()).or_default().push(plain(&model.name));
+                    named.entry(matrices.timing().words()).or_default().push(sanitized(&model.name));
                 }
             }
             for (words, names) in named {
@@ -155,7 +156,7 @@ fn condition_row(condition: &Condition) -> [String; 9] {
         order_words(condition.bundle(BundleKind::Physics)),
         count(BundleKind::Identified),
         order_words(condition.bundle(BundleKind::Identified)),
-        plain(&state.name),
+        sanitized(&state.name),
     ]
 }
 
@@ -177,17 +178,17 @@ fn order_words(models: &[Model]) -> String {
 
 /// What a study has decided.
 fn decisions(file: &Path, study: &Study) -> String {
-    let mut text = labelled(0, "Study", LABEL, &plain_path(file));
+    let mut text = labelled(0, "Study", LABEL, &sanitized_path(file));
     for condition in study.dataset.conditions() {
         let choice = study.choice(condition.id());
-        let rejected: Vec<String> = study.rejected_names(condition.id()).into_iter().map(plain).collect();
+        let rejected: Vec<String> = study.rejected_names(condition.id()).into_iter().map(sanitized).collect();
         if !rejected.is_empty() {
             let words = format!("condition {}: {}", condition.id(), rejected.join(", "));
             text.push_str(&labelled(0, "Rejected", LABEL, &words));
         }
         for kind in BundleKind::BOTH {
             if let Some(name) = &choice.bundle(kind).pinned {
-                let words = format!("condition {}: {}", condition.id(), plain(name));
+                let words = format!("condition {}: {}", condition.id(), sanitized(name));
                 text.push_str(&labelled(0, "Pinned", LABEL, &words));
             }
         }

@@ -1,11 +1,12 @@
 //! Where in a dataset identified models go.
 
+use gdcm_core::message_text::sanitized;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::dataset::{ConditionId, Dataset, DatasetHeader};
-use crate::io::{Opened, OutputSet, add_dataset, load_any, plain};
-use crate::study::TakenModels;
+use gdcm_core::dataset::{ConditionId, Dataset, DatasetHeader};
+use gdcm_core::study::TakenModels;
+use gdcm_files::{Opened, OutputSet, add_dataset, load_any};
 
 use super::failure::Failure;
 use super::identify_arguments::IdentifyArguments;
@@ -61,7 +62,7 @@ impl Destination {
                 Some((_, of_condition)) => of_condition.push(record),
                 None => say_error(&format!(
                     "{}: left out: its name says no condition of the dataset",
-                    plain(&record.table.name)
+                    sanitized(&record.table.name)
                 )),
             }
         }

@@ -1,7 +1,7 @@
 //! How sure the figures are, and how the schedule fares on what it has not seen, for a person to read.
 
-use crate::io::plain;
-use crate::study::{
+use gdcm_core::message_text::sanitized;
+use gdcm_core::study::{
     Analysis, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, Table, held_out_verdict,
     scatter_table,
 };
@@ -13,11 +13,11 @@ use super::text_table::{Side, TextTable, labelled};
 /// What the scatter is made of, the differences at equal airspeed, and the second variables; nothing where bars were not computed.
 pub(super) fn evidence_section(analysis: &Analysis) -> String {
     let Some(uncertainty) = &analysis.uncertainty else { return String::new() };
-    let pair_name = |pair| plain(&analysis.study.dataset.pair_name(pair));
+    let pair_name = |pair| sanitized(&analysis.study.dataset.pair_name(pair));
     let level = 100.0 * uncertainty.level;
     let mut text = labelled(0, "Scatter", LABEL, "of the on-axis net gains, and what the bundles make of it:");
     let table = Table { title: String::new(), ..scatter_table(&analysis.study.dataset, uncertainty) };
-    table.text().lines().for_each(|line| text.push_str(&format!("  {}\n", plain(line))));
+    table.text().lines().for_each(|line| text.push_str(&format!("  {}\n", sanitized(line))));
     let differences = &uncertainty.differences;
     let beyond: Vec<_> = differences.iter().filter(|difference| difference.is_beyond(uncertainty.level)).collect();
     if let Some(count) = uncertainty.too_many_differences {
@@ -83,7 +83,7 @@ pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
             2,
             "",
             LABEL - 2,
-            &format!("condition {}: {}", left_out.condition, plain(&left_out.why)),
+            &format!("condition {}: {}", left_out.condition, sanitized(&left_out.why)),
         ));
     }
     text

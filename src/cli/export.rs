@@ -1,11 +1,12 @@
 //! `gdcm export`.
 
+use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::sync::Arc;
 
-use crate::correction::Pade;
-use crate::dataset::ConditionId;
-use crate::io::{ExportSource, check_export, plain, plain_path, write_export};
-use crate::study::{ExportFormat, ExportRequest, ExportedRole, Study};
+use gdcm_core::correction::Pade;
+use gdcm_core::dataset::ConditionId;
+use gdcm_core::study::{ExportFormat, ExportRequest, ExportedRole, Study};
+use gdcm_files::{ExportSource, check_export, write_export};
 
 use super::analyze::check_result;
 use super::arguments::StudyArguments;
@@ -30,8 +31,8 @@ pub(super) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     check_result(&analysis)?;
     let source = ExportSource { name: name(&arguments.study), sha256: loaded.sha256.clone() };
     let remarks = write_export(&analysis, &source, &request, &arguments.out, outputs)?;
-    let remarks: String = remarks.iter().map(|remark| format!("{}\n", plain(remark))).collect();
-    say(&format!("{}: {}\n{remarks}", plain_path(&arguments.out), request.format.words()))
+    let remarks: String = remarks.iter().map(|remark| format!("{}\n", sanitized(remark))).collect();
+    say(&format!("{}: {}\n{remarks}", sanitized_path(&arguments.out), request.format.words()))
 }
 
 /// What an export is called: the file of the study or of the dataset.

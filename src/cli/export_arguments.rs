@@ -6,8 +6,8 @@ use std::str::FromStr;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
-use crate::correction::HIGHEST_PADE_ORDER;
-use crate::study::{AssessedCorrection, ExportFormat};
+use gdcm_core::correction::HIGHEST_PADE_ORDER;
+use gdcm_core::study::{AssessedCorrection, ExportFormat};
 
 use super::arguments::{StudyArguments, real_number, whole_number};
 

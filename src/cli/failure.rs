@@ -1,7 +1,7 @@
 //! Why a command was not carried out, and the exit status that says so.
 
-use crate::io::FileError;
-use crate::study::{Cancelled, EditRefusal};
+use gdcm_core::study::{Cancelled, EditRefusal};
+use gdcm_files::FileError;
 
 /// Exit status where the analysis could not be done.
 pub(super) const NOT_DONE: u8 = 1;

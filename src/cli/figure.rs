@@ -1,14 +1,15 @@
 //! `gdcm figure`.
 
+use gdcm_core::message_text::sanitized_path;
 use std::sync::Arc;
 
-use crate::correction::Channel;
-use crate::dataset::{ConditionId, Dataset, Pair};
-use crate::figure::{
+use gdcm_core::correction::Channel;
+use gdcm_core::dataset::{ConditionId, Dataset, Pair};
+use gdcm_core::study::{Analysis, CURVE_POINTS, Engine, Study, display_band};
+use gdcm_files::figure::{
     Across, BodeOptions, ConditionSource, Figure, FigureKind, FigureRequest, FrequencyUnit, Measure, all_channels,
 };
-use crate::io::{figure_format, plain_path, write_figure};
-use crate::study::{Analysis, CURVE_POINTS, Engine, Study, display_band};
+use gdcm_files::{figure_format, write_figure};
 
 use super::arguments::{FigureArguments, PairChoice};
 use super::failure::Failure;
@@ -37,7 +38,7 @@ pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     drop(progress);
     let figure = figure.ok_or_else(|| Failure::NoResult { reason: "there is nothing to draw".to_owned() })?;
     write_figure(&figure, arguments.width, &arguments.out, outputs)?;
-    say(&format!("{}: {}\n", plain_path(&arguments.out), figure.title))
+    say(&format!("{}: {}\n", sanitized_path(&arguments.out), figure.title))
 }
 
 /// The figure of one condition, of the curves that the window draws.

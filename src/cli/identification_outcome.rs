@@ -2,16 +2,16 @@
 
 use nalgebra::Complex;
 
-use crate::assembly::{ChannelLabel, ChannelRule, Facts, FoundModel};
-use crate::dataset::{BandsDraft, ModelDraft, Origin, Pair, PairTable, Provenance, ResponseArray, Timing};
-use crate::identification::{
+use gdcm_core::assembly::{ChannelLabel, ChannelRule, Facts, FoundModel};
+use gdcm_core::dataset::{BandsDraft, ModelDraft, Origin, Pair, PairTable, Provenance, ResponseArray, Timing};
+use gdcm_core::identification::{
     Bands, FlightRecord, Identification, IdentifiedModel, MeasuredPoint, MeasuredResponse, Options,
     Origin as IdentifiedOrigin, StateSpaceMatrices,
 };
-use crate::io::{IdentifiedModels, IdentifiedValidation, MeasuredEstimate, PoleEstimate, RecordReport};
-use crate::records::{RecordChannels, RecordTable};
-use crate::study::pieces_used;
-use crate::units::neper_to_db;
+use gdcm_core::records::{RecordChannels, RecordTable};
+use gdcm_core::study::pieces_used;
+use gdcm_core::units::neper_to_db;
+use gdcm_files::{IdentifiedModels, IdentifiedValidation, MeasuredEstimate, PoleEstimate, RecordReport};
 
 /// Methods, as models carry them (M14).
 const REFINED: &str = "CT-PBSID, refined";
@@ -36,7 +36,7 @@ pub(super) fn identified_models(
     let mut models = vec![of(&found.refined, REFINED), of(&found.plain, PLAIN)];
     models[0].draft.bands = bands(&found.bands);
     models.extend(found.bundle.iter().map(|model| of(model, REFINED)));
-    let pole = |of: &crate::identification::PoleEstimate| PoleEstimate {
+    let pole = |of: &gdcm_core::identification::PoleEstimate| PoleEstimate {
         re: of.pole.re,
         im: of.pole.im,
         sd: of.sd_re.hypot(of.sd_im),

@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use crate::app::Pool;
-use crate::assembly::ChannelRule;
-use crate::dataset::{Band, BundleKind, ConditionId, ConditionRecord, Dataset};
-use crate::identification::{
+use gdcm_core::assembly::ChannelRule;
+use gdcm_core::dataset::{Band, BundleKind, ConditionId, ConditionRecord, Dataset};
+use gdcm_core::identification::{
     ChannelPreparation, FlightRecord, Identification, IdentificationError, Options, Preparation, Role, identify,
 };
-use crate::io::IdentifiedModels;
-use crate::records::{RecordChannels, RecordTable};
-use crate::study::{LateChannel, pieces_used};
+use gdcm_core::records::{RecordChannels, RecordTable};
+use gdcm_core::study::{LateChannel, pieces_used};
+use gdcm_files::IdentifiedModels;
 
 use super::destination::Group;
 use super::failure::Failure;

@@ -1,13 +1,14 @@
 //! `gdcm identify`: models out of flight records.
 
+use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::path::{Path, PathBuf};
 
-use crate::assembly::ChannelRule;
-use crate::dataset::Band;
-use crate::identification::Identification;
-use crate::io::{IdentifiedModels, OutputSet, add_identified, make_directory, plain, plain_path};
-use crate::records::RecordChannels;
-use crate::study::identified_bundle;
+use gdcm_core::assembly::ChannelRule;
+use gdcm_core::dataset::Band;
+use gdcm_core::identification::Identification;
+use gdcm_core::records::RecordChannels;
+use gdcm_core::study::identified_bundle;
+use gdcm_files::{IdentifiedModels, OutputSet, add_identified, make_directory};
 
 use super::destination::Destination;
 use super::existing;
@@ -44,7 +45,7 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
         };
         let mut models = task.models(&found, &channels);
         models.cautions.extend(destination.as_ref().and_then(|of| task.late_channel(&found, &of.dataset)));
-        models.cautions.iter().for_each(|caution| say_error(&format!("{}{}", task.label(), plain(caution))));
+        models.cautions.iter().for_each(|caution| say_error(&format!("{}{}", task.label(), sanitized(caution))));
         make_directory(&arguments.out)?;
         add_identified(&models, file, &mut outputs)?;
         if let (Some(destination), Some(condition)) = (&mut destination, task.condition) {
@@ -58,7 +59,7 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
         return Err(Failure::NoModels { reason: format!("in none of {} conditions", tasks.len()) });
     }
     if let Some(destination) = &destination {
-        let path = plain_path(destination.add(&mut outputs)?);
+        let path = sanitized_path(destination.add(&mut outputs)?);
         lines += &format!("{path}: identified models of {}\n", counted(taken, "condition"));
     }
     outputs.persist()?;
@@ -94,7 +95,7 @@ fn outcome(task: &IdentificationTask, file: &Path, found: &Identification, model
     format!(
         "{}{}: {}; order {}, J per degree of freedom {:.2}{held_out}\n",
         task.label(),
-        plain_path(file),
+        sanitized_path(file),
         counted(models.models.len(), "model"),
         found.refined.matrices.order(),
         found.cost,

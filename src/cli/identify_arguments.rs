@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 
-use crate::study::OfferedModels;
+use gdcm_core::study::OfferedModels;
 
 use super::arguments::real_number;
 

@@ -26,6 +26,7 @@ mod summary;
 mod terminal;
 mod text_table;
 
+use gdcm_core::message_text::sanitized_path;
 use std::error::Error;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -34,7 +35,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::{ContextKind, ContextValue};
 
-use crate::io::{Existing, plain_path, write_example};
+use gdcm_files::{Existing, write_example};
 
 use arguments::Arguments;
 use failure::Failure;
@@ -90,7 +91,7 @@ fn example(directory: &Path, existing: Existing) -> Result<(), Failure> {
     say(&format!(
         "{}: the example dataset (synthetic data)\nthe flight records that it names, example-records.zip, are under assets in the \
          program's source; the window finds them beside the dataset\n",
-        plain_path(&path)
+        sanitized_path(&path)
     ))
 }
 

@@ -1,16 +1,17 @@
 //! `gdcm assemble` and `gdcm convert`: models out of files of whatever format.
 
+use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::assembly::{Assembly, Headings, proposed_rules};
-use crate::io::{
-    FolderProgress, FoundModels, OutputSet, add_dataset, add_models, add_rules, load_rules, plain, plain_path,
-    read_models, relative_folder, rules_path, sources_folder,
+use gdcm_core::assembly::{Assembly, Headings, proposed_rules};
+use gdcm_core::units::number;
+use gdcm_files::{
+    FolderProgress, FoundModels, OutputSet, add_dataset, add_models, add_rules, load_rules, read_models,
+    relative_folder, rules_path, sources_folder,
 };
-use crate::units::number;
 
 use super::arguments::{AssembleArguments, ConvertArguments};
 use super::existing;
@@ -39,7 +40,7 @@ impl FolderProgress for ReadingProgress {
         let bar = self.bar.borrow();
         bar.set_length(of as u64);
         bar.set_position(number as u64);
-        bar.set_message(plain(name));
+        bar.set_message(sanitized(name));
     }
 
     fn stopped(&self, _: u64) -> bool {
@@ -63,11 +64,11 @@ pub(super) fn convert(arguments: &ConvertArguments) -> Result<(), Failure> {
     }
     add_models(&found.models, &arguments.out, &mut outputs)?;
     outputs.persist()?;
-    let lines = found.models.iter().map(|model| format!("{}: {}\n", plain(&model.key()), model.words()));
+    let lines = found.models.iter().map(|model| format!("{}: {}\n", sanitized(&model.key()), model.words()));
     say(&format!(
         "{}{}: {}\n",
         lines.collect::<String>(),
-        plain_path(&arguments.out),
+        sanitized_path(&arguments.out),
         counted(found.models.len(), "model")
     ))
 }
@@ -83,7 +84,7 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     let said = match &arguments.rules {
         Some(path) => {
             let (rules, cautions) = load_rules(path)?;
-            cautions.iter().for_each(|caution| say_error(&format!("{}: {}", plain_path(path), plain(caution))));
+            cautions.iter().for_each(|caution| say_error(&format!("{}: {}", sanitized_path(path), sanitized(caution))));
             Some(rules)
         }
         None => None,
@@ -103,17 +104,20 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     }
     outputs.persist()?;
     if is_proposed {
-        say(&format!("{}: the rules proposed; correct them and give them with --rules\n", plain_path(&rules_path)))?;
+        say(&format!(
+            "{}: the rules proposed; correct them and give them with --rules\n",
+            sanitized_path(&rules_path)
+        ))?;
     }
     match dataset {
         Some(dataset) => {
             let conditions = counted(dataset.conditions().len(), "condition");
-            say(&format!("{}: {conditions}\n", plain_path(&arguments.out)))
+            say(&format!("{}: {conditions}\n", sanitized_path(&arguments.out)))
         }
         None => {
             let problems = assembly.told();
-            problems.iter().for_each(|(_, words)| say_error(&plain(words)));
-            Err(Failure::Incomplete { count: problems.len(), rules: plain_path(&rules_path) })
+            problems.iter().for_each(|(_, words)| say_error(&sanitized(words)));
+            Err(Failure::Incomplete { count: problems.len(), rules: sanitized_path(&rules_path) })
         }
     }
 }
@@ -121,8 +125,8 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
 /// The models of files and folders; what could not be taken is told on standard error.
 fn found_models(paths: &[PathBuf], headings: &Headings) -> Result<FoundModels, Failure> {
     let found = read_models(paths, headings, &ReadingProgress::new())?;
-    found.faults.iter().for_each(|fault| say_error(&format!("not taken: {}", plain(fault))));
-    found.passed_over.iter().for_each(|words| say_error(&format!("no model: {}", plain(words))));
+    found.faults.iter().for_each(|fault| say_error(&format!("not taken: {}", sanitized(fault))));
+    found.passed_over.iter().for_each(|words| say_error(&format!("no model: {}", sanitized(words))));
     Ok(found)
 }
 
@@ -151,12 +155,12 @@ fn table(assembly: &Assembly) -> String {
         table.row([
             or_dash(row.condition.map(|condition| condition.to_string())),
             if row.left_out { "left out".to_owned() } else { or_dash(row.role.map(|role| role.word().to_owned())) },
-            plain(&row.name),
+            sanitized(&row.name),
             or_dash(row.airspeed_words()),
             row.altitude_words(),
             row.weight_words(),
             trim.collect::<Vec<_>>().join(", "),
-            plain(&part.found.key()),
+            sanitized(&part.found.key()),
         ]);
     }
     table.lines(0)

@@ -1,8 +1,9 @@
 //! Opening what a command is about.
 
+use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::path::Path;
 
-use crate::io::{Opened, load_any, open_study_of, plain, plain_path};
+use gdcm_files::{Opened, load_any, open_study_of};
 
 use super::arguments::OpeningArguments;
 use super::failure::Failure;
@@ -16,10 +17,10 @@ pub(super) fn open(file: &Path, arguments: &OpeningArguments) -> Result<Opened, 
     };
     if let Opened::Study(study) = &opened {
         for difference in &study.differences {
-            say_error(&format!("{}: {}", plain_path(file), plain(&difference.to_string())));
+            say_error(&format!("{}: {}", sanitized_path(file), sanitized(&difference.to_string())));
         }
         if arguments.strict && !study.differences.is_empty() {
-            return Err(Failure::Different { path: plain_path(file), count: study.differences.len() });
+            return Err(Failure::Different { path: sanitized_path(file), count: study.differences.len() });
         }
     }
     Ok(opened)

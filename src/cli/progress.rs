@@ -4,8 +4,8 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::identification::Watch;
-use crate::study::Progress;
+use gdcm_core::identification::Watch;
+use gdcm_core::study::Progress;
 
 /// An analysis that is done sooner needs no progress.
 const PATIENCE: Duration = Duration::from_millis(500);

@@ -1,12 +1,13 @@
 //! The records that models are identified from, as they were read.
 
+use gdcm_core::message_text::sanitized;
 use std::path::{Path, PathBuf};
 
-use crate::assembly::standard_patterns;
-use crate::dataset::ConditionRecord;
-use crate::io::{FoundRecords, plain, read_records, relative_folder};
-use crate::records::{LayoutProposal, RecordChannels, RecordGuess, RecordLayout, RecordTable, TimeWish};
-use crate::units::telling;
+use gdcm_core::assembly::standard_patterns;
+use gdcm_core::dataset::ConditionRecord;
+use gdcm_core::records::{LayoutProposal, RecordChannels, RecordGuess, RecordLayout, RecordTable, TimeWish};
+use gdcm_core::units::telling;
+use gdcm_files::{FoundRecords, read_records, relative_folder};
 
 use super::failure::Failure;
 use super::identify_arguments::IdentifyArguments;
@@ -32,14 +33,14 @@ pub(super) fn laid_out(
     let (mut records, mut wrong, mut told): (Vec<ReadRecord>, usize, Vec<String>) = (Vec::new(), 0, Vec::new());
     for table in tables {
         let LayoutProposal { layout, notes, problems, cautions } = RecordLayout::proposed(&table, channels, &wish);
-        let name = plain(&table.name);
+        let name = sanitized(&table.name);
         // Records of one flight are alike: what is chosen is said once.
         if notes != told {
-            notes.iter().for_each(|note| say_error(&format!("{name}: {}", plain(note))));
+            notes.iter().for_each(|note| say_error(&format!("{name}: {}", sanitized(note))));
             told = notes;
         }
-        cautions.iter().for_each(|caution| say_error(&format!("{name}: caution: {}", plain(&caution.to_string()))));
-        problems.iter().for_each(|problem| say_error(&format!("{name}: {}", plain(&problem.to_string()))));
+        cautions.iter().for_each(|caution| say_error(&format!("{name}: caution: {}", sanitized(&caution.to_string()))));
+        problems.iter().for_each(|problem| say_error(&format!("{name}: {}", sanitized(&problem.to_string()))));
         wrong += usize::from(!problems.is_empty());
         channels.take_units(&layout, &table);
         let guess = RecordGuess::of_table(&table, &patterns);
@@ -50,8 +51,8 @@ pub(super) fn laid_out(
 
 fn tables(arguments: &IdentifyArguments) -> Result<Vec<RecordTable>, Failure> {
     let FoundRecords { tables, faults, passed_over, .. } = read_records(&arguments.records, &ReadingProgress::new())?;
-    faults.iter().for_each(|fault| say_error(&format!("not taken: {}", plain(fault))));
-    passed_over.iter().for_each(|words| say_error(&format!("no record: {}", plain(words))));
+    faults.iter().for_each(|fault| say_error(&format!("not taken: {}", sanitized(fault))));
+    passed_over.iter().for_each(|words| say_error(&format!("no record: {}", sanitized(words))));
     if tables.is_empty() {
         return Err(Failure::Option { option: "RECORD", reason: "holds no record that could be taken".to_owned() });
     }
@@ -107,7 +108,7 @@ pub(super) fn record_table(records: &[ReadRecord], indent: usize) -> String {
     for ReadRecord { table: record, layout, guess } in records {
         let step_s = layout.time.and_then(|time| time.step_s(record)).unwrap_or(f64::NAN);
         table.row([
-            plain(&record.name),
+            sanitized(&record.name),
             guess.kind.word().to_owned(),
             record.rows().to_string(),
             format!("{} s", telling(step_s, 3)),

@@ -1,6 +1,7 @@
 //! `gdcm report`.
 
-use crate::io::{ReportSource, plain_path, report as report_of, save_report};
+use gdcm_core::message_text::sanitized_path;
+use gdcm_files::{ReportSource, report as report_of, save_report};
 
 use super::analyze::check_result;
 use super::arguments::ReportArguments;
@@ -26,5 +27,5 @@ pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     drop(progress);
     save_report(&report, &arguments.out, outputs)?;
     let solved = analysis.conditions.values().filter(|outcome| outcome.is_ok()).count();
-    say(&format!("{}: a report on {solved} conditions\n", plain_path(&arguments.out)))
+    say(&format!("{}: a report on {solved} conditions\n", sanitized_path(&arguments.out)))
 }

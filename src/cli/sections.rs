@@ -1,12 +1,12 @@
 //! The sections of the summary.
 
-use crate::correction::{ChannelCorrection, Outcome};
-use crate::dataset::{BundleKind, Condition, Pair};
-use crate::io::plain;
-use crate::schedule::{Schedule, ScheduledQuantity};
-use crate::study::{Analysis, ConditionAnalysis, RemarkKind, Study, lead_words, remarks};
-use crate::uncertainty::Scalar;
-use crate::units::{number, s_to_ms};
+use gdcm_core::correction::{ChannelCorrection, Outcome};
+use gdcm_core::dataset::{BundleKind, Condition, Pair};
+use gdcm_core::message_text::sanitized;
+use gdcm_core::schedule::{Schedule, ScheduledQuantity};
+use gdcm_core::study::{Analysis, ConditionAnalysis, RemarkKind, Study, lead_words, remarks};
+use gdcm_core::uncertainty::Scalar;
+use gdcm_core::units::{number, s_to_ms};
 
 use super::summary::LABEL;
 use super::text_table::{Side, TextTable, labelled, listed};
@@ -25,7 +25,7 @@ fn detail_list(label: &str, entries: Vec<String>) -> String {
 /// One condition: representatives, rejections, the on-axis and held responses, and what could not be matched.
 pub(super) fn condition_section(analysis: &Analysis, condition: &Condition) -> String {
     let state = condition.flight_state();
-    let title = format!("{} ({} kt)", plain(&state.name), number(state.airspeed_kt));
+    let title = format!("{} ({} kt)", sanitized(&state.name), number(state.airspeed_kt));
     let mut text = labelled(0, &format!("Condition {}", state.id), LABEL, &title);
     match analysis.conditions.get(&condition.id()) {
         None => {}
@@ -35,19 +35,19 @@ pub(super) fn condition_section(analysis: &Analysis, condition: &Condition) -> S
             text.push_str(&channel_lines(analysis, result));
             text.push_str(&trouble_lines(analysis, result));
         }
-        Some(Err(failure)) => text.push_str(&detail("no result", &plain(&failure.to_string()))),
+        Some(Err(failure)) => text.push_str(&detail("no result", &sanitized(&failure.to_string()))),
     }
     text
 }
 
 fn model_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let id = result.condition.id();
-    let rejected: Vec<String> = analysis.study.rejected_names(id).into_iter().map(plain).collect();
+    let rejected: Vec<String> = analysis.study.rejected_names(id).into_iter().map(sanitized).collect();
     let is_rejected = |name: &String| analysis.study.choice(id).physics.rejected.contains(name);
     let suggested = result.suggested().into_iter().filter(|name| !is_rejected(name));
-    let suggested: Vec<String> = suggested.map(|name| plain(&name)).collect();
-    let mut text = detail("physics", &plain(result.representative_name(BundleKind::Physics)));
-    text.push_str(&detail("identified", &plain(result.representative_name(BundleKind::Identified))));
+    let suggested: Vec<String> = suggested.map(|name| sanitized(&name)).collect();
+    let mut text = detail("physics", &sanitized(result.representative_name(BundleKind::Physics)));
+    text.push_str(&detail("identified", &sanitized(result.representative_name(BundleKind::Identified))));
     text.push_str(&detail_list("rejected", rejected));
     if !suggested.is_empty() {
         text.push_str(&detail_list("outliers?", suggested));
@@ -85,7 +85,7 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> TextTable<
     for pair in shown_pairs(&analysis.study) {
         let cost = result.cost[pair];
         table.row([
-            plain(&dataset.pair_name(pair)),
+            sanitized(&dataset.pair_name(pair)),
             if result.held()[pair] { "yes" } else { "no" }.to_owned(),
             figure(result.wanted_gain(pair), 3),
             figure(half(Scalar::Gain(pair), 100.0), 1),
@@ -112,7 +112,7 @@ pub(super) fn figure(value: Option<f64>, digits: usize) -> String {
 
 fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let (dataset, correction) = (&analysis.study.dataset, &result.correction);
-    let channels = || dataset.inputs().iter().chain(dataset.outputs()).map(|channel| plain(&channel.name));
+    let channels = || dataset.inputs().iter().chain(dataset.outputs()).map(|channel| sanitized(&channel.name));
     let gains = correction.input_gains.iter().chain(&correction.output_gains);
     let gains: Vec<String> =
         channels().zip(gains).map(|(name, gain)| format!("{name} {}", figure(Some(*gain), 3))).collect();
@@ -126,14 +126,14 @@ fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let label = if correction.leads.is_some() { "delay/lead" } else { "delays" };
     let mut text = detail_list("gains", gains) + &detail_list(label, delays.collect());
     for words in lead_words(&analysis.study, result, analysis.uncertainty.as_deref()) {
-        text.push_str(&detail("lead", &plain(&words)));
+        text.push_str(&detail("lead", &sanitized(&words)));
     }
     text
 }
 
 /// What could not be matched and why, entry by entry, what is not proven, and the other cautions.
 fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
-    let line = |label: &str, words: &str| detail(label, &plain(words));
+    let line = |label: &str, words: &str| detail(label, &sanitized(words));
     let said = remarks(&analysis.study, result, None);
     let (mut text, mut trouble) = (String::new(), "not matched");
     for remark in &said {
@@ -176,7 +176,7 @@ pub(super) fn schedule_section(analysis: &Analysis) -> String {
     let mut text = labelled(0, "Schedule", LABEL, &format!("{kind}, {range}{second}; net gains:"));
     let (inputs, outputs) = analysis.study.dataset.names_of_channels();
     for caution in &schedule.cautions {
-        text.push_str(&detail("caution", &plain(&caution.words(&inputs, &outputs))));
+        text.push_str(&detail("caution", &sanitized(&caution.words(&inputs, &outputs))));
     }
     text.push_str(&schedule_table(analysis, schedule, |correction, pair| {
         figure(Some(correction.net_gain(pair).value()), 3)
@@ -206,7 +206,7 @@ fn schedule_table(
     let corrections = at.map(|airspeed| schedule.at(airspeed));
     for pair in shown_pairs(&analysis.study) {
         let [a, b, c, d, e] = corrections.each_ref().map(|correction| entry(correction, pair));
-        table.row([plain(&dataset.pair_name(pair)), a, b, c, d, e]);
+        table.row([sanitized(&dataset.pair_name(pair)), a, b, c, d, e]);
     }
     table.lines(2)
 }

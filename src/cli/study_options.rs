@@ -1,12 +1,12 @@
 //! The study that a command is about, with what the command line says on top of it.
 
 use crate::app::Pool;
-use crate::correction::GainSource;
-use crate::dataset::{Band, BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
-use crate::io::{LoadedDataset, OutputSet, embedded_example};
-use crate::schedule::{ScheduleKind, ScheduleSettings, SecondVariable};
-use crate::study::{Analysis, Edit, Engine, Progress, Setting, Study};
-use crate::uncertainty::UncertaintySettings;
+use gdcm_core::correction::GainSource;
+use gdcm_core::dataset::{Band, BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
+use gdcm_core::schedule::{ScheduleKind, ScheduleSettings, SecondVariable};
+use gdcm_core::study::{Analysis, Edit, Engine, Progress, Setting, Study};
+use gdcm_core::uncertainty::UncertaintySettings;
+use gdcm_files::{LoadedDataset, OutputSet, embedded_example};
 
 use super::arguments::{CoherenceChoice, GainSourceChoice, PairList, Rejection, SecondVariableChoice, StudyArguments};
 use super::existing;

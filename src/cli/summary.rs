@@ -1,12 +1,13 @@
 //! What `gdcm analyze` prints.
 
+use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::path::Path;
 
-use crate::correction::GainSource;
-use crate::io::{LoadedDataset, RESULT_FILES, plain, plain_path};
-use crate::schedule::Schedule;
-use crate::study::{Analysis, Assessed, PhaseCorrection};
-use crate::units::number;
+use gdcm_core::correction::GainSource;
+use gdcm_core::schedule::Schedule;
+use gdcm_core::study::{Analysis, Assessed, PhaseCorrection};
+use gdcm_core::units::number;
+use gdcm_files::{LoadedDataset, RESULT_FILES};
 
 use super::evidence_sections::{evidence_section, held_out_lines};
 use super::sections::{condition_section, schedule_section};
@@ -27,13 +28,14 @@ pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -
     text.push_str(&assessment_lines(analysis));
     text.push_str(&held_out_lines(analysis));
     text.push_str(&evidence_section(analysis));
-    text.push_str(&labelled(0, "Written", LABEL, &format!("{} in {}", RESULT_FILES.join(", "), plain_path(out))));
+    text.push_str(&labelled(0, "Written", LABEL, &format!("{} in {}", RESULT_FILES.join(", "), sanitized_path(out))));
     text
 }
 
 fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
     let (study, settings) = (&analysis.study, &analysis.study.settings);
-    let held: Vec<String> = settings.constrained.marked().map(|pair| plain(&study.dataset.pair_name(pair))).collect();
+    let held: Vec<String> =
+        settings.constrained.marked().map(|pair| sanitized(&study.dataset.pair_name(pair))).collect();
     let held = if held.is_empty() { "none".to_owned() } else { held.join(", ") };
     let band = format!(
         "{} to {} rad/s, {} frequencies; alpha {} (gains), {} (delays)",
@@ -43,7 +45,7 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
         number(settings.alpha_gain),
         number(settings.alpha_delay)
     );
-    let dataset = format!("{}, {}", plain(study.dataset.name()), loaded.origin);
+    let dataset = format!("{}, {}", sanitized(study.dataset.name()), loaded.origin);
     let phase = match settings.phase {
         PhaseCorrection::None => "left as it is".to_owned(),
         PhaseCorrection::Delay => format!("corrected by delays; D is the {}", settings.delay_from.words()),
@@ -69,7 +71,9 @@ fn assessment_lines(analysis: &Analysis) -> String {
     for condition in analysis.study.dataset.conditions() {
         match analysis.assessment.get(&condition.id()) {
             None => {}
-            Some(Assessed::LeftOut { why }) => left_out.push(format!("condition {}: {}", condition.id(), plain(why))),
+            Some(Assessed::LeftOut { why }) => {
+                left_out.push(format!("condition {}: {}", condition.id(), sanitized(why)))
+            }
             Some(Assessed::Nominal(changes)) => {
                 let changes = measuring.marked().filter_map(|pair| changes[pair]).map(|change| change.total());
                 for change in changes {

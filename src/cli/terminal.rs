@@ -1,8 +1,9 @@
 //! Words on standard output and standard error.
 
+use gdcm_core::message_text::sanitized;
 use std::io::{ErrorKind, Write};
 
-use crate::io::{plain, system_words};
+use gdcm_files::system_words;
 
 use super::failure::Failure;
 
@@ -19,5 +20,5 @@ pub(super) fn say(text: &str) -> Result<(), Failure> {
 
 /// Prints one line on standard error; there is nowhere to complain of a failure to do so.
 pub(super) fn say_error(line: &str) {
-    let _ = writeln!(std::io::stderr(), "gdcm: {}", plain(line));
+    let _ = writeln!(std::io::stderr(), "gdcm: {}", sanitized(line));
 }

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::dataset::{ModelId, Pair};
-use crate::response::{GainDelay, ResponseShape};
-use crate::study::{AcrossCurves, AcrossJob, display_band};
+use gdcm_core::dataset::{ModelId, Pair};
+use gdcm_core::response::{GainDelay, ResponseShape};
+use gdcm_core::study::{AcrossCurves, AcrossJob, display_band};
 
 use super::plot::{BodeCurve, CurveId, Role};
 use super::state::State;
@@ -33,7 +33,7 @@ impl CachedAcross {
             return;
         }
         let mut first: Option<ResponseShape> = None;
-        let shape = |(id, response): &(ModelId, Arc<crate::response::FrequencyResponse>)| {
+        let shape = |(id, response): &(ModelId, Arc<gdcm_core::response::FrequencyResponse>)| {
             let shape = ResponseShape::of(&response.curve(pair));
             let shape = match &first {
                 Some(first) => shape.laid_on(first),

@@ -1,12 +1,12 @@
 //! What the correction is worth, made of what was computed (M12, Figures 8 to 19).
 
-use crate::dataset::{Condition, ConditionId, Pair};
-use crate::fidelity::CostAverage;
-use crate::schedule::CostChange;
-use crate::study::{
+use gdcm_core::dataset::{Condition, ConditionId, Pair};
+use gdcm_core::fidelity::CostAverage;
+use gdcm_core::schedule::CostChange;
+use gdcm_core::study::{
     AskedFigure, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, Table, held_out_verdict,
 };
-use crate::units::signed;
+use gdcm_core::units::signed;
 
 use super::plot::{AssessmentBar, AssessmentPanel, BarValue};
 use super::state::State;

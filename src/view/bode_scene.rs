@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::dataset::{BundleKind, Pair};
-use crate::response::{FrequencyResponse, GainDelay, ResponseShape, wrapped_deg};
-use crate::study::ConditionCurves;
+use gdcm_core::dataset::{BundleKind, Pair};
+use gdcm_core::response::{FrequencyResponse, GainDelay, ResponseShape, wrapped_deg};
+use gdcm_core::study::ConditionCurves;
 
 use super::curve_face::{CorrectedFace, CurveFace, corrected_faces, model_faces, reference_of};
 use super::plot::{BodeCurve, CurveId, PhaseUnit};

@@ -2,7 +2,7 @@
 
 use egui::{RichText, Role, Ui, WidgetInfo};
 
-use crate::study::{DEFAULT_COHERENCE, Edit, Setting};
+use gdcm_core::study::{DEFAULT_COHERENCE, Edit, Setting};
 
 use super::command::Command;
 use super::number_field::NumberField;

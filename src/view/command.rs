@@ -6,9 +6,9 @@ use std::sync::Arc;
 use egui::ThemePreference;
 use egui_tiles::LinearDir;
 
-use crate::dataset::{ConditionId, ModelId, Pair};
-use crate::figure::{ColumnWidth, FigureFormat};
-use crate::study::{AcrossRole, AskedFigure, Edit, ExportFormat, Table};
+use gdcm_core::dataset::{ConditionId, ModelId, Pair};
+use gdcm_core::study::{AcrossRole, AskedFigure, Edit, ExportFormat, Table};
+use gdcm_files::figure::{ColumnWidth, FigureFormat};
 
 use super::arrangement::{Preset, View};
 use super::assembling::AssemblingCommand;

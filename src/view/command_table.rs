@@ -2,9 +2,9 @@
 
 use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
 
-use crate::dataset::Pair;
-use crate::figure::FigureFormat;
-use crate::study::{Edit, OfferedModels, PhaseCorrection, Setting};
+use gdcm_core::dataset::Pair;
+use gdcm_core::study::{Edit, OfferedModels, PhaseCorrection, Setting};
+use gdcm_files::figure::FigureFormat;
 
 use super::arrangement::{Preset, View};
 use super::assembling::AssemblingCommand;

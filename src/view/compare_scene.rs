@@ -1,7 +1,7 @@
 //! Variants beside the present decisions, made of what was computed.
 
-use crate::dataset::{ConditionId, Pair};
-use crate::study::{Analysis, Table, Variant, VariantJob, decision_differences};
+use gdcm_core::dataset::{ConditionId, Pair};
+use gdcm_core::study::{Analysis, Table, Variant, VariantJob, decision_differences};
 
 use super::net_gain_scene::net_gain_pairs;
 use super::state::State;
@@ -79,11 +79,11 @@ fn mean_change(state: &State, analysis: &Analysis) -> Option<String> {
         .assessment
         .values()
         .filter_map(|assessed| match assessed {
-            crate::study::Assessed::Nominal(changes) => Some(changes),
-            crate::study::Assessed::LeftOut { .. } => None,
+            gdcm_core::study::Assessed::Nominal(changes) => Some(changes),
+            gdcm_core::study::Assessed::LeftOut { .. } => None,
         })
         .flat_map(|changes| measuring.marked().filter_map(|pair| Some(changes[pair]?.total())))
         .collect();
     let mean = changes.iter().sum::<f64>() / changes.len() as f64;
-    mean.is_finite().then(|| crate::units::signed(mean, 2))
+    mean.is_finite().then(|| gdcm_core::units::signed(mean, 2))
 }

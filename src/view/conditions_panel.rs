@@ -2,9 +2,9 @@
 
 use egui::{Color32, Rect, RichText, Sense, Ui, vec2};
 
-use crate::correction::Unmatched;
-use crate::dataset::{Condition, ConditionId, FlightState};
-use crate::study::Edit;
+use gdcm_core::correction::Unmatched;
+use gdcm_core::dataset::{Condition, ConditionId, FlightState};
+use gdcm_core::study::Edit;
 
 use super::command::Command;
 use super::heading::table_heading_ui;

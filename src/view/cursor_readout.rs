@@ -1,7 +1,8 @@
 //! What every role has at the cursor, and how far that is from the identified model.
 
-use crate::response::wrap;
-use crate::units::s_to_ms;
+use crate::view::plot::LogAxis;
+use gdcm_core::response::wrap;
+use gdcm_core::units::s_to_ms;
 
 use super::plot::{BodeCurve, BodeQuantity, FrequencyUnit, Pane, Readout, ReadoutRow, Role, decimals};
 
@@ -98,8 +99,8 @@ fn difference_cells(members: &[&BodeCurve], reference: Option<&BodeCurve>, omega
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dataset::{BundleKind, ConditionId, ModelId};
     use crate::view::plot::CurveId;
+    use gdcm_core::dataset::{BundleKind, ConditionId, ModelId};
 
     fn flat(name: &str, role: Role, magnitude_db: f64, phase_deg: f64) -> BodeCurve {
         BodeCurve {

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::dataset::{ConditionId, ModelId, Pair};
+use gdcm_core::dataset::{ConditionId, ModelId, Pair};
 
 use super::plot::{CurveId, MagnitudeUnit, PhaseErrorUnit, PhaseUnit, Role};
 

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::correction::ChannelCorrection;
-use crate::dataset::{BundleKind, Condition, Model, ModelId, Pair};
-use crate::fidelity::SUGGESTION_RATIO;
-use crate::response::GainDelay;
-use crate::study::ConditionAnalysis;
-use crate::units::s_to_ms;
+use gdcm_core::correction::ChannelCorrection;
+use gdcm_core::dataset::{BundleKind, Condition, Model, ModelId, Pair};
+use gdcm_core::fidelity::SUGGESTION_RATIO;
+use gdcm_core::response::GainDelay;
+use gdcm_core::study::ConditionAnalysis;
+use gdcm_core::units::s_to_ms;
 
 use super::plot::{BodeCurve, CurveId, Role};
 use super::state::State;

@@ -2,7 +2,7 @@
 
 use egui::{Context, CursorIcon, Id, Label, Response, RichText, Sense, Ui, WidgetText, Window};
 
-use crate::study::{AskedFigure, Derivation, derivation};
+use gdcm_core::study::{AskedFigure, Derivation, derivation};
 
 use super::command::Command;
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};

@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::dataset::{ConditionId, ModelId, Pair};
-use crate::study::{AcrossRole, AskedFigure};
+use gdcm_core::dataset::{ConditionId, ModelId, Pair};
+use gdcm_core::study::{AcrossRole, AskedFigure};
 
 use super::across_scene::CachedAcross;
 use super::arrangement::Arrangement;

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::dataset::{BundleKind, Pair};
-use crate::fidelity::{CountedFrequencies, Mismatch, Muad, leaves};
-use crate::response::{FrequencyResponse, GainDelay, PolarCurve, quantile, wrap};
-use crate::study::{ConditionAnalysis, ConditionCurves, Undefined};
-use crate::units::{ratio_to_db, s_to_ms};
+use gdcm_core::dataset::{BundleKind, Pair};
+use gdcm_core::fidelity::{CountedFrequencies, Mismatch, Muad, leaves};
+use gdcm_core::response::{FrequencyResponse, GainDelay, PolarCurve, quantile, wrap};
+use gdcm_core::study::{ConditionAnalysis, ConditionCurves, Undefined};
+use gdcm_core::units::{ratio_to_db, s_to_ms};
 
 use super::curve_face::{CorrectedFace, corrected_faces, model_faces, reference_of};
 use super::plot::{BodeCurve, CurveId, Level, Pane, PhaseErrorUnit, Rule, RuleKind};

@@ -1,7 +1,7 @@
 //! Every command that the palette finds.
 
-use crate::dataset::{BundleKind, ModelId};
-use crate::study::Edit;
+use gdcm_core::dataset::{BundleKind, ModelId};
+use gdcm_core::study::Edit;
 
 use super::command::{Command, FormKind};
 use super::command_table::{Entry, command_table, hold_entry};

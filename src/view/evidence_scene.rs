@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::dataset::{ConditionId, Pair};
-use crate::schedule::{Evidence, KindEvidence, LeadEvidence, LeadFit, ScheduleKind};
-use crate::study::{Analysis, Table};
-use crate::units::{s_to_ms, signed};
+use gdcm_core::dataset::{ConditionId, Pair};
+use gdcm_core::schedule::{Evidence, KindEvidence, LeadEvidence, LeadFit, ScheduleKind};
+use gdcm_core::study::{Analysis, Table};
+use gdcm_core::units::{s_to_ms, signed};
 
 use super::net_gain_scene::net_gain_pairs;
 use super::state::State;

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::correction::Channel;
-use crate::dataset::Pair;
-use crate::study::{ConditionAnalysis, Remark, details, remarks};
+use gdcm_core::correction::Channel;
+use gdcm_core::dataset::Pair;
+use gdcm_core::study::{ConditionAnalysis, Remark, details, remarks};
 
 use super::state::State;
 

@@ -3,7 +3,7 @@
 use egui::containers::menu::MenuButton;
 use egui::{RichText, Role, Ui, WidgetInfo};
 
-use crate::figure::{BodeOptions, ConditionSource, Figure, FigureFormat, FigureKind, FigureRequest, all_channels};
+use gdcm_files::figure::{BodeOptions, ConditionSource, Figure, FigureFormat, FigureKind, FigureRequest, all_channels};
 
 use super::arrangement::View;
 use super::assessment_scene::{assessed_pairs, assessment_choice};

@@ -2,9 +2,9 @@
 
 use egui::{Context, Id, Modal, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
-use crate::dataset::ConditionId;
-use crate::figure::ColumnWidth;
-use crate::study::ExportFormat;
+use gdcm_core::dataset::ConditionId;
+use gdcm_core::study::ExportFormat;
+use gdcm_files::figure::ColumnWidth;
 
 use super::command::{Command, FormKind};
 use super::command_palette::command_palette_ui;

@@ -1,11 +1,11 @@
 //! Error bars, bands and brackets of the plots of gains, made of what was computed (M13).
 
-use crate::correction::ChannelCorrection;
-use crate::dataset::ConditionId;
-use crate::schedule::Schedule;
-use crate::study::{AirspeedDifference, Uncertainty};
-use crate::uncertainty::{Bar, Scalar};
-use crate::units::s_to_ms;
+use gdcm_core::correction::ChannelCorrection;
+use gdcm_core::dataset::ConditionId;
+use gdcm_core::schedule::Schedule;
+use gdcm_core::study::{AirspeedDifference, Uncertainty};
+use gdcm_core::uncertainty::{Bar, Scalar};
+use gdcm_core::units::s_to_ms;
 
 use super::plot::{Bracket, Dot, DotBar, GainBand};
 

@@ -70,6 +70,7 @@ mod tests {
     use egui::Rgba;
 
     use super::*;
+    use crate::view::plot::RoleLook;
     use crate::view::palette::Palette;
     use crate::view::plot::{LineLook, Role};
 

@@ -5,12 +5,12 @@ use egui::{
     WidgetInfo, pos2, vec2,
 };
 
-use crate::correction::Channel;
-use crate::dataset::Pair;
-use crate::fidelity::{ACCEPTABLE, INDISTINGUISHABLE};
-use crate::study::{AskedFigure, ConditionAnalysis, Edit, Setting, Uncertainty, Undefined};
-use crate::uncertainty::{Bar, Scalar};
-use crate::units::s_to_ms;
+use gdcm_core::correction::Channel;
+use gdcm_core::dataset::Pair;
+use gdcm_core::fidelity::{ACCEPTABLE, INDISTINGUISHABLE};
+use gdcm_core::study::{AskedFigure, ConditionAnalysis, Edit, Setting, Uncertainty, Undefined};
+use gdcm_core::uncertainty::{Bar, Scalar};
+use gdcm_core::units::s_to_ms;
 
 use super::command::Command;
 use super::derivation_window::question_menu_ui;

@@ -2,9 +2,9 @@
 
 use egui::{Checkbox, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
-use crate::dataset::{BundleKind, Dynamics, Model, ModelId, Origin};
-use crate::fidelity::SUGGESTION_RATIO;
-use crate::study::{AskedFigure, Edit};
+use gdcm_core::dataset::{BundleKind, Dynamics, Model, ModelId, Origin};
+use gdcm_core::fidelity::SUGGESTION_RATIO;
+use gdcm_core::study::{AskedFigure, Edit};
 
 use super::command::Command;
 use super::command_table::open_suggestions;
@@ -326,7 +326,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::dataset::StateSpace;
+    use gdcm_core::dataset::StateSpace;
 
     #[test]
     fn names_are_shown_without_the_method_that_all_of_them_repeat() {

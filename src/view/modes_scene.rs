@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use nalgebra::Complex;
 
-use crate::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
-use crate::response::{Mode, finite_zeros};
-use crate::study::{ConditionModes, Table};
-use crate::units::number;
+use gdcm_core::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
+use gdcm_core::response::{Mode, finite_zeros};
+use gdcm_core::study::{ConditionModes, Table};
+use gdcm_core::units::number;
 
 use super::plot::{MarkShape, PoleMark, Role};
 use super::state::State;

@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::correction::{Channel as CorrectedChannel, ChannelCorrection};
-use crate::dataset::{Channel, ConditionId, FlightState, Pair};
-use crate::figure::{Classes, is_scheduled, scheduled_samples};
-use crate::study::{Analysis, AskedFigure, ConditionAnalysis};
-use crate::uncertainty::Scalar;
-use crate::units::s_to_ms;
+use gdcm_core::correction::{Channel as CorrectedChannel, ChannelCorrection};
+use gdcm_core::dataset::{Channel, ConditionId, FlightState, Pair};
+use gdcm_core::study::{Analysis, AskedFigure, ConditionAnalysis};
+use gdcm_core::uncertainty::Scalar;
+use gdcm_core::units::s_to_ms;
+use gdcm_files::figure::{Classes, is_scheduled, scheduled_samples};
 
 use super::gain_bars::{bar_sentences, brackets, dot_bar, gain_bands};
 use super::plot::{Across, Dot, DotShape, GainPanel, Measure, NamedFigure};

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use egui::{Context, DragValue, Id, Key, Response, Role, Ui, WidgetInfo, vec2};
 
-use crate::units::number;
+use gdcm_core::units::number;
 
 const HEIGHT: f32 = 18.0;
 /// For so many passes after the Escape key egui may still take up the text that was being typed.

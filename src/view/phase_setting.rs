@@ -2,8 +2,8 @@
 
 use egui::{RichText, Ui};
 
-use crate::response::LeadOrder;
-use crate::study::{DelayFrom, Edit, LEAD_LIMITS, LEAD_POLES, PhaseCorrection, Setting};
+use gdcm_core::response::LeadOrder;
+use gdcm_core::study::{DelayFrom, Edit, LEAD_LIMITS, LEAD_POLES, PhaseCorrection, Setting};
 
 use super::command::Command;
 use super::number_field::{Entered, NumberField};

@@ -2,7 +2,7 @@
 
 use egui::{RichText, ScrollArea};
 
-use crate::study::{Difference, Edit};
+use gdcm_core::study::{Difference, Edit};
 
 use super::command::{Command, FormKind};
 use super::form::Form;

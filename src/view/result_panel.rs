@@ -2,13 +2,13 @@
 
 use egui::{Align, Button, CollapsingHeader, Color32, Grid, Layout, RichText, Role, Ui, WidgetInfo, vec2};
 
-use crate::correction::{self, GainObjective, Outcome, Quantity, kkt_residual};
-use crate::dataset::{Channel, Pair};
-use crate::study::{
+use gdcm_core::correction::{self, GainObjective, Outcome, Quantity, kkt_residual};
+use gdcm_core::dataset::{Channel, Pair};
+use gdcm_core::study::{
     AskedFigure, ConditionAnalysis, Edit, PhaseCorrection, Remark, RemarkKind, Setting, lead_words, servo_words,
 };
-use crate::uncertainty::Scalar;
-use crate::units::s_to_ms;
+use gdcm_core::uncertainty::Scalar;
+use gdcm_core::units::s_to_ms;
 
 use super::command::{Command, FormKind};
 use super::derivation_window::figure_ui;

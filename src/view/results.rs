@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::correction::Problem;
-use crate::dataset::{ConditionId, Dataset};
-use crate::identification::Validation;
-use crate::study::{
+use gdcm_core::correction::Problem;
+use gdcm_core::dataset::{ConditionId, Dataset};
+use gdcm_core::identification::Validation;
+use gdcm_core::study::{
     AcrossCurves, AcrossJob, Analysis, AssessmentJob, AssessmentTable, ConditionAnalysis, ConditionCurves,
     ConditionFailure, ConditionModes, CurvesJob, ModesJob, SimulationJob, Toggles, TogglesJob, Uncertainty,
     UncertaintyJob, VariantJob,

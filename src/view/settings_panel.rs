@@ -2,15 +2,15 @@
 
 use egui::{ComboBox, Grid, RichText, Role, Slider, Ui, WidgetInfo};
 
-use crate::correction::{GainBounds, GainObjective, GainSource};
-use crate::dataset::{Band, GREATEST_OMEGA, LEAST_OMEGA};
-use crate::fidelity::CostAverage;
-use crate::study::{
+use gdcm_core::correction::{GainBounds, GainObjective, GainSource};
+use gdcm_core::dataset::{Band, GREATEST_OMEGA, LEAST_OMEGA};
+use gdcm_core::fidelity::CostAverage;
+use gdcm_core::study::{
     Edit, GREATEST_AGREEMENT_DB, GREATEST_DELAY_S, GREATEST_GAIN, GREATEST_QUANTILE, LARGEST_ALPHA, LEAST_GAIN,
     LEAST_POINTS, MOST_POINTS, PhaseCorrection, Setting,
 };
-use crate::uncertainty::{GREATEST_PRIOR, LEVELS, UncertaintySettings};
-use crate::units::s_to_ms;
+use gdcm_core::uncertainty::{GREATEST_PRIOR, LEVELS, UncertaintySettings};
+use gdcm_core::units::s_to_ms;
 
 use super::coherence_setting::coherence_ui;
 use super::command::Command;

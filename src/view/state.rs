@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
-use crate::figure::ColumnWidth;
-use crate::study::{
+use gdcm_core::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
+use gdcm_core::study::{
     AcrossCurves, Analysis, AssessmentTable, ConditionAnalysis, ConditionCurves, ConditionFailure, ConditionModes,
     Difference, ExportFormat, History, Study, Table, Toggles, Uncertainty,
 };
+use gdcm_files::figure::ColumnWidth;
 
 use super::arrangement::View;
 use super::assembling::Workbench;
@@ -329,8 +329,8 @@ impl State {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::embedded_example;
-    use crate::study::{Engine, Unobserved};
+    use gdcm_core::study::{Engine, Unobserved};
+    use gdcm_files::embedded_example;
 
     #[test]
     fn a_stop_before_the_first_result_leaves_none_and_one_after_it_leaves_that() {

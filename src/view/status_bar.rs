@@ -2,8 +2,8 @@
 
 use egui::{Align, Button, Layout, RichText, Ui};
 
-use crate::dataset::BundleKind;
-use crate::study::Assessed;
+use gdcm_core::dataset::BundleKind;
+use gdcm_core::study::Assessed;
 
 use super::command::Command;
 use super::palette::{Palette, SMALL_SIZE};
@@ -97,7 +97,7 @@ fn background_words(background: &Background, records: &RecordsBench) -> String {
     }
 }
 
-fn model_count(condition: &crate::dataset::Condition) -> usize {
+fn model_count(condition: &gdcm_core::dataset::Condition) -> usize {
     condition.bundle(BundleKind::Physics).len() + condition.bundle(BundleKind::Identified).len()
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::{Align, Button, Color32, Grid, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo};
 
-use crate::study::Table;
+use gdcm_core::study::Table;
 
 use super::command::Command;
 use super::palette::{Palette, SMALL_SIZE};

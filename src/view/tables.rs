@@ -1,11 +1,11 @@
 //! The tables of the window as texts, to be copied and saved.
 
-use crate::correction::Channel as CorrectedChannel;
-use crate::dataset::{BundleKind, ConditionId, Pair};
-use crate::fidelity::SUGGESTION_RATIO;
-use crate::study::{ConditionAnalysis, Table, Uncertainty};
-use crate::uncertainty::Scalar;
-use crate::units::s_to_ms;
+use gdcm_core::correction::Channel as CorrectedChannel;
+use gdcm_core::dataset::{BundleKind, ConditionId, Pair};
+use gdcm_core::fidelity::SUGGESTION_RATIO;
+use gdcm_core::study::{ConditionAnalysis, Table, Uncertainty};
+use gdcm_core::uncertainty::Scalar;
+use gdcm_core::units::s_to_ms;
 
 use super::state::State;
 

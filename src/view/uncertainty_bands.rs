@@ -1,7 +1,7 @@
 //! The bands of identified models around their curves.
 
-use crate::dataset::{BundleKind, ModelBands, Pair};
-use crate::identification::TWO_SIDED_95;
+use gdcm_core::dataset::{BundleKind, ModelBands, Pair};
+use gdcm_core::identification::TWO_SIDED_95;
 
 use super::plot::{BodeBand, BodeCurve, CurveId};
 use super::state::State;

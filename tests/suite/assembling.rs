@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
 
-use gdcm::assembly::{Assembly, Headings, ProblemKind, RowRole, UnitRule, proposed_rules};
-use gdcm::dataset::{BundleKind, Condition, ConditionRecord, Dataset, Dynamics, Model, StateSpace};
-use gdcm::io::variables::{Array, CellArray, StructArray, TextArray, Value, Variable};
-use gdcm::io::{FolderProgress, FoundModels, load_dataset, read_models, write_mat, write_npz};
+use gdcm_core::assembly::{Assembly, Headings, ProblemKind, RowRole, UnitRule, proposed_rules};
+use gdcm_core::dataset::{BundleKind, Condition, ConditionRecord, Dataset, Dynamics, Model, StateSpace};
+use gdcm_files::variables::{Array, CellArray, StructArray, TextArray, Value, Variable};
+use gdcm_files::{FolderProgress, FoundModels, load_dataset, read_models, write_mat, write_npz};
 use nalgebra::DMatrix;
 use serde_json::json;
 
@@ -53,7 +53,7 @@ fn cell(texts: &[String]) -> Value {
 
 /// Names and units of the example's channels, as MATLAB names their lists.
 fn labels(dataset: &Dataset) -> [(&'static str, Vec<String>); 4] {
-    let of = |channels: &[gdcm::dataset::Channel], part: fn(&gdcm::dataset::Channel) -> &String| {
+    let of = |channels: &[gdcm_core::dataset::Channel], part: fn(&gdcm_core::dataset::Channel) -> &String| {
         channels.iter().map(|channel| part(channel).clone()).collect()
     };
     [

@@ -5,8 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use gdcm::io::{load_dataset, read_corrections, save_study};
-use gdcm::study::{Edit, Setting, Study};
+use gdcm_core::study::{Edit, Setting, Study};
+use gdcm_files::{load_dataset, read_corrections, save_study};
 use serde_json::{Value, json};
 
 pub(crate) const SMALL: &str = include_str!("../data/small-dataset.json");
@@ -113,7 +113,7 @@ fn what_is_written_says_the_same_in_all_three_files() {
     let corrections = read_corrections(&desk.path("corrections.json")).unwrap();
     for row in rows(&desk.path("corrections.csv")) {
         let condition = corrections.conditions.iter().find(|condition| condition.id.to_string() == row[0]).unwrap();
-        let of = |channels: &gdcm::io::Channels| match &row[2] {
+        let of = |channels: &gdcm_files::Channels| match &row[2] {
             "input" => *channels.inputs.get(&row[3]).unwrap(),
             _ => *channels.outputs.get(&row[3]).unwrap(),
         };

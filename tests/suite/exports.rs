@@ -4,10 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use gdcm::assembly::{FoundModel, Headings};
-use gdcm::dataset::{Pair, StateSpace};
-use gdcm::io::{FolderProgress, read_corrections, read_models};
-use gdcm::response::evaluate;
+use gdcm_core::assembly::{FoundModel, Headings};
+use gdcm_core::dataset::{Pair, StateSpace};
+use gdcm_core::response::evaluate;
+use gdcm_files::{FolderProgress, read_corrections, read_models};
 use serde_json::json;
 
 use crate::commands::Desk;
@@ -152,8 +152,8 @@ fn corrected_models_are_the_program_s_in_every_format() {
     let mut delayed = 0;
     for (model, result) in found.iter().zip(&corrections.conditions) {
         let condition = crate::EXAMPLE.dataset.conditions().iter().find(|of| of.id().0 == result.id).unwrap();
-        let physics = condition.model(gdcm::dataset::BundleKind::Physics, &result.physics_representative).unwrap();
-        let gdcm::dataset::Dynamics::StateSpace(plain) = &physics.dynamics else { panic!("no matrices") };
+        let physics = condition.model(gdcm_core::dataset::BundleKind::Physics, &result.physics_representative).unwrap();
+        let gdcm_core::dataset::Dynamics::StateSpace(plain) = &physics.dynamics else { panic!("no matrices") };
         let (corrected, plain) = (evaluate(&state_space(model), &omega), evaluate(plain, &omega));
         for (output, (_, output_gain)) in result.gains.outputs.0.iter().enumerate() {
             for (input, (_, input_gain)) in result.gains.inputs.0.iter().enumerate() {
@@ -189,7 +189,7 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
     desk.gdcm(&["analyze", "--phase", "lead", "--out", "."]).assert_done();
     let corrections = read_corrections(&desk.path("corrections.json")).unwrap();
     let at = corrections.schedule.as_ref().unwrap().table.iter().find(|row| row.airspeed_kt == 120.0).unwrap();
-    let filter = |of: &gdcm::io::LeadEntry, s: nalgebra::Complex<f64>| {
+    let filter = |of: &gdcm_files::LeadEntry, s: nalgebra::Complex<f64>| {
         let side = |omega: Option<f64>| {
             let x = s / omega.unwrap();
             x * x + x * 2.0_f64.sqrt() + 1.0
@@ -197,8 +197,8 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
         side(of.zero_rad_s) / side(of.lag_rad_s)
     };
     let physics = &crate::EXAMPLE.dataset.conditions()[0];
-    let nominal = &physics.bundle(gdcm::dataset::BundleKind::Physics)[physics.nominal()];
-    let gdcm::dataset::Dynamics::StateSpace(plain) = &nominal.dynamics else { panic!("no matrices") };
+    let nominal = &physics.bundle(gdcm_core::dataset::BundleKind::Physics)[physics.nominal()];
+    let gdcm_core::dataset::Dynamics::StateSpace(plain) = &nominal.dynamics else { panic!("no matrices") };
     let omega = [0.5, 3.0, 12.0, 120.0];
     let (corrected, plain) = (evaluate(&state_space(&found[0]), &omega), evaluate(plain, &omega));
     let leads = at.lead.as_ref().unwrap();
@@ -258,8 +258,8 @@ fn the_filter_of_the_c_header_leads_a_sine() {
     let output = Command::new(desk.path("main")).output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
     let [zero_s, s, c] = [0, 1, 2].map(|at| text.split_whitespace().nth(at).unwrap().parse::<f64>().unwrap());
-    let filter = gdcm::response::LeadFilter::new(
-        gdcm::response::LeadOrder::Second,
+    let filter = gdcm_core::response::LeadFilter::new(
+        gdcm_core::response::LeadOrder::Second,
         2.0_f64.sqrt() * (zero_s - 1.0 / 36.0),
         1.0 / 36.0,
     );
@@ -320,8 +320,8 @@ fn octave_reads_the_corrections_as_analyze_writes_them() {
     let Some(found) = octave(&desk, program) else { return };
     let mut expected = Vec::new();
     let table =
-        |table: &gdcm::io::Table| table.iter().flatten().map(|entry| entry.unwrap_or(f64::NAN)).collect::<Vec<_>>();
-    let figures = |of: &gdcm::io::ByName<f64>| of.0.iter().map(|(_, figure)| *figure).collect::<Vec<_>>();
+        |table: &gdcm_files::Table| table.iter().flatten().map(|entry| entry.unwrap_or(f64::NAN)).collect::<Vec<_>>();
+    let figures = |of: &gdcm_files::ByName<f64>| of.0.iter().map(|(_, figure)| *figure).collect::<Vec<_>>();
     for of in &corrections.conditions {
         expected.push(of.id as f64);
         expected.extend([table(&of.delta_gain), table(&of.delta_delay_s)].concat());

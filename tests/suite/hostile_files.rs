@@ -6,7 +6,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use gdcm::io::models_of_bytes;
+use gdcm_files::models_of_bytes;
 
 /// Memory that the variables of a file may take here.
 const MOST: u64 = 64 << 20;

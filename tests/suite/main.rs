@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
-use gdcm::io::{LoadedDataset, embedded_example, load_dataset};
+use gdcm_files::{LoadedDataset, embedded_example, load_dataset};
 
 mod analysis;
 mod assembling;

@@ -1,14 +1,15 @@
 //! What messages say, whatever the names, the numbers and the mistakes.
 
+use gdcm_core::message_text::sanitized;
 use std::io::Write;
 use std::path::Path;
 
-use gdcm::correction::GainBounds;
-use gdcm::dataset::{Band, GREATEST_OMEGA, LEAST_OMEGA};
-use gdcm::io::{DatasetOrigin, load_dataset, load_dataset_bytes, open_study, plain, save_study};
-use gdcm::schedule::{ScheduleKind, ScheduleSettings};
-use gdcm::study::{Edit, GREATEST_DELAY_S, GREATEST_GAIN, LARGEST_ALPHA, LEAST_GAIN, Setting, Study};
-use gdcm::units::number;
+use gdcm_core::correction::GainBounds;
+use gdcm_core::dataset::{Band, GREATEST_OMEGA, LEAST_OMEGA};
+use gdcm_core::schedule::{ScheduleKind, ScheduleSettings};
+use gdcm_core::study::{Edit, GREATEST_DELAY_S, GREATEST_GAIN, LARGEST_ALPHA, LEAST_GAIN, Setting, Study};
+use gdcm_core::units::number;
+use gdcm_files::{DatasetOrigin, load_dataset, load_dataset_bytes, open_study, save_study};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
@@ -18,7 +19,7 @@ use crate::commands::{Desk, SMALL};
 const NASTY: &str = "a\u{202e}b\u{200b}c\u{2028}d\u{2066}e\u{1b}[2Jf\ng";
 
 fn is_plain(text: &str) -> bool {
-    text.lines().all(|line| plain(line) == line)
+    text.lines().all(|line| sanitized(line) == line)
 }
 
 #[test]
@@ -92,7 +93,7 @@ fn the_bounds_that_a_message_names_are_those_that_are_refused() {
         (&|points| Setting::Points(points as usize), 2.0, 5000.0),
         (&schedule, 0.0, 3.0),
     ];
-    let loaded = gdcm::io::embedded_example().unwrap();
+    let loaded = gdcm_files::embedded_example().unwrap();
     for (setting, least, greatest) in ranges {
         let mut study = Study::new(loaded.dataset.clone());
         let mut apply = |value| study.apply(&Edit::Set(setting(value)));

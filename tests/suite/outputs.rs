@@ -5,9 +5,9 @@ use std::fs;
 use std::path::Path;
 
 use egui_kittest::kittest::Queryable;
-use gdcm::io::{load_dataset, read_corrections, save_study};
-use gdcm::study::Study;
 use gdcm::view::state::NoticeKind;
+use gdcm_core::study::Study;
+use gdcm_files::{load_dataset, read_corrections, save_study};
 
 use crate::commands::{Desk, Ended, SMALL};
 use crate::window::{Window, click, export_to, save_as, settle, state, window};

@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use gdcm::assembly::standard_patterns;
-use gdcm::dataset::{BundleKind, RecordKind};
-use gdcm::io::{embedded_example, example_records, load_dataset, records_of_bytes};
-use gdcm::records::{RecordChannels, RecordGuess, RecordLayout, TimeWish};
+use gdcm_core::assembly::standard_patterns;
+use gdcm_core::dataset::{BundleKind, RecordKind};
+use gdcm_core::records::{RecordChannels, RecordGuess, RecordLayout, TimeWish};
+use gdcm_files::{embedded_example, example_records, load_dataset, records_of_bytes};
 
 use crate::commands::Desk;
 use crate::window::records::late_dataset;

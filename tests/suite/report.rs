@@ -5,9 +5,9 @@ use std::fs;
 use std::sync::LazyLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use gdcm::dataset::{BundleKind, ConditionId, ModelId};
-use gdcm::io::{ReportSource, load_dataset, report, save_study};
-use gdcm::study::{Analysis, Cancelled, Edit, Engine, Progress, Study, Unobserved};
+use gdcm_core::dataset::{BundleKind, ConditionId, ModelId};
+use gdcm_core::study::{Analysis, Cancelled, Edit, Engine, Progress, Study, Unobserved};
+use gdcm_files::{ReportSource, load_dataset, report, save_study};
 use roxmltree::{Document, Node, ParsingOptions};
 use serde_json::{Value, json};
 

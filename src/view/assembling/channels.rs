@@ -2,10 +2,10 @@
 
 use egui::{Grid, RichText, Role, Ui, WidgetInfo};
 
-use crate::assembly::{ChannelRule, ProblemKind, Rules, UnitRule};
-use crate::units::number;
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
+use gdcm_core::assembly::{ChannelRule, ProblemKind, Rules, UnitRule};
+use gdcm_core::units::number;
 
 use super::entry::{entry_ui, typed_number};
 use super::workbench::{AssemblingCommand, Workbench};

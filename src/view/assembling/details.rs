@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use egui::{Grid, RichText, Role, Ui, WidgetInfo};
 
-use crate::assembly::{ChannelLabel, Part, RowRole, RowRule};
-use crate::units::number;
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::settings_panel::choice_ui;
+use gdcm_core::assembly::{ChannelLabel, Part, RowRole, RowRule};
+use gdcm_core::units::number;
 
 use super::columns::columns_ui;
 use super::entry::{entry_ui, typed_number};
@@ -53,7 +53,7 @@ pub(super) fn details_ui(ui: &mut Ui, bench: &Workbench, palette: &Palette, comm
     }
 }
 
-fn push(rules: crate::assembly::Rules, commands: &mut Vec<Command>) {
+fn push(rules: gdcm_core::assembly::Rules, commands: &mut Vec<Command>) {
     commands.push(AssemblingCommand::Change(Box::new(rules)).into());
 }
 

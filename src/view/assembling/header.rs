@@ -160,7 +160,7 @@ fn settings_ui(ui: &mut Ui, bench: &Workbench, palette: &Palette, commands: &mut
     ui.label(dim("band [rad/s]"));
     let ends = [("Lower end of the dataset's band", rules.band.0), ("Upper end of the dataset's band", rules.band.1)];
     for (index, (name, value)) in ends.into_iter().enumerate() {
-        let Some(text) = entry_ui(ui, name, &crate::units::number(value), "rad/s", 50.0) else { continue };
+        let Some(text) = entry_ui(ui, name, &gdcm_core::units::number(value), "rad/s", 50.0) else { continue };
         match typed_number(&text) {
             Ok(Some(value)) => {
                 let mut rules = rules.clone();

@@ -4,10 +4,10 @@ use std::cmp::Ordering;
 
 use egui::{Align, Button, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
-use crate::assembly::Part;
-use crate::units::number;
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
+use gdcm_core::assembly::Part;
+use gdcm_core::units::number;
 
 use super::workbench::{AssemblingCommand, Workbench};
 

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::assembly::{Assembly, FoundModel, Headings, RowRule, Rules, proposed_rules};
+use gdcm_core::assembly::{Assembly, FoundModel, Headings, RowRule, Rules, proposed_rules};
 
 use super::preview::Preview;
 use super::table::Column;

@@ -1,5 +1,6 @@
 //! The two ends of the band of comparison, to be dragged with the mouse.
 
+use crate::view::plot::LogAxis;
 use egui::{Align2, CursorIcon, Rect, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 use egui_plot::PlotTransform;
 

@@ -1,6 +1,6 @@
 //! The bars of an assessment: changes of J, side by side.
 
-use crate::dataset::ConditionId;
+use gdcm_core::dataset::ConditionId;
 
 use super::questions::NamedFigure;
 use super::range::Range;

@@ -1,5 +1,7 @@
 //! One of the two stacked plots: axes, band, curves and cursor.
 
+use crate::view::plot::LogAxis;
+use crate::view::plot::RoleLook;
 use egui::{Context, Id, PointerButton, Rect, Response, Ui, UiBuilder, WidgetInfo};
 use egui_plot::{Axis, LineStyle, PlotTransform, PlotUi, Span, VLine};
 

@@ -1,5 +1,6 @@
 //! A plain plot: lines, bands and marks with error bars over a linear or a logarithmic axis.
 
+use crate::view::plot::LogAxis;
 use std::sync::Arc;
 
 use egui::{Align2, Color32, Id, Rect, Response, Sense, Stroke, Ui, UiBuilder, Vec2, Vec2b, WidgetInfo, pos2, vec2};

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui_plot::PlotBounds;
 
-pub use crate::figure::CurveId;
+pub use gdcm_files::figure::CurveId;
 
 use super::role::Role;
 
@@ -163,7 +163,7 @@ fn touches(a: [f64; 2], b: [f64; 2], bounds: &PlotBounds) -> bool {
 /// The curve of a physics model with this number for a name.
 #[cfg(test)]
 pub(super) fn numbered(number: u64) -> CurveId {
-    use crate::dataset::{BundleKind, ConditionId, ModelId};
+    use gdcm_core::dataset::{BundleKind, ConditionId, ModelId};
     CurveId::Model(ModelId::new(ConditionId(1), BundleKind::Physics, number.to_string()))
 }
 

@@ -2,8 +2,8 @@
 
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 
-use crate::dataset::ConditionId;
 use crate::view::palette::Palette;
+use gdcm_core::dataset::ConditionId;
 
 use super::questions::NamedFigure;
 

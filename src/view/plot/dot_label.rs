@@ -2,7 +2,7 @@
 
 use egui::{Pos2, Rect};
 
-use crate::figure::{Area, LabelPlace, LabelledDot, Surroundings, place_labels};
+use gdcm_files::figure::{Area, LabelPlace, LabelledDot, Surroundings, place_labels};
 
 /// Labels as they were placed last: placing them costs more than drawing them, and from frame to frame little moves.
 #[derive(Clone, Debug, Default)]

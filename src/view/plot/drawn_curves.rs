@@ -1,5 +1,6 @@
 //! The points of a pane's curves that have to be drawn.
 
+use crate::view::plot::RoleLook;
 use egui_plot::{PlotBounds, PlotPoint};
 
 use super::curve::{BodeCurve, LogFrequencies, Pane, runs_in_view};

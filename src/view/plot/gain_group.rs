@@ -3,8 +3,8 @@
 use egui::{FontId, Pos2, Rect, RichText, Ui, UiBuilder, Vec2, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
 
-use crate::dataset::ConditionId;
-use crate::study::AskedFigure;
+use gdcm_core::dataset::ConditionId;
+use gdcm_core::study::AskedFigure;
 
 use super::axes::use_frame_colors;
 use super::dot::Dot;

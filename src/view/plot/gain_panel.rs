@@ -1,5 +1,6 @@
 //! One small plot of gains or delays: the optimum of each condition as a dot, and the schedule as a line.
 
+use crate::view::plot::RoleLook;
 use std::sync::Arc;
 
 use egui::{
@@ -8,7 +9,7 @@ use egui::{
 };
 use egui_plot::{Axis, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotTransform, PlotUi};
 
-use crate::dataset::ConditionId;
+use gdcm_core::dataset::ConditionId;
 
 use super::axes::{LABELLED_HEIGHT, axis_hints, caption_font, quiet_plot};
 use super::dot::{DOT_RADIUS, Dot};
@@ -16,12 +17,11 @@ use super::dot_label::{PlacedLabels, area, point, position};
 use super::gain_band::{Bracket, GainBand, paint_bands};
 use super::line_look::LinePattern;
 use super::linear_axis::{Ladder, tick_text};
-use super::number::decimals;
 use super::range::Range;
 use super::role::Role;
-pub use crate::figure::{Across, Measure};
-use crate::figure::{LabelledDot, Surroundings};
 use crate::view::palette::Palette;
+pub use gdcm_files::figure::{Across, Measure};
+use gdcm_files::figure::{LabelledDot, Surroundings};
 
 const TITLE_HEIGHT: f32 = 18.0;
 const GAIN_AXIS_WIDTH: f32 = 30.0;
@@ -35,16 +35,6 @@ const OF_BARS: f64 = 0.35;
 const LABEL_FONT: FontId = FontId::proportional(10.5);
 /// Height that a row of label text has above and below its figures \[pt\].
 const LABEL_LEADING: f32 = 4.0;
-
-impl Measure {
-    /// A value with its unit.
-    pub fn text(self, value: f64) -> String {
-        match self {
-            Self::Gain => decimals(value, 3),
-            Self::Delay => format!("{} ms", decimals(value, 1)),
-        }
-    }
-}
 
 /// One small plot: dots over airspeed or over conditions, with the schedule.
 #[derive(Clone, Debug, Default)]

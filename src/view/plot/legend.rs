@@ -1,5 +1,6 @@
 //! The legend of a Bode plot: one switch for each role that is present.
 
+use crate::view::plot::RoleLook;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 

@@ -4,7 +4,7 @@ use egui_plot::{GridInput, GridMark};
 
 use super::grid_strength::labelled_mark;
 use super::number::compact;
-use crate::figure::{degree_step, step_above};
+use gdcm_files::figure::{degree_step, step_above};
 
 /// The steps that ticks may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

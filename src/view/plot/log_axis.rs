@@ -4,7 +4,7 @@ use egui_plot::{GridInput, GridMark};
 
 use super::grid_strength::{is_labelled, labelled_mark, minor_mark};
 use super::number::compact;
-pub use crate::figure::FrequencyUnit;
+pub use gdcm_files::figure::FrequencyUnit;
 
 /// Least distance between two labels \[pt\].
 const LABEL_GAP: f64 = 34.0;
@@ -18,9 +18,20 @@ const LINEAR_BELOW: f64 = 0.9;
 /// From 9 to 10, the narrowest gap between the lines of a decade \[decades\].
 const NINE_TO_TEN: f64 = 0.045_757_490_560_675_115;
 
-impl FrequencyUnit {
+/// An axis of `log10(omega)` in a unit of frequency.
+pub trait LogAxis: Copy {
     /// An angular frequency as a reader wants it: "ω 2.05 rad/s" or "f 0.326 Hz".
-    pub fn readout(self, omega: f64) -> String {
+    fn readout(self, omega: f64) -> String;
+    /// The text of the tick at `mark`, a `log10(omega)`.
+    fn tick_text(self, mark: GridMark) -> String;
+    /// Ticks and grid lines between `bounds`, both `log10(omega)`, on an axis of `decades_per_point`.
+    fn marks(self, bounds: (f64, f64), decades_per_point: f64) -> Vec<GridMark>;
+    /// [`Self::marks`] as egui_plot asks for them, where the base step is one point.
+    fn spacer(self) -> impl Fn(GridInput) -> Vec<GridMark>;
+}
+
+impl LogAxis for FrequencyUnit {
+    fn readout(self, omega: f64) -> String {
         let quantity = match self {
             Self::RadPerSecond => "ω",
             Self::Hertz => "f",
@@ -28,13 +39,11 @@ impl FrequencyUnit {
         format!("{quantity} {} {}", three_digits(self.of_omega(omega)), self.symbol())
     }
 
-    /// The text of the tick at `mark`, a `log10(omega)`.
-    pub fn tick_text(self, mark: GridMark) -> String {
+    fn tick_text(self, mark: GridMark) -> String {
         compact(self.of_omega(10f64.powf(mark.value)))
     }
 
-    /// Ticks and grid lines between `bounds`, both `log10(omega)`, on an axis of `decades_per_point`.
-    pub fn marks(self, bounds: (f64, f64), decades_per_point: f64) -> Vec<GridMark> {
+    fn marks(self, bounds: (f64, f64), decades_per_point: f64) -> Vec<GridMark> {
         if !(decades_per_point > 0.0 && bounds.0 < bounds.1 && bounds.0.is_finite() && bounds.1.is_finite()) {
             return Vec::new();
         }
@@ -43,8 +52,7 @@ impl FrequencyUnit {
         marks.into_iter().map(|mark| GridMark { value: mark.value - shift, ..mark }).collect()
     }
 
-    /// [`Self::marks`] as egui_plot asks for them, where the base step is one point.
-    pub fn spacer(self) -> impl Fn(GridInput) -> Vec<GridMark> {
+    fn spacer(self) -> impl Fn(GridInput) -> Vec<GridMark> {
         move |input| self.marks(input.bounds, input.base_step_size)
     }
 }
@@ -116,7 +124,7 @@ fn linear_marks(bounds: (f64, f64), decades_per_point: f64) -> Vec<GridMark> {
     let (low, high) = (10f64.powf(bounds.0), 10f64.powf(bounds.1));
     // The upper end is where equal steps are closest.
     let units_per_point = high * decades_per_point * std::f64::consts::LN_10;
-    let step = crate::figure::step_above(LABEL_GAP * 1.5 * units_per_point);
+    let step = gdcm_files::figure::step_above(LABEL_GAP * 1.5 * units_per_point);
     let indices = (low / step).ceil() as i64..=(high / step).floor() as i64;
     indices.map(|k| labelled_mark((k as f64 * step).log10(), decades_per_point)).collect()
 }

@@ -56,7 +56,7 @@ mod value_unit;
 mod viewed_range;
 mod wheel;
 
-use crate::figure::{number, range};
+use gdcm_files::figure::{number, range};
 
 pub use assessment::{AssessmentEvent, AssessmentScene, AssessmentView, assessment_ui};
 pub use bar::{AssessmentBar, AssessmentPanel, BarValue};
@@ -73,7 +73,7 @@ pub use gain_band::{Bracket, GainBand};
 pub use gain_group::{GainEvent, GainView};
 pub use gain_panel::{Across, GainPanel, Measure};
 pub use line_look::{LineLook, LinePattern};
-pub use log_axis::FrequencyUnit;
+pub use log_axis::{FrequencyUnit, LogAxis};
 pub use net_gain::{NetGainScene, net_gain_ui};
 pub use number::decimals;
 pub use overview::{OverviewCell, OverviewEvent, OverviewScene, OverviewView, overview_ui};
@@ -83,6 +83,6 @@ pub use quantity::{BodeQuantity, MagnitudeUnit, PhaseErrorUnit, PhaseUnit, Respo
 pub use questions::NamedFigure;
 pub use range::Range;
 pub use readout_box::{Readout, ReadoutRow};
-pub use role::Role;
+pub use role::{Role, RoleLook};
 pub use rule::{Level, Rule, RuleKind};
 pub use value_unit::ValueUnit;

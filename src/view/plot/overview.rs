@@ -16,8 +16,8 @@ use super::message::message_ui;
 use super::picking::nearest;
 use super::range::Range;
 use super::sketch::Sketch;
-use crate::dataset::Pair;
 use crate::view::palette::{Palette, SMALL_SIZE};
+use gdcm_core::dataset::Pair;
 
 const HEADER: Vec2 = vec2(52.0, 22.0);
 const GAP: f32 = 4.0;

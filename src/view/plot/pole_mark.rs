@@ -1,9 +1,10 @@
 //! A pole or a zero of one model, as the s-plane shows it.
 
+use crate::view::plot::RoleLook;
 use egui::{Painter, Pos2, Stroke, vec2};
 
-use crate::dataset::ModelId;
 use crate::view::palette::Palette;
+use gdcm_core::dataset::ModelId;
 
 use super::role::Role;
 

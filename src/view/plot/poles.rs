@@ -3,7 +3,7 @@
 use egui::{CursorIcon, Rect, Response, RichText, Ui, UiBuilder, Vec2, vec2};
 use egui_plot::PlotPoint;
 
-use crate::dataset::ModelId;
+use gdcm_core::dataset::ModelId;
 
 use super::axes::use_frame_colors;
 use super::message::message_ui;
@@ -135,11 +135,11 @@ fn mark_events(response: &Response, mark: &PoleMark, palette: &Palette) -> Vec<P
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dataset::{BundleKind, ConditionId};
     use crate::view::plot::pole_mark::MarkShape;
     use crate::view::plot::role::Role;
     use egui::{Pos2, pos2};
     use egui_plot::{PlotBounds, PlotTransform};
+    use gdcm_core::dataset::{BundleKind, ConditionId};
 
     fn mark(name: &str, role: Role, value: [f64; 2]) -> PoleMark {
         PoleMark {

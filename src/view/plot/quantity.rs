@@ -2,7 +2,7 @@
 
 use super::curve::Pane;
 use super::value_unit::ValueUnit;
-pub use crate::figure::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
+pub use gdcm_files::figure::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 
 /// What the two stacked panes show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

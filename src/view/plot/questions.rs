@@ -2,8 +2,8 @@
 
 use egui::{Id, Response};
 
-use crate::study::AskedFigure;
 use crate::view::derivation_window::QUESTION;
+use gdcm_core::study::AskedFigure;
 
 /// A figure that can be asked about, and its name.
 pub type NamedFigure = (String, AskedFigure);

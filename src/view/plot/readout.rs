@@ -1,13 +1,14 @@
 //! What hovering a curve says.
 
+use crate::view::plot::LogAxis;
 use egui::{PopupAnchor, Response, RichText, Tooltip, Ui};
 
 use super::bode::BodeScene;
 use super::curve::{BodeCurve, Pane};
 use super::number::decimals;
 use super::quantity::BodeQuantity;
-use crate::response::wrap;
 use crate::view::palette::{Palette, SMALL_SIZE};
+use gdcm_core::response::wrap;
 
 /// "nominal · 2.9 dB · −99°" at `omega` \[rad/s\].
 pub(super) fn value_text(quantity: BodeQuantity<'_>, curve: &BodeCurve, omega: f64) -> String {

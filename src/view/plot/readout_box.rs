@@ -1,5 +1,6 @@
 //! What every role has at the cursor, as a small table in a corner of a plot.
 
+use crate::view::plot::RoleLook;
 use std::sync::Arc;
 
 use egui::{

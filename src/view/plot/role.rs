@@ -1,24 +1,20 @@
 //! How a curve of a role is drawn on the screen: the same in every view.
 
 use super::line_look::{LineLook, LinePattern};
-pub use crate::figure::Role;
 use crate::view::palette::Palette;
+pub use gdcm_files::figure::Role;
 
 /// The dots of what is left out.
 const DOTTED: LinePattern = LinePattern::Dotted { spacing: 4.5 };
 
-impl Role {
-    /// The name where there is little room.
-    pub fn short_name(self) -> &'static str {
-        match self {
-            Self::Representative => "repres.",
-            Self::IdentifiedRepresentative => "ident. rep.",
-            _ => self.name(),
-        }
-    }
-
+/// How a role looks on the screen.
+pub trait RoleLook {
     /// How a curve of this role is drawn. A rejected nominal model stays red, but dotted.
-    pub fn look(self, rejected: bool, palette: &Palette) -> LineLook {
+    fn look(self, rejected: bool, palette: &Palette) -> LineLook;
+}
+
+impl RoleLook for Role {
+    fn look(self, rejected: bool, palette: &Palette) -> LineLook {
         let look = |color, width, pattern| LineLook { color, width: width * palette.line_width, pattern };
         let dashed = |length| LinePattern::Dashed { length };
         match self.shown(rejected) {

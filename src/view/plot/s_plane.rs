@@ -8,8 +8,8 @@ use super::linear_axis::{Ladder, tick_text};
 use super::pole_mark::PoleMark;
 use super::range::Range;
 use super::wheel::turned;
-use crate::figure::step_above;
 use crate::view::palette::Palette;
+use gdcm_files::figure::step_above;
 
 const TITLE_HEIGHT: f32 = 18.0;
 const VALUE_AXIS_WIDTH: f32 = 40.0;

@@ -1,5 +1,6 @@
 //! Curves without axes, in the little room of a table's cell.
 
+use crate::view::plot::RoleLook;
 use egui::{Pos2, Rect, Shape};
 use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
 

@@ -7,7 +7,7 @@ use super::linear_axis::{Ladder, tick_text};
 use super::log_axis::logarithmic_marks;
 use super::number::{compact, decimals};
 use super::range::Range;
-use crate::units::{db_to_ratio, ratio_to_db};
+use gdcm_core::units::{db_to_ratio, ratio_to_db};
 
 /// The unit that the values of a pane are read in. What is drawn is in decibels for the first two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,12 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::dataset::{ConditionId, ConditionRecord, Dataset, RecordKind};
-use crate::identification::{
+use gdcm_core::dataset::{ConditionId, ConditionRecord, Dataset, RecordKind};
+use gdcm_core::identification::{
     ChannelPreparation, FlightRecord, Hold, Identification, IdentificationError, Options, Preparation, Role, Signal,
 };
-use crate::records::{RecordChannels, RecordGuess, RecordLayout, RecordTable};
-use crate::study::{IdentifyJob, OfferedModels, TakenModels, identified_bundle, pieces_used};
+use gdcm_core::records::{RecordChannels, RecordGuess, RecordLayout, RecordTable};
+use gdcm_core::study::{IdentifyJob, OfferedModels, TakenModels, identified_bundle, pieces_used};
 
 use super::simulation::TimeModel;
 
@@ -166,7 +166,7 @@ pub struct ConditionRecords {
 impl ConditionRecords {
     /// Records of a condition of `dataset`.
     pub fn new(rows: Vec<RecordRow>, dataset: &Dataset) -> Self {
-        let named = |channels: &[crate::dataset::Channel]| {
+        let named = |channels: &[gdcm_core::dataset::Channel]| {
             channels.iter().map(|channel| ChannelPreparation::named(channel.name.clone())).collect()
         };
         Self { rows, inputs: named(dataset.inputs()), outputs: named(dataset.outputs()), ..Self::default() }
@@ -217,7 +217,7 @@ impl ConditionRecords {
     pub fn taken(&self, offered: OfferedModels) -> Option<Arc<TakenModels>> {
         let found = self.identification()?;
         let used = self.used_rows().map(|(_, row)| row).zip(&found.record_uses);
-        let entry = |(row, found): (&RecordRow, &crate::identification::RecordUse)| ConditionRecord {
+        let entry = |(row, found): (&RecordRow, &gdcm_core::identification::RecordUse)| ConditionRecord {
             used_s: row.flight.as_ref().map_or_else(Vec::new, |flight| pieces_used(flight, found)),
             ..row.layout.condition_record(&row.table, &row.guess)
         };

@@ -2,13 +2,13 @@
 
 use egui::{ComboBox, Grid, RichText, Role as AccessRole, ScrollArea, Ui, WidgetInfo};
 
-use crate::identification::{Role, Signal};
-use crate::records::{ColumnUse, RecordLayout, TimeBase};
-use crate::units::{ms_to_s, number, s_to_ms};
 use crate::view::assembling::{entry_ui, typed_number};
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::state::State;
+use gdcm_core::identification::{Role, Signal};
+use gdcm_core::records::{ColumnUse, RecordLayout, TimeBase};
+use gdcm_core::units::{ms_to_s, number, s_to_ms};
 
 use super::bench::{ConditionRecords, RecordRow, RecordsCommand};
 

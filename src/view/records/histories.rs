@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use egui::{Id, Rect, RichText, ScrollArea, Sense, Ui, vec2};
 
-use crate::identification::{FlightRecord, Treatment};
 use crate::view::command::Command;
 use crate::view::palette::Palette;
 use crate::view::plot::{Chart, ChartAxis, ChartLine, ChartSpan, chart_ui};
 use crate::view::state::State;
+use gdcm_core::identification::{FlightRecord, Treatment};
 
 use super::bench::ConditionRecords;
 use super::kept::kept;
@@ -86,7 +86,7 @@ fn spans(records: &ConditionRecords, palette: &Palette) -> Vec<ChartSpan> {
     let Some(found) = records.identification().filter(|_| !records.changed) else { return Vec::new() };
     let record = (0..found.record_uses.len()).find(|record| records.row_of_record(*record) == Some(records.chosen));
     let gaps = record.map_or(&[][..], |record| &found.record_uses[record].gaps);
-    let span = |gap: &crate::identification::Gap| {
+    let span = |gap: &gdcm_core::identification::Gap| {
         let color = match gap.treatment {
             Treatment::Bridged => palette.accent.gamma_multiply(0.25),
             Treatment::CutOut => palette.warning.gamma_multiply(0.35),

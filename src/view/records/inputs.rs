@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use egui::{Rect, ScrollArea, Sense, Ui, vec2};
 
-use crate::dataset::Band;
-use crate::executor::Sequential;
-use crate::identification::{FlightRecord, Piece, spectra};
 use crate::view::palette::Palette;
 use crate::view::plot::{Chart, ChartAxis, ChartLine, ChartSpan, chart_ui};
 use crate::view::state::State;
+use gdcm_core::dataset::Band;
+use gdcm_core::executor::Sequential;
+use gdcm_core::identification::{FlightRecord, Piece, spectra};
 
 use super::bench::ConditionRecords;
 use super::kept::kept;

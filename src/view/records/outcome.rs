@@ -4,13 +4,15 @@ use std::sync::Arc;
 
 use egui::{Label, ProgressBar, RichText, Ui};
 
-use crate::dataset::BundleKind;
-use crate::identification::{Caution, Hold, Identification, IdentificationCaution, IdentificationError, Role, Signal};
-use crate::study::{LateChannel, OfferedModels};
-use crate::units::s_to_ms;
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::state::State;
+use gdcm_core::dataset::BundleKind;
+use gdcm_core::identification::{
+    Caution, Hold, Identification, IdentificationCaution, IdentificationError, Role, Signal,
+};
+use gdcm_core::study::{LateChannel, OfferedModels};
+use gdcm_core::units::s_to_ms;
 
 use super::bench::{ConditionRecords, RecordsCommand};
 use super::kept::{Source, kept};

@@ -2,9 +2,9 @@
 
 use egui::{RichText, Ui};
 
-use crate::identification::{PoleEstimate, TWO_SIDED_95};
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{Chart, ChartAxis, ChartMarks, chart_ui};
+use gdcm_core::identification::{PoleEstimate, TWO_SIDED_95};
 
 use super::bench::ConditionRecords;
 

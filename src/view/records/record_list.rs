@@ -2,10 +2,10 @@
 
 use egui::{Align, ComboBox, Grid, Label, Layout, RichText, Role, Sense, Ui, WidgetInfo};
 
-use crate::dataset::RecordKind;
 use crate::view::command::Command;
 use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 use crate::view::row::elided_among;
+use gdcm_core::dataset::RecordKind;
 
 use super::bench::{ConditionRecords, RecordRow, RecordsCommand};
 

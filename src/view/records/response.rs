@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use egui::{Color32, Label, Rect, RichText, Ui, vec2};
 
-use crate::dataset::Pair;
-use crate::identification::{Identification, MeasuredPoint, StateSpaceMatrices, TRUSTED_COHERENCE, TWO_SIDED_95};
-use crate::units::neper_to_db;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, chart_ui};
 use crate::view::state::State;
+use gdcm_core::dataset::Pair;
+use gdcm_core::identification::{Identification, MeasuredPoint, StateSpaceMatrices, TRUSTED_COHERENCE, TWO_SIDED_95};
+use gdcm_core::units::neper_to_db;
 
 use super::bench::ConditionRecords;
 use super::kept::kept;

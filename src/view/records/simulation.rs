@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use egui::{Color32, Label, RichText, Ui};
 
-use crate::correction::{CorrectedModel, Pade};
-use crate::dataset::{BundleKind, Dynamics, StateSpace};
-use crate::identification::{Preparation, StateSpaceMatrices, Validation};
-use crate::study::SimulationJob;
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::ChartLine;
 use crate::view::state::State;
+use gdcm_core::correction::{CorrectedModel, Pade};
+use gdcm_core::dataset::{BundleKind, Dynamics, StateSpace};
+use gdcm_core::identification::{Preparation, StateSpaceMatrices, Validation};
+use gdcm_core::study::SimulationJob;
 
 use super::bench::{ConditionRecords, RecordsCommand};
 use super::kept::kept;

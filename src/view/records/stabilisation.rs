@@ -2,10 +2,10 @@
 
 use egui::{RichText, Ui};
 
-use crate::identification::StabilisationPoint;
 use crate::view::palette::Palette;
 use crate::view::plot::{Chart, ChartAxis, ChartMarks, chart_ui};
 use crate::view::state::State;
+use gdcm_core::identification::StabilisationPoint;
 
 use super::bench::ConditionRecords;
 

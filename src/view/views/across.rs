@@ -1,14 +1,15 @@
 //! One response in every condition, laid over one another.
 
+use crate::view::plot::RoleLook;
 use egui::{Align2, Pos2, Rect, RichText, Ui, pos2, vec2};
 
-use crate::study::AcrossRole;
 use crate::view::across_scene::across_curves;
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{BodeEvent, BodeQuantity, BodeScene, CurveId, Role, bode_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
+use gdcm_core::study::AcrossRole;
 
 /// Steps of the key of airspeeds.
 const KEY_STEPS: u8 = 24;

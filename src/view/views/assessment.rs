@@ -2,9 +2,6 @@
 
 use egui::{RichText, Ui};
 
-use crate::dataset::Pair;
-use crate::fidelity::CostAverage;
-use crate::study::{AssessedCorrection, AssessedModel, AssessmentTable};
 use crate::view::assessment_scene::{
     AssessedFigures, AssessedPairs, CostPart, assessed_pairs, assessment_panels, assessment_sentences,
     assessment_text_table,
@@ -15,6 +12,9 @@ use crate::view::plot::{AssessmentEvent, AssessmentScene, assessment_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 use crate::view::table_view::{TableLook, table_ui};
+use gdcm_core::dataset::Pair;
+use gdcm_core::fidelity::CostAverage;
+use gdcm_core::study::{AssessedCorrection, AssessedModel, AssessmentTable};
 
 /// What is assessed, and how it is shown. Laid out from right to left.
 pub fn assessment_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {

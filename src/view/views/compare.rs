@@ -2,12 +2,12 @@
 
 use egui::{Align, Button, Layout, RichText, Role, TextEdit, Ui, WidgetInfo};
 
-use crate::study::{Edit, Variant};
 use crate::view::command::Command;
 use crate::view::compare_scene::{difference_table, figure_table};
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::state::State;
 use crate::view::table_view::{TableLook, table_ui};
+use gdcm_core::study::{Edit, Variant};
 
 /// The variants of the study, what differs between them and the present decisions, and what it does.
 pub fn compare_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {

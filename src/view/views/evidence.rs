@@ -2,8 +2,6 @@
 
 use egui::{Align, Align2, Color32, FontId, Layout, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
 
-use crate::study::{Edit, Setting, Uncertainty, difference_table, second_variable_table};
-use crate::uncertainty::Split;
 use crate::view::arrangement::View;
 use crate::view::command::Command;
 use crate::view::evidence_scene::evidence_table;
@@ -11,6 +9,8 @@ use crate::view::figures::figure_button_ui;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::state::State;
 use crate::view::table_view::{Sorting, TableLook, table_ui};
+use gdcm_core::study::{Edit, Setting, Uncertainty, difference_table, second_variable_table};
+use gdcm_core::uncertainty::Split;
 
 /// Height of the bar of one scatter \[pt\].
 const BAR_HEIGHT: f32 = 15.0;
@@ -157,7 +157,7 @@ fn tables_ui(
         if let Some(click) = click
             && let Some(&kind) = kinds.get(click.row)
         {
-            let schedule = crate::schedule::ScheduleSettings { kind, ..schedule };
+            let schedule = gdcm_core::schedule::ScheduleSettings { kind, ..schedule };
             commands.push(Edit::Set(Setting::Schedule(schedule)).into());
         }
     }

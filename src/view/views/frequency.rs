@@ -3,12 +3,12 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use crate::dataset::{Band, ModelId};
-use crate::study::{Edit, Setting};
 use crate::view::command::Command;
 use crate::view::curve_display::CurveCommand;
 use crate::view::plot::{BodeCurve, BodeEvent, BodeQuantity, BodeView, Chip, CurveId, CurveWish, Pane};
 use crate::view::state::State;
+use gdcm_core::dataset::{Band, ModelId};
+use gdcm_core::study::{Edit, Setting};
 
 /// A plot over frequency after it was drawn.
 pub(super) struct Drawn<'a> {

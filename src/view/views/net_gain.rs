@@ -3,8 +3,6 @@
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
-use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity, SecondVariable};
-use crate::study::{Edit, PhaseCorrection, Setting};
 use crate::view::command::Command;
 use crate::view::evidence_scene::{coefficient_table, evidence_table, lead_evidence_table, residual_table};
 use crate::view::net_gain_scene::{PairSet, dot_key, net_gain_panels};
@@ -14,6 +12,8 @@ use crate::view::plot::{GainEvent, NetGainScene, net_gain_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 use crate::view::table_view::{Sorting, TableLook, table_ui};
+use gdcm_core::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity, SecondVariable};
+use gdcm_core::study::{Edit, PhaseCorrection, Setting};
 
 /// Widest airspeed tolerance \[kt\].
 const WIDEST_TOLERANCE_KT: f64 = 100.0;

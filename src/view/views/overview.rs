@@ -3,7 +3,6 @@
 use egui::Ui;
 
 use super::frequency::wished;
-use crate::dataset::Pair;
 use crate::view::arrangement::View;
 use crate::view::bode_scene::bode_curves;
 use crate::view::command::Command;
@@ -11,6 +10,7 @@ use crate::view::explanation::channel_names;
 use crate::view::palette::Palette;
 use crate::view::plot::{BodeCurve, CurveId, OverviewCell, OverviewEvent, OverviewScene, overview_ui};
 use crate::view::state::State;
+use gdcm_core::dataset::Pair;
 
 /// Every response of the condition shown; a click brings it into focus.
 pub fn overview_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {

@@ -2,13 +2,13 @@
 
 use egui::{Panel, Ui};
 
-use crate::study::Edit;
 use crate::view::command::Command;
 use crate::view::modes_scene::pole_marks;
 use crate::view::palette::Palette;
 use crate::view::plot::{PoleEvent, PolesScene, poles_ui};
 use crate::view::state::State;
 use crate::view::table_view::{TableLook, table_ui};
+use gdcm_core::study::Edit;
 
 /// Part of the height that the table has at first.
 const TABLE_PART: f32 = 0.3;

@@ -1,8 +1,8 @@
 //! Assessments on wish, evidence for the schedule, and delays scheduled on wish.
 
-use gdcm::fidelity::CostAverage;
-use gdcm::schedule::{SCHEDULE_KINDS, ScheduleKind, ScheduleSettings};
-use gdcm::study::{AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentJob, AssessmentTable, Job};
+use gdcm_core::fidelity::CostAverage;
+use gdcm_core::schedule::{SCHEDULE_KINDS, ScheduleKind, ScheduleSettings};
+use gdcm_core::study::{AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentJob, AssessmentTable, Job};
 use std::sync::Arc;
 
 use super::*;

@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
-use gdcm::dataset::{Band, Channel, Condition, Dataset, DatasetHeader, FlightState, MeasuredResponse, Model, Origin};
-use gdcm::fidelity::{CostAverage, coherence_weight};
-use gdcm::study::{Caution, ConditionAnalysis, DEFAULT_COHERENCE, RemarkKind, Settings, Undefined, remarks};
+use gdcm_core::dataset::{
+    Band, Channel, Condition, Dataset, DatasetHeader, FlightState, MeasuredResponse, Model, Origin,
+};
+use gdcm_core::fidelity::{CostAverage, coherence_weight};
+use gdcm_core::study::{Caution, ConditionAnalysis, DEFAULT_COHERENCE, RemarkKind, Settings, Undefined, remarks};
 
 use super::responses::model_of;
 use super::*;

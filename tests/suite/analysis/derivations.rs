@@ -1,9 +1,9 @@
 //! How each figure was computed: the numbers told are those computed.
 
-use gdcm::correction::Channel;
-use gdcm::dataset::ModelId;
-use gdcm::fidelity::CostAverage;
-use gdcm::study::{
+use gdcm_core::correction::Channel;
+use gdcm_core::dataset::ModelId;
+use gdcm_core::fidelity::CostAverage;
+use gdcm_core::study::{
     AskedFigure, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, Derivation, derivation,
 };
 
@@ -134,7 +134,7 @@ fn the_distances_behind_a_discontinuity_ratio_are_explained_by_the_weights_told(
             (other != place && fitted > 0.0).then(|| result.figures.physics.between(place, other).unwrap() / fitted)
         };
         let mut ratios: Vec<f64> = (0..models.len()).filter_map(ratio).collect();
-        let median = gdcm::response::median(&mut ratios);
+        let median = gdcm_core::response::median(&mut ratios);
         // Squares and roots in another order.
         assert!((median / fit.ratios[place].unwrap() - 1.0).abs() < 1e-12);
     }

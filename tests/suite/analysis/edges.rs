@@ -9,10 +9,10 @@ use std::time::{Duration, Instant};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gdcm::app::GdcmApp;
-use gdcm::dataset::{Dataset, ModelId};
-use gdcm::io::{DatasetOrigin, Opened, load_dataset_bytes};
-use gdcm::schedule::{ScheduleCaution, ScheduleKind, ScheduleSettings};
-use gdcm::study::{Caution, ConditionAnalysis, ConditionFailure, Undefined};
+use gdcm_core::dataset::{Dataset, ModelId};
+use gdcm_core::schedule::{ScheduleCaution, ScheduleKind, ScheduleSettings};
+use gdcm_core::study::{Caution, ConditionAnalysis, ConditionFailure, Undefined};
+use gdcm_files::{DatasetOrigin, Opened, load_dataset_bytes};
 use serde_json::json;
 
 use super::*;
@@ -195,7 +195,8 @@ fn airspeeds_a_hair_apart_are_one_point_of_the_schedule() {
     let schedule = analysis.schedule.as_ref().unwrap();
     assert_eq!(schedule.airspeeds.clusters, [vec![0, 1], vec![2]]);
     assert_eq!(schedule.cautions, [ScheduleCaution::DegreeLowered { asked: 2, clusters: 2 }]);
-    let gains = |of: &gdcm::correction::ChannelCorrection| [of.input_gains.clone(), of.output_gains.clone()].concat();
+    let gains =
+        |of: &gdcm_core::correction::ChannelCorrection| [of.input_gains.clone(), of.output_gains.clone()].concat();
     let own = analysis.conditions.values().map(|result| gains(&result.as_ref().unwrap().correction));
     let own: Vec<Vec<f64>> = own.collect();
     for step in 0..=60 {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use gdcm::study::ConditionAnalysis;
+use gdcm_core::study::ConditionAnalysis;
 
 use super::*;
 

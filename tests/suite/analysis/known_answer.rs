@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use gdcm::correction::GainBounds;
-use gdcm::dataset::{
+use gdcm_core::correction::GainBounds;
+use gdcm_core::dataset::{
     Band, Channel, Condition, Dataset, DatasetHeader, FlightState, MeasuredResponse, Model, ModelId, Origin,
 };
 

@@ -2,17 +2,17 @@
 
 use std::sync::Arc;
 
-use gdcm::correction::{Channel as CorrectedChannel, LeadDesign, LeadSettings};
-use gdcm::dataset::{
+use gdcm_core::correction::{Channel as CorrectedChannel, LeadDesign, LeadSettings};
+use gdcm_core::dataset::{
     Band, Channel, Condition, Dataset, DatasetHeader, FlightState, MeasuredResponse, Model, ModelId, Origin,
 };
-use gdcm::response::LeadOrder;
-use gdcm::schedule::ScheduleCaution;
-use gdcm::study::{
+use gdcm_core::response::LeadOrder;
+use gdcm_core::schedule::ScheduleCaution;
+use gdcm_core::study::{
     AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, DelayFrom, PhaseCorrection, lead_words,
     remarks,
 };
-use gdcm::uncertainty::Scalar;
+use gdcm_core::uncertainty::Scalar;
 
 use super::*;
 
@@ -73,7 +73,7 @@ trait LeadTimes {
     fn map_lead(self) -> Vec<f64>;
 }
 
-impl LeadTimes for Vec<Option<gdcm::response::LeadFilter>> {
+impl LeadTimes for Vec<Option<gdcm_core::response::LeadFilter>> {
     fn map_lead(self) -> Vec<f64> {
         self.into_iter().map(|filter| filter.map_or(0.0, |filter| filter.lead_s())).collect()
     }
@@ -193,7 +193,7 @@ fn where_all_held_responses_want_lead_the_result_offers_it_with_what_it_buys() {
     let result = analysis.condition(ConditionId(1)).unwrap();
     let offer = result.offer.unwrap();
     let held = || result.held().marked();
-    let mean = |found: &gdcm::study::ConditionAnalysis| {
+    let mean = |found: &gdcm_core::study::ConditionAnalysis| {
         held().map(|pair| found.cost[pair].unwrap().corrected.total()).sum::<f64>() / held().count() as f64
     };
     assert!((offer.without - mean(result)).abs() < 1e-9, "J as it is");

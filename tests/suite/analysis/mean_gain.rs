@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use gdcm::correction::GainSource;
-use gdcm::dataset::{Dataset, ModelId};
-use gdcm::study::PhaseCorrection;
+use gdcm_core::correction::GainSource;
+use gdcm_core::dataset::{Dataset, ModelId};
+use gdcm_core::study::PhaseCorrection;
 
 use super::*;
 

@@ -2,13 +2,15 @@
 
 use std::sync::LazyLock;
 
-use gdcm::dataset::{BundleKind, ConditionId, Dynamics, Pair, PairTable, StateSpace};
-use gdcm::io::Corrections;
-use gdcm::response::{FrequencyGrid, FrequencyResponse};
-use gdcm::study::{Analysis, Assessed, Edit, Engine, Setting, Study, Unobserved};
+use gdcm_core::dataset::{BundleKind, ConditionId, Dynamics, Pair, PairTable, StateSpace};
+use gdcm_core::response::{FrequencyGrid, FrequencyResponse};
+use gdcm_core::study::{Analysis, Assessed, Edit, Engine, Setting, Study, Unobserved};
+use gdcm_files::Corrections;
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 
+mod across;
+mod adopted_models;
 mod assessment;
 mod coherence;
 mod derivations;

@@ -1,8 +1,8 @@
 //! Poles and zeros of published and made-up models, modes of the example, and what a pilot does not notice.
 
-use gdcm::fidelity::Muad;
-use gdcm::response::{evaluate, finite_zeros, modes, transmission_zeros};
-use gdcm::study::ConditionModes;
+use gdcm_core::fidelity::Muad;
+use gdcm_core::response::{evaluate, finite_zeros, modes, transmission_zeros};
+use gdcm_core::study::ConditionModes;
 
 use super::responses::model_of;
 use super::*;

@@ -1,6 +1,6 @@
 //! What the result of a condition says.
 
-use gdcm::study::{Remark, RemarkKind, remarks};
+use gdcm_core::study::{Remark, RemarkKind, remarks};
 
 use super::*;
 

@@ -3,8 +3,8 @@
 
 use super::responses::{GOLDEN, dynamics_of};
 use super::*;
-use gdcm::dataset::Band;
-use gdcm::response::evaluate_on;
+use gdcm_core::dataset::Band;
+use gdcm_core::response::evaluate_on;
 use proptest::prelude::*;
 use pulp::Arch;
 

@@ -49,7 +49,7 @@ pub fn dynamics_of(case: &Value) -> Dynamics {
 
 /// The response at any frequencies: a grid has both ends of a band, so each one is the lower end of a band of its own.
 fn response_at(dynamics: &Dynamics, omega: f64) -> PairTable<Complex<f64>> {
-    let band = gdcm::dataset::Band::new(omega, 2.0 * omega).unwrap();
+    let band = gdcm_core::dataset::Band::new(omega, 2.0 * omega).unwrap();
     let response = FrequencyResponse::of(dynamics, &FrequencyGrid::logarithmic(band, 2));
     response.curves().map(|_, values| values[0])
 }

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use super::*;
 use gdcm::app::Pool;
-use gdcm::dataset::{Condition, Dataset, Model, ModelId};
-use gdcm::study::{Cancelled, ConditionAnalysis, ConditionFailure, Progress};
+use gdcm_core::dataset::{Condition, Dataset, Model, ModelId};
+use gdcm_core::study::{Cancelled, ConditionAnalysis, ConditionFailure, Progress};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 

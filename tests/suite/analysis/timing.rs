@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use gdcm::dataset::{Dataset, Timing};
-use gdcm::executor::Sequential;
-use gdcm::io::{DatasetOrigin, load_dataset_bytes};
-use gdcm::study::{ConditionAnalysis, Execution, cautions_of_models};
+use gdcm_core::dataset::{Dataset, Timing};
+use gdcm_core::executor::Sequential;
+use gdcm_core::study::{ConditionAnalysis, Execution, cautions_of_models};
+use gdcm_files::{DatasetOrigin, load_dataset_bytes};
 use serde_json::json;
 
 use super::*;
@@ -29,7 +29,7 @@ fn dataset(keys: &Value, more: &[Value]) -> Arc<Dataset> {
 
 fn analysis_of(dataset: &Arc<Dataset>) -> Analysis {
     let mut study = Study::new(Arc::clone(dataset));
-    study.apply(&Edit::Pin(gdcm::dataset::ModelId::new(FIRST, BundleKind::Physics, "nominal"))).unwrap();
+    study.apply(&Edit::Pin(gdcm_core::dataset::ModelId::new(FIRST, BundleKind::Physics, "nominal"))).unwrap();
     analyze(&mut Engine::default(), &study)
 }
 

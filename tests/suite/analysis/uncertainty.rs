@@ -3,14 +3,14 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use gdcm::correction::Channel;
-use gdcm::dataset::ModelId;
-use gdcm::io::{DatasetOrigin, load_dataset_bytes};
-use gdcm::schedule::{ScheduleKind, ScheduleSettings, SecondVariable};
-use gdcm::study::{AirspeedDifference, Cancelled, PairScatter, Progress, Uncertainty};
-use gdcm::uncertainty::{
+use gdcm_core::correction::Channel;
+use gdcm_core::dataset::ModelId;
+use gdcm_core::schedule::{ScheduleKind, ScheduleSettings, SecondVariable};
+use gdcm_core::study::{AirspeedDifference, Cancelled, PairScatter, Progress, Uncertainty};
+use gdcm_core::uncertainty::{
     Bar, Design, Difference, IdentificationSource, Part, Scalar, ScheduleBand, SecondVariableDesign, Split, holm,
 };
+use gdcm_files::{DatasetOrigin, load_dataset_bytes};
 
 use super::*;
 
@@ -217,7 +217,7 @@ fn a_table_of_numbers_is_split_as_the_reference_does() {
     };
     let rows: Vec<Vec<f64>> = airspeeds.iter().map(|&airspeed| row(airspeed)).collect();
     let design = Design::new(&rows).unwrap();
-    let by_airspeed = Design::new(&gdcm::schedule::airspeed_indicators(airspeeds, 1.0)).unwrap();
+    let by_airspeed = Design::new(&gdcm_core::schedule::airspeed_indicators(airspeeds, 1.0)).unwrap();
     for table in list(&case["tables"]) {
         let figures = numbers(&table["y"]);
         let of =
@@ -301,7 +301,7 @@ fn the_example_has_the_bars_of_the_reference() {
 
 /// Bars of every figure of every condition, by condition and in the order of the figures.
 fn all_bars(found: &Uncertainty) -> Vec<(ConditionId, Scalar, Option<Bar>)> {
-    let of_condition = |(id, of): (&ConditionId, &gdcm::study::ConditionUncertainty)| {
+    let of_condition = |(id, of): (&ConditionId, &gdcm_core::study::ConditionUncertainty)| {
         of.bars.iter().map(|(scalar, bar)| (*id, scalar, *bar)).collect::<Vec<_>>()
     };
     found.conditions.iter().flat_map(of_condition).collect()
@@ -431,7 +431,7 @@ fn bars_of_a_population_cover_the_truth_as_often_as_they_say() {
     let mut study = study_of(&dataset);
     set(&mut study, Setting::Points(5));
     let (_, found) = uncertainty_of(&study);
-    let covers = |of: &gdcm::study::ConditionUncertainty| {
+    let covers = |of: &gdcm_core::study::ConditionUncertainty| {
         let [low, high] = of.bars[Scalar::NetGain(Pair::new(0, 0))].unwrap().interval(0.9).unwrap();
         low <= TRUTH && TRUTH <= high
     };

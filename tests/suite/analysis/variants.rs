@@ -1,8 +1,9 @@
 //! Reasons of rejections, decisions kept under names, and what differs between them.
 
-use gdcm::dataset::ModelId;
-use gdcm::study::{Difference, History, Job, LONGEST_REASON, VariantJob, decision_differences};
-use gdcm::{dataset::Dataset, io::read_corrections};
+use gdcm_core::dataset::Dataset;
+use gdcm_core::dataset::ModelId;
+use gdcm_core::study::{Difference, History, Job, LONGEST_REASON, VariantJob, decision_differences};
+use gdcm_files::read_corrections;
 use std::sync::Arc;
 
 use super::*;
@@ -69,9 +70,9 @@ fn words_change_no_result_and_stand_in_the_results_beside_the_rejected() {
     let (a, b) = (without.condition(ConditionId(10)).unwrap(), with.condition(ConditionId(10)).unwrap());
     assert!(Arc::ptr_eq(&a.comparison, &b.comparison), "nothing is computed anew");
     let folder = tempfile::tempdir().unwrap();
-    let outputs = gdcm::io::OutputSet::new(gdcm::io::Existing::Replace, Vec::new());
+    let outputs = gdcm_files::OutputSet::new(gdcm_files::Existing::Replace, Vec::new());
     let all = with.conditions.keys().copied().collect();
-    gdcm::io::write_results(&with, "", &all, folder.path(), outputs).unwrap();
+    gdcm_files::write_results(&with, "", &all, folder.path(), outputs).unwrap();
     let written = read_corrections(&folder.path().join("corrections.json")).unwrap();
     let condition = written.conditions.iter().find(|condition| condition.id == 10).unwrap();
     assert_eq!(condition.rejected, ["nominal"]);

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use gdcm::io::{DatasetOrigin, FileError, LARGEST_TEXT, embedded_example, load_any, load_dataset, load_dataset_bytes};
+use gdcm_files::{
+    DatasetOrigin, FileError, LARGEST_TEXT, embedded_example, load_any, load_dataset, load_dataset_bytes,
+};
 use serde_json::{Value, json};
 
 mod properties;
@@ -23,7 +25,7 @@ fn small(change: impl FnOnce(&mut Value)) -> Vec<u8> {
     serde_json::to_vec(&value).unwrap()
 }
 
-fn load(bytes: &[u8]) -> Result<gdcm::io::LoadedDataset, FileError> {
+fn load(bytes: &[u8]) -> Result<gdcm_files::LoadedDataset, FileError> {
     load_dataset_bytes(bytes, DatasetOrigin::File(PathBuf::from("test.json")))
 }
 
@@ -65,12 +67,12 @@ fn the_small_dataset_is_read_as_it_is_written() {
     let orders: Vec<Option<usize>> = dataset
         .conditions()
         .iter()
-        .flat_map(|condition| condition.bundle(gdcm::dataset::BundleKind::Identified))
-        .map(gdcm::dataset::Model::order)
+        .flat_map(|condition| condition.bundle(gdcm_core::dataset::BundleKind::Identified))
+        .map(gdcm_core::dataset::Model::order)
         .collect();
     assert_eq!(orders, [Some(2), None, Some(2), Some(0)]);
-    let gdcm::dataset::Dynamics::StateSpace(model) =
-        &dataset.conditions()[0].bundle(gdcm::dataset::BundleKind::Physics)[0].dynamics
+    let gdcm_core::dataset::Dynamics::StateSpace(model) =
+        &dataset.conditions()[0].bundle(gdcm_core::dataset::BundleKind::Physics)[0].dynamics
     else {
         panic!("matrices are given")
     };
@@ -93,7 +95,7 @@ fn timing_valid_bands_and_how_a_response_was_estimated_are_known_and_kept() {
     assert_eq!(loaded.cautions, Vec::<String>::new());
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("again.json");
-    gdcm::io::save_dataset(&loaded.dataset, &path).unwrap();
+    gdcm_files::save_dataset(&loaded.dataset, &path).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
     for written in
         ["\"sample_time_s\":0.01", "\"output_delays_s\":[0.0,0.02]", "\"averages\":12.0", "\"window_s\":20.0"]
@@ -175,8 +177,8 @@ fn a_file_full_of_keys_that_are_not_known_tells_the_first_of_them_and_counts_the
 
 #[test]
 fn names_of_states_are_kept_where_there_is_one_for_each() {
-    let names = |loaded: &gdcm::io::LoadedDataset, model: usize| {
-        loaded.dataset.conditions()[0].bundle(gdcm::dataset::BundleKind::Physics)[model].states.to_vec()
+    let names = |loaded: &gdcm_files::LoadedDataset, model: usize| {
+        loaded.dataset.conditions()[0].bundle(gdcm_core::dataset::BundleKind::Physics)[model].states.to_vec()
     };
     let loaded = load(&small(|_| {})).unwrap();
     assert_eq!((names(&loaded, 0), loaded.cautions.len()), (vec!["w".to_owned(), "q".to_owned()], 0));

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use gdcm::dataset::{
+use gdcm_core::dataset::{
     Band, Channel, Condition, Dataset, DatasetHeader, Dynamics, Estimate, FlightState, MeasuredResponse, Model, Origin,
     Pair, PairTable, StateSpace, Timing,
 };
-use gdcm::io::{load_dataset, save_dataset};
+use gdcm_files::{load_dataset, save_dataset};
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 use serde_json::{Value, json};
@@ -117,7 +117,7 @@ fn condition(id: i64, p: usize, m: usize) -> impl Strategy<Value = Condition> {
     (state_space(p, m), state_space(p, m), identified, perturbation, figures, identity).prop_map(
         move |(nominal, perturbed, identified, perturbation, (airspeed_kt, altitude_ft, altitude), (method, order))| {
             let flight_state = FlightState {
-                id: gdcm::dataset::ConditionId(id),
+                id: gdcm_core::dataset::ConditionId(id),
                 name: format!("condition \"{id}\"\n"),
                 airspeed_kt,
                 altitude,

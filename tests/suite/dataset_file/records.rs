@@ -1,7 +1,7 @@
 //! Flight records of conditions, and the bands of models that were identified from them.
 
-use gdcm::dataset::{BundleKind, ConditionRecord, ModelDraft, Origin, Pair, RecordKind, Timing};
-use gdcm::io::save_dataset;
+use gdcm_core::dataset::{BundleKind, ConditionRecord, ModelDraft, Origin, Pair, RecordKind, Timing};
+use gdcm_files::save_dataset;
 use nalgebra::DMatrix;
 
 use super::*;

@@ -3,15 +3,15 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use gdcm::correction::{GainBounds, GainObjective};
-use gdcm::dataset::{Band, BundleKind, ConditionId, ModelId, Pair};
-use gdcm::fidelity::CostAverage;
-use gdcm::io::{
+use gdcm_core::correction::{GainBounds, GainObjective};
+use gdcm_core::dataset::{Band, BundleKind, ConditionId, ModelId, Pair};
+use gdcm_core::fidelity::CostAverage;
+use gdcm_core::response::LeadOrder;
+use gdcm_core::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
+use gdcm_core::study::{DelayFrom, Edit, PhaseCorrection, Setting, Study};
+use gdcm_files::{
     FileError, LoadedDataset, Opened, embedded_example, load_any, load_dataset, open_study, open_study_of, save_study,
 };
-use gdcm::response::LeadOrder;
-use gdcm::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
-use gdcm::study::{DelayFrom, Edit, PhaseCorrection, Setting, Study};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
@@ -321,13 +321,13 @@ fn a_model_keeps_the_file_it_was_made_from_through_saving_and_into_the_correctio
     let loaded = super::load(&serde_json::to_vec(&value).unwrap()).unwrap();
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("again.json");
-    gdcm::io::save_dataset(&loaded.dataset, &path).unwrap();
+    gdcm_files::save_dataset(&loaded.dataset, &path).unwrap();
     let again: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
     assert_eq!(again["conditions"][0]["physics_models"][1]["source"], source);
     assert_eq!(again["conditions"][0]["physics_models"][0].get("source"), None);
     let study = Study::new(load_dataset(&path).unwrap().dataset);
-    let analysis = gdcm::study::Engine::default().analyze(&study, &gdcm::study::Unobserved).unwrap();
-    let written = gdcm::io::Corrections::of(&analysis, "", &analysis.conditions.keys().copied().collect());
+    let analysis = gdcm_core::study::Engine::default().analyze(&study, &gdcm_core::study::Unobserved).unwrap();
+    let written = gdcm_files::Corrections::of(&analysis, "", &analysis.conditions.keys().copied().collect());
     let entry = &written.conditions[0].sources[0];
     assert_eq!((entry.bundle.as_str(), entry.file.as_deref()), ("physics", Some("models/roll+5.mat")));
     assert_eq!(written.conditions[0].sources.len(), 1);

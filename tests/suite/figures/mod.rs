@@ -2,14 +2,14 @@
 
 use std::sync::{Arc, LazyLock};
 
-use gdcm::correction::Channel;
-use gdcm::dataset::{ConditionId, Pair};
-use gdcm::figure::{
+use gdcm_core::correction::Channel;
+use gdcm_core::dataset::{ConditionId, Pair};
+use gdcm_core::study::{Analysis, CURVE_POINTS, ConditionCurves, Edit, Engine, Study, Unobserved, display_band};
+use gdcm_files::figure::{
     Axis, Bars, Color, ColumnWidth, ConditionSource, Curve, Dash, Figure, FigureFormat, FigureKind, FigureRequest,
     Panel, Plot, Range, Stroke, all_channels,
 };
-use gdcm::io::write_as;
-use gdcm::study::{Analysis, CURVE_POINTS, ConditionCurves, Edit, Engine, Study, Unobserved, display_band};
+use gdcm_files::write_as;
 
 mod documents;
 mod numbers;

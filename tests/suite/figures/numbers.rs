@@ -1,8 +1,8 @@
 //! The numbers of figures, compared with the analysis to the last digit.
 
-use gdcm::dataset::BundleKind;
-use gdcm::figure::Role;
-use gdcm::study::Assessed;
+use gdcm_core::dataset::BundleKind;
+use gdcm_core::study::Assessed;
+use gdcm_files::figure::Role;
 
 use super::*;
 

@@ -65,11 +65,11 @@ fn nothing_of_an_svg_lies_outside_the_paper() {
         for width in ColumnWidth::BOTH {
             let drawing = figure.drawing(width);
             let texts = drawing.shapes.iter().filter_map(|shape| match shape {
-                gdcm::figure::Shape::Text(text) if !text.upright => Some(text),
+                gdcm_files::figure::Shape::Text(text) if !text.upright => Some(text),
                 _ => None,
             });
             for text in texts {
-                let length = gdcm::figure::width(&text.words) * text.size_pt;
+                let length = gdcm_files::figure::width(&text.words) * text.size_pt;
                 let from = text.at[0] - text.anchor.before() * length;
                 let is_within = from >= -0.5 && from + length <= drawing.size[0] + 0.5;
                 assert!(is_within && (0.0..=drawing.size[1]).contains(&text.at[1]), "{kind:?} {width:?} {text:?}");

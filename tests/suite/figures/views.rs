@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use gdcm::figure::{Across, Area, BodeOptions, FrequencyUnit, Mark, Measure, Role, Shape};
-use gdcm::uncertainty::{Scalar, Split};
+use gdcm_core::uncertainty::{Scalar, Split};
+use gdcm_files::figure::{Across, Area, BodeOptions, FrequencyUnit, Mark, Measure, Role, Shape};
 
 use super::*;
 
@@ -131,12 +131,12 @@ fn the_error_of_the_reference_is_nothing_and_a_correction_moves_the_median_of_a_
         table.rows.iter().map(|row| row[at].parse().unwrap()).collect()
     };
     let source = example.source();
-    let reference = source.analysis.representative_name(gdcm::dataset::BundleKind::Identified);
+    let reference = source.analysis.representative_name(gdcm_core::dataset::BundleKind::Identified);
     assert!(column(reference).iter().all(|error| *error == 0.0));
-    let physics = source.analysis.representative_name(gdcm::dataset::BundleKind::Physics);
+    let physics = source.analysis.representative_name(gdcm_core::dataset::BundleKind::Physics);
     let mut errors = column(&format!("{physics}, corrected"));
     // The curves have their own frequencies: a fifth as far apart as those that the median was taken of, and as many at the ends.
-    assert!(gdcm::response::median(&mut errors).abs() < 0.02);
+    assert!(gdcm_core::response::median(&mut errors).abs() < 0.02);
 }
 
 #[test]
@@ -193,7 +193,7 @@ fn without_error_bars_there_is_no_evidence() {
 fn labels_on_paper(figure: &Figure, width: ColumnWidth) -> Vec<(String, Area)> {
     let label = |shape: &Shape| match shape {
         Shape::Text(text) if text.color != Color::INK && text.words.len() <= 6 => {
-            let length = gdcm::figure::width(&text.words) * text.size_pt;
+            let length = gdcm_files::figure::width(&text.words) * text.size_pt;
             // Figures have no descenders.
             let height = 0.74 * text.size_pt;
             Some((text.words.clone(), Area::new(text.at[0], text.at[1] - height, length, height)))

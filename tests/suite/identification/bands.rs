@@ -3,8 +3,8 @@
 use super::common::noisy_measured;
 use super::flight::{Flight, Gusts};
 use super::whole::{quick, stable_aircraft};
-use gdcm::executor::Sequential;
-use gdcm::identification::{IdentificationCaution, IdentificationError, Options, Unwatched, identify};
+use gdcm_core::executor::Sequential;
+use gdcm_core::identification::{IdentificationCaution, IdentificationError, Options, Unwatched, identify};
 
 #[test]
 fn a_band_beyond_the_sweeps_is_offered_up_to_their_end() {

@@ -1,7 +1,7 @@
 //! The known answers of M14 (source: independent numpy code), and small made-up systems.
 
-use gdcm::executor::{Executor, Sequential, Task};
-use gdcm::identification::{MeasuredResponse, Piece, Scales, Spectrum, local_polynomial, log_spaced, spectra};
+use gdcm_core::executor::{Executor, Sequential, Task};
+use gdcm_core::identification::{MeasuredResponse, Piece, Scales, Spectrum, local_polynomial, log_spaced, spectra};
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 use std::sync::Mutex;

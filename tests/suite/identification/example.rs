@@ -2,14 +2,14 @@
 
 use std::sync::LazyLock;
 
-use gdcm::assembly::standard_patterns;
-use gdcm::dataset::{BundleKind, ConditionId, Dynamics, Model, Pair};
-use gdcm::executor::Sequential;
-use gdcm::identification::{
+use gdcm_core::assembly::standard_patterns;
+use gdcm_core::dataset::{BundleKind, ConditionId, Dynamics, Model, Pair};
+use gdcm_core::executor::Sequential;
+use gdcm_core::identification::{
     FlightRecord, Identification, Options, Preparation, StateSpaceMatrices, Unwatched, identify,
 };
-use gdcm::io::records_of_bytes;
-use gdcm::records::{RecordChannels, RecordGuess, RecordLayout, RecordTable, TimeWish};
+use gdcm_core::records::{RecordChannels, RecordGuess, RecordLayout, RecordTable, TimeWish};
+use gdcm_files::records_of_bytes;
 
 use crate::EXAMPLE;
 

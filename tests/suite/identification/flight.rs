@@ -1,6 +1,6 @@
 //! Made-up flights of small aircraft, flown in closed loop through gusts.
 
-use gdcm::identification::{FlightRecord, StateSpaceMatrices};
+use gdcm_core::identification::{FlightRecord, StateSpaceMatrices};
 use nalgebra::{DMatrix, DVector, dmatrix};
 
 /// What disturbs a flight.

@@ -2,13 +2,13 @@
 
 use super::flight::{Flight, Gusts};
 use super::whole::stable_aircraft;
-use gdcm::dataset::{Dynamics, StateSpace};
-use gdcm::executor::Sequential;
-use gdcm::identification::{
+use gdcm_core::dataset::{Dynamics, StateSpace};
+use gdcm_core::executor::Sequential;
+use gdcm_core::identification::{
     FlightRecord, MeasuredResponse, Preparation, Role, StateSpaceMatrices, local_polynomial, log_spaced, prepare,
     spectra,
 };
-use gdcm::study::LateChannel;
+use gdcm_core::study::LateChannel;
 use nalgebra::DVectorViewMut;
 
 const BAND: [f64; 2] = [0.6, 6.0];

@@ -1,8 +1,8 @@
 //! Scales, low-pass, lines and the measured response.
 
 use super::common::{Threads, complex, known, list, matrix, noise, noisy, noisy_spectra};
-use gdcm::executor::Sequential;
-use gdcm::identification::*;
+use gdcm_core::executor::Sequential;
+use gdcm_core::identification::*;
 use nalgebra::{Complex, DMatrix, DVector};
 use proptest::prelude::*;
 

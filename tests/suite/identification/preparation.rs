@@ -1,8 +1,8 @@
 //! From records as logged to pieces.
 
 use super::common::{known, list, matrix, noise};
-use gdcm::executor::Sequential;
-use gdcm::identification::*;
+use gdcm_core::executor::Sequential;
+use gdcm_core::identification::*;
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 

@@ -1,8 +1,8 @@
 //! Models against records in time.
 
 use super::common::{known, list, matrix, noise, noisy};
-use gdcm::executor::Sequential;
-use gdcm::identification::*;
+use gdcm_core::executor::Sequential;
+use gdcm_core::identification::*;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 

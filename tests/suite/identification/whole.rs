@@ -2,8 +2,8 @@
 
 use super::common::{Threads, known, list, matrix};
 use super::flight::{Flight, Gusts};
-use gdcm::executor::Sequential;
-use gdcm::identification::{
+use gdcm_core::executor::Sequential;
+use gdcm_core::identification::{
     FlightRecord, Identification, IdentificationCaution, IdentificationError, Options, Preparation, Role,
     StateSpaceMatrices, Unwatched, Watch, identify,
 };

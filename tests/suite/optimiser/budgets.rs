@@ -4,12 +4,12 @@ use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use gdcm::correction::{Bounds, Limit, Outcome, Problem, ProblemError, ProofBudget, solve, toggles};
-use gdcm::dataset::{
+use gdcm_core::correction::{Bounds, Limit, Outcome, Problem, ProblemError, ProofBudget, solve, toggles};
+use gdcm_core::dataset::{
     Band, Channel, Condition, ConditionId, Dataset, DatasetHeader, Dynamics, FlightState, Model, Origin, Pair,
     PairTable, StateSpace,
 };
-use gdcm::study::{Cancelled, Engine, Progress, Study};
+use gdcm_core::study::{Cancelled, Engine, Progress, Study};
 use nalgebra::DMatrix;
 
 use super::instances::gain_instances;

@@ -1,6 +1,6 @@
 //! Sensitivities and toggles against solving the changed problem.
 
-use gdcm::correction::{Bounds, Problem, ProofBudget, Restraint, sensitivities, toggles};
+use gdcm_core::correction::{Bounds, Problem, ProofBudget, Restraint, sensitivities, toggles};
 
 use super::instances::{delay_instances, gain_instances};
 use super::solved;

@@ -1,7 +1,7 @@
 //! Every explanation is put to the test: what it says would help helps, and less does not.
 
-use gdcm::correction::{Bounds, Channel, Conflict, ConflictKind, GainObjective, Problem, ProofBudget, Quantity};
-use gdcm::dataset::{Pair, PairTable};
+use gdcm_core::correction::{Bounds, Channel, Conflict, ConflictKind, GainObjective, Problem, ProofBudget, Quantity};
+use gdcm_core::dataset::{Pair, PairTable};
 use proptest::prelude::*;
 
 use super::instances::{delay_instances, gain_instances, on_axis};

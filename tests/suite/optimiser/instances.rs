@@ -1,7 +1,7 @@
 //! The reference instances under `tests/data`.
 
-use gdcm::correction::{Bounds, Problem};
-use gdcm::dataset::{Pair, PairTable};
+use gdcm_core::correction::{Bounds, Problem};
+use gdcm_core::dataset::{Pair, PairTable};
 use serde_json::Value;
 
 /// One instance of equation (7) with its certified minimum.

@@ -1,7 +1,7 @@
 //! How far an answer is from the conditions of a minimum, computed from the channels alone.
 
-use gdcm::correction::{GainObjective, Problem, Quantity, Solution};
-use gdcm::dataset::Pair;
+use gdcm_core::correction::{GainObjective, Problem, Quantity, Solution};
+use gdcm_core::dataset::Pair;
 
 /// A minimisation over channel values (inputs, then outputs), seen at one point.
 struct Point {

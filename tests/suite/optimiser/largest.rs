@@ -1,8 +1,8 @@
 //! As many channels as a dataset may have.
 
-use gdcm::correction::{Bounds, Channel, ConflictKind, Outcome, Problem, ProofBudget, Restraint, sensitivities};
-use gdcm::dataset::limits::MOST_CHANNELS;
-use gdcm::dataset::{Pair, PairTable};
+use gdcm_core::correction::{Bounds, Channel, ConflictKind, Outcome, Problem, ProofBudget, Restraint, sensitivities};
+use gdcm_core::dataset::limits::MOST_CHANNELS;
+use gdcm_core::dataset::{Pair, PairTable};
 
 use super::kkt::gain_residual;
 use super::solved_within;

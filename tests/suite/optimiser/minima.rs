@@ -1,7 +1,7 @@
 //! Local minima, limits and budgets.
 
-use gdcm::correction::{Bounds, GainObjective, Outcome, Problem, ProblemError, ProofBudget, Quantity, solve};
-use gdcm::dataset::{Pair, PairTable};
+use gdcm_core::correction::{Bounds, GainObjective, Outcome, Problem, ProblemError, ProofBudget, Quantity, solve};
+use gdcm_core::dataset::{Pair, PairTable};
 
 use super::instances::{delay_instances, example_conditions, gain_instances};
 use super::solved;

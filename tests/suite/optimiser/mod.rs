@@ -13,7 +13,7 @@ mod reference_delays;
 mod reference_gains;
 mod reference_leads;
 
-use gdcm::correction::{Problem, ProofBudget, Solution, solve};
+use gdcm_core::correction::{Problem, ProofBudget, Solution, solve};
 
 /// The answer within the budget that the program gives.
 fn solved(problem: &Problem) -> Solution {

@@ -1,7 +1,7 @@
 //! What must hold of every answer.
 
-use gdcm::correction::{Bounds, GainObjective, Limit, Outcome, Problem, ProofBudget, Quantity, Solution};
-use gdcm::dataset::{Pair, PairTable};
+use gdcm_core::correction::{Bounds, GainObjective, Limit, Outcome, Problem, ProofBudget, Quantity, Solution};
+use gdcm_core::dataset::{Pair, PairTable};
 use proptest::prelude::*;
 
 use super::kkt::{delay_residual, gain_residual};

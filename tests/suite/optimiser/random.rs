@@ -1,7 +1,7 @@
 //! Random problems of every shape that the optimiser must take.
 
-use gdcm::correction::{Bounds, GainObjective, Problem, Quantity};
-use gdcm::dataset::{Pair, PairTable};
+use gdcm_core::correction::{Bounds, GainObjective, Problem, Quantity};
+use gdcm_core::dataset::{Pair, PairTable};
 use proptest::prelude::*;
 
 /// How the entries of a random problem are held.

@@ -1,7 +1,7 @@
 //! The certified minima of equation (7).
 
-use gdcm::correction::Outcome;
-use gdcm::dataset::Pair;
+use gdcm_core::correction::Outcome;
+use gdcm_core::dataset::Pair;
 
 use super::instances::gain_instances;
 use super::solved;

@@ -1,8 +1,8 @@
 //! The minima of the program of signed delays (M15.4), and the filters of the negative ones (M15.3).
 
-use gdcm::correction::{Bounds, LeadDesign, LeadSettings, Outcome, Problem, ProofBudget, kkt_residual, solve};
-use gdcm::dataset::{Band, Pair, PairTable};
-use gdcm::response::{FrequencyGrid, LeadOrder};
+use gdcm_core::correction::{Bounds, LeadDesign, LeadSettings, Outcome, Problem, ProofBudget, kkt_residual, solve};
+use gdcm_core::dataset::{Band, Pair, PairTable};
+use gdcm_core::response::{FrequencyGrid, LeadOrder};
 use proptest::prelude::*;
 use serde_json::Value;
 

@@ -1,12 +1,12 @@
 //! The table of commands: the palette, the page of keys, tables and the tour.
 
-use gdcm::correction::Channel;
-use gdcm::study::Table;
-use gdcm::uncertainty::Scalar;
 use gdcm::view::command::FormKind;
 use gdcm::view::command_table::command_table;
 use gdcm::view::every_command::every_command;
 use gdcm::view::tables::{TableKind, table_of};
+use gdcm_core::correction::Channel;
+use gdcm_core::study::Table;
+use gdcm_core::uncertainty::Scalar;
 
 use super::*;
 

@@ -1,6 +1,6 @@
 //! Decisions, by hand, and what they give.
 
-use gdcm::study::derivation;
+use gdcm_core::study::derivation;
 
 use super::*;
 

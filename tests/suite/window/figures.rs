@@ -2,10 +2,10 @@
 
 use std::fs;
 
-use gdcm::figure::{ColumnWidth, FigureFormat};
-use gdcm::io::{csv_text, write_as};
 use gdcm::view::arrangement::View;
 use gdcm::view::figures::{figure_of, views_with_figure};
+use gdcm_files::figure::{ColumnWidth, FigureFormat};
+use gdcm_files::{csv_text, write_as};
 
 use super::*;
 

@@ -1,9 +1,9 @@
 //! What can be asked and taken in the plots and tables: derivations, models in the overview, tables as files.
 
-use gdcm::study::{AskedFigure, derivation};
 use gdcm::view::arrangement::View;
 use gdcm::view::command::Command as Wish;
 use gdcm::view::every_command::every_command;
+use gdcm_core::study::{AskedFigure, derivation};
 
 use super::views::{give, show};
 use super::walk::stays_within;

@@ -1,8 +1,8 @@
 //! Worked without the pointer.
 
 use egui::{Color32, Shape};
-use gdcm::correction::GainBounds;
 use gdcm::view::palette::Palette;
+use gdcm_core::correction::GainBounds;
 
 use super::*;
 

@@ -1,6 +1,6 @@
 //! Leads by hand: taken, seen, and undone (M15).
 
-use gdcm::study::{AssessedCorrection, PhaseCorrection};
+use gdcm_core::study::{AssessedCorrection, PhaseCorrection};
 
 use super::*;
 

@@ -1,7 +1,7 @@
 //! What the lists say, and that it can be read.
 
-use gdcm::study::Edit;
 use gdcm::view::net_gain_scene::dot_key;
+use gdcm_core::study::Edit;
 
 use super::*;
 

@@ -12,10 +12,10 @@ use dream_soft_render::{ClipRect, Color, Mesh, SoftwareRenderer, TextureId, Vert
 use egui::epaint::{ColorImage, ImageData, ImageDelta, Primitive};
 use egui::{TexturesDelta, ThemePreference};
 use egui_kittest::TestRenderer;
-use gdcm::study::Edit;
 use gdcm::view::arrangement::{Preset, View};
 use gdcm::view::command::Command as Wish;
 use gdcm::view::palette::Palette;
+use gdcm_core::study::Edit;
 
 use super::views::{give, show};
 use super::*;

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use gdcm::dataset::RecordKind;
 use gdcm::view::arrangement::View;
 use gdcm::view::records::{RecordsCommand, RecordsPage};
+use gdcm_core::dataset::RecordKind;
 
 use nalgebra::DMatrix;
 use serde_json::{Value, json};

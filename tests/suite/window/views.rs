@@ -1,7 +1,5 @@
 //! The views: what each shows, by its controls.
 
-use gdcm::correction::Channel;
-use gdcm::study::{AcrossRole, AskedFigure, AssessedCorrection, AssessedModel, Edit, derivation};
 use gdcm::view::arrangement::{Arrangement, Preset, View};
 use gdcm::view::assessment_scene::{AssessedPairs, assessment_sentences, assessment_text_table};
 use gdcm::view::command::Command as Wish;
@@ -9,6 +7,8 @@ use gdcm::view::modes_scene::pole_marks;
 use gdcm::view::net_gain_scene::{PairSet, net_gain_pairs};
 use gdcm::view::plot::MarkShape;
 use gdcm::view::preferences::Preferences;
+use gdcm_core::correction::Channel;
+use gdcm_core::study::{AcrossRole, AskedFigure, AssessedCorrection, AssessedModel, Edit, derivation};
 
 use super::*;
 
@@ -210,7 +210,7 @@ fn a_condition_that_is_held_out_leaves_the_schedule_and_judges_it() {
     assert_eq!((analysis.scheduled().len(), analysis.conditions.len()), (10, 11));
     show(&mut window, View::Assessment);
     let choice = gdcm::view::assessment_scene::assessment_choice(state(&window));
-    let words = gdcm::study::held_out_verdict(state(&window).analysis().unwrap(), choice).unwrap();
+    let words = gdcm_core::study::held_out_verdict(state(&window).analysis().unwrap(), choice).unwrap();
     assert!(words.starts_with("held out (3): better in ") && words.contains("; the others: better in "), "{words}");
 }
 

@@ -1,9 +1,9 @@
 //! A long walk through the window at random: nothing panics, and what is shown is what a fresh computation gives.
 
-use gdcm::study::{Edit, Engine, Setting, Unobserved};
 use gdcm::view::arrangement::View;
 use gdcm::view::command::Command as Wish;
 use gdcm::view::every_command::every_command;
+use gdcm_core::study::{Edit, Engine, Setting, Unobserved};
 
 use super::*;
 

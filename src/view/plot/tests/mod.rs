@@ -13,7 +13,7 @@ use egui_kittest::Harness;
 
 use super::curve::numbered;
 use super::*;
-use crate::dataset::ConditionId;
+use gdcm_core::dataset::ConditionId;
 
 /// Presses and releases a button at `at`.
 fn press<State>(harness: &mut Harness<'_, State>, at: Pos2, button: PointerButton, modifiers: Modifiers) {

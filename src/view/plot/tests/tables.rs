@@ -2,8 +2,8 @@ use egui::vec2;
 use egui_kittest::kittest::Queryable;
 
 use super::*;
-use crate::dataset::Pair;
 use crate::view::palette::{self, Palette};
+use gdcm_core::dataset::Pair;
 
 #[derive(Default)]
 struct Model {

@@ -1,0 +1,246 @@
+//! The solution of equations (7) and (11), and of the program of signed delays (M15.4).
+
+use super::branch_and_bound::{Effort, Minima, Newton, Objective, ProofBudget, SearchStopped, search};
+use super::clash::clashes;
+use super::components::{Components, Placement};
+use super::conflict::{Conflict, ConflictKind};
+use super::interior_point::interior_point;
+use super::objective::{floor, objective};
+use super::problem::{Problem, ProblemError};
+use super::quantity::{GainObjective, Quantity};
+use super::reach::{Held, Reached, reach};
+use super::remedy::Remedy;
+use super::solution::{LocalMinimum, Outcome, Proof, Solution, Unmatched};
+use crate::dataset::{Pair, PairTable};
+
+/// Residual in natural logarithms, or as a fraction of the greatest delay in the problem, below which a held entry counts as
+/// matched (M8).
+const MATCHED: f64 = 1e-8;
+
+/// Finds the channel gains (equation (7), M8), delays (equation (11), M9) or signed delays (M15.4) of least objective, with a proof that no others are
+/// better.
+///
+/// Entries that the bounds or their own loops do not allow are held at the nearest products or sums that are possible (least
+/// squares in logarithms, or in seconds), and reported.
+///
+/// ```
+/// use gdcm_core::correction::{Bounds, Outcome, Problem, ProofBudget, solve};
+/// use gdcm_core::dataset::{Pair, PairTable};
+///
+/// let delta_gains = [[1.2, 0.8], [0.9, 1.1]];
+/// let delta = PairTable::from_fn(2, 2, |pair| Some(delta_gains[pair.output][pair.input]));
+/// let held = PairTable::from_fn(2, 2, |pair| pair == Pair::new(0, 0));
+/// let problem = Problem::gains(delta, held, Bounds { lower: 0.5, upper: 2.0 });
+/// let solution = solve(&problem, ProofBudget::default(), &|| false)?;
+/// assert!((solution.outputs[0] * solution.inputs[0] - 1.2).abs() < 1e-12);
+/// assert!(matches!(solution.proof.outcome, Outcome::Proven { .. }));
+/// # Ok::<(), gdcm_core::correction::ProblemError>(())
+/// ```
+///
+/// # Errors
+/// [`ProblemError`] where the problem is not well posed ([`Problem::check`]), and [`ProblemError::Stopped`] as soon as `stop`,
+/// asked every half millisecond or so, says so.
+pub fn solve(problem: &Problem, budget: ProofBudget, stop: &dyn Fn() -> bool) -> Result<Solution, ProblemError> {
+    problem.check()?;
+    let effort = Effort::new(stop);
+    let coordinate = problem.coordinate();
+    let held = Held {
+        outputs: problem.delta.outputs(),
+        inputs: problem.delta.inputs(),
+        entries: problem.held_entries().map(|(pair, delta)| (pair, coordinate.of(delta))).collect(),
+        range: problem.range(),
+    };
+    let reached = reach(&held, |nearest| minimise(nearest, problem.quantity, &effort))?;
+    let objective = objective(problem, &reached.components);
+    let start = start(&objective, problem.quantity)?;
+    let mut found = search(&objective, &start, budget, floor(problem), &effort)?;
+    for (scales, _) in &mut found.minima {
+        settle(problem.quantity, &reached.components, &objective, scales);
+    }
+    Ok(assemble(problem, &held, &reached, &found, &effort)?)
+}
+
+/// Where Newton's method begins: of delays next to the minimum, which it then reaches exactly, bounds and all.
+fn start(objective: &Objective, quantity: Quantity) -> Result<Vec<f64>, ProblemError> {
+    match quantity {
+        Quantity::Gain(_) => Ok(objective.nearest_to_zero()),
+        Quantity::Delay | Quantity::SignedDelay => interior_point(objective),
+    }
+}
+
+/// The minimum of a sum of squares.
+fn minimise(objective: &Objective, quantity: Quantity, effort: &Effort<'_>) -> Result<Vec<f64>, ProblemError> {
+    let mut scales = start(objective, quantity)?;
+    let bounds = (objective.lower.as_slice(), objective.upper.as_slice());
+    Newton::new(objective.scales()).minimise(objective, bounds, &mut scales, effort, |_, _| false);
+    effort.check()?;
+    Ok(scales)
+}
+
+/// The limit `alpha -> 0+`: a free common scale goes where the outputs are nearest to a gain of 1 or to no delay (the inputs,
+/// where there is no output); of signed delays where the sum of all their squares is least.
+fn settle(quantity: Quantity, components: &Components, objective: &Objective, scales: &mut [f64]) {
+    objective.shift_floating_pieces(scales, |piece, scales| {
+        let (inputs, outputs) = components.channels(scales);
+        let of_piece = |channels: &[Placement], values: &[f64]| -> Vec<f64> {
+            let pairs = channels.iter().zip(values);
+            pairs.filter(|(channel, _)| piece.contains(&channel.component)).map(|(_, value)| *value).collect()
+        };
+        let (inputs, outputs) = (of_piece(&components.inputs, &inputs), of_piece(&components.outputs, &outputs));
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        if quantity.regularises_inputs() {
+            let apart = outputs.iter().sum::<f64>() - inputs.iter().sum::<f64>();
+            return apart / (inputs.len() + outputs.len()).max(1) as f64;
+        }
+        match (quantity, outputs.is_empty(), inputs.is_empty()) {
+            (_, true, true) => 0.0,
+            (_, true, false) => -mean(&inputs),
+            (Quantity::Gain(GainObjective::Ratio), false, _) => {
+                let (sum, square) =
+                    outputs.iter().fold((0.0, 0.0), |(sum, square), x| (sum + x.exp(), square + (2.0 * x).exp()));
+                (square / sum).ln()
+            }
+            (_, false, _) => mean(&outputs),
+        }
+    });
+}
+
+/// Gains or delays of the inputs and of the outputs at these scales, exactly on the bounds they reach.
+fn channels_at(problem: &Problem, components: &Components, scales: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let (bounds, coordinate) = (problem.bounds, problem.coordinate());
+    let (low, high) = (coordinate.of(bounds.lower), coordinate.of(bounds.upper));
+    // A few roundings of coordinates of this size.
+    let rounding = 16.0 * f64::EPSILON * (1.0 + low.abs().max(high.abs()));
+    let value = |at: &f64| {
+        if (at - low).abs() <= rounding {
+            bounds.lower
+        } else if (at - high).abs() <= rounding {
+            bounds.upper
+        } else {
+            coordinate.value(*at).clamp(bounds.lower, bounds.upper)
+        }
+    };
+    let (inputs, outputs) = components.channels(scales);
+    (inputs.iter().map(value).collect(), outputs.iter().map(value).collect())
+}
+
+fn assemble(
+    problem: &Problem,
+    held: &Held,
+    reached: &Reached,
+    found: &Minima,
+    effort: &Effort<'_>,
+) -> Result<Solution, SearchStopped> {
+    let coordinate = problem.coordinate();
+    let minimum = |(scales, _): &(Vec<f64>, f64)| {
+        let (inputs, outputs) = channels_at(problem, &reached.components, scales);
+        let objective = problem.objective_at(&inputs, &outputs);
+        LocalMinimum { inputs, outputs, objective }
+    };
+    let local_minima: Vec<LocalMinimum> = found.minima.iter().map(minimum).collect();
+    let LocalMinimum { inputs, outputs, objective } = local_minima[0].clone();
+    let outcome = match found.limit {
+        None => Outcome::Proven { gap: found.gap },
+        Some(limit) => Outcome::NotProven { gap: found.gap, limit },
+    };
+    let proof = Proof {
+        lower_bound: coordinate.objective(found.lower_bound).min(objective),
+        outcome,
+        nodes: found.nodes,
+        local_minima,
+        all_minima: found.all_minima,
+    };
+    let mut targets = PairTable::filled(held.outputs, held.inputs, None);
+    for (pair, target) in &reached.targets {
+        targets[*pair] = Some(coordinate.value(*target));
+    }
+    let misses = misses(problem, held, reached, effort)?;
+    let (agreeing, unmatched): (Vec<Unmatched>, Vec<Unmatched>) = misses
+        .into_iter()
+        .partition(|miss| miss.why.agrees_within(problem.agreement) && miss.excess.abs() <= problem.agreement);
+    let conflicts = conflicts_of(&unmatched);
+    let remedy = remedy_of(problem, &settled_loops(held, reached, &agreeing), &conflicts, effort)?;
+    Ok(Solution {
+        quantity: problem.quantity,
+        inputs,
+        outputs,
+        objective,
+        proof,
+        targets,
+        matched: unmatched.is_empty(),
+        agreeing: conflicts_of(&agreeing),
+        remedy,
+        unmatched,
+        conflicts,
+    })
+}
+
+/// The held entries that stage 1 could not match, each with what is in the way.
+fn misses(
+    problem: &Problem,
+    held: &Held,
+    reached: &Reached,
+    effort: &Effort<'_>,
+) -> Result<Vec<Unmatched>, SearchStopped> {
+    let (quantity, coordinate) = (problem.quantity, problem.coordinate());
+    let clashes = clashes(held, reached, MATCHED, effort)?;
+    let why = |pair: Pair| match clashes.iter().find(|(missed, _)| *missed == pair) {
+        Some((_, clash)) => Conflict::new(clash.clone(), problem),
+        None => Conflict {
+            quantity,
+            entries: held.entries.iter().map(|(pair, _)| *pair).collect(),
+            bounds: problem.bounds,
+            kind: ConflictKind::Unclear,
+        },
+    };
+    let entries = held.entries.iter().zip(&reached.targets);
+    let missed = entries.filter(|((_, delta), (_, target))| (target - delta).abs() > MATCHED);
+    let missed = missed.map(|((pair, delta_at), (_, target_at))| {
+        let (delta, target) = (coordinate.value(*delta_at), coordinate.value(*target_at));
+        let excess = match quantity {
+            Quantity::Gain(_) => quantity.difference(target_at - delta_at, coordinate),
+            Quantity::Delay | Quantity::SignedDelay => target - delta,
+        };
+        Unmatched { quantity, pair: *pair, delta, target, excess, why: why(*pair) }
+    });
+    Ok(missed.collect())
+}
+
+/// What is held, the entries of loops that count as agreeing at their targets.
+fn settled_loops(held: &Held, reached: &Reached, agreeing: &[Unmatched]) -> Held {
+    let entries = held
+        .entries
+        .iter()
+        .zip(&reached.targets)
+        .map(|(asked, target)| if agreeing.iter().any(|miss| miss.pair == asked.0) { *target } else { *asked });
+    Held { entries: entries.collect(), ..held.clone() }
+}
+
+/// The distinct conflicts behind the misses.
+fn conflicts_of(unmatched: &[Unmatched]) -> Vec<Conflict> {
+    let mut conflicts: Vec<Conflict> = Vec::new();
+    for miss in unmatched {
+        let same = |known: &Conflict| {
+            known.entries.len() == miss.why.entries.len()
+                && known.entries.iter().all(|pair| miss.why.entries.contains(pair))
+        };
+        if !conflicts.iter().any(same) {
+            conflicts.push(miss.why.clone());
+        }
+    }
+    conflicts.sort_by_key(|conflict| (!matches!(conflict.kind, ConflictKind::Loop { .. }), conflict.entries.len()));
+    conflicts
+}
+
+/// What would let everything be held, where something cannot.
+fn remedy_of(
+    problem: &Problem,
+    held: &Held,
+    conflicts: &[Conflict],
+    effort: &Effort<'_>,
+) -> Result<Option<Remedy>, SearchStopped> {
+    let mut suspects: Vec<Pair> = conflicts.iter().flat_map(|conflict| conflict.entries.iter().copied()).collect();
+    suspects.sort();
+    suspects.dedup();
+    (!suspects.is_empty()).then(|| Remedy::new(problem, held, &suspects, effort)).transpose()
+}

@@ -1,0 +1,36 @@
+//! Known answers for the tests of this module: made-up systems, computed by independent numpy code.
+
+use nalgebra::{Complex, DMatrix};
+use serde_json::Value;
+
+/// The whole file.
+pub(super) fn answers() -> Value {
+    serde_json::from_str(include_str!("../../../../tests/data/identification-known-answers.json")).unwrap()
+}
+
+/// A number.
+pub(super) fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+/// A list of numbers.
+pub(super) fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(number).collect()
+}
+
+/// A matrix, written row by row.
+pub(super) fn matrix(value: &Value) -> DMatrix<f64> {
+    let rows: Vec<Vec<f64>> = value.as_array().unwrap().iter().map(numbers).collect();
+    DMatrix::from_fn(rows.len(), rows[0].len(), |row, column| rows[row][column])
+}
+
+/// A complex matrix, from one for its real and one for its imaginary part.
+pub(super) fn complex_matrix(value: &Value) -> DMatrix<Complex<f64>> {
+    matrix(&value["re"]).zip_map(&matrix(&value["im"]), Complex::new)
+}
+
+/// Complex matrices, one for each frequency.
+pub(super) fn response(value: &Value) -> Vec<DMatrix<Complex<f64>>> {
+    let part = |name: &str| value[name].as_array().unwrap().iter().map(matrix).collect::<Vec<_>>();
+    part("re").iter().zip(part("im")).map(|(re, im)| re.zip_map(&im, Complex::new)).collect()
+}

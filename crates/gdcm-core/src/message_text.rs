@@ -1,0 +1,65 @@
+//! Text from a file, fit for a message.
+
+use std::path::Path;
+
+/// A text with its control characters and its invisible ones spelt out: a name with a line end, an escape sequence or a change of
+/// the writing direction in it would break a message, or a terminal, or read as another name.
+pub fn sanitized(text: &str) -> String {
+    let mut words = String::with_capacity(text.len());
+    for character in text.chars() {
+        if character.is_control() || is_invisible(character) {
+            words.extend(character.escape_default());
+        } else {
+            words.push(character);
+        }
+    }
+    words
+}
+
+/// A path in a plain text.
+pub fn sanitized_path(path: &Path) -> String {
+    sanitized(&path.to_string_lossy())
+}
+
+/// Whether a character has no shape of its own: it turns the writing direction, joins or parts letters, ends a line or a paragraph.
+fn is_invisible(character: char) -> bool {
+    matches!(
+        character,
+        '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}'
+            | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}'
+    )
+}
+
+/// A plain text in quotation marks, no longer than a message can bear.
+pub fn quoted(text: &str) -> String {
+    format!("\"{}\"", shortened(&sanitized(text)))
+}
+
+/// The start of a text, no longer than a message can bear.
+pub fn shortened(text: &str) -> String {
+    const LONGEST: usize = 80;
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_and_invisible_ones_are_spelt_out_and_letters_are_not() {
+        assert_eq!(sanitized("a\u{1b}[31m\nΔ → °"), "a\\u{1b}[31m\\nΔ → °");
+        for invisible in "\u{200b}\u{200f}\u{202e}\u{2028}\u{2029}\u{2066}\u{2069}\u{feff}\u{61c}\u{7f}\u{9b}".chars() {
+            assert_eq!(sanitized(&format!("a{invisible}b")), format!("a{}b", invisible.escape_default()));
+        }
+        // A letter and its accent as two characters, as some systems write file names.
+        assert_eq!(sanitized("e\u{301}"), "e\u{301}");
+    }
+
+    #[test]
+    fn a_long_text_is_cut_between_characters() {
+        assert_eq!(quoted(&"°".repeat(1000)).chars().count(), 83);
+    }
+}

@@ -1,0 +1,104 @@
+//! Identified models taken into a condition in place of those of the dataset's file.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::dataset::{BundleKind, ConditionId, ConditionRecord, Dataset, Model};
+
+use super::document::{BundleChoice, Study};
+use super::edit::EditRefusal;
+
+/// Models identified from flight records, and these.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TakenModels {
+    /// The identified bundle of the condition.
+    pub models: Vec<Model>,
+    /// The flight records of the condition.
+    pub records: Vec<ConditionRecord>,
+}
+
+impl TakenModels {
+    /// The dataset with these models for the identified bundle of a condition, and these records among its own.
+    ///
+    /// # Errors
+    /// [`EditRefusal::NoCondition`], and [`EditRefusal::Models`] where they cannot be the condition's.
+    pub fn put_into(&self, dataset: &Dataset, id: ConditionId) -> Result<Dataset, EditRefusal> {
+        let before = dataset.condition(id).ok_or(EditRefusal::NoCondition { condition: id })?;
+        let refused = |why: String| EditRefusal::Models { condition: id, why };
+        let condition = before.with_identified(self.models.clone(), self.records.clone());
+        let condition = condition.map_err(|error| refused(error.to_string()))?;
+        dataset.with_condition(condition).map_err(|error| refused(error.to_string()))
+    }
+}
+
+/// What a study has taken, and the dataset as its file has it.
+#[derive(Clone, Debug)]
+pub struct Taken {
+    file: Arc<Dataset>,
+    models: BTreeMap<ConditionId, Arc<TakenModels>>,
+}
+
+impl Study {
+    /// The dataset as its file has it, whatever was taken since.
+    pub fn file_dataset(&self) -> &Arc<Dataset> {
+        self.taken.as_ref().map_or(&self.dataset, |taken| &taken.file)
+    }
+
+    /// The models taken in place of those of the file, condition by condition.
+    pub fn taken_models(&self) -> impl Iterator<Item = (ConditionId, &Arc<TakenModels>)> {
+        self.taken.iter().flat_map(|taken| taken.models.iter().map(|(id, models)| (*id, models)))
+    }
+
+    /// Takes models into conditions: into all of them, or into none. Decisions about models that are gone go with them.
+    pub(super) fn take_models(&mut self, taken: &[(ConditionId, Arc<TakenModels>)]) -> Result<(), EditRefusal> {
+        let mut models: BTreeMap<_, _> = self.taken_models().map(|(id, models)| (id, Arc::clone(models))).collect();
+        models.extend(taken.iter().cloned());
+        self.put_taken(models)
+    }
+
+    /// Puts the models of the file back into a condition.
+    pub(super) fn return_models(&mut self, condition: ConditionId) -> Result<(), EditRefusal> {
+        let models = self.taken_models().filter(|(id, _)| *id != condition);
+        self.put_taken(models.map(|(id, models)| (id, Arc::clone(models))).collect())
+    }
+
+    fn put_taken(&mut self, models: BTreeMap<ConditionId, Arc<TakenModels>>) -> Result<(), EditRefusal> {
+        let file = Arc::clone(self.file_dataset());
+        let mut dataset = Arc::clone(&file);
+        for (id, taken) in &models {
+            dataset = Arc::new(taken.put_into(&dataset, *id)?);
+        }
+        self.dataset = dataset;
+        self.taken = (!models.is_empty()).then_some(Taken { file, models });
+        self.forget_absent_models();
+        Ok(())
+    }
+
+    /// Drops decisions about identified models that the dataset does not have any more, the variants' too.
+    fn forget_absent_models(&mut self) {
+        let dataset = Arc::clone(&self.dataset);
+        let is_there = |id: ConditionId, name: &str| {
+            dataset.condition(id).is_some_and(|condition| condition.position(BundleKind::Identified, name).is_some())
+        };
+        for (id, choice) in &mut self.choices {
+            choice.identified.retain(|name| is_there(*id, name));
+        }
+        for variant in &mut self.variants {
+            let mut kept = variant.as_ref().clone();
+            for (id, choice) in &mut kept.choices {
+                choice.identified.retain(|name| is_there(*id, name));
+            }
+            if kept != **variant {
+                *variant = Arc::new(kept);
+            }
+        }
+    }
+}
+
+impl BundleChoice {
+    fn retain(&mut self, is_there: impl Fn(&str) -> bool) {
+        self.rejected.retain(|name| is_there(name));
+        self.reasons.retain(|name, _| is_there(name));
+        self.pinned = self.pinned.take().filter(|name| is_there(name));
+    }
+}

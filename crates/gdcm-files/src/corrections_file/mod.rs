@@ -1,0 +1,86 @@
+//! Result files: `corrections.json`, `corrections.csv`, `assessment.csv`.
+
+mod explanation;
+mod gather;
+mod names;
+mod schema;
+mod tables;
+mod uncertainty;
+
+use std::collections::BTreeSet;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use gdcm_core::dataset::ConditionId;
+use gdcm_core::study::Analysis;
+
+use super::file_error::FileError;
+use super::json_text::Format;
+use super::output_set::{OutputSet, make_directory};
+use super::source::Source;
+use tables::response_table;
+
+pub(super) use tables::channel_table;
+
+pub use explanation::{ConflictEntry, Explanation, RemedyEntry, SensitivityEntry};
+pub use names::ByName;
+pub use schema::{
+    Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
+    DelayOutcome, GainOutcome, LeadChannels, LeadEntry, NetGain, ReasonEntry, ScheduleUsed, ScheduledDelays,
+    ScheduledGains, ScheduledSecond, ScheduledTaus, SetAsideEntry, SourceEntry, Table, UnmatchedDelayEntry,
+    UnmatchedGainEntry, WithoutResult,
+};
+pub use uncertainty::{
+    BarEntry, BarsEntry, ChannelBars, DifferenceEntry, ScatterEntry, ScheduleBandEntry, SecondVariableEntry,
+    SplitEntry, UncertaintyEntry,
+};
+
+const NAME: &str = "gdcm-corrections";
+const VERSION: u64 = 1;
+
+/// The names of the files of results.
+pub const RESULT_FILES: [&str; 3] = ["corrections.json", "corrections.csv", "assessment.csv"];
+
+/// Where the files of results stand in a directory.
+pub fn result_paths(directory: &Path) -> [PathBuf; 3] {
+    RESULT_FILES.map(|name| directory.join(name))
+}
+
+/// Writes the results of the chosen conditions into a directory, made where there is none: all three files, or none.
+///
+/// `sha256` is that of the dataset's file.
+pub fn write_results(
+    analysis: &Analysis,
+    sha256: &str,
+    chosen: &BTreeSet<ConditionId>,
+    directory: &Path,
+    mut outputs: OutputSet,
+) -> Result<(), FileError> {
+    let [json, channels, responses] = result_paths(directory);
+    outputs.check(&[&json, &channels, &responses])?;
+    make_directory(directory)?;
+    outputs.add(&json, |file| write_corrections(analysis, sha256, chosen, file))?;
+    outputs.add(&channels, |file| channel_table(analysis, chosen, file))?;
+    outputs.add(&responses, |file| response_table(analysis, chosen, file))?;
+    outputs.persist()
+}
+
+/// `corrections.json`: everything that was found in the chosen conditions.
+pub(super) fn write_corrections(
+    analysis: &Analysis,
+    sha256: &str,
+    chosen: &BTreeSet<ConditionId>,
+    file: &mut dyn Write,
+) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut *file, &Corrections::of(analysis, sha256, chosen))?;
+    file.write_all(b"\n")
+}
+
+/// Reads a `corrections.json`.
+pub fn read_corrections(path: &Path) -> Result<Corrections, FileError> {
+    let format = Format { name: NAME, version: VERSION };
+    let source = Source::read(path)?;
+    let (corrections, _) = format.decode::<Corrections>(source.text(), path)?;
+    format.check_read(&corrections.format, corrections.version, path)?;
+    Ok(corrections)
+}

@@ -1,0 +1,90 @@
+//! Comma-separated values (RFC 4180).
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use gdcm_core::study::Table;
+
+use super::file_error::FileError;
+use super::output_set::OutputSet;
+
+/// Writes records of one length below one another.
+pub(super) fn write_records<R>(file: &mut dyn Write, records: impl Iterator<Item = R>) -> io::Result<()>
+where
+    R: IntoIterator,
+    R::Item: AsRef<[u8]>,
+{
+    let mut table = csv::Writer::from_writer(file);
+    for record in records {
+        // Unpacked, so that a full disk is told as one.
+        table.write_record(record).map_err(|error| match error.into_kind() {
+            csv::ErrorKind::Io(error) => error,
+            _ => io::ErrorKind::InvalidData.into(),
+        })?;
+    }
+    table.flush()
+}
+
+/// Writes tables: one as headings and rows; several below one another, each under a line with its title, with an empty line between
+/// them.
+pub(super) fn write_tables(file: &mut dyn Write, tables: &[Table]) -> io::Result<()> {
+    for (index, table) in tables.iter().enumerate() {
+        if tables.len() > 1 {
+            if index > 0 {
+                file.write_all(b"\n")?;
+            }
+            write_records(file, std::iter::once([&table.title]))?;
+        }
+        write_records(file, std::iter::once(&table.columns).chain(&table.rows))?;
+    }
+    Ok(())
+}
+
+/// Tables as comma-separated values, to be put on the clipboard.
+pub fn csv_text(tables: &[Table]) -> String {
+    let mut text = Vec::new();
+    // A vector takes whatever is written.
+    let _ = write_tables(&mut text, tables);
+    String::from_utf8_lossy(&text).into_owned()
+}
+
+/// Writes a table as CSV: the headings, then a line for each row. What exists already is kept or replaced as `outputs` says.
+pub fn save_table(table: &Table, path: &Path, mut outputs: OutputSet) -> Result<(), FileError> {
+    outputs.add(path, |file| write_tables(file, std::slice::from_ref(table)))?;
+    outputs.persist()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Existing;
+
+    fn table(title: &str) -> Table {
+        let mut table = Table::new(title, ["model", "J [-]"]);
+        table.row(["V+5kt, again", "1.5"]);
+        table
+    }
+
+    #[test]
+    fn one_table_is_headings_and_rows() {
+        assert_eq!(csv_text(&[table("left out")]), "model,J [-]\n\"V+5kt, again\",1.5\n");
+    }
+
+    #[test]
+    fn several_tables_stand_under_their_titles() {
+        let text = csv_text(&[table("first, of two"), table("second")]);
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines[0], "\"first, of two\"");
+        assert_eq!(lines[3..6], ["", "second", "model,J [-]"]);
+    }
+
+    #[test]
+    fn a_table_is_written_whole_and_over_nothing_that_is_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("table.csv");
+        save_table(&table(""), &path, OutputSet::new(Existing::Keep, Vec::new())).unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "model,J [-]\n\"V+5kt, again\",1.5\n");
+        let again = save_table(&table(""), &path, OutputSet::new(Existing::Keep, Vec::new()));
+        assert!(matches!(again, Err(FileError::Exists { .. })));
+    }
+}

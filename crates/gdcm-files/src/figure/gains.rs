@@ -1,0 +1,390 @@
+//! Gains and delays against airspeed or over conditions (Figures 3, 4, 6 and 7).
+
+use std::collections::BTreeSet;
+
+use gdcm_core::correction::{Channel, ChannelCorrection};
+use gdcm_core::dataset::{Dataset, FlightState, Pair};
+use gdcm_core::schedule::Schedule;
+use gdcm_core::study::{AirspeedDifference, Analysis, ConditionAnalysis, ConditionChoice};
+use gdcm_core::uncertainty::{BandWidths, Bar, Scalar};
+use gdcm_core::units::s_to_ms;
+
+use super::axis::Axis;
+use super::condition_source::{schedule_words, settings_words};
+use super::figure::Figure;
+use super::mark::{Bracket, Brackets, Curve, Dot, DotShape, Dots, Intervals, Rule, Spans};
+use super::number::decimals;
+use super::panel::{Panel, Plot};
+use super::range::Range;
+use super::role::{BLUE, GREY, RED, Role};
+use super::stroke::{Color, Dash, Stroke};
+
+/// Samples of a schedule between its ends.
+const SAMPLES: usize = 120;
+const NULL: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
+/// A bar, and that of the identification in it.
+const BAR: Stroke = Stroke::solid(BLUE, 0.6);
+const INNER_BAR: Stroke = Stroke { color: Color::new(0x9b, 0xb3, 0xe4), width_pt: 2.4, dash: Dash::Solid };
+/// How far bars may widen the range of the dots, as a part of it.
+const OF_BARS: f64 = 0.5;
+/// Brackets of differences at one airspeed.
+const BRACKET_BEYOND: Stroke = Stroke::solid(RED, 0.7);
+const BRACKET_WITHIN: Stroke = Stroke::solid(GREY, 0.4);
+const BEYOND: &str = "difference, times what the bundles explain";
+const WITHIN: &str = "difference within what they can make";
+/// Height of a plot as a part of its width, and where bars and brackets stand in it.
+const ASPECTS: [f64; 2] = [0.95, 1.3];
+/// The ground of the bounds.
+const BOUNDS: Color = Color::new(0xe2, 0xea, 0xf3);
+/// Width of that ground over airspeed \[kt\], and over conditions.
+const BOUNDS_WIDTHS: [f64; 2] = [3.0, 0.7];
+
+/// What the dots of a panel measure.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Measure {
+    /// A gain, a ratio; no correction is 1.
+    #[default]
+    Gain,
+    /// A delay \[ms\]; no correction is 0.
+    Delay,
+}
+
+impl Measure {
+    /// A value with its unit.
+    pub fn text(self, value: f64) -> String {
+        match self {
+            Self::Gain => decimals(value, 3),
+            Self::Delay => format!("{} ms", decimals(value, 1)),
+        }
+    }
+
+    /// The value that corrects nothing.
+    pub fn null(self) -> f64 {
+        match self {
+            Self::Gain => 1.0,
+            Self::Delay => 0.0,
+        }
+    }
+
+    /// Least height of a plot, in its unit.
+    pub fn least_height(self) -> f64 {
+        match self {
+            Self::Gain => 0.1,
+            Self::Delay => 10.0,
+        }
+    }
+
+    /// What stands beside an axis of values of a channel.
+    fn axis_label(self) -> &'static str {
+        match self {
+            Self::Gain => "Gain [-]",
+            Self::Delay => "Delay [ms]",
+        }
+    }
+}
+
+/// What the horizontal axis stands for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Across {
+    /// True airspeed \[kt\].
+    #[default]
+    Airspeed,
+    /// Conditions in file order, each at its place from 0 on.
+    Conditions,
+}
+
+/// The altitude class drawn as circles and the weight class drawn filled: "low", or the first of the names; and the others.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Classes {
+    /// The altitude classes, the one of circles first.
+    pub altitudes: Vec<String>,
+    /// The weight classes, the one of filled dots first.
+    pub weights: Vec<String>,
+}
+
+impl Classes {
+    /// Those of a dataset.
+    pub fn of(dataset: &Dataset) -> Self {
+        let names = |class: fn(&FlightState) -> &Option<String>| -> Vec<String> {
+            let states = dataset.conditions().iter().map(|condition| condition.flight_state());
+            let names: BTreeSet<String> = states.filter_map(|state| class(state).clone()).collect();
+            let mut names: Vec<String> = names.into_iter().collect();
+            names.sort_by_key(|name| !["low", "light"].contains(&name.as_str()));
+            names
+        };
+        Self { altitudes: names(|state| &state.altitude), weights: names(|state| &state.weight) }
+    }
+
+    /// Whether a condition is drawn as a circle.
+    pub fn is_first_altitude(&self, state: &FlightState) -> bool {
+        state.altitude.as_ref() == self.altitudes.first()
+    }
+
+    /// Whether a condition is drawn filled.
+    pub fn is_first_weight(&self, state: &FlightState) -> bool {
+        state.weight.as_ref() == self.weights.first()
+    }
+}
+
+/// A figure of a correction.
+type FigureOf<'a> = Box<dyn Fn(&ChannelCorrection) -> f64 + 'a>;
+/// Between which values it was looked for.
+type BoundsOf<'a> = Box<dyn Fn(&ConditionAnalysis) -> [f64; 2] + 'a>;
+
+/// The net gain of each of `pairs` in each condition's optimum, and the schedule (Figures 6 and 7).
+pub fn net_gain_figure(analysis: &Analysis, pairs: &[Pair]) -> Figure {
+    let plots = pairs.iter().map(|&pair| {
+        let quantity = Quantity {
+            measure: Measure::Gain,
+            of: Box::new(move |correction| correction.net_gain(pair).value()),
+            bounds: None,
+            scalar: Scalar::NetGain(pair),
+        };
+        let panel = quantity.panel(analysis, Across::Airspeed, "Net gain [-]");
+        Plot::new(analysis.study.dataset.pair_name(pair)).panel(panel)
+    });
+    let figure = Figure::new("Net gains against airspeed").caption(caption(analysis, Across::Airspeed, Measure::Gain));
+    figure.plots(plots).columns(5).shared_x().shared_y().aspect(aspect(analysis))
+}
+
+/// Gain or delay of each of `channels` in each condition's optimum, and the schedule (Figures 3 and 4).
+pub fn channels_figure(analysis: &Analysis, channels: &[Channel], measure: Measure, across: Across) -> Figure {
+    let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+    let plots = channels.iter().map(|&channel| {
+        let bounds: BoundsOf<'_> = Box::new(move |result| match measure {
+            Measure::Gain => [result.gain_bounds().lower, result.gain_bounds().upper],
+            Measure::Delay => result.delay_bounds_s().map(s_to_ms),
+        });
+        let of: FigureOf<'_> = Box::new(move |correction| match (measure, channel) {
+            (Measure::Gain, Channel::Input(input)) => correction.input_gains[input],
+            (Measure::Gain, Channel::Output(output)) => correction.output_gains[output],
+            (Measure::Delay, channel) => s_to_ms(correction.delay_s(channel)),
+        });
+        let scalar = match measure {
+            Measure::Gain => Scalar::ChannelGain(channel),
+            Measure::Delay => Scalar::ChannelDelay(channel),
+        };
+        let panel =
+            Quantity { measure, of, bounds: Some(bounds), scalar }.panel(analysis, across, measure.axis_label());
+        Plot::new(channel.name(&inputs, &outputs)).panel(panel)
+    });
+    let title = match measure {
+        Measure::Gain => "Channel gains",
+        Measure::Delay => "Channel delays",
+    };
+    let figure = Figure::new(title).caption(caption(analysis, across, measure)).plots(plots);
+    figure.columns(6).shared_x().shared_y().aspect(aspect(analysis))
+}
+
+/// Every channel, inputs first.
+pub fn all_channels(dataset: &Dataset) -> Vec<Channel> {
+    let inputs = (0..dataset.inputs().len()).map(Channel::Input);
+    inputs.chain((0..dataset.outputs().len()).map(Channel::Output)).collect()
+}
+
+/// Samples of a scheduled figure from the least to the greatest of the conditions' airspeeds: airspeed \[kt\], and figure.
+pub fn scheduled_samples(schedule: &Schedule, figure: impl Fn(&ChannelCorrection) -> f64) -> Vec<[f64; 2]> {
+    let (from, to) = (schedule.airspeeds.min_kt, schedule.airspeeds.max_kt);
+    let airspeed = |sample: usize| from + (to - from) * sample as f64 / SAMPLES as f64;
+    (0..=SAMPLES).map(|sample| [airspeed(sample), figure(&schedule.at(airspeed(sample)))]).collect()
+}
+
+/// Whether a schedule has values of this measure, over this axis.
+pub fn is_scheduled(schedule: &Schedule, measure: Measure, across: Across) -> bool {
+    across == Across::Airspeed && (measure == Measure::Gain || schedule.has_delays())
+}
+
+/// Bars and brackets need room.
+fn aspect(analysis: &Analysis) -> f64 {
+    ASPECTS[usize::from(analysis.uncertainty.is_some())]
+}
+
+fn caption(analysis: &Analysis, across: Across, measure: Measure) -> String {
+    let study = &analysis.study;
+    let mut caption = settings_words(&study.dataset, &study.settings);
+    let schedule = analysis.schedule.as_ref().ok().filter(|schedule| is_scheduled(schedule, measure, across));
+    if schedule.is_some() {
+        caption.push_str(&format!(" Schedule: {}.", schedule_words(&study.settings.schedule)));
+    }
+    if across == Across::Airspeed {
+        caption.push_str(" Numbers are those of the conditions.");
+    }
+    caption.push_str(" Dashed: no correction.");
+    caption
+}
+
+/// A figure of every condition's correction, and of the schedule.
+struct Quantity<'a> {
+    measure: Measure,
+    of: FigureOf<'a>,
+    bounds: Option<BoundsOf<'a>>,
+    /// The same, as bars know it.
+    scalar: Scalar,
+}
+
+impl Quantity<'_> {
+    fn panel(&self, analysis: &Analysis, across: Across, label: &str) -> Panel {
+        let conditions = analysis.study.dataset.conditions();
+        let x = match across {
+            Across::Airspeed => Axis::linear("Airspeed [kt]").at_least(10.0),
+            Across::Conditions => {
+                Axis::named("Condition", conditions.iter().map(|condition| condition.id().to_string()))
+            }
+        };
+        let y = self.value_axis(analysis, across, label);
+        let schedule = analysis.schedule.as_ref().ok().filter(|schedule| is_scheduled(schedule, self.measure, across));
+        let curve = schedule.map(|schedule| {
+            let (x, y): (Vec<f64>, Vec<f64>) =
+                scheduled_samples(schedule, &self.of).into_iter().map(|[x, y]| (x, y)).unzip();
+            let stroke = Stroke { color: Role::Scheduled.stroke(false).color, ..Stroke::solid(Color::INK, 1.2) };
+            Curve::new("schedule", stroke, x, y).key("schedule")
+        });
+        let panel = Panel::new(x, y).with_all(self.spans(analysis, across));
+        let bands = schedule.map(|schedule| self.bands(analysis, schedule)).unwrap_or_default();
+        let panel = panel.with(Rule::horizontal(self.measure.null(), NULL)).with_all(bands).with_all(curve);
+        let panel = panel.with_all(self.bars(analysis, across)).with_all(self.brackets(analysis, across));
+        panel.with_all(self.dots(analysis, across))
+    }
+
+    /// The bar of each condition, where that was computed: thin with not knowing the trim flown, thick for the model chosen (M13).
+    fn bars(&self, analysis: &Analysis, across: Across) -> Vec<Intervals> {
+        let Some(uncertainty) = &analysis.uncertainty else { return Vec::new() };
+        let told = |end: f64| if self.scalar.is_delay() { s_to_ms(end) } else { end.exp() };
+        let ends = |of: &dyn Fn(&Bar) -> Option<[f64; 2]>| -> Vec<[f64; 3]> {
+            let bar = |(x, state, _): (f64, &FlightState, &ConditionAnalysis)| {
+                let [low, high] = of(uncertainty.bar(state.id, self.scalar)?)?.map(told);
+                Some([x, low, high])
+            };
+            places(analysis, across).filter_map(bar).collect()
+        };
+        let level = uncertainty.level;
+        let whole = format!("bar of {:.0} %", 100.0 * level);
+        let inner = ends(&|bar| bar.inner_interval(level));
+        let inner = Intervals { name: "identification in it".to_owned(), stroke: INNER_BAR, ends: inner };
+        let outer = Intervals { name: whole, stroke: BAR, ends: ends(&|bar| bar.interval(level)) };
+        [outer, inner].into_iter().filter(|bars| !bars.ends.is_empty()).collect()
+    }
+
+    /// For each airspeed the difference that is the most times what the bundles explain (M13.4).
+    fn brackets(&self, analysis: &Analysis, across: Across) -> Vec<Brackets> {
+        let (Some(uncertainty), Scalar::NetGain(pair), Across::Airspeed) = (&analysis.uncertainty, self.scalar, across)
+        else {
+            return Vec::new();
+        };
+        let level = uncertainty.level;
+        let of = |beyond: bool| {
+            let found = uncertainty.greatest_differences(pair).into_iter();
+            let bracket = |difference: &AirspeedDifference| {
+                let value = |id| Some((self.of)(&analysis.condition(id)?.correction));
+                let [one, other] = difference.conditions.map(value);
+                let label = difference.difference.ratio().filter(|_| beyond).map(|ratio| format!("{ratio:.1}×"));
+                Some(Bracket { x: difference.airspeed_kt, ends: [one?, other?], label: label.unwrap_or_default() })
+            };
+            found.filter(|of| of.is_beyond(level) == beyond).filter_map(bracket).collect::<Vec<Bracket>>()
+        };
+        let within = Brackets { name: WITHIN.to_owned(), stroke: BRACKET_WITHIN, brackets: of(false) };
+        let beyond = Brackets { name: BEYOND.to_owned(), stroke: BRACKET_BEYOND, brackets: of(true) };
+        [beyond, within].into_iter().filter(|brackets| !brackets.brackets.is_empty()).collect()
+    }
+
+    /// The axis of values: bars are seen as far as they leave the dots their room.
+    fn value_axis(&self, analysis: &Analysis, across: Across, label: &str) -> Axis {
+        let axis = Axis::linear(label).including(self.measure.null()).at_least(self.measure.least_height());
+        let values = places(analysis, across).map(|(.., result)| (self.of)(&result.correction));
+        let Some(range) = Range::of(values.filter(|value| value.is_finite())) else { return axis };
+        let spare = OF_BARS * range.width();
+        let ends = self.bars(analysis, across).into_iter().flat_map(|bars| bars.ends);
+        ends.flat_map(|[_, low, high]| [low, high])
+            .fold(axis, |axis, end| axis.including(end.clamp(range.min - spare, range.max + spare)))
+    }
+
+    /// The ends of both bands of the schedule, where they were computed.
+    fn bands(&self, analysis: &Analysis, schedule: &Schedule) -> Vec<Curve> {
+        let Some(bands) = analysis.uncertainty.as_ref().and_then(|of| of.bands.as_ref()) else { return Vec::new() };
+        let color = Role::Scheduled.stroke(false).color;
+        let of = |name: &str, dash: Dash, width: fn(&BandWidths) -> f64| {
+            let ends = [-1.0, 1.0].map(|side| {
+                let samples = scheduled_samples(schedule, &self.of).into_iter();
+                let end = |[airspeed_kt, value]: [f64; 2]| {
+                    let half = bands.at(schedule, self.scalar, airspeed_kt).map(|widths| width(&widths));
+                    Some((airspeed_kt, value * (side * half?).exp()))
+                };
+                let (x, y): (Vec<f64>, Vec<f64>) = samples.filter_map(end).unzip();
+                Curve::new(name, Stroke::dashed(color, 0.6, dash), x, y).key(name)
+            });
+            ends.into_iter().filter(|curve| !curve.x.is_empty()).collect::<Vec<_>>()
+        };
+        let confidence = of("confidence band", Dash::Long, |widths| widths.confidence);
+        confidence.into_iter().chain(of("scatter band", Dash::Dotted, |widths| widths.scatter)).collect()
+    }
+
+    /// Where each optimum was looked for.
+    fn spans(&self, analysis: &Analysis, across: Across) -> Option<Spans> {
+        let bounds = self.bounds.as_ref()?;
+        let width = match across {
+            Across::Airspeed => BOUNDS_WIDTHS[0],
+            Across::Conditions => BOUNDS_WIDTHS[1],
+        };
+        let places = places(analysis, across).map(|(x, _, result)| {
+            let [lower, upper] = bounds(result);
+            [x, lower, upper]
+        });
+        Some(Spans { name: "bounds".to_owned(), color: BOUNDS, width, spans: places.collect() })
+    }
+
+    /// One group of dots for each class of conditions, and one of those that are not in the schedule.
+    fn dots(&self, analysis: &Analysis, across: Across) -> Vec<Dots> {
+        let classes = Classes::of(&analysis.study.dataset);
+        let mut groups: Vec<Dots> = Vec::new();
+        for (x, state, result) in places(analysis, across) {
+            let choice = analysis.study.choice(state.id);
+            let chosen = choice.is_in_schedule();
+            let name = class_words(state, choice);
+            // Over conditions the axis has their numbers.
+            let label = if across == Across::Airspeed { state.id.to_string() } else { String::new() };
+            let dot = Dot { x, y: (self.of)(&result.correction), label };
+            match groups.iter_mut().find(|group| group.name == name) {
+                Some(group) => group.dots.push(dot),
+                None => {
+                    let shape = if classes.is_first_altitude(state) { DotShape::Circle } else { DotShape::Diamond };
+                    let color = if chosen { BLUE } else { GREY };
+                    let group = Dots::new(&name, shape, color)
+                        .filled(classes.is_first_weight(state) && !choice.held_out)
+                        .key(&name);
+                    groups.push(Dots { dots: vec![dot], ..group });
+                }
+            }
+        }
+        groups.sort_by_key(|group| (group.shape, !group.filled));
+        groups
+    }
+}
+
+/// Every condition with a result: its place on the horizontal axis, what describes it, its result.
+fn places(analysis: &Analysis, across: Across) -> impl Iterator<Item = (f64, &FlightState, &ConditionAnalysis)> {
+    let conditions = analysis.study.dataset.conditions().iter().enumerate();
+    conditions.filter_map(move |(index, condition)| {
+        let state = condition.flight_state();
+        let x = match across {
+            Across::Airspeed => state.airspeed_kt,
+            Across::Conditions => index as f64,
+        };
+        Some((x, state, analysis.condition(condition.id())?))
+    })
+}
+
+/// `low altitude, high weight`; `optimum` of a condition without classes.
+fn class_words(state: &FlightState, choice: &ConditionChoice) -> String {
+    let class = |name: &Option<String>, what: &str| name.as_ref().map(|name| format!("{name} {what}"));
+    let mut words: Vec<String> =
+        [class(&state.altitude, "altitude"), class(&state.weight, "weight")].into_iter().flatten().collect();
+    if words.is_empty() {
+        words.push("optimum".to_owned());
+    }
+    if choice.held_out {
+        words.push("held out".to_owned());
+    } else if !choice.scheduled {
+        words.push("not in the schedule".to_owned());
+    }
+    words.join(", ")
+}

@@ -1,0 +1,179 @@
+//! What a curve stands for, and how it therefore looks on paper: the same in every figure.
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_core::dataset::BundleKind;
+
+use super::stroke::{Color, Dash, Stroke};
+
+/// What a curve stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Role {
+    /// The physics model at the trim itself.
+    Nominal,
+    /// A physics model at a perturbed trim.
+    Perturbed,
+    /// The physics model that represents its bundle.
+    Representative,
+    /// A model identified from flight.
+    Identified,
+    /// The identified model that represents its bundle.
+    IdentifiedRepresentative,
+    /// The representative physics model with the condition's own correction.
+    Corrected,
+    /// The physics model with the correction of the schedule.
+    Scheduled,
+    /// The representative physics model with the condition's own correction, its lead filters left out.
+    WithoutLeads,
+    /// A model left out, whatever it was.
+    Rejected,
+    /// A model of one of several conditions: 0 is the slowest, 255 the fastest.
+    OfAirspeed(u8),
+}
+
+/// Of the nominal model.
+pub const RED: Color = Color::new(0xc6, 0x2f, 0x2f);
+/// Of the other physics models.
+pub const BLUE: Color = Color::new(0x35, 0x66, 0xc8);
+/// Of identified models.
+pub const AMBER: Color = Color::new(0xb5, 0x7a, 0x00);
+/// Of corrected models.
+pub const GREEN: Color = Color::new(0x1d, 0x8a, 0x47);
+/// Of what is left out.
+pub const GREY: Color = Color::new(0x76, 0x7e, 0x8a);
+
+impl Role {
+    /// The name where there is little room.
+    pub fn short_name(self) -> &'static str {
+        match self {
+            Self::Representative => "repres.",
+            Self::IdentifiedRepresentative => "ident. rep.",
+            _ => self.name(),
+        }
+    }
+
+    /// Every role of one condition, in the order of a legend.
+    pub const ALL: [Self; 9] = [
+        Self::Nominal,
+        Self::Perturbed,
+        Self::Representative,
+        Self::Identified,
+        Self::IdentifiedRepresentative,
+        Self::Corrected,
+        Self::Scheduled,
+        Self::WithoutLeads,
+        Self::Rejected,
+    ];
+
+    /// The role of a model of a condition at an airspeed \[kt\], among those of the slowest and the fastest condition.
+    pub fn of_airspeed(airspeed_kt: f64, (least, most): (f64, f64)) -> Self {
+        let part = if most > least { (airspeed_kt - least) / (most - least) } else { 0.0 };
+        Self::OfAirspeed((255.0 * part.clamp(0.0, 1.0)).round() as u8)
+    }
+
+    /// The role of a model as it is.
+    pub fn of_model(kind: BundleKind, is_nominal: bool, represents: bool) -> Self {
+        match (kind, is_nominal, represents) {
+            (BundleKind::Physics, true, _) => Self::Nominal,
+            (BundleKind::Physics, false, true) => Self::Representative,
+            (BundleKind::Physics, false, false) => Self::Perturbed,
+            (BundleKind::Identified, _, true) => Self::IdentifiedRepresentative,
+            (BundleKind::Identified, _, false) => Self::Identified,
+        }
+    }
+
+    /// The name in a legend.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Nominal => "nominal",
+            Self::Perturbed => "perturbed",
+            Self::Representative => "representative",
+            Self::Identified => "identified",
+            Self::IdentifiedRepresentative => "identified representative",
+            Self::Corrected => "corrected",
+            Self::Scheduled => "scheduled",
+            Self::WithoutLeads => "without leads",
+            Self::Rejected => "rejected",
+            Self::OfAirspeed(_) => "condition",
+        }
+    }
+
+    /// The name as one word of a command.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::IdentifiedRepresentative => "identified-representative",
+            Self::WithoutLeads => "without-leads",
+            _ => self.name(),
+        }
+    }
+
+    /// The role that a curve is shown in: a rejected curve is `Rejected`, but the nominal model stays nominal.
+    pub fn shown(self, rejected: bool) -> Self {
+        if rejected && self != Self::Nominal { Self::Rejected } else { self }
+    }
+
+    /// The line on paper. Where colours are not printed, dashes and widths tell the roles apart.
+    pub fn stroke(self, rejected: bool) -> Stroke {
+        match self.shown(rejected) {
+            Self::Nominal if rejected => Stroke::dashed(RED, 1.1, Dash::Dotted),
+            Self::Nominal => Stroke::dashed(RED, 1.0, Dash::DashDot),
+            Self::Perturbed => Stroke::solid(BLUE.tint(0.7), 0.4),
+            Self::Representative => Stroke::solid(BLUE, 1.1),
+            Self::Identified => Stroke::dashed(AMBER, 0.6, Dash::Short),
+            // Wider than the corrected curve that is to lie on it, so that both are seen where they agree.
+            Self::IdentifiedRepresentative => Stroke::solid(AMBER.tint(0.75), 2.6),
+            Self::Corrected => Stroke::dashed(GREEN, 1.3, Dash::Long),
+            Self::Scheduled => Stroke::dashed(GREEN, 1.2, Dash::DashDotDot),
+            Self::WithoutLeads => Stroke::solid(GREEN, 0.75),
+            Self::Rejected => Stroke::dashed(GREY, 0.6, Dash::Dotted),
+            // From blue to amber, as in scales made for colour-blind eyes.
+            Self::OfAirspeed(step) => Stroke::solid(BLUE.mixed(AMBER, f64::from(step) / 255.0), 1.1),
+        }
+    }
+
+    /// The entry in the legend of a figure.
+    pub fn key(self, rejected: bool) -> &'static str {
+        match self.shown(rejected) {
+            Self::Nominal if rejected => "nominal (rejected)",
+            shown => shown.name(),
+        }
+    }
+
+    /// Place in the order of drawing: what matters most is drawn last, on top.
+    pub fn layer(self, rejected: bool) -> usize {
+        match self.shown(rejected) {
+            Self::Rejected => 0,
+            Self::Perturbed | Self::OfAirspeed(_) => 1,
+            Self::Identified => 2,
+            Self::Nominal => 3,
+            Self::Representative => 4,
+            Self::IdentifiedRepresentative => 5,
+            Self::WithoutLeads => 6,
+            Self::Scheduled => 7,
+            Self::Corrected => 8,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn roles_differ_without_their_colours() {
+        for a in Role::ALL {
+            for b in Role::ALL.into_iter().filter(|b| *b != a) {
+                let (a, b) = (a.stroke(false), b.stroke(false));
+                assert!(a.dash != b.dash || (a.width_pt - b.width_pt).abs() > 0.3, "{a:?} {b:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_rejected_nominal_model_stays_red_but_is_dotted() {
+        let stroke = Role::Nominal.stroke(true);
+        assert_eq!((stroke.color, stroke.dash), (RED, Dash::Dotted));
+        assert_eq!(Role::Nominal.key(true), "nominal (rejected)");
+        assert_eq!(Role::Perturbed.key(true), "rejected");
+    }
+}

@@ -1,0 +1,84 @@
+//! Files: datasets, studies and results. The only place that touches the file system.
+
+mod content_fault;
+mod corrections_file;
+mod csv_table;
+mod dataset_file;
+mod exports;
+pub mod figure;
+mod figure_file;
+mod file_error;
+mod file_stamp;
+mod first_start;
+mod flaw;
+mod home;
+mod identified_file;
+mod json_text;
+mod list;
+mod mat;
+mod mat73;
+mod model_files;
+mod models_file;
+mod nested;
+mod npy;
+mod opened;
+mod outline;
+mod output_set;
+mod place;
+mod places;
+mod recent_files;
+mod recognise;
+mod record_files;
+mod recovery_file;
+mod report_file;
+mod rules_file;
+mod settings_entry;
+mod source;
+mod stored_number;
+mod study_file;
+mod text;
+mod unknown_keys;
+pub mod variables;
+mod zip_files;
+
+pub use content_fault::ContentFault;
+pub use corrections_file::{
+    Assessment, BarEntry, BarsEntry, ByName, ChannelBars, Channels, ConditionAssessment, ConditionCorrections,
+    ConflictEntry, Corrections, CostTable, CostTables, DatasetLabel, DelayOutcome, DifferenceEntry, Explanation,
+    GainOutcome, LeadChannels, LeadEntry, NetGain, RESULT_FILES, ReasonEntry, RemedyEntry, ScatterEntry,
+    ScheduleBandEntry, ScheduleUsed, ScheduledDelays, ScheduledGains, ScheduledSecond, ScheduledTaus,
+    SecondVariableEntry, SensitivityEntry, SetAsideEntry, SourceEntry, SplitEntry, Table, UncertaintyEntry,
+    UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult, read_corrections, result_paths, write_results,
+};
+pub use csv_table::{csv_text, save_table};
+pub use dataset_file::{
+    DatasetOrigin, LoadedDataset, add_dataset, dataset_faults, embedded_example, load_dataset, load_dataset_bytes,
+    save_dataset, write_example,
+};
+pub use exports::{ExportFault, ExportSource, check_export, write_export};
+pub use figure_file::{figure_format, write_as, write_figure};
+pub use file_error::{FileError, system_words};
+pub use file_stamp::{FileStamp, file_exists, file_sha256};
+pub use first_start::is_first_start;
+pub use gdcm_core::dataset::limits::LARGEST_TEXT;
+pub use home::at_home;
+pub use identified_file::{
+    IdentifiedModels, IdentifiedValidation, MeasuredEstimate, PoleEstimate, RecordReport, add_identified,
+};
+pub use mat::write as write_mat;
+pub use model_files::{FileFormat, FolderProgress, FoundModels, models_of_bytes, read_models, sources_folder};
+pub use models_file::add_models;
+pub use npy::write_npz;
+pub use opened::{Opened, load_any};
+pub use output_set::{Existing, OutputSet, make_directory, report_size_limit};
+pub use recent_files::{add_recent_file, recent_files};
+pub use record_files::{
+    EXAMPLE_RECORD_CONDITIONS, FoundRecords, example_records, load_records, read_records, records_of_bytes,
+};
+pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
+pub use report_file::{ReportSource, report, save_report};
+pub use rules_file::{add_rules, load_rules, rules_path};
+pub use settings_entry::{
+    ErrorBarsEntry, KindWord, LeadSettingsEntry, ScheduleEntry, SecondVariableWord, SettingsEntry,
+};
+pub use study_file::{OpenedStudy, STUDY_EXTENSION, open_study, open_study_of, relative_folder, save_study};

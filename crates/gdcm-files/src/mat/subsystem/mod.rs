@@ -1,0 +1,265 @@
+//! Objects of MATLAB's classes, which lie in a part of the file of their own: the cells of a `FileWrapper__`.
+//!
+//! The first cell says which objects there are and in which cell each property of each of them lies; the last ones are shared by
+//! all objects of a class. The format is not published by The MathWorks; it is known from the descriptions of the MatFileHandler,
+//! matio (Python) and MAT.jl projects. It is the same in files up to version 7 and in those of version 7.3 (HDF5).
+
+mod directory;
+mod enumeration;
+mod instance;
+mod packed_text;
+mod reference;
+mod weight;
+
+use std::collections::HashMap;
+
+use self::directory::Directory;
+use super::opaque::unread_because;
+use super::trail::Trail;
+use crate::variables::{Meter, Value, VariableFault};
+
+pub(super) use self::reference::Reference;
+
+/// The objects of a file.
+#[derive(Clone, Debug)]
+pub struct Subsystem {
+    directory: Directory,
+    /// The values of all properties, in the order in which the directory counts them.
+    values: Vec<Value>,
+    /// The values that properties have unless an object says otherwise, one record for each class.
+    defaults: Vec<Value>,
+    /// Cells of whole numbers of 64 bits, to the last digit.
+    long_words: HashMap<usize, Vec<u64>>,
+}
+
+/// The cells that stand before the values of properties.
+const BEFORE_VALUES: usize = 2;
+
+impl Subsystem {
+    /// Takes the cells of a `FileWrapper__`, the first of which are the bytes of its directory.
+    pub fn new(cells: Vec<Value>) -> Result<Self, VariableFault> {
+        let directory = Directory::read(&directory_bytes(cells.first())?)?;
+        let mut values = cells;
+        let defaults = match values.pop() {
+            Some(Value::Cell(defaults)) => defaults.values,
+            _ => Vec::new(),
+        };
+        let shared = directory.cells_behind_values.saturating_sub(1);
+        values.truncate(values.len().saturating_sub(shared));
+        Ok(Self {
+            directory,
+            values: values.split_off(BEFORE_VALUES.min(values.len())),
+            defaults,
+            long_words: HashMap::new(),
+        })
+    }
+
+    /// Adds what some cells hold to the last digit: `string` objects are packed into whole numbers of 64 bits, of which a
+    /// [`Value`] keeps 53. Each comes with the number of its cell, counted from 0.
+    pub fn with_long_words(mut self, cells: impl IntoIterator<Item = (usize, Vec<u64>)>) -> Self {
+        let values = cells.into_iter().filter_map(|(cell, words)| Some((cell.checked_sub(BEFORE_VALUES)?, words)));
+        self.long_words = values.collect();
+        self
+    }
+
+    /// The object, or the array of objects, that a reference leads to: `[0xDD000000, number of dimensions, dimensions, numbers of
+    /// the objects, number of the class]`.
+    ///
+    /// What cannot be decoded is [`Value::Opaque`]; only the meter makes a fault.
+    pub fn object(&self, reference: &[u32], variable: &str, meter: &Meter<'_>) -> Result<Value, VariableFault> {
+        match Reference::parse(reference) {
+            Some(reference) => self.referred(&reference, &Trail::start(variable), meter),
+            None => Ok(unread_because("object", "what refers to it is damaged", variable)),
+        }
+    }
+}
+
+fn directory_bytes(cell: Option<&Value>) -> Result<Vec<u8>, VariableFault> {
+    let Some(Value::Array(array)) = cell else {
+        return Err(damaged("the directory of objects is missing"));
+    };
+    let byte = |&number: &f64| if (0.0..256.0).contains(&number) { Some(number as u8) } else { None };
+    let bytes: Option<Vec<u8>> = array.re.iter().map(byte).collect();
+    bytes.ok_or_else(|| damaged("the directory of objects does not consist of bytes"))
+}
+
+fn damaged(what: impl Into<String>) -> VariableFault {
+    VariableFault::Damaged { variable: String::new(), what: what.into(), offset: 0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::read;
+    use super::super::sample::{
+        Directory, chars, column, doubles, file_with_objects, long_words_of, opaque, record, reference, words_of,
+    };
+    use super::*;
+    use crate::variables::{Array, StructArray, TextArray};
+    use proptest::prelude::*;
+
+    const NAMES: [&str; 12] =
+        ["ss", "ssdata", "ltipack", "string", "node", "Data_", "Name_", "any", "a", "self", "Mode_", "Flag_"];
+
+    /// A model with its data and its name, a text, and an object that lies in itself.
+    fn directory(version: u32) -> Directory<'static> {
+        Directory {
+            version,
+            names: &NAMES,
+            classes: &[[0, 1], [3, 2], [0, 4], [0, 5]],
+            made: &[&[[8, 1, 1]]],
+            objects: &[[1, 0, 1], [2, 0, 2], [3, 1, 0], [4, 0, 3]],
+            plain: &[&[[6, 1, 0], [7, 1, 4], [11, 0, 9], [12, 2, 1]], &[[9, 1, 2]], &[[10, 1, 3]]],
+        }
+    }
+
+    fn cells(version: u32) -> Vec<Vec<u8>> {
+        let text = [1, 2, 1, 1, 5, 0x006f_0074_006f_0072, 0x72];
+        let defaults = record("", &[("Version_", doubles("", &[1, 1], &[17.0])), ("Name_", chars("", "none"))]);
+        let empty = doubles("", &[0, 0], &[]);
+        let mut cells = vec![
+            directory(version).cell(),
+            empty.clone(),
+            column(&[reference(&[2], 2)]),
+            long_words_of(&text),
+            doubles("", &[1, 2], &[1.0, 2.0]),
+            reference(&[4], 4),
+            reference(&[3], 3),
+        ];
+        cells.extend((2..version).map(|_| empty.clone()));
+        cells.push(column(&[empty.clone(), defaults, empty.clone(), empty.clone(), empty]));
+        cells
+    }
+
+    fn file(version: u32) -> Vec<u8> {
+        let variables = [
+            opaque("sys", "ss", reference(&[1], 1)),
+            opaque("two", "ss", reference(&[1, 0], 1)),
+            opaque("ring", "node", reference(&[4], 4)),
+            opaque("lost", "node", reference(&[9], 4)),
+            doubles("x", &[1, 1], &[3.0]),
+        ];
+        file_with_objects(&variables.concat(), Some(&cells(version)))
+    }
+
+    fn values(bytes: &[u8]) -> HashMap<String, Value> {
+        let variables = read(bytes, &Meter::new(1 << 20, &|_| false)).unwrap();
+        variables.into_iter().map(|variable| (variable.name, variable.value)).collect()
+    }
+
+    fn records(value: &Value) -> &StructArray {
+        match value {
+            Value::Object(object) => &object.records,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn an_object_has_its_own_properties_and_those_of_its_class() {
+        for version in 2..=4 {
+            let values = values(&file(version));
+            let model = records(&values["sys"]);
+            let names: Vec<&str> = model.fields.iter().map(|(name, _)| name.as_str()).collect();
+            assert_eq!(names, ["Data_", "Name_", "Mode_", "Flag_", "Version_"]);
+            assert_eq!(model.field("Version_").unwrap()[0], Value::Array(Array::matrix(1, 1, vec![17.0])));
+            let text = |text: &str| Value::Text(TextArray { shape: vec![1, 1], texts: vec![text.to_owned()] });
+            assert_eq!(model.field("Name_").unwrap()[0], text("rotor"));
+            assert_eq!(model.field("Mode_").unwrap()[0], text("a"));
+            let Value::Array(flag) = &model.field("Flag_").unwrap()[0] else { panic!() };
+            assert_eq!(flag.re, [1.0]);
+        }
+    }
+
+    #[test]
+    fn objects_within_objects_are_put_in_their_places() {
+        let values = values(&file(4));
+        let Value::Cell(data) = &records(&values["sys"]).field("Data_").unwrap()[0] else { panic!() };
+        let Value::Object(data) = &data.values[0] else { panic!() };
+        assert_eq!(data.class, "ltipack.ssdata");
+        assert_eq!(data.records.field("a").unwrap()[0], Value::Array(Array::matrix(1, 2, vec![1.0, 2.0])));
+    }
+
+    #[test]
+    fn a_deleted_object_of_an_array_has_empty_properties() {
+        let values = values(&file(4));
+        let two = records(&values["two"]);
+        assert_eq!(two.shape, [1, 2]);
+        assert_eq!(two.field("Name_").unwrap()[1], Value::Array(Array::matrix(0, 0, Vec::new())));
+    }
+
+    #[test]
+    fn an_object_that_lies_in_itself_is_cut() {
+        let values = values(&file(4));
+        let Value::Opaque { class, why } = &records(&values["ring"]).field("self").unwrap()[0] else { panic!() };
+        assert_eq!(class, "node");
+        assert!(why.contains("itself") && why.contains("struct(ring.self)"), "{why}");
+    }
+
+    #[test]
+    fn what_cannot_be_decoded_leaves_the_other_variables_alone() {
+        let values = values(&file(4));
+        assert!(matches!(&values["lost"], Value::Opaque { .. }));
+        assert_eq!(values["x"], Value::Array(Array::matrix(1, 1, vec![3.0])));
+        let unknown = self::values(&file(9));
+        let Value::Opaque { class, why } = &unknown["sys"] else { panic!() };
+        assert_eq!(class, "ss");
+        assert!(why.contains("unknown version 9") && why.contains("ssdata(sys)"), "{why}");
+        assert!(unknown.contains_key("x"));
+    }
+
+    #[test]
+    fn members_of_an_enumeration_are_known_by_name() {
+        let fields = [
+            ("EnumerationInstanceTag", words_of(&[0xdd00_0000])),
+            ("ClassName", words_of(&[4])),
+            ("ValueNames", words_of(&[9, 10])),
+            ("ValueIndices", words_of(&[1, 0, 1])),
+        ];
+        let variable = opaque("mode", "node", record("", &fields));
+        let values = values(&file_with_objects(&variable, Some(&cells(4))));
+        let texts = records(&values["mode"]).field("Name").unwrap().iter().map(|value| match value {
+            Value::Text(text) => text.texts[0].as_str(),
+            other => panic!("{other:?}"),
+        });
+        assert_eq!(texts.collect::<Vec<_>>(), ["self", "a", "self"]);
+    }
+
+    #[test]
+    fn strings_whose_words_lost_no_digits_are_read_without_the_long_words() {
+        let words = [1.0, 2.0, 1.0, 1.0, 2.0, f64::from(0x62_u32 << 16 | 0x61)];
+        let bytes = directory(2).cell();
+        let directory = values(&file_with_objects(&super::super::sample::record("d", &[("d", bytes)]), None));
+        let Value::Struct(record) = &directory["d"] else { panic!() };
+        let directory = record.field("d").unwrap()[0].clone();
+        let empty = || Value::Array(Array::matrix(0, 0, Vec::new()));
+        let text = Value::Array(Array::matrix(1, 6, words.to_vec()));
+        let cells = vec![directory, empty(), empty(), text, empty()];
+        let subsystem = Subsystem::new(cells).unwrap();
+        let meter = Meter::new(1 << 16, &|_| false);
+        let found = subsystem.object(&[0xdd00_0000, 2, 1, 1, 3, 3], "t", &meter);
+        assert_eq!(found, Ok(Value::Text(TextArray { shape: vec![1, 1], texts: vec!["ab".to_owned()] })));
+        assert!(matches!(subsystem.object(&[1, 2, 3], "t", &meter), Ok(Value::Opaque { .. })));
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(400))]
+        #[test]
+        fn changed_bytes_never_panic(
+            changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..4),
+        ) {
+            let mut bytes = file(4);
+            for (at, byte) in changes {
+                let at = at.index(bytes.len());
+                bytes[at] ^= byte;
+            }
+            let _ = read(&bytes, &Meter::new(1 << 20, &|_| false));
+        }
+    }
+
+    #[test]
+    fn a_file_cut_off_anywhere_never_panics() {
+        let bytes = file(4);
+        for length in 0..bytes.len() {
+            let _ = read(&bytes[..length], &Meter::new(1 << 20, &|_| false));
+        }
+    }
+}

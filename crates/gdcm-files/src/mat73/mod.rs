@@ -1,0 +1,283 @@
+//! MATLAB 7.3 files, and plain HDF5 files such as those of h5py.
+//!
+//! The container is that of the HDF5 File Format Specification 3.0. What MATLAB makes of it is not published by The MathWorks; it is
+//! known from its files and from the descriptions of the matio, hdf5storage and MAT.jl projects: attributes tell the classes, arrays
+//! lie column by column, so that their shapes stand the other way round, and the elements of cells and struct arrays are references
+//! into a group `#refs#`.
+//!
+//! Arrays without MATLAB's attributes lie row by row, as C and Python keep them: a dataset of r x c elements becomes an r x c array,
+//! a number alone 1 x 1, n elements without a second dimension the row 1 x n. (MATLAB's own `h5write` writes such datasets from its
+//! columns; they come out transposed.) Groups become structs. Members of groups come in the order of their names, unless MATLAB says
+//! otherwise; symbolic links, to other files too, are passed over.
+
+mod chunks;
+mod compound;
+mod dataset;
+mod empty;
+mod fault;
+mod group;
+mod marks;
+mod number_type;
+mod objects;
+mod opened;
+mod rationed;
+mod reader;
+mod sparse;
+mod text;
+
+pub use objects::{FileWrapper, ObjectDecoder};
+
+use self::objects::Objects;
+use self::opened::Opened;
+use self::reader::Reader;
+use crate::variables::{Meter, Variable, VariableFault};
+
+/// Reads all variables of a MATLAB 7.3 file or a plain HDF5 file; objects of MATLAB's classes stay
+/// [`Value::Opaque`](crate::variables::Value::Opaque).
+#[cfg(test)]
+fn read(bytes: &[u8], meter: &Meter<'_>) -> Result<Vec<Variable>, VariableFault> {
+    let opened = Opened::new(bytes, meter)?;
+    Reader { meter, objects: &Objects::Opaque("objects of classes are not read") }.variables(&opened.root())
+}
+
+/// Reads all variables, and objects of MATLAB's classes by `decoder`, which is made of the part of the file in which they lie.
+pub fn read_with_objects<'d>(
+    bytes: &[u8],
+    meter: &Meter<'_>,
+    decoder: impl FnOnce(FileWrapper) -> Result<Box<ObjectDecoder<'d>>, VariableFault>,
+) -> Result<Vec<Variable>, VariableFault> {
+    let opened = Opened::new(bytes, meter)?;
+    let objects = Objects::read(&opened, meter, decoder)?;
+    Reader { meter, objects: &objects }.variables(&opened.root())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::variables::{Array, CellArray, ElementKind, TextArray, Value};
+
+    fn file(name: &str) -> Vec<u8> {
+        std::fs::read(format!("{}/../../tests/data/mat73/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap()
+    }
+
+    fn read_file(name: &str) -> Result<Vec<Variable>, VariableFault> {
+        read(&file(name), &Meter::new(1 << 24, &|_| false))
+    }
+
+    fn value(variables: &[Variable], name: &str) -> Value {
+        variables.iter().find(|variable| variable.name == name).unwrap_or_else(|| panic!("no {name}")).value.clone()
+    }
+
+    fn array(variables: &[Variable], name: &str) -> Array {
+        let Value::Array(array) = value(variables, name) else { panic!("{name} is no array") };
+        array
+    }
+
+    fn texts(shape: &[usize], texts: &[&str]) -> Value {
+        Value::Text(TextArray { shape: shape.to_vec(), texts: texts.iter().map(|&text| text.to_owned()).collect() })
+    }
+
+    fn number(value: f64) -> Value {
+        Value::Array(Array::matrix(1, 1, vec![value]))
+    }
+
+    #[test]
+    fn a_matrix_keeps_its_rows_and_columns() {
+        for name in ["numbers.mat", "plain.h5", "plain_latest.h5"] {
+            let variables = read_file(name).unwrap();
+            assert_eq!(array(&variables, "A"), Array::matrix(2, 3, vec![1.0, 4.0, 2.0, 5.0, 3.0, 6.0]), "{name}");
+            // numpy.arange(24).reshape(2, 3, 4): element (i, j, k) is 12 i + 4 j + k.
+            let cube = array(&variables, "cube");
+            assert_eq!(
+                (cube.shape.as_slice(), &cube.re[..3], cube.re[6]),
+                ([2, 3, 4].as_slice(), [0.0, 12.0, 4.0].as_slice(), 1.0)
+            );
+            // numpy.arange(600).reshape(20, 30), in chunks that do not divide it.
+            let packed = array(&variables, "packed");
+            assert_eq!((packed.shape.as_slice(), packed.re[1], packed.re[20]), ([20, 30].as_slice(), 30.0, 1.0));
+        }
+    }
+
+    #[test]
+    fn every_class_of_numbers_of_matlab_is_read() {
+        let variables = read_file("numbers.mat").unwrap();
+        for name in ["int8", "int16", "int32", "int64"] {
+            let expected = Array { kind: ElementKind::Integer, ..Array::matrix(2, 1, vec![-3.0, 100.0]) };
+            assert_eq!(array(&variables, name), expected, "{name}");
+        }
+        for name in ["uint8", "uint16", "uint32", "uint64"] {
+            assert_eq!(array(&variables, name).re, [3.0, 200.0], "{name}");
+        }
+        assert_eq!(array(&variables, "single").re, [0.5, -0.25]);
+        let flags = array(&variables, "flags");
+        assert_eq!((flags.kind, flags.shape, flags.re), (ElementKind::Logical, vec![1, 3], vec![1.0, 0.0, 1.0]));
+        let complex = array(&variables, "z");
+        assert_eq!((complex.shape, complex.re, complex.im), (vec![1, 2], vec![1.0, -3.0], Some(vec![2.0, 0.5])));
+        assert_eq!(array(&variables, "none"), Array::matrix(0, 3, Vec::new()));
+    }
+
+    #[test]
+    fn sparse_matrices_are_filled_up() {
+        let variables = read_file("numbers.mat").unwrap();
+        let expected = vec![0.0, 0.0, 1.5, 0.0, 0.0, 0.0, -2.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        assert_eq!(array(&variables, "S"), Array::matrix(3, 4, expected));
+        let nothing = array(&variables, "S0");
+        assert_eq!((nothing.kind, nothing.shape, nothing.re), (ElementKind::Logical, vec![2, 2], vec![0.0; 4]));
+    }
+
+    #[test]
+    fn texts_are_the_rows_of_characters() {
+        let variables = read_file("nested.mat").unwrap();
+        assert_eq!(value(&variables, "name"), texts(&[1, 1], &["theta_dot"]));
+        assert_eq!(value(&variables, "greek"), texts(&[1, 1], &["\u{3b8}\u{1d6fc}"]));
+        assert_eq!(value(&variables, "rows"), texts(&[2, 1], &["ab ", "cde"]));
+        assert_eq!(value(&variables, "nothing"), texts(&[1, 1], &[""]));
+    }
+
+    #[test]
+    fn structs_keep_the_order_of_their_fields() {
+        let variables = read_file("nested.mat").unwrap();
+        let Value::Struct(system) = value(&variables, "sys") else { panic!("no struct") };
+        let names: Vec<_> = system.fields.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!((system.shape.as_slice(), names), ([1, 1].as_slice(), vec!["B", "A", "name", "inner"]));
+        assert_eq!(system.field("A").unwrap(), [Value::Array(Array::matrix(2, 2, vec![1.0, 3.0, 2.0, 4.0]))]);
+        let Value::Struct(inner) = &system.field("inner").unwrap()[0] else { panic!("no struct") };
+        assert_eq!(inner.field("x").unwrap(), [number(7.0)]);
+    }
+
+    #[test]
+    fn struct_arrays_and_cells_are_read_through_their_references() {
+        let variables = read_file("nested.mat").unwrap();
+        let Value::Struct(models) = value(&variables, "models") else { panic!("no struct") };
+        assert_eq!(models.shape, [1, 3]);
+        assert_eq!(models.field("gain").unwrap(), [number(0.0), number(1.0), number(2.0)]);
+        assert_eq!(models.field("name").unwrap()[2], texts(&[1, 1], &["w"]));
+        let deep = Value::Cell(CellArray { shape: vec![1, 1], values: vec![texts(&[1, 1], &["deep"])] });
+        let values = vec![number(0.0), number(1.0), number(2.0), number(3.0), number(4.0), deep];
+        assert_eq!(value(&variables, "C"), Value::Cell(CellArray { shape: vec![2, 3], values }));
+        assert_eq!(value(&variables, "C0"), Value::Cell(CellArray { shape: vec![0, 1], values: Vec::new() }));
+        assert!(matches!(value(&variables, "T0"), Value::Struct(records) if records.shape == [0, 0]));
+        assert!(matches!(value(&variables, "f"), Value::Opaque { class, .. } if class == "function_handle"));
+    }
+
+    #[test]
+    fn objects_are_given_to_their_decoder_with_the_part_in_which_they_lie() {
+        let (meter, bytes) = (Meter::new(1 << 24, &|_| false), file("objects.mat"));
+        let variables = read_with_objects(&bytes, &meter, |wrapper| {
+            assert_eq!(wrapper.cells.len(), 3);
+            assert!(matches!(&wrapper.cells[0], Value::Array(bytes) if bytes.re == [4.0, 0.0, 0.0, 0.0]));
+            assert_eq!(wrapper.long_words, [(2, vec![u64::MAX])]);
+            Ok(Box::new(|words: &[u32], name: &str, _: &Meter<'_>| {
+                assert_eq!((words, name), ([0xdd00_0000, 2, 1, 1, 1, 1].as_slice(), "sys"));
+                Ok(number(42.0))
+            }))
+        });
+        let variables = variables.unwrap();
+        assert_eq!((variables.len(), value(&variables, "sys")), (2, number(42.0)));
+        let opaque = value(&read_file("objects.mat").unwrap(), "sys");
+        assert!(matches!(opaque, Value::Opaque { class, .. } if class == "ss"));
+    }
+
+    #[test]
+    fn other_variables_are_read_where_the_objects_are_damaged() {
+        let (meter, bytes) = (Meter::new(1 << 24, &|_| false), file("objects.mat"));
+        let fault = || VariableFault::TooDeep { variable: String::new() };
+        let variables = read_with_objects(&bytes, &meter, |_| Err(fault())).unwrap();
+        assert_eq!(value(&variables, "before"), number(1.0));
+        assert!(matches!(value(&variables, "sys"), Value::Opaque { why, .. } if why == fault().to_string()));
+    }
+
+    #[test]
+    fn files_of_h5py_are_read() {
+        for name in ["plain.h5", "plain_latest.h5"] {
+            let variables = read_file(name).unwrap();
+            let whole = Array { kind: ElementKind::Integer, ..Array::matrix(2, 3, vec![1.0, 4.0, 2.0, 5.0, 3.0, 6.0]) };
+            assert_eq!(array(&variables, "big_endian"), whole);
+            assert_eq!(array(&variables, "half"), Array::matrix(1, 2, vec![0.5, 1.25]));
+            assert_eq!(value(&variables, "scalar"), number(2.5));
+            assert_eq!(
+                (array(&variables, "flags").kind, array(&variables, "flags").re),
+                (ElementKind::Logical, vec![1.0, 0.0])
+            );
+            assert_eq!(array(&variables, "z").im, Some(vec![2.0, 0.5]));
+            assert_eq!(value(&variables, "text"), texts(&[1, 1], &["hover \u{3b8}"]));
+            assert_eq!(value(&variables, "names"), texts(&[1, 3], &["u", "theta", ""]));
+            assert_eq!(value(&variables, "fixed"), texts(&[1, 2], &["u", "theta"]));
+            assert_eq!(array(&variables, "nothing"), Array::matrix(0, 0, Vec::new()));
+            assert_eq!(array(&variables, "no_rows"), Array::matrix(0, 3, Vec::new()));
+            assert_eq!(array(&variables, "summed").re[..2], [0.0, 3.0]);
+            assert_eq!(array(&variables, "unwritten").re, [7.0; 4]);
+            assert!(matches!(value(&variables, "ragged"), Value::Opaque { .. }));
+        }
+    }
+
+    #[test]
+    fn groups_and_records_are_structs() {
+        for name in ["plain.h5", "plain_latest.h5"] {
+            let variables = read_file(name).unwrap();
+            let Value::Struct(group) = value(&variables, "group") else { panic!("no struct") };
+            let Value::Struct(inner) = &group.field("inner").unwrap()[0] else { panic!("no struct") };
+            assert_eq!(inner.field("x").unwrap(), [number(1.0)]);
+            assert!(matches!(value(&variables, "empty"), Value::Struct(records) if records.fields.is_empty()));
+            let Value::Struct(records) = value(&variables, "records") else { panic!("no struct") };
+            assert_eq!(records.field("gain").unwrap(), [number(1.5), number(-2.0)]);
+            assert_eq!(records.field("name").unwrap()[1], texts(&[1, 1], &["phi"]));
+        }
+    }
+
+    #[test]
+    fn other_variables_are_read_beside_one_of_a_newer_format() {
+        let variables = read_file("hdf5_2.h5").unwrap();
+        assert!(matches!(value(&variables, "packed"), Value::Opaque { why, .. } if why.contains("HDF5 1.14")));
+        assert_eq!(value(&variables, "x"), number(1.0));
+    }
+
+    #[test]
+    fn links_to_elsewhere_are_passed_over_and_names_that_are_not_utf8_refused() {
+        let variables = read_file("links.h5").unwrap();
+        assert_eq!((variables.len(), value(&variables, "x")), (1, number(1.0)));
+        assert!(matches!(read_file("name.h5"), Err(VariableFault::Damaged { what, .. }) if what.contains("UTF-8")));
+    }
+
+    #[test]
+    fn values_that_contain_themselves_or_lie_too_deep_are_refused() {
+        for name in ["circle.mat", "circle.h5", "deep.h5"] {
+            assert!(matches!(read_file(name), Err(VariableFault::TooDeep { .. })), "{name}");
+        }
+    }
+
+    #[test]
+    fn what_would_take_too_much_memory_is_refused() {
+        for name in ["laughs.mat", "huge.mat", "huge_sparse.mat"] {
+            assert!(matches!(read_file(name), Err(VariableFault::TooLarge { .. })), "{name}");
+        }
+        assert!(matches!(read_file("huge_empty.mat"), Err(VariableFault::Damaged { .. })));
+    }
+
+    #[test]
+    fn what_is_no_hdf5_is_named_and_what_is_cut_off_is_said_to_be() {
+        let read = |bytes: &[u8]| read(bytes, &Meter::new(1 << 24, &|_| false));
+        assert!(matches!(read(b""), Err(VariableFault::Format { .. })));
+        assert!(matches!(read(b"MATLAB 5.0 MAT-file"), Err(VariableFault::Format { .. })));
+        for name in ["numbers.mat", "plain_latest.h5"] {
+            let whole = file(name);
+            assert!(matches!(read(&whole[..whole.len() - 1]), Err(VariableFault::CutOff { .. })), "{name}");
+        }
+    }
+
+    #[test]
+    fn damage_anywhere_is_a_fault_and_never_a_panic() {
+        let read = |bytes: &[u8]| read(bytes, &Meter::new(1 << 24, &|_| false));
+        for name in ["objects.mat", "plain_latest.h5"] {
+            let whole = file(name);
+            for length in (0..whole.len()).step_by(97) {
+                assert!(read(&whole[..length]).is_err(), "{name} cut to {length}");
+            }
+            for place in (0..whole.len()).step_by(5) {
+                let mut bytes = whole.clone();
+                bytes[place] ^= 1 << (place % 8);
+                let _ = read(&bytes);
+            }
+        }
+    }
+}

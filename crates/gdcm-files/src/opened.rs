@@ -1,0 +1,47 @@
+//! Files of either kind that the program opens.
+
+use std::path::Path;
+
+use gdcm_core::study::{Difference, Study};
+
+use super::dataset_file::{DatasetOrigin, LoadedDataset, dataset_from};
+use super::file_error::FileError;
+use super::outline::Outline;
+use super::source::Source;
+use super::study_file::{OpenedStudy, study_from};
+
+/// What a file turned out to be.
+#[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "one is made when a file is opened, and taken apart at once")]
+pub enum Opened {
+    /// A dataset.
+    Dataset(LoadedDataset),
+    /// A study, with the dataset it is about.
+    Study(OpenedStudy),
+}
+
+impl Opened {
+    /// The study: the one opened, or that of the dataset before any decision; the dataset; and what is different in it.
+    pub fn into_study(self) -> (Study, LoadedDataset, Vec<Difference>) {
+        match self {
+            Opened::Dataset(loaded) => (Study::new(loaded.dataset.clone()), loaded, Vec::new()),
+            Opened::Study(OpenedStudy { study, loaded, differences, .. }) => (study, loaded, differences),
+        }
+    }
+}
+
+/// Opens a dataset or a study, whichever the file says it is.
+pub fn load_any(path: &Path) -> Result<Opened, FileError> {
+    let source = Source::read(path)?;
+    match Outline::format_of(source.text()).as_deref() {
+        Some("\"gdcm-study\"") => Ok(Opened::Study(study_from(&source, path, None)?)),
+        Some("\"gdcm-dataset\"") | None => {
+            Ok(Opened::Dataset(dataset_from(&source, DatasetOrigin::File(path.to_owned()))?))
+        }
+        Some(found) => Err(FileError::Format {
+            path: path.to_owned(),
+            expected: "gdcm-dataset\" or \"gdcm-study",
+            found: found.to_owned(),
+        }),
+    }
+}

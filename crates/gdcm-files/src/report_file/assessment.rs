@@ -1,0 +1,121 @@
+//! What the scheduled correction is worth.
+
+use crate::figure::assessment_figure;
+use crate::figure::number::decimals;
+use gdcm_core::dataset::{Pair, PairTable};
+use gdcm_core::study::{Analysis, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, Table};
+use gdcm_core::units::signed;
+
+use super::extent::{CONDITIONS_DRAWN, PAIRS_DRAWN};
+use super::page::Page;
+use super::settings::average_word;
+
+/// Responses in one figure, in four rows.
+const IN_A_FIGURE: usize = 12;
+/// Conditions side by side in a table that fits a sheet.
+const COLUMNS: usize = 12;
+
+/// What the paper assesses: the nominal model under the schedule, with the average of the settings.
+pub(super) fn usual_choice(analysis: &Analysis) -> AssessmentChoice {
+    let average = analysis.study.settings.cost_average;
+    AssessmentChoice { model: AssessedModel::Nominal, correction: AssessedCorrection::Scheduled, average }
+}
+
+/// Adds the section.
+pub(super) fn add(page: &mut Page, analysis: &Analysis) {
+    page.section("Assessment");
+    let choice = usual_choice(analysis);
+    let table = AssessmentTable::of(analysis, choice);
+    page.paragraph(&format!(
+        "Change of J of the nominal model of each condition under the scheduled correction, against the identified representative; \
+         below 0 is better. J takes {} over frequency; up to 100 is acceptable, up to 50 next to indistinguishable.",
+        average_word(choice.average)
+    ));
+    page.list(table.left_out.iter().map(|of| format!("Condition {} is left out: {}.", of.condition, of.why)));
+    let measuring = analysis.study.dataset.measuring_pairs();
+    let has_on_axis = analysis.study.dataset.on_axis().marked().next().is_some();
+    let on_axis: Vec<Pair> = measuring.marked().collect();
+    let off_axis: Vec<Pair> = measuring.pairs().filter(|pair| !measuring[*pair]).collect();
+    let of_on_axis = if has_on_axis { "on-axis responses" } else { "responses" };
+    for (pairs, of) in [(on_axis, of_on_axis), (off_axis, "off-axis responses")] {
+        if pairs.is_empty() {
+            continue;
+        }
+        page.subsection(&capital(of));
+        let marked = PairTable::from_fn(measuring.outputs(), measuring.inputs(), |pair| pairs.contains(&pair));
+        page.paragraph(&format!("{}.", capital(&table.summary(&marked).words(&analysis.study.dataset))));
+        add_figures(page, analysis, choice, &pairs, of);
+        add_tables(page, analysis, &table, &pairs, of);
+        if of == of_on_axis {
+            page.table(&parts_table(analysis, &table, &pairs));
+        }
+    }
+}
+
+/// The words with a capital letter first.
+fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+fn add_figures(page: &mut Page, analysis: &Analysis, choice: AssessmentChoice, pairs: &[Pair], of: &str) {
+    let drawn = &pairs[..pairs.len().min(PAIRS_DRAWN)];
+    for pairs in drawn.chunks(IN_A_FIGURE) {
+        let figure = assessment_figure(analysis, pairs, choice);
+        page.figure(&figure, &format!("Change of J of {of}"), "The whole, its magnitude part and its phase part.");
+    }
+    if drawn.len() < pairs.len() {
+        page.paragraph(&format!("{} of {} responses are drawn.", drawn.len(), pairs.len()));
+    }
+}
+
+/// ΔJ of every response in every condition, as many conditions side by side as fit.
+fn add_tables(page: &mut Page, analysis: &Analysis, found: &AssessmentTable, pairs: &[Pair], of: &str) {
+    let shown = &found.conditions[..found.conditions.len().min(CONDITIONS_DRAWN)];
+    for conditions in shown.chunks(COLUMNS) {
+        let names = conditions.iter().map(|assessed| format!("cond. {}", assessed.condition));
+        let columns = std::iter::once("response".to_owned()).chain(names);
+        let mut table = Table::new(format!("ΔJ of {of}"), columns);
+        for &pair in pairs {
+            let cells = conditions
+                .iter()
+                .map(|assessed| assessed.changes[pair].map_or("–".to_owned(), |change| signed(change.total(), 1)));
+            table.row(std::iter::once(analysis.study.dataset.pair_name(pair)).chain(cells));
+        }
+        page.table(&table);
+    }
+    let more = found.conditions.len() - shown.len();
+    if more > 0 {
+        page.paragraph(&format!(
+            "{more} more conditions are assessed: gdcm analyze writes them all into assessment.csv."
+        ));
+    }
+    let missing = shown.iter().flat_map(|assessed| {
+        let of_these = assessed.missing.iter().filter(|(pair, _)| pairs.contains(pair));
+        of_these.map(|(pair, why)| {
+            format!("Condition {}: no ΔJ of {}: {why}.", assessed.condition, analysis.study.dataset.pair_name(*pair))
+        })
+    });
+    page.list(missing);
+}
+
+/// J before and after, and the parts of its change, of every condition and response.
+fn parts_table(analysis: &Analysis, found: &AssessmentTable, pairs: &[Pair]) -> Table {
+    let columns = ["condition", "model", "response", "J before", "J after", "ΔJ", "ΔJ magnitude", "ΔJ phase"];
+    let mut table = Table::new("J of the nominal models before and under the schedule", columns);
+    for assessed in &found.conditions {
+        for (pair, change) in pairs.iter().filter_map(|pair| Some((pair, assessed.changes[*pair]?))) {
+            table.row([
+                assessed.condition.to_string(),
+                assessed.model.clone(),
+                analysis.study.dataset.pair_name(*pair),
+                decimals(change.uncorrected.total(), 1),
+                decimals(change.corrected.total(), 1),
+                signed(change.total(), 1),
+                signed(change.magnitude(), 1),
+                signed(change.phase(), 1),
+            ]);
+        }
+    }
+    table
+}

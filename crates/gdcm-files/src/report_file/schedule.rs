@@ -1,0 +1,182 @@
+//! The channels over the conditions, and the gains scheduled with airspeed.
+
+use crate::figure::number::{compact, decimals};
+use crate::figure::{Across, Measure, all_channels, channels_figure, net_gain_figure};
+use gdcm_core::correction::{Channel, ChannelCorrection};
+use gdcm_core::dataset::{ConditionId, Pair};
+use gdcm_core::schedule::{Schedule, ScheduleSettings, ScheduledQuantity};
+use gdcm_core::study::{Analysis, Study, Table};
+use gdcm_core::units::{number, s_to_ms};
+
+use super::extent::{PAIRS_DRAWN, names};
+use super::page::Page;
+use super::settings::schedule_words;
+
+/// Channels in one figure, in two rows.
+const IN_A_FIGURE: usize = 12;
+/// Responses in one figure, in two rows.
+const PAIRS_IN_A_FIGURE: usize = 10;
+/// Columns of figures of a table that fits a sheet.
+const COLUMNS: usize = 10;
+
+/// Adds the section.
+pub(super) fn add(page: &mut Page, analysis: &Analysis) {
+    page.section("Channels and schedule");
+    page.subsection("Channels over the conditions");
+    let is_input = |channel: &Channel| matches!(channel, Channel::Input(_));
+    let (inputs, outputs): (Vec<_>, Vec<_>) = all_channels(&analysis.study.dataset).into_iter().partition(is_input);
+    let conditions = Across::Conditions;
+    for (of, channels) in [("inputs", &inputs), ("outputs", &outputs)] {
+        add_channels(
+            page,
+            analysis,
+            channels,
+            (Measure::Gain, conditions),
+            &format!("Gains of the {of} over conditions"),
+        );
+    }
+    for (of, channels) in [("inputs", &inputs), ("outputs", &outputs)] {
+        add_channels(
+            page,
+            analysis,
+            channels,
+            (Measure::Delay, conditions),
+            &format!("Delays of the {of} over conditions"),
+        );
+    }
+    page.subsection("Schedule over airspeed");
+    match &analysis.schedule {
+        Ok(schedule) => add_schedule(page, analysis, schedule, &[inputs, outputs].concat()),
+        Err(error) => page.paragraph(&format!("{error}.")),
+    }
+}
+
+fn add_channels(
+    page: &mut Page,
+    analysis: &Analysis,
+    channels: &[Channel],
+    (measure, across): (Measure, Across),
+    title: &str,
+) {
+    for channels in channels.chunks(IN_A_FIGURE) {
+        let figure = channels_figure(analysis, channels, measure, across);
+        page.figure(
+            &figure,
+            title,
+            "Each condition's optimum, within the bounds it was looked for in; dashed: no correction.",
+        );
+    }
+}
+
+fn add_schedule(page: &mut Page, analysis: &Analysis, schedule: &Schedule, channels: &[Channel]) {
+    let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+    let (low, high) = (number(schedule.airspeeds.min_kt), number(schedule.airspeeds.max_kt));
+    let left_out = not_scheduled(analysis);
+    page.facts([
+        ("Form", schedule_words(&ScheduleSettings { ..schedule.settings })),
+        ("Degree used", schedule.degree().map_or("–".to_owned(), |degree| degree.to_string())),
+        ("Airspeeds", format!("{low} to {high} kt; outside, the end value holds")),
+        ("Conditions left out of it", if left_out.is_empty() { "none".to_owned() } else { names(&left_out) }),
+    ]);
+    page.list(schedule.cautions.iter().map(|of| format!("Caution: {}.", of.words(&inputs, &outputs))));
+    add_coefficients(page, schedule, (&inputs, &outputs));
+    add_gains(page, analysis, schedule);
+    let measures =
+        [(Measure::Gain, "gains")].into_iter().chain(schedule.has_delays().then_some((Measure::Delay, "delays")));
+    for (measure, what) in measures {
+        let title = format!("Channel {what} over airspeed, and their schedule");
+        add_channels(page, analysis, channels, (measure, Across::Airspeed), &title);
+    }
+    for pairs in shown_pairs(&analysis.study).chunks(PAIRS_IN_A_FIGURE) {
+        let figure = net_gain_figure(analysis, pairs);
+        let caption = "Each condition's optimum with its number, and the schedule; dashed: no correction.";
+        page.figure(&figure, "Net gains against airspeed", caption);
+    }
+}
+
+/// The conditions that have a result and are left out of the schedule by hand.
+fn not_scheduled(analysis: &Analysis) -> Vec<String> {
+    let scheduled: Vec<ConditionId> = analysis.scheduled();
+    let all = analysis.study.dataset.conditions().iter().map(|condition| condition.id());
+    all.filter(|id| !scheduled.contains(id)).map(|id| id.to_string()).collect()
+}
+
+/// The responses that measure a model, and those held.
+fn shown_pairs(study: &Study) -> Vec<Pair> {
+    let measuring = study.dataset.measuring_pairs();
+    let shown = measuring.map(|pair, measures| *measures || study.settings.constrained[pair]);
+    shown.marked().take(PAIRS_DRAWN).collect()
+}
+
+fn add_coefficients(page: &mut Page, schedule: &Schedule, (inputs, outputs): (&[String], &[String])) {
+    let found = schedule.coefficients(inputs, outputs);
+    let of = match schedule.settings.quantity {
+        ScheduledQuantity::LnGain => "ln k",
+        ScheduledQuantity::Gain => "k",
+    };
+    let title = if found.scale.is_empty() {
+        format!("The schedule: {of} at each airspeed, linear between")
+    } else {
+        format!("The schedule: coefficients of {of} in the scaled airspeed, {}", found.scale)
+    };
+    for from in (0..found.columns.len()).step_by(COLUMNS) {
+        let to = (from + COLUMNS).min(found.columns.len());
+        let columns = std::iter::once("channel".to_owned()).chain(found.columns[from..to].iter().cloned());
+        let mut table = Table::new(title.clone(), columns);
+        for row in &found.rows {
+            let figures = row.figures[from..to].iter().map(|figure| compact(*figure));
+            table.row(std::iter::once(row.name.clone()).chain(figures));
+        }
+        page.table(&table);
+    }
+}
+
+/// The scheduled gains, net gains and, where they are scheduled, delays at the airspeeds of the conditions.
+fn add_gains(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
+    let dataset = &analysis.study.dataset;
+    let (inputs, outputs) = dataset.names_of_channels();
+    let airspeeds_kt = schedule.airspeeds.clusters_kt();
+    let channels = all_channels(dataset).into_iter().map(|channel| {
+        let gain = move |correction: &ChannelCorrection| match channel {
+            Channel::Input(input) => decimals(correction.input_gains[input], 4),
+            Channel::Output(output) => decimals(correction.output_gains[output], 4),
+        };
+        (format!("k_{}", channel.name(&inputs, &outputs)), Box::new(gain) as Cell)
+    });
+    add_over_airspeed(page, schedule, &airspeeds_kt, "Scheduled gains of the channels", channels.collect());
+    let net = shown_pairs(&analysis.study).into_iter().map(|pair| {
+        let gain = move |correction: &ChannelCorrection| decimals(correction.net_gain(pair).value(), 4);
+        (dataset.pair_name(pair), Box::new(gain) as Cell)
+    });
+    add_over_airspeed(page, schedule, &airspeeds_kt, "Scheduled net gains", net.collect());
+    if schedule.has_delays() {
+        let delays = all_channels(dataset).into_iter().map(|channel| {
+            let delay = move |correction: &ChannelCorrection| decimals(s_to_ms(correction.delay_s(channel)), 2);
+            (format!("τ_{}", channel.name(&inputs, &outputs)), Box::new(delay) as Cell)
+        });
+        add_over_airspeed(page, schedule, &airspeeds_kt, "Scheduled delays of the channels [ms]", delays.collect());
+    }
+}
+
+/// A cell of a correction.
+type Cell = Box<dyn Fn(&ChannelCorrection) -> String>;
+
+/// Tables with a row for each airspeed, as many as it takes for all columns to fit.
+fn add_over_airspeed(
+    page: &mut Page,
+    schedule: &Schedule,
+    airspeeds_kt: &[f64],
+    title: &str,
+    columns: Vec<(String, Cell)>,
+) {
+    for columns in columns.chunks(COLUMNS) {
+        let names = std::iter::once("V [kt]").chain(columns.iter().map(|(name, _)| name.as_str()));
+        let mut table = Table::new(title, names);
+        for airspeed_kt in airspeeds_kt {
+            let correction = schedule.at(*airspeed_kt);
+            let cells = columns.iter().map(|(_, cell)| cell(&correction));
+            table.row(std::iter::once(decimals(*airspeed_kt, 1)).chain(cells));
+        }
+        page.table(&table);
+    }
+}

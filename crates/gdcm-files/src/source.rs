@@ -1,0 +1,130 @@
+//! A file's bytes, read within limits.
+
+use std::borrow::Cow;
+use std::fs::File;
+use std::io::{ErrorKind, Read};
+use std::path::Path;
+
+use flate2::bufread::GzDecoder;
+use sha2::{Digest, Sha256};
+
+use super::file_error::FileError;
+use gdcm_core::dataset::limits::LARGEST_TEXT;
+
+/// The two bytes that every gzip file starts with (RFC 1952).
+const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
+/// What some editors put in front of UTF-8.
+const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
+
+/// What a file holds: the hash of its bytes, and its text.
+#[derive(Debug)]
+pub(super) struct Source<'b> {
+    /// SHA-256 of the file's bytes as they are stored, in lower-case hexadecimal.
+    pub(super) sha256: String,
+    text: Cow<'b, [u8]>,
+}
+
+impl Source<'static> {
+    /// Reads a file, unpacking it where it is packed.
+    pub(super) fn read(path: &Path) -> Result<Self, FileError> {
+        let bytes = read_bytes(path, LARGEST_TEXT)?;
+        let sha256 = sha256_hex(&bytes);
+        let text = if bytes.starts_with(&GZIP_MAGIC) { unpack(&bytes, path)? } else { bytes };
+        Ok(Source { sha256, text: Cow::Owned(text) })
+    }
+}
+
+impl<'b> Source<'b> {
+    /// Takes bytes that are already at hand; `path` is what an error calls them.
+    pub(super) fn of(bytes: &'b [u8], path: &Path) -> Result<Self, FileError> {
+        let text = if bytes.starts_with(&GZIP_MAGIC) {
+            Cow::Owned(unpack(bytes, path)?)
+        } else {
+            check_length(bytes.len() as u64, LARGEST_TEXT, path)?;
+            Cow::Borrowed(bytes)
+        };
+        Ok(Source { sha256: sha256_hex(bytes), text })
+    }
+
+    /// The text, without a byte order mark.
+    pub(super) fn text(&self) -> &[u8] {
+        self.text.strip_prefix(&BYTE_ORDER_MARK).unwrap_or(&self.text)
+    }
+}
+
+/// The bytes of a file of at most `most`.
+pub(super) fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, FileError> {
+    let failed = |error: std::io::Error| FileError::reading(path, &error);
+    let file = File::open(path).map_err(failed)?;
+    // Opening a directory succeeds on some systems; reading it gives an error that says less.
+    if file.metadata().map_err(failed)?.is_dir() {
+        return Err(FileError::Directory { path: path.to_owned() });
+    }
+    let mut bytes = Vec::new();
+    file.take(most + 1).read_to_end(&mut bytes).map_err(failed)?;
+    check_length(bytes.len() as u64, most, path)?;
+    Ok(bytes)
+}
+
+/// Unpacks as it goes, and no further than the limit: a few kilobytes can unpack to gigabytes.
+///
+/// A file may have several members (RFC 1952), and zeros behind the last, with which tapes and copying programs fill their blocks.
+fn unpack(bytes: &[u8], path: &Path) -> Result<Vec<u8>, FileError> {
+    let (mut text, mut rest) = (Vec::new(), bytes);
+    while rest.iter().any(|&byte| byte != 0) {
+        let mut member = GzDecoder::new(rest);
+        let left = (LARGEST_TEXT + 1).saturating_sub(text.len() as u64);
+        let unpacked = member.by_ref().take(left).read_to_end(&mut text);
+        check_length(text.len() as u64, LARGEST_TEXT, path)?;
+        unpacked.map_err(|error| match error.kind() {
+            ErrorKind::UnexpectedEof => FileError::GzipCutOff { path: path.to_owned() },
+            _ => FileError::Gzip { path: path.to_owned() },
+        })?;
+        rest = member.into_inner();
+    }
+    Ok(text)
+}
+
+fn check_length(length: u64, most: u64, path: &Path) -> Result<(), FileError> {
+    if length > most {
+        return Err(FileError::TooLarge { path: path.to_owned(), most_mib: most >> 20 });
+    }
+    Ok(())
+}
+
+fn sha256_hex(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_hash_is_that_of_the_published_example() {
+        // FIPS 180-2, appendix B.1.
+        assert_eq!(sha256_hex(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    }
+
+    #[test]
+    fn members_follow_one_another_and_zeros_behind_the_last_are_passed_over() {
+        use std::io::Write;
+        let member = |text: &[u8]| {
+            let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+            encoder.write_all(text).unwrap();
+            encoder.finish().unwrap()
+        };
+        let packed = [member(b"{"), member(b""), member(b"}"), vec![0; 700]].concat();
+        assert_eq!(Source::of(&packed, Path::new("x")).unwrap().text(), b"{}");
+        let strange = [member(b"{}"), b"\0\0something else".to_vec()].concat();
+        assert!(matches!(Source::of(&strange, Path::new("x")), Err(FileError::Gzip { .. })));
+        let cut = [member(b"{"), member(b"}")[..12].to_vec()].concat();
+        assert!(matches!(Source::of(&cut, Path::new("x")), Err(FileError::GzipCutOff { .. })));
+    }
+
+    #[test]
+    fn a_byte_order_mark_is_no_part_of_the_text() {
+        let source = Source::of(b"\xef\xbb\xbf{}", Path::new("x")).unwrap();
+        assert_eq!(source.text(), b"{}");
+    }
+}

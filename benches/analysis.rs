@@ -20,7 +20,7 @@ use gdcm_core::dataset::{
 use gdcm_core::fidelity::Discontinuity;
 use gdcm_core::response::{FrequencyGrid, PolarResponse};
 use gdcm_core::study::{
-    BundleFigures, ConditionResponses, Edit, Engine, Execution, PhaseCorrection, Setting, Study, Unobserved,
+    BundleMetrics, ConditionResponses, Edit, Engine, Execution, PhaseCorrection, Setting, Study, Unobserved,
 };
 use gdcm_files::{embedded_example, load_dataset};
 
@@ -47,7 +47,7 @@ fn stages(criterion: &mut Criterion) {
     let measuring = dataset.measuring_pairs();
     let alone = Execution::sequential();
     let responses = ConditionResponses::of(condition, (dataset.band(), 200), &alone).expect("nobody stops it");
-    let figures = BundleFigures::of(condition, &responses, &measuring, (&grid, None), &alone).expect("nobody stops it");
+    let figures = BundleMetrics::of(condition, &responses, &measuring, (&grid, None), &alone).expect("nobody stops it");
     let polar = PolarResponse::of;
     let mismatch = mismatch_table(&polar(&responses.physics[10]), &polar(&responses.identified[2]), None);
     let models = condition.bundle(BundleKind::Physics);
@@ -57,7 +57,7 @@ fn stages(criterion: &mut Criterion) {
         bencher.iter(|| ConditionResponses::of(condition, (dataset.band(), 200), &alone));
     });
     group.bench_function("distances and ratios", |bencher| {
-        bencher.iter(|| BundleFigures::of(condition, &responses, &measuring, (&grid, None), &alone));
+        bencher.iter(|| BundleMetrics::of(condition, &responses, &measuring, (&grid, None), &alone));
     });
     group.bench_function("ratios", |bencher| {
         bencher.iter(|| Discontinuity::of(&figures.physics, &perturbations, &|| false))

@@ -12,7 +12,7 @@ use gdcm_core::dataset::{
 };
 use gdcm_core::executor::{Executor, Sequential};
 use gdcm_core::response::FrequencyGrid;
-use gdcm_core::study::{BundleFigures, ConditionResponses, Execution, Unobserved};
+use gdcm_core::study::{BundleMetrics, ConditionResponses, Execution, Unobserved};
 use nalgebra::DMatrix;
 
 #[path = "random_model/mod.rs"]
@@ -85,7 +85,7 @@ fn main() {
     let all = responses(&Pool);
     group.bench_function("distances and ratios, all cores", |bencher| {
         let execution = Execution::new(&Pool, &Unobserved, 2 * MODELS);
-        bencher.iter(|| BundleFigures::of(&condition, &all, &measuring, (&grid, None), &execution));
+        bencher.iter(|| BundleMetrics::of(&condition, &all, &measuring, (&grid, None), &execution));
     });
     group.finish();
     criterion.final_summary();

@@ -39,7 +39,7 @@ impl Sources {
 }
 
 /// What the thread that reads tells.
-enum Told {
+enum ReaderMessage {
     Reading(Reading),
     Taken(u64),
     Read(Sources, Result<Result<FoundModels, FileError>, Fault>),
@@ -47,8 +47,8 @@ enum Told {
 
 /// The thread that reads models, and where its answers arrive.
 pub(super) struct ModelReader {
-    sender: Sender<(u64, Told)>,
-    receiver: Receiver<(u64, Told)>,
+    sender: Sender<(u64, ReaderMessage)>,
+    receiver: Receiver<(u64, ReaderMessage)>,
     /// Number of the newest reading: answers of others are late.
     newest: u64,
     stop: Arc<AtomicBool>,
@@ -70,7 +70,7 @@ impl Drop for ModelReader {
 /// Tells the window which file is read.
 struct Teller {
     number: u64,
-    sender: Sender<(u64, Told)>,
+    sender: Sender<(u64, ReaderMessage)>,
     stop: Arc<AtomicBool>,
     ctx: Context,
     /// Bytes of values of the file, when that was told last.
@@ -82,14 +82,14 @@ impl FolderProgress for Teller {
         self.told.set(0);
         let reading = Reading { number, of, name: name.to_owned(), taken: 0 };
         // The window may be gone by now.
-        let _ = self.sender.send((self.number, Told::Reading(reading)));
+        let _ = self.sender.send((self.number, ReaderMessage::Reading(reading)));
         self.ctx.request_repaint();
     }
 
     fn stopped(&self, taken: u64) -> bool {
         if taken >= self.told.get() + TOLD_EVERY {
             self.told.set(taken);
-            let _ = self.sender.send((self.number, Told::Taken(taken)));
+            let _ = self.sender.send((self.number, ReaderMessage::Taken(taken)));
             self.ctx.request_repaint();
         }
         self.stop.load(Ordering::Acquire)
@@ -141,7 +141,7 @@ impl GdcmApp {
         let work = move || {
             let teller = Teller { number, sender: sender.clone(), stop, ctx: ctx.clone(), told: Cell::new(0) };
             let found = caught(|| read_models(sources.paths(), &headings, &teller));
-            let _ = sender.send((number, Told::Read(sources, found)));
+            let _ = sender.send((number, ReaderMessage::Read(sources, found)));
             ctx.request_repaint();
         };
         if let Some(bench) = &mut self.state.assembling {
@@ -159,9 +159,9 @@ impl GdcmApp {
                 continue;
             };
             match told {
-                Told::Reading(reading) => bench.reading = Some(reading),
-                Told::Taken(taken) => bench.reading.iter_mut().for_each(|reading| reading.taken = taken),
-                Told::Read(sources, found) => {
+                ReaderMessage::Reading(reading) => bench.reading = Some(reading),
+                ReaderMessage::Taken(taken) => bench.reading.iter_mut().for_each(|reading| reading.taken = taken),
+                ReaderMessage::Read(sources, found) => {
                     bench.reading = None;
                     match found {
                         Ok(Ok(found)) => self.take_models(sources, found),

@@ -11,12 +11,12 @@ use crate::view::state::State;
 use gdcm_core::study::{AssessmentJob, ModesJob, UncertaintyJob};
 
 use super::window::GdcmApp;
-use super::worker::Beside;
+use super::worker::BackgroundJobs;
 
 impl GdcmApp {
     /// Asks for what the views shown need; what none shows is not computed.
     pub(super) fn want_beside(&mut self) {
-        let beside = Beside { report: self.reporting.clone(), ..wanted(&self.state) };
+        let beside = BackgroundJobs { report: self.reporting.clone(), ..wanted(&self.state) };
         let variants = &beside.variants;
         self.state.results.variants.retain(|(known, _)| variants.contains(known));
         let simulations = &beside.simulations;
@@ -25,11 +25,11 @@ impl GdcmApp {
     }
 }
 
-fn wanted(state: &State) -> Beside {
+fn wanted(state: &State) -> BackgroundJobs {
     let is_shown = |view| state.display.arrangement.is_shown(view);
     let analysis = state.results.analysis.as_ref().filter(|_| state.analysis().is_some());
     let condition = state.dataset().condition(state.condition().id());
-    Beside {
+    BackgroundJobs {
         modes: condition.filter(|_| is_shown(View::Poles)).map(|of| ModesJob { condition: Arc::clone(of) }),
         assessment: analysis
             .filter(|_| is_shown(View::Assessment))

@@ -33,7 +33,7 @@ impl Shared {
     }
 }
 
-/// Looks at one file every second or two: its time and its length, and where these are new, its bytes. Polling, because
+/// PlotStyle at one file every second or two: its time and its length, and where these are new, its bytes. Polling, because
 /// network drives send no events.
 pub(super) struct DiskWatch {
     shared: Arc<Shared>,
@@ -51,7 +51,7 @@ impl DiskWatch {
         Ok(Self { shared, seen })
     }
 
-    /// Looks at this file from now on, or at none.
+    /// PlotStyle at this file from now on, or at none.
     pub(super) fn watch(&self, path: Option<&Path>) {
         let mut watched = self.shared.watched();
         if watched.path.as_deref() != path {
@@ -85,7 +85,7 @@ struct Known {
 }
 
 impl Known {
-    /// Looks once; what the file holds, where that is new. A file that is being written is read once it rests.
+    /// PlotStyle once; what the file holds, where that is new. A file that is being written is read once it rests.
     fn look(&mut self, path: &Path) -> Option<Seen> {
         if self.path != path {
             *self = Known { path: path.to_owned(), ..Known::default() };

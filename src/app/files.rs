@@ -45,7 +45,7 @@ pub(super) enum ReadFor {
 
 /// What waits for the answer whether the decisions that are not saved may be lost.
 #[derive(Debug)]
-pub(super) enum Postponed {
+pub(super) enum PendingAction {
     /// To show what was read, which is good.
     Show(ReadFor, Box<Opened>),
     /// To close the window.
@@ -155,7 +155,7 @@ impl GdcmApp {
         self.state.opening = None;
         match opened {
             Ok(opened) if purpose != ReadFor::Reloading && self.state.unsaved => {
-                self.ask_to_lose(Postponed::Show(purpose, Box::new(opened)));
+                self.ask_to_lose(PendingAction::Show(purpose, Box::new(opened)));
             }
             Ok(opened) => self.show_read(purpose, opened, ctx),
             Err(error) => self.open_failed(error, ctx),
@@ -174,7 +174,7 @@ impl GdcmApp {
     }
 
     /// Asks whether the decisions that are not saved may be lost to what is to be done.
-    pub(super) fn ask_to_lose(&mut self, postponed: Postponed) {
+    pub(super) fn ask_to_lose(&mut self, postponed: PendingAction) {
         self.postponed = Some(postponed);
         self.goes_on_once_saved = false;
         self.state.forms.shown = Some(FormKind::Unsaved);
@@ -191,8 +191,8 @@ impl GdcmApp {
     pub(super) fn go_on(&mut self, ctx: &Context) {
         self.goes_on_once_saved = false;
         match self.postponed.take() {
-            Some(Postponed::Show(purpose, opened)) => self.show_read(purpose, *opened, ctx),
-            Some(Postponed::Quit) => self.quit(ctx),
+            Some(PendingAction::Show(purpose, opened)) => self.show_read(purpose, *opened, ctx),
+            Some(PendingAction::Quit) => self.quit(ctx),
             None => {}
         }
     }

@@ -11,7 +11,7 @@ use gdcm_core::study::{Cancelled, Job, Progress};
 pub(super) type Ending<J> = Result<<J as Job>::Output, Fault>;
 
 /// How long a job that is not asked for any more may go on: while something is dragged, every output is worth having.
-pub(super) const PATIENCE: Duration = Duration::from_millis(60);
+pub(super) const CANCEL_GRACE: Duration = Duration::from_millis(60);
 
 /// How far a job is, and whether it is still wanted.
 #[derive(Debug)]
@@ -38,7 +38,7 @@ impl Run {
 
 impl Progress for Run {
     fn cancelled(&self) -> bool {
-        let outdated = self.outdated.load(Ordering::Acquire) && self.started.elapsed() > PATIENCE;
+        let outdated = self.outdated.load(Ordering::Acquire) && self.started.elapsed() > CANCEL_GRACE;
         outdated || self.stopped.load(Ordering::Acquire)
     }
 
@@ -101,11 +101,11 @@ impl<J: Job> Shared<J> {
 }
 
 /// The jobs of one kind. Dropping it gives up the job under way and waits for nothing.
-pub(super) struct Lane<J: Job> {
+pub(super) struct JobQueue<J: Job> {
     shared: Arc<Shared<J>>,
 }
 
-impl<J: Job> Lane<J> {
+impl<J: Job> JobQueue<J> {
     /// Starts the thread; each job's ending goes to `deliver`. The tools are made anew after a fault, which may leave them
     /// half made.
     pub(super) fn start(
@@ -154,7 +154,7 @@ pub(super) trait AnyLane {
     fn progress(&self) -> Option<(usize, usize)>;
 }
 
-impl<J: Job> AnyLane for Lane<J> {
+impl<J: Job> AnyLane for JobQueue<J> {
     fn stop(&self) {
         let mut mailbox = self.shared.mailbox();
         let left: Vec<J> = mailbox.unfinished().cloned().collect();
@@ -182,7 +182,7 @@ impl<J: Job> AnyLane for Lane<J> {
     }
 }
 
-impl<J: Job> Drop for Lane<J> {
+impl<J: Job> Drop for JobQueue<J> {
     fn drop(&mut self) {
         let mut mailbox = self.shared.mailbox();
         mailbox.closed = true;
@@ -252,7 +252,7 @@ mod tests {
         }
     }
 
-    fn lane() -> (Lane<Spoken>, impl Fn(&'static str) -> Spoken, Receiver<String>) {
+    fn lane() -> (JobQueue<Spoken>, impl Fn(&'static str) -> Spoken, Receiver<String>) {
         let (sender, said) = channel();
         let ended = sender.clone();
         let deliver = move |job: Spoken, ending: Ending<Spoken>| {
@@ -262,7 +262,7 @@ mod tests {
             };
             ended.send(words).unwrap();
         };
-        (Lane::start("test", || 0, deliver).unwrap(), move |name| Spoken(name, sender.clone()), said)
+        (JobQueue::start("test", || 0, deliver).unwrap(), move |name| Spoken(name, sender.clone()), said)
     }
 
     fn next(said: &Receiver<String>) -> String {

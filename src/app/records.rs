@@ -13,7 +13,7 @@ use gdcm_core::assembly::standard_patterns;
 use gdcm_core::dataset::{ConditionId, ConditionRecord, Dataset};
 use gdcm_core::identification::{Identification, IdentificationError};
 use gdcm_core::records::{RecordChannels, RecordGuess, RecordLayout, RecordTable, TimeWish};
-use gdcm_core::study::{Edit, IdentifyJob, OfferedModels, TakenModels};
+use gdcm_core::study::{AdoptedModels, Edit, IdentifyJob, OfferedModels};
 use gdcm_files::{DatasetOrigin, FileError, FolderProgress, example_records, load_records, read_records};
 
 use super::dialogs::DialogPurpose;
@@ -28,12 +28,12 @@ struct ReadRecords {
 }
 
 /// What a thread that reads records tells: the dataset that they are for, and the records.
-type Told = (Arc<Dataset>, Result<Result<ReadRecords, FileError>, Fault>);
+type ReaderMessage = (Arc<Dataset>, Result<Result<ReadRecords, FileError>, Fault>);
 
 /// The threads that read records, and where their answers arrive.
 pub(super) struct RecordReader {
-    sender: Sender<Told>,
-    receiver: Receiver<Told>,
+    sender: Sender<ReaderMessage>,
+    receiver: Receiver<ReaderMessage>,
 }
 
 impl Default for RecordReader {
@@ -217,7 +217,7 @@ impl GdcmApp {
 
     fn take_identified(&mut self, conditions: &[ConditionId], offered: OfferedModels) {
         let of = |id: &ConditionId| Some((*id, self.state.records.conditions.get(id)?.taken(offered)?));
-        let taken: Vec<(ConditionId, Arc<TakenModels>)> = conditions.iter().filter_map(of).collect();
+        let taken: Vec<(ConditionId, Arc<AdoptedModels>)> = conditions.iter().filter_map(of).collect();
         if taken.is_empty() {
             return self.trouble("nothing was identified yet".to_owned());
         }

@@ -11,7 +11,7 @@ use super::files::ReadFor;
 use super::window::GdcmApp;
 
 impl GdcmApp {
-    /// Looks at the file of the dataset that is open, and says whether it has changed.
+    /// PlotStyle at the file of the dataset that is open, and says whether it has changed.
     pub(super) fn receive_disk(&mut self) {
         self.disk.watch(self.loaded.path());
         let Some(seen) = self.disk.seen() else { return };

@@ -19,7 +19,7 @@ use gdcm_core::study::Edit;
 use gdcm_files::Existing;
 
 use super::dialogs::DialogPurpose;
-use super::files::Postponed;
+use super::files::PendingAction;
 use super::window::GdcmApp;
 
 /// What the focus is to go to.
@@ -153,7 +153,7 @@ impl GdcmApp {
             Command::LookForRecent => self.recent.look(None, ctx),
             Command::CloseBar(bar) => self.state.bars.retain(|shown| *shown != bar),
             Command::CopyText(text) => ctx.copy_text(text),
-            Command::Quit if self.state.unsaved && !self.closing => self.ask_to_lose(Postponed::Quit),
+            Command::Quit if self.state.unsaved && !self.closing => self.ask_to_lose(PendingAction::Quit),
             Command::Quit => self.quit(ctx),
             Command::SaveStudy => self.save(ctx),
             Command::SaveStudyAs(path) => self.save_as(path, Existing::Keep, ctx),

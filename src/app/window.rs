@@ -26,7 +26,7 @@ use super::autosave::Autosave;
 use super::dialogs::Dialogs;
 use super::disk_watch::DiskWatch;
 use super::fault::Fault;
-use super::files::{Postponed, Readers, SavedStudy};
+use super::files::{PendingAction, Readers, SavedStudy};
 use super::key_order::KeyOrder;
 use super::launch::holds_models;
 use super::recent::Recent;
@@ -49,7 +49,7 @@ pub struct GdcmApp {
     pub(super) model_reader: ModelReader,
     pub(super) record_reader: RecordReader,
     /// What waits for the answer whether to lose decisions that are not saved.
-    pub(super) postponed: Option<Postponed>,
+    pub(super) postponed: Option<PendingAction>,
     /// Whether that is done once they are saved.
     pub(super) goes_on_once_saved: bool,
     /// What waits for the answer whether to write over files.
@@ -251,7 +251,7 @@ impl GdcmApp {
             [path] if self.state.assembling.is_none() && !holds_models(path) => {
                 commands.push(Command::Open(path.clone()))
             }
-            // Beside the records of a condition, files are more of them.
+            // BackgroundJobs the records of a condition, files are more of them.
             _ if self.state.assembling.is_none() && self.state.display.arrangement.is_shown(View::Records) => {
                 commands.push(RecordsCommand::Add(paths).into());
             }
@@ -262,7 +262,7 @@ impl GdcmApp {
     fn guard_closing(&mut self, ctx: &Context) {
         if ctx.input(|input| input.viewport().close_requested()) && self.state.unsaved && !self.closing {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
-            self.ask_to_lose(Postponed::Quit);
+            self.ask_to_lose(PendingAction::Quit);
         }
     }
 

@@ -6,7 +6,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use super::fault::{Fault, caught};
-use super::lane::{AnyLane, Ending, Lane, PATIENCE};
+use super::lane::{AnyLane, CANCEL_GRACE, Ending, JobQueue};
 use super::pool::Pool;
 use super::report::ReportJob;
 use crate::view::results::{Background, FirstResult};
@@ -142,22 +142,22 @@ impl Shared {
 
 /// The long work beside the live answer, a thread for each kind.
 struct Lanes {
-    curves: Lane<CurvesJob>,
-    toggles: Lane<TogglesJob>,
-    proofs: Lane<ProofJob>,
-    modes: Lane<ModesJob>,
-    assessments: Lane<AssessmentJob>,
-    across: Lane<AcrossJob>,
-    variants: Lane<VariantJob>,
-    uncertainties: Lane<UncertaintyJob>,
-    reports: Lane<ReportJob>,
-    identifications: Lane<IdentifyJob>,
-    simulations: Lane<SimulationJob>,
+    curves: JobQueue<CurvesJob>,
+    toggles: JobQueue<TogglesJob>,
+    proofs: JobQueue<ProofJob>,
+    modes: JobQueue<ModesJob>,
+    assessments: JobQueue<AssessmentJob>,
+    across: JobQueue<AcrossJob>,
+    variants: JobQueue<VariantJob>,
+    uncertainties: JobQueue<UncertaintyJob>,
+    reports: JobQueue<ReportJob>,
+    identifications: JobQueue<IdentifyJob>,
+    simulations: JobQueue<SimulationJob>,
 }
 
 /// What the views that are shown need beside the live answer; a job that is not wanted any more is given up.
 #[derive(Clone, Debug, Default)]
-pub struct Beside {
+pub struct BackgroundJobs {
     /// Modes of the condition shown.
     pub modes: Option<ModesJob>,
     /// The assessment shown.
@@ -185,12 +185,12 @@ pub struct Worker {
 
 /// Where replies go to.
 #[derive(Clone)]
-struct Outbox {
+struct ReplySender {
     sender: Sender<Reply>,
     wake: Wake,
 }
 
-impl Outbox {
+impl ReplySender {
     fn send(&self, reply: Reply) {
         // The window is gone when nobody listens; the threads end soon after.
         let _ = self.sender.send(reply);
@@ -213,9 +213,9 @@ impl Worker {
     pub fn start(make_engine: EngineMaker, wake: Wake) -> std::io::Result<Self> {
         let shared = Arc::new(Shared::default());
         let (sender, replies) = channel();
-        let outbox = Outbox { sender, wake };
+        let outbox = ReplySender { sender, wake };
         let lanes = Arc::new(Lanes::start(&shared, &make_engine, &outbox)?);
-        let desk = Desk { shared: Arc::clone(&shared), lanes: Arc::clone(&lanes), outbox, make_engine };
+        let desk = AnalysisThread { shared: Arc::clone(&shared), lanes: Arc::clone(&lanes), outbox, make_engine };
         std::thread::Builder::new().name("analysis".to_owned()).spawn(move || desk.work())?;
         Ok(Self { shared, lanes, replies })
     }
@@ -233,7 +233,7 @@ impl Worker {
     }
 
     /// Asks for what the views shown need, and for nothing else of its kind.
-    pub fn want_beside(&self, beside: Beside) {
+    pub fn want_beside(&self, beside: BackgroundJobs) {
         self.lanes.modes.want(beside.modes.into_iter().collect());
         self.lanes.assessments.want(beside.assessment.into_iter().collect());
         self.lanes.across.want(beside.across.into_iter().collect());
@@ -298,7 +298,7 @@ impl Drop for Worker {
 }
 
 impl Lanes {
-    fn start(shared: &Arc<Shared>, make_engine: &EngineMaker, outbox: &Outbox) -> std::io::Result<Self> {
+    fn start(shared: &Arc<Shared>, make_engine: &EngineMaker, outbox: &ReplySender) -> std::io::Result<Self> {
         let [for_curves, for_variants, for_bars, for_reports] = std::array::from_fn(|_| Arc::clone(make_engine));
         Ok(Self {
             curves: lane("curves", move || for_curves(), outbox, |job, curves| Some(Reply::Curves(job, curves?)))?,
@@ -347,15 +347,15 @@ fn pool() -> Box<dyn Executor> {
 fn lane<J: Job>(
     name: &str,
     tools: impl Fn() -> J::Tools + Send + 'static,
-    outbox: &Outbox,
+    outbox: &ReplySender,
     reply: impl Fn(J, J::Output) -> Option<Reply> + Send + 'static,
-) -> std::io::Result<Lane<J>> {
+) -> std::io::Result<JobQueue<J>> {
     let out = outbox.clone();
-    Lane::start(name, tools, move |job: J, ending| out.deliver::<J>(ending, |output| reply(job, output)))
+    JobQueue::start(name, tools, move |job: J, ending| out.deliver::<J>(ending, |output| reply(job, output)))
 }
 
 /// The lane of proofs, which go to the thread that answers.
-fn proofs_lane(shared: &Arc<Shared>, outbox: &Outbox) -> std::io::Result<Lane<ProofJob>> {
+fn proofs_lane(shared: &Arc<Shared>, outbox: &ReplySender) -> std::io::Result<JobQueue<ProofJob>> {
     let shared = Arc::clone(shared);
     lane(
         "proofs",
@@ -371,14 +371,14 @@ fn proofs_lane(shared: &Arc<Shared>, outbox: &Outbox) -> std::io::Result<Lane<Pr
 }
 
 /// What the thread that answers works with.
-struct Desk {
+struct AnalysisThread {
     shared: Arc<Shared>,
     lanes: Arc<Lanes>,
-    outbox: Outbox,
+    outbox: ReplySender,
     make_engine: EngineMaker,
 }
 
-impl Desk {
+impl AnalysisThread {
     fn work(&self) {
         let mut engine = None;
         let mut newest: Option<Request> = None;
@@ -431,7 +431,7 @@ impl Desk {
 }
 
 struct RequestProgress<'a> {
-    desk: &'a Desk,
+    desk: &'a AnalysisThread,
     request: &'a Request,
     started: Instant,
     /// Whether all responses and distances are there: what is left depends on more than they do.
@@ -452,7 +452,7 @@ impl Progress for RequestProgress<'_> {
     fn cancelled(&self) -> bool {
         match self.desk.shared.newest.load(Ordering::Acquire) {
             NOTHING => true,
-            newest => newest != self.request.generation && self.started.elapsed() > PATIENCE && !self.is_of_use(),
+            newest => newest != self.request.generation && self.started.elapsed() > CANCEL_GRACE && !self.is_of_use(),
         }
     }
 
@@ -460,7 +460,7 @@ impl Progress for RequestProgress<'_> {
         // The last step of each condition is its optimum.
         let compared = done + self.request.study.dataset.conditions().len() >= total;
         self.compared.fetch_or(compared, Ordering::Relaxed);
-        if self.started.elapsed() > PATIENCE {
+        if self.started.elapsed() > CANCEL_GRACE {
             self.desk.outbox.send(Reply::Progress { generation: self.request.generation, done, total });
         }
     }
@@ -515,7 +515,7 @@ mod tests {
     fn identifying_anew_begins_nothing_else_again_that_was_stopped() {
         let worker = Worker::start(Arc::new(Engine::default), Arc::new(|| ())).unwrap();
         let (across, identifications) = (Some(long_across()), vec![long_identification()]);
-        worker.want_beside(Beside { across, identifications, ..Beside::default() });
+        worker.want_beside(BackgroundJobs { across, identifications, ..BackgroundJobs::default() });
         worker.stop();
         assert!(worker.background().stopped && worker.background().identification.is_none());
         worker.resume_identifications();

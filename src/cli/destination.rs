@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use gdcm_core::dataset::{ConditionId, Dataset, DatasetHeader};
-use gdcm_core::study::TakenModels;
+use gdcm_core::study::AdoptedModels;
 use gdcm_files::{Opened, OutputSet, add_dataset, load_any};
 
 use super::failure::Failure;
@@ -78,7 +78,7 @@ impl Destination {
     }
 
     /// Puts models and records into a condition.
-    pub(super) fn take(&mut self, condition: ConditionId, taken: &TakenModels) -> Result<(), Failure> {
+    pub(super) fn take(&mut self, condition: ConditionId, taken: &AdoptedModels) -> Result<(), Failure> {
         let refused =
             |reason: String| Failure::NoModels { reason: format!("the dataset does not take the models: {reason}") };
         let dataset = taken.put_into(&self.dataset, condition).map_err(|error| refused(error.to_string()))?;

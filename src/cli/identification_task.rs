@@ -9,7 +9,7 @@ use gdcm_core::identification::{
     ChannelPreparation, FlightRecord, Identification, IdentificationError, Options, Preparation, Role, identify,
 };
 use gdcm_core::records::{RecordChannels, RecordTable};
-use gdcm_core::study::{LateChannel, pieces_used};
+use gdcm_core::study::{ChannelTimeSkew, pieces_used};
 use gdcm_files::IdentifiedModels;
 
 use super::destination::Group;
@@ -69,7 +69,7 @@ impl IdentificationTask {
     /// delay out.
     pub(super) fn late_channel(&self, found: &Identification, dataset: &Dataset) -> Option<String> {
         let condition = dataset.condition(self.condition?)?;
-        let late = LateChannel::of_condition(&found.measured, self.options.band, condition)?;
+        let late = ChannelTimeSkew::of_condition(&found.measured, self.options.band, condition)?;
         let signal = late.signal(dataset)?;
         let Preparation { inputs, outputs, .. } = &self.options.preparation;
         let known = if late.role == Role::Input { inputs } else { outputs }.get(late.index)?.delay_s;

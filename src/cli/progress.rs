@@ -8,7 +8,7 @@ use gdcm_core::identification::Watch;
 use gdcm_core::study::Progress;
 
 /// An analysis that is done sooner needs no progress.
-const PATIENCE: Duration = Duration::from_millis(500);
+const CANCEL_GRACE: Duration = Duration::from_millis(500);
 
 /// A bar on standard error, where that is a terminal, once the analysis takes longer than half a second.
 pub(super) struct TerminalProgress {
@@ -40,7 +40,7 @@ impl Progress for TerminalProgress {
     }
 
     fn advanced(&self, done: usize, total: usize) {
-        if self.bar.is_hidden() && self.started.elapsed() >= PATIENCE {
+        if self.bar.is_hidden() && self.started.elapsed() >= CANCEL_GRACE {
             // Draws nothing where standard error is no terminal.
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }

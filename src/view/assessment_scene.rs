@@ -4,7 +4,7 @@ use gdcm_core::dataset::{Condition, ConditionId, Pair};
 use gdcm_core::fidelity::CostAverage;
 use gdcm_core::schedule::CostChange;
 use gdcm_core::study::{
-    AskedFigure, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, Table, held_out_verdict,
+    AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, ExplainTarget, Table, held_out_verdict,
 };
 use gdcm_core::units::signed;
 
@@ -112,7 +112,7 @@ fn bar(state: &State, table: &AssessmentTable, pair: Pair, condition: &Condition
         ),
         (None, why) => (BarValue::LeftOut { why }, String::new()),
     };
-    let asked = ("Change of J".to_owned(), AskedFigure::CostChange(id, pair, assessment_choice(state)));
+    let asked = ("Change of J".to_owned(), ExplainTarget::CostChange(id, pair, assessment_choice(state)));
     let figures = match value {
         BarValue::Change { .. } => vec![asked],
         BarValue::LeftOut { .. } => Vec::new(),

@@ -7,7 +7,7 @@ use egui::ThemePreference;
 use egui_tiles::LinearDir;
 
 use gdcm_core::dataset::{ConditionId, ModelId, Pair};
-use gdcm_core::study::{AcrossRole, AskedFigure, Edit, ExportFormat, Table};
+use gdcm_core::study::{AcrossRole, Edit, ExplainTarget, ExportFormat, Table};
 use gdcm_files::figure::{ColumnWidth, FigureFormat};
 
 use super::arrangement::{Preset, View};
@@ -15,7 +15,7 @@ use super::assembling::AssemblingCommand;
 use super::assessment_scene::AssessedFigures;
 use super::bars::Bar;
 use super::curve_display::CurveCommand;
-use super::looks::Looks;
+use super::looks::PlotStyle;
 use super::net_gain_scene::PairSet;
 use super::plot::{Across, FrequencyUnit, Measure};
 use super::records::RecordsCommand;
@@ -65,7 +65,7 @@ pub enum Command {
     /// Assess something else, or show it in another form.
     Assess(AssessedFigures),
     /// Show how a figure was computed, or put that away.
-    Explain(Option<AskedFigure>),
+    Explain(Option<ExplainTarget>),
     /// Read frequencies in another unit.
     SetFrequencyUnit(FrequencyUnit),
     /// Show the curves of the plots over frequency in another way.
@@ -73,7 +73,7 @@ pub enum Command {
     /// Show all models again, and select none.
     EndIsolation,
     /// Draw curves in another way.
-    SetLooks(Looks),
+    SetLooks(PlotStyle),
     /// Bring every curve back into view.
     FitPlots,
     /// Follow the desktop's theme, or not.

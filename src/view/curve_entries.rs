@@ -5,7 +5,7 @@ use egui::Key;
 use super::command::Command;
 use super::command_table::{Entry, Menu};
 use super::curve_display::CurveCommand;
-use super::looks::{CurveColors, Looks};
+use super::looks::{CurveColors, PlotStyle};
 use super::plot::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use super::state::State;
 
@@ -72,15 +72,15 @@ fn unit_entries(state: &State) -> Vec<Entry> {
     ]
 }
 
-fn look_entries(looks: Looks) -> Vec<Entry> {
+fn look_entries(looks: PlotStyle) -> Vec<Entry> {
     let mut entries = Vec::new();
     for curve_colors in CurveColors::ALL.into_iter().filter(|colors| *colors != looks.curve_colors) {
-        let command = Command::SetLooks(Looks { curve_colors, ..looks });
+        let command = Command::SetLooks(PlotStyle { curve_colors, ..looks });
         let meaning = "For all eyes: colours that stay apart for people who do not see red, green or blue as others do";
         entries.push(Entry::new(curve_colors.name(), meaning, command).within(Menu::Curves, 1));
     }
-    for line_width in Looks::LINE_WIDTHS {
-        let command = Command::SetLooks(Looks { line_width, ..looks });
+    for line_width in PlotStyle::LINE_WIDTHS {
+        let command = Command::SetLooks(PlotStyle { line_width, ..looks });
         let entry = Entry::new(format!("Lines × {line_width}"), "Widths of all curves, by the usual ones", command);
         entries.push(entry.within(Menu::Curves, 2).enabled(looks.line_width != line_width));
     }

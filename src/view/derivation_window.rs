@@ -2,7 +2,7 @@
 
 use egui::{Context, CursorIcon, Id, Label, Response, RichText, Sense, Ui, WidgetText, Window};
 
-use gdcm_core::study::{AskedFigure, Derivation, derivation};
+use gdcm_core::study::{Derivation, ExplainTarget, derivation};
 
 use super::command::Command;
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
@@ -61,7 +61,7 @@ fn text_of(found: &Derivation) -> String {
 pub fn figure_ui(
     ui: &mut Ui,
     text: impl Into<WidgetText>,
-    asked: AskedFigure,
+    asked: ExplainTarget,
     commands: &mut Vec<Command>,
 ) -> Response {
     let response = ui.add(Label::new(text).sense(Sense::click()).selectable(false));
@@ -72,7 +72,7 @@ pub fn figure_ui(
 }
 
 /// The part of a menu that asks how figures were computed.
-pub fn question_menu_ui(ui: &mut Ui, figures: Vec<(String, AskedFigure)>, commands: &mut Vec<Command>) {
+pub fn question_menu_ui(ui: &mut Ui, figures: Vec<(String, ExplainTarget)>, commands: &mut Vec<Command>) {
     ui.menu_button(QUESTION, |ui| {
         for (name, asked) in figures {
             if ui.button(name).clicked() {

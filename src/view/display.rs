@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use gdcm_core::dataset::{ConditionId, ModelId, Pair};
-use gdcm_core::study::{AcrossRole, AskedFigure};
+use gdcm_core::study::{AcrossRole, ExplainTarget};
 
 use super::across_scene::CachedAcross;
 use super::arrangement::Arrangement;
@@ -12,7 +12,7 @@ use super::bode_scene::CachedShapes;
 use super::curve_display::CurveDisplay;
 use super::error_scene::CachedErrors;
 use super::evidence_scene::CachedEvidence;
-use super::looks::Looks;
+use super::looks::PlotStyle;
 use super::modes_scene::CachedModes;
 use super::net_gain_scene::PairSet;
 use super::plot::{
@@ -33,13 +33,13 @@ pub struct Display {
     /// The only model shown beside the representatives.
     pub isolated: Option<ModelId>,
     /// The figure whose derivation is shown.
-    pub asked: Option<AskedFigure>,
+    pub asked: Option<ExplainTarget>,
     /// How the plots share the middle of the window.
     pub arrangement: Arrangement,
     /// Unit of frequencies.
     pub unit: FrequencyUnit,
     /// How curves are drawn.
-    pub looks: Looks,
+    pub looks: PlotStyle,
     /// How the plots over frequency show their curves.
     pub curves: CurveDisplay,
     /// Ranges and transforms of the Bode plot.
@@ -115,7 +115,7 @@ impl Display {
             asked: None,
             arrangement: Arrangement::default(),
             unit: FrequencyUnit::default(),
-            looks: Looks::default(),
+            looks: PlotStyle::default(),
             curves: CurveDisplay::default(),
             bode: BodeView::default(),
             error: BodeView::default(),

@@ -31,14 +31,14 @@ impl CurveColors {
 /// How the engineer wants curves to be drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Looks {
+pub struct PlotStyle {
     /// The colours of their roles.
     pub curve_colors: CurveColors,
     /// What their widths are multiplied by.
     pub line_width: f32,
 }
 
-impl Looks {
+impl PlotStyle {
     /// What widths can be multiplied by.
     pub const LINE_WIDTHS: [f32; 6] = [0.5, 0.75, 1.0, 1.5, 2.0, 3.0];
 
@@ -49,7 +49,7 @@ impl Looks {
     }
 }
 
-impl Default for Looks {
+impl Default for PlotStyle {
     fn default() -> Self {
         Self { curve_colors: CurveColors::default(), line_width: 1.0 }
     }
@@ -70,8 +70,8 @@ mod tests {
     use egui::Rgba;
 
     use super::*;
-    use crate::view::plot::RoleLook;
     use crate::view::palette::Palette;
+    use crate::view::plot::RoleLook;
     use crate::view::plot::{LineLook, Role};
 
     /// What is seen of a linear colour: all of it, or what is left without one kind of cones. Machado, Oliveira and Fernandes,
@@ -124,7 +124,7 @@ mod tests {
     /// The looks of every role in both themes.
     fn roles(curve_colors: CurveColors) -> Vec<Vec<(Role, LineLook)>> {
         let of = |theme: Palette| {
-            let palette = theme.with_looks(Looks { curve_colors, ..Looks::default() });
+            let palette = theme.with_looks(PlotStyle { curve_colors, ..PlotStyle::default() });
             Role::ALL.into_iter().map(|role| (role, role.look(false, &palette))).collect()
         };
         [Palette::dark(), Palette::light()].map(of).to_vec()

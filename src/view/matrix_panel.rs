@@ -8,7 +8,7 @@ use egui::{
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::Pair;
 use gdcm_core::fidelity::{ACCEPTABLE, INDISTINGUISHABLE};
-use gdcm_core::study::{AskedFigure, ConditionAnalysis, Edit, Setting, Uncertainty, Undefined};
+use gdcm_core::study::{ConditionAnalysis, Edit, ExplainTarget, Setting, Uncertainty, Undefined};
 use gdcm_core::uncertainty::{Bar, Scalar};
 use gdcm_core::units::s_to_ms;
 
@@ -270,12 +270,12 @@ impl<'a> Cell<'a> {
         if let Some(shown) = self.shown.filter(|_| !self.is_undefined()) {
             let (id, pair) = (shown.condition.id(), self.pair);
             let figures = [
-                ("G", AskedFigure::DeltaGain(id, pair)),
-                ("D", AskedFigure::DeltaDelay(id, pair)),
-                ("Net gain", AskedFigure::NetGain(id, pair)),
-                ("Net delay", AskedFigure::NetDelay(id, pair)),
-                ("J before", AskedFigure::CostBefore(id, pair)),
-                ("J after", AskedFigure::CostAfter(id, pair)),
+                ("G", ExplainTarget::DeltaGain(id, pair)),
+                ("D", ExplainTarget::DeltaDelay(id, pair)),
+                ("Net gain", ExplainTarget::NetGain(id, pair)),
+                ("Net delay", ExplainTarget::NetDelay(id, pair)),
+                ("J before", ExplainTarget::CostBefore(id, pair)),
+                ("J after", ExplainTarget::CostAfter(id, pair)),
             ];
             question_menu_ui(ui, figures.map(|(name, asked)| (name.to_owned(), asked)).into(), commands);
         }

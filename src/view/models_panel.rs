@@ -4,7 +4,7 @@ use egui::{Checkbox, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use gdcm_core::dataset::{BundleKind, Dynamics, Model, ModelId, Origin};
 use gdcm_core::fidelity::SUGGESTION_RATIO;
-use gdcm_core::study::{AskedFigure, Edit};
+use gdcm_core::study::{Edit, ExplainTarget};
 
 use super::command::Command;
 use super::command_table::open_suggestions;
@@ -157,9 +157,9 @@ impl<'a> ModelRow<'a> {
         }
         entry(ui, "Copy its name", Command::CopyText(self.model.name.clone()));
         let ratio =
-            self.ratio.map(|_| ("Discontinuity ratio".to_owned(), AskedFigure::DiscontinuityRatio(self.id.clone())));
-        let score = self.score.map(|_| ("Mean distance".to_owned(), AskedFigure::Score(self.id.clone())));
-        let figures: Vec<(String, AskedFigure)> = ratio.into_iter().chain(score).collect();
+            self.ratio.map(|_| ("Discontinuity ratio".to_owned(), ExplainTarget::DiscontinuityRatio(self.id.clone())));
+        let score = self.score.map(|_| ("Mean distance".to_owned(), ExplainTarget::Score(self.id.clone())));
+        let figures: Vec<(String, ExplainTarget)> = ratio.into_iter().chain(score).collect();
         if !figures.is_empty() {
             question_menu_ui(ui, figures, commands);
         }

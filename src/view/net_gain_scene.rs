@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_core::correction::{Channel as CorrectedChannel, ChannelCorrection};
 use gdcm_core::dataset::{Channel, ConditionId, FlightState, Pair};
-use gdcm_core::study::{Analysis, AskedFigure, ConditionAnalysis};
+use gdcm_core::study::{Analysis, ConditionAnalysis, ExplainTarget};
 use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::s_to_ms;
 use gdcm_files::figure::{Classes, is_scheduled, scheduled_samples};
@@ -82,7 +82,7 @@ pub fn net_gain_panels(state: &State) -> Vec<GainPanel> {
             of: Box::new(move |correction: &ChannelCorrection| correction.net_gain(pair).value()),
             bounds: None,
             scalar: Scalar::NetGain(pair),
-            asked: Box::new(move |id, _| vec![(format!("Net gain, condition {id}"), AskedFigure::NetGain(id, pair))]),
+            asked: Box::new(move |id, _| vec![(format!("Net gain, condition {id}"), ExplainTarget::NetGain(id, pair))]),
         };
         figure.panel(state, analysis, Across::Airspeed)
     };
@@ -132,13 +132,13 @@ pub fn channel_panels(state: &State, measure: Measure, across: Across) -> (Vec<G
 fn asked_of_channel(measure: Measure, channel: CorrectedChannel) -> AskedOf {
     Box::new(move |id, airspeed_kt| match measure {
         Measure::Gain => vec![
-            ("Gain".to_owned(), AskedFigure::Gain(id, channel)),
-            ("Bounds of the gains".to_owned(), AskedFigure::GainBounds(id)),
-            ("Scheduled gain".to_owned(), AskedFigure::ScheduledGain(channel, airspeed_kt)),
+            ("Gain".to_owned(), ExplainTarget::Gain(id, channel)),
+            ("Bounds of the gains".to_owned(), ExplainTarget::GainBounds(id)),
+            ("Scheduled gain".to_owned(), ExplainTarget::ScheduledGain(channel, airspeed_kt)),
         ],
         Measure::Delay => vec![
-            ("Delay".to_owned(), AskedFigure::Delay(id, channel)),
-            ("Bound of the delays".to_owned(), AskedFigure::DelayBound(id)),
+            ("Delay".to_owned(), ExplainTarget::Delay(id, channel)),
+            ("Bound of the delays".to_owned(), ExplainTarget::DelayBound(id)),
         ],
     })
 }

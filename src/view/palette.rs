@@ -7,7 +7,7 @@ use egui::{
     Visuals, vec2,
 };
 
-use super::looks::{self, CurveColors, Looks};
+use super::looks::{self, CurveColors, PlotStyle};
 
 /// Size of running text \[pt\].
 pub const BODY_SIZE: f32 = 13.0;
@@ -114,7 +114,7 @@ impl Palette {
     }
 
     /// This palette with curves as the engineer wants them.
-    pub fn with_looks(self, looks: Looks) -> Self {
+    pub fn with_looks(self, looks: PlotStyle) -> Self {
         let line_width = looks.line_width;
         match looks.curve_colors {
             CurveColors::Standard => Self { line_width, ..self },
@@ -280,7 +280,7 @@ mod tests {
     fn curves_stand_out_from_the_background_of_both_themes() {
         for theme in [Palette::dark(), Palette::light()] {
             for curve_colors in CurveColors::ALL {
-                let palette = theme.with_looks(Looks { curve_colors, ..Looks::default() });
+                let palette = theme.with_looks(PlotStyle { curve_colors, ..PlotStyle::default() });
                 let Palette { nominal, perturbed, identified, corrected, rejected, .. } = palette;
                 for color in [nominal, perturbed, identified, corrected, rejected] {
                     assert!(contrast(color, palette.background) > OF_LINES, "{color:?} of {palette:?}");

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::arrangement::Arrangement;
 use super::display::Display;
-use super::looks::Looks;
+use super::looks::PlotStyle;
 use super::plot::{FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit, Role};
 
 /// How the engineer likes the window. What a later version adds has its usual value where a text of an earlier one is read.
@@ -30,7 +30,7 @@ pub struct Preferences {
     /// Whether the values at the cursor are not listed.
     pub lists_no_values: bool,
     /// How curves are drawn.
-    pub looks: Looks,
+    pub looks: PlotStyle,
 }
 
 impl Preferences {

@@ -5,7 +5,7 @@ use egui::{Align, Button, CollapsingHeader, Color32, Grid, Layout, RichText, Rol
 use gdcm_core::correction::{self, GainObjective, Outcome, Quantity, kkt_residual};
 use gdcm_core::dataset::{Channel, Pair};
 use gdcm_core::study::{
-    AskedFigure, ConditionAnalysis, Edit, PhaseCorrection, Remark, RemarkKind, Setting, lead_words, servo_words,
+    ConditionAnalysis, Edit, ExplainTarget, PhaseCorrection, Remark, RemarkKind, Setting, lead_words, servo_words,
 };
 use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::s_to_ms;
@@ -200,7 +200,7 @@ fn channel_table_ui(
         for (index, channel) in channels.iter().enumerate() {
             let (gain, delay_ms) = side.figures(shown, index);
             ui.label(RichText::new(&channel.name).size(BODY_SIZE));
-            let asked = AskedFigure::Gain(id, side.channel(index));
+            let asked = ExplainTarget::Gain(id, side.channel(index));
             let of_gain = Scalar::ChannelGain(side.channel(index));
             let hint = format!("{gain}{}\nclick: how was this computed?", words(of_gain));
             right(ui, |ui| {
@@ -210,7 +210,7 @@ fn channel_table_ui(
             .on_hover_text(hint);
             let text = if delay_ms == 0.0 { "0".to_owned() } else { format!("{delay_ms:.1}") };
             let color = if delay_ms == 0.0 { palette.dim_text } else { palette.text };
-            let asked = AskedFigure::Delay(id, side.channel(index));
+            let asked = ExplainTarget::Delay(id, side.channel(index));
             let filter = shown.led.as_ref().and_then(|led| led.leads.filter(side.channel(index)));
             let filter = filter.map(|filter| format!("\nlead: {}", servo_words(filter))).unwrap_or_default();
             let of_delay = Scalar::ChannelDelay(side.channel(index));
@@ -247,12 +247,12 @@ fn objective_ui(ui: &mut Ui, shown: &ConditionAnalysis, palette: &Palette, comma
     let dim = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
     let id = shown.condition.id();
     ui.horizontal_wrapped(|ui| {
-        let label = figure_ui(ui, dim(gains), AskedFigure::GainObjective(id), commands);
+        let label = figure_ui(ui, dim(gains), ExplainTarget::GainObjective(id), commands);
         label.on_hover_text(format!(
             "eq. (7): {}{unit}, lower bound {}{unit}",
             shown.gains.objective, shown.gains.proof.lower_bound
         ));
-        let label = figure_ui(ui, dim(delays), AskedFigure::DelayObjective(id), commands);
+        let label = figure_ui(ui, dim(delays), ExplainTarget::DelayObjective(id), commands);
         let equation = if shown.led.is_some() { "M15.4" } else { "eq. (11)" };
         label.on_hover_text(format!(
             "{equation}: {} s², a convex program; KKT residual {:.0e} s",

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use super::content_fault::ContentFault;
 use super::exports::ExportFault;
-use super::flaw::Flaw;
+use super::flaw::ContentError;
 use super::json_text::line_of;
 use super::variables::VariableFault;
-use gdcm_core::dataset::Place;
+use gdcm_core::dataset::Location;
 use gdcm_core::message_text::{quoted, sanitized, sanitized_path};
 
 /// Why a file could not be read or written: one line that names the file, and the place in it.
@@ -63,7 +63,7 @@ pub enum FileError {
         /// The file.
         path: PathBuf,
         /// What was being read.
-        place: Box<Place>,
+        place: Box<Location>,
         /// Line, counted from 1.
         line: usize,
         /// Column in bytes, counted from 1.
@@ -75,7 +75,7 @@ pub enum FileError {
         /// The file.
         path: PathBuf,
         /// What was being read.
-        place: Box<Place>,
+        place: Box<Location>,
         /// Line, counted from 1.
         line: usize,
         /// Column in bytes, counted from 1.
@@ -114,7 +114,7 @@ pub enum FileError {
         /// The file.
         path: PathBuf,
         /// Where in the file.
-        place: Box<Place>,
+        place: Box<Location>,
         /// What is wrong there.
         fault: Box<ContentFault>,
         /// Line at which the condition or the model begins, counted from 1; none where the fault names its own.
@@ -233,14 +233,14 @@ impl FileError {
         FileError::Export { path: path.to_owned(), fault }
     }
 
-    pub(super) fn content(path: &Path, flaw: Flaw) -> Self {
-        let Flaw { place, fault } = flaw;
+    pub(super) fn content(path: &Path, flaw: ContentError) -> Self {
+        let ContentError { place, fault } = flaw;
         FileError::Content { path: path.to_owned(), place, fault, line: None }
     }
 
     /// As [`FileError::content`], with the line of the JSON text at which the condition or the model begins.
-    pub(super) fn content_of(path: &Path, flaw: Flaw, text: &[u8]) -> Self {
-        let Flaw { place, fault } = flaw;
+    pub(super) fn content_of(path: &Path, flaw: ContentError, text: &[u8]) -> Self {
+        let ContentError { place, fault } = flaw;
         let line = line_of(text, &place);
         FileError::Content { path: path.to_owned(), place, fault, line }
     }

@@ -10,11 +10,11 @@ use serde_json::value::RawValue;
 
 use super::content_fault::ContentFault;
 use super::file_error::FileError;
-use super::flaw::Flaw;
+use super::flaw::ContentError;
 use super::outline::Outline;
 use super::place::{Step, location_of};
 use super::unknown_keys::UnknownKeys;
-use gdcm_core::dataset::{BundleKind, Place};
+use gdcm_core::dataset::{BundleKind, Location};
 use gdcm_core::message_text::{sanitized, shortened};
 use gdcm_core::units::number;
 
@@ -79,7 +79,7 @@ fn check_object(text: &[u8], path: &Path) -> Result<(), FileError> {
     }
     let (expected, found) = ("an object".to_owned(), "a list".to_owned());
     let fault = ContentFault::Type { expected, found, line: 1, column: 1 };
-    Err(FileError::content(path, Flaw::new(Place::default(), fault)))
+    Err(FileError::content(path, ContentError::new(Location::default(), fault)))
 }
 
 fn step_of(segment: &serde_path_to_error::Segment) -> Option<Step> {
@@ -91,23 +91,25 @@ fn step_of(segment: &serde_path_to_error::Segment) -> Option<Step> {
 }
 
 /// Puts serde_json's complaint into the engineer's words.
-fn json_error(text: &[u8], path: &Path, place: Place, error: &serde_json::Error) -> FileError {
+fn json_error(text: &[u8], path: &Path, place: Location, error: &serde_json::Error) -> FileError {
     let (line, column) = (error.line(), error.column());
     let full = error.to_string();
     let reason = full.rsplit_once(" at line ").map_or(full.as_str(), |(reason, _)| reason).to_owned();
     let path_owned = path.to_owned();
     match error.classify() {
         Category::Eof => FileError::CutOff { path: path_owned, place: Box::new(place), line, column },
-        Category::Data => FileError::content(path, Flaw::new(place, data_fault(reason, line, column))),
+        Category::Data => FileError::content(path, ContentError::new(place, data_fault(reason, line, column))),
         _ if reason.starts_with("recursion limit") => {
-            FileError::content(path, Flaw::new(place, ContentFault::TooDeep { line, column }))
+            FileError::content(path, ContentError::new(place, ContentFault::TooDeep { line, column }))
         }
         _ => match token_at(text, line, column).filter(|token| is_number_like(token)) {
-            Some(found) => FileError::content(path, Flaw::new(place, ContentFault::NotFinite { found, line, column })),
+            Some(found) => {
+                FileError::content(path, ContentError::new(place, ContentFault::NotFinite { found, line, column }))
+            }
             // A word where the reader can tell at once that none of those it knows will stand there.
             None if serde_json::from_slice::<IgnoredAny>(text).is_ok() => {
                 let (expected, found) = ("a text in quotation marks".to_owned(), "something else".to_owned());
-                FileError::content(path, Flaw::new(place, ContentFault::Type { expected, found, line, column }))
+                FileError::content(path, ContentError::new(place, ContentFault::Type { expected, found, line, column }))
             }
             None => {
                 let reason = syntax_words(&reason);
@@ -190,7 +192,7 @@ fn expected_words(expected: &str) -> String {
 }
 
 /// The line at which the condition or the model of a place begins, counted from 1.
-pub(super) fn line_of(text: &[u8], place: &Place) -> Option<usize> {
+pub(super) fn line_of(text: &[u8], place: &Location) -> Option<usize> {
     let mut value = entry(serde_json::from_slice(text).ok()?, "conditions", place.condition.as_ref()?.position)?;
     if let Some(model) = &place.model {
         let key = match model.bundle {

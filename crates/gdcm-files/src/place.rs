@@ -1,6 +1,6 @@
 //! Where in a file something stands, in the engineer's words.
 
-use gdcm_core::dataset::{BundleKind, ConditionPlace, ModelPlace, Place};
+use gdcm_core::dataset::{BundleKind, ConditionPlace, Location, ModelPlace};
 
 use super::outline::Outline;
 use gdcm_core::message_text::{sanitized, shortened};
@@ -15,8 +15,8 @@ pub(super) enum Step {
 }
 
 /// The location that these steps lead to.
-pub(super) fn location_of(steps: &[Step], outline: &Outline) -> Place {
-    let mut place = Place::default();
+pub(super) fn location_of(steps: &[Step], outline: &Outline) -> Location {
+    let mut place = Location::default();
     let mut rest = steps;
     if let [Step::Key(key), Step::Entry(index), after @ ..] = rest
         && key == "conditions"

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_core::correction::{GainBounds, GainObjective, GainSource, LeadSettings};
 use gdcm_core::dataset::limits::MOST_PAIRS;
-use gdcm_core::dataset::{Band, Dataset, PairTable, Place};
+use gdcm_core::dataset::{Band, Dataset, Location, PairTable};
 use gdcm_core::fidelity::CostAverage;
 use gdcm_core::response::LeadOrder;
 use gdcm_core::schedule::{DEFAULT_TOLERANCE_KT, ScheduleKind, ScheduleSettings, ScheduledQuantity, SecondVariable};
@@ -12,7 +12,7 @@ use gdcm_core::study::{DEFAULT_AGREEMENT_DB, DelayFrom, EditRefusal, PhaseCorrec
 use gdcm_core::uncertainty::UncertaintySettings;
 
 use super::content_fault::ContentFault;
-use super::flaw::Flaw;
+use super::flaw::ContentError;
 use super::list::list;
 
 /// Every setting that changes a result.
@@ -155,12 +155,12 @@ impl LeadSettingsEntry {
         *self == Self::default()
     }
 
-    fn order(&self) -> Result<LeadOrder, Flaw> {
+    fn order(&self) -> Result<LeadOrder, ContentError> {
         let orders = [LeadOrder::First, LeadOrder::Second];
         orders.into_iter().find(|order| order.number() == self.order).ok_or_else(|| {
             let (expected, found) = ("1 or 2".to_owned(), self.order as f64);
             let refusal = EditRefusal::OutOfRange { setting: "order of the lead filters", expected, found };
-            Flaw::new(Place::entry("settings, lead, order"), refusal)
+            ContentError::new(Location::entry("settings, lead, order"), refusal)
         })
     }
 }
@@ -296,10 +296,10 @@ impl SettingsEntry {
     }
 
     /// Takes everything but the two lists of responses into `settings`; each value has to be within its range.
-    pub(super) fn take_into(&self, settings: &mut Settings) -> Result<(), Flaw> {
-        let place = |key: &str| Place::entry(format!("settings, {key}"));
+    pub(super) fn take_into(&self, settings: &mut Settings) -> Result<(), ContentError> {
+        let place = |key: &str| Location::entry(format!("settings, {key}"));
         let [min, max] = self.band_rad_s;
-        let band = Band::new(min, max).map_err(|error| Flaw::new(place("band_rad_s"), error))?;
+        let band = Band::new(min, max).map_err(|error| ContentError::new(place("band_rad_s"), error))?;
         let bounds = self.gain_bounds.map(|[lower, upper]| GainBounds { lower, upper });
         let decided = [
             ("band_rad_s", Setting::Band(band)),
@@ -323,7 +323,7 @@ impl SettingsEntry {
             ("error_bars", Setting::Uncertainty(self.error_bars.settings())),
         ];
         for (key, setting) in decided {
-            settings.apply(&setting).map_err(|refusal| Flaw::new(place(key), refusal))?;
+            settings.apply(&setting).map_err(|refusal| ContentError::new(place(key), refusal))?;
         }
         Ok(())
     }
@@ -340,13 +340,13 @@ impl ScheduleEntry {
         Self { kind, degree, of, delays, airspeed_tolerance_kt, tau_degree, second_variable }
     }
 
-    fn settings(&self) -> Result<ScheduleSettings, Flaw> {
+    fn settings(&self) -> Result<ScheduleSettings, ContentError> {
         let kind = match (self.kind, self.degree) {
             (KindWord::Table, _) => ScheduleKind::Table,
             (KindWord::Polynomial, Some(degree)) => ScheduleKind::Polynomial { degree },
             (KindWord::Polynomial, None) => {
                 let fault = ContentFault::MissingKey { key: "degree".to_owned() };
-                return Err(Flaw::new(Place::entry("settings, schedule"), fault));
+                return Err(ContentError::new(Location::entry("settings, schedule"), fault));
             }
         };
         let Self { of: quantity, delays, airspeed_tolerance_kt, tau_degree, .. } = *self;

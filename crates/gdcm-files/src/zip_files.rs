@@ -5,7 +5,7 @@ use std::io::Read;
 use flate2::bufread::DeflateDecoder;
 use rawzip::{CompressionMethod, ZipArchive, ZipFileHeaderRecord, ZipSliceArchive};
 
-use super::variables::{Meter, VariableFault};
+use super::variables::{MemoryBudget, VariableFault};
 
 /// The most bytes that one byte of deflate (RFC 1951) can become.
 const LARGEST_RATIO: u64 = 1032;
@@ -43,7 +43,7 @@ pub(super) fn visit_files(
 
 impl ZipFile<'_, '_> {
     /// Unpacks the file, and no further than the archive says: a few kilobytes can unpack to gigabytes. `name` is what faults call it.
-    pub(super) fn unpack(&self, name: &str, meter: &Meter<'_>) -> Result<Vec<u8>, VariableFault> {
+    pub(super) fn unpack(&self, name: &str, meter: &MemoryBudget<'_>) -> Result<Vec<u8>, VariableFault> {
         let unsupported = |what: String| {
             let remedy = "pack it again by deflate, without a password".to_owned();
             VariableFault::Unsupported { variable: name.to_owned(), what, remedy }

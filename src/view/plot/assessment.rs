@@ -4,7 +4,7 @@ use egui::{Align2, Pos2, Rect, RichText, Stroke, Ui, UiBuilder, Vec2, pos2, vec2
 use egui_plot::{PlotPoint, PlotTransform};
 
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::study::AskedFigure;
+use gdcm_core::study::ExplainTarget;
 
 use super::axes::{caption_font, use_frame_colors};
 use super::bar::{AssessmentBar, AssessmentPanel, BarValue};
@@ -40,7 +40,7 @@ pub enum AssessmentEvent {
         condition: ConditionId,
     },
     /// How a figure was computed is asked.
-    Asked(AskedFigure),
+    Asked(ExplainTarget),
 }
 
 /// What the assessment remembers between frames.

@@ -17,7 +17,7 @@ use super::pixel::Pixel;
 use super::plot_keys::plot_keys;
 use super::role::Role;
 use super::rule::{rules_ui, strips_ui};
-use super::still_image::{ImageItem, MANY, StillImage, StillScene};
+use super::still_image::{CachedRaster, ImageItem, MANY, StillScene};
 use super::wheel::{Turn, turned};
 use crate::view::palette::Palette;
 
@@ -165,7 +165,7 @@ fn image_of_many(
     ctx: &Context,
     scene: &BodeScene<'_>,
     drawn: &DrawnCurves,
-    image: &mut StillImage,
+    image: &mut CachedRaster,
     transform: &PlotTransform,
     palette: &Palette,
 ) -> Option<ImageItem> {

@@ -11,7 +11,7 @@ use super::drawn_curves::DrawnCurves;
 use super::legend::LegendState;
 use super::plot_axis::PlotAxis;
 use super::range::Range;
-use super::still_image::StillImage;
+use super::still_image::CachedRaster;
 use super::value_unit::ValueUnit;
 use super::viewed_range::ViewedRange;
 
@@ -52,8 +52,8 @@ pub struct BodeView {
     phase_transform: Option<PlotTransform>,
     magnitude_curves: DrawnCurves,
     phase_curves: DrawnCurves,
-    magnitude_image: StillImage,
-    phase_image: StillImage,
+    magnitude_image: CachedRaster,
+    phase_image: CachedRaster,
 }
 
 impl Default for BodeView {
@@ -76,8 +76,8 @@ impl Default for BodeView {
             phase_transform: None,
             magnitude_curves: DrawnCurves::default(),
             phase_curves: DrawnCurves::default(),
-            magnitude_image: StillImage::default(),
-            phase_image: StillImage::default(),
+            magnitude_image: CachedRaster::default(),
+            phase_image: CachedRaster::default(),
         }
     }
 }
@@ -195,7 +195,7 @@ impl BodeView {
     }
 
     /// What a pane drew last: its lines, and the image of those that stand still.
-    pub(super) fn drawn(&mut self, pane: Pane) -> (&mut DrawnCurves, &mut StillImage) {
+    pub(super) fn drawn(&mut self, pane: Pane) -> (&mut DrawnCurves, &mut CachedRaster) {
         match pane {
             Pane::Magnitude => (&mut self.magnitude_curves, &mut self.magnitude_image),
             Pane::Phase => (&mut self.phase_curves, &mut self.phase_image),
@@ -225,7 +225,7 @@ impl BodeView {
         self.values(pane).choose(values);
     }
 
-    /// Looks `factor` times closer at a pane, with the point under `pointer` staying where it is.
+    /// PlotStyle `factor` times closer at a pane, with the point under `pointer` staying where it is.
     pub(super) fn zoom(&mut self, pane: Pane, pointer: Pos2, frequency_factor: f64, value_factor: f64) {
         let Some(transform) = self.transform(pane) else { return };
         let fixed = transform.value_from_position(pointer);
@@ -269,7 +269,7 @@ impl BodeView {
         self.pan(pane, by);
     }
 
-    /// Looks `factor` times closer at one axis of a pane, with what is beside `pointer` staying where it is.
+    /// PlotStyle `factor` times closer at one axis of a pane, with what is beside `pointer` staying where it is.
     pub(super) fn zoom_axis(&mut self, axis: PlotAxis, pane: Pane, pointer: Pos2, factor: f64) {
         let (frequencies, values) = if axis == PlotAxis::Frequency { (factor, 1.0) } else { (1.0, factor) };
         self.zoom(pane, pointer, frequencies, values);

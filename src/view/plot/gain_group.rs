@@ -4,7 +4,7 @@ use egui::{FontId, Pos2, Rect, RichText, Ui, UiBuilder, Vec2, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
 
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::study::AskedFigure;
+use gdcm_core::study::ExplainTarget;
 
 use super::axes::use_frame_colors;
 use super::dot::Dot;
@@ -30,7 +30,7 @@ pub enum GainEvent {
     /// A condition's dot was clicked with the key for commands held: into the schedule, or out of it.
     ScheduleToggled(ConditionId),
     /// How a figure was computed is asked.
-    Asked(AskedFigure),
+    Asked(ExplainTarget),
 }
 
 /// What the plots of gains over airspeed remember between frames.

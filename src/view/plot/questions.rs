@@ -3,10 +3,10 @@
 use egui::{Id, Response};
 
 use crate::view::derivation_window::QUESTION;
-use gdcm_core::study::AskedFigure;
+use gdcm_core::study::ExplainTarget;
 
 /// A figure that can be asked about, and its name.
-pub type NamedFigure = (String, AskedFigure);
+pub type NamedFigure = (String, ExplainTarget);
 
 /// Which figures a menu asks about, while it is open.
 #[derive(Clone, Debug, Default)]
@@ -17,7 +17,7 @@ pub(super) struct Questions {
 
 impl Questions {
     /// Opens the menu of a plot on a secondary click on `pointed`, and gives the figure that was chosen in it.
-    pub(super) fn ui(&mut self, response: &Response, pointed: &[NamedFigure]) -> Option<AskedFigure> {
+    pub(super) fn ui(&mut self, response: &Response, pointed: &[NamedFigure]) -> Option<ExplainTarget> {
         if response.secondary_clicked() {
             self.asked_of = (!pointed.is_empty()).then(|| (response.id, pointed.to_vec()));
         }

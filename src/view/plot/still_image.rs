@@ -33,18 +33,18 @@ pub(super) struct StillScene {
 /// the same, with its image:                       one rectangle is drawn
 /// ```
 #[derive(Clone, Default)]
-pub(super) struct StillImage {
+pub(super) struct CachedRaster {
     scene: Option<StillScene>,
     image: Option<(TextureHandle, Rect)>,
 }
 
-impl std::fmt::Debug for StillImage {
+impl std::fmt::Debug for CachedRaster {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.debug_struct("StillImage").field("scene", &self.scene).finish_non_exhaustive()
+        formatter.debug_struct("CachedRaster").field("scene", &self.scene).finish_non_exhaustive()
     }
 }
 
-impl StillImage {
+impl CachedRaster {
     /// The image of `scene`, if it has stood still since the last frame; `shapes` says what is in it.
     pub(super) fn of(
         &mut self,
@@ -195,7 +195,7 @@ mod tests {
     }
 
     /// Where the image is drawn.
-    fn image(still: &mut StillImage, ctx: &Context, scene: StillScene) -> Option<Rect> {
+    fn image(still: &mut CachedRaster, ctx: &Context, scene: StillScene) -> Option<Rect> {
         still.of(ctx, scene, Vec::new).map(|item| item.area)
     }
 
@@ -203,7 +203,7 @@ mod tests {
     fn what_stands_still_for_a_frame_becomes_an_image_until_it_moves() {
         let ctx = Context::default();
         ctx.run_ui(RawInput::default(), |_| {}).drop_without_applying_deltas();
-        let mut still = StillImage::default();
+        let mut still = CachedRaster::default();
         assert_eq!(image(&mut still, &ctx, scene(&[1, 2], 10.2)), None, "it may be moving");
         let area = image(&mut still, &ctx, scene(&[1, 2], 10.2)).expect("it stands still");
         assert!(area.contains_rect(scene(&[], 10.2).frame));

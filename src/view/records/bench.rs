@@ -9,7 +9,7 @@ use gdcm_core::identification::{
     ChannelPreparation, FlightRecord, Hold, Identification, IdentificationError, Options, Preparation, Role, Signal,
 };
 use gdcm_core::records::{RecordChannels, RecordGuess, RecordLayout, RecordTable};
-use gdcm_core::study::{IdentifyJob, OfferedModels, TakenModels, identified_bundle, pieces_used};
+use gdcm_core::study::{AdoptedModels, IdentifyJob, OfferedModels, identified_bundle, pieces_used};
 
 use super::simulation::TimeModel;
 
@@ -214,7 +214,7 @@ impl ConditionRecords {
     }
 
     /// What is taken into the condition, where something was identified.
-    pub fn taken(&self, offered: OfferedModels) -> Option<Arc<TakenModels>> {
+    pub fn taken(&self, offered: OfferedModels) -> Option<Arc<AdoptedModels>> {
         let found = self.identification()?;
         let used = self.used_rows().map(|(_, row)| row).zip(&found.record_uses);
         let entry = |(row, found): (&RecordRow, &gdcm_core::identification::RecordUse)| ConditionRecord {

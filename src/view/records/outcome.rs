@@ -11,7 +11,7 @@ use gdcm_core::dataset::BundleKind;
 use gdcm_core::identification::{
     Caution, Hold, Identification, IdentificationCaution, IdentificationError, Role, Signal,
 };
-use gdcm_core::study::{LateChannel, OfferedModels};
+use gdcm_core::study::{ChannelTimeSkew, OfferedModels};
 use gdcm_core::units::s_to_ms;
 
 use super::bench::{ConditionRecords, RecordsCommand};
@@ -151,7 +151,7 @@ fn late_channel_ui(
     let (dataset, condition) = (state.dataset(), state.condition());
     let Some(physics) = condition.bundle(BundleKind::Physics).get(condition.nominal()) else { return };
     let sources: [Source; 2] = [Arc::clone(found) as _, Arc::clone(condition) as _];
-    let of_condition = || LateChannel::of_condition(&found.measured, job.options.band, condition);
+    let of_condition = || ChannelTimeSkew::of_condition(&found.measured, job.options.band, condition);
     let Some(late) = *kept(ui, "late channel", &sources, (), of_condition) else { return };
     let Some(signal) = late.signal(dataset) else { return };
     let words = late.words(&signal.name, &physics.name);

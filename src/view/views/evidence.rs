@@ -10,7 +10,7 @@ use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::state::State;
 use crate::view::table_view::{Sorting, TableLook, table_ui};
 use gdcm_core::study::{Edit, Setting, Uncertainty, difference_table, second_variable_table};
-use gdcm_core::uncertainty::Split;
+use gdcm_core::uncertainty::VarianceDecomposition;
 
 /// Height of the bar of one scatter \[pt\].
 const BAR_HEIGHT: f32 = 15.0;
@@ -82,7 +82,7 @@ fn colors(palette: &Palette) -> [Color32; 3] {
     [palette.perturbed, palette.identified, palette.nominal]
 }
 
-fn split_ui(ui: &mut Ui, name: &str, split: Option<&Split>, level: f64, palette: &Palette) {
+fn split_ui(ui: &mut Ui, name: &str, split: Option<&VarianceDecomposition>, level: f64, palette: &Palette) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), BAR_HEIGHT + 3.0), Sense::hover());
     let words = split.map_or_else(|| "no degrees of freedom".to_owned(), |split| split_words(split, level));
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, format!("{name}: {words}")));
@@ -92,7 +92,9 @@ fn split_ui(ui: &mut Ui, name: &str, split: Option<&Split>, level: f64, palette:
     let [left, right] = [rect.left() + LABELS[0], (rect.right() - LABELS[1]).max(rect.left() + LABELS[0] + 60.0)];
     painter.text(pos2(right + 8.0, rect.center().y), Align2::LEFT_CENTER, &words, font, palette.text);
     let mut from = left;
-    for (share, color) in split.and_then(Split::shares).unwrap_or_default().into_iter().zip(colors(palette)) {
+    for (share, color) in
+        split.and_then(VarianceDecomposition::shares).unwrap_or_default().into_iter().zip(colors(palette))
+    {
         let to = from + (right - left) * share as f32;
         let part = Rect::from_x_y_ranges(from..=to, rect.top() + 1.0..=rect.top() + 1.0 + BAR_HEIGHT);
         painter.rect_filled(part, 0.0, color);
@@ -102,7 +104,7 @@ fn split_ui(ui: &mut Ui, name: &str, split: Option<&Split>, level: f64, palette:
 }
 
 /// "6.2 %, 2.7 times; rest 5.8 % (3.6 to 11.6)".
-fn split_words(split: &Split, level: f64) -> String {
+fn split_words(split: &VarianceDecomposition, level: f64) -> String {
     let percent = |variance: f64| 100.0 * variance.sqrt();
     let times = split.ratio().map_or_else(String::new, |ratio| format!(", {ratio:.1} times"));
     let interval =

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use gdcm_core::dataset::{BundleKind, ConditionId, Model, ModelId};
-use gdcm_core::study::{Edit, EditRefusal, Study, TakenModels};
+use gdcm_core::study::{AdoptedModels, Edit, EditRefusal, Study};
 use gdcm_files::embedded_example;
 
 fn study() -> Study {
@@ -11,10 +11,10 @@ fn study() -> Study {
 }
 
 /// The identified models of condition 1 under other names.
-fn others(study: &Study) -> Arc<TakenModels> {
+fn others(study: &Study) -> Arc<AdoptedModels> {
     let models = study.dataset.conditions()[0].bundle(BundleKind::Identified);
     let renamed = |model: &Model| Model { name: format!("{} again", model.name), ..model.clone() };
-    Arc::new(TakenModels { models: models.iter().map(renamed).collect(), records: Vec::new() })
+    Arc::new(AdoptedModels { models: models.iter().map(renamed).collect(), records: Vec::new() })
 }
 
 #[test]
@@ -39,7 +39,7 @@ fn models_are_taken_and_returned_and_decisions_about_absent_ones_go() {
 fn models_of_another_shape_are_refused_and_nothing_is_taken() {
     let mut study = study();
     let before = study.clone();
-    let nothing = Arc::new(TakenModels { models: Vec::new(), records: Vec::new() });
+    let nothing = Arc::new(AdoptedModels { models: Vec::new(), records: Vec::new() });
     let good = (ConditionId(1), others(&study));
     let refusal = study.apply(&Edit::TakeModels(vec![good, (ConditionId(2), nothing)])).unwrap_err();
     assert!(refusal.to_string().starts_with("condition 2: "), "{refusal}");

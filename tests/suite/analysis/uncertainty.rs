@@ -8,7 +8,8 @@ use gdcm_core::dataset::ModelId;
 use gdcm_core::schedule::{ScheduleKind, ScheduleSettings, SecondVariable};
 use gdcm_core::study::{AirspeedDifference, Cancelled, PairScatter, Progress, Uncertainty};
 use gdcm_core::uncertainty::{
-    Bar, Design, Difference, IdentificationSource, Part, Scalar, ScheduleBand, SecondVariableDesign, Split, holm,
+    Bar, Design, Difference, IdentificationSource, Part, Scalar, ScheduleBand, SecondVariableDesign,
+    VarianceDecomposition, holm,
 };
 use gdcm_files::{DatasetOrigin, load_dataset_bytes};
 
@@ -77,7 +78,7 @@ fn find_pair(study: &Study, names: &Value) -> Pair {
 }
 
 #[track_caller]
-fn assert_split(what: &str, split: &Split, reference: &Value, tolerance: f64) {
+fn assert_split(what: &str, split: &VarianceDecomposition, reference: &Value, tolerance: f64) {
     assert_eq!(split.freedom as f64, number(&reference["df"]), "{what}");
     let figures = [
         ("scatter", split.scatter.sqrt()),
@@ -240,9 +241,14 @@ fn a_table_of_numbers_is_split_as_the_reference_does() {
         for (found, reference) in holm(&probabilities).iter().zip(references) {
             assert_near("Holm", *found, &reference["p_holm"], TOLERANCE);
         }
-        let about_schedule = Split::of(&design, &bars).unwrap();
+        let about_schedule = VarianceDecomposition::of(&design, &bars).unwrap();
         assert_split("about the schedule", &about_schedule, &table["about_schedule"], TOLERANCE);
-        assert_split("at equal airspeed", &Split::of(&by_airspeed, &bars).unwrap(), &table["same_airspeed"], TOLERANCE);
+        assert_split(
+            "at equal airspeed",
+            &VarianceDecomposition::of(&by_airspeed, &bars).unwrap(),
+            &table["same_airspeed"],
+            TOLERANCE,
+        );
         let band = ScheduleBand::of(&Arc::new(design.clone()), &about_schedule, 0.9);
         for (place, airspeed) in numbers(&table["bands"]["airspeed_kt"]).into_iter().enumerate() {
             assert_near(

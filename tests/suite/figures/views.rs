@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use gdcm_core::uncertainty::{Scalar, Split};
+use gdcm_core::uncertainty::{Scalar, VarianceDecomposition};
 use gdcm_files::figure::{Across, Area, BodeOptions, FrequencyUnit, Mark, Measure, Role, Shape};
 
 use super::*;
@@ -155,7 +155,7 @@ fn evidence_stacks_the_shares_of_each_split_and_shows_the_rest_with_its_interval
             .filter_map(|mark| if let Mark::Bars(bars) = mark { Some(bars) } else { None })
             .collect();
         for (place, split) in [&scatter.same_airspeed, &scatter.about_schedule].into_iter().enumerate() {
-            let shares = split.as_ref().and_then(Split::shares).unwrap();
+            let shares = split.as_ref().and_then(VarianceDecomposition::shares).unwrap();
             let mut foot = 0.0;
             for (bars, share) in bars.iter().zip(shares) {
                 assert_eq!((bars.feet[place], bars.bars[place]), (foot, [place as f64, 100.0 * share]));

@@ -8,7 +8,7 @@ use gdcm_core::identification::{
     FlightRecord, MeasuredResponse, Preparation, Role, StateSpaceMatrices, local_polynomial, log_spaced, prepare,
     spectra,
 };
-use gdcm_core::study::LateChannel;
+use gdcm_core::study::ChannelTimeSkew;
 use nalgebra::DVectorViewMut;
 
 const BAND: [f64; 2] = [0.6, 6.0];
@@ -33,7 +33,7 @@ fn late(mut channel: DVectorViewMut<'_, f64>) {
 }
 
 fn found(measured: &MeasuredResponse) -> Option<(Role, usize, f64)> {
-    let late = LateChannel::of(measured, BAND, &physics(stable_aircraft()))?;
+    let late = ChannelTimeSkew::of(measured, BAND, &physics(stable_aircraft()))?;
     Some((late.role, late.index, late.delay_s))
 }
 
@@ -63,15 +63,15 @@ fn a_physics_model_that_is_wrong_otherwise_is_no_delay() {
     let mut turned = stable_aircraft();
     // The sign of an output.
     turned.c.row_mut(1).neg_mut();
-    assert_eq!(LateChannel::of(&clean, BAND, &physics(turned)), None);
+    assert_eq!(ChannelTimeSkew::of(&clean, BAND, &physics(turned)), None);
     let mut other = stable_aircraft();
     other.a *= 1.6;
-    assert_eq!(LateChannel::of(&clean, BAND, &physics(other)), None);
+    assert_eq!(ChannelTimeSkew::of(&clean, BAND, &physics(other)), None);
 }
 
 #[test]
 fn words_say_what_is_seen_and_what_else_it_may_be() {
-    let late = LateChannel { role: Role::Output, index: 1, delay_s: -0.0401 };
+    let late = ChannelTimeSkew { role: Role::Output, index: 1, delay_s: -0.0401 };
     let words = late.words("Q", "nominal");
     assert!(
         words.starts_with("Q seems to be logged 40 ms early in all records: against the physics model \"nominal\""),

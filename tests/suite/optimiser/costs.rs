@@ -1,6 +1,6 @@
 //! Sensitivities and toggles against solving the changed problem.
 
-use gdcm_core::correction::{Bounds, Problem, ProofBudget, Restraint, sensitivities, toggles};
+use gdcm_core::correction::{ActiveConstraint, Bounds, Problem, ProofBudget, sensitivities, toggles};
 
 use super::instances::{delay_instances, gain_instances};
 use super::solved;
@@ -23,21 +23,23 @@ fn gain_sensitivities_are_slopes_of_the_least_objective() {
                 let mut changed = problem.clone();
                 match sensitivity.restraint {
                     // The delta gain itself is in the objective too: take the held entry out of it.
-                    Restraint::Held(pair) => {
+                    ActiveConstraint::Held(pair) => {
                         changed.fitted[pair] = false;
                         changed.delta[pair] = changed.delta[pair].map(|gain| gain * factor);
                     }
-                    Restraint::LowerBound(_) => changed.bounds.lower *= factor,
-                    Restraint::UpperBound(_) => changed.bounds.upper *= factor,
+                    ActiveConstraint::LowerBound(_) => changed.bounds.lower *= factor,
+                    ActiveConstraint::UpperBound(_) => changed.bounds.upper *= factor,
                 }
                 gain_objective(&changed)
             };
             let several_on_bound = sensitivities(problem, &solution)
                 .iter()
-                .filter(|other| matches!(other.restraint, Restraint::LowerBound(_) | Restraint::UpperBound(_)))
+                .filter(|other| {
+                    matches!(other.restraint, ActiveConstraint::LowerBound(_) | ActiveConstraint::UpperBound(_))
+                })
                 .count()
                 > 1;
-            if !matches!(sensitivity.restraint, Restraint::Held(_)) && several_on_bound {
+            if !matches!(sensitivity.restraint, ActiveConstraint::Held(_)) && several_on_bound {
                 // One bound moves for all channels on it: their sum is checked by the other instances.
                 continue;
             }
@@ -60,7 +62,7 @@ fn delay_sensitivities_are_slopes_of_the_least_objective() {
         let problem = &instance.problem;
         let solution = solved(problem);
         for sensitivity in sensitivities(problem, &solution) {
-            let Restraint::Held(pair) = sensitivity.restraint else {
+            let ActiveConstraint::Held(pair) = sensitivity.restraint else {
                 continue;
             };
             let with = |step_s: f64| {
@@ -150,11 +152,12 @@ fn a_bound_that_acts_has_a_multiplier_of_the_right_sign() {
     problem.bounds = Bounds { lower: 0.8, upper: 1.3 };
     let solution = solved(&problem);
     let restraints = sensitivities(&problem, &solution);
-    let bounds: Vec<_> = restraints.iter().filter(|found| !matches!(found.restraint, Restraint::Held(_))).collect();
+    let bounds: Vec<_> =
+        restraints.iter().filter(|found| !matches!(found.restraint, ActiveConstraint::Held(_))).collect();
     assert!(!bounds.is_empty());
     for bound in bounds {
         match bound.restraint {
-            Restraint::UpperBound(_) => assert!(bound.per_unit < 0.0, "{bound:?}"),
+            ActiveConstraint::UpperBound(_) => assert!(bound.per_unit < 0.0, "{bound:?}"),
             _ => assert!(bound.per_unit > 0.0, "{bound:?}"),
         }
     }

@@ -1,6 +1,8 @@
 //! As many channels as a dataset may have.
 
-use gdcm_core::correction::{Bounds, Channel, ConflictKind, Outcome, Problem, ProofBudget, Restraint, sensitivities};
+use gdcm_core::correction::{
+    ActiveConstraint, Bounds, Channel, ConflictKind, Outcome, Problem, ProofBudget, sensitivities,
+};
 use gdcm_core::dataset::limits::MOST_CHANNELS;
 use gdcm_core::dataset::{Pair, PairTable};
 
@@ -65,11 +67,11 @@ fn what_is_held_along_a_path_balances_every_slope() {
         // dB in a natural logarithm.
         let slope = sensitivity.per_unit * 20.0 / std::f64::consts::LN_10;
         match sensitivity.restraint {
-            Restraint::Held(pair) => {
+            ActiveConstraint::Held(pair) => {
                 balance[pair.input] += slope;
                 balance[MOST_CHANNELS + pair.output] += slope;
             }
-            Restraint::LowerBound(channel) | Restraint::UpperBound(channel) => match channel {
+            ActiveConstraint::LowerBound(channel) | ActiveConstraint::UpperBound(channel) => match channel {
                 Channel::Input(input) => balance[input] += slope,
                 Channel::Output(output) => balance[MOST_CHANNELS + output] += slope,
             },

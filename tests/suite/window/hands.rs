@@ -1,9 +1,9 @@
 //! What can be asked and taken in the plots and tables: derivations, models in the overview, tables as files.
 
 use gdcm::view::arrangement::View;
-use gdcm::view::command::Command as Wish;
+use gdcm::view::command::Command as Action;
 use gdcm::view::every_command::every_command;
-use gdcm_core::study::{AskedFigure, derivation};
+use gdcm_core::study::{ExplainTarget, derivation};
 
 use super::views::{give, show};
 use super::walk::stays_within;
@@ -26,7 +26,7 @@ fn ask(window: &mut Window, entry: &str, expected: f64) {
     let asked = state(window).display.asked.clone().expect("a figure is explained");
     let found = derivation(state(window).analysis().unwrap(), &asked).expect("it has a derivation");
     assert!((found.value - expected).abs() <= 1e-12 * expected.abs(), "{}: {} {expected}", found.title, found.value);
-    give(window, Wish::Explain(None));
+    give(window, Action::Explain(None));
 }
 
 #[test]
@@ -71,7 +71,7 @@ fn a_bar_of_the_assessment_says_how_it_was_computed() {
     window.get_by_label("Change of J").click();
     window.run_steps(3);
     let asked = state(&window).display.asked.clone();
-    assert!(matches!(&asked, Some(AskedFigure::CostChange(id, at, _)) if (*id, *at) == (second, pair)), "{asked:?}");
+    assert!(matches!(&asked, Some(ExplainTarget::CostChange(id, at, _)) if (*id, *at) == (second, pair)), "{asked:?}");
     let found = derivation(state(&window).analysis().unwrap(), &asked.unwrap()).unwrap();
     assert!((found.value - expected).abs() < 1e-9, "{} {expected}", found.value);
 }
@@ -97,11 +97,11 @@ fn a_curve_of_the_overview_is_pointed_at_isolated_and_rejected() {
     secondary_click(&mut window, at);
     click(&mut window, "Isolate model");
     let isolated = state(&window).display.isolated.clone().expect("one model is alone");
-    give(&mut window, Wish::EndIsolation);
+    give(&mut window, Action::EndIsolation);
     secondary_click(&mut window, at);
     click(&mut window, "Reject model");
     assert!(state(&window).study.is_rejected(&isolated), "{isolated:?}, {meant:?}");
-    give(&mut window, Wish::Undo);
+    give(&mut window, Action::Undo);
     assert!(!state(&window).study.is_rejected(&isolated));
 }
 
@@ -118,7 +118,7 @@ fn every_table_of_a_view_is_saved_as_csv() {
     let path = folder.path().join("evidence.csv");
     let ctx = window.ctx.clone();
     let table = state(&window).forms.table.clone().expect("the form holds the table");
-    window.state_mut().give(Wish::SaveTable(table.clone(), path.clone()), &ctx);
+    window.state_mut().give(Action::SaveTable(table.clone(), path.clone()), &ctx);
     settle(&mut window);
     let text = std::fs::read_to_string(path).unwrap();
     let rows = text.lines().filter(|line| !line.starts_with('#')).count();
@@ -132,22 +132,22 @@ fn undo_after_each_command_restores_the_study_exactly() {
     let ctx = window.ctx.clone();
     let mut decisions = 0;
     for entry in every_command(state(&window)) {
-        if !entry.enabled || !stays_within(&entry.command) || matches!(entry.command, Wish::Undo | Wish::Redo) {
+        if !entry.enabled || !stays_within(&entry.command) || matches!(entry.command, Action::Undo | Action::Redo) {
             continue;
         }
         let before = state(&window).study.clone();
         window.state_mut().give(entry.command.clone(), &ctx);
-        window.state_mut().give(Wish::ShowForm(None), &ctx);
+        window.state_mut().give(Action::ShowForm(None), &ctx);
         if state(&window).study == before {
             continue;
         }
         decisions += 1;
         let after = state(&window).study.clone();
-        window.state_mut().give(Wish::Undo, &ctx);
+        window.state_mut().give(Action::Undo, &ctx);
         assert_eq!(state(&window).study, before, "undo of {}", entry.name);
-        window.state_mut().give(Wish::Redo, &ctx);
+        window.state_mut().give(Action::Redo, &ctx);
         assert_eq!(state(&window).study, after, "redo of {}", entry.name);
-        window.state_mut().give(Wish::Undo, &ctx);
+        window.state_mut().give(Action::Undo, &ctx);
     }
     assert!(decisions > 60, "{decisions} commands decide something");
 }

@@ -13,7 +13,7 @@ use egui::epaint::{ColorImage, ImageData, ImageDelta, Primitive};
 use egui::{TexturesDelta, ThemePreference};
 use egui_kittest::TestRenderer;
 use gdcm::view::arrangement::{Preset, View};
-use gdcm::view::command::Command as Wish;
+use gdcm::view::command::Command as Action;
 use gdcm::view::palette::Palette;
 use gdcm_core::study::Edit;
 
@@ -139,13 +139,13 @@ fn every_view_looks_as_it_did_in_both_themes() {
     let writes = std::env::var("GDCM_PICTURES").is_ok_and(|what| what == "write");
     let textures = Textures::default();
     let mut window = pictured_window(&textures);
-    give(&mut window, Wish::Arrange(Preset::Single));
+    give(&mut window, Action::Arrange(Preset::Single));
     give(&mut window, Edit::KeepVariant { name: "all models".to_owned() });
     click(&mut window, CONDITION_10);
     wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
     let mut misses = Vec::new();
     for (theme, preference) in [("dark", ThemePreference::Dark), ("light", ThemePreference::Light)] {
-        give(&mut window, Wish::SetTheme(preference));
+        give(&mut window, Action::SetTheme(preference));
         for view in View::ALL {
             show(&mut window, view);
             wait_until(&mut window, "what the view shows", |window| match view {

@@ -2,24 +2,24 @@
 
 use gdcm::view::arrangement::{Arrangement, Preset, View};
 use gdcm::view::assessment_scene::{AssessedPairs, assessment_sentences, assessment_text_table};
-use gdcm::view::command::Command as Wish;
+use gdcm::view::command::Command as Action;
 use gdcm::view::modes_scene::pole_marks;
 use gdcm::view::net_gain_scene::{PairSet, net_gain_pairs};
 use gdcm::view::plot::MarkShape;
 use gdcm::view::preferences::Preferences;
 use gdcm_core::correction::Channel;
-use gdcm_core::study::{AcrossRole, AskedFigure, AssessedCorrection, AssessedModel, Edit, derivation};
+use gdcm_core::study::{AcrossRole, AssessedCorrection, AssessedModel, Edit, ExplainTarget, derivation};
 
 use super::*;
 
-pub(super) fn give(window: &mut Window, command: impl Into<Wish>) {
+pub(super) fn give(window: &mut Window, command: impl Into<Action>) {
     let ctx = window.ctx.clone();
     window.state_mut().give(command.into(), &ctx);
     settle(window);
 }
 
 pub(super) fn show(window: &mut Window, view: View) {
-    give(window, Wish::ShowView(view));
+    give(window, Action::ShowView(view));
     assert!(state(window).display.arrangement.is_shown(view), "{view:?}");
 }
 
@@ -36,7 +36,7 @@ fn every_view_has_a_tab_and_a_click_brings_it_to_the_front() {
 fn controls_of_plots_side_by_side_have_names_of_their_own() {
     let mut window = window();
     for view in [View::Error, View::Across] {
-        give(&mut window, Wish::SplitView(view, egui_tiles::LinearDir::Horizontal));
+        give(&mut window, Action::SplitView(view, egui_tiles::LinearDir::Horizontal));
     }
     wait_until(&mut window, "the responses", |window| state(window).across().is_some());
     for name in ["Frequency axis", "Value axis", "Lower end of the band", "Upper end of the band"] {
@@ -51,11 +51,11 @@ fn controls_of_plots_side_by_side_have_names_of_their_own() {
 #[test]
 fn an_arrangement_is_remembered_and_one_command_resets_it() {
     let mut window = window();
-    give(&mut window, Wish::SplitView(View::Poles, egui_tiles::LinearDir::Horizontal));
+    give(&mut window, Action::SplitView(View::Poles, egui_tiles::LinearDir::Horizontal));
     let kept = Preferences::of(&state(&window).display);
     let mut other = window_with(example(), Setup { preferences: kept, ..Setup::default() });
     assert_eq!(state(&other).display.arrangement, state(&window).display.arrangement);
-    give(&mut other, Wish::Arrange(Preset::Stacked));
+    give(&mut other, Action::Arrange(Preset::Stacked));
     assert_eq!(state(&other).display.arrangement, Arrangement::default());
 }
 
@@ -85,7 +85,7 @@ fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
     window.drop_at(at);
     settle(&mut window);
     assert!(state(&window).study.is_rejected(&meant), "{meant:?}");
-    give(&mut window, Wish::Undo);
+    give(&mut window, Action::Undo);
     assert!(!state(&window).study.is_rejected(&meant));
 }
 
@@ -107,7 +107,7 @@ fn one_response_of_every_condition_is_laid_over_the_others_whichever_model_it_is
     let mut window = window();
     show(&mut window, View::Across);
     for role in AcrossRole::ALL {
-        give(&mut window, Wish::ShowAcross(role));
+        give(&mut window, Action::ShowAcross(role));
         wait_until(&mut window, "the responses", |window| {
             let state = state(window);
             state.across().is_some_and(|curves| curves.responses.len() == 11)
@@ -124,9 +124,9 @@ fn freeing_a_response_does_not_take_its_net_gains_away() {
     assert_eq!(net_gain_pairs(state(&window)), before);
     let lon_q = pair(&window, "Q", "LON");
     assert!(before.contains(&lon_q) && !state(&window).study.settings.constrained[lon_q]);
-    give(&mut window, Wish::ShowNetGains(PairSet::All));
+    give(&mut window, Action::ShowNetGains(PairSet::All));
     assert_eq!(net_gain_pairs(state(&window)).len(), 24);
-    give(&mut window, Wish::PickPair(lon_q));
+    give(&mut window, Action::PickPair(lon_q));
     assert_eq!(net_gain_pairs(state(&window)), [lon_q]);
 }
 
@@ -229,7 +229,7 @@ fn an_assessment_can_be_had_for_every_model_correction_and_response() {
     figures.correction = AssessedCorrection::Own;
     figures.pairs = AssessedPairs::All;
     figures.as_table = true;
-    give(&mut window, Wish::Assess(figures));
+    give(&mut window, Action::Assess(figures));
     wait(&mut window);
     let shown = state(&window);
     let table = shown.assessment().unwrap();
@@ -260,15 +260,15 @@ fn variants_are_kept_compared_taken_and_removed_and_undo_brings_each_back() {
     assert_eq!(analysis.study.settings, before.settings);
     click(&mut window, "Take variant as it was");
     assert_eq!(state(&window).study.settings, before.settings);
-    give(&mut window, Wish::Undo);
+    give(&mut window, Action::Undo);
     assert_ne!(state(&window).study.settings, before.settings);
-    give(&mut window, Wish::Undo);
+    give(&mut window, Action::Undo);
     assert_eq!(state(&window).study, kept);
     click(&mut window, "Remove variant as it was");
     assert!(state(&window).study.variants.is_empty());
-    give(&mut window, Wish::Undo);
+    give(&mut window, Action::Undo);
     assert_eq!(state(&window).study, kept);
-    give(&mut window, Wish::Undo);
+    give(&mut window, Action::Undo);
     assert_eq!(state(&window).study, before);
 }
 
@@ -276,12 +276,12 @@ fn variants_are_kept_compared_taken_and_removed_and_undo_brings_each_back() {
 fn a_figure_says_how_it_was_computed_and_follows_the_results() {
     let mut window = window();
     let condition = state(&window).condition().id();
-    let asked = AskedFigure::Gain(condition, Channel::Input(0));
-    give(&mut window, Wish::Explain(Some(asked.clone())));
+    let asked = ExplainTarget::Gain(condition, Channel::Input(0));
+    give(&mut window, Action::Explain(Some(asked.clone())));
     let title = derivation(state(&window).analysis().unwrap(), &asked).unwrap().title;
     assert!(window.query_by_label(&title).is_some(), "{title}");
     click(&mut window, "Copy the derivation");
     give(&mut window, Edit::ConstrainOnAxis);
-    give(&mut window, Wish::Explain(None));
+    give(&mut window, Action::Explain(None));
     assert!(window.query_by_label("Copy the derivation").is_none());
 }

@@ -1,7 +1,7 @@
 //! A long walk through the window at random: nothing panics, and what is shown is what a fresh computation gives.
 
 use gdcm::view::arrangement::View;
-use gdcm::view::command::Command as Wish;
+use gdcm::view::command::Command as Action;
 use gdcm::view::every_command::every_command;
 use gdcm_core::study::{Edit, Engine, Setting, Unobserved};
 
@@ -23,32 +23,32 @@ impl Dice {
 }
 
 /// Whether a command stays within the window: no file, no desktop, no end.
-pub(super) fn stays_within(command: &Wish) -> bool {
+pub(super) fn stays_within(command: &Action) -> bool {
     !matches!(
         command,
-        Wish::Quit
-            | Wish::Open(_)
-            | Wish::OpenExample
-            | Wish::OpenStudyOf(..)
-            | Wish::SaveStudy
-            | Wish::AskOpen
-            | Wish::Assembling(_)
-            | Wish::Records(_)
-            | Wish::AskSaveStudy
-            | Wish::AskSaveTable(_)
-            | Wish::AskSaveShownTable(_)
-            | Wish::AskExportFolder
-            | Wish::StopComputing
-            | Wish::SetTheme(_)
+        Action::Quit
+            | Action::Open(_)
+            | Action::OpenExample
+            | Action::OpenStudyOf(..)
+            | Action::SaveStudy
+            | Action::AskOpen
+            | Action::Assembling(_)
+            | Action::Records(_)
+            | Action::AskSaveStudy
+            | Action::AskSaveTable(_)
+            | Action::AskSaveShownTable(_)
+            | Action::AskExportFolder
+            | Action::StopComputing
+            | Action::SetTheme(_)
     )
 }
 
-fn random_command(window: &Window, dice: &mut Dice) -> Option<Wish> {
+fn random_command(window: &Window, dice: &mut Dice) -> Option<Action> {
     match dice.below(12) {
         0 => Some(Edit::Set(Setting::AlphaGain(10f64.powi(dice.below(5) as i32 - 2))).into()),
         1 => Some(Edit::Set(Setting::Points(20 + dice.below(60))).into()),
-        2 => Some(Wish::Undo),
-        3 => Some(Wish::Redo),
+        2 => Some(Action::Undo),
+        3 => Some(Action::Redo),
         _ => {
             let mut entries = every_command(state(window));
             entries.retain(|entry| entry.enabled && stays_within(&entry.command));
@@ -88,13 +88,13 @@ fn two_thousand_random_commands_never_panic_and_leave_what_a_fresh_computation_g
             window.state_mut().give(command, &ctx);
         }
         // A form in front would keep the rest from being seen.
-        window.state_mut().give(Wish::ShowForm(None), &ctx);
+        window.state_mut().give(Action::ShowForm(None), &ctx);
         if step % STEPS_OF_A_FRAME == 0 {
             window.run_steps(1);
         }
         if step % STEPS_OF_A_COMPARISON == 0 {
             // The curves of the plots are made where they can be seen.
-            window.state_mut().give(Wish::ShowView(View::Bode), &ctx);
+            window.state_mut().give(Action::ShowView(View::Bode), &ctx);
             settle(&mut window);
             assert_fresh(&window, step);
         }

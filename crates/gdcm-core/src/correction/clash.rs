@@ -9,14 +9,14 @@ use crate::dataset::Pair;
 
 /// An irreducible set of held entries, with at most two bounds, that cannot hold together, in sums of coordinates.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Clash {
+pub(crate) struct Inconsistency {
     /// The entries of the set, along the path or round the loop.
     pub(crate) entries: Vec<Pair>,
     /// What makes them impossible.
     pub(crate) kind: ClashKind,
 }
 
-/// How the entries of a [`Clash`] exclude one another.
+/// How the entries of a [`Inconsistency`] exclude one another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ClashKind {
     /// The entries fix the sum of two channels, and it is above what the upper bound allows.
@@ -56,7 +56,7 @@ pub(crate) fn clashes(
     reached: &Reached,
     tolerance: f64,
     effort: &Effort<'_>,
-) -> Result<Vec<(Pair, Clash)>, SearchStopped> {
+) -> Result<Vec<(Pair, Inconsistency)>, SearchStopped> {
     let Some(point) = &reached.point else { return Ok(Vec::new()) };
     let flow = Flow::new(held, reached, point);
     let missed = |pull: &&Pull| {
@@ -105,7 +105,7 @@ impl Flow {
     }
 
     /// The shorter of the shortest loop and the shortest path from bound to bound through `pull`; a bound counts like an entry.
-    fn smallest_through(&self, pull: &Pull) -> Option<Clash> {
+    fn smallest_through(&self, pull: &Pull) -> Option<Inconsistency> {
         let around = self.shortest(pull.to, |node| node == pull.from, false);
         let onward = self.shortest(pull.to, |node| self.at_upper[node], false);
         let back = self.shortest(pull.from, |node| self.at_lower[node], true);
@@ -121,24 +121,24 @@ impl Flow {
         }
     }
 
-    fn round(&self, pull: &Pull, around: Vec<Pull>) -> Clash {
+    fn round(&self, pull: &Pull, around: Vec<Pull>) -> Inconsistency {
         let pulls: Vec<Pull> = std::iter::once(*pull).chain(around).collect();
         if let Some(clash) = self.smallest_part(&pulls, pulls.len()) {
             return clash;
         }
         let mismatch = pulls.iter().map(|pull| pull.weight).sum();
-        Clash { entries: pulls.iter().map(|pull| pull.pair).collect(), kind: ClashKind::Loop { mismatch } }
+        Inconsistency { entries: pulls.iter().map(|pull| pull.pair).collect(), kind: ClashKind::Loop { mismatch } }
     }
 
     /// The clash of a path from a node at its least value to one at its greatest, or of the shortest part of it that the bounds
     /// do not allow either.
-    fn stretched(&self, path: &[Pull]) -> Clash {
+    fn stretched(&self, path: &[Pull]) -> Inconsistency {
         self.smallest_part(path, 0).unwrap_or_else(|| self.clash(path))
     }
 
     /// The shortest run of the pulls, less than all of them, that the bounds of its two ends do not allow. Runs may begin at the
     /// first `round` pulls and go on past the last into the first ones again.
-    fn smallest_part(&self, pulls: &[Pull], round: usize) -> Option<Clash> {
+    fn smallest_part(&self, pulls: &[Pull], round: usize) -> Option<Inconsistency> {
         let count = pulls.len();
         (1..count).find_map(|length| {
             let begins = if round > 0 { round } else { count - length + 1 };
@@ -166,7 +166,7 @@ impl Flow {
     }
 
     /// The clash of a path from a node at its least value to one at its greatest.
-    fn clash(&self, path: &[Pull]) -> Clash {
+    fn clash(&self, path: &[Pull]) -> Inconsistency {
         let needed: f64 = path.iter().map(|pull| pull.weight).sum();
         let mut entries: Vec<Pair> = path.iter().map(|pull| pull.pair).collect();
         let (start, end) = (path.first().map_or(0, |pull| pull.from), path.last().map_or(0, |pull| pull.to));
@@ -182,7 +182,7 @@ impl Flow {
             }
         };
         entries.sort();
-        Clash { entries, kind }
+        Inconsistency { entries, kind }
     }
 
     fn channel(&self, node: usize) -> Channel {

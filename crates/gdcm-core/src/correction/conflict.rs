@@ -1,7 +1,7 @@
 //! Why held entries cannot all be held, and what would help.
 
 use super::channel::{Channel, pair_names};
-use super::clash::{Clash, ClashKind};
+use super::clash::{ClashKind, Inconsistency};
 use super::problem::{Bounds, Problem};
 use super::quantity::{Quantity, three_digits_down, three_digits_up};
 use crate::dataset::Pair;
@@ -65,7 +65,7 @@ pub enum ConflictKind {
 
 impl Conflict {
     /// The conflict of `problem` behind a clash of its held entries in its coordinate.
-    pub(crate) fn new(clash: Clash, problem: &Problem) -> Self {
+    pub(crate) fn new(clash: Inconsistency, problem: &Problem) -> Self {
         let (quantity, bounds, coordinate) = (problem.quantity, problem.bounds, problem.coordinate());
         let movable = |lower: f64| quantity.has_lower_bound().then(|| three_digits_down(lower));
         let kind = match clash.kind {

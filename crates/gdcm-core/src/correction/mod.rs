@@ -41,7 +41,7 @@ pub use pade::{HIGHEST_PADE_ORDER, Pade};
 pub use problem::{Bounds, DELAY_AGREEMENT_S, Problem, ProblemError};
 pub use quantity::{GainObjective, Quantity};
 pub use remedy::Remedy;
-pub use sensitivity::{Restraint, Sensitivity, kkt_residual, sensitivities};
+pub use sensitivity::{ActiveConstraint, Sensitivity, kkt_residual, sensitivities};
 pub use solution::{LocalMinimum, Outcome, Proof, Solution, Unmatched};
 pub use solve::solve;
 pub use toggle::{Toggle, toggles};

@@ -10,7 +10,7 @@ use crate::dataset::Pair;
 
 /// Something that keeps the channels from a lower objective.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Restraint {
+pub enum ActiveConstraint {
     /// An entry held at its target.
     Held(Pair),
     /// A channel on its lower bound; a delay that would have to be negative.
@@ -25,7 +25,7 @@ pub struct Sensitivity {
     /// What is restrained.
     pub quantity: Quantity,
     /// The restraint.
-    pub restraint: Restraint,
+    pub restraint: ActiveConstraint,
     /// Change of the least objective for each dB or ms by which what is held, or the bound, is raised (to first order).
     pub per_unit: f64,
     /// The same as a share of the objective; 0 where the objective is 0.
@@ -41,28 +41,28 @@ impl Sensitivity {
         match (self.quantity, self.restraint) {
             (Quantity::Gain(_), restraint) => {
                 let what = match restraint {
-                    Restraint::Held(pair) => (pair_name(pair, inputs, outputs), "held", "its gain"),
-                    Restraint::LowerBound(channel) => {
+                    ActiveConstraint::Held(pair) => (pair_name(pair, inputs, outputs), "held", "its gain"),
+                    ActiveConstraint::LowerBound(channel) => {
                         (gain_name(channel, inputs, outputs), "on its lower bound", "the bound")
                     }
-                    Restraint::UpperBound(channel) => {
+                    ActiveConstraint::UpperBound(channel) => {
                         (gain_name(channel, inputs, outputs), "on its upper bound", "the bound")
                     }
                 };
                 let change = if is_dear { "lowering" } else { "raising" };
                 format!("{} is {}: {change} {} by 1 dB {effect}.", what.0, what.1, what.2)
             }
-            (Quantity::Delay | Quantity::SignedDelay, Restraint::Held(pair)) => {
+            (Quantity::Delay | Quantity::SignedDelay, ActiveConstraint::Held(pair)) => {
                 let change = if is_dear { "less" } else { "more" };
                 format!("{} is held: 1 ms {change} delay {effect}.", pair_name(pair, inputs, outputs))
             }
-            (Quantity::Delay, Restraint::LowerBound(channel)) => {
+            (Quantity::Delay, ActiveConstraint::LowerBound(channel)) => {
                 format!("τ_{} is 0: 1 ms of lead {effect}.", channel.name(inputs, outputs))
             }
-            (Quantity::SignedDelay, Restraint::LowerBound(channel)) => {
+            (Quantity::SignedDelay, ActiveConstraint::LowerBound(channel)) => {
                 format!("τ_{} is at its most lead: 1 ms more of it {effect}.", channel.name(inputs, outputs))
             }
-            (Quantity::Delay | Quantity::SignedDelay, Restraint::UpperBound(channel)) => {
+            (Quantity::Delay | Quantity::SignedDelay, ActiveConstraint::UpperBound(channel)) => {
                 let channel = channel.name(inputs, outputs);
                 format!("τ_{channel} is on its upper bound: raising the bound by 1 ms {effect}.")
             }
@@ -81,17 +81,20 @@ pub fn sensitivities(problem: &Problem, solution: &Solution) -> Vec<Sensitivity>
     let held: Vec<Pair> = problem.held_entries().map(|(pair, _)| pair).collect();
     let inputs = solution.inputs.len();
     let found = multipliers(&Restrained::of(problem, solution, &held));
-    let sensitivity = |restraint: Restraint, slope: f64| {
+    let sensitivity = |restraint: ActiveConstraint, slope: f64| {
         let per_unit = problem.quantity.per_unit(slope);
         let share_per_unit = if solution.objective > 0.0 { per_unit / solution.objective } else { 0.0 };
         Sensitivity { quantity: problem.quantity, restraint, per_unit, share_per_unit }
     };
-    let of_held = held.iter().zip(&found.held).map(|(pair, slope)| sensitivity(Restraint::Held(*pair), *slope));
+    let of_held = held.iter().zip(&found.held).map(|(pair, slope)| sensitivity(ActiveConstraint::Held(*pair), *slope));
     let of_bounds = found.bounds.iter().enumerate().filter(|(_, slope)| **slope != 0.0).map(|(index, slope)| {
         let channel = if index < inputs { Channel::Input(index) } else { Channel::Output(index - inputs) };
         // The objective falls as the upper bound is raised, or the lower one lowered.
         let upper = *slope < 0.0;
-        sensitivity(if upper { Restraint::UpperBound(channel) } else { Restraint::LowerBound(channel) }, *slope)
+        sensitivity(
+            if upper { ActiveConstraint::UpperBound(channel) } else { ActiveConstraint::LowerBound(channel) },
+            *slope,
+        )
     });
     let mut all: Vec<Sensitivity> = of_held.chain(of_bounds).collect();
     all.sort_by(|a, b| b.per_unit.abs().total_cmp(&a.per_unit.abs()));

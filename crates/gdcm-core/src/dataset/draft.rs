@@ -15,7 +15,7 @@ use super::measured_response::{Estimate, MeasuredResponse, MeasuredResponseError
 use super::model::{Dynamics, Model, Origin, Provenance};
 use super::model_bands::ModelBands;
 use super::pair::{Pair, PairTable};
-use super::place::Place;
+use super::place::Location;
 use super::state_space::{StateSpace, StateSpaceError};
 use super::timing::Timing;
 
@@ -186,35 +186,35 @@ pub enum DraftFault {
 #[derive(Clone, Debug, PartialEq)]
 pub struct DraftError {
     /// Where.
-    pub place: Box<Place>,
+    pub place: Box<Location>,
     /// What.
     pub fault: Box<DraftFault>,
 }
 
 impl DraftError {
-    pub(super) fn new(place: Place, fault: impl Into<DraftFault>) -> Self {
+    pub(super) fn new(place: Location, fault: impl Into<DraftFault>) -> Self {
         Self { place: Box::new(place), fault: Box::new(fault.into()) }
     }
 }
 
 /// Something odd but harmless in a draft.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Oddity {
+pub struct Warning {
     /// Where.
-    pub place: Place,
+    pub place: Location,
     /// What, in words.
     pub words: String,
 }
 
 impl DatasetDraft {
     /// The dataset, with what is odd about it: every check there is, in this one place.
-    pub fn checked(self) -> Result<(Dataset, Vec<Oddity>), DraftError> {
+    pub fn checked(self) -> Result<(Dataset, Vec<Warning>), DraftError> {
         check_count("inputs", self.inputs.len(), MOST_CHANNELS)?;
         check_count("outputs", self.outputs.len(), MOST_CHANNELS)?;
         check_count("conditions", self.conditions.len(), MOST_CONDITIONS)?;
         let band = Band::new(self.band.0, self.band.1);
         // It names itself.
-        let band = band.map_err(|error| DraftError::new(Place::default(), error))?;
+        let band = band.map_err(|error| DraftError::new(Location::default(), error))?;
         let on_axis = on_axis_table(&self.outputs, &self.inputs, &self.on_axis)?;
         let mut checker = Checker::of(&self);
         let conditions = self.conditions.into_iter().enumerate();
@@ -223,17 +223,17 @@ impl DatasetDraft {
         let Self { name, description, inputs, outputs, .. } = self;
         let header = DatasetHeader { name, description, inputs, outputs, on_axis, band };
         // These errors name the list or the condition themselves.
-        let dataset = Dataset::new(header, conditions).map_err(|error| DraftError::new(Place::default(), error))?;
+        let dataset = Dataset::new(header, conditions).map_err(|error| DraftError::new(Location::default(), error))?;
         Ok((dataset, checker.oddities))
     }
 }
 
 pub(super) fn check_count(list: &str, found: usize, most: usize) -> Result<(), DraftError> {
     let fault = DraftFault::TooMany { most, found };
-    if found > most { Err(DraftError::new(Place::entry(list), fault)) } else { Ok(()) }
+    if found > most { Err(DraftError::new(Location::entry(list), fault)) } else { Ok(()) }
 }
 
-pub(super) fn check_records(condition: &Place, found: usize) -> Result<(), DraftError> {
+pub(super) fn check_records(condition: &Location, found: usize) -> Result<(), DraftError> {
     let fault = DraftFault::TooMany { most: MOST_RECORDS, found };
     if found > MOST_RECORDS { Err(DraftError::new(condition.at("records"), fault)) } else { Ok(()) }
 }
@@ -245,7 +245,7 @@ pub(super) fn on_axis_table(
 ) -> Result<PairTable<bool>, DraftError> {
     let mut table = PairTable::filled(outputs.len(), inputs.len(), false);
     for (index, (output, input)) in pairs.iter().enumerate() {
-        let wrong = |fault| DraftError::new(Place::entry(format!("on-axis pair {}", index + 1)), fault);
+        let wrong = |fault| DraftError::new(Location::entry(format!("on-axis pair {}", index + 1)), fault);
         let find = |channels: &[Channel], kind: &'static str, name: &String| {
             let found = channels.iter().position(|channel| channel.name == *name);
             found.ok_or_else(|| wrong(DraftFault::UnknownChannel { kind, name: name.clone() }))
@@ -263,10 +263,10 @@ impl Dataset {
     ///
     /// # Errors
     /// What keeps the draft from being a model of the dataset, with its place in the model.
-    pub fn identified_model(&self, draft: ModelDraft) -> Result<(Model, Vec<Oddity>), DraftError> {
+    pub fn identified_model(&self, draft: ModelDraft) -> Result<(Model, Vec<Warning>), DraftError> {
         let (outputs, inputs) = (self.outputs().len(), self.inputs().len());
         let mut checker = Checker { outputs, inputs, oddities: Vec::new() };
-        let model = checker.model(Place::default(), BundleKind::Identified, draft)?;
+        let model = checker.model(Location::default(), BundleKind::Identified, draft)?;
         Ok((model, checker.oddities))
     }
 }
@@ -275,7 +275,7 @@ impl Dataset {
 pub(super) struct Checker {
     outputs: usize,
     inputs: usize,
-    oddities: Vec<Oddity>,
+    oddities: Vec<Warning>,
 }
 
 impl Checker {
@@ -285,7 +285,7 @@ impl Checker {
     }
 
     fn condition(&mut self, position: usize, draft: ConditionDraft) -> Result<Condition, DraftError> {
-        let place = Place::condition(position, draft.flight_state.id.0);
+        let place = Location::condition(position, draft.flight_state.id.0);
         let physics = self.bundle(&place, BundleKind::Physics, draft.physics)?;
         let identified = self.bundle(&place, BundleKind::Identified, draft.identified)?;
         check_records(&place, draft.records.len())?;
@@ -297,7 +297,7 @@ impl Checker {
 
     fn bundle(
         &mut self,
-        condition: &Place,
+        condition: &Location,
         kind: BundleKind,
         drafts: Vec<ModelDraft>,
     ) -> Result<Vec<Model>, DraftError> {
@@ -310,7 +310,7 @@ impl Checker {
     }
 
     /// The model of a draft at a place.
-    pub(super) fn model(&mut self, place: Place, kind: BundleKind, draft: ModelDraft) -> Result<Model, DraftError> {
+    pub(super) fn model(&mut self, place: Location, kind: BundleKind, draft: ModelDraft) -> Result<Model, DraftError> {
         let has_matrices = draft.matrices.iter().any(Option::is_some);
         let dynamics = match (has_matrices, draft.response) {
             (_, Some(_)) if kind == BundleKind::Physics => {
@@ -328,7 +328,7 @@ impl Checker {
             && model.order() != *order
         {
             let words = format!("order says {order}, the matrices have {} states", model.order());
-            self.oddities.push(Oddity { place: place.clone(), words });
+            self.oddities.push(Warning { place: place.clone(), words });
         }
         let bands = draft.bands.as_ref().map(|bands| self.bands(&place, bands)).transpose()?.map(Arc::new);
         let states = self.state_names(place, &dynamics, draft.states);
@@ -336,7 +336,7 @@ impl Checker {
     }
 
     /// The names of a model's states, if there is one for each.
-    fn state_names(&mut self, place: Place, dynamics: &Dynamics, names: Vec<String>) -> Arc<[String]> {
+    fn state_names(&mut self, place: Location, dynamics: &Dynamics, names: Vec<String>) -> Arc<[String]> {
         let order = match dynamics {
             Dynamics::StateSpace(model) => model.order(),
             Dynamics::Measured(_) => 0,
@@ -346,7 +346,7 @@ impl Checker {
         }
         if order > 0 && !names.is_empty() {
             let words = format!("{} names for {order} states: they are left out", names.len());
-            self.oddities.push(Oddity { place, words });
+            self.oddities.push(Warning { place, words });
         }
         Arc::default()
     }
@@ -354,7 +354,7 @@ impl Checker {
     /// The model of four matrices, with `p` outputs and `m` inputs.
     fn state_space(
         &self,
-        place: &Place,
+        place: &Location,
         matrices: [Option<DMatrix<f64>>; 4],
         timing: Timing,
     ) -> Result<StateSpace, DraftError> {
@@ -380,7 +380,7 @@ impl Checker {
         model.map_err(|error| DraftError::new(place.clone(), error))
     }
 
-    fn measured(&self, place: &Place, draft: ResponseDraft) -> Result<MeasuredResponse, DraftError> {
+    fn measured(&self, place: &Location, draft: ResponseDraft) -> Result<MeasuredResponse, DraftError> {
         let count = draft.omega.len();
         let table = |array: &ResponseArray, part: &str| {
             self.table(place, array, &format!("measured response, {part}"), (count, "frequencies"))
@@ -400,7 +400,7 @@ impl Checker {
         Ok(response.with_estimate(draft.estimate))
     }
 
-    fn bands(&self, place: &Place, draft: &BandsDraft) -> Result<ModelBands, DraftError> {
+    fn bands(&self, place: &Location, draft: &BandsDraft) -> Result<ModelBands, DraftError> {
         let count = draft.omega.len();
         let table = |array, part: &str| self.table(place, array, &format!("bands, {part}"), (count, "frequencies"));
         let (sd_db, sd_deg) = (table(&draft.sd_db, "sd_db")?, table(&draft.sd_deg, "sd_deg")?);
@@ -411,7 +411,7 @@ impl Checker {
     /// A table of frequency data, `count` numbers for each pair.
     fn table(
         &self,
-        place: &Place,
+        place: &Location,
         array: &ResponseArray,
         part: &str,
         (count, of): (usize, &str),

@@ -6,7 +6,7 @@ use super::draft::{Checker, ConditionDraft, DatasetDraft, DraftError, check_coun
 use super::identity::BundleKind;
 use super::limits::{MOST_CHANNELS, MOST_CONDITIONS};
 use super::model::Model;
-use super::place::Place;
+use super::place::Location;
 
 /// More faults than this are not looked for: a file of another kind has one in every model.
 const MOST_FAULTS: usize = 1000;
@@ -23,7 +23,7 @@ impl DatasetDraft {
         ];
         faults.extend(counts.into_iter().filter_map(Result::err));
         let band = Band::new(self.band.0, self.band.1);
-        faults.extend(band.err().map(|error| DraftError::new(Place::default(), error)));
+        faults.extend(band.err().map(|error| DraftError::new(Location::default(), error)));
         faults.extend(on_axis_table(&self.outputs, &self.inputs, &self.on_axis).err());
         for (index, condition) in self.conditions.iter().enumerate() {
             if faults.len() >= MOST_FAULTS {
@@ -40,7 +40,7 @@ impl DatasetDraft {
 }
 
 fn faults_of_condition(checker: &mut Checker, position: usize, draft: &ConditionDraft) -> Vec<DraftError> {
-    let place = Place::condition(position, draft.flight_state.id.0);
+    let place = Location::condition(position, draft.flight_state.id.0);
     let mut faults = Vec::new();
     let mut bundle = |kind: BundleKind, drafts: &[super::draft::ModelDraft]| -> Vec<Model> {
         let drafts = drafts.iter().enumerate();

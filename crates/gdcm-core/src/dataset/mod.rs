@@ -26,13 +26,13 @@ pub use condition_record::{ConditionRecord, RecordKind};
 pub use content::ContentHash;
 pub use dataset::{Dataset, DatasetError, DatasetHeader};
 pub use draft::{
-    BandsDraft, ConditionDraft, DatasetDraft, DraftError, DraftFault, ModelDraft, Oddity, ResponseArray, ResponseDraft,
+    BandsDraft, ConditionDraft, DatasetDraft, DraftError, DraftFault, ModelDraft, ResponseArray, ResponseDraft, Warning,
 };
 pub use identity::{BundleKind, ConditionId, ModelId};
 pub use measured_response::{Estimate, MeasuredResponse, MeasuredResponseError};
 pub use model::{Dynamics, Model, Origin, Provenance};
 pub use model_bands::ModelBands;
 pub use pair::{Pair, PairTable};
-pub use place::{ConditionPlace, ModelPlace, Place};
+pub use place::{ConditionPlace, Location, ModelPlace};
 pub use state_space::{StateSpace, StateSpaceError};
 pub use timing::{GREATEST_CHANNEL_DELAY_S, Timing, TimingError};

@@ -27,7 +27,7 @@ pub struct ModelPlace {
 
 /// Where something stands: the condition, the model, and the entry (matrix, row, column), each where it applies.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Place {
+pub struct Location {
     /// The condition.
     pub condition: Option<ConditionPlace>,
     /// The model.
@@ -36,7 +36,7 @@ pub struct Place {
     pub entry: String,
 }
 
-impl Place {
+impl Location {
     /// A place in words: "on-axis pair 3".
     pub fn entry(words: impl Into<String>) -> Self {
         Self { entry: words.into(), ..Self::default() }
@@ -65,7 +65,7 @@ impl Place {
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Location {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let condition = self.condition.as_ref().map(|ConditionPlace { position, id }| match id {
             Some(id) => format!("condition {id} (number {position} in the file)"),

@@ -19,7 +19,7 @@ const BEYOND: f64 = 1.3;
 const COPY: f64 = 1e9;
 
 /// Records, prepared, transformed and weighed.
-pub(super) struct Evidence<'a> {
+pub(super) struct PreparedData<'a> {
     /// What was used of every record.
     pub(super) record_uses: Vec<RecordUse>,
     /// Units of the records over scaled units.
@@ -42,7 +42,7 @@ pub(super) struct Evidence<'a> {
     pub(super) cautions: Vec<IdentificationCaution>,
 }
 
-impl<'a> Evidence<'a> {
+impl<'a> PreparedData<'a> {
     /// Prepares the records, measures the response and the noise, and filters for the projections (M14, sections 1 and 2).
     pub(super) fn new(
         records: &[FlightRecord],

@@ -2,7 +2,7 @@
 
 use super::bundle::{WithoutRecord, distance, median};
 use super::channel_delay::channel_delay;
-use super::evidence::Evidence;
+use super::evidence::PreparedData;
 use super::polish::Fit;
 use super::{FlightRecord, IdentificationCaution, Options, RecordFit, Role, Spectrum};
 
@@ -18,20 +18,20 @@ const DECISIVE: f64 = 10.0;
 const COMPARED: usize = 5;
 
 /// The recommended model and what it is examined with.
-pub(super) struct Examination<'a> {
+pub(super) struct Diagnostics<'a> {
     /// For their names.
     pub(super) records: &'a [FlightRecord],
     /// For names of channels.
     pub(super) options: &'a Options,
     /// What the model was made from.
-    pub(super) evidence: &'a Evidence<'a>,
+    pub(super) evidence: &'a PreparedData<'a>,
     /// The model.
     pub(super) fit: &'a Fit,
     /// The models without each record.
     pub(super) without: &'a [WithoutRecord],
 }
 
-impl Examination<'_> {
+impl Diagnostics<'_> {
     /// The name of a record.
     pub(super) fn record_name(&self, record: usize) -> String {
         self.records.get(record).map_or_else(String::new, |record| record.name.clone())

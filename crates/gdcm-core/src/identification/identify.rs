@@ -1,6 +1,6 @@
 //! The identification of one flight condition from its records.
 
-use super::evidence::Evidence;
+use super::evidence::PreparedData;
 use super::identification_error::{HIGHEST_ORDER, LONGEST_PAST};
 use super::refinement::{propose, refine};
 use super::report::report;
@@ -31,7 +31,7 @@ pub fn identify(
     check(options)?;
     let steps = Steps::new(watch);
     steps.next(0.0, "records")?;
-    let evidence = Evidence::new(records, options, executor, &steps)?;
+    let evidence = PreparedData::new(records, options, executor, &steps)?;
     let proposal = propose(&evidence, options, &steps)?;
     let refinement = refine(&evidence, &proposal, &steps)?;
     report(records, options, &evidence, proposal, &refinement, &steps)

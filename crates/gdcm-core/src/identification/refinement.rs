@@ -1,7 +1,7 @@
 //! From models that CT-PBSID proposes to the recommended one (M14, section 7).
 
 use super::candidate::{Candidate, SubspaceSettings};
-use super::evidence::Evidence;
+use super::evidence::PreparedData;
 use super::identification_caution::IdentificationCaution;
 use super::likelihood::Likelihood;
 use super::order::{OrderSearch, search_order};
@@ -44,7 +44,11 @@ pub(super) struct Refinement<'a> {
 }
 
 /// Runs CT-PBSID for every pole and past window; shows a first model.
-pub(super) fn propose(evidence: &Evidence, options: &Options, steps: &Steps) -> Result<Proposal, IdentificationError> {
+pub(super) fn propose(
+    evidence: &PreparedData,
+    options: &Options,
+    steps: &Steps,
+) -> Result<Proposal, IdentificationError> {
     let mut orders = options.orders.clone();
     orders.sort_unstable();
     orders.dedup();
@@ -68,7 +72,7 @@ pub(super) fn propose(evidence: &Evidence, options: &Options, steps: &Steps) -> 
 
 /// Chooses the order and polishes its model further.
 pub(super) fn refine<'a>(
-    evidence: &Evidence<'a>,
+    evidence: &PreparedData<'a>,
     proposal: &Proposal,
     steps: &Steps,
 ) -> Result<Refinement<'a>, IdentificationError> {
@@ -114,6 +118,6 @@ fn reweighed<'a>(
 }
 
 /// A model in the units of the records.
-pub(super) fn in_units(evidence: &Evidence, model: &StateSpaceMatrices) -> StateSpaceMatrices {
+pub(super) fn in_units(evidence: &PreparedData, model: &StateSpaceMatrices) -> StateSpaceMatrices {
     model.in_units(&evidence.scales.inputs, &evidence.scales.outputs)
 }

@@ -2,8 +2,8 @@
 
 use super::blocks::BlockModel;
 use super::bundle::{WithoutRecord, without_each_record};
-use super::evidence::Evidence;
-use super::examination::Examination;
+use super::evidence::PreparedData;
+use super::examination::Diagnostics;
 use super::normal_system::NormalSystem;
 use super::order::effective_parameters;
 use super::record_fit::{fits_of_records, mean_cost, output_costs};
@@ -26,7 +26,7 @@ const NOT_IDENTIFIED: f64 = 3.0;
 pub(super) fn report(
     records: &[FlightRecord],
     options: &Options,
-    evidence: &Evidence,
+    evidence: &PreparedData,
     proposal: Proposal,
     refinement: &Refinement,
     steps: &Steps,
@@ -58,7 +58,7 @@ pub(super) fn report(
     record_fits.extend(held_out_fits);
     record_fits.sort_by_key(|fit| fit.record);
     let output_costs = output_costs(&evidence.likelihood, &fit.model, &parts);
-    let examination = Examination { records, options, evidence, fit, without: &without };
+    let examination = Diagnostics { records, options, evidence, fit, without: &without };
     let mut cautions = evidence.cautions.clone();
     cautions.extend(refinement.cautions.iter().cloned());
     cautions.extend(examination.adequacy(cost, held_out_cost, &record_fits, &output_costs));

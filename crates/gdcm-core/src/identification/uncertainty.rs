@@ -200,7 +200,7 @@ mod tests {
     use super::*;
     use crate::executor::Sequential;
     use crate::identification::candidate::SubspaceSettings;
-    use crate::identification::evidence::Evidence;
+    use crate::identification::evidence::PreparedData;
     use crate::identification::known_answers::{answers, matrix, number, numbers};
     use crate::identification::order::effective_parameters;
     use crate::identification::polish::Fit;
@@ -242,7 +242,7 @@ mod tests {
         let preparation = Preparation::of(&["U1", "U2"], &["Y1", "Y2"]);
         let options = Options { held_out: vec![4], ..Options::new([band[0], band[1]], preparation) };
         let steps = Steps::new(&Unwatched);
-        let evidence = Evidence::new(&records, &options, &Sequential, &steps).unwrap();
+        let evidence = PreparedData::new(&records, &options, &Sequential, &steps).unwrap();
         let likelihood = &evidence.likelihood;
         let whole = |name: &str| numbers(&known[name]).into_iter().map(|value| value as usize).collect::<Vec<_>>();
         let (poles, pasts, orders) = (numbers(&known["poles_a"]), whole("pasts"), whole("orders"));

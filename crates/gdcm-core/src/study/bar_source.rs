@@ -2,7 +2,7 @@
 
 use crate::dataset::{BundleKind, Dynamics, Pair, PairTable};
 use crate::response::{coherence_at, median, quantile};
-use crate::uncertainty::{BarSource, CoherenceError, IdentificationSource, Part, Scalar, ToldError};
+use crate::uncertainty::{BarSource, CoherenceError, IdentificationSource, Part, ReportedUncertainty, Scalar};
 
 use super::analysis::Analysis;
 use super::condition_analysis::ConditionAnalysis;
@@ -30,8 +30,8 @@ pub(super) fn bar_source<'a>(
         let part = |(error, degrees): (CoherenceError, f64)| Part { variance: deviation(&error).powi(2), degrees };
         let coherence = by_coherence.as_ref().and_then(|told| told[pair]).map(part);
         let band = by_band.as_ref().and_then(|told| told[pair]).map(|error| part((error, f64::INFINITY)));
-        let coherence = coherence.map(|part| ToldError { part, source: IdentificationSource::Coherence });
-        let band = band.map(|part| ToldError { part, source: IdentificationSource::ModelBand });
+        let coherence = coherence.map(|part| ReportedUncertainty { part, source: IdentificationSource::Coherence });
+        let band = band.map(|part| ReportedUncertainty { part, source: IdentificationSource::ModelBand });
         coherence.or(band)
     });
     BarSource {

@@ -10,7 +10,7 @@ use super::document::{ConditionChoice, Study};
 use super::edit::Edit;
 use super::inventory::Inventory;
 use super::settings::Settings;
-use super::taken_models::TakenModels;
+use super::taken_models::AdoptedModels;
 use super::variant::Variant;
 
 /// One thing in which a dataset differs from the one that a study was made with, or a decision that has no place in it.
@@ -98,7 +98,7 @@ pub struct Decisions {
     /// Choices in each condition.
     pub choices: BTreeMap<ConditionId, ConditionChoice>,
     /// Models taken in place of those of the file.
-    pub taken: Vec<(ConditionId, Arc<TakenModels>)>,
+    pub taken: Vec<(ConditionId, Arc<AdoptedModels>)>,
     /// The decisions kept under names; these have none of their own.
     pub variants: Vec<(String, Decisions)>,
 }

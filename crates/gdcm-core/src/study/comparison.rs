@@ -20,7 +20,7 @@ use super::progress::Cancelled;
 
 /// Distances within each bundle and discontinuity ratios of the physics bundle; they do not depend on what is rejected.
 #[derive(Clone, Debug, PartialEq)]
-pub struct BundleFigures {
+pub struct BundleMetrics {
     /// Distances of the physics models.
     pub physics: BundleDistance,
     /// Distances of the identified models.
@@ -29,7 +29,7 @@ pub struct BundleFigures {
     pub discontinuity: Result<Discontinuity, DiscontinuityError>,
 }
 
-impl BundleFigures {
+impl BundleMetrics {
     /// Distances over the responses marked in `measuring`, two steps for each model. Measured models are compared by their
     /// coherence where there is a threshold for it (M4a).
     pub fn of(
@@ -159,7 +159,7 @@ impl Comparison {
     pub fn of(
         condition: &Condition,
         responses: &ConditionResponses,
-        figures: &BundleFigures,
+        figures: &BundleMetrics,
         grid: &FrequencyGrid,
         choice: &ConditionChoice,
         (average, coherence): (CostAverage, Option<f64>),

@@ -8,9 +8,9 @@ use crate::fidelity::{Discontinuity, Representative};
 use crate::schedule::CostChange;
 
 use super::caution::Caution;
-use super::comparison::{BundleFigures, Comparison};
+use super::comparison::{BundleMetrics, Comparison};
 use super::lead_offer::LeadOffer;
-use super::led::Led;
+use super::led::LeadCompensated;
 
 /// Everything the analysis says of one condition.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub struct ConditionAnalysis {
     /// The condition that was analysed: it names the models that the figures below are in the order of.
     pub condition: Arc<Condition>,
     /// Distances and discontinuity ratios of the bundles.
-    pub figures: Arc<BundleFigures>,
+    pub figures: Arc<BundleMetrics>,
     /// Representatives, G and D.
     pub comparison: Arc<Comparison>,
     /// What the gains were asked to do.
@@ -30,7 +30,7 @@ pub struct ConditionAnalysis {
     /// Optimal delays, eq. (11), or signed delays, M15.4.
     pub delays: Arc<Solution>,
     /// What the leads leave, where leads are asked for (M15.5).
-    pub led: Option<Arc<Led>>,
+    pub led: Option<Arc<LeadCompensated>>,
     /// What leads would buy, where all held responses want lead and leads are not asked for.
     pub offer: Option<LeadOffer>,
     /// Both as one correction.

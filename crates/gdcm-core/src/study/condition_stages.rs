@@ -12,13 +12,13 @@ use crate::response::FrequencyGrid;
 use crate::schedule::{CostChange, assess};
 
 use super::caution::Caution;
-use super::comparison::{BundleFigures, Comparison};
+use super::comparison::{BundleMetrics, Comparison};
 use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
 use super::condition_responses::{ConditionModels, ConditionResponses, GridKey, Purpose};
 use super::document::{ConditionChoice, Study};
 use super::execution::Execution;
 use super::lead_offer::{LeadOffer, OfferKey};
-use super::led::Led;
+use super::led::LeadCompensated;
 use super::memo::Memo;
 use super::progress::Cancelled;
 use super::settings::{DelayFrom, PhaseCorrection, Settings};
@@ -37,10 +37,10 @@ type GainBoundsKey = (ComparisonKey, Option<ChannelLeads>, f64, Option<GainBound
 #[derive(Clone, Debug)]
 pub(super) struct ConditionStages {
     models: ConditionModels,
-    figures: Memo<FiguresKey, Arc<BundleFigures>>,
+    figures: Memo<FiguresKey, Arc<BundleMetrics>>,
     comparison: Memo<ComparisonKey, Result<Arc<Comparison>, ConditionFailure>>,
     delay_upper_s: Memo<DelayBoundKey, f64>,
-    led: Memo<(ComparisonKey, ChannelLeads), Arc<Led>>,
+    led: Memo<(ComparisonKey, ChannelLeads), Arc<LeadCompensated>>,
     gain_bounds: Memo<GainBoundsKey, GainBounds>,
     offer: Memo<(ComparisonKey, OfferKey), PhaseLeft>,
     gains: Memo<Arc<Problem>, Solved>,
@@ -110,7 +110,7 @@ impl ConditionStages {
             execution.step(2 * model_count(&condition));
         }
         let figures = self.figures.get_or_fail(figures_key, |(_, measuring, _)| {
-            BundleFigures::of(&condition, &responses, measuring, (grid, coherence), execution).map(Arc::new)
+            BundleMetrics::of(&condition, &responses, measuring, (grid, coherence), execution).map(Arc::new)
         })?;
         let outcome = self.compare_and_solve(study, &condition, grid, &responses, figures, (proofs, execution))?;
         execution.step(1);
@@ -145,7 +145,7 @@ impl ConditionStages {
         let (settings, measuring) = (&swapping.study.settings, swapping.study.dataset.measuring_pairs());
         let key = comparison_key(swapping.study, swapping.analysis.condition.id());
         let omega = swapping.grid.omega();
-        let asked = Asked { settings, measuring: &measuring, omega, comparison, key: &key };
+        let asked = SolveInput { settings, measuring: &measuring, omega, comparison, key: &key };
         let solved = self.solve(&asked, SWAP_PROOF, execution)?;
         Ok(solved.ok().map(|solved| SwapOptimum {
             correction: solved.correction(),
@@ -160,7 +160,7 @@ impl ConditionStages {
         condition: &Arc<Condition>,
         grid: &FrequencyGrid,
         responses: &ConditionResponses,
-        figures: Arc<BundleFigures>,
+        figures: Arc<BundleMetrics>,
         (proofs, execution): (ProofBudget, &Execution<'_>),
     ) -> Result<Result<ConditionAnalysis, ConditionFailure>, Cancelled> {
         let settings = &study.settings;
@@ -185,7 +185,8 @@ impl ConditionStages {
             Err(failure) => return Ok(Err(failure)),
         };
         let cost_key = key.clone();
-        let asked = Asked { settings, measuring: &measuring, omega: grid.omega(), comparison: &comparison, key: &key };
+        let asked =
+            SolveInput { settings, measuring: &measuring, omega: grid.omega(), comparison: &comparison, key: &key };
         let solved = match self.solve(&asked, proofs, execution)? {
             Ok(solved) => solved,
             Err(failure) => return Ok(Err(failure)),
@@ -228,7 +229,7 @@ impl ConditionStages {
     /// The phase that leads would leave, where they are not asked for.
     fn phase_left(
         &mut self,
-        asked: &Asked<'_>,
+        asked: &SolveInput<'_>,
         solved: &Optima,
         execution: &Execution<'_>,
     ) -> Result<PhaseLeft, Cancelled> {
@@ -251,7 +252,7 @@ impl ConditionStages {
     /// The delays, then the gains on what leads leave (M15.5).
     fn solve(
         &mut self,
-        asked: &Asked<'_>,
+        asked: &SolveInput<'_>,
         proofs: ProofBudget,
         execution: &Execution<'_>,
     ) -> Result<Result<Optima, ConditionFailure>, Cancelled> {
@@ -276,7 +277,7 @@ impl ConditionStages {
         };
         let led = leads.clone().map(|leads| {
             let mismatch = &asked.comparison.representative.mismatch;
-            self.led.get((asked.key.clone(), leads), |(_, leads)| Led::of(mismatch, leads))
+            self.led.get((asked.key.clone(), leads), |(_, leads)| LeadCompensated::of(mismatch, leads))
         });
         let bounds_key = (asked.key.clone(), leads, settings.quantile, settings.gain_bounds);
         let bounds = self.gain_bounds.get(bounds_key, |_| asked.gain_bounds(led.as_deref()));
@@ -301,7 +302,7 @@ fn comparison_key(study: &Study, condition: ConditionId) -> ComparisonKey {
 const SWAP_PROOF: ProofBudget = ProofBudget { work: 1_000_000, listing: 0, bytes: 64_000_000 };
 
 /// What the optima of a condition are asked for.
-struct Asked<'a> {
+struct SolveInput<'a> {
     settings: &'a Settings,
     measuring: &'a PairTable<bool>,
     omega: &'a [f64],
@@ -309,19 +310,19 @@ struct Asked<'a> {
     key: &'a ComparisonKey,
 }
 
-impl Asked<'_> {
+impl SolveInput<'_> {
     fn delay_upper_s(&self) -> f64 {
         let (settings, mismatch) = (self.settings, &self.comparison.representative.mismatch);
         let by_quantile = || delay_upper_s(mismatch, self.measuring, self.omega, settings.quantile);
         settings.delay_upper_s.unwrap_or_else(by_quantile)
     }
 
-    fn gain_bounds(&self, led: Option<&Led>) -> GainBounds {
+    fn gain_bounds(&self, led: Option<&LeadCompensated>) -> GainBounds {
         let mismatch = led.map_or(&self.comparison.representative.mismatch, |led| &led.mismatch);
         self.settings.gain_bounds.unwrap_or_else(|| gain_bounds(mismatch, self.measuring, self.settings.quantile))
     }
 
-    fn gain_problem(&self, bounds: GainBounds, led: Option<&Led>) -> Problem {
+    fn gain_problem(&self, bounds: GainBounds, led: Option<&LeadCompensated>) -> Problem {
         let (settings, delta) = (self.settings, &self.comparison.delta);
         Problem {
             quantity: Quantity::Gain(settings.gain_objective),
@@ -365,7 +366,7 @@ struct Optima {
     delay_problem: Arc<Problem>,
     gains: Arc<Solution>,
     delays: Arc<Solution>,
-    led: Option<Arc<Led>>,
+    led: Option<Arc<LeadCompensated>>,
 }
 
 impl Optima {
@@ -400,7 +401,7 @@ fn check_comparable(
     })
 }
 
-fn cautions_of(settings: &Settings, comparison: &Comparison, figures: &BundleFigures) -> Vec<Caution> {
+fn cautions_of(settings: &Settings, comparison: &Comparison, figures: &BundleMetrics) -> Vec<Caution> {
     let held = settings.constrained.marked();
     let undefined = held.filter_map(|pair| Some(Caution::HeldButUndefined { pair, why: comparison.undefined[pair]? }));
     let mut cautions: Vec<Caution> = undefined.collect();

@@ -7,7 +7,7 @@ use crate::units::number;
 
 use super::document::{ConditionChoice, Study};
 use super::setting::Setting;
-use super::taken_models::TakenModels;
+use super::taken_models::AdoptedModels;
 
 /// One decision about a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,7 +69,7 @@ pub enum Edit {
     /// Change a setting of the whole study.
     Set(Setting),
     /// Put models identified from flight records into conditions, in place of the identified models there.
-    TakeModels(Vec<(ConditionId, Arc<TakenModels>)>),
+    TakeModels(Vec<(ConditionId, Arc<AdoptedModels>)>),
     /// Put the identified models of the dataset's file back into a condition.
     ReturnModels {
         /// The condition.

@@ -10,7 +10,7 @@ use crate::identification::{
     Treatment,
 };
 
-use super::taken_models::TakenModels;
+use super::taken_models::AdoptedModels;
 
 /// Methods, as models carry them (M14).
 const REFINED: &str = "CT-PBSID, refined";
@@ -39,7 +39,11 @@ impl OfferedModels {
 
 /// The offered models of an identification of `records`, the recommended one first; those that are no model of the program are
 /// left out, which `identify` itself refuses to make.
-pub fn identified_bundle(found: &Identification, offered: OfferedModels, records: Vec<ConditionRecord>) -> TakenModels {
+pub fn identified_bundle(
+    found: &Identification,
+    offered: OfferedModels,
+    records: Vec<ConditionRecord>,
+) -> AdoptedModels {
     let names = |without: Option<usize>| {
         let used = records.iter().enumerate().filter(|(index, record)| !record.held_out && Some(*index) != without);
         used.map(|(_, record)| record.name.clone()).collect::<Vec<String>>()
@@ -73,7 +77,7 @@ pub fn identified_bundle(found: &Identification, offered: OfferedModels, records
             Model { source, ..Model::new("measured", origin, Dynamics::Measured(response)) }
         }));
     }
-    TakenModels { models, records }
+    AdoptedModels { models, records }
 }
 
 /// First and last time \[s\] of each piece of a record between what was cut out of it.

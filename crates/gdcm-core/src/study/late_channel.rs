@@ -36,7 +36,7 @@ const MOST_LEFT: f64 = 0.2;
 
 /// A channel that seems to be logged late, or early, in all records.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LateChannel {
+pub struct ChannelTimeSkew {
     /// Input or output.
     pub role: Role,
     /// Which, counted from 0.
@@ -45,7 +45,7 @@ pub struct LateChannel {
     pub delay_s: f64,
 }
 
-impl LateChannel {
+impl ChannelTimeSkew {
     /// The channel whose delay explains why a measured response is late against that of a physics model; none where none stands out.
     pub fn of(measured: &MeasuredResponse, band: [f64; 2], physics: &Dynamics) -> Option<Self> {
         let lags = lags(measured, band, physics)?;
@@ -135,7 +135,7 @@ fn lags(measured: &MeasuredResponse, band: [f64; 2], physics: &Dynamics) -> Opti
 
 /// A channel whose delay stands out.
 struct Suspect {
-    channel: LateChannel,
+    channel: ChannelTimeSkew,
     /// What the others have in common \[s\].
     rest_s: f64,
     /// The squared phase that its delay explains.
@@ -164,6 +164,6 @@ impl Suspect {
         let is_late = delay_s.abs() > tolerance_s && agree && after <= MOST_LEFT * before;
         // The responses to an input that is logged late come too early.
         let delay_s = if role == Role::Output { delay_s } else { -delay_s };
-        is_late.then_some(Self { channel: LateChannel { role, index, delay_s }, rest_s, explained: before - after })
+        is_late.then_some(Self { channel: ChannelTimeSkew { role, index, delay_s }, rest_s, explained: before - after })
     }
 }

@@ -12,7 +12,7 @@ use crate::response::GainDelay;
 use crate::schedule::CostChange;
 
 use super::comparison::Comparison;
-use super::led::Led;
+use super::led::LeadCompensated;
 use super::settings::Settings;
 
 /// The mean J of the held responses, all of which want lead: as corrected, and with leads too.
@@ -68,7 +68,7 @@ impl OfferKey {
         let held =
             comparison.representative.mismatch.map(|pair, mismatch| mismatch.clone().filter(|_| self.held[pair]));
         let delay = |pair: Pair| GainDelay::new(1.0, inputs_s[pair.input] + outputs_s[pair.output]);
-        let left = Led::of(&held, &leads).cost(|pair| Some(delay(pair)), omega, average);
+        let left = LeadCompensated::of(&held, &leads).cost(|pair| Some(delay(pair)), omega, average);
         Ok(Some(Arc::new(left.map(|_, cost| cost.map(|cost| cost.phase)))))
     }
 }

@@ -9,7 +9,7 @@ use crate::response::GainDelay;
 
 /// The physics representative with the leads of its channels against the identified one: what the gains are found on.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Led {
+pub struct LeadCompensated {
     /// The signed delays with their filters.
     pub leads: ChannelLeads,
     /// Difference of every response that both models have; the pure delays among the leads are not in it.
@@ -18,7 +18,7 @@ pub struct Led {
     pub gain: PairTable<Option<f64>>,
 }
 
-impl Led {
+impl LeadCompensated {
     pub(super) fn of(mismatch: &PairTable<Option<Mismatch>>, leads: &ChannelLeads) -> Arc<Self> {
         let curves = leads.curves();
         let mismatch = mismatch.map(|pair, mismatch| {

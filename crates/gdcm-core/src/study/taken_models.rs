@@ -10,14 +10,14 @@ use super::edit::EditRefusal;
 
 /// Models identified from flight records, and these.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TakenModels {
+pub struct AdoptedModels {
     /// The identified bundle of the condition.
     pub models: Vec<Model>,
     /// The flight records of the condition.
     pub records: Vec<ConditionRecord>,
 }
 
-impl TakenModels {
+impl AdoptedModels {
     /// The dataset with these models for the identified bundle of a condition, and these records among its own.
     ///
     /// # Errors
@@ -35,7 +35,7 @@ impl TakenModels {
 #[derive(Clone, Debug)]
 pub struct Taken {
     file: Arc<Dataset>,
-    models: BTreeMap<ConditionId, Arc<TakenModels>>,
+    models: BTreeMap<ConditionId, Arc<AdoptedModels>>,
 }
 
 impl Study {
@@ -45,12 +45,12 @@ impl Study {
     }
 
     /// The models taken in place of those of the file, condition by condition.
-    pub fn taken_models(&self) -> impl Iterator<Item = (ConditionId, &Arc<TakenModels>)> {
+    pub fn taken_models(&self) -> impl Iterator<Item = (ConditionId, &Arc<AdoptedModels>)> {
         self.taken.iter().flat_map(|taken| taken.models.iter().map(|(id, models)| (*id, models)))
     }
 
     /// Takes models into conditions: into all of them, or into none. Decisions about models that are gone go with them.
-    pub(super) fn take_models(&mut self, taken: &[(ConditionId, Arc<TakenModels>)]) -> Result<(), EditRefusal> {
+    pub(super) fn take_models(&mut self, taken: &[(ConditionId, Arc<AdoptedModels>)]) -> Result<(), EditRefusal> {
         let mut models: BTreeMap<_, _> = self.taken_models().map(|(id, models)| (id, Arc::clone(models))).collect();
         models.extend(taken.iter().cloned());
         self.put_taken(models)
@@ -62,7 +62,7 @@ impl Study {
         self.put_taken(models.map(|(id, models)| (id, Arc::clone(models))).collect())
     }
 
-    fn put_taken(&mut self, models: BTreeMap<ConditionId, Arc<TakenModels>>) -> Result<(), EditRefusal> {
+    fn put_taken(&mut self, models: BTreeMap<ConditionId, Arc<AdoptedModels>>) -> Result<(), EditRefusal> {
         let file = Arc::clone(self.file_dataset());
         let mut dataset = Arc::clone(&file);
         for (id, taken) in &models {

@@ -8,7 +8,7 @@ use crate::dataset::{ConditionId, FlightState, Pair, PairTable};
 use crate::schedule::{Schedule, ScheduledQuantity, SecondVariable, airspeed_indicators};
 use crate::uncertainty::{
     BandWidths, Bar, BarSource, Design, Scalar, ScalarTable, ScheduleBand, SecondVariableDesign, SecondVariableEffect,
-    SecondVariableError, Split, bars,
+    SecondVariableError, VarianceDecomposition, bars,
 };
 
 use super::airspeed_difference::{AirspeedDifference, EQUAL_AIRSPEED_KT, differences, holm_where_known};
@@ -53,9 +53,9 @@ pub struct PairScatter {
     /// The response.
     pub pair: Pair,
     /// At equal airspeed; none where no two conditions share one.
-    pub same_airspeed: Option<Split>,
+    pub same_airspeed: Option<VarianceDecomposition>,
     /// About the schedule; none where it goes through every condition.
-    pub about_schedule: Option<Split>,
+    pub about_schedule: Option<VarianceDecomposition>,
 }
 
 /// Whether the schedule of one on-axis net gain needs a second variable (M13.7).
@@ -115,7 +115,7 @@ impl ScheduleBands {
         let scheduled = scalars.filter(|scalar| matches!(scalar, Scalar::NetGain(_) | Scalar::ChannelGain(_)));
         let band = |scalar| {
             let bars = bars_of(conditions, scalar)?;
-            Some((scalar, ScheduleBand::of(&design, &Split::of(&design, &bars)?, level)))
+            Some((scalar, ScheduleBand::of(&design, &VarianceDecomposition::of(&design, &bars)?, level)))
         };
         Some(Self { of: scheduled.filter_map(band).collect() })
     }
@@ -217,7 +217,7 @@ impl Designs {
 
     fn scatter(&self, conditions: &[&ConditionUncertainty], pair: Pair) -> PairScatter {
         let bars = bars_of(conditions, Scalar::NetGain(pair));
-        let split = |design: &Option<Design>| Split::of(design.as_ref()?, bars.as_ref()?);
+        let split = |design: &Option<Design>| VarianceDecomposition::of(design.as_ref()?, bars.as_ref()?);
         PairScatter { pair, same_airspeed: split(&self.same_airspeed), about_schedule: split(&self.schedule) }
     }
 }

@@ -1,7 +1,7 @@
 //! How sure the figures are, as tables to read, copy and save.
 
 use crate::dataset::Dataset;
-use crate::uncertainty::{Scalar, Split};
+use crate::uncertainty::{Scalar, VarianceDecomposition};
 use crate::units::signed;
 
 use super::airspeed_difference::AirspeedDifference;
@@ -99,7 +99,7 @@ pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
     ];
     let mut table = Table::new("What the scatter of the net gains is made of", columns);
     let deviation = |variance: f64| percent(Some(variance.sqrt()));
-    let interval = |split: &Split| {
+    let interval = |split: &VarianceDecomposition| {
         let ends = split.rest_interval(uncertainty.level);
         ends.map_or_else(|| NONE.to_owned(), |[low, high]| format!("{} to {}", percent(Some(low)), percent(Some(high))))
     };

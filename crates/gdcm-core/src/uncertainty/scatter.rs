@@ -7,7 +7,7 @@ use super::quantiles::{chi_squared_quantile, fisher_upper};
 
 /// The scatter of one figure about a fit, split into what the bundles make of it and the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Split {
+pub struct VarianceDecomposition {
     /// Degrees of freedom of the scatter, `f = n - r`.
     pub freedom: usize,
     /// `S^2 = sum e^2 / f`.
@@ -20,7 +20,7 @@ pub struct Split {
     pub degrees: Option<f64>,
 }
 
-impl Split {
+impl VarianceDecomposition {
     /// The split of these conditions' figures about the fit of `design`; none where it leaves no degrees of freedom.
     pub fn of(design: &Design, bars: &[Bar]) -> Option<Self> {
         let freedom = design.freedom();

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::least_squares::Design;
 use super::quantiles::student_quantile;
-use super::scatter::Split;
+use super::scatter::VarianceDecomposition;
 
 /// Half-widths of the two bands about a scheduled `ln k` at one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub struct ScheduleBand {
 
 impl ScheduleBand {
     /// The bands about the fit whose scatter is split so.
-    pub fn of(design: &Arc<Design>, split: &Split, level: f64) -> Self {
+    pub fn of(design: &Arc<Design>, split: &VarianceDecomposition, level: f64) -> Self {
         let deviation = split.scatter.max(split.explained()).sqrt();
         Self { design: Arc::clone(design), half: student_quantile(level, split.freedom as f64) * deviation }
     }

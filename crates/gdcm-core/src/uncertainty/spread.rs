@@ -9,7 +9,7 @@ pub type Figures = ScalarTable<Option<f64>>;
 
 /// What the flight's response is known by, besides the spread of several models of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ToldError {
+pub struct ReportedUncertainty {
     /// Its variance with its degrees of freedom.
     pub part: Part,
     /// Who says it.
@@ -55,7 +55,7 @@ pub struct BarSource<'a> {
     /// How they change with the models.
     pub spread: &'a ConditionSpread,
     /// Errors that the identified representative tells of itself.
-    pub told: ScalarTable<Option<ToldError>>,
+    pub told: ScalarTable<Option<ReportedUncertainty>>,
     /// Least and greatest delay of a channel \[s\].
     pub delay_bounds_s: [f64; 2],
 }
@@ -86,7 +86,7 @@ pub fn bars(conditions: &[BarSource<'_>], prior_degrees: f64) -> Vec<ScalarTable
     conditions.iter().enumerate().map(of_condition).collect()
 }
 
-impl ToldError {
+impl ReportedUncertainty {
     /// Whether it takes the place of the spread: where it is the larger. Models that each leave one record out spread less than any of
     /// them errs, by about the root of the number of records (Efron's jackknife); the band that they carry does not.
     fn replaces(&self, spread: Option<Part>) -> bool {
@@ -109,7 +109,7 @@ mod tests {
     fn the_larger_of_the_spread_and_of_what_a_model_says_of_itself_counts() {
         let part = |variance: f64| Part { variance, degrees: 3.0 };
         for source in [IdentificationSource::ModelBand, IdentificationSource::Coherence] {
-            let told = ToldError { part: part(0.04), source };
+            let told = ReportedUncertainty { part: part(0.04), source };
             assert!(told.replaces(None) && told.replaces(Some(part(0.01))));
             assert!(!told.replaces(Some(part(0.09))));
         }

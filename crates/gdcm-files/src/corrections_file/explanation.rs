@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use gdcm_core::correction::{Conflict, ConflictKind, Problem, Restraint, Sensitivity, Solution, sensitivities};
+use gdcm_core::correction::{ActiveConstraint, Conflict, ConflictKind, Problem, Sensitivity, Solution, sensitivities};
 
 use super::names::ChannelNames;
 
@@ -111,9 +111,9 @@ impl ConflictEntry {
 impl SensitivityEntry {
     fn of(sensitivity: &Sensitivity, names: &ChannelNames) -> Self {
         let (restraint, entry, channel) = match sensitivity.restraint {
-            Restraint::Held(pair) => ("held", Some(names.pair(pair)), None),
-            Restraint::LowerBound(channel) => ("lower_bound", None, Some(names.channel(channel))),
-            Restraint::UpperBound(channel) => ("upper_bound", None, Some(names.channel(channel))),
+            ActiveConstraint::Held(pair) => ("held", Some(names.pair(pair)), None),
+            ActiveConstraint::LowerBound(channel) => ("lower_bound", None, Some(names.channel(channel))),
+            ActiveConstraint::UpperBound(channel) => ("upper_bound", None, Some(names.channel(channel))),
         };
         Self {
             restraint: restraint.to_owned(),

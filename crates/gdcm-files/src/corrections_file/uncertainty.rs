@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::{ConditionId, Pair, PairTable};
 use gdcm_core::study::{Analysis, ConditionUncertainty, Uncertainty};
-use gdcm_core::uncertainty::{Bar, Scalar, Split};
+use gdcm_core::uncertainty::{Bar, Scalar, VarianceDecomposition};
 
 use super::names::{ByName, ChannelNames};
 
@@ -235,7 +235,7 @@ impl BarsEntry {
 }
 
 impl SplitEntry {
-    fn of(split: &Split, level: f64) -> Self {
+    fn of(split: &VarianceDecomposition, level: f64) -> Self {
         Self {
             degrees_of_freedom: split.freedom,
             scatter: split.scatter.sqrt(),
@@ -287,7 +287,9 @@ fn differences(uncertainty: &Uncertainty, names: &ChannelNames) -> Vec<Differenc
 fn scatter(uncertainty: &Uncertainty, names: &ChannelNames) -> Vec<ScatterEntry> {
     let entry = |of: &gdcm_core::study::PairScatter| {
         let (output, input) = names.pair(of.pair);
-        let split = |split: &Option<Split>| split.as_ref().map(|split| SplitEntry::of(split, uncertainty.level));
+        let split = |split: &Option<VarianceDecomposition>| {
+            split.as_ref().map(|split| SplitEntry::of(split, uncertainty.level))
+        };
         ScatterEntry {
             output,
             input,

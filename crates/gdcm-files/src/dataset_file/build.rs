@@ -3,11 +3,11 @@
 use nalgebra::DMatrix;
 
 use crate::content_fault::ContentFault;
-use crate::flaw::Flaw;
+use crate::flaw::ContentError;
 use crate::nested::Nested;
 use gdcm_core::dataset::{
     BandsDraft, BundleKind, Channel, ConditionDraft, ConditionId, ConditionRecord, DatasetDraft, Estimate, FlightState,
-    ModelDraft, Origin, Place, Provenance, RecordKind, ResponseArray, ResponseDraft, Timing,
+    Location, ModelDraft, Origin, Provenance, RecordKind, ResponseArray, ResponseDraft, Timing,
 };
 
 use super::schema::{
@@ -16,11 +16,11 @@ use super::schema::{
 };
 
 /// The draft that a file's text holds; of its content only what JSON alone spells is checked: words, not numbers.
-pub(super) fn draft_of(text: DatasetText) -> Result<DatasetDraft, Flaw> {
+pub(super) fn draft_of(text: DatasetText) -> Result<DatasetDraft, ContentError> {
     let band = text.frequency_band;
     if band.unit != "rad/s" {
         let fault = ContentFault::Word { expected: "\"rad/s\"".to_owned(), found: band.unit };
-        return Err(Flaw::new(Place::entry("frequency_band, unit"), fault));
+        return Err(ContentError::new(Location::entry("frequency_band, unit"), fault));
     }
     let conditions = text.conditions.into_iter().enumerate();
     Ok(DatasetDraft {
@@ -38,8 +38,8 @@ fn channel_of(text: ChannelText) -> Channel {
     Channel { name: text.name, unit: text.unit, description: text.description.unwrap_or_default() }
 }
 
-fn condition_of(position: usize, text: ConditionText) -> Result<ConditionDraft, Flaw> {
-    let place = Place::condition(position, text.id);
+fn condition_of(position: usize, text: ConditionText) -> Result<ConditionDraft, ContentError> {
+    let place = Location::condition(position, text.id);
     let flight_state = FlightState {
         id: ConditionId(text.id),
         name: text.name,
@@ -65,13 +65,17 @@ fn condition_of(position: usize, text: ConditionText) -> Result<ConditionDraft, 
 }
 
 /// The record of a text; `condition` is where it stands.
-pub(crate) fn record_of(condition: &Place, position: usize, text: RecordText) -> Result<ConditionRecord, Flaw> {
+pub(crate) fn record_of(
+    condition: &Location,
+    position: usize,
+    text: RecordText,
+) -> Result<ConditionRecord, ContentError> {
     let kind = match text.kind {
         None => RecordKind::Other,
         Some(word) => RecordKind::of(&word).ok_or_else(|| {
             let words = RecordKind::ALL.map(|kind| format!("\"{}\"", kind.word()));
             let fault = ContentFault::Word { expected: format!("one of {}", words.join(", ")), found: word };
-            Flaw::new(condition.at(format!("records, entry {position}, kind")), fault)
+            ContentError::new(condition.at(format!("records, entry {position}, kind")), fault)
         })?,
     };
     Ok(ConditionRecord {
@@ -87,14 +91,14 @@ pub(crate) fn record_of(condition: &Place, position: usize, text: RecordText) ->
     })
 }
 
-fn physics_model_of(place: &Place, text: PhysicsText) -> Result<ModelDraft, Flaw> {
+fn physics_model_of(place: &Location, text: PhysicsText) -> Result<ModelDraft, ContentError> {
     let perturbation = text.perturbation;
     let origin = match text.role.as_str() {
         "nominal" => Origin::Nominal { perturbation },
         "perturbed" => Origin::Perturbed { perturbation },
         _ => {
             let fault = ContentFault::Word { expected: "\"nominal\" or \"perturbed\"".to_owned(), found: text.role };
-            return Err(Flaw::new(place.at("role"), fault));
+            return Err(ContentError::new(place.at("role"), fault));
         }
     };
     let timing = Timing {

@@ -14,7 +14,7 @@ use flate2::write::GzEncoder;
 use gdcm_core::dataset::Dataset;
 
 use super::file_error::FileError;
-use super::flaw::Flaw;
+use super::flaw::ContentError;
 use super::output_set::{Existing, OutputSet, make_directory};
 use super::source::Source;
 use gdcm_core::message_text::{sanitized, sanitized_path};
@@ -109,7 +109,7 @@ pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
     let (text, _) = FORMAT.decode::<DatasetText>(source.text(), path)?;
     FORMAT.check_read(&text.format, text.version, path)?;
     let draft = draft_of(text).map_err(|flaw| FileError::content_of(path, flaw, source.text()))?;
-    let told = |error| FileError::content_of(path, Flaw::from(error), source.text());
+    let told = |error| FileError::content_of(path, ContentError::from(error), source.text());
     Ok(draft.faults().into_iter().map(told).collect())
 }
 
@@ -165,7 +165,7 @@ pub(super) fn dataset_from(source: &Source<'_>, origin: DatasetOrigin) -> Result
     FORMAT.check_read(&text.format, text.version, &path)?;
     let draft = draft_of(text).map_err(|flaw| FileError::content_of(&path, flaw, source.text()))?;
     let (dataset, odd) =
-        draft.checked().map_err(|error| FileError::content_of(&path, Flaw::from(error), source.text()))?;
+        draft.checked().map_err(|error| FileError::content_of(&path, ContentError::from(error), source.text()))?;
     cautions.extend(odd.into_iter().map(|odd| format!("{}{}", odd.place.before(), odd.words)));
     Ok(LoadedDataset { dataset: Arc::new(dataset), sha256: source.sha256.clone(), origin, cautions })
 }

@@ -95,7 +95,7 @@ mod tests {
     use super::super::exported_model::exported_models;
     use super::*;
     use crate::npy::{read_npz, write_npz};
-    use crate::variables::Meter;
+    use crate::variables::MemoryBudget;
     use crate::{embedded_example, mat};
     use gdcm_core::study::{Engine, ExportFormat, ExportRequest, Study, Unobserved};
 
@@ -104,7 +104,7 @@ mod tests {
         let study = Study::new(embedded_example().unwrap().dataset);
         let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
         let models = exported_models(&analysis, &ExportRequest::new(ExportFormat::StateSpace)).unwrap();
-        let meter = Meter::new(1 << 28, &|_| false);
+        let meter = MemoryBudget::new(1 << 28, &|_| false);
         let arrays = read_npz(&write_npz(&model_arrays(&models, &study.dataset)).unwrap(), &meter).unwrap();
         let bytes = mat::write_packed(&[models_variable(&models, &study.dataset)]).unwrap();
         let [Variable { value: Value::Struct(records), .. }] = &mat::read(&bytes, &meter).unwrap()[..] else {

@@ -52,7 +52,7 @@ mod tests {
     use super::super::scheduled_correction::tests::example;
     use super::*;
     use crate::text::read_table;
-    use crate::variables::Meter;
+    use crate::variables::MemoryBudget;
 
     const POINTS: [f64; 5] = [0.0, 20.0, 40.0, 60.0, 80.0];
 
@@ -60,7 +60,7 @@ mod tests {
     fn the_table_holds_the_curves_at_its_airspeeds() {
         let correction = example();
         let text = table_csv(&correction, &POINTS).unwrap();
-        let table = read_table(&text, &Meter::new(1 << 20, &|_| false)).unwrap();
+        let table = read_table(&text, &MemoryBudget::new(1 << 20, &|_| false)).unwrap();
         assert_eq!(table.columns[0], POINTS);
         assert_eq!(table.columns.len(), 7);
         assert_eq!(table.units[2].as_deref(), Some("s"));

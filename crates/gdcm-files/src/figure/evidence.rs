@@ -2,7 +2,7 @@
 
 use gdcm_core::dataset::Pair;
 use gdcm_core::study::{Analysis, PairScatter, Uncertainty};
-use gdcm_core::uncertainty::Split;
+use gdcm_core::uncertainty::VarianceDecomposition;
 
 use super::axis::Axis;
 use super::condition_source::{schedule_words, settings_words};
@@ -49,7 +49,7 @@ pub fn evidence_figure(analysis: &Analysis, pairs: &[Pair]) -> Option<Figure> {
 }
 
 /// The splits that there are, with their places.
-fn splits(scatter: &PairScatter) -> impl Iterator<Item = (f64, &Split)> {
+fn splits(scatter: &PairScatter) -> impl Iterator<Item = (f64, &VarianceDecomposition)> {
     let both = [scatter.same_airspeed.as_ref(), scatter.about_schedule.as_ref()];
     both.into_iter().zip([0.0, 1.0]).filter_map(|(split, x)| Some((x, split?)))
 }
@@ -62,7 +62,7 @@ fn axis() -> Axis {
 fn shares(scatter: &PairScatter) -> Panel {
     let mut feet = [0.0; 2];
     let bars = (0..PARTS.len()).map(|part| {
-        let share = |(x, split): (f64, &Split)| Some([x, 100.0 * split.shares()?[part]]);
+        let share = |(x, split): (f64, &VarianceDecomposition)| Some([x, 100.0 * split.shares()?[part]]);
         let bars: Vec<[f64; 2]> = splits(scatter).filter_map(share).collect();
         let on: Vec<f64> = bars.iter().map(|[x, _]| feet[*x as usize]).collect();
         bars.iter().for_each(|[x, share]| feet[*x as usize] += share);
@@ -82,17 +82,17 @@ fn shares(scatter: &PairScatter) -> Panel {
 /// The standard deviations themselves, of `ln k_o k_i` in percent, and the interval of the rest.
 fn deviations(scatter: &PairScatter, level: f64) -> Panel {
     let percent = |variance: f64| 100.0 * variance.sqrt();
-    let scatter_of: fn(&Split) -> f64 = |split| split.scatter;
+    let scatter_of: fn(&VarianceDecomposition) -> f64 = |split| split.scatter;
     let figures = [
         ("scatter", DotShape::Circle, Color::INK, scatter_of),
-        ("what the bundles explain", DotShape::Diamond, BLUE, Split::explained),
-        ("rest", DotShape::Square, RED, Split::rest),
+        ("what the bundles explain", DotShape::Diamond, BLUE, VarianceDecomposition::explained),
+        ("rest", DotShape::Square, RED, VarianceDecomposition::rest),
     ];
     let dots = figures.into_iter().zip([-APART, 0.0, APART]).map(|((name, shape, color, of), beside)| {
         let dots = Dots::new(name, shape, color).key(name).filled(shape != DotShape::Diamond);
         splits(scatter).fold(dots, |dots, (x, split)| dots.dot(x + beside, percent(of(split)), ""))
     });
-    let interval = |(x, split): (f64, &Split)| {
+    let interval = |(x, split): (f64, &VarianceDecomposition)| {
         let [low, high] = split.rest_interval(level)?;
         Some([x + APART, 100.0 * low, 100.0 * high])
     };

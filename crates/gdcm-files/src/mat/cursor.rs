@@ -11,7 +11,7 @@ pub(super) enum ByteOrder {
 
 /// A place in a stretch of bytes that cannot be left.
 ///
-/// Its faults name no variable: [`super::trail::Trail::name`] does that.
+/// Its faults name no variable: [`super::trail::FieldPath::name`] does that.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cursor<'b> {
     bytes: &'b [u8],

@@ -5,7 +5,7 @@
 use super::cursor::Cursor;
 use super::element::{DataKind, Element};
 use super::numbers::places;
-use crate::variables::{ElementKind, Meter, VariableFault};
+use crate::variables::{ElementKind, MemoryBudget, VariableFault};
 
 /// The class of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +42,7 @@ pub(super) struct Header {
 
 impl Header {
     /// Reads what stands before the contents.
-    pub(super) fn read(contents: &mut Cursor<'_>, meter: &Meter<'_>) -> Result<Self, VariableFault> {
+    pub(super) fn read(contents: &mut Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Self, VariableFault> {
         let flags = Element::read(contents)?;
         if flags.kind != DataKind::U32 {
             return Err(flags.data.damaged("an array without flags"));
@@ -101,7 +101,7 @@ pub(super) fn count(shape: &[usize]) -> usize {
     if shape.contains(&0) { 0 } else { product }
 }
 
-fn shape(contents: &mut Cursor<'_>, meter: &Meter<'_>) -> Result<Vec<usize>, VariableFault> {
+fn shape(contents: &mut Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Vec<usize>, VariableFault> {
     let mut shape = places(&Element::read(contents)?, meter)?;
     while shape.len() < 2 {
         shape.push(1);

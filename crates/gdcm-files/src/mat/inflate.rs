@@ -7,7 +7,7 @@ use std::io::{ErrorKind, Read};
 use flate2::read::ZlibDecoder;
 
 use super::cursor::Cursor;
-use crate::variables::{Meter, VariableFault};
+use crate::variables::{MemoryBudget, VariableFault};
 
 /// How many bytes one packed byte can become at most, rounded up (RFC 1951: 258 bytes from two bits).
 const MOST_EXPANSION: u64 = 1040;
@@ -15,7 +15,7 @@ const MOST_EXPANSION: u64 = 1040;
 const CHUNK: u64 = 1 << 20;
 
 /// The bytes of a packed element: its tag, which says how many follow, and those.
-pub(super) fn unpacked(packed: Cursor<'_>, meter: &Meter<'_>) -> Result<Vec<u8>, VariableFault> {
+pub(super) fn unpacked(packed: Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Vec<u8>, VariableFault> {
     let mut decoder = ZlibDecoder::new(packed.rest());
     let mut bytes = Vec::new();
     read(&mut decoder, 8, &mut bytes, packed, meter)?;
@@ -39,7 +39,7 @@ fn read(
     length: u64,
     bytes: &mut Vec<u8>,
     packed: Cursor<'_>,
-    meter: &Meter<'_>,
+    meter: &MemoryBudget<'_>,
 ) -> Result<(), VariableFault> {
     let mut left = length;
     while left > 0 {
@@ -75,7 +75,7 @@ mod tests {
     }
 
     fn read(bytes: &[u8], most: u64) -> Result<Vec<u8>, VariableFault> {
-        unpacked(Cursor::file(bytes, ByteOrder::Little), &Meter::new(most, &|_| false))
+        unpacked(Cursor::file(bytes, ByteOrder::Little), &MemoryBudget::new(most, &|_| false))
     }
 
     #[test]

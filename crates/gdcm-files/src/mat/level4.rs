@@ -9,8 +9,8 @@ use super::element::name_of;
 use super::header::count;
 use super::sparse::Entries;
 use super::text::rows;
-use super::trail::Trail;
-use crate::variables::{Array, ElementKind, Meter, Value, Variable, VariableFault};
+use super::trail::FieldPath;
+use crate::variables::{Array, ElementKind, MemoryBudget, Value, Variable, VariableFault};
 
 /// What stands before each matrix.
 struct Header {
@@ -51,14 +51,14 @@ pub(super) fn begins(bytes: &[u8]) -> bool {
 }
 
 /// All variables of a file.
-pub(super) fn read(bytes: &[u8], meter: &Meter<'_>) -> Result<Vec<Variable>, VariableFault> {
+pub(super) fn read(bytes: &[u8], meter: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     let mut file = Cursor::file(bytes, ByteOrder::Little);
     let (mut variables, mut names) = (Vec::new(), HashSet::new());
     while !file.is_empty() {
         meter.take(1, 2 * size_of::<Variable>() as u64, "")?;
         let header = header(&mut file)?;
         let name = name_of(file.take(header.name_length)?.rest());
-        let value = header.value(&mut file, meter).map_err(|fault| Trail::start(&name).name(fault))?;
+        let value = header.value(&mut file, meter).map_err(|fault| FieldPath::start(&name).name(fault))?;
         if !names.insert(name.clone()) {
             return Err(VariableFault::Duplicate { name });
         }
@@ -144,7 +144,7 @@ impl Stored {
 }
 
 impl Header {
-    fn value(&self, file: &mut Cursor<'_>, meter: &Meter<'_>) -> Result<Value, VariableFault> {
+    fn value(&self, file: &mut Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Value, VariableFault> {
         let start = *file;
         let re = self.numbers(file, meter)?;
         let im = if self.complex { Some(self.numbers(file, meter)?) } else { None };
@@ -160,7 +160,7 @@ impl Header {
         }
     }
 
-    fn numbers(&self, file: &mut Cursor<'_>, meter: &Meter<'_>) -> Result<Vec<f64>, VariableFault> {
+    fn numbers(&self, file: &mut Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Vec<f64>, VariableFault> {
         let count = count(&[self.rows, self.columns]);
         let bytes = file.take(count.saturating_mul(self.stored.width()))?;
         meter.take(count as u64, 8, "")?;
@@ -168,7 +168,7 @@ impl Header {
     }
 
     /// Columns of rows, of columns, of numbers and of their imaginary parts; the last row says how large the matrix is.
-    fn sparse(&self, columns: &[f64], start: Cursor<'_>, meter: &Meter<'_>) -> Result<Array, VariableFault> {
+    fn sparse(&self, columns: &[f64], start: Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Array, VariableFault> {
         let damaged = || start.damaged("a sparse matrix whose numbers do not fit it");
         meter.take(columns.len() as u64, 8, "")?;
         let parts: Vec<&[f64]> = columns.chunks_exact(self.rows.max(1)).collect();
@@ -207,7 +207,7 @@ mod tests {
 
     fn first(bytes: &[u8]) -> Result<Value, VariableFault> {
         assert!(begins(bytes));
-        let mut variables = read(bytes, &Meter::new(1 << 16, &|_| false))?;
+        let mut variables = read(bytes, &MemoryBudget::new(1 << 16, &|_| false))?;
         assert_eq!(variables[0].name, "x");
         Ok(variables.remove(0).value)
     }

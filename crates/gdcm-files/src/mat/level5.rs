@@ -9,9 +9,9 @@ use super::element::{DataKind, Element};
 use super::header::Header;
 use super::inflate::unpacked;
 use super::matrix::Arrays;
-use super::trail::Trail;
+use super::trail::FieldPath;
 use super::workspace;
-use crate::variables::{Meter, Variable, VariableFault};
+use crate::variables::{MemoryBudget, Variable, VariableFault};
 
 /// Length of the text and the numbers that a file begins with.
 pub(super) const HEADER_BYTES: usize = 128;
@@ -30,7 +30,7 @@ pub(super) fn version(bytes: &[u8]) -> Option<(ByteOrder, u8)> {
 }
 
 /// All variables of a file.
-pub(super) fn read(bytes: &[u8], order: ByteOrder, meter: &Meter<'_>) -> Result<Vec<Variable>, VariableFault> {
+pub(super) fn read(bytes: &[u8], order: ByteOrder, meter: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     let objects = match workspace::objects(bytes, objects_at(bytes, order), order, meter) {
         Ok(objects) => Ok(objects),
         Err(fault @ (VariableFault::TooLarge { .. } | VariableFault::Stopped)) => return Err(fault),
@@ -79,7 +79,7 @@ fn named(contents: &mut Cursor<'_>, arrays: &Arrays<'_>) -> Result<Option<Variab
         Element::pass_all(contents)?;
         return Ok(None);
     }
-    let value = arrays.contents(&header, contents, &Trail::start(&header.name))?;
+    let value = arrays.contents(&header, contents, &FieldPath::start(&header.name))?;
     Ok(Some(Variable { name: header.name, value }))
 }
 
@@ -120,7 +120,7 @@ mod tests {
     }
 
     fn variables(bytes: &[u8]) -> Result<Vec<Variable>, VariableFault> {
-        read(bytes, ByteOrder::Little, &Meter::new(1 << 16, &|_| false))
+        read(bytes, ByteOrder::Little, &MemoryBudget::new(1 << 16, &|_| false))
     }
 
     #[test]

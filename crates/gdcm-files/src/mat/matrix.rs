@@ -11,14 +11,14 @@ use super::opaque;
 use super::sparse::Entries;
 use super::subsystem::Subsystem;
 use super::text::text;
-use super::trail::{Step, Trail};
-use crate::variables::{Array, CellArray, Meter, Object, StructArray, Value, VariableFault};
+use super::trail::{FieldPath, Step};
+use crate::variables::{Array, CellArray, MemoryBudget, Object, StructArray, Value, VariableFault};
 
 /// What reading an array takes besides its bytes.
 #[derive(Clone, Copy)]
 pub(super) struct Arrays<'a> {
     /// Counts the memory.
-    pub(super) meter: &'a Meter<'a>,
+    pub(super) meter: &'a MemoryBudget<'a>,
     /// The objects of the file, or why they cannot be read.
     pub(super) objects: Result<&'a Subsystem, &'a str>,
 }
@@ -29,7 +29,7 @@ impl Arrays<'_> {
         &self,
         header: &Header,
         contents: &mut Cursor<'_>,
-        trail: &Trail<'_>,
+        trail: &FieldPath<'_>,
     ) -> Result<Value, VariableFault> {
         let value = match header.class {
             ArrayClass::Float | ArrayClass::Integer => self.array(header, contents).map(Value::Array),
@@ -49,12 +49,12 @@ impl Arrays<'_> {
     }
 
     /// The next array, which lies in another.
-    pub(super) fn inner(&self, contents: &mut Cursor<'_>, trail: &Trail<'_>) -> Result<Value, VariableFault> {
+    pub(super) fn inner(&self, contents: &mut Cursor<'_>, trail: &FieldPath<'_>) -> Result<Value, VariableFault> {
         let value = self.next(contents, trail);
         value.map_err(|fault| trail.name(fault))
     }
 
-    fn next(&self, contents: &mut Cursor<'_>, trail: &Trail<'_>) -> Result<Value, VariableFault> {
+    fn next(&self, contents: &mut Cursor<'_>, trail: &FieldPath<'_>) -> Result<Value, VariableFault> {
         let start = *contents;
         let element = Element::read(contents)?;
         let mut data = matrix(element)?;
@@ -106,13 +106,23 @@ impl Arrays<'_> {
         entries.filled(self.meter, || start.damaged("a number outside its sparse matrix"))
     }
 
-    fn cell(&self, header: &Header, contents: &mut Cursor<'_>, trail: &Trail<'_>) -> Result<CellArray, VariableFault> {
+    fn cell(
+        &self,
+        header: &Header,
+        contents: &mut Cursor<'_>,
+        trail: &FieldPath<'_>,
+    ) -> Result<CellArray, VariableFault> {
         let count = self.room(header.count, contents)?;
         let values = (0..count).map(|at| self.inner(contents, &trail.step(Step::Cell(at))?));
         Ok(CellArray { shape: header.shape.clone(), values: values.collect::<Result<_, _>>()? })
     }
 
-    fn object(&self, header: &Header, contents: &mut Cursor<'_>, trail: &Trail<'_>) -> Result<Object, VariableFault> {
+    fn object(
+        &self,
+        header: &Header,
+        contents: &mut Cursor<'_>,
+        trail: &FieldPath<'_>,
+    ) -> Result<Object, VariableFault> {
         let class = Element::read(contents)?.name()?;
         Ok(Object { class, records: self.records(header, contents, trail)? })
     }
@@ -121,7 +131,7 @@ impl Arrays<'_> {
         &self,
         header: &Header,
         contents: &mut Cursor<'_>,
-        trail: &Trail<'_>,
+        trail: &FieldPath<'_>,
     ) -> Result<StructArray, VariableFault> {
         let names = field_names(contents, self.meter)?;
         let count = header.count;
@@ -154,7 +164,7 @@ impl Arrays<'_> {
 }
 
 /// The names of the fields of records, which stand before them.
-pub(super) fn field_names(contents: &mut Cursor<'_>, meter: &Meter<'_>) -> Result<Vec<String>, VariableFault> {
+pub(super) fn field_names(contents: &mut Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Vec<String>, VariableFault> {
     let lengths = Element::read(contents)?;
     let &[length] = places(&lengths, meter)?.as_slice() else {
         return Err(lengths.data.damaged("records without a length of their names"));
@@ -180,10 +190,10 @@ pub(super) fn field_names(contents: &mut Cursor<'_>, meter: &Meter<'_>) -> Resul
 mod tests {
     use super::super::read;
     use super::super::sample::{big_file, doubles, element, file, matrix};
-    use super::{Array, Meter, Value, VariableFault};
+    use super::{Array, MemoryBudget, Value, VariableFault};
 
     fn first(bytes: &[u8]) -> Result<Value, VariableFault> {
-        let mut variables = read(bytes, &Meter::new(1 << 16, &|_| false))?;
+        let mut variables = read(bytes, &MemoryBudget::new(1 << 16, &|_| false))?;
         Ok(variables.remove(0).value)
     }
 

@@ -25,7 +25,7 @@ mod writer;
 pub use subsystem::Subsystem;
 pub use writer::{write, write_packed};
 
-use super::variables::{Meter, Variable, VariableFault};
+use super::variables::{MemoryBudget, Variable, VariableFault};
 
 /// What every HDF5 file, or what follows MATLAB's header in one, begins with.
 const HDF5_SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
@@ -38,7 +38,7 @@ const EXPECTED: &str = "a .mat file of MATLAB up to version 7";
 ///
 /// What lies in a variable and cannot be decoded is [`super::variables::Value::Opaque`]; bytes that contradict the format are a
 /// fault of the whole file.
-pub fn read(bytes: &[u8], meter: &Meter<'_>) -> Result<Vec<Variable>, VariableFault> {
+pub fn read(bytes: &[u8], meter: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     if is_hdf5(bytes) {
         return Err(format("an HDF5 file, as MATLAB writes with -v7.3"));
     }
@@ -91,7 +91,7 @@ mod tests {
     const MOST: u64 = 1 << 20;
 
     fn read(bytes: &[u8]) -> Result<Vec<Variable>, VariableFault> {
-        super::read(bytes, &Meter::new(MOST, &|_| false))
+        super::read(bytes, &MemoryBudget::new(MOST, &|_| false))
     }
 
     fn value(bytes: &[u8], name: &str) -> Value {
@@ -202,7 +202,7 @@ mod tests {
 
     #[test]
     fn a_reader_that_shall_stop_stops() {
-        assert_eq!(super::read(PLAIN, &Meter::new(MOST, &|_| true)), Err(VariableFault::Stopped));
+        assert_eq!(super::read(PLAIN, &MemoryBudget::new(MOST, &|_| true)), Err(VariableFault::Stopped));
     }
 
     proptest! {

@@ -2,12 +2,16 @@
 
 use super::cursor::ByteOrder;
 use super::element::{DataKind, Element};
-use crate::variables::{Meter, VariableFault};
+use crate::variables::{MemoryBudget, VariableFault};
 
 /// All numbers of an element, of which there must be `count`.
 ///
 /// MATLAB stores the numbers of an array in the smallest kind that holds them, so that this is not the array's own kind.
-pub(super) fn numbers(element: &Element<'_>, count: usize, meter: &Meter<'_>) -> Result<Vec<f64>, VariableFault> {
+pub(super) fn numbers(
+    element: &Element<'_>,
+    count: usize,
+    meter: &MemoryBudget<'_>,
+) -> Result<Vec<f64>, VariableFault> {
     let found = element.count()?;
     if found != count {
         return Err(element.data.damaged(format!("{found} numbers where there should be {count}")));
@@ -17,7 +21,7 @@ pub(super) fn numbers(element: &Element<'_>, count: usize, meter: &Meter<'_>) ->
 }
 
 /// All whole numbers of an element: sizes and places.
-pub(super) fn places(element: &Element<'_>, meter: &Meter<'_>) -> Result<Vec<usize>, VariableFault> {
+pub(super) fn places(element: &Element<'_>, meter: &MemoryBudget<'_>) -> Result<Vec<usize>, VariableFault> {
     match element.kind {
         DataKind::I32 | DataKind::U32 => {}
         _ => return Err(element.data.damaged("numbers of another kind where sizes should stand")),
@@ -31,7 +35,7 @@ pub(super) fn places(element: &Element<'_>, meter: &Meter<'_>) -> Result<Vec<usi
 }
 
 /// All whole numbers of 64 bits of an element, if it holds such.
-pub(super) fn long_words(element: &Element<'_>, meter: &Meter<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
+pub(super) fn long_words(element: &Element<'_>, meter: &MemoryBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
     if element.kind != DataKind::U64 {
         return Ok(None);
     }
@@ -69,7 +73,7 @@ mod tests {
     fn read(kind: u8, data: &[u8], count: usize) -> Result<Vec<f64>, VariableFault> {
         let bytes = [&[kind, 0, 0, 0, data.len() as u8, 0, 0, 0], data].concat();
         let element = Element::read(&mut Cursor::file(&bytes, ByteOrder::Little)).unwrap();
-        numbers(&element, count, &Meter::new(1 << 10, &|_| false))
+        numbers(&element, count, &MemoryBudget::new(1 << 10, &|_| false))
     }
 
     #[test]

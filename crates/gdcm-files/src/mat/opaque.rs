@@ -8,11 +8,15 @@ use super::element::Element;
 use super::export_line::export_line;
 use super::matrix::Arrays;
 use super::subsystem::Reference;
-use super::trail::Trail;
+use super::trail::FieldPath;
 use crate::variables::{Value, VariableFault};
 
 /// The value of an opaque array behind its name.
-pub(super) fn value(arrays: &Arrays<'_>, contents: &mut Cursor<'_>, trail: &Trail<'_>) -> Result<Value, VariableFault> {
+pub(super) fn value(
+    arrays: &Arrays<'_>,
+    contents: &mut Cursor<'_>,
+    trail: &FieldPath<'_>,
+) -> Result<Value, VariableFault> {
     let system = Element::read(contents)?.name()?;
     let class = Element::read(contents)?.name()?;
     if system != "MCOS" {
@@ -35,7 +39,7 @@ pub(super) fn value(arrays: &Arrays<'_>, contents: &mut Cursor<'_>, trail: &Trai
 }
 
 /// A value of a class that this program does not read.
-pub(super) fn unread(class: &str, trail: &Trail<'_>) -> Value {
+pub(super) fn unread(class: &str, trail: &FieldPath<'_>) -> Value {
     unread_because(class, "values of this class are not read", &trail.words())
 }
 
@@ -49,10 +53,10 @@ pub(super) fn unread_because(class: &str, why: &str, variable: &str) -> Value {
 mod tests {
     use super::super::read;
     use super::super::sample::{element, file, opaque, reference};
-    use crate::variables::{Meter, Value};
+    use crate::variables::{MemoryBudget, Value};
 
     fn first(bytes: &[u8]) -> (String, String) {
-        match read(bytes, &Meter::new(1 << 16, &|_| false)).unwrap().remove(0).value {
+        match read(bytes, &MemoryBudget::new(1 << 16, &|_| false)).unwrap().remove(0).value {
             Value::Opaque { class, why } => (class, why),
             other => panic!("{other:?}"),
         }

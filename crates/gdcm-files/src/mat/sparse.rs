@@ -1,6 +1,6 @@
 //! Matrices of which only the numbers other than zero are stored, filled up.
 
-use crate::variables::{Array, ElementKind, Meter, VariableFault};
+use crate::variables::{Array, ElementKind, MemoryBudget, VariableFault};
 
 /// The numbers other than zero, each with its place.
 pub(super) struct Entries {
@@ -24,7 +24,7 @@ impl Entries {
     /// `outside` is the fault that a number lies outside the matrix.
     pub(super) fn filled(
         &self,
-        meter: &Meter<'_>,
+        meter: &MemoryBudget<'_>,
         outside: impl Fn() -> VariableFault,
     ) -> Result<Array, VariableFault> {
         let [height, width] = self.shape;
@@ -55,14 +55,14 @@ mod tests {
 
     #[test]
     fn what_is_not_stored_is_zero() {
-        let meter = Meter::new(1000, &|_| false);
+        let meter = MemoryBudget::new(1000, &|_| false);
         let array = entries([2, 2]).filled(&meter, || VariableFault::Stopped).unwrap();
         assert_eq!((array.re, array.im), (vec![0.0, 3.0, 2.0, 0.0], Some(vec![0.0, 1.0, 0.0, 0.0])));
     }
 
     #[test]
     fn places_outside_and_sizes_beyond_the_limit_are_refused() {
-        let meter = Meter::new(1000, &|_| false);
+        let meter = MemoryBudget::new(1000, &|_| false);
         assert_eq!(entries([1, 2]).filled(&meter, || VariableFault::Stopped), Err(VariableFault::Stopped));
         let large = entries([usize::MAX, 1]).filled(&meter, || VariableFault::Stopped);
         assert!(matches!(large, Err(VariableFault::TooLarge { .. })));

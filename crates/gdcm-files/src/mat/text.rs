@@ -3,10 +3,14 @@
 use super::element::{DataKind, Element};
 use super::header::count;
 use super::numbers::numbers;
-use crate::variables::{Meter, TextArray, VariableFault};
+use crate::variables::{MemoryBudget, TextArray, VariableFault};
 
 /// The rows of an array of characters, stored as text or as numbers of characters.
-pub(super) fn text(element: &Element<'_>, shape: &[usize], meter: &Meter<'_>) -> Result<TextArray, VariableFault> {
+pub(super) fn text(
+    element: &Element<'_>,
+    shape: &[usize],
+    meter: &MemoryBudget<'_>,
+) -> Result<TextArray, VariableFault> {
     let wanted = count(shape);
     meter.take(wanted as u64, 16, "")?;
     let mut characters = characters(element, wanted, meter)?;
@@ -24,7 +28,7 @@ pub(super) fn text(element: &Element<'_>, shape: &[usize], meter: &Meter<'_>) ->
 /// The texts in the rows of an array of characters, of which there are as many as the shape says.
 ///
 /// An array without characters is one empty text, as MATLAB's `''` is, unless it has several rows.
-pub(super) fn rows(characters: &[u32], shape: &[usize], meter: &Meter<'_>) -> Result<TextArray, VariableFault> {
+pub(super) fn rows(characters: &[u32], shape: &[usize], meter: &MemoryBudget<'_>) -> Result<TextArray, VariableFault> {
     let (height, length) = (shape.first().copied().unwrap_or(1), shape.get(1).copied().unwrap_or(1));
     let pages = shape.get(2..).unwrap_or_default();
     if characters.is_empty() && height <= 1 {
@@ -54,7 +58,7 @@ fn written(numbers: impl Iterator<Item = u32>) -> String {
     String::from_utf16_lossy(&units)
 }
 
-fn characters(element: &Element<'_>, wanted: usize, meter: &Meter<'_>) -> Result<Vec<u32>, VariableFault> {
+fn characters(element: &Element<'_>, wanted: usize, meter: &MemoryBudget<'_>) -> Result<Vec<u32>, VariableFault> {
     if element.kind == DataKind::Utf8 {
         return Ok(of_utf8(element.data.rest(), wanted));
     }
@@ -84,7 +88,7 @@ mod tests {
     fn read(kind: u8, data: &[u8], shape: &[usize]) -> Result<TextArray, VariableFault> {
         let bytes = [&[kind, 0, 0, 0, data.len() as u8, 0, 0, 0], data].concat();
         let element = Element::read(&mut Cursor::file(&bytes, ByteOrder::Little)).unwrap();
-        text(&element, shape, &Meter::new(1 << 16, &|_| false))
+        text(&element, shape, &MemoryBudget::new(1 << 16, &|_| false))
     }
 
     #[test]

@@ -7,8 +7,8 @@ const DEEPEST: usize = 64;
 
 /// The way from a variable to a value in it, one step at a time.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Trail<'t> {
-    before: Option<&'t Trail<'t>>,
+pub(super) struct FieldPath<'t> {
+    before: Option<&'t FieldPath<'t>>,
     step: Step<'t>,
     depth: usize,
 }
@@ -26,23 +26,23 @@ pub(super) enum Step<'t> {
     Cell(usize),
 }
 
-impl<'t> Trail<'t> {
+impl<'t> FieldPath<'t> {
     /// At the variable itself.
     pub(super) fn start(name: &'t str) -> Self {
         Self { before: None, step: Step::Start(name), depth: 0 }
     }
 
     /// One step on.
-    pub(super) fn step(&'t self, step: Step<'t>) -> Result<Trail<'t>, VariableFault> {
+    pub(super) fn step(&'t self, step: Step<'t>) -> Result<FieldPath<'t>, VariableFault> {
         if self.depth >= DEEPEST {
             return Err(VariableFault::TooDeep { variable: self.words() });
         }
-        Ok(Trail { before: Some(self), step, depth: self.depth + 1 })
+        Ok(FieldPath { before: Some(self), step, depth: self.depth + 1 })
     }
 
     /// The way as MATLAB writes it: "sys.A", "models{3}.B".
     pub(super) fn words(&self) -> String {
-        let before = self.before.map(Trail::words).unwrap_or_default();
+        let before = self.before.map(FieldPath::words).unwrap_or_default();
         match self.step {
             Step::Start(name) => name.to_owned(),
             Step::Field(name) => format!("{before}.{name}"),
@@ -76,7 +76,7 @@ mod tests {
 
     #[test]
     fn the_way_is_written_as_in_matlab() {
-        let start = Trail::start("models");
+        let start = FieldPath::start("models");
         let cell = start.step(Step::Cell(2)).unwrap();
         let record = cell.step(Step::Record(0)).unwrap();
         assert_eq!(record.step(Step::Field("B")).unwrap().words(), "models{3}(1).B");
@@ -85,15 +85,15 @@ mod tests {
     #[test]
     fn the_first_name_stays() {
         let fault = VariableFault::TooDeep { variable: String::new() };
-        let named = Trail::start("a").name(fault);
-        assert_eq!(Trail::start("b").name(named), VariableFault::TooDeep { variable: "a".to_owned() });
+        let named = FieldPath::start("a").name(fault);
+        assert_eq!(FieldPath::start("b").name(named), VariableFault::TooDeep { variable: "a".to_owned() });
     }
 
     #[test]
     fn the_way_ends() {
-        fn deeper(trail: &Trail<'_>) -> VariableFault {
+        fn deeper(trail: &FieldPath<'_>) -> VariableFault {
             trail.step(Step::Cell(0)).map_or_else(|fault| fault, |next| deeper(&next))
         }
-        assert!(matches!(deeper(&Trail::start("a")), VariableFault::TooDeep { .. }));
+        assert!(matches!(deeper(&FieldPath::start("a")), VariableFault::TooDeep { .. }));
     }
 }

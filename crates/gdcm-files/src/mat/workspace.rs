@@ -11,8 +11,8 @@ use super::level5::matrix;
 use super::matrix::{Arrays, field_names};
 use super::numbers::long_words;
 use super::subsystem::Subsystem;
-use super::trail::{Step, Trail};
-use crate::variables::{Meter, Value, VariableFault};
+use super::trail::{FieldPath, Step};
+use crate::variables::{MemoryBudget, Value, VariableFault};
 
 /// What the system of classes is called.
 const SYSTEM: &str = "MCOS";
@@ -24,7 +24,7 @@ pub(super) fn objects(
     bytes: &[u8],
     at: Option<usize>,
     order: ByteOrder,
-    meter: &Meter<'_>,
+    meter: &MemoryBudget<'_>,
 ) -> Result<Subsystem, VariableFault> {
     let mut file = Cursor::file(bytes, order);
     let none = || file.damaged("they lie nowhere in it");
@@ -40,7 +40,7 @@ pub(super) fn objects(
 }
 
 /// The objects within an array of bytes.
-fn within(array: Cursor<'_>, meter: &Meter<'_>) -> Result<Subsystem, VariableFault> {
+fn within(array: Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Subsystem, VariableFault> {
     let mut array = array;
     Header::read(&mut array, meter)?;
     let data = Element::read(&mut array)?.data;
@@ -65,7 +65,7 @@ fn within(array: Cursor<'_>, meter: &Meter<'_>) -> Result<Subsystem, VariableFau
 }
 
 /// The objects within a `FileWrapper__`.
-fn wrapped(wrapper: Cursor<'_>, meter: &Meter<'_>) -> Result<Subsystem, VariableFault> {
+fn wrapped(wrapper: Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Subsystem, VariableFault> {
     let mut wrapper = wrapper;
     let opaque = Header::read(&mut wrapper, meter)?.class == ArrayClass::Opaque;
     let (system, class) = (Element::read(&mut wrapper)?.name()?, Element::read(&mut wrapper)?.name()?);
@@ -77,7 +77,7 @@ fn wrapped(wrapper: Cursor<'_>, meter: &Meter<'_>) -> Result<Subsystem, Variable
     if header.class != ArrayClass::Cell {
         return Err(contents.damaged("they do not lie in cells"));
     }
-    let trail = Trail::start(WRAPPER);
+    let trail = FieldPath::start(WRAPPER);
     let arrays = Arrays { meter, objects: Err("it lies in the objects of the file") };
     let (mut cells, mut words) = (Vec::new(), Vec::new());
     for at in 0..header.count {
@@ -91,7 +91,7 @@ fn wrapped(wrapper: Cursor<'_>, meter: &Meter<'_>) -> Result<Subsystem, Variable
 }
 
 /// The numbers of a cell to the last digit, if they are whole numbers of 64 bits.
-fn exact(cell: Cursor<'_>, value: &Value, meter: &Meter<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
+fn exact(cell: Cursor<'_>, value: &Value, meter: &MemoryBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
     if !matches!(value, Value::Array(array) if !array.is_empty()) {
         return Ok(None);
     }
@@ -122,7 +122,7 @@ mod tests {
     }
 
     fn read(bytes: &[u8], at: usize) -> Result<Subsystem, VariableFault> {
-        objects(bytes, Some(at), ByteOrder::Little, &Meter::new(1 << 16, &|_| false))
+        objects(bytes, Some(at), ByteOrder::Little, &MemoryBudget::new(1 << 16, &|_| false))
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use hdf5_pure::{Chunk, ChunkIndex, Dataset};
 
 use super::fault::{damaged, fault};
-use crate::variables::{Meter, VariableFault};
+use crate::variables::{MemoryBudget, VariableFault};
 
 /// What the library keeps for each chunk of a dataset while it reads \[bytes\].
 const CHUNK: u64 = 128;
@@ -17,7 +17,7 @@ pub(super) fn check(
     sides: &[usize],
     size: u64,
     path: &str,
-    meter: &Meter<'_>,
+    meter: &MemoryBudget<'_>,
 ) -> Result<(), VariableFault> {
     let failed = |error| fault(&error, path);
     let Some(shape) = dataset.chunk_shape().map_err(failed)? else { return Ok(()) };

@@ -5,13 +5,13 @@ use hdf5_pure::{CompoundMember, Datatype};
 use super::dataset::Elements;
 use super::number_type::NumberType;
 use super::text::fixed;
-use crate::variables::{Array, Meter, StructArray, TextArray, Value, VariableFault};
+use crate::variables::{Array, MemoryBudget, StructArray, TextArray, Value, VariableFault};
 
 /// A record for each element, if the elements are records: numbers and texts of fixed length, and what else there is by name.
 pub(super) fn records(
     elements: &Elements,
     path: &str,
-    meter: &Meter<'_>,
+    meter: &MemoryBudget<'_>,
 ) -> Result<Option<StructArray>, VariableFault> {
     let Datatype::Compound { members, .. } = &elements.datatype else { return Ok(None) };
     let mut fields = Vec::with_capacity(members.len());
@@ -24,7 +24,7 @@ pub(super) fn records(
     Ok(Some(StructArray { shape: elements.shape.clone(), fields }))
 }
 
-fn value(member: &CompoundMember, record: &[u8], path: &str, meter: &Meter<'_>) -> Result<Value, VariableFault> {
+fn value(member: &CompoundMember, record: &[u8], path: &str, meter: &MemoryBudget<'_>) -> Result<Value, VariableFault> {
     let offset = usize::try_from(member.byte_offset).unwrap_or(usize::MAX);
     let bytes = record.get(offset..).unwrap_or_default();
     if let Some(numbers) = NumberType::of(&member.datatype) {

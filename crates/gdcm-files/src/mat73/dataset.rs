@@ -6,7 +6,7 @@ use super::chunks;
 use super::fault::{damaged, fault};
 use super::number_type::NumberType;
 use crate::places::{Places, count};
-use crate::variables::{Array, ElementKind, Meter, VariableFault};
+use crate::variables::{Array, ElementKind, MemoryBudget, VariableFault};
 
 /// Whether the elements run as MATLAB or as C keeps them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +30,12 @@ pub(super) struct Elements {
 
 impl Elements {
     /// Reads a dataset after its size was found to be within the limits.
-    pub(super) fn read(dataset: &Dataset, order: Order, path: &str, meter: &Meter<'_>) -> Result<Self, VariableFault> {
+    pub(super) fn read(
+        dataset: &Dataset,
+        order: Order,
+        path: &str,
+        meter: &MemoryBudget<'_>,
+    ) -> Result<Self, VariableFault> {
         let failed = |error| fault(&error, path);
         let too_many = || damaged(path, "there are more elements than can be counted");
         let datatype = dataset.datatype().map_err(failed)?;
@@ -71,7 +76,7 @@ impl Elements {
     }
 
     /// The numbers, if they are numbers.
-    pub(super) fn numbers(&self, path: &str, meter: &Meter<'_>) -> Result<Option<Array>, VariableFault> {
+    pub(super) fn numbers(&self, path: &str, meter: &MemoryBudget<'_>) -> Result<Option<Array>, VariableFault> {
         let Some(numbers) = NumberType::of(&self.datatype) else { return Ok(None) };
         meter.take(self.count() as u64, if numbers.im.is_some() { 16 } else { 8 }, path)?;
         let part = |offset: usize| {
@@ -83,7 +88,7 @@ impl Elements {
     }
 
     /// Whole numbers of 64 bits without a sign, to the last digit, if that is what they are.
-    pub(super) fn words(&self, path: &str, meter: &Meter<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
+    pub(super) fn words(&self, path: &str, meter: &MemoryBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
         let numbers = NumberType::of(&self.datatype);
         let kind = numbers.filter(|numbers| numbers.im.is_none()).map(|numbers| numbers.number.kind());
         if self.size != 8 || kind != Some(ElementKind::Integer) {

@@ -2,13 +2,18 @@
 
 use super::dataset::Elements;
 use super::fault::damaged;
-use super::marks::Marks;
+use super::marks::MatlabAttributes;
 use super::text::rows;
 use crate::places::count;
-use crate::variables::{Array, CellArray, ElementKind, Meter, StructArray, Value, VariableFault};
+use crate::variables::{Array, CellArray, ElementKind, MemoryBudget, StructArray, Value, VariableFault};
 
 /// The value without elements that marks and a stored shape stand for.
-pub(super) fn empty(marks: &Marks, elements: &Elements, path: &str, meter: &Meter<'_>) -> Result<Value, VariableFault> {
+pub(super) fn empty(
+    marks: &MatlabAttributes,
+    elements: &Elements,
+    path: &str,
+    meter: &MemoryBudget<'_>,
+) -> Result<Value, VariableFault> {
     let wrong = || damaged(path, "the shape of an array without elements is wrong");
     let sides = elements.words(path, meter)?.ok_or_else(wrong)?;
     let shape: Vec<usize> =

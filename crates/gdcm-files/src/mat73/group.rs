@@ -4,16 +4,20 @@ use hdf5_pure::{Dataset, Group, Object};
 
 use super::dataset::{Elements, Order};
 use super::fault::{damaged, fault};
-use super::marks::{Decode, Marks};
+use super::marks::{Decode, MatlabAttributes};
 use super::reader::{Reader, is_reference, unread};
 use super::sparse::Sparse;
-use crate::variables::{self, Meter, StructArray, Value, VariableFault};
+use crate::variables::{self, MemoryBudget, StructArray, Value, VariableFault};
 
 /// What the library keeps for each member of a group while it is read \[bytes\].
 const MEMBER: u64 = 256;
 
 /// The datasets and groups in a group, in the order of their names.
-pub(super) fn members(group: &Group, path: &str, meter: &Meter<'_>) -> Result<Vec<(String, Object)>, VariableFault> {
+pub(super) fn members(
+    group: &Group,
+    path: &str,
+    meter: &MemoryBudget<'_>,
+) -> Result<Vec<(String, Object)>, VariableFault> {
     let failed = |error| fault(&error, path);
     let datasets = group.iter_datasets().map_err(failed)?;
     let groups = group.iter_groups().map_err(failed)?;
@@ -29,7 +33,7 @@ pub(super) fn members(group: &Group, path: &str, meter: &Meter<'_>) -> Result<Ve
 
 /// The value of a group.
 pub(super) fn value(reader: &Reader<'_>, group: &Group, path: &str, depth: usize) -> Result<Value, VariableFault> {
-    let marks = Marks::new(&group.attrs().map_err(|error| fault(&error, path))?);
+    let marks = MatlabAttributes::new(&group.attrs().map_err(|error| fault(&error, path))?);
     let mut members = members(group, path, reader.meter)?;
     if let Some(rows) = marks.sparse {
         let sparse = Sparse { rows, marks: &marks, members: &members, path, meter: reader.meter };
@@ -62,14 +66,14 @@ pub(super) fn value(reader: &Reader<'_>, group: &Group, path: &str, depth: usize
 }
 
 /// Whether a struct has several records: its fields are references that are not marked as cells.
-fn is_array(marks: &Marks, members: &[(String, Object)], path: &str) -> Result<bool, VariableFault> {
+fn is_array(marks: &MatlabAttributes, members: &[(String, Object)], path: &str) -> Result<bool, VariableFault> {
     if marks.class.is_none() || members.is_empty() {
         return Ok(false);
     }
     for (_, object) in members {
         let Object::Dataset(dataset) = object else { return Ok(false) };
         let failed = |error| fault(&error, path);
-        let marked = Marks::new(&dataset.attrs().map_err(failed)?).class.is_some();
+        let marked = MatlabAttributes::new(&dataset.attrs().map_err(failed)?).class.is_some();
         if marked || !is_reference(&dataset.datatype().map_err(failed)?) {
             return Ok(false);
         }

@@ -22,7 +22,7 @@ pub(super) enum Decode {
 
 /// MATLAB's attributes of a group or dataset.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Marks {
+pub(super) struct MatlabAttributes {
     /// Name of the class (`MATLAB_class`); none for what MATLAB did not write.
     pub(super) class: Option<String>,
     /// The dataset holds the shape of an array without elements (`MATLAB_empty`).
@@ -34,7 +34,7 @@ pub(super) struct Marks {
     pub(super) decode: Decode,
 }
 
-impl Marks {
+impl MatlabAttributes {
     pub(super) fn new(attributes: &HashMap<String, AttrValue>) -> Self {
         let number = |name| attributes.get(name).and_then(AttrValue::as_u64);
         let class = attributes.get("MATLAB_class").and_then(AttrValue::as_str);

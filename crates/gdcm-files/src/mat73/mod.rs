@@ -30,12 +30,12 @@ pub use objects::{FileWrapper, ObjectDecoder};
 use self::objects::Objects;
 use self::opened::Opened;
 use self::reader::Reader;
-use crate::variables::{Meter, Variable, VariableFault};
+use crate::variables::{MemoryBudget, Variable, VariableFault};
 
 /// Reads all variables of a MATLAB 7.3 file or a plain HDF5 file; objects of MATLAB's classes stay
 /// [`Value::Opaque`](crate::variables::Value::Opaque).
 #[cfg(test)]
-fn read(bytes: &[u8], meter: &Meter<'_>) -> Result<Vec<Variable>, VariableFault> {
+fn read(bytes: &[u8], meter: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     let opened = Opened::new(bytes, meter)?;
     Reader { meter, objects: &Objects::Opaque("objects of classes are not read") }.variables(&opened.root())
 }
@@ -43,7 +43,7 @@ fn read(bytes: &[u8], meter: &Meter<'_>) -> Result<Vec<Variable>, VariableFault>
 /// Reads all variables, and objects of MATLAB's classes by `decoder`, which is made of the part of the file in which they lie.
 pub fn read_with_objects<'d>(
     bytes: &[u8],
-    meter: &Meter<'_>,
+    meter: &MemoryBudget<'_>,
     decoder: impl FnOnce(FileWrapper) -> Result<Box<ObjectDecoder<'d>>, VariableFault>,
 ) -> Result<Vec<Variable>, VariableFault> {
     let opened = Opened::new(bytes, meter)?;
@@ -61,7 +61,7 @@ mod tests {
     }
 
     fn read_file(name: &str) -> Result<Vec<Variable>, VariableFault> {
-        read(&file(name), &Meter::new(1 << 24, &|_| false))
+        read(&file(name), &MemoryBudget::new(1 << 24, &|_| false))
     }
 
     fn value(variables: &[Variable], name: &str) -> Value {
@@ -162,12 +162,12 @@ mod tests {
 
     #[test]
     fn objects_are_given_to_their_decoder_with_the_part_in_which_they_lie() {
-        let (meter, bytes) = (Meter::new(1 << 24, &|_| false), file("objects.mat"));
+        let (meter, bytes) = (MemoryBudget::new(1 << 24, &|_| false), file("objects.mat"));
         let variables = read_with_objects(&bytes, &meter, |wrapper| {
             assert_eq!(wrapper.cells.len(), 3);
             assert!(matches!(&wrapper.cells[0], Value::Array(bytes) if bytes.re == [4.0, 0.0, 0.0, 0.0]));
             assert_eq!(wrapper.long_words, [(2, vec![u64::MAX])]);
-            Ok(Box::new(|words: &[u32], name: &str, _: &Meter<'_>| {
+            Ok(Box::new(|words: &[u32], name: &str, _: &MemoryBudget<'_>| {
                 assert_eq!((words, name), ([0xdd00_0000, 2, 1, 1, 1, 1].as_slice(), "sys"));
                 Ok(number(42.0))
             }))
@@ -180,7 +180,7 @@ mod tests {
 
     #[test]
     fn other_variables_are_read_where_the_objects_are_damaged() {
-        let (meter, bytes) = (Meter::new(1 << 24, &|_| false), file("objects.mat"));
+        let (meter, bytes) = (MemoryBudget::new(1 << 24, &|_| false), file("objects.mat"));
         let fault = || VariableFault::TooDeep { variable: String::new() };
         let variables = read_with_objects(&bytes, &meter, |_| Err(fault())).unwrap();
         assert_eq!(value(&variables, "before"), number(1.0));
@@ -256,7 +256,7 @@ mod tests {
 
     #[test]
     fn what_is_no_hdf5_is_named_and_what_is_cut_off_is_said_to_be() {
-        let read = |bytes: &[u8]| read(bytes, &Meter::new(1 << 24, &|_| false));
+        let read = |bytes: &[u8]| read(bytes, &MemoryBudget::new(1 << 24, &|_| false));
         assert!(matches!(read(b""), Err(VariableFault::Format { .. })));
         assert!(matches!(read(b"MATLAB 5.0 MAT-file"), Err(VariableFault::Format { .. })));
         for name in ["numbers.mat", "plain_latest.h5"] {
@@ -267,7 +267,7 @@ mod tests {
 
     #[test]
     fn damage_anywhere_is_a_fault_and_never_a_panic() {
-        let read = |bytes: &[u8]| read(bytes, &Meter::new(1 << 24, &|_| false));
+        let read = |bytes: &[u8]| read(bytes, &MemoryBudget::new(1 << 24, &|_| false));
         for name in ["objects.mat", "plain_latest.h5"] {
             let whole = file(name);
             for length in (0..whole.len()).step_by(97) {

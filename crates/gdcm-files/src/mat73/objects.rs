@@ -6,7 +6,7 @@ use super::dataset::{Elements, Order};
 use super::fault::fault;
 use super::opened::Opened;
 use super::reader::Reader;
-use crate::variables::{Array, Meter, Value, VariableFault};
+use crate::variables::{Array, MemoryBudget, Value, VariableFault};
 
 /// The part of the file in which the objects lie (`#subsystem#/MCOS`).
 #[derive(Clone, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub struct FileWrapper {
 }
 
 /// Gives the value of a reference such as `[0xDD000000, dimensions, …, class]`, for a variable of this name.
-pub type ObjectDecoder<'d> = dyn Fn(&[u32], &str, &Meter<'_>) -> Result<Value, VariableFault> + 'd;
+pub type ObjectDecoder<'d> = dyn Fn(&[u32], &str, &MemoryBudget<'_>) -> Result<Value, VariableFault> + 'd;
 
 /// What becomes of references to objects.
 pub(super) enum Objects<'d> {
@@ -35,7 +35,7 @@ impl<'d> Objects<'d> {
     /// Reads the part of the objects, where there is one, and makes the decoder of it.
     pub(super) fn read(
         opened: &Opened,
-        meter: &Meter<'_>,
+        meter: &MemoryBudget<'_>,
         decoder: impl FnOnce(FileWrapper) -> Result<Box<ObjectDecoder<'d>>, VariableFault>,
     ) -> Result<Self, VariableFault> {
         let Ok(dataset) = opened.root().group("#subsystem#").and_then(|group| group.dataset("MCOS")) else {
@@ -55,7 +55,7 @@ impl<'d> Objects<'d> {
         class: &str,
         reference: Array,
         path: &str,
-        meter: &Meter<'_>,
+        meter: &MemoryBudget<'_>,
     ) -> Result<Value, VariableFault> {
         let opaque = |why: &str| Ok(Value::Opaque { class: class.to_owned(), why: why.to_owned() });
         match self {
@@ -73,7 +73,7 @@ impl<'d> Objects<'d> {
     }
 }
 
-fn wrapper(dataset: &Dataset, meter: &Meter<'_>) -> Result<FileWrapper, VariableFault> {
+fn wrapper(dataset: &Dataset, meter: &MemoryBudget<'_>) -> Result<FileWrapper, VariableFault> {
     let reader = Reader { meter, objects: &Objects::References };
     let (mut cells, mut long_words) = (Vec::new(), Vec::new());
     for (index, object) in reader.referred(dataset, "")?.iter().enumerate() {
@@ -86,7 +86,7 @@ fn wrapper(dataset: &Dataset, meter: &Meter<'_>) -> Result<FileWrapper, Variable
 }
 
 /// What a dataset of whole numbers of 64 bits holds.
-fn words(dataset: &Dataset, meter: &Meter<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
+fn words(dataset: &Dataset, meter: &MemoryBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
     if dataset.element_size().map_err(|error| fault(&error, ""))? != 8 {
         return Ok(None);
     }

@@ -4,7 +4,7 @@ use hdf5_pure::{File, FileAccessProperties, Group, MetadataCacheConfig, is_hdf5_
 
 use super::fault::fault;
 use super::rationed::Rationed;
-use crate::variables::{Meter, VariableFault};
+use crate::variables::{MemoryBudget, VariableFault};
 
 /// An HDF5 file in memory, found to be whole.
 pub(super) struct Opened {
@@ -13,7 +13,7 @@ pub(super) struct Opened {
 
 impl Opened {
     /// Opens a file, which is copied; a user block such as MATLAB's may stand before it.
-    pub(super) fn new(bytes: &[u8], meter: &Meter<'_>) -> Result<Self, VariableFault> {
+    pub(super) fn new(bytes: &[u8], meter: &MemoryBudget<'_>) -> Result<Self, VariableFault> {
         if !is_hdf5_bytes(bytes) {
             let found = if bytes.is_empty() { "nothing" } else { "other bytes" };
             return Err(VariableFault::Format { expected: "a file of MATLAB 7.3 or HDF5", found: found.to_owned() });

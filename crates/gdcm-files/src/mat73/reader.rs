@@ -5,10 +5,10 @@ use hdf5_pure::{Dataset, Datatype, Group, Object, ReferenceType};
 use super::dataset::{Elements, Order};
 use super::empty::empty;
 use super::fault::fault;
-use super::marks::{Decode, Marks};
+use super::marks::{Decode, MatlabAttributes};
 use super::objects::Objects;
 use super::{compound, group, text};
-use crate::variables::{CellArray, ElementKind, Meter, Value, Variable, VariableFault};
+use crate::variables::{CellArray, ElementKind, MemoryBudget, Value, Variable, VariableFault};
 
 /// How many values may lie in one another.
 const DEEPEST: usize = 64;
@@ -17,7 +17,7 @@ const HEADER: u64 = 1024;
 
 /// Reads values within the limits of a meter.
 pub(super) struct Reader<'r> {
-    pub(super) meter: &'r Meter<'r>,
+    pub(super) meter: &'r MemoryBudget<'r>,
     pub(super) objects: &'r Objects<'r>,
 }
 
@@ -54,7 +54,7 @@ impl Reader<'_> {
     }
 
     fn dataset(&self, dataset: &Dataset, path: &str, depth: usize) -> Result<Value, VariableFault> {
-        let marks = Marks::new(&dataset.attrs().map_err(|error| fault(&error, path))?);
+        let marks = MatlabAttributes::new(&dataset.attrs().map_err(|error| fault(&error, path))?);
         let order = if marks.class.is_some() { Order::Columns } else { Order::Rows };
         let elements = Elements::read(dataset, order, path, self.meter)?;
         if marks.empty {

@@ -4,16 +4,16 @@ use hdf5_pure::{Dataset, Object};
 
 use super::dataset::{Elements, Order};
 use super::fault::damaged;
-use super::marks::Marks;
-use crate::variables::{Array, ElementKind, Meter, VariableFault};
+use super::marks::MatlabAttributes;
+use crate::variables::{Array, ElementKind, MemoryBudget, VariableFault};
 
 /// The members of a group that is a sparse matrix, and its marks.
 pub(super) struct Sparse<'s> {
     pub(super) rows: u64,
-    pub(super) marks: &'s Marks,
+    pub(super) marks: &'s MatlabAttributes,
     pub(super) members: &'s [(String, Object)],
     pub(super) path: &'s str,
-    pub(super) meter: &'s Meter<'s>,
+    pub(super) meter: &'s MemoryBudget<'s>,
 }
 
 impl Sparse<'_> {

@@ -5,12 +5,12 @@ use hdf5_pure::{Dataset, Datatype, StringPadding, VlenStringReadOptions};
 use super::dataset::Elements;
 use super::fault::{damaged, fault};
 use crate::places::count;
-use crate::variables::{Array, Meter, TextArray, VariableFault};
+use crate::variables::{Array, MemoryBudget, TextArray, VariableFault};
 
 /// The texts in the rows of an array of characters' numbers (UTF-16), as many as the shape says.
 ///
 /// An array without characters is one empty text, as MATLAB's `''` is, unless it has several rows.
-pub(super) fn rows(codes: &Array, path: &str, meter: &Meter<'_>) -> Result<TextArray, VariableFault> {
+pub(super) fn rows(codes: &Array, path: &str, meter: &MemoryBudget<'_>) -> Result<TextArray, VariableFault> {
     let (height, length) = (codes.shape.first().copied().unwrap_or(1), codes.shape.get(1).copied().unwrap_or(1));
     if codes.is_empty() && height <= 1 {
         return Ok(TextArray { shape: vec![1, 1], texts: vec![String::new()] });
@@ -45,7 +45,7 @@ pub(super) fn strings(
     dataset: &Dataset,
     elements: &Elements,
     path: &str,
-    meter: &Meter<'_>,
+    meter: &MemoryBudget<'_>,
 ) -> Result<Option<TextArray>, VariableFault> {
     meter.take(elements.count() as u64, (size_of::<String>()) as u64, path)?;
     let texts = match &elements.datatype {
@@ -62,7 +62,12 @@ pub(super) fn strings(
     Ok(Some(TextArray { shape: elements.shape.clone(), texts }))
 }
 
-fn variable(dataset: &Dataset, count: usize, path: &str, meter: &Meter<'_>) -> Result<Vec<String>, VariableFault> {
+fn variable(
+    dataset: &Dataset,
+    count: usize,
+    path: &str,
+    meter: &MemoryBudget<'_>,
+) -> Result<Vec<String>, VariableFault> {
     if count == 0 {
         return Ok(Vec::new());
     }

@@ -10,7 +10,7 @@ use crate::npy::{read_npy, read_npz};
 use crate::outline::Outline;
 use crate::source::Source;
 use crate::text::{TextTable, decode, read_literals, read_matrices, read_table};
-use crate::variables::{Meter, Value, Variable, VariableFault};
+use crate::variables::{MemoryBudget, Value, Variable, VariableFault};
 use gdcm_core::dataset::Dataset;
 
 use super::format::FileFormat;
@@ -33,7 +33,7 @@ pub(crate) enum Contents {
 }
 
 /// What the bytes of a file hold.
-pub(crate) fn contents_of(bytes: &[u8], path: &Path, meter: &Meter<'_>) -> Result<Contents, FileError> {
+pub(crate) fn contents_of(bytes: &[u8], path: &Path, meter: &MemoryBudget<'_>) -> Result<Contents, FileError> {
     let wrong = |fault| FileError::Variables { path: path.to_owned(), fault };
     let plain = |variables| Contents::Variables { variables, notes: Vec::new() };
     match FileFormat::of(bytes, path) {
@@ -57,7 +57,7 @@ pub(crate) fn contents_of(bytes: &[u8], path: &Path, meter: &Meter<'_>) -> Resul
 /// The objects of a file of version 7.3, which lie in it as in the files before.
 fn decoder(wrapper: FileWrapper) -> Result<Box<ObjectDecoder<'static>>, VariableFault> {
     let subsystem = Subsystem::new(wrapper.cells)?.with_long_words(wrapper.long_words);
-    Ok(Box::new(move |reference: &[u32], variable: &str, meter: &Meter<'_>| -> Result<Value, VariableFault> {
+    Ok(Box::new(move |reference: &[u32], variable: &str, meter: &MemoryBudget<'_>| -> Result<Value, VariableFault> {
         subsystem.object(reference, variable, meter)
     }))
 }
@@ -74,7 +74,7 @@ fn json_contents(bytes: &[u8], path: &Path) -> Result<Contents, FileError> {
 }
 
 /// A matrix where the file is named as one, matrices under names where there are some, else a table.
-fn text_contents(text: &str, path: &Path, meter: &Meter<'_>) -> Result<Contents, VariableFault> {
+fn text_contents(text: &str, path: &Path, meter: &MemoryBudget<'_>) -> Result<Contents, VariableFault> {
     if let Some((letter, _)) = matrix_letter(stem(path)) {
         let variable = crate::text::read_matrix(text, &letter.to_string(), meter)?;
         return Ok(Contents::Variables { variables: vec![variable], notes: Vec::new() });

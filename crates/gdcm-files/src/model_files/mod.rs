@@ -25,7 +25,7 @@ use gdcm_core::dataset::Provenance;
 use super::file_error::FileError;
 use super::recognise::{Recognised, recognise};
 use super::source::read_bytes;
-use super::variables::{Meter, Variable};
+use super::variables::{MemoryBudget, Variable};
 
 use contents::{Contents, contents_of};
 use loose_matrices::LooseMatrix;
@@ -65,7 +65,7 @@ struct FileModels {
 
 /// The models in the bytes of a file of this name, in no more than `most` bytes of memory for its variables.
 pub fn models_of_bytes(bytes: &[u8], name: &str, most: u64) -> Result<FoundModels, FileError> {
-    let found = of_bytes(bytes, Path::new(name), (name, None), &Meter::new(most, &|_| false))?;
+    let found = of_bytes(bytes, Path::new(name), (name, None), &MemoryBudget::new(most, &|_| false))?;
     let Recognised { mut models, mut faults, passed_over } = found.recognised;
     let of_matrices = loose_matrices::models_of(found.loose.into_iter().collect());
     models.extend(of_matrices.models);
@@ -82,14 +82,14 @@ fn read_file(
     stop: &dyn Fn(u64) -> bool,
 ) -> Result<FileModels, FileError> {
     let bytes = read_bytes(path, LARGEST_FILE)?;
-    of_bytes(&bytes, path, named, &Meter::new(MOST_MEMORY, stop))
+    of_bytes(&bytes, path, named, &MemoryBudget::new(MOST_MEMORY, stop))
 }
 
 fn of_bytes(
     bytes: &[u8],
     path: &Path,
     (name, headings): (&str, Option<&Vec<String>>),
-    meter: &Meter<'_>,
+    meter: &MemoryBudget<'_>,
 ) -> Result<FileModels, FileError> {
     let wrong = |fault| FileError::Variables { path: path.to_owned(), fault };
     let mut found = match contents_of(bytes, path, meter)? {

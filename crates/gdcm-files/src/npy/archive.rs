@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::array_file::read_npy;
-use crate::variables::{Meter, Value, Variable, VariableFault};
+use crate::variables::{MemoryBudget, Value, Variable, VariableFault};
 use crate::zip_files::{ZipFile, damaged, visit_files};
 
 /// What the name of every array in an archive ends with.
@@ -11,7 +11,7 @@ const SUFFIX: &str = ".npy";
 
 /// Reads an `.npz` file of `NumPy`: a zip archive of `.npy` files, stored or deflated, whose names become those of the variables.
 /// Other files in it are named as what cannot be read.
-pub fn read_npz(bytes: &[u8], meter: &Meter<'_>) -> Result<Vec<Variable>, VariableFault> {
+pub fn read_npz(bytes: &[u8], meter: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     let (mut names, mut variables) = (HashSet::new(), Vec::new());
     visit_files(bytes, |file| {
         // A few bytes in the archive's directory become a variable, whatever it holds.
@@ -26,7 +26,7 @@ pub fn read_npz(bytes: &[u8], meter: &Meter<'_>) -> Result<Vec<Variable>, Variab
     Ok(variables)
 }
 
-fn variable(file: &ZipFile<'_, '_>, meter: &Meter<'_>) -> Result<Variable, VariableFault> {
+fn variable(file: &ZipFile<'_, '_>, meter: &MemoryBudget<'_>) -> Result<Variable, VariableFault> {
     let Some(name) = file.path.strip_suffix(SUFFIX) else {
         let opaque = Value::Opaque { class: "a file".to_owned(), why: "it is no array of NumPy (.npy)".to_owned() };
         return Ok(Variable { name: file.path.to_owned(), value: opaque });
@@ -45,7 +45,7 @@ mod tests {
     }
 
     fn read(bytes: &[u8]) -> Result<Vec<Variable>, VariableFault> {
-        read_npz(bytes, &Meter::new(1 << 20, &|_| false))
+        read_npz(bytes, &MemoryBudget::new(1 << 20, &|_| false))
     }
 
     #[test]

@@ -96,10 +96,10 @@ mod tests {
 
     use super::*;
     use crate::npy::read_npz;
-    use crate::variables::{CellArray, Meter};
+    use crate::variables::{CellArray, MemoryBudget};
 
     fn read(bytes: &[u8]) -> Vec<Variable> {
-        read_npz(bytes, &Meter::new(1 << 24, &|_| false)).unwrap()
+        read_npz(bytes, &MemoryBudget::new(1 << 24, &|_| false)).unwrap()
     }
 
     #[test]

@@ -4,13 +4,13 @@ use super::element::{Element, Field};
 use super::header::Header;
 use crate::places::{Places, count};
 use crate::stored_number::StoredNumber;
-use crate::variables::{Array, ElementKind, Meter, StructArray, TextArray, Value, Variable, VariableFault};
+use crate::variables::{Array, ElementKind, MemoryBudget, StructArray, TextArray, Value, Variable, VariableFault};
 
 /// Reads a `.npy` file (`numpy.lib.format`, versions 1.0 to 3.0) as one variable, which is given the name `name`.
 ///
 /// A number alone becomes 1 x 1, an array of n elements the row 1 x n. Booleans, whole numbers, floats and complex numbers become an
 /// [`Array`], texts a [`TextArray`], records a [`StructArray`].
-pub fn read_npy(bytes: &[u8], name: &str, meter: &Meter<'_>) -> Result<Vec<Variable>, VariableFault> {
+pub fn read_npy(bytes: &[u8], name: &str, meter: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     let header = Header::parse(bytes, name)?;
     let damaged = |what: &str| VariableFault::Damaged { variable: name.to_owned(), what: what.to_owned(), offset: 8 };
     let too_many = || damaged("the shape has more elements than can be counted");
@@ -39,7 +39,7 @@ struct StoredArray<'a> {
 }
 
 impl StoredArray<'_> {
-    fn value(&self, name: &str, meter: &Meter<'_>) -> Result<Value, VariableFault> {
+    fn value(&self, name: &str, meter: &MemoryBudget<'_>) -> Result<Value, VariableFault> {
         let elements = self.places(name)?.len() as u64;
         match self.element {
             Element::Number(number) => {
@@ -97,7 +97,12 @@ impl StoredArray<'_> {
         }
     }
 
-    fn field(&self, field: &Field, name: &str, meter: &Meter<'_>) -> Result<(String, Vec<Value>), VariableFault> {
+    fn field(
+        &self,
+        field: &Field,
+        name: &str,
+        meter: &MemoryBudget<'_>,
+    ) -> Result<(String, Vec<Value>), VariableFault> {
         let places = self.places(name)?;
         meter.take(places.len() as u64, size_of::<Value>() as u64, name)?;
         let values = places.map(|place| {
@@ -124,7 +129,7 @@ mod tests {
 
     fn read(file: &str) -> Result<Value, VariableFault> {
         let bytes = std::fs::read(format!("{}/../../tests/data/npy/{file}.npy", env!("CARGO_MANIFEST_DIR"))).unwrap();
-        read_npy(&bytes, "x", &Meter::new(1 << 20, &|_| false)).map(|mut variables| variables.remove(0).value)
+        read_npy(&bytes, "x", &MemoryBudget::new(1 << 20, &|_| false)).map(|mut variables| variables.remove(0).value)
     }
 
     fn array(file: &str) -> Array {
@@ -211,7 +216,7 @@ mod tests {
             let text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}}}");
             let bytes =
                 [b"\x93NUMPY\x01\x00".as_slice(), &(text.len() as u16).to_le_bytes(), text.as_bytes(), data].concat();
-            read_npy(&bytes, "x", &Meter::new(1 << 20, &|_| false)).unwrap_err()
+            read_npy(&bytes, "x", &MemoryBudget::new(1 << 20, &|_| false)).unwrap_err()
         };
         assert!(matches!(file("(2,)", &[0; 15]), VariableFault::CutOff { .. }));
         assert!(matches!(file("(2,)", &[0; 17]), VariableFault::Unsupported { .. }));
@@ -223,7 +228,7 @@ mod tests {
     fn elements_of_no_bytes_do_not_take_more_memory_than_is_allowed() {
         let text = "{'descr': '<U0', 'fortran_order': False, 'shape': (1000000000000,)}";
         let bytes = [b"\x93NUMPY\x01\x00".as_slice(), &(text.len() as u16).to_le_bytes(), text.as_bytes()].concat();
-        let fault = read_npy(&bytes, "x", &Meter::new(1 << 20, &|_| false)).unwrap_err();
+        let fault = read_npy(&bytes, "x", &MemoryBudget::new(1 << 20, &|_| false)).unwrap_err();
         assert!(matches!(fault, VariableFault::TooLarge { .. }));
     }
 }

@@ -75,7 +75,7 @@ impl Recognised {
         }
     }
 
-    /// Looks for models in a value, and in what it holds.
+    /// PlotStyle for models in a value, and in what it holds.
     fn descend(&mut self, name: &str, value: &Value, deeper: usize) {
         if deeper == 0 {
             self.faults.push(format!("{name}: values are nested too deeply to look for models in them"));

@@ -27,7 +27,7 @@ use super::model_files::{FileFormat, FolderProgress};
 use super::npy::read_npy;
 use super::source::{Source, read_bytes};
 use super::text::{NumberedText, TextTable, decode, numbered_words, read_table, sections};
-use super::variables::{Meter, Variable, VariableFault};
+use super::variables::{MemoryBudget, Variable, VariableFault};
 use super::zip_files::visit_files;
 
 use search::Search;
@@ -68,9 +68,9 @@ pub fn read_records(paths: &[PathBuf], progress: &dyn FolderProgress) -> Result<
         }
         progress.reading(index + 1, files.len(), name);
         let bytes = read_bytes(path, LARGEST_FILE);
-        match bytes
-            .and_then(|bytes| of_bytes(&bytes, path, name, &Meter::new(MOST_MEMORY, &|taken| progress.stopped(taken))))
-        {
+        match bytes.and_then(|bytes| {
+            of_bytes(&bytes, path, name, &MemoryBudget::new(MOST_MEMORY, &|taken| progress.stopped(taken)))
+        }) {
             Ok(of_file) => found.append(of_file, name),
             Err(error) if paths.len() == 1 && files.len() == 1 => return Err(error),
             Err(error) => found.faults.push(error.to_string()),
@@ -81,7 +81,7 @@ pub fn read_records(paths: &[PathBuf], progress: &dyn FolderProgress) -> Result<
 
 /// The records in the bytes of a file of this name, in no more than `most` bytes of memory for its columns.
 pub fn records_of_bytes(bytes: &[u8], name: &str, most: u64) -> Result<FoundRecords, FileError> {
-    let mut found = of_bytes(bytes, Path::new(name), name, &Meter::new(most, &|_| false))?;
+    let mut found = of_bytes(bytes, Path::new(name), name, &MemoryBudget::new(most, &|_| false))?;
     found.files = 1;
     Ok(found)
 }
@@ -93,7 +93,7 @@ pub fn records_of_bytes(bytes: &[u8], name: &str, most: u64) -> Result<FoundReco
 pub fn load_records(path: &Path, variables: &[Option<&str>]) -> Result<Vec<Result<RecordTable, FileError>>, FileError> {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let bytes = read_bytes(path, LARGEST_FILE)?;
-    let found = of_bytes(&bytes, path, &name, &Meter::new(MOST_MEMORY, &|_| false))?;
+    let found = of_bytes(&bytes, path, &name, &MemoryBudget::new(MOST_MEMORY, &|_| false))?;
     let held = found.tables.len();
     let record = |variable: &Option<&str>| {
         let record = found.tables.iter().find(|table| table.source.variable.as_deref() == *variable).cloned();
@@ -150,7 +150,7 @@ impl Columns {
     }
 }
 
-fn of_bytes(bytes: &[u8], path: &Path, name: &str, meter: &Meter<'_>) -> Result<FoundRecords, FileError> {
+fn of_bytes(bytes: &[u8], path: &Path, name: &str, meter: &MemoryBudget<'_>) -> Result<FoundRecords, FileError> {
     let sha256: String = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
     match FileFormat::of(bytes, path) {
         FileFormat::Npz => of_archive(bytes, path, (name, &sha256), meter),
@@ -163,7 +163,7 @@ fn of_archive(
     bytes: &[u8],
     path: &Path,
     (name, sha256): (&str, &str),
-    meter: &Meter<'_>,
+    meter: &MemoryBudget<'_>,
 ) -> Result<FoundRecords, FileError> {
     let (mut arrays, mut found) = (Vec::new(), FoundRecords::default());
     visit_files(bytes, |file| {
@@ -203,7 +203,12 @@ fn of_archive(
     Ok(found)
 }
 
-fn of_single(bytes: &[u8], path: &Path, place: (&str, &str), meter: &Meter<'_>) -> Result<FoundRecords, FileError> {
+fn of_single(
+    bytes: &[u8],
+    path: &Path,
+    place: (&str, &str),
+    meter: &MemoryBudget<'_>,
+) -> Result<FoundRecords, FileError> {
     let wrong = |fault| FileError::Variables { path: path.to_owned(), fault };
     let decoded = |bytes: &[u8]| {
         let mut found = FoundRecords::default();
@@ -248,7 +253,7 @@ fn of_variables(variables: &[Variable], notes: Vec<String>, (name, sha256): (&st
 }
 
 /// The columns of a text; where these change on the way, of every part that is long enough to be a record.
-fn of_text(text: &str, meter: &Meter<'_>) -> Result<Vec<Columns>, VariableFault> {
+fn of_text(text: &str, meter: &MemoryBudget<'_>) -> Result<Vec<Columns>, VariableFault> {
     let first = match of_whole_text(text, meter) {
         Err(fault @ (VariableFault::Line { .. } | VariableFault::Format { .. })) => fault,
         whole => return whole.map(|columns| vec![columns]),
@@ -271,7 +276,7 @@ fn of_text(text: &str, meter: &Meter<'_>) -> Result<Vec<Columns>, VariableFault>
 }
 
 /// The columns of one table: of one with words or times of the clock among its numbers, with numbers in their place.
-fn of_whole_text(text: &str, meter: &Meter<'_>) -> Result<Columns, VariableFault> {
+fn of_whole_text(text: &str, meter: &MemoryBudget<'_>) -> Result<Columns, VariableFault> {
     let first = match read_table(text, meter) {
         Err(fault @ (VariableFault::Line { .. } | VariableFault::Format { .. })) => fault,
         table => return table.map(of_table),

@@ -5,11 +5,11 @@ mod schema;
 use std::path::{Path, PathBuf};
 
 use gdcm_core::assembly::{ChannelRule, NamePattern, RowRole, RowRule, Rules, UnitRule};
-use gdcm_core::dataset::Place;
+use gdcm_core::dataset::Location;
 
 use super::content_fault::ContentFault;
 use super::file_error::FileError;
-use super::flaw::Flaw;
+use super::flaw::ContentError;
 use super::output_set::OutputSet;
 use super::source::Source;
 
@@ -43,11 +43,11 @@ pub fn add_rules(rules: &Rules, path: &Path, outputs: &mut OutputSet) -> Result<
     })
 }
 
-fn rules_of(text: RulesText) -> Result<Rules, Flaw> {
+fn rules_of(text: RulesText) -> Result<Rules, ContentError> {
     let pattern = |(index, text): (usize, &String)| {
         NamePattern::new(text).map_err(|error| {
             let fault = ContentFault::Word { expected: error.to_string(), found: text.clone() };
-            Flaw::new(Place::entry(format!("patterns, entry {}", index + 1)), fault)
+            ContentError::new(Location::entry(format!("patterns, entry {}", index + 1)), fault)
         })
     };
     let patterns = text.patterns.iter().enumerate().map(pattern).collect::<Result<_, _>>()?;
@@ -66,7 +66,7 @@ fn rules_of(text: RulesText) -> Result<Rules, Flaw> {
             .map(|text| UnitRule { channel: text.channel, from: text.from, factor: text.factor })
             .collect(),
         headings: text.headings,
-        rows: rows.collect::<Result<_, Flaw>>()?,
+        rows: rows.collect::<Result<_, ContentError>>()?,
     })
 }
 
@@ -74,13 +74,13 @@ fn channel_of(text: ChannelText) -> ChannelRule {
     ChannelRule { name: text.name, unit: text.unit, aliases: text.aliases, unit_in_files: text.unit_in_files }
 }
 
-fn row_of(key: &str, text: RowText) -> Result<RowRule, Flaw> {
+fn row_of(key: &str, text: RowText) -> Result<RowRule, ContentError> {
     let role = match &text.role {
         None => None,
         Some(word) => Some(RowRole::of(word).ok_or_else(|| {
             let expected = "\"nominal\", \"perturbed\" or \"identified\"".to_owned();
-            Flaw::new(
-                Place::entry(format!("models, {key}, role")),
+            ContentError::new(
+                Location::entry(format!("models, {key}, role")),
                 ContentFault::Word { expected, found: word.clone() },
             )
         })?),

@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use crate::content_fault::ContentFault;
 use crate::dataset_file::{identified_model_of, record_of};
-use crate::flaw::Flaw;
+use crate::flaw::ContentError;
 use crate::settings_entry::SettingsEntry;
-use gdcm_core::dataset::{ConditionId, Dataset, Place};
+use gdcm_core::dataset::{ConditionId, Dataset, Location};
 use gdcm_core::study::{
-    BundleChoice, ConditionChoice, ConditionInventory, Decisions, Inventory, Settings, TakenModels,
+    AdoptedModels, BundleChoice, ConditionChoice, ConditionInventory, Decisions, Inventory, Settings,
 };
 
 use super::schema::{BundleText, ConditionInventoryText, ConditionText, TakenText, VariantText};
@@ -20,7 +20,7 @@ pub(super) fn decisions_of(
     text: SettingsEntry,
     conditions: Vec<ConditionText>,
     variants: Vec<VariantText>,
-) -> Result<Decisions, Flaw> {
+) -> Result<Decisions, ContentError> {
     let mut decisions = present_decisions(start.clone(), text, conditions)?;
     for VariantText { name, settings, conditions } in variants {
         let of_variant = present_decisions(start.clone(), settings, conditions).map_err(|mut flaw| {
@@ -32,7 +32,11 @@ pub(super) fn decisions_of(
     Ok(decisions)
 }
 
-fn present_decisions(start: Settings, text: SettingsEntry, conditions: Vec<ConditionText>) -> Result<Decisions, Flaw> {
+fn present_decisions(
+    start: Settings,
+    text: SettingsEntry,
+    conditions: Vec<ConditionText>,
+) -> Result<Decisions, ContentError> {
     let mut settings = start;
     text.take_into(&mut settings)?;
     let mut choices = BTreeMap::new();
@@ -45,7 +49,7 @@ fn present_decisions(start: Settings, text: SettingsEntry, conditions: Vec<Condi
             held_out: condition.held_out,
         };
         if choices.insert(ConditionId(id), choice).is_some() {
-            return Err(Flaw::new(Place::condition(index + 1, id), ContentFault::DuplicateCondition { id }));
+            return Err(ContentError::new(Location::condition(index + 1, id), ContentFault::DuplicateCondition { id }));
         }
     }
     Ok(Decisions {
@@ -59,15 +63,18 @@ fn present_decisions(start: Settings, text: SettingsEntry, conditions: Vec<Condi
 }
 
 /// The models that a study has taken, for its dataset.
-pub(super) fn taken_of(text: Vec<TakenText>, dataset: &Dataset) -> Result<Vec<(ConditionId, Arc<TakenModels>)>, Flaw> {
+pub(super) fn taken_of(
+    text: Vec<TakenText>,
+    dataset: &Dataset,
+) -> Result<Vec<(ConditionId, Arc<AdoptedModels>)>, ContentError> {
     let of = |(index, text): (usize, TakenText)| {
-        let mut place = Place::condition(index + 1, text.condition);
+        let mut place = Location::condition(index + 1, text.condition);
         place.entry = "taken".to_owned();
         let drafts = text.identified_models.into_iter().map(identified_model_of);
-        let models = drafts.map(|draft| Ok(dataset.identified_model(draft)?.0)).collect::<Result<_, Flaw>>()?;
+        let models = drafts.map(|draft| Ok(dataset.identified_model(draft)?.0)).collect::<Result<_, ContentError>>()?;
         let records = text.records.into_iter().enumerate();
         let records = records.map(|(index, record)| record_of(&place, index + 1, record)).collect::<Result<_, _>>()?;
-        Ok((ConditionId(text.condition), Arc::new(TakenModels { models, records })))
+        Ok((ConditionId(text.condition), Arc::new(AdoptedModels { models, records })))
     };
     text.into_iter().enumerate().map(of).collect()
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::dataset_file::{identified_text, record_text};
 use crate::settings_entry::SettingsEntry;
 use gdcm_core::dataset::{BundleKind, Condition, ConditionId, Model};
-use gdcm_core::study::{BundleChoice, ConditionInventory, Inventory, Study, TakenModels};
+use gdcm_core::study::{AdoptedModels, BundleChoice, ConditionInventory, Inventory, Study};
 
 use super::schema::{
     BundleText, ConditionInventoryText, ConditionText, DatasetReference, FORMAT, StudyText, TakenText, VariantText,
@@ -30,7 +30,7 @@ pub(super) fn text_of(study: &Study, dataset: DatasetReference) -> StudyText {
     }
 }
 
-fn taken_text(condition: ConditionId, taken: &TakenModels) -> TakenText {
+fn taken_text(condition: ConditionId, taken: &AdoptedModels) -> TakenText {
     TakenText {
         condition: condition.0,
         identified_models: taken.models.iter().map(identified_text).collect(),

@@ -121,7 +121,7 @@ fn fades_together(first: &[f64], second: &[f64]) -> bool {
 mod tests {
     use super::super::columns::read_table;
     use super::*;
-    use crate::variables::Meter;
+    use crate::variables::MemoryBudget;
 
     /// A lag of second order with a delay of 0.1 s at 40 frequencies: omega, re, im.
     fn response() -> Vec<(f64, f64, f64)> {
@@ -136,7 +136,7 @@ mod tests {
 
     fn recognised(row: impl Fn((f64, f64, f64)) -> String) -> FrequencyColumns {
         let text: String = response().into_iter().map(|point| row(point) + "\n").collect();
-        let table = read_table(&text, &Meter::new(1 << 20, &|_| false)).unwrap();
+        let table = read_table(&text, &MemoryBudget::new(1 << 20, &|_| false)).unwrap();
         FrequencyColumns::recognise(&table).unwrap()
     }
 
@@ -175,7 +175,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_told_is_refused() {
-        let table = |text: &str| read_table(text, &Meter::new(1 << 20, &|_| false)).unwrap();
+        let table = |text: &str| read_table(text, &MemoryBudget::new(1 << 20, &|_| false)).unwrap();
         let message = |text: &str| FrequencyColumns::recognise(&table(text)).unwrap_err().to_string();
         assert!(message("1,2\n2,3\n").contains("odd number of columns"));
         assert!(message("2,2,2\n1,3,3\n").contains("no frequency"));

@@ -6,7 +6,7 @@ use super::layout::{Layout, comment, is_rule};
 use super::lines::{excerpt, lines, refuse_binary};
 use super::separator::Separator;
 use super::unit_word::name_and_unit;
-use crate::variables::{Meter, VariableFault};
+use crate::variables::{MemoryBudget, VariableFault};
 
 const EXPECTED: &str = "a table of numbers in columns";
 
@@ -63,7 +63,7 @@ impl TextTable {
 }
 
 /// Reads a table of numbers in columns: its separator, decimal mark, names and units are recognised.
-pub fn read_table(text: &str, meter: &Meter) -> Result<TextTable, VariableFault> {
+pub fn read_table(text: &str, meter: &MemoryBudget) -> Result<TextTable, VariableFault> {
     refuse_binary(text, EXPECTED)?;
     let Some(layout) = Layout::recognise(text, meter)? else {
         return Err(no_numbers(text));
@@ -90,7 +90,7 @@ pub(super) fn line_fault(line: usize, what: String) -> VariableFault {
 /// A table as far as it is read.
 struct Reading<'m> {
     layout: Layout,
-    meter: &'m Meter<'m>,
+    meter: &'m MemoryBudget<'m>,
     columns: Vec<Vec<f64>>,
     lines: Vec<usize>,
     skipped: Vec<(usize, String)>,
@@ -99,7 +99,7 @@ struct Reading<'m> {
 }
 
 impl<'m> Reading<'m> {
-    fn new(layout: Layout, meter: &'m Meter<'m>) -> Result<Self, VariableFault> {
+    fn new(layout: Layout, meter: &'m MemoryBudget<'m>) -> Result<Self, VariableFault> {
         // A column takes its header here, and its unit and name later.
         meter.take(layout.columns as u64, 128, "")?;
         let (columns, lines) = (vec![Vec::new(); layout.columns], Vec::new());
@@ -246,7 +246,7 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<TextTable, VariableFault> {
-        read_table(text, &Meter::new(1 << 24, &|_| false))
+        read_table(text, &MemoryBudget::new(1 << 24, &|_| false))
     }
 
     #[test]
@@ -357,7 +357,7 @@ mod tests {
     fn what_claims_too_much_is_refused_before_it_is_taken() {
         let wide = "1,".repeat(1_000_000);
         assert!(matches!(read(&wide), Err(VariableFault::TooLarge { .. })));
-        let stopped = read_table("1,2", &Meter::new(1 << 20, &|_| true));
+        let stopped = read_table("1,2", &MemoryBudget::new(1 << 20, &|_| true));
         assert_eq!(stopped, Err(VariableFault::Stopped));
         assert!(matches!(read("1,2\0"), Err(VariableFault::Format { .. })));
     }

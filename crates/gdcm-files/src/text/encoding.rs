@@ -1,6 +1,6 @@
 //! Bytes of a text file as text.
 
-use crate::variables::{Meter, VariableFault};
+use crate::variables::{MemoryBudget, VariableFault};
 
 /// How the characters of a text were stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +29,7 @@ const WINDOWS_1252: [char; 32] = [
 ];
 
 /// Finds out how a text is stored and gives its characters.
-pub fn decode(bytes: &[u8], meter: &Meter) -> Result<DecodedText, VariableFault> {
+pub fn decode(bytes: &[u8], meter: &MemoryBudget) -> Result<DecodedText, VariableFault> {
     if let Some(body) = bytes.strip_prefix(&[0xff, 0xfe]) {
         return utf16(body, u16::from_le_bytes, meter);
     }
@@ -56,7 +56,7 @@ fn latin1(byte: u8) -> char {
     }
 }
 
-fn utf16(body: &[u8], word: fn([u8; 2]) -> u16, meter: &Meter) -> Result<DecodedText, VariableFault> {
+fn utf16(body: &[u8], word: fn([u8; 2]) -> u16, meter: &MemoryBudget) -> Result<DecodedText, VariableFault> {
     let (pairs, rest) = body.as_chunks::<2>();
     if !rest.is_empty() {
         return Err(VariableFault::CutOff { variable: String::new(), offset: body.len() as u64 + 2 });
@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     fn read(bytes: &[u8]) -> Result<DecodedText, VariableFault> {
-        decode(bytes, &Meter::new(1 << 20, &|_| false))
+        decode(bytes, &MemoryBudget::new(1 << 20, &|_| false))
     }
 
     #[test]
@@ -91,7 +91,7 @@ mod tests {
     fn what_is_no_text_is_refused() {
         assert!(matches!(read(b"a\0b"), Err(VariableFault::Format { .. })));
         assert!(matches!(read(b"\xff\xfea"), Err(VariableFault::CutOff { .. })));
-        let small = decode(b"abc", &Meter::new(8, &|_| false));
+        let small = decode(b"abc", &MemoryBudget::new(8, &|_| false));
         assert!(matches!(small, Err(VariableFault::TooLarge { .. })));
     }
 }

@@ -118,15 +118,15 @@ pub(super) fn unrecognised(found: &str) -> VariableFault {
 mod tests {
     use super::super::columns::read_table;
     use super::*;
-    use crate::variables::Meter;
+    use crate::variables::MemoryBudget;
 
     fn recognise(text: &str) -> FrequencyColumns {
-        let table = read_table(text, &Meter::new(1 << 20, &|_| false)).unwrap();
+        let table = read_table(text, &MemoryBudget::new(1 << 20, &|_| false)).unwrap();
         FrequencyColumns::recognise(&table).unwrap()
     }
 
     fn fault(text: &str) -> String {
-        let table = read_table(text, &Meter::new(1 << 20, &|_| false)).unwrap();
+        let table = read_table(text, &MemoryBudget::new(1 << 20, &|_| false)).unwrap();
         FrequencyColumns::recognise(&table).unwrap_err().to_string()
     }
 

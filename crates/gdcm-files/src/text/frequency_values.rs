@@ -143,10 +143,10 @@ mod tests {
 
     use super::super::columns::read_table;
     use super::*;
-    use crate::variables::Meter;
+    use crate::variables::MemoryBudget;
 
     fn values(text: &str) -> Result<Vec<ResponsePoints>, VariableFault> {
-        let table = read_table(text, &Meter::new(1 << 20, &|_| false)).unwrap();
+        let table = read_table(text, &MemoryBudget::new(1 << 20, &|_| false)).unwrap();
         FrequencyColumns::recognise(&table).unwrap().values(&table)
     }
 
@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn a_chosen_column_that_is_not_there_is_refused() {
-        let table = read_table("omega,re,im\n1,1,2\n2,1,2\n", &Meter::new(1 << 20, &|_| false)).unwrap();
+        let table = read_table("omega,re,im\n1,1,2\n2,1,2\n", &MemoryBudget::new(1 << 20, &|_| false)).unwrap();
         let mut columns = FrequencyColumns::recognise(&table).unwrap();
         columns.frequency.column = 7;
         assert!(columns.values(&table).unwrap_err().to_string().contains("no column 8"));

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::cell_number::cell_number;
 use super::lines::lines;
 use super::separator::Separator;
-use crate::variables::{Meter, VariableFault};
+use crate::variables::{MemoryBudget, VariableFault};
 
 /// As many lines of numbers are looked at before the way they are made is taken as known.
 const SAMPLE: usize = 200;
@@ -43,7 +43,7 @@ struct Tally {
 impl Layout {
     /// Finds the separator and the decimal mark with which most lines are lines of numbers of one width; the wider table where
     /// several do; nothing where no line is a line of numbers.
-    pub(super) fn recognise(text: &str, meter: &Meter) -> Result<Option<Self>, VariableFault> {
+    pub(super) fn recognise(text: &str, meter: &MemoryBudget) -> Result<Option<Self>, VariableFault> {
         let mut tallies: Vec<Tally> = Vec::with_capacity(2 * Separator::ALL.len());
         for decimal_comma in [false, true] {
             let tally = |&separator| Tally { separator, decimal_comma, widths: BTreeMap::new(), lines: 0 };
@@ -144,7 +144,7 @@ mod tests {
     use super::*;
 
     fn of(text: &str) -> Option<(Separator, bool, usize)> {
-        let layout = Layout::recognise(text, &Meter::new(1 << 20, &|_| false)).unwrap()?;
+        let layout = Layout::recognise(text, &MemoryBudget::new(1 << 20, &|_| false)).unwrap()?;
         Some((layout.separator, layout.decimal_comma, layout.columns))
     }
 

@@ -5,7 +5,7 @@ use super::columns::{TextTable, line_fault, read_table};
 use super::layout::{comment, is_rule};
 use super::lines::{excerpt, lines, refuse_binary};
 use super::printed_line::{NameLine, is_columns_line, name_line, scale_line};
-use crate::variables::{Array, Meter, Value, Variable, VariableFault};
+use crate::variables::{Array, MemoryBudget, Value, Variable, VariableFault};
 
 /// Matrices read from a text.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,7 +17,7 @@ pub struct NamedMatrices {
 }
 
 /// Reads one matrix, a row on each line; a line of names above it is passed over.
-pub fn read_matrix(text: &str, name: &str, meter: &Meter) -> Result<Variable, VariableFault> {
+pub fn read_matrix(text: &str, name: &str, meter: &MemoryBudget) -> Result<Variable, VariableFault> {
     let table = read_table(text, meter)?;
     if let Some((line, _)) = table.skipped.iter().find(|(_, line)| cell_number(line, table.decimal_comma).is_some()) {
         let what = format!("one number, where other rows have {}; complete the row", table.columns.len());
@@ -31,7 +31,7 @@ pub fn read_matrix(text: &str, name: &str, meter: &Meter) -> Result<Variable, Va
 ///
 /// A common factor ("1.0e+03 *") is applied, columns that are printed in several parts ("Columns 1 through 6") are put together,
 /// and names of rows and columns are passed over.
-pub fn read_matrices(text: &str, meter: &Meter) -> Result<NamedMatrices, VariableFault> {
+pub fn read_matrices(text: &str, meter: &MemoryBudget) -> Result<NamedMatrices, VariableFault> {
     refuse_binary(text, "matrices under their names")?;
     let mut reading = Reading { found: Vec::new(), notes: Vec::new(), meter };
     for (number, line) in lines(text) {
@@ -64,7 +64,7 @@ struct Begun {
 struct Reading<'m> {
     found: Vec<Begun>,
     notes: Vec<String>,
-    meter: &'m Meter<'m>,
+    meter: &'m MemoryBudget<'m>,
 }
 
 impl Reading<'_> {
@@ -184,7 +184,7 @@ fn row_of_numbers(line: &str) -> bool {
 }
 
 /// The rows of a part; faults name the line of the whole text.
-fn table(part: &Part, name: &str, meter: &Meter) -> Result<TextTable, VariableFault> {
+fn table(part: &Part, name: &str, meter: &MemoryBudget) -> Result<TextTable, VariableFault> {
     let place = |line: usize| part.numbers.get(line.saturating_sub(1)).copied().unwrap_or(line);
     let table = read_table(&part.text, meter).map_err(|fault| match fault {
         VariableFault::Line { line, what, .. } => {
@@ -202,7 +202,7 @@ fn table(part: &Part, name: &str, meter: &Meter) -> Result<TextTable, VariableFa
 }
 
 /// Tables side by side as one matrix.
-fn matrix(tables: &[TextTable], scale: f64, meter: &Meter, name: &str) -> Result<Value, VariableFault> {
+fn matrix(tables: &[TextTable], scale: f64, meter: &MemoryBudget, name: &str) -> Result<Value, VariableFault> {
     let rows = tables.first().map_or(0, |table| table.lines.len());
     if let Some(other) = tables.iter().find(|table| table.lines.len() != rows) {
         let found = other.lines.len();
@@ -222,7 +222,7 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<NamedMatrices, VariableFault> {
-        read_matrices(text, &Meter::new(1 << 22, &|_| false))
+        read_matrices(text, &MemoryBudget::new(1 << 22, &|_| false))
     }
 
     fn arrays(text: &str) -> Vec<(String, Array)> {
@@ -235,7 +235,7 @@ mod tests {
 
     #[test]
     fn one_matrix_fills_a_file() {
-        let meter = Meter::new(1 << 20, &|_| false);
+        let meter = MemoryBudget::new(1 << 20, &|_| false);
         let variable = read_matrix("x1,x2\n1,2\n3,4\n5,6", "A", &meter).unwrap();
         let expected = Array::matrix(3, 2, vec![1.0, 3.0, 5.0, 2.0, 4.0, 6.0]);
         assert_eq!(variable, Variable { name: "A".to_owned(), value: Value::Array(expected) });
@@ -293,7 +293,7 @@ mod tests {
         #[test]
         fn any_text_is_read_or_refused(text in "[A-Cx0-9=:;,. \\n\\-e*+]{0,120}") {
             let _ = read(&text);
-            let _ = read_matrix(&text, "A", &Meter::new(1 << 20, &|_| false));
+            let _ = read_matrix(&text, "A", &MemoryBudget::new(1 << 20, &|_| false));
         }
     }
 }

@@ -6,14 +6,14 @@ use super::fault::VariableFault;
 
 /// Counts the memory that a reader is about to take, refuses what goes beyond the limit before it is taken, and asks now and then
 /// whether the reader shall go on.
-pub struct Meter<'s> {
+pub struct MemoryBudget<'s> {
     most: u64,
     taken: Cell<u64>,
     stop: &'s dyn Fn(u64) -> bool,
 }
 
-impl<'s> Meter<'s> {
-    /// A meter for at most `most` bytes; `stop` is told at every [`Meter::take`] how many are taken, and answers whether to stop.
+impl<'s> MemoryBudget<'s> {
+    /// A meter for at most `most` bytes; `stop` is told at every [`MemoryBudget::take`] how many are taken, and answers whether to stop.
     pub fn new(most: u64, stop: &'s dyn Fn(u64) -> bool) -> Self {
         Self { most, taken: Cell::new(0), stop }
     }

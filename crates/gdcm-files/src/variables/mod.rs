@@ -9,5 +9,5 @@ mod value;
 
 pub use array::{Array, ElementKind};
 pub use fault::VariableFault;
-pub use meter::Meter;
+pub use meter::MemoryBudget;
 pub use value::{CellArray, Object, StructArray, TextArray, Value, Variable};

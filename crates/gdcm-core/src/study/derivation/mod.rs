@@ -19,7 +19,7 @@ use context::Context;
 
 /// A figure of an analysis that is asked about.
 #[derive(Clone, Debug, PartialEq)]
-pub enum AskedFigure {
+pub enum ExplainTarget {
     /// Delta gain `G` of a response.
     DeltaGain(ConditionId, Pair),
     /// Delta delay `D` of a response.
@@ -72,29 +72,29 @@ pub struct Derivation {
 }
 
 /// How a figure of `analysis` was computed; `None` where it has no such figure. A few medians over frequency at most.
-pub fn derivation(analysis: &Analysis, asked: &AskedFigure) -> Option<Derivation> {
+pub fn derivation(analysis: &Analysis, asked: &ExplainTarget) -> Option<Derivation> {
     let of = |condition: &ConditionId| Context::of(analysis, *condition);
     let of_pair = |condition: &ConditionId, pair: &Pair| {
         analysis.study.dataset.on_axis().get(*pair)?;
         of(condition)
     };
     let found = match asked {
-        AskedFigure::DeltaGain(id, pair) => deltas::gain(&of_pair(id, pair)?, *pair),
-        AskedFigure::DeltaDelay(id, pair) => deltas::delay(&of_pair(id, pair)?, *pair),
-        AskedFigure::GainBounds(id) => Some(deltas::gain_bounds(&of(id)?)),
-        AskedFigure::DelayBound(id) => Some(deltas::delay_bound(&of(id)?)),
-        AskedFigure::NetGain(id, pair) => Some(channels::net_gain(&of_pair(id, pair)?, *pair)),
-        AskedFigure::NetDelay(id, pair) => Some(channels::net_delay(&of_pair(id, pair)?, *pair)),
-        AskedFigure::Gain(id, channel) => channels::gain(&of(id)?, *channel),
-        AskedFigure::Delay(id, channel) => channels::delay(&of(id)?, *channel),
-        AskedFigure::GainObjective(id) => Some(channels::gain_objective(&of(id)?)),
-        AskedFigure::DelayObjective(id) => Some(channels::delay_objective(&of(id)?)),
-        AskedFigure::CostBefore(id, pair) => costs::before(&of_pair(id, pair)?, *pair),
-        AskedFigure::CostAfter(id, pair) => costs::after(&of_pair(id, pair)?, *pair),
-        AskedFigure::CostChange(id, pair, choice) => costs::change(&of_pair(id, pair)?, *pair, *choice),
-        AskedFigure::DiscontinuityRatio(model) => bundles::ratio(&of(&model.condition)?, model),
-        AskedFigure::Score(model) => bundles::score(&of(&model.condition)?, model),
-        AskedFigure::ScheduledGain(channel, airspeed_kt) => schedules::gain(analysis, *channel, *airspeed_kt),
+        ExplainTarget::DeltaGain(id, pair) => deltas::gain(&of_pair(id, pair)?, *pair),
+        ExplainTarget::DeltaDelay(id, pair) => deltas::delay(&of_pair(id, pair)?, *pair),
+        ExplainTarget::GainBounds(id) => Some(deltas::gain_bounds(&of(id)?)),
+        ExplainTarget::DelayBound(id) => Some(deltas::delay_bound(&of(id)?)),
+        ExplainTarget::NetGain(id, pair) => Some(channels::net_gain(&of_pair(id, pair)?, *pair)),
+        ExplainTarget::NetDelay(id, pair) => Some(channels::net_delay(&of_pair(id, pair)?, *pair)),
+        ExplainTarget::Gain(id, channel) => channels::gain(&of(id)?, *channel),
+        ExplainTarget::Delay(id, channel) => channels::delay(&of(id)?, *channel),
+        ExplainTarget::GainObjective(id) => Some(channels::gain_objective(&of(id)?)),
+        ExplainTarget::DelayObjective(id) => Some(channels::delay_objective(&of(id)?)),
+        ExplainTarget::CostBefore(id, pair) => costs::before(&of_pair(id, pair)?, *pair),
+        ExplainTarget::CostAfter(id, pair) => costs::after(&of_pair(id, pair)?, *pair),
+        ExplainTarget::CostChange(id, pair, choice) => costs::change(&of_pair(id, pair)?, *pair, *choice),
+        ExplainTarget::DiscontinuityRatio(model) => bundles::ratio(&of(&model.condition)?, model),
+        ExplainTarget::Score(model) => bundles::score(&of(&model.condition)?, model),
+        ExplainTarget::ScheduledGain(channel, airspeed_kt) => schedules::gain(analysis, *channel, *airspeed_kt),
     };
     found.map(|mut found| {
         found.rests_on.extend(swaps::sure(analysis, asked));

@@ -6,10 +6,10 @@ use crate::study::swaps::ConditionSwaps;
 use crate::uncertainty::{Bar, Part, Scalar};
 use crate::units::s_to_ms;
 
-use super::AskedFigure;
+use super::ExplainTarget;
 
 /// The bar of a figure with its parts, and the figure of every swap; nothing where it has no bar, or that was not computed.
-pub(super) fn sure(analysis: &Analysis, asked: &AskedFigure) -> Vec<String> {
+pub(super) fn sure(analysis: &Analysis, asked: &ExplainTarget) -> Vec<String> {
     let Some((condition, scalar)) = scalar_of(asked) else { return Vec::new() };
     let Some(uncertainty) = &analysis.uncertainty else { return Vec::new() };
     let Some(of) = uncertainty.conditions.get(&condition) else { return Vec::new() };
@@ -20,13 +20,13 @@ pub(super) fn sure(analysis: &Analysis, asked: &AskedFigure) -> Vec<String> {
 }
 
 /// The condition and the figure with a bar that is asked about.
-fn scalar_of(asked: &AskedFigure) -> Option<(ConditionId, Scalar)> {
+fn scalar_of(asked: &ExplainTarget) -> Option<(ConditionId, Scalar)> {
     Some(match asked {
-        AskedFigure::DeltaGain(id, pair) => (*id, Scalar::Gain(*pair)),
-        AskedFigure::DeltaDelay(id, pair) => (*id, Scalar::Delay(*pair)),
-        AskedFigure::NetGain(id, pair) => (*id, Scalar::NetGain(*pair)),
-        AskedFigure::Gain(id, channel) => (*id, Scalar::ChannelGain(*channel)),
-        AskedFigure::Delay(id, channel) => (*id, Scalar::ChannelDelay(*channel)),
+        ExplainTarget::DeltaGain(id, pair) => (*id, Scalar::Gain(*pair)),
+        ExplainTarget::DeltaDelay(id, pair) => (*id, Scalar::Delay(*pair)),
+        ExplainTarget::NetGain(id, pair) => (*id, Scalar::NetGain(*pair)),
+        ExplainTarget::Gain(id, channel) => (*id, Scalar::ChannelGain(*channel)),
+        ExplainTarget::Delay(id, channel) => (*id, Scalar::ChannelDelay(*channel)),
         _ => return None,
     })
 }

@@ -1,9 +1,9 @@
 //! Members of enumerations.
 
 use super::super::opaque::unread_because;
-use super::super::trail::Trail;
+use super::super::trail::FieldPath;
 use super::Subsystem;
-use crate::variables::{Meter, Object, StructArray, TextArray, Value, VariableFault};
+use crate::variables::{MemoryBudget, Object, StructArray, TextArray, Value, VariableFault};
 
 /// The field by which the record is known that stands for members of an enumeration.
 const TAG: &str = "EnumerationInstanceTag";
@@ -21,8 +21,8 @@ impl Subsystem {
         &self,
         records: &StructArray,
         class: &str,
-        trail: &Trail<'_>,
-        meter: &Meter<'_>,
+        trail: &FieldPath<'_>,
+        meter: &MemoryBudget<'_>,
     ) -> Result<Value, VariableFault> {
         let number = numbers(records, "ClassName").and_then(|numbers| numbers.first().copied());
         let class = number.and_then(|number| self.directory.class(number)).unwrap_or(class);

@@ -3,13 +3,15 @@
 use std::collections::{HashMap, HashSet};
 
 use super::super::opaque::unread_because;
-use super::super::trail::{Step, Trail};
+use super::super::trail::{FieldPath, Step};
 use super::directory::{Content, Property};
 use super::enumeration::is_enumeration;
 use super::packed_text::packed_text;
 use super::weight::own_weight;
 use super::{Reference, Subsystem};
-use crate::variables::{Array, CellArray, ElementKind, Meter, Object, StructArray, TextArray, Value, VariableFault};
+use crate::variables::{
+    Array, CellArray, ElementKind, MemoryBudget, Object, StructArray, TextArray, Value, VariableFault,
+};
 
 /// The property that holds what a class makes of its objects to be saved.
 const MADE: &str = "any";
@@ -17,7 +19,7 @@ const MADE: &str = "any";
 /// Puts objects together, one in another.
 pub(super) struct Assembly<'s> {
     pub(super) subsystem: &'s Subsystem,
-    pub(super) meter: &'s Meter<'s>,
+    pub(super) meter: &'s MemoryBudget<'s>,
     /// The objects that are being put together: one that lies in itself would have no end.
     open: Vec<u32>,
 }
@@ -27,20 +29,20 @@ impl Subsystem {
     pub(in super::super) fn referred(
         &self,
         reference: &Reference,
-        trail: &Trail<'_>,
-        meter: &Meter<'_>,
+        trail: &FieldPath<'_>,
+        meter: &MemoryBudget<'_>,
     ) -> Result<Value, VariableFault> {
         Assembly::new(self, meter).referred(reference, trail)
     }
 }
 
 impl<'s> Assembly<'s> {
-    pub(super) fn new(subsystem: &'s Subsystem, meter: &'s Meter<'s>) -> Self {
+    pub(super) fn new(subsystem: &'s Subsystem, meter: &'s MemoryBudget<'s>) -> Self {
         Self { subsystem, meter, open: Vec::new() }
     }
 
     /// What a reference leads to; what is nested too deeply or cannot be decoded is opaque.
-    pub(super) fn referred(&mut self, reference: &Reference, trail: &Trail<'_>) -> Result<Value, VariableFault> {
+    pub(super) fn referred(&mut self, reference: &Reference, trail: &FieldPath<'_>) -> Result<Value, VariableFault> {
         let directory = &self.subsystem.directory;
         let class = directory.class(reference.class).unwrap_or("object");
         let opaque = |why: &str| Ok(unread_because(class, why, &trail.words()));
@@ -74,7 +76,7 @@ impl<'s> Assembly<'s> {
         words.map_or(Ok(None), |words| packed_text(&words, self.meter))
     }
 
-    fn records(&mut self, reference: &Reference, trail: &Trail<'_>) -> Result<StructArray, VariableFault> {
+    fn records(&mut self, reference: &Reference, trail: &FieldPath<'_>) -> Result<StructArray, VariableFault> {
         let mut fields: Vec<(String, Vec<Value>)> = Vec::new();
         let mut places: HashMap<String, usize> = HashMap::new();
         for (at, &object) in reference.objects.iter().enumerate() {
@@ -112,7 +114,7 @@ impl<'s> Assembly<'s> {
         &mut self,
         object: u32,
         class: u32,
-        trail: &Trail<'_>,
+        trail: &FieldPath<'_>,
     ) -> Result<Vec<(String, Value)>, VariableFault> {
         if object == 0 {
             return Ok(Vec::new());
@@ -142,7 +144,7 @@ impl<'s> Assembly<'s> {
         Ok(properties)
     }
 
-    fn property(&mut self, property: &Property, trail: &Trail<'_>) -> Result<Value, VariableFault> {
+    fn property(&mut self, property: &Property, trail: &FieldPath<'_>) -> Result<Value, VariableFault> {
         let subsystem = self.subsystem;
         self.meter.take(1, 256, "")?;
         match property.content {
@@ -164,7 +166,7 @@ impl<'s> Assembly<'s> {
     }
 
     /// A value of a cell, with the objects that it refers to in their places.
-    pub(super) fn copy(&mut self, value: &Value, trail: &Trail<'_>) -> Result<Value, VariableFault> {
+    pub(super) fn copy(&mut self, value: &Value, trail: &FieldPath<'_>) -> Result<Value, VariableFault> {
         self.meter.take(1, own_weight(value), "")?;
         if let Some(reference) = self.reference(value) {
             return self.referred(&reference, trail);
@@ -182,12 +184,12 @@ impl<'s> Assembly<'s> {
         })
     }
 
-    fn cells(&mut self, cell: &CellArray, trail: &Trail<'_>) -> Result<Vec<Value>, VariableFault> {
+    fn cells(&mut self, cell: &CellArray, trail: &FieldPath<'_>) -> Result<Vec<Value>, VariableFault> {
         let values = cell.values.iter().enumerate();
         values.map(|(at, value)| self.copy(value, &trail.step(Step::Cell(at))?)).collect()
     }
 
-    fn copied(&mut self, records: &StructArray, trail: &Trail<'_>) -> Result<StructArray, VariableFault> {
+    fn copied(&mut self, records: &StructArray, trail: &FieldPath<'_>) -> Result<StructArray, VariableFault> {
         let mut fields = Vec::with_capacity(records.fields.len());
         for (name, values) in &records.fields {
             let mut copies = Vec::with_capacity(values.len());

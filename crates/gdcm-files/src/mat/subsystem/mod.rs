@@ -15,8 +15,8 @@ use std::collections::HashMap;
 
 use self::directory::Directory;
 use super::opaque::unread_because;
-use super::trail::Trail;
-use crate::variables::{Meter, Value, VariableFault};
+use super::trail::FieldPath;
+use crate::variables::{MemoryBudget, Value, VariableFault};
 
 pub(super) use self::reference::Reference;
 
@@ -66,9 +66,9 @@ impl Subsystem {
     /// the objects, number of the class]`.
     ///
     /// What cannot be decoded is [`Value::Opaque`]; only the meter makes a fault.
-    pub fn object(&self, reference: &[u32], variable: &str, meter: &Meter<'_>) -> Result<Value, VariableFault> {
+    pub fn object(&self, reference: &[u32], variable: &str, meter: &MemoryBudget<'_>) -> Result<Value, VariableFault> {
         match Reference::parse(reference) {
-            Some(reference) => self.referred(&reference, &Trail::start(variable), meter),
+            Some(reference) => self.referred(&reference, &FieldPath::start(variable), meter),
             None => Ok(unread_because("object", "what refers to it is damaged", variable)),
         }
     }
@@ -142,7 +142,7 @@ mod tests {
     }
 
     fn values(bytes: &[u8]) -> HashMap<String, Value> {
-        let variables = read(bytes, &Meter::new(1 << 20, &|_| false)).unwrap();
+        let variables = read(bytes, &MemoryBudget::new(1 << 20, &|_| false)).unwrap();
         variables.into_iter().map(|variable| (variable.name, variable.value)).collect()
     }
 
@@ -234,7 +234,7 @@ mod tests {
         let text = Value::Array(Array::matrix(1, 6, words.to_vec()));
         let cells = vec![directory, empty(), empty(), text, empty()];
         let subsystem = Subsystem::new(cells).unwrap();
-        let meter = Meter::new(1 << 16, &|_| false);
+        let meter = MemoryBudget::new(1 << 16, &|_| false);
         let found = subsystem.object(&[0xdd00_0000, 2, 1, 1, 3, 3], "t", &meter);
         assert_eq!(found, Ok(Value::Text(TextArray { shape: vec![1, 1], texts: vec!["ab".to_owned()] })));
         assert!(matches!(subsystem.object(&[1, 2, 3], "t", &meter), Ok(Value::Opaque { .. })));
@@ -251,7 +251,7 @@ mod tests {
                 let at = at.index(bytes.len());
                 bytes[at] ^= byte;
             }
-            let _ = read(&bytes, &Meter::new(1 << 20, &|_| false));
+            let _ = read(&bytes, &MemoryBudget::new(1 << 20, &|_| false));
         }
     }
 
@@ -259,7 +259,7 @@ mod tests {
     fn a_file_cut_off_anywhere_never_panics() {
         let bytes = file(4);
         for length in 0..bytes.len() {
-            let _ = read(&bytes[..length], &Meter::new(1 << 20, &|_| false));
+            let _ = read(&bytes[..length], &MemoryBudget::new(1 << 20, &|_| false));
         }
     }
 }

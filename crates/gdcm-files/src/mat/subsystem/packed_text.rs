@@ -1,6 +1,6 @@
 //! The texts of a `string` object, packed into whole numbers of 64 bits.
 
-use crate::variables::{Meter, TextArray, VariableFault};
+use crate::variables::{MemoryBudget, TextArray, VariableFault};
 
 /// The only version of the packing that is known.
 const VERSION: u64 = 1;
@@ -9,7 +9,7 @@ const MISSING: u64 = u64::MAX;
 
 /// The texts packed as version, number of dimensions, dimensions, lengths and units of UTF-16, four to a number; `None` if the
 /// numbers are something else. A missing text is an empty one.
-pub(super) fn packed_text(words: &[u64], meter: &Meter<'_>) -> Result<Option<TextArray>, VariableFault> {
+pub(super) fn packed_text(words: &[u64], meter: &MemoryBudget<'_>) -> Result<Option<TextArray>, VariableFault> {
     meter.take(words.len() as u64, 64, "")?;
     Ok(unpacked(words))
 }

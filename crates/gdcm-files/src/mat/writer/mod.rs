@@ -69,11 +69,11 @@ fn packed(plain: Vec<u8>) -> Vec<u8> {
 mod tests {
     use super::super::read;
     use super::*;
-    use crate::variables::{Array, CellArray, ElementKind, Meter, Object, StructArray, TextArray, Value};
+    use crate::variables::{Array, CellArray, ElementKind, MemoryBudget, Object, StructArray, TextArray, Value};
     use proptest::prelude::*;
 
     fn back(bytes: &[u8]) -> Vec<Variable> {
-        read(bytes, &Meter::new(1 << 24, &|_| false)).unwrap()
+        read(bytes, &MemoryBudget::new(1 << 24, &|_| false)).unwrap()
     }
 
     fn named(name: &str, value: Value) -> Variable {

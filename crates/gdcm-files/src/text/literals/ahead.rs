@@ -1,4 +1,4 @@
-//! Looks ahead in statements.
+//! PlotStyle ahead in statements.
 
 use super::lexer::Lexer;
 use super::token::{Token, TokenKind};

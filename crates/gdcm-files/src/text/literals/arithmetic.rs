@@ -1,7 +1,7 @@
 //! Arithmetic of constants.
 
 use super::trouble::Trouble;
-use crate::variables::{Array, ElementKind, Meter, Value};
+use crate::variables::{Array, ElementKind, MemoryBudget, Value};
 
 /// Products of matrices take no more multiplications than this: a second's work.
 const MOST_PRODUCTS: u64 = 1 << 30;
@@ -29,7 +29,7 @@ pub(super) fn real(value: &Value) -> Result<f64, Trouble> {
 }
 
 /// The value of `left operator right`.
-pub(super) fn binary(left: Value, operator: &str, right: Value, meter: &Meter) -> Result<Value, Trouble> {
+pub(super) fn binary(left: Value, operator: &str, right: Value, meter: &MemoryBudget) -> Result<Value, Trouble> {
     let (left, right) = (numbers(left)?, numbers(right)?);
     let single = left.len() == 1 || right.len() == 1;
     let array = match operator {
@@ -72,7 +72,7 @@ fn at(array: &Array, index: usize) -> Complex {
 fn each(
     left: &Array,
     right: &Array,
-    meter: &Meter,
+    meter: &MemoryBudget,
     combine: impl Fn(Complex, Complex) -> Complex,
 ) -> Result<Array, Trouble> {
     let shape = if left.len() == 1 { &right.shape } else { &left.shape };
@@ -92,7 +92,7 @@ fn plain(mut array: Array) -> Array {
     array
 }
 
-fn power(left: &Array, right: &Array, meter: &Meter) -> Result<Array, Trouble> {
+fn power(left: &Array, right: &Array, meter: &MemoryBudget) -> Result<Array, Trouble> {
     let real = left.im.is_none() && right.im.is_none();
     let fractional = right.re.iter().any(|power| power.fract() != 0.0) && left.re.iter().any(|&base| base < 0.0);
     if !real || fractional {
@@ -101,7 +101,7 @@ fn power(left: &Array, right: &Array, meter: &Meter) -> Result<Array, Trouble> {
     each(left, right, meter, |a, b| (a.0.powf(b.0), 0.0))
 }
 
-fn product(left: &Array, right: &Array, meter: &Meter) -> Result<Array, Trouble> {
+fn product(left: &Array, right: &Array, meter: &MemoryBudget) -> Result<Array, Trouble> {
     let (rows, inner, columns) = (left.shape[0], left.shape[1], right.shape[1]);
     if inner != right.shape[0] {
         let (left, right) = (Value::Array(left.clone()).words(), Value::Array(right.clone()).words());
@@ -148,7 +148,7 @@ pub(super) fn transposed(value: Value, conjugate: bool) -> Result<Value, Trouble
 }
 
 /// The numbers from `first` to `last` in steps.
-pub(super) fn range(first: &Value, step: &Value, last: &Value, meter: &Meter) -> Result<Value, Trouble> {
+pub(super) fn range(first: &Value, step: &Value, last: &Value, meter: &MemoryBudget) -> Result<Value, Trouble> {
     let (first, step, last) = (real(first)?, real(step)?, real(last)?);
     let steps = (last - first) / step;
     if !steps.is_finite() {
@@ -171,7 +171,7 @@ mod tests {
     }
 
     fn combine(left: Value, operator: &str, right: Value) -> Result<Value, Trouble> {
-        binary(left, operator, right, &Meter::new(1 << 20, &|_| false))
+        binary(left, operator, right, &MemoryBudget::new(1 << 20, &|_| false))
     }
 
     #[test]
@@ -191,7 +191,7 @@ mod tests {
 
     #[test]
     fn ranges_include_their_end_despite_rounding() {
-        let meter = Meter::new(1 << 20, &|_| false);
+        let meter = MemoryBudget::new(1 << 20, &|_| false);
         let of = |first, step, last| range(&scalar(first, 0.0), &scalar(step, 0.0), &scalar(last, 0.0), &meter);
         assert_eq!(numbers(of(0.0, 0.1, 0.3).unwrap()).unwrap().len(), 4);
         assert_eq!(of(3.0, 1.0, 1.0).unwrap(), matrix(1, 0, &[]));

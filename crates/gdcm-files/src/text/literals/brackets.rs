@@ -3,7 +3,7 @@
 use super::block::{above, beside};
 use super::scope::cost;
 use super::trouble::Trouble;
-use crate::variables::{Array, ElementKind, Meter, Value};
+use crate::variables::{Array, ElementKind, MemoryBudget, Value};
 
 /// The elements of a row: single numbers as long as there is nothing else, as most matrices have many.
 enum Row {
@@ -13,7 +13,7 @@ enum Row {
 
 /// The rows between brackets as far as they are read.
 pub(super) struct Brackets<'m> {
-    meter: &'m Meter<'m>,
+    meter: &'m MemoryBudget<'m>,
     rows: Vec<Row>,
     row: Row,
 }
@@ -42,7 +42,7 @@ impl Row {
 }
 
 impl<'m> Brackets<'m> {
-    pub(super) fn new(meter: &'m Meter<'m>) -> Self {
+    pub(super) fn new(meter: &'m MemoryBudget<'m>) -> Self {
         Self { meter, rows: Vec::new(), row: Row::new() }
     }
 

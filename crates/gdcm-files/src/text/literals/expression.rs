@@ -8,20 +8,20 @@ use super::lexer::Lexer;
 use super::scope::{Scope, cost};
 use super::token::{Token, TokenKind};
 use super::trouble::Trouble;
-use crate::variables::{CellArray, Meter, Value, VariableFault};
+use crate::variables::{CellArray, MemoryBudget, Value, VariableFault};
 
 /// Reads statements token by token; the next token is always at hand.
 pub(super) struct Parser<'t, 'm> {
     pub(super) lexer: Lexer<'t>,
     pub(super) token: Token<'t>,
     pub(super) scope: Scope,
-    pub(super) meter: &'m Meter<'m>,
+    pub(super) meter: &'m MemoryBudget<'m>,
     /// Whether blanks separate elements, as between square and curly brackets.
     blanks_separate: bool,
 }
 
 impl<'t, 'm> Parser<'t, 'm> {
-    pub(super) fn new(text: &'t str, meter: &'m Meter<'m>) -> Result<Self, VariableFault> {
+    pub(super) fn new(text: &'t str, meter: &'m MemoryBudget<'m>) -> Result<Self, VariableFault> {
         let mut lexer = Lexer::new(text);
         let token = lexer.next()?;
         Ok(Self { lexer, token, scope: Scope::default(), meter, blanks_separate: false })

@@ -2,7 +2,7 @@
 
 use super::arithmetic::{numbers, real, scalar, transposed};
 use super::trouble::Trouble;
-use crate::variables::{Array, ElementKind, Meter, StructArray, Value};
+use crate::variables::{Array, ElementKind, MemoryBudget, StructArray, Value};
 
 type OfElement = fn(f64) -> f64;
 
@@ -40,7 +40,7 @@ pub(super) fn constant(name: &str) -> Option<Value> {
 }
 
 /// The value of a function.
-pub(super) fn call(name: &str, arguments: Vec<Value>, meter: &Meter) -> Result<Value, Trouble> {
+pub(super) fn call(name: &str, arguments: Vec<Value>, meter: &MemoryBudget) -> Result<Value, Trouble> {
     if let Some((_, function)) = OF_ELEMENTS.iter().find(|(known, _)| *known == name) {
         return of_elements(name, *function, arguments);
     }
@@ -87,7 +87,7 @@ fn count(value: f64) -> Result<usize, Trouble> {
     }
 }
 
-fn filled(arguments: &[Value], meter: &Meter, value: impl Fn(usize, usize) -> f64) -> Result<Value, Trouble> {
+fn filled(arguments: &[Value], meter: &MemoryBudget, value: impl Fn(usize, usize) -> f64) -> Result<Value, Trouble> {
     let (rows, columns) = match arguments {
         [] => (1, 1),
         [Value::Array(Array { re, im: None, .. })] if re.len() == 2 => (count(re[0])?, count(re[1])?),
@@ -101,7 +101,7 @@ fn filled(arguments: &[Value], meter: &Meter, value: impl Fn(usize, usize) -> f6
 }
 
 /// A square matrix with these numbers on its diagonal, or the diagonal of a matrix.
-fn diagonal(arguments: Vec<Value>, meter: &Meter) -> Result<Value, Trouble> {
+fn diagonal(arguments: Vec<Value>, meter: &MemoryBudget) -> Result<Value, Trouble> {
     let mut found = Vec::with_capacity(1);
     for value in arguments {
         found.push(numbers(value)?);
@@ -124,7 +124,13 @@ fn diagonal(arguments: Vec<Value>, meter: &Meter) -> Result<Value, Trouble> {
     Ok(Value::Array(Array::matrix(side, side, values)))
 }
 
-fn spaced(first: &Value, last: &Value, number: &Value, meter: &Meter, function: OfElement) -> Result<Value, Trouble> {
+fn spaced(
+    first: &Value,
+    last: &Value,
+    number: &Value,
+    meter: &MemoryBudget,
+    function: OfElement,
+) -> Result<Value, Trouble> {
     let (first, last, number) = (real(first)?, real(last)?, count(real(number)?)?);
     meter.take(number as u64, 8, "")?;
     let at = |index: usize| {

@@ -22,10 +22,10 @@ mod tests {
 
     use super::statement::Literals;
     use super::*;
-    use crate::variables::{Array, CellArray, Meter, StructArray, TextArray, Value, VariableFault};
+    use crate::variables::{Array, CellArray, MemoryBudget, StructArray, TextArray, Value, VariableFault};
 
     fn read(text: &str) -> Result<Literals, VariableFault> {
-        read_literals(text, &Meter::new(1 << 22, &|_| false))
+        read_literals(text, &MemoryBudget::new(1 << 22, &|_| false))
     }
 
     fn value(text: &str) -> Value {

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::functions::record;
 use super::trouble::Trouble;
-use crate::variables::{Meter, StructArray, Value, Variable, VariableFault};
+use crate::variables::{MemoryBudget, StructArray, Value, Variable, VariableFault};
 
 /// Values in values that are followed.
 const MOST_NESTED: usize = 64;
@@ -28,7 +28,7 @@ impl Scope {
     }
 
     /// A copy of a variable or of one of its fields.
-    pub(super) fn copy(&self, path: &[&str], meter: &Meter) -> Result<Value, Trouble> {
+    pub(super) fn copy(&self, path: &[&str], meter: &MemoryBudget) -> Result<Value, Trouble> {
         let (name, fields) = path.split_first().ok_or_else(|| Trouble::new("a name is missing"))?;
         let Some(&place) = self.places.get(*name) else {
             return Err(Trouble::new(format!("{name} is not known here; write its value")));
@@ -51,7 +51,7 @@ impl Scope {
     }
 
     /// Sets a variable or one of its fields.
-    pub(super) fn set(&mut self, path: &[&str], value: Value, meter: &Meter) -> Result<(), VariableFault> {
+    pub(super) fn set(&mut self, path: &[&str], value: Value, meter: &MemoryBudget) -> Result<(), VariableFault> {
         let Some((name, fields)) = path.split_first() else { return Ok(()) };
         if path.len() > MOST_NESTED {
             return Err(VariableFault::TooDeep { variable: (*name).to_owned() });
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn fields_are_set_within_fields() {
-        let meter = Meter::new(1 << 20, &|_| false);
+        let meter = MemoryBudget::new(1 << 20, &|_| false);
         let mut scope = Scope::default();
         scope.set(&["sys", "a", "b"], scalar(1.0, 0.0), &meter).unwrap();
         scope.set(&["sys", "c"], scalar(2.0, 0.0), &meter).unwrap();

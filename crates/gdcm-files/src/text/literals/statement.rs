@@ -5,7 +5,7 @@ use super::expression::Parser;
 use super::token::{Place, TokenKind};
 use super::trouble::Trouble;
 use crate::text::lines::refuse_binary;
-use crate::variables::{Meter, Value, Variable, VariableFault};
+use crate::variables::{MemoryBudget, Value, Variable, VariableFault};
 
 /// Words that begin statements which are not run.
 const PASSED_OVER: [&str; 32] = [
@@ -59,7 +59,7 @@ pub struct Literals {
 }
 
 /// Reads variables from MATLAB or Octave statements.
-pub fn read_literals(text: &str, meter: &Meter) -> Result<Literals, VariableFault> {
+pub fn read_literals(text: &str, meter: &MemoryBudget) -> Result<Literals, VariableFault> {
     refuse_binary(text, "MATLAB statements")?;
     let mut reading = Reading { parser: Parser::new(text, meter)?, notes: Vec::new(), blocks: 0 };
     while reading.parser.token.kind != TokenKind::End {

@@ -1,19 +1,17 @@
 //! Rules files, `*.gdcm-rules.json`: what the engineer says about the files of a folder, for next week's folder too.
 
-mod schema;
-
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use gdcm_core::assembly::{ChannelRule, NamePattern, RowRole, RowRule, Rules, UnitRule};
+use gdcm_core::assembly::{ChannelRule, NamePattern, RowRole, RowRule, Rules, UnitRule, standard_patterns};
 use gdcm_core::dataset::Location;
+use gdcm_core::dataset::limits::{MOST_CHANNELS, MOST_PAIRS};
+use serde::{Deserialize, Serialize};
 
-use super::content_fault::ContentFault;
-use super::file_error::FileError;
-use super::flaw::ContentError;
-use super::output_set::OutputSet;
-use super::source::Source;
-
-use schema::{ChannelText, FORMAT, RowText, RulesText, UnitText};
+use crate::file_error::{ContentError, ContentFault, FileError};
+use crate::json_text::{Format, list};
+use crate::output_set::OutputSet;
+use crate::source::Source;
 
 /// How the name of a rules file ends.
 const RULES_EXTENSION: &str = "gdcm-rules.json";
@@ -145,10 +143,99 @@ fn row_text(row: &RowRule) -> RowText {
     }
 }
 
+// A rules file, key by key.
+
+/// What a rules file calls itself.
+pub(super) const FORMAT: Format = Format { name: "gdcm-rules", version: 1 };
+
+/// Most patterns, and conversions, of a rules file.
+const MOST_PATTERNS: usize = 200;
+
+#[derive(Deserialize, Serialize)]
+pub(super) struct RulesText {
+    pub(super) format: String,
+    pub(super) version: u64,
+    pub(super) name: String,
+    #[serde(default)]
+    pub(super) description: String,
+    #[serde(deserialize_with = "list::<MOST_CHANNELS, _, _>")]
+    pub(super) inputs: Vec<ChannelText>,
+    #[serde(deserialize_with = "list::<MOST_CHANNELS, _, _>")]
+    pub(super) outputs: Vec<ChannelText>,
+    #[serde(default, deserialize_with = "list::<MOST_PAIRS, _, _>")]
+    pub(super) on_axis: Vec<(String, String)>,
+    pub(super) band_rad_s: [f64; 2],
+    #[serde(default, deserialize_with = "list::<MOST_PATTERNS, _, _>")]
+    pub(super) conversions: Vec<UnitText>,
+    #[serde(default = "standard", deserialize_with = "list::<MOST_PATTERNS, _, _>")]
+    pub(super) patterns: Vec<String>,
+    /// What the columns of tables hold, by file.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(super) headings: BTreeMap<String, Vec<String>>,
+    /// What is said of single models, by file and variable.
+    #[serde(default)]
+    pub(super) models: BTreeMap<String, RowText>,
+}
+
+/// The patterns of a file that names none.
+fn standard() -> Vec<String> {
+    standard_patterns().iter().map(|pattern| pattern.as_str().to_owned()).collect()
+}
+
+#[derive(Deserialize, Serialize)]
+pub(super) struct ChannelText {
+    pub(super) name: String,
+    #[serde(default)]
+    pub(super) unit: String,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) aliases: Vec<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) unit_in_files: Option<String>,
+}
+
+#[derive(Deserialize, Serialize)]
+pub(super) struct UnitText {
+    pub(super) channel: String,
+    pub(super) from: String,
+    pub(super) factor: f64,
+}
+
+#[derive(Default, Deserialize, Serialize)]
+#[serde(default)]
+pub(super) struct RowText {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) left_out: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) condition: Option<i64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) role: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) name: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) airspeed_kt: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) altitude: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) altitude_ft: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) weight: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) mass_kg: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) method: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) perturbation: Option<BTreeMap<String, f64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) inputs: Option<Vec<String>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) outputs: Option<Vec<String>>,
+}
+
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::output_set::Existing;
+
+    use super::*;
 
     #[test]
     fn rules_come_back_as_they_were_written() {

@@ -1,4 +1,4 @@
-//! All processor cores as an executor.
+//! All processor cores as an executor: what the window and the commands compute with.
 
 use gdcm_core::executor::{Executor, Task};
 

@@ -1,4 +1,5 @@
-//! A thread beside the live answer that does the jobs of one kind, one after the other.
+//! A thread beside the live answer that does the jobs of one kind, one after the other. Two equal jobs are one: what is under way,
+//! done or stopped is known by the job itself.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -7,7 +8,7 @@ use std::time::{Duration, Instant};
 use super::fault::{Fault, caught};
 use gdcm_core::study::{Cancelled, Job, Progress};
 
-/// How a job ended; nothing is told of a job that was given up.
+/// What a job has made, or the fault that ended it; nothing is told of a job that was given up.
 pub(super) type Ending<J> = Result<<J as Job>::Output, Fault>;
 
 /// How long a job that is not asked for any more may go on: while something is dragged, every output is worth having.
@@ -82,7 +83,7 @@ impl<J: Job> Shared<J> {
         self.mailbox.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits for a job that is to be begun; none once the lane is dropped.
+    /// Waits for a job that is to be begun; none once the queue is dropped.
     fn take(&self) -> Option<(J, Arc<Run>)> {
         let mut mailbox = self.mailbox();
         loop {
@@ -134,51 +135,36 @@ impl<J: Job> JobQueue<J> {
         self.shared.changed.notify_one();
     }
 
-    /// The jobs that are asked for and not done.
+    /// The jobs that are asked for and neither done nor stopped.
     pub(super) fn unfinished(&self) -> Vec<J> {
         self.shared.mailbox().unfinished().cloned().collect()
     }
-}
 
-/// A lane, whatever its jobs.
-pub(super) trait AnyLane {
     /// Gives up what is under way and what waits.
-    fn stop(&self);
-    /// Lets what was stopped be begun again.
-    fn resume(&self);
-    /// Whether something that is asked for was stopped.
-    fn is_stopped(&self) -> bool;
-    /// How many jobs are asked for and not done.
-    fn left(&self) -> usize;
-    /// Steps done of how many, of the job under way.
-    fn progress(&self) -> Option<(usize, usize)>;
-}
-
-impl<J: Job> AnyLane for JobQueue<J> {
-    fn stop(&self) {
+    pub(super) fn stop(&self) {
         let mut mailbox = self.shared.mailbox();
         let left: Vec<J> = mailbox.unfinished().cloned().collect();
         mailbox.stop_running();
         mailbox.stopped.extend(left);
     }
 
-    fn resume(&self) {
+    /// Lets what was stopped be begun again.
+    pub(super) fn resume(&self) {
         self.shared.mailbox().stopped.clear();
         self.shared.changed.notify_one();
     }
 
-    fn is_stopped(&self) -> bool {
+    /// Whether something that is asked for was stopped, by hand or by a fault.
+    pub(super) fn is_stopped(&self) -> bool {
         !self.shared.mailbox().stopped.is_empty()
     }
 
-    fn left(&self) -> usize {
-        self.shared.mailbox().unfinished().count()
-    }
-
-    fn progress(&self) -> Option<(usize, usize)> {
+    /// Steps done, of how many, where something is asked for that is not done.
+    pub(super) fn progress(&self) -> Option<(usize, usize)> {
         let mailbox = self.shared.mailbox();
-        let (_, run) = mailbox.running.as_ref()?;
-        Some((run.done.load(Ordering::Relaxed), run.total.load(Ordering::Relaxed)))
+        mailbox.unfinished().next()?;
+        let steps = |run: &Run| (run.done.load(Ordering::Relaxed), run.total.load(Ordering::Relaxed));
+        Some(mailbox.running.as_ref().map_or((0, 0), |(_, run)| steps(run)))
     }
 }
 
@@ -252,7 +238,7 @@ mod tests {
         }
     }
 
-    fn lane() -> (JobQueue<Spoken>, impl Fn(&'static str) -> Spoken, Receiver<String>) {
+    fn queue() -> (JobQueue<Spoken>, impl Fn(&'static str) -> Spoken, Receiver<String>) {
         let (sender, said) = channel();
         let ended = sender.clone();
         let deliver = move |job: Spoken, ending: Ending<Spoken>| {
@@ -271,46 +257,61 @@ mod tests {
 
     #[test]
     fn a_job_that_is_still_asked_for_goes_on_and_one_that_is_not_is_given_up() {
-        let (lane, job, said) = lane();
-        lane.want(vec![job("long")]);
+        let (queue, job, said) = queue();
+        queue.want(vec![job("long")]);
         assert_eq!(next(&said), "begun long");
-        lane.want(vec![job("short"), job("long")]);
+        queue.want(vec![job("short"), job("long")]);
         assert!(said.recv_timeout(Duration::from_millis(30)).is_err(), "the long one goes on, the short one waits");
-        lane.want(vec![job("short")]);
+        queue.want(vec![job("short")]);
         assert_eq!([next(&said), next(&said), next(&said)], ["cancelled long", "begun short", "ended short (2)"]);
     }
 
     #[test]
     fn a_job_is_done_once_as_long_as_it_is_asked_for() {
-        let (lane, job, said) = lane();
-        lane.want(vec![job("short")]);
+        let (queue, job, said) = queue();
+        queue.want(vec![job("short")]);
         assert_eq!([next(&said), next(&said)], ["begun short", "ended short (1)"]);
-        lane.want(vec![job("short"), job("other")]);
+        queue.want(vec![job("short"), job("other")]);
         assert_eq!([next(&said), next(&said)], ["begun other", "ended other (2)"]);
-        assert!(lane.unfinished().is_empty());
-        lane.want(Vec::new());
-        lane.want(vec![job("short")]);
+        assert!(queue.unfinished().is_empty());
+        queue.want(Vec::new());
+        queue.want(vec![job("short")]);
         assert_eq!(next(&said), "begun short", "nobody asked for it in between");
     }
 
     #[test]
     fn what_was_stopped_is_begun_again_only_when_that_is_said() {
-        let (lane, job, said) = lane();
-        lane.want(vec![job("long"), job("short")]);
+        let (queue, job, said) = queue();
+        queue.want(vec![job("long"), job("short")]);
         assert_eq!(next(&said), "begun long");
-        lane.stop();
-        assert!(lane.is_stopped());
+        queue.stop();
+        assert!(queue.is_stopped());
         assert_eq!(next(&said), "cancelled long");
-        lane.want(vec![job("long"), job("short")]);
+        queue.want(vec![job("long"), job("short")]);
         assert!(said.recv_timeout(Duration::from_millis(30)).is_err());
-        lane.resume();
+        queue.resume();
         assert_eq!(next(&said), "begun long");
     }
 
     #[test]
+    fn what_was_stopped_and_asked_for_no_more_is_begun_again_once_it_is_asked_for_and_nothing_else_is() {
+        let ((queue, job, said), (other, other_job, other_said)) = (queue(), queue());
+        queue.want(vec![job("long")]);
+        other.want(vec![other_job("long")]);
+        assert_eq!([next(&said), next(&other_said)], ["begun long", "begun long"]);
+        [&queue, &other].into_iter().for_each(JobQueue::stop);
+        assert_eq!([next(&said), next(&other_said)], ["cancelled long", "cancelled long"]);
+        queue.want(Vec::new());
+        queue.want(vec![job("long")]);
+        other.want(vec![other_job("long")]);
+        assert_eq!(next(&said), "begun long");
+        assert!(other.is_stopped() && other.progress().is_none() && queue.progress().is_some());
+    }
+
+    #[test]
     fn a_job_that_panics_is_told_its_tools_are_made_anew_and_the_next_is_done() {
-        let (lane, job, said) = lane();
-        lane.want(vec![job("short"), job("broken"), job("other")]);
+        let (queue, job, said) = queue();
+        queue.want(vec![job("short"), job("broken"), job("other")]);
         let all: Vec<String> = (0..6).map(|_| next(&said)).collect();
         assert_eq!(
             all,
@@ -320,10 +321,10 @@ mod tests {
 
     #[test]
     fn dropping_it_gives_up_the_job_and_waits_for_nothing() {
-        let (lane, job, said) = lane();
-        lane.want(vec![job("long")]);
+        let (queue, job, said) = queue();
+        queue.want(vec![job("long")]);
         assert_eq!(next(&said), "begun long");
-        drop(lane);
+        drop(queue);
         assert_eq!(next(&said), "cancelled long");
     }
 }

@@ -2,16 +2,16 @@
 
 use std::sync::Arc;
 
-use crate::view::across_scene::across_job;
-use crate::view::arrangement::View;
-use crate::view::assessment_scene::assessment_choice;
-use crate::view::compare_scene::variant_jobs;
-use crate::view::records::simulation_jobs;
-use crate::view::state::State;
 use gdcm_core::study::{AssessmentJob, ModesJob, UncertaintyJob};
 
 use super::window::GdcmApp;
 use super::worker::BackgroundJobs;
+use crate::view::arrangement::View;
+use crate::view::records::simulation_jobs;
+use crate::view::state::State;
+use crate::view::views::across_job;
+use crate::view::views::assessment_choice;
+use crate::view::views::variant_jobs;
 
 impl GdcmApp {
     /// Asks for what the views shown need; what none shows is not computed.

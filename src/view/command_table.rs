@@ -1,7 +1,6 @@
 //! Every command of the window, once: the menus, the shortcuts, the palette and the page of keys are made of this table.
 
 use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
-
 use gdcm_core::dataset::Pair;
 use gdcm_core::study::{Edit, OfferedModels, PhaseCorrection, Setting};
 use gdcm_files::figure::FigureFormat;
@@ -9,7 +8,7 @@ use gdcm_files::figure::FigureFormat;
 use super::arrangement::{Preset, View};
 use super::assembling::AssemblingCommand;
 use super::command::{Command, FormKind};
-use super::curve_entries::curve_entries;
+use super::curve_display::curve_entries;
 use super::figures::views_with_figure;
 use super::plot::FrequencyUnit;
 use super::records::RecordsCommand;

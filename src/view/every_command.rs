@@ -5,8 +5,8 @@ use gdcm_core::study::Edit;
 
 use super::command::{Command, FormKind};
 use super::command_table::{Entry, command_table, hold_entry};
-use super::net_gain_scene::PairSet;
 use super::state::State;
+use super::views::PairSet;
 
 /// Those of the table, and one for each condition, response, model and recent file.
 pub fn every_command(state: &State) -> Vec<Entry> {

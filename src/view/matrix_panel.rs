@@ -4,7 +4,6 @@ use egui::{
     Align2, Color32, FontId, Key, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui,
     WidgetInfo, pos2, vec2,
 };
-
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::Pair;
 use gdcm_core::fidelity::{ACCEPTABLE, INDISTINGUISHABLE};
@@ -15,12 +14,12 @@ use gdcm_core::units::s_to_ms;
 use super::command::Command;
 use super::derivation_window::question_menu_ui;
 use super::explanation::{gain_conflict_marks, toggle_costs};
-use super::gain_bars::bar_words;
 use super::heading::table_heading_ui;
 use super::palette::{Palette, SMALL_SIZE};
 use super::region::{Region, region_ui};
 use super::state::State;
 use super::tables::TableKind;
+use super::views::bar_words;
 
 const CELL_HEIGHT: f32 = 50.0;
 const LEAST_CELL_WIDTH: f32 = 58.0;

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::arrangement::Arrangement;
 use super::display::Display;
-use super::looks::PlotStyle;
 use super::plot::{FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit, Role};
+use super::plot_style::PlotStyle;
 
 /// How the engineer likes the window. What a later version adds has its usual value where a text of an earlier one is read.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

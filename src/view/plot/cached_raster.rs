@@ -6,7 +6,7 @@ use vello_cpu::color::AlphaColor;
 use vello_cpu::kurbo::{Affine, BezPath, Circle, Join, Shape as _, Stroke as PathStroke};
 use vello_cpu::{Pixmap, RenderContext, RenderSettings, Resources};
 
-use super::line_look::LineLook;
+use super::curve_style::LineLook;
 
 /// From so many curves on an image is worth its memory: filling their lines takes longer than everything else in a frame.
 pub(super) const MANY: usize = 200;
@@ -185,7 +185,7 @@ impl PlotItem for ImageItem {
 mod tests {
     use egui::{RawInput, vec2};
 
-    use super::super::line_look::LinePattern;
+    use super::super::curve_style::LinePattern;
     use super::*;
 
     fn scene(curves: &[u64], left: f32) -> StillScene {

@@ -69,7 +69,7 @@ pub(super) const fn for_all_eyes(is_dark: bool) -> [Color32; 4] {
 mod tests {
     use egui::Rgba;
 
-    use super::*;
+    use super::super::plot_style::*;
     use crate::view::palette::Palette;
     use crate::view::plot::RoleLook;
     use crate::view::plot::{LineLook, Role};

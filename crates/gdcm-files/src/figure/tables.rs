@@ -5,9 +5,8 @@ use std::sync::Arc;
 use gdcm_core::study::Table;
 
 use super::axis::Axis;
-use super::figure::Figure;
+use super::figure::{Figure, Panel};
 use super::mark::{Along, Bracket, Intervals, Mark, Spans};
-use super::panel::Panel;
 
 impl Figure {
     /// The numbers of each panel: one column for each curve where all share their x, else one row for each point.
@@ -133,10 +132,10 @@ fn figure(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::super::drawing::{Color, Stroke};
+    use super::super::figure::Plot;
+    use super::super::tables::*;
     use crate::figure::mark::{Bars, Curve, DotShape, Dots};
-    use crate::figure::panel::Plot;
-    use crate::figure::stroke::{Color, Stroke};
 
     const LINE: Stroke = Stroke::solid(Color::INK, 1.0);
 

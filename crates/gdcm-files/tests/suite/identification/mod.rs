@@ -3,9 +3,8 @@
 mod bands;
 mod common;
 mod example;
-pub mod flight;
 mod late;
 mod lines;
 mod preparation;
 mod validation;
-pub mod whole;
+mod whole;

@@ -84,7 +84,7 @@ fn the_responses_of_published_models_are_zero_at_their_zeros() {
 
 #[test]
 fn the_envelopes_are_those_of_independent_code() {
-    let golden = json(include_str!("../../data/reference/muad-golden.json"));
+    let golden = json(include_str!("../../../../../tests/data/reference/muad-golden.json"));
     let rows = list(&golden["rows"]);
     assert_eq!(rows.len(), 14);
     for row in rows {

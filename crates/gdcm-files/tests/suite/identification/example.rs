@@ -14,7 +14,7 @@ use gdcm_files::records_of_bytes;
 use crate::EXAMPLE;
 
 static RECORDS: LazyLock<Vec<RecordTable>> = LazyLock::new(|| {
-    let archive = crate::records::archive();
+    let archive = crate::records_archive();
     records_of_bytes(&archive, "example-records.zip", 1 << 30).expect("the archive is whole").tables
 });
 

@@ -1,8 +1,8 @@
 //! Bands that the records do not show: what is said, and the band that is offered.
 
 use super::common::noisy_measured;
-use super::flight::{Flight, Gusts};
-use super::whole::{quick, stable_aircraft};
+use super::whole::quick;
+use crate::made_up::{Flight, Gusts, stable_aircraft};
 use gdcm_core::executor::Sequential;
 use gdcm_core::identification::{IdentificationCaution, IdentificationError, Options, Unwatched, identify};
 

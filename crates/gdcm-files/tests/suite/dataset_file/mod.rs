@@ -16,7 +16,7 @@ mod studies;
 mod wrong_content;
 mod wrong_text;
 
-const SMALL: &str = include_str!("../../data/small-dataset.json");
+const SMALL: &str = include_str!("../../../../../tests/data/small-dataset.json");
 
 /// The small dataset, changed.
 fn small(change: impl FnOnce(&mut Value)) -> Vec<u8> {

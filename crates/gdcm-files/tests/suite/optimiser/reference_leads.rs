@@ -21,7 +21,7 @@ fn assert_within(what: &str, found: f64, reference: f64, least_s: f64) {
 }
 
 fn reference() -> Value {
-    serde_json::from_str(include_str!("../../data/reference/lead.json")).unwrap()
+    serde_json::from_str(include_str!("../../../../../tests/data/reference/lead.json")).unwrap()
 }
 
 fn list<'a>(reference: &'a Value, name: &str) -> &'a [Value] {

@@ -16,7 +16,7 @@ use gdcm_core::uncertainty::Scalar;
 
 use super::*;
 
-const REFERENCE: &str = include_str!("../../data/reference/lead.json");
+const REFERENCE: &str = include_str!("../../../../../tests/data/reference/lead.json");
 
 /// The example with leads, nothing rejected.
 static EXAMPLE_WITH_LEADS: LazyLock<Analysis> = LazyLock::new(|| analyze(&mut Engine::default(), &with_leads()));

@@ -1,7 +1,7 @@
 //! Identification from flight records, from outside.
 
 use super::common::{Threads, known, list, matrix};
-use super::flight::{Flight, Gusts};
+use crate::made_up::{Flight, Gusts, stable_aircraft};
 use gdcm_core::executor::Sequential;
 use gdcm_core::identification::{
     FlightRecord, Identification, IdentificationCaution, IdentificationError, Options, Preparation, Role,
@@ -82,15 +82,6 @@ pub fn quick(channels: (usize, usize)) -> Options {
     }
 }
 
-pub fn stable_aircraft() -> StateSpaceMatrices {
-    StateSpaceMatrices {
-        a: dmatrix![-0.4, 2.1, 0.0, 0.0; -2.1, -0.4, 0.0, 0.3; 0.0, 0.0, -1.5, 0.8; 0.2, 0.0, -1.1, -0.6],
-        b: dmatrix![1.0, 0.2; 0.0, 0.6; 0.5, -1.0; -0.3, 0.8],
-        c: dmatrix![0.6, 1.0, 0.3, 0.0; 0.2, 0.5, -0.8, 1.0],
-        d: DMatrix::zeros(2, 2),
-    }
-}
-
 fn responses(found: &Identification) -> Vec<DMatrix<Complex<f64>>> {
     found.bands.omega.iter().map(|&omega| found.refined.matrices.response(omega).unwrap()).collect()
 }
@@ -112,7 +103,7 @@ fn difference(one: &Identification, other: impl Fn(usize, usize, usize) -> Compl
 #[test]
 fn exact_records_give_the_exact_model() {
     let aircraft = stable_aircraft();
-    let flight = Flight { sample_time_s: 0.02, ..Flight::of(aircraft.clone(), Gusts::none()) };
+    let flight = Flight { sample_time_s: 0.02, ..Flight::of(aircraft.clone(), Gusts::default()) };
     let found = identify(&flight.records(1, 3), &quick((2, 2)), &Sequential, &Unwatched).unwrap();
     let mut worst = 0.0_f64;
     for (omega, response) in found.bands.omega.iter().zip(responses(&found)) {

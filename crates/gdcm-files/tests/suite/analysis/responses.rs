@@ -2,7 +2,7 @@
 
 use super::*;
 
-pub const GOLDEN: &str = include_str!("../../data/reference/frequency-response-golden.json");
+pub const GOLDEN: &str = include_str!("../../../../../tests/data/reference/frequency-response-golden.json");
 
 fn matrix(value: &Value) -> DMatrix<f64> {
     let rows: Vec<Vec<f64>> = list(value).iter().map(numbers).collect();
@@ -13,18 +13,18 @@ fn matrix(value: &Value) -> DMatrix<f64> {
 pub fn model_of(file: &str) -> Dynamics {
     let value = json(match file {
         "compleib_HE2_AH64_130kt.json" => {
-            include_str!("../../data/reference/published-models/compleib_HE2_AH64_130kt.json")
+            include_str!("../../../../../tests/data/reference/published-models/compleib_HE2_AH64_130kt.json")
         }
         "compleib_HE3_Bell205_6out.json" => {
-            include_str!("../../data/reference/published-models/compleib_HE3_Bell205_6out.json")
+            include_str!("../../../../../tests/data/reference/published-models/compleib_HE3_Bell205_6out.json")
         }
         "westland_lynx_hover_6out.json" => {
-            include_str!("../../data/reference/published-models/westland_lynx_hover_6out.json")
+            include_str!("../../../../../tests/data/reference/published-models/westland_lynx_hover_6out.json")
         }
         "yamaha_R50_hover_mettler.json" => {
-            include_str!("../../data/reference/published-models/yamaha_R50_hover_mettler.json")
+            include_str!("../../../../../tests/data/reference/published-models/yamaha_R50_hover_mettler.json")
         }
-        "../near-defective-model.json" => include_str!("../../data/reference/near-defective-model.json"),
+        "../near-defective-model.json" => include_str!("../../../../../tests/data/reference/near-defective-model.json"),
         _ => panic!("no model {file}"),
     });
     let [a, b, c, d] = ["A", "B", "C", "D"].map(|key| matrix(&value[key]));

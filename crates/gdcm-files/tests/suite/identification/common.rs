@@ -28,7 +28,7 @@ impl Executor for Threads {
 
 /// The known answers.
 pub fn known() -> Value {
-    serde_json::from_str(include_str!("../../data/identification-known-answers.json"))
+    serde_json::from_str(include_str!("../../../../../tests/data/identification-known-answers.json"))
         .expect("the known answers are JSON")
 }
 

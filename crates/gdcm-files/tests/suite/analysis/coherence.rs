@@ -90,7 +90,7 @@ fn words(analysis: &Analysis) -> Vec<String> {
 
 #[test]
 fn the_weights_are_those_of_the_reference() {
-    let golden = json(include_str!("../../data/reference/muad-golden.json"));
+    let golden = json(include_str!("../../../../../tests/data/reference/muad-golden.json"));
     let rows = list(&golden["Wgamma"]);
     assert!(rows.len() >= 8);
     for row in rows {

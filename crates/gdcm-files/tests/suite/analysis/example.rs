@@ -6,7 +6,7 @@ use gdcm_core::study::ConditionAnalysis;
 
 use super::*;
 
-const REFERENCE: &str = include_str!("../../data/reference/example-analysis.json");
+const REFERENCE: &str = include_str!("../../../../../tests/data/reference/example-analysis.json");
 
 /// What one part in a million is taken of, where a figure is near zero: the least figure of its kind that matters.
 mod scale {

@@ -30,7 +30,8 @@ pub fn table<T>(rows: &Value, entry: impl Fn(f64) -> T) -> PairTable<T> {
 }
 
 pub fn gain_instances() -> Vec<GainInstance> {
-    let file: Value = serde_json::from_str(include_str!("../../data/reference/gain-instances.json")).unwrap();
+    let file: Value =
+        serde_json::from_str(include_str!("../../../../../tests/data/reference/gain-instances.json")).unwrap();
     file["instances"].as_array().unwrap().iter().map(gain_instance).collect()
 }
 
@@ -73,7 +74,8 @@ pub fn on_axis() -> PairTable<bool> {
 }
 
 pub fn delay_instances() -> Vec<DelayInstance> {
-    let file: Value = serde_json::from_str(include_str!("../../data/reference/delay-instances.json")).unwrap();
+    let file: Value =
+        serde_json::from_str(include_str!("../../../../../tests/data/reference/delay-instances.json")).unwrap();
     file["instances"].as_array().unwrap().iter().map(delay_instance).collect()
 }
 
@@ -100,7 +102,8 @@ pub struct ExampleCondition {
 }
 
 pub fn example_conditions() -> Vec<ExampleCondition> {
-    let file: Value = serde_json::from_str(include_str!("../../data/reference/example-analysis.json")).unwrap();
+    let file: Value =
+        serde_json::from_str(include_str!("../../../../../tests/data/reference/example-analysis.json")).unwrap();
     file["conditions"].as_array().unwrap().iter().map(example_condition).collect()
 }
 

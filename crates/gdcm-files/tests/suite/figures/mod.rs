@@ -11,7 +11,6 @@ use gdcm_files::figure::{
 };
 use gdcm_files::write_as;
 
-mod documents;
 mod numbers;
 mod pages;
 mod views;

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::*;
-use gdcm::app::Pool;
+use crate::EveryCore;
 use gdcm_core::dataset::{Condition, Dataset, Model, ModelId};
 use gdcm_core::study::{Cancelled, ConditionAnalysis, ConditionFailure, Progress};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -133,7 +133,7 @@ fn results_have_the_same_bits_whatever_the_number_of_threads() {
     let alone = analyze(&mut Engine::default(), &study);
     for threads in [1, 2, 3, 7] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let together = pool.install(|| analyze(&mut Engine::with_executor(Box::new(Pool)), &study));
+        let together = pool.install(|| analyze(&mut Engine::with_executor(Box::new(EveryCore)), &study));
         // Debug prints the shortest text that reads back as the same bits, and tells -0 from 0.
         assert!(format!("{together:?}") == format!("{alone:?}"), "{threads} threads");
     }
@@ -142,7 +142,7 @@ fn results_have_the_same_bits_whatever_the_number_of_threads() {
 #[test]
 fn the_condition_wanted_first_is_told_first_and_as_the_whole_analysis_has_it() {
     let (study, onlooker) = (short_study(), Onlooker::new(ConditionId(10), usize::MAX));
-    let analysis = Engine::with_executor(Box::new(Pool)).analyze(&study, &onlooker).unwrap();
+    let analysis = Engine::with_executor(Box::new(EveryCore)).analyze(&study, &onlooker).unwrap();
     assert_eq!(onlooker.seen.into_inner().unwrap(), [analysis.conditions[&ConditionId(10)].clone()]);
     let alone = analyze(&mut Engine::default(), &study);
     assert_eq!(analysis.conditions, alone.conditions, "the order of work is not the order of results");

@@ -16,7 +16,7 @@ use gdcm_files::{DatasetOrigin, load_dataset_bytes};
 use super::*;
 
 /// Cases of independent numpy code; what it says of pooling and of quantiles stands beside the functions.
-const REFERENCE: &str = include_str!("../../data/reference/uncertainty.json");
+const REFERENCE: &str = include_str!("../../../../../tests/data/reference/uncertainty.json");
 
 /// The reference's own tolerance.
 const TOLERANCE: f64 = 1e-6;

@@ -1,10 +1,11 @@
-//! Made-up flights of small aircraft, flown in closed loop through gusts.
+//! Made-up aircraft, flights of them in closed loop through gusts, and datasets: for the tests here and for those of the program.
 
 use gdcm_core::identification::{FlightRecord, StateSpaceMatrices};
 use nalgebra::{DMatrix, DVector, dmatrix};
+use serde_json::{Value, json};
 
-/// What disturbs a flight.
-#[derive(Clone, Copy)]
+/// What disturbs a flight; by default the air is still and the sensors are exact.
+#[derive(Clone, Copy, Default)]
 pub struct Gusts {
     /// Standard deviation of what gusts do to each state.
     pub states: f64,
@@ -13,11 +14,6 @@ pub struct Gusts {
 }
 
 impl Gusts {
-    /// Still air and exact sensors.
-    pub fn none() -> Self {
-        Self { states: 0.0, sensors: 0.0 }
-    }
-
     /// Light gusts and good sensors.
     pub fn light() -> Self {
         Self { states: 0.01, sensors: 0.01 }
@@ -120,4 +116,30 @@ impl Random {
     fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
     }
+}
+
+/// A stable aircraft of two inputs and outputs.
+pub fn stable_aircraft() -> StateSpaceMatrices {
+    StateSpaceMatrices {
+        a: dmatrix![-0.4, 2.1, 0.0, 0.0; -2.1, -0.4, 0.0, 0.3; 0.0, 0.0, -1.5, 0.8; 0.2, 0.0, -1.1, -0.6],
+        b: dmatrix![1.0, 0.2; 0.0, 0.6; 0.5, -1.0; -0.3, 0.8],
+        c: dmatrix![0.6, 1.0, 0.3, 0.0; 0.2, 0.5, -0.8, 1.0],
+        d: DMatrix::zeros(2, 2),
+    }
+}
+
+/// Two lags, `c` beside what each output sees of the other's, as one physics and one identified model.
+pub fn two_lags(physics: [[f64; 2]; 2], identified: [[f64; 2]; 2]) -> Value {
+    let lags = |c: [[f64; 2]; 2]| {
+        json!({"name": "model", "A": [[-1.0, 0.0], [0.0, -3.0]], "B": [[1.0, 0.0], [0.0, 1.0]], "C": c,
+            "D": [[0.0, 0.0], [0.0, 0.0]]})
+    };
+    let mut nominal = lags(physics);
+    nominal["role"] = json!("nominal");
+    json!({"format": "gdcm-dataset", "version": 1, "name": "two lags",
+        "inputs": [{"name": "I0", "unit": "%"}, {"name": "I1", "unit": "%"}],
+        "outputs": [{"name": "O0", "unit": "deg/s"}, {"name": "O1", "unit": "deg/s"}],
+        "on_axis": [["O0", "I0"], ["O1", "I1"]], "frequency_band": {"min": 0.5, "max": 12.0, "unit": "rad/s"},
+        "conditions": [{"id": 1, "name": "hover", "airspeed_kt": 0.0, "physics_models": [nominal],
+            "identified_models": [lags(identified)]}]})
 }

@@ -2,26 +2,22 @@
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
-use std::process::Command;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
-use gdcm::app::GdcmApp;
 use gdcm_core::dataset::{Dataset, ModelId};
 use gdcm_core::schedule::{ScheduleCaution, ScheduleKind, ScheduleSettings};
 use gdcm_core::study::{Caution, ConditionAnalysis, ConditionFailure, Undefined};
-use gdcm_files::{DatasetOrigin, Opened, load_dataset_bytes};
+use gdcm_files::{DatasetOrigin, load_dataset_bytes};
 use serde_json::json;
 
 use super::*;
+use crate::made_up::two_lags;
 
 /// The condition of a file that has only one.
 const ONLY: ConditionId = ConditionId(1);
 
-const SHORT: &str = include_str!("../../data/edges/short-measurement.json");
-const NEAR: &str = include_str!("../../data/edges/near-airspeeds.json");
+const SHORT: &str = include_str!("../../../../../tests/data/edges/short-measurement.json");
+const NEAR: &str = include_str!("../../../../../tests/data/edges/near-airspeeds.json");
 
 fn dataset(value: &Value) -> Arc<Dataset> {
     load_dataset_bytes(value.to_string().as_bytes(), DatasetOrigin::File(PathBuf::from("edge.json"))).unwrap().dataset
@@ -112,22 +108,6 @@ fn a_physics_model_without_a_measuring_response_is_set_aside_too() {
     let mut without = found.figures.discontinuity.as_ref().unwrap().ratios.clone();
     without.remove(3);
     assert_eq!(only(&value, &[]).condition(ONLY).unwrap().figures.discontinuity.as_ref().unwrap().ratios, without);
-}
-
-/// Two lags, `c` beside what each output sees of the other's, as one physics and one identified model.
-fn two_lags(physics: [[f64; 2]; 2], identified: [[f64; 2]; 2]) -> Value {
-    let lags = |c: [[f64; 2]; 2]| {
-        json!({"name": "model", "A": [[-1.0, 0.0], [0.0, -3.0]], "B": [[1.0, 0.0], [0.0, 1.0]], "C": c,
-            "D": [[0.0, 0.0], [0.0, 0.0]]})
-    };
-    let mut nominal = lags(physics);
-    nominal["role"] = json!("nominal");
-    json!({"format": "gdcm-dataset", "version": 1, "name": "two lags",
-        "inputs": [{"name": "I0", "unit": "%"}, {"name": "I1", "unit": "%"}],
-        "outputs": [{"name": "O0", "unit": "deg/s"}, {"name": "O1", "unit": "deg/s"}],
-        "on_axis": [["O0", "I0"], ["O1", "I1"]], "frequency_band": {"min": 0.5, "max": 12.0, "unit": "rad/s"},
-        "conditions": [{"id": 1, "name": "hover", "airspeed_kt": 0.0, "physics_models": [nominal],
-            "identified_models": [lags(identified)]}]})
 }
 
 #[test]
@@ -228,37 +208,6 @@ fn a_schedule_that_overshoots_says_where_and_the_assessment_claims_nothing_betwe
     assert!(!only(&json(NEAR), &[Edit::Set(Setting::Schedule(table))]).schedule.unwrap().fails_between());
 }
 
-/// What the program says of a file in a command, and how it ends.
-fn run(file: &str, command: &str) -> (i32, String) {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data/edges").join(file);
-    let out = tempfile::tempdir().unwrap();
-    let mut program = Command::new(env!("CARGO_BIN_EXE_gdcm"));
-    program.arg(command).arg(path).current_dir(out.path());
-    if command == "analyze" {
-        program.args(["--out", "."]);
-    }
-    let output = program.output().unwrap();
-    // Long lines are broken and indented.
-    let text = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
-    (output.status.code().unwrap(), text.split_whitespace().collect::<Vec<_>>().join(" "))
-}
-
-#[test]
-fn a_model_that_cannot_be_computed_is_named_with_its_place_by_check_and_by_analyze() {
-    for (file, entry) in [
-        (
-            "large-entry.json",
-            "identified model \"i\" has no I → O over the whole band: its matrix A has 1e200 in row 1, column 2",
-        ),
-        ("overflowing-response.json", "its matrix B has -1.7976931348623157e308 in row 1, column 1"),
-    ] {
-        let (status, text) = run(file, "check");
-        assert!(status == 0 && text.contains(entry) && text.contains("Caution condition"), "{text}");
-        let (status, text) = run(file, "analyze");
-        assert!(status == 1 && text.contains(entry) && text.contains("condition"), "{text}");
-    }
-}
-
 #[test]
 fn a_pole_on_the_grid_is_named() {
     let mut value = two_lags([[1.0, 0.2], [0.3, 1.0]], [[1.2, 0.2], [0.3, 0.9]]);
@@ -267,49 +216,4 @@ fn a_pole_on_the_grid_is_named() {
     let analysis = only(&value, &[]);
     let failure = analysis.conditions[&ONLY].as_ref().unwrap_err();
     assert!(failure.to_string().contains("a pole lies on a frequency of the grid"), "{failure}");
-}
-
-/// The window on a file, its results there.
-fn window_on(value: &Value) -> Harness<'static, GdcmApp> {
-    let origin = DatasetOrigin::File(PathBuf::from("edge.json"));
-    let loaded = load_dataset_bytes(value.to_string().as_bytes(), origin).unwrap();
-    let mut window = Harness::builder().with_size(egui::vec2(1600.0, 1000.0)).build_eframe(|creation| {
-        GdcmApp::new(&creation.egui_ctx, Opened::Dataset(loaded)).expect("a thread can be started")
-    });
-    settle(&mut window);
-    window
-}
-
-fn settle(window: &mut Harness<'static, GdcmApp>) {
-    // Far above what the slowest machine needs: only a hang gets here.
-    let limit = Instant::now() + Duration::from_secs(120);
-    window.run_steps(2);
-    while window.state().state().results.is_waiting() {
-        assert!(Instant::now() < limit, "the results never came");
-        std::thread::sleep(Duration::from_millis(5));
-        window.run_steps(2);
-    }
-    window.run_steps(2);
-}
-
-#[test]
-fn the_window_offers_to_ignore_an_unusual_gain() {
-    let mut window = window_on(&two_lags([[1.0, 0.01], [0.0, 1.0]], [[1.2, 0.2], [0.0, 0.9]]));
-    let pair = Pair::new(0, 1);
-    assert!(window.state().state().study.settings.fitted[pair]);
-    window.get_by_label("Ignore I1 → O0").click();
-    settle(&mut window);
-    assert!(!window.state().state().study.settings.fitted[pair]);
-    assert!(window.query_by_label("Ignore I1 → O0").is_none(), "what is ignored is no caution");
-}
-
-#[test]
-fn a_model_set_aside_cannot_be_pinned_in_the_window() {
-    let mut window = window_on(&with_short_measurement(Some(4)));
-    for model in ["i3", "i4"] {
-        window.get_by_label(&format!("Pin identified model {model}")).click();
-        settle(&mut window);
-        let pinned = window.state().state().study.choice(ONLY).identified.pinned.clone();
-        assert_eq!(pinned.as_deref(), Some("i3"), "after a click on the star of {model}");
-    }
 }

@@ -1,6 +1,6 @@
 //! Damaged and hostile files of models: every reader ends with an answer, and takes no more memory than it may.
 //!
-//! A short run is a test. `GDCM_FUZZ_SECONDS=600 cargo test --release --test suite hostile_files -- --nocapture` tries each seed's
+//! A short run is a test. `GDCM_FUZZ_SECONDS=600 cargo test --release -p gdcm-files --test suite hostile_files -- --nocapture` tries each seed's
 //! format for so long and says how many files were tried.
 
 use std::path::Path;
@@ -59,7 +59,7 @@ fn damaged(seed: &[u8], dice: &mut Dice) -> Vec<u8> {
 
 /// Seeds: files of the tests' data in a folder, and texts.
 fn seeds(folder: &str) -> Vec<(String, Vec<u8>)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(folder);
+    let root = crate::program_folder().join("tests/data").join(folder);
     let mut files: Vec<_> = std::fs::read_dir(root).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
     let name = |path: &Path| path.file_name().unwrap().to_str().unwrap().to_owned();

@@ -11,7 +11,7 @@ use serde_json::json;
 
 use super::*;
 
-const SMALL: &str = include_str!("../../data/small-dataset.json");
+const SMALL: &str = include_str!("../../../../../tests/data/small-dataset.json");
 const FIRST: ConditionId = ConditionId(7);
 
 /// The small dataset, of whose first condition the identified bundle is the nominal model with these keys, and the rest of

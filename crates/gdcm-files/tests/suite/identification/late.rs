@@ -1,7 +1,6 @@
 //! Channels that are logged late in all records alike, told against a physics model.
 
-use super::flight::{Flight, Gusts};
-use super::whole::stable_aircraft;
+use crate::made_up::{Flight, Gusts, stable_aircraft};
 use gdcm_core::dataset::{Dynamics, StateSpace};
 use gdcm_core::executor::Sequential;
 use gdcm_core::identification::{

@@ -235,7 +235,7 @@ pub struct RecordsReading {
 
 /// What the Records view holds. Not saved: records stay in their files.
 #[derive(Clone, Debug, Default)]
-pub struct RecordsBench {
+pub struct RecordsState {
     /// Records by condition; a condition without an entry was not looked at yet.
     pub conditions: BTreeMap<ConditionId, ConditionRecords>,
     /// Whether the dataset is the example, of which the program holds some records.
@@ -254,7 +254,7 @@ pub struct RecordsBench {
     pub running: Vec<IdentifyJob>,
 }
 
-impl RecordsBench {
+impl RecordsState {
     /// The job of a condition that is under way or waits.
     pub fn running(&self, condition: ConditionId) -> Option<&IdentifyJob> {
         self.running.iter().find(|job| job.condition == condition)

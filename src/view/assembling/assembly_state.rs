@@ -58,7 +58,7 @@ pub struct Reading {
 
 /// Models that are being put together.
 #[derive(Debug)]
-pub struct Workbench {
+pub struct AssemblyState {
     assembly: Assembly,
     earlier: Vec<Rules>,
     later: Vec<Rules>,
@@ -88,7 +88,7 @@ pub struct Workbench {
     pub dataset_path: String,
 }
 
-impl Default for Workbench {
+impl Default for AssemblyState {
     fn default() -> Self {
         Self {
             assembly: Assembly::new(Vec::new(), Rules::default()),
@@ -110,7 +110,7 @@ impl Default for Workbench {
     }
 }
 
-impl Workbench {
+impl AssemblyState {
     /// The models and what the rules make of them.
     pub fn assembly(&self) -> &Assembly {
         &self.assembly

@@ -1,8 +1,10 @@
-//! The parts of the window that the F6 key goes through, and where the focus is in each.
+//! The keyboard's focus: the parts of the window that F6 goes through, and the ring around what has the focus.
 
 use std::collections::BTreeMap;
 
-use egui::{Context, Id, Rect, Ui, pos2};
+use egui::{Context, Id, Rect, Stroke, StrokeKind, Ui, pos2};
+
+use super::palette::Palette;
 
 /// A part of the window, in the order of the F6 key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -101,5 +103,46 @@ pub fn leave_region(ctx: &Context, forward: bool) {
     let visited = part.visited.filter(|visited| part.controls.contains(visited));
     if let Some(id) = visited.or(part.controls.first().copied()) {
         ctx.memory_mut(|memory| memory.request_focus(id));
+    }
+}
+
+/// Width of the ring \[pt\].
+const WIDTH: f32 = 2.0;
+/// Between the ring and what it surrounds \[pt\].
+const GAP: f32 = 1.0;
+
+/// Draws the ring over all that was drawn before: the same around every control, list row, cell and plot.
+pub fn focus_ring_ui(ctx: &Context, palette: &Palette) {
+    let Some(focused) = ctx.memory(|memory| memory.focused()).and_then(|id| ctx.read_response(id)) else { return };
+    let in_view = focused.interact_rect;
+    if !in_view.is_positive() {
+        return;
+    }
+    let painter = ctx.layer_painter(focused.layer_id).with_clip_rect(in_view.expand(GAP + WIDTH));
+    painter.rect_stroke(focused.rect.expand(GAP), 3.0, Stroke::new(WIDTH, palette.accent), StrokeKind::Outside);
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::Color32;
+
+    use super::*;
+
+    /// Relative luminance as the Web Content Accessibility Guidelines 2.2 define it.
+    fn luminance(color: Color32) -> f32 {
+        let [r, g, b, _] = egui::Rgba::from(color).to_array();
+        0.2126 * r + 0.7152 * g + 0.0722 * b
+    }
+
+    #[test]
+    fn the_ring_stands_out_from_every_surface_by_three_to_one() {
+        for palette in [Palette::dark(), Palette::light()] {
+            let ring = luminance(palette.accent);
+            for surface in [palette.background, palette.panel, palette.raised, palette.selected] {
+                let surface = luminance(surface);
+                let contrast = (ring.max(surface) + 0.05) / (ring.min(surface) + 0.05);
+                assert!(contrast >= 3.0, "{contrast} in {palette:?}");
+            }
+        }
     }
 }

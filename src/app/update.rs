@@ -1,25 +1,26 @@
 //! Carrying out commands: the only code that changes what the window shows.
 
 use egui::{Context, ViewportCommand};
-use gdcm_core::dataset::ConditionId;
 use gdcm_core::message_text::sanitized;
+
+use crate::view::arrangement::Arrangement;
+use crate::view::assembling::AssemblingCommand;
+use crate::view::command::{Command, FormKind};
+use crate::view::curve_display::CurveCommand;
+use crate::view::display::Display;
+use crate::view::focus::leave_region;
+use crate::view::number_field::focus_field;
+use crate::view::plot::Pane;
+use crate::view::state::{Notice, NoticeKind};
+use crate::view::tables::table_of;
+use crate::view::views::PairSet;
+use gdcm_core::dataset::ConditionId;
 use gdcm_core::study::Edit;
 use gdcm_files::Existing;
 
 use super::dialogs::DialogPurpose;
 use super::files::PendingAction;
 use super::window::GdcmApp;
-use crate::view::arrangement::Arrangement;
-use crate::view::assembling::AssemblingCommand;
-use crate::view::command::{Command, FormKind};
-use crate::view::curve_display::CurveCommand;
-use crate::view::display::Display;
-use crate::view::number_field::focus_field;
-use crate::view::plot::Pane;
-use crate::view::region::leave_region;
-use crate::view::state::{Notice, NoticeKind};
-use crate::view::tables::table_of;
-use crate::view::views::PairSet;
 
 /// What the focus is to go to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,6 +4,7 @@ use egui::{
     Align2, Color32, FontId, Key, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui,
     WidgetInfo, pos2, vec2,
 };
+
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::Pair;
 use gdcm_core::fidelity::{ACCEPTABLE, INDISTINGUISHABLE};
@@ -12,11 +13,11 @@ use gdcm_core::uncertainty::{Bar, Scalar};
 use gdcm_core::units::s_to_ms;
 
 use super::command::Command;
-use super::derivation_window::question_menu_ui;
+use super::explanation::question_menu_ui;
 use super::explanation::{gain_conflict_marks, toggle_costs};
-use super::heading::table_heading_ui;
+use super::focus::{Region, region_ui};
 use super::palette::{Palette, SMALL_SIZE};
-use super::region::{Region, region_ui};
+use super::row::table_heading_ui;
 use super::state::State;
 use super::tables::TableKind;
 use super::views::bar_words;

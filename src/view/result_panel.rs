@@ -1,6 +1,7 @@
 //! The result of the condition shown, in words and numbers.
 
 use egui::{Align, Button, CollapsingHeader, Color32, Grid, Layout, RichText, Role, Ui, WidgetInfo, vec2};
+
 use gdcm_core::correction::{self, GainObjective, Outcome, Quantity, kkt_residual};
 use gdcm_core::dataset::{Channel, Pair};
 use gdcm_core::study::{
@@ -10,11 +11,11 @@ use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::s_to_ms;
 
 use super::command::{Command, FormKind};
-use super::derivation_window::figure_ui;
+use super::explanation::figure_ui;
 use super::explanation::{details_shown, remarks_shown};
-use super::heading::{heading_ui, table_menu_ui};
+use super::focus::{Region, region_ui};
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
-use super::region::{Region, region_ui};
+use super::row::{heading_ui, table_menu_ui};
 use super::state::State;
 use super::tables::TableKind;
 use super::views::bar_words;

@@ -10,7 +10,7 @@ use super::bode_view::BodeView;
 use super::curve::{BodeCurve, CurveId};
 use super::curve_style::Role;
 use super::quantity::{BodeQuantity, PhaseUnit};
-use crate::view::derivation_window::QUESTION;
+use crate::view::explanation::QUESTION;
 use crate::view::palette::{Palette, SMALL_SIZE};
 
 /// What the engineer wants of a curve.

@@ -2,8 +2,8 @@
 
 use gdcm::view::arrangement::{Arrangement, Preset, View};
 use gdcm::view::command::Command as Action;
+use gdcm::view::display::Preferences;
 use gdcm::view::plot::MarkShape;
-use gdcm::view::preferences::Preferences;
 use gdcm::view::views::pole_marks;
 use gdcm::view::views::{AssessedPairs, assessment_sentences, assessment_text_table};
 use gdcm::view::views::{PairSet, net_gain_pairs};

@@ -12,7 +12,6 @@ mod net_gain;
 mod overview;
 mod poles;
 
-pub use super::records::{records_header_ui, records_view_ui};
 pub use across::{across_header_ui, across_view_ui};
 pub use assessment::{assessment_header_ui, assessment_view_ui};
 pub use bode::bode_view_ui;

@@ -4,14 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::sync::Arc;
 
-use crate::dataset::{BundleKind, ConditionId, Dataset, ModelId, PairTable};
+use crate::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId, PairTable};
 
-use super::document::{ConditionChoice, Study};
-use super::edit::Edit;
-use super::inventory::Inventory;
-use super::settings::Settings;
-use super::taken_models::AdoptedModels;
-use super::variant::Variant;
+use super::{AdoptedModels, ConditionChoice, Edit, Settings, Study, Variant};
 
 /// One thing in which a dataset differs from the one that a study was made with, or a decision that has no place in it.
 #[derive(Clone, Debug, PartialEq)]
@@ -242,5 +237,53 @@ fn compare_bundles(
             (Some(_), None) => differences.push(Difference::ModelRemoved(id)),
             (None, _) => differences.push(Difference::ModelAdded(id)),
         }
+    }
+}
+
+/// The models of one condition: name, and fingerprint of the numbers, the bands and the trim.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConditionInventory {
+    /// True airspeed \[kt\].
+    pub airspeed_kt: f64,
+    /// The physics models.
+    pub physics: BTreeMap<String, String>,
+    /// The identified models.
+    pub identified: BTreeMap<String, String>,
+}
+
+impl ConditionInventory {
+    fn of(condition: &Condition) -> Self {
+        let models = |kind| {
+            let models = condition.bundle(kind).iter();
+            models.map(|model| (model.name.clone(), model.fingerprint())).collect()
+        };
+        Self {
+            airspeed_kt: condition.flight_state().airspeed_kt,
+            physics: models(BundleKind::Physics),
+            identified: models(BundleKind::Identified),
+        }
+    }
+
+    /// The models of one bundle.
+    pub fn bundle(&self, kind: BundleKind) -> &BTreeMap<String, String> {
+        match kind {
+            BundleKind::Physics => &self.physics,
+            BundleKind::Identified => &self.identified,
+        }
+    }
+}
+
+/// What a dataset holds, small enough to stand in the file of a study: of it, a study tells what has changed since.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Inventory {
+    /// Each condition.
+    pub conditions: BTreeMap<ConditionId, ConditionInventory>,
+}
+
+impl Inventory {
+    /// The inventory of a dataset.
+    pub fn of(dataset: &Dataset) -> Self {
+        let conditions = dataset.conditions().iter();
+        Self { conditions: conditions.map(|condition| (condition.id(), ConditionInventory::of(condition))).collect() }
     }
 }

@@ -1,16 +1,129 @@
-//! What has to be said of signed delays and lead filters (M15.6).
+//! What lead filters leave of the difference between two representatives (M15.5).
 
-use crate::correction::Channel;
-use crate::dataset::Pair;
-use crate::response::LeadFilter;
+use std::sync::Arc;
+
+use crate::correction::{
+    Bounds, Channel, ChannelLeads, DELAY_AGREEMENT_S, LeadDesign, LeadSettings, Problem, ProblemError, ProofBudget,
+    Quantity, delta_gains, solve,
+};
+use crate::dataset::{Pair, PairTable};
+use crate::fidelity::{Cost, CostAverage, Mismatch};
+use crate::response::{GainDelay, LeadFilter};
+use crate::schedule::CostChange;
 use crate::uncertainty::Scalar;
 use crate::units::{number, ratio_to_db, s_to_ms, signed, telling};
 
-use super::condition_analysis::ConditionAnalysis;
-use super::document::Study;
-use super::remark::{Remark, RemarkKind};
-use super::settings::PhaseCorrection;
-use super::uncertainty::Uncertainty;
+use super::{Comparison, ConditionAnalysis, PhaseCorrection, Remark, RemarkKind, Settings, Study, Uncertainty};
+
+/// The physics representative with the leads of its channels against the identified one: what the gains are found on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeadCompensated {
+    /// The signed delays with their filters.
+    pub leads: ChannelLeads,
+    /// Difference of every response that both models have; the pure delays among the leads are not in it.
+    pub mismatch: PairTable<Option<Mismatch>>,
+    /// G of the led representative, `[output, input]`.
+    pub gain: PairTable<Option<f64>>,
+}
+
+impl LeadCompensated {
+    pub(super) fn of(mismatch: &PairTable<Option<Mismatch>>, leads: &ChannelLeads) -> Arc<Self> {
+        let curves = leads.curves();
+        let mismatch = mismatch.map(|pair, mismatch| {
+            let lead = curves.on(pair);
+            lead.map_or_else(
+                || mismatch.clone(),
+                |lead| mismatch.as_ref().map(|mismatch| mismatch.multiplied(&lead.magnitude_db, &lead.phase)),
+            )
+        });
+        // A pure delay leaves every magnitude.
+        let gain = delta_gains(&mismatch);
+        Arc::new(Self { leads: leads.clone(), mismatch, gain })
+    }
+
+    /// J of every response under what the gains and the pure delays, `correction`, add to the leads.
+    pub(super) fn cost(
+        &self,
+        correction: impl Fn(Pair) -> Option<GainDelay>,
+        omega: &[f64],
+        average: CostAverage,
+    ) -> PairTable<Option<Cost>> {
+        self.mismatch.map(|pair, mismatch| Some(mismatch.as_ref()?.cost(omega, correction(pair)?, average)))
+    }
+}
+
+/// The mean J of the held responses, all of which want lead: as corrected, and with leads too.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeadOffer {
+    /// Under the present correction.
+    pub without: f64,
+    /// With a lead filter in each channel that wants one: the same gains, of which such filters take little.
+    pub with: f64,
+}
+
+/// What an offer depends on, besides the comparison of the representatives.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct OfferKey {
+    held: PairTable<bool>,
+    fitted: PairTable<bool>,
+    upper_s: f64,
+    lead: LeadSettings,
+}
+
+impl OfferKey {
+    pub(super) fn of(settings: &Settings, held: &PairTable<bool>, upper_s: f64) -> Self {
+        Self { held: held.clone(), fitted: settings.fitted.clone(), upper_s, lead: settings.lead }
+    }
+
+    /// J_phase of each response that leads would leave; none where not all held responses want lead.
+    ///
+    /// The weight of the regularisation is 1 whatever delays are asked with: it decides on shares, not on what is held.
+    pub(super) fn phase_left(
+        &self,
+        comparison: &Comparison,
+        (omega, average): (&[f64], CostAverage),
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<Arc<PairTable<Option<f64>>>>, ProblemError> {
+        let delta_s = &comparison.delta.band_delay_s;
+        let mut held_s = self.held.marked().map(|pair| delta_s[pair].unwrap_or_default()).peekable();
+        if held_s.peek().is_none() || !held_s.all(|delay_s| delay_s < 0.0) {
+            return Ok(None);
+        }
+        let design = Arc::new(LeadDesign::new(self.lead, omega.into()));
+        let problem = Problem {
+            quantity: Quantity::SignedDelay,
+            delta: delta_s.clone(),
+            constrained: self.held.clone(),
+            fitted: self.fitted.clone(),
+            bounds: Bounds { lower: design.lower_s(), upper: self.upper_s },
+            alpha: 1.0,
+            agreement: DELAY_AGREEMENT_S,
+        };
+        let solution = solve(&problem, ProofBudget::default(), stop)?;
+        let leads = ChannelLeads::new(design, solution.inputs, solution.outputs);
+        let [inputs_s, outputs_s] = leads.delays_s();
+        let held =
+            comparison.representative.mismatch.map(|pair, mismatch| mismatch.clone().filter(|_| self.held[pair]));
+        let delay = |pair: Pair| GainDelay::new(1.0, inputs_s[pair.input] + outputs_s[pair.output]);
+        let left = LeadCompensated::of(&held, &leads).cost(|pair| Some(delay(pair)), omega, average);
+        Ok(Some(Arc::new(left.map(|_, cost| cost.map(|cost| cost.phase)))))
+    }
+}
+
+impl LeadOffer {
+    /// The offer, where leads would leave J at least a tenth less.
+    pub(super) fn of(phase_left: &PairTable<Option<f64>>, cost: &PairTable<Option<CostChange>>) -> Option<Self> {
+        const WORTH: f64 = 0.9;
+        let of_both = |(pair, left): (Pair, &Option<f64>)| {
+            let (left, now) = ((*left)?, cost[pair]?.corrected);
+            Some([now.total(), now.magnitude + left])
+        };
+        let both: Vec<[f64; 2]> = phase_left.iter().filter_map(of_both).collect();
+        let mean = |at: usize| both.iter().map(|of| of[at]).sum::<f64>() / both.len() as f64;
+        let offer = Self { without: mean(0), with: mean(1) };
+        (!both.is_empty() && offer.with < WORTH * offer.without).then_some(offer)
+    }
+}
 
 /// Two figures of D this far apart \[s\] are not those of a delay.
 const APART_S: f64 = 0.02;

@@ -292,7 +292,7 @@ fn view_entries(state: &State) -> Vec<Entry> {
     ];
     entries.extend(steps(state));
     let show = |view: View| {
-        Entry::new(format!("Show {}", view.name()), view.purpose(), Command::ShowView(view)).within(Menu::View, 2)
+        Entry::new(format!("Show {}", view.name()), view.kind().purpose, Command::ShowView(view)).within(Menu::View, 2)
     };
     entries.extend(View::ALL.map(show));
     let arrange = |preset: Preset| Entry::new(preset.name(), ARRANGED, Command::Arrange(preset)).within(Menu::View, 3);

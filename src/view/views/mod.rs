@@ -12,7 +12,6 @@ mod net_gain;
 mod overview;
 mod poles;
 
-pub use super::records::{records_header_ui, records_view_ui};
 pub use across::*;
 pub use assessment::*;
 pub use bode::*;

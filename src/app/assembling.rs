@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::view::assembling::{AssemblingCommand, Reading, Workbench};
+use crate::view::assembling::{AssemblingCommand, AssemblyState, Reading};
 use crate::view::command::{Command, FormKind};
 use gdcm_core::assembly::Rules;
 use gdcm_files::{
@@ -95,7 +95,7 @@ impl FolderProgress for Teller {
 impl GdcmApp {
     /// Carries out a command of the assembling view.
     pub(super) fn assemble(&mut self, command: AssemblingCommand) {
-        let bench = self.state.assembling.get_or_insert_with(Workbench::default);
+        let bench = self.state.assembling.get_or_insert_with(AssemblyState::default);
         let headings = bench.assembly().rules().headings.clone();
         match command {
             AssemblingCommand::Open => {}

@@ -9,20 +9,14 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use egui::Context;
 use gdcm_core::correction::Outcome;
 use gdcm_core::executor::Executor;
-use gdcm_core::study::{
-    AssessmentJob, CURVE_POINTS, CurvesJob, Engine, Job, ModesJob, ProofJob, TogglesJob, UncertaintyJob, display_band,
-};
+use gdcm_core::study::{CURVE_POINTS, CurvesJob, Engine, Job, ProofJob, TogglesJob, UncertaintyJob, display_band};
 
 use super::fault::{Fault, caught};
 use super::job_queue::JobQueue;
 use super::window::GdcmApp;
 use crate::executor::Pool;
-use crate::view::across_scene::across_job;
-use crate::view::arrangement::View;
-use crate::view::assessment_scene::assessment_choice;
-use crate::view::compare_scene::variant_jobs;
-use crate::view::records::simulation_jobs;
-use crate::view::results::{Background, Results};
+use crate::view::arrangement::{Need, View};
+use crate::view::results::Background;
 use crate::view::state::State;
 
 /// Makes an engine, at the start and anew after a panic, which may leave its caches half made.
@@ -76,6 +70,21 @@ struct JobKind<J: Job> {
     tell: fn(&JobQueue<J>, &mut Background),
     /// What a stop or a fault does to what a button of its own asked for: that button, not "Compute", begins it again.
     withdraw: Option<fn(&mut GdcmApp)>,
+}
+
+impl<J: Job> JobKind<J> {
+    /// A kind that "Compute" begins again after a stop, and of which the number of jobs is told, as of all that views wait for.
+    fn new(wanted: fn(&mut GdcmApp) -> Vec<J>, take: fn(&mut GdcmApp, J, J::Output)) -> Self {
+        Self { wanted, take, tell: tell_view, withdraw: None }
+    }
+
+    fn told(self, tell: fn(&JobQueue<J>, &mut Background)) -> Self {
+        Self { tell, ..self }
+    }
+
+    fn withdrawn(self, withdraw: fn(&mut GdcmApp)) -> Self {
+        Self { withdraw: Some(withdraw), ..self }
+    }
 }
 
 impl<J: Job> Clone for JobKind<J> {
@@ -133,125 +142,65 @@ impl BackgroundJobs {
             let make = Arc::clone(make_engine);
             move || make()
         };
-        kinds.add(
-            "curves",
-            engine(),
-            JobKind {
-                wanted: |app| vec![curves_job(&app.state)],
-                take: |app, job, curves| app.take_curves(job, curves),
-                tell: |queue, background| background.curves = queue.progress(),
-                withdraw: None,
-            },
-        )?;
+        let curves = JobKind::new(|app| vec![curves_job(&app.state)], GdcmApp::take_curves);
+        kinds.add("curves", engine(), curves.told(|queue, background| background.curves = queue.progress()))?;
+        let toggles = JobKind::new(
+            |app| toggles_job(&app.state).into_iter().collect(),
+            |app, job, toggles| app.state.results.toggles = toggles.map(|toggles| (job, Arc::new(toggles))),
+        );
         kinds.add(
             "toggles",
             || (),
-            JobKind {
-                wanted: |app| toggles_job(&app.state).into_iter().collect(),
-                take: |app, job, toggles| {
-                    app.state.results.toggles = toggles.map(|toggles| (job, Arc::new(toggles)));
-                },
-                tell: |queue, background| background.toggles = queue.progress().is_some(),
-                withdraw: None,
-            },
+            toggles.told(|queue, background| background.toggles = queue.progress().is_some()),
         )?;
         kinds.add(
             "proofs",
             || (),
-            JobKind {
-                wanted: |app| proof_jobs(&app.state),
-                // A problem without an answer has been told by the live answer.
-                take: |app, job: ProofJob, solution| {
-                    solution
-                        .into_iter()
-                        .for_each(|solution| app.analysis.take_proof(Arc::clone(&job.problem), solution));
-                },
-                tell: |queue, background| {
-                    background.proofs = queue.unfinished().into_iter().map(|job| job.problem).collect();
-                },
-                withdraw: None,
-            },
+            JobKind::new(|app| proof_jobs(&app.state), GdcmApp::take_proof).told(tell_proofs),
         )?;
-        kinds.add(
-            "error bars",
-            engine(),
-            JobKind {
-                wanted: |app| uncertainty_job(&app.state).into_iter().collect(),
-                take: |app, job, uncertainty| app.state.results.uncertainty = Some((job, uncertainty)),
-                tell: |queue, background| background.bars = queue.progress(),
-                withdraw: None,
+        let bars = JobKind::new(
+            |app| uncertainty_job(&app.state).into_iter().collect(),
+            |app, job, uncertainty| app.state.results.uncertainty = Some((job, uncertainty)),
+        );
+        kinds.add("error bars", engine(), bars.told(|queue, background| background.bars = queue.progress()))?;
+        let modes = JobKind::new(
+            |app| needed(app, |need| if let Need::Modes(job) = need { Some(job) } else { None }),
+            |app, job, modes| app.state.results.modes = Some((job, modes)),
+        );
+        kinds.add("modes", || (), modes)?;
+        let assessments = JobKind::new(
+            |app| needed(app, |need| if let Need::Assessment(job) = need { Some(job) } else { None }),
+            |app, job, table| app.state.results.assessment = Some((job, table)),
+        );
+        kinds.add("assessment", || (), assessments)?;
+        let across = JobKind::new(
+            |app| needed(app, |need| if let Need::Across(job) = need { Some(job) } else { None }),
+            |app, job, curves| app.state.results.across = Some((job, curves)),
+        );
+        kinds.add("conditions", || (), across)?;
+        let variants = JobKind::new(
+            |app| {
+                let jobs = needed(app, |need| if let Need::Variant(job) = need { Some(job) } else { None });
+                keep(&mut app.state.results.variants, jobs)
             },
-        )?;
-        kinds.add(
-            "modes",
-            || (),
-            JobKind {
-                wanted: |app| shown_in(app, View::Poles, |state| ModesJob { condition: Arc::clone(state.condition()) }),
-                take: |app, job, modes| app.state.results.modes = Some((job, modes)),
-                tell: tell_view,
-                withdraw: None,
+            |app, job, analysis| app.state.results.variants.push((job, analysis)),
+        );
+        kinds.add("variants", engine(), variants)?;
+        let simulations = JobKind::new(
+            |app| {
+                let jobs = needed(app, |need| if let Need::Simulation(job) = need { Some(job) } else { None });
+                keep(&mut app.state.results.simulations, jobs)
             },
-        )?;
-        kinds.add(
-            "assessment",
-            || (),
-            JobKind {
-                wanted: |app| assessment_job(&app.state).into_iter().collect(),
-                take: |app, job, table| app.state.results.assessment = Some((job, table)),
-                tell: tell_view,
-                withdraw: None,
-            },
-        )?;
-        kinds.add(
-            "conditions",
-            || (),
-            JobKind {
-                wanted: |app| shown_in(app, View::Across, across_job),
-                take: |app, job, curves| app.state.results.across = Some((job, curves)),
-                tell: tell_view,
-                withdraw: None,
-            },
-        )?;
-        kinds.add(
-            "variants",
-            engine(),
-            JobKind {
-                wanted: |app| all_shown_in(app, View::Compare, variant_jobs, |results| &mut results.variants),
-                take: |app, job, analysis| app.state.results.variants.push((job, analysis)),
-                tell: tell_view,
-                withdraw: None,
-            },
-        )?;
-        kinds.add(
-            "simulation",
-            pool,
-            JobKind {
-                wanted: |app| all_shown_in(app, View::Records, simulation_jobs, |results| &mut results.simulations),
-                take: |app, job, outcome| app.state.results.simulations.push((job, outcome)),
-                tell: tell_view,
-                withdraw: None,
-            },
-        )?;
-        kinds.add(
-            "report",
-            engine(),
-            JobKind {
-                wanted: |app| app.reporting.clone().into_iter().collect(),
-                take: |app, job, outcome| app.report_written(job, outcome),
-                tell: |queue, background| background.report = queue.progress(),
-                withdraw: Some(GdcmApp::give_up_report),
-            },
-        )?;
-        kinds.add(
-            "identification",
-            pool,
-            JobKind {
-                wanted: |app| app.state.records.by_urgency(app.state.condition().id()),
-                take: |app, job, found| app.identified(job, found),
-                tell: |queue, background| background.identification = queue.progress(),
-                withdraw: Some(|app| app.state.records.running.clear()),
-            },
-        )?;
+            |app, job, outcome| app.state.results.simulations.push((job, outcome)),
+        );
+        kinds.add("simulation", pool, simulations)?;
+        let reports = JobKind::new(|app| app.reporting.clone().into_iter().collect(), GdcmApp::report_written);
+        let reports = reports.told(|queue, background| background.report = queue.progress());
+        kinds.add("report", engine(), reports.withdrawn(GdcmApp::give_up_report))?;
+        let identifications =
+            JobKind::new(|app| app.state.records.by_urgency(app.state.condition().id()), GdcmApp::identified);
+        let identifications = identifications.told(|queue, background| background.identification = queue.progress());
+        kinds.add("identification", pool, identifications.withdrawn(|app| app.state.records.running.clear()))?;
         Ok(Self { kinds: Rc::new(kinds.kinds) })
     }
 
@@ -271,6 +220,9 @@ impl BackgroundJobs {
 impl GdcmApp {
     /// Asks for the jobs that what is shown needs, and for no others.
     pub(super) fn want_jobs(&mut self) {
+        let state = &self.state;
+        let shown = View::ALL.into_iter().filter(|view| state.display.arrangement.is_shown(*view));
+        self.needs = shown.flat_map(|view| (view.kind().needs)(state)).collect();
         let kinds = Rc::clone(&self.jobs.kinds);
         kinds.iter().for_each(|kind| kind.want(self));
     }
@@ -322,21 +274,19 @@ fn tell_view<J: Job>(queue: &JobQueue<J>, background: &mut Background) {
     background.views += queue.unfinished().len();
 }
 
-/// The job of a view, while that is shown.
-fn shown_in<J: Job>(app: &GdcmApp, view: View, job: fn(&State) -> J) -> Vec<J> {
-    app.state.display.arrangement.is_shown(view).then(|| job(&app.state)).into_iter().collect()
+/// The jobs of one kind among what the views shown need.
+fn needed<J: Clone>(app: &GdcmApp, of: fn(&Need) -> Option<&J>) -> Vec<J> {
+    app.needs.iter().filter_map(of).cloned().collect()
 }
 
-/// The jobs of a view, while that is shown; outputs of others are not kept.
-fn all_shown_in<J: Job>(
-    app: &mut GdcmApp,
-    view: View,
-    jobs: fn(&State) -> Vec<J>,
-    kept: fn(&mut Results) -> &mut Vec<(J, J::Output)>,
-) -> Vec<J> {
-    let jobs = if app.state.display.arrangement.is_shown(view) { jobs(&app.state) } else { Vec::new() };
-    kept(&mut app.state.results).retain(|(known, _)| jobs.contains(known));
+/// Keeps the outputs of these jobs only, which are asked for.
+fn keep<J: Job>(kept: &mut Vec<(J, J::Output)>, jobs: Vec<J>) -> Vec<J> {
+    kept.retain(|(known, _)| jobs.contains(known));
     jobs
+}
+
+fn tell_proofs(queue: &JobQueue<ProofJob>, background: &mut Background) {
+    background.proofs = queue.unfinished().into_iter().map(|job| job.problem).collect();
 }
 
 fn curves_job(state: &State) -> CurvesJob {
@@ -370,10 +320,4 @@ fn proof_jobs(state: &State) -> Vec<ProofJob> {
 fn uncertainty_job(state: &State) -> Option<UncertaintyJob> {
     state.analysis().filter(|_| !state.results.is_behind())?;
     state.results.analysis.clone().map(|analysis| UncertaintyJob { analysis })
-}
-
-fn assessment_job(state: &State) -> Option<AssessmentJob> {
-    state.analysis().filter(|_| state.display.arrangement.is_shown(View::Assessment))?;
-    let analysis = state.results.analysis.clone()?;
-    Some(AssessmentJob { analysis, choice: assessment_choice(state) })
 }

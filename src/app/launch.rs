@@ -11,7 +11,7 @@ use egui::{Context, Ui, ViewportBuilder, Visuals};
 
 use crate::executor::Pool;
 use crate::view::assembling::AssemblingCommand;
-use crate::view::preferences::Preferences;
+use crate::view::display::Preferences;
 use gdcm_core::study::{Engine, LIVE_PROOF};
 use gdcm_files::{FileError, Opened, embedded_example, load_any};
 

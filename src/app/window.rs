@@ -6,20 +6,21 @@ use std::sync::mpsc::Receiver;
 
 use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, ViewportCommand, Visuals};
 
-use crate::view::arrangement::View;
+use crate::view::arrangement::{Need, View};
 use crate::view::assembling::{AssemblingCommand, assembling_ui};
 use crate::view::bars::Bar;
 use crate::view::command::Command;
+use crate::view::display::Preferences;
 use crate::view::palette::{self, Palette};
-use crate::view::preferences::Preferences;
 use crate::view::records::RecordsCommand;
 use crate::view::state::State;
 use crate::view::{
-    bars, centre, conditions_panel, derivation_window, focus_ring, forms, matrix_panel, menu_bar, models_panel,
-    result_panel, settings_panel, status_bar, tour,
+    bars, centre, conditions_panel, explanation, focus, forms, help, matrix_panel, models_panel, result_panel,
+    settings_panel,
 };
+use gdcm_core::correction::{ProblemError, Solution};
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::study::{Analysis, ConditionCurves, CurvesJob, Study};
+use gdcm_core::study::{Analysis, ConditionCurves, CurvesJob, ProofJob, Study};
 use gdcm_files::{LoadedDataset, LostStudy, Opened, is_first_start};
 
 use super::analysis_thread::{AnalysisThread, Request};
@@ -42,6 +43,8 @@ pub struct GdcmApp {
     pub(super) saved: SavedStudy,
     pub(super) analysis: AnalysisThread,
     pub(super) jobs: BackgroundJobs,
+    /// What the views shown need beside the live answer.
+    pub(super) needs: Vec<Need>,
     pub(super) replies: ReplySender,
     /// What threads have sent.
     received: Receiver<Reply>,
@@ -99,6 +102,7 @@ impl GdcmApp {
             saved,
             analysis,
             jobs,
+            needs: Vec::new(),
             replies,
             received,
             dialog_open: false,
@@ -210,6 +214,11 @@ impl GdcmApp {
         self.tell_fault("the computation", fault);
     }
 
+    /// Hands a proof to the thread that answers; a problem without an answer has been told by the live answer.
+    pub(super) fn take_proof(&mut self, job: ProofJob, proof: Result<Arc<Solution>, ProblemError>) {
+        proof.into_iter().for_each(|solution| self.analysis.take_proof(Arc::clone(&job.problem), solution));
+    }
+
     /// Shows the curves of a condition, where they are of what is shown.
     pub(super) fn take_curves(&mut self, job: CurvesJob, curves: Option<Arc<ConditionCurves>>) {
         let Some(curves) = curves else { return };
@@ -277,11 +286,11 @@ impl GdcmApp {
     fn panels_ui(&mut self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
         let bar = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(10, 4));
         let state = &mut self.state;
-        Panel::top("menu bar").frame(bar).show(ui, |ui| menu_bar::menu_bar_ui(ui, state, palette, commands));
+        Panel::top("menu bar").frame(bar).show(ui, |ui| bars::menu_bar_ui(ui, state, palette, commands));
         if !state.bars.is_empty() {
             Panel::top("bars").frame(bar).show(ui, |ui| bars::bars_ui(ui, &state.bars, palette, commands));
         }
-        Panel::bottom("status bar").frame(bar).show(ui, |ui| status_bar::status_bar_ui(ui, state, palette, commands));
+        Panel::bottom("status bar").frame(bar).show(ui, |ui| bars::status_bar_ui(ui, state, palette, commands));
         if let Some(bench) = &mut state.assembling {
             return assembling_ui(ui, bench, palette, commands);
         }
@@ -367,9 +376,9 @@ impl eframe::App for GdcmApp {
         self.take_dropped_files(&mut commands);
         self.panels_ui(ui, &palette, &mut commands);
         forms::forms_ui(&ctx, &mut self.state, &palette, &mut commands);
-        tour::tour_ui(&ctx, &self.state, &palette, &mut commands);
-        focus_ring::focus_ring_ui(&ctx, &palette);
-        derivation_window::derivation_window_ui(&ctx, &self.state, &palette, &mut commands);
+        help::tour_ui(&ctx, &self.state, &palette, &mut commands);
+        focus::focus_ring_ui(&ctx, &palette);
+        explanation::derivation_window_ui(&ctx, &self.state, &palette, &mut commands);
         self.carry_out(commands);
         self.name_window();
         self.request();

@@ -2,7 +2,7 @@
 
 use gdcm::view::arrangement::View;
 use gdcm::view::command::Command as Action;
-use gdcm::view::every_command::every_command;
+use gdcm::view::command_table::every_command;
 use gdcm_core::study::{ExplainTarget, derivation};
 
 use super::views::{give, show};
@@ -35,7 +35,7 @@ fn a_dot_of_net_gain_says_how_it_was_computed() {
     let fifth = ConditionId(5);
     let at = state(&window).display.net_gain.screen_position(0, fifth).unwrap();
     secondary_click(&mut window, at);
-    let pair = gdcm::view::net_gain_scene::net_gain_pairs(state(&window))[0];
+    let pair = gdcm::view::views::net_gain_pairs(state(&window))[0];
     let result = state(&window).analysis().unwrap().condition(fifth).unwrap();
     let expected = result.correction.net_gain(pair).value();
     ask(&mut window, "Net gain, condition 5", expected);

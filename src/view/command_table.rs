@@ -9,13 +9,13 @@ use gdcm_files::figure::FigureFormat;
 use super::arrangement::{Preset, View};
 use super::assembling::AssemblingCommand;
 use super::command::{Command, FormKind};
-use super::curve_entries::curve_entries;
+use super::curve_display::curve_entries;
 use super::figures::views_with_figure;
-use super::net_gain_scene::PairSet;
 use super::plot::FrequencyUnit;
 use super::records::RecordsCommand;
 use super::state::State;
 use super::tables::TableKind;
+use super::views::PairSet;
 
 /// A menu of the bar on top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

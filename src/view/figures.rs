@@ -2,16 +2,15 @@
 
 use egui::containers::menu::MenuButton;
 use egui::{RichText, Role, Ui, WidgetInfo};
-
 use gdcm_files::figure::{BodeOptions, ConditionSource, Figure, FigureFormat, FigureKind, FigureRequest, all_channels};
 
 use super::arrangement::View;
-use super::assessment_scene::{assessed_pairs, assessment_choice};
 use super::command::Command;
-use super::net_gain_scene::net_gain_pairs;
 use super::palette::SMALL_SIZE;
 use super::plot::{BodeView, Pane};
 use super::state::State;
+use super::views::net_gain_pairs;
+use super::views::{assessed_pairs, assessment_choice};
 
 /// The figure that a view shows; none until its results are there.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {

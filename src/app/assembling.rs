@@ -113,7 +113,7 @@ impl GdcmApp {
             AssemblingCommand::Undo => bench.undo(),
             AssemblingCommand::Redo => bench.redo(),
             AssemblingCommand::Select(part) => bench.selected = part,
-            AssemblingCommand::Sort(column) => bench.sort(column),
+            AssemblingCommand::Sort(column) => bench.sorting = bench.sorting.clicked(column),
             AssemblingCommand::ShowResponse(place) => bench.preview.response = place,
             AssemblingCommand::LoadRules(path) => self.take_rules(path),
             AssemblingCommand::SaveRules(path) => self.save_rules(path, Existing::Keep),

@@ -1,10 +1,101 @@
-//! What panels are made of: headings, and rows of lists that fill the width.
+//! What panels and forms are made of: small texts, named controls, fields, menus of commands, headings, and rows of lists.
 
-use egui::{Align, Align2, Color32, FontId, Layout, Rect, Response, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{
+    Align, Align2, Button, Color32, FontId, Id, Key, Layout, Rect, Response, RichText, Role, Sense, TextEdit, Ui,
+    WidgetInfo, pos2, vec2,
+};
 
 use super::command::Command;
 use super::palette::{Palette, SMALL_SIZE};
 use super::tables::TableKind;
+
+impl Palette {
+    /// A small dim text: what stands beside a value.
+    pub fn small(&self, text: impl Into<String>) -> RichText {
+        RichText::new(text).size(SMALL_SIZE).color(self.dim_text)
+    }
+
+    /// A dim text in the usual size: a label, or an explanation.
+    pub fn dim(&self, text: impl Into<String>) -> RichText {
+        RichText::new(text).color(self.dim_text)
+    }
+
+    /// A small text that something is amiss.
+    pub fn small_warning(&self, text: impl Into<String>) -> RichText {
+        RichText::new(text).size(SMALL_SIZE).color(self.warning)
+    }
+}
+
+/// Names a control for screen readers and tests.
+pub fn named(response: Response, role: Role, name: impl Into<String>) -> Response {
+    let (enabled, name) = (response.enabled(), name.into());
+    response.widget_info(|| WidgetInfo::labeled(role, enabled, &name));
+    response
+}
+
+/// Names a control that is on or off.
+pub fn named_switch(response: Response, role: Role, is_on: bool, name: impl Into<String>) -> Response {
+    let (enabled, name) = (response.enabled(), name.into());
+    response.widget_info(|| WidgetInfo::selected(role, enabled, is_on, &name));
+    response
+}
+
+/// A check box; whether it is on after a click on it.
+pub fn check_ui(ui: &mut Ui, is_on: bool, text: impl Into<String>, hint: impl Into<String>) -> Option<bool> {
+    let mut value = is_on;
+    let response = ui.checkbox(&mut value, text.into());
+    let changed = response.changed();
+    response.on_hover_text(hint.into());
+    changed.then_some(value)
+}
+
+/// A button that gives a command.
+pub fn button_ui(
+    ui: &mut Ui,
+    button: Button<'_>,
+    hint: &str,
+    command: impl Into<Command>,
+    commands: &mut Vec<Command>,
+) {
+    if ui.add(button).on_hover_text(hint).clicked() {
+        commands.push(command.into());
+    }
+}
+
+/// The entries of a menu, each with its command; a click closes the menu.
+pub fn entries_ui<N: Into<String>>(
+    ui: &mut Ui,
+    entries: impl IntoIterator<Item = (N, Command)>,
+    commands: &mut Vec<Command>,
+) {
+    for (text, command) in entries {
+        if ui.button(text.into()).clicked() {
+            commands.push(command);
+            ui.close();
+        }
+    }
+}
+
+/// A line of text to type into, of this accessible name.
+pub fn text_field_ui(ui: &mut Ui, field: TextEdit<'_>, name: &str, text: &str) -> Response {
+    let response = ui.add(field);
+    name_text_field(&response, name, text);
+    response
+}
+
+/// Names a text field, with what stands in it.
+pub fn name_text_field(response: &Response, name: &str, text: &str) {
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::TextInput, true, name);
+        info.current_text_value = Some(text.to_owned());
+        info
+    });
+}
+
+/// Whether a field was left by the Enter key.
+pub fn is_entered(ui: &Ui, field: &Response) -> bool {
+    field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter))
+}
 
 /// Height of a row \[pt\].
 pub const ROW_HEIGHT: f32 = 20.0;
@@ -27,7 +118,9 @@ pub fn row_ui(ui: &mut Ui, palette: &Palette, selected: bool, pointed: bool, nam
 /// Where a row has room for a text \[pt from the row's left edge\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Room {
+    /// Where it begins.
     pub left: f32,
+    /// Where it ends.
     pub right: f32,
 }
 
@@ -96,9 +189,9 @@ pub fn row_text(ui: &Ui, row: Rect, x: f32, text: &str, size: f32, color: Color3
 pub fn heading_ui(ui: &mut Ui, palette: &Palette, title: &str, figure: &str) -> egui::Response {
     ui.add_space(4.0);
     let shown = ui.horizontal(|ui| {
-        ui.label(RichText::new(title).size(SMALL_SIZE).strong().color(palette.dim_text));
+        ui.label(palette.small(title).strong());
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.label(RichText::new(figure).size(SMALL_SIZE).color(palette.dim_text));
+            ui.label(palette.small(figure));
         });
     });
     shown.response
@@ -123,13 +216,52 @@ pub fn table_menu_ui(ui: &mut Ui, heading: &egui::Response, kind: TableKind, com
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("Heading of {}", kind.name())));
     response.context_menu(|ui| {
         let choices = [("Copy table", Command::CopyTable(kind)), ("Save table as CSV…", Command::AskSaveTable(kind))];
-        for (text, command) in choices {
-            if ui.button(text).clicked() {
-                commands.push(command);
-                ui.close();
-            }
-        }
+        entries_ui(ui, choices, commands);
     });
+}
+
+/// A text field of this accessible name that shows `value`; gives what was typed once the field is left or Enter is pressed.
+pub fn entry_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, width: f32) -> Option<String> {
+    let id = Id::unique(("entry", name));
+    let held = ui.data(|data| data.get_temp::<String>(id));
+    let mut text = held.unwrap_or_else(|| value.to_owned());
+    let edit = TextEdit::singleline(&mut text).id(id.with("field")).hint_text(hint);
+    let response = ui.add_sized(vec2(width, ROW_HEIGHT), edit);
+    name_text_field(&response, name, &text);
+    if response.lost_focus() {
+        ui.data_mut(|data| data.remove::<String>(id));
+        let is_given_up = ui.input(|input| input.key_pressed(Key::Escape));
+        return (!is_given_up && text != value).then_some(text);
+    }
+    if response.has_focus() {
+        ui.data_mut(|data| data.insert_temp(id, text));
+    }
+    None
+}
+
+/// As [`entry_ui`], for a number; what is none is refused with the reason. None within where the field was emptied.
+pub fn number_entry_ui(
+    ui: &mut Ui,
+    name: &str,
+    value: &str,
+    hint: &str,
+    width: f32,
+    commands: &mut Vec<Command>,
+) -> Option<Option<f64>> {
+    let typed = typed_number(&entry_ui(ui, name, value, hint, width)?);
+    typed.map_err(|why| commands.push(Command::Refuse(format!("{name}: {why}")))).ok()
+}
+
+/// A number as engineers type it, with a decimal comma or a point; nothing for an empty text.
+pub fn typed_number(text: &str) -> Result<Option<f64>, String> {
+    let text = text.trim().replace(',', ".");
+    if text.is_empty() {
+        return Ok(None);
+    }
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(Some(value)),
+        _ => Err(format!("expected a number, found \"{text}\"")),
+    }
 }
 
 #[cfg(test)]
@@ -150,5 +282,12 @@ mod tests {
             assert_eq!(elided(ui, "nominal", 4.0, 13.0), "");
         });
         output.drop_without_applying_deltas();
+    }
+
+    #[test]
+    fn a_number_is_taken_with_a_comma_or_a_point_and_nothing_else_is() {
+        assert_eq!(typed_number(" 1,5 "), Ok(Some(1.5)));
+        assert_eq!(typed_number(""), Ok(None));
+        assert!(typed_number("12 kt").is_err() && typed_number("inf").is_err());
     }
 }

@@ -1,6 +1,6 @@
 //! What says when the samples of a record were taken.
 
-use super::record_table::{RecordColumn, RecordTable};
+use super::*;
 
 /// What says when the samples of a record were taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -147,7 +147,6 @@ fn mostly_rises(stamps: &[f64]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::records::RecordSource;
 
     fn table(name: &str, unit: Option<&str>, stamps: Vec<f64>) -> RecordTable {
         let column = RecordColumn { unit: unit.map(str::to_owned), ..RecordColumn::new(name, stamps) };

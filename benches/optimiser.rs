@@ -11,7 +11,7 @@ use std::time::Duration;
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use gdcm_core::correction::{Problem, ProofBudget, Solution, solve};
 
-#[path = "../tests/suite/optimiser/instances.rs"]
+#[path = "../crates/gdcm-files/tests/suite/optimiser/instances.rs"]
 // The tests use more of it.
 #[allow(dead_code)]
 mod instances;

@@ -9,7 +9,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use egui::Context;
 
-use crate::view::assembling::{AssemblingCommand, Reading, Workbench};
+use crate::view::assembling::{AssemblingCommand, AssemblyState, Reading};
 use crate::view::command::{Command, FormKind};
 use gdcm_core::assembly::Rules;
 use gdcm_files::{
@@ -99,7 +99,7 @@ impl FolderProgress for Teller {
 impl GdcmApp {
     /// Carries out a command of the assembling view.
     pub(super) fn assemble(&mut self, command: AssemblingCommand, ctx: &Context) {
-        let bench = self.state.assembling.get_or_insert_with(Workbench::default);
+        let bench = self.state.assembling.get_or_insert_with(AssemblyState::default);
         let headings = bench.assembly().rules().headings.clone();
         match command {
             AssemblingCommand::Open => {}

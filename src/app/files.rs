@@ -10,7 +10,7 @@ use egui::Context;
 use crate::view::assembling::AssemblingCommand;
 use crate::view::bars::Bar;
 use crate::view::command::{Command, FormKind};
-use crate::view::preferences::Preferences;
+use crate::view::display::Preferences;
 use crate::view::records::RecordsCommand;
 use crate::view::state::State;
 use gdcm_core::study::{Analysis, Difference, Study, Table};

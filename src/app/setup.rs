@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::pool::Pool;
 use super::worker::EngineMaker;
-use crate::view::preferences::Preferences;
+use crate::view::display::Preferences;
 use gdcm_core::study::{Engine, LIVE_PROOF};
 
 /// What a window is given besides what it shows; a test gives other things than the program does.

@@ -9,13 +9,13 @@ use crate::view::arrangement::View;
 use crate::view::assembling::{AssemblingCommand, assembling_ui};
 use crate::view::bars::Bar;
 use crate::view::command::Command;
+use crate::view::display::Preferences;
 use crate::view::palette::{self, Palette};
-use crate::view::preferences::Preferences;
 use crate::view::records::RecordsCommand;
 use crate::view::state::State;
 use crate::view::{
-    bars, centre, conditions_panel, derivation_window, focus_ring, forms, matrix_panel, menu_bar, models_panel,
-    result_panel, settings_panel, status_bar, tour,
+    bars, centre, conditions_panel, explanation, focus, forms, help, matrix_panel, models_panel, result_panel,
+    settings_panel,
 };
 use gdcm_core::dataset::ConditionId;
 use gdcm_core::study::Study;
@@ -286,11 +286,11 @@ impl GdcmApp {
     fn panels_ui(&mut self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
         let bar = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(10, 4));
         let state = &mut self.state;
-        Panel::top("menu bar").frame(bar).show(ui, |ui| menu_bar::menu_bar_ui(ui, state, palette, commands));
+        Panel::top("menu bar").frame(bar).show(ui, |ui| bars::menu_bar_ui(ui, state, palette, commands));
         if !state.bars.is_empty() {
             Panel::top("bars").frame(bar).show(ui, |ui| bars::bars_ui(ui, &state.bars, palette, commands));
         }
-        Panel::bottom("status bar").frame(bar).show(ui, |ui| status_bar::status_bar_ui(ui, state, palette, commands));
+        Panel::bottom("status bar").frame(bar).show(ui, |ui| bars::status_bar_ui(ui, state, palette, commands));
         if let Some(bench) = &mut state.assembling {
             return assembling_ui(ui, bench, palette, commands);
         }
@@ -381,9 +381,9 @@ impl eframe::App for GdcmApp {
         self.take_dropped_files(&ctx, &mut commands);
         self.panels_ui(ui, &palette, &mut commands);
         forms::forms_ui(&ctx, &mut self.state, &palette, &mut commands);
-        tour::tour_ui(&ctx, &self.state, &palette, &mut commands);
-        focus_ring::focus_ring_ui(&ctx, &palette);
-        derivation_window::derivation_window_ui(&ctx, &self.state, &palette, &mut commands);
+        help::tour_ui(&ctx, &self.state, &palette, &mut commands);
+        focus::focus_ring_ui(&ctx, &palette);
+        explanation::derivation_window_ui(&ctx, &self.state, &palette, &mut commands);
         self.carry_out(commands, &ctx);
         self.name_window(&ctx);
         let now = ctx.input(|input| input.time);

@@ -1,9 +1,115 @@
-//! The bars below the menu: what has to be told until it is dealt with.
+//! The bars of the window: menus on top, messages below them, and the state of the computation at the foot.
 
-use egui::{Align, Button, CollapsingHeader, Frame, Layout, Margin, RichText, Ui};
+use egui::{Align, Button, CollapsingHeader, Frame, Layout, Margin, MenuBar, RichText, ThemePreference, Ui};
+
+use gdcm_core::dataset::BundleKind;
+use gdcm_core::study::Assessed;
 
 use super::command::Command;
+use super::command_table::{Menu, command_table};
 use super::palette::{Palette, SMALL_SIZE};
+use super::records::RecordsState;
+use super::results::{Background, bar_words};
+use super::state::{NoticeKind, RecentFile, State};
+
+/// Menus and the state of the document.
+pub fn menu_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    MenuBar::new().ui(ui, |ui| {
+        ui.label(RichText::new("gdcm").strong());
+        ui.add_space(4.0);
+        if ui.menu_button("File", |ui| menu_ui(ui, state, Menu::File, commands)).response.clicked() {
+            commands.push(Command::LookForRecent);
+        }
+        ui.menu_button("Edit", |ui| menu_ui(ui, state, Menu::Edit, commands));
+        ui.menu_button("View", |ui| menu_ui(ui, state, Menu::View, commands));
+        ui.menu_button("Help", |ui| menu_ui(ui, state, Menu::Help, commands));
+        ui.separator();
+        history_ui(ui, state, commands);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            theme_ui(ui, commands);
+            title_ui(ui, state, palette);
+        });
+    });
+}
+
+/// The entries of one menu, in groups parted by lines.
+fn menu_ui(ui: &mut Ui, state: &State, menu: Menu, commands: &mut Vec<Command>) {
+    let entries = command_table(state).into_iter().filter_map(|entry| {
+        let (within, group) = entry.menu?;
+        (within == menu).then_some((group, entry))
+    });
+    let mut last = None;
+    for (group, entry) in entries {
+        if last.replace(group).is_some_and(|last| last != group) {
+            ui.separator();
+        }
+        let is_recent_place = entry.command == Command::OpenExample && !state.recent.is_empty();
+        if is_recent_place {
+            ui.menu_button("Open recent", |ui| recent_menu_ui(ui, state, commands));
+        }
+        let keys = entry.shortcuts.first().map(|shortcut| ui.ctx().format_shortcut(shortcut));
+        let button = Button::new(entry.name.as_str());
+        // An empty text would end the button's name in a space.
+        let button = if let Some(keys) = keys { button.shortcut_text(keys) } else { button };
+        let response = ui.add_enabled(entry.enabled, button);
+        if response.on_hover_text(entry.meaning).clicked() {
+            commands.push(entry.command);
+            ui.close();
+        }
+    }
+    if menu == Menu::View {
+        ui.separator();
+        ui.menu_button("Curves", |ui| menu_ui(ui, state, Menu::Curves, commands));
+    }
+}
+
+/// The newest first; what is not there any more cannot be chosen.
+fn recent_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    for RecentFile { path, name, folder, missing } in &state.recent {
+        let button = Button::new(name.as_str()).right_text(if *missing { "missing" } else { "" });
+        let response = ui.add_enabled(!missing, button).on_hover_text(folder);
+        if response.on_disabled_hover_text(format!("It is not in {folder} any more")).clicked() {
+            commands.push(Command::Open(path.clone()));
+            ui.close();
+        }
+    }
+}
+
+fn history_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let undo = state.history.undo_label();
+    let text = undo.map_or("↶ Undo".to_owned(), |label| format!("↶ Undo {label}"));
+    let button = ui.add_enabled(undo.is_some(), Button::new(text).frame(false));
+    if button.on_hover_text("Take the last decision back (Ctrl+Z)").clicked() {
+        commands.push(Command::Undo);
+    }
+    let redo = state.history.redo_label();
+    let text = redo.map_or("↷ Redo".to_owned(), |label| format!("↷ Redo {label}"));
+    let button = ui.add_enabled(redo.is_some(), Button::new(text).frame(false));
+    if button.on_hover_text("Bring it back again (Ctrl+Shift+Z)").clicked() {
+        commands.push(Command::Redo);
+    }
+}
+
+fn theme_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
+    let dark = ui.visuals().dark_mode;
+    let (symbol, other, hint) = if dark {
+        ("◐ Light", ThemePreference::Light, "Change to the light theme")
+    } else {
+        ("◐ Dark", ThemePreference::Dark, "Change to the dark theme")
+    };
+    if ui.add(Button::new(symbol).frame(false)).on_hover_text(hint).clicked() {
+        commands.push(Command::SetTheme(other));
+    }
+}
+
+fn title_ui(ui: &mut Ui, state: &State, palette: &Palette) {
+    let mark = if state.unsaved { " •" } else { "" };
+    let study = RichText::new(format!("· {}{mark}", state.study_name)).color(palette.dim_text);
+    let hint = if state.unsaved { "There are decisions that are not saved" } else { "Every decision is saved" };
+    ui.add(egui::Label::new(study).truncate()).on_hover_text(hint);
+    let name = egui::Label::new(state.dataset().name()).truncate();
+    ui.add(name).on_hover_text(state.dataset().description());
+}
 
 /// Something that has happened to the program or to its files.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -107,5 +213,108 @@ fn list_ui(ui: &mut Ui, sentences: &[String]) {
                 rest.iter().for_each(|sentence| drop(sentence_ui(ui, sentence)));
             });
         });
+    }
+}
+
+/// State of the computation on the left, message or standing remark on the right.
+pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        computation_ui(ui, state, palette, commands);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| match &state.notice {
+            Some(notice) => {
+                if ui.add(Button::new("Dismiss").small()).clicked() {
+                    commands.push(Command::DismissNotice);
+                }
+                let color = if notice.kind == NoticeKind::Done { palette.good } else { palette.warning };
+                let text = RichText::new(&notice.text).size(SMALL_SIZE).color(color);
+                ui.add(egui::Label::new(text).truncate()).on_hover_text(&notice.text);
+            }
+            None => {
+                let text = RichText::new(standing_remark(state)).size(SMALL_SIZE).color(palette.dim_text);
+                ui.add(egui::Label::new(text).truncate());
+            }
+        });
+    });
+}
+
+fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let now = ui.input(|input| input.time);
+    let (text, color) = match (&state.opening, state.results.is_stale(now), state.results.progress) {
+        (None, ..) if state.results.stopped => (format!("● stopped: {}", state.after_stop()), palette.warning),
+        (Some(name), ..) => (format!("● reading {name} …"), palette.accent),
+        (None, true, Some((done, total))) => {
+            (format!("● computing, {} % …", 100 * done / total.max(1)), palette.warning)
+        }
+        (None, true, None) => ("● computing …".to_owned(), palette.warning),
+        (None, false, _) => ("● up to date".to_owned(), palette.good),
+    };
+    ui.label(RichText::new(text).size(SMALL_SIZE).color(color));
+    let beside =
+        state.results.is_background_told(now).then(|| background_words(&state.results.background, &state.records));
+    let is_stopped = state.results.background.stopped;
+    let beside = if is_stopped { Some("the rest was stopped".to_owned()) } else { beside };
+    if let Some(words) = &beside {
+        ui.label(RichText::new(words).size(SMALL_SIZE).color(palette.dim_text));
+    }
+    if state.results.stopped || is_stopped {
+        if ui.add(Button::new("Compute").small()).clicked() {
+            commands.push(Command::Compute);
+        }
+    } else if (state.results.is_stale(now) || beside.is_some()) && ui.add(Button::new("Stop").small()).clicked() {
+        commands.push(Command::StopComputing);
+    }
+    let dim = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
+    let models: usize = state.dataset().conditions().iter().map(|condition| model_count(condition)).sum();
+    ui.label(dim(format!("{models} responses · {} frequencies", state.study.settings.points)));
+    if state.analysis().is_some() {
+        ui.label(dim(format!("{:.1} ms", state.results.elapsed_ms))).on_hover_text("Time the newest analysis took");
+    }
+    if !state.file_cautions.is_empty() {
+        let count = state.file_cautions.len();
+        let text = if count == 1 { "1 caution".to_owned() } else { format!("{count} cautions") };
+        let label = ui.label(RichText::new(text).size(SMALL_SIZE).color(palette.warning));
+        label.on_hover_text(state.file_cautions.join("\n"));
+    }
+}
+
+/// What is under way beside the live answer, the longest first.
+fn background_words(background: &Background, records: &RecordsState) -> String {
+    if let Some((done, total)) = background.report {
+        return format!("writing the report, {} % …", 100 * done / total.max(1));
+    }
+    if let Some((done, total)) = background.identification {
+        let percent = 100 * done / total.max(1);
+        return match (records.under_way(), records.running.len()) {
+            (Some(job), jobs @ 2..) => {
+                format!("identifying condition {}, {percent} %, {} more after it …", job.condition, jobs - 1)
+            }
+            _ => format!("identifying, {percent} % …"),
+        };
+    }
+    match (background.proofs.len(), background.curves) {
+        (1, _) => "proving the gains of 1 condition …".to_owned(),
+        (2.., _) => format!("proving the gains of {} conditions …", background.proofs.len()),
+        (0, Some((done, total))) if total > 0 => format!("curves, {} % …", 100 * done / total),
+        (0, Some(_)) => "curves …".to_owned(),
+        (0, None) if background.bars.is_some() => bar_words(background.bars.unwrap_or_default()),
+        (0, None) if background.views > 0 => "what the views show …".to_owned(),
+        (0, None) => "what holding and freeing would cost …".to_owned(),
+    }
+}
+
+fn model_count(condition: &gdcm_core::dataset::Condition) -> usize {
+    condition.bundle(BundleKind::Physics).len() + condition.bundle(BundleKind::Identified).len()
+}
+
+/// Why the condition shown is left out of the assessment, or what the data are.
+fn standing_remark(state: &State) -> String {
+    let assessed = state.analysis().and_then(|analysis| analysis.assessment.get(&state.condition().id()));
+    let left_out = assessed.and_then(|assessed| match assessed {
+        Assessed::LeftOut { why } => Some(why),
+        Assessed::Nominal(_) => None,
+    });
+    match left_out {
+        Some(why) => format!("condition {} is left out of the assessment: {why}", state.condition().id()),
+        None => state.condition().flight_state().name.clone(),
     }
 }

@@ -11,8 +11,8 @@ use egui_tiles::{
 use super::arrangement::View;
 use super::command::Command;
 use super::figures::figure_button_ui;
+use super::focus::{Region, region_ui};
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
-use super::region::{Region, region_ui};
 use super::state::State;
 use super::views;
 

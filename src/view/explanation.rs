@@ -1,12 +1,91 @@
-//! What the window says of a condition besides the remarks on its result.
+//! How a value was computed and what decisions would cost: the window of a derivation, and the menus that open it.
 
 use std::collections::BTreeSet;
 
+use egui::{Context, CursorIcon, Id, Label, Response, RichText, Sense, Ui, WidgetText, Window};
+
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::Pair;
-use gdcm_core::study::{ConditionAnalysis, Remark, details, remarks};
+use gdcm_core::study::{ConditionAnalysis, Derivation, ExplainTarget, Remark, derivation, details, remarks};
 
+use super::command::Command;
+use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 use super::state::State;
+
+/// What asks for a derivation, everywhere.
+pub const QUESTION: &str = "How was this computed?";
+
+/// Shows how the figure asked about was computed; it follows the results while it is open.
+pub fn derivation_window_ui(ctx: &Context, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let Some(asked) = &state.display.asked else { return };
+    let mut open = true;
+    let found = state.analysis_with_bars().and_then(|analysis| derivation(&analysis, asked));
+    let title = found.as_ref().map_or("There is no such figure now", |found| found.title.as_str());
+    let window = Window::new(RichText::new(title).size(BODY_SIZE).strong());
+    let window = window.id(Id::unique("derivation")).open(&mut open).default_width(420.0).resizable(true);
+    window.show(ctx, |ui| match &found {
+        Some(found) => derivation_ui(ui, found, palette, commands),
+        None => {
+            ui.label(state.results.absence());
+        }
+    });
+    if !open {
+        commands.push(Command::Explain(None));
+    }
+}
+
+fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &mut Vec<Command>) {
+    ui.label(RichText::new(&found.equation).monospace());
+    ui.add_space(4.0);
+    for step in &found.with_numbers {
+        ui.label(RichText::new(step).monospace());
+    }
+    ui.add_space(4.0);
+    ui.label(RichText::new("It rests on").size(SMALL_SIZE).color(palette.dim_text));
+    for part in &found.rests_on {
+        ui.label(RichText::new(part).size(SMALL_SIZE));
+    }
+    ui.horizontal(|ui| {
+        if ui.button("Copy the derivation").clicked() {
+            commands.push(Command::CopyText(text_of(found)));
+        }
+        ui.label(RichText::new(found.section).size(SMALL_SIZE).color(palette.dim_text));
+    });
+}
+
+/// The derivation as lines of text.
+fn text_of(found: &Derivation) -> String {
+    let lines =
+        [found.title.as_str(), &found.equation].into_iter().chain(found.with_numbers.iter().map(String::as_str));
+    let lines = lines.chain(found.rests_on.iter().map(String::as_str)).chain([found.section]);
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// A figure whose click asks how it was computed.
+pub fn figure_ui(
+    ui: &mut Ui,
+    text: impl Into<WidgetText>,
+    asked: ExplainTarget,
+    commands: &mut Vec<Command>,
+) -> Response {
+    let response = ui.add(Label::new(text).sense(Sense::click()).selectable(false));
+    if response.clicked() {
+        commands.push(Command::Explain(Some(asked)));
+    }
+    response.on_hover_cursor(CursorIcon::Help)
+}
+
+/// The part of a menu that asks how figures were computed.
+pub fn question_menu_ui(ui: &mut Ui, figures: Vec<(String, ExplainTarget)>, commands: &mut Vec<Command>) {
+    ui.menu_button(QUESTION, |ui| {
+        for (name, asked) in figures {
+            if ui.button(name).clicked() {
+                commands.push(Command::Explain(Some(asked)));
+                ui.close();
+            }
+        }
+    });
+}
 
 /// The remarks on the result shown, and on the schedule.
 pub fn remarks_shown(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {

@@ -1,17 +1,16 @@
-//! The forms in front of the window: paths, export, help.
+//! The forms in front of the window: paths to open and to save, what to export, questions, help.
 
-use egui::{Context, Id, Modal, RichText, Role, ScrollArea, Ui, WidgetInfo};
+use egui::text::{CCursor, CCursorRange};
+use egui::{Button, Context, Id, Key, Modal, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::study::ExportFormat;
+use gdcm_core::study::{Difference, Edit, ExportFormat};
 use gdcm_files::figure::ColumnWidth;
 
 use super::command::{Command, FormKind};
 use super::command_palette::command_palette_ui;
-use super::form::Form;
-use super::keys_page::keys_page_ui;
+use super::help::keys_page_ui;
 use super::palette::Palette;
-use super::question_forms::{differences_ui, overwrite_ui, reason_ui, unsaved_ui};
 use super::state::{ExportAsForm, ExportForm, FigureForm, State};
 
 /// Shows the form that is asked for, if any. Its field has the focus when it opens; Enter submits it; Escape and a click outside
@@ -233,4 +232,132 @@ fn about_ui(form: &mut Form<'_, '_>, palette: &Palette) {
     );
     form.ui.label(RichText::new("MIT OR Apache-2.0").color(palette.dim_text));
     form.button_ui("Close", true, Command::ShowForm(None));
+}
+
+/// A form being drawn.
+pub(super) struct Form<'a, 'c> {
+    pub(super) ui: &'a mut Ui,
+    /// Whether this is the first frame that shows it.
+    pub(super) opens: bool,
+    pub(super) commands: &'c mut Vec<Command>,
+}
+
+impl Form<'_, '_> {
+    pub(super) fn title(&mut self, text: &str) {
+        self.ui.label(RichText::new(text).strong().size(15.0));
+        self.ui.add_space(4.0);
+    }
+
+    /// The text field of the form; whether the Enter key was pressed in it.
+    pub(super) fn text_ui(&mut self, name: &str, text: &mut String, hint: &str) -> bool {
+        let shown = TextEdit::singleline(text).hint_text(hint).desired_width(f32::INFINITY).show(self.ui);
+        let response = shown.response.response;
+        response.widget_info(|| {
+            let mut info = WidgetInfo::labeled(Role::TextInput, true, name);
+            info.current_text_value = Some(text.clone());
+            info
+        });
+        if self.opens {
+            // What stands there is replaced by what is typed.
+            let mut edited = shown.state;
+            let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
+            edited.cursor.set_char_range(Some(all));
+            edited.store(self.ui.ctx(), response.id);
+            response.request_focus();
+        }
+        response.lost_focus() && self.ui.input(|input| input.key_pressed(Key::Enter))
+    }
+
+    /// The button that submits the form, which Enter does too; others follow on the same line.
+    pub(super) fn submit_ui(&mut self, text: &str, is_ready: bool, entered: bool, command: impl FnOnce() -> Command) {
+        let clicked = self.ui.add_enabled(is_ready, Button::new(text)).clicked();
+        if clicked || (entered && is_ready) {
+            self.commands.push(command());
+        }
+    }
+
+    /// A button; the first of a form without a text field has the focus when it opens.
+    pub(super) fn button_ui(&mut self, text: &str, is_first: bool, command: Command) {
+        let response = self.ui.button(text);
+        if is_first && self.opens {
+            response.request_focus();
+        }
+        if response.clicked() {
+            self.commands.push(command);
+        }
+    }
+
+    /// What follows stands on one line.
+    pub(super) fn line(&mut self, add: impl FnOnce(&mut Form<'_, '_>)) {
+        let (opens, commands) = (self.opens, &mut *self.commands);
+        self.ui.horizontal(|ui| add(&mut Form { ui, opens, commands }));
+    }
+}
+
+/// Asks whether to overwrite files; a cancel goes back to the form that would.
+pub(super) fn overwrite_ui(form: &mut Form<'_, '_>, kind: FormKind, existing: &[String]) {
+    form.title(if existing.len() == 1 { "This file exists already" } else { "These files exist already" });
+    for path in existing {
+        form.ui.label(path);
+    }
+    form.ui.add_space(4.0);
+    form.line(|form| {
+        form.button_ui("Overwrite", false, Command::Overwrite);
+        // Enter loses nothing.
+        form.button_ui("Cancel", true, Command::ShowForm(Some(kind)));
+    });
+}
+
+pub(super) fn unsaved_ui(form: &mut Form<'_, '_>) {
+    form.title("There are decisions that are not saved");
+    form.ui.label("Going on loses the rejected and pinned models and the settings of this study.");
+    form.ui.add_space(4.0);
+    form.line(|form| {
+        form.button_ui("Save study first", true, Command::SaveAndGoOn);
+        form.button_ui("Lose them", false, Command::DiscardAndGoOn);
+        form.button_ui("Cancel", false, Command::ShowForm(None));
+    });
+}
+
+pub(super) fn differences_ui(form: &mut Form<'_, '_>, state: &State, palette: &Palette) {
+    form.title("The dataset is not the one the study was made with");
+    let words = "Every decision that still applies was kept. What is different:";
+    form.ui.label(RichText::new(words).color(palette.dim_text));
+    ScrollArea::vertical().max_height(300.0).show(form.ui, |ui| {
+        for difference in &state.differences {
+            let not_applied = matches!(difference, Difference::NotApplied { .. });
+            let color = if not_applied { palette.warning } else { palette.text };
+            ui.label(RichText::new(format!("• {difference}")).color(color));
+        }
+    });
+    form.ui.add_space(4.0);
+    let lines: Vec<String> = state.differences.iter().map(|difference| difference.to_string()).collect();
+    form.line(|form| {
+        form.button_ui("Go on", true, Command::ShowForm(None));
+        form.button_ui("Copy the list", false, Command::CopyText(lines.join("\n")));
+    });
+}
+
+/// Why a model is rejected; one that is kept is rejected with it.
+pub(super) fn reason_ui(form: &mut Form<'_, '_>, state: &mut State, palette: &Palette) {
+    let Some(model) = state.forms.rejected_model.clone() else { return };
+    let is_rejected = state.study.is_rejected(&model);
+    let (title, button) =
+        if is_rejected { ("Why is it rejected?", "Keep the reason") } else { ("Reject with a reason", "Reject") };
+    form.title(title);
+    let words = format!("{} model {} of condition {}", model.bundle, model.name, model.condition);
+    form.ui.label(RichText::new(words).color(palette.dim_text));
+    let reason = &mut state.forms.reason;
+    let entered =
+        form.text_ui("Reason of the rejection", reason, "in words; it is kept in the study and in the results");
+    let reason = reason.trim().to_owned();
+    form.line(|form| {
+        let edit = || match is_rejected {
+            true => Edit::SetReason(model, reason),
+            false if reason.is_empty() => Edit::Reject(model),
+            false => Edit::RejectBecause { model, reason },
+        };
+        form.submit_ui(button, true, entered, || Command::DecideInForm(edit()));
+        form.button_ui("Cancel", false, Command::ShowForm(None));
+    });
 }

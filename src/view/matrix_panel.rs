@@ -13,12 +13,12 @@ use gdcm_core::uncertainty::{Bar, Scalar};
 use gdcm_core::units::s_to_ms;
 
 use super::command::Command;
-use super::derivation_window::question_menu_ui;
+use super::explanation::question_menu_ui;
 use super::explanation::{gain_conflict_marks, toggle_costs};
+use super::focus::{Region, region_ui};
 use super::gain_bars::bar_words;
-use super::heading::table_heading_ui;
 use super::palette::{Palette, SMALL_SIZE};
-use super::region::{Region, region_ui};
+use super::row::table_heading_ui;
 use super::state::State;
 use super::tables::TableKind;
 

@@ -1,8 +1,10 @@
-//! A selectable row that fills the width: one line of a list.
+//! What panels are made of: headings, and rows of lists that fill the width.
 
-use egui::{Align2, Color32, FontId, Rect, Response, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align, Align2, Color32, FontId, Layout, Rect, Response, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
-use super::palette::Palette;
+use super::command::Command;
+use super::palette::{Palette, SMALL_SIZE};
+use super::tables::TableKind;
 
 /// Height of a row \[pt\].
 pub const ROW_HEIGHT: f32 = 20.0;
@@ -88,6 +90,46 @@ pub fn row_text(ui: &Ui, row: Rect, x: f32, text: &str, size: f32, color: Color3
     let (left, align) =
         if x < 0.0 { (row.right() + x, Align2::RIGHT_CENTER) } else { (row.left() + x, Align2::LEFT_CENTER) };
     ui.painter().text(pos2(left, row.center().y), align, text, FontId::proportional(size), color)
+}
+
+/// A dim heading on the left, a figure on the right.
+pub fn heading_ui(ui: &mut Ui, palette: &Palette, title: &str, figure: &str) -> egui::Response {
+    ui.add_space(4.0);
+    let shown = ui.horizontal(|ui| {
+        ui.label(RichText::new(title).size(SMALL_SIZE).strong().color(palette.dim_text));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.label(RichText::new(figure).size(SMALL_SIZE).color(palette.dim_text));
+        });
+    });
+    shown.response
+}
+
+/// The same over a table: the secondary button copies it or saves it, as the palette does.
+pub fn table_heading_ui(
+    ui: &mut Ui,
+    palette: &Palette,
+    (title, figure): (&str, &str),
+    kind: TableKind,
+    commands: &mut Vec<Command>,
+) {
+    let heading = heading_ui(ui, palette, title, figure);
+    table_menu_ui(ui, &heading, kind, commands);
+}
+
+/// What the secondary button offers on the heading of a table.
+pub fn table_menu_ui(ui: &mut Ui, heading: &egui::Response, kind: TableKind, commands: &mut Vec<Command>) {
+    // No stop of the Tab key: nothing on it can be pressed.
+    let response = ui.interact(heading.rect, heading.id.with("table"), Sense::CLICK);
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("Heading of {}", kind.name())));
+    response.context_menu(|ui| {
+        let choices = [("Copy table", Command::CopyTable(kind)), ("Save table as CSV…", Command::AskSaveTable(kind))];
+        for (text, command) in choices {
+            if ui.button(text).clicked() {
+                commands.push(command);
+                ui.close();
+            }
+        }
+    });
 }
 
 #[cfg(test)]

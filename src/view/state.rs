@@ -12,13 +12,13 @@ use gdcm_core::study::{
 use gdcm_files::figure::ColumnWidth;
 
 use super::arrangement::View;
-use super::assembling::Workbench;
+use super::assembling::AssemblyState;
 use super::assessment_scene::assessment_choice;
 use super::bars::Bar;
 use super::command::FormKind;
 use super::command_palette::PaletteForm;
 use super::display::Display;
-use super::records::RecordsBench;
+use super::records::RecordsState;
 use super::results::{FirstResult, Results};
 
 /// How a message is meant.
@@ -152,9 +152,9 @@ pub struct State {
     /// The step of the guided tour that is shown.
     pub tour: Option<usize>,
     /// Flight records, and what was identified from them.
-    pub records: RecordsBench,
+    pub records: RecordsState,
     /// Models that are being put together, in the place of the study.
-    pub assembling: Option<Workbench>,
+    pub assembling: Option<AssemblyState>,
 }
 
 impl State {
@@ -179,7 +179,7 @@ impl State {
             opening: None,
             forms: Forms::default(),
             tour: None,
-            records: RecordsBench::default(),
+            records: RecordsState::default(),
             assembling: None,
         }
     }

@@ -565,3 +565,28 @@ fn conditions_can_be_held_out_and_each_be_left_out_in_turn() {
     assert!(low < net.gain && net.gain < high, "{low} {} {high}", net.gain);
     desk.gdcm(&["analyze", "--hold-out", "99", "--out", "other"]).assert_failed(2, &["--hold-out", "no condition 99"]);
 }
+
+/// What the program says of a file in a command, and how it ends.
+fn said_of_edge(file: &str, command: &str) -> (i32, String) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/edges").join(file);
+    let options = if command == "analyze" { &["--out", "."][..] } else { &[] };
+    let ended = Desk::new().gdcm(&[&[command, path.to_str().unwrap()], options].concat());
+    // Long lines are broken and indented.
+    (ended.status, (ended.out + &ended.error).split_whitespace().collect::<Vec<_>>().join(" "))
+}
+
+#[test]
+fn a_model_that_cannot_be_computed_is_named_with_its_place_by_check_and_by_analyze() {
+    for (file, entry) in [
+        (
+            "large-entry.json",
+            "identified model \"i\" has no I → O over the whole band: its matrix A has 1e200 in row 1, column 2",
+        ),
+        ("overflowing-response.json", "its matrix B has -1.7976931348623157e308 in row 1, column 1"),
+    ] {
+        let (status, text) = said_of_edge(file, "check");
+        assert!(status == 0 && text.contains(entry) && text.contains("Caution condition"), "{text}");
+        let (status, text) = said_of_edge(file, "analyze");
+        assert!(status == 1 && text.contains(entry) && text.contains("condition"), "{text}");
+    }
+}

@@ -6,16 +6,13 @@ use std::sync::LazyLock;
 
 use gdcm_files::{LoadedDataset, embedded_example, load_dataset};
 
-mod analysis;
 mod assembling;
 mod commands;
-mod dataset_file;
+mod documents;
 mod exports;
-mod figures;
-mod hostile_files;
-mod identification;
+#[path = "../../crates/gdcm-files/tests/suite/made_up.rs"]
+mod made_up;
 mod messages;
-mod optimiser;
 mod outputs;
 mod records;
 mod report;

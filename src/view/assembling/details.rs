@@ -1,8 +1,8 @@
-//! What one model is to be, field by field.
+//! What one model is to be, field by field, and what the columns of its file hold.
 
 use std::collections::BTreeMap;
 
-use egui::{Grid, RichText, Role, Ui, WidgetInfo};
+use egui::{Grid, Id, Key, RichText, Role, TextEdit, Ui, WidgetInfo, vec2};
 
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
@@ -10,9 +10,7 @@ use crate::view::settings_panel::choice_ui;
 use gdcm_core::assembly::{ChannelLabel, Part, RowRole, RowRule};
 use gdcm_core::units::number;
 
-use super::columns::columns_ui;
-use super::entry::{entry_ui, typed_number};
-use super::workbench::{AssemblingCommand, Workbench};
+use super::assembly_state::{AssemblingCommand, AssemblyState};
 
 const FIELD_WIDTH: f32 = 200.0;
 
@@ -25,7 +23,7 @@ struct Field {
 }
 
 /// The fields of the model shown.
-pub(super) fn details_ui(ui: &mut Ui, bench: &Workbench, palette: &Palette, commands: &mut Vec<Command>) {
+pub(super) fn details_ui(ui: &mut Ui, bench: &AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(part) = bench.assembly().parts().get(bench.selected) else {
         ui.label(RichText::new("No model yet: add a folder or files above").color(palette.dim_text));
         return;
@@ -57,7 +55,7 @@ fn push(rules: gdcm_core::assembly::Rules, commands: &mut Vec<Command>) {
     commands.push(AssemblingCommand::Change(Box::new(rules)).into());
 }
 
-fn role_ui(ui: &mut Ui, bench: &Workbench, part: &Part, commands: &mut Vec<Command>) {
+fn role_ui(ui: &mut Ui, bench: &AssemblyState, part: &Part, commands: &mut Vec<Command>) {
     ui.label("role");
     let mut role = part.row.role;
     let roles = RowRole::ALL.map(|role| (Some(role), role.word(), "What the model is in its condition"));
@@ -80,7 +78,7 @@ fn fill_ui(ui: &mut Ui, name: &str) -> bool {
     response.on_hover_text(format!("{label}: the same for every model below it in the same folder")).clicked()
 }
 
-fn field_ui(ui: &mut Ui, bench: &Workbench, field: &Field, commands: &mut Vec<Command>) {
+fn field_ui(ui: &mut Ui, bench: &AssemblyState, field: &Field, commands: &mut Vec<Command>) {
     ui.label(field.name);
     let name = format!("Model {}", field.name);
     if let Some(text) = entry_ui(ui, &name, &field.value, field.hint, FIELD_WIDTH) {
@@ -248,6 +246,77 @@ fn say_trim(text: &str, row: &mut RowRule) -> Result<(), String> {
     Ok(())
 }
 
+const HEADING_WIDTH: f32 = 180.0;
+/// More columns than this are counted.
+const MOST_COLUMNS: usize = 60;
+
+/// A field for the heading of each column of a file; the file is read again by what is said.
+pub(super) fn columns_ui(
+    ui: &mut Ui,
+    bench: &AssemblyState,
+    file: &str,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let Some(headings) = bench.tables.get(file) else { return };
+    let small = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
+    ui.label(RichText::new(format!("Columns of {file}")).strong());
+    ui.label(small(
+        "What each holds, and its unit: omega [rad/s], f [Hz], mag P/LAT [dB], phase [deg], re, im, coherence".into(),
+    ));
+    Grid::new(("columns", file)).num_columns(2).spacing([6.0, 3.0]).show(ui, |ui| {
+        for (column, heading) in headings.iter().enumerate().take(MOST_COLUMNS) {
+            ui.label(format!("column {}", column + 1));
+            let name = format!("Heading of column {} of {file}", column + 1);
+            if let Some(said) = entry_ui(ui, &name, heading, "not used", HEADING_WIDTH) {
+                let rules = bench.with_heading(file, column, &said);
+                commands.push(AssemblingCommand::Change(Box::new(rules)).into());
+            }
+            ui.end_row();
+        }
+    });
+    if headings.len() > MOST_COLUMNS {
+        ui.label(small(format!("and {} more, to be said in the rules file", headings.len() - MOST_COLUMNS)));
+    }
+}
+
+const HEIGHT: f32 = 20.0;
+
+/// A text field of this accessible name that shows `value`; gives what was typed once the field is left or Enter is pressed.
+pub fn entry_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, width: f32) -> Option<String> {
+    let id = Id::unique(("entry", name));
+    let held = ui.data(|data| data.get_temp::<String>(id));
+    let mut text = held.unwrap_or_else(|| value.to_owned());
+    let edit = TextEdit::singleline(&mut text).id(id.with("field")).hint_text(hint);
+    let response = ui.add_sized(vec2(width, HEIGHT), edit);
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::TextInput, true, name);
+        info.current_text_value = Some(text.clone());
+        info
+    });
+    if response.lost_focus() {
+        ui.data_mut(|data| data.remove::<String>(id));
+        let is_given_up = ui.input(|input| input.key_pressed(Key::Escape));
+        return (!is_given_up && text != value).then_some(text);
+    }
+    if response.has_focus() {
+        ui.data_mut(|data| data.insert_temp(id, text));
+    }
+    None
+}
+
+/// A number as engineers type it, with a decimal comma or a point; nothing for an empty text.
+pub fn typed_number(text: &str) -> Result<Option<f64>, String> {
+    let text = text.trim().replace(',', ".");
+    if text.is_empty() {
+        return Ok(None);
+    }
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(Some(value)),
+        _ => Err(format!("expected a number, found \"{text}\"")),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -261,5 +330,12 @@ mod tests {
         say_condition("3", &mut row).unwrap();
         assert_eq!(row.condition, Some(3));
         assert!(say_condition("three", &mut row).is_err());
+    }
+
+    #[test]
+    fn a_number_is_taken_with_a_comma_or_a_point_and_nothing_else_is() {
+        assert_eq!(typed_number(" 1,5 "), Ok(Some(1.5)));
+        assert_eq!(typed_number(""), Ok(None));
+        assert!(typed_number("12 kt").is_err() && typed_number("inf").is_err());
     }
 }

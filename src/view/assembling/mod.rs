@@ -1,16 +1,12 @@
 //! Putting models of many files together: a table with a line a model, what each is to be, and its response.
 
-mod channels;
-mod columns;
+mod assembling_view;
+mod assembly_state;
 mod details;
-mod entry;
-mod header;
 mod preview;
-mod problems;
 mod table;
-mod workbench;
 
-pub use entry::{entry_ui, typed_number};
-pub use header::assembling_ui;
+pub use assembling_view::assembling_ui;
+pub use assembly_state::{AssemblingCommand, AssemblyState, Reading};
+pub use details::{entry_ui, typed_number};
 pub use table::{Column, cell_text};
-pub use workbench::{AssemblingCommand, Reading, Workbench};

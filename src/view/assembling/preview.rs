@@ -14,7 +14,7 @@ use gdcm_core::dataset::Band;
 use gdcm_core::dataset::{BundleKind, ConditionId, Dynamics, ModelId, Pair, StateSpace};
 use gdcm_core::response::{FrequencyGrid, PreparedModel, ResponseShape};
 
-use super::workbench::{AssemblingCommand, Workbench};
+use super::assembly_state::{AssemblingCommand, AssemblyState};
 
 /// Frequencies of the curve.
 const POINTS: usize = 300;
@@ -31,7 +31,7 @@ pub struct Preview {
 }
 
 /// The response of the model shown, and which one.
-pub(super) fn preview_ui(ui: &mut Ui, bench: &mut Workbench, palette: &Palette, commands: &mut Vec<Command>) {
+pub(super) fn preview_ui(ui: &mut Ui, bench: &mut AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
     // A panel without content would shrink.
     ui.set_min_size(ui.available_size());
     let (selected, band) = (bench.selected, bench.assembly().rules().band);

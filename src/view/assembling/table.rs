@@ -1,15 +1,16 @@
-//! The table: a line a model.
+//! The table of models, and the list of what is to be completed.
 
 use std::cmp::Ordering;
 
-use egui::{Align, Button, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
+use egui::{Align, Button, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use gdcm_core::assembly::Part;
 use gdcm_core::units::number;
 
-use super::workbench::{AssemblingCommand, Workbench};
+use super::assembly_state::{AssemblingCommand, AssemblyState};
+use super::details::columns_ui;
 
 const ROW_HEIGHT: f32 = 20.0;
 
@@ -114,7 +115,7 @@ fn trim_text(part: &Part) -> String {
 }
 
 /// Draws the table; only the lines in view are laid out.
-pub(super) fn table_ui(ui: &mut Ui, bench: &Workbench, palette: &Palette, commands: &mut Vec<Command>) {
+pub(super) fn table_ui(ui: &mut Ui, bench: &AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
     let width = ui.available_width() - 12.0;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 0.0;
@@ -135,7 +136,7 @@ pub(super) fn table_ui(ui: &mut Ui, bench: &Workbench, palette: &Palette, comman
 
 fn heading_ui(
     ui: &mut Ui,
-    bench: &Workbench,
+    bench: &AssemblyState,
     (column, width): (Column, f32),
     palette: &Palette,
     commands: &mut Vec<Command>,
@@ -166,7 +167,7 @@ fn heading_ui(
 
 fn row_ui(
     ui: &mut Ui,
-    bench: &Workbench,
+    bench: &AssemblyState,
     (index, width, is_troubled): (usize, f32, bool),
     palette: &Palette,
     commands: &mut Vec<Command>,
@@ -202,4 +203,44 @@ fn row_ui(
     if response.clicked() {
         commands.push(AssemblingCommand::Select(index).into());
     }
+}
+
+/// More lines than this are counted.
+const MOST_LINES: usize = 200;
+/// Tables of which no model came whose columns can be said here; the others follow as these are read.
+const MOST_TABLES: usize = 5;
+
+/// A line for each problem; a click shows its model.
+pub(super) fn problems_ui(ui: &mut Ui, bench: &AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
+    let assembly = bench.assembly();
+    let line = |text: String, color| RichText::new(text).size(SMALL_SIZE).color(color);
+    let problems = assembly.told();
+    let heading = match problems.len() {
+        0 => "Nothing is missing: the dataset can be made".to_owned(),
+        1 => "1 thing is still to be said".to_owned(),
+        count => format!("{count} things are still to be said"),
+    };
+    ui.label(RichText::new(heading).strong().color(if problems.is_empty() { palette.good } else { palette.warning }));
+    ScrollArea::vertical().id_salt("problems").auto_shrink(false).show(ui, |ui| {
+        for (part, words) in problems.iter().take(MOST_LINES) {
+            let text = line(words.clone(), palette.text);
+            let response = ui.add(Label::new(text).sense(Sense::click()).wrap());
+            if let Some(part) = part.filter(|_| response.clicked()) {
+                commands.push(AssemblingCommand::Select(part).into());
+            }
+        }
+        if problems.len() > MOST_LINES {
+            ui.label(line(format!("and {} more", problems.len() - MOST_LINES), palette.dim_text));
+        }
+        let not_taken = bench.faults.iter().map(|fault| (format!("not taken: {fault}"), palette.warning));
+        let no_models = bench.passed_over.iter().map(|words| (format!("no model: {words}"), palette.dim_text));
+        for (text, color) in not_taken.chain(no_models).take(MOST_LINES) {
+            ui.add(Label::new(line(text, color)).wrap());
+        }
+        let parts = assembly.parts();
+        let unread = bench.tables.keys().filter(|file| !parts.iter().any(|part| part.found.file() == file.as_str()));
+        for file in unread.take(MOST_TABLES) {
+            columns_ui(ui, bench, file, palette, commands);
+        }
+    });
 }

@@ -2,7 +2,7 @@
 
 use egui::{Id, Response};
 
-use crate::view::derivation_window::QUESTION;
+use crate::view::explanation::QUESTION;
 use gdcm_core::study::ExplainTarget;
 
 /// A figure that can be asked about, and its name.

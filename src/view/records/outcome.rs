@@ -14,8 +14,8 @@ use gdcm_core::identification::{
 use gdcm_core::study::{ChannelTimeSkew, OfferedModels};
 use gdcm_core::units::s_to_ms;
 
-use super::bench::{ConditionRecords, RecordsCommand};
-use super::kept::{Source, kept};
+use super::histories::{Source, kept};
+use super::records_state::{ConditionRecords, RecordsCommand};
 
 /// Above this the held-out records speak against the model (M14, section 4).
 const HELD_OUT: f64 = 1.15;

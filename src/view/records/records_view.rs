@@ -7,16 +7,16 @@ use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::state::State;
 
-use super::bench::{ConditionRecords, RecordsCommand, RecordsPage};
-use super::channel_rows::columns_ui;
-use super::fit::fit_ui;
 use super::histories::histories_ui;
-use super::inputs::inputs_ui;
+use super::histories::inputs_ui;
 use super::outcome::{offered_menu_ui, outcome_ui};
-use super::poles::identified_poles_ui;
+use super::record_list::columns_ui;
 use super::record_list::record_list_ui;
+use super::records_state::{ConditionRecords, RecordsCommand, RecordsPage};
+use super::response::identified_poles_ui;
 use super::response::response_ui;
-use super::stabilisation::stabilisation_ui;
+use super::response::stabilisation_ui;
+use super::simulation::fit_ui;
 
 /// Width of the list \[pt\].
 const LIST_WIDTH: f32 = 340.0;

@@ -1,4 +1,4 @@
-//! The measured response of the pair in focus, under the models identified from it.
+//! What was identified: the measured response under the models, the poles over the order, and those recommended.
 
 use std::sync::Arc;
 
@@ -8,11 +8,14 @@ use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, chart_ui};
 use crate::view::state::State;
 use gdcm_core::dataset::Pair;
-use gdcm_core::identification::{Identification, MeasuredPoint, StateSpaceMatrices, TRUSTED_COHERENCE, TWO_SIDED_95};
+use gdcm_core::identification::{
+    Identification, MeasuredPoint, PoleEstimate, StabilisationPoint, StateSpaceMatrices, TRUSTED_COHERENCE,
+    TWO_SIDED_95,
+};
 use gdcm_core::units::neper_to_db;
 
-use super::bench::ConditionRecords;
-use super::kept::kept;
+use super::histories::kept;
+use super::records_state::ConditionRecords;
 
 /// Frequencies of a model's curve.
 const POINTS: usize = 200;
@@ -167,4 +170,61 @@ fn measured_points(points: &[MeasuredPoint], pair: Pair) -> Vec<([f64; 5], bool)
         ([omega, db, phase, neper_to_db(sd), sd.to_degrees()], point.partial_coherence[at] >= TRUSTED_COHERENCE)
     };
     shapes.into_iter().zip(points).map(with).collect()
+}
+
+/// Moduli of the poles over frequency, one row an order; crosses stay where the order before has them.
+pub(super) fn stabilisation_ui(ui: &mut Ui, state: &State, records: &ConditionRecords, palette: &Palette) {
+    let Some(found) = records.identification() else {
+        ui.label(RichText::new("Nothing was identified yet: choose Identify above.").color(palette.dim_text));
+        return;
+    };
+    let text = "Crosses: within 5 % of a pole of the order two below. Circles: not. Dotted: the band.";
+    ui.label(RichText::new(text).size(crate::view::palette::SMALL_SIZE).color(palette.dim_text));
+    let unit = state.display.unit;
+    let across = unit.axis_label();
+    let title = "Stabilisation diagram: |λ| of the models of every order, at the best Laguerre pole and past window";
+    let mut chart = Chart::new(title, ChartAxis::Frequency(unit), &across, "order");
+    chart.verticals = records.found.iter().flat_map(|(job, _)| job.options.band).collect();
+    for stable in [false, true] {
+        let points = found.stabilisation.iter().filter(|point| point.stable == stable && point.pole.norm() > 0.0);
+        let place = |point: &StabilisationPoint| [point.pole.norm(), point.order as f64, 0.0];
+        chart.marks.push(ChartMarks {
+            points: points.map(place).collect(),
+            sideways: Vec::new(),
+            color: if stable { palette.perturbed } else { palette.dim_text },
+            filled: false,
+            crosses: stable,
+        });
+    }
+    let area = ui.available_rect_before_wrap();
+    ui.allocate_rect(area, egui::Sense::hover());
+    chart_ui(ui, area, &chart, palette);
+}
+
+/// The s-plane with an error bar on every pole.
+pub(super) fn identified_poles_ui(ui: &mut Ui, records: &ConditionRecords, palette: &Palette) {
+    let Some(found) = records.identification() else {
+        ui.label(RichText::new("Nothing was identified yet: choose Identify above.").color(palette.dim_text));
+        return;
+    };
+    let text = "± 1.96 standard deviations. Grey: below the band, or not determined by these records.";
+    ui.label(RichText::new(text).size(SMALL_SIZE).color(palette.dim_text));
+    let mut chart = Chart::new("Poles of CT-PBSID, refined", ChartAxis::Linear, "Re λ [rad/s]", "Im λ [rad/s]");
+    chart.verticals = vec![0.0];
+    for determined in [false, true] {
+        let poles = || found.poles.iter().filter(move |pole| pole.determined == determined);
+        // A bar of a pole that is not determined would hide the others.
+        let bar = |sd: f64| if determined { TWO_SIDED_95 * sd } else { 0.0 };
+        let place = |of: &PoleEstimate| [of.pole.re, of.pole.im, bar(of.sd_im)];
+        chart.marks.push(ChartMarks {
+            points: poles().map(place).collect(),
+            sideways: poles().map(|of| bar(of.sd_re)).collect(),
+            color: if determined { palette.identified } else { palette.dim_text },
+            filled: false,
+            crosses: true,
+        });
+    }
+    let area = ui.available_rect_before_wrap();
+    ui.allocate_rect(area, egui::Sense::hover());
+    chart_ui(ui, area, &chart, palette);
 }

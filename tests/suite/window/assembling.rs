@@ -1,11 +1,11 @@
 //! Putting models together in the window, by its controls.
 
-use gdcm::view::assembling::{AssemblingCommand, Column, Workbench, cell_text};
+use gdcm::view::assembling::{AssemblingCommand, AssemblyState, Column, cell_text};
 
 use super::views::give;
 use super::*;
 
-fn bench(window: &Window) -> &Workbench {
+fn bench(window: &Window) -> &AssemblyState {
     state(window).assembling.as_ref().expect("models are being put together")
 }
 

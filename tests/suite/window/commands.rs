@@ -2,7 +2,7 @@
 
 use gdcm::view::command::FormKind;
 use gdcm::view::command_table::command_table;
-use gdcm::view::every_command::every_command;
+use gdcm::view::command_table::every_command;
 use gdcm::view::tables::{TableKind, table_of};
 use gdcm_core::correction::Channel;
 use gdcm_core::study::Table;

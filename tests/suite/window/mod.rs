@@ -6,6 +6,7 @@ mod computing;
 mod controls;
 mod curves;
 mod decisions;
+mod edges;
 mod figures;
 mod files;
 mod forms;

@@ -11,8 +11,7 @@ use serde_json::{Value, json};
 
 use super::views::{give, show};
 use super::*;
-use crate::identification::flight::{Flight, Gusts};
-use crate::identification::whole::stable_aircraft;
+use crate::made_up::{Flight, Gusts, stable_aircraft};
 
 const CONDITION_10_ID: ConditionId = ConditionId(10);
 

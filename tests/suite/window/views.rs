@@ -3,10 +3,10 @@
 use gdcm::view::arrangement::{Arrangement, Preset, View};
 use gdcm::view::assessment_scene::{AssessedPairs, assessment_sentences, assessment_text_table};
 use gdcm::view::command::Command as Action;
+use gdcm::view::display::Preferences;
 use gdcm::view::modes_scene::pole_marks;
 use gdcm::view::net_gain_scene::{PairSet, net_gain_pairs};
 use gdcm::view::plot::MarkShape;
-use gdcm::view::preferences::Preferences;
 use gdcm_core::correction::Channel;
 use gdcm_core::study::{AcrossRole, AssessedCorrection, AssessedModel, Edit, ExplainTarget, derivation};
 

@@ -2,7 +2,7 @@
 
 use gdcm::view::arrangement::View;
 use gdcm::view::command::Command as Action;
-use gdcm::view::every_command::every_command;
+use gdcm::view::command_table::every_command;
 use gdcm_core::study::{Edit, Engine, Setting, Unobserved};
 
 use super::*;

@@ -3,13 +3,12 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::dataset::{ConditionId, PairTable};
+use crate::correction::{ChannelCorrection, GainBounds, Problem, ProblemError, Solution};
+use crate::dataset::{BundleKind, Condition, ConditionId, Pair, PairTable};
+use crate::fidelity::{Discontinuity, Representative};
 use crate::schedule::{CostChange, Evidence, LeadEvidence, Schedule, ScheduleError, evidence, lead_evidence};
 
-use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
-use super::document::Study;
-use super::engine::scheduled_points;
-use super::uncertainty::Uncertainty;
+use super::{BundleMetrics, Caution, Comparison, LeadCompensated, LeadOffer, Study, Uncertainty, scheduled_points};
 
 /// The nominal model of a condition under the scheduled correction (M12).
 #[derive(Clone, Debug, PartialEq)]
@@ -77,4 +76,130 @@ impl Analysis {
     pub fn lead_evidence(&self) -> Vec<LeadEvidence> {
         lead_evidence(&scheduled_points(&self.study, &self.conditions), self.study.settings.schedule)
     }
+}
+
+/// Everything the analysis says of one condition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConditionAnalysis {
+    /// The condition that was analysed: it names the models that the figures below are in the order of.
+    pub condition: Arc<Condition>,
+    /// Distances and discontinuity ratios of the bundles.
+    pub figures: Arc<BundleMetrics>,
+    /// Representatives, G and D.
+    pub comparison: Arc<Comparison>,
+    /// What the gains were asked to do.
+    pub gain_problem: Arc<Problem>,
+    /// What the delays, or the signed delays, were asked to do.
+    pub delay_problem: Arc<Problem>,
+    /// Optimal gains, eq. (7).
+    pub gains: Arc<Solution>,
+    /// Optimal delays, eq. (11), or signed delays, M15.4.
+    pub delays: Arc<Solution>,
+    /// What the leads leave, where leads are asked for (M15.5).
+    pub led: Option<Arc<LeadCompensated>>,
+    /// What leads would buy, where all held responses want lead and leads are not asked for.
+    pub offer: Option<LeadOffer>,
+    /// Both as one correction.
+    pub correction: ChannelCorrection,
+    /// J of the physics representative before and after this correction.
+    pub cost: Arc<PairTable<Option<CostChange>>>,
+    /// What the engineer has to know about the result.
+    pub cautions: Vec<Caution>,
+}
+
+impl ConditionAnalysis {
+    /// Responses held: the constrained ones that are defined.
+    pub fn held(&self) -> &PairTable<bool> {
+        &self.gain_problem.constrained
+    }
+
+    /// G of a response as the gains were asked for it: of what the leads leave, where there are any.
+    pub fn wanted_gain(&self, pair: Pair) -> Option<f64> {
+        self.gain_problem.delta[pair]
+    }
+
+    /// D of a response as the delays were asked for it \[s\]: of eq. (9), or of M15.2.
+    pub fn wanted_delay_s(&self, pair: Pair) -> Option<f64> {
+        self.delay_problem.delta[pair]
+    }
+
+    /// Bounds of every channel gain.
+    pub fn gain_bounds(&self) -> GainBounds {
+        self.gain_problem.bounds
+    }
+
+    /// Least and greatest delay of every channel \[s\]; leads are negative (M15.4).
+    pub fn delay_bounds_s(&self) -> [f64; 2] {
+        // Adding zero turns minus zero into zero.
+        [self.delay_problem.bounds.lower + 0.0, self.delay_problem.bounds.upper]
+    }
+
+    /// Upper bound of every channel delay \[s\].
+    pub fn delay_upper_s(&self) -> f64 {
+        self.delay_problem.bounds.upper
+    }
+
+    /// Names of the physics models suggested as outliers, whatever is rejected.
+    pub fn suggested(&self) -> Vec<String> {
+        let suggested = self.figures.discontinuity.as_ref().map(Discontinuity::suggested).unwrap_or_default();
+        let models = self.condition.bundle(BundleKind::Physics);
+        suggested.into_iter().map(|index| models[index].name.clone()).collect()
+    }
+
+    /// The representative of a bundle, with the scores of its models in the order of [`ConditionAnalysis::condition`].
+    pub fn representative(&self, kind: BundleKind) -> &Representative {
+        match kind {
+            BundleKind::Physics => &self.comparison.physics,
+            BundleKind::Identified => &self.comparison.identified,
+        }
+    }
+
+    /// Name of the representative of a bundle.
+    pub fn representative_name(&self, kind: BundleKind) -> &str {
+        &self.condition.bundle(kind)[self.representative(kind).model].name
+    }
+
+    /// Mean distance of a model to the other kept ones, where it has one.
+    pub fn score(&self, kind: BundleKind, name: &str) -> Option<f64> {
+        self.representative(kind).scores[self.condition.position(kind, name)?]
+    }
+
+    /// Discontinuity ratio of a physics model, where it has one.
+    pub fn discontinuity_ratio(&self, name: &str) -> Option<f64> {
+        let ratios = &self.figures.discontinuity.as_ref().ok()?.ratios;
+        ratios[self.condition.position(BundleKind::Physics, name)?]
+    }
+}
+
+/// Why a condition has no result.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ConditionFailure {
+    /// The two representatives share no response that both have over the whole band.
+    #[error(
+        "no response of \"{physics}\" can be compared with \"{identified}\" over the whole band: each is zero or not \
+         finite somewhere; choose another representative, or another band{because}"
+    )]
+    NothingToCompare {
+        /// Name of the physics representative.
+        physics: String,
+        /// Name of the identified representative.
+        identified: String,
+        /// What is known of the models' responses, each after "; ".
+        because: String,
+    },
+    /// Every model kept is set aside (M5b).
+    #[error(
+        "no {bundle} model is left to compare: each one kept lacks a measuring response that another model of the bundle \
+         has; restore one that has them all, or narrow the band"
+    )]
+    AllSetAside {
+        /// Which.
+        bundle: BundleKind,
+    },
+    /// The gains could not be computed.
+    #[error("the gains could not be computed: {0}")]
+    Gains(ProblemError),
+    /// The delays could not be computed.
+    #[error("the delays could not be computed: {0}")]
+    Delays(ProblemError),
 }

@@ -10,12 +10,7 @@ use crate::response::GainDelay;
 use crate::schedule::{CostChange, corrected_cost};
 use crate::units::signed;
 
-use super::analysis::Analysis;
-use super::caution::Undefined;
-use super::comparison::ModelMismatch;
-use super::condition_analysis::ConditionAnalysis;
-use super::job::Job;
-use super::progress::{Cancelled, Progress};
+use super::{Analysis, Cancelled, ConditionAnalysis, Job, ModelMismatch, Progress, Undefined};
 
 /// Which physics model is assessed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

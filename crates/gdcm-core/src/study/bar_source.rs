@@ -4,9 +4,7 @@ use crate::dataset::{BundleKind, Dynamics, Pair, PairTable};
 use crate::response::{coherence_at, median, quantile};
 use crate::uncertainty::{BarSource, CoherenceError, IdentificationSource, Part, ReportedUncertainty, Scalar};
 
-use super::analysis::Analysis;
-use super::condition_analysis::ConditionAnalysis;
-use super::swaps::{ConditionSwaps, SwapOptimum};
+use super::{Analysis, ConditionAnalysis, ConditionSwaps, SwapOptimum};
 
 /// Natural logarithm of a ratio of 1 dB.
 const LN_DB: f64 = std::f64::consts::LN_10 / 20.0;

@@ -7,7 +7,7 @@ use crate::fidelity::{DiscontinuityError, MeasuredPairs};
 use crate::response::{FrequencyResponse, LargeEntry};
 use crate::units::number;
 
-use super::document::BundleChoice;
+use super::BundleChoice;
 
 /// A caution that travels with a result.
 #[derive(Clone, Debug, PartialEq)]

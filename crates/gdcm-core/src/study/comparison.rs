@@ -11,12 +11,10 @@ use crate::fidelity::{
 };
 use crate::response::{FrequencyGrid, FrequencyResponse, GainDelay, PolarResponse};
 
-use super::caution::{self, BundleModel, Caution, Undefined};
-use super::condition_analysis::ConditionFailure;
-use super::condition_responses::ConditionResponses;
-use super::document::{BundleChoice, ConditionChoice, Study};
-use super::execution::Execution;
-use super::progress::Cancelled;
+use super::{
+    BundleChoice, BundleModel, Cancelled, Caution, ConditionChoice, ConditionFailure, ConditionResponses, Execution,
+    Study, Undefined, caution,
+};
 
 /// Distances within each bundle and discontinuity ratios of the physics bundle; they do not depend on what is rejected.
 #[derive(Clone, Debug, PartialEq)]

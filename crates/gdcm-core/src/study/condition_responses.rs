@@ -6,9 +6,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 use crate::dataset::{Band, BundleKind, Condition, ContentHash, Model};
 use crate::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
 
-use super::execution::Execution;
-use super::memo::Memo;
-use super::progress::Cancelled;
+use super::{Cancelled, Execution, Memo};
 
 /// What a response depends on besides the numbers of its model: the band and the number of frequencies in it.
 pub(super) type GridKey = (Band, usize);
@@ -169,4 +167,40 @@ impl ConditionModels {
 
 fn models_of(condition: &Condition) -> impl Iterator<Item = &Model> {
     BundleKind::BOTH.into_iter().flat_map(|kind| condition.bundle(kind))
+}
+
+/// Responses of every model of a condition on a grid for drawing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConditionCurves {
+    /// The condition: it names the models in whose order the responses are.
+    pub condition: Arc<Condition>,
+    /// The frequencies.
+    pub grid: FrequencyGrid,
+    /// Responses of the physics models.
+    pub physics: Vec<Arc<FrequencyResponse>>,
+    /// Responses of the identified models.
+    pub identified: Vec<Arc<FrequencyResponse>>,
+}
+
+impl ConditionCurves {
+    pub(super) fn new(condition: Arc<Condition>, grid: FrequencyGrid, responses: ConditionResponses) -> Self {
+        Self { condition, grid, physics: responses.physics, identified: responses.identified }
+    }
+
+    /// The responses of one bundle.
+    pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
+        match kind {
+            BundleKind::Physics => &self.physics,
+            BundleKind::Identified => &self.identified,
+        }
+    }
+}
+
+/// Frequencies of drawn curves.
+pub const CURVE_POINTS: usize = 500;
+
+/// The band drawn around a band of comparison: a little more than half a decade's third on either side.
+pub fn display_band(band: Band) -> Band {
+    const MARGIN: f64 = 1.7;
+    Band::beyond(band.min() / MARGIN, band.max() * MARGIN).unwrap_or(band)
 }

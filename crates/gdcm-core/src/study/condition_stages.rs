@@ -11,18 +11,11 @@ use crate::fidelity::CostAverage;
 use crate::response::FrequencyGrid;
 use crate::schedule::{CostChange, assess};
 
-use super::caution::Caution;
-use super::comparison::{BundleMetrics, Comparison};
-use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
-use super::condition_responses::{ConditionModels, ConditionResponses, GridKey, Purpose};
-use super::document::{ConditionChoice, Study};
-use super::execution::Execution;
-use super::lead_offer::{LeadOffer, OfferKey};
-use super::led::LeadCompensated;
-use super::memo::Memo;
-use super::progress::Cancelled;
-use super::settings::{DelayFrom, PhaseCorrection, Settings};
-use super::swaps::{ConditionSwaps, SwapMemo, SwapOptimum, Swapping};
+use super::{
+    BundleMetrics, Cancelled, Caution, Comparison, ConditionAnalysis, ConditionChoice, ConditionFailure,
+    ConditionModels, ConditionResponses, ConditionSwaps, DelayFrom, Execution, GridKey, LeadCompensated, LeadOffer,
+    Memo, OfferKey, PhaseCorrection, Purpose, Settings, Study, SwapMemo, SwapOptimum, Swapping,
+};
 
 /// What the distances depend on, besides the models: the grid, the responses that measure them, and the coherence that counts.
 type FiguresKey = (GridKey, PairTable<bool>, Option<f64>);

@@ -9,8 +9,7 @@ use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity, SecondV
 use crate::uncertainty::UncertaintySettings;
 use crate::units::{number, s_to_ms};
 
-use super::document::{BundleChoice, Study};
-use super::settings::Settings;
+use super::{BundleChoice, Settings, Study};
 
 /// One decision that was taken otherwise.
 #[derive(Clone, Debug, PartialEq, Eq)]

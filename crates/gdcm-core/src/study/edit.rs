@@ -5,9 +5,7 @@ use std::sync::Arc;
 use crate::dataset::{BundleKind, Condition, ConditionId, ModelId, Pair};
 use crate::units::number;
 
-use super::document::{ConditionChoice, Study};
-use super::setting::Setting;
-use super::taken_models::AdoptedModels;
+use super::{AdoptedModels, ConditionChoice, Setting, Study};
 
 /// One decision about a study.
 #[derive(Clone, Debug, PartialEq)]

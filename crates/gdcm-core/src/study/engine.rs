@@ -9,16 +9,10 @@ use crate::executor::{Executor, Sequential};
 use crate::response::FrequencyGrid;
 use crate::schedule::{Schedule, ScheduleCaution, ScheduleError, ScheduledPoint, assess};
 
-use super::analysis::{Analysis, Assessed};
-use super::condition_analysis::{ConditionAnalysis, ConditionFailure};
-use super::condition_responses::{ConditionModels, KnownModels, Purpose};
-use super::condition_stages::{ConditionStages, model_count};
-use super::curves::ConditionCurves;
-use super::document::Study;
-use super::execution::Execution;
-use super::memo::Memo;
-use super::progress::{Cancelled, Progress};
-use super::uncertainty::Uncertainty;
+use super::{
+    Analysis, Assessed, Cancelled, ConditionAnalysis, ConditionCurves, ConditionFailure, ConditionModels,
+    ConditionStages, Execution, KnownModels, Memo, Progress, Purpose, Study, Uncertainty, model_count,
+};
 
 /// Computes analyses and keeps each stage's last result by what it is computed from, never by where that came from: of a dataset
 /// with one other model, one response is computed.

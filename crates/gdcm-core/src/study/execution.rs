@@ -1,10 +1,12 @@
 //! The carrying out of an analysis: by whom, how far, whether still wanted.
 
+use std::convert::Infallible;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use crate::dataset::ConditionId;
 use crate::executor::{Executor, Sequential, each};
 
-use super::progress::{Cancelled, Progress, Unobserved};
+use super::{ConditionAnalysis, ConditionFailure};
 
 /// Carries out the pieces of one analysis, stops between two of them, and tells how far it is.
 pub struct Execution<'a> {
@@ -73,6 +75,89 @@ impl<'a> Execution<'a> {
     }
 }
 
+/// Told of the progress of long work, and asked whether it is still wanted.
+///
+/// The work may be carried out by several threads, and each of them asks.
+pub trait Progress: Sync {
+    /// Whether the work should end now, without a result.
+    fn cancelled(&self) -> bool;
+
+    /// `done` of `total` steps are behind.
+    fn advanced(&self, done: usize, total: usize);
+
+    /// The condition whose result is wanted before the others'.
+    fn wanted_first(&self) -> Option<ConditionId> {
+        None
+    }
+
+    /// The result of the condition wanted first, which the whole analysis will contain.
+    fn first_result(&self, _result: &Result<ConditionAnalysis, ConditionFailure>) {}
+}
+
+/// Nobody observes: the work runs to its end.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Unobserved;
+
+impl Progress for Unobserved {
+    fn cancelled(&self) -> bool {
+        false
+    }
+
+    fn advanced(&self, _done: usize, _total: usize) {}
+}
+
+/// The work was stopped before its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the analysis was stopped")]
+pub struct Cancelled;
+
+/// One value, kept as long as what it depends on stays the same.
+#[derive(Clone, Debug)]
+pub(super) struct Memo<K, V> {
+    kept: Option<(K, V)>,
+}
+
+impl<K, V> Default for Memo<K, V> {
+    fn default() -> Self {
+        Self { kept: None }
+    }
+}
+
+impl<K: PartialEq, V: Clone> Memo<K, V> {
+    /// A value made elsewhere.
+    pub(super) fn of(key: K, value: V) -> Self {
+        Self { kept: Some((key, value)) }
+    }
+
+    /// The value for `key`: the kept one where the key is the same, `make(&key)` otherwise.
+    pub(super) fn get(&mut self, key: K, make: impl FnOnce(&K) -> V) -> V {
+        let made = self.get_or_fail(key, |key| Ok::<V, Infallible>(make(key)));
+        made.unwrap_or_else(|never| match never {})
+    }
+
+    /// As [`Memo::get`], for a value that may fail to be made: nothing is kept then. The old value is dropped first, so that
+    /// a large one is not in memory twice.
+    pub(super) fn get_or_fail<E>(&mut self, key: K, make: impl FnOnce(&K) -> Result<V, E>) -> Result<V, E> {
+        if let Some(value) = self.kept(&key) {
+            return Ok(value.clone());
+        }
+        self.kept = None;
+        let value = make(&key)?;
+        self.kept = Some((key, value.clone()));
+        Ok(value)
+    }
+
+    /// The value for `key`, if it is kept.
+    pub(super) fn kept(&self, key: &K) -> Option<&V> {
+        self.kept.as_ref().filter(|(kept, _)| kept == key).map(|(_, value)| value)
+    }
+
+    /// Whether the value for `key` is kept.
+    pub(super) fn holds(&self, key: &K) -> bool {
+        self.kept(key).is_some()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -117,5 +202,21 @@ mod tests {
         Execution::new(&Sequential, &progress, 1000).each(1000, 1, |_| ()).unwrap();
         let heard = progress.heard.into_inner().unwrap();
         assert_eq!((heard.len(), heard[0], heard[99]), (100, (10, 1000), (1000, 1000)));
+    }
+
+    #[test]
+    fn a_value_is_made_anew_only_when_its_key_changes() {
+        let mut memo = Memo::default();
+        assert_eq!(memo.get(1, |key| key * 10), 10);
+        assert_eq!(memo.get(1, |_| 0), 10, "kept");
+        assert_eq!(memo.get(2, |key| key * 10), 20);
+    }
+
+    #[test]
+    fn a_value_that_could_not_be_made_leaves_nothing() {
+        let mut memo = Memo::default();
+        assert_eq!(memo.get(1, |key| key * 10), 10);
+        assert_eq!(memo.get_or_fail(2, |_| Err("stopped")), Err("stopped"));
+        assert!(!memo.holds(&1) && !memo.holds(&2));
     }
 }

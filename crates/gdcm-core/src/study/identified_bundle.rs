@@ -10,7 +10,7 @@ use crate::identification::{
     Treatment,
 };
 
-use super::taken_models::AdoptedModels;
+use super::AdoptedModels;
 
 /// Methods, as models carry them (M14).
 const REFINED: &str = "CT-PBSID, refined";

@@ -8,8 +8,7 @@ use crate::identification::{
     FlightRecord, Identification, IdentificationError, Options, StateSpaceMatrices, Watch, identify,
 };
 
-use super::job::Job;
-use super::progress::{Cancelled, Progress};
+use super::{Cancelled, Job, Progress};
 
 /// Parts into which the work is divided for its progress.
 const PARTS: f64 = 1000.0;

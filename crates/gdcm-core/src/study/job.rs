@@ -2,15 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::correction::{Problem, ProblemError, ProofBudget, Solution, solve};
-use crate::dataset::{Band, Condition, ConditionId, Dataset};
+use crate::correction::{Problem, ProblemError, ProofBudget, Solution, Toggle, solve, toggles};
+use crate::dataset::{Band, BundleKind, Condition, ConditionId, Dataset, ModelId, Pair};
+use crate::fidelity::{ModeTrack, mode_tracks};
+use crate::response::{FrequencyGrid, FrequencyResponse, GainDelay, Mode, ModesError, PreparedModel, modes_of};
 
-use super::condition_analysis::ConditionAnalysis;
-use super::condition_modes::ConditionModes;
-use super::curves::ConditionCurves;
-use super::engine::Engine;
-use super::progress::{Cancelled, Progress};
-use super::toggles::Toggles;
+use super::{Analysis, Cancelled, ConditionAnalysis, ConditionCurves, Engine, Progress, Study, Uncertainty};
 
 /// One piece of long work with progress and cancellation, done beside the live answer.
 ///
@@ -129,5 +126,243 @@ impl Job for ModesJob {
 
     fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
         ConditionModes::of(&self.condition, progress).map(Arc::new)
+    }
+}
+
+/// The responses of some models, wherever in the dataset they are, on one grid.
+#[derive(Clone, Debug)]
+pub struct AcrossJob {
+    /// The dataset.
+    pub dataset: Arc<Dataset>,
+    /// The models; those that the dataset does not have are left out.
+    pub models: Vec<ModelId>,
+    /// Band, and the number of frequencies in it.
+    pub grid: (Band, usize),
+}
+
+/// Responses of models of several conditions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AcrossCurves {
+    /// The frequencies.
+    pub grid: FrequencyGrid,
+    /// Each model with its response.
+    pub responses: Vec<(ModelId, Arc<FrequencyResponse>)>,
+}
+
+impl AcrossJob {
+    /// The model of a role of every condition, as far as there is one.
+    pub fn of(dataset: &Arc<Dataset>, analysis: Option<&Analysis>, role: AcrossRole, grid: (Band, usize)) -> Self {
+        let models = dataset.conditions().iter().filter_map(|condition| role.model(condition, analysis)).collect();
+        Self { dataset: Arc::clone(dataset), models, grid }
+    }
+}
+
+impl PartialEq for AcrossJob {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.dataset, &other.dataset) && (&self.models, self.grid) == (&other.models, other.grid)
+    }
+}
+
+impl Job for AcrossJob {
+    type Tools = ();
+    type Output = Arc<AcrossCurves>;
+
+    fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        let (band, points) = self.grid;
+        let grid = FrequencyGrid::logarithmic(band, points);
+        let mut responses = Vec::with_capacity(self.models.len());
+        for (done, id) in self.models.iter().enumerate() {
+            if progress.cancelled() {
+                return Err(Cancelled);
+            }
+            let condition = self.dataset.condition(id.condition);
+            if let Some(model) = condition.and_then(|condition| condition.model(id.bundle, &id.name)) {
+                let response = PreparedModel::of(&model.dynamics).response(&grid);
+                responses.push((id.clone(), Arc::new(response)));
+            }
+            progress.advanced(done + 1, self.models.len());
+        }
+        Ok(Arc::new(AcrossCurves { grid, responses }))
+    }
+}
+
+/// Which model of each condition is laid over the others'.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AcrossRole {
+    /// The physics model at the condition's own trim.
+    #[default]
+    Nominal,
+    /// The physics model that represents its bundle.
+    Representative,
+    /// The same under the condition's own correction.
+    Corrected,
+    /// The identified model that represents its bundle.
+    Identified,
+}
+
+impl AcrossRole {
+    /// Every role, in the order of its list.
+    pub const ALL: [Self; 4] = [Self::Nominal, Self::Representative, Self::Corrected, Self::Identified];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Nominal => "nominal",
+            Self::Representative => "representative",
+            Self::Corrected => "corrected",
+            Self::Identified => "identified",
+        }
+    }
+
+    /// The model that has this role in a condition; none where that takes a result and there is none.
+    pub fn model(self, condition: &Condition, analysis: Option<&Analysis>) -> Option<ModelId> {
+        let of = |kind: BundleKind, name: &str| ModelId::new(condition.id(), kind, name);
+        if self == Self::Nominal {
+            return Some(of(BundleKind::Physics, &condition.bundle(BundleKind::Physics)[condition.nominal()].name));
+        }
+        let result = analysis?.condition(condition.id())?;
+        let kind = if self == Self::Identified { BundleKind::Identified } else { BundleKind::Physics };
+        Some(of(kind, result.representative_name(kind)))
+    }
+
+    /// What is done to its response before it is drawn; none where the response has no correction.
+    pub fn correction(self, condition: ConditionId, pair: Pair, analysis: Option<&Analysis>) -> Option<GainDelay> {
+        match self {
+            Self::Corrected => analysis?.condition(condition)?.correction.on(pair),
+            _ => Some(GainDelay::NONE),
+        }
+    }
+}
+
+/// How far the proof of one toggle may go: the table is a hint, not a result.
+fn budget() -> ProofBudget {
+    ProofBudget { work: 4_000_000, ..ProofBudget::default() }
+}
+
+/// The cost of every single toggle of a condition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Toggles {
+    /// Of the gains.
+    pub gains: Vec<Toggle>,
+    /// Of the delays.
+    pub delays: Vec<Toggle>,
+}
+
+impl Toggles {
+    /// Solves a condition with every response toggled in turn; `None` where `stop` said so first, or a problem has no answer.
+    pub fn of(condition: &ConditionAnalysis, stop: &dyn Fn() -> bool) -> Option<Self> {
+        let gains = toggles(&condition.gain_problem, &condition.gains, budget(), stop).ok()?;
+        let delays = toggles(&condition.delay_problem, &condition.delays, budget(), stop).ok()?;
+        (!stop()).then_some(Self { gains, delays })
+    }
+
+    /// The toggles of one response: of its gain and of its delay.
+    pub fn of_pair(&self, pair: Pair) -> (Option<&Toggle>, Option<&Toggle>) {
+        let gain = self.gains.iter().find(|toggle| toggle.pair == pair);
+        (gain, self.delays.iter().find(|toggle| toggle.pair == pair))
+    }
+}
+
+/// The analysis of a variant ([`Study::of_variant`]), beside the live answer.
+#[derive(Clone, Debug)]
+pub struct VariantJob {
+    /// The study with the variant's decisions.
+    pub study: Study,
+}
+
+impl PartialEq for VariantJob {
+    /// The same dataset and the same decisions: the words that they are explained with do not count.
+    fn eq(&self, other: &Self) -> bool {
+        let (a, b) = (&self.study, &other.study);
+        let conditions = || a.dataset.conditions().iter().map(|condition| condition.id());
+        Arc::ptr_eq(&a.dataset, &b.dataset)
+            && a.settings == b.settings
+            && conditions().all(|id| a.choice(id).without_reasons() == b.choice(id).without_reasons())
+    }
+}
+
+impl Job for VariantJob {
+    /// An engine that keeps what variants have in common: responses and distances, which no decision but the band changes.
+    type Tools = Engine;
+    type Output = Arc<Analysis>;
+
+    fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        engine.analyze(&self.study, progress).map(Arc::new)
+    }
+}
+
+/// The bars of an analysis, and what follows from them.
+#[derive(Clone, Debug)]
+pub struct UncertaintyJob {
+    /// The analysis.
+    pub analysis: Arc<Analysis>,
+}
+
+impl PartialEq for UncertaintyJob {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.analysis, &other.analysis)
+    }
+}
+
+impl Job for UncertaintyJob {
+    /// An engine that keeps responses and swaps from one analysis to the next.
+    type Tools = Engine;
+    type Output = Arc<Uncertainty>;
+
+    fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        engine.uncertainty(&self.analysis, progress).map(Arc::new)
+    }
+}
+
+/// The modes of one model; none of a measured response.
+pub type ModelModes = Result<Vec<Mode>, ModesError>;
+
+/// The modes of every model of a condition, in file order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConditionModes {
+    /// The condition: it names the models.
+    pub condition: Arc<Condition>,
+    /// Modes of the physics models.
+    pub physics: Vec<ModelModes>,
+    /// Modes of the identified models.
+    pub identified: Vec<ModelModes>,
+}
+
+impl ConditionModes {
+    /// The modes of every model, model by model; each is a step.
+    ///
+    /// # Errors
+    /// [`Cancelled`] between two models, where `progress` says so.
+    pub fn of(condition: &Arc<Condition>, progress: &dyn Progress) -> Result<Self, Cancelled> {
+        let total = BundleKind::BOTH.into_iter().map(|kind| condition.bundle(kind).len()).sum();
+        let mut done = 0;
+        let mut of_bundle = |kind| {
+            let mut found = Vec::with_capacity(condition.bundle(kind).len());
+            for model in condition.bundle(kind) {
+                if progress.cancelled() {
+                    return Err(Cancelled);
+                }
+                found.push(modes_of(&model.dynamics));
+                done += 1;
+                progress.advanced(done, total);
+            }
+            Ok(found)
+        };
+        let (physics, identified) = (of_bundle(BundleKind::Physics)?, of_bundle(BundleKind::Identified)?);
+        Ok(Self { condition: Arc::clone(condition), physics, identified })
+    }
+
+    /// The modes of one bundle.
+    pub fn bundle(&self, kind: BundleKind) -> &[ModelModes] {
+        match kind {
+            BundleKind::Physics => &self.physics,
+            BundleKind::Identified => &self.identified,
+        }
+    }
+
+    /// Each mode of the model of index `reference` followed through its bundle. A model without modes leaves gaps.
+    pub fn tracks(&self, kind: BundleKind, reference: usize) -> Vec<ModeTrack> {
+        let modes = self.bundle(kind).iter().map(|modes| modes.as_deref().unwrap_or_default());
+        mode_tracks(&modes.collect::<Vec<&[Mode]>>(), reference)
     }
 }

@@ -5,11 +5,7 @@ use crate::dataset::Pair;
 use crate::schedule::Schedule;
 use crate::units::{number, s_to_ms, telling, told_apart};
 
-use super::caution::Caution;
-use super::condition_analysis::ConditionAnalysis;
-use super::document::Study;
-use super::lead_remark::lead_remarks;
-use super::settings::PhaseCorrection;
+use super::{Caution, ConditionAnalysis, PhaseCorrection, Study, lead_remarks};
 
 /// How a remark is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,8 +7,7 @@ use crate::identification::{
     FlightRecord, Preparation, StateSpaceMatrices, Validation, ValidationSettings, prepare, validate,
 };
 
-use super::job::Job;
-use super::progress::{Cancelled, Progress};
+use super::{Cancelled, Job, Progress};
 
 /// What a model gives for the inputs of a flight record (M14, section 6).
 #[derive(Clone, Debug)]

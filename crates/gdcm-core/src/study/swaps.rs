@@ -8,13 +8,7 @@ use crate::dataset::{BundleKind, PairTable};
 use crate::response::FrequencyGrid;
 use crate::uncertainty::{ConditionSpread, Figures, Scalar, ScalarTable};
 
-use super::comparison::{Compared, Comparison};
-use super::condition_analysis::ConditionAnalysis;
-use super::condition_responses::ConditionResponses;
-use super::document::Study;
-use super::execution::Execution;
-use super::progress::Cancelled;
-use super::settings::Settings;
+use super::{Cancelled, Compared, Comparison, ConditionAnalysis, ConditionResponses, Execution, Settings, Study};
 
 /// What came of the swaps of one condition.
 #[derive(Clone, Debug, PartialEq)]

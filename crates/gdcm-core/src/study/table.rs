@@ -1,5 +1,11 @@
 //! A table of what was found, to be read, copied and saved: the same texts wherever it goes.
 
+use crate::dataset::Dataset;
+use crate::uncertainty::{Scalar, VarianceDecomposition};
+use crate::units::signed;
+
+use super::{AirspeedDifference, Analysis, Uncertainty};
+
 /// Rows of texts under headings. Headings name quantity and unit (`airspeed [kt]`), so that a table can stand alone.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Table {
@@ -54,6 +60,151 @@ impl Table {
 /// Whether a text is a number, with whichever minus sign, or the dash that stands for none.
 fn is_figure(cell: &str) -> bool {
     cell == "–" || cell == "—" || cell.replacen('\u{2212}', "-", 1).parse::<f64>().is_ok()
+}
+
+/// What stands where there is no figure.
+const NONE: &str = "–";
+
+fn cell(figure: Option<f64>, decimals: usize) -> String {
+    figure.map_or_else(|| NONE.to_owned(), |figure| format!("{figure:.decimals$}"))
+}
+
+/// A standard deviation of a logarithm in percent.
+fn percent(deviation: Option<f64>) -> String {
+    cell(deviation.map(|deviation| 100.0 * deviation), 1)
+}
+
+fn probability(p: Option<f64>) -> String {
+    p.map_or_else(|| NONE.to_owned(), |p| if p < 0.001 { "< 0.001".to_owned() } else { format!("{p:.3}") })
+}
+
+/// The differences of net gains at equal airspeed, the most times what the bundles explain first, with the difference of each row.
+pub fn difference_table(dataset: &Dataset, uncertainty: &Uncertainty) -> (Table, Vec<AirspeedDifference>) {
+    let columns = ["response", "conditions", "airspeed [kt]", "difference [%]", "times", "Holm p", "verdict"];
+    let mut table = Table::new("Differences at equal airspeed", columns);
+    let mut differences = uncertainty.differences.clone();
+    let ratio = |of: &AirspeedDifference| of.difference.ratio().unwrap_or_default();
+    differences.sort_by(|a, b| ratio(b).total_cmp(&ratio(a)));
+    for of in &differences {
+        let [first, second] = of.conditions;
+        let verdict = match (of.p_holm, of.is_beyond(uncertainty.level)) {
+            (None, _) => "no spread",
+            (_, true) => "real, or model form",
+            (_, false) => "within what they can make",
+        };
+        table.row([
+            dataset.pair_name(of.pair),
+            format!("{first} and {second}"),
+            format!("{:.0}", of.airspeed_kt),
+            signed(100.0 * of.difference.delta, 1),
+            cell(of.difference.ratio(), 1),
+            probability(of.p_holm),
+            verdict.to_owned(),
+        ]);
+    }
+    (table, differences)
+}
+
+/// Whether the schedule needs a second variable, with what could not have been seen.
+pub fn second_variable_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
+    let columns = [
+        "response",
+        "variable",
+        "effect [%]",
+        "not seen below ± [%]",
+        "Holm p",
+        "unseen [%]",
+        "with it [%]",
+        "verdict",
+    ];
+    let mut table = Table::new("Does the schedule need a second variable?", columns);
+    for test in &uncertainty.second_variables {
+        let (name, variable) = (dataset.pair_name(test.pair), test.variable.name().to_owned());
+        let cells = match &test.effect {
+            Err(error) => {
+                [NONE, NONE, NONE, NONE, NONE].map(str::to_owned).into_iter().chain([error.to_string()]).collect()
+            }
+            Ok(effect) => vec![
+                signed(100.0 * effect.effect, 1),
+                percent(Some(effect.visible)),
+                probability(test.p_holm),
+                percent(effect.left_out_without),
+                percent(effect.left_out_with),
+                if test.needed { "needed" } else { "not needed" }.to_owned(),
+            ],
+        };
+        table.row([name, variable].into_iter().chain(cells));
+    }
+    table
+}
+
+/// What the scatter of each on-axis net gain is made of.
+pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
+    let columns = [
+        "response",
+        "about",
+        "scatter [%]",
+        "trim [%]",
+        "identification [%]",
+        "rest [%]",
+        "rest, interval [%]",
+        "times",
+    ];
+    let mut table = Table::new("What the scatter of the net gains is made of", columns);
+    let deviation = |variance: f64| percent(Some(variance.sqrt()));
+    let interval = |split: &VarianceDecomposition| {
+        let ends = split.rest_interval(uncertainty.level);
+        ends.map_or_else(|| NONE.to_owned(), |[low, high]| format!("{} to {}", percent(Some(low)), percent(Some(high))))
+    };
+    for scatter in &uncertainty.scatter {
+        let splits = [("equal airspeed", &scatter.same_airspeed), ("the schedule", &scatter.about_schedule)];
+        for (about, split) in splits.into_iter().filter_map(|(about, split)| Some((about, split.as_ref()?))) {
+            table.row([
+                dataset.pair_name(scatter.pair),
+                about.to_owned(),
+                deviation(split.scatter),
+                deviation(split.trim),
+                deviation(split.identification),
+                deviation(split.rest()),
+                interval(split),
+                cell(split.ratio(), 1),
+            ]);
+        }
+    }
+    table
+}
+
+/// The on-axis net gains of every condition with their bars.
+pub fn bar_table(analysis: &Analysis, uncertainty: &Uncertainty) -> Table {
+    let level = format!("± [%] of {:.0} %", 100.0 * uncertainty.level);
+    let columns = [
+        "condition",
+        "response",
+        "net gain",
+        &level,
+        "trim [%]",
+        "identification [%]",
+        "left in the band [%]",
+        "remarks",
+    ];
+    let mut table = Table::new("Error bars of the net gains", columns);
+    let dataset = &analysis.study.dataset;
+    for (id, of) in &uncertainty.conditions {
+        for pair in dataset.measuring_pairs().marked() {
+            let Some(bar) = &of.bars[Scalar::NetGain(pair)] else { continue };
+            table.row([
+                id.to_string(),
+                dataset.pair_name(pair),
+                format!("{:.3}", bar.value.exp()),
+                percent(bar.half_width(uncertainty.level)),
+                percent(bar.trim.map(|part| part.variance.sqrt())),
+                percent(bar.identification.map(|part| part.variance.sqrt())),
+                percent(of.left_in_band[pair]),
+                bar.remarks().join(", "),
+            ]);
+        }
+    }
+    table
 }
 
 #[cfg(test)]

@@ -5,8 +5,7 @@ use std::sync::Arc;
 
 use crate::dataset::{BundleKind, ConditionId, ConditionRecord, Dataset, Model};
 
-use super::document::{BundleChoice, Study};
-use super::edit::EditRefusal;
+use super::{BundleChoice, EditRefusal, Study};
 
 /// Models identified from flight records, and these.
 #[derive(Clone, Debug, PartialEq)]

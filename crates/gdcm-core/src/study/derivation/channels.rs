@@ -2,11 +2,10 @@
 
 use crate::correction::{Channel, Problem, Quantity, Solution};
 use crate::dataset::Pair;
-use crate::study::lead_remark::servo_words;
+use crate::study::servo_words;
 use crate::units::{number, s_to_ms};
 
-use super::context::{Context, digits};
-use super::{Derivation, gain_objective_equation};
+use super::{Context, Derivation, digits, gain_objective_equation};
 
 pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
     let net = context.result.correction.net_gain(pair);

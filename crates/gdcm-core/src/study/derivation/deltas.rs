@@ -1,12 +1,14 @@
 //! How G, D and the bounds were computed (M6, M7).
 
-use crate::correction::GainSource;
-use crate::dataset::{BundleKind, Pair};
+use crate::correction::{Channel, GainSource};
+use crate::dataset::{BundleKind, ConditionId, Pair};
 use crate::fidelity::Mismatch;
+use crate::schedule::{Regression, Schedule, ScheduledQuantity};
+use crate::study::{Analysis, ConditionSwaps};
+use crate::uncertainty::{Bar, Part, Scalar};
 use crate::units::{db_to_ratio, number, s_to_ms};
 
-use super::Derivation;
-use super::context::{Context, digits, median_words, spread};
+use super::{Context, Derivation, ExplainTarget, digits, median_words, spread};
 
 /// `|H_ref| / |H_sim|` at each frequency.
 fn ratios(mismatch: &Mismatch) -> Vec<f64> {
@@ -167,5 +169,143 @@ pub(super) fn delay_bound(context: &Context<'_>) -> Derivation {
         rests_on,
         section: "M7",
         value,
+    }
+}
+
+/// The bar of a figure with its parts, and the figure of every swap; nothing where it has no bar, or that was not computed.
+pub(super) fn sure(analysis: &Analysis, asked: &ExplainTarget) -> Vec<String> {
+    let Some((condition, scalar)) = scalar_of(asked) else { return Vec::new() };
+    let Some(uncertainty) = &analysis.uncertainty else { return Vec::new() };
+    let Some(of) = uncertainty.conditions.get(&condition) else { return Vec::new() };
+    let Some(bar) = &of.bars[scalar] else { return Vec::new() };
+    let mut lines = bar_lines(bar, scalar, uncertainty.level);
+    lines.extend(swap_lines(analysis, condition, &of.swaps, scalar));
+    lines
+}
+
+/// The condition and the figure with a bar that is asked about.
+fn scalar_of(asked: &ExplainTarget) -> Option<(ConditionId, Scalar)> {
+    Some(match asked {
+        ExplainTarget::DeltaGain(id, pair) => (*id, Scalar::Gain(*pair)),
+        ExplainTarget::DeltaDelay(id, pair) => (*id, Scalar::Delay(*pair)),
+        ExplainTarget::NetGain(id, pair) => (*id, Scalar::NetGain(*pair)),
+        ExplainTarget::Gain(id, channel) => (*id, Scalar::ChannelGain(*channel)),
+        ExplainTarget::Delay(id, channel) => (*id, Scalar::ChannelDelay(*channel)),
+        _ => return None,
+    })
+}
+
+fn bar_lines(bar: &Bar, scalar: Scalar, level: f64) -> Vec<String> {
+    let told = |deviation: f64| {
+        if scalar.is_delay() { format!("{:.2} ms", s_to_ms(deviation)) } else { format!("{:.2} %", 100.0 * deviation) }
+    };
+    let part = |name: &str, part: Option<Part>| match part {
+        Some(part) => format!("{name}: {} ({:.1} degrees of freedom)", told(part.variance.sqrt()), part.degrees),
+        None => format!("{name}: not included"),
+    };
+    let whole = match (bar.half_width(level), bar.degrees()) {
+        (Some(half), Some(degrees)) => {
+            format!(
+                "bar of {:.0} %: ± {} = t({degrees:.1}) · {} (M13)",
+                100.0 * level,
+                told(half),
+                told(bar.deviation())
+            )
+        }
+        _ => "no bar (M13)".to_owned(),
+    };
+    let mut lines = vec![whole, part("trim", bar.trim), part("identification", bar.identification)];
+    lines.extend(bar.remarks().into_iter().map(str::to_owned));
+    if bar.left_out > 0 {
+        lines.push(format!("{} swaps have no such figure", bar.left_out));
+    }
+    lines
+}
+
+/// The figure with each other model in place of the representative.
+fn swap_lines(analysis: &Analysis, condition: ConditionId, swaps: &ConditionSwaps, scalar: Scalar) -> Vec<String> {
+    let Some(result) = analysis.condition(condition) else { return Vec::new() };
+    let line = |(kind, model, figures): &(BundleKind, usize, _)| {
+        let name = &result.condition.bundle(*kind)[*model].name;
+        let figures: &Option<std::sync::Arc<crate::uncertainty::Figures>> = figures;
+        let figure = figures.as_ref().and_then(|figures| figures[scalar]);
+        let words = match figure {
+            Some(figure) if scalar.is_delay() => format!("{:.2} ms", s_to_ms(figure)),
+            Some(figure) => format!("{:.4}", figure.exp()),
+            None => "none".to_owned(),
+        };
+        format!("with {kind} model {name}: {words}")
+    };
+    swaps.swaps.iter().map(line).collect()
+}
+
+pub(super) fn scheduled_gain(analysis: &Analysis, channel: Channel, airspeed_kt: f64) -> Option<Derivation> {
+    let schedule = analysis.schedule.as_ref().ok()?;
+    let at = schedule.at(airspeed_kt);
+    let (regression, value) = match channel {
+        Channel::Input(input) => (schedule.inputs.get(input)?, at.input_gains[input]),
+        Channel::Output(output) => (schedule.outputs.get(output)?, at.output_gains[output]),
+    };
+    let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+    let name = format!("k_{}", channel.name(&inputs, &outputs));
+    let symbol = match schedule.settings.quantity {
+        ScheduledQuantity::LnGain => format!("ln {name}"),
+        ScheduledQuantity::Gain => name.clone(),
+    };
+    let ids: Vec<String> = analysis.scheduled().iter().map(ToString::to_string).collect();
+    let mut with_numbers = fit_steps(schedule, regression, &symbol, airspeed_kt);
+    if schedule.settings.quantity == ScheduledQuantity::LnGain {
+        with_numbers.push(format!("{name} = e^({}) = {}", digits(value.ln()), digits(value)));
+    }
+    Some(Derivation {
+        title: format!("scheduled {name} at {} kt", number(airspeed_kt)),
+        equation: equation(regression, &symbol),
+        with_numbers,
+        rests_on: [
+            format!("the optima of the conditions {}", ids.join(", ")),
+            format!("airspeeds {} to {} kt", number(schedule.airspeeds.min_kt), number(schedule.airspeeds.max_kt)),
+        ]
+        .into_iter()
+        .chain(schedule.second.as_ref().map(|term| {
+            let (middle, unit) = (number(term.middle()), term.variable.unit());
+            format!("with {}, here in the middle of its range, {middle} {unit}", term.variable)
+        }))
+        .collect(),
+        section: "M11",
+        value,
+    })
+}
+
+fn equation(regression: &Regression, symbol: &str) -> String {
+    match regression {
+        Regression::Polynomial { .. } => {
+            format!("{symbol} = c₀ + c₁ v + c₂ v² + …, by least squares; v = (V − mean V) / (half the range of V)")
+        }
+        Regression::Table { .. } => format!("{symbol} linear between the means of each cluster of airspeeds"),
+    }
+}
+
+fn fit_steps(schedule: &Schedule, regression: &Regression, symbol: &str, airspeed_kt: f64) -> Vec<String> {
+    const POWERS: [&str; 4] = ["", " v", " v²", " v³"];
+    let airspeeds = &schedule.airspeeds;
+    let fitted = digits(regression.at(airspeeds, airspeed_kt));
+    match regression {
+        Regression::Polynomial { coefficients } => {
+            let v = airspeeds.scaled(airspeed_kt);
+            let terms =
+                coefficients.iter().zip(POWERS).map(|(coefficient, power)| format!("{}{power}", digits(*coefficient)));
+            let inside = airspeed_kt.clamp(airspeeds.min_kt, airspeeds.max_kt);
+            let (mean_kt, half_kt) = (digits(airspeeds.mean_kt), digits(airspeeds.half_range_kt));
+            vec![
+                format!("v = ({} − {mean_kt}) / {half_kt} = {}", number(inside), digits(v)),
+                format!("{symbol} = {} = {fitted}", terms.collect::<Vec<_>>().join(" + ").replace("+ −", "− ")),
+            ]
+        }
+        Regression::Table { airspeeds_kt, values } => {
+            let after = airspeeds_kt.partition_point(|&at| at < airspeed_kt).min(values.len() - 1);
+            let point = |at: usize| format!("{} at {} kt", digits(values[at]), digits(airspeeds_kt[at]));
+            let between = if after == 0 { point(0) } else { format!("{} and {}", point(after - 1), point(after)) };
+            vec![format!("{symbol} between {between} = {fitted}")]
+        }
     }
 }

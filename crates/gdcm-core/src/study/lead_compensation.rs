@@ -1,0 +1,303 @@
+//! What lead filters leave of the difference between two representatives (M15.5).
+
+use std::sync::Arc;
+
+use crate::correction::{
+    Bounds, Channel, ChannelLeads, DELAY_AGREEMENT_S, LeadDesign, LeadSettings, Problem, ProblemError, ProofBudget,
+    Quantity, delta_gains, solve,
+};
+use crate::dataset::{Pair, PairTable};
+use crate::fidelity::{Cost, CostAverage, Mismatch};
+use crate::response::{GainDelay, LeadFilter};
+use crate::schedule::CostChange;
+use crate::uncertainty::Scalar;
+use crate::units::{number, ratio_to_db, s_to_ms, signed, telling};
+
+use super::{Comparison, ConditionAnalysis, PhaseCorrection, Remark, RemarkKind, Settings, Study, Uncertainty};
+
+/// The physics representative with the leads of its channels against the identified one: what the gains are found on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeadCompensated {
+    /// The signed delays with their filters.
+    pub leads: ChannelLeads,
+    /// Difference of every response that both models have; the pure delays among the leads are not in it.
+    pub mismatch: PairTable<Option<Mismatch>>,
+    /// G of the led representative, `[output, input]`.
+    pub gain: PairTable<Option<f64>>,
+}
+
+impl LeadCompensated {
+    pub(super) fn of(mismatch: &PairTable<Option<Mismatch>>, leads: &ChannelLeads) -> Arc<Self> {
+        let curves = leads.curves();
+        let mismatch = mismatch.map(|pair, mismatch| {
+            let lead = curves.on(pair);
+            lead.map_or_else(
+                || mismatch.clone(),
+                |lead| mismatch.as_ref().map(|mismatch| mismatch.multiplied(&lead.magnitude_db, &lead.phase)),
+            )
+        });
+        // A pure delay leaves every magnitude.
+        let gain = delta_gains(&mismatch);
+        Arc::new(Self { leads: leads.clone(), mismatch, gain })
+    }
+
+    /// J of every response under what the gains and the pure delays, `correction`, add to the leads.
+    pub(super) fn cost(
+        &self,
+        correction: impl Fn(Pair) -> Option<GainDelay>,
+        omega: &[f64],
+        average: CostAverage,
+    ) -> PairTable<Option<Cost>> {
+        self.mismatch.map(|pair, mismatch| Some(mismatch.as_ref()?.cost(omega, correction(pair)?, average)))
+    }
+}
+
+/// The mean J of the held responses, all of which want lead: as corrected, and with leads too.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeadOffer {
+    /// Under the present correction.
+    pub without: f64,
+    /// With a lead filter in each channel that wants one: the same gains, of which such filters take little.
+    pub with: f64,
+}
+
+/// What an offer depends on, besides the comparison of the representatives.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct OfferKey {
+    held: PairTable<bool>,
+    fitted: PairTable<bool>,
+    upper_s: f64,
+    lead: LeadSettings,
+}
+
+impl OfferKey {
+    pub(super) fn of(settings: &Settings, held: &PairTable<bool>, upper_s: f64) -> Self {
+        Self { held: held.clone(), fitted: settings.fitted.clone(), upper_s, lead: settings.lead }
+    }
+
+    /// J_phase of each response that leads would leave; none where not all held responses want lead.
+    ///
+    /// The weight of the regularisation is 1 whatever delays are asked with: it decides on shares, not on what is held.
+    pub(super) fn phase_left(
+        &self,
+        comparison: &Comparison,
+        (omega, average): (&[f64], CostAverage),
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<Arc<PairTable<Option<f64>>>>, ProblemError> {
+        let delta_s = &comparison.delta.band_delay_s;
+        let mut held_s = self.held.marked().map(|pair| delta_s[pair].unwrap_or_default()).peekable();
+        if held_s.peek().is_none() || !held_s.all(|delay_s| delay_s < 0.0) {
+            return Ok(None);
+        }
+        let design = Arc::new(LeadDesign::new(self.lead, omega.into()));
+        let problem = Problem {
+            quantity: Quantity::SignedDelay,
+            delta: delta_s.clone(),
+            constrained: self.held.clone(),
+            fitted: self.fitted.clone(),
+            bounds: Bounds { lower: design.lower_s(), upper: self.upper_s },
+            alpha: 1.0,
+            agreement: DELAY_AGREEMENT_S,
+        };
+        let solution = solve(&problem, ProofBudget::default(), stop)?;
+        let leads = ChannelLeads::new(design, solution.inputs, solution.outputs);
+        let [inputs_s, outputs_s] = leads.delays_s();
+        let held =
+            comparison.representative.mismatch.map(|pair, mismatch| mismatch.clone().filter(|_| self.held[pair]));
+        let delay = |pair: Pair| GainDelay::new(1.0, inputs_s[pair.input] + outputs_s[pair.output]);
+        let left = LeadCompensated::of(&held, &leads).cost(|pair| Some(delay(pair)), omega, average);
+        Ok(Some(Arc::new(left.map(|_, cost| cost.map(|cost| cost.phase)))))
+    }
+}
+
+impl LeadOffer {
+    /// The offer, where leads would leave J at least a tenth less.
+    pub(super) fn of(phase_left: &PairTable<Option<f64>>, cost: &PairTable<Option<CostChange>>) -> Option<Self> {
+        const WORTH: f64 = 0.9;
+        let of_both = |(pair, left): (Pair, &Option<f64>)| {
+            let (left, now) = ((*left)?, cost[pair]?.corrected);
+            Some([now.total(), now.magnitude + left])
+        };
+        let both: Vec<[f64; 2]> = phase_left.iter().filter_map(of_both).collect();
+        let mean = |at: usize| both.iter().map(|of| of[at]).sum::<f64>() / both.len() as f64;
+        let offer = Self { without: mean(0), with: mean(1) };
+        (!both.is_empty() && offer.with < WORTH * offer.without).then_some(offer)
+    }
+}
+
+/// Two figures of D this far apart \[s\] are not those of a delay.
+const APART_S: f64 = 0.02;
+/// Signed delays below this \[s\] are nothing to correct.
+const NOTHING_S: f64 = 2e-3;
+/// Multiple of the band's top at which the price is told.
+const ABOVE: f64 = 10.0;
+
+/// The responses and the channels that get lead, in words: "P from LAT wants 65 ms of lead over the band: 24 on P, 41 on LAT"; "LAT: as if
+/// a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB above the band". What a response wants has its bar, where `sure` knows
+/// it: "65 ± 4 ms" (M13).
+pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncertainty>) -> Vec<String> {
+    let Some(led) = &result.led else { return Vec::new() };
+    let (inputs, outputs) = study.dataset.names_of_channels();
+    let top = study.settings.band.max();
+    let half_ms = |pair: Pair| {
+        let bar = sure?.conditions.get(&result.condition.id())?.bars[Scalar::Delay(pair)].as_ref()?;
+        Some(format!(" ± {}", telling(s_to_ms(bar.half_width(sure?.level)?), 0)))
+    };
+    let wants = |pair: Pair| {
+        let (output, input) = (Channel::Output(pair.output), Channel::Input(pair.input));
+        let wanted_s = result.wanted_delay_s(pair)?;
+        let ms = |tau_s: f64| telling(s_to_ms(tau_s.abs()), 0);
+        let part = |channel: Channel| {
+            let tau_s = led.leads.tau_s(channel);
+            let sign = if (tau_s > 0.0) == (wanted_s > 0.0) || tau_s == 0.0 { "" } else { "−" };
+            format!("{sign}{} on {}", ms(tau_s), channel.name(&inputs, &outputs))
+        };
+        let gain_db: f64 = [output, input]
+            .iter()
+            .filter_map(|channel| led.leads.filter(*channel))
+            .map(LeadFilter::gain_at_infinity_db)
+            .sum();
+        let price = if gain_db > 0.05 { format!("; {} dB above the band", signed(gain_db, 1)) } else { String::new() };
+        Some(format!(
+            "{} from {} wants {}{} ms of {} over the band: {}, {}{price}",
+            output.name(&inputs, &outputs),
+            input.name(&inputs, &outputs),
+            ms(wanted_s),
+            half_ms(pair).unwrap_or_default(),
+            if wanted_s < 0.0 { "lead" } else { "delay" },
+            part(output),
+            part(input)
+        ))
+    };
+    let channels = (0..inputs.len()).map(Channel::Input).chain((0..outputs.len()).map(Channel::Output));
+    let filters: Vec<(Channel, LeadFilter)> =
+        channels.filter_map(|channel| Some((channel, led.leads.filter(channel)?))).collect();
+    let replaced = filters.iter().map(|(channel, filter)| {
+        let at_above = filter.magnitude_db(ABOVE * top);
+        format!(
+            "{}: {}; {} dB at {} rad/s",
+            channel.name(&inputs, &outputs),
+            servo_words(*filter),
+            signed(at_above, 1),
+            number(ABOVE * top)
+        )
+    });
+    let states: usize = filters.iter().map(|(_, filter)| filter.order().number()).sum();
+    let price = (states > 0)
+        .then(|| format!("The leads add {states} states. Do not use the corrected model above {} rad/s.", number(top)));
+    result.held().marked().filter_map(wants).chain(replaced).chain(price).collect()
+}
+
+/// "as if a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB above the band".
+pub fn servo_words(filter: LeadFilter) -> String {
+    format!(
+        "as if a servo of {} rad/s were replaced by one of {} rad/s; {} dB above the band",
+        telling(filter.zero_rad_s(), 0),
+        telling(filter.lag_rad_s(), 0),
+        signed(filter.gain_at_infinity_db(), 1)
+    )
+}
+
+/// What has to be known of leads, where they are asked for, in words (M15.6).
+pub fn lead_cautions(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
+    let remarks = if result.led.is_some() { lead_remarks(study, result) } else { Vec::new() };
+    remarks.into_iter().filter(|remark| remark.kind != RemarkKind::Good).map(|remark| remark.text).collect()
+}
+
+/// What leads do and what has to be asked before them; of a study without leads, whether they would help.
+pub(super) fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
+    let caution = |text: String| Remark::new(RemarkKind::Caution, text);
+    let mut remarks: Vec<Remark> = common_lead(result).map(caution).into_iter().collect();
+    if study.settings.phase == PhaseCorrection::Lead {
+        remarks.extend(achieved(study, result));
+        remarks.extend(first_order_words(study, result).map(caution));
+    }
+    remarks.extend(not_of_a_delay(study, result).map(caution));
+    remarks.extend(result.offer.map(|offer| {
+        let (without, with) = (telling(offer.without, 0), telling(offer.with, 0));
+        let text = format!(
+            "All held responses want lead: with a delay or lead in each channel their J would be about {with} in the mean, in place \
+             of {without}."
+        );
+        Remark { phase: Some(PhaseCorrection::Lead), ..Remark::new(RemarkKind::Caution, text) }
+    }));
+    remarks
+}
+
+/// That all held responses want about the same lead, and what to check first.
+fn common_lead(result: &ConditionAnalysis) -> Option<String> {
+    let held = result.held().marked();
+    let mut wanted_s: Vec<f64> = held.filter_map(|pair| result.comparison.delta.band_delay_s[pair]).collect();
+    let (least, most) = wanted_s.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(*at), b.max(*at)));
+    let middle = crate::response::median(&mut wanted_s);
+    let is_common = wanted_s.len() > 1 && most < 0.0 && most - least <= 0.5 * middle.abs() && -middle >= NOTHING_S;
+    is_common.then(|| {
+        format!(
+            "All held responses want about {} ms of lead: check first the time alignment of the records, the simulation's \
+             integration and sampling delay, then servo and sensor models; a common lag is better taken out where it arises than \
+             corrected.",
+            telling(-s_to_ms(middle), 0)
+        )
+    })
+}
+
+/// Whether every held response gets what it wants; which does not and why.
+fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
+    let (held, delays) = (result.held().marked().count(), &result.delays);
+    let all = delays.inputs.iter().chain(&delays.outputs);
+    if all.clone().all(|tau_s| tau_s.abs() < NOTHING_S) {
+        let text = "Nothing to do for the phase: every delay or lead is less than 2 ms.".to_owned();
+        return vec![Remark::new(RemarkKind::Good, text)];
+    }
+    if delays.unmatched.is_empty() {
+        let text = match held {
+            0 => "No delay or lead is held.".to_owned(),
+            1 => "The held response gets the delay or lead that it wants.".to_owned(),
+            count => format!("All {count} held responses get the delay or lead that they want."),
+        };
+        return vec![Remark::new(RemarkKind::Good, text)];
+    }
+    let (inputs, outputs) = study.dataset.names_of_channels();
+    let top = study.settings.band.max();
+    let misses: Vec<String> =
+        delays.unmatched.iter().map(|unmatched| unmatched.words(top, &inputs, &outputs)).collect();
+    let conflicts = delays.conflicts.iter().map(|conflict| conflict.words(&inputs, &outputs));
+    std::iter::once(misses.join(" ")).chain(conflicts).map(|text| Remark::new(RemarkKind::Caution, text)).collect()
+}
+
+/// What filters of first order add to the gain within the band, which the gains take back.
+fn first_order_words(study: &Study, result: &ConditionAnalysis) -> Option<String> {
+    let led = result.led.as_ref()?;
+    let rises = result.held().marked().filter_map(|pair| {
+        let rise = result.comparison.delta.gain[pair]? / led.gain[pair]?;
+        Some((pair, ratio_to_db(rise)))
+    });
+    let (pair, rise_db) = rises.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    (rise_db.abs() >= 0.05).then(|| {
+        format!(
+            "The lead filters raise the gain within the band, which the gains take back: by up to {} dB ({}).",
+            telling(rise_db.abs(), 1),
+            study.dataset.pair_name(pair)
+        )
+    })
+}
+
+/// The held responses of which the two figures of D are far apart.
+fn not_of_a_delay(study: &Study, result: &ConditionAnalysis) -> Option<String> {
+    let delta = &result.comparison.delta;
+    let apart = result.held().marked().filter_map(|pair| {
+        let (median_s, band_s) = (delta.delay_s[pair]?, delta.band_delay_s[pair]?);
+        let ms = |delay_s: f64| signed(s_to_ms(delay_s), 0);
+        let name = study.dataset.pair_name(pair);
+        ((median_s - band_s).abs() > APART_S)
+            .then(|| format!("{name} {} ms by eq. (9), {} ms over the band", ms(median_s), ms(band_s)))
+    });
+    let apart: Vec<String> = apart.collect();
+    (!apart.is_empty()).then(|| {
+        let lead = if study.settings.phase == PhaseCorrection::Lead { ": no lead filter mends it" } else { "" };
+        format!(
+            "The missing phase is not that of a delay, but of a zero or a mode in the band{lead}: {}.",
+            apart.join("; ")
+        )
+    })
+}

@@ -1,0 +1,289 @@
+//! Carrying the decisions of a study over to another state of its dataset.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+use std::sync::Arc;
+
+use crate::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId, PairTable};
+
+use super::{AdoptedModels, ConditionChoice, Edit, Settings, Study, Variant};
+
+/// One thing in which a dataset differs from the one that a study was made with, or a decision that has no place in it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Difference {
+    /// The file is another one, and the study does not say what was in the file that it was saved with.
+    AnotherFile {
+        /// SHA-256 when the study was saved.
+        expected: String,
+        /// SHA-256 now.
+        found: String,
+    },
+    /// The dataset has a condition that it did not have.
+    ConditionAdded(ConditionId),
+    /// The dataset has lost a condition.
+    ConditionRemoved(ConditionId),
+    /// A condition is flown at another airspeed.
+    AirspeedChanged {
+        /// The condition.
+        condition: ConditionId,
+        /// The airspeed before \[kt\].
+        before_kt: f64,
+        /// The airspeed now \[kt\].
+        now_kt: f64,
+    },
+    /// A bundle has a model that it did not have.
+    ModelAdded(ModelId),
+    /// A bundle has lost a model.
+    ModelRemoved(ModelId),
+    /// A model has other numbers, other bands, or another trim.
+    ModelChanged(ModelId),
+    /// A decision no longer applies.
+    NotApplied {
+        /// The decision in a few words: "reject nominal (condition 10)".
+        decision: String,
+        /// Why not.
+        why: String,
+    },
+}
+
+impl Difference {
+    /// A decision of a variant that no longer applies.
+    fn of_variant(self, name: &str) -> Self {
+        match self {
+            Difference::NotApplied { decision, why } => {
+                Difference::NotApplied { decision: format!("{decision}, of variant \"{name}\""), why }
+            }
+            other => other,
+        }
+    }
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Difference::AnotherFile { expected, found } => write!(
+                formatter,
+                "the dataset has changed since the study was saved, and the study does not say what it held: expected \
+                 SHA-256 {expected}, found {found}"
+            ),
+            Difference::ConditionAdded(id) => write!(formatter, "condition {id} was added"),
+            Difference::ConditionRemoved(id) => write!(formatter, "condition {id} was removed"),
+            Difference::AirspeedChanged { condition, before_kt, now_kt } => {
+                write!(formatter, "condition {condition} is flown at {now_kt} kt, was {before_kt} kt")
+            }
+            Difference::ModelAdded(id) => write!(formatter, "{id} was added"),
+            Difference::ModelRemoved(id) => write!(formatter, "{id} was removed"),
+            Difference::ModelChanged(id) => write!(formatter, "{id} has changed"),
+            Difference::NotApplied { decision, why } => {
+                write!(formatter, "a decision no longer applies: {decision}: {why}")
+            }
+        }
+    }
+}
+
+/// Every decision of a study by the names of channels, conditions and models: it outlives the dataset that it was taken about.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decisions {
+    /// Settings; which responses are held and fitted is in the two lists instead.
+    pub settings: Settings,
+    /// Responses held exactly: output, input.
+    pub constrained: Vec<(String, String)>,
+    /// Responses that the objective ignores: output, input.
+    pub ignored: Vec<(String, String)>,
+    /// Choices in each condition.
+    pub choices: BTreeMap<ConditionId, ConditionChoice>,
+    /// Models taken in place of those of the file.
+    pub taken: Vec<(ConditionId, Arc<AdoptedModels>)>,
+    /// The decisions kept under names; these have none of their own.
+    pub variants: Vec<(String, Decisions)>,
+}
+
+impl Decisions {
+    /// The decisions of a study.
+    pub fn of(study: &Study) -> Self {
+        let dataset = &study.dataset;
+        let names = |table: &PairTable<bool>| table.marked().map(|pair| dataset.channel_names(pair)).collect();
+        Self {
+            settings: study.settings.clone(),
+            constrained: names(&study.settings.constrained),
+            ignored: names(&study.settings.fitted.map(|_, fitted| !fitted)),
+            choices: study.choices.clone(),
+            taken: study.taken_models().map(|(id, taken)| (id, Arc::clone(taken))).collect(),
+            variants: study
+                .variants
+                .iter()
+                .filter_map(|variant| Some((variant.name.clone(), Self::of(&study.of_variant(&variant.name)?))))
+                .collect(),
+        }
+    }
+
+    /// The study of `dataset` with every decision that applies to it, and those that do not.
+    pub fn applied_to(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
+        let mut study = Study::new(dataset);
+        let mut differences = Vec::new();
+        let constrained = marked("hold", &self.constrained, &study, &mut differences);
+        let fitted = marked("ignore", &self.ignored, &study, &mut differences).map(|_, ignored| !ignored);
+        study.settings = Settings { constrained, fitted, ..self.settings.clone() };
+        for taken in &self.taken {
+            let edit = Edit::TakeModels(vec![taken.clone()]);
+            carry_out(&edit, &mut study, &mut differences);
+        }
+        for (&condition, choice) in &self.choices {
+            take_choice(&mut study, condition, choice, &mut differences);
+        }
+        for (name, decisions) in &self.variants {
+            let (of_variant, not_applied) = decisions.applied_to(Arc::clone(&study.dataset));
+            differences.extend(not_applied.into_iter().map(|difference| difference.of_variant(name)));
+            let Study { settings, choices, .. } = of_variant;
+            if study.variant(name).is_none() {
+                study.variants.push(Arc::new(Variant { name: name.clone(), settings, choices }));
+            }
+        }
+        (study, differences)
+    }
+}
+
+/// The listed responses as a table.
+fn marked(
+    verb: &str,
+    listed: &[(String, String)],
+    study: &Study,
+    differences: &mut Vec<Difference>,
+) -> PairTable<bool> {
+    let mut table = study.settings.constrained.map(|_, _| false);
+    for (output, input) in listed {
+        match study.dataset.find_pair(output, input) {
+            Some(pair) => table[pair] = true,
+            None => differences.push(Difference::NotApplied {
+                decision: format!("{verb} {input} → {output}"),
+                why: "the dataset has no such response".to_owned(),
+            }),
+        }
+    }
+    table
+}
+
+/// Every choice goes the way of the engineer's own decisions, so that nothing comes in that could not be decided.
+fn take_choice(study: &mut Study, condition: ConditionId, choice: &ConditionChoice, differences: &mut Vec<Difference>) {
+    let mut edits = Vec::new();
+    if !choice.scheduled {
+        edits.push(Edit::SetScheduled { condition, scheduled: false });
+    }
+    for kind in BundleKind::BOTH {
+        let id = |name: &String| ModelId::new(condition, kind, name);
+        let of_bundle = choice.bundle(kind);
+        edits.extend(of_bundle.rejected.iter().map(|name| Edit::Reject(id(name))));
+        let reasons = of_bundle.reasons.iter().filter(|(name, _)| of_bundle.rejected.contains(*name));
+        edits.extend(reasons.map(|(name, reason)| Edit::SetReason(id(name), reason.clone())));
+        edits.extend(of_bundle.pinned.iter().map(|name| Edit::Pin(id(name))));
+    }
+    edits.iter().for_each(|edit| carry_out(edit, study, differences));
+}
+
+fn carry_out(edit: &Edit, study: &mut Study, differences: &mut Vec<Difference>) {
+    if let Err(refusal) = study.apply(edit) {
+        differences.push(Difference::NotApplied { decision: edit.label(study), why: refusal.to_string() });
+    }
+}
+
+impl Study {
+    /// This study of another state of its dataset: with every decision that still applies, and all that is different.
+    pub fn carried_over(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
+        let mut differences = Inventory::of(self.file_dataset()).differences(&dataset);
+        let (study, not_applied) = Decisions::of(self).applied_to(dataset);
+        differences.extend(not_applied);
+        (study, differences)
+    }
+}
+
+impl Inventory {
+    /// What is different in `dataset` from the one that this is the inventory of.
+    pub fn differences(&self, dataset: &Dataset) -> Vec<Difference> {
+        let now = Inventory::of(dataset);
+        let mut differences = Vec::new();
+        let ids: BTreeSet<ConditionId> = self.conditions.keys().chain(now.conditions.keys()).copied().collect();
+        for id in ids {
+            match (self.conditions.get(&id), now.conditions.get(&id)) {
+                (Some(_), None) => differences.push(Difference::ConditionRemoved(id)),
+                (None, Some(_)) => differences.push(Difference::ConditionAdded(id)),
+                (Some(before), Some(now)) => {
+                    let (before_kt, now_kt) = (before.airspeed_kt, now.airspeed_kt);
+                    if before_kt != now_kt {
+                        differences.push(Difference::AirspeedChanged { condition: id, before_kt, now_kt });
+                    }
+                    for kind in BundleKind::BOTH {
+                        compare_bundles((id, kind), before.bundle(kind), now.bundle(kind), &mut differences);
+                    }
+                }
+                (None, None) => {}
+            }
+        }
+        differences
+    }
+}
+
+fn compare_bundles(
+    (condition, kind): (ConditionId, BundleKind),
+    before: &BTreeMap<String, String>,
+    now: &BTreeMap<String, String>,
+    differences: &mut Vec<Difference>,
+) {
+    let names: BTreeSet<&String> = before.keys().chain(now.keys()).collect();
+    for name in names {
+        let id = ModelId::new(condition, kind, name);
+        match (before.get(name), now.get(name)) {
+            (Some(before), Some(now)) if before == now => {}
+            (Some(_), Some(_)) => differences.push(Difference::ModelChanged(id)),
+            (Some(_), None) => differences.push(Difference::ModelRemoved(id)),
+            (None, _) => differences.push(Difference::ModelAdded(id)),
+        }
+    }
+}
+
+/// The models of one condition: name, and fingerprint of the numbers, the bands and the trim.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConditionInventory {
+    /// True airspeed \[kt\].
+    pub airspeed_kt: f64,
+    /// The physics models.
+    pub physics: BTreeMap<String, String>,
+    /// The identified models.
+    pub identified: BTreeMap<String, String>,
+}
+
+impl ConditionInventory {
+    fn of(condition: &Condition) -> Self {
+        let models = |kind| {
+            let models = condition.bundle(kind).iter();
+            models.map(|model| (model.name.clone(), model.fingerprint())).collect()
+        };
+        Self {
+            airspeed_kt: condition.flight_state().airspeed_kt,
+            physics: models(BundleKind::Physics),
+            identified: models(BundleKind::Identified),
+        }
+    }
+
+    /// The models of one bundle.
+    pub fn bundle(&self, kind: BundleKind) -> &BTreeMap<String, String> {
+        match kind {
+            BundleKind::Physics => &self.physics,
+            BundleKind::Identified => &self.identified,
+        }
+    }
+}
+
+/// What a dataset holds, small enough to stand in the file of a study: of it, a study tells what has changed since.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Inventory {
+    /// Each condition.
+    pub conditions: BTreeMap<ConditionId, ConditionInventory>,
+}
+
+impl Inventory {
+    /// The inventory of a dataset.
+    pub fn of(dataset: &Dataset) -> Self {
+        let conditions = dataset.conditions().iter();
+        Self { conditions: conditions.map(|condition| (condition.id(), ConditionInventory::of(condition))).collect() }
+    }
+}

@@ -1,0 +1,335 @@
+//! What the engineer decided about a dataset.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use crate::dataset::{BundleKind, ConditionId, Dataset, ModelId};
+
+use super::{Edit, EditRefusal, Settings, Taken, check_length};
+
+/// The engineer's choices in one bundle.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct BundleChoice {
+    /// Names of the rejected models.
+    pub rejected: BTreeSet<String>,
+    /// Why, in the engineer's words, for those of them where that was said.
+    pub reasons: BTreeMap<String, String>,
+    /// Name of the model that represents the bundle in place of the medoid; never a rejected one.
+    pub pinned: Option<String>,
+}
+
+impl BundleChoice {
+    const fn none() -> Self {
+        Self { rejected: BTreeSet::new(), reasons: BTreeMap::new(), pinned: None }
+    }
+
+    /// Puts a model back; the reason goes with the rejection.
+    pub(super) fn restore(&mut self, name: &str) {
+        self.rejected.remove(name);
+        self.reasons.remove(name);
+    }
+
+    fn restore_all(&mut self) {
+        self.rejected.clear();
+        self.reasons.clear();
+    }
+}
+
+/// The engineer's choices in one condition.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct ConditionChoice {
+    /// Choices among the physics models.
+    pub physics: BundleChoice,
+    /// Choices among the identified models.
+    pub identified: BundleChoice,
+    /// Whether the condition enters the schedule.
+    pub scheduled: bool,
+    /// Whether the condition is held out: analysed and assessed, but kept from the schedule, which it is to judge.
+    pub held_out: bool,
+}
+
+impl Default for ConditionChoice {
+    fn default() -> Self {
+        Self::none()
+    }
+}
+
+impl ConditionChoice {
+    /// Every model kept, none pinned, the condition scheduled.
+    const fn none() -> Self {
+        Self { physics: BundleChoice::none(), identified: BundleChoice::none(), scheduled: true, held_out: false }
+    }
+
+    /// Puts every model of both bundles back.
+    pub(super) fn restore_all(&mut self) {
+        self.physics.restore_all();
+        self.identified.restore_all();
+    }
+
+    /// What of the choices an analysis depends on: not the words that they were explained with.
+    pub(super) fn without_reasons(&self) -> Self {
+        let mut choice = self.clone();
+        choice.physics.reasons.clear();
+        choice.identified.reasons.clear();
+        choice
+    }
+
+    /// What of the choices the comparison of the models depends on.
+    pub(super) fn of_models(&self) -> Self {
+        Self { scheduled: true, held_out: false, ..self.without_reasons() }
+    }
+
+    /// Whether the schedule is made of the condition: chosen for it, and not held out.
+    pub fn is_in_schedule(&self) -> bool {
+        self.scheduled && !self.held_out
+    }
+
+    /// The choices in one bundle.
+    pub fn bundle(&self, kind: BundleKind) -> &BundleChoice {
+        match kind {
+            BundleKind::Physics => &self.physics,
+            BundleKind::Identified => &self.identified,
+        }
+    }
+
+    /// The choices in one bundle, to change.
+    pub fn bundle_mut(&mut self, kind: BundleKind) -> &mut BundleChoice {
+        match kind {
+            BundleKind::Physics => &mut self.physics,
+            BundleKind::Identified => &mut self.identified,
+        }
+    }
+}
+
+/// A study: a dataset, and every decision about it. What is saved, and what undo goes back over.
+#[derive(Clone, Debug)]
+pub struct Study {
+    /// The models.
+    pub dataset: Arc<Dataset>,
+    /// Every setting that changes a result.
+    pub settings: Settings,
+    /// Choices in each condition of the dataset.
+    pub choices: BTreeMap<ConditionId, ConditionChoice>,
+    /// Other decisions about the dataset, kept under their names, in the order in which they were kept. No analysis depends on
+    /// them.
+    pub variants: Vec<Arc<Variant>>,
+    /// Models taken in place of those of the dataset's file; `dataset` has them.
+    pub(super) taken: Option<Taken>,
+}
+
+impl PartialEq for Study {
+    /// Decisions first: the numbers of two datasets are compared only where these are not one and the same.
+    fn eq(&self, other: &Self) -> bool {
+        let decisions =
+            (&self.settings, &self.choices, &self.variants) == (&other.settings, &other.choices, &other.variants);
+        decisions && (Arc::ptr_eq(&self.dataset, &other.dataset) || self.dataset == other.dataset)
+    }
+}
+
+impl Study {
+    /// The study of a dataset before any decision.
+    pub fn new(dataset: Arc<Dataset>) -> Self {
+        let settings = Settings::of(&dataset);
+        let ids = dataset.conditions().iter().map(|condition| condition.id());
+        let choices = ids.map(|id| (id, ConditionChoice::default())).collect();
+        Self { dataset, settings, choices, variants: Vec::new(), taken: None }
+    }
+
+    /// The choices in one condition; those of a condition that the dataset does not have are none.
+    pub fn choice(&self, condition: ConditionId) -> &ConditionChoice {
+        static NONE: ConditionChoice = ConditionChoice::none();
+        self.choices.get(&condition).unwrap_or(&NONE)
+    }
+
+    /// Whether a model is rejected.
+    pub fn is_rejected(&self, id: &ModelId) -> bool {
+        self.choice(id.condition).bundle(id.bundle).rejected.contains(&id.name)
+    }
+
+    /// Why a model is rejected, where the engineer has said so.
+    pub fn reason(&self, id: &ModelId) -> Option<&str> {
+        self.choice(id.condition).bundle(id.bundle).reasons.get(&id.name).map(String::as_str)
+    }
+
+    /// Names of the rejected models of one condition in file order, the physics bundle first.
+    pub fn rejected_names(&self, condition: ConditionId) -> Vec<&str> {
+        let of = |kind| {
+            let rejected = &self.choice(condition).bundle(kind).rejected;
+            let models = self.dataset.condition(condition).map_or(&[][..], |found| found.bundle(kind));
+            models.iter().map(|model| model.name.as_str()).filter(|name| rejected.contains(*name))
+        };
+        BundleKind::BOTH.into_iter().flat_map(of).collect()
+    }
+}
+
+/// Characters that the name of a variant may have.
+pub const LONGEST_VARIANT_NAME: usize = 60;
+
+/// All decisions of a study at one time, under a name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variant {
+    /// The name, unique in its study.
+    pub name: String,
+    /// Every setting.
+    pub settings: Settings,
+    /// Choices in each condition.
+    pub choices: BTreeMap<ConditionId, ConditionChoice>,
+}
+
+impl Study {
+    /// The variant of this name.
+    pub fn variant(&self, name: &str) -> Option<&Variant> {
+        self.variants.iter().find(|variant| variant.name == name).map(Arc::as_ref)
+    }
+
+    /// The study with the decisions of one of its variants in place of the present ones, and no variants of its own: what is
+    /// analysed to compare them.
+    pub fn of_variant(&self, name: &str) -> Option<Study> {
+        let Variant { settings, choices, .. } = self.variant(name)?;
+        let dataset = Arc::clone(&self.dataset);
+        Some(Study {
+            dataset,
+            settings: settings.clone(),
+            choices: choices.clone(),
+            variants: Vec::new(),
+            taken: self.taken.clone(),
+        })
+    }
+
+    pub(super) fn keep_variant(&mut self, name: &str) -> Result<(), EditRefusal> {
+        let name = self.new_variant_name(name)?;
+        let (settings, choices) = (self.settings.clone(), self.choices.clone());
+        self.variants.push(Arc::new(Variant { name, settings, choices }));
+        Ok(())
+    }
+
+    pub(super) fn take_variant(&mut self, name: &str) -> Result<(), EditRefusal> {
+        let index = self.variant_index(name)?;
+        let Variant { settings, choices, .. } = self.variants[index].as_ref();
+        (self.settings, self.choices) = (settings.clone(), choices.clone());
+        Ok(())
+    }
+
+    pub(super) fn remove_variant(&mut self, name: &str) -> Result<(), EditRefusal> {
+        let index = self.variant_index(name)?;
+        self.variants.remove(index);
+        Ok(())
+    }
+
+    pub(super) fn rename_variant(&mut self, from: &str, to: &str) -> Result<(), EditRefusal> {
+        let index = self.variant_index(from)?;
+        if from == to.trim() {
+            return Ok(());
+        }
+        let name = self.new_variant_name(to)?;
+        self.variants[index] = Arc::new(Variant { name, ..self.variants[index].as_ref().clone() });
+        Ok(())
+    }
+
+    fn variant_index(&self, name: &str) -> Result<usize, EditRefusal> {
+        let index = self.variants.iter().position(|variant| variant.name == name);
+        index.ok_or_else(|| EditRefusal::NoVariant { name: name.to_owned() })
+    }
+
+    fn new_variant_name(&self, name: &str) -> Result<String, EditRefusal> {
+        let name = name.trim();
+        check_length("name of a variant", name, LONGEST_VARIANT_NAME)?;
+        match (name.is_empty(), self.variant(name)) {
+            (true, _) => Err(EditRefusal::VariantWithoutName),
+            (_, Some(_)) => Err(EditRefusal::VariantExists { name: name.to_owned() }),
+            (_, None) => Ok(name.to_owned()),
+        }
+    }
+}
+
+/// Steps kept; a snapshot is a few kilobytes, for the models are shared.
+const MOST_STEPS: usize = 500;
+
+#[derive(Clone, Debug)]
+struct Step {
+    label: String,
+    study: Study,
+}
+
+/// What undo and redo go back over: whole studies, each with the label of the decision between it and the next.
+#[derive(Clone, Debug, Default)]
+pub struct History {
+    past: Vec<Step>,
+    future: Vec<Step>,
+    /// What the last decision took from the future.
+    lost: Vec<Step>,
+    /// The last decision, while the next may still be a part of it (a slider being dragged).
+    open: Option<Edit>,
+}
+
+impl History {
+    /// Keeps `before`, the study that `edit` is about to change (or has just changed).
+    ///
+    /// A decision that continues the last one (see [`Edit::continues`]) adds no step until [`History::seal`].
+    pub fn record(&mut self, before: Study, edit: &Edit) {
+        let lost = std::mem::take(&mut self.future);
+        if self.open.as_ref().is_some_and(|open| edit.continues(open)) {
+            return;
+        }
+        self.lost = lost;
+        self.push(Step { label: edit.label(&before), study: before });
+        self.open = Some(edit.clone());
+    }
+
+    /// Keeps `before`, the study of the dataset as it was before it was read again.
+    pub fn record_reload(&mut self, before: Study, label: String) {
+        self.future.clear();
+        self.push(Step { label, study: before });
+        self.open = None;
+    }
+
+    fn push(&mut self, step: Step) {
+        if self.past.len() == MOST_STEPS {
+            self.past.remove(0);
+        }
+        self.past.push(step);
+    }
+
+    /// Ends the decision being taken: the slider was let go.
+    pub fn seal(&mut self) {
+        self.open = None;
+    }
+
+    /// The study before the last decision, given the study as it is now.
+    pub fn undo(&mut self, now: &Study) -> Option<Study> {
+        let step = self.past.pop()?;
+        self.open = None;
+        self.future.push(Step { label: step.label, study: now.clone() });
+        Some(step.study)
+    }
+
+    /// The study before the last decision, as if that had never been taken, where it was `edit`: it cannot be brought back,
+    /// and those that it took from the future can again.
+    pub fn forget(&mut self, edit: &Edit) -> Option<Study> {
+        if self.open.as_ref() != Some(edit) {
+            return None;
+        }
+        let step = self.past.pop()?;
+        self.open = None;
+        self.future = std::mem::take(&mut self.lost);
+        Some(step.study)
+    }
+
+    /// The study after the last decision taken back, given the study as it is now.
+    pub fn redo(&mut self, now: &Study) -> Option<Study> {
+        let step = self.future.pop()?;
+        self.open = None;
+        self.past.push(Step { label: step.label, study: now.clone() });
+        Some(step.study)
+    }
+
+    /// What [`History::undo`] would take back, in a few words.
+    pub fn undo_label(&self) -> Option<&str> {
+        self.past.last().map(|step| step.label.as_str())
+    }
+
+    /// What [`History::redo`] would bring back, in a few words.
+    pub fn redo_label(&self) -> Option<&str> {
+        self.future.last().map(|step| step.label.as_str())
+    }
+}

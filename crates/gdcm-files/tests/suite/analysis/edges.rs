@@ -1,0 +1,219 @@
+//! Data that leave little to go by: what is compared all the same, what is not, and that it is said.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use gdcm_core::dataset::{Dataset, ModelId};
+use gdcm_core::schedule::{ScheduleCaution, ScheduleKind, ScheduleSettings};
+use gdcm_core::study::{Caution, ConditionAnalysis, ConditionFailure, Undefined};
+use gdcm_files::{DatasetOrigin, load_dataset_bytes};
+use serde_json::json;
+
+use super::*;
+use crate::made_up::two_lags;
+
+/// The condition of a file that has only one.
+const ONLY: ConditionId = ConditionId(1);
+
+const SHORT: &str = include_str!("../../../../../tests/data/edges/short-measurement.json");
+const NEAR: &str = include_str!("../../../../../tests/data/edges/near-airspeeds.json");
+
+fn dataset(value: &Value) -> Arc<Dataset> {
+    load_dataset_bytes(value.to_string().as_bytes(), DatasetOrigin::File(PathBuf::from("edge.json"))).unwrap().dataset
+}
+
+/// The analysis of the only condition of a file.
+fn only(value: &Value, edits: &[Edit]) -> Analysis {
+    let mut study = Study::new(dataset(value));
+    edits.iter().for_each(|edit| study.apply(edit).unwrap());
+    analyze(&mut Engine::default(), &study)
+}
+
+fn words(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<String> {
+    let name = |pair| analysis.study.dataset.pair_name(pair);
+    result.cautions.iter().map(|caution| caution.words(name)).collect()
+}
+
+/// The file with the measurement that ends at 11.9 rad/s at this place among the identified models; `None`: without it.
+fn with_short_measurement(place: Option<usize>) -> Value {
+    let mut value = json(SHORT);
+    let models = value["conditions"][0]["identified_models"].as_array_mut().unwrap();
+    let short = models.pop().unwrap();
+    assert!(short["frequency_response"].is_object());
+    if let Some(place) = place {
+        models.insert(place, short);
+    }
+    value
+}
+
+#[test]
+fn a_measurement_that_ends_just_short_of_the_band_changes_nothing_for_the_others() {
+    let without = only(&with_short_measurement(None), &[]);
+    let expected = without.condition(ONLY).unwrap();
+    for place in [0, 2, 4] {
+        let analysis = only(&with_short_measurement(Some(place)), &[]);
+        let found = analysis.condition(ONLY).unwrap();
+        assert_eq!(found.comparison.delta, expected.comparison.delta, "place {place}");
+        assert_eq!(found.correction, expected.correction);
+        let kind = BundleKind::Identified;
+        assert_eq!(found.representative_name(kind), expected.representative_name(kind));
+        assert_eq!(found.score(kind, "i4"), None);
+        assert_eq!(found.comparison.identified.scores.iter().flatten().count(), 4);
+    }
+}
+
+#[test]
+fn a_model_set_aside_is_named_with_what_it_lacks_and_its_pin_does_not_count() {
+    let short = ModelId::new(ONLY, BundleKind::Identified, "i4");
+    let value = with_short_measurement(Some(4));
+    let (free, pinned) = (only(&value, &[]), only(&value, &[Edit::Pin(short)]));
+    let found = pinned.condition(ONLY).unwrap();
+    assert_eq!(found.comparison.delta, free.condition(ONLY).unwrap().comparison.delta);
+    let caution = words(&pinned, found).concat();
+    for part in ["identified model \"i4\" is set aside", "I0 → O0, I1 → O1", "11.9", "pinned does not count"] {
+        assert!(caution.contains(part), "expected \"{part}\" in: {caution}");
+    }
+    let written = &Corrections::of(&pinned, "", &BTreeSet::from([ONLY])).conditions[0];
+    assert_eq!(written.set_aside.len(), 1);
+    assert_eq!((written.set_aside[0].model.as_str(), &written.set_aside[0].why), ("i4", &caution));
+    assert!(
+        Corrections::of(&only(&with_short_measurement(None), &[]), "", &BTreeSet::from([ONLY])).conditions[0]
+            .set_aside
+            .is_empty()
+    );
+}
+
+#[test]
+fn a_bundle_of_which_only_models_set_aside_are_kept_has_no_result_and_says_so() {
+    let reject = |name| Edit::Reject(ModelId::new(ONLY, BundleKind::Identified, name));
+    let analysis = only(&with_short_measurement(Some(4)), &["i0", "i1", "i2", "i3"].map(reject));
+    assert_eq!(analysis.conditions[&ONLY], Err(ConditionFailure::AllSetAside { bundle: BundleKind::Identified }));
+}
+
+#[test]
+fn a_physics_model_without_a_measuring_response_is_set_aside_too() {
+    let mut value = with_short_measurement(None);
+    let model = &mut value["conditions"][0]["physics_models"][3];
+    for key in ["C", "D"] {
+        model[key][0].as_array_mut().unwrap().iter_mut().for_each(|entry| *entry = json!(0.0));
+    }
+    let name = model["name"].as_str().unwrap().to_owned();
+    let analysis = only(&value, &[]);
+    let found = analysis.condition(ONLY).unwrap();
+    assert!(found.cautions.iter().any(|caution| caution.is_set_aside(BundleKind::Physics, &name)));
+    let ratios = &found.figures.discontinuity.as_ref().unwrap().ratios;
+    assert!(ratios[3].is_none() && ratios[0].is_some());
+    value["conditions"][0]["physics_models"].as_array_mut().unwrap().remove(3);
+    let mut without = found.figures.discontinuity.as_ref().unwrap().ratios.clone();
+    without.remove(3);
+    assert_eq!(only(&value, &[]).condition(ONLY).unwrap().figures.discontinuity.as_ref().unwrap().ratios, without);
+}
+
+#[test]
+fn residues_of_differencing_count_as_zero_and_are_named() {
+    let zeros = only(&two_lags([[1.0, 0.0], [0.0, 1.0]], [[1.2, 0.0], [0.0, 0.9]]), &[]);
+    for (physics, identified) in
+        [([1e-17, 1e-9], [1e-3, 0.5]), ([0.1, 0.1], [1e-17, 3e-8]), ([1e-17, 1e-16], [0.0, 1e-13])]
+    {
+        let of = |diagonal: [f64; 2], [upper, lower]: [f64; 2]| [[diagonal[0], upper], [lower, diagonal[1]]];
+        let value = two_lags(of([1.0, 1.0], physics), of([1.2, 0.9], identified));
+        let analysis = only(&value, &[]);
+        let found = analysis.condition(ONLY).unwrap();
+        assert_eq!(found.comparison.delta, zeros.condition(ONLY).unwrap().comparison.delta);
+        assert_eq!(found.correction, zeros.condition(ONLY).unwrap().correction);
+        let named = words(&analysis, found).concat();
+        assert!(named.contains("I1 → O0, I0 → O1 are numerically nothing"), "{named}");
+        assert_eq!(Corrections::of(&analysis, "", &BTreeSet::from([ONLY])).conditions[0].cautions.concat(), named);
+    }
+}
+
+#[test]
+fn a_response_that_is_numerically_nothing_is_not_held_for_that_reason() {
+    let value = two_lags([[1.0, 1e-17], [0.0, 1.0]], [[1.2, 0.1], [0.0, 0.9]]);
+    let pair = Pair::new(0, 1);
+    let analysis = only(&value, &[Edit::Set(Setting::Constrained(pair, true))]);
+    let found = analysis.condition(ONLY).unwrap();
+    assert!(!found.held()[pair]);
+    let why = Undefined::NumericallyNothing(BundleKind::Physics);
+    assert!(found.cautions.contains(&Caution::HeldButUndefined { pair, why }));
+    assert_eq!(found.comparison.undefined[pair], Some(why));
+    assert_eq!(found.comparison.undefined[Pair::new(1, 0)], Some(Undefined::ZeroOrNotFinite));
+}
+
+#[test]
+fn an_unusual_gain_is_fitted_with_a_caution_that_ends_when_it_is_ignored() {
+    let value = two_lags([[1.0, 0.01], [0.0, 1.0]], [[1.2, 0.2], [0.0, 0.9]]);
+    let pair = Pair::new(0, 1);
+    let analysis = only(&value, &[]);
+    let found = analysis.condition(ONLY).unwrap();
+    assert!((found.comparison.delta.gain[pair].unwrap() - 20.0).abs() < 1e-9);
+    let offered: Vec<Pair> = found.cautions.iter().filter_map(Caution::offers_to_ignore).collect();
+    assert_eq!(offered, [pair]);
+    assert!(words(&analysis, found).concat().contains("I1 → O0 has a G of 20.000, outside 0.1 to 10"));
+    let ignored = only(&value, &[Edit::Set(Setting::Fitted(pair, false))]);
+    assert_eq!(ignored.condition(ONLY).unwrap().cautions.iter().filter_map(Caution::offers_to_ignore).count(), 0);
+}
+
+#[test]
+fn a_ratio_that_the_objective_cannot_square_leaves_its_response_out_and_the_others_in() {
+    let value = two_lags([[1.0, 1e-3], [1e-3, 1e-60]], [[1.2, 1e-3], [1e-3, 0.9]]);
+    let analysis = only(&value, &[]);
+    let found = analysis.condition(ONLY).unwrap();
+    let gain = &found.comparison.delta.gain;
+    assert_eq!((gain[Pair::new(1, 1)], gain[Pair::new(0, 0)].is_some()), (None, true));
+    assert_eq!(found.comparison.undefined[Pair::new(1, 1)], Some(Undefined::NumericallyNothing(BundleKind::Physics)));
+    let alone = only(&two_lags([[1e-30, 0.0], [0.0, 1.0]], [[1e30, 0.0], [0.0, 0.9]]), &[]);
+    let found = &alone.condition(ONLY).unwrap().comparison;
+    assert_eq!(found.undefined[Pair::new(0, 0)], Some(Undefined::ZeroOrNotFinite));
+    assert!(found.delta.gain[Pair::new(1, 1)].is_some());
+}
+
+#[test]
+fn airspeeds_a_hair_apart_are_one_point_of_the_schedule() {
+    let analysis = only(&json(NEAR), &[]);
+    let schedule = analysis.schedule.as_ref().unwrap();
+    assert_eq!(schedule.airspeeds.clusters, [vec![0, 1], vec![2]]);
+    assert_eq!(schedule.cautions, [ScheduleCaution::DegreeLowered { asked: 2, clusters: 2 }]);
+    let gains =
+        |of: &gdcm_core::correction::ChannelCorrection| [of.input_gains.clone(), of.output_gains.clone()].concat();
+    let own = analysis.conditions.values().map(|result| gains(&result.as_ref().unwrap().correction));
+    let own: Vec<Vec<f64>> = own.collect();
+    for step in 0..=60 {
+        for (channel, gain) in gains(&schedule.at(60.0 + f64::from(step))).into_iter().enumerate() {
+            let all = own.iter().map(|gains| gains[channel]);
+            let (least, most) = (all.clone().fold(f64::INFINITY, f64::min), all.fold(0.0, f64::max));
+            assert!((0.99 * least..=1.01 * most).contains(&gain), "channel {channel}: {gain}");
+        }
+    }
+    let written = Corrections::of(&analysis, "", &analysis.conditions.keys().copied().collect()).schedule.unwrap();
+    assert_eq!((written.degree, written.table.len(), written.airspeed_tolerance_kt), (Some(1), 2, 2.0));
+    assert!(
+        written.cautions[0].contains("degree 2 takes 3 distinct airspeeds, the conditions have 2"),
+        "{:?}",
+        written.cautions
+    );
+}
+
+#[test]
+fn a_schedule_that_overshoots_says_where_and_the_assessment_claims_nothing_between() {
+    let wild = ScheduleSettings { airspeed_tolerance_kt: 0.0, ..ScheduleSettings::default() };
+    let study = &[Edit::Set(Setting::Schedule(wild))];
+    let analysis = only(&json(NEAR), study);
+    let schedule = analysis.schedule.as_ref().unwrap();
+    assert!(schedule.fails_between());
+    let said = schedule.cautions[0].words(&["I0".into(), "I1".into()], &["O0".into(), "O1".into()]);
+    assert!(said.contains("between 60.0 and 120.0 kt the gain of"), "{said}");
+    let table = ScheduleSettings { kind: ScheduleKind::Table, ..wild };
+    assert!(!only(&json(NEAR), &[Edit::Set(Setting::Schedule(table))]).schedule.unwrap().fails_between());
+}
+
+#[test]
+fn a_pole_on_the_grid_is_named() {
+    let mut value = two_lags([[1.0, 0.2], [0.3, 1.0]], [[1.2, 0.2], [0.3, 0.9]]);
+    // An undamped pair at the first frequency of the band.
+    value["conditions"][0]["physics_models"][0]["A"] = json!([[0.0, 0.5], [-0.5, 0.0]]);
+    let analysis = only(&value, &[]);
+    let failure = analysis.conditions[&ONLY].as_ref().unwrap_err();
+    assert!(failure.to_string().contains("a pole lies on a frequency of the grid"), "{failure}");
+}

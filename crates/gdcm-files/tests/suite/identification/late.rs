@@ -1,0 +1,80 @@
+//! Channels that are logged late in all records alike, told against a physics model.
+
+use crate::made_up::{Flight, Gusts, stable_aircraft};
+use gdcm_core::dataset::{Dynamics, StateSpace};
+use gdcm_core::executor::Sequential;
+use gdcm_core::identification::{
+    FlightRecord, MeasuredResponse, Preparation, Role, StateSpaceMatrices, local_polynomial, log_spaced, prepare,
+    spectra,
+};
+use gdcm_core::study::ChannelTimeSkew;
+use nalgebra::DVectorViewMut;
+
+const BAND: [f64; 2] = [0.6, 6.0];
+
+fn physics(aircraft: StateSpaceMatrices) -> Dynamics {
+    let StateSpaceMatrices { a, b, c, d } = aircraft;
+    Dynamics::StateSpace(StateSpace::new(a, b, c, d).unwrap())
+}
+
+/// Four flights of which every record was changed alike.
+fn measured(change: impl Fn(&mut FlightRecord)) -> MeasuredResponse {
+    let mut records = Flight::of(stable_aircraft(), Gusts::light()).records(31, 4);
+    records.iter_mut().for_each(change);
+    let prepared = prepare(&records, &Preparation::of(&["LON", "LAT"], &["P", "Q"]), &Sequential).unwrap();
+    local_polynomial(&spectra(&prepared.pieces, 10.4, &Sequential), &log_spaced(0.3, 8.0, 40), &Sequential).unwrap()
+}
+
+/// Three samples of 40 ms later.
+fn late(mut channel: DVectorViewMut<'_, f64>) {
+    let logged = channel.clone_owned();
+    (3..logged.len()).for_each(|sample| channel[sample] = logged[sample - 3]);
+}
+
+fn found(measured: &MeasuredResponse) -> Option<(Role, usize, f64)> {
+    let late = ChannelTimeSkew::of(measured, BAND, &physics(stable_aircraft()))?;
+    Some((late.role, late.index, late.delay_s))
+}
+
+#[test]
+fn a_channel_that_is_late_in_every_record_is_told_against_the_physics_model() {
+    assert_eq!(found(&measured(|_| ())), None, "nothing is late");
+    for index in 0..2 {
+        let (role, of, delay_s) = found(&measured(|record| late(record.outputs.column_mut(index)))).unwrap();
+        assert_eq!((role, of), (Role::Output, index));
+        // The method's bias over its windows, and gusts, are some milliseconds.
+        assert!((delay_s - 0.12).abs() < 0.01, "{delay_s}");
+        let (role, of, delay_s) = found(&measured(|record| late(record.inputs.column_mut(index)))).unwrap();
+        assert_eq!((role, of), (Role::Input, index));
+        assert!((delay_s - 0.12).abs() < 0.01, "{delay_s}");
+    }
+}
+
+#[test]
+fn what_all_channels_have_in_common_is_said_of_none() {
+    let all = measured(|record| (0..2).for_each(|output| late(record.outputs.column_mut(output))));
+    assert_eq!(found(&all), None);
+}
+
+#[test]
+fn a_physics_model_that_is_wrong_otherwise_is_no_delay() {
+    let clean = measured(|_| ());
+    let mut turned = stable_aircraft();
+    // The sign of an output.
+    turned.c.row_mut(1).neg_mut();
+    assert_eq!(ChannelTimeSkew::of(&clean, BAND, &physics(turned)), None);
+    let mut other = stable_aircraft();
+    other.a *= 1.6;
+    assert_eq!(ChannelTimeSkew::of(&clean, BAND, &physics(other)), None);
+}
+
+#[test]
+fn words_say_what_is_seen_and_what_else_it_may_be() {
+    let late = ChannelTimeSkew { role: Role::Output, index: 1, delay_s: -0.0401 };
+    let words = late.words("Q", "nominal");
+    assert!(
+        words.starts_with("Q seems to be logged 40 ms early in all records: against the physics model \"nominal\""),
+        "{words}"
+    );
+    assert!(words.contains("Leave it where the sensor or servo is as slow as that"), "{words}");
+}

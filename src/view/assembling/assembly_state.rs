@@ -1,0 +1,236 @@
+//! What is being put together: the models found, the rules about them, and what is shown of both.
+
+use std::path::PathBuf;
+
+use gdcm_core::assembly::{Assembly, FoundModel, Headings, RowRule, Rules, proposed_rules};
+
+use super::preview::Preview;
+use super::table::Column;
+
+/// Most steps that can be undone.
+const MOST_STEPS: usize = 200;
+
+/// What the engineer asks for while models are put together.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AssemblingCommand {
+    /// Begin, or go on.
+    Open,
+    /// Choose a folder with the desktop's dialog.
+    AskFolder,
+    /// Read files, and folders with all that is in them.
+    Add(Vec<PathBuf>),
+    /// Read no further.
+    StopReading,
+    /// Say something else about the files.
+    Change(Box<Rules>),
+    /// Take the last change back.
+    Undo,
+    /// Bring it back again.
+    Redo,
+    /// Show a model.
+    Select(usize),
+    /// Sort the table by a column; by the same one the other way round.
+    Sort(Column),
+    /// Show the response of this place in the preview.
+    ShowResponse(usize),
+    /// Take rules from a file.
+    LoadRules(PathBuf),
+    /// Write the rules to a file.
+    SaveRules(PathBuf),
+    /// Write the dataset and its rules, and open it.
+    MakeDataset(PathBuf),
+    /// Leave it; nothing of it is kept.
+    Close,
+}
+
+/// How far the reading of files is.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Reading {
+    /// Number of the file that is being read, from 1.
+    pub number: usize,
+    /// How many there are.
+    pub of: usize,
+    /// Its name.
+    pub name: String,
+    /// Bytes of its values that are read.
+    pub taken: u64,
+}
+
+/// Models that are being put together.
+#[derive(Debug)]
+pub struct AssemblyState {
+    assembly: Assembly,
+    earlier: Vec<Rules>,
+    later: Vec<Rules>,
+    /// Whether the rules are the engineer's, and not proposed.
+    are_said: bool,
+    /// What was read: the files and folders asked for.
+    pub sources: Vec<PathBuf>,
+    /// What could not be taken, in words.
+    pub faults: Vec<String>,
+    /// What is no model, in words.
+    pub passed_over: Vec<String>,
+    /// The tables of columns among the files, with the headings that they were read by.
+    pub tables: Headings,
+    /// The reading under way.
+    pub reading: Option<Reading>,
+    /// Index of the model shown.
+    pub selected: usize,
+    /// Column that the table is sorted by, and whether downwards.
+    pub sorting: Option<(Column, bool)>,
+    /// The response of the model shown.
+    pub preview: Preview,
+    /// Path of a folder or a file, as typed.
+    pub source_path: String,
+    /// Path of the rules, as typed.
+    pub rules_path: String,
+    /// Path of the dataset, as typed.
+    pub dataset_path: String,
+}
+
+impl Default for AssemblyState {
+    fn default() -> Self {
+        Self {
+            assembly: Assembly::new(Vec::new(), Rules::default()),
+            earlier: Vec::new(),
+            later: Vec::new(),
+            are_said: false,
+            sources: Vec::new(),
+            faults: Vec::new(),
+            passed_over: Vec::new(),
+            tables: Headings::new(),
+            reading: None,
+            selected: 0,
+            sorting: None,
+            preview: Preview::default(),
+            source_path: String::new(),
+            rules_path: String::new(),
+            dataset_path: String::new(),
+        }
+    }
+}
+
+impl AssemblyState {
+    /// The models and what the rules make of them.
+    pub fn assembly(&self) -> &Assembly {
+        &self.assembly
+    }
+
+    /// Takes more models; rules that nothing was said in yet are proposed anew. A model that was found before takes its place again.
+    pub fn add(&mut self, name: &str, found: Vec<FoundModel>) {
+        let mut models: Vec<FoundModel> = self.assembly.parts().iter().map(|part| part.found.clone()).collect();
+        models.retain(|model| !found.iter().any(|new| new.key() == model.key()));
+        models.extend(found);
+        let rules = match self.are_said {
+            true => self.assembly.rules().clone(),
+            false => proposed_rules(name, &models),
+        };
+        self.assembly = Assembly::new(models, rules);
+        self.selected = self.selected.min(self.assembly.parts().len().saturating_sub(1));
+    }
+
+    /// Forgets all models and what was told of their files; what was said of them stays.
+    pub fn forget_models(&mut self) {
+        self.assembly = Assembly::new(Vec::new(), self.assembly.rules().clone());
+        self.faults.clear();
+        self.passed_over.clear();
+        self.tables.clear();
+    }
+
+    /// Takes other rules, which can be undone.
+    pub fn change(&mut self, rules: Rules) {
+        if rules == *self.assembly.rules() {
+            return;
+        }
+        self.earlier.push(self.assembly.rules().clone());
+        if self.earlier.len() > MOST_STEPS {
+            self.earlier.remove(0);
+        }
+        self.later.clear();
+        self.put(rules);
+    }
+
+    /// Takes the last change back.
+    pub fn undo(&mut self) {
+        if let Some(rules) = self.earlier.pop() {
+            self.later.push(self.assembly.rules().clone());
+            self.put(rules);
+        }
+    }
+
+    /// Brings the change taken back last again.
+    pub fn redo(&mut self) {
+        if let Some(rules) = self.later.pop() {
+            self.earlier.push(self.assembly.rules().clone());
+            self.put(rules);
+        }
+    }
+
+    /// Whether there is something to undo, and to redo.
+    pub fn steps(&self) -> (bool, bool) {
+        (!self.earlier.is_empty(), !self.later.is_empty())
+    }
+
+    fn put(&mut self, rules: Rules) {
+        self.are_said = true;
+        self.assembly = self.assembly.with_rules(rules);
+    }
+
+    /// The rules with something else said about one model.
+    pub fn said_of(&self, part: usize, say: impl FnOnce(&mut RowRule)) -> Rules {
+        let mut rules = self.assembly.rules().clone();
+        if let Some(part) = self.assembly.parts().get(part) {
+            say(rules.rows.entry(part.found.key()).or_default());
+        }
+        rules
+    }
+
+    /// The rules with another heading of a column of a table; the file's own headings stand where nothing else is said.
+    pub fn with_heading(&self, file: &str, column: usize, heading: &str) -> Rules {
+        let mut rules = self.assembly.rules().clone();
+        if let Some(headings) = self.tables.get(file) {
+            let said = rules.headings.entry(file.to_owned()).or_insert_with(|| headings.clone());
+            if let Some(place) = said.get_mut(column) {
+                heading.trim().clone_into(place);
+            }
+        }
+        rules
+    }
+
+    /// The rules with the same said about every model below `part`, in the order of the table, of its folder.
+    pub fn filled_down(&self, part: usize, say: impl Fn(&mut RowRule)) -> Rules {
+        let mut rules = self.assembly.rules().clone();
+        let parts = self.assembly.parts();
+        let folder = |part: usize| {
+            parts.get(part).map(|part| part.found.file().rsplit_once('/').map_or("", |(folder, _)| folder))
+        };
+        let order = self.order();
+        let below = order.iter().skip_while(|index| **index != part);
+        for index in below.filter(|index| folder(**index) == folder(part)) {
+            say(rules.rows.entry(parts[*index].found.key()).or_default());
+        }
+        rules
+    }
+
+    /// Indices of the models in the order of the table.
+    pub fn order(&self) -> Vec<usize> {
+        let parts = self.assembly.parts();
+        let mut order: Vec<usize> = (0..parts.len()).collect();
+        if let Some((column, falls)) = self.sorting {
+            order.sort_by(|a, b| {
+                let compared = column.compare(&parts[*a], &parts[*b]);
+                if falls { compared.reverse() } else { compared }
+            });
+        }
+        order
+    }
+
+    /// Sorts by a column: rising, falling, as found.
+    pub fn sort(&mut self, column: Column) {
+        self.sorting = match self.sorting {
+            Some((sorted, false)) if sorted == column => Some((column, true)),
+            Some((sorted, true)) if sorted == column => None,
+            _ => Some((column, false)),
+        };
+    }
+}

@@ -1,0 +1,188 @@
+//! What explains the window: the page of keys and gestures, and the guided tour.
+
+use egui::{
+    Align2, Area, Button, Context, Frame, Grid, Id, Key, Modifiers, Order, Rect, RichText, ScrollArea, Stroke,
+    StrokeKind, Ui, Vec2, vec2,
+};
+
+use super::command::Command;
+use super::command_table::{Reach, command_table};
+use super::focus::{Region, region_place};
+use super::palette::{Palette, SMALL_SIZE};
+use super::state::State;
+
+/// Width of the note \[pt\].
+const WIDTH: f32 = 300.0;
+
+/// One step: the part of the window, its title, and what is done there.
+struct Step {
+    region: Region,
+    title: &'static str,
+    words: &'static str,
+}
+
+const STEPS: [Step; 5] = [
+    Step {
+        region: Region::Conditions,
+        title: "Flight conditions",
+        words: "A click, or Up and Down, shows a condition. Its marks say what is still to do there: ⚠ 3 are three models \
+                suggested as outliers.",
+    },
+    Step {
+        region: Region::Models,
+        title: "The bundle of models",
+        words: "Each physics model is one perturbed trim; its bar says how far it lies from what the perturbation explains. \
+                The box rejects or restores it, the star lets it represent the bundle.",
+    },
+    Step {
+        region: Region::Plots,
+        title: "The curves",
+        words: "Red is the nominal model, blue the perturbed ones, amber what was identified from flight, green the corrected \
+                model. A click on a curve rejects or restores its model.",
+    },
+    Step {
+        region: Region::Matrix,
+        title: "What is held",
+        words: "Each cell is a response: the gain and the delay that would match it, and its cost before and after. Filled \
+                cells are held exactly; the box, or the space bar, holds or frees one.",
+    },
+    Step {
+        region: Region::Result,
+        title: "The result, to be taken away",
+        words: "The gains and delays of every channel, whether they are proven, and why. Export writes the corrections; Ctrl+Z \
+                takes any decision back; Ctrl+K finds every command.",
+    },
+];
+
+/// The step that is shown, if any: a ring around its part of the window, and a note beside it.
+pub fn tour_ui(ctx: &Context, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let Some((number, step)) = state.tour.and_then(|number| Some((number, STEPS.get(number)?))) else { return };
+    if state.forms.shown.is_some() {
+        return;
+    }
+    let window = ctx.content_rect();
+    let place = region_place(ctx, step.region).unwrap_or(window).intersect(window.shrink(3.0));
+    let id = Id::unique("guided tour");
+    let painter = ctx.layer_painter(egui::LayerId::new(Order::Middle, id));
+    painter.rect_stroke(place, 4.0, Stroke::new(2.0, palette.warning), StrokeKind::Outside);
+    let (pivot, corner) = beside(place, window);
+    Area::new(id.with("note")).order(Order::Foreground).pivot(pivot).fixed_pos(corner).show(ctx, |ui| {
+        Frame::popup(ui.style()).show(ui, |ui| {
+            ui.set_width(WIDTH);
+            note_ui(ui, number, step, palette, commands);
+        });
+    });
+    let is_free = ctx.memory(|memory| memory.focused().is_none());
+    if is_free && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
+        commands.push(Command::ShowTourStep(None));
+    }
+}
+
+fn note_ui(ui: &mut Ui, number: usize, step: &Step, palette: &Palette, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(step.title).strong());
+        let count = format!("{} of {}", number + 1, STEPS.len());
+        ui.label(RichText::new(count).size(SMALL_SIZE).color(palette.dim_text));
+    });
+    ui.label(step.words);
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        let is_last = number + 1 == STEPS.len();
+        if ui.button(if is_last { "End the tour" } else { "Next step" }).clicked() {
+            commands.push(Command::ShowTourStep((!is_last).then_some(number + 1)));
+        }
+        if ui.add_enabled(number > 0, Button::new("Previous step")).clicked() {
+            commands.push(Command::ShowTourStep(Some(number.saturating_sub(1))));
+        }
+        if !is_last && ui.button("Skip the tour").clicked() {
+            commands.push(Command::ShowTourStep(None));
+        }
+    });
+}
+
+/// Where the note stands: right of the part, left of it, or over it where it takes the whole width; which corner of it, and where.
+fn beside(place: Rect, window: Rect) -> (Align2, egui::Pos2) {
+    const GAP: Vec2 = vec2(12.0, 0.0);
+    let room = WIDTH + 40.0;
+    if window.right() - place.right() > room {
+        (Align2::LEFT_TOP, place.right_top() + GAP)
+    } else if place.left() - window.left() > room {
+        // Upwards from below: what stands at the foot of the window leaves no room downwards.
+        let low = place.top() > window.center().y;
+        if low {
+            (Align2::RIGHT_BOTTOM, place.left_bottom() - GAP)
+        } else {
+            (Align2::RIGHT_TOP, place.left_top() - GAP)
+        }
+    } else {
+        (Align2::CENTER_CENTER, place.center())
+    }
+}
+
+/// What the pointer does, besides what is pressed by its name.
+const GESTURES: &[(&str, &str)] = &[
+    ("click on a curve", "reject or restore its model"),
+    ("Alt+click on a curve", "show it alone; again: show all"),
+    ("drag, wheel", "move, zoom a plot; on an axis: that axis alone"),
+    ("drag with the secondary button", "zoom to a box"),
+    ("Shift+drag", "select the curves that a box touches, to reject or restore them at once"),
+    ("double click in a plot", "on empty ground: fit it; on an axis: type its limits"),
+    ("secondary click in a plot", "what can be done with the curve, or with the frequency there"),
+    ("click in a legend", "hide the curves of a role, or show them"),
+    ("Arrows, + −, Home", "in a plot that has the focus: move, zoom (Shift: frequencies only), fit"),
+    ("Escape", "end the isolation of a model, and a selection"),
+    ("drag an end of the band", "move the band of comparison"),
+    ("click on a cell", "show its response; on its box, or twice: hold or free it"),
+    ("click on a star", "let this model represent its bundle; again: the medoid represents"),
+    ("secondary click", "on a heading: copy or save its table; on a cell or a condition: more"),
+];
+
+/// Marks in the list of conditions: what is still to do there.
+const MARKS: &[(&str, &str)] = &[
+    ("⚠ 3", "three models are suggested as outliers and not rejected"),
+    ("k 2", "two held gains are not matched"),
+    (
+        "τ 1",
+        "one held delay is not matched though a delay could; what needs lead is not counted, for no delay gives it",
+    ),
+    ("left out", "the condition does not enter the schedule"),
+];
+
+/// Every key of the table of commands, the gestures, and the marks.
+pub fn keys_page_ui(ui: &mut Ui, state: &State, palette: &Palette) {
+    let room = ui.ctx().content_rect().height() - 120.0;
+    ScrollArea::vertical().max_height(room).auto_shrink([false, true]).show(ui, |ui| {
+        let keys: Vec<(String, String)> = command_table(state)
+            .into_iter()
+            .filter(|entry| !entry.shortcuts.is_empty())
+            .map(|entry| {
+                let keys: Vec<String> = entry.shortcuts.iter().map(|keys| ui.ctx().format_shortcut(keys)).collect();
+                let without_focus = if entry.reach == Reach::WithoutFocus { " *" } else { "" };
+                (format!("{}{without_focus}", keys.join(", ")), entry.name)
+            })
+            .collect();
+        let others =
+            [("Tab, Shift+Tab", "next, previous control"), ("Escape", "close a form, leave a field as it was")];
+        let keys = keys.iter().map(|(keys, name)| (keys.as_str(), name.as_str()));
+        rows_ui(ui, "keys", keys.chain(others), palette);
+        ui.label(RichText::new("* while nothing has the focus").color(palette.dim_text));
+        ui.separator();
+        rows_ui(ui, "gestures", GESTURES.iter().copied(), palette);
+        ui.separator();
+        rows_ui(ui, "marks", MARKS.iter().copied(), palette);
+    });
+}
+
+fn rows_ui<'a>(ui: &mut Ui, name: &str, rows: impl Iterator<Item = (&'a str, &'a str)>, palette: &Palette) {
+    let left = 170.0;
+    Grid::new(name).num_columns(2).spacing([16.0, 4.0]).min_col_width(left).show(ui, |ui| {
+        for (keys, meaning) in rows {
+            ui.label(RichText::new(keys).strong());
+            ui.scope(|ui| {
+                ui.set_max_width(270.0);
+                ui.add(egui::Label::new(RichText::new(meaning).color(palette.dim_text)).wrap());
+            });
+            ui.end_row();
+        }
+    });
+}

@@ -1,0 +1,274 @@
+//! What the Records view holds: records by condition, and what was identified from them.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use gdcm_core::dataset::{ConditionId, ConditionRecord, Dataset, RecordKind};
+use gdcm_core::identification::{
+    ChannelPreparation, FlightRecord, Hold, Identification, IdentificationError, Options, Preparation, Role, Signal,
+};
+use gdcm_core::records::{RecordChannels, RecordGuess, RecordLayout, RecordTable};
+use gdcm_core::study::{AdoptedModels, IdentifyJob, OfferedModels, identified_bundle, pieces_used};
+
+use super::simulation::TimeModel;
+
+/// What a page of the view shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RecordsPage {
+    /// Every channel of the chosen record over time.
+    #[default]
+    Histories,
+    /// What was excited, and up to which frequency.
+    Inputs,
+    /// The measured response under the models.
+    Response,
+    /// Poles over the order.
+    Stabilisation,
+    /// The poles of the recommended model with their standard deviations.
+    Poles,
+    /// How well the model fits each record and output.
+    Fit,
+    /// Which columns are the channels.
+    Columns,
+}
+
+impl RecordsPage {
+    /// Every page, in the order in which they are offered.
+    pub const ALL: [Self; 7] =
+        [Self::Histories, Self::Inputs, Self::Response, Self::Stabilisation, Self::Poles, Self::Fit, Self::Columns];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Histories => "Time",
+            Self::Inputs => "Inputs",
+            Self::Response => "Response",
+            Self::Stabilisation => "Stabilisation",
+            Self::Poles => "Identified poles",
+            Self::Fit => "Fit",
+            Self::Columns => "Columns",
+        }
+    }
+
+    /// Its name where there is little room: all of them stand in one line.
+    pub fn short_name(self) -> &'static str {
+        match self {
+            Self::Stabilisation => "Orders",
+            Self::Poles => "Poles",
+            _ => self.name(),
+        }
+    }
+
+    /// What it shows, in a sentence.
+    pub fn purpose(self) -> &'static str {
+        match self {
+            Self::Histories => "Every channel of the chosen record over time; what was bridged or cut is marked",
+            Self::Inputs => "Which input was moved in which record, and up to which frequency",
+            Self::Response => "The measured response with its error bars, under the models and their bands",
+            Self::Stabilisation => "Poles of the models of every order: those that stay are the aircraft's",
+            Self::Poles => "Poles of the recommended model with their standard deviations; grey: not determined",
+            Self::Fit => "How well the model fits each record and output, in frequency and in time",
+            Self::Columns => "Which columns of the chosen record are its time and its channels",
+        }
+    }
+}
+
+/// What the engineer asks for in the Records view.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RecordsCommand {
+    /// Read files, and folders with all that is in them.
+    Add(Vec<PathBuf>),
+    /// Choose files with the desktop's dialog.
+    AskFiles,
+    /// Show a record.
+    Choose(usize),
+    /// Use a record, or leave it out.
+    SetUsed(usize, bool),
+    /// Keep a record from the fit, to judge it by; or not.
+    SetHeldOut(usize, bool),
+    /// Say which manoeuvre a record is of.
+    SetKind(usize, RecordKind),
+    /// Say which columns are the channels: of this record, and of all that have columns of these names.
+    SetLayout(usize, RecordLayout),
+    /// Say how late a channel is logged \[s\].
+    SetDelay(Signal, f64),
+    /// Say what the stairs in a channel are.
+    SetHold(Signal, Hold),
+    /// Identify over another band \[rad/s\]; none takes the study's.
+    SetBand(Option<[f64; 2]>),
+    /// Draw the response of a model to the same inputs, or not.
+    ShowTimeModel(TimeModel, bool),
+    /// Show a page.
+    Show(RecordsPage),
+    /// Identify models of the condition shown.
+    Identify,
+    /// Identify models of every condition that has records.
+    IdentifyAll,
+    /// Give up what is being identified.
+    Stop,
+    /// Put what was identified into the condition shown.
+    Take(OfferedModels),
+    /// Put what was identified into every condition that has something.
+    TakeAll(OfferedModels),
+    /// Put the models of the dataset's file back into the condition shown.
+    Return,
+}
+
+/// A flight record of a condition.
+#[derive(Clone, Debug)]
+pub struct RecordRow {
+    /// As its file has it.
+    pub table: Arc<RecordTable>,
+    /// Which columns are its channels.
+    pub layout: RecordLayout,
+    /// What its name says.
+    pub guess: RecordGuess,
+    /// Whether it is used.
+    pub used: bool,
+    /// What keeps it from being used, in words.
+    pub problems: Vec<String>,
+    /// What is odd about it, in words.
+    pub cautions: Vec<String>,
+    /// Its samples in the units of the dataset; none while there are problems.
+    pub flight: Option<Arc<FlightRecord>>,
+}
+
+impl RecordRow {
+    /// A record with these columns for its channels.
+    pub fn new(table: Arc<RecordTable>, layout: RecordLayout, guess: RecordGuess, channels: &RecordChannels) -> Self {
+        let problems = layout.problems(&table, channels).iter().map(ToString::to_string).collect();
+        let cautions = layout.cautions(&table, channels).iter().map(ToString::to_string).collect();
+        let flight = layout.flight_record(&table, channels).ok().map(Arc::new);
+        Self { table, layout, guess, used: true, problems, cautions, flight }
+    }
+}
+
+/// The records of one condition, and what was made of them.
+#[derive(Clone, Debug, Default)]
+pub struct ConditionRecords {
+    /// The records.
+    pub rows: Vec<RecordRow>,
+    /// Index of the one shown.
+    pub chosen: usize,
+    /// How inputs are prepared, where that is not as they are.
+    pub inputs: Vec<ChannelPreparation>,
+    /// How outputs are prepared.
+    pub outputs: Vec<ChannelPreparation>,
+    /// Band \[rad/s\]; none is the study's.
+    pub band: Option<[f64; 2]>,
+    /// What was identified last, and from what.
+    pub found: Option<(IdentifyJob, Result<Arc<Identification>, IdentificationError>)>,
+    /// Whether something else was said since.
+    pub changed: bool,
+}
+
+impl ConditionRecords {
+    /// Records of a condition of `dataset`.
+    pub fn new(rows: Vec<RecordRow>, dataset: &Dataset) -> Self {
+        let named = |channels: &[gdcm_core::dataset::Channel]| {
+            channels.iter().map(|channel| ChannelPreparation::named(channel.name.clone())).collect()
+        };
+        Self { rows, inputs: named(dataset.inputs()), outputs: named(dataset.outputs()), ..Self::default() }
+    }
+
+    /// What was identified, where that went well.
+    pub fn identification(&self) -> Option<&Arc<Identification>> {
+        self.found.as_ref()?.1.as_ref().ok()
+    }
+
+    /// The rows that are used, with their indices.
+    pub fn used_rows(&self) -> impl Iterator<Item = (usize, &RecordRow)> {
+        self.rows.iter().enumerate().filter(|(_, row)| row.used && row.flight.is_some())
+    }
+
+    /// The row of a record of the identification.
+    pub fn row_of_record(&self, record: usize) -> Option<usize> {
+        self.used_rows().nth(record).map(|(index, _)| index)
+    }
+
+    /// How a channel is prepared, to change.
+    pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
+        match signal.role {
+            Role::Input => self.inputs.get_mut(signal.index),
+            Role::Output => self.outputs.get_mut(signal.index),
+        }
+    }
+
+    /// The job of what is said now; in words why there is none.
+    pub fn job(&self, condition: ConditionId, band: [f64; 2]) -> Result<IdentifyJob, String> {
+        let records: Arc<[FlightRecord]> =
+            self.used_rows().filter_map(|(_, row)| Some(row.flight.as_ref()?.as_ref().clone())).collect();
+        if records.is_empty() {
+            return Err("there is no record to identify from: add some, or use those that are there".to_owned());
+        }
+        let preparation =
+            Preparation { inputs: self.inputs.clone(), outputs: self.outputs.clone(), ..Preparation::of(&[], &[]) };
+        let held_out = self.used_rows().enumerate().filter(|(_, (_, row))| row.guess.held_out);
+        let held_out: Vec<usize> = held_out.map(|(record, _)| record).collect();
+        if held_out.len() == records.len() {
+            return Err("every record is held out: at least one has to be left to identify from".to_owned());
+        }
+        let options = Options { held_out, ..Options::new(self.band.unwrap_or(band), preparation) };
+        Ok(IdentifyJob::new(condition, records, options))
+    }
+
+    /// What is taken into the condition, where something was identified.
+    pub fn taken(&self, offered: OfferedModels) -> Option<Arc<AdoptedModels>> {
+        let found = self.identification()?;
+        let used = self.used_rows().map(|(_, row)| row).zip(&found.record_uses);
+        let entry = |(row, found): (&RecordRow, &gdcm_core::identification::RecordUse)| ConditionRecord {
+            used_s: row.flight.as_ref().map_or_else(Vec::new, |flight| pieces_used(flight, found)),
+            ..row.layout.condition_record(&row.table, &row.guess)
+        };
+        let entries: Vec<ConditionRecord> = used.map(entry).collect();
+        Some(Arc::new(identified_bundle(found, offered, entries)))
+    }
+}
+
+/// How far the reading of records is.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RecordsReading {
+    /// What is being read.
+    pub name: String,
+}
+
+/// What the Records view holds. Not saved: records stay in their files.
+#[derive(Clone, Debug, Default)]
+pub struct RecordsState {
+    /// Records by condition; a condition without an entry was not looked at yet.
+    pub conditions: BTreeMap<ConditionId, ConditionRecords>,
+    /// Whether the dataset is the example, of which the program holds some records.
+    pub is_example: bool,
+    /// The page shown.
+    pub page: RecordsPage,
+    /// Models whose responses to the same inputs are drawn.
+    pub time_models: BTreeSet<TimeModel>,
+    /// Path of files, as typed.
+    pub path: String,
+    /// The reading under way.
+    pub reading: Option<RecordsReading>,
+    /// What could not be read, in words.
+    pub faults: Vec<String>,
+    /// What is being identified, and what is to be.
+    pub running: Vec<IdentifyJob>,
+}
+
+impl RecordsState {
+    /// The job of a condition that is under way or waits.
+    pub fn running(&self, condition: ConditionId) -> Option<&IdentifyJob> {
+        self.running.iter().find(|job| job.condition == condition)
+    }
+
+    /// The job under way, once it has told of a step.
+    pub fn under_way(&self) -> Option<&IdentifyJob> {
+        self.running.iter().find(|job| !job.told().step.is_empty())
+    }
+
+    /// What is to be identified, that of the condition shown first.
+    pub fn by_urgency(&self, shown: ConditionId) -> Vec<IdentifyJob> {
+        let mut jobs = self.running.clone();
+        jobs.sort_by_key(|job| job.condition != shown);
+        jobs
+    }
+}

@@ -2,10 +2,10 @@
 
 use egui::{Align, ComboBox, Grid, Label, Layout, RichText, Role as AccessRole, ScrollArea, Sense, Ui, WidgetInfo};
 
-use crate::view::assembling::{entry_ui, typed_number};
 use crate::view::command::Command;
+use crate::view::controls::elided_among;
+use crate::view::controls::{entry_ui, typed_number};
 use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE};
-use crate::view::row::elided_among;
 use crate::view::state::State;
 use gdcm_core::dataset::RecordKind;
 use gdcm_core::identification::{Role, Signal};

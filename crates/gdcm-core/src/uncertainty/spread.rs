@@ -111,8 +111,10 @@ fn range(scalar: Scalar, delay_bounds_s: [f64; 2]) -> [f64; 2] {
 pub enum Scalar {
     /// `ln G` of a response.
     Gain(Pair),
-    /// `D` of a response \[s\].
+    /// `D` of a response \[s\] by eq. (9).
     Delay(Pair),
+    /// `D` of a response \[s\] by the line through its phase (M15.2).
+    BandDelay(Pair),
     /// `ln k_o k_i` of a response.
     NetGain(Pair),
     /// `ln k` of a channel.
@@ -124,7 +126,7 @@ pub enum Scalar {
 impl Scalar {
     /// Whether it is a time; otherwise it is the natural logarithm of a gain.
     pub fn is_delay(self) -> bool {
-        matches!(self, Self::Delay(_) | Self::ChannelDelay(_))
+        matches!(self, Self::Delay(_) | Self::BandDelay(_) | Self::ChannelDelay(_))
     }
 }
 
@@ -166,9 +168,10 @@ impl<T> ScalarTable<T> {
         match scalar {
             Scalar::Gain(pair) => of_pair(pair),
             Scalar::Delay(pair) => p * m + of_pair(pair),
-            Scalar::NetGain(pair) => 2 * p * m + of_pair(pair),
-            Scalar::ChannelGain(channel) => 3 * p * m + of_channel(channel),
-            Scalar::ChannelDelay(channel) => 3 * p * m + p + m + of_channel(channel),
+            Scalar::BandDelay(pair) => 2 * p * m + of_pair(pair),
+            Scalar::NetGain(pair) => 3 * p * m + of_pair(pair),
+            Scalar::ChannelGain(channel) => 4 * p * m + of_channel(channel),
+            Scalar::ChannelDelay(channel) => 4 * p * m + p + m + of_channel(channel),
         }
     }
 }
@@ -200,6 +203,7 @@ fn scalars(outputs: usize, inputs: usize) -> impl Iterator<Item = Scalar> {
     };
     pairs(Scalar::Gain)
         .chain(pairs(Scalar::Delay))
+        .chain(pairs(Scalar::BandDelay))
         .chain(pairs(Scalar::NetGain))
         .chain(channels(Scalar::ChannelGain))
         .chain(channels(Scalar::ChannelDelay))
@@ -285,7 +289,7 @@ mod scalar_tests {
     fn every_figure_has_a_place_of_its_own() {
         let mut table = ScalarTable::from_fn(3, 2, |scalar| scalar);
         assert!(table.iter().all(|(scalar, entry)| scalar == *entry && table[scalar] == scalar));
-        assert_eq!(table.iter().count(), 3 * 6 + 2 * 5);
+        assert_eq!(table.iter().count(), 4 * 6 + 2 * 5);
         table[Scalar::ChannelDelay(Channel::Output(2))] = Scalar::Gain(Pair::new(0, 0));
         assert_eq!(table.iter().last().map(|(_, entry)| *entry), Some(Scalar::Gain(Pair::new(0, 0))));
     }

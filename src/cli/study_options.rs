@@ -1,6 +1,6 @@
 //! The study that a command is about, with what the command line says on top of it.
 
-use crate::app::Pool;
+use crate::executor::Pool;
 use gdcm_core::correction::GainSource;
 use gdcm_core::dataset::{Band, BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
 use gdcm_core::schedule::{ScheduleKind, ScheduleSettings, SecondVariable};
@@ -11,7 +11,7 @@ use gdcm_files::{LoadedDataset, OutputSet, embedded_example};
 use super::arguments::{CoherenceChoice, GainSourceChoice, PairList, Rejection, SecondVariableChoice, StudyArguments};
 use super::existing;
 use super::failure::Failure;
-use super::opening::open as open_file;
+use super::open as open_file;
 use super::terminal::say_error;
 
 /// The study, and the dataset that it is about; cautions of the file are told on standard error.

@@ -77,8 +77,8 @@ pub fn entries_ui<N: Into<String>>(
 }
 
 /// A line of text to type into, of this accessible name.
-pub fn text_field_ui(ui: &mut Ui, field: TextEdit<'_>, name: &str, text: &str) -> Response {
-    let response = ui.add(field);
+pub fn text_field_ui(ui: &mut Ui, name: &str, text: &mut String, hint: &str, width: f32) -> Response {
+    let response = ui.add(TextEdit::singleline(text).hint_text(hint).desired_width(width));
     name_text_field(&response, name, text);
     response
 }

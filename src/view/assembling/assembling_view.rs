@@ -1,8 +1,6 @@
 //! The whole of the view that imports models: sources above, table and problems at the left, one model and the channels at the right.
 
-use egui::{
-    Button, CentralPanel, CollapsingHeader, Frame, Grid, Margin, Panel, RichText, Role, ScrollArea, TextEdit, Ui,
-};
+use egui::{Button, CentralPanel, CollapsingHeader, Frame, Grid, Margin, Panel, RichText, Role, ScrollArea, Ui};
 
 use crate::view::command::Command;
 use crate::view::controls::{button_ui, entry_ui, is_entered, named, number_entry_ui, text_field_ui};
@@ -87,8 +85,7 @@ fn reading_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette, commands
 
 fn path_ui(ui: &mut Ui, name: &str, text: &mut String, hint: &str) -> bool {
     let width = (0.22 * ui.available_width()).clamp(120.0, 360.0);
-    let shown = text.clone();
-    let response = text_field_ui(ui, TextEdit::singleline(text).hint_text(hint).desired_width(width), name, &shown);
+    let response = text_field_ui(ui, name, text, hint, width);
     is_entered(ui, &response)
 }
 

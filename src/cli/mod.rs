@@ -11,8 +11,6 @@ mod export;
 mod export_arguments;
 mod failure;
 mod figure;
-mod identification_outcome;
-mod identification_task;
 mod identify;
 mod identify_arguments;
 mod models;

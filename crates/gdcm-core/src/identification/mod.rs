@@ -34,10 +34,10 @@ use crate::response::{median, quantile};
 #[cfg(test)]
 use self::known_answers::*;
 use self::{
-    blocks::*, laguerre::*, likelihood::*, normal_system::*, modal_form::*, order::*, refinement::*, sampling::*, subspace::*,
-    triangular_factor::*,
+    blocks::*, laguerre::*, likelihood::*, modal_form::*, normal_system::*, order::*, refinement::*, sampling::*,
+    subspace::*, triangular_factor::*,
 };
 pub use self::{
-    candidate::*, cautions::*, diagnostics::*, flight_record::*, identify::*, local_polynomial::*,
-    options::*, preparation::*, prepared_data::*, response_estimate::*, spectrum::*, uncertainty::*, validation::*,
+    candidate::*, cautions::*, diagnostics::*, flight_record::*, identify::*, local_polynomial::*, options::*,
+    preparation::*, prepared_data::*, response_estimate::*, spectrum::*, uncertainty::*, validation::*,
 };

@@ -103,6 +103,18 @@ impl Preparation {
         of_role(Role::Input, &self.inputs).chain(of_role(Role::Output, &self.outputs))
     }
 
+    /// How a channel is prepared.
+    pub fn channel(&self, signal: &Signal) -> Option<&ChannelPreparation> {
+        let channels = if signal.role == Role::Input { &self.inputs } else { &self.outputs };
+        channels.get(signal.index)
+    }
+
+    /// How a channel is prepared, to change.
+    pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
+        let channels = if signal.role == Role::Input { &mut self.inputs } else { &mut self.outputs };
+        channels.get_mut(signal.index)
+    }
+
     fn checked(&self) -> Result<(), PreparationError> {
         for (role, channels) in [(Role::Input, &self.inputs), (Role::Output, &self.outputs)] {
             if channels.is_empty() {

@@ -80,7 +80,7 @@ fn draw(
     let curves = engine.curves(&study.dataset, id, grid, &Steps(progress))?;
     if let Some((curves, result)) = curves.zip(analysis.condition(id)) {
         let schedule = analysis.schedule.as_ref().ok();
-        add_plots(page, &ConditionSource { study, analysis: result, schedule, curves: &curves });
+        add_plots(page, result, &ConditionSource { study, analysis: Some(result), schedule, curves: &curves });
     }
     Ok(())
 }

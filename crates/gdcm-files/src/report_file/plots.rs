@@ -6,6 +6,7 @@ use crate::figure::{
     BodeOptions, ConditionSource, Figure, Mark, Role, bode_figure, error_figure, overview_figure, poles_figure,
 };
 use gdcm_core::dataset::Pair;
+use gdcm_core::study::ConditionAnalysis;
 
 use super::extent::{PAIRS_DRAWN, models_hidden};
 use super::page::Page;
@@ -14,11 +15,11 @@ use super::page::Page;
 const IN_A_FIGURE: usize = 10;
 
 /// Adds the responses that matter, what the fit sees of them, every response, and the poles.
-pub(super) fn add_plots(page: &mut Page, source: &ConditionSource<'_>) {
+pub(super) fn add_plots(page: &mut Page, result: &ConditionAnalysis, source: &ConditionSource<'_>) {
     let id = source.curves.condition.id();
     let measuring: Vec<Pair> = source.study.dataset.measuring_pairs().marked().collect();
     let drawn = &measuring[..measuring.len().min(PAIRS_DRAWN)];
-    let options = BodeOptions { hidden_models: models_hidden(source.study, source.analysis), ..BodeOptions::default() };
+    let options = BodeOptions { hidden_models: models_hidden(source.study, result), ..BodeOptions::default() };
     for pairs in drawn.chunks(IN_A_FIGURE) {
         let title = format!("Condition {id}, responses{}", on_axis_words(source));
         let caption = "Magnitude and phase of every model, and of the representative under its own and under the scheduled \

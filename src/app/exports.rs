@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::view::command::{Command, FormKind};
-use gdcm_core::study::{Analysis, ExportFormat, ExportRequest};
-use gdcm_files::{Existing, ExportSource, FileError, OutputSet, write_export, write_results};
+use gdcm_core::study::Analysis;
+use gdcm_files::{
+    Existing, ExportFormat, ExportRequest, ExportSource, FileError, OutputSet, write_export, write_results,
+};
 
 use super::window::GdcmApp;
 
@@ -34,7 +36,7 @@ impl GdcmApp {
         let form = &mut self.state.forms.export_as;
         if form.path.is_empty() {
             let stem = stem.unwrap_or_else(|| "example".to_owned());
-            form.path = format!("{}.{}", stem.trim_end_matches(".json"), form.format.extension());
+            form.path = format!("{}.{}", stem.trim_end_matches(".json"), form.format.about().extension);
         }
     }
 
@@ -44,7 +46,8 @@ impl GdcmApp {
         let path = self.at_home(path);
         let outputs = OutputSet::new(existing, self.inputs());
         let source = ExportSource { name: self.state.study_name.clone(), sha256: self.loaded.sha256.clone() };
-        match write_export(&analysis, &source, &ExportRequest::new(format), &path, outputs) {
+        let request = ExportRequest { format, ..ExportRequest::default() };
+        match write_export(&analysis, &source, &request, &path, outputs) {
             Ok(remarks) => {
                 self.state.forms.shown = None;
                 let remark = match remarks.as_slice() {

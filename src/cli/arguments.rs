@@ -10,7 +10,7 @@ use gdcm_core::schedule::HIGHEST_DEGREE;
 use gdcm_core::study::{AcrossRole, DEFAULT_COHERENCE, DelayFrom, LEAST_POINTS, MOST_POINTS, PhaseCorrection};
 use gdcm_files::figure::{ColumnWidth, FigureKind, Role};
 
-use super::export_arguments::ExportArguments;
+use super::export::ExportArguments;
 use super::identify_arguments::IdentifyArguments;
 
 /// Gain-Delay Correction Method: matches physics-based helicopter models to flight.

@@ -4,7 +4,8 @@ use egui::text::{CCursor, CCursorRange};
 use egui::{Button, Context, Id, Key, Modal, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::study::{Difference, Edit, ExportFormat};
+use gdcm_core::study::{Difference, Edit};
+use gdcm_files::ExportFormat;
 use gdcm_files::figure::ColumnWidth;
 
 use super::command::{Command, FormKind};
@@ -170,12 +171,12 @@ fn export_as_ui(form: &mut Form<'_, '_>, state: &mut State, palette: &Palette) {
     let ExportAsForm { format, path } = &mut state.forms.export_as;
     let entered = form.text_ui("Path of the export", path, "path of the file");
     let before = *format;
-    for choice in ExportFormat::ALL {
-        form.ui.radio_value(format, choice, choice.words());
+    for choice in ExportFormat::all() {
+        form.ui.radio_value(format, choice, choice.about().words);
     }
     // The end of the name goes with the format, as long as nobody has typed another.
-    if let Some(stem) = path.strip_suffix(&format!(".{}", before.extension())) {
-        *path = format!("{stem}.{}", format.extension());
+    if let Some(stem) = path.strip_suffix(&format!(".{}", before.about().extension)) {
+        *path = format!("{stem}.{}", format.about().extension);
     }
     let dim = |text: &str| RichText::new(text.to_owned()).color(palette.dim_text);
     form.ui.label(dim("State-space may be .mat, .json or .npz. gdcm export has more choices."));

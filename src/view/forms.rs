@@ -68,62 +68,51 @@ struct PathWords<'a> {
     waits: bool,
 }
 
-const OPEN: PathWords<'_> = PathWords {
-    title: "Open a dataset or a study",
-    field: "Path to open",
-    hint: "path of a .json, .json.gz or .gdcm-study.json file",
-    explanation: "",
-    submit: "Open file",
-    waits: false,
-};
-const FIND_DATASET: PathWords<'_> = PathWords {
-    title: "Where is the dataset of this study?",
-    field: "Path of the dataset",
-    hint: "path of a .json or .json.gz file",
-    explanation: "",
-    submit: "Open with this dataset",
-    waits: false,
-};
-const SAVE: PathWords<'_> = PathWords {
-    title: "Save the study",
-    field: "Path to save",
-    hint: "path of a .gdcm-study.json file",
-    explanation: "",
-    submit: "Save file",
-    waits: false,
-};
-const SAVE_TABLE: PathWords<'_> = PathWords {
-    title: "Save the table",
-    field: "Path of the table",
-    hint: "path of a .csv file",
-    explanation: "",
-    submit: "Save table",
-    waits: false,
-};
-const SAVE_FIGURE: PathWords<'_> = PathWords {
-    title: "Save the figure",
-    field: "Path of the figure",
-    hint: "path of a .svg, .png, .pdf or .csv file",
-    explanation: "On white paper, whatever the theme. The end of the name says the format; CSV holds the numbers.",
-    submit: "Save figure",
-    waits: false,
-};
-const REPORT: PathWords<'_> = PathWords {
-    title: "Write the report",
-    field: "Path of the report",
-    hint: "path of a .html file",
-    explanation: "All that was done and found as one page with every plot, to read in a browser and to print.",
-    submit: "Write report",
-    waits: false,
-};
-const EXPORT_AS: PathWords<'_> = PathWords {
-    title: "Export as…",
-    field: "Path of the export",
-    hint: "path of the file",
-    explanation: "State-space may be .mat, .json or .npz. gdcm export has more choices.",
-    submit: "Export file",
-    waits: false,
-};
+impl<'a> PathWords<'a> {
+    const fn new(title: &'a str, field: &'a str, hint: &'a str, explanation: &'a str, submit: &'a str) -> Self {
+        Self { title, field, hint, explanation, submit, waits: false }
+    }
+}
+
+const OPEN: PathWords<'_> = PathWords::new(
+    "Open a dataset or a study",
+    "Path to open",
+    "path of a .json, .json.gz or .gdcm-study.json file",
+    "",
+    "Open file",
+);
+const FIND_DATASET: PathWords<'_> = PathWords::new(
+    "Where is the dataset of this study?",
+    "Path of the dataset",
+    "path of a .json or .json.gz file",
+    "",
+    "Open with this dataset",
+);
+const SAVE: PathWords<'_> =
+    PathWords::new("Save the study", "Path to save", "path of a .gdcm-study.json file", "", "Save file");
+const SAVE_TABLE: PathWords<'_> =
+    PathWords::new("Save the table", "Path of the table", "path of a .csv file", "", "Save table");
+const SAVE_FIGURE: PathWords<'_> = PathWords::new(
+    "Save the figure",
+    "Path of the figure",
+    "path of a .svg, .png, .pdf or .csv file",
+    "On white paper, whatever the theme. The end of the name says the format; CSV holds the numbers.",
+    "Save figure",
+);
+const REPORT: PathWords<'_> = PathWords::new(
+    "Write the report",
+    "Path of the report",
+    "path of a .html file",
+    "All that was done and found as one page with every plot, to read in a browser and to print.",
+    "Write report",
+);
+const EXPORT_AS: PathWords<'_> = PathWords::new(
+    "Export as…",
+    "Path of the export",
+    "path of the file",
+    "State-space may be .mat, .json or .npz. gdcm export has more choices.",
+    "Export file",
+);
 
 fn find_dataset_ui(form: &mut Form<'_, '_>, state: &mut State) {
     let Some((study, reason)) = &state.forms.lost_dataset else { return };

@@ -228,7 +228,7 @@ fn a_table_of_numbers_is_split_as_the_reference_does() {
     for table in list(&case["tables"]) {
         let figures = numbers(&table["y"]);
         let of = |name: &str, place: usize, degrees| {
-            Some(VarianceComponent { variance: number(&case[name][place]).powi(2), degrees })
+            Some(VarianceComponent { variance: number(&case[name][place]).powi(2), degrees_of_freedom: degrees })
         };
         let bar = |place: usize| Bar {
             value: figures[place],

@@ -226,7 +226,7 @@ impl<'a> Cell<'a> {
         let beside = self.other_delay_s().filter(|other| (other - delay).abs() >= APART_S);
         let about = self
             .sureness
-            .half(Scalar::Delay(self.pair))
+            .half(shown.wanted_delay(self.pair))
             .map_or_else(String::new, |half| format!(" ±{:.0}", s_to_ms(half)));
         let beside = beside.map_or(format!("{about} ms"), |other| format!(" ({:.0})", s_to_ms(other)));
         text(28.0, &format!("{:.0}{beside}", s_to_ms(delay)), 10.5, palette.dim_text);
@@ -287,9 +287,11 @@ impl<'a> Cell<'a> {
             ui.label(format!("D of eq. (9): {median_ms:.1} ms; of the line through the phase, M15.2: {band_ms:.1} ms"));
         }
         ui.label(format!("net gain k_o k_i = {:.4}", shown.correction.net_gain(self.pair).value()));
-        for (name, scalar) in
-            [("G", Scalar::Gain(self.pair)), ("D", Scalar::Delay(self.pair)), ("net gain", Scalar::NetGain(self.pair))]
-        {
+        for (name, scalar) in [
+            ("G", Scalar::Gain(self.pair)),
+            ("D", shown.wanted_delay(self.pair)),
+            ("net gain", Scalar::NetGain(self.pair)),
+        ] {
             if let Some((bar, level)) = self.sureness.bar(scalar) {
                 ui.label(format!("{name} {}", bar_words(bar, scalar, level)));
             }

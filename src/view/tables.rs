@@ -197,7 +197,7 @@ fn response_values(shown: &ConditionAnalysis, sure: Sureness<'_>, pair: Pair) ->
     let cost = shown.cost[pair];
     let (before, after) = (cost.map(|cost| cost.uncorrected), cost.map(|cost| cost.corrected));
     let [[gain, gain_inner], [delay, delay_inner], [net, net_inner]] =
-        [Scalar::Gain(pair), Scalar::Delay(pair), Scalar::NetGain(pair)].map(|scalar| halves(&sure, scalar));
+        [Scalar::Gain(pair), shown.wanted_delay(pair), Scalar::NetGain(pair)].map(|scalar| halves(&sure, scalar));
     [
         shown.wanted_gain(pair),
         gain,

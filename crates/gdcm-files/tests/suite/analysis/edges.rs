@@ -201,11 +201,11 @@ fn a_schedule_that_overshoots_says_where_and_the_assessment_claims_nothing_betwe
     let study = &[Edit::Set(Setting::Schedule(wild))];
     let analysis = only(&json(NEAR), study);
     let schedule = analysis.schedule.as_ref().unwrap();
-    assert!(schedule.fails_between());
+    assert!(schedule.interpolation_fails());
     let said = schedule.cautions[0].words(&["I0".into(), "I1".into()], &["O0".into(), "O1".into()]);
     assert!(said.contains("between 60.0 and 120.0 kt the gain of"), "{said}");
     let table = ScheduleSettings { kind: ScheduleKind::Table, ..wild };
-    assert!(!only(&json(NEAR), &[Edit::Set(Setting::Schedule(table))]).schedule.unwrap().fails_between());
+    assert!(!only(&json(NEAR), &[Edit::Set(Setting::Schedule(table))]).schedule.unwrap().interpolation_fails());
 }
 
 #[test]

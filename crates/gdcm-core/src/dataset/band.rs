@@ -1,5 +1,7 @@
 //! The frequency band over which models are compared.
 
+use serde::{Deserialize, Serialize};
+
 use crate::units::number;
 
 /// Least lower end of a band \[rad/s\]: a period of 17 hours.
@@ -8,7 +10,8 @@ pub const LEAST_OMEGA: f64 = 1e-4;
 pub const GREATEST_OMEGA: f64 = 1e5;
 
 /// A frequency band \[rad/s\], `LEAST_OMEGA <= min < max <= GREATEST_OMEGA`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "[f64; 2]", into = "[f64; 2]")]
 pub struct Band {
     min: f64,
     max: f64,
@@ -50,6 +53,20 @@ impl Band {
     /// Upper end \[rad/s\].
     pub fn max(self) -> f64 {
         self.max
+    }
+}
+
+impl TryFrom<[f64; 2]> for Band {
+    type Error = BandError;
+
+    fn try_from([min, max]: [f64; 2]) -> Result<Self, BandError> {
+        Self::new(min, max)
+    }
+}
+
+impl From<Band> for [f64; 2] {
+    fn from(band: Band) -> Self {
+        [band.min, band.max]
     }
 }
 

@@ -1,5 +1,7 @@
 //! The cost J of a mismatch between two responses, eq. (14)-(19).
 
+use serde::{Deserialize, Serialize};
+
 use crate::response::{mean, median, weighted_median};
 
 /// Weight of the squared magnitude error \[dB^2\], `W_g`.
@@ -15,7 +17,8 @@ pub const INDISTINGUISHABLE: f64 = 50.0;
 pub(super) const SCALE: f64 = 20.0;
 
 /// How squared errors are averaged over frequency.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum CostAverage {
     /// The median (the paper).
     Median,

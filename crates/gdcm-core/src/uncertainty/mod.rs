@@ -37,5 +37,5 @@ pub use scalar::{Scalar, ScalarTable};
 pub use scatter::VarianceDecomposition;
 pub use schedule_band::{BandWidths, ScheduleBand};
 pub use second_variable::{SecondVariableDesign, SecondVariableEffect, SecondVariableError, scaled};
-pub use settings::{GREATEST_MEASUREMENT, GREATEST_PRIOR, LEVELS, UncertaintySettings};
+pub use settings::UncertaintySettings;
 pub use spread::{BarSource, ConditionSpread, Figures, ReportedUncertainty, bars};

@@ -12,7 +12,7 @@ use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 
-use gdcm::app::Pool;
+use gdcm::executor::Pool;
 use gdcm_core::correction::{Delta, delay_upper_s, gain_bounds, mismatch_table};
 use gdcm_core::dataset::{
     Band, BundleKind, Condition, ConditionId, Dataset, Dynamics, Model, ModelId, Origin, StateSpace,

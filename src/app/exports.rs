@@ -24,7 +24,7 @@ impl GdcmApp {
                 self.done(format!("exported {} conditions to {}", chosen.len(), sanitized_path(&folder)));
             }
             Err(FileError::Exists { paths }) => self.ask_to_overwrite(&paths, FormKind::Export, Command::Export),
-            Err(error) => self.trouble(error.to_string()),
+            Err(error) => self.notify_error(error.to_string()),
         }
     }
 
@@ -57,13 +57,13 @@ impl GdcmApp {
             Err(FileError::Exists { paths }) => {
                 self.ask_to_overwrite(&paths, FormKind::ExportAs, Command::ExportAs(format, path));
             }
-            Err(error) => self.trouble(error.to_string()),
+            Err(error) => self.notify_error(error.to_string()),
         }
     }
 
     /// The analysis of what is shown, proven; where it is not there yet, that is said.
     fn complete_results(&mut self) -> Option<Arc<Analysis>> {
-        let analysis = self.analysis_to_write("export").map_err(|why| self.trouble(why)).ok()?;
+        let analysis = self.analysis_to_write("export").map_err(|why| self.notify_error(why)).ok()?;
         // With how sure its figures are, as far as that is computed.
         let of_this = |bars: &Analysis| bars.study == analysis.study;
         Some(self.state.analysis_with_bars().filter(of_this).map_or(analysis.clone(), Arc::new))

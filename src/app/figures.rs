@@ -3,8 +3,6 @@
 use gdcm_core::message_text::sanitized_path;
 use std::path::{Path, PathBuf};
 
-use egui::Context;
-
 use crate::view::arrangement::View;
 use crate::view::command::{Command, FormKind};
 use crate::view::figures::{figure_name, figure_of};
@@ -15,9 +13,9 @@ use super::window::GdcmApp;
 
 impl GdcmApp {
     /// Puts the numbers of a view on the clipboard.
-    pub(super) fn copy_figure(&mut self, view: View, ctx: &Context) {
+    pub(super) fn copy_figure(&mut self, view: View) {
         if let Some(figure) = self.figure_of(view) {
-            ctx.copy_text(csv_text(&figure.tables()));
+            self.ctx.copy_text(csv_text(&figure.tables()));
             self.done(format!("copied the numbers of {}", view.name()));
         }
     }
@@ -43,7 +41,7 @@ impl GdcmApp {
             Err(FileError::Exists { paths }) => {
                 self.ask_to_overwrite(&paths, FormKind::SaveFigure, Command::SaveFigure(view, width, path));
             }
-            Err(error) => self.trouble(error.to_string()),
+            Err(error) => self.notify_error(error.to_string()),
         }
     }
 
@@ -51,7 +49,11 @@ impl GdcmApp {
     fn figure_of(&mut self, view: View) -> Option<Figure> {
         let figure = figure_of(&self.state, view);
         if figure.is_none() {
-            self.trouble(format!("{} has nothing to take away yet: {}", view.name(), self.state.results.absence()));
+            self.notify_error(format!(
+                "{} has nothing to take away yet: {}",
+                view.name(),
+                self.state.results.absence()
+            ));
         }
         figure
     }

@@ -58,7 +58,7 @@ impl GdcmApp {
                 *form = Path::new(form.trim()).with_file_name(name).display().to_string();
                 self.state.forms.shown = Some(FormKind::Report);
             }
-            Err(why) => self.trouble(why),
+            Err(why) => self.notify_error(why),
         }
     }
 
@@ -66,7 +66,7 @@ impl GdcmApp {
     pub(super) fn write_report(&mut self, path: PathBuf, existing: Existing) {
         let analysis = match self.analysis_to_write("write the report") {
             Ok(analysis) => analysis,
-            Err(why) => return self.trouble(why),
+            Err(why) => return self.notify_error(why),
         };
         let (path, inputs) = (self.at_home(path), self.inputs());
         match OutputSet::new(existing, inputs.clone()).check(&[&path]) {
@@ -93,14 +93,14 @@ impl GdcmApp {
             FileError::Exists { paths } => {
                 self.ask_to_overwrite(&paths, FormKind::Report, Command::WriteReport(path));
             }
-            error => self.trouble(error.to_string()),
+            error => self.notify_error(error.to_string()),
         }
     }
 
     /// Says that a report under way was given up, by hand or by a fault.
     pub(super) fn give_up_report(&mut self) {
         if let Some(job) = self.reporting.take() {
-            self.trouble(format!("{} was not written: it was stopped", sanitized_path(&job.path)));
+            self.notify_error(format!("{} was not written: it was stopped", sanitized_path(&job.path)));
         }
     }
 }

@@ -72,7 +72,7 @@ fn contents(loaded: &LoadedDataset) -> String {
 
 /// What an analysis would say of the models by themselves.
 fn model_cautions(study: &Study) -> Result<String, Failure> {
-    let execution = Execution::new(&crate::app::Pool, &Unobserved, 0);
+    let execution = Execution::new(&crate::executor::Pool, &Unobserved, 0);
     let mut text = String::new();
     for (id, caution) in cautions_of_models(study, &execution)? {
         let words = caution.words(|pair| study.dataset.pair_name(pair));

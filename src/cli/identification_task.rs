@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::app::Pool;
+use crate::executor::Pool;
 use gdcm_core::assembly::ChannelRule;
 use gdcm_core::dataset::{Band, BundleKind, ConditionId, ConditionRecord, Dataset};
 use gdcm_core::identification::{

@@ -1,6 +1,6 @@
 //! The study that a command is about, with what the command line says on top of it.
 
-use crate::app::Pool;
+use crate::executor::Pool;
 use gdcm_core::correction::GainSource;
 use gdcm_core::dataset::{Band, BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
 use gdcm_core::schedule::{ScheduleKind, ScheduleSettings, SecondVariable};

@@ -1,20 +1,16 @@
 //! The middle of the window: the views in tabs that can be dragged, split and resized.
 
-use egui::{
-    Align, Button, Color32, FontId, Frame, Id, Layout, Margin, Response, RichText, Role, Stroke, Ui, Visuals,
-    WidgetInfo, WidgetText,
-};
+use egui::{Align, Color32, FontId, Frame, Id, Layout, Margin, Response, RichText, Stroke, Ui, Visuals, WidgetText};
 use egui_tiles::{
     Behavior, Container, LinearDir, SimplificationOptions, TabState, Tabs, Tile, TileId, Tiles, Tree, UiResponse,
 };
 
-use super::arrangement::View;
+use super::arrangement::{View, ViewTitle};
 use super::command::Command;
 use super::figures::figure_button_ui;
 use super::focus::{Region, region_ui};
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 use super::state::State;
-use super::views;
 
 /// Height of a row of tabs \[pt\].
 const TAB_HEIGHT: f32 = 26.0;
@@ -45,76 +41,26 @@ struct Views<'a> {
 
 impl Views<'_> {
     fn header_ui(&mut self, ui: &mut Ui, view: View) {
-        let (state, palette) = (&*self.state, self.palette);
-        // That of the evidence stands in its first line: it has no other controls.
-        if view != View::Evidence {
+        let (state, palette, kind) = (&*self.state, self.palette, view.kind());
+        if kind.figure.is_some() && kind.tools_width > 0.0 {
             figure_button_ui(ui, view, self.commands);
         }
-        match view {
-            View::NetGain => views::net_gain_header_ui(ui, state, palette, self.commands),
-            View::Channels => views::channels_header_ui(ui, state, self.commands),
-            View::Across => views::across_header_ui(ui, state, palette, self.commands),
-            View::Poles => {
-                views::poles_header_ui(ui, state, self.commands);
-                condition_ui(ui, state, view, palette);
-            }
-            View::Assessment => views::assessment_header_ui(ui, state, self.commands),
-            View::Compare | View::Evidence => {}
-            View::Records => {
-                views::records_header_ui(ui, state, self.commands);
-                condition_ui(ui, state, view, palette);
-            }
-            View::Bode | View::Error | View::Overview => {
-                if matches!(view, View::Bode | View::Error) {
-                    fit_ui(ui, view, self.commands);
-                }
-                if view == View::Error {
-                    views::error_header_ui(ui, state, self.commands);
-                }
-                condition_ui(ui, state, view, palette);
-            }
-        }
-        if matches!(view, View::NetGain | View::Channels | View::Assessment | View::Evidence) {
+        (kind.tools)(ui, state, palette, self.commands);
+        title_ui(ui, state, kind.title, palette);
+        if kind.is_of_all_conditions {
             older_ui(ui, state, palette);
         }
     }
 }
 
-fn fit_ui(ui: &mut Ui, view: View, commands: &mut Vec<Command>) {
-    let hint = "Bring every curve into view (F, or double click)";
-    let fit = ui.add(Button::new("Fit").small());
-    if view == View::Error {
-        let enabled = ui.is_enabled();
-        fit.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, "Fit the errors"));
-    }
-    if fit.on_hover_text(hint).clicked() {
-        commands.push(Command::FitPlots);
-    }
-}
-
-/// The width that the controls of a view's header need \[pt\]; its title takes what is left.
-fn header_width(view: View) -> f32 {
-    match view {
-        View::Compare | View::Evidence => 0.0,
-        View::Bode | View::Overview => 90.0,
-        View::Error => 260.0,
-        View::Poles => 180.0,
-        View::Records => 380.0,
-        View::Channels => 410.0,
-        View::Across => 330.0,
-        View::NetGain => views::NET_GAIN_CONTROLS,
-        View::Assessment => 640.0,
-    }
-}
-
 /// Which response and which condition a view shows.
-fn condition_ui(ui: &mut Ui, state: &State, view: View, palette: &Palette) {
+fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &Palette) {
     let condition = state.condition();
     let of_condition = format!("condition {} · {}", condition.id(), condition.flight_state().name);
-    let title = match view {
-        View::Bode | View::Error => format!("{} · {of_condition}", state.dataset().pair_name(state.display.pair)),
-        View::Overview | View::Poles | View::Records => of_condition,
-        View::Across | View::NetGain | View::Channels | View::Assessment | View::Evidence | View::Compare => return,
+    let title = match title {
+        ViewTitle::Response => format!("{} · {of_condition}", state.dataset().pair_name(state.display.pair)),
+        ViewTitle::Condition => of_condition,
+        ViewTitle::None => return,
     };
     // A title of a few letters says nothing.
     if ui.available_width() > LEAST_TITLE {
@@ -139,7 +85,7 @@ fn is_in_front(tiles: &Tiles<View>, tile: TileId) -> bool {
 
 impl Behavior<View> for Views<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, view: &mut View) -> UiResponse {
-        if self.below.contains(view) && header_width(*view) > 0.0 {
+        if self.below.contains(view) && view.kind().tools_width > 0.0 {
             let layout = Layout::right_to_left(Align::Center).with_main_wrap(true);
             let size = egui::vec2(ui.available_width(), TAB_HEIGHT);
             ui.allocate_ui_with_layout(size, layout, |ui| self.header_ui(ui, *view));
@@ -147,20 +93,8 @@ impl Behavior<View> for Views<'_> {
         let frame = Frame::new().inner_margin(Margin { top: 4, ..Margin::ZERO });
         let (state, palette) = (&mut *self.state, self.palette);
         let commands = &mut *self.commands;
-        let view_ui = |ui: &mut Ui| match view {
-            View::Bode => views::bode_view_ui(ui, state, palette, commands),
-            View::Error => views::error_view_ui(ui, state, palette, commands),
-            View::Overview => views::overview_view_ui(ui, state, palette, commands),
-            View::Across => views::across_view_ui(ui, state, palette, commands),
-            View::Poles => views::poles_view_ui(ui, state, palette, commands),
-            View::Records => views::records_view_ui(ui, state, palette, commands),
-            View::Evidence => views::evidence_view_ui(ui, state, palette, commands),
-            View::Compare => views::compare_view_ui(ui, state, palette, commands),
-            View::Channels => views::channels_view_ui(ui, state, palette, commands),
-            View::Assessment => views::assessment_view_ui(ui, state, palette, commands),
-            View::NetGain => views::net_gain_view_ui(ui, state, palette, commands),
-        };
-        frame.show(ui, |ui| region_ui(ui, Region::Plots, view_ui));
+        let draw = view.kind().draw;
+        frame.show(ui, |ui| region_ui(ui, Region::Plots, |ui| draw(ui, state, palette, commands)));
         UiResponse::None
     }
 
@@ -188,7 +122,7 @@ impl Behavior<View> for Views<'_> {
                 }
             }
         });
-        tab.on_hover_text(format!("{}. Drag the tab to split the plots; secondary click: more", view.purpose()))
+        tab.on_hover_text(format!("{}. Drag the tab to split the plots; secondary click: more", view.kind().purpose))
     }
 
     fn top_bar_right_ui(&mut self, tiles: &Tiles<View>, ui: &mut Ui, _tile: TileId, tabs: &Tabs, _scroll: &mut f32) {
@@ -202,7 +136,7 @@ impl Behavior<View> for Views<'_> {
         let Some(view) = active else { return };
         // The tabs come first: what is left is the header's.
         let room = (ui.available_width() - of_tabs - TAB_SLACK).max(0.0);
-        if room < header_width(view) {
+        if room < view.kind().tools_width {
             self.below.push(view);
             return;
         }

@@ -5,21 +5,20 @@ use std::sync::Arc;
 
 use egui::ThemePreference;
 use egui_tiles::LinearDir;
-
 use gdcm_core::dataset::{ConditionId, ModelId, Pair};
 use gdcm_core::study::{AcrossRole, Edit, ExplainTarget, ExportFormat, Table};
 use gdcm_files::figure::{ColumnWidth, FigureFormat};
 
 use super::arrangement::{Preset, View};
 use super::assembling::AssemblingCommand;
-use super::assessment_scene::AssessedFigures;
 use super::bars::Bar;
 use super::curve_display::CurveCommand;
-use super::looks::PlotStyle;
-use super::net_gain_scene::PairSet;
 use super::plot::{Across, FrequencyUnit, Measure};
+use super::plot_style::PlotStyle;
 use super::records::RecordsCommand;
 use super::tables::TableKind;
+use super::views::AssessedFigures;
+use super::views::PairSet;
 
 /// One wish of the engineer: what a click, a key or a menu entry stands for. Views push them; the window carries them out.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,13 +9,13 @@ use gdcm_files::figure::FigureFormat;
 use super::arrangement::{Preset, View};
 use super::assembling::AssemblingCommand;
 use super::command::{Command, FormKind};
-use super::curve_entries::curve_entries;
+use super::curve_display::curve_entries;
 use super::figures::views_with_figure;
-use super::net_gain_scene::PairSet;
 use super::plot::FrequencyUnit;
 use super::records::RecordsCommand;
 use super::state::State;
 use super::tables::TableKind;
+use super::views::PairSet;
 
 /// A menu of the bar on top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -292,7 +292,7 @@ fn view_entries(state: &State) -> Vec<Entry> {
     ];
     entries.extend(steps(state));
     let show = |view: View| {
-        Entry::new(format!("Show {}", view.name()), view.purpose(), Command::ShowView(view)).within(Menu::View, 2)
+        Entry::new(format!("Show {}", view.name()), view.kind().purpose, Command::ShowView(view)).within(Menu::View, 2)
     };
     entries.extend(View::ALL.map(show));
     let arrange = |preset: Preset| Entry::new(preset.name(), ARRANGED, Command::Arrange(preset)).within(Menu::View, 3);

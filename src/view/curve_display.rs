@@ -2,9 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use egui::Key;
 use gdcm_core::dataset::{ConditionId, ModelId, Pair};
 
+use super::command::Command;
+use super::command_table::{Entry, Menu};
 use super::plot::{CurveId, MagnitudeUnit, PhaseErrorUnit, PhaseUnit, Role};
+use super::plot_style::{CurveColors, PlotStyle};
+use super::state::State;
 
 /// How the plots over frequency show their curves.
 #[derive(Clone, Debug, PartialEq)]
@@ -136,6 +141,110 @@ impl CurveDisplay {
         }
         self.turns.get(&(condition, pair, curve.clone())).copied().unwrap_or(0)
     }
+}
+
+/// Units, read-outs, looks, and what is hidden.
+pub(super) fn curve_entries(state: &State) -> Vec<Entry> {
+    let mut entries = unit_entries(state);
+    entries.extend(look_entries(state.display.looks));
+    entries.extend(visibility_entries(state));
+    entries
+}
+
+/// Each leads to the other of two ways.
+fn unit_entries(state: &State) -> Vec<Entry> {
+    let curves = &state.display.curves;
+    let entry =
+        |name: &str, meaning, command: CurveCommand| Entry::new(name, meaning, command.into()).within(Menu::Curves, 0);
+    vec![
+        match curves.magnitude {
+            MagnitudeUnit::Decibel => entry(
+                "Magnitudes as ratios",
+                "Output by input, in the units of the channels, on a logarithmic axis",
+                CurveCommand::ReadMagnitudes(MagnitudeUnit::Ratio),
+            ),
+            MagnitudeUnit::Ratio => entry(
+                "Magnitudes in decibels",
+                "20 log10 of the ratio of output to input",
+                CurveCommand::ReadMagnitudes(MagnitudeUnit::Decibel),
+            ),
+        },
+        match curves.phase {
+            PhaseUnit::Unwrapped => entry(
+                "Phases wrapped",
+                "Between −180° and 180°, with gaps where they jump",
+                CurveCommand::DrawPhases(PhaseUnit::Wrapped),
+            ),
+            PhaseUnit::Wrapped => entry(
+                "Phases unwrapped",
+                "Continuous over frequency, on the branch nearest to the identified model",
+                CurveCommand::DrawPhases(PhaseUnit::Unwrapped),
+            ),
+        },
+        match curves.phase_error {
+            PhaseErrorUnit::Degree => entry(
+                "Phase errors as delays",
+                "Δφ/ω [ms] in the plot of errors",
+                CurveCommand::DrawPhaseErrors(PhaseErrorUnit::Millisecond),
+            ),
+            PhaseErrorUnit::Millisecond => entry(
+                "Phase errors in degrees",
+                "Δφ in the plot of errors",
+                CurveCommand::DrawPhaseErrors(PhaseErrorUnit::Degree),
+            ),
+        },
+        entry(
+            if curves.lists_values { "List no values at the cursor" } else { "List values at the cursor" },
+            "What every role has there, and its difference from the identified model",
+            CurveCommand::ListValues(!curves.lists_values),
+        ),
+        entry(
+            if curves.shows_muad { "Hide what a pilot does not notice" } else { "Show what a pilot does not notice" },
+            "Envelopes of maximum unnoticeable added dynamics in the plot of errors, and where the mismatch leaves them",
+            CurveCommand::ShowMuad(!curves.shows_muad),
+        ),
+    ]
+}
+
+fn look_entries(looks: PlotStyle) -> Vec<Entry> {
+    let mut entries = Vec::new();
+    for curve_colors in CurveColors::ALL.into_iter().filter(|colors| *colors != looks.curve_colors) {
+        let command = Command::SetLooks(PlotStyle { curve_colors, ..looks });
+        let meaning = "For all eyes: colours that stay apart for people who do not see red, green or blue as others do";
+        entries.push(Entry::new(curve_colors.name(), meaning, command).within(Menu::Curves, 1));
+    }
+    for line_width in PlotStyle::LINE_WIDTHS {
+        let command = Command::SetLooks(PlotStyle { line_width, ..looks });
+        let entry = Entry::new(format!("Lines × {line_width}"), "Widths of all curves, by the usual ones", command);
+        entries.push(entry.within(Menu::Curves, 2).enabled(looks.line_width != line_width));
+    }
+    entries
+}
+
+fn visibility_entries(state: &State) -> Vec<Entry> {
+    let display = &state.display;
+    let is_isolated = display.isolated.is_some() || !display.curves.selected.is_empty();
+    let is_hidden = !(display.curves.hidden_models.is_empty() && display.curves.hidden_roles.is_empty());
+    let isolation = Entry::new("End isolation and selection", "Show every model, select none", Command::EndIsolation);
+    vec![
+        // The key of an entry is taken from fields and menus, whether the entry is enabled or not: it is one only where it has
+        // something to end here.
+        if is_isolated { isolation.free_key(Key::Escape) } else { isolation.enabled(false) }.within(Menu::Curves, 3),
+        Entry::new("Show hidden curves", "Draw every model and every role", CurveCommand::ShowHidden.into())
+            .within(Menu::Curves, 3)
+            .enabled(is_hidden),
+        Entry::new(
+            "Mark the frequency under the pointer",
+            "In every plot over frequency; two marks show what changes between them",
+            CurveCommand::PinCursor(display.curves.cursor.unwrap_or_default()).into(),
+        )
+        .free_key(Key::M)
+        .within(Menu::Curves, 3)
+        .enabled(display.curves.cursor.is_some()),
+        Entry::new("Remove marks of frequencies", "In every plot over frequency", CurveCommand::UnpinCursors.into())
+            .within(Menu::Curves, 3)
+            .enabled(!display.curves.pinned.is_empty()),
+    ]
 }
 
 #[cfg(test)]

@@ -7,21 +7,21 @@ use serde::{Deserialize, Serialize};
 use gdcm_core::dataset::{ConditionId, ModelId, Pair};
 use gdcm_core::study::{AcrossRole, ExplainTarget};
 
-use super::across_scene::CachedAcross;
 use super::arrangement::Arrangement;
-use super::assessment_scene::AssessedFigures;
-use super::bode_scene::CachedShapes;
 use super::curve_display::CurveDisplay;
-use super::error_scene::CachedErrors;
-use super::evidence_scene::CachedEvidence;
-use super::looks::PlotStyle;
-use super::modes_scene::CachedModes;
-use super::net_gain_scene::PairSet;
 use super::plot::{
     Across, AssessmentView, BodeCurve, BodeView, ChannelsView, FrequencyUnit, GainView, MagnitudeUnit, Measure,
     OverviewView, PhaseErrorUnit, PhaseUnit, PolesView, Role,
 };
+use super::plot_style::PlotStyle;
 use super::table_view::Sorting;
+use super::views::AssessedFigures;
+use super::views::CachedAcross;
+use super::views::CachedErrors;
+use super::views::CachedEvidence;
+use super::views::CachedModes;
+use super::views::CachedShapes;
+use super::views::PairSet;
 
 /// What is shown, none of which changes a result.
 #[derive(Debug)]

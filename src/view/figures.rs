@@ -2,20 +2,19 @@
 
 use egui::containers::menu::MenuButton;
 use egui::{RichText, Role, Ui, WidgetInfo};
-
 use gdcm_files::figure::{BodeOptions, ConditionSource, Figure, FigureFormat, FigureKind, FigureRequest, all_channels};
 
 use super::arrangement::View;
-use super::assessment_scene::{assessed_pairs, assessment_choice};
 use super::command::Command;
-use super::net_gain_scene::net_gain_pairs;
 use super::palette::SMALL_SIZE;
 use super::plot::{BodeView, Pane};
 use super::state::State;
+use super::views::net_gain_pairs;
+use super::views::{assessed_pairs, assessment_choice};
 
 /// The figure that a view shows; none until its results are there.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {
-    let bars = state.display.show_bars || kind(view).is_some_and(FigureKind::needs_bars);
+    let bars = state.display.show_bars || view.kind().figure.is_some_and(FigureKind::needs_bars);
     let with_bars = if bars { state.analysis_with_bars() } else { state.analysis().cloned() };
     let analysis = with_bars.as_ref();
     let source = state.shown().zip(state.curves()).map(|(shown, curves)| ConditionSource {
@@ -29,7 +28,7 @@ pub fn figure_of(state: &State, view: View) -> Option<Figure> {
 
 /// A name for the file of a view's figure: `bode-10-LON-Q`.
 pub fn figure_name(state: &State, view: View) -> String {
-    let kind = kind(view);
+    let kind = view.kind().figure;
     let mut parts: Vec<String> = kind.iter().map(|kind| kind.name().to_owned()).collect();
     if kind.is_some_and(FigureKind::is_of_condition) {
         parts.push(state.condition().id().to_string());
@@ -42,30 +41,14 @@ pub fn figure_name(state: &State, view: View) -> String {
     parts.join("-").chars().map(|letter| if is_plain(letter) { letter } else { '_' }).collect()
 }
 
-/// The figure of a view; that of variants consists of tables, which are saved as such, and records are saved as what is identified.
-fn kind(view: View) -> Option<FigureKind> {
-    match view {
-        View::Bode => Some(FigureKind::Bode),
-        View::Error => Some(FigureKind::Error),
-        View::Overview => Some(FigureKind::Overview),
-        View::Channels => Some(FigureKind::Channels),
-        View::Assessment => Some(FigureKind::Assessment),
-        View::NetGain => Some(FigureKind::NetGain),
-        View::Poles => Some(FigureKind::Poles),
-        View::Across => Some(FigureKind::Airspeeds),
-        View::Evidence => Some(FigureKind::Evidence),
-        View::Compare | View::Records => None,
-    }
-}
-
 /// The views that have a figure.
 pub fn views_with_figure() -> impl Iterator<Item = View> {
-    View::ALL.into_iter().filter(|view| kind(*view).is_some())
+    View::ALL.into_iter().filter(|view| view.kind().figure.is_some())
 }
 
 /// What a view shows: the same that the command `gdcm figure` is asked for.
 fn request(state: &State, view: View) -> Option<FigureRequest> {
-    let kind = kind(view)?;
+    let kind = view.kind().figure?;
     let (display, dataset) = (&state.display, state.dataset());
     let pairs = match view {
         View::Bode | View::Error | View::Across => vec![display.pair],
@@ -107,7 +90,7 @@ fn chosen(view: &BodeView) -> BodeOptions {
 
 /// The button that copies or saves what a view shows.
 pub(super) fn figure_button_ui(ui: &mut Ui, view: View, commands: &mut Vec<Command>) {
-    if kind(view).is_none() {
+    if view.kind().figure.is_none() {
         return;
     }
     let text = RichText::new("⬇").size(SMALL_SIZE);

@@ -16,11 +16,11 @@ use super::command::Command;
 use super::explanation::question_menu_ui;
 use super::explanation::{gain_conflict_marks, toggle_costs};
 use super::focus::{Region, region_ui};
-use super::gain_bars::bar_words;
 use super::palette::{Palette, SMALL_SIZE};
 use super::row::table_heading_ui;
 use super::state::State;
 use super::tables::TableKind;
+use super::views::bar_words;
 
 const CELL_HEIGHT: f32 = 50.0;
 const LEAST_CELL_WIDTH: f32 = 58.0;

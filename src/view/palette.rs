@@ -7,7 +7,7 @@ use egui::{
     Visuals, vec2,
 };
 
-use super::looks::{self, CurveColors, PlotStyle};
+use super::plot_style::{self, CurveColors, PlotStyle};
 
 /// Size of running text \[pt\].
 pub const BODY_SIZE: f32 = 13.0;
@@ -119,7 +119,7 @@ impl Palette {
         match looks.curve_colors {
             CurveColors::Standard => Self { line_width, ..self },
             CurveColors::ForAllEyes => {
-                let [nominal, perturbed, identified, corrected] = looks::for_all_eyes(self.is_dark);
+                let [nominal, perturbed, identified, corrected] = plot_style::for_all_eyes(self.is_dark);
                 Self { nominal, perturbed, identified, corrected, line_width, ..self }
             }
         }

@@ -14,11 +14,11 @@ use super::command::{Command, FormKind};
 use super::explanation::figure_ui;
 use super::explanation::{details_shown, remarks_shown};
 use super::focus::{Region, region_ui};
-use super::gain_bars::bar_words;
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 use super::row::{heading_ui, table_menu_ui};
 use super::state::State;
 use super::tables::TableKind;
+use super::views::bar_words;
 
 /// Size of the half-widths of bars \[pt\].
 const HALF_SIZE: f32 = 9.5;

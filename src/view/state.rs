@@ -13,13 +13,13 @@ use gdcm_files::figure::ColumnWidth;
 
 use super::arrangement::View;
 use super::assembling::AssemblyState;
-use super::assessment_scene::assessment_choice;
 use super::bars::Bar;
 use super::command::FormKind;
 use super::command_palette::PaletteForm;
 use super::display::Display;
 use super::records::RecordsState;
 use super::results::{FirstResult, Results};
+use super::views::assessment_choice;
 
 /// How a message is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -11,9 +11,9 @@ use gdcm_core::schedule::{DEFAULT_TOLERANCE_KT, ScheduleKind, ScheduleSettings, 
 use gdcm_core::study::{DEFAULT_AGREEMENT_DB, DelayFrom, EditRefusal, PhaseCorrection, Setting, Settings};
 use gdcm_core::uncertainty::UncertaintySettings;
 
-use super::content_fault::ContentFault;
-use super::flaw::ContentError;
-use super::list::list;
+use crate::file_error::ContentError;
+use crate::file_error::ContentFault;
+use crate::json_text::list;
 
 /// Every setting that changes a result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

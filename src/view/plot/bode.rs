@@ -5,23 +5,18 @@ use std::collections::BTreeSet;
 use egui::{Align2, CursorIcon, Rect, Response, Ui, UiBuilder, pos2, vec2};
 use egui_plot::PlotPoint;
 
-use super::axes::{caption_font, use_frame_colors};
-use super::band_handle::{BandChange, band_handles_ui};
-use super::bode_band::BodeBand;
-use super::bode_pane::{Emphasis, pane_ui};
+use super::axes::{caption_font, message_ui, use_frame_colors};
+use super::bode_pane::{BandChange, Emphasis, band_handles_ui, pane_ui};
 use super::bode_view::BodeView;
-use super::chip::{Chip, chips_ui};
 use super::curve::{BodeCurve, CurveId, Pane};
 use super::curve_menu::{CurveWish, MenuSubject, menu_ui};
-use super::legend::{self, LegendAnswer};
+use super::curve_style::Role;
+use super::legend::{self, Chip, LegendAnswer, chips_ui};
 use super::log_axis::FrequencyUnit;
-use super::message::message_ui;
 use super::picking::{Hit, nearest, touched};
 use super::quantity::BodeQuantity;
-use super::readout::curve_tooltip_ui;
-use super::readout_box::{Readout, readout_box_ui};
-use super::role::Role;
-use super::rule::Rule;
+use super::readout::{Readout, curve_tooltip_ui, readout_box_ui};
+use super::rule::{BodeBand, Rule};
 use crate::view::palette::Palette;
 
 /// Part of the height that the magnitude plot gets.

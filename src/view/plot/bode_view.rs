@@ -2,18 +2,17 @@
 
 use egui::{Pos2, Rect, Vec2, vec2};
 use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
+use gdcm_files::figure::Range;
 
-use super::axis_strip::LimitsForm;
+use super::axis_strip::{LimitsForm, PlotAxis};
 use super::bode::BodeScene;
+use super::cached_raster::CachedRaster;
 use super::curve::{BodeCurve, CurveId, Pane};
 use super::curve_menu::MenuSubject;
 use super::drawn_curves::DrawnCurves;
 use super::legend::LegendState;
-use super::plot_axis::PlotAxis;
-use super::range::Range;
-use super::still_image::CachedRaster;
-use super::value_unit::ValueUnit;
-use super::viewed_range::ViewedRange;
+use super::navigation::ViewedRange;
+use super::quantity::ValueUnit;
 
 /// Decades that can be in view.
 const DECADES: Range = Range { min: 1e-3, max: 12.0 };
@@ -322,9 +321,9 @@ fn fitted_values(curves: &[BodeCurve], pane: Pane, (min, max): (f64, f64)) -> Op
 
 #[cfg(test)]
 mod tests {
+    use super::super::curve_style::Role;
     use super::*;
     use crate::view::plot::curve::numbered;
-    use crate::view::plot::role::Role;
 
     fn fitted(magnitude_db: &[f64]) -> Option<Range> {
         let curve = BodeCurve {

@@ -1,17 +1,17 @@
 //! A plain plot: lines, bands and marks with error bars over a linear or a logarithmic axis.
 
-use crate::view::plot::LogAxis;
 use std::sync::Arc;
 
 use egui::{Align2, Color32, Id, Rect, Response, Sense, Stroke, Ui, UiBuilder, Vec2, Vec2b, WidgetInfo, pos2, vec2};
 use egui_plot::{Axis, FilledArea, Line, LineStyle, MarkerShape, Plot, PlotPoints, PlotUi, Points, Span, VLine};
 
-use super::axes::{LABELLED_HEIGHT, TICKS_HEIGHT, VERTICAL_TICK_GAP, axis_hints, caption_font, quiet_plot};
-use super::linear_axis::{Ladder, tick_text};
+use super::LogAxis;
+use super::axes::{
+    LABELLED_HEIGHT, Ladder, TICKS_HEIGHT, VERTICAL_TICK_GAP, axis_hints, caption_font, quiet_plot, tick_text,
+};
+use super::drawn_curves::{Pixel, thinned};
 use super::log_axis::FrequencyUnit;
-use super::pixel::Pixel;
-use super::thinning::thinned;
-use super::wheel::{Turn, turned};
+use super::navigation::{Turn, turned};
 use crate::view::palette::Palette;
 
 const TITLE_HEIGHT: f32 = 18.0;

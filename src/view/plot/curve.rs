@@ -1,12 +1,13 @@
 //! A frequency response as the Bode plot draws it.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use egui_plot::PlotBounds;
-
+use egui::{Color32, Pos2, Shape, Ui};
+use egui_plot::{PlotBounds, PlotGeometry, PlotItem, PlotItemBase, PlotPoint, PlotTransform};
 pub use gdcm_files::figure::CurveId;
 
-use super::role::Role;
+use super::curve_style::{LineLook, Role};
 
 /// Which of the two stacked plots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -181,6 +182,81 @@ pub(super) fn sample_curve(id: u64, values: &[f64]) -> BodeCurve {
         omega: vec![1.0, 2.0, 4.0].into(),
         magnitude_db: values.into(),
         phase_deg: values.into(),
+    }
+}
+
+/// The numbers that a pane showed of a curve. They are held, so that no others can take their place in memory.
+#[derive(Clone, Debug)]
+pub(super) struct CurveNumbers {
+    omega: Arc<[f64]>,
+    values: Arc<[f64]>,
+}
+
+impl CurveNumbers {
+    /// Those of a curve.
+    pub(super) fn of(curve: &BodeCurve, pane: Pane) -> Self {
+        Self { omega: Arc::clone(&curve.omega), values: Arc::clone(curve.shared_values(pane)) }
+    }
+
+    /// Whether `curve` still has them: without looking at any.
+    pub(super) fn are_of(&self, curve: &BodeCurve, pane: Pane) -> bool {
+        Arc::ptr_eq(&self.values, curve.shared_values(pane)) && Arc::ptr_eq(&self.omega, &curve.omega)
+    }
+}
+
+/// A curve of one or more runs of points, drawn as its look says. Pointing at it is not egui_plot's business.
+pub(super) struct CurveItem<'a> {
+    base: PlotItemBase,
+    runs: &'a [Vec<PlotPoint>],
+    look: LineLook,
+}
+
+impl<'a> CurveItem<'a> {
+    /// The curve through each of `runs`.
+    pub(super) fn new(runs: &'a [Vec<PlotPoint>], look: LineLook) -> Self {
+        Self { base: PlotItemBase::new(String::new()), runs, look }
+    }
+
+    /// What it is drawn of, in screen coordinates.
+    pub(super) fn lines(&self, transform: &PlotTransform) -> Vec<Shape> {
+        let mut shapes = Vec::new();
+        for run in self.runs {
+            let path: Vec<Pos2> = run.iter().map(|point| transform.position_from_point(point)).collect();
+            self.look.add_shapes(path, &mut shapes);
+        }
+        shapes
+    }
+}
+
+impl PlotItem for CurveItem<'_> {
+    fn shapes(&self, _: &Ui, transform: &PlotTransform, shapes: &mut Vec<Shape>) {
+        shapes.append(&mut self.lines(transform));
+    }
+
+    fn initialize(&mut self, _: RangeInclusive<f64>) {}
+
+    fn color(&self) -> Color32 {
+        self.look.color
+    }
+
+    fn allow_hover(&self) -> bool {
+        false
+    }
+
+    fn geometry(&self) -> PlotGeometry<'_> {
+        PlotGeometry::None
+    }
+
+    fn bounds(&self) -> PlotBounds {
+        PlotBounds::NOTHING
+    }
+
+    fn base(&self) -> &PlotItemBase {
+        &self.base
+    }
+
+    fn base_mut(&mut self) -> &mut PlotItemBase {
+        &mut self.base
     }
 }
 

@@ -1,15 +1,14 @@
 //! The legend of a Bode plot: one switch for each role that is present.
 
-use crate::view::plot::RoleLook;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use egui::{Align2, CursorIcon, Galley, Painter, Rect, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2};
 
+use super::RoleLook;
 use super::axes::caption_font;
 use super::curve::BodeCurve;
-use super::line_look::LineLook;
-use super::role::Role;
+use super::curve_style::{LineLook, Role};
 use crate::view::palette::Palette;
 
 const ROW_HEIGHT: f32 = 16.5;
@@ -191,4 +190,37 @@ fn emptiest_corner(room: Rect, size: Vec2, covered: impl Fn(Rect) -> usize) -> A
     let corners = [Align2::RIGHT_TOP, Align2::LEFT_BOTTOM, Align2::RIGHT_BOTTOM, Align2::LEFT_TOP];
     let least = corners.into_iter().min_by_key(|corner| covered(corner.align_size_within_rect(size, room)));
     least.unwrap_or(Align2::RIGHT_TOP)
+}
+
+/// What holds for a plot now, and what a click on it does.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Chip {
+    /// What it says: "Only V+10kt ×".
+    pub text: String,
+    /// What a click does.
+    pub hint: String,
+}
+
+/// Draws chips along the upper edge of `frame`, from left to right; gives the index of the one clicked. `plot` tells them from those
+/// of other plots.
+pub(super) fn chips_ui(ui: &Ui, (frame, plot): (Rect, &str), chips: &[Chip], palette: &Palette) -> Option<usize> {
+    let mut clicked = None;
+    let mut left = frame.left() + 8.0;
+    for (index, chip) in chips.iter().enumerate() {
+        let painter = ui.painter().with_clip_rect(frame);
+        let galley = painter.layout_no_wrap(chip.text.clone(), caption_font(), palette.text);
+        let size = galley.size() + vec2(14.0, 6.0);
+        let place = Align2::LEFT_TOP.anchor_size(pos2(left, frame.top() + 7.0), size);
+        left = place.right() + 5.0;
+        let response = ui.interact(place, ui.scope_id().with(("chip", index)), Sense::click());
+        response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, format!("{}{plot}", chip.text)));
+        let is_meant = response.hovered() || response.has_focus();
+        let outline = if is_meant { palette.accent } else { palette.line };
+        painter.rect(place, 0.5 * size.y, palette.selected, Stroke::new(1.0, outline), StrokeKind::Inside);
+        painter.galley(place.min + vec2(7.0, 3.0), galley, palette.text);
+        if response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text(&chip.hint).clicked() {
+            clicked = Some(index);
+        }
+    }
+    clicked
 }

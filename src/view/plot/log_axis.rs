@@ -1,10 +1,10 @@
 //! The logarithmic frequency axis: everything that knows that a plot's x is `log10(omega)`.
 
 use egui_plot::{GridInput, GridMark};
-
-use super::grid_strength::{is_labelled, labelled_mark, minor_mark};
-use super::number::compact;
 pub use gdcm_files::figure::FrequencyUnit;
+use gdcm_files::figure::compact;
+
+use super::axes::{is_labelled, labelled_mark, minor_mark};
 
 /// Least distance between two labels \[pt\].
 const LABEL_GAP: f64 = 34.0;

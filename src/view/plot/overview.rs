@@ -6,18 +6,16 @@ use egui::{
     Align2, Button, Color32, CursorIcon, FontId, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, StrokeKind,
     Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
 };
-
 use egui_plot::PlotPoint;
+use gdcm_core::dataset::Pair;
+use gdcm_files::figure::Range;
 
-use super::axes::caption_font;
+use super::axes::{caption_font, message_ui};
 use super::curve::{BodeCurve, CurveId, Pane};
 use super::curve_menu::{CurveWish, model_wishes_ui};
-use super::message::message_ui;
 use super::picking::nearest;
-use super::range::Range;
 use super::sketch::Sketch;
 use crate::view::palette::{Palette, SMALL_SIZE};
-use gdcm_core::dataset::Pair;
 
 const HEADER: Vec2 = vec2(52.0, 22.0);
 const GAP: f32 = 4.0;

@@ -1,9 +1,10 @@
 //! Which curve the pointer means: the nearest one, not the topmost.
 
-use egui::{Pos2, Rect, pos2, vec2};
+use egui::{PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
 
 use super::curve::{BodeCurve, CurveId, LogFrequencies, Pane};
+use crate::view::palette::Palette;
 
 /// How far from a curve the pointer may be to mean it \[pt\].
 pub const PICK_RADIUS: f32 = 8.0;
@@ -115,11 +116,41 @@ fn closest_on_segment(pointer: Pos2, from: Pos2, to: Pos2) -> Pos2 {
     from + along * ((pointer - from).dot(along) / length_sq).clamp(0.0, 1.0)
 }
 
+/// A box less wide or high than this is a slip of the hand \[pt\].
+const LEAST_SIDE: f32 = 5.0;
+
+/// Draws the box while it is being drawn over `frame` with `button`, and gives it when it is done.
+pub(super) fn drawn_box_ui(
+    ui: &Ui,
+    plot: &Response,
+    frame: Rect,
+    button: PointerButton,
+    palette: &Palette,
+) -> Option<Rect> {
+    let is_done = plot.drag_stopped_by(button);
+    if !(is_done || plot.dragged_by(button)) {
+        return None;
+    }
+    let (origin, now) = ui.input(|input| (input.pointer.press_origin(), input.pointer.latest_pos()));
+    // By the time the button is let go, there is no origin any more: the last frame's is kept.
+    let memory = plot.id.with("box origin");
+    let origin = origin.or_else(|| ui.data(|data| data.get_temp(memory)))?;
+    ui.data_mut(|data| data.insert_temp(memory, origin));
+    let area = Rect::from_two_pos(origin, now?).intersect(frame);
+    let is_wanted = area.width() >= LEAST_SIDE && area.height() >= LEAST_SIDE;
+    if is_done {
+        return is_wanted.then_some(area);
+    }
+    let (fill, stroke) = (palette.accent.gamma_multiply(0.12), Stroke::new(1.0, palette.accent));
+    ui.painter().with_clip_rect(frame).rect(area, 0.0, fill, stroke, StrokeKind::Inside);
+    None
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::curve_style::Role;
     use super::*;
     use crate::view::plot::curve::numbered;
-    use crate::view::plot::role::Role;
     use egui_plot::PlotBounds;
 
     fn flat(id: u64, level_db: f64, role: Role) -> BodeCurve {

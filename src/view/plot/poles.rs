@@ -2,15 +2,12 @@
 
 use egui::{CursorIcon, Rect, Response, RichText, Ui, UiBuilder, Vec2, vec2};
 use egui_plot::PlotPoint;
-
 use gdcm_core::dataset::ModelId;
+use gdcm_files::figure::Range;
 
-use super::axes::use_frame_colors;
-use super::message::message_ui;
-use super::pole_mark::PoleMark;
-use super::range::Range;
+use super::axes::{message_ui, use_frame_colors};
 use super::readout::tooltip_ui;
-use super::s_plane::{PlaneView, plane_ui};
+use super::s_plane::{PlaneView, PoleMark, plane_ui};
 use crate::view::palette::{Palette, SMALL_SIZE};
 
 /// Real and imaginary parts in the window of the slow modes \[rad/s\]: the rigid-body modes of a helicopter lie there.
@@ -134,9 +131,9 @@ fn mark_events(response: &Response, mark: &PoleMark, palette: &Palette) -> Vec<P
 
 #[cfg(test)]
 mod tests {
+    use super::super::curve_style::Role;
+    use super::super::s_plane::MarkShape;
     use super::*;
-    use crate::view::plot::pole_mark::MarkShape;
-    use crate::view::plot::role::Role;
     use egui::{Pos2, pos2};
     use egui_plot::{PlotBounds, PlotTransform};
     use gdcm_core::dataset::{BundleKind, ConditionId};

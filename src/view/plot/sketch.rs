@@ -1,13 +1,13 @@
 //! A sparkline as it was drawn last.
 
-use egui::{Painter, Rect, Shape};
-use egui_plot::{PlotBounds, PlotTransform};
+use egui::{Painter, Pos2, Rect, Shape};
+use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
+use gdcm_files::figure::{Range, decimals};
 
-use super::curve::{BodeCurve, LogFrequencies, Pane};
-use super::curve_numbers::CurveNumbers;
-use super::range::Range;
-use super::role::Role;
-use super::sparkline::Sparkline;
+use super::RoleLook;
+use super::curve::{BodeCurve, CurveNumbers, LogFrequencies, Pane, runs_in_view};
+use super::curve_style::Role;
+use super::drawn_curves::{Pixel, thinned};
 use crate::view::palette::Palette;
 
 /// A sparkline as shapes, kept as long as they would come out the same: making them costs far more than showing them again.
@@ -119,6 +119,68 @@ impl Trace {
     fn is_of(&self, curve: &BodeCurve, pane: Pane) -> bool {
         self.numbers.are_of(curve, pane)
             && (self.role, self.rejected, self.highlighted) == (curve.role, curve.rejected, curve.highlighted)
+    }
+}
+
+/// How far from the curve a drawn line may be \[pt\].
+const TOLERANCE: f64 = 0.25;
+
+/// One pane of some curves in a small rectangle.
+pub(super) struct Sparkline {
+    pane: Pane,
+    transform: PlotTransform,
+}
+
+impl Sparkline {
+    /// All values of `curves` in `rect`, with a little space above and below; nothing where there is no value.
+    pub(super) fn new(curves: &[BodeCurve], pane: Pane, log_omega: Range, rect: Rect) -> Option<Self> {
+        let values = Range::of(curves.iter().flat_map(|curve| curve.values(pane).iter().copied()))?;
+        let values = values.with_margin(0.06, 1.0);
+        let bounds = PlotBounds::from_min_max([log_omega.min, values.min], [log_omega.max, values.max]);
+        Some(Self { pane, transform: PlotTransform::new(rect, bounds, false) })
+    }
+
+    /// The part of the vertical axis in view, in words.
+    pub(super) fn range_text(&self) -> String {
+        let (min, max) = (self.transform.bounds().min()[1], self.transform.bounds().max()[1]);
+        let unit = match self.pane {
+            Pane::Magnitude => " dB",
+            Pane::Phase => "°",
+        };
+        format!("{} … {}{unit}", decimals(min, 0), decimals(max, 0))
+    }
+
+    /// The part in view: `log10 omega` and values.
+    pub(super) fn bounds(&self) -> PlotBounds {
+        *self.transform.bounds()
+    }
+
+    /// One of the curves as shapes.
+    pub(super) fn shapes(
+        &self,
+        curve: &BodeCurve,
+        axis: &mut LogFrequencies,
+        palette: &Palette,
+        pixels_per_point: f32,
+    ) -> Vec<Shape> {
+        let mut look = curve.role.look(curve.rejected, palette).in_miniature();
+        if curve.highlighted {
+            look = look.emphasized();
+        }
+        let pixel = Pixel::of(&self.transform, pixels_per_point, TOLERANCE);
+        let mut shapes = Vec::new();
+        for path in self.paths(curve, axis, pixel) {
+            look.add_shapes(path, &mut shapes);
+        }
+        shapes
+    }
+
+    /// A curve on the screen, thinned to what can be told apart.
+    fn paths(&self, curve: &BodeCurve, axis: &mut LogFrequencies, pixel: Pixel) -> Vec<Vec<Pos2>> {
+        let position = |[x, y]: [f64; 2]| self.transform.position_from_point(&PlotPoint::new(x, y));
+        // All of it is in view.
+        let runs = runs_in_view(curve.points_on(axis, self.pane), self.transform.bounds(), 0.0);
+        runs.iter().map(|run| thinned(run, pixel).into_iter().map(position).collect()).collect()
     }
 }
 

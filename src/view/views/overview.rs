@@ -1,16 +1,16 @@
 //! Every response, small.
 
 use egui::Ui;
+use gdcm_core::dataset::Pair;
 
+use super::bode::bode_curves;
 use super::frequency::wished;
 use crate::view::arrangement::View;
-use crate::view::bode_scene::bode_curves;
 use crate::view::command::Command;
 use crate::view::explanation::channel_names;
 use crate::view::palette::Palette;
 use crate::view::plot::{BodeCurve, CurveId, OverviewCell, OverviewEvent, OverviewScene, overview_ui};
 use crate::view::state::State;
-use gdcm_core::dataset::Pair;
 
 /// Every response of the condition shown; a click brings it into focus.
 pub fn overview_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {

@@ -1,14 +1,19 @@
 //! Poles in the s-plane, and the modes of the physics bundle in a table.
 
+use std::sync::Arc;
+
 use egui::{Panel, Ui};
+use gdcm_core::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
+use gdcm_core::response::{Mode, finite_zeros};
+use gdcm_core::study::{ConditionModes, Edit, Table};
+use gdcm_core::units::number;
+use nalgebra::Complex;
 
 use crate::view::command::Command;
-use crate::view::modes_scene::pole_marks;
 use crate::view::palette::Palette;
-use crate::view::plot::{PoleEvent, PolesScene, poles_ui};
+use crate::view::plot::{MarkShape, PoleEvent, PoleMark, PolesScene, Role, poles_ui};
 use crate::view::state::State;
 use crate::view::table_view::{TableLook, table_ui};
-use gdcm_core::study::Edit;
 
 /// Part of the height that the table has at first.
 const TABLE_PART: f32 = 0.3;
@@ -61,4 +66,206 @@ fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Ve
     let model = clicked.and_then(|click| jumping.get(click.row)?.clone());
     commands.extend(model.map(Command::Isolate));
     state.display.modes_sorting = sorting;
+}
+
+/// The modes of one condition followed from model to model, and zeros of one response: kept while they are the same.
+#[derive(Debug, Default)]
+pub struct CachedModes {
+    tracked: Option<(Arc<ConditionModes>, usize)>,
+    table: Table,
+    /// Of each row the first model that jumps.
+    jumping: Vec<Option<ModelId>>,
+    zeros_of: Option<(Arc<ConditionModes>, Pair, Vec<ModelId>)>,
+    zeros: Vec<(ModelId, Vec<Complex<f64>>)>,
+}
+
+impl CachedModes {
+    /// The table of modes, and of each row the first model that jumps.
+    pub fn table(&self) -> (&Table, &[Option<ModelId>]) {
+        (&self.table, &self.jumping)
+    }
+
+    /// Makes anew what no longer fits the state.
+    pub fn refresh(&mut self, state: &State) {
+        let Some(modes) = state.modes() else {
+            *self = Self::default();
+            return;
+        };
+        let reference = reference(state, modes);
+        let same = |of: &(Arc<ConditionModes>, usize)| Arc::ptr_eq(&of.0, modes) && of.1 == reference;
+        if !self.tracked.as_ref().is_some_and(same) {
+            (self.table, self.jumping) = modes_table(state, modes, reference);
+            self.tracked = Some((Arc::clone(modes), reference));
+        }
+        if state.display.show_zeros {
+            self.refresh_zeros(state, modes);
+        }
+    }
+
+    /// Zeros of the nominal model and of both representatives: of every model they would hide the poles.
+    fn refresh_zeros(&mut self, state: &State, modes: &Arc<ConditionModes>) {
+        let (pair, condition) = (state.display.pair, &modes.condition);
+        let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()];
+        let mut wanted = vec![state.model_id(BundleKind::Physics, &nominal.name)];
+        for kind in BundleKind::BOTH {
+            let name = state.shown().map(|shown| shown.representative_name(kind));
+            let id = name.map(|name| state.model_id(kind, name));
+            wanted.extend(id.filter(|id| !wanted.contains(id)));
+        }
+        let now = (Arc::clone(modes), pair, wanted);
+        if self.zeros_of.as_ref().is_some_and(|of| Arc::ptr_eq(&of.0, modes) && (of.1, &of.2) == (pair, &now.2)) {
+            return;
+        }
+        self.zeros = now
+            .2
+            .iter()
+            .map(|id| {
+                let model = condition.model(id.bundle, &id.name);
+                (id.clone(), model.map(|model| finite_zeros(&model.dynamics, pair)).unwrap_or_default())
+            })
+            .collect();
+        self.zeros_of = Some(now);
+    }
+}
+
+/// Index of the physics model whose modes the others' are matched to: the representative, the nominal one until it is known.
+fn reference(state: &State, modes: &ConditionModes) -> usize {
+    let name = state.shown().map(|shown| shown.representative_name(BundleKind::Physics));
+    let found = name.and_then(|name| modes.condition.position(BundleKind::Physics, name));
+    found.unwrap_or_else(|| modes.condition.nominal())
+}
+
+/// Poles of every model of the condition shown, and zeros of the response in focus where they are wanted.
+pub fn pole_marks(state: &State) -> Vec<PoleMark> {
+    let Some(modes) = state.modes() else {
+        return Vec::new();
+    };
+    let cached = &state.display.modes;
+    let mut marks = Vec::new();
+    for kind in BundleKind::BOTH {
+        for (model, found) in modes.condition.bundle(kind).iter().zip(modes.bundle(kind)) {
+            let face = Face::of(state, kind, model);
+            if !face.is_visible(state) {
+                continue;
+            }
+            marks.extend(found.as_deref().unwrap_or_default().iter().map(|mode| face.pole(mode, model)));
+            if state.display.show_zeros {
+                let zeros = cached.zeros.iter().filter(|(id, _)| *id == face.id).flat_map(|(_, zeros)| zeros);
+                marks.extend(zeros.map(|zero| face.zero(state, *zero)));
+            }
+        }
+    }
+    marks
+}
+
+/// What the marks of one model have in common.
+struct Face {
+    id: ModelId,
+    role: Role,
+    rejected: bool,
+    highlighted: bool,
+}
+
+impl Face {
+    fn of(state: &State, kind: BundleKind, model: &Model) -> Self {
+        let id = state.model_id(kind, &model.name);
+        let represents = state.shown().is_some_and(|shown| shown.representative_name(kind) == model.name);
+        let role = Role::of_model(kind, model.is_nominal(), represents);
+        let (rejected, highlighted) = (state.study.is_rejected(&id), state.display.hovered.as_ref() == Some(&id));
+        Self { id, role, rejected, highlighted }
+    }
+
+    fn is_visible(&self, state: &State) -> bool {
+        let represents = matches!(self.role, Role::Representative | Role::IdentifiedRepresentative);
+        state.display.isolated.as_ref().is_none_or(|only| *only == self.id || represents)
+    }
+
+    fn pole(&self, mode: &Mode, model: &Model) -> PoleMark {
+        let shape = match self.id.bundle {
+            BundleKind::Physics => MarkShape::Cross,
+            BundleKind::Identified => MarkShape::Plus,
+        };
+        let mut details = vec![mode_words(mode)];
+        details.extend(participation_words(mode, model));
+        details.extend(sampled_words(model));
+        self.mark(shape, [mode.pole.re, mode.pole.im], details)
+    }
+
+    fn zero(&self, state: &State, zero: Complex<f64>) -> PoleMark {
+        let detail = format!("transmission zero of {}", state.dataset().pair_name(state.display.pair));
+        self.mark(MarkShape::Circle, [zero.re, zero.im], vec![detail])
+    }
+
+    fn mark(&self, shape: MarkShape, value: [f64; 2], mut details: Vec<String>) -> PoleMark {
+        details.push(if self.rejected { "click to restore" } else { "click to reject" }.to_owned());
+        PoleMark {
+            label: self.id.name.clone(),
+            id: self.id.clone(),
+            details,
+            shape,
+            role: self.role,
+            rejected: self.rejected,
+            highlighted: self.highlighted,
+            value,
+        }
+    }
+}
+
+/// "1.52 rad/s, ζ 0.31, T 2.1 s".
+fn mode_words(mode: &Mode) -> String {
+    let mut words = vec![format!("|λ| {:.3} rad/s", mode.frequency_rad_s)];
+    words.extend(mode.damping_ratio.filter(|_| mode.oscillates()).map(|ratio| format!("ζ {ratio:.3}")));
+    words.extend(mode.time_constant_s.map(|constant| format!("T {constant:.2} s")));
+    words.join(", ")
+}
+
+/// What a pole of a model of discrete time stands for.
+fn sampled_words(model: &Model) -> Option<String> {
+    let Dynamics::StateSpace(system) = &model.dynamics else { return None };
+    let sample_time_s = system.timing().sample_time_s?;
+    Some(format!("s = ln z / T, T = {} s; poles at z = 0 have no s and are not drawn", number(sample_time_s)))
+}
+
+/// The states that take part most: "w 62 %, q 21 %".
+fn participation_words(mode: &Mode, model: &Model) -> Option<String> {
+    /// States named.
+    const MOST: usize = 3;
+    let shares = match &mode.participation {
+        Ok(shares) => shares,
+        Err(why) => return Some(why.to_string()),
+    };
+    let name = |state: usize| match model.states.get(state) {
+        Some(name) => name.clone(),
+        None => format!("state {}", state + 1),
+    };
+    let words = shares.iter().take(MOST).map(|(state, share)| format!("{} {:.0} %", name(*state), 100.0 * share));
+    Some(words.collect::<Vec<_>>().join(", ")).filter(|words| !words.is_empty())
+}
+
+/// The modes of the physics bundle, followed from model to model: one row a mode of the reference model.
+fn modes_table(state: &State, modes: &ConditionModes, reference: usize) -> (Table, Vec<Option<ModelId>>) {
+    let kind = BundleKind::Physics;
+    let models = modes.condition.bundle(kind);
+    let title = format!("Modes of condition {}", modes.condition.id());
+    let columns = ["|λ| [rad/s]", "ζ [-]", "T [s]", "Re λ", "Im λ", "spread [rad/s]", "jumps at", "states"];
+    let mut table = Table::new(title, columns);
+    let mut jumping = Vec::new();
+    let own = modes.bundle(kind)[reference].as_deref().unwrap_or_default();
+    for track in modes.tracks(kind, reference) {
+        let Some(mode) = own.get(track.reference) else { continue };
+        let jumps: Vec<&str> = track.jumps.iter().map(|&model| models[model].name.as_str()).collect();
+        let figure = |value: f64| format!("{value:.3}").replace('-', "\u{2212}");
+        table.row([
+            figure(mode.frequency_rad_s),
+            mode.damping_ratio.filter(|_| mode.oscillates()).map(figure).unwrap_or_default(),
+            mode.time_constant_s.map(figure).unwrap_or_default(),
+            figure(mode.pole.re),
+            figure(mode.pole.im),
+            figure(track.spread_rad_s),
+            jumps.join(", "),
+            participation_words(mode, &models[reference]).unwrap_or_default(),
+        ]);
+        jumping.push(track.jumps.first().map(|&model| state.model_id(kind, &models[model].name)));
+    }
+    (table, jumping)
 }

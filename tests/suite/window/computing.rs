@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, Once};
 
-use gdcm::app::{Pool, fault};
+use gdcm::app::fault;
 use gdcm_core::correction::{Outcome, ProofBudget};
 use gdcm_core::dataset::Condition;
 use gdcm_core::executor::{Executor, Task};

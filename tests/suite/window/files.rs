@@ -182,8 +182,7 @@ fn corrections_are_exported_for_other_tools_and_an_existing_file_is_asked_about(
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("correction.py");
     let mut window = window();
-    let ctx = window.ctx.clone();
-    window.state_mut().give(Command::ShowForm(Some(FormKind::ExportAs)), &ctx);
+    window.state_mut().dispatch(Command::ShowForm(Some(FormKind::ExportAs)));
     window.run_steps(2);
     assert_eq!(state(&window).forms.export_as.path, "example.mat");
     click(&mut window, "Python module, a function of airspeed");
@@ -198,7 +197,7 @@ fn corrections_are_exported_for_other_tools_and_an_existing_file_is_asked_about(
     assert!(std::fs::read_to_string(&path).unwrap().contains("def gdcm_correction(airspeed_kt):"));
 
     std::fs::write(&path, "mine").unwrap();
-    window.state_mut().give(Command::ShowForm(Some(FormKind::ExportAs)), &ctx);
+    window.state_mut().dispatch(Command::ShowForm(Some(FormKind::ExportAs)));
     window.run_steps(10);
     click(&mut window, "Export file");
     assert!(window.query_by_label("This file exists already").is_some());

@@ -1,6 +1,6 @@
 //! What the lists say, and that it can be read.
 
-use gdcm::view::net_gain_scene::dot_key;
+use gdcm::view::views::dot_key;
 use gdcm_core::study::Edit;
 
 use super::*;

@@ -1,20 +1,19 @@
 //! The views: what each shows, by its controls.
 
 use gdcm::view::arrangement::{Arrangement, Preset, View};
-use gdcm::view::assessment_scene::{AssessedPairs, assessment_sentences, assessment_text_table};
 use gdcm::view::command::Command as Action;
 use gdcm::view::display::Preferences;
-use gdcm::view::modes_scene::pole_marks;
-use gdcm::view::net_gain_scene::{PairSet, net_gain_pairs};
 use gdcm::view::plot::MarkShape;
+use gdcm::view::views::pole_marks;
+use gdcm::view::views::{AssessedPairs, assessment_sentences, assessment_text_table};
+use gdcm::view::views::{PairSet, net_gain_pairs};
 use gdcm_core::correction::Channel;
 use gdcm_core::study::{AcrossRole, AssessedCorrection, AssessedModel, Edit, ExplainTarget, derivation};
 
 use super::*;
 
 pub(super) fn give(window: &mut Window, command: impl Into<Action>) {
-    let ctx = window.ctx.clone();
-    window.state_mut().give(command.into(), &ctx);
+    window.state_mut().dispatch(command.into());
     settle(window);
 }
 
@@ -189,7 +188,7 @@ fn error_bars_come_beside_the_answer_and_can_be_switched_off() {
     let mut window = window();
     show(&mut window, View::NetGain);
     wait_for_bars(&mut window);
-    let panels = |window: &Window| gdcm::view::net_gain_scene::net_gain_panels(state(window));
+    let panels = |window: &Window| gdcm::view::views::net_gain_panels(state(window));
     let shown = panels(&window);
     assert!(shown.iter().all(|panel| panel.dots.iter().all(|dot| dot.bar.is_some()) && !panel.bands.is_empty()));
     assert!(shown.iter().any(|panel| panel.brackets.iter().any(|bracket| bracket.beyond)));
@@ -203,13 +202,12 @@ fn a_condition_that_is_held_out_leaves_the_schedule_and_judges_it() {
     let mut window = window();
     let held_out = ConditionId(3);
     let edit = Edit::SetHeldOut { condition: held_out, held_out: true };
-    let ctx = window.ctx.clone();
-    window.state_mut().give(edit.into(), &ctx);
+    window.state_mut().dispatch(edit.into());
     settle(&mut window);
     let analysis = state(&window).analysis().unwrap();
     assert_eq!((analysis.scheduled().len(), analysis.conditions.len()), (10, 11));
     show(&mut window, View::Assessment);
-    let choice = gdcm::view::assessment_scene::assessment_choice(state(&window));
+    let choice = gdcm::view::views::assessment_choice(state(&window));
     let words = gdcm_core::study::held_out_verdict(state(&window).analysis().unwrap(), choice).unwrap();
     assert!(words.starts_with("held out (3): better in ") && words.contains("; the others: better in "), "{words}");
 }

@@ -81,20 +81,19 @@ fn assert_fresh(window: &Window, step: usize) {
 #[test]
 fn two_thousand_random_commands_never_panic_and_leave_what_a_fresh_computation_gives() {
     let mut window = window();
-    let ctx = window.ctx.clone();
     let mut dice = Dice(20_261_122);
     for step in 1..=STEPS {
         if let Some(command) = random_command(&window, &mut dice) {
-            window.state_mut().give(command, &ctx);
+            window.state_mut().dispatch(command);
         }
         // A form in front would keep the rest from being seen.
-        window.state_mut().give(Action::ShowForm(None), &ctx);
+        window.state_mut().dispatch(Action::ShowForm(None));
         if step % STEPS_OF_A_FRAME == 0 {
             window.run_steps(1);
         }
         if step % STEPS_OF_A_COMPARISON == 0 {
             // The curves of the plots are made where they can be seen.
-            window.state_mut().give(Action::ShowView(View::Bode), &ctx);
+            window.state_mut().dispatch(Action::ShowView(View::Bode));
             settle(&mut window);
             assert_fresh(&window, step);
         }

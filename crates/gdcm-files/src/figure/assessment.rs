@@ -7,10 +7,9 @@ use gdcm_core::study::{Analysis, AssessedCorrection, AssessedModel, AssessmentCh
 
 use super::axis::Axis;
 use super::condition_source::{schedule_words, settings_words};
-use super::figure::Figure;
+use super::drawing::{Color, Stroke};
+use super::figure::{Figure, Panel, Plot};
 use super::mark::{Bars, Note, Place, Rule};
-use super::panel::{Panel, Plot};
-use super::stroke::{Color, Stroke};
 
 const ZERO: Stroke = Stroke::solid(Color::DIM, 0.6);
 /// Width of a bar, where conditions are 1 apart.

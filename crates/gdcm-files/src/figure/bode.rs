@@ -4,18 +4,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use gdcm_core::dataset::{Band as BandOfComparison, ConditionId, ModelId, Pair};
-use gdcm_core::response::wrapped_deg;
+use gdcm_core::response::{FrequencyResponse, ResponseShape, wrapped_deg};
+use gdcm_core::study::{AcrossCurves, AcrossJob, AcrossRole, Analysis, CURVE_POINTS, Job, Unobserved, display_band};
 use gdcm_core::units::db_to_ratio;
 
-use super::axis::Axis;
-use super::condition_source::{ConditionSource, CurveId, ResponseLine, SourceModel};
-use super::figure::Figure;
-use super::mark::{Along, Band, Curve, Mark};
-use super::panel::{Panel, Plot};
-use super::range::Range;
-use super::reading::{FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
+use super::axis::{Axis, Range};
+use super::condition_source::{ConditionSource, CurveId, ResponseLine, SourceModel, settings_words};
+use super::drawing::Color;
+use super::figure::{Figure, Panel, Plot};
+use super::mark::{Along, Band, Curve, Mark, Note, Place};
+use super::request::{FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use super::role::Role;
-use super::stroke::Color;
 
 /// The ground of the band of comparison.
 const BAND: Color = Color::new(0xec, 0xf2, 0xf8);
@@ -174,4 +173,104 @@ fn needed_range(source: &ConditionSource<'_>, values: impl Iterator<Item = Arc<[
     let Some(within) = Range::of(within) else { return Some(all) };
     let room = within.with_margin(OUTSIDE_PART, 0.0);
     Some(Range::new(all.min.max(room.min), all.max.min(room.max)))
+}
+
+/// The responses `pairs` of one model of every condition: a magnitude above a phase each, from blue for the slowest condition to
+/// amber for the fastest. None where no condition has such a model.
+pub fn airspeeds_figure(
+    analysis: &Analysis,
+    pairs: &[Pair],
+    role: AcrossRole,
+    options: &BodeOptions,
+) -> Option<Figure> {
+    let (dataset, settings) = (&analysis.study.dataset, &analysis.study.settings);
+    let job = AcrossJob::of(dataset, Some(analysis), role, (display_band(settings.band), CURVE_POINTS));
+    let curves = job.run(&mut (), &Unobserved).ok().filter(|curves| !curves.responses.is_empty())?;
+    let names: Vec<String> = pairs.iter().map(|pair| dataset.pair_name(*pair)).collect();
+    let (title, aspect) = match &names[..] {
+        [name] => (format!("{name} · every condition, {}", role.name()), 0.72),
+        _ => (format!("Every condition, {}", role.name()), 1.9),
+    };
+    let plots = pairs.iter().zip(&names).map(|(pair, name)| {
+        let source = AirspeedSource { analysis, curves: &curves, role, pair: *pair, options };
+        source.plot(if names.len() == 1 { "" } else { name })
+    });
+    let figure = Figure::new(title).caption(settings_words(dataset, settings)).columns(5).aspect(aspect);
+    Some(figure.shared_x().plots(plots))
+}
+
+/// What the curves of one response are made of.
+struct AirspeedSource<'a> {
+    analysis: &'a Analysis,
+    curves: &'a AcrossCurves,
+    role: AcrossRole,
+    pair: Pair,
+    options: &'a BodeOptions,
+}
+
+impl AirspeedSource<'_> {
+    fn plot(&self, title: &str) -> Plot {
+        let mut lines: Vec<(ModelId, ResponseShape)> = Vec::new();
+        for (id, response) in &self.curves.responses {
+            let first = lines.first().map(|(_, shape)| shape.clone());
+            lines.extend(self.shape(id, response, first.as_ref()).map(|shape| (id.clone(), shape)));
+        }
+        let frequency: Arc<[f64]> =
+            self.curves.grid.omega().iter().map(|omega| self.options.unit.of_omega(*omega)).collect();
+        let marks = |of: fn(&ResponseShape) -> &Arc<[f64]>| -> Vec<Mark> {
+            lines.iter().map(|(id, shape)| self.curve(id, &frequency, of(shape)).into()).collect()
+        };
+        let panel = |axis: Axis, curves: Vec<Mark>| {
+            let ground = ground_of(self.analysis.study.settings.band, self.options.unit);
+            Panel::new(self.options.frequency_axis(), axis).with(ground).with_all(curves)
+        };
+        let magnitude = Axis::linear("Magnitude [dB]").showing(self.options.values[0]);
+        let phase = Axis::degrees("Phase [deg]").showing(self.options.values[1]);
+        let upper = panel(magnitude, marks(|shape| &shape.magnitude_db));
+        Plot::new(title).panel(upper.weight(1.35)).panel(panel(phase, marks(|shape| &shape.phase_deg)))
+    }
+
+    /// The response as it is drawn, its phase laid on that of the first; none where it has no correction.
+    fn shape(
+        &self,
+        id: &ModelId,
+        response: &FrequencyResponse,
+        first: Option<&ResponseShape>,
+    ) -> Option<ResponseShape> {
+        let correction = self.role.correction(id.condition, self.pair, Some(self.analysis))?;
+        let shape = ResponseShape::of(&response.curve(self.pair)).corrected(self.curves.grid.omega(), correction);
+        Some(match first {
+            Some(first) => shape.laid_on(first),
+            None => shape,
+        })
+    }
+
+    fn curve(&self, id: &ModelId, frequency: &Arc<[f64]>, values: &Arc<[f64]>) -> Curve {
+        let dataset = &self.analysis.study.dataset;
+        let airspeed_kt = dataset.condition(id.condition).map_or(f64::NAN, |of| of.flight_state().airspeed_kt);
+        let (least, most) = dataset.airspeed_range_kt();
+        let name = format!("{}: {airspeed_kt:.0} kt", id.condition);
+        let stroke = Role::of_airspeed(airspeed_kt, (least, most)).stroke(false);
+        Curve::new(name.clone(), stroke, Arc::clone(frequency), Arc::clone(values)).key(name)
+    }
+}
+
+/// The magnitude of every response of one condition, outputs down, inputs across, with J before and after the correction.
+pub fn overview_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> Figure {
+    let dataset = source.dataset();
+    let plots = dataset.on_axis().pairs().map(|pair| {
+        let lines = source.lines(pair, options);
+        let curves = response_curves(source, &lines, options.unit, |line| &line.shape.magnitude_db);
+        let panel = Panel::new(options.frequency_axis(), Axis::linear("Magnitude [dB]").at_least(4.0));
+        let panel = panel.with(options.band(source)).with_all(curves);
+        let note = source.analysis.cost[pair].map(|cost| {
+            let text = format!("J {:.0} → {:.0}", cost.uncorrected.total(), cost.corrected.total());
+            Note { at: Place::LowerLeft, text }
+        });
+        let held = if source.analysis.held()[pair] { " *" } else { "" };
+        Plot::new(format!("{}{held}", dataset.pair_name(pair))).panel(panel.with_all(note))
+    });
+    let figure =
+        Figure::new(source.condition_words()).caption(format!("{} * held exactly.", source.caption())).plots(plots);
+    figure.columns(dataset.inputs().len()).dense().shared_x().aspect(0.55)
 }

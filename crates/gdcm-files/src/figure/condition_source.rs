@@ -8,8 +8,8 @@ use gdcm_core::schedule::{Schedule, ScheduleKind, ScheduleSettings, ScheduledQua
 use gdcm_core::study::{ConditionAnalysis, ConditionCurves, PhaseCorrection, Settings, Study};
 
 use super::bode::BodeOptions;
-use super::number::compact;
 use super::role::Role;
+use super::ticks::compact;
 
 /// What the figures of one condition are made of.
 #[derive(Clone, Copy, Debug)]

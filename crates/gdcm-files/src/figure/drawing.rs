@@ -1,7 +1,5 @@
 //! A figure laid out on paper: shapes and texts at their places, which every file format takes over as they are.
 
-use super::stroke::{Color, Stroke};
-
 /// Points \[pt\] in a millimetre.
 pub const PT_PER_MM: f64 = 72.0 / 25.4;
 
@@ -168,5 +166,187 @@ impl Shape {
     /// A rectangle.
     pub fn rectangle(area: Area, fill: Option<Color>, stroke: Option<Stroke>) -> Self {
         Self::Path { points: area.corners().to_vec(), closed: true, fill, stroke }
+    }
+}
+
+/// A colour, as on a screen (sRGB).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Color {
+    /// Red, green and blue, 0 to 255.
+    pub rgb: [u8; 3],
+}
+
+impl Color {
+    /// Paper.
+    pub const WHITE: Self = Self::new(0xff, 0xff, 0xff);
+    /// Titles and what is read first.
+    pub const INK: Self = Self::new(0x22, 0x26, 0x2e);
+    /// Labels, frames, and what is read second.
+    pub const DIM: Self = Self::new(0x4a, 0x51, 0x5c);
+    /// Grid lines.
+    pub const GRID: Self = Self::new(0xdf, 0xe2, 0xe7);
+
+    /// The colour of these parts, 0 to 255 each.
+    pub const fn new(red: u8, green: u8, blue: u8) -> Self {
+        Self { rgb: [red, green, blue] }
+    }
+
+    /// The colour that is this part of the way to another one.
+    pub fn mixed(self, other: Self, part: f64) -> Self {
+        let mix = |from: u8, to: u8| (f64::from(from) + part * (f64::from(to) - f64::from(from))).round() as u8;
+        Self { rgb: std::array::from_fn(|at| mix(self.rgb[at], other.rgb[at])) }
+    }
+
+    /// This colour thinned with white; 1 leaves it as it is, 0 leaves white.
+    pub fn tint(self, strength: f64) -> Self {
+        Self::WHITE.mixed(self, strength.clamp(0.0, 1.0))
+    }
+}
+
+/// What parts a line consists of: tells lines apart where colours do not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Dash {
+    /// One unbroken line.
+    #[default]
+    Solid,
+    /// Long dashes.
+    Long,
+    /// Short dashes.
+    Short,
+    /// Dots.
+    Dotted,
+    /// Dashes with a dot between them.
+    DashDot,
+    /// Dashes with two dots between them.
+    DashDotDot,
+}
+
+impl Dash {
+    /// Lengths of dashes and gaps in turn \[pt\]; none of a solid line.
+    pub fn pattern_pt(self) -> &'static [f64] {
+        match self {
+            Self::Solid => &[],
+            Self::Long => &[7.0, 2.0],
+            Self::Short => &[3.0, 1.6],
+            Self::Dotted => &[0.9, 1.7],
+            Self::DashDot => &[6.0, 1.8, 1.2, 1.8],
+            Self::DashDotDot => &[5.0, 1.6, 1.2, 1.6, 1.2, 1.6],
+        }
+    }
+}
+
+/// Colour, width and dashes of a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stroke {
+    /// Colour.
+    pub color: Color,
+    /// Width \[pt\].
+    pub width_pt: f64,
+    /// Dashes.
+    pub dash: Dash,
+}
+
+impl Stroke {
+    /// A solid line.
+    pub const fn solid(color: Color, width_pt: f64) -> Self {
+        Self { color, width_pt, dash: Dash::Solid }
+    }
+
+    /// A line of dashes.
+    pub const fn dashed(color: Color, width_pt: f64, dash: Dash) -> Self {
+        Self { color, width_pt, dash }
+    }
+}
+
+impl Drawing {
+    /// The same drawing with fewer points: none of those left out is farther than `tolerance_pt` from its line.
+    pub fn simplified(self, tolerance_pt: f64) -> Self {
+        Self { shapes: coarser(self.shapes, tolerance_pt), ..self }
+    }
+}
+
+fn coarser(shapes: Vec<Shape>, tolerance: f64) -> Vec<Shape> {
+    let one = |shape: Shape| match shape {
+        Shape::Path { points, closed: false, fill, stroke } => {
+            Shape::Path { points: simplified(&points, tolerance), closed: false, fill, stroke }
+        }
+        Shape::Clipped { area, shapes } => Shape::Clipped { area, shapes: coarser(shapes, tolerance) },
+        other => other,
+    };
+    shapes.into_iter().map(one).collect()
+}
+
+/// `points` without those that lie within `tolerance` of the line that the others make; the ends stay.
+///
+/// ```text
+/// keep the first and the last point
+/// while a stretch between two kept points has one farther than tolerance from their chord:
+///     keep the farthest, and look at both halves
+/// ```
+/// Douglas and Peucker, "Algorithms for the reduction of the number of points required to represent a digitized line", 1973.
+pub(super) fn simplified(points: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
+    if points.len() < 3 {
+        return points.to_vec();
+    }
+    let mut is_kept = vec![false; points.len()];
+    let mut stretches = vec![(0, points.len() - 1)];
+    while let Some((from, to)) = stretches.pop() {
+        is_kept[from] = true;
+        is_kept[to] = true;
+        let distances = (from + 1..to).map(|at| (at, distance(points[at], points[from], points[to])));
+        if let Some((farthest, distance)) = distances.max_by(|(_, a), (_, b)| a.total_cmp(b))
+            && distance > tolerance
+        {
+            stretches.extend([(from, farthest), (farthest, to)]);
+        }
+    }
+    points.iter().zip(is_kept).filter(|(_, kept)| *kept).map(|(point, _)| *point).collect()
+}
+
+/// Distance of a point from the piece of line between two others.
+fn distance([x, y]: [f64; 2], [ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> f64 {
+    let (dx, dy) = (bx - ax, by - ay);
+    let squared = dx * dx + dy * dy;
+    let along = if squared > 0.0 { (((x - ax) * dx + (y - ay) * dy) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    (x - ax - along * dx).hypot(y - ay - along * dy)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::drawing::*;
+
+    #[test]
+    fn a_tint_lies_between_the_colour_and_white() {
+        let color = Color::new(200, 0, 100);
+        assert_eq!(color.tint(1.0), color);
+        assert_eq!(color.tint(0.0), Color::WHITE);
+        assert_eq!(color.tint(0.5), Color::new(228, 128, 178));
+    }
+}
+
+#[cfg(test)]
+mod tests2 {
+    use super::super::drawing::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn points_on_a_straight_line_are_left_out() {
+        let points: Vec<[f64; 2]> = (0..=100).map(|k| [f64::from(k), 0.5 * f64::from(k)]).collect();
+        assert_eq!(simplified(&points, 1e-9), [[0.0, 0.0], [100.0, 50.0]]);
+    }
+
+    proptest! {
+        #[test]
+        fn no_point_is_farther_from_the_line_than_the_tolerance(
+            values in prop::collection::vec(-10.0..10.0f64, 2..80), tolerance in 0.01..5.0f64,
+        ) {
+            let points: Vec<[f64; 2]> = values.iter().enumerate().map(|(k, y)| [k as f64, *y]).collect();
+            let line = simplified(&points, tolerance);
+            prop_assert_eq!((line.first(), line.last()), (points.first(), points.last()));
+            for point in points {
+                let nearest = line.windows(2).map(|ends| distance(point, ends[0], ends[1])).fold(f64::INFINITY, f64::min);
+                prop_assert!(nearest <= tolerance);
+            }
+        }
     }
 }

@@ -7,17 +7,15 @@ use gdcm_core::fidelity::{CountedFrequencies, Mismatch, Muad};
 use gdcm_core::response::{GainDelay, PolarCurve, quantile};
 use gdcm_core::units::{ratio_to_db, s_to_ms};
 
-use super::axis::Axis;
+use super::axis::{Axis, Range};
 use super::bode::BodeOptions;
 use super::condition_source::ConditionSource;
-use super::figure::Figure;
+use super::drawing::{Color, Dash, Stroke};
+use super::figure::{Figure, Panel, Plot};
 use super::mark::{Curve, Mark, Rule};
-use super::number::decimals;
-use super::panel::{Panel, Plot};
-use super::range::Range;
-use super::reading::PhaseErrorUnit;
+use super::request::PhaseErrorUnit;
 use super::role::{AMBER, GREY, Role};
-use super::stroke::{Color, Dash, Stroke};
+use super::ticks::decimals;
 
 const DELTA: Stroke = Stroke::dashed(Color::INK, 0.7, Dash::Dotted);
 const BOUND: Stroke = Stroke::dashed(AMBER, 0.7, Dash::DashDot);

@@ -4,14 +4,12 @@ use gdcm_core::dataset::Pair;
 use gdcm_core::study::{Analysis, PairScatter, Uncertainty};
 use gdcm_core::uncertainty::VarianceDecomposition;
 
-use super::axis::Axis;
+use super::axis::{Axis, Range};
 use super::condition_source::{schedule_words, settings_words};
-use super::figure::Figure;
+use super::drawing::{Color, Stroke};
+use super::figure::{Figure, Panel, Plot};
 use super::mark::{Bars, DotShape, Dots, Intervals, Note, Place};
-use super::panel::{Panel, Plot};
-use super::range::Range;
 use super::role::{AMBER, BLUE, RED};
-use super::stroke::{Color, Stroke};
 
 /// Width of a stacked bar, where places are 1 apart.
 const BAR: f64 = 0.56;

@@ -1,7 +1,8 @@
 //! A figure: what a plot shows, apart from any screen.
 
-use super::legend::{Entry, entries};
-use super::panel::{Panel, Plot};
+use super::axis::{Axis, Range};
+use super::mark::{Along, Mark};
+use super::role::{Entry, entries};
 
 /// What a plot shows, apart from any screen: plots side by side, a title above, a legend and a caption below.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -126,5 +127,111 @@ impl Figure {
     /// The legend: one entry for each key among the marks.
     pub fn legend(&self) -> Vec<Entry> {
         entries(self.panels().flat_map(|(_, panel)| &panel.marks))
+    }
+}
+
+/// Two axes and what stands between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panel {
+    /// The horizontal axis.
+    pub x: Axis,
+    /// The vertical axis.
+    pub y: Axis,
+    /// What stands in it; later marks are drawn over earlier ones.
+    pub marks: Vec<Mark>,
+    /// Its part of the height of its plot, relative to the others'.
+    pub weight: f64,
+}
+
+impl Panel {
+    /// An empty panel.
+    pub fn new(x: Axis, y: Axis) -> Self {
+        Self { x, y, marks: Vec::new(), weight: 1.0 }
+    }
+
+    /// The same panel with one more mark, over those before.
+    pub fn with(mut self, mark: impl Into<Mark>) -> Self {
+        self.marks.push(mark.into());
+        self
+    }
+
+    /// The same panel with more marks, over those before.
+    pub fn with_all<M: Into<Mark>>(mut self, marks: impl IntoIterator<Item = M>) -> Self {
+        self.marks.extend(marks.into_iter().map(Into::into));
+        self
+    }
+
+    /// The same panel of another height, relative to the others of its plot.
+    pub fn weight(self, weight: f64) -> Self {
+        Self { weight, ..self }
+    }
+
+    /// What is shown of an axis where this panel stands alone.
+    pub(super) fn shown(&self, along: Along) -> Range {
+        let axis = match along {
+            Along::X => &self.x,
+            Along::Y => &self.y,
+        };
+        axis.fitted(self.marks.iter().flat_map(|mark| mark.values(along)))
+    }
+}
+
+/// Panels above one another on one horizontal axis, under one title.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Plot {
+    /// What the panels are of: `LON → Q`. May be empty.
+    pub title: String,
+    /// The panels, from above.
+    pub panels: Vec<Panel>,
+}
+
+impl Plot {
+    /// A plot without panels.
+    pub fn new(title: impl Into<String>) -> Self {
+        Self { title: title.into(), panels: Vec::new() }
+    }
+
+    /// The same plot with one more panel below.
+    pub fn panel(mut self, panel: Panel) -> Self {
+        self.panels.push(panel);
+        self
+    }
+}
+
+/// What a figure is written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum FigureFormat {
+    /// Lines and letters, for documents and for drawing programs.
+    Svg,
+    /// Dots, 300 to the inch.
+    Png,
+    /// A page as large as the figure, with its letters.
+    Pdf,
+    /// The numbers.
+    Csv,
+}
+
+impl FigureFormat {
+    /// Every format.
+    pub const ALL: [Self; 4] = [Self::Svg, Self::Png, Self::Pdf, Self::Csv];
+
+    /// The end of a file's name.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Svg => "svg",
+            Self::Png => "png",
+            Self::Pdf => "pdf",
+            Self::Csv => "csv",
+        }
+    }
+
+    /// Its name and what it is good for.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Svg => "SVG, for documents and drawing programs",
+            Self::Png => "PNG, 300 dots to the inch",
+            Self::Pdf => "PDF, one page",
+            Self::Csv => "CSV, the numbers",
+        }
     }
 }

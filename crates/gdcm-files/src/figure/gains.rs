@@ -9,15 +9,13 @@ use gdcm_core::study::{AirspeedDifference, Analysis, ConditionAnalysis, Conditio
 use gdcm_core::uncertainty::{BandWidths, Bar, Scalar};
 use gdcm_core::units::s_to_ms;
 
-use super::axis::Axis;
+use super::axis::{Axis, Range};
 use super::condition_source::{schedule_words, settings_words};
-use super::figure::Figure;
+use super::drawing::{Color, Dash, Stroke};
+use super::figure::{Figure, Panel, Plot};
 use super::mark::{Bracket, Brackets, Curve, Dot, DotShape, Dots, Intervals, Rule, Spans};
-use super::number::decimals;
-use super::panel::{Panel, Plot};
-use super::range::Range;
 use super::role::{BLUE, GREY, RED, Role};
-use super::stroke::{Color, Dash, Stroke};
+use super::ticks::decimals;
 
 /// Samples of a schedule between its ends.
 const SAMPLES: usize = 120;

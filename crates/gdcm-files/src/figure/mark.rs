@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::range::Range;
-use super::stroke::{Color, Stroke};
+use super::axis::Range;
+use super::drawing::{Color, Stroke};
 
 /// What stands in a panel; later marks are drawn over earlier ones.
 #[derive(Clone, Debug, PartialEq)]

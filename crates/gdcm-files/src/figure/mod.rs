@@ -18,7 +18,6 @@
 //! assert_eq!(figure.drawing(ColumnWidth::Single).size[0].round(), 238.0);
 //! ```
 
-mod airspeeds;
 mod assessment;
 mod axis;
 mod bode;
@@ -28,52 +27,30 @@ mod error;
 mod evidence;
 #[expect(clippy::module_inception, reason = "the room is named by what it makes")]
 mod figure;
-mod format;
 mod gains;
 mod label_places;
 mod layout;
-mod legend;
-mod letters;
 mod mark;
-pub mod number;
-mod numbers;
-mod overview;
 mod paint;
-mod panel;
 mod poles;
-pub mod range;
-mod reading;
 mod request;
 mod role;
-mod simplify;
-mod stroke;
+mod tables;
 mod ticks;
 
-pub use airspeeds::airspeeds_figure;
-pub use assessment::assessment_figure;
-pub use axis::{Axis, Scale};
-pub use bode::{BodeOptions, bode_figure};
-pub use condition_source::{ConditionSource, CurveId};
-pub use drawing::{Anchor, Area, Drawing, PT_PER_MM, Shape, Text};
-pub use error::error_figure;
-pub use evidence::evidence_figure;
-pub use figure::{ColumnWidth, Figure, Shared};
-pub use format::FigureFormat;
-pub use gains::{
-    Across, Classes, Measure, all_channels, channels_figure, is_scheduled, net_gain_figure, scheduled_samples,
-};
-pub use label_places::{LabelPlace, LabelledDot, Surroundings, place_labels};
-pub use legend::{Entry, Sample};
-pub use letters::{FONTS, Letter, letters, width};
-pub use mark::{
-    Along, Band, Bars, Bracket, Brackets, Curve, Dot, DotShape, Dots, Guide, Intervals, Mark, Note, Place, Rule, Spans,
-};
-pub use overview::overview_figure;
-pub use panel::{Panel, Plot};
-pub use poles::poles_figure;
-pub use range::Range;
-pub use reading::{FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
-pub use request::{FigureKind, FigureRequest};
-pub use role::{AMBER, BLUE, GREEN, GREY, RED, Role};
-pub use stroke::{Color, Dash, Stroke};
-pub use ticks::{degree_step, step_above};
+pub use assessment::*;
+pub use axis::*;
+pub use bode::*;
+pub use condition_source::*;
+pub use drawing::*;
+pub use error::*;
+pub use evidence::*;
+pub use figure::*;
+pub use gains::*;
+pub use label_places::*;
+pub use layout::*;
+pub use mark::*;
+pub use poles::*;
+pub use request::*;
+pub use role::*;
+pub use ticks::*;

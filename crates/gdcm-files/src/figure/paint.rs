@@ -1,18 +1,14 @@
 //! A figure becomes shapes and texts at their places.
 
-use super::axis::Axis;
-use super::drawing::{Anchor, Area, Drawing, PT_PER_MM, Shape, Text};
+use super::axis::{Axis, Range};
+use super::drawing::{Anchor, Area, Color, Dash, Drawing, PT_PER_MM, Shape, Stroke, Text, simplified};
 use super::figure::{ColumnWidth, Figure};
 use super::label_places::{LabelledDot, Surroundings, place_labels};
-use super::layout::{LABEL_LINE, LABEL_PT, Layout, Placed, SMALL_LINE, SMALL_PT, Side, TICK};
-use super::legend::{Entry, Sample};
-use super::letters::{width, wrapped};
+use super::layout::{LABEL_LINE, LABEL_PT, Layout, Placed, SMALL_LINE, SMALL_PT, Side, TICK, width, wrapped};
 use super::mark::{
     Along, Bars, Bracket, Brackets, Curve, DotShape, Dots, Guide, Intervals, Mark, Note, Place, Rule, Spans,
 };
-use super::range::Range;
-use super::simplify::simplified;
-use super::stroke::{Color, Dash, Stroke};
+use super::role::{Entry, Sample};
 
 /// Size of the title \[pt\].
 const TITLE_PT: f64 = 8.5;

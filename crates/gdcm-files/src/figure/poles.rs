@@ -4,15 +4,13 @@ use gdcm_core::dataset::{BundleKind, Pair};
 use gdcm_core::response::finite_zeros;
 use gdcm_core::study::{ConditionModes, Unobserved};
 
-use super::axis::Axis;
+use super::axis::{Axis, Range};
 use super::bode::BodeOptions;
 use super::condition_source::{ConditionSource, SourceModel};
-use super::figure::Figure;
+use super::drawing::{Color, Stroke};
+use super::figure::{Figure, Panel, Plot};
 use super::mark::{DotShape, Dots, Guide, Mark, Rule};
-use super::panel::{Panel, Plot};
-use super::range::Range;
 use super::role::Role;
-use super::stroke::{Color, Stroke};
 
 /// Real and imaginary parts in the window of the slow modes \[rad/s\]: the rigid-body modes of a helicopter lie there.
 const SLOW: [Range; 2] = [Range { min: -1.2, max: 0.5 }, Range { min: -2.2, max: 2.2 }];

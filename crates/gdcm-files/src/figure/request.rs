@@ -3,16 +3,16 @@
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::Pair;
 use gdcm_core::study::{AcrossRole, Analysis, AssessmentChoice};
+use gdcm_core::units::rad_s_to_hz;
+use serde::{Deserialize, Serialize};
 
-use super::airspeeds::airspeeds_figure;
 use super::assessment::{assessment_figure, usual_choice};
-use super::bode::{BodeOptions, bode_figure};
+use super::bode::{BodeOptions, airspeeds_figure, bode_figure, overview_figure};
 use super::condition_source::ConditionSource;
 use super::error::error_figure;
 use super::evidence::evidence_figure;
 use super::figure::Figure;
 use super::gains::{Across, Measure, channels_figure, net_gain_figure};
-use super::overview::overview_figure;
 use super::poles::poles_figure;
 
 /// Which of the program's figures.
@@ -125,4 +125,67 @@ impl FigureRequest {
             FigureKind::Airspeeds => return airspeeds_figure(analysis?, &self.pairs, self.across_role, &self.bode),
         })
     }
+}
+
+/// The unit frequencies are shown in; inside they are always rad/s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum FrequencyUnit {
+    /// Angular frequency.
+    #[default]
+    RadPerSecond,
+    /// Cycles per second.
+    Hertz,
+}
+
+impl FrequencyUnit {
+    /// The symbol of the unit.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::RadPerSecond => "rad/s",
+            Self::Hertz => "Hz",
+        }
+    }
+
+    /// The angular frequency `omega` \[rad/s\] in this unit.
+    pub fn of_omega(self, omega: f64) -> f64 {
+        match self {
+            Self::RadPerSecond => omega,
+            Self::Hertz => rad_s_to_hz(omega),
+        }
+    }
+
+    /// What stands beside the axis.
+    pub fn axis_label(self) -> String {
+        format!("Frequency [{}]", self.symbol())
+    }
+}
+
+/// How the magnitude of a response is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum MagnitudeUnit {
+    /// Decibels.
+    #[default]
+    Decibel,
+    /// The ratio of output to input, in their units.
+    Ratio,
+}
+
+/// How the phase of a response is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PhaseUnit {
+    /// Continuous over frequency (M2).
+    #[default]
+    Unwrapped,
+    /// Between −180° and 180°.
+    Wrapped,
+}
+
+/// How a difference of phases is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PhaseErrorUnit {
+    /// Δφ.
+    #[default]
+    Degree,
+    /// Δφ/ω: the delay that would make up for it.
+    Millisecond,
 }

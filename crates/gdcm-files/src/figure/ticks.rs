@@ -1,8 +1,6 @@
 //! Where an axis has ticks, and what stands beside them.
 
-use super::axis::{Axis, Scale};
-use super::number::compact;
-use super::range::Range;
+use super::axis::{Axis, Range, Scale};
 
 /// Where less than this is shown \[decades\], equal steps may be labelled instead of parts of a decade.
 const LINEAR_BELOW: f64 = 0.9;
@@ -92,6 +90,31 @@ fn decades(range: Range, length_pt: f64, gap_pt: f64) -> Vec<Tick> {
     if high - low < LINEAR_BELOW && linear.len() > count { linear } else { ticks }
 }
 
+/// The shortest text of `value` to six significant digits, without trailing zeros, with a true minus sign.
+pub fn compact(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return if value == 0.0 { "0".to_owned() } else { value.to_string() };
+    }
+    let decimals = (5 - value.abs().log10().floor() as i64).clamp(0, 12) as usize;
+    let text = format!("{value:.decimals$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    signed(text)
+}
+
+/// `value` with so many decimals, with a true minus sign.
+pub fn decimals(value: f64, count: usize) -> String {
+    signed(&format!("{value:.count$}"))
+}
+
+/// A value that rounds to zero has no sign; a negative one has a minus sign, as wide as a plus, instead of a hyphen.
+fn signed(text: &str) -> String {
+    match text.strip_prefix('-') {
+        Some(digits) if digits.chars().all(|c| matches!(c, '0' | '.')) => digits.to_owned(),
+        Some(digits) => format!("\u{2212}{digits}"),
+        None => text.to_owned(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -135,5 +158,31 @@ mod tests {
             assert!((step_above(least) / step - 1.0).abs() < 1e-9, "{least}: {}", step_above(least));
         }
         assert_eq!((degree_step(40.0), degree_step(1.5), degree_step(1e5)), (45.0, 2.0, 1e5));
+    }
+}
+
+#[cfg(test)]
+mod tests2 {
+    use super::super::ticks::*;
+
+    #[test]
+    fn ticks_have_no_more_digits_than_they_need() {
+        for (value, text) in [
+            (0.3, "0.3"),
+            (1.0 - 1e-12, "1"),
+            (20.0, "20"),
+            (-25.0, "\u{2212}25"),
+            (0.0, "0"),
+            (1.25, "1.25"),
+            (100_000.0, "100000"),
+        ] {
+            assert_eq!(compact(value), text);
+        }
+    }
+
+    #[test]
+    fn what_rounds_to_zero_has_no_sign() {
+        assert_eq!(decimals(-0.04, 1), "0.0");
+        assert_eq!(decimals(-0.06, 1), "\u{2212}0.1");
     }
 }

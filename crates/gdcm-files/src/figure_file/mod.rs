@@ -1,7 +1,6 @@
 //! Figures as files: SVG, PNG, PDF, and their numbers as CSV. The same figure makes the same bytes.
 
 mod pdf;
-mod pdf_font;
 mod png;
 mod svg;
 

@@ -1,7 +1,5 @@
 //! What the scheduled correction is worth.
 
-use crate::figure::assessment_figure;
-use crate::figure::number::decimals;
 use gdcm_core::dataset::{Pair, PairTable};
 use gdcm_core::study::{Analysis, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, Table};
 use gdcm_core::units::signed;
@@ -9,6 +7,8 @@ use gdcm_core::units::signed;
 use super::extent::{CONDITIONS_DRAWN, PAIRS_DRAWN};
 use super::page::Page;
 use super::settings::average_word;
+use crate::figure::assessment_figure;
+use crate::figure::decimals;
 
 /// Responses in one figure, in four rows.
 const IN_A_FIGURE: usize = 12;

@@ -1,7 +1,5 @@
 //! Each condition: its representatives, its gains and delays, what they rest on, and its plots.
 
-use crate::figure::ConditionSource;
-use crate::figure::number::{compact, decimals};
 use gdcm_core::correction::Outcome;
 use gdcm_core::dataset::{BundleKind, Condition, ConditionId, FlightState};
 use gdcm_core::study::{
@@ -15,6 +13,8 @@ use super::models::add_models;
 use super::page::Page;
 use super::plots::add_plots;
 use super::responses::add_responses;
+use crate::figure::ConditionSource;
+use crate::figure::{compact, decimals};
 
 /// Tells who waits how many conditions are done, and nothing of the steps within one.
 struct Steps<'a>(&'a dyn Progress);

@@ -1,12 +1,12 @@
 //! The models that take no part: rejected ones with the analyst's reasons, those set aside, and those that are suspected.
 
-use crate::figure::number::decimals;
 use gdcm_core::dataset::{BundleKind, Condition, ModelId};
 use gdcm_core::fidelity::SUGGESTION_RATIO;
 use gdcm_core::study::{Analysis, Caution, Table};
 
 use super::extent::{NAMES_SHOWN, names};
 use super::page::Page;
+use crate::figure::decimals;
 
 const NO_REASON: &str = "no reason was given";
 

@@ -1,12 +1,12 @@
 //! The models of one bundle.
 
-use crate::figure::number::decimals;
 use gdcm_core::dataset::{BundleKind, ModelId};
 use gdcm_core::fidelity::SUGGESTION_RATIO;
 use gdcm_core::study::{ConditionAnalysis, Study, Table};
 
 use super::extent::models_shown;
 use super::page::Page;
+use crate::figure::decimals;
 
 /// Adds the table of a bundle's models; of a long bundle, of those that matter most.
 pub(super) fn add_models(page: &mut Page, study: &Study, result: &ConditionAnalysis, kind: BundleKind) {

@@ -1,12 +1,12 @@
 //! G, D and J of the responses of one condition.
 
-use crate::figure::number::decimals;
 use gdcm_core::dataset::Pair;
 use gdcm_core::study::{ConditionAnalysis, Study, Table};
 use gdcm_core::units::{s_to_ms, signed};
 
 use super::extent::{PAIRS_LISTED, names};
 use super::page::Page;
+use crate::figure::decimals;
 
 const COLUMNS: [&str; 11] = [
     "response",

@@ -1,7 +1,5 @@
 //! The channels over the conditions, and the gains scheduled with airspeed.
 
-use crate::figure::number::{compact, decimals};
-use crate::figure::{Across, Measure, all_channels, channels_figure, net_gain_figure};
 use gdcm_core::correction::{Channel, ChannelCorrection};
 use gdcm_core::dataset::{ConditionId, Pair};
 use gdcm_core::schedule::{Schedule, ScheduleSettings, ScheduledQuantity};
@@ -11,6 +9,8 @@ use gdcm_core::units::{number, s_to_ms};
 use super::extent::{PAIRS_DRAWN, names};
 use super::page::Page;
 use super::settings::schedule_words;
+use crate::figure::{Across, Measure, all_channels, channels_figure, net_gain_figure};
+use crate::figure::{compact, decimals};
 
 /// Channels in one figure, in two rows.
 const IN_A_FIGURE: usize = 12;

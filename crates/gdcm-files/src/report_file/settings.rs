@@ -1,6 +1,5 @@
 //! Every setting that changes a result.
 
-use crate::figure::number::compact;
 use gdcm_core::correction::GainObjective;
 use gdcm_core::dataset::{Pair, PairTable};
 use gdcm_core::fidelity::CostAverage;
@@ -10,6 +9,7 @@ use gdcm_core::units::{number, s_to_ms};
 
 use super::extent::names;
 use super::page::Page;
+use crate::figure::compact;
 
 /// Adds the section.
 pub(super) fn add(page: &mut Page, study: &Study) {

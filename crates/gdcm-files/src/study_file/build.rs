@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::content_fault::ContentFault;
 use crate::dataset_file::{identified_model_of, record_of};
-use crate::flaw::ContentError;
+use crate::file_error::ContentError;
+use crate::file_error::ContentFault;
 use crate::settings_entry::SettingsEntry;
 use gdcm_core::dataset::{ConditionId, Dataset, Location};
 use gdcm_core::study::{

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::dataset_file::{IdentifiedText, RecordText};
 use crate::json_text::Format;
-use crate::list::list;
+use crate::json_text::list;
 use crate::settings_entry::SettingsEntry;
 use gdcm_core::dataset::limits::{MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
 

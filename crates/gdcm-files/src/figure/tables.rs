@@ -1,0 +1,182 @@
+//! The numbers of a figure as tables: one for each panel, to the last digit.
+
+use std::sync::Arc;
+
+use gdcm_core::study::Table;
+
+use super::axis::Axis;
+use super::figure::{Figure, Panel};
+use super::mark::{Along, Bracket, Intervals, Mark, Spans};
+
+impl Figure {
+    /// The numbers of each panel: one column for each curve where all share their x, else one row for each point.
+    pub fn tables(&self) -> Vec<Table> {
+        let tables = self.panels().map(|(title, panel)| panel.table(title));
+        tables.filter(|table| !table.rows.is_empty()).collect()
+    }
+}
+
+/// What is listed of a mark: its name, and its points with the texts beside them.
+struct Series {
+    name: String,
+    x: Arc<[f64]>,
+    y: Arc<[f64]>,
+    labels: Option<Vec<String>>,
+}
+
+/// One value for every x: its name, and the value.
+type Constant<'m> = (&'m str, f64);
+
+impl Panel {
+    fn table(&self, title: &str) -> Table {
+        let series: Vec<Series> = self.marks.iter().flat_map(series).collect();
+        let constants: Vec<Constant<'_>> = self.marks.iter().filter_map(constant).collect();
+        let title = if title.is_empty() { self.y.label.clone() } else { format!("{title}, {}", self.y.label) };
+        match series.split_first() {
+            Some((first, rest))
+                if first.labels.is_none() && rest.iter().all(|next| next.labels.is_none() && next.x == first.x) =>
+            {
+                self.wide(title, &series, &constants)
+            }
+            _ => self.long(title, &series, &constants),
+        }
+    }
+
+    /// `x | first curve [unit] | second curve [unit] | …`; the series have the same x.
+    fn wide(&self, title: String, series: &[Series], constants: &[Constant<'_>]) -> Table {
+        let unit = unit_of(&self.y.label);
+        let names = series.iter().map(|series| series.name.as_str()).chain(constants.iter().map(|(name, _)| *name));
+        let headings = names.map(|name| format!("{name}{unit}"));
+        let mut table = Table::new(title, std::iter::once(self.x.label.clone()).chain(headings));
+        let x = series.first().map(|series| &series.x[..]).unwrap_or_default();
+        for (at, &x) in x.iter().enumerate() {
+            let values = series.iter().map(|series| series.y.get(at).copied().unwrap_or(f64::NAN));
+            let values = values.chain(constants.iter().map(|(_, value)| *value)).map(figure);
+            table.row(std::iter::once(place(&self.x, x)).chain(values));
+        }
+        table
+    }
+
+    /// `series | label | x | y`.
+    fn long(&self, title: String, series: &[Series], constants: &[Constant<'_>]) -> Table {
+        let mut table = Table::new(title, ["series", "label", &self.x.label, &self.y.label]);
+        for series in series {
+            for (at, (&x, &y)) in series.x.iter().zip(series.y.iter()).enumerate() {
+                let label = series.labels.as_ref().and_then(|labels| labels.get(at)).cloned().unwrap_or_default();
+                table.row([series.name.clone(), label, place(&self.x, x), figure(y)]);
+            }
+        }
+        for (name, value) in constants {
+            table.row([(*name).to_owned(), String::new(), String::new(), figure(*value)]);
+        }
+        table
+    }
+}
+
+fn series(mark: &Mark) -> Vec<Series> {
+    let of = |name: &str, points: Vec<[f64; 2]>, labels| Series {
+        name: name.to_owned(),
+        x: points.iter().map(|point| point[0]).collect(),
+        y: points.iter().map(|point| point[1]).collect(),
+        labels,
+    };
+    match mark {
+        Mark::Curve(curve) => {
+            let (x, y) = (Arc::clone(&curve.x), Arc::clone(&curve.y));
+            vec![Series { name: curve.name.clone(), x, y, labels: None }]
+        }
+        Mark::Dots(dots) => {
+            let labels = dots.dots.iter().map(|dot| dot.label.clone()).collect();
+            vec![of(&dots.name, dots.dots.iter().map(|dot| [dot.x, dot.y]).collect(), Some(labels))]
+        }
+        Mark::Bars(bars) => vec![of(&bars.name, bars.bars.clone(), None)],
+        Mark::Spans(Spans { name, spans: ends, .. }) | Mark::Intervals(Intervals { name, ends, .. }) => {
+            let end = |(end, at): (&str, usize)| {
+                of(&format!("{name}, {end}"), ends.iter().map(|ends| [ends[0], ends[at]]).collect(), None)
+            };
+            [("lower", 1), ("upper", 2)].map(end).into()
+        }
+        Mark::Brackets(brackets) => {
+            let both = |of: &Bracket| of.ends.map(|end| ([of.x, end], of.label.clone()));
+            let (points, labels) = brackets.brackets.iter().flat_map(both).unzip();
+            vec![of(&brackets.name, points, Some(labels))]
+        }
+        Mark::Rule(_) | Mark::Band(_) | Mark::Guide(_) | Mark::Note(_) => Vec::new(),
+    }
+}
+
+/// What a labelled horizontal line says.
+fn constant(mark: &Mark) -> Option<Constant<'_>> {
+    match mark {
+        Mark::Rule(rule) if rule.along == Along::Y && !rule.label.is_empty() => Some((&rule.label, rule.at)),
+        _ => None,
+    }
+}
+
+/// ` [dB]` of `Magnitude [dB]`; nothing of a label without a unit.
+fn unit_of(label: &str) -> &str {
+    label.rfind(" [").map(|at| &label[at..]).unwrap_or_default()
+}
+
+/// The name of a place on an axis of names, of what stands beside it too; else the number.
+fn place(axis: &Axis, value: f64) -> String {
+    let name = axis.names.iter().flatten().find(|(at, _)| (at - value).abs() < 0.5).map(|(_, name)| name.clone());
+    name.unwrap_or_else(|| figure(value))
+}
+
+/// A figure to the last digit; an empty cell where it is not finite.
+fn figure(value: f64) -> String {
+    // Debug writes an exponent where Display would write hundreds of zeros.
+    if value.is_finite() { format!("{value:?}") } else { String::new() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::drawing::{Color, Stroke};
+    use super::super::figure::Plot;
+    use super::super::tables::*;
+    use crate::figure::mark::{Bars, Curve, DotShape, Dots};
+
+    const LINE: Stroke = Stroke::solid(Color::INK, 1.0);
+
+    fn table_of(panel: Panel) -> Table {
+        Figure::new("").plot(Plot::new("LON → Q").panel(panel)).tables().remove(0)
+    }
+
+    #[test]
+    fn curves_on_the_same_frequencies_stand_beside_one_another_to_the_last_digit() {
+        let omega: Arc<[f64]> = vec![0.1 + 0.2, 1e-300].into();
+        let panel = Panel::new(Axis::logarithmic("Frequency [rad/s]"), Axis::linear("Magnitude [dB]"))
+            .with(Curve::new("nominal", LINE, Arc::clone(&omega), [1.0, f64::NAN]))
+            .with(Curve::new("V+5kt", LINE, omega, [-2.5, 3.0]));
+        let table = table_of(panel);
+        assert_eq!(table.title, "LON → Q, Magnitude [dB]");
+        assert_eq!(table.columns, ["Frequency [rad/s]", "nominal [dB]", "V+5kt [dB]"]);
+        assert_eq!(table.rows, [["0.30000000000000004", "1.0", "-2.5"], ["1e-300", "", "3.0"]]);
+    }
+
+    #[test]
+    fn dots_and_a_curve_stand_below_one_another_with_their_labels() {
+        let panel = Panel::new(Axis::linear("Airspeed [kt]"), Axis::linear("Net gain [-]"))
+            .with(Dots::new("optimum", DotShape::Circle, Color::INK).dot(60.0, 1.1, "10"))
+            .with(Curve::new("schedule", LINE, [45.0], [1.0]));
+        let table = table_of(panel);
+        assert_eq!(table.columns, ["series", "label", "Airspeed [kt]", "Net gain [-]"]);
+        assert_eq!(table.rows, [["optimum", "10", "60.0", "1.1"], ["schedule", "", "45.0", "1.0"]]);
+    }
+
+    #[test]
+    fn bars_stand_beside_their_names() {
+        let bars = Bars {
+            name: "ΔJ".to_owned(),
+            color: Color::INK,
+            width: 0.2,
+            bars: vec![[0.0, -4.0], [1.0, 2.0]],
+            feet: Vec::new(),
+            beside: 0.0,
+        };
+        let table = table_of(Panel::new(Axis::named("Condition", ["3", "7"]), Axis::linear("ΔJ [-]")).with(bars));
+        assert_eq!(table.columns, ["Condition", "ΔJ [-]"]);
+        assert_eq!(table.rows, [["3", "-4.0"], ["7", "2.0"]]);
+    }
+}

@@ -1,0 +1,233 @@
+//! Many curves that stand still, as one image.
+
+use egui::{Color32, ColorImage, Context, Pos2, Rect, Shape, Stroke, TextureHandle, TextureOptions, pos2};
+use egui_plot::{PlotBounds, PlotGeometry, PlotItem, PlotItemBase, PlotTransform};
+use vello_cpu::color::AlphaColor;
+use vello_cpu::kurbo::{Affine, BezPath, Circle, Join, Shape as _, Stroke as PathStroke};
+use vello_cpu::{Pixmap, RenderContext, RenderSettings, Resources};
+
+use super::curve_style::LineLook;
+
+/// From so many curves on an image is worth its memory: filling their lines takes longer than everything else in a frame.
+pub(super) const MANY: usize = 200;
+/// How far a drawn circle may be from a true one \[pt\].
+const TOLERANCE: f64 = 0.05;
+
+/// What an image shows: as long as it stays the same, so does the image.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct StillScene {
+    /// Where the curves are on the screen \[pt\].
+    pub(super) frame: Rect,
+    /// Pixels to a point.
+    pub(super) pixels_per_point: f32,
+    /// The points of each curve, by the number under which they were made, and its look; from bottom to top.
+    pub(super) curves: Vec<(u64, LineLook)>,
+}
+
+/// Many curves that stand still, as one image. Without a graphics processor a frame of a thousand curves is bound by the
+/// filling of their lines, though from one position of the pointer to the next none of them moves.
+///
+/// ```text
+/// the scene is another than in the frame before:  lines are drawn; no image
+/// the same, and no image yet:                     the lines are filled once, into an image of the frame's pixels
+/// the same, with its image:                       one rectangle is drawn
+/// ```
+#[derive(Clone, Default)]
+pub(super) struct CachedRaster {
+    scene: Option<StillScene>,
+    image: Option<(TextureHandle, Rect)>,
+}
+
+impl std::fmt::Debug for CachedRaster {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.debug_struct("CachedRaster").field("scene", &self.scene).finish_non_exhaustive()
+    }
+}
+
+impl CachedRaster {
+    /// The image of `scene`, if it has stood still since the last frame; `shapes` says what is in it.
+    pub(super) fn of(
+        &mut self,
+        ctx: &Context,
+        scene: StillScene,
+        shapes: impl FnOnce() -> Vec<Shape>,
+    ) -> Option<ImageItem> {
+        if self.scene.as_ref() != Some(&scene) {
+            *self = Self { scene: Some(scene), image: None };
+            // Whatever moves is drawn as lines; the frame after it tells whether it has come to rest.
+            ctx.request_repaint();
+            return None;
+        }
+        if self.image.is_none() {
+            let (area, pixels) = whole_pixels(scene.frame, scene.pixels_per_point)?;
+            let largest = ctx.input(|input| input.max_texture_side);
+            if pixels.iter().any(|side| usize::from(*side) > largest) {
+                return None;
+            }
+            let image = filled(&shapes(), (area.min, scene.pixels_per_point), pixels);
+            self.image = Some((ctx.load_texture("curves at rest", image, TextureOptions::NEAREST), area));
+        }
+        let (texture, area) = self.image.as_ref()?;
+        Some(ImageItem {
+            base: PlotItemBase::new(String::new()),
+            texture: texture.clone(),
+            area: *area,
+            tint: Color32::WHITE,
+        })
+    }
+}
+
+/// The least rectangle of whole pixels around `frame`, and its width and height in pixels.
+fn whole_pixels(frame: Rect, pixels_per_point: f32) -> Option<(Rect, [u16; 2])> {
+    let (min, max) = ((frame.min * pixels_per_point).floor(), (frame.max * pixels_per_point).ceil());
+    let side = |length: f32| (1.0..=f32::from(u16::MAX)).contains(&length).then_some(length as u16);
+    let pixels = [side(max.x - min.x)?, side(max.y - min.y)?];
+    Some((Rect::from_min_max(min / pixels_per_point, max / pixels_per_point), pixels))
+}
+
+/// The shapes on a transparent ground, where `origin` \[pt\] is the upper left corner.
+fn filled(shapes: &[Shape], (origin, pixels_per_point): (Pos2, f32), [width, height]: [u16; 2]) -> ColorImage {
+    let mut context = RenderContext::new_with(width, height, RenderSettings { num_threads: 0, ..Default::default() });
+    let (scale, shift) = (f64::from(pixels_per_point), (-f64::from(origin.x), -f64::from(origin.y)));
+    context.set_transform(Affine::scale(scale) * Affine::translate(shift));
+    shapes.iter().for_each(|shape| fill(&mut context, shape));
+    context.flush();
+    let mut pixmap = Pixmap::new(width, height);
+    context.render(&mut pixmap, &mut Resources::new());
+    ColorImage::from_rgba_premultiplied([usize::from(width), usize::from(height)], pixmap.data_as_u8_slice())
+}
+
+/// What lines are made of: strokes, and discs for dots.
+fn fill(context: &mut RenderContext, shape: &Shape) {
+    match shape {
+        Shape::Vec(shapes) => shapes.iter().for_each(|shape| fill(context, shape)),
+        Shape::LineSegment { points, stroke } => stroke_along(context, points, *stroke),
+        Shape::Path(path) => {
+            if let egui::epaint::ColorMode::Solid(color) = path.stroke.color {
+                stroke_along(context, &path.points, Stroke::new(path.stroke.width, color));
+            }
+        }
+        Shape::Circle(circle) => {
+            take_color(context, circle.fill);
+            let disc = Circle::new((f64::from(circle.center.x), f64::from(circle.center.y)), f64::from(circle.radius));
+            context.fill_path(&disc.to_path(TOLERANCE));
+        }
+        _ => debug_assert!(false, "a line is made of strokes and dots"),
+    }
+}
+
+fn stroke_along(context: &mut RenderContext, points: &[Pos2], Stroke { width, color }: Stroke) {
+    let mut path = BezPath::new();
+    for (index, point) in points.iter().enumerate() {
+        let at = (f64::from(point.x), f64::from(point.y));
+        if index == 0 { path.move_to(at) } else { path.line_to(at) }
+    }
+    take_color(context, color);
+    context.set_stroke(PathStroke::new(f64::from(width)).with_join(Join::Bevel));
+    context.stroke_path(&path);
+}
+
+fn take_color(context: &mut RenderContext, color: Color32) {
+    let [red, green, blue, alpha] = color.to_srgba_unmultiplied();
+    context.set_paint(AlphaColor::from_rgba8(red, green, blue, alpha));
+}
+
+/// The image among the items of a plot, on whole pixels. (A `PlotImage` lies below every other item, bands too, and has its
+/// size in the plot's coordinates.)
+pub(super) struct ImageItem {
+    base: PlotItemBase,
+    texture: TextureHandle,
+    area: Rect,
+    tint: Color32,
+}
+
+impl ImageItem {
+    /// The image with so much of its strength.
+    pub(super) fn faded(self, part: f32) -> Self {
+        Self { tint: Color32::WHITE.gamma_multiply(part), ..self }
+    }
+}
+
+impl PlotItem for ImageItem {
+    fn shapes(&self, _: &egui::Ui, _: &PlotTransform, shapes: &mut Vec<Shape>) {
+        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        shapes.push(Shape::image(self.texture.id(), self.area, whole, self.tint));
+    }
+
+    fn initialize(&mut self, _: std::ops::RangeInclusive<f64>) {}
+
+    fn color(&self) -> Color32 {
+        Color32::TRANSPARENT
+    }
+
+    fn allow_hover(&self) -> bool {
+        false
+    }
+
+    fn geometry(&self) -> PlotGeometry<'_> {
+        PlotGeometry::None
+    }
+
+    fn bounds(&self) -> PlotBounds {
+        PlotBounds::NOTHING
+    }
+
+    fn base(&self) -> &PlotItemBase {
+        &self.base
+    }
+
+    fn base_mut(&mut self) -> &mut PlotItemBase {
+        &mut self.base
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::{RawInput, vec2};
+
+    use super::super::curve_style::LinePattern;
+    use super::*;
+
+    fn scene(curves: &[u64], left: f32) -> StillScene {
+        let look = LineLook { color: Color32::RED, width: 2.0, pattern: LinePattern::Solid };
+        let frame = Rect::from_min_size(pos2(left, 20.3), vec2(50.0, 30.0));
+        StillScene { frame, pixels_per_point: 1.5, curves: curves.iter().map(|serial| (*serial, look)).collect() }
+    }
+
+    /// Where the image is drawn.
+    fn image(still: &mut CachedRaster, ctx: &Context, scene: StillScene) -> Option<Rect> {
+        still.of(ctx, scene, Vec::new).map(|item| item.area)
+    }
+
+    #[test]
+    fn what_stands_still_for_a_frame_becomes_an_image_until_it_moves() {
+        let ctx = Context::default();
+        ctx.run_ui(RawInput::default(), |_| {}).drop_without_applying_deltas();
+        let mut still = CachedRaster::default();
+        assert_eq!(image(&mut still, &ctx, scene(&[1, 2], 10.2)), None, "it may be moving");
+        let area = image(&mut still, &ctx, scene(&[1, 2], 10.2)).expect("it stands still");
+        assert!(area.contains_rect(scene(&[], 10.2).frame));
+        let pixels = area.scale_from_center(1.0).min * 1.5;
+        assert!((pixels - pixels.round()).length() < 1e-4, "on whole pixels: {pixels:?}");
+        assert_eq!(image(&mut still, &ctx, scene(&[1, 2], 11.2)), None, "the frame moved");
+        assert_eq!(image(&mut still, &ctx, scene(&[1, 3], 11.2)), None, "a curve has other points");
+        assert!(image(&mut still, &ctx, scene(&[1, 3], 11.2)).is_some());
+    }
+
+    #[test]
+    fn lines_and_dots_are_filled_where_they_are() {
+        let red = Color32::from_rgba_unmultiplied(200, 0, 0, 204);
+        let shapes = [
+            Shape::line(vec![pos2(10.0, 25.0), pos2(60.0, 25.0)], Stroke::new(2.0, red)),
+            Shape::circle_filled(pos2(40.0, 40.0), 3.0, Color32::BLUE),
+        ];
+        let image = filled(&shapes, (pos2(10.0, 20.0), 2.0), [100, 60]);
+        // One rounding of a premultiplied colour either way.
+        let near = |[x, y]: [usize; 2], color: Color32| {
+            image[(x, y)].to_array().iter().zip(color.to_array()).all(|(a, b)| a.abs_diff(b) <= 1)
+        };
+        assert!(near([50, 9], red) && near([50, 10], red), "{:?}", image[(50, 9)]);
+        assert!(near([60, 40], Color32::BLUE));
+        assert!(near([50, 6], Color32::TRANSPARENT) && near([50, 14], Color32::TRANSPARENT));
+    }
+}

@@ -8,7 +8,7 @@ use egui::{
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::Pair;
 use gdcm_core::fidelity::{ACCEPTABLE, INDISTINGUISHABLE};
-use gdcm_core::study::{ConditionAnalysis, Edit, ExplainTarget, Setting, Uncertainty, Undefined};
+use gdcm_core::study::{ConditionAnalysis, Edit, ExplainTarget, Uncertainty, Undefined};
 use gdcm_core::uncertainty::{Bar, Scalar};
 use gdcm_core::units::s_to_ms;
 
@@ -105,7 +105,7 @@ impl<'a> Cell<'a> {
             focused: state.display.pair == pair,
             on_axis: state.dataset().on_axis()[pair],
             constrained: state.study.settings.constrained[pair],
-            fitted: state.study.settings.fitted[pair],
+            fitted: !state.study.settings.ignored[pair],
             in_conflict,
             shown: state.shown(),
             uncertainty: state.uncertainty().filter(|_| !state.others_are_older()).map(|of| of.as_ref()),
@@ -156,7 +156,7 @@ impl<'a> Cell<'a> {
         let space = response.has_focus() && ui.input(|input| input.key_pressed(Key::Space));
         if lock.clicked() || response.double_clicked() || space {
             if self.constrained || !self.is_undefined() {
-                commands.push(Edit::Set(Setting::Constrained(self.pair, !self.constrained)).into());
+                commands.push(Edit::Hold(self.pair, !self.constrained).into());
             }
         } else if response.clicked() {
             commands.push(Command::FocusPair(self.pair));
@@ -255,12 +255,12 @@ impl<'a> Cell<'a> {
     fn menu_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let mut constrained = self.constrained;
         if ui.checkbox(&mut constrained, format!("Hold {} exactly", self.name)).changed() {
-            commands.push(Edit::Set(Setting::Constrained(self.pair, constrained)).into());
+            commands.push(Edit::Hold(self.pair, constrained).into());
             ui.close();
         }
         let mut fitted = self.fitted;
         if ui.checkbox(&mut fitted, format!("Fit {} in the objective", self.name)).changed() {
-            commands.push(Edit::Set(Setting::Fitted(self.pair, fitted)).into());
+            commands.push(Edit::Fit(self.pair, fitted).into());
             ui.close();
         }
         if ui.button("Hold exactly the on-axis responses").clicked() {

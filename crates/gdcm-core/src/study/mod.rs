@@ -50,7 +50,7 @@ pub use late_channel::*;
 pub use lead_compensation::*;
 pub use reconcile::*;
 pub use remark::*;
-pub use setting::{Choice, Control, Kind, Place, SETTINGS, Setting, Unit, Value};
+pub use setting::{Choice, Control, Digits, Kind, Place, SETTINGS, Setting, Unit, Value};
 pub use settings::*;
 pub use simulation_job::*;
 pub use study::*;

@@ -5,10 +5,10 @@ use crate::correction::{GainBounds, GainObjective, GainSource};
 use crate::dataset::{Band, GREATEST_OMEGA, LEAST_OMEGA};
 use crate::fidelity::CostAverage;
 use crate::response::LeadOrder;
-use crate::schedule::{HIGHEST_DEGREE, SCHEDULE_KINDS, ScheduleKind, ScheduledQuantity, SecondVariable};
+use crate::schedule::{SCHEDULE_KINDS, ScheduleKind, ScheduledQuantity, SecondVariable};
 use crate::units::number;
 
-use super::{DEFAULT_COHERENCE, DelayFrom, Edit, EditRefusal, PhaseCorrection, Settings};
+use super::{DEFAULT_COHERENCE, DelayFrom, Edit, EditRefusal, PhaseCorrection, Settings, Study};
 
 /// One setting: a row of [`SETTINGS`].
 #[derive(Debug)]
@@ -17,7 +17,7 @@ pub struct Setting {
     pub name: &'static str,
     /// Its key in the settings of files; a dot leads into an object: "lead.n".
     pub key: &'static str,
-    /// Its option of the command line, without dashes.
+    /// Its option of the command line: "--alpha".
     pub option: &'static str,
     /// What it means, in a sentence.
     pub help: &'static str,
@@ -111,10 +111,21 @@ pub struct Control {
     pub label: &'static str,
     /// How much the value shown changes by a point of dragging.
     pub step: f64,
-    /// Decimals of the value shown; none for three significant digits.
-    pub decimals: Option<usize>,
+    /// How the value is written.
+    pub digits: Digits,
     /// Whether it has an effect.
-    pub applies: fn(&Settings) -> bool,
+    pub applies: fn(&Study) -> bool,
+}
+
+/// How the window writes a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Digits {
+    /// With three significant digits.
+    Significant,
+    /// With so many decimals.
+    Decimals(usize),
+    /// As a gain: three decimals, two where the third is zero.
+    Gain,
 }
 
 /// Where the control of a setting stands.
@@ -130,6 +141,8 @@ pub enum Place {
     Beside,
     /// In the view of what it is about.
     Elsewhere,
+    /// Nowhere: files and command lines say it.
+    Hidden,
 }
 
 /// The value of a setting.
@@ -291,7 +304,9 @@ impl Setting {
                 self.check_range("a lower end", lower, [least, most])?;
                 self.check_range("an upper end", upper, [lower, most])
             }
-            (Kind::Choice { words, .. }, Value::Choice(index)) if index < words.len() => Ok(()),
+            (Kind::Choice { words, .. }, Value::Choice(index)) => {
+                self.check_range("a whole number", index as f64, [0.0, words.len() as f64 - 1.0])
+            }
             (Kind::Flag { .. }, Value::Flag(_)) | (Kind::Optional { .. }, Value::Nothing) => Ok(()),
             (Kind::Range { nothing: Some(_), .. }, Value::Nothing) => Ok(()),
             _ => Err(EditRefusal::NotAValue { setting: self.name }),
@@ -312,11 +327,16 @@ impl Setting {
         if self.unit.file.is_empty() { "a number".to_owned() } else { format!("a number of {}", self.unit.file) }
     }
 
-    /// Its value in words: "20 ms", "by the quantile", "median".
+    /// Its value in words.
     pub fn words(&self, settings: &Settings) -> String {
+        self.text(self.value(settings))
+    }
+
+    /// A value in words: "20 ms", "by the quantile", "median".
+    pub fn text(&self, value: Value) -> String {
         let Unit { shown, scale, .. } = self.unit;
         let unit = if shown.is_empty() { String::new() } else { format!(" {shown}") };
-        match (self.kind, self.value(settings)) {
+        match (self.kind, value) {
             (_, Value::Number(value)) => format!("{}{unit}", number(scale * value)),
             (_, Value::Range([lower, upper])) => {
                 format!("{} to {}{unit}", number(scale * lower), number(scale * upper))
@@ -397,8 +417,14 @@ const PERCENT: Unit = Unit { file: "", shown: "%", scale: 100.0 };
 
 /// A row before what is special about it.
 const fn row(name: &'static str, key: &'static str, option: &'static str, help: &'static str, kind: Kind) -> Setting {
-    let control =
-        Control { place: Place::Elsewhere, caption: "", label: name, step: 0.01, decimals: None, applies: |_| true };
+    let control = Control {
+        place: Place::Elsewhere,
+        caption: "",
+        label: name,
+        step: 0.01,
+        digits: Digits::Significant,
+        applies: |_| true,
+    };
     Setting { name, key, option, help, unit: PURE, kind, control }
 }
 
@@ -417,11 +443,11 @@ impl Setting {
     }
 
     /// By how much its number is dragged, and with how many decimals it stands there.
-    const fn digits(self, step: f64, decimals: Option<usize>) -> Self {
-        Self { control: Control { step, decimals, ..self.control }, ..self }
+    const fn digits(self, step: f64, digits: Digits) -> Self {
+        Self { control: Control { step, digits, ..self.control }, ..self }
     }
 
-    const fn where_it(self, applies: fn(&Settings) -> bool) -> Self {
+    const fn where_it(self, applies: fn(&Study) -> bool) -> Self {
         Self { control: Control { applies, ..self.control }, ..self }
     }
 }
@@ -446,7 +472,7 @@ const fn choice(
 pub static ALPHA_GAIN: Setting = row(
     "α of the gains",
     "alpha_gain",
-    "alpha",
+    "--alpha",
     "Weight that keeps the output gains, eq. (7), near 1; 0 is the limit α → 0",
     real([0.0, 1e6], |of| of.alpha_gain, |of, alpha| of.alpha_gain = alpha),
 )
@@ -456,7 +482,7 @@ pub static ALPHA_GAIN: Setting = row(
 pub static ALPHA_DELAY: Setting = row(
     "α of the delays",
     "alpha_delay",
-    "alpha-delay",
+    "--alpha-delay",
     "Weight that keeps the output delays, eq. (11), or all signed delays (M15) near 0; 0 is the limit α → 0",
     real([0.0, 1e6], |of| of.alpha_delay, |of, alpha| of.alpha_delay = alpha),
 )
@@ -466,7 +492,7 @@ pub static ALPHA_DELAY: Setting = row(
 pub static PHASE: Setting = row(
     "phase correction",
     "phase",
-    "phase",
+    "--phase",
     "How the phase is corrected: not at all, by delays, or by a delay or a lead filter a channel",
     choice(
         &[
@@ -488,7 +514,7 @@ pub static PHASE: Setting = row(
 pub static DELAY_FROM: Setting = row(
     "delay estimate",
     "delay_from",
-    "delay-from",
+    "--delay-from",
     "Which D the delays are fitted to: the median of phase over frequency, or a straight line over the band",
     choice(
         &[
@@ -500,13 +526,13 @@ pub static DELAY_FROM: Setting = row(
     ),
 )
 .at(Place::Beside, "Delay estimate", "Delay estimate")
-.where_it(|of| of.phase == PhaseCorrection::Delay);
+.where_it(|study| study.settings.phase == PhaseCorrection::Delay);
 
 /// Order of the lead filters.
 pub static LEAD_ORDER: Setting = row(
     "order of the lead filters",
     "lead.order",
-    "lead-order",
+    "--lead-order",
     "Order of every lead filter (M15.3)",
     choice(
         &[
@@ -520,39 +546,39 @@ pub static LEAD_ORDER: Setting = row(
 .at(Place::Top, "Lead: order", "Order of the lead filters")
 .where_it(has_leads);
 
-fn has_leads(settings: &Settings) -> bool {
-    settings.phase == PhaseCorrection::Lead
+fn has_leads(study: &Study) -> bool {
+    study.settings.phase == PhaseCorrection::Lead
 }
 
 /// `n` of the lead filters, of which the lag time constant is `1 / (n omega_B)` (M15.3).
 pub static LEAD_POLE: Setting = row(
     "n of the lead filters",
     "lead.n",
-    "lead-n",
+    "--lead-n",
     "Lag of every lead filter: 1/(n ω_B), ω_B the top of the band; smaller: less noise, and more lead in reach",
     real([2.0, 10.0], |of| of.lead.pole, |of, pole| of.lead.pole = pole),
 )
 .at(Place::Beside, "n", "n of the lead filters")
-.digits(0.05, None)
+.digits(0.05, Digits::Significant)
 .where_it(has_leads);
 
 /// Greatest gain of a lead filter at high frequency, 0 to 40 dB.
 pub static LEAD_LIMIT: Setting = row(
     "R_max of the lead filters",
     "lead.r_max",
-    "lead-r-max",
+    "--lead-r-max",
     "Greatest gain of one channel's filter far above the band (10 is 20 dB): it bounds the lead of a channel",
     real([1.0, 100.0], |of| of.lead.limit, |of, limit| of.lead.limit = limit),
 )
 .at(Place::Beside, "R_max", "R_max of the lead filters")
-.digits(0.1, None)
+.digits(0.1, Digits::Significant)
 .where_it(has_leads);
 
 /// Band of comparison.
 pub static BAND: Setting = row(
     "frequency band",
     "band_rad_s",
-    "band",
+    "--band",
     "Band of comparison [rad/s]; drag its lines in the plot too",
     Kind::Range {
         range: [LEAST_OMEGA, GREATEST_OMEGA],
@@ -573,30 +599,30 @@ pub static BAND: Setting = row(
 pub static POINTS: Setting = row(
     "number of frequencies",
     "points",
-    "points",
+    "--points",
     "Number of logarithmically spaced frequencies in the band",
     whole([2.0, 5000.0], |of| of.points as f64, |of, points| of.points = points as usize),
 )
 .at(Place::Line, "Points", "Frequencies in the band")
-.digits(1.0, Some(0));
+.digits(1.0, Digits::Decimals(0));
 
 /// Quantile that sets the bounds, at most the median.
 pub static QUANTILE: Setting = row(
     "bound quantile",
     "quantile",
-    "quantile",
+    "--quantile",
     "Bounds are this quantile, and its complement, of |H_ref|/|H_sim| and of Δφ/ω",
     real([0.0, 0.5], |of| of.quantile, |of, quantile| of.quantile = quantile),
 )
 .percent()
 .at(Place::Beside, "bound quantile", "Bound quantile")
-.digits(0.1, Some(1));
+.digits(0.1, Digits::Decimals(1));
 
 /// Bounds of the gains by hand, -120 to 120 dB; nothing goes back to the quantiles.
 pub static GAIN_BOUNDS: Setting = row(
     "gain bounds",
     "gain_bounds",
-    "gain-bounds",
+    "--gain-bounds",
     "Least and greatest gain of every channel set by hand, for every condition; auto: from the quantiles of each",
     Kind::Range {
         range: [1e-6, 1e6],
@@ -610,13 +636,13 @@ pub static GAIN_BOUNDS: Setting = row(
     },
 )
 .at(Place::Line, "Gain bounds", "Gain bounds")
-.digits(0.002, None);
+.digits(0.002, Digits::Gain);
 
 /// Upper bound of the delays \[s\] by hand; nothing goes back to the quantile.
 pub static DELAY_UPPER: Setting = row(
     "upper delay bound",
     "delay_upper_s",
-    "delay-bound",
+    "--delay-bound",
     "Greatest delay of every channel set by hand, for every condition; auto: from the quantiles of each",
     Kind::Optional {
         range: [0.0, 1e3],
@@ -628,13 +654,13 @@ pub static DELAY_UPPER: Setting = row(
 )
 .unit("seconds", "ms", 1e3)
 .at(Place::Line, "Delay bound", "Upper delay bound")
-.digits(0.2, Some(1));
+.digits(0.2, Digits::Decimals(1));
 
 /// Mismatch of a loop of held gains that counts as agreement \[dB\].
 pub static AGREEMENT: Setting = row(
     "loop tolerance",
     "agreement_db",
-    "agreement",
+    "--agreement",
     "A loop of held gains that disagrees by no more than this [dB] counts as agreeing",
     real([0.0, 3.0], |of| of.agreement_db, |of, tolerance| of.agreement_db = tolerance),
 )
@@ -645,7 +671,7 @@ pub static AGREEMENT: Setting = row(
 pub static COST_AVERAGE: Setting = row(
     "average in J",
     "cost_average",
-    "cost-average",
+    "--cost-average",
     "How squared errors are averaged over frequency in J",
     choice(
         &[
@@ -662,7 +688,7 @@ pub static COST_AVERAGE: Setting = row(
 pub static GAIN_OBJECTIVE: Setting = row(
     "objective of the gains",
     "gain_objective",
-    "gain-objective",
+    "--gain-objective",
     "What the gains minimise",
     choice(
         &[
@@ -679,7 +705,7 @@ pub static GAIN_OBJECTIVE: Setting = row(
 pub static GAIN_SOURCE: Setting = row(
     "source of G",
     "gain_from",
-    "gain-from",
+    "--gain-from",
     "What G is taken from: the two representatives, or the mean over all pairs of kept models",
     choice(
         &[
@@ -696,31 +722,31 @@ pub static GAIN_SOURCE: Setting = row(
 pub static LEVEL: Setting = row(
     "confidence level",
     "error_bars.level",
-    "level",
+    "--level",
     "Level of every error bar, interval and test",
     real([0.5, 0.999], |of| of.uncertainty.level, |of, level| of.uncertainty.level = level),
 )
 .percent()
 .at(Place::Line, "Confidence level", "Confidence level")
-.digits(0.5, Some(1));
+.digits(0.5, Digits::Decimals(1));
 
 /// Degrees of freedom that a condition's identification part borrows at most.
 pub static POOLING: Setting = row(
     "pooling (degrees of freedom borrowed)",
     "error_bars.prior_degrees",
-    "pooling",
+    "--pooling",
     "Degrees of freedom that a condition's identification part borrows from the other conditions at most; 0 trusts the condition \
      alone",
     real([0.0, 100.0], |of| of.uncertainty.prior_degrees, |of, degrees| of.uncertainty.prior_degrees = degrees),
 )
 .at(Place::Beside, "pooling", "Pooling (degrees of freedom borrowed)")
-.digits(0.1, None);
+.digits(0.1, Digits::Significant);
 
 /// Least coherence of a frequency that counts.
 pub static COHERENCE: Setting = row(
     "coherence threshold",
     "coherence_threshold",
-    "coherence",
+    "--coherence",
     "Least coherence γ² of measured responses that is used: off, on, or the least (on is 0.6); off: every frequency counts alike",
     Kind::Optional {
         range: [0.0, 1.0],
@@ -730,13 +756,14 @@ pub static COHERENCE: Setting = row(
         set: |of, least| of.coherence_threshold = least,
     },
 )
-.at(Place::Line, "Coherence", "Least coherence");
+.at(Place::Line, "Coherence", "Least coherence")
+.where_it(|study| study.settings.coherence_threshold.is_some() || study.dataset.has_coherence());
 
 /// Number of averages of measured responses that do not say it.
 pub static AVERAGES: Setting = row(
     "averages of measured responses",
     "error_bars.averages",
-    "averages",
+    "--averages",
     "Number of independent averages of measured responses whose files do not say it",
     Kind::Optional {
         range: [1e-6, 1e6],
@@ -751,7 +778,7 @@ pub static AVERAGES: Setting = row(
 pub static WINDOW: Setting = row(
     "windows of measured responses",
     "error_bars.window_s",
-    "averaging-window",
+    "--averaging-window",
     "Length of the windows of measured responses whose files do not say it",
     Kind::Optional {
         range: [1e-6, 1e6],
@@ -767,7 +794,7 @@ pub static WINDOW: Setting = row(
 pub static HALF_OVERLAP: Setting = row(
     "windows overlap",
     "error_bars.half_overlap",
-    "half-overlap",
+    "--half-overlap",
     "The windows of measured responses overlap by half",
     Kind::Flag {
         words: ["not", "by half"],
@@ -780,7 +807,7 @@ pub static HALF_OVERLAP: Setting = row(
 pub static SCHEDULE: Setting = row(
     "schedule",
     "schedule.kind",
-    "degree",
+    "--degree",
     "Degree of the schedule's polynomial in airspeed, 0 to 3, or a lookup table",
     choice(
         &[
@@ -800,7 +827,7 @@ pub static SCHEDULE: Setting = row(
 pub static SCHEDULED_QUANTITY: Setting = row(
     "scheduled quantity",
     "schedule.of",
-    "schedule-of",
+    "--schedule-of",
     "What is regressed on airspeed",
     choice(
         &[
@@ -817,7 +844,7 @@ pub static SCHEDULED_QUANTITY: Setting = row(
 pub static SCHEDULE_DELAYS: Setting = row(
     "delays",
     "schedule.delays",
-    "schedule-delays",
+    "--schedule-delays",
     "Schedule the delays of the channels too, clamped to their bounds (M11)",
     Kind::Flag {
         words: ["not scheduled", "scheduled"],
@@ -826,29 +853,37 @@ pub static SCHEDULE_DELAYS: Setting = row(
     },
 )
 .at(Place::Elsewhere, "", "delays too")
-.where_it(|of| !has_leads(of));
+.where_it(|study| !has_leads(study));
 
 /// Degree of the polynomial of signed delays.
 pub static TAU_DEGREE: Setting = row(
     "degree of the signed delays",
     "schedule.tau_degree",
-    "tau-degree",
+    "--tau-degree",
     "Degree of the polynomial of signed delays in airspeed; 0: lags of servos and sensors do not depend on it (M15.5)",
-    whole(
-        [0.0, HIGHEST_DEGREE as f64],
-        |of| of.schedule.tau_degree as f64,
-        |of, degree| of.schedule.tau_degree = degree as usize,
+    choice(
+        &[
+            [
+                "0",
+                "τ constant",
+                "One signed delay for all airspeeds: lags of servos and sensors do not depend on them (M15.5)",
+            ],
+            ["1", "τ degree 1", "Polynomial of degree 1 in airspeed"],
+            ["2", "τ degree 2", "Polynomial of degree 2 in airspeed"],
+            ["3", "τ degree 3", "Polynomial of degree 3 in airspeed"],
+        ],
+        |of| of.schedule.tau_degree,
+        |of, degree| of.schedule.tau_degree = degree,
     ),
 )
-.at(Place::Elsewhere, "τ degree", "Schedule of the signed delays")
-.digits(1.0, Some(0))
+.at(Place::Elsewhere, "", "Schedule of the signed delays")
 .where_it(has_leads);
 
 /// Airspeeds this close to the next one are one \[kt\].
 pub static AIRSPEED_TOLERANCE: Setting = row(
     "airspeed tolerance",
     "schedule.airspeed_tolerance_kt",
-    "airspeed-tolerance",
+    "--airspeed-tolerance",
     "Airspeeds this close to the next one [kt] count as one, for the table and for the degree",
     real(
         [0.0, 100.0],
@@ -858,13 +893,13 @@ pub static AIRSPEED_TOLERANCE: Setting = row(
 )
 .unit("kt", "kt", 1.0)
 .at(Place::Elsewhere, "", "Airspeed tolerance")
-.digits(0.1, Some(1));
+.digits(0.1, Digits::Decimals(1));
 
 /// What is scheduled beside airspeed.
 pub static SECOND_VARIABLE: Setting = row(
     "second variable",
     "schedule.second_variable",
-    "second-variable",
+    "--second-variable",
     "Schedule gains with a second variable beside airspeed",
     choice(
         &[

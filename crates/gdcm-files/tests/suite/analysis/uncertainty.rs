@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::ModelId;
-use gdcm_core::schedule::{ScheduleKind, ScheduleSettings, SecondVariable};
+use gdcm_core::schedule::{ScheduleKind, SecondVariable};
 use gdcm_core::study::{AirspeedDifference, Cancelled, PairScatter, Progress, Uncertainty};
 use gdcm_core::uncertainty::{
     Bar, Design, Difference, IdentificationSource, Part, Scalar, ScheduleBand, SecondVariableDesign,
@@ -38,8 +38,8 @@ fn study_of(dataset: &Value) -> Study {
     Study::new(load_dataset_bytes(&text, DatasetOrigin::EmbeddedExample).unwrap().dataset)
 }
 
-fn set(study: &mut Study, setting: Setting) {
-    study.apply(&Edit::Set(setting)).unwrap();
+fn set(study: &mut Study, edit: Edit) {
+    study.apply(&edit).unwrap();
 }
 
 fn uncertainty_of(study: &Study) -> (Analysis, Uncertainty) {
@@ -156,7 +156,7 @@ fn study_of_known_spread() -> (Study, Value) {
     let case = case("A_pure_gain_bundles");
     let mut study = study_of(&case["dataset"]);
     let kind = ScheduleKind::Polynomial { degree: 1 };
-    set(&mut study, Setting::Schedule(ScheduleSettings { kind, ..ScheduleSettings::default() }));
+    set(&mut study, setting::SCHEDULE.to(kind));
     (study, case)
 }
 
@@ -196,7 +196,7 @@ fn what_coherence_tells_takes_the_place_of_a_smaller_spread() {
             }
         }
         let mut study = study_of(&dataset);
-        set(&mut study, Setting::Points(40));
+        set(&mut study, setting::POINTS.to(40));
         let (_, found) = uncertainty_of(&study);
         let bar = |scalar| *found.bar(ConditionId(1), scalar).unwrap();
         let (gain, delay) = (bar(Scalar::Gain(Pair::new(0, 0))), bar(Scalar::Delay(Pair::new(0, 0))));
@@ -435,7 +435,7 @@ fn bars_of_a_population_cover_the_truth_as_often_as_they_say() {
         "inputs": [{"name": "U", "unit": "%"}], "outputs": [{"name": "Y", "unit": "deg/s"}], "on_axis": [["Y", "U"]],
         "frequency_band": {"min": 0.5, "max": 12.0, "unit": "rad/s"}, "conditions": conditions});
     let mut study = study_of(&dataset);
-    set(&mut study, Setting::Points(5));
+    set(&mut study, setting::POINTS.to(5));
     let (_, found) = uncertainty_of(&study);
     let covers = |of: &gdcm_core::study::ConditionUncertainty| {
         let [low, high] = of.bars[Scalar::NetGain(Pair::new(0, 0))].unwrap().interval(0.9).unwrap();

@@ -6,10 +6,10 @@ use gdcm_core::correction::GainSource;
 use gdcm_core::study::{Kind, PhaseCorrection, Place, SETTINGS, Setting, Value, setting};
 
 use super::command::Command;
+use super::controls::heading_ui;
 use super::focus::{Region, region_ui};
 use super::number_field::{Entered, NumberField};
 use super::palette::{Palette, SMALL_SIZE};
-use super::row::heading_ui;
 use super::state::State;
 
 /// Largest value on a slider; more can be typed.

@@ -3,12 +3,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::GainBounds;
 use crate::dataset::{Pair, PairTable};
 use crate::fidelity::{CountedFrequencies, Mismatch};
 use crate::response::{PolarResponse, quantile};
 use crate::units::db_to_ratio;
-
-use super::GainBounds;
 
 /// Which models G is taken from; D is always that of the representatives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]

@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::branch_and_bound::SearchStopped;
-use super::quantity::{Coordinate, GainObjective, Quantity};
+use super::{Coordinate, GainObjective, Quantity, SearchStopped};
 use crate::dataset::{Pair, PairTable};
 
 /// Least and greatest value of every channel (M7): gains `0 < lower <= upper`, delays \[s\] `lower = 0`, signed delays \[s\]

@@ -115,7 +115,7 @@ fn frequencies_that_were_not_measured_leave_g_d_j_and_the_bounds() {
     for pair in result.cost.pairs() {
         assert!((magnitude(pair) / expected - 1.0).abs() < 1e-11, "{pair:?}: the mean over those that count");
     }
-    let off = with(&noisy(), &[setting::COST_AVERAGE.to(CostAverage::Mean), setting::COHERENCE.to(None)]);
+    let off = with(&noisy(), &[setting::COST_AVERAGE.to(CostAverage::Mean), setting::COHERENCE.to(None::<f64>)]);
     let gain = only(&off).comparison.delta.gain[Pair::new(0, 0)].unwrap();
     assert!((gain / (3.0 * GAIN) - 1.0).abs() < 1e-12, "most of the band is noise of three times the gain");
     assert!(only(&off).gain_bounds().upper > 3.0);
@@ -127,7 +127,7 @@ fn equal_coherence_gives_the_medians_of_no_coherence_to_the_last_digit() {
     for points in [200, 131] {
         let points = setting::POINTS.to(points);
         let (on, off) =
-            (with(&equal, std::slice::from_ref(&points)), with(&equal, &[points, setting::COHERENCE.to(None)]));
+            (with(&equal, std::slice::from_ref(&points)), with(&equal, &[points, setting::COHERENCE.to(None::<f64>)]));
         assert_eq!(on.study.settings.coherence_threshold, Some(DEFAULT_COHERENCE), "it is on by default");
         let (on, off) = (only(&on), only(&off));
         let [of_on, of_off] = [&on, &off].map(|of| &of.comparison.delta);
@@ -191,7 +191,7 @@ fn a_result_says_what_coherence_did() {
     let weighed = said.iter().find(|remark| remark.text.contains("Coherence weighs J, G and D of 4 responses"));
     assert_eq!(weighed.unwrap().kind, RemarkKind::Good);
 
-    let off = words(&with(&noisy(), &[setting::COHERENCE.to(None)]));
+    let off = words(&with(&noisy(), &[setting::COHERENCE.to(None::<f64>)]));
     assert!(off.iter().any(|words| words.contains("which is switched off")), "{off:?}");
 }
 

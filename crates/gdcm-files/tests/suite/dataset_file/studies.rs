@@ -141,7 +141,7 @@ fn a_study_of_an_older_program_has_neither_reasons_nor_variants_nor_a_tolerance_
     let opened = open_study(&desk.study()).unwrap();
     let mut expected = Study::new(opened.loaded.dataset.clone());
     assert_eq!(expected.settings.coherence_threshold, Some(0.6), "one response is measured with coherence");
-    decided(&mut expected, &[setting::COHERENCE.to(None)]);
+    decided(&mut expected, &[setting::COHERENCE.to(None::<f64>)]);
     assert_eq!(opened.study, expected, "an older program took no notice of coherence");
     assert_eq!(opened.study.settings.agreement_db, 0.05);
 }

@@ -93,7 +93,7 @@ impl CachedAcross {
         let shape = |(id, response): &(ModelId, Arc<gdcm_core::response::FrequencyResponse>)| {
             let shape = ResponseShape::of(&response.curve(pair));
             let shape = match &first {
-                Some(first) => shape.laid_on(first),
+                Some(first) => shape.phase_aligned(first),
                 None => shape,
             };
             first.get_or_insert_with(|| shape.clone());

@@ -113,11 +113,11 @@ fn split_words(split: &VarianceDecomposition, level: f64) -> String {
     let percent = |variance: f64| 100.0 * variance.sqrt();
     let times = split.ratio().map_or_else(String::new, |ratio| format!(", {ratio:.1} times"));
     let interval =
-        split.rest_interval(level).map(|[low, high]| format!(" ({:.1} to {:.1})", 100.0 * low, 100.0 * high));
+        split.unexplained_interval(level).map(|[low, high]| format!(" ({:.1} to {:.1})", 100.0 * low, 100.0 * high));
     format!(
         "{:.1} %{times}; rest {:.1} %{}",
         percent(split.scatter),
-        percent(split.rest()),
+        percent(split.unexplained()),
         interval.unwrap_or_default()
     )
 }

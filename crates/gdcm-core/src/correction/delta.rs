@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::GainBounds;
 use crate::dataset::{Pair, PairTable};
-use crate::fidelity::{CountedFrequencies, Mismatch};
+use crate::fidelity::{CoherenceWeights, Mismatch};
 use crate::response::{PolarResponse, quantile};
 use crate::units::db_to_ratio;
 
@@ -86,11 +86,12 @@ const LARGEST_DB: f64 = 1000.0;
 pub fn mismatch_table(
     simulated: &PolarResponse,
     reference: &PolarResponse,
-    counted: Option<&PairTable<CountedFrequencies>>,
+    coherence_weights: Option<&PairTable<CoherenceWeights>>,
 ) -> PairTable<Option<Mismatch>> {
     simulated.curves().map(|pair, simulated| {
         let mismatch = Mismatch::new(simulated.as_ref()?, reference.curves()[pair].as_ref()?);
-        let mismatch = mismatch.counting(counted.map(|counted| &counted[pair]))?;
+        let mismatch =
+            mismatch.coherence_weighted(coherence_weights.map(|coherence_weights| &coherence_weights[pair]))?;
         mismatch.magnitude_db.iter().all(|error| error.abs() < LARGEST_DB).then_some(mismatch)
     })
 }

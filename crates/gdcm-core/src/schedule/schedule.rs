@@ -339,7 +339,7 @@ impl Schedule {
     }
 
     /// Whether it is nothing to go by between the conditions: a gain overshoots there, or is not positive.
-    pub fn fails_between(&self) -> bool {
+    pub fn interpolation_fails(&self) -> bool {
         let fails = |caution: &ScheduleCaution| {
             matches!(caution, ScheduleCaution::Overshoot { .. } | ScheduleCaution::NotPositive)
         };
@@ -399,16 +399,16 @@ impl Schedule {
     /// Scheduled delays are cut to their bounds: from zero to the conditions' upper bounds, linear between them. A second variable
     /// is in the middle of its range.
     pub fn at(&self, airspeed_kt: f64) -> ChannelCorrection {
-        self.at_both(airspeed_kt, None)
+        self.evaluate(airspeed_kt, None)
     }
 
     /// The scheduled correction at the airspeed and the second variable of a condition.
     pub fn at_state(&self, state: &FlightState) -> ChannelCorrection {
-        self.at_both(state.airspeed_kt, self.settings.second.and_then(|variable| variable.value(state)))
+        self.evaluate(state.airspeed_kt, self.settings.second.and_then(|variable| variable.value(state)))
     }
 
     /// As [`Schedule::at`], at a value of the second variable; beyond the range of the conditions' the end value holds.
-    pub fn at_both(&self, airspeed_kt: f64, second: Option<f64>) -> ChannelCorrection {
+    pub fn evaluate(&self, airspeed_kt: f64, second: Option<f64>) -> ChannelCorrection {
         let gain = |regression: &Regression, beside: f64| {
             let value = regression.at(&self.airspeeds, airspeed_kt) + beside;
             match self.settings.quantity {
@@ -563,10 +563,10 @@ mod tests {
         };
         assert_eq!((*channel, *between_kt, *range), (Channel::Input(0), [63.0, 120.0], [1.0, 1.1]));
         assert!((airspeed_kt - 90.0).abs() < 1.0 && (gain / 1.1_f64.powf(1.0 / 0.19) - 1.0).abs() < 0.01);
-        assert!(wild.fails_between());
+        assert!(wild.interpolation_fails());
         let lowered = of([60.0, 61.0, 120.0], 2.0);
         assert_eq!(lowered.cautions, [ScheduleCaution::DegreeLowered { asked: 2, clusters: 2 }]);
-        assert_eq!((lowered.degree(), lowered.fails_between()), (Some(1), false));
+        assert_eq!((lowered.degree(), lowered.interpolation_fails()), (Some(1), false));
     }
 
     #[test]

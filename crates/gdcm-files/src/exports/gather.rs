@@ -331,7 +331,7 @@ mod tests {
         let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
         let schedule = analysis.schedule.as_ref().unwrap();
         let values = |airspeed: f64, altitude: f64| {
-            let at = schedule.at_both(airspeed, Some(altitude));
+            let at = schedule.evaluate(airspeed, Some(altitude));
             [at.input_gains, at.output_gains, at.input_delays_s, at.output_delays_s].concat()
         };
         let pairs = || airspeeds().into_iter().flat_map(|airspeed| ALTITUDES.map(|altitude| (airspeed, altitude)));

@@ -240,7 +240,7 @@ impl AirspeedSource<'_> {
         let correction = self.role.correction(id.condition, self.pair, Some(self.analysis))?;
         let shape = ResponseShape::of(&response.curve(self.pair)).corrected(self.curves.grid.omega(), correction);
         Some(match first {
-            Some(first) => shape.laid_on(first),
+            Some(first) => shape.phase_aligned(first),
             None => shape,
         })
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use gdcm_core::dataset::{BundleKind, Pair};
-use gdcm_core::fidelity::{CountedFrequencies, Mismatch, Muad};
+use gdcm_core::fidelity::{CoherenceWeights, Mismatch, Muad};
 use gdcm_core::response::{GainDelay, PolarCurve, quantile};
 use gdcm_core::units::{ratio_to_db, s_to_ms};
 
@@ -188,10 +188,11 @@ fn errors(source: &ConditionSource<'_>, pair: Pair, omega: &[f64], options: &Bod
     };
     // Of a reference measured with coherence the errors at frequencies that do not count are gaps (M4a).
     let flight = &source.curves.condition.bundle(BundleKind::Identified)[source.reference()].dynamics;
-    let counted = CountedFrequencies::of_model(flight, omega, source.study.settings.coherence_threshold);
+    let coherence_weights = CoherenceWeights::of_model(flight, omega, source.study.settings.coherence_threshold);
     let line = |name: String, role: Role, model: usize, correction: GainDelay| {
         let mismatch = Mismatch::new(&polar(BundleKind::Physics, model)?, &reference);
-        let mismatch = mismatch.counting(counted.as_ref().map(|counted| &counted[pair]))?;
+        let mismatch = mismatch
+            .coherence_weighted(coherence_weights.as_ref().map(|coherence_weights| &coherence_weights[pair]))?;
         // On the branch of the model as it is (M6b), which a correction leaves it on.
         let phase = mismatch.on_grid(mismatch.phase_difference(omega), omega.len());
         let mismatch_db = mismatch.on_grid(mismatch.magnitude_db.clone(), omega.len());

@@ -200,11 +200,11 @@ fn a_schedule_that_overshoots_says_where_and_the_assessment_claims_nothing_betwe
     let wild = setting::AIRSPEED_TOLERANCE.to(0.0);
     let analysis = only(&json(NEAR), std::slice::from_ref(&wild));
     let schedule = analysis.schedule.as_ref().unwrap();
-    assert!(schedule.fails_between());
+    assert!(schedule.interpolation_fails());
     let said = schedule.cautions[0].words(&["I0".into(), "I1".into()], &["O0".into(), "O1".into()]);
     assert!(said.contains("between 60.0 and 120.0 kt the gain of"), "{said}");
     let table = setting::SCHEDULE.to(ScheduleKind::Table);
-    assert!(!only(&json(NEAR), &[wild, table]).schedule.unwrap().fails_between());
+    assert!(!only(&json(NEAR), &[wild, table]).schedule.unwrap().interpolation_fails());
 }
 
 #[test]

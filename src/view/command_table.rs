@@ -3,7 +3,7 @@
 use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
 
 use gdcm_core::dataset::{BundleKind, ModelId, Pair};
-use gdcm_core::study::{Edit, OfferedModels, PhaseCorrection, Setting};
+use gdcm_core::study::{Edit, Kind, OfferedModels, Place, SETTINGS, Value};
 use gdcm_files::figure::FigureFormat;
 
 use super::arrangement::{Preset, View};
@@ -103,9 +103,8 @@ pub fn command_table(state: &State) -> Vec<Entry> {
     entries.extend(edit_entries(state));
     entries.extend(view_entries(state));
     entries.extend(curve_entries(state));
-    entries.extend(phase_entries(state));
+    entries.extend(setting_entries(state));
     entries.extend(record_entries(state));
-    entries.extend(FIELDS.map(|(name, field)| Entry::new(name, "Goes to its field", Command::FocusField(field))));
     for kind in TableKind::ALL {
         let (copy, save) = (format!("Copy table: {}", kind.name()), format!("Save table: {}…", kind.name()));
         entries.push(Entry::new(copy, "As text, one line a row", Command::CopyTable(kind)));
@@ -234,7 +233,7 @@ pub(super) fn hold_entry(state: &State, pair: Pair) -> Entry {
     Entry::new(
         if held { format!("Release {name}") } else { format!("Hold {name} exactly") },
         "Hold a response exactly, or leave it to the fit",
-        Edit::Set(Setting::Constrained(pair, !held)).into(),
+        Edit::Hold(pair, !held).into(),
     )
     .enabled(held || !is_undefined)
 }
@@ -301,28 +300,31 @@ fn steps(state: &State) -> [Entry; 4] {
     ]
 }
 
-/// Fields that the palette goes to, by their accessible names.
-const FIELDS: [(&str, &str); 11] = [
-    ("Set α gains (alpha)…", "α gains"),
-    ("Set α delays (alpha)…", "α delays"),
-    ("Set the lower end of the band…", "Band from"),
-    ("Set the upper end of the band…", "Band to"),
-    ("Set the number of frequencies…", "Frequencies in the band"),
-    ("Set the quantile of the bounds…", "Quantile of the bounds"),
-    ("Set the lower gain bound…", "Lower gain bound"),
-    ("Set the upper gain bound…", "Upper gain bound"),
-    ("Set the delay bound…", "Upper delay bound"),
-    ("Set the agreement tolerance…", "Agreement tolerance"),
-    ("Set the airspeed tolerance…", "Airspeed tolerance"),
-];
-
-fn phase_entries(state: &State) -> impl Iterator<Item = Entry> {
-    let now = state.study.settings.phase;
-    PhaseCorrection::ALL.into_iter().map(move |phase| {
-        let meaning = "How the phase is corrected, in every condition (M9, M15)";
-        let command = Edit::Set(Setting::Phase(phase)).into();
-        Entry::new(format!("Phase correction: {}", phase.words()), meaning, command).enabled(phase != now)
-    })
+/// Every choice of every setting, and the way to every field of one.
+fn setting_entries(state: &State) -> Vec<Entry> {
+    let mut entries = Vec::new();
+    for setting in SETTINGS.into_iter().filter(|setting| setting.control.place != Place::Hidden) {
+        let mut field = |what: String, label| {
+            let name = format!("Set the {what} ({})…", setting.option.trim_start_matches('-'));
+            entries.push(Entry::new(name, "Goes to its field", Command::FocusField(label)));
+        };
+        match setting.kind {
+            Kind::Number { .. } | Kind::Optional { .. } => field(setting.name.to_owned(), setting.control.label),
+            Kind::Range { ends, .. } => {
+                field(format!("lower end of the {}", setting.name), ends[0]);
+                field(format!("upper end of the {}", setting.name), ends[1]);
+            }
+            Kind::Choice { words, get, .. } => {
+                let now = get(&state.study.settings);
+                entries.extend(words.iter().enumerate().map(|(index, [_, text, _])| {
+                    let name = format!("{}: {text}", setting.control.label);
+                    Entry::new(name, setting.help, setting.to(Value::Choice(index)).into()).enabled(index != now)
+                }));
+            }
+            Kind::Flag { .. } => {}
+        }
+    }
+    entries
 }
 
 fn help_entries() -> impl Iterator<Item = Entry> {

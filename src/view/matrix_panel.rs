@@ -8,7 +8,7 @@ use egui::{
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::Pair;
 use gdcm_core::fidelity::{ACCEPTABLE, INDISTINGUISHABLE};
-use gdcm_core::study::{ConditionAnalysis, Edit, ExplainTarget, Setting, Undefined};
+use gdcm_core::study::{ConditionAnalysis, Edit, ExplainTarget, Undefined};
 use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::s_to_ms;
 
@@ -104,7 +104,7 @@ impl<'a> Cell<'a> {
             focused: state.display.pair == pair,
             on_axis: state.dataset().on_axis()[pair],
             constrained: state.study.settings.constrained[pair],
-            fitted: state.study.settings.fitted[pair],
+            fitted: !state.study.settings.ignored[pair],
             in_conflict,
             shown: state.shown(),
             sureness: state.sureness(),
@@ -143,7 +143,7 @@ impl<'a> Cell<'a> {
         let space = response.has_focus() && ui.input(|input| input.key_pressed(Key::Space));
         if lock.clicked() || response.double_clicked() || space {
             if self.constrained || !self.is_undefined() {
-                commands.push(Edit::Set(Setting::Constrained(self.pair, !self.constrained)).into());
+                commands.push(Edit::Hold(self.pair, !self.constrained).into());
             }
         } else if response.clicked() {
             commands.push(Command::FocusPair(self.pair));
@@ -242,14 +242,14 @@ impl<'a> Cell<'a> {
     }
 
     fn menu_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let mut switch = |ui: &mut Ui, is_on: bool, text: String, setting: fn(Pair, bool) -> Setting| {
+        let mut switch = |ui: &mut Ui, is_on: bool, text: String, edit: fn(Pair, bool) -> Edit| {
             if let Some(is_on) = check_ui(ui, is_on, text, "") {
-                commands.push(Edit::Set(setting(self.pair, is_on)).into());
+                commands.push(edit(self.pair, is_on).into());
                 ui.close();
             }
         };
-        switch(ui, self.constrained, format!("Hold {} exactly", self.name), Setting::Constrained);
-        switch(ui, self.fitted, format!("Fit {} in the objective", self.name), Setting::Fitted);
+        switch(ui, self.constrained, format!("Hold {} exactly", self.name), Edit::Hold);
+        switch(ui, self.fitted, format!("Fit {} in the objective", self.name), Edit::Fit);
         entries_ui(ui, [("Hold exactly the on-axis responses", Edit::ConstrainOnAxis.into())], commands);
         if let Some(shown) = self.shown.filter(|_| !self.is_undefined()) {
             let (id, pair) = (shown.condition.id(), self.pair);

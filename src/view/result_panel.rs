@@ -5,7 +5,7 @@ use egui::{Align, Button, CollapsingHeader, Frame, Grid, Layout, Margin, Respons
 use gdcm_core::correction::{self, GainObjective, Outcome, Quantity, kkt_residual};
 use gdcm_core::dataset::Pair;
 use gdcm_core::study::{
-    ConditionAnalysis, Edit, ExplainTarget, PhaseCorrection, Remark, RemarkKind, Setting, lead_words, servo_words,
+    ConditionAnalysis, Edit, ExplainTarget, PhaseCorrection, Remark, RemarkKind, lead_words, servo_words, setting,
 };
 use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::s_to_ms;
@@ -242,9 +242,9 @@ fn lead_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Pale
 
 /// The click that corrects the phase as a remark offers.
 fn offer_ui(ui: &mut Ui, phase: PhaseCorrection, commands: &mut Vec<Command>) {
-    let button = ui.small_button(format!("Correct the phase by {}", phase.words()));
+    let button = ui.small_button(format!("Correct the phase by {}", setting::PHASE.text(phase.into())));
     if button.on_hover_text("In every condition; undo takes it back").clicked() {
-        commands.push(Edit::Set(Setting::Phase(phase)).into());
+        commands.push(setting::PHASE.to(phase).into());
     }
 }
 
@@ -253,7 +253,7 @@ fn ignore_ui(ui: &mut Ui, state: &State, pair: Pair, commands: &mut Vec<Command>
     let name = state.dataset().pair_name(pair);
     let button = named(ui.small_button("Ignore it"), Role::Button, format!("Ignore {name}"));
     if button.on_hover_text(format!("Give {name} no weight in the objective, in every condition")).clicked() {
-        commands.push(Edit::Set(Setting::Fitted(pair, false)).into());
+        commands.push(Edit::Fit(pair, false).into());
     }
 }
 

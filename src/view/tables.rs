@@ -172,7 +172,7 @@ fn matrix(state: &State) -> Table {
     for pair in state.dataset().on_axis().pairs() {
         let (output, input) = state.dataset().channel_names(pair);
         let settings = &state.study.settings;
-        let flags = [state.dataset().on_axis()[pair], settings.constrained[pair], settings.fitted[pair]].map(yes);
+        let flags = [state.dataset().on_axis()[pair], settings.constrained[pair], !settings.ignored[pair]].map(yes);
         let values = state.shown().map_or([None; 16], |shown| response_values(shown, sure, pair));
         table.row([output, input].into_iter().chain(flags).chain(values.map(digits)));
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use egui::{Align, Align2, Color32, FontId, Layout, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
 use gdcm_core::dataset::{ConditionId, Pair};
 use gdcm_core::schedule::{Evidence, KindEvidence, LeadEvidence, LeadFit, ScheduleKind};
-use gdcm_core::study::{Analysis, Edit, Setting, Table, Uncertainty, difference_table, second_variable_table};
+use gdcm_core::study::{Analysis, Table, Uncertainty, difference_table, second_variable_table, setting};
 use gdcm_core::uncertainty::VarianceDecomposition;
 use gdcm_core::units::{s_to_ms, signed};
 
@@ -164,8 +164,7 @@ fn tables_ui(
         if let Some(click) = click
             && let Some(&kind) = kinds.get(click.row)
         {
-            let schedule = gdcm_core::schedule::ScheduleSettings { kind, ..schedule };
-            commands.push(Edit::Set(Setting::Schedule(schedule)).into());
+            commands.push(setting::SCHEDULE.to(kind).into());
         }
     }
     state.display.evidence = cached;

@@ -1,6 +1,8 @@
 //! Delta gain and delta delay: what one gain and one delay of a response would have to be, eq. (5), (9); and the bounds that their
 //! spread over the band gives to the channels (M7).
 
+use serde::{Deserialize, Serialize};
+
 use super::GainBounds;
 use crate::dataset::{Pair, PairTable};
 use crate::fidelity::{CoherenceWeights, Mismatch};
@@ -8,12 +10,14 @@ use crate::response::{PolarResponse, quantile};
 use crate::units::db_to_ratio;
 
 /// Which models G is taken from; D is always that of the representatives.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum GainSource {
     /// The two representatives (the paper).
     #[default]
+    #[serde(rename = "representatives")]
     Representatives,
     /// Every pair of a kept physics and a kept identified model: `G = exp(mean of ln G)`.
+    #[serde(rename = "mean")]
     MeanOfPairs,
 }
 

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use super::{Airspeeds, Regression, SecondTerm, SecondVariable, design};
 use crate::correction::{Channel, ChannelCorrection, ChannelLeads, LeadDesign};
 use crate::dataset::{ConditionId, FlightState};
@@ -29,16 +31,19 @@ pub enum ScheduleKind {
 }
 
 /// What is regressed on airspeed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum ScheduledQuantity {
     /// `ln k`: the product of two channels' regressions is the regression of their product.
+    #[serde(rename = "ln k")]
     LnGain,
     /// `k` itself.
+    #[serde(rename = "k")]
     Gain,
 }
 
 /// How channel gains are scheduled.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "ScheduleEntry", into = "ScheduleEntry")]
 pub struct ScheduleSettings {
     /// The form.
     pub kind: ScheduleKind,
@@ -53,6 +58,66 @@ pub struct ScheduleSettings {
     pub airspeed_tolerance_kt: f64,
     /// Variable whose effect on the gains is scheduled beside that of airspeed (M13.7).
     pub second: Option<SecondVariable>,
+}
+
+/// [`ScheduleSettings`] in files, where the degree stands beside the form.
+#[derive(Serialize, Deserialize)]
+struct ScheduleEntry {
+    kind: FormEntry,
+    degree: Option<usize>,
+    of: ScheduledQuantity,
+    delays: bool,
+    #[serde(default = "default_tolerance_kt")]
+    airspeed_tolerance_kt: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    second_variable: Option<SecondVariable>,
+    #[serde(default, skip_serializing_if = "is_zero")]
+    tau_degree: usize,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum FormEntry {
+    Polynomial,
+    Table,
+}
+
+fn default_tolerance_kt() -> f64 {
+    DEFAULT_TOLERANCE_KT
+}
+
+fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
+
+impl TryFrom<ScheduleEntry> for ScheduleSettings {
+    type Error = String;
+
+    fn try_from(entry: ScheduleEntry) -> Result<Self, String> {
+        let kind = match (entry.kind, entry.degree) {
+            (FormEntry::Table, _) => ScheduleKind::Table,
+            (FormEntry::Polynomial, Some(degree)) if degree <= HIGHEST_DEGREE => ScheduleKind::Polynomial { degree },
+            (FormEntry::Polynomial, Some(degree)) => {
+                return Err(format!("degree: expected a whole number from 0 to {HIGHEST_DEGREE}, found {degree}"));
+            }
+            // As serde itself says it, so that readers tell it alike.
+            (FormEntry::Polynomial, None) => return Err("missing field `degree`".to_owned()),
+        };
+        let ScheduleEntry { of: quantity, delays, airspeed_tolerance_kt, second_variable: second, tau_degree, .. } =
+            entry;
+        Ok(Self { kind, quantity, delays, tau_degree, airspeed_tolerance_kt, second })
+    }
+}
+
+impl From<ScheduleSettings> for ScheduleEntry {
+    fn from(settings: ScheduleSettings) -> Self {
+        let (kind, degree) = match settings.kind {
+            ScheduleKind::Polynomial { degree } => (FormEntry::Polynomial, Some(degree)),
+            ScheduleKind::Table => (FormEntry::Table, None),
+        };
+        let ScheduleSettings { quantity: of, delays, airspeed_tolerance_kt, tau_degree, second, .. } = settings;
+        Self { kind, degree, of, delays, airspeed_tolerance_kt, second_variable: second, tau_degree }
+    }
 }
 
 impl Default for ScheduleSettings {

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use nalgebra::{DMatrix, DVector};
 
 use super::ScheduleError;
@@ -11,7 +13,8 @@ use crate::dataset::FlightState;
 const DEPENDENT: f64 = 1e-9;
 
 /// A variable besides airspeed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum SecondVariable {
     /// Altitude \[ft\].
     Altitude,

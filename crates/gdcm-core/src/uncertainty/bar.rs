@@ -1,5 +1,7 @@
 //! The error bar of one value (M13.3): its settings, and the variances that it is made of.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Measurement, student_quantile};
 
 /// Why a part is what it is, where that is not the spread of the models.
@@ -172,15 +174,8 @@ pub fn pooled(own: &[Option<VarianceComponent>], prior_degrees: f64) -> Vec<Opti
     own.iter().map(of_condition).collect()
 }
 
-/// Least and greatest level of a bar.
-pub const LEVELS: [f64; 2] = [0.5, 0.999];
-/// Greatest weight of the other conditions' identification.
-pub const GREATEST_PRIOR: f64 = 100.0;
-/// Greatest number of averages, and greatest length of a window \[s\].
-pub const GREATEST_MEASUREMENT: f64 = 1e6;
-
 /// How bars are made; no gain and no delay depends on it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct UncertaintySettings {
     /// Level `L` of every bar, interval and test.
     pub level: f64,
@@ -188,10 +183,13 @@ pub struct UncertaintySettings {
     /// condition alone.
     pub prior_degrees: f64,
     /// Number of independent averages of measured responses that do not say it; none: their coherence is not used.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub averages: Option<f64>,
     /// Length of the windows \[s\] of measured responses that do not say it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window_s: Option<f64>,
     /// Whether those windows overlap by half, which makes `C_epsilon` the root of 0.55 in place of 1.
+    #[serde(default)]
     pub half_overlap: bool,
 }
 

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::{Dataset, ModelId};
-use gdcm_core::schedule::{ScheduleKind, ScheduleSettings, SecondVariable};
+use gdcm_core::schedule::{ScheduleKind, SecondVariable};
 use gdcm_core::study::{
     AirspeedDifference, Cancelled, ExplainTarget, PairScatter, PhaseCorrection, Progress, Uncertainty, derivation,
 };
@@ -40,8 +40,8 @@ fn study_of(dataset: &Value) -> Study {
     Study::new(load_dataset_bytes(&text, DatasetOrigin::EmbeddedExample).unwrap().dataset)
 }
 
-fn set(study: &mut Study, setting: Setting) {
-    study.apply(&Edit::Set(setting)).unwrap();
+fn set(study: &mut Study, edit: Edit) {
+    study.apply(&edit).unwrap();
 }
 
 fn uncertainty_of(study: &Study) -> (Analysis, Uncertainty) {
@@ -162,7 +162,7 @@ fn study_of_known_spread() -> (Study, Value) {
     let case = case("A_pure_gain_bundles");
     let mut study = study_of(&case["dataset"]);
     let kind = ScheduleKind::Polynomial { degree: 1 };
-    set(&mut study, Setting::Schedule(ScheduleSettings { kind, ..ScheduleSettings::default() }));
+    set(&mut study, setting::SCHEDULE.to(kind));
     (study, case)
 }
 
@@ -202,7 +202,7 @@ fn what_coherence_tells_takes_the_place_of_a_smaller_spread() {
             }
         }
         let mut study = study_of(&dataset);
-        set(&mut study, Setting::Points(40));
+        set(&mut study, setting::POINTS.to(40));
         let (_, found) = uncertainty_of(&study);
         let bar = |scalar| *found.bar(ConditionId(1), scalar).unwrap();
         let (gain, delay) = (bar(Scalar::Gain(Pair::new(0, 0))), bar(Scalar::Delay(Pair::new(0, 0))));
@@ -442,7 +442,7 @@ fn bars_of_a_population_cover_the_truth_as_often_as_they_say() {
         "inputs": [{"name": "U", "unit": "%"}], "outputs": [{"name": "Y", "unit": "deg/s"}], "on_axis": [["Y", "U"]],
         "frequency_band": {"min": 0.5, "max": 12.0, "unit": "rad/s"}, "conditions": conditions});
     let mut study = study_of(&dataset);
-    set(&mut study, Setting::Points(5));
+    set(&mut study, setting::POINTS.to(5));
     let (_, found) = uncertainty_of(&study);
     let covers = |of: &gdcm_core::study::ConditionUncertainty| {
         let [low, high] = of.bars[Scalar::NetGain(Pair::new(0, 0))].unwrap().interval(0.9).unwrap();
@@ -494,7 +494,7 @@ fn the_bars_of_a_dataset_with_other_bands_are_made_anew() {
 fn a_bar_that_rests_on_the_spread_alone_says_so_beside_a_model_that_tells_its_error() {
     let mut study = study_of(&dataset_with_band(1.0));
     let (held, free) = (Pair::new(0, 0), Pair::new(0, 1));
-    set(&mut study, Setting::Constrained(free, false));
+    set(&mut study, Edit::Hold(free, false));
     let (mut analysis, uncertainty) = uncertainty_of(&study);
     analysis.uncertainty = Some(Arc::new(uncertainty));
     let says_so = |asked: ExplainTarget| {
@@ -514,7 +514,7 @@ fn under_leads_every_bar_stands_beside_the_value_that_it_is_of() {
     let example = &crate::REFERENCE_DATASET.dataset;
     let first_two = example.conditions()[..2].iter().map(|condition| condition.as_ref().clone()).collect();
     let mut study = Study::new(Arc::new(Dataset::new(example.header(), first_two).unwrap()));
-    set(&mut study, Setting::Phase(PhaseCorrection::Lead));
+    set(&mut study, setting::PHASE.to(PhaseCorrection::Lead));
     let (mut analysis, uncertainty) = uncertainty_of(&study);
     analysis.uncertainty = Some(Arc::new(uncertainty));
     let written = Corrections::of(&analysis, "", &analysis.conditions.keys().copied().collect());

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use nalgebra::DMatrix;
 
-use gdcm::app::Pool;
+use gdcm::executor::Pool;
 use gdcm_core::assembly::standard_patterns;
 use gdcm_core::dataset::ConditionId;
 use gdcm_core::identification::{FlightRecord, Options, Preparation, StateSpaceMatrices, Watch, identify};

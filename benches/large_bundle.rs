@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use criterion::Criterion;
-use gdcm::app::Pool;
+use gdcm::executor::Pool;
 use gdcm_core::dataset::{
     Band, Condition, ConditionId, Dynamics, FlightState, Model, Origin, Pair, PairTable, StateSpace,
 };

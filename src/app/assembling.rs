@@ -5,20 +5,18 @@ use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
-
-use egui::Context;
 
 use crate::view::assembling::{AssemblingCommand, AssemblyState, Reading};
-use crate::view::command::{Command, FormKind};
+use crate::view::command::FormKind;
 use gdcm_core::assembly::Rules;
 use gdcm_files::{
-    Existing, FileError, FolderProgress, FoundModels, OutputSet, add_dataset, add_rules, load_rules, read_models,
-    relative_folder, rules_path, sources_folder,
+    FileError, FolderProgress, FoundModels, add_dataset, add_rules, load_rules, read_models, relative_folder,
+    rules_path, sources_folder,
 };
 
-use super::dialogs::DialogPurpose;
-use super::fault::{Fault, caught};
+use super::background_jobs::ReplySender;
+use super::fault::Fault;
+use super::files::DialogPurpose;
 use super::window::GdcmApp;
 
 /// Bytes of values between two words about how far a file is read.
@@ -38,59 +36,57 @@ impl Sources {
     }
 }
 
-/// What the thread that reads tells.
-enum ReaderMessage {
-    Reading(Reading),
-    Taken(u64),
-    Read(Sources, Result<Result<FoundModels, FileError>, Fault>),
-}
-
-/// The thread that reads models, and where its answers arrive.
+/// The newest thread that reads models: answers of others are late.
+#[derive(Default)]
 pub(super) struct ModelReader {
-    sender: Sender<(u64, ReaderMessage)>,
-    receiver: Receiver<(u64, ReaderMessage)>,
-    /// Number of the newest reading: answers of others are late.
     newest: u64,
     stop: Arc<AtomicBool>,
 }
 
-impl Default for ModelReader {
-    fn default() -> Self {
-        let (sender, receiver) = channel();
-        Self { sender, receiver, newest: 0, stop: Arc::default() }
+impl ModelReader {
+    /// Gives up what is being read.
+    fn stop(&self) {
+        self.stop.store(true, Ordering::Release);
     }
 }
 
 impl Drop for ModelReader {
     fn drop(&mut self) {
-        self.stop.store(true, Ordering::Release);
+        self.stop();
     }
 }
 
 /// Tells the window which file is read.
 struct Teller {
     number: u64,
-    sender: Sender<(u64, ReaderMessage)>,
+    replies: ReplySender,
     stop: Arc<AtomicBool>,
-    ctx: Context,
     /// Bytes of values of the file, when that was told last.
     told: Cell<u64>,
+}
+
+impl Teller {
+    fn tell(&self, change: impl FnOnce(&mut Option<Reading>) + Send + 'static) {
+        let number = self.number;
+        self.replies.send(move |app| {
+            if let Some(bench) = app.state.assembling.as_mut().filter(|_| number == app.models.newest) {
+                change(&mut bench.reading);
+            }
+        });
+    }
 }
 
 impl FolderProgress for Teller {
     fn reading(&self, number: usize, of: usize, name: &str) {
         self.told.set(0);
         let reading = Reading { number, of, name: name.to_owned(), taken: 0 };
-        // The window may be gone by now.
-        let _ = self.sender.send((self.number, ReaderMessage::Reading(reading)));
-        self.ctx.request_repaint();
+        self.tell(|shown| *shown = Some(reading));
     }
 
     fn stopped(&self, taken: u64) -> bool {
         if taken >= self.told.get() + TOLD_EVERY {
             self.told.set(taken);
-            let _ = self.sender.send((self.number, ReaderMessage::Taken(taken)));
-            self.ctx.request_repaint();
+            self.tell(move |shown| shown.iter_mut().for_each(|reading| reading.taken = taken));
         }
         self.stop.load(Ordering::Acquire)
     }
@@ -98,78 +94,67 @@ impl FolderProgress for Teller {
 
 impl GdcmApp {
     /// Carries out a command of the assembling view.
-    pub(super) fn assemble(&mut self, command: AssemblingCommand, ctx: &Context) {
+    pub(super) fn assemble(&mut self, command: AssemblingCommand) {
         let bench = self.state.assembling.get_or_insert_with(AssemblyState::default);
         let headings = bench.assembly().rules().headings.clone();
         match command {
             AssemblingCommand::Open => {}
             AssemblingCommand::Close => {
-                self.model_reader.stop.store(true, Ordering::Release);
+                self.models.stop();
                 self.state.assembling = None;
             }
-            AssemblingCommand::AskFolder => self.dialogs.ask(DialogPurpose::ModelFolder, String::new(), ctx),
+            AssemblingCommand::AskFolder => self.ask_path(DialogPurpose::ModelFolder, String::new()),
             AssemblingCommand::Add(paths) => {
                 let paths = paths.into_iter().map(|path| self.at_home(path)).collect();
-                self.read_models(Sources::More(paths), ctx);
+                self.read_models(Sources::More(paths));
             }
-            AssemblingCommand::StopReading => self.model_reader.stop.store(true, Ordering::Release),
+            AssemblingCommand::StopReading => self.models.stop(),
             AssemblingCommand::Change(rules) => bench.change(*rules),
             AssemblingCommand::Undo => bench.undo(),
             AssemblingCommand::Redo => bench.redo(),
             AssemblingCommand::Select(part) => bench.selected = part,
-            AssemblingCommand::Sort(column) => bench.sort(column),
+            AssemblingCommand::Sort(column) => bench.sorting = bench.sorting.clicked(column),
             AssemblingCommand::ShowResponse(place) => bench.preview.response = place,
             AssemblingCommand::LoadRules(path) => self.take_rules(path),
-            AssemblingCommand::SaveRules(path) => self.save_rules(path, Existing::Keep),
-            AssemblingCommand::MakeDataset(path) => self.make_dataset(path, Existing::Keep, ctx),
+            AssemblingCommand::SaveRules(path) => self.save_rules(path),
+            AssemblingCommand::MakeDataset(path) => self.make_dataset(path),
         }
         if let Some(bench) = &self.state.assembling
             && bench.assembly().rules().headings != headings
         {
-            self.read_models(Sources::Again(bench.sources.clone()), ctx);
+            self.read_models(Sources::Again(bench.sources.clone()));
         }
     }
 
     /// Reads models in a thread, tables by the headings said of them.
-    fn read_models(&mut self, sources: Sources, ctx: &Context) {
+    fn read_models(&mut self, sources: Sources) {
         let headings = self.said().map(|rules| rules.headings).unwrap_or_default();
-        self.model_reader.stop.store(true, Ordering::Release);
-        let reader = &mut self.model_reader;
-        reader.newest += 1;
-        reader.stop = Arc::default();
-        let (number, sender, stop, ctx) = (reader.newest, reader.sender.clone(), Arc::clone(&reader.stop), ctx.clone());
-        let work = move || {
-            let teller = Teller { number, sender: sender.clone(), stop, ctx: ctx.clone(), told: Cell::new(0) };
-            let found = caught(|| read_models(sources.paths(), &headings, &teller));
-            let _ = sender.send((number, ReaderMessage::Read(sources, found)));
-            ctx.request_repaint();
+        self.models.stop();
+        let stop = Arc::<AtomicBool>::default();
+        self.models = ModelReader { newest: self.models.newest + 1, stop: Arc::clone(&stop) };
+        let number = self.models.newest;
+        let teller = Teller { number, replies: self.replies.clone(), stop, told: Cell::new(0) };
+        let read = move || {
+            let found = read_models(sources.paths(), &headings, &teller);
+            (sources, found)
         };
         if let Some(bench) = &mut self.state.assembling {
             bench.reading = Some(Reading::default());
         }
-        if let Err(error) = std::thread::Builder::new().name("models".to_owned()).spawn(work) {
-            self.trouble(format!("the files cannot be read: {error}"));
+        let take = move |app: &mut Self, read: Result<_, Fault>| app.models_read(number, read);
+        if let Err(error) = self.replies.in_thread("models", read, take) {
+            self.notify_error(format!("the files cannot be read: {error}"));
         }
     }
 
-    /// Takes what the thread that reads models has told since the last frame.
-    pub(super) fn receive_models(&mut self) {
-        while let Ok((number, told)) = self.model_reader.receiver.try_recv() {
-            let Some(bench) = self.state.assembling.as_mut().filter(|_| number == self.model_reader.newest) else {
-                continue;
-            };
-            match told {
-                ReaderMessage::Reading(reading) => bench.reading = Some(reading),
-                ReaderMessage::Taken(taken) => bench.reading.iter_mut().for_each(|reading| reading.taken = taken),
-                ReaderMessage::Read(sources, found) => {
-                    bench.reading = None;
-                    match found {
-                        Ok(Ok(found)) => self.take_models(sources, found),
-                        Ok(Err(error)) => self.trouble(error.to_string()),
-                        Err(fault) => self.tell_fault("the reading of models", &fault),
-                    }
-                }
-            }
+    /// Takes what a thread has read.
+    fn models_read(&mut self, number: u64, read: Result<(Sources, Result<FoundModels, FileError>), Fault>) {
+        let Some(bench) = self.state.assembling.as_mut().filter(|_| number == self.models.newest) else { return };
+        bench.reading = None;
+        match read {
+            Ok((sources, Ok(found))) => self.take_models(sources, found),
+            Ok((_, Err(error))) => self.notify_error(error.to_string()),
+            Err(fault) => self.tell_fault("the reading of models", &fault),
         }
     }
 
@@ -177,7 +162,7 @@ impl GdcmApp {
         let Some(bench) = &mut self.state.assembling else { return };
         let paths = match sources {
             Sources::More(paths) => paths,
-            Sources::Again(_) if self.model_reader.stop.load(Ordering::Acquire) => {
+            Sources::Again(_) if self.models.stop.load(Ordering::Acquire) => {
                 return self.done("stopped: the models are those that were read before".to_owned());
             }
             Sources::Again(paths) => {
@@ -212,7 +197,7 @@ impl GdcmApp {
                 let cautions: String = cautions.iter().map(|caution| format!("; {caution}")).collect();
                 self.done(format!("took the rules of {}{cautions}", sanitized_path(&path)));
             }
-            Err(error) => self.trouble(error.to_string()),
+            Err(error) => self.notify_error(error.to_string()),
         }
     }
 
@@ -221,34 +206,25 @@ impl GdcmApp {
     }
 
     /// Writes the rules; asks before it overwrites a file.
-    pub(super) fn save_rules(&mut self, path: PathBuf, existing: Existing) {
+    fn save_rules(&mut self, path: PathBuf) {
         let Some(rules) = self.said() else { return };
         let path = self.at_home(path);
-        let mut outputs = OutputSet::new(existing, self.inputs());
-        match add_rules(&rules, &path, &mut outputs).and_then(|()| outputs.persist()) {
-            Ok(()) => {
-                self.state.forms.shown = None;
-                self.done(format!("saved {}", sanitized_path(&path)));
-            }
-            Err(FileError::Exists { paths }) => {
-                let command = AssemblingCommand::SaveRules(path).into();
-                self.ask_to_overwrite(&paths, FormKind::Models, command);
-            }
-            Err(error) => self.trouble(error.to_string()),
-        }
+        let mut outputs = self.outputs();
+        let saved = add_rules(&rules, &path, &mut outputs).and_then(|()| outputs.persist());
+        self.saved_to(saved, &path, FormKind::Models, AssemblingCommand::SaveRules(path.clone()).into());
     }
 
     /// Writes the dataset and its rules, and opens it; asks before it overwrites a file.
-    pub(super) fn make_dataset(&mut self, path: PathBuf, existing: Existing, ctx: &Context) {
+    fn make_dataset(&mut self, path: PathBuf) {
         let Some(bench) = &self.state.assembling else { return };
         let path = self.at_home(path);
         let folder = relative_folder(sources_folder(&bench.sources), &path);
         let Some(dataset) = bench.assembly().dataset(&folder) else {
-            return self.trouble("some things are still to be said before the dataset can be made".to_owned());
+            return self.notify_error("some things are still to be said before the dataset can be made".to_owned());
         };
         let rules = bench.assembly().rules().clone();
         let beside = rules_path(&path);
-        let mut outputs = OutputSet::new(existing, self.inputs());
+        let mut outputs = self.outputs();
         let written = outputs
             .check(&[&path, &beside])
             .and_then(|()| add_dataset(&dataset, &path, &mut outputs))
@@ -258,13 +234,9 @@ impl GdcmApp {
             Ok(()) => {
                 self.state.forms.shown = None;
                 self.state.assembling = None;
-                self.open(path, None, ctx);
+                self.open(path, None);
             }
-            Err(FileError::Exists { paths }) => {
-                let command: Command = AssemblingCommand::MakeDataset(path).into();
-                self.ask_to_overwrite(&paths, FormKind::Models, command);
-            }
-            Err(error) => self.trouble(error.to_string()),
+            Err(error) => self.written(Err(error), FormKind::Models, AssemblingCommand::MakeDataset(path).into()),
         }
     }
 }

@@ -1,26 +1,22 @@
-//! Opening and saving.
+//! Opening and saving; the desktop's file dialogs, and the list of recent files. What may take long is done in threads, so that the
+//! window never waits.
 
 use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, channel};
-
-use egui::Context;
 
 use crate::view::assembling::AssemblingCommand;
 use crate::view::bars::Bar;
 use crate::view::command::{Command, FormKind};
 use crate::view::display::Preferences;
 use crate::view::records::RecordsCommand;
-use crate::view::state::State;
-use gdcm_core::study::{Analysis, Difference, Study, Table};
+use crate::view::state::{RecentFile, State};
+use gdcm_core::study::{Difference, Study};
 use gdcm_files::{
-    Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, at_home, embedded_example, load_any,
-    open_study_of, save_study, save_table,
+    Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, add_recent_file, at_home, embedded_example,
+    file_exists, load_any, open_study_of, recent_files, save_study,
 };
 
-use super::dialogs::{DialogAnswer, DialogPurpose};
-use super::fault::{Fault, caught};
+use super::fault::Fault;
 use super::window::GdcmApp;
 
 /// The study as it was saved last.
@@ -43,6 +39,21 @@ pub(super) enum ReadFor {
     Restoring(usize),
 }
 
+/// What a dialog was opened for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum DialogPurpose {
+    /// A dataset or a study to open.
+    Open,
+    /// A file to save the study to.
+    SaveStudy,
+    /// A folder to export to.
+    ExportFolder,
+    /// A folder of model files.
+    ModelFolder,
+    /// A folder of flight records.
+    RecordFolder,
+}
+
 /// What waits for the answer whether the decisions that are not saved may be lost.
 #[derive(Debug)]
 pub(super) enum PendingAction {
@@ -50,22 +61,6 @@ pub(super) enum PendingAction {
     Show(ReadFor, Box<Opened>),
     /// To close the window.
     Quit,
-}
-
-/// What was read, or why not; a fault where reading panicked.
-type Answer = (ReadFor, Result<Result<Opened, FileError>, Fault>);
-
-/// The threads that read files, and where their answers arrive.
-pub(super) struct Readers {
-    sender: Sender<Answer>,
-    receiver: Receiver<Answer>,
-}
-
-impl Default for Readers {
-    fn default() -> Self {
-        let (sender, receiver) = channel();
-        Self { sender, receiver }
-    }
 }
 
 impl GdcmApp {
@@ -107,13 +102,30 @@ impl GdcmApp {
     }
 
     /// Puts what is open in front of the recent files: the study, or else the dataset.
-    pub(super) fn look_for_recent(&self, ctx: &Context) {
+    pub(super) fn look_for_recent(&self) {
         let dataset = || self.loaded.path().map(Path::to_owned);
-        self.recent.look(self.saved.path.clone().or_else(dataset), ctx);
+        self.read_recent(self.saved.path.clone().or_else(dataset));
+    }
+
+    /// Reads the list of recent files and looks which of them are there, in a thread of its own, for a network drive may keep it
+    /// waiting; puts `newest` in front first.
+    pub(super) fn read_recent(&self, newest: Option<PathBuf>) {
+        let Some(directory) = self.directory.clone() else { return };
+        let read = move || -> Result<Vec<RecentFile>, FileError> {
+            newest.map_or(Ok(()), |newest| add_recent_file(&directory, &newest))?;
+            Ok(recent_files(&directory).into_iter().map(recent_file).collect())
+        };
+        let take = |app: &mut Self, read: Result<Result<_, FileError>, Fault>| match read {
+            Ok(Ok(files)) => app.state.recent = files,
+            Ok(Err(error)) => app.notify_error(error.to_string()),
+            Err(fault) => app.tell_fault("the reading of a file", &fault),
+        };
+        // Without a thread the list stays as it was.
+        let _ = self.replies.in_thread("recent files", read, take);
     }
 
     /// Opens a dataset or a study; what is open stays until it is read. The dataset of a study may have moved.
-    pub(super) fn open(&mut self, path: PathBuf, moved: Option<PathBuf>, ctx: &Context) {
+    pub(super) fn open(&mut self, path: PathBuf, moved: Option<PathBuf>) {
         let (path, moved) = (self.at_home(path), moved.map(|dataset| self.at_home(dataset)));
         let lost = self.offers.iter().position(|lost| lost.as_ref().is_some_and(|lost| lost.path() == path));
         let purpose = lost.map_or(ReadFor::Opening, ReadFor::Restoring);
@@ -123,7 +135,7 @@ impl GdcmApp {
             Some(dataset) => open_study_of(&path, &dataset).map(Opened::Study),
             None => load_any(&path),
         };
-        self.read(purpose, name, read, ctx);
+        self.read(purpose, name, read);
     }
 
     /// Reads in a thread of its own.
@@ -132,44 +144,44 @@ impl GdcmApp {
         purpose: ReadFor,
         name: String,
         read: impl FnOnce() -> Result<Opened, FileError> + Send + 'static,
-        ctx: &Context,
     ) {
         self.state.opening = Some(name);
-        let (sender, wake) = (self.readers.sender.clone(), ctx.clone());
-        let read = move || {
-            // The window may be gone by now.
-            let _ = sender.send((purpose, caught(read)));
-            wake.request_repaint();
+        let take = move |app: &mut Self, read: Result<_, Fault>| match read {
+            Ok(opened) => app.answer_opened(purpose, opened),
+            Err(fault) => {
+                app.state.opening = None;
+                app.tell_fault("the reading of a file", &fault);
+            }
         };
-        if let Err(error) = std::thread::Builder::new().name("reading".to_owned()).spawn(read) {
+        if let Err(error) = self.replies.in_thread("reading", read, take) {
             self.state.opening = None;
-            self.trouble(format!("the file cannot be read: {error}"));
+            self.notify_error(format!("the file cannot be read: {error}"));
         }
     }
 
-    pub(super) fn open_example(&mut self, ctx: &Context) {
-        self.answer_opened(ReadFor::Opening, embedded_example().map(Opened::Dataset), ctx);
+    pub(super) fn open_example(&mut self) {
+        self.answer_opened(ReadFor::Opening, embedded_example().map(Opened::Dataset));
     }
 
-    fn answer_opened(&mut self, purpose: ReadFor, opened: Result<Opened, FileError>, ctx: &Context) {
+    fn answer_opened(&mut self, purpose: ReadFor, opened: Result<Opened, FileError>) {
         self.state.opening = None;
         match opened {
             Ok(opened) if purpose != ReadFor::Reloading && self.state.unsaved => {
                 self.ask_to_lose(PendingAction::Show(purpose, Box::new(opened)));
             }
-            Ok(opened) => self.show_read(purpose, opened, ctx),
-            Err(error) => self.open_failed(error, ctx),
+            Ok(opened) => self.show_read(purpose, opened),
+            Err(error) => self.open_failed(error),
         }
     }
 
-    fn show_read(&mut self, purpose: ReadFor, opened: Opened, ctx: &Context) {
+    fn show_read(&mut self, purpose: ReadFor, opened: Opened) {
         match purpose {
             ReadFor::Opening => {
                 self.show(opened);
-                self.look_for_recent(ctx);
+                self.look_for_recent();
             }
             ReadFor::Reloading => self.show_reloaded(opened.into_study().1),
-            ReadFor::Restoring(offer) => self.show_restored(offer, opened, ctx),
+            ReadFor::Restoring(offer) => self.show_restored(offer, opened),
         }
     }
 
@@ -181,85 +193,85 @@ impl GdcmApp {
     }
 
     /// Saves the study, and does what waits for it once it is saved.
-    pub(super) fn save_and_go_on(&mut self, ctx: &Context) {
+    pub(super) fn save_and_go_on(&mut self) {
         self.state.forms.shown = None;
         self.goes_on_once_saved = true;
-        self.save(ctx);
+        self.save();
     }
 
     /// Does what the decisions that are not saved kept waiting.
-    pub(super) fn go_on(&mut self, ctx: &Context) {
+    pub(super) fn go_on(&mut self) {
         self.goes_on_once_saved = false;
         match self.postponed.take() {
-            Some(PendingAction::Show(purpose, opened)) => self.show_read(purpose, *opened, ctx),
-            Some(PendingAction::Quit) => self.quit(ctx),
+            Some(PendingAction::Show(purpose, opened)) => self.show_read(purpose, *opened),
+            Some(PendingAction::Quit) => self.quit(),
             None => {}
         }
     }
 
     /// Says why nothing was opened, or asks where a study's dataset is; what is open stays.
-    fn open_failed(&mut self, error: FileError, ctx: &Context) {
-        self.recent.look(None, ctx);
+    fn open_failed(&mut self, error: FileError) {
+        self.read_recent(None);
         match error {
             FileError::StudyDataset { path, dataset } => {
                 self.state.forms.lost_dataset = Some((path, dataset.to_string()));
                 self.state.forms.shown = Some(FormKind::FindDataset);
             }
-            error => self.trouble(error.to_string()),
+            error => self.notify_error(error.to_string()),
         }
     }
 
-    /// Takes what files and dialogs have answered since the last frame.
-    pub(super) fn receive_files(&mut self, ctx: &Context) {
-        while let Ok((purpose, read)) = self.readers.receiver.try_recv() {
-            match read {
-                Ok(opened) => self.answer_opened(purpose, opened, ctx),
-                Err(fault) => {
-                    self.state.opening = None;
-                    self.tell_fault("the reading of a file", &fault);
-                }
-            }
+    /// Opens a dialog of the desktop, unless one is open; it starts with `file_name` where it saves.
+    pub(super) fn ask_path(&mut self, purpose: DialogPurpose, file_name: String) {
+        if self.dialog_open {
+            return;
         }
-        while let Some(answer) = self.dialogs.answer() {
-            match answer {
-                DialogAnswer::Chosen(DialogPurpose::Open, path) => self.open(path, None, ctx),
-                DialogAnswer::Chosen(DialogPurpose::SaveStudy, path) => {
-                    // The dialog has asked about the name as it was chosen.
-                    let is_asked = with_study_extension(path.clone()) == path;
-                    self.save_as(path, if is_asked { Existing::Replace } else { Existing::Keep }, ctx);
-                }
-                DialogAnswer::Chosen(DialogPurpose::ExportFolder, path) => {
-                    self.state.forms.export.folder = path.display().to_string();
-                }
-                // A desktop without dialogs answers like a cancelled one: offer the path as text.
-                DialogAnswer::Nothing(DialogPurpose::Open) => self.state.forms.shown = Some(FormKind::Open),
-                DialogAnswer::Nothing(DialogPurpose::SaveStudy) => {
-                    self.state.forms.save_path = self.proposed_name();
-                    self.state.forms.shown = Some(FormKind::Save);
-                }
-                DialogAnswer::Chosen(DialogPurpose::ModelFolder, path) => {
-                    self.assemble(AssemblingCommand::Add(vec![path]), ctx);
-                }
-                DialogAnswer::Chosen(DialogPurpose::RecordFolder, path) => {
-                    self.records(RecordsCommand::Add(vec![path]), ctx);
-                }
-                DialogAnswer::Nothing(
-                    DialogPurpose::ExportFolder | DialogPurpose::ModelFolder | DialogPurpose::RecordFolder,
-                ) => {}
+        let take = move |app: &mut Self, chosen: Result<Option<PathBuf>, Fault>| {
+            app.dialog_open = false;
+            match chosen.ok().flatten() {
+                Some(path) => app.path_chosen(purpose, path),
+                None => app.nothing_chosen(purpose),
             }
+        };
+        self.dialog_open = self.replies.in_thread("dialog", move || dialog(purpose, &file_name), take).is_ok();
+    }
+
+    fn path_chosen(&mut self, purpose: DialogPurpose, path: PathBuf) {
+        match purpose {
+            DialogPurpose::Open => self.open(path, None),
+            DialogPurpose::SaveStudy => {
+                // The dialog has asked about the name as it was chosen.
+                let is_asked = with_study_extension(path.clone()) == path;
+                self.save_as(path, if is_asked { Existing::Replace } else { Existing::Keep });
+            }
+            DialogPurpose::ExportFolder => self.state.forms.export.folder = path.display().to_string(),
+            DialogPurpose::ModelFolder => self.assemble(AssemblingCommand::Add(vec![path])),
+            DialogPurpose::RecordFolder => self.records(RecordsCommand::Add(vec![path])),
+        }
+    }
+
+    /// Nothing was chosen, or there is no dialog on this desktop: both look alike, and the path is offered as text.
+    fn nothing_chosen(&mut self, purpose: DialogPurpose) {
+        match purpose {
+            DialogPurpose::Open => self.state.forms.shown = Some(FormKind::Open),
+            DialogPurpose::SaveStudy => {
+                self.state.forms.save_path = self.proposed_name();
+                self.state.forms.shown = Some(FormKind::Save);
+            }
+            DialogPurpose::ExportFolder | DialogPurpose::ModelFolder | DialogPurpose::RecordFolder => {}
         }
     }
 
     /// Saves the study where it was saved last, or asks where.
-    pub(super) fn save(&mut self, ctx: &Context) {
+    pub(super) fn save(&mut self) {
         match self.saved.path.clone() {
-            Some(path) => self.save_as(path, Existing::Replace, ctx),
-            None => self.dialogs.ask(DialogPurpose::SaveStudy, self.proposed_name(), ctx),
+            Some(path) => self.save_as(path, Existing::Replace),
+            None => self.ask_path(DialogPurpose::SaveStudy, self.proposed_name()),
         }
     }
 
     /// Saves the study to a file; asks before it overwrites one that is not the study's own, unless that was asked already.
-    pub(super) fn save_as(&mut self, path: PathBuf, existing: Existing, ctx: &Context) {
+    pub(super) fn save_as(&mut self, path: PathBuf, existing: Existing) {
         let path = with_study_extension(self.at_home(path));
         let is_own = self.saved.path.as_ref() == Some(&path);
         let place = OutputSet::new(if is_own { Existing::Replace } else { existing }, Vec::new());
@@ -271,9 +283,9 @@ impl GdcmApp {
                 self.done(format!("saved {}", sanitized_path(&path)));
                 self.saved = SavedStudy { path: Some(path), study: Some(self.state.study.clone()) };
                 self.keep_unsaved();
-                self.look_for_recent(ctx);
+                self.look_for_recent();
                 if self.goes_on_once_saved {
-                    self.go_on(ctx);
+                    self.go_on();
                 }
             }
             Err(FileError::Exists { paths }) => {
@@ -283,26 +295,14 @@ impl GdcmApp {
             Err(error) => {
                 self.goes_on_once_saved = false;
                 self.postponed = None;
-                self.trouble(error.to_string());
+                self.notify_error(error.to_string());
             }
         }
-    }
-
-    /// Asks in a form whether to overwrite files, which `command` would do.
-    pub(super) fn ask_to_overwrite(&mut self, paths: &[PathBuf], form: FormKind, command: Command) {
-        self.state.forms.existing = paths.iter().map(|path| sanitized_path(path)).collect();
-        self.state.forms.shown = Some(form);
-        self.overwriting = Some(command);
     }
 
     /// A path as it is typed, with the home directory in the place of `~`.
     pub(super) fn at_home(&self, typed: PathBuf) -> PathBuf {
         at_home(&typed, self.home.as_deref())
-    }
-
-    /// What the program reads from, which is never overwritten by results.
-    pub(super) fn inputs(&self) -> Vec<PathBuf> {
-        self.saved.path.iter().cloned().chain(self.loaded.origin.file()).collect()
     }
 
     /// A name for the study's file.
@@ -314,43 +314,6 @@ impl GdcmApp {
         let stem = stem.unwrap_or_else(|| "example".to_owned());
         format!("{}.{STUDY_EXTENSION}", stem.trim_end_matches(".json"))
     }
-
-    /// Asks where to save a table as it is now.
-    pub(super) fn ask_save_table(&mut self, name: &str, table: Arc<Table>) {
-        let name: String = name.chars().filter(|letter| letter.is_alphanumeric() || *letter == ' ').collect();
-        self.state.forms.table = Some(table);
-        self.state.forms.table_path = format!("{}.csv", name.replace(' ', "-"));
-        self.state.forms.shown = Some(FormKind::SaveTable);
-    }
-
-    /// Saves a table of the window as CSV.
-    pub(super) fn save_table(&mut self, table: Arc<Table>, path: PathBuf, existing: Existing) {
-        let path = self.at_home(path);
-        match save_table(&table, &path, OutputSet::new(existing, self.inputs())) {
-            Ok(()) => {
-                self.state.forms.shown = None;
-                self.done(format!("saved {}", sanitized_path(&path)));
-            }
-            Err(FileError::Exists { paths }) => {
-                self.ask_to_overwrite(&paths, FormKind::SaveTable, Command::SaveTable(table, path));
-            }
-            Err(error) => self.trouble(error.to_string()),
-        }
-    }
-
-    /// The analysis, where it is complete and of what is decided now; otherwise a sentence that says why not. `what` could be done
-    /// again once it is.
-    pub(super) fn analysis_to_write(&self, what: &str) -> Result<Arc<Analysis>, String> {
-        let results = &self.state.results;
-        if results.stopped {
-            return Err(format!("{}, for computing was stopped; compute first", self.state.after_stop()));
-        }
-        if !results.background.proofs.is_empty() {
-            return Err(format!("the gains are still being proven; {what} again in a moment, or stop it"));
-        }
-        let analysis = results.analysis.clone().filter(|_| !results.is_waiting());
-        analysis.ok_or_else(|| format!("the newest results are still being computed; {what} again in a moment"))
-    }
 }
 
 pub(super) fn study_name(path: Option<&Path>) -> String {
@@ -361,4 +324,27 @@ pub(super) fn study_name(path: Option<&Path>) -> String {
 fn with_study_extension(path: PathBuf) -> PathBuf {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     if name.ends_with(".json") { path } else { path.with_file_name(format!("{name}.{STUDY_EXTENSION}")) }
+}
+
+fn recent_file(path: PathBuf) -> RecentFile {
+    let name = path.file_name().map(|name| sanitized(&name.to_string_lossy())).unwrap_or_default();
+    let folder = path.parent().map(sanitized_path).unwrap_or_default();
+    RecentFile { missing: !file_exists(&path), path, name, folder }
+}
+
+fn dialog(purpose: DialogPurpose, file_name: &str) -> Option<PathBuf> {
+    let dialog = rfd::FileDialog::new();
+    match purpose {
+        DialogPurpose::Open => dialog
+            .set_title("Open a dataset or a study")
+            .add_filter("datasets and studies", &["json", "gz"])
+            .add_filter("all files", &["*"])
+            .pick_file(),
+        DialogPurpose::SaveStudy => {
+            dialog.set_title("Save the study").add_filter("studies", &["json"]).set_file_name(file_name).save_file()
+        }
+        DialogPurpose::ModelFolder => dialog.set_title("A folder of model files").pick_folder(),
+        DialogPurpose::RecordFolder => dialog.set_title("A folder of flight records").pick_folder(),
+        DialogPurpose::ExportFolder => dialog.set_title("Export corrections to a folder").pick_folder(),
+    }
 }

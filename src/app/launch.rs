@@ -4,17 +4,20 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
+use std::time::Duration;
 
 use eframe::{App, Frame, NativeOptions};
 use egui::{Context, Ui, ViewportBuilder, Visuals};
 
+use crate::executor::Pool;
 use crate::view::assembling::AssemblingCommand;
+use crate::view::display::Preferences;
+use gdcm_core::study::{Engine, LIVE_PROOF};
 use gdcm_files::{FileError, Opened, embedded_example, load_any};
 
-use super::autosave::Autosave;
+use super::background_jobs::EngineMaker;
 use super::fault::{self, Fault, caught};
-use super::recovery::{LAST_WAIT, end_words};
-use super::setup::Setup;
+use super::recovery::{Autosave, LAST_WAIT, end_words};
 use super::window::{GdcmApp, PREFERENCES};
 
 /// What the desktop knows the program by; also the name of the directory for its data.
@@ -23,6 +26,51 @@ pub(super) const APP_ID: &str = "gdcm";
 const NO_WINDOW: u8 = 1;
 /// Exit status where the file is wrong.
 const WRONG_FILE: u8 = 2;
+
+/// What a window is given besides what it shows; a test gives other things than the program does.
+#[derive(Clone)]
+pub struct Setup {
+    /// Makes the engines.
+    pub engine: EngineMaker,
+    /// Where recovery files and the list of recent files are kept; nowhere without it.
+    pub directory: Option<PathBuf>,
+    /// What `~` stands for in a path that is typed; itself without it.
+    pub home: Option<PathBuf>,
+    /// Whether the first start shows the guided tour.
+    pub offers_tour: bool,
+    /// How long after a change the decisions are kept in the recovery file at the latest.
+    pub keep_after: Duration,
+    /// How often the dataset's file is looked at.
+    pub look_every: Duration,
+    /// How the engineer likes the window.
+    pub preferences: Preferences,
+}
+
+impl Default for Setup {
+    fn default() -> Self {
+        Self {
+            engine: Arc::new(|| Engine::with_executor(Box::new(Pool)).with_proofs_within(LIVE_PROOF)),
+            directory: None,
+            home: None,
+            offers_tour: false,
+            keep_after: Duration::from_secs(2),
+            look_every: Duration::from_millis(1500),
+            preferences: Preferences::default(),
+        }
+    }
+}
+
+impl Setup {
+    /// That of the program: with the directories that the platform gives it.
+    pub(super) fn of_program() -> Self {
+        Self {
+            directory: eframe::storage_dir(APP_ID),
+            home: std::env::home_dir(),
+            offers_tour: true,
+            ..Self::default()
+        }
+    }
+}
 
 /// Opens the window on a dataset or a study, or on the embedded example, and returns when it is closed.
 ///
@@ -92,7 +140,7 @@ fn run(opened: Opened, models: Option<PathBuf>, setup: Setup, opening: &Arc<Once
         let setup = Setup { preferences: kept.unwrap_or_default(), ..setup };
         let mut app = GdcmApp::with(&creation.egui_ctx, opened, setup)?;
         if let Some(models) = models {
-            app.give(AssemblingCommand::Add(vec![models]).into(), &creation.egui_ctx);
+            app.dispatch(AssemblingCommand::Add(vec![models]).into());
         }
         Ok(Box::new(Guarded { app, opening }))
     };
@@ -142,7 +190,6 @@ fn no_window(reason: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::time::Duration;
 
     #[test]
     fn a_panic_before_the_first_frame_is_a_window_that_could_not_be_opened_and_one_after_it_is_not() {
@@ -150,7 +197,12 @@ mod tests {
         let words = ending(fault(), None).unwrap_err();
         assert!(words.starts_with("the window could not be opened: no libxkbcommon"), "{words}");
         let folder = tempfile::tempdir().unwrap();
-        let autosave = Autosave::start(Some(folder.path()), Duration::from_secs(3), || ()).unwrap();
+        let autosave = Autosave::start(
+            Some(folder.path()),
+            Duration::from_secs(3),
+            super::super::background_jobs::ReplySender::new(&Context::default()).0,
+        )
+        .unwrap();
         let words = ending(fault(), Some(&autosave)).unwrap_err();
         assert!(words.starts_with("stopped by a fault in its window: no libxkbcommon"), "{words}");
         assert!(words.ends_with("every decision was saved"), "{words}");

@@ -1,31 +1,21 @@
 //! The window: the only place that knows eframe, file dialogs and threads.
 
+mod analysis_thread;
 mod assembling;
-mod autosave;
-mod beside;
-mod dialogs;
-mod disk_watch;
-mod exports;
+mod background_jobs;
 pub mod fault;
-mod figures;
 mod files;
-mod key_order;
-mod lane;
+mod job_queue;
+mod keyboard;
 mod launch;
-mod pool;
-mod recent;
+mod outputs;
 mod records;
 mod recovery;
 mod reload;
 mod report;
-mod setup;
-mod shortcuts;
 mod update;
 mod window;
-mod worker;
 
-pub use launch::open;
-pub use pool::Pool;
-pub use setup::Setup;
+pub use background_jobs::EngineMaker;
+pub use launch::{Setup, open};
 pub use window::GdcmApp;
-pub use worker::EngineMaker;

@@ -3,9 +3,6 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, channel};
-
-use egui::Context;
 
 use crate::view::arrangement::View;
 use crate::view::records::{ConditionRecords, RecordRow, RecordsCommand, RecordsPage, RecordsReading};
@@ -16,8 +13,8 @@ use gdcm_core::records::{RecordChannels, RecordGuess, RecordLayout, RecordTable,
 use gdcm_core::study::{AdoptedModels, Edit, IdentifyJob, OfferedModels};
 use gdcm_files::{DatasetOrigin, FileError, FolderProgress, example_records, load_records, read_records};
 
-use super::dialogs::DialogPurpose;
-use super::fault::{Fault, caught};
+use super::fault::Fault;
+use super::files::DialogPurpose;
 use super::window::GdcmApp;
 
 /// Records that were read, by condition, and what could not be.
@@ -25,22 +22,6 @@ use super::window::GdcmApp;
 struct ReadRecords {
     rows: BTreeMap<ConditionId, Vec<RecordRow>>,
     faults: Vec<String>,
-}
-
-/// What a thread that reads records tells: the dataset that they are for, and the records.
-type ReaderMessage = (Arc<Dataset>, Result<Result<ReadRecords, FileError>, Fault>);
-
-/// The threads that read records, and where their answers arrive.
-pub(super) struct RecordReader {
-    sender: Sender<ReaderMessage>,
-    receiver: Receiver<ReaderMessage>,
-}
-
-impl Default for RecordReader {
-    fn default() -> Self {
-        let (sender, receiver) = channel();
-        Self { sender, receiver }
-    }
 }
 
 /// Reads without telling how far it is.
@@ -56,11 +37,11 @@ impl FolderProgress for Untold {
 
 impl GdcmApp {
     /// Carries out a wish about flight records.
-    pub(super) fn records(&mut self, command: RecordsCommand, ctx: &Context) {
+    pub(super) fn records(&mut self, command: RecordsCommand) {
         let condition = self.state.condition().id();
         match command {
-            RecordsCommand::Add(paths) => self.add_records(paths, ctx),
-            RecordsCommand::AskFiles => self.dialogs.ask(DialogPurpose::RecordFolder, String::new(), ctx),
+            RecordsCommand::Add(paths) => self.add_records(paths),
+            RecordsCommand::AskFiles => self.ask_path(DialogPurpose::RecordFolder, String::new()),
             RecordsCommand::Show(page) => self.state.records.page = page,
             RecordsCommand::ShowTimeModel(model, true) => drop(self.state.records.time_models.insert(model)),
             RecordsCommand::ShowTimeModel(model, false) => drop(self.state.records.time_models.remove(&model)),
@@ -76,7 +57,7 @@ impl GdcmApp {
                 let all: Vec<ConditionId> = self.state.records.conditions.keys().copied().collect();
                 self.take_identified(&all, offered);
             }
-            RecordsCommand::Return => self.give(Edit::ReturnModels { condition }.into(), ctx),
+            RecordsCommand::Return => self.decide(&Edit::ReturnModels { condition }),
             said => {
                 if let Some(records) = self.state.records.conditions.get_mut(&condition) {
                     say(records, said, &RecordChannels::of_dataset(&self.state.study.dataset));
@@ -86,7 +67,7 @@ impl GdcmApp {
     }
 
     /// Reads the records that belong to the condition shown, once its view is shown.
-    pub(super) fn look_for_records(&mut self, ctx: &Context) {
+    pub(super) fn look_for_records(&mut self) {
         let condition = self.state.condition();
         let id = condition.id();
         let is_shown = self.state.display.arrangement.is_shown(View::Records);
@@ -98,10 +79,10 @@ impl GdcmApp {
         self.state.records.is_example = self.loaded.origin == DatasetOrigin::EmbeddedExample;
         let name = format!("the records of condition {id}");
         match &self.loaded.origin {
-            DatasetOrigin::EmbeddedExample => self.read_in_thread(name, move |dataset| of_example(dataset, id), ctx),
+            DatasetOrigin::EmbeddedExample => self.read_in_thread(name, move |dataset| of_example(dataset, id)),
             DatasetOrigin::File(path) if !entries.is_empty() => {
                 let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-                self.read_in_thread(name, move |dataset| Ok(of_entries(dataset, id, &entries, &folder)), ctx);
+                self.read_in_thread(name, move |dataset| Ok(of_entries(dataset, id, &entries, &folder)));
             }
             DatasetOrigin::File(_) => {
                 let nothing = ConditionRecords::new(Vec::new(), &self.state.study.dataset);
@@ -110,51 +91,43 @@ impl GdcmApp {
         }
     }
 
-    fn add_records(&mut self, paths: Vec<PathBuf>, ctx: &Context) {
+    fn add_records(&mut self, paths: Vec<PathBuf>) {
         let paths: Vec<PathBuf> = paths.into_iter().map(|path| self.at_home(path)).collect();
         let name = paths.first().map_or(String::new(), |path| path.display().to_string());
         let shown = self.state.condition().id();
-        self.read_in_thread(name, move |dataset| of_files(dataset, shown, &paths), ctx);
+        self.read_in_thread(name, move |dataset| of_files(dataset, shown, &paths));
     }
 
     fn read_in_thread(
         &mut self,
         name: String,
         read: impl FnOnce(&Dataset) -> Result<ReadRecords, FileError> + Send + 'static,
-        ctx: &Context,
     ) {
-        let (sender, ctx) = (self.record_reader.sender.clone(), ctx.clone());
         let dataset = Arc::clone(self.state.study.file_dataset());
+        let of = Arc::clone(&dataset);
         self.state.records.reading = Some(RecordsReading { name });
-        let work = move || {
-            let found = caught(|| read(&dataset));
-            // The window may be gone by now.
-            let _ = sender.send((dataset, found));
-            ctx.request_repaint();
-        };
-        if let Err(error) = std::thread::Builder::new().name("records".to_owned()).spawn(work) {
+        let take = move |app: &mut Self, found: Result<_, Fault>| app.records_read(&of, found);
+        if let Err(error) = self.replies.in_thread("records", move || read(&dataset), take) {
             self.state.records.reading = None;
-            self.trouble(format!("the records cannot be read: {error}"));
+            self.notify_error(format!("the records cannot be read: {error}"));
         }
     }
 
-    /// Takes the records that were read since the last frame.
-    pub(super) fn receive_records(&mut self) {
-        while let Ok((dataset, found)) = self.record_reader.receiver.try_recv() {
-            if !Arc::ptr_eq(&dataset, self.state.study.file_dataset()) {
-                continue;
-            }
-            self.state.records.reading = None;
-            match found {
-                Ok(Ok(found)) => self.take_records(found),
-                Ok(Err(error)) => self.trouble(error.to_string()),
-                Err(fault) => self.tell_fault("the reading of records", &fault),
-            }
-            // What was looked for is not looked for again, found or not.
-            let (id, dataset) = (self.state.condition().id(), Arc::clone(&self.state.study.dataset));
-            let nothing = || ConditionRecords::new(Vec::new(), &dataset);
-            self.state.records.conditions.entry(id).or_insert_with(nothing);
+    /// Takes the records that were read for a dataset.
+    fn records_read(&mut self, dataset: &Arc<Dataset>, found: Result<Result<ReadRecords, FileError>, Fault>) {
+        if !Arc::ptr_eq(dataset, self.state.study.file_dataset()) {
+            return;
         }
+        self.state.records.reading = None;
+        match found {
+            Ok(Ok(found)) => self.take_records(found),
+            Ok(Err(error)) => self.notify_error(error.to_string()),
+            Err(fault) => self.tell_fault("the reading of records", &fault),
+        }
+        // What was looked for is not looked for again, found or not.
+        let (id, dataset) = (self.state.condition().id(), Arc::clone(&self.state.study.dataset));
+        let nothing = || ConditionRecords::new(Vec::new(), &dataset);
+        self.state.records.conditions.entry(id).or_insert_with(nothing);
     }
 
     fn take_records(&mut self, found: ReadRecords) {
@@ -191,14 +164,12 @@ impl GdcmApp {
                 Err(why) => refusal = Some(format!("condition {id}: {why}")),
             }
         }
-        // What an earlier stop gave up is begun again.
-        self.worker.resume_identifications();
         self.state.records.page = match self.state.records.page {
             RecordsPage::Histories | RecordsPage::Columns | RecordsPage::Inputs => RecordsPage::Response,
             page => page,
         };
         if let Some(why) = refusal {
-            self.trouble(why);
+            self.notify_error(why);
         }
     }
 
@@ -219,7 +190,7 @@ impl GdcmApp {
         let of = |id: &ConditionId| Some((*id, self.state.records.conditions.get(id)?.taken(offered)?));
         let taken: Vec<(ConditionId, Arc<AdoptedModels>)> = conditions.iter().filter_map(of).collect();
         if taken.is_empty() {
-            return self.trouble("nothing was identified yet".to_owned());
+            return self.notify_error("nothing was identified yet".to_owned());
         }
         let models: usize = taken.iter().map(|(_, models)| models.models.len()).sum();
         let names: Vec<String> = taken.iter().map(|(id, _)| id.to_string()).collect();

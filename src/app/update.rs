@@ -1,10 +1,9 @@
 //! Carrying out commands: the only code that changes what the window shows.
 
-use egui::{Context, ViewportCommand};
+use egui::ViewportCommand;
 use gdcm_core::message_text::sanitized;
 
 use crate::view::arrangement::Arrangement;
-use crate::view::assembling::AssemblingCommand;
 use crate::view::command::{Command, FormKind};
 use crate::view::curve_display::CurveCommand;
 use crate::view::display::Display;
@@ -18,8 +17,7 @@ use gdcm_core::dataset::ConditionId;
 use gdcm_core::study::Edit;
 use gdcm_files::Existing;
 
-use super::dialogs::DialogPurpose;
-use super::files::PendingAction;
+use super::files::{DialogPurpose, PendingAction};
 use super::window::GdcmApp;
 
 /// What the focus is to go to.
@@ -33,29 +31,29 @@ pub(super) enum NextFocus {
 
 impl GdcmApp {
     /// Saves the study to a file, as the form does once a path is typed.
-    pub fn save_study_as(&mut self, path: std::path::PathBuf, ctx: &Context) {
-        self.save_as(path, Existing::Keep, ctx);
+    pub fn save_study_as(&mut self, path: std::path::PathBuf) {
+        self.save_as(path, Existing::Keep);
     }
 
     /// Carries out one command, as a click or a key would.
-    pub fn give(&mut self, command: Command, ctx: &Context) {
-        self.carry_out_one(command, ctx);
-        ctx.request_repaint();
+    pub fn dispatch(&mut self, command: Command) {
+        self.carry_out_one(command);
+        self.ctx.request_repaint();
     }
 
     /// Carries out the commands of one frame.
-    pub(super) fn carry_out(&mut self, commands: Vec<Command>, ctx: &Context) {
+    pub(super) fn carry_out(&mut self, commands: Vec<Command>) {
         let pointed_before = (self.state.display.hovered.take(), self.state.display.curves.cursor.take());
         for command in commands {
-            self.carry_out_one(command, ctx);
+            self.carry_out_one(command);
         }
         let display = &self.state.display;
         if (&display.hovered, display.curves.cursor) != (&pointed_before.0, pointed_before.1) {
-            ctx.request_repaint();
+            self.ctx.request_repaint();
         }
     }
 
-    fn carry_out_one(&mut self, command: Command, ctx: &Context) {
+    fn carry_out_one(&mut self, command: Command) {
         let display = &mut self.state.display;
         match command {
             Command::Edit(edit) => self.decide(&edit),
@@ -104,12 +102,12 @@ impl GdcmApp {
                 display.fit_frequency_plots();
                 display.poles.request_fit();
             }
-            Command::SetTheme(theme) => ctx.set_theme(theme),
+            Command::SetTheme(theme) => self.ctx.set_theme(theme),
             Command::ShowForm(form) => self.show_form(form),
             Command::StopComputing => self.stop_computing(),
             Command::Compute => self.compute_again(),
             Command::CopyTable(kind) => {
-                ctx.copy_text(table_of(&self.state, kind).text());
+                self.ctx.copy_text(table_of(&self.state, kind).text());
                 self.done(format!("copied the table of {}", kind.name()));
             }
             Command::AskSaveTable(kind) => {
@@ -117,16 +115,16 @@ impl GdcmApp {
                 self.ask_save_table(kind.name(), table.into());
             }
             Command::AskSaveShownTable(table) => self.ask_save_table(&table.title, table.clone()),
-            Command::SaveTable(table, path) => self.save_table(table, path, Existing::Keep),
-            Command::Assembling(command) => self.assemble(command, ctx),
-            Command::Records(command) => self.records(command, ctx),
-            Command::CopyFigure(view) => self.copy_figure(view, ctx),
+            Command::SaveTable(table, path) => self.save_table(table, path),
+            Command::Assembling(command) => self.assemble(command),
+            Command::Records(command) => self.records(command),
+            Command::CopyFigure(view) => self.copy_figure(view),
             Command::AskSaveFigure(view, format) => self.ask_save_figure(view, format),
-            Command::SaveFigure(view, width, path) => self.save_figure((view, width), path, Existing::Keep),
+            Command::SaveFigure(view, width, path) => self.save_figure(view, width, path),
             Command::AskReport => self.ask_report(),
-            Command::WriteReport(path) => self.write_report(path, Existing::Keep),
-            Command::FocusField(name) => self.focus_next(NextFocus::Field(name), ctx),
-            Command::LeaveRegion { forward } => self.focus_next(NextFocus::Region { forward }, ctx),
+            Command::WriteReport(path) => self.write_report(path),
+            Command::FocusField(name) => self.focus_next(NextFocus::Field(name)),
+            Command::LeaveRegion { forward } => self.focus_next(NextFocus::Region { forward }),
             Command::StartTour => self.state.tour = Some(0),
             Command::ShowTourStep(step) => self.state.tour = step,
             Command::AskReason(model) => {
@@ -138,32 +136,32 @@ impl GdcmApp {
                 self.state.forms.shown = None;
                 self.decide(&edit);
             }
-            Command::Refuse(why) => self.trouble(why),
+            Command::Refuse(why) => self.notify_error(why),
             Command::DismissNotice => self.state.notice = None,
-            Command::AskOpen => self.dialogs.ask(DialogPurpose::Open, String::new(), ctx),
-            Command::AskSaveStudy => self.dialogs.ask(DialogPurpose::SaveStudy, self.proposed_name(), ctx),
-            Command::AskExportFolder => self.dialogs.ask(DialogPurpose::ExportFolder, String::new(), ctx),
-            Command::Open(path) => self.open(path, None, ctx),
-            Command::OpenStudyOf(study, dataset) => self.open(study, Some(dataset), ctx),
-            Command::OpenExample => self.open_example(ctx),
-            Command::RestoreRecovery(offer) => self.restore(offer, ctx),
+            Command::AskOpen => self.ask_path(DialogPurpose::Open, String::new()),
+            Command::AskSaveStudy => self.ask_path(DialogPurpose::SaveStudy, self.proposed_name()),
+            Command::AskExportFolder => self.ask_path(DialogPurpose::ExportFolder, String::new()),
+            Command::Open(path) => self.open(path, None),
+            Command::OpenStudyOf(study, dataset) => self.open(study, Some(dataset)),
+            Command::OpenExample => self.open_example(),
+            Command::RestoreRecovery(offer) => self.restore(offer),
             Command::DiscardRecovery(offer) => self.discard(offer),
-            Command::Reload => self.reload(ctx),
+            Command::Reload => self.reload(),
             Command::KeepOpen => self.keep_open(),
-            Command::LookForRecent => self.recent.look(None, ctx),
+            Command::LookForRecent => self.read_recent(None),
             Command::CloseBar(bar) => self.state.bars.retain(|shown| *shown != bar),
-            Command::CopyText(text) => ctx.copy_text(text),
+            Command::CopyText(text) => self.ctx.copy_text(text),
             Command::Quit if self.state.unsaved && !self.closing => self.ask_to_lose(PendingAction::Quit),
-            Command::Quit => self.quit(ctx),
-            Command::SaveStudy => self.save(ctx),
-            Command::SaveStudyAs(path) => self.save_as(path, Existing::Keep, ctx),
-            Command::Export => self.export(Existing::Keep),
-            Command::ExportAs(format, path) => self.export_as(format, path, Existing::Keep),
-            Command::Overwrite => self.overwrite(ctx),
-            Command::SaveAndGoOn => self.save_and_go_on(ctx),
+            Command::Quit => self.quit(),
+            Command::SaveStudy => self.save(),
+            Command::SaveStudyAs(path) => self.save_as(path, self.existing),
+            Command::Export => self.export(),
+            Command::ExportAs(format, path) => self.export_as(format, path),
+            Command::Overwrite => self.overwrite(),
+            Command::SaveAndGoOn => self.save_and_go_on(),
             Command::DiscardAndGoOn => {
                 self.state.forms.shown = None;
-                self.go_on(ctx);
+                self.go_on();
             }
         }
     }
@@ -176,7 +174,7 @@ impl GdcmApp {
                 self.state.history.record(before, edit);
                 self.study_changed();
             }
-            Err(refusal) => self.trouble(refusal.to_string()),
+            Err(refusal) => self.notify_error(refusal.to_string()),
         }
     }
 
@@ -211,19 +209,19 @@ impl GdcmApp {
     }
 
     /// Moves the focus before the next frame is drawn: what gets it then knows that it is new.
-    fn focus_next(&mut self, next: NextFocus, ctx: &Context) {
+    fn focus_next(&mut self, next: NextFocus) {
         self.next_focus = Some(next);
-        ctx.request_repaint();
+        self.ctx.request_repaint();
     }
 
     /// Gives the focus to what was asked for, once no form is in front of it.
-    pub(super) fn move_focus(&mut self, ctx: &Context) {
-        if self.state.forms.shown.is_some() || ctx.memory(|memory| memory.top_modal_layer().is_some()) {
+    pub(super) fn move_focus(&mut self) {
+        if self.state.forms.shown.is_some() || self.ctx.memory(|memory| memory.top_modal_layer().is_some()) {
             return;
         }
         match self.next_focus.take() {
-            Some(NextFocus::Field(name)) => focus_field(ctx, name),
-            Some(NextFocus::Region { forward }) => leave_region(ctx, forward),
+            Some(NextFocus::Field(name)) => focus_field(&self.ctx, name),
+            Some(NextFocus::Region { forward }) => leave_region(&self.ctx, forward),
             None => {}
         }
     }
@@ -247,28 +245,20 @@ impl GdcmApp {
     }
 
     /// Does what was asked whether to overwrite files.
-    fn overwrite(&mut self, ctx: &Context) {
+    fn overwrite(&mut self) {
         self.state.forms.existing.clear();
-        match self.overwriting.take() {
-            Some(Command::SaveStudyAs(path)) => self.save_as(path, Existing::Replace, ctx),
-            Some(Command::Export) => self.export(Existing::Replace),
-            Some(Command::ExportAs(format, path)) => self.export_as(format, path, Existing::Replace),
-            Some(Command::SaveTable(table, path)) => self.save_table(table, path, Existing::Replace),
-            Some(Command::Assembling(AssemblingCommand::SaveRules(path))) => self.save_rules(path, Existing::Replace),
-            Some(Command::Assembling(AssemblingCommand::MakeDataset(path))) => {
-                self.make_dataset(path, Existing::Replace, ctx);
-            }
-            Some(Command::SaveFigure(view, width, path)) => self.save_figure((view, width), path, Existing::Replace),
-            Some(Command::WriteReport(path)) => self.write_report(path, Existing::Replace),
-            _ => {}
+        if let Some(command) = self.overwriting.take() {
+            self.existing = Existing::Replace;
+            self.carry_out_one(command);
+            self.existing = Existing::Keep;
         }
     }
 
-    pub(super) fn quit(&mut self, ctx: &Context) {
+    pub(super) fn quit(&mut self) {
         self.closing = true;
         // Saved, or agreed to be lost.
         self.autosave.clear();
-        ctx.send_viewport_cmd(ViewportCommand::Close);
+        self.ctx.send_viewport_cmd(ViewportCommand::Close);
     }
 
     /// Tells the engineer that something was done.
@@ -277,7 +267,7 @@ impl GdcmApp {
     }
 
     /// Tells the engineer that something could not be done.
-    pub(super) fn trouble(&mut self, text: String) {
+    pub(super) fn notify_error(&mut self, text: String) {
         self.state.notice = Some(Notice { kind: NoticeKind::Trouble, text: sanitized(&text) });
     }
 }

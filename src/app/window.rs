@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::mpsc::Receiver;
 
 use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, ViewportCommand, Visuals};
 
-use crate::view::arrangement::View;
+use crate::view::arrangement::{Need, View};
 use crate::view::assembling::{AssemblingCommand, assembling_ui};
 use crate::view::bars::Bar;
 use crate::view::command::Command;
@@ -17,43 +18,47 @@ use crate::view::{
     bars, centre, conditions_panel, explanation, focus, forms, help, matrix_panel, models_panel, result_panel,
     settings_panel,
 };
+use gdcm_core::correction::{ProblemError, Solution};
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::study::Study;
-use gdcm_files::{LoadedDataset, LostStudy, Opened, is_first_start};
+use gdcm_core::study::{Analysis, ConditionCurves, CurvesJob, ProofJob, Study};
+use gdcm_files::{Existing, LoadedDataset, LostStudy, Opened, is_first_start};
 
+use super::analysis_thread::{AnalysisThread, Request};
 use super::assembling::ModelReader;
-use super::autosave::Autosave;
-use super::dialogs::Dialogs;
-use super::disk_watch::DiskWatch;
+use super::background_jobs::{BackgroundJobs, Reply, ReplySender};
 use super::fault::Fault;
-use super::files::{PendingAction, Readers, SavedStudy};
-use super::key_order::KeyOrder;
-use super::launch::holds_models;
-use super::recent::Recent;
-use super::records::RecordReader;
-use super::recovery::LAST_WAIT;
+use super::files::{PendingAction, SavedStudy};
+use super::keyboard::{self, KeyOrder};
+use super::launch::{Setup, holds_models};
+use super::recovery::{Autosave, LAST_WAIT};
+use super::reload::DiskWatch;
 use super::report::ReportJob;
-use super::setup::Setup;
-use super::shortcuts;
 use super::update::NextFocus;
-use super::worker::{Reply, Request, Worker};
 
 /// The program's window.
 pub struct GdcmApp {
+    pub(super) ctx: Context,
     pub(super) state: State,
     pub(super) loaded: LoadedDataset,
     pub(super) saved: SavedStudy,
-    pub(super) worker: Worker,
-    pub(super) dialogs: Dialogs,
-    pub(super) readers: Readers,
-    pub(super) model_reader: ModelReader,
-    pub(super) record_reader: RecordReader,
+    pub(super) analysis: AnalysisThread,
+    pub(super) jobs: BackgroundJobs,
+    /// What the views shown need beside the live answer.
+    pub(super) needs: Vec<Need>,
+    pub(super) replies: ReplySender,
+    /// What threads have sent.
+    received: Receiver<Reply>,
+    /// Whether a dialog of the desktop is open.
+    pub(super) dialog_open: bool,
+    pub(super) models: ModelReader,
     /// What waits for the answer whether to lose decisions that are not saved.
     pub(super) postponed: Option<PendingAction>,
     /// Whether that is done once they are saved.
     pub(super) goes_on_once_saved: bool,
     /// What waits for the answer whether to write over files.
     pub(super) overwriting: Option<Command>,
+    /// What becomes of files that are there: they are replaced only while what was asked about is done.
+    pub(super) existing: Existing,
     pub(super) closing: bool,
     /// The report that is being written.
     pub(super) reporting: Option<ReportJob>,
@@ -63,7 +68,8 @@ pub struct GdcmApp {
     /// What was lost, by the number of the offer, until it is restored or discarded.
     pub(super) offers: Vec<Option<LostStudy>>,
     pub(super) disk: DiskWatch,
-    pub(super) recent: Recent,
+    /// Where the list of recent files is kept; nowhere without it.
+    pub(super) directory: Option<PathBuf>,
     /// What `~` stands for in a path that is typed.
     pub(super) home: Option<PathBuf>,
     /// What the focus goes to in the next frame.
@@ -84,40 +90,43 @@ impl GdcmApp {
     pub fn with(ctx: &Context, opened: Opened, setup: Setup) -> std::io::Result<Self> {
         palette::apply(ctx);
         ctx.add_plugin(KeyOrder::default());
-        let waker = || {
-            let ctx = ctx.clone();
-            move || ctx.request_repaint()
-        };
-        let worker = Worker::start(setup.engine, Arc::new(waker()))?;
-        let autosave = Autosave::start(setup.directory.as_deref(), setup.keep_after, waker())?;
+        let (replies, received) = ReplySender::new(ctx);
+        let jobs = BackgroundJobs::start(&setup.engine, &replies)?;
+        let analysis = AnalysisThread::start(setup.engine, replies.clone())?;
+        let autosave = Autosave::start(setup.directory.as_deref(), setup.keep_after, replies.clone())?;
+        let disk = DiskWatch::start(setup.look_every, replies.clone())?;
         let (mut state, loaded, saved) = Self::parts_of(opened);
         setup.preferences.apply(&mut state.display);
         let mut app = Self {
+            ctx: ctx.clone(),
             state,
             loaded,
             saved,
-            worker,
-            dialogs: Dialogs::new(),
-            readers: Readers::default(),
-            model_reader: ModelReader::default(),
-            record_reader: RecordReader::default(),
+            analysis,
+            jobs,
+            needs: Vec::new(),
+            replies,
+            received,
+            dialog_open: false,
+            models: ModelReader::default(),
             postponed: None,
             goes_on_once_saved: false,
             overwriting: None,
+            existing: Existing::Keep,
             closing: false,
             reporting: None,
             earlier: Vec::new(),
             autosave,
             offers: Vec::new(),
-            disk: DiskWatch::start(setup.look_every, waker())?,
-            recent: Recent::new(setup.directory),
+            disk,
+            directory: setup.directory,
             home: setup.home,
             next_focus: None,
             title: String::new(),
             requested: None,
         };
         app.offer_tour(setup.offers_tour);
-        app.look_for_recent(ctx);
+        app.look_for_recent();
         Ok(app)
     }
 
@@ -131,8 +140,14 @@ impl GdcmApp {
         &self.state
     }
 
+    /// The time \[s\] of the window's clock.
+    fn now(&self) -> f64 {
+        self.ctx.input(|input| input.time)
+    }
+
     /// Asks for what the study and the condition shown need, unless it was asked for already.
-    fn request(&mut self, now: f64) {
+    fn request(&mut self) {
+        let now = self.now();
         let (study, condition) = (&self.state.study, self.state.condition().id());
         if self.requested.as_ref().is_some_and(|(of, at)| *at == condition && asks_the_same(of, study)) {
             return;
@@ -143,13 +158,13 @@ impl GdcmApp {
         results.requested += 1;
         results.stopped = false;
         results.waiting_since.get_or_insert(now);
-        self.worker.request(Request { generation: results.requested, study, condition });
+        self.analysis.request(Request { generation: results.requested, study, condition });
     }
 
     /// Gives up the computation under way; what is shown stays.
     pub(super) fn stop_computing(&mut self) {
-        self.worker.stop();
-        self.give_up_report();
+        self.analysis.stop();
+        self.stop_jobs();
         let results = &mut self.state.results;
         results.stopped = results.is_behind();
         results.waiting_since = None;
@@ -160,73 +175,61 @@ impl GdcmApp {
     pub(super) fn compute_again(&mut self) {
         self.requested = None;
         self.state.bars.retain(|bar| !matches!(bar, Bar::Fault { .. }));
-        self.worker.resume();
+        self.jobs.resume();
     }
 
-    fn receive(&mut self, now: f64) {
-        while let Some(reply) = self.worker.reply() {
-            let condition = self.state.condition().id();
-            let results = &mut self.state.results;
-            match reply {
-                Reply::Progress { generation, done, total } if generation == results.requested => {
-                    results.progress = Some((done, total));
-                }
-                Reply::First(first) => results.first = Some(first),
-                Reply::Analysis { generation, analysis, elapsed_ms } => {
-                    // One with a proof added has the number of the one without it, and took no time.
-                    if results.received != generation {
-                        results.elapsed_ms = elapsed_ms;
-                    }
-                    results.received = generation;
-                    results.analysis = Some(analysis);
-                    results.first = None;
-                    results.stopped &= results.is_behind();
-                    results.waiting_since = results.is_waiting().then_some(now);
-                    results.progress = None;
-                }
-                Reply::Curves(job, curves)
-                    if Arc::ptr_eq(&job.dataset, &self.state.study.dataset) && job.condition == condition =>
-                {
-                    results.curves = Some((job, curves));
-                    let band = self.state.study.settings.band;
-                    self.state.display.bode.follow_band((band.min(), band.max()));
-                }
-                Reply::Toggles(job, toggles) => results.toggles = Some((job, toggles)),
-                Reply::Modes(job, modes) => results.modes = Some((job, modes)),
-                Reply::Assessment(job, table) => results.assessment = Some((job, table)),
-                Reply::Across(job, curves) => results.across = Some((job, curves)),
-                Reply::Variant(job, analysis) => {
-                    results.variants.retain(|(known, _)| *known != job);
-                    results.variants.push((job, analysis));
-                }
-                Reply::Simulated(job, outcome) => {
-                    results.simulations.retain(|(known, _)| *known != job);
-                    results.simulations.push((job, outcome));
-                }
-                Reply::Uncertainty(job, uncertainty) => results.uncertainty = Some((job, uncertainty)),
-                Reply::Report(job, outcome) => self.report_written(job, outcome),
-                Reply::Identified(job, found) => self.identified(job, found),
-                Reply::Fault { generation, fault } => self.computing_failed(generation, &fault),
-                // Answers to questions that no longer stand.
-                Reply::Progress { .. } | Reply::Curves(..) => {}
-            }
+    /// Has the threads' replies carried out.
+    fn receive(&mut self) {
+        while let Ok(reply) = self.received.try_recv() {
+            reply(self);
         }
+        let now = self.now();
         let results = &mut self.state.results;
-        results.background = self.worker.background();
+        results.background = self.jobs.told();
         results.background_since = results.background.is_busy().then(|| results.background_since.unwrap_or(now));
     }
 
-    fn computing_failed(&mut self, generation: Option<u64>, fault: &Fault) {
+    /// Shows an analysis, and asks for the jobs that it leaves.
+    pub(super) fn answered(&mut self, generation: u64, analysis: Arc<Analysis>, elapsed_ms: f64) {
+        let now = self.now();
         let results = &mut self.state.results;
-        if generation == Some(results.requested) {
+        // One with a proof added has the number of the one without it, and took no time.
+        if results.received != generation {
+            results.elapsed_ms = elapsed_ms;
+        }
+        results.received = generation;
+        results.analysis = Some(analysis);
+        results.first = None;
+        results.stopped &= results.is_behind();
+        results.waiting_since = results.is_waiting().then_some(now);
+        results.progress = None;
+        self.want_jobs();
+    }
+
+    /// Says that answering a request panicked.
+    pub(super) fn answer_failed(&mut self, generation: u64, fault: &Fault) {
+        let results = &mut self.state.results;
+        if generation == results.requested {
             results.stopped = true;
             results.waiting_since = None;
             results.progress = None;
         }
-        if self.worker.is_report_stopped() {
-            self.give_up_report();
-        }
         self.tell_fault("the computation", fault);
+    }
+
+    /// Hands a proof to the thread that answers; a problem without an answer has been told by the live answer.
+    pub(super) fn take_proof(&mut self, job: ProofJob, proof: Result<Arc<Solution>, ProblemError>) {
+        proof.into_iter().for_each(|solution| self.analysis.take_proof(Arc::clone(&job.problem), solution));
+    }
+
+    /// Shows the curves of a condition, where they are of what is shown.
+    pub(super) fn take_curves(&mut self, job: CurvesJob, curves: Option<Arc<ConditionCurves>>) {
+        let Some(curves) = curves else { return };
+        let study = &self.state.study;
+        if Arc::ptr_eq(&job.dataset, &study.dataset) && job.condition == self.state.condition().id() {
+            self.state.display.bode.follow_band((study.settings.band.min(), study.settings.band.max()));
+            self.state.results.curves = Some((job, curves));
+        }
     }
 
     /// Says that the program panicked, what is kept, and what to send.
@@ -242,8 +245,8 @@ impl GdcmApp {
         self.state.bars.push(Bar::Fault { sentence });
     }
 
-    fn take_dropped_files(&mut self, ctx: &Context, commands: &mut Vec<Command>) {
-        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
+    fn take_dropped_files(&mut self, commands: &mut Vec<Command>) {
+        let dropped = self.ctx.input(|input| input.raw.dropped_files.clone());
         let paths: Vec<PathBuf> = dropped.iter().map(|file| file.path().to_path_buf()).collect();
         // A dataset or a study is opened; several files, a folder, and files of other programs are models.
         match paths.as_slice() {
@@ -251,7 +254,7 @@ impl GdcmApp {
             [path] if self.state.assembling.is_none() && !holds_models(path) => {
                 commands.push(Command::Open(path.clone()))
             }
-            // BackgroundJobs the records of a condition, files are more of them.
+            // Beside the records of a condition, files are more of them.
             _ if self.state.assembling.is_none() && self.state.display.arrangement.is_shown(View::Records) => {
                 commands.push(RecordsCommand::Add(paths).into());
             }
@@ -259,26 +262,26 @@ impl GdcmApp {
         }
     }
 
-    fn guard_closing(&mut self, ctx: &Context) {
-        if ctx.input(|input| input.viewport().close_requested()) && self.state.unsaved && !self.closing {
-            ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+    fn guard_closing(&mut self) {
+        if self.ctx.input(|input| input.viewport().close_requested()) && self.state.unsaved && !self.closing {
+            self.ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.ask_to_lose(PendingAction::Quit);
         }
     }
 
     /// Shows the guided tour at the first start.
     fn offer_tour(&mut self, is_asked: bool) {
-        let Some(directory) = self.recent.directory().filter(|_| is_asked) else { return };
+        let Some(directory) = self.directory.as_deref().filter(|_| is_asked) else { return };
         if is_first_start(directory) {
             self.state.tour = Some(0);
         }
     }
 
     /// Sets the window's title where it changed.
-    fn name_window(&mut self, ctx: &Context) {
+    fn name_window(&mut self) {
         let title = self.state.window_title();
         if title != self.title {
-            ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            self.ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
             self.title = title;
         }
     }
@@ -361,34 +364,28 @@ impl eframe::App for GdcmApp {
         Palette::of(visuals).background.to_normalized_gamma_f32()
     }
 
-    fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
-        self.receive(ctx.input(|input| input.time));
-        self.receive_files(ctx);
-        self.receive_models();
-        self.receive_records();
-        self.look_for_records(ctx);
-        self.receive_disk();
-        self.receive_recent();
-        self.receive_recovery();
-        self.guard_closing(ctx);
+    fn logic(&mut self, _: &Context, _frame: &mut eframe::Frame) {
+        self.receive();
+        self.look_for_records();
+        self.watch_disk();
+        self.guard_closing();
     }
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         let palette = Palette::of(ui.visuals()).with_looks(self.state.display.looks);
-        self.move_focus(&ctx);
-        let mut commands = shortcuts::pressed(&ctx, &self.state);
-        self.take_dropped_files(&ctx, &mut commands);
+        self.move_focus();
+        let mut commands = keyboard::pressed(&ctx, &self.state);
+        self.take_dropped_files(&mut commands);
         self.panels_ui(ui, &palette, &mut commands);
         forms::forms_ui(&ctx, &mut self.state, &palette, &mut commands);
         help::tour_ui(&ctx, &self.state, &palette, &mut commands);
         focus::focus_ring_ui(&ctx, &palette);
         explanation::derivation_window_ui(&ctx, &self.state, &palette, &mut commands);
-        self.carry_out(commands, &ctx);
-        self.name_window(&ctx);
-        let now = ctx.input(|input| input.time);
-        self.request(now);
-        self.want_beside();
+        self.carry_out(commands);
+        self.name_window();
+        self.request();
+        self.want_jobs();
         if self.state.results.is_waiting() || self.state.results.background_since.is_some() {
             // The mark of stale results appears by the clock, not by an event, and so does that of work under way.
             ctx.request_repaint_after(std::time::Duration::from_millis(160));

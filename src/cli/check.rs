@@ -11,7 +11,7 @@ use gdcm_files::{FileError, LoadedDataset, Opened, OpenedStudy, dataset_faults};
 
 use super::arguments::OpeningArguments;
 use super::failure::Failure;
-use super::opening::open;
+use super::open;
 use super::summary::LABEL;
 use super::terminal::{say, say_error};
 use super::text_table::{Side, TextTable, labelled};
@@ -72,7 +72,7 @@ fn contents(loaded: &LoadedDataset) -> String {
 
 /// What an analysis would say of the models by themselves.
 fn model_cautions(study: &Study) -> Result<String, Failure> {
-    let execution = Execution::new(&crate::app::Pool, &Unobserved, 0);
+    let execution = Execution::new(&crate::executor::Pool, &Unobserved, 0);
     let mut text = String::new();
     for (id, caution) in cautions_of_models(study, &execution)? {
         let words = caution.words(|pair| study.dataset.pair_name(pair));

@@ -16,8 +16,8 @@ use gdcm_files::{EXPORTERS, ExportFormat, ExportRequest, ExportSource, ExportedR
 use super::analyze::check_result;
 use super::arguments::{StudyArguments, real_number, whole_number};
 use super::failure::Failure;
-use super::progress::TerminalProgress;
 use super::study_options::{analysis_of, engine, outputs_of, study_of};
+use super::terminal::TerminalProgress;
 use super::terminal::say;
 
 /// What is to be exported, as what, and where it goes.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::app::Pool;
+use crate::executor::Pool;
 use gdcm_core::assembly::ChannelRule;
 use gdcm_core::dataset::{Band, BundleKind, ConditionId, ConditionRecord, Dataset};
 use gdcm_core::identification::{
@@ -16,8 +16,8 @@ use super::destination::Group;
 use super::failure::Failure;
 use super::identification_outcome::identified_models;
 use super::identify_arguments::ChannelDelay;
-use super::progress::TerminalProgress;
 use super::read_record::{ReadRecord, record_table};
+use super::terminal::TerminalProgress;
 
 /// Models are to be identified from these records.
 pub(super) struct IdentificationTask {

@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use egui::{Align, Button, Color32, Grid, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo};
+use egui::{Align, Button, Color32, Grid, Label, Layout, RichText, Role, ScrollArea, Sense, Ui};
 
 use gdcm_core::study::Table;
 
 use super::command::Command;
+use super::controls::{entries_ui, named};
 use super::palette::{Palette, SMALL_SIZE};
 
 /// By which column a table is sorted, and whether downwards; by none as it was made.
@@ -23,13 +24,18 @@ impl Sorting {
         })
     }
 
-    /// The rows of a table in this order: figures by value, words by letters, empty cells last. Equal rows stay as they are.
+    /// The rows of a table in this order: numbers by value, words by letters, empty cells last. Equal rows stay as they are.
     pub fn order(self, table: &Table) -> Vec<usize> {
-        let mut order: Vec<usize> = (0..table.rows.len()).collect();
+        self.order_of(table.rows.len(), |row, column| table.rows[row].get(column).cloned().unwrap_or_default())
+    }
+
+    /// The same of so many rows, by what stands in the cell of a row and a column.
+    pub fn order_of(self, rows: usize, cell: impl Fn(usize, usize) -> String) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..rows).collect();
         let Some((column, falling)) = self.0 else { return order };
-        let cell = |row: usize| table.rows[row].get(column).map_or("", String::as_str);
+        let cells: Vec<String> = order.iter().map(|&row| cell(row, column)).collect();
         order.sort_by(|a, b| {
-            let (a, b) = (cell(*a), cell(*b));
+            let (a, b) = (&cells[*a], &cells[*b]);
             let compared = match (figure(a), figure(b)) {
                 (Some(a), Some(b)) => a.total_cmp(&b),
                 _ => a.cmp(b),
@@ -40,7 +46,8 @@ impl Sorting {
         order
     }
 
-    fn mark(self, column: usize) -> &'static str {
+    /// The mark on the heading of a column.
+    pub fn mark(self, column: usize) -> &'static str {
         match self.0 {
             Some((sorted, false)) if sorted == column => " ▲",
             Some((sorted, true)) if sorted == column => " ▼",
@@ -71,7 +78,7 @@ pub struct TableLook<'a> {
     pub selected: &'a dyn Fn(usize) -> bool,
 }
 
-/// Draws a table that scrolls where it is too large. Its headings sort it; the secondary button copies or saves it.
+/// Draws a table that scrolls where it is too large. Its headings sort it; a right-click copies or saves it.
 pub fn table_ui(
     ui: &mut Ui,
     table: &Table,
@@ -84,12 +91,11 @@ pub fn table_ui(
     ScrollArea::both().id_salt(("table", &table.title)).auto_shrink(false).show(ui, |ui| {
         Grid::new(("cells", &table.title)).spacing([12.0, 3.0]).striped(true).show(ui, |ui| {
             for (column, heading) in table.columns.iter().enumerate() {
-                let text = RichText::new(format!("{heading}{}", sorting.mark(column))).size(SMALL_SIZE);
-                let button = ui.add(Button::new(text.color(palette.dim_text)).frame(false));
-                let name = format!("Sort {} by {heading}", table.title);
-                button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+                let text = palette.small(format!("{heading}{}", sorting.mark(column)));
+                let button = ui.add(Button::new(text).frame(false));
+                let button = named(button, Role::Button, format!("Sort {} by {heading}", table.title));
                 button.context_menu(|ui| copy_ui(ui, table, commands));
-                if button.on_hover_text("Sort; secondary click: copy or save the table").clicked() {
+                if button.on_hover_text("Sort; right-click: copy or save the table").clicked() {
                     *sorting = sorting.clicked(column);
                 }
             }
@@ -116,14 +122,11 @@ pub fn table_ui(
 }
 
 fn copy_ui(ui: &mut Ui, table: &Table, commands: &mut Vec<Command>) {
-    if ui.button("Copy the table as text").clicked() {
-        commands.push(Command::CopyText(table.text()));
-        ui.close();
-    }
-    if ui.button("Save the table as CSV…").clicked() {
-        commands.push(Command::AskSaveShownTable(Arc::new(table.clone())));
-        ui.close();
-    }
+    let entries = [
+        ("Copy the table as text", Command::CopyText(table.text())),
+        ("Save the table as CSV…", Command::AskSaveShownTable(Arc::new(table.clone()))),
+    ];
+    entries_ui(ui, entries, commands);
 }
 
 #[cfg(test)]

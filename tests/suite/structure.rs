@@ -37,8 +37,9 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
 /// What the modules of the program may not name: drawing knows no files, the commands no window.
 const MAY_NOT_NAME: &[(&str, &[&str])] = &[
     ("view", &["crate::app", "crate::cli", "std::fs", "std::thread", "rayon::", "eframe::", "rfd::"]),
-    ("cli", &["crate::view", "egui", "eframe::", "rfd::"]),
-    ("app", &["egui_plot::", "clap::"]),
+    ("cli", &["crate::view", "crate::app", "egui", "eframe::", "rfd::"]),
+    ("app", &["crate::cli", "egui_plot::", "clap::"]),
+    ("executor", &["crate::"]),
 ];
 
 fn sources(folder: &Path) -> Vec<PathBuf> {

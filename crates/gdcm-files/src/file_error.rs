@@ -3,13 +3,13 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::content_fault::ContentFault;
-use super::exports::ExportFault;
-use super::flaw::ContentError;
-use super::json_text::line_of;
-use super::variables::VariableFault;
-use gdcm_core::dataset::Location;
+use gdcm_core::dataset::{BandError, DraftError, DraftFault, Location};
 use gdcm_core::message_text::{quoted, sanitized, sanitized_path};
+use gdcm_core::study::EditRefusal;
+
+use crate::exports::ExportFault;
+use crate::json_text::line_of;
+use crate::variables::VariableFault;
 
 /// Why a file could not be read or written: one line that names the file, and the place in it.
 #[derive(Debug, thiserror::Error)]
@@ -276,4 +276,115 @@ pub fn system_words(error: &std::io::Error) -> String {
         }
     };
     words.to_owned()
+}
+
+// What can be wrong at a place in a file.
+
+/// What is wrong at a place in a file: expected, found, how to mend it.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ContentFault {
+    /// Something of another type stands there.
+    #[error("expected {expected}, found {found} (line {line}, column {column})")]
+    Type {
+        /// What has to stand there.
+        expected: String,
+        /// What stands there.
+        found: String,
+        /// Line, counted from 1.
+        line: usize,
+        /// Column in bytes, counted from 1.
+        column: usize,
+    },
+    /// A number is NaN, infinite, or too large for a 64-bit number.
+    #[error("expected a finite number, found {found} (line {line}, column {column})")]
+    NotFinite {
+        /// What stands there.
+        found: String,
+        /// Line, counted from 1.
+        line: usize,
+        /// Column in bytes, counted from 1.
+        column: usize,
+    },
+    /// Lists stand inside lists, deeper than any file of this format.
+    #[error("lists or objects are nested too deeply (line {line}, column {column})")]
+    TooDeep {
+        /// Line, counted from 1.
+        line: usize,
+        /// Column in bytes, counted from 1.
+        column: usize,
+    },
+    /// A key that must be there is not.
+    #[error("the key \"{key}\" is missing; add it")]
+    MissingKey {
+        /// The key.
+        key: String,
+    },
+    /// A key stands twice.
+    #[error("the key {} stands twice; remove one", quoted(key))]
+    DuplicateKey {
+        /// The key.
+        key: String,
+    },
+    /// Any other complaint about the text.
+    #[error("{reason} (line {line}, column {column})")]
+    Text {
+        /// The complaint.
+        reason: String,
+        /// Line, counted from 1.
+        line: usize,
+        /// Column in bytes, counted from 1.
+        column: usize,
+    },
+    /// A list has more entries than the program takes.
+    #[error("expected at most {most} entries, found {found}")]
+    TooMany {
+        /// The limit.
+        most: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// A text is none of those that may stand there.
+    #[error("expected {expected}, found {}", quoted(found))]
+    Word {
+        /// What may stand there.
+        expected: String,
+        /// What stands there.
+        found: String,
+    },
+    /// The ends of the band are wrong.
+    #[error(transparent)]
+    Band(#[from] BandError),
+    /// What the file says is no dataset.
+    #[error("{}", sanitized(&.0.to_string()))]
+    Dataset(#[from] DraftFault),
+    /// A study has a condition twice.
+    #[error("condition {id} stands twice; remove one")]
+    DuplicateCondition {
+        /// The id.
+        id: i64,
+    },
+    /// A study holds a decision that cannot be taken.
+    #[error("{}", sanitized(&.0.to_string()))]
+    Refused(#[from] EditRefusal),
+}
+
+// Something wrong in a file.
+
+/// What is wrong in a file, and where. Boxed, so that results that are mostly right stay small.
+#[derive(Debug)]
+pub(super) struct ContentError {
+    pub(super) place: Box<Location>,
+    pub(super) fault: Box<ContentFault>,
+}
+
+impl From<DraftError> for ContentError {
+    fn from(error: DraftError) -> Self {
+        Self { place: error.place, fault: Box::new((*error.fault).into()) }
+    }
+}
+
+impl ContentError {
+    pub(super) fn new(place: Location, fault: impl Into<ContentFault>) -> Self {
+        Self { place: Box::new(place), fault: Box::new(fault.into()) }
+    }
 }

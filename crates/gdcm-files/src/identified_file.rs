@@ -10,8 +10,8 @@ use gdcm_core::dataset::PairTable;
 
 use super::file_error::FileError;
 use super::models_file::{ModelText, model_text};
-use super::nested::Nested;
 use super::output_set::OutputSet;
+use crate::json_text::Nested;
 
 const FORMAT: &str = "gdcm-identified";
 const VERSION: u64 = 1;

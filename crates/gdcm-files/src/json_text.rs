@@ -1,22 +1,23 @@
 //! JSON text to values, with the place of what is wrong and of what is not known.
 
 use std::collections::BTreeMap;
+use std::fmt;
+use std::marker::PhantomData;
 use std::path::Path;
 
-use serde::Deserialize;
-use serde::de::IgnoredAny;
-use serde_json::error::Category;
-use serde_json::value::RawValue;
-
-use super::content_fault::ContentFault;
-use super::file_error::FileError;
-use super::flaw::ContentError;
-use super::outline::Outline;
-use super::place::{Step, location_of};
-use super::unknown_keys::UnknownKeys;
+use gdcm_core::dataset::limits::{MOST_CHANNELS, MOST_FREQUENCIES, MOST_STATES};
 use gdcm_core::dataset::{BundleKind, Location};
 use gdcm_core::message_text::{sanitized, shortened};
 use gdcm_core::units::number;
+use nalgebra::DMatrix;
+use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde::ser::{SerializeSeq, Serializer};
+use serde::{Deserialize, Serialize};
+use serde_json::error::Category;
+use serde_json::value::RawValue;
+
+use crate::file_error::{ContentError, ContentFault, FileError};
+use crate::location::{Outline, Step, UnknownKeys, location_of};
 
 /// A kind of file: what its "format" and "version" have to say.
 #[derive(Clone, Copy, Debug)]
@@ -229,4 +230,260 @@ fn token_at(text: &[u8], line: usize, column: usize) -> Option<String> {
 fn is_number_like(token: &str) -> bool {
     // Rust reads NaN, inf and infinity in any case and with any sign, as C and Python write them; 1e999 reads as infinite.
     token.parse::<f64>().is_ok_and(|value| !value.is_finite())
+}
+
+// Numbers in lists in lists, as JSON writes matrices and tables.
+
+/// A rectangular array of `DEPTH` dimensions, the last one running fastest: `[[1, 2], [3, 4]]` has the shape 2 x 2.
+///
+/// Read flat, so that a file of empty lists cannot take more memory than its own length; a matrix no further than the states of a
+/// model go, a table of responses no further than the channels and the frequencies.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Nested<const DEPTH: usize> {
+    /// Entries along each dimension; 0 where a dimension before it is empty.
+    pub(super) shape: [usize; DEPTH],
+    /// The numbers.
+    pub(super) values: Vec<f64>,
+}
+
+impl<const DEPTH: usize> Nested<DEPTH> {
+    /// Most entries of a list at a depth, 0 the outermost.
+    const fn most(depth: usize) -> usize {
+        match (DEPTH, depth) {
+            (2, _) => MOST_STATES,
+            (_, 0 | 1) => MOST_CHANNELS,
+            _ => MOST_FREQUENCIES,
+        }
+    }
+}
+
+impl Nested<2> {
+    /// A matrix, row by row.
+    pub(super) fn of_matrix(matrix: &DMatrix<f64>) -> Self {
+        // nalgebra stores columns, a file has rows.
+        Self { shape: [matrix.nrows(), matrix.ncols()], values: matrix.transpose().as_slice().to_vec() }
+    }
+}
+
+impl<'de, const DEPTH: usize> Deserialize<'de> for Nested<DEPTH> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let mut filling = Filling { lengths: [None; DEPTH], values: Vec::new() };
+        List { filling: &mut filling, depth: 0 }.deserialize(deserializer)?;
+        Ok(Self { shape: filling.lengths.map(Option::unwrap_or_default), values: filling.values })
+    }
+}
+
+/// An array while it is read.
+struct Filling<const DEPTH: usize> {
+    /// Length of the lists of each depth, once the first of them has ended.
+    lengths: [Option<usize>; DEPTH],
+    values: Vec<f64>,
+}
+
+/// One list at a depth, 0 the outermost.
+struct List<'f, const DEPTH: usize> {
+    filling: &'f mut Filling<DEPTH>,
+    depth: usize,
+}
+
+impl<'de, const DEPTH: usize> DeserializeSeed<'de> for List<'_, DEPTH> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_seq(self)
+    }
+}
+
+impl<'de, const DEPTH: usize> Visitor<'de> for List<'_, DEPTH> {
+    type Value = ();
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(if self.depth + 1 == DEPTH { "a list of numbers" } else { "a list of lists of numbers" })
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> Result<(), A::Error> {
+        let mut length = 0;
+        let depth = self.depth + 1;
+        loop {
+            if depth == DEPTH {
+                let Some(value) = entries.next_element::<f64>()? else { break };
+                self.filling.values.push(value);
+            } else if entries.next_element_seed(List { filling: &mut *self.filling, depth })?.is_none() {
+                break;
+            }
+            length += 1;
+            if length > Nested::<DEPTH>::most(self.depth) {
+                return Err(too_long(length - 1));
+            }
+        }
+        match *self.filling.lengths[self.depth].get_or_insert(length) {
+            expected if expected == length => Ok(()),
+            expected => Err(A::Error::custom(format!(
+                "expected {expected} entries, as in the first of these lists, found {length}"
+            ))),
+        }
+    }
+}
+
+impl<const DEPTH: usize> Serialize for Nested<DEPTH> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        Part { shape: &self.shape, values: &self.values }.serialize(serializer)
+    }
+}
+
+/// A list of an array while it is written.
+struct Part<'v> {
+    shape: &'v [usize],
+    values: &'v [f64],
+}
+
+impl Serialize for Part<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.shape {
+            [] | [_] => self.values.serialize(serializer),
+            [length, shape @ ..] => {
+                let size: usize = shape.iter().product();
+                let mut list = serializer.serialize_seq(Some(*length))?;
+                for part in 0..*length {
+                    list.serialize_element(&Part { shape, values: &self.values[part * size..(part + 1) * size] })?;
+                }
+                list.end()
+            }
+        }
+    }
+}
+
+// Lists and objects that are read no further than a limit, so that what is refused for its length is never held in memory.
+
+/// Reads a list of at most `MOST` entries.
+pub(super) fn list<'de, const MOST: usize, T, D>(deserializer: D) -> Result<Vec<T>, D::Error>
+where
+    T: Deserialize<'de>,
+    D: Deserializer<'de>,
+{
+    list_while(deserializer, MOST, |_| Ok(()))
+}
+
+/// Reads a list of at most `MOST` entries, or null.
+pub(super) fn optional_list<'de, const MOST: usize, T, D>(deserializer: D) -> Result<Option<Vec<T>>, D::Error>
+where
+    T: Deserialize<'de>,
+    D: Deserializer<'de>,
+{
+    struct Limited<T, const MOST: usize>(Vec<T>);
+
+    impl<'de, T: Deserialize<'de>, const MOST: usize> Deserialize<'de> for Limited<T, MOST> {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            list::<MOST, T, D>(deserializer).map(Self)
+        }
+    }
+
+    Ok(Option::<Limited<T, MOST>>::deserialize(deserializer)?.map(|list| list.0))
+}
+
+/// Reads a list of at most `most` entries, as long as `check` has nothing against the next.
+pub(super) fn list_while<'de, T, D>(
+    deserializer: D,
+    most: usize,
+    check: impl FnMut(&T) -> Result<(), String>,
+) -> Result<Vec<T>, D::Error>
+where
+    T: Deserialize<'de>,
+    D: Deserializer<'de>,
+{
+    deserializer.deserialize_seq(LimitedList { most, check, entry: PhantomData })
+}
+
+/// Says that a list or an object goes on beyond its limit.
+pub(super) fn too_long<E: Error>(most: usize) -> E {
+    E::custom(format_args!("expected at most {most} entries, found more"))
+}
+
+struct LimitedList<T, C> {
+    most: usize,
+    check: C,
+    entry: PhantomData<T>,
+}
+
+impl<'de, T, C> Visitor<'de> for LimitedList<T, C>
+where
+    T: Deserialize<'de>,
+    C: FnMut(&T) -> Result<(), String>,
+{
+    type Value = Vec<T>;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("a list")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(mut self, mut entries: A) -> Result<Vec<T>, A::Error> {
+        let mut list = Vec::new();
+        while list.len() < self.most {
+            let Some(entry) = entries.next_element()? else { return Ok(list) };
+            (self.check)(&entry).map_err(A::Error::custom)?;
+            list.push(entry);
+        }
+        match entries.next_element::<IgnoredAny>()? {
+            None => Ok(list),
+            Some(_) => Err(too_long(self.most)),
+        }
+    }
+}
+
+/// Numbers by name, at most `MOST`, each name once.
+pub(super) struct Numbers<const MOST: usize>(pub(super) BTreeMap<String, f64>);
+
+impl<'de, const MOST: usize> Deserialize<'de> for Numbers<MOST> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(Object::<MOST>)
+    }
+}
+
+struct Object<const MOST: usize>;
+
+impl<'de, const MOST: usize> Visitor<'de> for Object<MOST> {
+    type Value = Numbers<MOST>;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("an object")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Numbers<MOST>, A::Error> {
+        let mut numbers = BTreeMap::new();
+        while let Some((name, number)) = entries.next_entry()? {
+            if numbers.len() == MOST {
+                return Err(too_long(MOST));
+            }
+            numbers.insert(name, number);
+        }
+        Ok(Numbers(numbers))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read<const DEPTH: usize>(text: &str) -> Result<Nested<DEPTH>, String> {
+        serde_json::from_str(text).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn what_is_written_is_what_was_read() {
+        for text in ["[[1.0,2.0,3.0],[4.0,5.0,6.0]]", "[]", "[[],[]]"] {
+            assert_eq!(serde_json::to_string(&read::<2>(text).unwrap()).unwrap(), text);
+        }
+        let text = "[[[1.0],[2.0]],[[3.0],[4.0]]]";
+        let table = read::<3>(text).unwrap();
+        assert_eq!((table.shape, table.values.as_slice()), ([2, 2, 1], [1.0, 2.0, 3.0, 4.0].as_slice()));
+        assert_eq!(serde_json::to_string(&table).unwrap(), text);
+    }
+
+    #[test]
+    fn a_ragged_list_is_refused_at_any_depth() {
+        for text in ["[[1, 2], [3]]", "[[], [3]]", "[[1], []]"] {
+            assert!(read::<2>(text).unwrap_err().contains("as in the first"), "{text}");
+        }
+        assert!(read::<3>("[[[1], [2]], [[3]]]").unwrap_err().contains("expected 2 entries"));
+    }
 }

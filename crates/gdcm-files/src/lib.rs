@@ -1,6 +1,5 @@
 //! Files: datasets, studies and results. The only place that touches the file system.
 
-mod content_fault;
 mod corrections_file;
 mod csv_table;
 mod dataset_file;
@@ -8,40 +7,30 @@ mod exports;
 pub mod figure;
 mod figure_file;
 mod file_error;
-mod file_stamp;
 mod first_start;
-mod flaw;
-mod home;
 mod identified_file;
 mod json_text;
-mod list;
+mod location;
 mod mat;
 mod mat73;
 mod model_files;
 mod models_file;
-mod nested;
 mod npy;
 mod opened;
-mod outline;
 mod output_set;
-mod place;
-mod places;
 mod recent_files;
 mod recognise;
 mod record_files;
 mod recovery_file;
 mod report_file;
 mod rules_file;
-mod settings_entry;
 mod source;
-mod stored_number;
+mod strides;
 mod study_file;
 mod text;
-mod unknown_keys;
 pub mod variables;
 mod zip_files;
 
-pub use content_fault::ContentFault;
 pub use corrections_file::{
     Assessment, BarEntry, BarsEntry, ByName, ChannelBars, Channels, ConditionAssessment, ConditionCorrections,
     ConflictEntry, Corrections, CostTable, CostTables, DatasetLabel, DelayOutcome, DifferenceEntry, Explanation,
@@ -60,11 +49,9 @@ pub use exports::{
     write_export,
 };
 pub use figure_file::{figure_format, write_as, write_figure};
-pub use file_error::{FileError, system_words};
-pub use file_stamp::{FileStamp, file_exists, file_sha256};
+pub use file_error::{ContentFault, FileError, system_words};
 pub use first_start::is_first_start;
 pub use gdcm_core::dataset::limits::LARGEST_TEXT;
-pub use home::at_home;
 pub use identified_file::{
     IdentifiedModels, IdentifiedValidation, MeasuredEstimate, PoleEstimate, RecordReport, add_identified,
 };
@@ -81,7 +68,5 @@ pub use record_files::{
 pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
 pub use report_file::{ReportSource, report, save_report};
 pub use rules_file::{add_rules, load_rules, rules_path};
-pub use settings_entry::{
-    ErrorBarsEntry, KindWord, LeadSettingsEntry, ScheduleEntry, SecondVariableWord, SettingsEntry,
-};
+pub use source::{FileStamp, at_home, file_exists, file_sha256};
 pub use study_file::{OpenedStudy, STUDY_EXTENSION, open_study, open_study_of, relative_folder, save_study};

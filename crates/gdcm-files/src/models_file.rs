@@ -9,8 +9,8 @@ use gdcm_core::assembly::{ChannelLabel, FoundModel};
 use gdcm_core::dataset::{Origin, ResponseArray};
 
 use super::file_error::FileError;
-use super::nested::Nested;
 use super::output_set::OutputSet;
+use crate::json_text::Nested;
 
 const FORMAT: &str = "gdcm-models";
 const VERSION: u64 = 1;

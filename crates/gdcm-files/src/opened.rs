@@ -6,9 +6,9 @@ use gdcm_core::study::{Difference, Study};
 
 use super::dataset_file::{DatasetOrigin, LoadedDataset, dataset_from};
 use super::file_error::FileError;
-use super::outline::Outline;
 use super::source::Source;
 use super::study_file::{OpenedStudy, study_from};
+use crate::location::Outline;
 
 /// What a file turned out to be.
 #[derive(Clone, Debug)]

@@ -1,15 +1,17 @@
 //! A file's bytes, read within limits.
 
 use std::borrow::Cow;
+use std::fs;
 use std::fs::File;
 use std::io::{ErrorKind, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use flate2::bufread::GzDecoder;
+use gdcm_core::dataset::limits::LARGEST_TEXT;
 use sha2::{Digest, Sha256};
 
-use super::file_error::FileError;
-use gdcm_core::dataset::limits::LARGEST_TEXT;
+use crate::file_error::FileError;
 
 /// The two bytes that every gzip file starts with (RFC 1952).
 const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
@@ -96,8 +98,50 @@ fn sha256_hex(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
+// Whether a file is still what it was.
+
+/// What changes when a file is written: cheap to look at, also on a network drive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FileStamp {
+    modified: Option<SystemTime>,
+    length: u64,
+}
+
+impl FileStamp {
+    /// The stamp of a file; none while there is no such file.
+    pub fn of(path: &Path) -> Option<Self> {
+        let metadata = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
+        Some(Self { modified: metadata.modified().ok(), length: metadata.len() })
+    }
+}
+
+/// SHA-256 of a file's bytes as they are stored, in lower-case hexadecimal.
+///
+/// # Errors
+/// Where the file cannot be read.
+pub fn file_sha256(path: &Path) -> Result<String, FileError> {
+    Ok(Source::read(path)?.sha256)
+}
+
+/// Whether there is such a file.
+pub fn file_exists(path: &Path) -> bool {
+    path.is_file()
+}
+
+// The home directory in a path as it is typed.
+
+/// `~` and `~/x` with the home directory in the place of `~`, as a shell reads them; any other path, and each of them where there is
+/// no home directory, as it is.
+pub fn at_home(path: &Path, home: Option<&Path>) -> PathBuf {
+    match (path.strip_prefix("~"), home) {
+        (Ok(rest), Some(home)) if rest.as_os_str().is_empty() => home.to_owned(),
+        (Ok(rest), Some(home)) => home.join(rest),
+        _ => path.to_owned(),
+    }
+}
+
 #[cfg(test)]
-mod tests {
+mod source_tests {
     use super::*;
 
     #[test]
@@ -126,5 +170,26 @@ mod tests {
     fn a_byte_order_mark_is_no_part_of_the_text() {
         let source = Source::of(b"\xef\xbb\xbf{}", Path::new("x")).unwrap();
         assert_eq!(source.text(), b"{}");
+    }
+}
+
+#[cfg(test)]
+mod home_tests {
+    use super::*;
+
+    #[test]
+    fn a_tilde_means_home_where_a_shell_says_so() {
+        let home = Path::new("/home/ada");
+        for (typed, meant) in [
+            ("~", "/home/ada"),
+            ("~/", "/home/ada"),
+            ("~/x/data.json", "/home/ada/x/data.json"),
+            ("~bob/x", "~bob/x"),
+            ("x/~/y", "x/~/y"),
+            ("/data/x", "/data/x"),
+        ] {
+            assert_eq!(at_home(Path::new(typed), Some(home)), Path::new(meant), "{typed}");
+            assert_eq!(at_home(Path::new(typed), None), Path::new(typed));
+        }
     }
 }

@@ -116,9 +116,8 @@ fn every_table_of_a_view_is_saved_as_csv() {
     window.get_by_label("Save the table as CSV…").click();
     window.run_steps(3);
     let path = folder.path().join("evidence.csv");
-    let ctx = window.ctx.clone();
     let table = state(&window).forms.table.clone().expect("the form holds the table");
-    window.state_mut().give(Action::SaveTable(table.clone(), path.clone()), &ctx);
+    window.state_mut().dispatch(Action::SaveTable(table.clone(), path.clone()));
     settle(&mut window);
     let text = std::fs::read_to_string(path).unwrap();
     let rows = text.lines().filter(|line| !line.starts_with('#')).count();
@@ -129,25 +128,24 @@ fn every_table_of_a_view_is_saved_as_csv() {
 #[test]
 fn undo_after_each_command_restores_the_study_exactly() {
     let mut window = window();
-    let ctx = window.ctx.clone();
     let mut decisions = 0;
     for entry in every_command(state(&window)) {
         if !entry.enabled || !stays_within(&entry.command) || matches!(entry.command, Action::Undo | Action::Redo) {
             continue;
         }
         let before = state(&window).study.clone();
-        window.state_mut().give(entry.command.clone(), &ctx);
-        window.state_mut().give(Action::ShowForm(None), &ctx);
+        window.state_mut().dispatch(entry.command.clone());
+        window.state_mut().dispatch(Action::ShowForm(None));
         if state(&window).study == before {
             continue;
         }
         decisions += 1;
         let after = state(&window).study.clone();
-        window.state_mut().give(Action::Undo, &ctx);
+        window.state_mut().dispatch(Action::Undo);
         assert_eq!(state(&window).study, before, "undo of {}", entry.name);
-        window.state_mut().give(Action::Redo, &ctx);
+        window.state_mut().dispatch(Action::Redo);
         assert_eq!(state(&window).study, after, "redo of {}", entry.name);
-        window.state_mut().give(Action::Undo, &ctx);
+        window.state_mut().dispatch(Action::Undo);
     }
     assert!(decisions > 60, "{decisions} commands decide something");
 }

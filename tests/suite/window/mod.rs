@@ -32,7 +32,8 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
-use gdcm::app::{GdcmApp, Pool, Setup};
+use gdcm::app::{GdcmApp, Setup};
+use gdcm::executor::Pool;
 use gdcm::view::explanation::{gain_conflict_marks, remarks_shown, toggle_costs};
 use gdcm::view::plot::{Across, BodeCurve, Measure, Pane, Role as CurveRole};
 use gdcm::view::state::{NoticeKind, State};
@@ -162,7 +163,6 @@ fn wait_for_background(window: &mut Window) {
 
 /// Saves the study as the form does.
 pub(crate) fn save_as(window: &mut Window, path: &Path) {
-    let ctx = window.ctx.clone();
-    window.state_mut().save_study_as(path.to_owned(), &ctx);
+    window.state_mut().save_study_as(path.to_owned());
     settle(window);
 }

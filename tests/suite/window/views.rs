@@ -13,8 +13,7 @@ use gdcm_core::study::{AcrossRole, AssessedCorrection, AssessedModel, Edit, Expl
 use super::*;
 
 pub(super) fn give(window: &mut Window, command: impl Into<Action>) {
-    let ctx = window.ctx.clone();
-    window.state_mut().give(command.into(), &ctx);
+    window.state_mut().dispatch(command.into());
     settle(window);
 }
 
@@ -203,8 +202,7 @@ fn a_condition_that_is_held_out_leaves_the_schedule_and_judges_it() {
     let mut window = window();
     let held_out = ConditionId(3);
     let edit = Edit::SetHeldOut { condition: held_out, held_out: true };
-    let ctx = window.ctx.clone();
-    window.state_mut().give(edit.into(), &ctx);
+    window.state_mut().dispatch(edit.into());
     settle(&mut window);
     let analysis = state(&window).analysis().unwrap();
     assert_eq!((analysis.scheduled().len(), analysis.conditions.len()), (10, 11));

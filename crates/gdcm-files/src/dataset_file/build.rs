@@ -2,9 +2,9 @@
 
 use nalgebra::DMatrix;
 
-use crate::content_fault::ContentFault;
-use crate::flaw::ContentError;
-use crate::nested::Nested;
+use crate::file_error::ContentError;
+use crate::file_error::ContentFault;
+use crate::json_text::Nested;
 use gdcm_core::dataset::{
     BandsDraft, BundleKind, Channel, ConditionDraft, ConditionId, ConditionRecord, DatasetDraft, Estimate, FlightState,
     Location, ModelDraft, Origin, Provenance, RecordKind, ResponseArray, ResponseDraft, Timing,

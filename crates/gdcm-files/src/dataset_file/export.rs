@@ -1,6 +1,6 @@
 //! From a dataset to what its file says.
 
-use crate::nested::Nested;
+use crate::json_text::Nested;
 use gdcm_core::dataset::{
     BundleKind, Channel, Condition, ConditionRecord, Dataset, Dynamics, Estimate, MeasuredResponse, Model, ModelBands,
     Origin, PairTable, Provenance, Timing,

@@ -14,9 +14,9 @@ use flate2::write::GzEncoder;
 use gdcm_core::dataset::Dataset;
 
 use super::file_error::FileError;
-use super::flaw::ContentError;
 use super::output_set::{Existing, OutputSet, make_directory};
 use super::source::Source;
+use crate::file_error::ContentError;
 use gdcm_core::message_text::{sanitized, sanitized_path};
 
 use build::draft_of;

@@ -6,8 +6,8 @@ use serde::de::Deserializer;
 use serde::{Deserialize, Serialize};
 
 use crate::json_text::Format;
-use crate::list::{Numbers, list, list_while, optional_list};
-use crate::nested::Nested;
+use crate::json_text::Nested;
+use crate::json_text::{Numbers, list, list_while, optional_list};
 use gdcm_core::dataset::limits::{
     MOST_CHANNELS, MOST_CONDITIONS, MOST_COORDINATES, MOST_FREQUENCIES, MOST_MODELS, MOST_MODELS_IN_ALL, MOST_PAIRS,
     MOST_PIECES, MOST_RECORDS, MOST_STATES,

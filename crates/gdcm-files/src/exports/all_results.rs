@@ -72,8 +72,8 @@ fn corrections_struct(corrections: &Corrections, dataset: &Dataset) -> Value {
         pair_rows(&|output, input| Tree::Truth(pairs.iter().any(|pair| (&*pair.0, &*pair.1) == (output, input))))
     };
     if let Some(settings) = tree.get_mut("settings") {
-        settings.set("constrained", marked(&corrections.settings.constrained));
-        settings.set("ignored", marked(&corrections.settings.ignored));
+        settings.set("constrained", marked(&corrections.settings.constrained.0));
+        settings.set("ignored", marked(&corrections.settings.ignored.0));
         if settings.get("coherence_threshold").is_none() {
             settings.set("coherence_threshold", Tree::Null(()));
         }
@@ -138,8 +138,8 @@ mod tests {
     use std::sync::Arc;
 
     use gdcm_core::dataset::{BundleKind, ModelId};
-    use gdcm_core::schedule::{ScheduleSettings, SecondVariable};
-    use gdcm_core::study::{Edit, Engine, PhaseCorrection, Setting, Study, Unobserved};
+    use gdcm_core::schedule::SecondVariable;
+    use gdcm_core::study::{Edit, Engine, PhaseCorrection, Study, Unobserved, setting};
 
     use super::*;
     use crate::embedded_example;
@@ -175,22 +175,15 @@ mod tests {
 
     #[test]
     fn the_struct_of_matlab_has_every_field_of_the_json() {
-        let altitude = ScheduleSettings { second: Some(SecondVariable::Altitude), ..ScheduleSettings::default() };
         let model = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
-        let edits = [
-            vec![
-                Edit::Set(Setting::Schedule(altitude)),
-                Edit::RejectBecause { model, reason: "trimmed badly".to_owned() },
-            ],
-            vec![Edit::Set(Setting::Phase(PhaseCorrection::Lead))],
-        ];
+        let mut altitude = Study::new(embedded_example().unwrap().dataset);
+        altitude.settings.schedule.second = Some(SecondVariable::Altitude);
+        altitude.apply(&Edit::RejectBecause { model, reason: "trimmed badly".to_owned() }).unwrap();
+        let mut leads = Study::new(embedded_example().unwrap().dataset);
+        leads.apply(&setting::PHASE.to(PhaseCorrection::Lead)).unwrap();
         let mut engine = Engine::default();
         let (mut of_json, mut of_matlab) = (BTreeSet::new(), BTreeSet::new());
-        for edits in edits {
-            let mut study = Study::new(embedded_example().unwrap().dataset);
-            for edit in &edits {
-                study.apply(edit).unwrap();
-            }
+        for study in [altitude, leads] {
             let mut analysis = engine.analyze(&study, &Unobserved).unwrap();
             analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &Unobserved).unwrap()));
             let corrections = Corrections::of(&analysis, "ba78", &all(&analysis));

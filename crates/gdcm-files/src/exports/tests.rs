@@ -3,7 +3,7 @@
 use std::process::Command;
 
 use gdcm_core::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity, SecondVariable};
-use gdcm_core::study::{Analysis, Edit, Engine, PhaseCorrection, Setting, Study, Unobserved};
+use gdcm_core::study::{Analysis, Edit, Engine, PhaseCorrection, Study, Unobserved, setting};
 
 use super::ExportSource;
 use super::c_header::c_header;
@@ -23,7 +23,7 @@ fn analyses() -> Vec<(String, Analysis)> {
             for delays in [false, true] {
                 let mut study = Study::new(embedded_example().unwrap().dataset);
                 let schedule = ScheduleSettings { kind, quantity, delays, ..ScheduleSettings::default() };
-                study.apply(&Edit::Set(Setting::Schedule(schedule))).unwrap();
+                study.settings.schedule = schedule;
                 let analysis = engine.analyze(&study, &Unobserved).unwrap();
                 analyses.push((format!("{kind:?}, {quantity:?}, delays {delays}"), analysis));
             }
@@ -33,8 +33,8 @@ fn analyses() -> Vec<(String, Analysis)> {
     for tau_degree in [0, 2] {
         let mut study = Study::new(embedded_example().unwrap().dataset);
         let schedule = ScheduleSettings { tau_degree, ..ScheduleSettings::default() };
-        study.apply(&Edit::Set(Setting::Phase(PhaseCorrection::Lead))).unwrap();
-        study.apply(&Edit::Set(Setting::Schedule(schedule))).unwrap();
+        study.apply(&setting::PHASE.to(PhaseCorrection::Lead)).unwrap();
+        study.settings.schedule = schedule;
         let analysis = engine.analyze(&study, &Unobserved).unwrap();
         analyses.push((format!("leads of degree {tau_degree}"), analysis));
     }
@@ -181,11 +181,11 @@ fn a_function_of_matlab_gives_the_programs_own_numbers() {
 fn with_altitude(kind: ScheduleKind) -> (ScheduledCorrection, Vec<f64>) {
     let mut study = Study::new(embedded_example().unwrap().dataset);
     let schedule = ScheduleSettings { kind, second: Some(SecondVariable::Altitude), ..ScheduleSettings::default() };
-    study.apply(&Edit::Set(Setting::Schedule(schedule))).unwrap();
+    study.settings.schedule = schedule;
     let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
     let schedule = analysis.schedule.as_ref().unwrap();
     let values = |airspeed: f64, altitude: f64| {
-        let at = schedule.at_both(airspeed, Some(altitude));
+        let at = schedule.evaluate(airspeed, Some(altitude));
         [at.input_gains, at.output_gains, at.input_delays_s, at.output_delays_s].concat()
     };
     let pairs = || airspeeds().into_iter().flat_map(|airspeed| ALTITUDES.map(|altitude| (airspeed, altitude)));

@@ -4,12 +4,9 @@
 
 use std::collections::HashSet;
 
-use super::cursor::{ByteOrder, Cursor};
-use super::element::name_of;
-use super::header::count;
-use super::sparse::Entries;
-use super::text::rows;
-use super::trail::FieldPath;
+use crate::mat::level5::{ByteOrder, Cursor, name_of};
+use crate::mat::matrix::{Entries, rows};
+use crate::mat::{FieldPath, count};
 use crate::variables::{Array, ElementKind, MemoryBudget, Value, Variable, VariableFault};
 
 /// What stands before each matrix.

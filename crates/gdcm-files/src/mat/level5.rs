@@ -3,14 +3,12 @@
 //! Source: "MAT-File Format", The MathWorks, "Level 5 MAT-File Format".
 
 use std::collections::HashSet;
+use std::io::{ErrorKind, Read};
 
-use super::cursor::{ByteOrder, Cursor};
-use super::element::{DataKind, Element};
-use super::header::Header;
-use super::inflate::unpacked;
-use super::matrix::Arrays;
-use super::trail::FieldPath;
-use super::workspace;
+use flate2::read::ZlibDecoder;
+
+use crate::mat::matrix::Arrays;
+use crate::mat::{self, FieldPath, Header};
 use crate::variables::{MemoryBudget, Variable, VariableFault};
 
 /// Length of the text and the numbers that a file begins with.
@@ -31,7 +29,7 @@ pub(super) fn version(bytes: &[u8]) -> Option<(ByteOrder, u8)> {
 
 /// All variables of a file.
 pub(super) fn read(bytes: &[u8], order: ByteOrder, meter: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
-    let objects = match workspace::objects(bytes, objects_at(bytes, order), order, meter) {
+    let objects = match mat::objects(bytes, objects_at(bytes, order), order, meter) {
         Ok(objects) => Ok(objects),
         Err(fault @ (VariableFault::TooLarge { .. } | VariableFault::Stopped)) => return Err(fault),
         Err(VariableFault::Damaged { what, .. }) => Err(format!("the objects of this file cannot be read: {what}")),
@@ -107,11 +105,340 @@ pub(super) fn matrix(element: Element<'_>) -> Result<Cursor<'_>, VariableFault> 
     }
 }
 
+// Bytes read one after the other, in the order of the machine that wrote them.
+
+/// Which byte of a number comes first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ByteOrder {
+    Little,
+    Big,
+}
+
+/// A place in a stretch of bytes that cannot be left.
+///
+/// Its faults name no variable: [`crate::mat::FieldPath::name`] does that.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cursor<'b> {
+    bytes: &'b [u8],
+    /// Which byte of a number comes first.
+    pub(super) order: ByteOrder,
+    /// Where in the file the next byte lies.
+    pub(super) offset: u64,
+    /// How the stretch lies in the file.
+    stretch: Stretch,
+}
+
+/// What it means that a stretch of bytes ends too early, and where its bytes lie.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stretch {
+    /// The file itself: it is cut off.
+    File,
+    /// An element in the file: its size is wrong.
+    Element,
+    /// An element that was unpacked: the best that can be said of its place is where the packed one begins.
+    Unpacked,
+}
+
+impl<'b> Cursor<'b> {
+    /// At the beginning of a file.
+    pub(super) fn file(bytes: &'b [u8], order: ByteOrder) -> Self {
+        Self { bytes, order, offset: 0, stretch: Stretch::File }
+    }
+
+    /// At the beginning of what was unpacked, or stands as data, at `offset` of the file.
+    pub(super) fn unpacked(bytes: &'b [u8], order: ByteOrder, offset: u64) -> Self {
+        Self { bytes, order, offset, stretch: Stretch::Unpacked }
+    }
+
+    /// The bytes that are left.
+    pub(super) fn rest(&self) -> &'b [u8] {
+        self.bytes
+    }
+
+    /// Number of bytes that are left.
+    pub(super) fn len(&self) -> usize {
+        self.bytes.len()
+    }
+
+    /// Whether the end is reached.
+    pub(super) fn is_empty(&self) -> bool {
+        self.bytes.is_empty()
+    }
+
+    /// The next `length` bytes, as an element of their own.
+    pub(super) fn take(&mut self, length: usize) -> Result<Cursor<'b>, VariableFault> {
+        let (bytes, rest) = self.bytes.split_at_checked(length).ok_or_else(|| self.too_short())?;
+        let stretch = if self.stretch == Stretch::File { Stretch::Element } else { self.stretch };
+        let taken = Cursor { bytes, order: self.order, offset: self.offset, stretch };
+        self.bytes = rest;
+        if self.stretch != Stretch::Unpacked {
+            self.offset = self.offset.saturating_add(length as u64);
+        }
+        Ok(taken)
+    }
+
+    /// All bytes that are left, and the place behind them. If they are too few, it is still this stretch that ends too early.
+    pub(super) fn take_all(&mut self) -> Result<Cursor<'b>, VariableFault> {
+        let rest = *self;
+        self.pass(rest.len())?;
+        Ok(rest)
+    }
+
+    /// Passes over `length` bytes, or as many as there are.
+    pub(super) fn pass(&mut self, length: usize) -> Result<(), VariableFault> {
+        self.take(length.min(self.len())).map(drop)
+    }
+
+    /// The next `N` bytes.
+    pub(super) fn array<const N: usize>(&mut self) -> Result<[u8; N], VariableFault> {
+        let taken = self.take(N)?;
+        <[u8; N]>::try_from(taken.bytes).map_err(|_| self.too_short())
+    }
+
+    /// A whole number of 32 bits.
+    pub(super) fn u32(&mut self) -> Result<u32, VariableFault> {
+        let (order, bytes) = (self.order, self.array()?);
+        Ok(order.u32(bytes))
+    }
+
+    /// The fault that the bytes here contradict the format.
+    pub(super) fn damaged(&self, what: impl Into<String>) -> VariableFault {
+        VariableFault::Damaged { variable: String::new(), what: what.into(), offset: self.offset }
+    }
+
+    fn too_short(&self) -> VariableFault {
+        match self.stretch {
+            Stretch::File => VariableFault::CutOff { variable: String::new(), offset: self.offset },
+            _ => self.damaged("an element is longer than the one it lies in"),
+        }
+    }
+}
+
+impl ByteOrder {
+    /// A whole number of 16 bits.
+    pub(super) fn u16(self, bytes: [u8; 2]) -> u16 {
+        match self {
+            ByteOrder::Little => u16::from_le_bytes(bytes),
+            ByteOrder::Big => u16::from_be_bytes(bytes),
+        }
+    }
+
+    /// A whole number of 32 bits.
+    pub(super) fn u32(self, bytes: [u8; 4]) -> u32 {
+        match self {
+            ByteOrder::Little => u32::from_le_bytes(bytes),
+            ByteOrder::Big => u32::from_be_bytes(bytes),
+        }
+    }
+
+    /// A whole number of 64 bits.
+    pub(super) fn u64(self, bytes: [u8; 8]) -> u64 {
+        match self {
+            ByteOrder::Little => u64::from_le_bytes(bytes),
+            ByteOrder::Big => u64::from_be_bytes(bytes),
+        }
+    }
+}
+
+// One data element: a tag that says what kind of data follows and how much, and the data.
+//
+// Source: "MAT-File Format", The MathWorks, "Data Element Format".
+
+/// What kind of data an element holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum DataKind {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+    I64,
+    U64,
+    Matrix,
+    Packed,
+    Utf8,
+    Utf16,
+    Utf32,
+}
+
+/// A data element.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Element<'b> {
+    /// What kind of data it holds.
+    pub(super) kind: DataKind,
+    /// The data, without what fills them up to eight bytes.
+    pub(super) data: Cursor<'b>,
+    /// Whether there are as many bytes as its tag says; of an array there may be fewer.
+    pub(super) whole: bool,
+}
+
+impl DataKind {
+    fn of(number: u32) -> Option<Self> {
+        Some(match number {
+            1 => DataKind::I8,
+            2 => DataKind::U8,
+            3 => DataKind::I16,
+            4 => DataKind::U16,
+            5 => DataKind::I32,
+            6 => DataKind::U32,
+            7 => DataKind::F32,
+            9 => DataKind::F64,
+            12 => DataKind::I64,
+            13 => DataKind::U64,
+            14 => DataKind::Matrix,
+            15 => DataKind::Packed,
+            16 => DataKind::Utf8,
+            17 => DataKind::Utf16,
+            18 => DataKind::Utf32,
+            _ => return None,
+        })
+    }
+
+    /// Bytes of one number; of matrices and packed data there is none.
+    pub(super) fn width(self) -> Option<usize> {
+        match self {
+            DataKind::I8 | DataKind::U8 | DataKind::Utf8 => Some(1),
+            DataKind::I16 | DataKind::U16 | DataKind::Utf16 => Some(2),
+            DataKind::I32 | DataKind::U32 | DataKind::F32 | DataKind::Utf32 => Some(4),
+            DataKind::F64 | DataKind::I64 | DataKind::U64 => Some(8),
+            DataKind::Matrix | DataKind::Packed => None,
+        }
+    }
+}
+
+impl<'b> Element<'b> {
+    /// Reads the next element and what fills it up.
+    pub(super) fn read(cursor: &mut Cursor<'b>) -> Result<Self, VariableFault> {
+        let tag = *cursor;
+        let unknown = |number: u32| tag.damaged(format!("an element of the unknown kind {number}"));
+        let first = cursor.u32()?;
+        // Up to four bytes of data stand in the tag itself, whose upper half is then their number.
+        let small = first >> 16;
+        if small != 0 {
+            let number = first & 0xffff;
+            let kind = DataKind::of(number).ok_or_else(|| unknown(number))?;
+            let data = cursor.take(4)?.take(small as usize)?;
+            return Ok(Self { kind, data, whole: true });
+        }
+        let kind = DataKind::of(first).ok_or_else(|| unknown(first))?;
+        let length = cursor.u32()? as usize;
+        if kind == DataKind::Matrix && length > cursor.len() {
+            // GNU Octave takes some arrays for a few bytes longer than they are.
+            return Ok(Self { kind, data: cursor.take_all()?, whole: false });
+        }
+        let data = cursor.take(length)?;
+        if kind != DataKind::Packed {
+            cursor.pass(length.wrapping_neg() % 8)?;
+        }
+        Ok(Self { kind, data, whole: true })
+    }
+
+    /// Whether an array begins here, or nothing follows.
+    pub(super) fn begins_array(cursor: &Cursor<'_>) -> bool {
+        let mut tag = *cursor;
+        let (kind, length) = (tag.u32().map(DataKind::of), tag.u32());
+        let fits = length.is_ok_and(|length| length as usize <= tag.len());
+        cursor.is_empty() || (fits && matches!(kind, Ok(Some(DataKind::Matrix | DataKind::Packed))))
+    }
+
+    /// Passes over all elements that are left.
+    pub(super) fn pass_all(cursor: &mut Cursor<'_>) -> Result<(), VariableFault> {
+        while !cursor.is_empty() {
+            Element::read(cursor)?;
+        }
+        Ok(())
+    }
+
+    /// Number of numbers in it.
+    pub(super) fn count(&self) -> Result<usize, VariableFault> {
+        let width = self.kind.width().ok_or_else(|| self.data.damaged("a matrix where numbers should stand"))?;
+        if !self.data.len().is_multiple_of(width) {
+            return Err(self.data.damaged(format!("{} bytes of numbers of {width} bytes each", self.data.len())));
+        }
+        Ok(self.data.len() / width)
+    }
+
+    /// Text of one byte each: a name.
+    pub(super) fn name(&self) -> Result<String, VariableFault> {
+        match self.kind {
+            DataKind::I8 | DataKind::U8 | DataKind::Utf8 => Ok(name_of(self.data.rest())),
+            _ => Err(self.data.damaged("numbers where a name should stand")),
+        }
+    }
+}
+
+/// A name up to the first zero. What is not UTF-8 is taken for Latin-1, in which old programs wrote.
+pub(super) fn name_of(bytes: &[u8]) -> String {
+    let bytes = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
+    match std::str::from_utf8(bytes) {
+        Ok(name) => name.to_owned(),
+        Err(_) => bytes.iter().copied().map(char::from).collect(),
+    }
+}
+
+// Packed arrays.
+//
+// Source: "MAT-File Format", The MathWorks, "Data Compression"; RFC 1950.
+
+/// How many bytes one packed byte can become at most, rounded up (RFC 1951: 258 bytes from two bits).
+const MOST_EXPANSION: u64 = 1040;
+/// How many bytes are unpacked before the meter is asked again.
+const CHUNK: u64 = 1 << 20;
+
+/// The bytes of a packed element: its tag, which says how many follow, and those.
+pub(super) fn unpacked(packed: Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Vec<u8>, VariableFault> {
+    let mut decoder = ZlibDecoder::new(packed.rest());
+    let mut bytes = Vec::new();
+    unpack_more(&mut decoder, 8, &mut bytes, packed, meter)?;
+    let mut tag = Cursor::unpacked(&bytes, packed.order, packed.offset);
+    tag.pass(4)?;
+    let length = u64::from(tag.u32()?);
+    if length > (packed.len() as u64).saturating_mul(MOST_EXPANSION) {
+        return Err(packed.damaged(format!("{} packed bytes that claim to hold {length}", packed.len())));
+    }
+    unpack_more(&mut decoder, length, &mut bytes, packed, meter)?;
+    // At the end lies a checksum, which is compared when the end is looked for.
+    let more = decoder.read(&mut [0]).map_err(|_| packed.damaged("the packed bytes were changed"))?;
+    if more != 0 {
+        return Err(packed.damaged("more packed bytes than they say themselves"));
+    }
+    Ok(bytes)
+}
+
+fn unpack_more(
+    decoder: &mut impl Read,
+    length: u64,
+    bytes: &mut Vec<u8>,
+    packed: Cursor<'_>,
+    meter: &MemoryBudget<'_>,
+) -> Result<(), VariableFault> {
+    let mut left = length;
+    while left > 0 {
+        let chunk = left.min(CHUNK);
+        // Vectors grow by doubling.
+        meter.take(2 * chunk, 1, "")?;
+        let found = decoder.by_ref().take(chunk).read_to_end(bytes).map_err(|error| match error.kind() {
+            ErrorKind::UnexpectedEof => packed.damaged("the packed bytes end too early"),
+            _ => packed.damaged("the packed bytes were changed"),
+        })?;
+        if (found as u64) < chunk {
+            // GNU Octave counts too many bytes; whether too few are left is found out when they are read.
+            return Ok(());
+        }
+        left -= chunk;
+    }
+    Ok(())
+}
+
 #[cfg(test)]
-mod tests {
-    use super::super::sample::{chars, doubles, element, file, matrix, record};
-    use super::*;
+mod level5_tests {
+    use crate::mat::sample_tests::{chars, doubles, element, file, matrix, record};
     use crate::variables::Value;
+
+    use super::*;
 
     /// The same array, whose tag counts four bytes too many.
     fn too_long(array: Vec<u8>) -> Vec<u8> {
@@ -158,5 +485,111 @@ mod tests {
     fn numbers_where_a_variable_should_stand_are_damage() {
         assert!(matches!(variables(&file(&element(9, &[0; 8]))), Err(VariableFault::Damaged { .. })));
         assert!(matches!(variables(&file(&matrix(99, &[1, 1], "x", &[]))), Err(VariableFault::Damaged { .. })));
+    }
+}
+
+#[cfg(test)]
+mod cursor_tests {
+    use super::*;
+
+    #[test]
+    fn a_number_is_read_in_both_orders() {
+        assert_eq!(Cursor::file(&[1, 0, 0, 0], ByteOrder::Little).u32(), Ok(1));
+        assert_eq!(Cursor::file(&[0, 0, 0, 1], ByteOrder::Big).u32(), Ok(1));
+    }
+
+    #[test]
+    fn the_end_of_the_file_is_not_the_end_of_an_element() {
+        let mut file = Cursor::file(&[0; 6], ByteOrder::Little);
+        let mut element = file.take(3).unwrap();
+        assert!(matches!(element.u32(), Err(VariableFault::Damaged { offset: 0, .. })));
+        assert!(matches!(file.u32(), Err(VariableFault::CutOff { offset: 3, .. })));
+        assert!(file.pass(9).is_ok() && file.is_empty());
+    }
+}
+
+#[cfg(test)]
+mod element_tests {
+    use super::*;
+
+    fn read(bytes: &[u8]) -> Result<Element<'_>, VariableFault> {
+        Element::read(&mut Cursor::file(bytes, ByteOrder::Little))
+    }
+
+    #[test]
+    fn small_data_stand_in_the_tag() {
+        let element = read(&[1, 0, 3, 0, b'a', b'b', b'c', 0]).unwrap();
+        assert_eq!((element.kind, element.name().unwrap().as_str()), (DataKind::I8, "abc"));
+        assert!(matches!(read(&[1, 0, 5, 0, 0, 0, 0, 0]), Err(VariableFault::Damaged { .. })));
+    }
+
+    #[test]
+    fn the_next_element_begins_at_a_multiple_of_eight_bytes() {
+        let bytes = [&[2, 0, 0, 0, 5, 0, 0, 0, 1, 2, 3, 4, 5, 0, 0, 0][..], &[2, 0, 1, 0, 7, 0, 0, 0]].concat();
+        let mut cursor = Cursor::file(&bytes, ByteOrder::Little);
+        assert_eq!(Element::read(&mut cursor).unwrap().count(), Ok(5));
+        assert_eq!(Element::read(&mut cursor).unwrap().data.rest(), [7]);
+    }
+
+    #[test]
+    fn an_array_begins_where_its_tag_fits_what_follows() {
+        let begins = |bytes: &[u8]| Element::begins_array(&Cursor::file(bytes, ByteOrder::Little));
+        assert!(begins(&[]) && begins(&[14, 0, 0, 0, 0, 0, 0, 0]));
+        for bytes in [&[14, 0, 0, 0, 1, 0, 0, 0][..], &[9, 0, 0, 0, 0, 0, 0, 0], &[14, 0, 0, 0]] {
+            assert!(!begins(bytes), "{bytes:?}");
+        }
+    }
+
+    #[test]
+    fn an_unknown_kind_and_half_numbers_are_damage() {
+        assert!(matches!(read(&[8, 0, 0, 0, 0, 0, 0, 0]), Err(VariableFault::Damaged { .. })));
+        assert!(read(&[4, 0, 3, 0, 0, 0, 0, 0]).unwrap().count().is_err());
+    }
+
+    #[test]
+    fn names_that_are_not_utf_8_are_latin_1() {
+        assert_eq!(name_of(b"caf\xe9\0\0"), "caf\u{e9}");
+    }
+}
+
+#[cfg(test)]
+mod inflate_tests {
+    use std::io::Write;
+
+    use super::*;
+
+    fn packed(length: u32, data: &[u8]) -> Vec<u8> {
+        let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
+        encoder.write_all(&14_u32.to_le_bytes()).unwrap();
+        encoder.write_all(&length.to_le_bytes()).unwrap();
+        encoder.write_all(data).unwrap();
+        encoder.finish().unwrap()
+    }
+
+    fn read(bytes: &[u8], most: u64) -> Result<Vec<u8>, VariableFault> {
+        unpacked(Cursor::file(bytes, ByteOrder::Little), &MemoryBudget::new(most, &|_| false))
+    }
+
+    #[test]
+    fn as_much_is_unpacked_as_the_tag_says() {
+        for length in [3, 4] {
+            assert_eq!(read(&packed(length, &[1, 2, 3]), 100).unwrap()[8..], [1, 2, 3]);
+        }
+        assert!(matches!(read(&packed(2, &[1, 2, 3]), 100), Err(VariableFault::Damaged { .. })));
+    }
+
+    #[test]
+    fn what_unpacks_to_too_much_is_refused_before_it_is_unpacked() {
+        let bomb = packed(1 << 22, &vec![0; 1 << 22]);
+        assert!(bomb.len() < 1 << 13);
+        assert!(matches!(read(&bomb, 1 << 20), Err(VariableFault::TooLarge { .. })));
+        assert!(matches!(read(&packed(u32::MAX, &[0; 99]), u64::MAX), Err(VariableFault::Damaged { .. })));
+    }
+
+    #[test]
+    fn changed_bytes_are_found_by_their_checksum() {
+        let mut bytes = packed(3, &[1, 2, 3]);
+        *bytes.last_mut().unwrap() ^= 1;
+        assert!(matches!(read(&bytes, 100), Err(VariableFault::Damaged { .. })));
     }
 }

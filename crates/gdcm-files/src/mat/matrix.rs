@@ -2,17 +2,12 @@
 //!
 //! Source: "MAT-File Format", The MathWorks, "miMATRIX Format".
 
-use super::cursor::Cursor;
-use super::element::{DataKind, Element};
-use super::header::{ArrayClass, Header};
-use super::level5::{behind, matrix};
-use super::numbers::{numbers, places};
-use super::opaque;
-use super::sparse::Entries;
-use super::subsystem::Subsystem;
-use super::text::text;
-use super::trail::{FieldPath, Step};
-use crate::variables::{Array, CellArray, MemoryBudget, Object, StructArray, Value, VariableFault};
+use crate::mat::level5::{ByteOrder, Cursor, DataKind, Element, behind, matrix};
+use crate::mat::subsystem::{Reference, Subsystem};
+use crate::mat::{ArrayClass, FieldPath, Header, Step, count, export_line};
+use crate::variables::{
+    Array, CellArray, ElementKind, MemoryBudget, Object, StructArray, TextArray, Value, VariableFault,
+};
 
 /// What reading an array takes besides its bytes.
 #[derive(Clone, Copy)]
@@ -40,10 +35,8 @@ impl Arrays<'_> {
             ArrayClass::Cell => self.cell(header, contents, trail).map(Value::Cell),
             ArrayClass::Struct => self.records(header, contents, trail).map(Value::Struct),
             ArrayClass::Object => self.object(header, contents, trail).map(Value::Object),
-            ArrayClass::FunctionHandle => {
-                Element::pass_all(contents).map(|()| opaque::unread("function_handle", trail))
-            }
-            ArrayClass::Opaque => opaque::value(self, contents, trail),
+            ArrayClass::FunctionHandle => Element::pass_all(contents).map(|()| unread("function_handle", trail)),
+            ArrayClass::Opaque => opaque_value(self, contents, trail),
         };
         value.map_err(|fault| trail.name(fault))
     }
@@ -177,7 +170,7 @@ pub(super) fn field_names(contents: &mut Cursor<'_>, meter: &MemoryBudget<'_>) -
     meter.take((bytes.len() / length.max(1)) as u64, 128, "")?;
     let mut seen = std::collections::HashSet::new();
     let mut found = Vec::new();
-    for name in bytes.chunks_exact(length.max(1)).map(super::element::name_of) {
+    for name in bytes.chunks_exact(length.max(1)).map(crate::mat::level5::name_of) {
         if !seen.insert(name.clone()) {
             return Err(VariableFault::Duplicate { name });
         }
@@ -186,11 +179,238 @@ pub(super) fn field_names(contents: &mut Cursor<'_>, meter: &MemoryBudget<'_>) -
     Ok(found)
 }
 
+// Numbers of a data element, whatever kind they are stored as.
+
+/// All numbers of an element, of which there must be `count`.
+///
+/// MATLAB stores the numbers of an array in the smallest kind that holds them, so that this is not the array's own kind.
+pub(super) fn numbers(
+    element: &Element<'_>,
+    count: usize,
+    meter: &MemoryBudget<'_>,
+) -> Result<Vec<f64>, VariableFault> {
+    let found = element.count()?;
+    if found != count {
+        return Err(element.data.damaged(format!("{found} numbers where there should be {count}")));
+    }
+    meter.take(count as u64, 8, "")?;
+    Ok(converted(element.kind, element.data.rest(), element.data.order))
+}
+
+/// All whole numbers of an element: sizes and places.
+pub(super) fn places(element: &Element<'_>, meter: &MemoryBudget<'_>) -> Result<Vec<usize>, VariableFault> {
+    match element.kind {
+        DataKind::I32 | DataKind::U32 => {}
+        _ => return Err(element.data.damaged("numbers of another kind where sizes should stand")),
+    }
+    let count = element.count()?;
+    meter.take(count as u64, 8, "")?;
+    let values = numbers(element, count, meter)?;
+    let place = |value: f64| if value < 0.0 { None } else { Some(value as usize) };
+    let places: Option<Vec<usize>> = values.into_iter().map(place).collect();
+    places.ok_or_else(|| element.data.damaged("a negative size"))
+}
+
+/// All whole numbers of 64 bits of an element, if it holds such.
+pub(super) fn long_words(element: &Element<'_>, meter: &MemoryBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
+    if element.kind != DataKind::U64 {
+        return Ok(None);
+    }
+    meter.take(element.count()? as u64, 8, "")?;
+    let order = element.data.order;
+    Ok(Some(element.data.rest().as_chunks().0.iter().map(|&bytes| order.u64(bytes)).collect()))
+}
+
+fn converted(kind: DataKind, bytes: &[u8], order: ByteOrder) -> Vec<f64> {
+    match kind {
+        DataKind::I8 => bytes.iter().map(|&byte| f64::from(byte as i8)).collect(),
+        DataKind::U8 | DataKind::Utf8 => bytes.iter().map(|&byte| f64::from(byte)).collect(),
+        DataKind::I16 => each(bytes, |two| f64::from(order.u16(two) as i16)),
+        DataKind::U16 | DataKind::Utf16 => each(bytes, |two| f64::from(order.u16(two))),
+        DataKind::I32 => each(bytes, |four| f64::from(order.u32(four) as i32)),
+        DataKind::U32 | DataKind::Utf32 => each(bytes, |four| f64::from(order.u32(four))),
+        DataKind::F32 => each(bytes, |four| f64::from(f32::from_bits(order.u32(four)))),
+        DataKind::F64 => each(bytes, |eight| f64::from_bits(order.u64(eight))),
+        // The nearest number: beyond 2^53 not every whole number has one of its own.
+        DataKind::I64 => each(bytes, |eight| order.u64(eight) as i64 as f64),
+        DataKind::U64 => each(bytes, |eight| order.u64(eight) as f64),
+        DataKind::Matrix | DataKind::Packed => Vec::new(),
+    }
+}
+
+fn each<const N: usize>(bytes: &[u8], number: impl Fn([u8; N]) -> f64) -> Vec<f64> {
+    bytes.as_chunks::<N>().0.iter().map(|&chunk| number(chunk)).collect()
+}
+
+// Arrays of characters.
+
+/// The rows of an array of characters, stored as text or as numbers of characters.
+pub(super) fn text(
+    element: &Element<'_>,
+    shape: &[usize],
+    meter: &MemoryBudget<'_>,
+) -> Result<TextArray, VariableFault> {
+    let wanted = count(shape);
+    meter.take(wanted as u64, 16, "")?;
+    let mut characters = characters(element, wanted, meter)?;
+    if characters.is_empty() {
+        // Old versions leave out characters that are all blank.
+        characters = vec![u32::from(b' '); wanted];
+    }
+    if characters.len() != wanted {
+        let found = characters.len();
+        return Err(element.data.damaged(format!("{found} characters where there should be {wanted}")));
+    }
+    rows(&characters, shape, meter)
+}
+
+/// The texts in the rows of an array of characters, of which there are as many as the shape says.
+///
+/// An array without characters is one empty text, as MATLAB's `''` is, unless it has several rows.
+pub(super) fn rows(characters: &[u32], shape: &[usize], meter: &MemoryBudget<'_>) -> Result<TextArray, VariableFault> {
+    let (height, length) = (shape.first().copied().unwrap_or(1), shape.get(1).copied().unwrap_or(1));
+    let pages = shape.get(2..).unwrap_or_default();
+    if characters.is_empty() && height <= 1 {
+        return Ok(TextArray { shape: vec![1, 1], texts: vec![String::new()] });
+    }
+    let shape: Vec<usize> = [height, 1].iter().chain(pages).copied().collect();
+    let texts = count(&shape);
+    meter.take(texts as u64, size_of::<String>() as u64, "")?;
+    let page = height.saturating_mul(length);
+    let row = |text: usize| {
+        let first = (text / height).saturating_mul(page).saturating_add(text % height);
+        let places = (0..length).map(|column| first.saturating_add(column.saturating_mul(height)));
+        written(places.filter_map(|place| characters.get(place).copied()))
+    };
+    Ok(TextArray { shape, texts: (0..texts).map(row).collect() })
+}
+
+/// Text of characters' numbers, whether those beyond 16 bits are one number or two (as in UTF-16).
+fn written(numbers: impl Iterator<Item = u32>) -> String {
+    let mut units = Vec::new();
+    for number in numbers {
+        match char::from_u32(number).filter(|_| number > 0xffff) {
+            Some(letter) => units.extend_from_slice(letter.encode_utf16(&mut [0; 2])),
+            None => units.push(u16::try_from(number).unwrap_or(0xfffd)),
+        }
+    }
+    String::from_utf16_lossy(&units)
+}
+
+fn characters(element: &Element<'_>, wanted: usize, meter: &MemoryBudget<'_>) -> Result<Vec<u32>, VariableFault> {
+    if element.kind == DataKind::Utf8 {
+        return Ok(of_utf8(element.data.rest(), wanted));
+    }
+    let found = element.count()?;
+    Ok(numbers(element, found, meter)?.into_iter().map(|number| number as u32).collect())
+}
+
+/// The shape counts units of UTF-16 in files of MATLAB, characters in those of some other programs, and bytes in those that
+/// call Latin-1 UTF-8.
+fn of_utf8(bytes: &[u8], wanted: usize) -> Vec<u32> {
+    let text = String::from_utf8_lossy(bytes);
+    let units = text.encode_utf16().count();
+    if units == wanted {
+        text.encode_utf16().map(u32::from).collect()
+    } else if bytes.len() == wanted {
+        bytes.iter().copied().map(u32::from).collect()
+    } else {
+        text.chars().map(u32::from).collect()
+    }
+}
+
+// Matrices of which only the numbers other than zero are stored, filled up.
+
+/// The numbers other than zero, each with its place.
+pub(super) struct Entries {
+    /// Number of rows and columns.
+    pub(super) shape: [usize; 2],
+    /// What the numbers are.
+    pub(super) kind: ElementKind,
+    /// Row of each number, counted from 0.
+    pub(super) rows: Vec<usize>,
+    /// Column of each number, counted from 0.
+    pub(super) columns: Vec<usize>,
+    /// Real part of each number.
+    pub(super) re: Vec<f64>,
+    /// Imaginary part of each number of complex ones.
+    pub(super) im: Option<Vec<f64>>,
+}
+
+impl Entries {
+    /// The whole matrix; what two entries say of the same place is added.
+    ///
+    /// `outside` is the fault that a number lies outside the matrix.
+    pub(super) fn filled(
+        &self,
+        meter: &MemoryBudget<'_>,
+        outside: impl Fn() -> VariableFault,
+    ) -> Result<Array, VariableFault> {
+        let [height, width] = self.shape;
+        let count = (height as u64).saturating_mul(width as u64);
+        meter.take(count, if self.im.is_some() { 16 } else { 8 }, "")?;
+        let fill = |values: &[f64]| {
+            let mut filled = vec![0.0; height.saturating_mul(width)];
+            for ((&row, &column), value) in self.rows.iter().zip(&self.columns).zip(values) {
+                let inside = row < height && column < width;
+                let place = if inside { filled.get_mut(column * height + row) } else { None };
+                *place.ok_or_else(&outside)? += value;
+            }
+            Ok(filled)
+        };
+        let im = self.im.as_deref().map(fill).transpose()?;
+        Ok(Array { shape: self.shape.to_vec(), kind: self.kind, re: fill(&self.re)?, im })
+    }
+}
+
+// Arrays whose contents lie elsewhere in the file: objects of classes, and what cannot be read.
+//
+// The format is not published by The MathWorks; it is known from the descriptions of the MatFileHandler, matio (Python) and
+// MAT.jl projects.
+
+/// The value of an opaque array behind its name.
+pub(super) fn opaque_value(
+    arrays: &Arrays<'_>,
+    contents: &mut Cursor<'_>,
+    trail: &FieldPath<'_>,
+) -> Result<Value, VariableFault> {
+    let system = Element::read(contents)?.name()?;
+    let class = Element::read(contents)?.name()?;
+    if system != "MCOS" {
+        Element::pass_all(contents)?;
+        let why = "only objects of MATLAB's own classes are read; in MATLAB, save what it holds as numbers or text"
+            .to_owned();
+        return Ok(Value::Opaque { class: format!("{class} ({system})"), why });
+    }
+    let contents = arrays.inner(contents, trail)?;
+    let variable = trail.words();
+    let objects = match arrays.objects {
+        Ok(objects) => objects,
+        Err(why) => return Ok(unread_because(&class, why, &variable)),
+    };
+    match (&contents, Reference::of(&contents)) {
+        (_, Some(reference)) => objects.referred(&reference, trail, arrays.meter),
+        (Value::Struct(records), None) => objects.enumeration(records, &class, trail, arrays.meter),
+        _ => Ok(unread_because(&class, "it refers to no object", &variable)),
+    }
+}
+
+/// A value of a class that this program does not read.
+pub(super) fn unread(class: &str, trail: &FieldPath<'_>) -> Value {
+    unread_because(class, "values of this class are not read", &trail.words())
+}
+
+/// A value that cannot be read, and how to come by its data all the same.
+pub(super) fn unread_because(class: &str, why: &str, variable: &str) -> Value {
+    let line = export_line(class, variable);
+    Value::Opaque { class: class.to_owned(), why: format!("{why}; in MATLAB, save its data: {line}") }
+}
+
 #[cfg(test)]
-mod tests {
-    use super::super::read;
-    use super::super::sample::{big_file, doubles, element, file, matrix};
-    use super::{Array, MemoryBudget, Value, VariableFault};
+mod matrix_tests {
+    use super::*;
+    use crate::mat::read;
+    use crate::mat::sample_tests::{big_file, doubles, element, file, matrix};
 
     fn first(bytes: &[u8]) -> Result<Value, VariableFault> {
         let mut variables = read(bytes, &MemoryBudget::new(1 << 16, &|_| false))?;
@@ -276,5 +496,131 @@ mod tests {
         let fields = [element(5, &2_i32.to_le_bytes()), element(1, b"a\0a\0")].concat();
         let twice = first(&file(&matrix(2, &[1, 1], "s", &[fields])));
         assert_eq!(twice, Err(VariableFault::Duplicate { name: "a".to_owned() }));
+    }
+}
+
+#[cfg(test)]
+mod numbers_tests {
+    use crate::mat::level5::Cursor;
+
+    use super::*;
+
+    fn read(kind: u8, data: &[u8], count: usize) -> Result<Vec<f64>, VariableFault> {
+        let bytes = [&[kind, 0, 0, 0, data.len() as u8, 0, 0, 0], data].concat();
+        let element = Element::read(&mut Cursor::file(&bytes, ByteOrder::Little)).unwrap();
+        numbers(&element, count, &MemoryBudget::new(1 << 10, &|_| false))
+    }
+
+    #[test]
+    fn every_kind_of_number_becomes_the_nearest() {
+        assert_eq!(read(1, &[0xff], 1), Ok(vec![-1.0]));
+        assert_eq!(read(3, &[0xfe, 0xff], 1), Ok(vec![-2.0]));
+        assert_eq!(read(5, &(-3_i32).to_le_bytes(), 1), Ok(vec![-3.0]));
+        assert_eq!(read(7, &0.5_f32.to_le_bytes(), 1), Ok(vec![0.5]));
+        assert_eq!(read(12, &(-4_i64).to_le_bytes(), 1), Ok(vec![-4.0]));
+        assert_eq!(read(13, &u64::MAX.to_le_bytes(), 1), Ok(vec![18_446_744_073_709_551_616.0]));
+    }
+
+    #[test]
+    fn too_few_numbers_are_damage_and_too_many_are_not_taken() {
+        assert!(matches!(read(9, &[0; 8], 2), Err(VariableFault::Damaged { .. })));
+        assert!(matches!(read(2, &[0; 200], 200), Err(VariableFault::TooLarge { .. })));
+    }
+}
+
+#[cfg(test)]
+mod text_tests {
+    use crate::mat::level5::{ByteOrder, Cursor};
+
+    use super::*;
+
+    fn read(kind: u8, data: &[u8], shape: &[usize]) -> Result<TextArray, VariableFault> {
+        let bytes = [&[kind, 0, 0, 0, data.len() as u8, 0, 0, 0], data].concat();
+        let element = Element::read(&mut Cursor::file(&bytes, ByteOrder::Little)).unwrap();
+        text(&element, shape, &MemoryBudget::new(1 << 16, &|_| false))
+    }
+
+    #[test]
+    fn the_rows_of_an_array_are_texts() {
+        let found = read(16, b"adbecf", &[2, 3]).unwrap();
+        assert_eq!(found, TextArray { shape: vec![2, 1], texts: vec!["abc".to_owned(), "def".to_owned()] });
+        let paged = read(16, b"abcd", &[1, 2, 2]).unwrap();
+        assert_eq!(paged, TextArray { shape: vec![1, 1, 2], texts: vec!["ab".to_owned(), "cd".to_owned()] });
+    }
+
+    #[test]
+    fn letters_beyond_16_bits_are_read_however_they_are_counted() {
+        for length in [2, 1, 4] {
+            let found = read(16, "\u{1f681}".as_bytes(), &[1, length]).unwrap();
+            assert_eq!(found.texts[0] == "\u{1f681}", length < 4);
+        }
+        assert_eq!(read(17, &[0x3d, 0xd8, 0x81, 0xde], &[1, 2]).unwrap().texts, ["\u{1f681}"]);
+        assert_eq!(read(18, &[0x81, 0xf6, 1, 0], &[1, 1]).unwrap().texts, ["\u{1f681}"]);
+    }
+
+    #[test]
+    fn nothing_is_one_empty_text_and_blanks_that_were_left_out_come_back() {
+        assert_eq!(read(4, &[], &[0, 0]).unwrap(), TextArray { shape: vec![1, 1], texts: vec![String::new()] });
+        assert_eq!(read(4, &[], &[3, 0]).unwrap().texts, ["", "", ""]);
+        assert_eq!(read(4, &[], &[1, 3]).unwrap().texts, ["   "]);
+        assert!(matches!(read(4, &[65, 0], &[1, 3]), Err(VariableFault::Damaged { .. })));
+        assert!(matches!(read(4, &[], &[1 << 20, 1 << 20]), Err(VariableFault::TooLarge { .. })));
+    }
+}
+
+#[cfg(test)]
+mod sparse_tests {
+    use super::*;
+
+    fn entries(shape: [usize; 2]) -> Entries {
+        let (rows, columns) = (vec![0, 1], vec![1, 0]);
+        Entries { shape, kind: ElementKind::Float, rows, columns, re: vec![2.0, 3.0], im: Some(vec![0.0, 1.0]) }
+    }
+
+    #[test]
+    fn what_is_not_stored_is_zero() {
+        let meter = MemoryBudget::new(1000, &|_| false);
+        let array = entries([2, 2]).filled(&meter, || VariableFault::Stopped).unwrap();
+        assert_eq!((array.re, array.im), (vec![0.0, 3.0, 2.0, 0.0], Some(vec![0.0, 1.0, 0.0, 0.0])));
+    }
+
+    #[test]
+    fn places_outside_and_sizes_beyond_the_limit_are_refused() {
+        let meter = MemoryBudget::new(1000, &|_| false);
+        assert_eq!(entries([1, 2]).filled(&meter, || VariableFault::Stopped), Err(VariableFault::Stopped));
+        let large = entries([usize::MAX, 1]).filled(&meter, || VariableFault::Stopped);
+        assert!(matches!(large, Err(VariableFault::TooLarge { .. })));
+    }
+}
+
+#[cfg(test)]
+mod opaque_tests {
+    use crate::mat::read;
+    use crate::mat::sample_tests::{element, file, opaque, reference};
+    use crate::variables::{MemoryBudget, Value};
+
+    fn first(bytes: &[u8]) -> (String, String) {
+        match read(bytes, &MemoryBudget::new(1 << 16, &|_| false)).unwrap().remove(0).value {
+            Value::Opaque { class, why } => (class, why),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn an_object_without_the_part_that_holds_it_says_how_to_save_it() {
+        let (class, why) = first(&file(&opaque("sys", "tf", reference(&[1], 1))));
+        assert_eq!(class, "tf");
+        assert!(
+            why.contains("nowhere") && why.ends_with("[num,den,Ts] = tfdata(sys); save out.mat num den Ts"),
+            "{why}"
+        );
+    }
+
+    #[test]
+    fn objects_of_other_systems_are_named_and_not_read() {
+        let flags = element(6, &[17, 0, 0, 0, 0, 0, 0, 0]);
+        let names = ["x", "java", "java.util.Date"].map(|name| element(1, name.as_bytes())).concat();
+        let (class, _) = first(&file(&element(14, &[flags, names].concat())));
+        assert_eq!(class, "java.util.Date (java)");
     }
 }

@@ -3,29 +3,18 @@
 //! Source: "MAT-File Format", The MathWorks. Files of version 7.3 are HDF5 files, which are read elsewhere; the objects in them are
 //! laid out as in [`Subsystem`].
 
-mod cursor;
-mod element;
-mod export_line;
-mod header;
-mod inflate;
 mod level4;
 mod level5;
 mod matrix;
-mod numbers;
-mod opaque;
-#[cfg(test)]
-mod sample;
-mod sparse;
 mod subsystem;
-mod text;
-mod trail;
-mod workspace;
 mod writer;
 
-pub use subsystem::Subsystem;
-pub use writer::{write, write_packed};
+use crate::mat::level5::{ByteOrder, Cursor, DataKind, Element, matrix, unpacked};
+use crate::mat::matrix::{Arrays, field_names, long_words, places};
+use crate::variables::{ElementKind, MemoryBudget, Value, Variable, VariableFault};
 
-use super::variables::{MemoryBudget, Variable, VariableFault};
+pub use crate::mat::subsystem::Subsystem;
+pub use crate::mat::writer::{write, write_packed};
 
 /// What every HDF5 file, or what follows MATLAB's header in one, begins with.
 const HDF5_SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
@@ -36,7 +25,7 @@ const EXPECTED: &str = "a .mat file of MATLAB up to version 7";
 
 /// The variables of a file, in their order.
 ///
-/// What lies in a variable and cannot be decoded is [`super::variables::Value::Opaque`]; bytes that contradict the format are a
+/// What lies in a variable and cannot be decoded is [`crate::variables::Value::Opaque`]; bytes that contradict the format are a
 /// fault of the whole file.
 pub fn read(bytes: &[u8], meter: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     if is_hdf5(bytes) {
@@ -76,12 +65,314 @@ fn beginning(bytes: &[u8]) -> String {
     format!("a file that begins with the bytes {}", bytes.join(" "))
 }
 
+// The part of a file in which its objects lie: bytes that are a small file of their own.
+//
+// The format is not published by The MathWorks; it is known from the descriptions of the MatFileHandler, matio (Python) and
+// MAT.jl projects.
+
+/// What the system of classes is called.
+const SYSTEM: &str = "MCOS";
+/// The class of the object that holds all others.
+const WRAPPER: &str = "FileWrapper__";
+
+/// Reads the objects that begin at byte `at` of the file.
+fn objects(
+    bytes: &[u8],
+    at: Option<usize>,
+    order: ByteOrder,
+    meter: &MemoryBudget<'_>,
+) -> Result<Subsystem, VariableFault> {
+    let mut file = Cursor::file(bytes, order);
+    let none = || file.damaged("they lie nowhere in it");
+    let at = at.filter(|&at| at < bytes.len()).ok_or_else(none)?;
+    file.pass(at)?;
+    let element = Element::read(&mut file)?;
+    if element.kind != DataKind::Packed {
+        return within(matrix(element)?, meter);
+    }
+    let bytes = unpacked(element.data, meter)?;
+    let mut inner = Cursor::unpacked(&bytes, order, element.data.offset);
+    within(matrix(Element::read(&mut inner)?)?, meter)
+}
+
+/// The objects within an array of bytes.
+fn within(array: Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Subsystem, VariableFault> {
+    let mut array = array;
+    Header::read(&mut array, meter)?;
+    let data = Element::read(&mut array)?.data;
+    let order = match data.rest().get(2..4) {
+        Some(b"IM") => ByteOrder::Little,
+        Some(b"MI") => ByteOrder::Big,
+        _ => return Err(data.damaged("their part of the file has no header")),
+    };
+    let mut small = Cursor::unpacked(data.rest(), order, data.offset);
+    small.pass(8)?;
+    let mut systems = matrix(Element::read(&mut small)?)?;
+    if Header::read(&mut systems, meter)?.class != ArrayClass::Struct {
+        return Err(systems.damaged("they do not lie in a record"));
+    }
+    for name in field_names(&mut systems, meter)? {
+        let system = matrix(Element::read(&mut systems)?)?;
+        if name == SYSTEM {
+            return wrapped(system, meter);
+        }
+    }
+    Err(systems.damaged("there are none of MATLAB's own classes"))
+}
+
+/// The objects within a `FileWrapper__`.
+fn wrapped(wrapper: Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Subsystem, VariableFault> {
+    let mut wrapper = wrapper;
+    let opaque = Header::read(&mut wrapper, meter)?.class == ArrayClass::Opaque;
+    let (system, class) = (Element::read(&mut wrapper)?.name()?, Element::read(&mut wrapper)?.name()?);
+    if !opaque || system != SYSTEM || class != WRAPPER {
+        return Err(wrapper.damaged("they do not lie in a FileWrapper__"));
+    }
+    let mut contents = matrix(Element::read(&mut wrapper)?)?;
+    let header = Header::read(&mut contents, meter)?;
+    if header.class != ArrayClass::Cell {
+        return Err(contents.damaged("they do not lie in cells"));
+    }
+    let trail = FieldPath::start(WRAPPER);
+    let arrays = Arrays { meter, objects: Err("it lies in the objects of the file") };
+    let (mut cells, mut words) = (Vec::new(), Vec::new());
+    for at in 0..header.count {
+        let cell = contents;
+        let value = arrays.inner(&mut contents, &trail.step(Step::Cell(at))?)?;
+        words.extend(exact(cell, &value, meter)?.map(|words| (at, words)));
+        meter.take(1, 2 * size_of::<Value>() as u64, "")?;
+        cells.push(value);
+    }
+    Ok(Subsystem::new(cells)?.with_long_words(words))
+}
+
+/// The numbers of a cell to the last digit, if they are whole numbers of 64 bits.
+fn exact(cell: Cursor<'_>, value: &Value, meter: &MemoryBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
+    if !matches!(value, Value::Array(array) if !array.is_empty()) {
+        return Ok(None);
+    }
+    let mut cell = cell;
+    let mut contents = Element::read(&mut cell)?.data;
+    let header = Header::read(&mut contents, meter)?;
+    if header.long_words { long_words(&Element::read(&mut contents)?, meter) } else { Ok(None) }
+}
+
+// The way to a value within a variable.
+
+/// How many values may lie in one another.
+const DEEPEST: usize = 64;
+
+/// The way from a variable to a value in it, one step at a time.
+#[derive(Clone, Copy, Debug)]
+struct FieldPath<'t> {
+    before: Option<&'t FieldPath<'t>>,
+    step: Step<'t>,
+    depth: usize,
+}
+
+/// One step on the way.
+#[derive(Clone, Copy, Debug)]
+enum Step<'t> {
+    /// The variable, or a way that was gone already.
+    Start(&'t str),
+    /// A field of a record.
+    Field(&'t str),
+    /// One of several records, counted from 0.
+    Record(usize),
+    /// A value in a cell array, counted from 0.
+    Cell(usize),
+}
+
+impl<'t> FieldPath<'t> {
+    /// At the variable itself.
+    fn start(name: &'t str) -> Self {
+        Self { before: None, step: Step::Start(name), depth: 0 }
+    }
+
+    /// One step on.
+    fn step(&'t self, step: Step<'t>) -> Result<FieldPath<'t>, VariableFault> {
+        if self.depth >= DEEPEST {
+            return Err(VariableFault::TooDeep { variable: self.words() });
+        }
+        Ok(FieldPath { before: Some(self), step, depth: self.depth + 1 })
+    }
+
+    /// The way as MATLAB writes it: "sys.A", "models{3}.B".
+    fn words(&self) -> String {
+        let before = self.before.map(FieldPath::words).unwrap_or_default();
+        match self.step {
+            Step::Start(name) => name.to_owned(),
+            Step::Field(name) => format!("{before}.{name}"),
+            Step::Record(at) => format!("{before}({})", at + 1),
+            Step::Cell(at) => format!("{before}{{{}}}", at + 1),
+        }
+    }
+
+    /// Says in a fault which value it concerns, unless it says so already.
+    fn name(&self, mut fault: VariableFault) -> VariableFault {
+        match &mut fault {
+            VariableFault::CutOff { variable, .. }
+            | VariableFault::Damaged { variable, .. }
+            | VariableFault::Unsupported { variable, .. }
+            | VariableFault::TooLarge { variable, .. }
+            | VariableFault::Line { variable, .. }
+            | VariableFault::TooDeep { variable } => {
+                if variable.is_empty() {
+                    *variable = self.words();
+                }
+            }
+            VariableFault::Format { .. } | VariableFault::Duplicate { .. } | VariableFault::Stopped => {}
+        }
+        fault
+    }
+}
+
+// What stands before the contents of an array: its class, its flags, its shape and its name.
+//
+// Source: "MAT-File Format", The MathWorks, "miMATRIX Format".
+
+/// The class of an array.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ArrayClass {
+    Cell,
+    Struct,
+    Object,
+    Char,
+    Sparse,
+    Float,
+    Integer,
+    FunctionHandle,
+    Opaque,
+}
+
+/// What stands before the contents of an array.
+#[derive(Clone, Debug)]
+struct Header {
+    /// Its class.
+    class: ArrayClass,
+    /// Whether its numbers are whole numbers of 64 bits without sign.
+    long_words: bool,
+    /// Whether its numbers are true and false.
+    logical: bool,
+    /// Whether its numbers have imaginary parts.
+    complex: bool,
+    /// Number of elements along each dimension, at least two; of an opaque array 1 x 1.
+    shape: Vec<usize>,
+    /// Number of elements.
+    count: usize,
+    /// Its name; that of a value in another has no letters.
+    name: String,
+}
+
+impl Header {
+    /// Reads what stands before the contents.
+    fn read(contents: &mut Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Self, VariableFault> {
+        let flags = Element::read(contents)?;
+        if flags.kind != DataKind::U32 {
+            return Err(flags.data.damaged("an array without flags"));
+        }
+        let bits = { flags.data }.u32()?;
+        let number = bits & 0xff;
+        let class = ArrayClass::of(number)
+            .ok_or_else(|| flags.data.damaged(format!("an array of the unknown class {number}")))?;
+        let shape = if class == ArrayClass::Opaque { vec![1, 1] } else { shape(contents, meter)? };
+        // Nobody who multiplies the sides shall come beyond what can be counted, not even on the way to none.
+        let sides = shape.iter().try_fold(1_usize, |product, &length| product.checked_mul(length.max(1)));
+        if sides.is_none() {
+            meter.take(u64::MAX, 1, "")?;
+        }
+        Ok(Header {
+            class,
+            count: count(&shape),
+            long_words: number == 15,
+            logical: bits & 0x0200 != 0,
+            complex: bits & 0x0800 != 0,
+            shape,
+            name: Element::read(contents)?.name()?,
+        })
+    }
+
+    /// What its numbers are.
+    fn element_kind(&self) -> ElementKind {
+        match self.class {
+            _ if self.logical => ElementKind::Logical,
+            ArrayClass::Integer => ElementKind::Integer,
+            _ => ElementKind::Float,
+        }
+    }
+}
+
+impl ArrayClass {
+    fn of(number: u32) -> Option<Self> {
+        Some(match number {
+            1 => ArrayClass::Cell,
+            2 => ArrayClass::Struct,
+            3 => ArrayClass::Object,
+            4 => ArrayClass::Char,
+            5 => ArrayClass::Sparse,
+            6 | 7 => ArrayClass::Float,
+            8..=15 => ArrayClass::Integer,
+            16 => ArrayClass::FunctionHandle,
+            17 => ArrayClass::Opaque,
+            _ => return None,
+        })
+    }
+}
+
+/// Number of elements of an array of this shape, or the most that can be counted.
+fn count(shape: &[usize]) -> usize {
+    let product = shape.iter().fold(1_usize, |product, &length| product.saturating_mul(length));
+    if shape.contains(&0) { 0 } else { product }
+}
+
+fn shape(contents: &mut Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Vec<usize>, VariableFault> {
+    let mut shape = places(&Element::read(contents)?, meter)?;
+    while shape.len() < 2 {
+        shape.push(1);
+    }
+    Ok(shape)
+}
+
+// The line of MATLAB that saves the data of an object as plain arrays.
+
+/// A line of MATLAB that writes what `variable`, an object of `class`, holds to a file as plain arrays.
+///
+/// Source: the functions' pages in the manuals of MATLAB, the Control System Toolbox and the System Identification Toolbox.
+pub fn export_line(class: &str, variable: &str) -> String {
+    let sys = if variable.is_empty() { "x" } else { variable };
+    let (assignment, names) = match class {
+        "ss" => (format!("[A,B,C,D] = ssdata({sys}); Ts = {sys}.Ts;"), "A B C D Ts"),
+        "idss" | "idgrey" => (format!("[A,B,C,D,K] = idssdata({sys}); Ts = {sys}.Ts;"), "A B C D K Ts"),
+        "tf" | "idtf" => (format!("[num,den,Ts] = tfdata({sys});"), "num den Ts"),
+        "zpk" => (format!("[z,p,k,Ts] = zpkdata({sys});"), "z p k Ts"),
+        "frd" | "idfrd" => {
+            (format!("H = {sys}.ResponseData; w = {sys}.Frequency; unit = {sys}.FrequencyUnit;"), "H w unit")
+        }
+        "iddata" => (format!("u = {sys}.InputData; y = {sys}.OutputData; Ts = {sys}.Ts;"), "u y Ts"),
+        "timeseries" => (format!("t = {sys}.Time; y = {sys}.Data;"), "t y"),
+        "string" | "categorical" => (format!("text = cellstr({sys});"), "text"),
+        "datetime" => (format!("t = posixtime({sys});"), "t"),
+        "duration" => (format!("t = seconds({sys});"), "t"),
+        "table" => (format!("data = table2struct({sys}, 'ToScalar', true);"), "data"),
+        "timetable" => (format!("data = table2struct(timetable2table({sys}), 'ToScalar', true);"), "data"),
+        "containers.Map" => (format!("names = keys({sys}); data = values({sys});"), "names data"),
+        "function_handle" => (format!("text = func2str({sys});"), "text"),
+        _ => (format!("data = struct({sys});"), "data"),
+    };
+    format!("{assignment} save out.mat {names}")
+}
+
 #[cfg(test)]
-mod tests {
-    use super::sample::{chars, doubles, element, file, matrix};
-    use super::*;
-    use crate::variables::{Array, ElementKind, Value};
+mod sample_tests;
+
+#[cfg(test)]
+mod mat_tests {
     use proptest::prelude::*;
+
+    use crate::mat::sample_tests::{chars, doubles, element, file, matrix};
+    use crate::variables::{Array, ElementKind, Value};
+
+    use super::*;
 
     const PLAIN: &[u8] = include_bytes!("../../../../tests/data/mat/scipy-5.mat");
     const PACKED: &[u8] = include_bytes!("../../../../tests/data/mat/scipy-5-packed.mat");
@@ -228,5 +519,101 @@ mod tests {
                 let _ = read(&seed[..length]);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod workspace_tests {
+    use std::io::Write;
+
+    use crate::mat::sample_tests::{Directory, doubles, file_with_objects};
+
+    use super::*;
+
+    fn file() -> Vec<u8> {
+        let directory = Directory {
+            version: 2,
+            names: &["a"],
+            classes: &[[0, 1]],
+            made: &[],
+            objects: &[[1, 0, 1]],
+            plain: &[&[]],
+        };
+        let empty = doubles("", &[0, 0], &[]);
+        file_with_objects(&[], Some(&[directory.cell(), empty.clone(), empty]))
+    }
+
+    fn read(bytes: &[u8], at: usize) -> Result<Subsystem, VariableFault> {
+        objects(bytes, Some(at), ByteOrder::Little, &MemoryBudget::new(1 << 16, &|_| false))
+    }
+
+    #[test]
+    fn objects_are_read_packed_and_plain() {
+        let plain = file();
+        assert!(read(&plain, 128).is_ok());
+        let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
+        encoder.write_all(&plain[128..]).unwrap();
+        let data = encoder.finish().unwrap();
+        let tag = [15_u32, data.len() as u32].map(u32::to_le_bytes).concat();
+        assert!(read(&[&plain[..128], &tag, &data].concat(), 128).is_ok());
+    }
+
+    #[test]
+    fn objects_that_lie_elsewhere_are_not_found() {
+        let plain = file();
+        for at in [0, 8, 136, plain.len(), usize::MAX] {
+            assert!(read(&plain, at).is_err(), "{at}");
+        }
+    }
+}
+
+#[cfg(test)]
+mod trail_tests {
+    use super::*;
+
+    #[test]
+    fn the_way_is_written_as_in_matlab() {
+        let start = FieldPath::start("models");
+        let cell = start.step(Step::Cell(2)).unwrap();
+        let record = cell.step(Step::Record(0)).unwrap();
+        assert_eq!(record.step(Step::Field("B")).unwrap().words(), "models{3}(1).B");
+    }
+
+    #[test]
+    fn the_first_name_stays() {
+        let fault = VariableFault::TooDeep { variable: String::new() };
+        let named = FieldPath::start("a").name(fault);
+        assert_eq!(FieldPath::start("b").name(named), VariableFault::TooDeep { variable: "a".to_owned() });
+    }
+
+    #[test]
+    fn the_way_ends() {
+        fn deeper(trail: &FieldPath<'_>) -> VariableFault {
+            trail.step(Step::Cell(0)).map_or_else(|fault| fault, |next| deeper(&next))
+        }
+        assert!(matches!(deeper(&FieldPath::start("a")), VariableFault::TooDeep { .. }));
+    }
+}
+
+#[cfg(test)]
+mod header_tests {
+    use super::*;
+
+    #[test]
+    fn an_array_with_a_side_of_none_has_no_elements_however_long_the_others_are() {
+        assert_eq!(count(&[usize::MAX, usize::MAX, 0]), 0);
+        assert_eq!(count(&[3, 4]), 12);
+        assert_eq!(count(&[usize::MAX, 2]), usize::MAX);
+    }
+}
+
+#[cfg(test)]
+mod export_line_tests {
+    use super::*;
+
+    #[test]
+    fn a_state_space_model_is_saved_as_its_matrices() {
+        let line = "[A,B,C,D] = ssdata(sys); Ts = sys.Ts; save out.mat A B C D Ts";
+        assert_eq!(export_line("ss", "sys"), line);
     }
 }

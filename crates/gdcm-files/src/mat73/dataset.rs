@@ -1,11 +1,9 @@
 //! The elements of a dataset, read within limits.
 
-use hdf5_pure::{Dataset, Datatype};
+use hdf5_pure::{Chunk, ChunkIndex, Dataset, Datatype, DatatypeByteOrder, EnumMember, FloatingPointLayout};
 
-use super::chunks;
-use super::fault::{damaged, fault};
-use super::number_type::NumberType;
-use crate::places::{Places, count};
+use crate::mat73::{damaged, fault};
+use crate::strides::{NumberClass, Places, StoredNumber, count};
 use crate::variables::{Array, ElementKind, MemoryBudget, VariableFault};
 
 /// Whether the elements run as MATLAB or as C keeps them.
@@ -45,7 +43,7 @@ impl Elements {
             sides.iter().map(|&side| usize::try_from(side).ok()).collect::<Option<_>>().ok_or_else(too_many)?;
         let elements = count(&sides).ok_or_else(too_many)?;
         meter.take(elements as u64, size, path)?;
-        chunks::check(dataset, &sides, size, path, meter)?;
+        check(dataset, &sides, size, path, meter)?;
         let bytes = dataset.read_raw().map_err(failed)?;
         let (shape, size) = (matrix_shape(sides, order), usize::try_from(size).map_err(|_| too_many())?);
         let none = bytes.is_empty() && elements == 1;
@@ -110,4 +108,133 @@ fn matrix_shape(mut sides: Vec<usize>, order: Order) -> Vec<usize> {
         [columns] => vec![1, columns],
         _ => sides,
     }
+}
+
+// Chunks, in which datasets are packed.
+
+/// What the library keeps for each chunk of a dataset while it reads \[bytes\].
+const CHUNK: u64 = 128;
+/// What no filter makes a chunk longer by, beyond twice its length \[bytes\].
+const OVERHEAD: u64 = 4096;
+
+/// Counts what reading a dataset chunk by chunk takes, one chunk unpacked and what is kept of each, and finds out whether its chunks
+/// can be as they claim: the library takes memory for what they claim, and adds up their places, without asking.
+pub(super) fn check(
+    dataset: &Dataset,
+    sides: &[usize],
+    size: u64,
+    path: &str,
+    meter: &MemoryBudget<'_>,
+) -> Result<(), VariableFault> {
+    let failed = |error| fault(&error, path);
+    let Some(shape) = dataset.chunk_shape().map_err(failed)? else { return Ok(()) };
+    if shape.contains(&0) || shape.len() != sides.len() {
+        return Err(damaged(path, "the chunks have no size"));
+    }
+    let elements = shape.iter().copied().fold(1, u64::saturating_mul);
+    let along = |(&side, &chunk): (&usize, &u64)| (side as u64).div_ceil(chunk);
+    let most = sides.iter().zip(&shape).map(along).fold(1, u64::saturating_mul);
+    meter.take(elements, size, path)?;
+    meter.take(most, CHUNK, path)?;
+    let index = dataset.chunk_index().map_err(failed)?;
+    if index == Some(ChunkIndex::BTreeV2) {
+        let (what, remedy) = ("a dataset that can grow in two directions", "write it with a shape that is fixed");
+        let (what, remedy) = (what.to_owned(), remedy.to_owned());
+        return Err(VariableFault::Unsupported { variable: path.to_owned(), what, remedy });
+    }
+    let longest = elements.saturating_mul(size).saturating_mul(2).saturating_add(OVERHEAD);
+    let chunks = dataset.chunks().map_err(failed)?;
+    if chunks.iter().any(|chunk| chunk.storage_size > longest) {
+        return Err(damaged(path, "a chunk is longer than it can be"));
+    }
+    // The other indices do not store places, they count them.
+    if index == Some(ChunkIndex::BTreeV1)
+        && (chunks.len() as u64 > most || chunks.iter().any(|chunk| outside(chunk, sides)))
+    {
+        return Err(damaged(path, "a chunk lies outside the dataset"));
+    }
+    Ok(())
+}
+
+fn outside(chunk: &Chunk, sides: &[usize]) -> bool {
+    chunk.offset.iter().zip(sides).any(|(&offset, &side)| offset >= side as u64)
+}
+
+// Types of datasets whose elements are numbers.
+
+/// Binary16 of IEEE 754, as h5py writes numpy's float16.
+const HALF: FloatingPointLayout = FloatingPointLayout {
+    bit_offset: 0,
+    bit_precision: 16,
+    exponent_location: 10,
+    exponent_size: 5,
+    mantissa_location: 0,
+    mantissa_size: 10,
+    exponent_bias: 15,
+};
+
+/// A type of numbers, real or complex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct NumberType {
+    pub(super) number: StoredNumber,
+    /// Where the real part, or the number, begins in an element \[bytes\].
+    pub(super) re: usize,
+    /// Where the imaginary part does.
+    pub(super) im: Option<usize>,
+}
+
+impl NumberType {
+    /// The numbers that a dataset's type stands for, if it does.
+    pub(super) fn of(datatype: &Datatype) -> Option<Self> {
+        let Datatype::Compound { members, size } = datatype else {
+            return Some(Self { number: number(datatype)?, re: 0, im: None });
+        };
+        // MATLAB writes complex numbers as real and imag, h5py as r and i.
+        let [re, im] = members.as_slice() else { return None };
+        if !matches!((re.name.as_str(), im.name.as_str()), ("real", "imag") | ("r", "i")) {
+            return None;
+        }
+        let part = number(&re.datatype).filter(|part| number(&im.datatype) == Some(*part))?;
+        let inside = |offset: u64| usize::try_from(offset).ok().filter(|offset| offset + part.size() <= *size as usize);
+        Some(Self { number: part, re: inside(re.byte_offset)?, im: Some(inside(im.byte_offset)?) })
+    }
+}
+
+fn number(datatype: &Datatype) -> Option<StoredNumber> {
+    let (class, size, order) = match datatype {
+        Datatype::FixedPoint { size, byte_order, layout } => {
+            let whole = layout.bit_offset == 0 && u32::from(layout.bit_precision) == size.checked_mul(8)?;
+            let class = if layout.signed { NumberClass::Signed } else { NumberClass::Unsigned };
+            (whole.then_some(class)?, size, byte_order)
+        }
+        Datatype::FloatingPoint { size, byte_order, layout } => {
+            let ieee = match size {
+                2 => HALF,
+                4 => FloatingPointLayout::IEEE754_BINARY32,
+                _ => FloatingPointLayout::IEEE754_BINARY64,
+            };
+            ((*layout == ieee).then_some(NumberClass::Float)?, size, byte_order)
+        }
+        Datatype::Enumeration { base_type, members, .. } => {
+            let base = number(base_type)?;
+            return if truths(members) {
+                StoredNumber::new(NumberClass::Logical, base.size(), false)
+            } else {
+                Some(base)
+            };
+        }
+        _ => return None,
+    };
+    let big_endian = match order {
+        DatatypeByteOrder::LittleEndian => false,
+        DatatypeByteOrder::BigEndian => true,
+        DatatypeByteOrder::Vax => return None,
+    };
+    StoredNumber::new(class, *size as usize, big_endian)
+}
+
+/// h5py writes truths as an enumeration of these two names.
+fn truths(members: &[EnumMember]) -> bool {
+    let names: Vec<_> = members.iter().map(|member| member.name.as_str()).collect();
+    names == ["FALSE", "TRUE"]
 }

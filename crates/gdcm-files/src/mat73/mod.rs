@@ -10,35 +10,22 @@
 //! columns; they come out transposed.) Groups become structs. Members of groups come in the order of their names, unless MATLAB says
 //! otherwise; symbolic links, to other files too, are passed over.
 
-mod chunks;
-mod compound;
 mod dataset;
-mod empty;
-mod fault;
-mod group;
-mod marks;
-mod number_type;
-mod objects;
-mod opened;
-mod rationed;
-mod reader;
-mod sparse;
-mod text;
+mod values;
 
-pub use objects::{FileWrapper, ObjectDecoder};
+use std::collections::HashMap;
+use std::sync::atomic::{AtomicU64, Ordering};
 
-use self::objects::Objects;
-use self::opened::Opened;
-use self::reader::Reader;
-use crate::variables::{MemoryBudget, Variable, VariableFault};
+use hdf5_pure::{
+    AttrValue, Dataset, Datatype, Error, File, FileAccessProperties, FormatError, Group, MetadataCacheConfig, Object,
+    ReferenceType, Source, is_hdf5_bytes,
+};
 
-/// Reads all variables of a MATLAB 7.3 file or a plain HDF5 file; objects of MATLAB's classes stay
-/// [`Value::Opaque`](crate::variables::Value::Opaque).
-#[cfg(test)]
-fn read(bytes: &[u8], meter: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
-    let opened = Opened::new(bytes, meter)?;
-    Reader { meter, objects: &Objects::Opaque("objects of classes are not read") }.variables(&opened.root())
-}
+use crate::mat73::dataset::{Elements, Order};
+use crate::mat73::values::{Objects, Sparse, empty, records, rows, strings};
+use crate::variables::{self, CellArray, ElementKind, MemoryBudget, StructArray, Value, Variable, VariableFault};
+
+pub use crate::mat73::values::{FileWrapper, ObjectDecoder};
 
 /// Reads all variables, and objects of MATLAB's classes by `decoder`, which is made of the part of the file in which they lie.
 pub fn read_with_objects<'d>(
@@ -51,10 +38,397 @@ pub fn read_with_objects<'d>(
     Reader { meter, objects: &objects }.variables(&opened.root())
 }
 
+// Values as datasets and groups hold them, one within another.
+
+/// How many values may lie in one another.
+const DEEPEST: usize = 64;
+/// What a value takes besides its elements while it is read: the library's view of its header, and the value itself \[bytes\].
+const HEADER: u64 = 1024;
+
+/// Reads values within the limits of a meter.
+struct Reader<'r> {
+    meter: &'r MemoryBudget<'r>,
+    objects: &'r Objects<'r>,
+}
+
+impl Reader<'_> {
+    /// The variables that lie in the outermost group.
+    fn variables(&self, root: &Group) -> Result<Vec<Variable>, VariableFault> {
+        let mut variables = Vec::new();
+        for (name, object) in members(root, "", self.meter)? {
+            // What other variables refer to.
+            if name != "#refs#" && name != "#subsystem#" {
+                let value = self.value(&object, &name, 0)?;
+                variables.push(Variable { name, value });
+            }
+        }
+        Ok(variables)
+    }
+
+    /// The value of a dataset or group; `path` is what faults call it.
+    fn value(&self, object: &Object, path: &str, depth: usize) -> Result<Value, VariableFault> {
+        if depth >= DEEPEST {
+            return Err(VariableFault::TooDeep { variable: path.to_owned() });
+        }
+        self.meter.take(1, HEADER, path)?;
+        let value = match object {
+            Object::Dataset(dataset) => self.dataset(dataset, path, depth),
+            Object::Group(group) => group_value(self, group, path, depth),
+            _ => Ok(unread("an HDF5 object", "it is neither a dataset nor a group")),
+        };
+        match value {
+            // The other variables can be read all the same.
+            Err(VariableFault::Unsupported { what, remedy, .. }) => Ok(unread(&what, &remedy)),
+            value => value,
+        }
+    }
+
+    fn dataset(&self, dataset: &Dataset, path: &str, depth: usize) -> Result<Value, VariableFault> {
+        let marks = MatlabAttributes::new(&dataset.attrs().map_err(|error| fault(&error, path))?);
+        let order = if marks.class.is_some() { Order::Columns } else { Order::Rows };
+        let elements = Elements::read(dataset, order, path, self.meter)?;
+        if marks.empty {
+            return empty(&marks, &elements, path, self.meter);
+        }
+        if marks.decode == Decode::FunctionHandle {
+            return Ok(unread("function_handle", "functions are not data"));
+        }
+        if is_reference(&elements.datatype) {
+            return self.cell(dataset, &elements, path, depth);
+        }
+        if let Some(mut array) = elements.numbers(path, self.meter)? {
+            return match (marks.decode, marks.class()) {
+                (Decode::Object, class) => self.objects.value(class, array, path, self.meter),
+                (_, "char") => Ok(Value::Text(rows(&array, path, self.meter)?)),
+                (_, "logical") => {
+                    array.kind = ElementKind::Logical;
+                    Ok(Value::Array(array))
+                }
+                _ => Ok(Value::Array(array)),
+            };
+        }
+        if let Some(texts) = strings(dataset, &elements, path, self.meter)? {
+            return Ok(Value::Text(texts));
+        }
+        let records = records(&elements, path, self.meter)?;
+        Ok(records.map_or_else(|| unread("an HDF5 dataset", "it holds neither numbers nor texts"), Value::Struct))
+    }
+
+    /// A cell for each reference.
+    fn cell(&self, dataset: &Dataset, elements: &Elements, path: &str, depth: usize) -> Result<Value, VariableFault> {
+        let objects = self.referred(dataset, path)?;
+        let mut values = Vec::with_capacity(objects.len());
+        for (index, place) in elements.places().enumerate() {
+            if let Some(object) = objects.get(place) {
+                values.push(self.value(object, &format!("{path}{{{}}}", index + 1), depth + 1)?);
+            }
+        }
+        Ok(Value::Cell(CellArray { shape: elements.shape.clone(), values }))
+    }
+
+    /// What the references of a dataset lead to, in the order of the file.
+    fn referred(&self, dataset: &Dataset, path: &str) -> Result<Vec<Object>, VariableFault> {
+        let failed = |error| fault(&error, path);
+        let elements = dataset.shape().map_err(failed)?.iter().copied().fold(1, u64::saturating_mul);
+        self.meter.take(elements, HEADER, path)?;
+        dataset.dereference().map_err(failed)
+    }
+}
+
+/// Whether the elements of a dataset are other datasets and groups.
+fn is_reference(datatype: &Datatype) -> bool {
+    matches!(datatype, Datatype::Reference { ref_type: ReferenceType::Object, .. })
+}
+
+fn unread(class: &str, why: &str) -> Value {
+    Value::Opaque { class: class.to_owned(), why: why.to_owned() }
+}
+
+// An HDF5 file that is open.
+
+/// An HDF5 file in memory, found to be whole.
+struct Opened {
+    file: File,
+}
+
+impl Opened {
+    /// Opens a file, which is copied; a user block such as MATLAB's may stand before it.
+    fn new(bytes: &[u8], meter: &MemoryBudget<'_>) -> Result<Self, VariableFault> {
+        if !is_hdf5_bytes(bytes) {
+            let found = if bytes.is_empty() { "nothing" } else { "other bytes" };
+            return Err(VariableFault::Format { expected: "a file of MATLAB 7.3 or HDF5", found: found.to_owned() });
+        }
+        meter.take(bytes.len() as u64, 1, "")?;
+        // What a cache gave out would not count.
+        let properties = FileAccessProperties::new().with_metadata_cache(MetadataCacheConfig::disabled());
+        let source = Rationed::new(bytes.to_vec());
+        let file = File::from_source_with_options(source, properties).map_err(|error| fault(&error, ""))?;
+        // Chunks at the end may be missing without any structure reaching beyond it.
+        if file.superblock().eof_address > bytes.len() as u64 {
+            return Err(VariableFault::CutOff { variable: String::new(), offset: bytes.len() as u64 });
+        }
+        Ok(Self { file })
+    }
+
+    /// The group in which everything lies.
+    fn root(&self) -> Group {
+        self.file.root()
+    }
+}
+
+// What the HDF5 library says, in the words of this program.
+
+/// The fault that an error of the library is; `path` is the variable.
+///
+/// The library does not tell where in the file it stopped.
+fn fault(error: &Error, path: &str) -> VariableFault {
+    let variable = path.to_owned();
+    match error {
+        Error::Format(FormatError::NestingDepthExceeded) => VariableFault::TooDeep { variable },
+        Error::Format(FormatError::UnexpectedEof { .. }) => damaged(path, "something lies beyond the end of the file"),
+        Error::Format(
+            FormatError::UnsupportedFilter(_)
+            | FormatError::UnsupportedVirtualLayout
+            | FormatError::UnsupportedExternalStorage
+            | FormatError::UnsupportedMessage(_)
+            | FormatError::UnsupportedFilteredHeapObject
+            | FormatError::UnsupportedVersion(_)
+            | FormatError::InvalidLayoutVersion(_)
+            | FormatError::UnsupportedZfp(_),
+        ) => {
+            // HDF5 2.0 chunks by a layout of its own where it is asked for its latest format.
+            let remedy =
+                "write it with compression gzip or none, in one file, in the format of HDF5 1.14 or earlier".to_owned();
+            VariableFault::Unsupported { variable, what: format!("a dataset of this kind ({error})"), remedy }
+        }
+        _ => damaged(path, &error.to_string()),
+    }
+}
+
+/// The bytes contradict the format.
+fn damaged(path: &str, what: &str) -> VariableFault {
+    VariableFault::Damaged { variable: path.to_owned(), what: what.to_owned(), offset: 0 }
+}
+
+// A file's bytes, of which only so many are given out.
+
+/// How often a file may be read through: headers and indices are read several times, once for each question.
+const TIMES: u64 = 16;
+/// What may be read of a small file besides \[bytes\].
+const BESIDES: u64 = 16 << 20;
+/// What a read costs at least \[bytes\].
+const LEAST: u64 = 16;
+
+/// Bytes in memory that can be read only so often.
+///
+/// The nodes of an index may lead to one another in a way that a file of a few kilobytes has more of them than can ever be
+/// visited; the library follows them all. Here it runs dry.
+struct Rationed {
+    bytes: Vec<u8>,
+    left: AtomicU64,
+}
+
+impl Rationed {
+    fn new(bytes: Vec<u8>) -> Self {
+        let left = AtomicU64::new((bytes.len() as u64).saturating_mul(TIMES).saturating_add(BESIDES));
+        Self { bytes, left }
+    }
+}
+
+impl Source for Rationed {
+    fn len(&self) -> u64 {
+        self.bytes.len() as u64
+    }
+
+    fn read_at(&self, offset: u64, buffer: &mut [u8]) -> Result<(), FormatError> {
+        let cost = (buffer.len() as u64).max(LEAST);
+        let paid = self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(cost));
+        if paid.is_err() {
+            return Err(FormatError::Source("its parts lead to one another too often".to_owned()));
+        }
+        let start = usize::try_from(offset).unwrap_or(usize::MAX);
+        let found = self.bytes.get(start..start.saturating_add(buffer.len()));
+        let end =
+            FormatError::UnexpectedEof { expected: start.saturating_add(buffer.len()), available: self.bytes.len() };
+        buffer.copy_from_slice(found.ok_or(end)?);
+        Ok(())
+    }
+}
+
+// The attributes with which MATLAB says what a group or dataset is.
+
+/// How the value of `MATLAB_object_decode` calls a function handle.
+const FUNCTION_HANDLE: u64 = 1;
+/// An object of a class made with `@` folders, stored as a struct.
+const OLD_OBJECT: u64 = 2;
+/// An object of a class made with `classdef`, stored as a reference.
+const OBJECT: u64 = 3;
+
+/// What stands for a value, by its attributes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Decode {
+    Plain,
+    FunctionHandle,
+    OldObject,
+    Object,
+}
+
+/// MATLAB's attributes of a group or dataset.
+#[derive(Clone, Debug, PartialEq)]
+struct MatlabAttributes {
+    /// Name of the class (`MATLAB_class`); none for what MATLAB did not write.
+    class: Option<String>,
+    /// The dataset holds the shape of an array without elements (`MATLAB_empty`).
+    empty: bool,
+    /// Number of rows of a sparse matrix (`MATLAB_sparse`).
+    sparse: Option<u64>,
+    /// Names of a struct's fields in their order (`MATLAB_fields`).
+    fields: Vec<String>,
+    decode: Decode,
+}
+
+impl MatlabAttributes {
+    fn new(attributes: &HashMap<String, AttrValue>) -> Self {
+        let number = |name| attributes.get(name).and_then(AttrValue::as_u64);
+        let class = attributes.get("MATLAB_class").and_then(AttrValue::as_str);
+        let fields = attributes.get("MATLAB_fields").and_then(AttrValue::as_strings);
+        Self {
+            class: class.map(str::to_owned),
+            empty: number("MATLAB_empty").is_some_and(|empty| empty != 0),
+            sparse: number("MATLAB_sparse"),
+            fields: fields.unwrap_or_default().to_vec(),
+            decode: match number("MATLAB_object_decode") {
+                Some(FUNCTION_HANDLE) => Decode::FunctionHandle,
+                Some(OLD_OBJECT) => Decode::OldObject,
+                Some(OBJECT) => Decode::Object,
+                _ => Decode::Plain,
+            },
+        }
+    }
+
+    /// The class, or nothing.
+    fn class(&self) -> &str {
+        self.class.as_deref().unwrap_or_default()
+    }
+}
+
+// Groups: structs, struct arrays, sparse matrices, and what else MATLAB keeps in them.
+
+/// What the library keeps for each member of a group while it is read \[bytes\].
+const MEMBER: u64 = 256;
+
+/// The datasets and groups in a group, in the order of their names.
+fn members(group: &Group, path: &str, meter: &MemoryBudget<'_>) -> Result<Vec<(String, Object)>, VariableFault> {
+    let failed = |error| fault(&error, path);
+    let datasets = group.iter_datasets().map_err(failed)?;
+    let groups = group.iter_groups().map_err(failed)?;
+    meter.take((datasets.len() + groups.len()) as u64, MEMBER, path)?;
+    let datasets = datasets.map(|(name, dataset)| (name, Object::Dataset(Box::new(dataset))));
+    let mut members: Vec<_> = datasets.chain(groups.map(|(name, group)| (name, Object::Group(group)))).collect();
+    members.sort_by(|(one, _), (other, _)| one.cmp(other));
+    match members.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+        Some(pair) => Err(VariableFault::Duplicate { name: within(path, &pair[0].0) }),
+        None => Ok(members),
+    }
+}
+
+/// The value of a group.
+fn group_value(reader: &Reader<'_>, group: &Group, path: &str, depth: usize) -> Result<Value, VariableFault> {
+    let marks = MatlabAttributes::new(&group.attrs().map_err(|error| fault(&error, path))?);
+    let mut members = members(group, path, reader.meter)?;
+    if let Some(rows) = marks.sparse {
+        let sparse = Sparse { rows, marks: &marks, members: &members, path, meter: reader.meter };
+        return Ok(Value::Array(sparse.filled()?));
+    }
+    match (marks.decode, marks.class()) {
+        (Decode::FunctionHandle, _) | (_, "function_handle") => {
+            return Ok(unread("function_handle", "functions are not data"));
+        }
+        (Decode::Object, class) => return Ok(unread(class, "enumerations are not read")),
+        _ => {}
+    }
+    // MATLAB says the order of fields only where it is not that of the names.
+    let order = |name: &str| marks.fields.iter().position(|field| field == name).unwrap_or(usize::MAX);
+    members.sort_by_cached_key(|(name, _)| order(name));
+    let records = if is_array(&marks, &members, path)? {
+        array(reader, &members, path, depth)?
+    } else {
+        let mut fields = Vec::with_capacity(members.len());
+        for (name, object) in members {
+            let value = reader.value(&object, &within(path, &name), depth + 1)?;
+            fields.push((name, vec![value]));
+        }
+        StructArray { shape: vec![1, 1], fields }
+    };
+    Ok(match marks.decode {
+        Decode::OldObject => Value::Object(variables::Object { class: marks.class().to_owned(), records }),
+        _ => Value::Struct(records),
+    })
+}
+
+/// Whether a struct has several records: its fields are references that are not marked as cells.
+fn is_array(marks: &MatlabAttributes, members: &[(String, Object)], path: &str) -> Result<bool, VariableFault> {
+    if marks.class.is_none() || members.is_empty() {
+        return Ok(false);
+    }
+    for (_, object) in members {
+        let Object::Dataset(dataset) = object else { return Ok(false) };
+        let failed = |error| fault(&error, path);
+        let marked = MatlabAttributes::new(&dataset.attrs().map_err(failed)?).class.is_some();
+        if marked || !is_reference(&dataset.datatype().map_err(failed)?) {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+fn array(
+    reader: &Reader<'_>,
+    members: &[(String, Object)],
+    path: &str,
+    depth: usize,
+) -> Result<StructArray, VariableFault> {
+    let mut records = StructArray { shape: Vec::new(), fields: Vec::with_capacity(members.len()) };
+    for (name, object) in members {
+        let Object::Dataset(dataset) = object else { continue };
+        let shape = Elements::read(dataset, Order::Columns, path, reader.meter)?.shape;
+        if !records.fields.is_empty() && records.shape != shape {
+            return Err(damaged(&within(path, name), "a field has not as many values as there are records"));
+        }
+        records.shape = shape;
+        records.fields.push((name.clone(), values(reader, dataset, (path, name), depth)?));
+    }
+    Ok(records)
+}
+
+/// The values of one field, one for each record.
+fn values(
+    reader: &Reader<'_>,
+    dataset: &Dataset,
+    (path, name): (&str, &str),
+    depth: usize,
+) -> Result<Vec<Value>, VariableFault> {
+    let objects = reader.referred(dataset, path)?;
+    let value = |(index, object)| reader.value(object, &format!("{path}({}).{name}", index + 1), depth + 1);
+    objects.iter().enumerate().map(value).collect()
+}
+
+fn within(path: &str, name: &str) -> String {
+    if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") }
+}
+
 #[cfg(test)]
-mod tests {
-    use super::*;
+mod mat73_tests {
     use crate::variables::{Array, CellArray, ElementKind, TextArray, Value};
+
+    use super::*;
+
+    /// Reads all variables of a MATLAB 7.3 file or a plain HDF5 file; objects of MATLAB's classes stay
+    /// [`Value::Opaque`](crate::variables::Value::Opaque).
+    fn read(bytes: &[u8], meter: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+        let opened = Opened::new(bytes, meter)?;
+        Reader { meter, objects: &Objects::Opaque("objects of classes are not read") }.variables(&opened.root())
+    }
 
     fn file(name: &str) -> Vec<u8> {
         std::fs::read(format!("{}/../../tests/data/mat73/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap()
@@ -279,5 +653,27 @@ mod tests {
                 let _ = read(&bytes);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod rationed_tests {
+    use super::*;
+
+    #[test]
+    fn a_file_can_be_read_only_so_often() {
+        let source = Rationed::new(vec![7; 1 << 20]);
+        let mut buffer = vec![0; 1 << 20];
+        for _ in 0..32 {
+            source.read_at(0, &mut buffer).unwrap();
+        }
+        assert!(matches!(source.read_at(0, &mut buffer), Err(FormatError::Source(_))));
+    }
+
+    #[test]
+    fn nothing_is_read_beyond_the_end() {
+        let source = Rationed::new(vec![1, 2, 3]);
+        assert!(source.read_at(2, &mut [0; 2]).is_err());
+        assert!(source.read_at(u64::MAX, &mut [0; 2]).is_err());
     }
 }

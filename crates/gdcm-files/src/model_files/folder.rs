@@ -7,8 +7,8 @@ use crate::file_error::FileError;
 use gdcm_core::assembly::Headings;
 use gdcm_core::message_text::sanitized_path;
 
-use super::loose_matrices::{LooseMatrix, models_of};
 use super::{FoundModels, read_file};
+use crate::model_files::found::{LooseMatrix, models_of_matrices};
 
 /// Most files that are looked at, and deepest folders inside one another.
 const MOST_FILES: usize = 20_000;
@@ -62,7 +62,7 @@ pub fn read_models(
             Err(error) => found.faults.push(error.to_string()),
         }
     }
-    let of_matrices = models_of(loose);
+    let of_matrices = models_of_matrices(loose);
     found.models.extend(of_matrices.models);
     found.faults.extend(of_matrices.faults);
     Ok(found)

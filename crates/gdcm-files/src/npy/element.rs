@@ -1,7 +1,7 @@
 //! What the elements of an array are.
 
-use super::literal::Literal;
-use crate::stored_number::{NumberClass, StoredNumber};
+use crate::strides::{NumberClass, StoredNumber};
+use crate::variables::VariableFault;
 
 /// Why elements cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -105,7 +105,7 @@ impl Element {
         let (mut fields, mut offset) = (Vec::with_capacity(list.len()), 0usize);
         for entry in list {
             let field = Field::parse(entry, offset)?;
-            let count = crate::places::count(&field.shape).ok_or_else(too_large)?;
+            let count = crate::strides::count(&field.shape).ok_or_else(too_large)?;
             let length = count.checked_mul(field.element.size()).ok_or_else(too_large)?;
             offset = offset.checked_add(length).ok_or_else(too_large)?;
             // Bytes that only fill up have no name.
@@ -160,8 +160,208 @@ pub(super) fn sides(shape: &Literal) -> Option<Vec<usize>> {
     sides.iter().map(side).collect()
 }
 
+// What stands before the elements of an array.
+
+/// What every `.npy` file begins with.
+pub(super) const MAGIC: &[u8; 6] = b"\x93NUMPY";
+
+/// The header of a `.npy` file (`numpy.lib.format`, versions 1.0 to 3.0).
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Header {
+    pub(super) element: Element,
+    pub(super) column_major: bool,
+    /// As it stands in the file: of any number of dimensions, none included.
+    pub(super) shape: Vec<usize>,
+    /// Where the elements begin \[bytes\].
+    pub(super) length: usize,
+}
+
+impl Header {
+    /// Reads the header; `name` is what errors call the array.
+    pub(super) fn parse(bytes: &[u8], name: &str) -> Result<Self, VariableFault> {
+        let (text, length) = text(bytes, name)?;
+        let damaged =
+            |what: &str| VariableFault::Damaged { variable: name.to_owned(), what: what.to_owned(), offset: 8 };
+        let Literal::Dictionary(mut entries) = Literal::parse(&text).map_err(damaged)? else {
+            return Err(damaged("the header is no dictionary"));
+        };
+        let count = entries.len();
+        let mut entry = |key: &str| {
+            let at = entries.iter().position(|(name, _)| name == key)?;
+            Some(entries.swap_remove(at).1)
+        };
+        let (Some(descr), Some(order), Some(shape), 3) =
+            (entry("descr"), entry("fortran_order"), entry("shape"), count)
+        else {
+            return Err(damaged("the header has not the keys descr, fortran_order and shape"));
+        };
+        let Literal::Truth(column_major) = order else {
+            return Err(damaged("fortran_order is neither True nor False"));
+        };
+        let shape = sides(&shape).ok_or_else(|| damaged("the shape is no tuple of whole numbers"))?;
+        let element = Element::parse(&descr).map_err(|fault| match fault {
+            ElementFault::Damaged(what) => damaged(&what),
+            ElementFault::Unsupported { what, remedy } => {
+                VariableFault::Unsupported { variable: name.to_owned(), what, remedy: remedy.to_owned() }
+            }
+        })?;
+        Ok(Self { element, column_major, shape, length })
+    }
+}
+
+/// The header's text, and where it ends.
+fn text(bytes: &[u8], name: &str) -> Result<(String, usize), VariableFault> {
+    if !bytes.starts_with(MAGIC) {
+        let found = if bytes.is_empty() { "nothing" } else { "other bytes" };
+        return Err(VariableFault::Format { expected: "an array of NumPy (.npy)", found: found.to_owned() });
+    }
+    let cut_off = || VariableFault::CutOff { variable: name.to_owned(), offset: bytes.len() as u64 };
+    let &version = bytes.get(6).ok_or_else(cut_off)?;
+    let from = match version {
+        1 => 10,
+        2 | 3 => 12,
+        _ => {
+            let what = format!("version {version} of the .npy format");
+            let remedy = "save it with numpy.save of a plain array".to_owned();
+            return Err(VariableFault::Unsupported { variable: name.to_owned(), what, remedy });
+        }
+    };
+    let digits = bytes.get(8..from).ok_or_else(cut_off)?;
+    let length = digits.iter().rev().fold(0, |length, &digit| length << 8 | usize::from(digit));
+    let end = from.saturating_add(length);
+    let text = bytes.get(from..end).ok_or_else(cut_off)?;
+    // Versions 1 and 2 are in Latin-1, whose bytes are the first characters of Unicode; 3 is in UTF-8.
+    let text = match version {
+        3 => String::from_utf8(text.to_vec()).map_err(|_| VariableFault::Damaged {
+            variable: name.to_owned(),
+            what: "the header is not UTF-8".to_owned(),
+            offset: from as u64,
+        })?,
+        _ => text.iter().copied().map(char::from).collect(),
+    };
+    Ok((text, end))
+}
+
+// The Python literals in which a header is written.
+
+/// Deeper than any header that `NumPy` writes for values this program reads.
+const DEEPEST: usize = 16;
+
+/// A value of a header: the part of Python's literals that `numpy.lib.format` writes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Literal {
+    Text(String),
+    Whole(u64),
+    Truth(bool),
+    /// A tuple or a list.
+    Sequence(Vec<Literal>),
+    /// A dictionary whose keys are texts.
+    Dictionary(Vec<(String, Literal)>),
+}
+
+impl Literal {
+    /// Reads one literal, with blanks around it and nothing else; errors say in words what is wrong.
+    pub(super) fn parse(text: &str) -> Result<Self, &'static str> {
+        let mut scanner = Scanner { rest: text };
+        let literal = scanner.value(DEEPEST)?;
+        scanner.skip_blanks();
+        if scanner.rest.is_empty() { Ok(literal) } else { Err("something follows the header's dictionary") }
+    }
+}
+
+struct Scanner<'t> {
+    rest: &'t str,
+}
+
+impl Scanner<'_> {
+    fn skip_blanks(&mut self) {
+        self.rest = self.rest.trim_start_matches([' ', '\t', '\r', '\n']);
+    }
+
+    fn take(&mut self, sign: char) -> bool {
+        self.skip_blanks();
+        let rest = self.rest.strip_prefix(sign);
+        self.rest = rest.unwrap_or(self.rest);
+        rest.is_some()
+    }
+
+    fn value(&mut self, depth: usize) -> Result<Literal, &'static str> {
+        let deeper = depth.checked_sub(1).ok_or("the header is nested too deeply")?;
+        self.skip_blanks();
+        match self.rest.chars().next() {
+            Some('\'' | '"') => Ok(Literal::Text(self.text()?)),
+            Some('0'..='9') => self.whole(),
+            Some('(') => self.sequence('(', ')', deeper),
+            Some('[') => self.sequence('[', ']', deeper),
+            Some('{') => self.dictionary(deeper),
+            Some('T' | 'F') => self.truth(),
+            Some(_) => Err("the header holds something that is no value"),
+            None => Err("the header ends too early"),
+        }
+    }
+
+    fn text(&mut self) -> Result<String, &'static str> {
+        let quote = if self.rest.starts_with('"') { '"' } else { '\'' };
+        let body = &self.rest[1..];
+        let end = body.find(quote).ok_or("a text of the header does not end")?;
+        let text = &body[..end];
+        // Escapes would stand only in names of fields that hold quotes, backslashes or control characters.
+        if text.contains('\\') {
+            return Err("the header holds an escape");
+        }
+        self.rest = &body[end + 1..];
+        Ok(text.to_owned())
+    }
+
+    fn whole(&mut self) -> Result<Literal, &'static str> {
+        let end = self.rest.find(|sign: char| !sign.is_ascii_digit()).unwrap_or(self.rest.len());
+        let (digits, rest) = self.rest.split_at(end);
+        // Python 2 wrote an L behind long numbers.
+        self.rest = rest.strip_prefix('L').unwrap_or(rest);
+        digits.parse().map(Literal::Whole).map_err(|_| "a number of the header is too large")
+    }
+
+    fn truth(&mut self) -> Result<Literal, &'static str> {
+        for (word, truth) in [("True", true), ("False", false)] {
+            if let Some(rest) = self.rest.strip_prefix(word) {
+                self.rest = rest;
+                return Ok(Literal::Truth(truth));
+            }
+        }
+        Err("the header holds something that is no value")
+    }
+
+    fn sequence(&mut self, open: char, close: char, depth: usize) -> Result<Literal, &'static str> {
+        let mut values = Vec::new();
+        self.take(open);
+        while !self.take(close) {
+            values.push(self.value(depth)?);
+            if !self.take(',') && !self.rest.starts_with(close) {
+                return Err("the header lacks a comma");
+            }
+        }
+        Ok(Literal::Sequence(values))
+    }
+
+    fn dictionary(&mut self, depth: usize) -> Result<Literal, &'static str> {
+        let mut entries = Vec::new();
+        self.take('{');
+        while !self.take('}') {
+            let Literal::Text(key) = self.value(depth)? else { return Err("a key of the header is no text") };
+            if !self.take(':') {
+                return Err("the header lacks a colon");
+            }
+            entries.push((key, self.value(depth)?));
+            if !self.take(',') && !self.rest.starts_with('}') {
+                return Err("the header lacks a comma");
+            }
+        }
+        Ok(Literal::Dictionary(entries))
+    }
+}
+
 #[cfg(test)]
-mod tests {
+mod element_tests {
     use super::*;
 
     fn parse(descr: &str) -> Result<Element, ElementFault> {
@@ -194,5 +394,75 @@ mod tests {
         }
         let huge = "[('a', '<f8', (9223372036854775807, 3))]";
         assert!(matches!(parse(huge), Err(ElementFault::Damaged(_))));
+    }
+}
+
+#[cfg(test)]
+mod header_tests {
+    use super::*;
+
+    fn file(version: u8, text: &[u8]) -> Vec<u8> {
+        let length = (text.len() as u32).to_le_bytes();
+        let length = if version == 1 { &length[..2] } else { &length[..] };
+        [MAGIC.as_slice(), &[version, 0], length, text].concat()
+    }
+
+    #[test]
+    fn all_three_versions_are_read() {
+        let text = b"{'descr': '<f8', 'fortran_order': True, 'shape': (2, 3), }\n";
+        for version in 1..=3 {
+            let header = Header::parse(&file(version, text), "x").unwrap();
+            assert_eq!((header.column_major, header.shape), (true, vec![2, 3]));
+        }
+        assert!(matches!(Header::parse(&file(4, text), "x"), Err(VariableFault::Unsupported { .. })));
+    }
+
+    #[test]
+    fn a_header_needs_its_three_keys_and_no_other() {
+        for text in [
+            "{'descr': '<f8', 'fortran_order': True}",
+            "{'descr': '<f8', 'fortran_order': True, 'shape': (), 'more': 1}",
+            "{'descr': '<f8', 'descr': '<f8', 'shape': ()}",
+            "{'descr': '<f8', 'fortran_order': 1, 'shape': ()}",
+            "{'descr': '<f8', 'fortran_order': True, 'shape': 3}",
+            "[]",
+        ] {
+            assert!(
+                matches!(Header::parse(&file(1, text.as_bytes()), "x"), Err(VariableFault::Damaged { .. })),
+                "{text}"
+            );
+        }
+        assert!(matches!(Header::parse(&file(3, &[0xff]), "x"), Err(VariableFault::Damaged { .. })));
+        assert!(matches!(Header::parse(b"PK", "x"), Err(VariableFault::Format { .. })));
+    }
+}
+
+#[cfg(test)]
+mod literal_tests {
+    use super::*;
+
+    #[test]
+    fn a_header_of_numpy_is_read() {
+        let read =
+            Literal::parse("{'descr': [('a', '<f8', (2,))], 'fortran_order': False, 'shape': (3, 4L), }   \n").unwrap();
+        let text = |text: &str| Literal::Text(text.to_owned());
+        let field = Literal::Sequence(vec![text("a"), text("<f8"), Literal::Sequence(vec![Literal::Whole(2)])]);
+        let expected = Literal::Dictionary(vec![
+            ("descr".to_owned(), Literal::Sequence(vec![field])),
+            ("fortran_order".to_owned(), Literal::Truth(false)),
+            ("shape".to_owned(), Literal::Sequence(vec![Literal::Whole(3), Literal::Whole(4)])),
+        ]);
+        assert_eq!(read, expected);
+    }
+
+    #[test]
+    fn whatever_else_python_knows_is_refused() {
+        for text in
+            ["", "{", "{'a' 1}", "(1 2)", "-1", "1e3", "{1: 2}", "'a", "__import__('os')", "True1", "() ()", "'\\x00'"]
+        {
+            assert!(Literal::parse(text).is_err(), "{text}");
+        }
+        assert!(Literal::parse(&"(".repeat(100_000)).is_err());
+        assert!(Literal::parse("99999999999999999999999").is_err());
     }
 }

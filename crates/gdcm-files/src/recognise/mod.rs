@@ -4,18 +4,17 @@
 //! and denominators; zeros, poles and gains. Groups are structs, objects of MATLAB, the variables of a file beside one another, and
 //! all of these inside structs, cells and arrays.
 
-mod descriptor;
-pub(super) mod labels;
-mod matrix;
 pub(super) mod record;
-mod response;
-mod search;
 mod state_space;
-mod transfer_function;
+
+use std::f64::consts::TAU;
 
 use gdcm_core::assembly::FoundModel;
+use gdcm_core::dataset::{Estimate, ModelDraft, Origin, Provenance, ResponseArray, ResponseDraft, Timing};
 
-use super::variables::Variable;
+use crate::recognise::record::{Record, array_of, facts_of, inputs_of, list_of, matrix_of, outputs_of, texts_of};
+use crate::recognise::state_space::{is_state_space, is_transfer_function, state_spaces, transfer_function};
+use crate::variables::{Array, StructArray, Value, Variable};
 
 /// Deepest nesting that is searched for models.
 const DEEPEST: usize = 16;
@@ -33,5 +32,339 @@ pub(super) struct Recognised {
 
 /// Every model among the variables of a file.
 pub(super) fn recognise(variables: &[Variable]) -> Recognised {
-    search::search(variables)
+    search(variables)
+}
+
+// Where in a file models are.
+
+/// Every model among variables: first what they are together, then each by itself, inside out.
+pub(super) fn search(variables: &[Variable]) -> Recognised {
+    let mut found = Recognised::default();
+    let together = Record::of_variables(variables);
+    found.take(&together, "");
+    found.take_suffixed(variables);
+    let is_alone = found.models.is_empty() && found.faults.is_empty();
+    for variable in variables {
+        found.descend(&variable.name, &variable.value, DEEPEST);
+        if is_alone && array_of(&variable.value).is_some() {
+            found.passed_over.push(format!("{}: {}", variable.name, variable.value.words()));
+        }
+    }
+    found
+}
+
+impl Recognised {
+    /// Takes the model that fields are, if they are one; gives whether they are.
+    fn take(&mut self, record: &Record<'_>, variable: &str) -> bool {
+        let models = if is_state_space(record) {
+            state_spaces(record, variable)
+        } else if is_response(record) {
+            vec![response(record, variable)]
+        } else if is_transfer_function(record) {
+            vec![transfer_function(record, variable)]
+        } else {
+            return false;
+        };
+        for model in models {
+            self.add(variable, model);
+        }
+        true
+    }
+
+    fn add(&mut self, variable: &str, model: Result<FoundModel, String>) {
+        let at = if variable.is_empty() { String::new() } else { format!("{variable}: ") };
+        match model {
+            Ok(model) => self.models.push(model),
+            Err(reason) => self.faults.push(format!("{at}{reason}")),
+        }
+    }
+
+    /// Matrices of several models beside one another: `A_nom, B_nom, ...`, `A1, B1, ...`.
+    fn take_suffixed(&mut self, variables: &[Variable]) {
+        let suffixes =
+            variables.iter().filter_map(|variable| variable.name.strip_prefix('A')).filter(|suffix| !suffix.is_empty());
+        for suffix in suffixes {
+            let letters = ["A", "B", "C", "D", "E"];
+            let renamed: Vec<Variable> = letters
+                .iter()
+                .filter_map(|letter| {
+                    let found = variables.iter().find(|variable| variable.name == format!("{letter}{suffix}"))?;
+                    let is_matrix = matrix_of(letter, &found.value).is_ok();
+                    is_matrix.then(|| Variable { name: (*letter).to_owned(), value: found.value.clone() })
+                })
+                .collect();
+            if renamed.len() >= 3 && is_state_space(&Record::of_variables(&renamed)) {
+                // Labels beside them are of all.
+                let labels = variables.iter().filter(|variable| !letters.contains(&variable.name.as_str())).cloned();
+                let together: Vec<Variable> = renamed.into_iter().chain(labels).collect();
+                self.take(&Record::of_variables(&together), suffix.trim_start_matches('_'));
+            }
+        }
+    }
+
+    /// PlotStyle for models in a value, and in what it holds.
+    fn descend(&mut self, name: &str, value: &Value, deeper: usize) {
+        if deeper == 0 {
+            self.faults.push(format!("{name}: values are nested too deeply to look for models in them"));
+            return;
+        }
+        match value {
+            Value::Struct(records) => self.descend_records(name, records, None, deeper),
+            Value::Object(object) => self.descend_records(name, &object.records, Some(&object.class), deeper),
+            Value::Cell(cell) => {
+                for (index, value) in cell.values.iter().enumerate() {
+                    self.descend(&format!("{name}{{{}}}", index + 1), value, deeper - 1);
+                }
+            }
+            Value::Opaque { class, why } => self.faults.push(format!("{name} ({class}): {why}")),
+            Value::Array(_) | Value::Text(_) => {}
+        }
+    }
+
+    fn descend_records(&mut self, name: &str, records: &StructArray, class: Option<&str>, deeper: usize) {
+        let count = records.shape.iter().product::<usize>();
+        for index in 0..count {
+            let name = if count == 1 { name.to_owned() } else { format!("{name}({})", index + 1) };
+            let pages = Record::pages(records, index);
+            let mut is_model = false;
+            for page in 0..pages {
+                let name = if pages == 1 { name.clone() } else { format!("{name}(:,:,{})", page + 1) };
+                is_model |= self.take(&Record::of_struct(records, index, class, page), &name);
+            }
+            if is_model {
+                continue;
+            }
+            let record = Record::of_struct(records, index, None, 0);
+            for (field, value) in record.fields() {
+                self.descend(&format!("{name}.{field}"), value, deeper - 1);
+            }
+        }
+    }
+}
+
+// Models by their responses over frequencies.
+
+const RESPONSES: &[&str] = &["ResponseData", "Response", "H", "G", "resp", "frf"];
+const FREQUENCIES: &[&str] = &["Frequency", "omega", "omega_rad_s", "w", "freq", "frequencies"];
+const HERTZ: &[&str] = &["f_hz", "freq_hz", "frequency_hz", "f"];
+const UNITS: &[&str] = &["FrequencyUnit", "FreqUnits", "Units", "frequency_unit"];
+const COHERENCES: &[&str] = &["coherence", "coh", "gamma2", "gamma_squared", "Cxy"];
+
+/// Whether fields are those of a frequency response: complex numbers, or real and imaginary parts, beside frequencies.
+pub(super) fn is_response(record: &Record<'_>) -> bool {
+    let has_frequencies =
+        record.get(FREQUENCIES).or_else(|| record.get(HERTZ)).and_then(array_of).is_some_and(|array| array.len() > 1);
+    has_frequencies && (complex(record).is_some() || parts(record).is_some())
+}
+
+fn complex<'v>(record: &Record<'v>) -> Option<&'v Array> {
+    record.get(RESPONSES).and_then(array_of).filter(|array| array.im.is_some())
+}
+
+fn parts<'v>(record: &Record<'v>) -> Option<(&'v Array, &'v Array)> {
+    let part = |names: &[&str]| record.get(names).and_then(array_of);
+    part(&["re", "real", "Hre"]).zip(part(&["im", "imag", "Him"]))
+}
+
+/// The measured response in `record`.
+pub(super) fn response(record: &Record<'_>, variable: &str) -> Result<FoundModel, String> {
+    let (omega, hertz) = omega_of(record)?;
+    let count = omega.len();
+    let (re, im, shape) = match (complex(record), parts(record)) {
+        (Some(array), _) => (array.re.clone(), array.im.clone().unwrap_or_default(), &array.shape),
+        (None, Some((re, im))) if re.shape == im.shape => (re.re.clone(), im.re.clone(), &re.shape),
+        _ => return Err("real and imaginary parts are of different sizes".to_owned()),
+    };
+    let (outputs, inputs) = channels(shape, count)?;
+    let table = |name: &str, values: &[f64]| -> Result<ResponseArray, String> {
+        let values = in_order(values, (outputs, inputs, count));
+        match values.iter().position(|value| !value.is_finite()) {
+            Some(at) => Err(format!("{name}, frequency {}: expected a finite number", at % count + 1)),
+            None => Ok(ResponseArray { shape: [outputs, inputs, count], values }),
+        }
+    };
+    let coherence = record.get(COHERENCES).and_then(array_of).filter(|array| array.len() == re.len());
+    let coherence = coherence.map(|array| table("coherence", &array.re)).transpose()?;
+    let response = ResponseDraft {
+        re: table("response", &re)?,
+        im: table("response", &im)?,
+        omega,
+        coherence,
+        valid_bands: None,
+        estimate: Estimate::default(),
+    };
+    let variable = Some(variable.to_owned()).filter(|variable| !variable.is_empty());
+    Ok(FoundModel {
+        draft: ModelDraft {
+            name: variable.clone().unwrap_or_default(),
+            origin: Origin::Identified { method: None, order: None },
+            matrices: [None, None, None, None],
+            timing: Timing::default(),
+            response: Some(response),
+            source: Some(Provenance { variable, ..Provenance::default() }),
+            states: Vec::new(),
+            bands: None,
+        },
+        inputs: inputs_of(record, inputs),
+        outputs: outputs_of(record, outputs),
+        facts: facts_of(record),
+        notes: hertz.then(|| "frequencies in Hz".to_owned()).into_iter().collect(),
+    })
+}
+
+/// Frequencies \[rad/s\], and whether they stood in Hz.
+fn omega_of(record: &Record<'_>) -> Result<(Vec<f64>, bool), String> {
+    let unit = record
+        .get(UNITS)
+        .and_then(texts_of)
+        .and_then(|texts| texts.into_iter().next())
+        .unwrap_or_default()
+        .to_lowercase();
+    let (values, is_hertz) = match (record.get(FREQUENCIES), record.get(HERTZ)) {
+        (Some(value), _) => (list_of("frequencies", value)?, unit == "hz" || unit == "hertz"),
+        (None, Some(value)) => (list_of("frequencies", value)?, true),
+        (None, None) => return Err("frequencies are missing".to_owned()),
+    };
+    let known = unit.is_empty() || is_hertz || unit.starts_with("rad");
+    if !known {
+        return Err(format!("frequencies are in \"{unit}\"; expected rad/s or Hz"));
+    }
+    let factor = if is_hertz { TAU } else { 1.0 };
+    Ok((values.into_iter().map(|value| value * factor).collect(), is_hertz))
+}
+
+/// Outputs and inputs of an array whose last dimension runs over `count` frequencies; a single response may lie in a row or a column.
+fn channels(shape: &[usize], count: usize) -> Result<(usize, usize), String> {
+    match shape {
+        [outputs, inputs, frequencies] if *frequencies == count => Ok((*outputs, *inputs)),
+        [rows, columns] if rows * columns == count => Ok((1, 1)),
+        _ => {
+            let found = shape.iter().map(usize::to_string).collect::<Vec<_>>().join(" x ");
+            Err(format!("the response: expected outputs x inputs x {count} frequencies, found {found}"))
+        }
+    }
+}
+
+/// From the first index running fastest to the last one running fastest.
+fn in_order(values: &[f64], (outputs, inputs, count): (usize, usize, usize)) -> Vec<f64> {
+    let mut ordered = Vec::with_capacity(values.len());
+    for output in 0..outputs {
+        for input in 0..inputs {
+            ordered.extend((0..count).map(|k| values[output + outputs * (input + inputs * k)]));
+        }
+    }
+    ordered
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::variables::{Array, CellArray, ElementKind, Object, TextArray};
+
+    use super::*;
+
+    fn numbers(rows: usize, columns: usize, values: &[f64]) -> Value {
+        Value::Array(Array::matrix(rows, columns, values.to_vec()))
+    }
+
+    fn variable(name: &str, value: Value) -> Variable {
+        Variable { name: name.to_owned(), value }
+    }
+
+    fn record(fields: Vec<(&str, Value)>) -> StructArray {
+        let fields = fields.into_iter().map(|(name, value)| (name.to_owned(), vec![value])).collect();
+        StructArray { shape: vec![1, 1], fields }
+    }
+
+    fn model(gain: f64) -> Vec<(&'static str, Value)> {
+        let scalar = |value: f64| numbers(1, 1, &[value]);
+        vec![("A", scalar(-1.0)), ("B", scalar(gain)), ("C", scalar(1.0)), ("D", scalar(0.0))]
+    }
+
+    fn gains(found: &Recognised) -> Vec<(String, f64)> {
+        let gain =
+            |model: &FoundModel| (model.variable().to_owned(), model.draft.matrices[1].as_ref().unwrap()[(0, 0)]);
+        found.models.iter().map(gain).collect()
+    }
+
+    #[test]
+    fn models_are_found_in_structs_in_cells_in_struct_arrays_and_beside_one_another() {
+        let of_two = StructArray {
+            shape: vec![1, 2],
+            fields: [("A", -1.0), ("B", 3.0), ("C", 1.0), ("D", 0.0)]
+                .map(|(name, value)| (name.to_owned(), vec![numbers(1, 1, &[value]), numbers(1, 1, &[value])]))
+                .into(),
+        };
+        let in_cell = CellArray { shape: vec![1, 1], values: vec![Value::Struct(record(model(2.0)))] };
+        let nested = record(vec![("sys", Value::Struct(record(model(1.0)))), ("all", Value::Cell(in_cell))]);
+        let found = search(&[variable("c1", Value::Struct(nested)), variable("more", Value::Struct(of_two))]);
+        let expected = [("c1.sys", 1.0), ("c1.all{1}", 2.0), ("more(1)", 3.0), ("more(2)", 3.0)];
+        assert_eq!(gains(&found), expected.map(|(name, gain)| (name.to_owned(), gain)));
+        let loose: Vec<Variable> = model(4.0).into_iter().map(|(name, value)| variable(name, value)).collect();
+        assert_eq!(gains(&search(&loose)), [(String::new(), 4.0)]);
+        let suffixed: Vec<Variable> =
+            model(5.0).into_iter().map(|(name, value)| variable(&format!("{name}_nom"), value)).collect();
+        assert_eq!(gains(&search(&suffixed)), [("nom".to_owned(), 5.0)]);
+    }
+
+    #[test]
+    fn matrices_behind_one_another_are_models_and_share_what_there_is_once() {
+        let pages = Array { shape: vec![1, 1, 2], kind: ElementKind::Float, re: vec![7.0, 8.0], im: None };
+        let a = Array { shape: vec![1, 1, 2], kind: ElementKind::Float, re: vec![-1.0, -2.0], im: None };
+        let mut fields = model(0.0);
+        (fields[0].1, fields[1].1) = (Value::Array(a), Value::Array(pages));
+        let found = search(&[variable("sys", Value::Struct(record(fields)))]);
+        assert_eq!(gains(&found), [("sys(:,:,1)".to_owned(), 7.0), ("sys(:,:,2)".to_owned(), 8.0)]);
+    }
+
+    #[test]
+    fn an_object_of_matlab_keeps_its_numbers_inside_and_its_names_outside() {
+        let text = |text: &str| Value::Text(TextArray { shape: vec![1, 1], texts: vec![text.to_owned()] });
+        let lower = model(6.0).into_iter().map(|(name, value)| (name.to_lowercase(), vec![value]));
+        let ts = ("Ts".to_owned(), vec![numbers(1, 1, &[0.5])]);
+        let data = StructArray { shape: vec![1, 1], fields: lower.chain([ts]).collect() };
+        let data = Object { class: "ltipack.ssdata".to_owned(), records: data };
+        let names = CellArray { shape: vec![1, 1], values: vec![text("LAT")] };
+        let fields = vec![("InputName_", Value::Cell(names)), ("Data_", Value::Object(data))];
+        let found = search(&[variable("s", Value::Object(Object { class: "ss".to_owned(), records: record(fields) }))]);
+        assert_eq!(gains(&found), [("s".to_owned(), 6.0)]);
+        assert_eq!(found.models[0].inputs[0].name.as_deref(), Some("LAT"));
+        assert_eq!(found.models[0].draft.timing.sample_time_s, Some(0.5));
+    }
+
+    #[test]
+    fn what_looks_like_a_model_and_is_none_is_named_with_its_place() {
+        let of = |change: fn(&mut Vec<(&'static str, Value)>)| {
+            let mut fields = model(1.0);
+            change(&mut fields);
+            search(&[variable("sys", Value::Struct(record(fields)))]).faults.join("; ")
+        };
+        assert_eq!(of(|fields| fields[1].1 = numbers(2, 1, &[1.0, 1.0])), "sys: B: expected 1 x 1, found 2 x 1");
+        let not_finite = of(|fields| fields[0].1 = numbers(1, 1, &[f64::NAN]));
+        assert_eq!(not_finite, "sys: A, row 1, column 1: expected a finite number, found NaN");
+        assert!(of(|fields| fields.push(("Ts", numbers(1, 1, &[-1.0])))).contains("set Ts"));
+        assert!(of(|fields| fields.push(("InternalDelay", numbers(1, 1, &[0.1])))).contains("absorb"));
+        let opaque = Value::Opaque { class: "ss".to_owned(), why: "write A, B, C, D".to_owned() };
+        assert_eq!(search(&[variable("x", opaque)]).faults, ["x (ss): write A, B, C, D"]);
+    }
+
+    #[test]
+    fn a_response_of_several_channels_is_put_in_order() {
+        // Two outputs, one input, three frequencies: the first index runs fastest.
+        let response = Array {
+            shape: vec![2, 1, 3],
+            kind: ElementKind::Float,
+            re: vec![1.0, 10.0, 2.0, 20.0, 3.0, 30.0],
+            im: Some(vec![0.0; 6]),
+        };
+        let text = Value::Text(TextArray { shape: vec![1, 1], texts: vec!["Hz".to_owned()] });
+        let fields = vec![
+            ("ResponseData", Value::Array(response)),
+            ("Frequency", numbers(1, 3, &[1.0, 2.0, 3.0])),
+            ("FrequencyUnit", text),
+        ];
+        let found = search(&[variable("h", Value::Struct(record(fields)))]);
+        let response = found.models[0].draft.response.as_ref().unwrap();
+        assert_eq!(response.re.values, [1.0, 2.0, 3.0, 10.0, 20.0, 30.0]);
+        assert_eq!(response.omega[0], std::f64::consts::TAU);
+    }
 }

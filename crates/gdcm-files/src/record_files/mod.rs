@@ -7,32 +7,24 @@
 //!       -> records of one table apart, by a column that numbers them or where time restarts
 //! ```
 
-mod example_records;
-mod iddata;
 mod record_columns;
-mod search;
-mod timetable;
 
 use std::path::{Path, PathBuf};
 
+use gdcm_core::assembly::standard_patterns;
+use gdcm_core::records::{RecordColumn, RecordGuess, RecordSource, RecordTable, Separation};
 use sha2::{Digest, Sha256};
 
-use gdcm_core::records::{RecordColumn, RecordSource, RecordTable, Separation};
-
-use super::file_error::FileError;
-use super::model_files::contents::{Contents, contents_of};
-use super::model_files::folder::files_of;
-use super::model_files::json_value::variables_of;
-use super::model_files::{FileFormat, FolderProgress};
-use super::npy::read_npy;
-use super::source::{Source, read_bytes};
-use super::text::{NumberedText, TextTable, decode, numbered_words, read_table, sections};
-use super::variables::{MemoryBudget, Variable, VariableFault};
-use super::zip_files::visit_files;
-
-use search::Search;
-
-pub use example_records::{EXAMPLE_RECORD_CONDITIONS, example_records};
+use crate::file_error::FileError;
+use crate::model_files::folder::files_of;
+use crate::model_files::{Contents, FileFormat, FolderProgress, contents_of, variables_of};
+use crate::npy::read_npy;
+use crate::recognise::record::Record;
+use crate::record_files::record_columns::{columns_of, experiments, is_iddata, simulink_columns, timetable_columns};
+use crate::source::{Source, read_bytes};
+use crate::text::{NumberedText, TextTable, decode, numbered_words, read_table, sections};
+use crate::variables::{MemoryBudget, StructArray, Value, Variable, VariableFault};
+use crate::zip_files::visit_files;
 
 /// Memory that the columns of one file may take \[bytes\].
 const MOST_MEMORY: u64 = 1 << 30;
@@ -306,5 +298,120 @@ fn has_ending(path: &Path) -> bool {
     ENDINGS.contains(&ending.as_str())
 }
 
+// The records of the embedded example.
+
+/// The records of conditions 3 and 10 of the example: simulated sweeps and validation, one CSV each.
+const ARCHIVE: &[u8] = include_bytes!("../../../../assets/example-records-3-and-10.zip");
+/// What errors call them.
+const NAME: &str = "(embedded example records).zip";
+
+/// The conditions of the example whose records are inside the program.
+pub const EXAMPLE_RECORD_CONDITIONS: [i64; 2] = [3, 10];
+
+/// The records of a condition of the example: none but of [`EXAMPLE_RECORD_CONDITIONS`].
+pub fn example_records(condition: i64) -> Result<Vec<RecordTable>, FileError> {
+    if !EXAMPLE_RECORD_CONDITIONS.contains(&condition) {
+        return Ok(Vec::new());
+    }
+    let patterns = standard_patterns();
+    let found = records_of_bytes(ARCHIVE, NAME, MOST_MEMORY)?;
+    let is_of = |table: &RecordTable| RecordGuess::of(&table.name, &patterns).condition == Some(condition);
+    Ok(found.tables.into_iter().filter(is_of).collect())
+}
+
+// Where among variables records are.
+
+/// Deepest nesting that is searched for records.
+const DEEPEST: usize = 8;
+
+/// What was found among variables.
+#[derive(Default)]
+pub(super) struct Search {
+    pub(super) records: Vec<Columns>,
+    /// What looks like a record but cannot be taken, with its place and why.
+    pub(super) faults: Vec<String>,
+    /// What is no record, in words.
+    pub(super) passed_over: Vec<String>,
+}
+
+impl Search {
+    /// Every record among the variables of a file: what they are together, then each by itself, inside out.
+    pub(super) fn of(variables: &[Variable]) -> Self {
+        let mut search = Self::default();
+        let together = Record::of_variables(variables);
+        search.records.extend(columns_of(&together, ""));
+        for variable in variables {
+            search.descend(&variable.name, &variable.value, DEEPEST);
+        }
+        if search.records.is_empty() && search.faults.is_empty() {
+            let words = variables.iter().map(|variable| format!("{}: {}", variable.name, variable.value.words()));
+            search.passed_over.extend(words.take(20));
+        }
+        search
+    }
+
+    fn descend(&mut self, name: &str, value: &Value, deeper: usize) {
+        if deeper == 0 || self.records.len() >= MOST_RECORDS {
+            self.faults
+                .push(format!("{name}: too many values, or values nested too deeply, to look for records in them"));
+            return;
+        }
+        match value {
+            Value::Struct(records) => self.descend_records(name, records, None, deeper),
+            Value::Object(object) => self.descend_records(name, &object.records, Some(&object.class), deeper),
+            Value::Cell(cell) => {
+                let holds_records =
+                    |value: &Value| matches!(value, Value::Struct(_) | Value::Object(_) | Value::Cell(_));
+                for (index, value) in cell.values.iter().enumerate().filter(|(_, value)| holds_records(value)) {
+                    self.descend(&format!("{name}{{{}}}", index + 1), value, deeper - 1);
+                }
+            }
+            Value::Opaque { class, why } => self.faults.push(format!("{name} ({class}): {why}")),
+            Value::Array(_) | Value::Text(_) => {}
+        }
+    }
+
+    fn descend_records(&mut self, name: &str, records: &StructArray, class: Option<&str>, deeper: usize) {
+        let count = records.shape.iter().product::<usize>();
+        for index in 0..count {
+            let name = if count == 1 { name.to_owned() } else { format!("{name}({})", index + 1) };
+            let record = Record::of_struct(records, index, class, 0);
+            if is_iddata(&record) {
+                match experiments(&record, &name) {
+                    Ok(found) => self.records.extend(found),
+                    Err(why) => self.faults.push(format!("{name}: {why}")),
+                }
+                continue;
+            }
+            let found = timetable_columns(&record, &name)
+                .or_else(|| simulink_columns(&record, &name))
+                .or_else(|| columns_of(&record, &name));
+            if let Some(columns) = found {
+                self.records.push(columns);
+                continue;
+            }
+            for (field, value) in Record::of_struct(records, index, None, 0).fields() {
+                self.descend(&format!("{name}.{field}"), value, deeper - 1);
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests;
+
+#[cfg(test)]
+mod example_tests {
+    use super::*;
+
+    #[test]
+    fn conditions_three_and_ten_have_eight_sweeps_and_one_validation_each() {
+        for condition in EXAMPLE_RECORD_CONDITIONS {
+            let records = example_records(condition).unwrap();
+            let rows: Vec<usize> = records.iter().map(RecordTable::rows).collect();
+            assert_eq!(rows, [[3001; 8].as_slice(), &[3301]].concat(), "60 s and 66 s at 50 Hz");
+            assert!(records.iter().all(|record| record.columns.len() == 11 && record.named));
+        }
+        assert!(example_records(1).unwrap().is_empty());
+    }
+}

@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::recognise::labels::{label_of, texts_of};
-use crate::recognise::record::Record;
-use crate::variables::{Array, Value};
 use gdcm_core::records::{ColumnSide, RecordColumn};
 
-use super::Columns;
+use crate::recognise::record::{Record, label_of, texts_of};
+use crate::record_files::Columns;
+use crate::variables::{Array, StructArray, Value};
 
 /// Fewer samples than these beside a time are no record, and fewer than those without one.
 const FEWEST_TIMED: usize = 20;
@@ -226,4 +225,220 @@ pub(super) fn simulink_columns(record: &Record<'_>, variable: &str) -> Option<Co
         sample_time_s: None,
         notes: Vec::new(),
     })
+}
+
+// Data of MATLAB's and Octave's identification tools.
+//
+// An `iddata` object has, under these names or with an underscore behind them, `OutputData` and `InputData` (a matrix, or a cell for
+// each experiment), `Ts` or `SamplingInstants`, and names and units; Octave's control package calls them `y`, `u`, `tsam`, `outname`,
+// `inname`. A struct with the same fields is taken too.
+
+/// What one side is called in both.
+struct Side {
+    side: ColumnSide,
+    data: [&'static str; 2],
+    names: [&'static str; 2],
+    units: [&'static str; 2],
+    /// What its columns are called where they have no names.
+    letter: char,
+}
+
+const IDDATA_INPUTS: Side = Side {
+    side: ColumnSide::Input,
+    data: ["InputData", "u"],
+    names: ["InputName", "inname"],
+    units: ["InputUnit", "inunit"],
+    letter: 'u',
+};
+const IDDATA_OUTPUTS: Side = Side {
+    side: ColumnSide::Output,
+    data: ["OutputData", "y"],
+    names: ["OutputName", "outname"],
+    units: ["OutputUnit", "outunit"],
+    letter: 'y',
+};
+
+/// Whether fields are those of identification data.
+pub(super) fn is_iddata(record: &Record<'_>) -> bool {
+    let both = record.get(&["OutputData"]).is_some() && record.get(&["InputData"]).is_some();
+    record.class == Some("iddata") || both
+}
+
+/// A record for each experiment.
+pub(super) fn experiments(record: &Record<'_>, variable: &str) -> Result<Vec<Columns>, String> {
+    let domain = texts(record, &["Domain"]).and_then(|texts| texts.into_iter().next());
+    if domain.is_some_and(|domain| domain.to_lowercase().starts_with('f')) {
+        return Err("data over frequency are no record; save those over time".to_owned());
+    }
+    let outputs =
+        record.get(&IDDATA_OUTPUTS.data).ok_or("its output data cannot be read; save t, u and y as matrices")?;
+    let names = texts(record, &["ExperimentName", "expname"]).unwrap_or_default();
+    let count = parts(outputs).len();
+    let named = |index: usize| match names.get(index).filter(|name| !name.is_empty()) {
+        _ if count == 1 => variable.to_owned(),
+        Some(name) => format!("{variable}, {name}"),
+        None => format!("{variable}, experiment {}", index + 1),
+    };
+    (0..count).map(|index| experiment(record, parts(outputs)[index], index, named(index))).collect()
+}
+
+fn experiment(record: &Record<'_>, output: &Value, index: usize, variable: String) -> Result<Columns, String> {
+    let rows = samples_of(output, None).map(|samples| samples.rows);
+    let mut columns = Vec::new();
+    let instants = part_of(record, &["SamplingInstants"], index).and_then(|value| samples_of(value, rows));
+    if let Some(stamps) = instants.filter(|stamps| Some(stamps.rows) == rows && stamps.values.len() == 1) {
+        let unit = texts(record, &["TimeUnit"]).and_then(|unit| unit.into_iter().next());
+        columns.extend(
+            stamps
+                .values
+                .into_iter()
+                .map(|values| RecordColumn { unit: unit.clone(), ..RecordColumn::new("time", values) }),
+        );
+    }
+    for side in [&IDDATA_INPUTS, &IDDATA_OUTPUTS] {
+        columns.extend(side_columns(record, side, index, rows));
+    }
+    if columns.iter().any(|column| Some(column.values.len()) != rows) {
+        return Err("its inputs and outputs have different numbers of samples".to_owned());
+    }
+    let step = part_of(record, &["Ts", "tsam"], index).and_then(|value| samples_of(value, None));
+    let sample_time_s = step.and_then(|samples| samples.values.first()?.first().copied()).filter(|step| *step > 0.0);
+    Ok(Columns { variable, columns, named: true, sample_time_s, notes: Vec::new() })
+}
+
+fn side_columns(record: &Record<'_>, side: &Side, index: usize, rows: Option<usize>) -> Vec<RecordColumn> {
+    let samples = part_of(record, &side.data, index).and_then(|value| samples_of(value, rows));
+    let (names, units) = (texts(record, &side.names), texts(record, &side.units));
+    let of = |list: &Option<Vec<String>>, at: usize| list.as_ref()?.get(at).filter(|text| !text.is_empty()).cloned();
+    let columns = samples.into_iter().flat_map(|samples| samples.values).enumerate();
+    let column = |(at, values)| {
+        let name = of(&names, at).unwrap_or_else(|| format!("{}{}", side.letter, at + 1));
+        RecordColumn { unit: of(&units, at), side: Some(side.side), ..RecordColumn::new(name, values) }
+    };
+    columns.map(column).collect()
+}
+
+fn texts(record: &Record<'_>, names: &[&str]) -> Option<Vec<String>> {
+    record.get(names).and_then(texts_of)
+}
+
+/// The values of the experiments: those of a cell, or the only one.
+fn parts(value: &Value) -> Vec<&Value> {
+    match value {
+        Value::Cell(cell) => cell.values.iter().collect(),
+        other => vec![other],
+    }
+}
+
+fn part_of<'v>(record: &Record<'v>, names: &[&str], index: usize) -> Option<&'v Value> {
+    let value = record.get(names)?;
+    match value {
+        Value::Cell(cell) => cell.values.get(index),
+        other => Some(other),
+    }
+}
+
+// MATLAB's timetables and tables.
+//
+// A timetable is saved as a struct `any` with `data` (a cell for each variable), `varNames`, `varUnits` and `rowTimes`: a `duration`
+// (`millis`), a `datetime` (`data`, ms since 1970), or `origin` with `stepSize` or `sampleRate`. A table has `data`, `varnames` and
+// `props.VariableUnits`. Source: files of MATLAB R2017a to R2024a as the mat-io project describes them.
+
+const MILLISECOND: f64 = 1e-3;
+
+/// The columns of a timetable or a table, if the object is one.
+pub(super) fn timetable_columns(record: &Record<'_>, variable: &str) -> Option<Columns> {
+    match record.class? {
+        "timetable" => {
+            let inner = inner(record.get(&["any"])?)?;
+            let (names, units) = (texts_of(inner.get(&["varNames"])?)?, inner.get(&["varUnits"]).and_then(texts_of));
+            let Value::Cell(data) = inner.get(&["data"])? else { return None };
+            let mut columns = columns(&data.values, &names, units.as_deref());
+            let rows = columns.first()?.values.len();
+            let (mut sample_time_s, mut notes) = (None, Vec::new());
+            match row_times(inner.get(&["rowTimes"])?)? {
+                RowTimes::Step(step_s) => sample_time_s = Some(step_s),
+                RowTimes::Stamps(values, note) => {
+                    notes.extend(note);
+                    if values.len() == rows {
+                        let time = RecordColumn { unit: Some("s".to_owned()), ..RecordColumn::new("Time", values) };
+                        columns.insert(0, time);
+                    }
+                }
+            }
+            Some(Columns { variable: variable.to_owned(), columns, named: true, sample_time_s, notes })
+        }
+        "table" => {
+            let names = texts_of(record.get(&["varnames"])?)?;
+            let units =
+                record.get(&["props"]).and_then(inner).and_then(|props| texts_of(props.get(&["VariableUnits"])?));
+            let Value::Cell(data) = record.get(&["data"])? else { return None };
+            let columns = columns(&data.values, &names, units.as_deref());
+            let found = !columns.is_empty();
+            let variable = variable.to_owned();
+            found.then_some(Columns { variable, columns, named: true, sample_time_s: None, notes: Vec::new() })
+        }
+        _ => None,
+    }
+}
+
+fn inner(value: &Value) -> Option<Record<'_>> {
+    let records: &StructArray = match value {
+        Value::Struct(records) => records,
+        Value::Object(object) => &object.records,
+        Value::Array(_) | Value::Text(_) | Value::Cell(_) | Value::Opaque { .. } => return None,
+    };
+    Some(Record::of_struct(records, 0, None, 0))
+}
+
+/// Columns of numbers of the length of the first; variables of other kinds are left out.
+fn columns(data: &[Value], names: &[String], units: Option<&[String]>) -> Vec<RecordColumn> {
+    let mut columns: Vec<RecordColumn> = Vec::new();
+    for (index, (value, name)) in data.iter().zip(names).enumerate() {
+        let rows = columns.first().map(|column| column.values.len());
+        let Some(samples) = samples_of(value, rows).filter(|samples| rows.is_none_or(|rows| rows == samples.rows))
+        else {
+            continue;
+        };
+        let unit = units.and_then(|units| units.get(index)).filter(|unit| !unit.is_empty());
+        let is_one = samples.values.len() == 1;
+        columns.extend(samples.values.into_iter().enumerate().map(|(part, values)| {
+            let name = if is_one { name.clone() } else { format!("{name}_{}", part + 1) };
+            RecordColumn { unit: unit.cloned(), ..RecordColumn::new(name, values) }
+        }));
+    }
+    columns
+}
+
+/// When the rows of a timetable were taken.
+enum RowTimes {
+    /// At these times \[s\], of the clock or not.
+    Stamps(Vec<f64>, Option<String>),
+    /// One each so many seconds.
+    Step(f64),
+}
+
+fn row_times(value: &Value) -> Option<RowTimes> {
+    if let Some(millis) = millis_of(value) {
+        return Some(RowTimes::Stamps(millis.iter().map(|ms| ms * MILLISECOND).collect(), None));
+    }
+    let record = inner(value)?;
+    if let Some(clock) = record.get(&["data"]).and_then(|data| samples_of(data, None)) {
+        let clock = clock.values.into_iter().next()?;
+        let start = clock.iter().copied().find(|ms| ms.is_finite())?;
+        // Taken off before the factor: a clock of milliseconds since 1970 has few digits left.
+        let seconds = clock.iter().map(|ms| (ms - start) * MILLISECOND).collect();
+        return Some(RowTimes::Stamps(seconds, Some("times are of the clock, counted from the first".to_owned())));
+    }
+    let number = |value: &Value| samples_of(value, None)?.values.first()?.first().copied();
+    let by_rate = record.get(&["specifiedAsRate"]).and_then(number).is_some_and(|by_rate| by_rate != 0.0);
+    let rate = || record.get(&["sampleRate"]).and_then(number).filter(|rate| *rate > 0.0).map(|rate| 1.0 / rate);
+    let step = || record.get(&["stepSize"]).and_then(millis_of).and_then(|step| Some(step.first()? * MILLISECOND));
+    let step_s = if by_rate { rate() } else { step().or_else(rate) };
+    step_s.map(RowTimes::Step)
+}
+
+/// The milliseconds of a `duration`.
+fn millis_of(value: &Value) -> Option<Vec<f64>> {
+    samples_of(inner(value)?.get(&["millis"])?, None)?.values.into_iter().next()
 }

@@ -204,7 +204,7 @@ fn add_responses(page: &mut Page, study: &Study, result: &ConditionAnalysis) {
 fn response_cells(study: &Study, result: &ConditionAnalysis, pair: Pair) -> [String; 11] {
     let cost = result.cost[pair];
     let is_defined = result.wanted_gain(pair).is_some();
-    let treated = match (is_defined, result.held()[pair], study.settings.fitted[pair]) {
+    let treated = match (is_defined, result.held()[pair], !study.settings.ignored[pair]) {
         (false, ..) => "no G, no D",
         (true, true, _) => "held",
         (true, false, true) => "fitted",

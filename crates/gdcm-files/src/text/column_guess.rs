@@ -5,8 +5,8 @@ use super::frequency_columns::{
     FrequencyColumn, FrequencyColumns, FrequencyUnit, MagnitudeUnit, PhaseUnit, RecognisedResponse, ResponseParts,
     unrecognised,
 };
-use super::frequency_values::is_increasing;
 use super::response_columns::{ResponseColumns, magnitude_by_numbers, phase_by_numbers};
+use crate::text::frequency_columns::is_increasing;
 use crate::variables::VariableFault;
 
 /// Decides by the numbers: the first column (or the one named so) is the frequency, pairs of columns behind it are responses, with a

@@ -1,12 +1,12 @@
 //! Columns of a table put together to responses, by what their names and units say.
 
-use super::column_meaning::{ColumnMeaning, KnownUnit, Quantity};
 use super::columns::TextTable;
 use super::frequency_columns::{
     FrequencyColumn, FrequencyUnit, MagnitudeUnit, PhaseUnit, RecognisedResponse, ResponseParts, unrecognised,
 };
-use super::frequency_values::{complex_at, is_increasing};
-use super::response_label::ResponseLabel;
+use crate::text::frequency_columns::ResponseLabel;
+use crate::text::frequency_columns::{ColumnMeaning, KnownUnit, Quantity};
+use crate::text::frequency_columns::{complex_at, is_increasing};
 use crate::variables::VariableFault;
 
 /// What the names and units of the columns say.

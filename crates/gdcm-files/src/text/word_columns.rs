@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use super::cell_number::cell_number;
-use super::clock::clock_s;
-use super::layout::comment;
-use super::lines::lines;
 use super::separator::Separator;
+use crate::text::columns::comment;
+use crate::text::separator::cell_number;
+use crate::text::separator::clock_s;
+use crate::text::separator::lines;
 use crate::variables::{MemoryBudget, VariableFault};
 
 /// Lines that are looked at before the columns are taken as known.

@@ -2,13 +2,9 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::super::opaque::unread_because;
-use super::super::trail::{FieldPath, Step};
-use super::directory::{Content, Property};
-use super::enumeration::is_enumeration;
-use super::packed_text::packed_text;
-use super::weight::own_weight;
-use super::{Reference, Subsystem};
+use super::{Content, Property, Reference, Subsystem, is_enumeration, own_weight, packed_text};
+use crate::mat::matrix::unread_because;
+use crate::mat::{FieldPath, Step};
 use crate::variables::{
     Array, CellArray, ElementKind, MemoryBudget, Object, StructArray, TextArray, Value, VariableFault,
 };

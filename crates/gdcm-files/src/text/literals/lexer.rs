@@ -49,7 +49,7 @@ impl<'t> Lexer<'t> {
 
     /// The text from a place on, for a message.
     pub(super) fn excerpt(&self, place: Place) -> String {
-        super::super::lines::excerpt(self.text.get(place.start..).unwrap_or_default())
+        crate::text::separator::excerpt(self.text.get(place.start..).unwrap_or_default())
     }
 
     /// The next token; the end of the text comes again and again.
@@ -252,7 +252,7 @@ impl<'t> Lexer<'t> {
         self.at += end + tail;
         match value {
             Ok(value) if tail == 0 => TokenKind::Number { value, imaginary },
-            _ => TokenKind::Bad(format!("\"{}\" is no number", super::super::lines::excerpt(&rest[..end + tail]))),
+            _ => TokenKind::Bad(format!("\"{}\" is no number", crate::text::separator::excerpt(&rest[..end + tail]))),
         }
     }
 }

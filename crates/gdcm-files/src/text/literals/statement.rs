@@ -4,7 +4,7 @@ use super::ahead::Ahead;
 use super::expression::Parser;
 use super::token::{Place, TokenKind};
 use super::trouble::Trouble;
-use crate::text::lines::refuse_binary;
+use crate::text::separator::refuse_binary;
 use crate::variables::{MemoryBudget, Value, Variable, VariableFault};
 
 /// Words that begin statements which are not run.

@@ -66,7 +66,7 @@ impl Token<'_> {
     pub(super) fn words(&self) -> String {
         match &self.kind {
             TokenKind::Number { value, .. } => format!("the number {value}"),
-            TokenKind::Name(name) => format!("\"{}\"", super::super::lines::excerpt(name)),
+            TokenKind::Name(name) => format!("\"{}\"", crate::text::separator::excerpt(name)),
             TokenKind::Text { .. } => "a text".to_owned(),
             TokenKind::Sign(sign) => format!("\"{sign}\""),
             TokenKind::NewLine => "the end of the line".to_owned(),

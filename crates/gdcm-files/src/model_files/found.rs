@@ -1,0 +1,284 @@
+//! The models of a dataset of this program, to be put together with others.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use gdcm_core::assembly::{ChannelLabel, Facts, FoundModel};
+use gdcm_core::dataset::{
+    BandsDraft, BundleKind, Channel, Condition, ConditionRecord, Dataset, Dynamics, Estimate, Model, ModelBands,
+    ModelDraft, Origin, PairTable, Provenance, ResponseArray, ResponseDraft, Timing,
+};
+
+use crate::recognise::{Recognised, recognise};
+use crate::text::{FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable, says_quantity};
+use crate::variables::{Value, Variable, VariableFault};
+
+/// Every model, with what the dataset says about it and its condition; `name` is the name of the dataset's file, relative to what was
+/// asked for.
+pub(super) fn models_of_dataset(dataset: &Dataset, name: &str) -> Vec<FoundModel> {
+    let mut models = Vec::new();
+    for condition in dataset.conditions() {
+        let facts = facts(condition, name);
+        for kind in BundleKind::BOTH {
+            let found = |model: &Model| found(dataset, facts.clone(), (condition, kind), model);
+            models.extend(condition.bundle(kind).iter().map(found));
+        }
+    }
+    models
+}
+
+/// What is said of the condition; its records' files are relative to the dataset's folder, and become relative to what was asked for.
+fn facts(condition: &Condition, name: &str) -> Facts {
+    let state = condition.flight_state();
+    let beside = |record: &ConditionRecord| {
+        let file = match name.rsplit_once('/') {
+            Some((folder, _)) if !Path::new(&record.file).is_absolute() => format!("{folder}/{}", record.file),
+            _ => record.file.clone(),
+        };
+        ConditionRecord { file, ..record.clone() }
+    };
+    Facts {
+        condition: Some(state.id.0),
+        airspeed_kt: Some(state.airspeed_kt),
+        altitude_ft: state.altitude_ft,
+        mass_kg: state.mass_kg,
+        records: condition.records().iter().map(beside).collect(),
+    }
+}
+
+fn found(dataset: &Dataset, facts: Facts, (condition, kind): (&Condition, BundleKind), model: &Model) -> FoundModel {
+    let state = condition.flight_state();
+    let label = |channel: &Channel| ChannelLabel { name: Some(channel.name.clone()), unit: Some(channel.unit.clone()) };
+    let (matrices, timing, response) = match &model.dynamics {
+        Dynamics::StateSpace(system) => {
+            let matrices = [system.a(), system.b(), system.c(), system.d()].map(|matrix| Some(matrix.clone()));
+            (matrices, system.timing().clone(), None)
+        }
+        Dynamics::Measured(response) => {
+            let array = |table: PairTable<Vec<f64>>| {
+                let shape = [table.outputs(), table.inputs(), response.omega().len()];
+                ResponseArray { shape, values: table.pairs().flat_map(|pair| table[pair].clone()).collect() }
+            };
+            let draft = ResponseDraft {
+                omega: response.omega().to_vec(),
+                re: array(response.values().map(|_, values| values.iter().map(|value| value.re).collect())),
+                im: array(response.values().map(|_, values| values.iter().map(|value| value.im).collect())),
+                coherence: response.coherence().cloned().map(array),
+                valid_bands: None,
+                estimate: response.estimate(),
+            };
+            ([None, None, None, None], Timing::default(), Some(draft))
+        }
+    };
+    FoundModel {
+        draft: ModelDraft {
+            name: model.name.clone(),
+            origin: model.origin.clone(),
+            matrices,
+            timing,
+            response,
+            source: Some(Provenance {
+                variable: Some(format!("{}/{kind}/{}", state.id, model.name)),
+                records: model.source.as_ref().map(|source| source.records.clone()).unwrap_or_default(),
+                ..Provenance::default()
+            }),
+            states: model.states.to_vec(),
+            bands: model.bands.as_deref().map(bands_draft),
+        },
+        inputs: dataset.inputs().iter().map(label).collect(),
+        outputs: dataset.outputs().iter().map(label).collect(),
+        facts,
+        notes: Vec::new(),
+    }
+}
+
+fn bands_draft(bands: &ModelBands) -> BandsDraft {
+    let array = |table: &PairTable<Vec<f64>>| ResponseArray {
+        shape: [table.outputs(), table.inputs(), bands.omega().len()],
+        values: table.iter().flat_map(|(_, values)| values.iter().copied()).collect(),
+    };
+    BandsDraft { omega: bands.omega().to_vec(), sd_db: array(bands.sd_db()), sd_deg: array(bands.sd_deg()) }
+}
+
+// Matrices that have files to themselves: `A.csv`, `B.csv`, `C.csv` and `D.csv` of a folder, or `nominal_A.npy`, ….
+
+/// A matrix that has a file to itself.
+pub(super) struct LooseMatrix {
+    /// The folder and what stands before the letter: matrices of the same are one model.
+    pub(super) group: String,
+    /// The file.
+    pub(super) file: String,
+    /// SHA-256 of the file.
+    pub(super) sha256: String,
+    /// The matrix, under its letter.
+    pub(super) variable: Variable,
+}
+
+/// The letter of a file that is named as a matrix, and what stands before it: "nominal_A" is A of "nominal".
+pub(super) fn matrix_letter(stem: &str) -> Option<(char, &str)> {
+    let letter = stem.chars().last().filter(|letter| matches!(letter, 'A' | 'B' | 'C' | 'D' | 'E'))?;
+    let before = &stem[..stem.len() - 1];
+    let is_apart = before.is_empty() || before.ends_with(['_', '-', '.', ' ']);
+    is_apart.then(|| (letter, before.trim_end_matches(['_', '-', '.', ' '])))
+}
+
+impl LooseMatrix {
+    /// The only variable of a file that is named as a matrix.
+    pub(super) fn of(variables: &[Variable], file: &str) -> Option<Self> {
+        let [variable] = variables else { return None };
+        if !matches!(variable.value, Value::Array(_)) {
+            return None;
+        }
+        let (folder, name) = file.rsplit_once('/').unwrap_or(("", file));
+        let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+        let (letter, before) = matrix_letter(stem)?;
+        Some(Self {
+            group: [folder, before].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("/"),
+            file: file.to_owned(),
+            sha256: String::new(),
+            variable: Variable { name: letter.to_string(), value: variable.value.clone() },
+        })
+    }
+}
+
+/// The models that loose matrices make, each group one; its file is the folder, or what stands before the letters.
+pub(super) fn models_of_matrices(loose: Vec<LooseMatrix>) -> Recognised {
+    let mut groups: BTreeMap<String, Vec<LooseMatrix>> = BTreeMap::new();
+    for matrix in loose {
+        groups.entry(matrix.group.clone()).or_default().push(matrix);
+    }
+    let mut found = Recognised::default();
+    for (group, matrices) in groups {
+        let variables: Vec<Variable> = matrices.iter().map(|matrix| matrix.variable.clone()).collect();
+        let mut of_group = recognise(&variables);
+        let is_model = !of_group.models.is_empty() || !of_group.faults.is_empty();
+        for model in &mut of_group.models {
+            let source = model.draft.source.get_or_insert_with(Provenance::default);
+            source.file = Some(group.clone());
+            let hashes = matrices.iter().map(|matrix| format!("{} {}", matrix.file, matrix.sha256));
+            source.note = Some(format!("SHA-256 of its files: {}", hashes.collect::<Vec<_>>().join(", ")));
+        }
+        found.models.append(&mut of_group.models);
+        found.faults.extend(of_group.faults.into_iter().map(|fault| format!("{group}: {fault}")));
+        if !is_model {
+            let names: Vec<&str> = matrices.iter().map(|matrix| matrix.file.as_str()).collect();
+            found.faults.push(format!("{}: a model needs A, B and C", names.join(", ")));
+        }
+    }
+    found
+}
+
+// Frequency responses out of tables of columns.
+
+/// The responses of a table, each a model of one input and one output; a table that holds none is passed over in words.
+pub(super) fn models_of_table(table: &TextTable, file: &str) -> Result<Recognised, VariableFault> {
+    let columns = match FrequencyColumns::recognise(table) {
+        Ok(columns) => columns,
+        Err(fault) => {
+            let words = format!("{file}: {} columns of numbers; {fault}", table.columns.len());
+            return Ok(Recognised { passed_over: vec![words], ..Recognised::default() });
+        }
+    };
+    let values = columns.values(table)?;
+    let several = columns.responses.len() > 1;
+    let named = file_label(file);
+    let models = columns.responses.iter().zip(values).map(|(response, points)| {
+        let mut notes: Vec<String> = columns.notes.iter().chain(&table.notes).cloned().collect();
+        if response.coherence.is_some() {
+            notes.push("coherence taken as gamma squared".to_owned());
+        }
+        model(response, points, (several, &named), notes)
+    });
+    Ok(Recognised { models: models.collect(), ..Recognised::default() })
+}
+
+/// Output and input that the name of a file says, as its last two words: "flight_P_LAT", "frf LAT to P".
+fn file_label(file: &str) -> Option<(String, String)> {
+    let name = file.rsplit('/').next().unwrap_or(file);
+    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    let words: Vec<&str> = stem.split(['_', '-', ' ']).filter(|word| !word.is_empty()).collect();
+    // "frf-omega-re-im" says what the columns are, not whose response it is.
+    if words.iter().rev().take(2).any(|word| says_quantity(word)) {
+        return None;
+    }
+    match words.as_slice() {
+        [.., input, to, output] if to.eq_ignore_ascii_case("to") => Some(((*output).to_owned(), (*input).to_owned())),
+        [.., output, input] => Some(((*output).to_owned(), (*input).to_owned())),
+        _ => None,
+    }
+}
+
+fn model(
+    response: &RecognisedResponse,
+    points: ResponsePoints,
+    (several, file): (bool, &Option<(String, String)>),
+    notes: Vec<String>,
+) -> FoundModel {
+    let count = points.omega.len();
+    let array = |values: Vec<f64>| ResponseArray { shape: [1, 1, count], values };
+    let of_file = file.as_ref().filter(|_| !several);
+    let output = response.output.clone().or_else(|| of_file.map(|(output, _)| output.clone()));
+    let input = response.input.clone().or_else(|| of_file.map(|(_, input)| input.clone()));
+    let variable = match (several, &output, &input) {
+        (true, Some(output), Some(input)) => Some(format!("{output}/{input}")),
+        _ => None,
+    };
+    let label = |name: Option<String>| ChannelLabel { name, unit: None };
+    let draft = ResponseDraft {
+        omega: points.omega,
+        re: array(points.re),
+        im: array(points.im),
+        // Missing coherence trusts nothing.
+        coherence: points
+            .coherence
+            .map(|values| array(values.iter().map(|of| if of.is_nan() { 0.0 } else { *of }).collect())),
+        valid_bands: None,
+        estimate: Estimate::default(),
+    };
+    FoundModel {
+        draft: ModelDraft {
+            name: variable.clone().unwrap_or_default(),
+            origin: Origin::Identified { method: None, order: None },
+            matrices: [None, None, None, None],
+            timing: Timing::default(),
+            response: Some(draft),
+            source: Some(Provenance { variable, ..Provenance::default() }),
+            states: Vec::new(),
+            bands: None,
+        },
+        inputs: vec![label(input)],
+        outputs: vec![label(output)],
+        facts: Facts::default(),
+        notes,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::variables::Array;
+
+    use super::*;
+
+    fn matrix(file: &str, rows: usize, columns: usize) -> LooseMatrix {
+        let value = Value::Array(Array::matrix(rows, columns, vec![-1.0; rows * columns]));
+        LooseMatrix::of(&[Variable { name: "x".into(), value }], file).unwrap()
+    }
+
+    #[test]
+    fn matrices_of_a_folder_or_of_one_beginning_are_a_model() {
+        let files =
+            ["c1/A.csv", "c1/B.csv", "c1/C.csv", "c1/nom_A.csv", "c1/nom_B.csv", "c1/nom_C.csv", "c1/lone_A.csv"];
+        let found = models_of_matrices(files.iter().map(|file| matrix(file, 1, 1)).collect());
+        let names: Vec<&str> = found.models.iter().map(|model| model.file()).collect();
+        assert_eq!(names, ["c1", "c1/nom"]);
+        assert_eq!(found.faults, ["c1/lone_A.csv: a model needs A, B and C"]);
+    }
+
+    #[test]
+    fn a_word_that_ends_in_a_letter_is_no_matrix() {
+        assert_eq!(matrix_letter("nominal_A"), Some(('A', "nominal")));
+        assert_eq!(matrix_letter("B"), Some(('B', "")));
+        assert_eq!(matrix_letter("DATA"), None);
+        assert_eq!(matrix_letter("roll+5"), None);
+    }
+}

@@ -1,0 +1,218 @@
+//! The order of an array's elements in a file.
+
+use crate::variables::ElementKind;
+
+/// Where the elements of an array stand in a file, in the order in which this program keeps them: the first index running fastest.
+pub(crate) struct Places {
+    shape: Vec<usize>,
+    strides: Vec<usize>,
+    index: Vec<usize>,
+    place: usize,
+    left: usize,
+}
+
+impl Places {
+    /// For a file in which the last index runs fastest (row by row); none where the elements cannot be counted.
+    pub(crate) fn row_major(shape: &[usize]) -> Option<Self> {
+        let left = count(shape)?;
+        let mut strides = vec![1; shape.len()];
+        for axis in (1..shape.len()).rev() {
+            strides[axis - 1] = strides[axis] * shape[axis].max(1);
+        }
+        Some(Self::new(shape, strides, left))
+    }
+
+    /// For a file in which the first index runs fastest (column by column); none where the elements cannot be counted.
+    pub(crate) fn column_major(shape: &[usize]) -> Option<Self> {
+        let left = count(shape)?;
+        let mut strides = vec![1; shape.len()];
+        for axis in 1..shape.len() {
+            strides[axis] = strides[axis - 1] * shape[axis - 1].max(1);
+        }
+        Some(Self::new(shape, strides, left))
+    }
+
+    fn new(shape: &[usize], strides: Vec<usize>, left: usize) -> Self {
+        Self { shape: shape.to_vec(), strides, index: vec![0; shape.len()], place: 0, left }
+    }
+}
+
+/// Number of elements of an array; none beyond what can be counted.
+///
+/// Lengths beside a zero are multiplied all the same: an array of nothing with sides that cannot be multiplied is refused too.
+pub(crate) fn count(shape: &[usize]) -> Option<usize> {
+    shape.iter().try_fold(1usize, |product, &side| product.checked_mul(side.max(1)))?;
+    Some(shape.iter().product())
+}
+
+impl Iterator for Places {
+    type Item = usize;
+
+    fn next(&mut self) -> Option<usize> {
+        self.left = self.left.checked_sub(1)?;
+        let place = self.place;
+        for axis in 0..self.shape.len() {
+            self.index[axis] += 1;
+            self.place += self.strides[axis];
+            if self.index[axis] < self.shape[axis] {
+                break;
+            }
+            self.place -= self.strides[axis] * self.shape[axis];
+            self.index[axis] = 0;
+        }
+        Some(place)
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (self.left, Some(self.left))
+    }
+}
+
+impl ExactSizeIterator for Places {}
+
+// Numbers as binary files hold them.
+
+/// How the bits of a number are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum NumberClass {
+    /// True where any bit is set.
+    Logical,
+    /// Two's complement.
+    Signed,
+    /// No sign.
+    Unsigned,
+    /// IEEE 754 binary interchange formats.
+    Float,
+}
+
+/// One number in a file: how its bits are read, how many bytes it takes, and their order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct StoredNumber {
+    class: NumberClass,
+    size: usize,
+    big_endian: bool,
+}
+
+impl StoredNumber {
+    /// A number of `size` bytes, unless there is no such number.
+    pub(crate) fn new(class: NumberClass, size: usize, big_endian: bool) -> Option<Self> {
+        let sizes: &[usize] = match class {
+            NumberClass::Float => &[2, 4, 8],
+            _ => &[1, 2, 4, 8],
+        };
+        sizes.contains(&size).then_some(Self { class, size, big_endian })
+    }
+
+    /// Number of bytes.
+    pub(crate) fn size(self) -> usize {
+        self.size
+    }
+
+    /// What an array of such numbers holds.
+    pub(crate) fn kind(self) -> ElementKind {
+        match self.class {
+            NumberClass::Logical => ElementKind::Logical,
+            NumberClass::Signed | NumberClass::Unsigned => ElementKind::Integer,
+            NumberClass::Float => ElementKind::Float,
+        }
+    }
+
+    /// The number that stands at the beginning of `bytes`, with zeros for bytes that are missing; whole numbers beyond 2^53 are
+    /// rounded to the nearest float.
+    pub(crate) fn decode(self, bytes: &[u8]) -> f64 {
+        let bits = self.bits(bytes);
+        match self.class {
+            NumberClass::Logical => f64::from(u8::from(bits != 0)),
+            NumberClass::Unsigned => bits as f64,
+            NumberClass::Signed => {
+                let unused = 64 - 8 * self.size as u32;
+                ((bits << unused) as i64 >> unused) as f64
+            }
+            NumberClass::Float => match self.size {
+                2 => half(bits as u16),
+                4 => f64::from(f32::from_bits(bits as u32)),
+                _ => f64::from_bits(bits),
+            },
+        }
+    }
+
+    fn bits(self, bytes: &[u8]) -> u64 {
+        let mut eight = [0; 8];
+        for (place, &byte) in bytes.iter().take(self.size).enumerate() {
+            eight[if self.big_endian { self.size - 1 - place } else { place }] = byte;
+        }
+        u64::from_le_bytes(eight)
+    }
+}
+
+/// The value of a float of 16 bits (IEEE 754, binary16).
+fn half(bits: u16) -> f64 {
+    let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
+    let exponent = i32::from(bits >> 10 & 31);
+    let fraction = f64::from(bits & 1023);
+    sign * match exponent {
+        0 => fraction * 2f64.powi(-24),
+        31 if fraction == 0.0 => f64::INFINITY,
+        31 => f64::NAN,
+        _ => (1024.0 + fraction) * 2f64.powi(exponent - 25),
+    }
+}
+
+#[cfg(test)]
+mod places_tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_turned_into_columns() {
+        let places: Vec<_> = Places::row_major(&[2, 3]).unwrap().collect();
+        assert_eq!(places, [0, 3, 1, 4, 2, 5]);
+        let places: Vec<_> = Places::row_major(&[2, 1, 2]).unwrap().collect();
+        assert_eq!(places, [0, 2, 1, 3]);
+    }
+
+    #[test]
+    fn columns_stay_as_they_are_and_a_number_alone_has_one_place() {
+        assert!(Places::column_major(&[2, 3, 4]).unwrap().eq(0..24));
+        assert!(Places::row_major(&[]).unwrap().eq(0..1));
+        assert!(Places::row_major(&[0, 5]).unwrap().eq(0..0));
+    }
+
+    #[test]
+    fn what_cannot_be_counted_is_refused() {
+        assert!(Places::row_major(&[usize::MAX, 2]).is_none());
+        assert!(Places::column_major(&[usize::MAX, 2, 0]).is_none());
+    }
+}
+
+#[cfg(test)]
+mod stored_number_tests {
+    use super::*;
+
+    #[test]
+    fn half_floats_have_the_values_of_the_standard() {
+        // IEEE 754-2008, table 3.5: largest, smallest normal and smallest subnormal number of binary16.
+        let cases = [
+            (0x7bff, 65504.0),
+            (0x0400, 2f64.powi(-14)),
+            (0x0001, 2f64.powi(-24)),
+            (0xc000, -2.0),
+            (0x3555, 0.333251953125),
+        ];
+        for (bits, value) in cases {
+            assert_eq!(half(bits), value);
+        }
+        assert_eq!(half(0xfc00), f64::NEG_INFINITY);
+        assert!(half(0x7e00).is_nan());
+    }
+
+    #[test]
+    fn signs_and_byte_orders_are_kept() {
+        let number = |class, size, big| StoredNumber::new(class, size, big).unwrap();
+        assert_eq!(number(NumberClass::Signed, 2, true).decode(&[0xff, 0xfe]), -2.0);
+        assert_eq!(number(NumberClass::Signed, 2, false).decode(&[0xfe, 0xff]), -2.0);
+        assert_eq!(number(NumberClass::Unsigned, 4, true).decode(&[0, 0, 1, 2]), 258.0);
+        assert_eq!(number(NumberClass::Float, 4, true).decode(&[0x3f, 0x80, 0, 0]), 1.0);
+        assert_eq!(number(NumberClass::Signed, 8, false).decode(&[255; 8]), -1.0);
+        assert_eq!(StoredNumber::new(NumberClass::Float, 16, false), None);
+    }
+}

@@ -1,0 +1,210 @@
+//! The thread that answers what the study and the condition shown need, with a mailbox that keeps only the newest request.
+
+use std::io;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+use super::background_jobs::{EngineMaker, ReplySender};
+use super::fault::caught;
+use super::job_queue::CANCEL_GRACE;
+use crate::view::results::FirstResult;
+use gdcm_core::correction::{Problem, Solution};
+use gdcm_core::dataset::ConditionId;
+use gdcm_core::study::{ConditionAnalysis, ConditionFailure, Engine, Progress, Study};
+
+/// What is to be computed. All of it is shared, so that a request costs next to nothing.
+#[derive(Clone, Debug)]
+pub(super) struct Request {
+    /// Its number; the newest has the greatest.
+    pub(super) generation: u64,
+    /// The study to analyse.
+    pub(super) study: Study,
+    /// The condition shown, whose result and curves are wanted first.
+    pub(super) condition: ConditionId,
+}
+
+impl Request {
+    /// Whether it needs the same responses and distances, and the same first.
+    fn compares_the_same(&self, other: &Request) -> bool {
+        let settings = |request: &Request| (request.study.settings.band, request.study.settings.points);
+        let same_models = Arc::ptr_eq(&self.study.dataset, &other.study.dataset);
+        same_models && self.condition == other.condition && settings(self) == settings(other)
+    }
+}
+
+/// In place of the newest request's number where nothing is wanted any more.
+const NOTHING: u64 = u64::MAX;
+
+/// A proof that a job has completed.
+type Proof = (Arc<Problem>, Arc<Solution>);
+
+#[derive(Default)]
+struct Mailbox {
+    request: Option<Request>,
+    proofs: Vec<Proof>,
+    closed: bool,
+}
+
+#[derive(Default)]
+struct Shared {
+    mailbox: Mutex<Mailbox>,
+    filled: Condvar,
+    /// Number of the newest request: work for an older one is given up.
+    newest: AtomicU64,
+}
+
+impl Shared {
+    fn mailbox(&self) -> MutexGuard<'_, Mailbox> {
+        // A panic while the lock was held leaves a mailbox that is still whole.
+        self.mailbox.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits for a request, for proofs or for both; none once the thread is to end.
+    fn take(&self) -> Option<(Option<Request>, Vec<Proof>)> {
+        let mut mailbox = self.mailbox();
+        loop {
+            if mailbox.closed {
+                return None;
+            }
+            if mailbox.request.is_some() || !mailbox.proofs.is_empty() {
+                return Some((mailbox.request.take(), std::mem::take(&mut mailbox.proofs)));
+            }
+            mailbox = self.filled.wait(mailbox).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+/// The thread that answers. Dropping it ends the thread, and waits for nothing.
+pub(super) struct AnalysisThread {
+    shared: Arc<Shared>,
+}
+
+impl AnalysisThread {
+    /// Starts the thread.
+    pub(super) fn start(make_engine: EngineMaker, replies: ReplySender) -> io::Result<Self> {
+        let shared = Arc::new(Shared::default());
+        let thread = Answering { shared: Arc::clone(&shared), replies, make_engine };
+        std::thread::Builder::new().name("analysis".to_owned()).spawn(move || thread.work())?;
+        Ok(Self { shared })
+    }
+
+    /// Asks for a computation in place of any that is not done yet.
+    pub(super) fn request(&self, request: Request) {
+        self.shared.newest.store(request.generation, Ordering::Release);
+        self.shared.mailbox().request = Some(request);
+        self.shared.filled.notify_one();
+    }
+
+    /// Has the newest request answered once more, with a proof that a job has completed.
+    pub(super) fn take_proof(&self, problem: Arc<Problem>, solution: Arc<Solution>) {
+        self.shared.mailbox().proofs.push((problem, solution));
+        self.shared.filled.notify_one();
+    }
+
+    /// Gives up the request under way and the one that waits.
+    pub(super) fn stop(&self) {
+        self.shared.newest.store(NOTHING, Ordering::Release);
+        self.shared.mailbox().request = None;
+    }
+}
+
+impl Drop for AnalysisThread {
+    fn drop(&mut self) {
+        self.stop();
+        self.shared.mailbox().closed = true;
+        self.shared.filled.notify_one();
+    }
+}
+
+/// What the thread works with.
+struct Answering {
+    shared: Arc<Shared>,
+    replies: ReplySender,
+    make_engine: EngineMaker,
+}
+
+impl Answering {
+    fn work(&self) {
+        let mut engine = None;
+        let mut newest: Option<Request> = None;
+        while let Some((request, proofs)) = self.shared.take() {
+            newest = request.or(newest);
+            let Some(request) = &newest else { continue };
+            let answered = caught(|| {
+                let engine = engine.get_or_insert_with(|| (self.make_engine)());
+                proofs.into_iter().for_each(|(problem, solution)| engine.take_gains(&problem, &solution));
+                self.answer(request, engine)
+            });
+            if let Err(fault) = answered {
+                engine = None;
+                let generation = request.generation;
+                self.replies.send(move |app| app.answer_failed(generation, &fault));
+            }
+        }
+    }
+
+    /// Sends the analysis; nothing where a newer request came first.
+    fn answer(&self, request: &Request, engine: &mut Engine) {
+        let started = Instant::now();
+        let progress = RequestProgress { thread: self, request, started, compared: AtomicBool::new(false) };
+        let Ok(analysis) = engine.analyze(&request.study, &progress) else {
+            return;
+        };
+        let (generation, elapsed_ms) = (request.generation, 1e3 * started.elapsed().as_secs_f64());
+        self.replies.send(move |app| app.answered(generation, Arc::new(analysis), elapsed_ms));
+    }
+}
+
+struct RequestProgress<'a> {
+    thread: &'a Answering,
+    request: &'a Request,
+    started: Instant,
+    /// Whether all responses and distances are there: what is left depends on more than they do.
+    compared: AtomicBool,
+}
+
+impl RequestProgress<'_> {
+    /// Whether the request that waits needs the very responses and distances that are being computed.
+    fn is_of_use(&self) -> bool {
+        let mailbox = self.thread.shared.mailbox();
+        !self.compared.load(Ordering::Relaxed)
+            && mailbox.request.as_ref().is_some_and(|newer| newer.compares_the_same(self.request))
+    }
+}
+
+impl Progress for RequestProgress<'_> {
+    /// During a steady drag every answer is worth having: without that only the condition shown would keep up with the hand.
+    fn cancelled(&self) -> bool {
+        match self.thread.shared.newest.load(Ordering::Acquire) {
+            NOTHING => true,
+            newest => newest != self.request.generation && self.started.elapsed() > CANCEL_GRACE && !self.is_of_use(),
+        }
+    }
+
+    fn advanced(&self, done: usize, total: usize) {
+        // The last step of each condition is its optimum.
+        let compared = done + self.request.study.dataset.conditions().len() >= total;
+        self.compared.fetch_or(compared, Ordering::Relaxed);
+        if self.started.elapsed() > CANCEL_GRACE {
+            let generation = self.request.generation;
+            self.thread.replies.send(move |app| {
+                let results = &mut app.state.results;
+                if generation == results.requested {
+                    results.progress = Some((done, total));
+                }
+            });
+        }
+    }
+
+    fn wanted_first(&self) -> Option<ConditionId> {
+        Some(self.request.condition)
+    }
+
+    fn first_result(&self, outcome: &Result<ConditionAnalysis, ConditionFailure>) {
+        let (dataset, condition) = (Arc::clone(&self.request.study.dataset), self.request.condition);
+        let generation = self.request.generation;
+        let first = FirstResult { generation, dataset, condition, outcome: outcome.clone() };
+        self.thread.replies.send(move |app| app.state.results.first = Some(first));
+    }
+}

@@ -1,0 +1,323 @@
+//! What the window has done beside the live answer: every kind of job stands in one table, [`BackgroundJobs::start`], with what it
+//! works with, when it is asked for and where its output goes.
+
+use std::io;
+use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+use egui::Context;
+use gdcm_core::correction::Outcome;
+use gdcm_core::executor::Executor;
+use gdcm_core::study::{CURVE_POINTS, CurvesJob, Engine, Job, ProofJob, TogglesJob, UncertaintyJob, display_band};
+
+use super::fault::{Fault, caught};
+use super::job_queue::JobQueue;
+use super::window::GdcmApp;
+use crate::executor::Pool;
+use crate::view::arrangement::{Need, View};
+use crate::view::results::Background;
+use crate::view::state::State;
+
+/// Makes an engine, at the start and anew after a panic, which may leave its caches half made.
+pub type EngineMaker = Arc<dyn Fn() -> Engine + Send + Sync>;
+
+/// What a thread has the window do with what it made.
+pub(super) type Reply = Box<dyn FnOnce(&mut GdcmApp) + Send>;
+
+/// Where threads send their replies; the window wakes for each.
+#[derive(Clone)]
+pub(super) struct ReplySender {
+    sender: Sender<Reply>,
+    ctx: Context,
+}
+
+impl ReplySender {
+    pub(super) fn new(ctx: &Context) -> (Self, Receiver<Reply>) {
+        let (sender, receiver) = channel();
+        (Self { sender, ctx: ctx.clone() }, receiver)
+    }
+
+    pub(super) fn send(&self, reply: impl FnOnce(&mut GdcmApp) + Send + 'static) {
+        // The window is gone when nobody listens; the threads end soon after.
+        let _ = self.sender.send(Box::new(reply));
+        self.ctx.request_repaint();
+    }
+
+    /// Does a single piece of work in a thread of its own, and has the window take what comes of it.
+    pub(super) fn in_thread<T: Send + 'static>(
+        &self,
+        name: &str,
+        work: impl FnOnce() -> T + Send + 'static,
+        take: impl FnOnce(&mut GdcmApp, Result<T, Fault>) + Send + 'static,
+    ) -> io::Result<()> {
+        let replies = self.clone();
+        let work = move || {
+            let made = caught(work);
+            replies.send(move |app| take(app, made));
+        };
+        std::thread::Builder::new().name(name.to_owned()).spawn(work).map(drop)
+    }
+}
+
+/// One kind of job.
+struct JobKind<J: Job> {
+    /// The jobs that what is shown needs now, the most urgent first; one that is not needed any more is given up.
+    wanted: fn(&mut GdcmApp) -> Vec<J>,
+    /// Takes what a job has made.
+    take: fn(&mut GdcmApp, J, J::Output),
+    /// Tells what is under way.
+    tell: fn(&JobQueue<J>, &mut Background),
+    /// What a stop or a fault does to what a button of its own asked for: that button, not "Compute", begins it again.
+    withdraw: Option<fn(&mut GdcmApp)>,
+}
+
+impl<J: Job> JobKind<J> {
+    /// A kind that "Compute" begins again after a stop, and of which the number of jobs is told, as of all that views wait for.
+    fn new(wanted: fn(&mut GdcmApp) -> Vec<J>, take: fn(&mut GdcmApp, J, J::Output)) -> Self {
+        Self { wanted, take, tell: tell_view, withdraw: None }
+    }
+
+    fn told(self, tell: fn(&JobQueue<J>, &mut Background)) -> Self {
+        Self { tell, ..self }
+    }
+
+    fn withdrawn(self, withdraw: fn(&mut GdcmApp)) -> Self {
+        Self { withdraw: Some(withdraw), ..self }
+    }
+}
+
+impl<J: Job> Clone for JobKind<J> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<J: Job> Copy for JobKind<J> {}
+
+/// A kind with its queue.
+struct Registered<J: Job> {
+    kind: JobKind<J>,
+    queue: JobQueue<J>,
+}
+
+/// The same, whatever the job.
+trait AnyKind {
+    fn want(&self, app: &mut GdcmApp);
+    fn stop(&self, app: &mut GdcmApp);
+    fn resume(&self);
+    fn tell(&self, background: &mut Background);
+}
+
+impl<J: Job> AnyKind for Registered<J> {
+    fn want(&self, app: &mut GdcmApp) {
+        self.queue.want((self.kind.wanted)(app));
+    }
+
+    fn stop(&self, app: &mut GdcmApp) {
+        self.queue.stop();
+        self.kind.withdraw.iter().for_each(|withdraw| withdraw(app));
+    }
+
+    fn resume(&self) {
+        self.queue.resume();
+    }
+
+    fn tell(&self, background: &mut Background) {
+        (self.kind.tell)(&self.queue, background);
+        background.stopped |= self.kind.withdraw.is_none() && self.queue.is_stopped();
+    }
+}
+
+/// All kinds, each with a thread of its own. Dropping it ends them, and waits for none.
+pub(super) struct BackgroundJobs {
+    kinds: Rc<Vec<Box<dyn AnyKind>>>,
+}
+
+impl BackgroundJobs {
+    /// Starts the threads.
+    pub(super) fn start(make_engine: &EngineMaker, replies: &ReplySender) -> io::Result<Self> {
+        let mut kinds = Registry { kinds: Vec::new(), replies };
+        let engine = || {
+            let make = Arc::clone(make_engine);
+            move || make()
+        };
+        let curves = JobKind::new(|app| vec![curves_job(&app.state)], GdcmApp::take_curves);
+        kinds.add("curves", engine(), curves.told(|queue, background| background.curves = queue.progress()))?;
+        let toggles = JobKind::new(
+            |app| toggles_job(&app.state).into_iter().collect(),
+            |app, job, toggles| app.state.results.toggles = toggles.map(|toggles| (job, Arc::new(toggles))),
+        );
+        kinds.add(
+            "toggles",
+            || (),
+            toggles.told(|queue, background| background.toggles = queue.progress().is_some()),
+        )?;
+        kinds.add(
+            "proofs",
+            || (),
+            JobKind::new(|app| proof_jobs(&app.state), GdcmApp::take_proof).told(tell_proofs),
+        )?;
+        let bars = JobKind::new(
+            |app| uncertainty_job(&app.state).into_iter().collect(),
+            |app, job, uncertainty| app.state.results.uncertainty = Some((job, uncertainty)),
+        );
+        kinds.add("error bars", engine(), bars.told(|queue, background| background.bars = queue.progress()))?;
+        let modes = JobKind::new(
+            |app| needed(app, |need| if let Need::Modes(job) = need { Some(job) } else { None }),
+            |app, job, modes| app.state.results.modes = Some((job, modes)),
+        );
+        kinds.add("modes", || (), modes)?;
+        let assessments = JobKind::new(
+            |app| needed(app, |need| if let Need::Assessment(job) = need { Some(job) } else { None }),
+            |app, job, table| app.state.results.assessment = Some((job, table)),
+        );
+        kinds.add("assessment", || (), assessments)?;
+        let across = JobKind::new(
+            |app| needed(app, |need| if let Need::Across(job) = need { Some(job) } else { None }),
+            |app, job, curves| app.state.results.across = Some((job, curves)),
+        );
+        kinds.add("conditions", || (), across)?;
+        let variants = JobKind::new(
+            |app| {
+                let jobs = needed(app, |need| if let Need::Variant(job) = need { Some(job) } else { None });
+                keep(&mut app.state.results.variants, jobs)
+            },
+            |app, job, analysis| app.state.results.variants.push((job, analysis)),
+        );
+        kinds.add("variants", engine(), variants)?;
+        let simulations = JobKind::new(
+            |app| {
+                let jobs = needed(app, |need| if let Need::Simulation(job) = need { Some(job) } else { None });
+                keep(&mut app.state.results.simulations, jobs)
+            },
+            |app, job, outcome| app.state.results.simulations.push((job, outcome)),
+        );
+        kinds.add("simulation", pool, simulations)?;
+        let reports = JobKind::new(|app| app.reporting.clone().into_iter().collect(), GdcmApp::report_written);
+        let reports = reports.told(|queue, background| background.report = queue.progress());
+        kinds.add("report", engine(), reports.withdrawn(GdcmApp::give_up_report))?;
+        let identifications =
+            JobKind::new(|app| app.state.records.by_urgency(app.state.condition().id()), GdcmApp::identified);
+        let identifications = identifications.told(|queue, background| background.identification = queue.progress());
+        kinds.add("identification", pool, identifications.withdrawn(|app| app.state.records.running.clear()))?;
+        Ok(Self { kinds: Rc::new(kinds.kinds) })
+    }
+
+    /// Lets the jobs that were stopped be begun again.
+    pub(super) fn resume(&self) {
+        self.kinds.iter().for_each(|kind| kind.resume());
+    }
+
+    /// What is under way.
+    pub(super) fn told(&self) -> Background {
+        let mut background = Background::default();
+        self.kinds.iter().for_each(|kind| kind.tell(&mut background));
+        background
+    }
+}
+
+impl GdcmApp {
+    /// Asks for the jobs that what is shown needs, and for no others.
+    pub(super) fn want_jobs(&mut self) {
+        let state = &self.state;
+        let shown = View::ALL.into_iter().filter(|view| state.display.arrangement.is_shown(*view));
+        self.needs = shown.flat_map(|view| (view.kind().needs)(state)).collect();
+        let kinds = Rc::clone(&self.jobs.kinds);
+        kinds.iter().for_each(|kind| kind.want(self));
+    }
+
+    /// Gives up every job.
+    pub(super) fn stop_jobs(&mut self) {
+        let kinds = Rc::clone(&self.jobs.kinds);
+        kinds.iter().for_each(|kind| kind.stop(self));
+    }
+}
+
+/// The kinds so far, and where their replies go.
+struct Registry<'a> {
+    kinds: Vec<Box<dyn AnyKind>>,
+    replies: &'a ReplySender,
+}
+
+impl Registry<'_> {
+    /// Starts the queue of a kind. `tools` makes what its jobs work with.
+    fn add<J: Job>(
+        &mut self,
+        name: &str,
+        tools: impl Fn() -> J::Tools + Send + 'static,
+        kind: JobKind<J>,
+    ) -> io::Result<()> {
+        let replies = self.replies.clone();
+        let deliver = move |job: J, ending: Result<J::Output, Fault>| {
+            replies.send(move |app| match ending {
+                Ok(output) => (kind.take)(app, job, output),
+                Err(fault) => {
+                    kind.withdraw.iter().for_each(|withdraw| withdraw(app));
+                    app.tell_fault("the computation", &fault);
+                }
+            });
+        };
+        let queue = JobQueue::start(name, tools, deliver)?;
+        self.kinds.push(Box::new(Registered { kind, queue }));
+        Ok(())
+    }
+}
+
+/// The processor's cores as the tool of a job.
+fn pool() -> Box<dyn Executor> {
+    Box::new(Pool)
+}
+
+/// Of what the views shown wait for, only the number of jobs is told.
+fn tell_view<J: Job>(queue: &JobQueue<J>, background: &mut Background) {
+    background.views += queue.unfinished().len();
+}
+
+/// The jobs of one kind among what the views shown need.
+fn needed<J: Clone>(app: &GdcmApp, of: fn(&Need) -> Option<&J>) -> Vec<J> {
+    app.needs.iter().filter_map(of).cloned().collect()
+}
+
+/// Keeps the outputs of these jobs only, which are asked for.
+fn keep<J: Job>(kept: &mut Vec<(J, J::Output)>, jobs: Vec<J>) -> Vec<J> {
+    kept.retain(|(known, _)| jobs.contains(known));
+    jobs
+}
+
+fn tell_proofs(queue: &JobQueue<ProofJob>, background: &mut Background) {
+    background.proofs = queue.unfinished().into_iter().map(|job| job.problem).collect();
+}
+
+fn curves_job(state: &State) -> CurvesJob {
+    let dataset = Arc::clone(&state.study.dataset);
+    let grid = (display_band(state.study.settings.band), CURVE_POINTS);
+    CurvesJob { dataset, condition: state.condition().id(), grid }
+}
+
+/// The costs of holding and freeing, of the condition shown.
+fn toggles_job(state: &State) -> Option<TogglesJob> {
+    let condition = state.analysis()?.condition(state.condition().id())?.clone();
+    Some(TogglesJob { condition })
+}
+
+/// What is not proven, the condition shown first.
+fn proof_jobs(state: &State) -> Vec<ProofJob> {
+    let Some(analysis) = state.analysis() else { return Vec::new() };
+    let shown = analysis.condition(state.condition().id());
+    let others = analysis.conditions.values().flatten();
+    let mut jobs: Vec<ProofJob> = Vec::new();
+    for condition in shown.into_iter().chain(others) {
+        let job = ProofJob { problem: Arc::clone(&condition.gain_problem) };
+        if matches!(condition.gains.proof.outcome, Outcome::NotProven { .. }) && !jobs.contains(&job) {
+            jobs.push(job);
+        }
+    }
+    jobs
+}
+
+/// The error bars of what is shown; while that is computed anew, the answer has all cores.
+fn uncertainty_job(state: &State) -> Option<UncertaintyJob> {
+    state.analysis().filter(|_| !state.results.is_behind())?;
+    state.results.analysis.clone().map(|analysis| UncertaintyJob { analysis })
+}

@@ -1,0 +1,330 @@
+//! A thread beside the live answer that does the jobs of one kind, one after the other. Two equal jobs are one: what is under way,
+//! done or stopped is known by the job itself.
+
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use super::fault::{Fault, caught};
+use gdcm_core::study::{Cancelled, Job, Progress};
+
+/// What a job has made, or the fault that ended it; nothing is told of a job that was given up.
+pub(super) type Ending<J> = Result<<J as Job>::Output, Fault>;
+
+/// How long a job that is not asked for any more may go on: while something is dragged, every output is worth having.
+pub(super) const CANCEL_GRACE: Duration = Duration::from_millis(60);
+
+/// How far a job is, and whether it is still wanted.
+#[derive(Debug)]
+struct Run {
+    started: Instant,
+    outdated: AtomicBool,
+    stopped: AtomicBool,
+    done: AtomicUsize,
+    total: AtomicUsize,
+}
+
+impl Run {
+    fn start() -> Arc<Self> {
+        let (outdated, stopped) = (AtomicBool::new(false), AtomicBool::new(false));
+        Arc::new(Self {
+            started: Instant::now(),
+            outdated,
+            stopped,
+            done: AtomicUsize::new(0),
+            total: AtomicUsize::new(0),
+        })
+    }
+}
+
+impl Progress for Run {
+    fn cancelled(&self) -> bool {
+        let outdated = self.outdated.load(Ordering::Acquire) && self.started.elapsed() > CANCEL_GRACE;
+        outdated || self.stopped.load(Ordering::Acquire)
+    }
+
+    fn advanced(&self, done: usize, total: usize) {
+        self.total.store(total, Ordering::Relaxed);
+        self.done.store(done, Ordering::Relaxed);
+    }
+}
+
+struct Mailbox<J> {
+    /// The jobs asked for, the most urgent first.
+    wanted: Vec<J>,
+    running: Option<(J, Arc<Run>)>,
+    /// Those asked for that are done.
+    done: Vec<J>,
+    /// Those asked for that were stopped, by hand or by a fault.
+    stopped: Vec<J>,
+    closed: bool,
+}
+
+impl<J: Job> Mailbox<J> {
+    fn unfinished(&self) -> impl Iterator<Item = &J> {
+        self.wanted.iter().filter(|job| !self.done.contains(job) && !self.stopped.contains(job))
+    }
+
+    fn stop_running(&self) {
+        if let Some((_, run)) = &self.running {
+            run.stopped.store(true, Ordering::Release);
+        }
+    }
+}
+
+struct Shared<J> {
+    mailbox: Mutex<Mailbox<J>>,
+    changed: Condvar,
+}
+
+impl<J: Job> Shared<J> {
+    fn mailbox(&self) -> MutexGuard<'_, Mailbox<J>> {
+        // A panic while the lock was held leaves a mailbox that is still whole.
+        self.mailbox.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits for a job that is to be begun; none once the queue is dropped.
+    fn take(&self) -> Option<(J, Arc<Run>)> {
+        let mut mailbox = self.mailbox();
+        loop {
+            if mailbox.closed {
+                return None;
+            }
+            let next = mailbox.unfinished().next().cloned();
+            if let Some(job) = next {
+                let run = Run::start();
+                mailbox.running = Some((job.clone(), Arc::clone(&run)));
+                return Some((job, run));
+            }
+            mailbox = self.changed.wait(mailbox).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+/// The jobs of one kind. Dropping it gives up the job under way and waits for nothing.
+pub(super) struct JobQueue<J: Job> {
+    shared: Arc<Shared<J>>,
+}
+
+impl<J: Job> JobQueue<J> {
+    /// Starts the thread; each job's ending goes to `deliver`. The tools are made anew after a fault, which may leave them
+    /// half made.
+    pub(super) fn start(
+        name: &str,
+        tools: impl Fn() -> J::Tools + Send + 'static,
+        deliver: impl Fn(J, Ending<J>) + Send + 'static,
+    ) -> std::io::Result<Self> {
+        let mailbox =
+            Mailbox { wanted: Vec::new(), running: None, done: Vec::new(), stopped: Vec::new(), closed: false };
+        let shared = Arc::new(Shared { mailbox: Mutex::new(mailbox), changed: Condvar::new() });
+        let of_thread = Arc::clone(&shared);
+        std::thread::Builder::new().name(name.to_owned()).spawn(move || work(&of_thread, &tools, &deliver))?;
+        Ok(Self { shared })
+    }
+
+    /// Asks for these jobs, the most urgent first, and for no others: one under way goes on if it is among them, and one that
+    /// is done or was stopped is not begun again as long as it is.
+    pub(super) fn want(&self, jobs: Vec<J>) {
+        let mut mailbox = self.shared.mailbox();
+        mailbox.done.retain(|job| jobs.contains(job));
+        mailbox.stopped.retain(|job| jobs.contains(job));
+        if let Some((job, run)) = &mailbox.running {
+            run.outdated.store(!jobs.contains(job), Ordering::Release);
+        }
+        mailbox.wanted = jobs;
+        self.shared.changed.notify_one();
+    }
+
+    /// The jobs that are asked for and neither done nor stopped.
+    pub(super) fn unfinished(&self) -> Vec<J> {
+        self.shared.mailbox().unfinished().cloned().collect()
+    }
+
+    /// Gives up what is under way and what waits.
+    pub(super) fn stop(&self) {
+        let mut mailbox = self.shared.mailbox();
+        let left: Vec<J> = mailbox.unfinished().cloned().collect();
+        mailbox.stop_running();
+        mailbox.stopped.extend(left);
+    }
+
+    /// Lets what was stopped be begun again.
+    pub(super) fn resume(&self) {
+        self.shared.mailbox().stopped.clear();
+        self.shared.changed.notify_one();
+    }
+
+    /// Whether something that is asked for was stopped, by hand or by a fault.
+    pub(super) fn is_stopped(&self) -> bool {
+        !self.shared.mailbox().stopped.is_empty()
+    }
+
+    /// Steps done, of how many, where something is asked for that is not done.
+    pub(super) fn progress(&self) -> Option<(usize, usize)> {
+        let mailbox = self.shared.mailbox();
+        mailbox.unfinished().next()?;
+        let steps = |run: &Run| (run.done.load(Ordering::Relaxed), run.total.load(Ordering::Relaxed));
+        Some(mailbox.running.as_ref().map_or((0, 0), |(_, run)| steps(run)))
+    }
+}
+
+impl<J: Job> Drop for JobQueue<J> {
+    fn drop(&mut self) {
+        let mut mailbox = self.shared.mailbox();
+        mailbox.closed = true;
+        mailbox.stop_running();
+        self.shared.changed.notify_one();
+    }
+}
+
+fn work<J: Job>(shared: &Shared<J>, make_tools: &dyn Fn() -> J::Tools, deliver: &dyn Fn(J, Ending<J>)) {
+    let mut tools = None;
+    while let Some((job, run)) = shared.take() {
+        let outcome = caught(|| job.run(tools.get_or_insert_with(make_tools), run.as_ref()));
+        let ending = match outcome {
+            Ok(Err(Cancelled)) => None,
+            Ok(Ok(output)) => Some(Ok(output)),
+            Err(fault) => {
+                tools = None;
+                Some(Err(fault))
+            }
+        };
+        let mut mailbox = shared.mailbox();
+        mailbox.running = None;
+        let Some(ending) = ending else { continue };
+        if mailbox.wanted.contains(&job) {
+            let over = if ending.is_ok() { &mut mailbox.done } else { &mut mailbox.stopped };
+            over.push(job.clone());
+        }
+        drop(mailbox);
+        deliver(job, ending);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::mpsc::{Receiver, Sender, channel};
+
+    /// Far above what the slowest machine needs: only a hang gets here.
+    const LIMIT: Duration = Duration::from_secs(60);
+
+    /// Says that it has begun; ends at once, or only when it is given up, or with a panic.
+    #[derive(Clone)]
+    struct Spoken(&'static str, Sender<String>);
+
+    impl PartialEq for Spoken {
+        fn eq(&self, other: &Self) -> bool {
+            self.0 == other.0
+        }
+    }
+
+    impl Job for Spoken {
+        type Tools = usize;
+        type Output = usize;
+
+        fn run(&self, tools: &mut usize, progress: &dyn Progress) -> Result<usize, Cancelled> {
+            *tools += 1;
+            self.1.send(format!("begun {}", self.0)).unwrap();
+            assert!(!self.0.starts_with("broken"), "{} job", self.0);
+            while self.0.starts_with("long") {
+                if progress.cancelled() {
+                    self.1.send(format!("cancelled {}", self.0)).unwrap();
+                    return Err(Cancelled);
+                }
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            Ok(*tools)
+        }
+    }
+
+    fn queue() -> (JobQueue<Spoken>, impl Fn(&'static str) -> Spoken, Receiver<String>) {
+        let (sender, said) = channel();
+        let ended = sender.clone();
+        let deliver = move |job: Spoken, ending: Ending<Spoken>| {
+            let words = match ending {
+                Ok(tools) => format!("ended {} ({tools})", job.0),
+                Err(fault) => format!("fault {}", fault.message),
+            };
+            ended.send(words).unwrap();
+        };
+        (JobQueue::start("test", || 0, deliver).unwrap(), move |name| Spoken(name, sender.clone()), said)
+    }
+
+    fn next(said: &Receiver<String>) -> String {
+        said.recv_timeout(LIMIT).unwrap()
+    }
+
+    #[test]
+    fn a_job_that_is_still_asked_for_goes_on_and_one_that_is_not_is_given_up() {
+        let (queue, job, said) = queue();
+        queue.want(vec![job("long")]);
+        assert_eq!(next(&said), "begun long");
+        queue.want(vec![job("short"), job("long")]);
+        assert!(said.recv_timeout(Duration::from_millis(30)).is_err(), "the long one goes on, the short one waits");
+        queue.want(vec![job("short")]);
+        assert_eq!([next(&said), next(&said), next(&said)], ["cancelled long", "begun short", "ended short (2)"]);
+    }
+
+    #[test]
+    fn a_job_is_done_once_as_long_as_it_is_asked_for() {
+        let (queue, job, said) = queue();
+        queue.want(vec![job("short")]);
+        assert_eq!([next(&said), next(&said)], ["begun short", "ended short (1)"]);
+        queue.want(vec![job("short"), job("other")]);
+        assert_eq!([next(&said), next(&said)], ["begun other", "ended other (2)"]);
+        assert!(queue.unfinished().is_empty());
+        queue.want(Vec::new());
+        queue.want(vec![job("short")]);
+        assert_eq!(next(&said), "begun short", "nobody asked for it in between");
+    }
+
+    #[test]
+    fn what_was_stopped_is_begun_again_only_when_that_is_said() {
+        let (queue, job, said) = queue();
+        queue.want(vec![job("long"), job("short")]);
+        assert_eq!(next(&said), "begun long");
+        queue.stop();
+        assert!(queue.is_stopped());
+        assert_eq!(next(&said), "cancelled long");
+        queue.want(vec![job("long"), job("short")]);
+        assert!(said.recv_timeout(Duration::from_millis(30)).is_err());
+        queue.resume();
+        assert_eq!(next(&said), "begun long");
+    }
+
+    #[test]
+    fn what_was_stopped_and_asked_for_no_more_is_begun_again_once_it_is_asked_for_and_nothing_else_is() {
+        let ((queue, job, said), (other, other_job, other_said)) = (queue(), queue());
+        queue.want(vec![job("long")]);
+        other.want(vec![other_job("long")]);
+        assert_eq!([next(&said), next(&other_said)], ["begun long", "begun long"]);
+        [&queue, &other].into_iter().for_each(JobQueue::stop);
+        assert_eq!([next(&said), next(&other_said)], ["cancelled long", "cancelled long"]);
+        queue.want(Vec::new());
+        queue.want(vec![job("long")]);
+        other.want(vec![other_job("long")]);
+        assert_eq!(next(&said), "begun long");
+        assert!(other.is_stopped() && other.progress().is_none() && queue.progress().is_some());
+    }
+
+    #[test]
+    fn a_job_that_panics_is_told_its_tools_are_made_anew_and_the_next_is_done() {
+        let (queue, job, said) = queue();
+        queue.want(vec![job("short"), job("broken"), job("other")]);
+        let all: Vec<String> = (0..6).map(|_| next(&said)).collect();
+        assert_eq!(
+            all,
+            ["begun short", "ended short (1)", "begun broken", "fault broken job", "begun other", "ended other (1)"]
+        );
+    }
+
+    #[test]
+    fn dropping_it_gives_up_the_job_and_waits_for_nothing() {
+        let (queue, job, said) = queue();
+        queue.want(vec![job("long")]);
+        assert_eq!(next(&said), "begun long");
+        drop(queue);
+        assert_eq!(next(&said), "cancelled long");
+    }
+}

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use gdcm_core::dataset::{Band, ModelId, Pair};
 use gdcm_core::response::wrap;
-use gdcm_core::study::{Edit, Setting};
+use gdcm_core::study::{Edit, setting};
 use gdcm_core::units::s_to_ms;
 use gdcm_files::figure::{BodeOptions, ConditionSource};
 
@@ -51,9 +51,7 @@ fn command_of(state: &State, event: BodeEvent) -> Option<Command> {
             Some(Command::Forget(if rejected { Edit::Reject(id) } else { Edit::Restore(id) }))
         }
         BodeEvent::Isolated(CurveId::Model(id)) => Some(Command::Isolate(id)),
-        BodeEvent::BandDragged { min, max } => {
-            Band::new(min, max).ok().map(|band| Edit::Set(Setting::Band(band)).into())
-        }
+        BodeEvent::BandDragged { min, max } => Band::new(min, max).ok().map(|band| setting::BAND.to(band).into()),
         BodeEvent::BandReleased => Some(Command::EndEdit),
         BodeEvent::RoleToggled(role) => Some(CurveCommand::ToggleRole(role).into()),
         BodeEvent::RejectedBecause(CurveId::Model(model), reason) => Some(Edit::RejectBecause { model, reason }.into()),

@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use pulp::{Arch, Simd, WithSimd};
+use serde::{Deserialize, Serialize};
 
 use crate::response::{PolarCurve, mean, median, weighted_median};
 
@@ -19,7 +20,8 @@ pub const INDISTINGUISHABLE: f64 = 50.0;
 pub(super) const SCALE: f64 = 20.0;
 
 /// How squared errors are averaged over frequency.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum CostAverage {
     /// The median (the paper).
     Median,

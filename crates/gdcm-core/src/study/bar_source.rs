@@ -2,7 +2,9 @@
 
 use crate::dataset::{BundleKind, Dynamics, Pair, PairTable};
 use crate::response::{coherence_at, median, quantile};
-use crate::uncertainty::{BarSource, CoherenceError, IdentificationSource, Part, ReportedUncertainty, Scalar};
+use crate::uncertainty::{
+    BarSource, CoherenceError, IdentificationSource, ReportedUncertainty, Scalar, VarianceComponent,
+};
 
 use super::{Analysis, ConditionAnalysis, ConditionSwaps, SwapOptimum};
 
@@ -24,7 +26,10 @@ pub(super) fn bar_source<'a>(
             Scalar::Delay(pair) | Scalar::BandDelay(pair) => (pair, |error| error.delay_s),
             Scalar::ChannelGain(_) | Scalar::ChannelDelay(_) => return None,
         };
-        let part = |(error, degrees): (CoherenceError, f64)| Part { variance: deviation(&error).powi(2), degrees };
+        let part = |(error, degrees): (CoherenceError, f64)| VarianceComponent {
+            variance: deviation(&error).powi(2),
+            degrees_of_freedom: degrees,
+        };
         let coherence = by_coherence.as_ref().and_then(|told| told[pair]).map(part);
         let band = by_band.as_ref().and_then(|told| told[pair]).map(|error| part((error, f64::INFINITY)));
         let coherence = coherence.map(|part| ReportedUncertainty { part, source: IdentificationSource::Coherence });
@@ -72,7 +77,7 @@ fn told_by_coherence(
     let coherence = coherence_at(response, &analysis.omega)?;
     Some(coherence.map(|_, coherence| {
         let error = measurement.error(&analysis.omega, coherence, threshold)?;
-        Some((error, measurement.degrees()))
+        Some((error, measurement.degrees_of_freedom()))
     }))
 }
 

@@ -72,7 +72,7 @@ pub(super) struct OfferKey {
 
 impl OfferKey {
     pub(super) fn of(settings: &Settings, held: &PairTable<bool>, upper_s: f64) -> Self {
-        Self { held: held.clone(), fitted: settings.fitted.clone(), upper_s, lead: settings.lead }
+        Self { held: held.clone(), fitted: settings.fitted(), upper_s, lead: settings.lead }
     }
 
     /// J_phase of each response that leads would leave; none where not all held responses want lead.

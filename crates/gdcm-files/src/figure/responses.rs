@@ -114,8 +114,9 @@ impl ResponseCache {
         }
         let reference_shape = ResponseShape::of(&curves.identified[reference].curve(pair));
         let shapes = |kind| {
-            let laid =
-                |response: &Arc<FrequencyResponse>| ResponseShape::of(&response.curve(pair)).laid_on(&reference_shape);
+            let laid = |response: &Arc<FrequencyResponse>| {
+                ResponseShape::of(&response.curve(pair)).phase_aligned(&reference_shape)
+            };
             curves.bundle(kind).iter().map(laid).collect()
         };
         self.physics = shapes(BundleKind::Physics);
@@ -215,7 +216,7 @@ impl AirspeedCache {
         let shape = |(id, response): &(ModelId, Arc<FrequencyResponse>)| {
             let shape = ResponseShape::of(&response.curve(pair));
             let shape = match &first {
-                Some(first) => shape.laid_on(first),
+                Some(first) => shape.phase_aligned(first),
                 None => shape,
             };
             first.get_or_insert_with(|| shape.clone());

@@ -5,7 +5,7 @@ use crate::dataset::{BundleKind, ConditionId, Pair};
 use crate::fidelity::Mismatch;
 use crate::schedule::{Regression, Schedule, ScheduledQuantity};
 use crate::study::{Analysis, ConditionSwaps, reports_error, takes_reported_error};
-use crate::uncertainty::{Bar, Part, Scalar};
+use crate::uncertainty::{Bar, Scalar, VarianceComponent};
 use crate::units::{db_to_ratio, number, s_to_ms};
 
 use super::{Context, Derivation, ExplainTarget, digits, median_words, spread};
@@ -23,7 +23,7 @@ fn delays_ms(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
 
 /// How the median over the frequencies that count comes about.
 fn middle_words(mismatch: &Mismatch, values: &[f64]) -> String {
-    match mismatch.counted {
+    match mismatch.coherence_weights {
         None => median_words(values),
         Some(_) => format!("where half of the weight lies of {}", spread(values)),
     }
@@ -207,11 +207,13 @@ fn bar_lines(bar: &Bar, scalar: Scalar, level: f64) -> Vec<String> {
     let told = |deviation: f64| {
         if scalar.is_delay() { format!("{:.2} ms", s_to_ms(deviation)) } else { format!("{:.2} %", 100.0 * deviation) }
     };
-    let part = |name: &str, part: Option<Part>| match part {
-        Some(part) => format!("{name}: {} ({:.1} degrees of freedom)", told(part.variance.sqrt()), part.degrees),
+    let part = |name: &str, part: Option<VarianceComponent>| match part {
+        Some(part) => {
+            format!("{name}: {} ({:.1} degrees of freedom)", told(part.variance.sqrt()), part.degrees_of_freedom)
+        }
         None => format!("{name}: not included"),
     };
-    let whole = match (bar.half_width(level), bar.degrees()) {
+    let whole = match (bar.half_width(level), bar.degrees_of_freedom()) {
         (Some(half), Some(degrees)) => {
             format!(
                 "bar of {:.0} %: ± {} = t({degrees:.1}) · {} (M13)",

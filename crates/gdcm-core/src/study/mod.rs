@@ -21,6 +21,7 @@ mod lead_compensation;
 mod reconcile;
 mod remark;
 pub mod setting;
+mod setting_row;
 mod settings;
 mod simulation_job;
 #[allow(clippy::module_inception)]
@@ -50,7 +51,8 @@ pub use late_channel::*;
 pub use lead_compensation::*;
 pub use reconcile::*;
 pub use remark::*;
-pub use setting::{Choice, Control, Digits, Kind, Place, SETTINGS, Setting, Unit, Value};
+pub use setting::SETTINGS;
+pub use setting_row::*;
 pub use settings::*;
 pub use simulation_job::*;
 pub use study::*;

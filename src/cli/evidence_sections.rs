@@ -19,7 +19,7 @@ pub(super) fn evidence_section(analysis: &Analysis) -> String {
     let table = Table { title: String::new(), ..scatter_table(&analysis.study.dataset, uncertainty) };
     table.text().lines().for_each(|line| text.push_str(&format!("  {}\n", sanitized(line))));
     let differences = &uncertainty.differences;
-    let beyond: Vec<_> = differences.iter().filter(|difference| difference.is_beyond(uncertainty.level)).collect();
+    let beyond: Vec<_> = differences.iter().filter(|difference| difference.is_significant(uncertainty.level)).collect();
     if let Some(count) = uncertainty.too_many_differences {
         let words = format!("{count} at equal airspeed are too many to compare");
         text.push_str(&labelled(0, "Differences", LABEL, &words));

@@ -116,7 +116,7 @@ pub enum EditRefusal {
         model: String,
     },
     /// A rejected model cannot represent its bundle.
-    #[error("condition {condition}: \"{model}\" is rejected; restore it before pinning it")]
+    #[error("condition {condition}: \"{model}\" is rejected; restore it before using it as representative")]
     PinRejected {
         /// The condition's id.
         condition: ConditionId,
@@ -218,8 +218,8 @@ impl Edit {
             Edit::RestoreAll { condition } => format!("restore all (condition {condition})"),
             Edit::RejectEach(models) => format!("reject {} models", models.len()),
             Edit::RestoreEach(models) => format!("restore {} models", models.len()),
-            Edit::Pin(id) => format!("pin {}", name_of(id)),
-            Edit::Unpin { condition, .. } => format!("unpin (condition {condition})"),
+            Edit::Pin(id) => format!("use {} as representative", name_of(id)),
+            Edit::Unpin { condition, .. } => format!("use the medoid as representative (condition {condition})"),
             Edit::SetScheduled { condition, scheduled: true } => format!("schedule condition {condition}"),
             Edit::SetScheduled { condition, .. } => format!("leave condition {condition} out"),
             Edit::SetHeldOut { condition, held_out: true } => format!("hold condition {condition} out"),

@@ -2,7 +2,6 @@
 
 mod analysis;
 mod assessment_table;
-mod bar_source;
 mod caution;
 mod comparison;
 mod condition_responses;
@@ -26,14 +25,13 @@ mod settings;
 mod simulation_job;
 #[allow(clippy::module_inception)]
 mod study;
-mod swaps;
+mod substitutions;
 mod table;
 mod taken_models;
 mod uncertainty;
 
 pub use analysis::*;
 pub use assessment_table::*;
-use bar_source::*;
 pub use caution::*;
 pub use comparison::*;
 pub use condition_responses::*;
@@ -56,7 +54,7 @@ pub use setting_row::*;
 pub use settings::*;
 pub use simulation_job::*;
 pub use study::*;
-pub use swaps::*;
+pub use substitutions::*;
 pub use table::*;
 pub use taken_models::*;
 pub use uncertainty::*;

@@ -1,6 +1,7 @@
 //! What speaks against the recommended model, record by record and channel by channel (M14, section 10).
 
 use super::*;
+use crate::response::median;
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Cost per degree of freedom above which a model is not adequate.

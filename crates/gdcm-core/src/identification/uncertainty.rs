@@ -12,7 +12,7 @@
 use super::*;
 use crate::dataset::{ModelBands, Pair, PairTable};
 use crate::executor::{Executor, each};
-use crate::fidelity::{Cost, CostAverage};
+use crate::fidelity::Cost;
 use crate::units::neper_to_db;
 use nalgebra::{Complex, DMatrix};
 
@@ -234,11 +234,7 @@ pub(super) fn without_each_record(likelihood: &Likelihood, fit: &Fit, systems: &
 pub(super) fn distance(one: &BlockModel, other: &BlockModel, omegas: &[f64], identified: &[(usize, usize)]) -> f64 {
     let ratios: Vec<_> =
         omegas.iter().map(|&omega| one.response(omega).zip_map(&other.response(omega), |a, b| a / b)).collect();
-    let of_pair = |pair: &(usize, usize)| {
-        let decibels = ratios.iter().map(|ratio| 20.0 * ratio[*pair].norm().log10());
-        let phases = ratios.iter().map(|ratio| ratio[*pair].arg());
-        Cost::of(decibels, phases, None, CostAverage::Median, &mut Vec::new()).total()
-    };
+    let of_pair = |pair: &(usize, usize)| Cost::of_ratios(ratios.iter().map(|ratio| ratio[*pair])).total();
     identified.iter().map(of_pair).sum::<f64>() / identified.len().max(1) as f64
 }
 

@@ -1,7 +1,7 @@
 //! A record with the columns that are its channels, and what its name says about it.
 
 use super::*;
-use crate::assembly::{NamePattern, Row, standard_patterns};
+use crate::assembly::{NamePattern, Row, folded_name, standard_patterns};
 use crate::dataset::{ConditionId, ConditionRecord, Dataset, RecordKind};
 use crate::identification::{FlightRecord, RecordUse};
 use std::sync::Arc;
@@ -45,7 +45,7 @@ impl RecordGuess {
     pub fn of(name: &str, patterns: &[NamePattern]) -> Self {
         let lower = name.to_lowercase();
         // "3-2-1-1" and "hold_out" are "3211" and "holdout".
-        let joined: String = lower.chars().filter(|c| c.is_alphanumeric()).collect();
+        let joined = folded_name(name);
         let holds = |words: &[&str]| words.iter().any(|word| joined.contains(word));
         let kind = if holds(&SWEEPS) {
             RecordKind::Sweep

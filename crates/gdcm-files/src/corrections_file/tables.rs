@@ -7,7 +7,7 @@ use gdcm_core::correction::{self, ChannelCorrection};
 use gdcm_core::dataset::{Channel, Condition, ConditionId, Pair};
 use gdcm_core::response::LeadFilter;
 use gdcm_core::study::{Analysis, Assessed};
-use gdcm_core::uncertainty::{Bar, Part, Scalar};
+use gdcm_core::uncertainty::{Bar, Scalar, VarianceComponent};
 
 use super::super::csv_table::write_records;
 
@@ -233,11 +233,11 @@ impl Bars<'_> {
     /// Deviations of trim and identification, and degrees of freedom.
     fn parts(&self, scalar: Scalar) -> [String; 3] {
         let bar = self.bar(scalar);
-        let deviation = |part: Option<Part>| part.map(|part| part.variance.sqrt());
+        let deviation = |part: Option<VarianceComponent>| part.map(|part| part.variance.sqrt());
         [
             cell(bar.and_then(|bar| deviation(bar.trim))),
             cell(bar.and_then(|bar| deviation(bar.identification))),
-            cell(bar.and_then(Bar::degrees)),
+            cell(bar.and_then(Bar::degrees_of_freedom)),
         ]
     }
 

@@ -1,11 +1,12 @@
 //! What a view shows as a figure on paper, and the button that takes it away.
 
 use egui::containers::menu::MenuButton;
-use egui::{RichText, Role, Ui, WidgetInfo};
+use egui::{RichText, Role, Ui};
 use gdcm_files::figure::{BodeOptions, ConditionSource, Figure, FigureFormat, FigureKind, FigureRequest, all_channels};
 
 use super::arrangement::View;
 use super::command::Command;
+use super::controls::named;
 use super::palette::SMALL_SIZE;
 use super::plot::{BodeView, Pane};
 use super::state::State;
@@ -107,7 +108,6 @@ pub(super) fn figure_button_ui(ui: &mut Ui, view: View, commands: &mut Vec<Comma
             }
         }
     });
-    let name = format!("Save or copy {}", view.name());
-    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+    let button = named(button, Role::Button, format!("Save or copy {}", view.name()));
     button.on_hover_text("This plot on paper, or its numbers: copy, CSV, SVG, PNG, PDF");
 }

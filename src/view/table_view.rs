@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use egui::{Align, Button, Color32, Grid, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo};
+use egui::{Align, Button, Color32, Grid, Label, Layout, RichText, Role, ScrollArea, Sense, Ui};
 
 use gdcm_core::study::Table;
 
 use super::command::Command;
+use super::controls::{entries_ui, named};
 use super::palette::{Palette, SMALL_SIZE};
 
 /// By which column a table is sorted, and whether downwards; by none as it was made.
@@ -77,7 +78,7 @@ pub struct TableLook<'a> {
     pub selected: &'a dyn Fn(usize) -> bool,
 }
 
-/// Draws a table that scrolls where it is too large. Its headings sort it; the secondary button copies or saves it.
+/// Draws a table that scrolls where it is too large. Its headings sort it; a right-click copies or saves it.
 pub fn table_ui(
     ui: &mut Ui,
     table: &Table,
@@ -90,12 +91,11 @@ pub fn table_ui(
     ScrollArea::both().id_salt(("table", &table.title)).auto_shrink(false).show(ui, |ui| {
         Grid::new(("cells", &table.title)).spacing([12.0, 3.0]).striped(true).show(ui, |ui| {
             for (column, heading) in table.columns.iter().enumerate() {
-                let text = RichText::new(format!("{heading}{}", sorting.mark(column))).size(SMALL_SIZE);
-                let button = ui.add(Button::new(text.color(palette.dim_text)).frame(false));
-                let name = format!("Sort {} by {heading}", table.title);
-                button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+                let text = palette.small(format!("{heading}{}", sorting.mark(column)));
+                let button = ui.add(Button::new(text).frame(false));
+                let button = named(button, Role::Button, format!("Sort {} by {heading}", table.title));
                 button.context_menu(|ui| copy_ui(ui, table, commands));
-                if button.on_hover_text("Sort; secondary click: copy or save the table").clicked() {
+                if button.on_hover_text("Sort; right-click: copy or save the table").clicked() {
                     *sorting = sorting.clicked(column);
                 }
             }
@@ -122,14 +122,11 @@ pub fn table_ui(
 }
 
 fn copy_ui(ui: &mut Ui, table: &Table, commands: &mut Vec<Command>) {
-    if ui.button("Copy the table as text").clicked() {
-        commands.push(Command::CopyText(table.text()));
-        ui.close();
-    }
-    if ui.button("Save the table as CSV…").clicked() {
-        commands.push(Command::AskSaveShownTable(Arc::new(table.clone())));
-        ui.close();
-    }
+    let entries = [
+        ("Copy the table as text", Command::CopyText(table.text())),
+        ("Save the table as CSV…", Command::AskSaveShownTable(Arc::new(table.clone()))),
+    ];
+    entries_ui(ui, entries, commands);
 }
 
 #[cfg(test)]

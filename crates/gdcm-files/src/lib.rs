@@ -24,7 +24,6 @@ mod record_files;
 mod recovery_file;
 mod report_file;
 mod rules_file;
-mod settings_entry;
 mod source;
 mod strides;
 mod study_file;
@@ -66,8 +65,5 @@ pub use record_files::{
 pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
 pub use report_file::{ReportSource, report, save_report};
 pub use rules_file::{add_rules, load_rules, rules_path};
-pub use settings_entry::{
-    ErrorBarsEntry, KindWord, LeadSettingsEntry, ScheduleEntry, SecondVariableWord, SettingsEntry,
-};
 pub use source::{FileStamp, at_home, file_exists, file_sha256};
 pub use study_file::{OpenedStudy, STUDY_EXTENSION, open_study, open_study_of, relative_folder, save_study};

@@ -124,8 +124,9 @@ impl CachedShapes {
         }
         let reference_shape = ResponseShape::of(&curves.identified[reference].curve(pair));
         let shapes = |kind| {
-            let laid =
-                |response: &Arc<FrequencyResponse>| ResponseShape::of(&response.curve(pair)).laid_on(&reference_shape);
+            let laid = |response: &Arc<FrequencyResponse>| {
+                ResponseShape::of(&response.curve(pair)).phase_aligned(&reference_shape)
+            };
             curves.bundle(kind).iter().map(laid).collect()
         };
         self.physics = shapes(BundleKind::Physics);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::Ui;
 use gdcm_core::dataset::{BundleKind, Pair};
-use gdcm_core::fidelity::{CountedFrequencies, Mismatch, Muad, leaves};
+use gdcm_core::fidelity::{CoherenceWeights, Mismatch, Muad, leaves};
 use gdcm_core::response::{FrequencyResponse, GainDelay, PolarCurve, quantile, wrap};
 use gdcm_core::study::{ConditionAnalysis, ConditionCurves, Undefined};
 use gdcm_core::units::{ratio_to_db, s_to_ms};
@@ -92,9 +92,9 @@ impl ErrorShape {
         simulated: &PolarCurve,
         reference: &PolarCurve,
         omega: &[f64],
-        counted: Option<&CountedFrequencies>,
+        coherence_weights: Option<&CoherenceWeights>,
     ) -> Option<Self> {
-        let mismatch = Mismatch::new(simulated, reference).counting(counted)?;
+        let mismatch = Mismatch::new(simulated, reference).coherence_weighted(coherence_weights)?;
         let phase = mismatch.on_grid(mismatch.phase_difference(omega), omega.len());
         Some(Self { phase, mismatch_db: mismatch.on_grid(mismatch.magnitude_db.clone(), omega.len()) })
     }
@@ -139,9 +139,9 @@ impl Made {
     }
 
     /// The frequencies among `omega` that count, where the reference's coherence says that.
-    fn counted(&self, omega: &[f64]) -> Option<CountedFrequencies> {
+    fn coherence_weights(&self, omega: &[f64]) -> Option<CoherenceWeights> {
         let flight = &self.curves.condition.bundle(BundleKind::Identified)[self.reference].dynamics;
-        Some(CountedFrequencies::of_model(flight, omega, self.coherence)?[self.pair].clone())
+        Some(CoherenceWeights::of_model(flight, omega, self.coherence)?[self.pair].clone())
     }
 
     fn omega(&self) -> Arc<[f64]> {
@@ -172,9 +172,10 @@ impl CachedErrors {
         self.zero = vec![0.0; self.omega.len()].into();
         self.corrected.clear();
         let reference = made.polar(&made.curves.identified[made.reference]);
-        let counted = made.counted(&self.omega);
+        let coherence_weights = made.coherence_weights(&self.omega);
         let error = |response: &Arc<FrequencyResponse>| {
-            let shape = ErrorShape::of(&made.polar(response)?, reference.as_ref()?, &self.omega, counted.as_ref())?;
+            let shape =
+                ErrorShape::of(&made.polar(response)?, reference.as_ref()?, &self.omega, coherence_weights.as_ref())?;
             let drawn = shape.drawn(GainDelay::NONE, &self.omega, made.unit);
             Some((shape, drawn))
         };
@@ -395,11 +396,11 @@ mod tests {
     #[test]
     fn frequencies_that_do_not_count_are_gaps() {
         let (omega, polar) = ([1.0, 2.0, 3.0], PolarCurve { magnitude_db: vec![1.0; 3], phase: vec![0.1; 3] });
-        let counted = CountedFrequencies::of(&omega, &[0.9, 0.2, 0.9], 0.6, None);
-        let shape = ErrorShape::of(&polar, &polar, &omega, Some(&counted)).unwrap();
+        let coherence_weights = CoherenceWeights::of(&omega, &[0.9, 0.2, 0.9], 0.6, None);
+        let shape = ErrorShape::of(&polar, &polar, &omega, Some(&coherence_weights)).unwrap();
         assert!(shape.mismatch_db[1].is_nan() && shape.phase[1].is_nan());
         assert_eq!((shape.mismatch_db[0], shape.phase[2]), (0.0, 0.0));
-        let nothing = CountedFrequencies::of(&omega, &[0.0; 3], 0.6, None);
+        let nothing = CoherenceWeights::of(&omega, &[0.0; 3], 0.6, None);
         assert!(ErrorShape::of(&polar, &polar, &omega, Some(&nothing)).is_none());
     }
 

@@ -8,7 +8,7 @@ use gdcm_core::correction::ChannelCorrection;
 use gdcm_core::dataset::{Band, BundleKind, Condition, Model, ModelId, Pair};
 use gdcm_core::fidelity::SUGGESTION_RATIO;
 use gdcm_core::response::{GainDelay, wrap};
-use gdcm_core::study::{ConditionAnalysis, Edit, Setting};
+use gdcm_core::study::{ConditionAnalysis, Edit, setting};
 use gdcm_core::units::s_to_ms;
 
 use crate::view::command::Command;
@@ -53,9 +53,7 @@ fn command_of(state: &State, event: BodeEvent) -> Option<Command> {
             Some(Command::Forget(if rejected { Edit::Reject(id) } else { Edit::Restore(id) }))
         }
         BodeEvent::Isolated(CurveId::Model(id)) => Some(Command::Isolate(id)),
-        BodeEvent::BandDragged { min, max } => {
-            Band::new(min, max).ok().map(|band| Edit::Set(Setting::Band(band)).into())
-        }
+        BodeEvent::BandDragged { min, max } => Band::new(min, max).ok().map(|band| setting::BAND.to(band).into()),
         BodeEvent::BandReleased => Some(Command::EndEdit),
         BodeEvent::RoleToggled(role) => Some(CurveCommand::ToggleRole(role).into()),
         BodeEvent::RejectedBecause(CurveId::Model(model), reason) => Some(Edit::RejectBecause { model, reason }.into()),

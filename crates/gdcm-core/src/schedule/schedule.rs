@@ -1,13 +1,13 @@
-//! The correction scheduled with airspeed (M11).
+//! The correction scheduled with airspeed (M11), signed delays included (M15.5).
 
-use crate::correction::{Channel, ChannelCorrection};
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Airspeeds, Regression, SecondTerm, SecondVariable, design};
+use crate::correction::{Channel, ChannelCorrection, ChannelLeads, LeadDesign};
 use crate::dataset::{ConditionId, FlightState};
 use crate::units::{s_to_ms, signed};
-
-use super::basis;
-use super::lead_schedule::LeadSchedule;
-use super::regression::{Airspeeds, Regression};
-use super::second_variable::{SecondTerm, SecondVariable};
 
 /// Places between two airspeeds at which a schedule is looked at.
 const STEPS: u32 = 100;
@@ -31,16 +31,19 @@ pub enum ScheduleKind {
 }
 
 /// What is regressed on airspeed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum ScheduledQuantity {
     /// `ln k`: the product of two channels' regressions is the regression of their product.
+    #[serde(rename = "ln k")]
     LnGain,
     /// `k` itself.
+    #[serde(rename = "k")]
     Gain,
 }
 
 /// How channel gains are scheduled.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "ScheduleEntry", into = "ScheduleEntry")]
 pub struct ScheduleSettings {
     /// The form.
     pub kind: ScheduleKind,
@@ -55,6 +58,66 @@ pub struct ScheduleSettings {
     pub airspeed_tolerance_kt: f64,
     /// Variable whose effect on the gains is scheduled beside that of airspeed (M13.7).
     pub second: Option<SecondVariable>,
+}
+
+/// [`ScheduleSettings`] in files, where the degree stands beside the form.
+#[derive(Serialize, Deserialize)]
+struct ScheduleEntry {
+    kind: FormEntry,
+    degree: Option<usize>,
+    of: ScheduledQuantity,
+    delays: bool,
+    #[serde(default = "default_tolerance_kt")]
+    airspeed_tolerance_kt: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    second_variable: Option<SecondVariable>,
+    #[serde(default, skip_serializing_if = "is_zero")]
+    tau_degree: usize,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum FormEntry {
+    Polynomial,
+    Table,
+}
+
+fn default_tolerance_kt() -> f64 {
+    DEFAULT_TOLERANCE_KT
+}
+
+fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
+
+impl TryFrom<ScheduleEntry> for ScheduleSettings {
+    type Error = String;
+
+    fn try_from(entry: ScheduleEntry) -> Result<Self, String> {
+        let kind = match (entry.kind, entry.degree) {
+            (FormEntry::Table, _) => ScheduleKind::Table,
+            (FormEntry::Polynomial, Some(degree)) if degree <= HIGHEST_DEGREE => ScheduleKind::Polynomial { degree },
+            (FormEntry::Polynomial, Some(degree)) => {
+                return Err(format!("degree: expected a whole number from 0 to {HIGHEST_DEGREE}, found {degree}"));
+            }
+            // As serde itself says it, so that readers tell it alike.
+            (FormEntry::Polynomial, None) => return Err("missing field `degree`".to_owned()),
+        };
+        let ScheduleEntry { of: quantity, delays, airspeed_tolerance_kt, second_variable: second, tau_degree, .. } =
+            entry;
+        Ok(Self { kind, quantity, delays, tau_degree, airspeed_tolerance_kt, second })
+    }
+}
+
+impl From<ScheduleSettings> for ScheduleEntry {
+    fn from(settings: ScheduleSettings) -> Self {
+        let (kind, degree) = match settings.kind {
+            ScheduleKind::Polynomial { degree } => (FormEntry::Polynomial, Some(degree)),
+            ScheduleKind::Table => (FormEntry::Table, None),
+        };
+        let ScheduleSettings { quantity: of, delays, airspeed_tolerance_kt, tau_degree, second, .. } = settings;
+        Self { kind, degree, of, delays, airspeed_tolerance_kt, second_variable: second, tau_degree }
+    }
 }
 
 impl Default for ScheduleSettings {
@@ -228,7 +291,7 @@ impl Schedule {
                 let of_channel = |channel| points.iter().map(|point| quantity(of(point.correction)[channel])).collect();
                 (0..of(points[0].correction).len()).map(of_channel).collect()
             };
-            let columns = basis::design(&airspeeds, settings.kind);
+            let columns = design(&airspeeds, settings.kind);
             let term = SecondTerm::of(variable, values, &columns)?;
             Ok(term.fitted(&figures(|of| &of.input_gains), &figures(|of| &of.output_gains)))
         });
@@ -276,7 +339,7 @@ impl Schedule {
     }
 
     /// Whether it is nothing to go by between the conditions: a gain overshoots there, or is not positive.
-    pub fn fails_between(&self) -> bool {
+    pub fn interpolation_fails(&self) -> bool {
         let fails = |caution: &ScheduleCaution| {
             matches!(caution, ScheduleCaution::Overshoot { .. } | ScheduleCaution::NotPositive)
         };
@@ -336,16 +399,16 @@ impl Schedule {
     /// Scheduled delays are cut to their bounds: from zero to the conditions' upper bounds, linear between them. A second variable
     /// is in the middle of its range.
     pub fn at(&self, airspeed_kt: f64) -> ChannelCorrection {
-        self.at_both(airspeed_kt, None)
+        self.evaluate(airspeed_kt, None)
     }
 
     /// The scheduled correction at the airspeed and the second variable of a condition.
     pub fn at_state(&self, state: &FlightState) -> ChannelCorrection {
-        self.at_both(state.airspeed_kt, self.settings.second.and_then(|variable| variable.value(state)))
+        self.evaluate(state.airspeed_kt, self.settings.second.and_then(|variable| variable.value(state)))
     }
 
     /// As [`Schedule::at`], at a value of the second variable; beyond the range of the conditions' the end value holds.
-    pub fn at_both(&self, airspeed_kt: f64, second: Option<f64>) -> ChannelCorrection {
+    pub fn evaluate(&self, airspeed_kt: f64, second: Option<f64>) -> ChannelCorrection {
         let gain = |regression: &Regression, beside: f64| {
             let value = regression.at(&self.airspeeds, airspeed_kt) + beside;
             match self.settings.quantity {
@@ -375,6 +438,60 @@ impl Schedule {
             output_delays_s,
             leads,
         }
+    }
+}
+
+/// Every channel's signed delay as a function of airspeed: sums of regressions are the regression of sums, so the net lead of
+/// every response is scheduled exactly.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeadSchedule {
+    /// Which filter a signed delay has.
+    pub design: Arc<LeadDesign>,
+    /// Regression of each input's signed delay \[s\].
+    pub inputs: Vec<Regression>,
+    /// Regression of each output's signed delay \[s\].
+    pub outputs: Vec<Regression>,
+    /// The widest of the conditions' bounds \[s\]: no scheduled signed delay is outside.
+    pub bounds_s: [f64; 2],
+    /// The same for all airspeeds, where it is: its filters are computed once.
+    constant: Option<ChannelLeads>,
+}
+
+impl LeadSchedule {
+    /// The schedule of these conditions' signed delays; none where one of them has none.
+    pub(super) fn of(points: &[ScheduledPoint<'_>], airspeeds: &Airspeeds, degree: usize) -> Option<Self> {
+        let leads =
+            points.iter().map(|point| point.correction.leads.as_ref()).collect::<Option<Vec<&ChannelLeads>>>()?;
+        let fit = |of: fn(&ChannelLeads) -> &[f64]| -> Vec<Regression> {
+            let channels = leads.first().map_or(0, |leads| of(leads).len());
+            let figures = |channel: usize| leads.iter().map(|leads| of(leads)[channel]).collect::<Vec<f64>>();
+            (0..channels).map(|channel| Regression::polynomial(airspeeds, &figures(channel), degree)).collect()
+        };
+        let design = Arc::clone(leads.first()?.design());
+        let upper_s = points.iter().map(|point| point.delay_upper_s).fold(0.0, f64::max);
+        let lower_s = leads.iter().map(|leads| leads.design().lower_s()).fold(0.0, f64::min);
+        let (inputs, outputs) = (fit(ChannelLeads::inputs_s), fit(ChannelLeads::outputs_s));
+        let mut schedule = Self { design, inputs, outputs, bounds_s: [lower_s, upper_s], constant: None };
+        schedule.constant = (schedule.degree() == 0).then(|| schedule.made_at(airspeeds, airspeeds.mean_kt));
+        Some(schedule)
+    }
+
+    /// Degree of its polynomials.
+    pub fn degree(&self) -> usize {
+        let channels = self.inputs.iter().chain(&self.outputs);
+        channels.map(|regression| regression.figures().len().saturating_sub(1)).max().unwrap_or(0)
+    }
+
+    /// The signed delays at an airspeed \[kt\], cut to the bounds.
+    pub fn at(&self, airspeeds: &Airspeeds, airspeed_kt: f64) -> ChannelLeads {
+        self.constant.clone().unwrap_or_else(|| self.made_at(airspeeds, airspeed_kt))
+    }
+
+    fn made_at(&self, airspeeds: &Airspeeds, airspeed_kt: f64) -> ChannelLeads {
+        let [lower_s, upper_s] = self.bounds_s;
+        let cut = |regression: &Regression| regression.at(airspeeds, airspeed_kt).clamp(lower_s, upper_s);
+        let of = |channels: &[Regression]| channels.iter().map(cut).collect();
+        ChannelLeads::new(Arc::clone(&self.design), of(&self.inputs), of(&self.outputs))
     }
 }
 
@@ -446,10 +563,10 @@ mod tests {
         };
         assert_eq!((*channel, *between_kt, *range), (Channel::Input(0), [63.0, 120.0], [1.0, 1.1]));
         assert!((airspeed_kt - 90.0).abs() < 1.0 && (gain / 1.1_f64.powf(1.0 / 0.19) - 1.0).abs() < 0.01);
-        assert!(wild.fails_between());
+        assert!(wild.interpolation_fails());
         let lowered = of([60.0, 61.0, 120.0], 2.0);
         assert_eq!(lowered.cautions, [ScheduleCaution::DegreeLowered { asked: 2, clusters: 2 }]);
-        assert_eq!((lowered.degree(), lowered.fails_between()), (Some(1), false));
+        assert_eq!((lowered.degree(), lowered.interpolation_fails()), (Some(1), false));
     }
 
     #[test]
@@ -484,5 +601,63 @@ mod tests {
         assert!((delay_at(90.0) - 0.015).abs() < 1e-15, "half way, by symmetry");
         let uncut = schedule.delays.as_ref().unwrap().inputs[0].at(&schedule.airspeeds, 70.0);
         assert!(uncut < -0.001, "{uncut}");
+    }
+}
+
+#[cfg(test)]
+mod lead_schedule_tests {
+    use super::*;
+    use crate::correction::{ChannelCorrection, LeadSettings};
+
+    fn corrections(taus_s: &[[f64; 2]]) -> Vec<ChannelCorrection> {
+        let design = Arc::new(LeadDesign::new(LeadSettings::default(), [0.5, 3.0, 12.0].into()));
+        let of = |&[input_s, output_s]: &[f64; 2]| ChannelCorrection {
+            input_gains: vec![1.0],
+            output_gains: vec![1.0],
+            input_delays_s: vec![0.0],
+            output_delays_s: vec![0.0],
+            leads: Some(ChannelLeads::new(Arc::clone(&design), vec![input_s], vec![output_s])),
+        };
+        taus_s.iter().map(of).collect()
+    }
+
+    fn points<'a>(airspeeds_kt: &[f64], corrections: &'a [ChannelCorrection]) -> Vec<ScheduledPoint<'a>> {
+        let pairs = airspeeds_kt.iter().zip(corrections);
+        pairs
+            .map(|(&airspeed_kt, correction)| ScheduledPoint {
+                airspeed_kt,
+                correction,
+                delay_upper_s: 0.01,
+                second: None,
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_sum_of_two_channels_is_the_regression_of_the_sums() {
+        let airspeeds_kt = [60.0, 80.0, 100.0, 130.0];
+        let taus_s = [[-0.02, -0.03], [-0.04, 0.004], [-0.01, -0.02], [-0.03, -0.05]];
+        let corrections = corrections(&taus_s);
+        let airspeeds = Airspeeds::new(airspeeds_kt.to_vec(), 2.0).unwrap();
+        for degree in 0..=2 {
+            let schedule = LeadSchedule::of(&points(&airspeeds_kt, &corrections), &airspeeds, degree).unwrap();
+            let sums: Vec<f64> = taus_s.iter().map(|[input, output]| input + output).collect();
+            let direct = Regression::polynomial(&airspeeds, &sums, degree);
+            let at = schedule.at(&airspeeds, 93.0);
+            // Least squares in another order of rounding.
+            assert!((at.inputs_s()[0] + at.outputs_s()[0] - direct.at(&airspeeds, 93.0)).abs() < 1e-15);
+            assert_eq!(schedule.degree(), degree);
+        }
+    }
+
+    #[test]
+    fn a_scheduled_signed_delay_stays_within_the_widest_bounds() {
+        let corrections = corrections(&[[-0.09, 0.01], [-0.09, 0.01], [0.01, -0.05], [0.01, -0.05]]);
+        let airspeeds_kt = [60.0, 80.0, 100.0, 120.0];
+        let airspeeds = Airspeeds::new(airspeeds_kt.to_vec(), 2.0).unwrap();
+        let schedule = LeadSchedule::of(&points(&airspeeds_kt, &corrections), &airspeeds, 3).unwrap();
+        let uncut_s = schedule.inputs[0].at(&airspeeds, 110.0);
+        assert!(uncut_s > 0.011, "the cubic swings over: {uncut_s}");
+        assert_eq!(schedule.at(&airspeeds, 110.0).inputs_s(), [0.01]);
     }
 }

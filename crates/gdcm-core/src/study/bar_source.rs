@@ -2,7 +2,9 @@
 
 use crate::dataset::{BundleKind, Dynamics, Pair, PairTable};
 use crate::response::{coherence_at, median, quantile};
-use crate::uncertainty::{BarSource, CoherenceError, IdentificationSource, Part, ReportedUncertainty, Scalar};
+use crate::uncertainty::{
+    BarSource, CoherenceError, IdentificationSource, ReportedUncertainty, Scalar, VarianceComponent,
+};
 
 use super::{Analysis, ConditionAnalysis, ConditionSwaps, SwapOptimum};
 
@@ -17,15 +19,17 @@ pub(super) fn bar_source<'a>(
     let figures = SwapOptimum::of(result).figures();
     let by_coherence = told_by_coherence(analysis, result);
     let by_band = told_by_band(analysis, result);
-    let is_matched = |pair: Pair| result.held()[pair] && result.gains.unmatched.iter().all(|miss| miss.pair != pair);
     let told = figures.map(|scalar, _| {
         let (pair, deviation): (Pair, fn(&CoherenceError) -> f64) = match scalar {
-            Scalar::Gain(pair) => (pair, |error| error.ln_gain),
-            Scalar::NetGain(pair) if is_matched(pair) => (pair, |error| error.ln_gain),
-            Scalar::Delay(pair) => (pair, |error| error.delay_s),
-            _ => return None,
+            _ if !takes_reported_error(result, scalar) => return None,
+            Scalar::Gain(pair) | Scalar::NetGain(pair) => (pair, |error| error.ln_gain),
+            Scalar::Delay(pair) | Scalar::BandDelay(pair) => (pair, |error| error.delay_s),
+            Scalar::ChannelGain(_) | Scalar::ChannelDelay(_) => return None,
         };
-        let part = |(error, degrees): (CoherenceError, f64)| Part { variance: deviation(&error).powi(2), degrees };
+        let part = |(error, degrees): (CoherenceError, f64)| VarianceComponent {
+            variance: deviation(&error).powi(2),
+            degrees_of_freedom: degrees,
+        };
         let coherence = by_coherence.as_ref().and_then(|told| told[pair]).map(part);
         let band = by_band.as_ref().and_then(|told| told[pair]).map(|error| part((error, f64::INFINITY)));
         let coherence = coherence.map(|part| ReportedUncertainty { part, source: IdentificationSource::Coherence });
@@ -38,6 +42,23 @@ pub(super) fn bar_source<'a>(
         told,
         delay_bounds_s: [result.delay_problem.bounds.lower, result.delay_problem.bounds.upper],
     }
+}
+
+/// Whether the error that the identified representative tells of itself counts for a value: for G, D and the net gains that are held
+/// and matched, which are G (M13.2). The other net gains and the channels rest on the spread of the models alone: what one response's
+/// error does to them is not known without that of all responses together.
+pub(super) fn takes_reported_error(result: &ConditionAnalysis, scalar: Scalar) -> bool {
+    let is_matched = |pair: Pair| result.held()[pair] && result.gains.unmatched.iter().all(|miss| miss.pair != pair);
+    match scalar {
+        Scalar::Gain(_) | Scalar::Delay(_) | Scalar::BandDelay(_) => true,
+        Scalar::NetGain(pair) => is_matched(pair),
+        Scalar::ChannelGain(_) | Scalar::ChannelDelay(_) => false,
+    }
+}
+
+/// Whether the identified representative of a condition tells an error of its own.
+pub(super) fn reports_error(analysis: &Analysis, result: &ConditionAnalysis) -> bool {
+    told_by_band(analysis, result).is_some() || told_by_coherence(analysis, result).is_some()
 }
 
 /// The error of each response of the identified representative that its coherence tells, with its degrees of freedom; none where it
@@ -56,7 +77,7 @@ fn told_by_coherence(
     let coherence = coherence_at(response, &analysis.omega)?;
     Some(coherence.map(|_, coherence| {
         let error = measurement.error(&analysis.omega, coherence, threshold)?;
-        Some((error, measurement.degrees()))
+        Some((error, measurement.degrees_of_freedom()))
     }))
 }
 

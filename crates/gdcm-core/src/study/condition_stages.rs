@@ -143,7 +143,8 @@ impl ConditionStages {
         Ok(solved.ok().map(|solved| SwapOptimum {
             correction: solved.correction(),
             gain: solved.gain_problem.delta.clone(),
-            delay_s: solved.delay_problem.delta.clone(),
+            delay_s: comparison.delta.delay_s.clone(),
+            band_delay_s: comparison.delta.band_delay_s.clone(),
         }))
     }
 
@@ -321,7 +322,7 @@ impl SolveInput<'_> {
             quantity: Quantity::Gain(settings.gain_objective),
             delta: led.map_or(&delta.gain, |led| &led.gain).clone(),
             constrained: settings.constrained.map(|pair, held| *held && delta.gain[pair].is_some()),
-            fitted: settings.fitted.clone(),
+            fitted: settings.fitted(),
             bounds,
             alpha: settings.alpha_gain,
             agreement: settings.agreement_db,
@@ -339,7 +340,7 @@ impl SolveInput<'_> {
             quantity: if design.is_some() { Quantity::SignedDelay } else { Quantity::Delay },
             delta: if from_band { delta.band_delay_s.clone() } else { delta.delay_s.clone() },
             constrained: settings.constrained.map(held),
-            fitted: settings.fitted.clone(),
+            fitted: settings.fitted(),
             bounds: Bounds { lower: design.map_or(0.0, LeadDesign::lower_s), upper: upper_s },
             alpha: settings.alpha_delay,
             agreement: DELAY_AGREEMENT_S,
@@ -400,8 +401,8 @@ fn cautions_of(settings: &Settings, comparison: &Comparison, figures: &BundleMet
     let mut cautions: Vec<Caution> = undefined.collect();
     cautions.extend(figures.discontinuity.as_ref().err().cloned().map(Caution::NoSuggestions));
     cautions.extend(comparison.cautions.iter().cloned());
-    let fitted = settings.fitted.marked();
-    cautions.extend(fitted.filter_map(|pair| Caution::of_gain(pair, comparison.delta.gain[pair]?)));
+    let fitted = settings.fitted();
+    cautions.extend(fitted.marked().filter_map(|pair| Caution::of_gain(pair, comparison.delta.gain[pair]?)));
     cautions
 }
 

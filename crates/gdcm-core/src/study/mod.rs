@@ -20,6 +20,7 @@ mod late_channel;
 mod lead_compensation;
 mod reconcile;
 mod remark;
+pub mod setting;
 mod settings;
 mod simulation_job;
 #[allow(clippy::module_inception)]
@@ -49,6 +50,7 @@ pub use late_channel::*;
 pub use lead_compensation::*;
 pub use reconcile::*;
 pub use remark::*;
+pub use setting::{Choice, Control, Digits, Kind, Place, SETTINGS, Setting, Unit, Value};
 pub use settings::*;
 pub use simulation_job::*;
 pub use study::*;

@@ -153,7 +153,7 @@ pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
     let mut table = Table::new("What the scatter of the net gains is made of", columns);
     let deviation = |variance: f64| percent(Some(variance.sqrt()));
     let interval = |split: &VarianceDecomposition| {
-        let ends = split.rest_interval(uncertainty.level);
+        let ends = split.unexplained_interval(uncertainty.level);
         ends.map_or_else(|| NONE.to_owned(), |[low, high]| format!("{} to {}", percent(Some(low)), percent(Some(high))))
     };
     for scatter in &uncertainty.scatter {
@@ -165,7 +165,7 @@ pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
                 deviation(split.scatter),
                 deviation(split.trim),
                 deviation(split.identification),
-                deviation(split.rest()),
+                deviation(split.unexplained()),
                 interval(split),
                 cell(split.ratio(), 1),
             ]);

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use crate::settings_entry::SettingsEntry;
 use gdcm_core::correction::{Outcome, Quantity, kkt_residual};
 use gdcm_core::dataset::{BundleKind, Condition, ConditionId, Model, PairTable, Provenance};
 use gdcm_core::fidelity::Cost;
@@ -31,7 +30,7 @@ impl Corrections {
             version: VERSION,
             software: concat!("gdcm ", env!("CARGO_PKG_VERSION")).to_owned(),
             dataset: DatasetLabel { name: dataset.name().to_owned(), sha256: sha256.to_owned() },
-            settings: SettingsEntry::of(&analysis.study.settings, dataset),
+            settings: analysis.study.settings.named(dataset),
             conditions: Vec::new(),
             failed: Vec::new(),
             schedule: analysis.schedule.as_ref().ok().map(|schedule| gather.schedule(schedule)),

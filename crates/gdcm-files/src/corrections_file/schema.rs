@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::settings_entry::SettingsEntry;
 use gdcm_core::schedule::DEFAULT_TOLERANCE_KT;
+use gdcm_core::study::{ResponseNames, Settings};
 
 use super::explanation::Explanation;
 use super::names::ByName;
@@ -24,7 +24,7 @@ pub struct Corrections {
     /// The dataset analysed.
     pub dataset: DatasetLabel,
     /// Every setting that changes a result.
-    pub settings: SettingsEntry,
+    pub settings: Settings<ResponseNames>,
     /// Result of each condition that has one.
     pub conditions: Vec<ConditionCorrections>,
     /// Conditions without a result.

@@ -44,6 +44,9 @@ pub struct BarsEntry {
     /// Of each D.
     #[serde(rename = "D_s")]
     pub delta_delay_s: Vec<Vec<Option<BarEntry>>>,
+    /// Of each band delay, where the channels were asked for those (M15.2).
+    #[serde(rename = "D_band_s", default, skip_serializing_if = "Vec::is_empty")]
+    pub band_delay_s: Vec<Vec<Option<BarEntry>>>,
     /// Of each channel gain.
     pub gains: ChannelBars,
     /// Of each channel delay.
@@ -191,7 +194,7 @@ impl BarEntry {
             interval_identification: told(bar.inner_interval(level)),
             u_physics: bar.trim.map(|part| part.variance.sqrt()),
             u_identification: bar.identification.map(|part| part.variance.sqrt()),
-            degrees_of_freedom: bar.degrees().filter(|degrees| degrees.is_finite()),
+            degrees_of_freedom: bar.degrees_of_freedom().filter(|degrees| degrees.is_finite()),
             left_in_band: None,
             remarks: bar.remarks().into_iter().map(str::to_owned).collect(),
         }
@@ -225,9 +228,11 @@ impl BarsEntry {
                 (0..names.outputs.len()).map(|output| entry(scalar(Channel::Output(output)))).collect::<Vec<_>>(),
             ),
         };
+        let asks_band_delays = analysis.condition(condition)?.asks_band_delays();
         Some(Self {
             delta_gain: table(Scalar::Gain),
             delta_delay_s: table(Scalar::Delay),
+            band_delay_s: if asks_band_delays { table(Scalar::BandDelay) } else { Vec::new() },
             gains: channels(Scalar::ChannelGain),
             delays_s: channels(Scalar::ChannelDelay),
         })
@@ -241,8 +246,8 @@ impl SplitEntry {
             scatter: split.scatter.sqrt(),
             physics: split.trim.sqrt(),
             identification: split.identification.sqrt(),
-            rest: split.rest().sqrt(),
-            rest_interval: split.rest_interval(level),
+            rest: split.unexplained().sqrt(),
+            rest_interval: split.unexplained_interval(level),
             shares: split.shares(),
             ratio: split.ratio(),
             p: split.p(),
@@ -274,7 +279,7 @@ fn differences(uncertainty: &Uncertainty, names: &ChannelNames) -> Vec<Differenc
             airspeed_kt: of.airspeed_kt,
             delta: of.difference.delta,
             u: of.difference.deviation,
-            degrees_of_freedom: of.difference.degrees.filter(|degrees| degrees.is_finite()),
+            degrees_of_freedom: of.difference.degrees_of_freedom.filter(|degrees| degrees.is_finite()),
             ratio: of.difference.ratio(),
             p: of.difference.p(),
             p_holm: of.p_holm,

@@ -5,11 +5,9 @@ use crate::corrections_file::{
     Assessment, BarEntry, ByName, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable,
     LeadChannels, LeadEntry, ScheduleUsed, Table, WithoutResult,
 };
-use crate::settings_entry::SettingsEntry;
 use crate::variables::{ElementKind, Value, Variable};
-use gdcm_core::correction::GainObjective;
 use gdcm_core::dataset::{Channel, Dataset};
-use gdcm_core::fidelity::CostAverage;
+use gdcm_core::study::{ResponseNames, Settings};
 
 /// The variable `corrections`, with the fields of `corrections.json`. Figures of channels are columns in the order of its `inputs` and
 /// `outputs`; matrices have a row for each output and a column for each input, NaN where they are undefined.
@@ -36,31 +34,26 @@ pub(super) fn corrections_variable(corrections: &Corrections, dataset: &Dataset)
     Variable { name: "corrections".to_owned(), value: fields.record() }
 }
 
-fn settings(settings: &SettingsEntry, dataset: &Dataset) -> Value {
+fn settings(settings: &Settings<ResponseNames>, dataset: &Dataset) -> Value {
     let mut fields = Fields::default();
-    fields.add("band_rad_s", row(settings.band_rad_s.to_vec()));
+    fields.add("band_rad_s", row(vec![settings.band.min(), settings.band.max()]));
     fields.add("points", scalar(settings.points as f64));
     fields.add("alpha_gain", scalar(settings.alpha_gain));
     fields.add("alpha_delay", scalar(settings.alpha_delay));
     fields.add("quantile", scalar(settings.quantile));
-    fields.add("constrained", marked(&settings.constrained, dataset));
-    fields.add("ignored", marked(&settings.ignored, dataset));
-    let cost_average = match settings.cost_average {
-        CostAverage::Median => "median",
-        CostAverage::Mean => "mean",
-    };
-    let gain_objective = match settings.gain_objective {
-        GainObjective::Ratio => "ratio",
-        GainObjective::Decibel => "dB",
-    };
-    fields.add("cost_average", text(cost_average));
-    fields.add("gain_objective", text(gain_objective));
+    fields.add("constrained", marked(&settings.constrained.0, dataset));
+    fields.add("ignored", marked(&settings.ignored.0, dataset));
+    let json = serde_json::to_value(settings).unwrap_or_default();
+    for key in ["cost_average", "gain_objective", "phase", "delay_from"] {
+        fields.add(key, text(json[key].as_str().unwrap_or_default()));
+    }
     fields.add("coherence_threshold", scalar(settings.coherence_threshold));
-    fields.add("gain_bounds", row(settings.gain_bounds.unwrap_or([f64::NAN; 2]).to_vec()));
+    fields.add(
+        "gain_bounds",
+        row(settings.gain_bounds.map_or(vec![f64::NAN; 2], |bounds| vec![bounds.lower, bounds.upper])),
+    );
     fields.add("delay_upper_s", scalar(settings.delay_upper_s));
     fields.add("agreement_db", scalar(settings.agreement_db));
-    fields.add("phase", text(settings.phase.name()));
-    fields.add("delay_from", text(settings.delay_from.name()));
     fields.record()
 }
 

@@ -155,7 +155,7 @@ mod tests {
     use super::*;
     use crate::embedded_example;
     use gdcm_core::schedule::{ScheduleKind, ScheduleSettings};
-    use gdcm_core::study::{Analysis, Edit, Engine, PhaseCorrection, Setting, Study, Unobserved};
+    use gdcm_core::study::{Analysis, Edit, Engine, PhaseCorrection, Study, Unobserved, setting};
     use std::process::Command;
 
     /// The example under every form of the schedule: kind, quantity, delays.
@@ -168,7 +168,7 @@ mod tests {
                 for delays in [false, true] {
                     let mut study = Study::new(embedded_example().unwrap().dataset);
                     let schedule = ScheduleSettings { kind, quantity, delays, ..ScheduleSettings::default() };
-                    study.apply(&Edit::Set(Setting::Schedule(schedule))).unwrap();
+                    study.settings.schedule = schedule;
                     let analysis = engine.analyze(&study, &Unobserved).unwrap();
                     analyses.push((format!("{kind:?}, {quantity:?}, delays {delays}"), analysis));
                 }
@@ -178,8 +178,8 @@ mod tests {
         for tau_degree in [0, 2] {
             let mut study = Study::new(embedded_example().unwrap().dataset);
             let schedule = ScheduleSettings { tau_degree, ..ScheduleSettings::default() };
-            study.apply(&Edit::Set(Setting::Phase(PhaseCorrection::Lead))).unwrap();
-            study.apply(&Edit::Set(Setting::Schedule(schedule))).unwrap();
+            study.apply(&setting::PHASE.to(PhaseCorrection::Lead)).unwrap();
+            study.settings.schedule = schedule;
             let analysis = engine.analyze(&study, &Unobserved).unwrap();
             analyses.push((format!("leads of degree {tau_degree}"), analysis));
         }
@@ -327,11 +327,11 @@ mod tests {
     fn with_altitude(kind: ScheduleKind) -> (ScheduledCorrection, Vec<f64>) {
         let mut study = Study::new(embedded_example().unwrap().dataset);
         let schedule = ScheduleSettings { kind, second: Some(SecondVariable::Altitude), ..ScheduleSettings::default() };
-        study.apply(&Edit::Set(Setting::Schedule(schedule))).unwrap();
+        study.settings.schedule = schedule;
         let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
         let schedule = analysis.schedule.as_ref().unwrap();
         let values = |airspeed: f64, altitude: f64| {
-            let at = schedule.at_both(airspeed, Some(altitude));
+            let at = schedule.evaluate(airspeed, Some(altitude));
             [at.input_gains, at.output_gains, at.input_delays_s, at.output_delays_s].concat()
         };
         let pairs = || airspeeds().into_iter().flat_map(|airspeed| ALTITUDES.map(|altitude| (airspeed, altitude)));

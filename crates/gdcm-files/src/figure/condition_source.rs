@@ -153,14 +153,14 @@ impl<'a> ConditionSource<'a> {
         let shown = models.filter(|model| options.shows_model(model));
         let mut lines: Vec<ResponseLine> = shown
             .map(|SourceModel { id, index, role, rejected }| {
-                let shape = shape(id.bundle, index).laid_on(&reference);
+                let shape = shape(id.bundle, index).phase_aligned(&reference);
                 let name = id.name.clone();
                 ResponseLine { id: CurveId::Model(id), name, role, rejected, shape }
             })
             .collect();
         let omega = self.curves.grid.omega();
         for CorrectedModel { id, name, role, model, correction } in self.corrected_models(pair) {
-            let shape = shape(BundleKind::Physics, model).laid_on(&reference).corrected(omega, correction);
+            let shape = shape(BundleKind::Physics, model).phase_aligned(&reference).corrected(omega, correction);
             lines.push(ResponseLine { id, name, role, rejected: false, shape });
         }
         for line in &mut lines {

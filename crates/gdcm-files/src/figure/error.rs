@@ -3,24 +3,24 @@
 use std::sync::Arc;
 
 use gdcm_core::dataset::{BundleKind, Pair};
-use gdcm_core::fidelity::{CountedFrequencies, Mismatch, Muad};
+use gdcm_core::fidelity::{CoherenceWeights, Mismatch, Muad};
 use gdcm_core::response::{GainDelay, PolarCurve, quantile};
 use gdcm_core::units::{ratio_to_db, s_to_ms};
 
 use super::axis::{Axis, Range};
 use super::bode::BodeOptions;
 use super::condition_source::ConditionSource;
-use super::drawing::{Color, Dash, Stroke};
+use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::mark::{Curve, Mark, Rule};
 use super::request::PhaseErrorUnit;
-use super::role::{AMBER, GREY, Role};
+use super::role::Role;
 use super::ticks::decimals;
 
 const DELTA: Stroke = Stroke::dashed(Color::INK, 0.7, Dash::Dotted);
-const BOUND: Stroke = Stroke::dashed(AMBER, 0.7, Dash::DashDot);
+const BOUND: Stroke = Stroke::dashed(Color::of(Hue::Warning), 0.7, Dash::DashDot);
 const QUANTILE: Stroke = Stroke::dashed(Color::DIM, 0.5, Dash::Short);
-const MUAD: Stroke = Stroke::dashed(GREY, 0.9, Dash::Long);
+const MUAD: Stroke = Stroke::solid(Color::of(Hue::Good), 0.55);
 
 impl PhaseErrorUnit {
     /// A difference of phases \[rad\] at `omega` as it is drawn.
@@ -188,10 +188,11 @@ fn errors(source: &ConditionSource<'_>, pair: Pair, omega: &[f64], options: &Bod
     };
     // Of a reference measured with coherence the errors at frequencies that do not count are gaps (M4a).
     let flight = &source.curves.condition.bundle(BundleKind::Identified)[source.reference()].dynamics;
-    let counted = CountedFrequencies::of_model(flight, omega, source.study.settings.coherence_threshold);
+    let coherence_weights = CoherenceWeights::of_model(flight, omega, source.study.settings.coherence_threshold);
     let line = |name: String, role: Role, model: usize, correction: GainDelay| {
         let mismatch = Mismatch::new(&polar(BundleKind::Physics, model)?, &reference);
-        let mismatch = mismatch.counting(counted.as_ref().map(|counted| &counted[pair]))?;
+        let mismatch = mismatch
+            .coherence_weighted(coherence_weights.as_ref().map(|coherence_weights| &coherence_weights[pair]))?;
         // On the branch of the model as it is (M6b), which a correction leaves it on.
         let phase = mismatch.on_grid(mismatch.phase_difference(omega), omega.len());
         let mismatch_db = mismatch.on_grid(mismatch.magnitude_db.clone(), omega.len());

@@ -53,7 +53,7 @@ pub(super) fn add(page: &mut Page, analysis: &Analysis) {
 }
 
 /// The words with a capital letter first.
-fn capital(words: &str) -> String {
+pub(super) fn capital(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }

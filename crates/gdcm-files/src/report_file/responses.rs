@@ -45,7 +45,7 @@ pub(super) fn add_responses(page: &mut Page, study: &Study, result: &ConditionAn
 fn cells(study: &Study, result: &ConditionAnalysis, pair: Pair) -> [String; 11] {
     let cost = result.cost[pair];
     let is_defined = result.wanted_gain(pair).is_some();
-    let treated = match (is_defined, result.held()[pair], study.settings.fitted[pair]) {
+    let treated = match (is_defined, result.held()[pair], !study.settings.ignored[pair]) {
         (false, ..) => "no G, no D",
         (true, true, _) => "held",
         (true, false, true) => "fitted",

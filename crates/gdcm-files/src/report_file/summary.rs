@@ -34,7 +34,7 @@ fn assessment_sentence(analysis: &Analysis) -> String {
     let measuring = dataset.measuring_pairs();
     let which = if dataset.on_axis().marked().next().is_some() { "on-axis responses" } else { "responses" };
     let found = AssessmentTable::of(analysis, usual_choice(analysis)).summary(&measuring).words(dataset);
-    let between = if analysis.schedule.as_ref().is_ok_and(Schedule::fails_between) {
+    let between = if analysis.schedule.as_ref().is_ok_and(Schedule::interpolation_fails) {
         " Between the conditions' airspeeds the schedule must not be used (see its cautions)."
     } else {
         ""

@@ -172,7 +172,7 @@ fn the_numbers_of_evidence_name_what_the_scatter_is_about() {
     let example = &*EXAMPLE;
     let figure = example.figure(FigureKind::Evidence, example.on_axis());
     let split = example.analysis.uncertainty.as_ref().unwrap().scatter[0].about_schedule.unwrap();
-    let [_, high] = split.rest_interval(0.9).unwrap();
+    let [_, high] = split.unexplained_interval(0.9).unwrap();
     let rows = figure.tables().swap_remove(1).rows;
     let row = |series: &str| rows.iter().find(|row| row[0] == series && row[2] == "schedule").unwrap();
     assert_eq!(row("scatter")[3], format!("{:?}", 100.0 * split.scatter.sqrt()));

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use egui::ThemePreference;
 use egui_tiles::LinearDir;
 use gdcm_core::dataset::{ConditionId, ModelId, Pair};
-use gdcm_core::study::{AcrossRole, Edit, ExplainTarget, ExportFormat, Table};
+use gdcm_core::study::{AcrossRole, Edit, ExplainTarget, Table};
+use gdcm_files::ExportFormat;
 use gdcm_files::figure::{ColumnWidth, FigureFormat};
 
 use super::arrangement::{Preset, View};

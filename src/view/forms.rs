@@ -6,7 +6,8 @@ use std::path::PathBuf;
 use egui::{Button, Context, Id, Modal, RichText, Role, ScrollArea, TextEdit, Ui};
 
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::study::{Difference, Edit, ExportFormat};
+use gdcm_core::study::{Difference, Edit};
+use gdcm_files::ExportFormat;
 use gdcm_files::figure::ColumnWidth;
 
 use super::command::{Command, FormKind};
@@ -140,11 +141,11 @@ fn export_as_ui(form: &mut Form<'_, '_>, state: &mut State) {
     let words = PathWords { waits: state.results.is_behind(), ..EXPORT_AS };
     let ExportAsForm { format, path } = &mut state.forms.export_as;
     let before = *format;
-    let formats = ExportFormat::ALL.map(|format| (format, format.words()));
+    let formats: Vec<_> = ExportFormat::all().map(|format| (format, format.about().words)).collect();
     form.path_and_choice_ui(&words, path, (format, &formats), |path, format| Command::ExportAs(format, path));
     // The end of the name goes with the format, as long as nobody has typed another.
-    if let Some(stem) = path.strip_suffix(&format!(".{}", before.extension())) {
-        *path = format!("{stem}.{}", format.extension());
+    if let Some(stem) = path.strip_suffix(&format!(".{}", before.about().extension)) {
+        *path = format!("{stem}.{}", format.about().extension);
     }
 }
 

@@ -7,9 +7,10 @@ use std::sync::Arc;
 use gdcm_core::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
 use gdcm_core::study::{
     AcrossCurves, Analysis, AssessmentTable, ConditionAnalysis, ConditionCurves, ConditionFailure, ConditionModes,
-    Difference, ExportFormat, History, Study, Table, Toggles, Uncertainty,
+    Difference, History, Study, Table, Toggles, Uncertainty,
 };
 use gdcm_core::uncertainty::{Bar as ErrorBar, Scalar};
+use gdcm_files::ExportFormat;
 use gdcm_files::figure::ColumnWidth;
 
 use super::arrangement::View;

@@ -44,7 +44,10 @@ pub use dataset_file::{
     DatasetOrigin, LoadedDataset, add_dataset, dataset_faults, embedded_example, load_dataset, load_dataset_bytes,
     save_dataset, write_example,
 };
-pub use exports::{ExportFault, ExportSource, check_export, write_export};
+pub use exports::{
+    About, EXPORTERS, ExportFault, ExportFormat, ExportRequest, ExportSource, ExportedRole, Exporter, check_export,
+    write_export,
+};
 pub use figure_file::{figure_format, write_as, write_figure};
 pub use file_error::{ContentFault, FileError, system_words};
 pub use first_start::is_first_start;

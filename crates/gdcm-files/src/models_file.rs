@@ -1,5 +1,6 @@
 //! Models as they were found, `gdcm-models` 1: what `gdcm convert` writes.
 
+use std::io::{self, Write};
 use std::path::Path;
 
 use serde::Serialize;
@@ -93,11 +94,14 @@ struct BandsText<'m> {
 
 /// Adds the models as a file to `outputs`.
 pub fn add_models(models: &[FoundModel], path: &Path, outputs: &mut OutputSet) -> Result<(), FileError> {
+    outputs.add(path, |file| write_models(models, file))
+}
+
+/// Writes the text of that file.
+pub(super) fn write_models(models: &[FoundModel], file: &mut dyn Write) -> io::Result<()> {
     let text = ModelsText { format: FORMAT, version: VERSION, models: models.iter().map(model_text).collect() };
-    outputs.add(path, |file| {
-        serde_json::to_writer(&mut *file, &text)?;
-        file.write_all(b"\n")
-    })
+    serde_json::to_writer(&mut *file, &text)?;
+    file.write_all(b"\n")
 }
 
 /// The text of a model, entry by entry.

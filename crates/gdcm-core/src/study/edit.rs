@@ -218,23 +218,23 @@ impl Edit {
             Edit::RestoreAll { condition } => format!("restore all (condition {condition})"),
             Edit::RejectEach(models) => format!("reject {} models", models.len()),
             Edit::RestoreEach(models) => format!("restore {} models", models.len()),
-            Edit::Pin(id) => format!("pin {}", name_of(id)),
-            Edit::Unpin { condition, .. } => format!("unpin (condition {condition})"),
+            Edit::Pin(id) => format!("use {} as representative", name_of(id)),
+            Edit::Unpin { condition, .. } => format!("use the medoid as representative (condition {condition})"),
             Edit::SetScheduled { condition, scheduled: true } => format!("schedule condition {condition}"),
             Edit::SetScheduled { condition, .. } => format!("leave condition {condition} out"),
             Edit::SetHeldOut { condition, held_out: true } => format!("hold condition {condition} out"),
-            Edit::SetHeldOut { condition, .. } => format!("hold condition {condition} out no more"),
+            Edit::SetHeldOut { condition, .. } => format!("no longer hold condition {condition} out"),
             Edit::ConstrainOnAxis => "hold the on-axis responses".to_owned(),
             Edit::Hold(pair, held) => {
-                format!("{} {}", if *held { "hold" } else { "free" }, study.dataset.pair_name(*pair))
+                format!("{} {}", if *held { "hold" } else { "release" }, study.dataset.pair_name(*pair))
             }
             Edit::Fit(pair, fitted) => {
                 format!("{} {}", if *fitted { "fit" } else { "ignore" }, study.dataset.pair_name(*pair))
             }
             Edit::Set(setting, _) => setting.name.to_owned(),
             Edit::TakeModels(taken) => match taken.as_slice() {
-                [(condition, _)] => format!("take identified models (condition {condition})"),
-                _ => format!("take identified models ({} conditions)", taken.len()),
+                [(condition, _)] => format!("use identified models (condition {condition})"),
+                _ => format!("use identified models ({} conditions)", taken.len()),
             },
             Edit::ReturnModels { condition } => {
                 format!("put the file's identified models back (condition {condition})")

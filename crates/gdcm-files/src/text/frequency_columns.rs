@@ -1,5 +1,7 @@
 //! Which columns of a table are a frequency response, and in which units.
 
+use gdcm_core::assembly::PhysicalUnit;
+
 use crate::text::column_guess::guess;
 use crate::text::columns::{TextTable, line_fault};
 use crate::text::response_columns::{ResponseColumns, place};
@@ -242,13 +244,17 @@ impl ColumnMeaning {
 
 fn known_unit(unit: &str) -> KnownUnit {
     match unit.trim().to_lowercase().replace([' ', '.'], "").as_str() {
-        "rad/s" | "rad/sec" | "rad/second" | "rads" | "rps" | "1/s" | "rads^-1" | "rads-1" => {
-            KnownUnit::RadianPerSecond
-        }
-        "hz" | "cps" | "1/sec" => KnownUnit::Hertz,
-        "db" => KnownUnit::Decibel,
-        "deg" | "degree" | "degrees" | "°" => KnownUnit::Degree,
-        "rad" | "radian" | "radians" => KnownUnit::Radian,
+        // Of a column of frequencies, that is.
+        "1/s" | "rads" | "rads^-1" | "rads-1" => return KnownUnit::RadianPerSecond,
+        "1/sec" => return KnownUnit::Hertz,
+        _ => {}
+    }
+    match PhysicalUnit::of(unit).map(|unit| unit.name) {
+        Some("rad/s") => KnownUnit::RadianPerSecond,
+        Some("Hz") => KnownUnit::Hertz,
+        Some("dB") => KnownUnit::Decibel,
+        Some("deg") => KnownUnit::Degree,
+        Some("rad") => KnownUnit::Radian,
         _ => KnownUnit::Other,
     }
 }

@@ -260,7 +260,7 @@ pub(super) fn corrected_faces(state: &State, condition: &Condition, pair: Pair) 
         let correction = schedule.at_state(state.condition().flight_state());
         face(CurveId::Scheduled, label, Role::Scheduled, &correction)
     });
-    let without = shown.led.as_ref().and_then(|_| {
+    let without = shown.compensated.as_ref().and_then(|_| {
         let correction = shown.correction.clone().without_leads();
         face(CurveId::WithoutLeads, format!("{name}, corrected without leads"), Role::WithoutLeads, &correction)
     });

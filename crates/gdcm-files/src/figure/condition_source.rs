@@ -130,7 +130,7 @@ impl<'a> ConditionSource<'a> {
         let scheduled =
             self.schedule.and_then(|schedule| schedule.at_state(self.curves.condition.flight_state()).on(pair));
         let scheduled = scheduled.map(|correction| (CurveId::Scheduled, Role::Scheduled, correction));
-        let without = self.analysis.led.as_ref().and_then(|_| self.analysis.correction.without_leads_on(pair));
+        let without = self.analysis.compensated.as_ref().and_then(|_| self.analysis.correction.without_leads_on(pair));
         let without = without.map(|correction| (CurveId::WithoutLeads, Role::WithoutLeads, correction));
         own.into_iter()
             .chain(scheduled)

@@ -87,7 +87,7 @@ fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) 
     page.heading_within("What was matched, what was not and why");
     page.list(said);
     page.fine_list(details(study, result));
-    if result.led.is_some() {
+    if result.compensated.is_some() {
         page.heading_within("What the leads do and what they cost");
         page.list(lead_words(study, result, analysis.uncertainty.as_deref()));
     }

@@ -209,7 +209,7 @@ fn numbers_and_factors_of_net_gains_do_not_cover_one_another_on_paper() {
     let figure = example.figure(FigureKind::NetGain, example.on_axis());
     let uncertainty = example.analysis.uncertainty.as_ref().unwrap();
     let greatest = example.on_axis().into_iter().flat_map(|pair| uncertainty.greatest_differences(pair));
-    let factors = greatest.filter(|of| of.is_beyond(uncertainty.level)).count();
+    let factors = greatest.filter(|of| of.is_significant(uncertainty.level)).count();
     for width in ColumnWidth::BOTH {
         let labels = labels_on_paper(&figure, width);
         assert_eq!(labels.iter().filter(|(words, _)| words.ends_with('×')).count(), factors, "{width:?}");

@@ -2,20 +2,18 @@
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
-use std::sync::Arc;
 
-use gdcm_core::correction::ChannelCorrection;
-use gdcm_core::dataset::{Band, BundleKind, Condition, Model, ModelId, Pair};
-use gdcm_core::fidelity::SUGGESTION_RATIO;
-use gdcm_core::response::{GainDelay, wrap};
-use gdcm_core::study::{ConditionAnalysis, Edit, setting};
+use gdcm_core::dataset::{Band, ModelId, Pair};
+use gdcm_core::response::wrap;
+use gdcm_core::study::{Edit, setting};
 use gdcm_core::units::s_to_ms;
+use gdcm_files::figure::{BodeOptions, ConditionSource};
 
 use crate::view::command::Command;
 use crate::view::curve_display::CurveCommand;
 use crate::view::plot::{
-    BodeCurve, BodeEvent, BodeQuantity, BodeView, Chip, CurveId, CurveWish, FrequencyUnit, LogAxis, Pane, Readout,
-    ReadoutRow, Role, decimals,
+    BodeCurve, BodeEvent, BodeQuantity, BodeView, Chip, CurveId, CurveWish, FrequencyUnit, Pane, Readout, ReadoutRow,
+    Role, decimals,
 };
 use crate::view::state::State;
 
@@ -148,28 +146,67 @@ fn counted(models: usize) -> String {
     if models == 1 { "1 model".to_owned() } else { format!("{models} models") }
 }
 
-/// A curve without its numbers.
-#[derive(Clone, Debug)]
-pub(super) struct CurveFace {
-    pub(super) id: CurveId,
-    label: String,
-    detail: String,
-    role: Role,
-    pub(super) rejected: bool,
-    highlighted: bool,
-    hidden: bool,
+/// What the curves of the condition shown are made of; none until its responses are there.
+pub(in crate::view) fn condition_source(state: &State) -> Option<ConditionSource<'_>> {
+    let schedule = state.analysis().and_then(|analysis| analysis.schedule.as_ref().ok());
+    Some(ConditionSource { study: &state.study, analysis: state.shown(), schedule, curves: state.curves()? })
 }
 
-impl CurveFace {
-    /// The face of a curve whose phase was moved up by so many turns.
-    pub(super) fn moved_by_hand(mut self, turns: i32) -> Self {
-        if turns != 0 {
-            let (way, count) = (if turns > 0 { "up" } else { "down" }, turns.unsigned_abs());
-            let noun = if count == 1 { "turn" } else { "turns" };
-            self.detail = format!("phase moved {way} by {count} {noun} · {}", self.detail);
-        }
-        self
+/// What of the responses is shown, and how: the same on paper.
+pub(in crate::view) fn bode_options(state: &State) -> BodeOptions {
+    let (display, curves) = (&state.display, &state.display.curves);
+    BodeOptions {
+        unit: display.unit,
+        magnitude: curves.magnitude,
+        phase: curves.phase,
+        phase_error: curves.phase_error,
+        turns: curves.turns.clone(),
+        shows_muad: curves.shows_muad,
+        zeros_of: display.show_zeros.then_some(display.pair),
+        hidden: curves.hidden_roles.clone(),
+        hidden_models: curves.hidden_models.clone(),
+        isolated: display.isolated.clone().filter(|model| model.condition == state.condition().id()),
+        ..BodeOptions::default()
     }
+}
+
+/// Every curve of one response in the condition shown; none until its responses are there.
+pub(super) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
+    let mut cache = state.display.shapes.remove(&pair).unwrap_or_default();
+    let options = bode_options(state);
+    let curves = condition_source(state).map(|source| source.response_curves(pair, &options, &mut cache));
+    let drawn = pointed_out(state, curves.unwrap_or_default());
+    state.display.shapes.insert(pair, cache);
+    drawn
+}
+
+/// What the fit sees of one response in the condition shown; none until its responses are there.
+pub(super) fn error_curves(state: &mut State, pair: Pair, options: &BodeOptions) -> Vec<BodeCurve> {
+    let mut cache = std::mem::take(&mut state.display.errors);
+    let curves = condition_source(state).map(|source| source.error_curves(pair, options, &mut cache));
+    let drawn = pointed_out(state, curves.unwrap_or_default());
+    state.display.errors = cache;
+    drawn
+}
+
+/// The curves with what they are in the window: those pointed at stand out, and what a click does is said.
+fn pointed_out(state: &State, mut curves: Vec<BodeCurve>) -> Vec<BodeCurve> {
+    for curve in &mut curves {
+        match &curve.id {
+            CurveId::Model(id) => {
+                let is_selected = state.display.curves.selected.contains(id);
+                curve.highlighted = is_selected || state.display.hovered.as_ref() == Some(id);
+                let action = if curve.rejected { "click to restore" } else { "click to reject" };
+                let separator = if curve.detail.is_empty() { "" } else { " · " };
+                curve.detail = format!("{}{separator}{action}", curve.detail);
+            }
+            CurveId::Scheduled if state.others_are_older() => curve.label.push_str(" of older settings"),
+            CurveId::Corrected | CurveId::Scheduled | CurveId::WithoutLeads => {}
+        }
+    }
+<<<<<<< HEAD
+    curves
+=======
 
     /// The curve of these numbers.
     pub(super) fn with(self, omega: &Arc<[f64]>, magnitude_db: &Arc<[f64]>, phase_deg: &Arc<[f64]>) -> BodeCurve {
@@ -265,6 +302,7 @@ pub(super) fn corrected_faces(state: &State, condition: &Condition, pair: Pair) 
         face(CurveId::WithoutLeads, format!("{name}, corrected without leads"), Role::WithoutLeads, &correction)
     });
     own.into_iter().chain(scheduled).chain(without).collect()
+>>>>>>> main
 }
 
 /// The values of every role at the cursor \[rad/s\], or what changes between two marked frequencies; nothing without either.

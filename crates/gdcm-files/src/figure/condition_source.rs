@@ -152,7 +152,6 @@ impl<'a> ConditionSource<'a> {
         let Some(model) = self.curves.condition.position(BundleKind::Physics, name) else {
             return Vec::new();
         };
-<<<<<<< HEAD
         let corrected = |id: CurveId, role: Role, words: &str, correction: &ChannelCorrection| {
             let (gain, delay_ms) = (correction.net_gain(pair).value(), s_to_ms(correction.net_delay(pair).value_s()));
             let detail = format!("net gain {gain:.3}, net delay {delay_ms:.1} ms");
@@ -165,61 +164,11 @@ impl<'a> ConditionSource<'a> {
             let correction = schedule.at_state(self.curves.condition.flight_state());
             corrected(CurveId::Scheduled, Role::Scheduled, "scheduled", &correction)
         });
-        let without = analysis.led.as_ref().and_then(|_| {
+        let without = analysis.compensated.as_ref().and_then(|_| {
             let correction = analysis.correction.clone().without_leads();
             corrected(CurveId::WithoutLeads, Role::WithoutLeads, "corrected without leads", &correction)
         });
         own.into_iter().chain(scheduled).chain(without).collect()
-=======
-        let own = self.analysis.correction.on(pair).map(|correction| (CurveId::Corrected, Role::Corrected, correction));
-        let scheduled =
-            self.schedule.and_then(|schedule| schedule.at_state(self.curves.condition.flight_state()).on(pair));
-        let scheduled = scheduled.map(|correction| (CurveId::Scheduled, Role::Scheduled, correction));
-        let without = self.analysis.compensated.as_ref().and_then(|_| self.analysis.correction.without_leads_on(pair));
-        let without = without.map(|correction| (CurveId::WithoutLeads, Role::WithoutLeads, correction));
-        own.into_iter()
-            .chain(scheduled)
-            .chain(without)
-            .map(|(id, role, correction)| CorrectedModel {
-                id,
-                name: format!("{name}, {}", role.name()),
-                role,
-                model,
-                correction,
-            })
-            .collect()
-    }
-
-    /// The lines of a response's plot that are shown, what matters most last; phases are laid on that of the reference.
-    pub(super) fn lines(&self, pair: Pair, options: &BodeOptions) -> Vec<ResponseLine> {
-        let shape = |kind, index: usize| ResponseShape::of(&self.curves.bundle(kind)[index].curve(pair));
-        let reference = shape(BundleKind::Identified, self.reference());
-        let models = BundleKind::BOTH.into_iter().flat_map(|kind| self.models(kind));
-        let shown = models.filter(|model| options.shows_model(model));
-        let mut lines: Vec<ResponseLine> = shown
-            .map(|SourceModel { id, index, role, rejected }| {
-                let shape = shape(id.bundle, index).phase_aligned(&reference);
-                let name = id.name.clone();
-                ResponseLine { id: CurveId::Model(id), name, role, rejected, shape }
-            })
-            .collect();
-        let omega = self.curves.grid.omega();
-        for CorrectedModel { id, name, role, model, correction } in self.corrected_models(pair) {
-            let shape = shape(BundleKind::Physics, model).phase_aligned(&reference).corrected(omega, correction);
-            lines.push(ResponseLine { id, name, role, rejected: false, shape });
-        }
-        for line in &mut lines {
-            line.shape.phase_deg = options.turned(self.id(), pair, &line.id, &line.shape.phase_deg);
-        }
-        lines.retain(|line| !options.hidden.contains(&line.role.shown(line.rejected)));
-        lines.sort_by_key(|line| line.role.layer(line.rejected));
-        lines
-    }
-
-    /// Frequencies of the curves \[rad/s\].
-    pub(super) fn omega(&self) -> Arc<[f64]> {
-        self.curves.grid.omega().into()
->>>>>>> main
     }
 }
 

@@ -12,8 +12,8 @@ use gdcm_core::records::{LaidOutRecord, RecordChannels, RecordLayout, RecordTabl
 use gdcm_core::study::{AdoptedModels, Edit, IdentifyJob, OfferedModels};
 use gdcm_files::{DatasetOrigin, FileError, FolderProgress, example_records, load_records, read_records};
 
-use super::fault::Fault;
 use super::files::DialogPurpose;
+use super::threads::Fault;
 use super::window::GdcmApp;
 
 /// Records that were read, by condition, and what could not be.

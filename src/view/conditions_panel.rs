@@ -130,7 +130,7 @@ impl Marks {
                 let is_open = |model: &String| !choice.physics.rejected.contains(model);
                 marks.suggested = result.suggested().iter().filter(|model| is_open(model)).count();
                 marks.unmatched_gains = result.gains.unmatched.len();
-                let is_open = |missed: &&Unmatched| result.led.is_some() || missed.delta >= 0.0;
+                let is_open = |missed: &&Unmatched| result.compensated.is_some() || missed.delta >= 0.0;
                 marks.unmatched_delays = result.delays.unmatched.iter().filter(is_open).count();
             }
         }

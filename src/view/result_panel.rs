@@ -168,7 +168,7 @@ fn side_ui(
             let half = sureness.half(scalar).filter(|_| is_delayed).map(|half| format!("±{:.0}", s_to_ms(half)));
             let text = if is_delayed { format!("{delay_ms:.1}") } else { "0".to_owned() };
             let text = RichText::new(text).color(if is_delayed { palette.text } else { palette.dim_text });
-            let filter = shown.led.as_ref().and_then(|led| led.leads.filter(channel));
+            let filter = shown.compensated.as_ref().and_then(|led| led.leads.filter(channel));
             let filter = filter.map(|filter| format!("\nlead: {}", servo_words(filter))).unwrap_or_default();
             let label = value_ui(ui, (text, half), ExplainTarget::Delay(id, channel), palette, commands);
             label.on_hover_text(format!("{delay_ms} ms{filter}{}", told(scalar)));
@@ -218,7 +218,7 @@ fn objective_ui(ui: &mut Ui, shown: &ConditionAnalysis, palette: &Palette, comma
             shown.gains.objective, shown.gains.proof.lower_bound
         ));
         let label = value_label_ui(ui, palette.small(delays), ExplainTarget::DelayObjective(id), commands);
-        let equation = if shown.led.is_some() { "M15.4" } else { "eq. (11)" };
+        let equation = if shown.compensated.is_some() { "M15.4" } else { "eq. (11)" };
         label.on_hover_text(format!(
             "{equation}: {} s², global optimum (convex); KKT residual {:.0e} s",
             shown.delays.objective,
@@ -229,7 +229,7 @@ fn objective_ui(ui: &mut Ui, shown: &ConditionAnalysis, palette: &Palette, comma
 
 /// What each held response gets and each filter costs, in words.
 fn lead_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Palette) {
-    if shown.led.is_none() {
+    if shown.compensated.is_none() {
         return;
     }
     let header = palette.small("Leads in words");

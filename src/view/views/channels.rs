@@ -71,7 +71,7 @@ pub(super) fn brackets(uncertainty: &Uncertainty, scalar: Scalar, dots: &[Dot]) 
     let value = |id: ConditionId| dots.iter().find(|dot| dot.condition == id).map(|dot| dot.value);
     let bracket = |of: &AirspeedDifference| {
         let ([one, other], ratio) = (of.conditions.map(value), of.difference.ratio()?);
-        let (label, beyond) = (format!("{ratio:.1}×"), of.is_beyond(uncertainty.level));
+        let (label, beyond) = (format!("{ratio:.1}×"), of.is_significant(uncertainty.level));
         Some(Bracket { x: of.airspeed_kt, ends: [one?, other?], label, beyond })
     };
     uncertainty.greatest_differences(pair).into_iter().filter_map(bracket).collect()

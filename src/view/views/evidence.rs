@@ -45,7 +45,7 @@ pub fn evidence_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
 
 /// What the differences come to, in a sentence each.
 fn answer_ui(ui: &mut Ui, state: &State, uncertainty: &Uncertainty, palette: &Palette) {
-    let beyond: Vec<_> = uncertainty.differences.iter().filter(|of| of.is_beyond(uncertainty.level)).collect();
+    let beyond: Vec<_> = uncertainty.differences.iter().filter(|of| of.is_significant(uncertainty.level)).collect();
     for of in beyond {
         let words = format!("{}: {}", state.dataset().pair_name(of.pair), of.words(uncertainty.level));
         ui.label(RichText::new(words).size(SMALL_SIZE).color(palette.text));
@@ -134,7 +134,7 @@ fn tables_ui(
     let (table, differences) = difference_table(state.dataset(), uncertainty);
     heading(ui, &table.title);
     let color = |row: usize, column: usize| {
-        let beyond = differences.get(row).is_some_and(|of| of.is_beyond(uncertainty.level));
+        let beyond = differences.get(row).is_some_and(|of| of.is_significant(uncertainty.level));
         (column == 6 && beyond).then_some(palette.warning)
     };
     let look = TableLook { color: &color, selected: &|_| false };

@@ -243,7 +243,7 @@ impl Comparison {
 
     /// The comparison of another pair of models in place of the representatives, as if it were pinned: each phase difference is
     /// laid beside that of the representatives (M13.1). Costs, the nominal model and cautions are left out.
-    pub(super) fn swapped(
+    pub(super) fn substituted(
         &self,
         [physics, identified]: [usize; 2],
         simulated: &Compared,

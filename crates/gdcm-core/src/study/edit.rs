@@ -116,7 +116,7 @@ pub enum EditRefusal {
         model: String,
     },
     /// A rejected model cannot represent its bundle.
-    #[error("condition {condition}: \"{model}\" is rejected; restore it before pinning it")]
+    #[error("condition {condition}: \"{model}\" is rejected; restore it before using it as representative")]
     PinRejected {
         /// The condition's id.
         condition: ConditionId,

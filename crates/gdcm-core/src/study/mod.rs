@@ -2,7 +2,6 @@
 
 mod analysis;
 mod assessment_table;
-mod bar_source;
 mod caution;
 mod comparison;
 mod condition_responses;
@@ -20,18 +19,18 @@ mod lead_compensation;
 mod reconcile;
 mod remark;
 pub mod setting;
+mod setting_row;
 mod settings;
 mod simulation_job;
 #[allow(clippy::module_inception)]
 mod study;
-mod swaps;
+mod substitutions;
 mod table;
 mod taken_models;
 mod uncertainty;
 
 pub use analysis::*;
 pub use assessment_table::*;
-use bar_source::*;
 pub use caution::*;
 pub use comparison::*;
 pub use condition_responses::*;
@@ -48,11 +47,12 @@ pub use late_channel::*;
 pub use lead_compensation::*;
 pub use reconcile::*;
 pub use remark::*;
-pub use setting::{Choice, Control, Digits, Kind, Place, SETTINGS, Setting, Unit, Value};
+pub use setting::SETTINGS;
+pub use setting_row::*;
 pub use settings::*;
 pub use simulation_job::*;
 pub use study::*;
-pub use swaps::*;
+pub use substitutions::*;
 pub use table::*;
 pub use taken_models::*;
 pub use uncertainty::*;

@@ -175,7 +175,7 @@ fn carry_out(edit: &Edit, study: &mut Study, differences: &mut Vec<Difference>) 
 
 impl Study {
     /// This study of another state of its dataset: with every decision that still applies, and all that is different.
-    pub fn carried_over(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
+    pub fn reconciled(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
         let mut differences = Inventory::of(self.file_dataset()).differences(&dataset);
         let (study, not_applied) = Decisions::of(self).applied_to(dataset);
         differences.extend(not_applied);

@@ -5,418 +5,17 @@ use crate::correction::{GainBounds, GainObjective, GainSource};
 use crate::dataset::{Band, GREATEST_OMEGA, LEAST_OMEGA};
 use crate::fidelity::CostAverage;
 use crate::response::LeadOrder;
-use crate::schedule::{SCHEDULE_KINDS, ScheduleKind, ScheduledQuantity, SecondVariable};
-use crate::units::number;
+use crate::schedule::{ScheduleKind, ScheduledQuantity, SecondVariable};
 
-use super::{DEFAULT_COHERENCE, DelayFrom, Edit, EditRefusal, PhaseCorrection, Settings, Study};
-
-/// One setting: a row of [`SETTINGS`].
-#[derive(Debug)]
-pub struct Setting {
-    /// Its name in running text: "α of the gains".
-    pub name: &'static str,
-    /// Its key in the settings of files; a dot leads into an object: "lead.n".
-    pub key: &'static str,
-    /// Its option of the command line: "--alpha".
-    pub option: &'static str,
-    /// What it means, in a sentence.
-    pub help: &'static str,
-    /// Its unit.
-    pub unit: Unit,
-    /// What it may be.
-    pub kind: Kind,
-    /// How the window shows it.
-    pub control: Control,
-}
-
-/// The unit of a setting in files and on a command line, and that in which people read it.
-#[derive(Clone, Copy, Debug)]
-pub struct Unit {
-    /// In files.
-    pub file: &'static str,
-    /// For people.
-    pub shown: &'static str,
-    /// How many of the latter are one of the former.
-    pub scale: f64,
-}
-
-/// What a setting may be, and the field of [`Settings`] that holds it.
-#[derive(Clone, Copy, Debug)]
-pub enum Kind {
-    /// A number within a range.
-    Number {
-        /// Least and greatest.
-        range: [f64; 2],
-        /// Whether it is a whole number.
-        whole: bool,
-        /// Its value.
-        get: fn(&Settings) -> f64,
-        /// Changes it.
-        set: fn(&mut Settings, f64),
-    },
-    /// A number within a range, or nothing.
-    Optional {
-        /// Least and greatest.
-        range: [f64; 2],
-        /// The word that stands for nothing on a command line, and in a sentence.
-        nothing: [&'static str; 2],
-        /// The number that "on" stands for, where that is one of its words.
-        on: Option<f64>,
-        /// Its value.
-        get: fn(&Settings) -> Option<f64>,
-        /// Changes it.
-        set: fn(&mut Settings, Option<f64>),
-    },
-    /// Two numbers, the lower and the upper end, within a range; or nothing.
-    Range {
-        /// Least and greatest.
-        range: [f64; 2],
-        /// The words for nothing, where it may be nothing.
-        nothing: Option<[&'static str; 2]>,
-        /// The names of the two ends in the window.
-        ends: [&'static str; 2],
-        /// Its value.
-        get: fn(&Settings) -> Option<[f64; 2]>,
-        /// Changes it.
-        set: fn(&mut Settings, Option<[f64; 2]>) -> Result<(), EditRefusal>,
-    },
-    /// Yes or no.
-    Flag {
-        /// What no and yes are, in a sentence.
-        words: [&'static str; 2],
-        /// Its value.
-        get: fn(&Settings) -> bool,
-        /// Changes it.
-        set: fn(&mut Settings, bool),
-    },
-    /// One of several.
-    Choice {
-        /// Each of them: its word on the command line, that in the window, and what it means.
-        words: &'static [[&'static str; 3]],
-        /// The index of the one chosen.
-        get: fn(&Settings) -> usize,
-        /// Chooses another.
-        set: fn(&mut Settings, usize),
-    },
-}
-
-/// How the window shows a setting.
-#[derive(Clone, Copy, Debug)]
-pub struct Control {
-    /// Where its control stands.
-    pub place: Place,
-    /// What stands before the control.
-    pub caption: &'static str,
-    /// The accessible name of the control.
-    pub label: &'static str,
-    /// How much the value shown changes by a point of dragging.
-    pub step: f64,
-    /// How the value is written.
-    pub digits: Digits,
-    /// Whether it has an effect.
-    pub applies: fn(&Study) -> bool,
-}
-
-/// How the window writes a number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Digits {
-    /// With three significant digits.
-    Significant,
-    /// With so many decimals.
-    Decimals(usize),
-    /// As a gain: three decimals, two where the third is zero.
-    Gain,
-}
-
-/// Where the control of a setting stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// Above the table of settings, with a slider.
-    Slider,
-    /// Above the table, on a line of its own.
-    Top,
-    /// On a line of its own.
-    Line,
-    /// On the line of the setting before it.
-    Beside,
-    /// In the view of what it is about.
-    Elsewhere,
-    /// Nowhere: files and command lines say it.
-    Hidden,
-}
-
-/// The value of a setting.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Value {
-    /// A number in the unit of files.
-    Number(f64),
-    /// Nothing, where there may be nothing.
-    Nothing,
-    /// The lower and the upper end.
-    Range([f64; 2]),
-    /// Yes or no.
-    Flag(bool),
-    /// The index of a choice.
-    Choice(usize),
-}
-
-/// A type of which a setting chooses one value.
-pub trait Choice: Copy + PartialEq + 'static {
-    /// All of them, in the order of the setting's words.
-    const ALL: &'static [Self];
-
-    /// Its index among all.
-    fn index(self) -> usize {
-        Self::ALL.iter().position(|one| *one == self).unwrap_or_default()
-    }
-}
-
-impl Choice for PhaseCorrection {
-    const ALL: &'static [Self] = &[Self::None, Self::Delay, Self::Lead];
-}
-
-impl Choice for DelayFrom {
-    const ALL: &'static [Self] = &[Self::Median, Self::Band];
-}
-
-impl Choice for CostAverage {
-    const ALL: &'static [Self] = &[Self::Median, Self::Mean];
-}
-
-impl Choice for GainObjective {
-    const ALL: &'static [Self] = &[Self::Ratio, Self::Decibel];
-}
-
-impl Choice for GainSource {
-    const ALL: &'static [Self] = &[Self::Representatives, Self::MeanOfPairs];
-}
-
-impl Choice for LeadOrder {
-    const ALL: &'static [Self] = &[Self::Second, Self::First];
-}
-
-impl Choice for ScheduleKind {
-    const ALL: &'static [Self] = &SCHEDULE_KINDS;
-}
-
-impl Choice for ScheduledQuantity {
-    const ALL: &'static [Self] = &[Self::LnGain, Self::Gain];
-}
-
-impl Choice for Option<SecondVariable> {
-    const ALL: &'static [Self] = &[None, Some(SecondVariable::Altitude), Some(SecondVariable::Mass)];
-}
-
-impl<C: Choice> From<C> for Value {
-    fn from(choice: C) -> Self {
-        Self::Choice(choice.index())
-    }
-}
-
-impl From<f64> for Value {
-    fn from(value: f64) -> Self {
-        Self::Number(value)
-    }
-}
-
-impl From<usize> for Value {
-    fn from(count: usize) -> Self {
-        Self::Number(count as f64)
-    }
-}
-
-impl From<bool> for Value {
-    fn from(flag: bool) -> Self {
-        Self::Flag(flag)
-    }
-}
-
-impl From<Option<f64>> for Value {
-    fn from(value: Option<f64>) -> Self {
-        value.map_or(Self::Nothing, Self::Number)
-    }
-}
-
-impl From<Band> for Value {
-    fn from(band: Band) -> Self {
-        Self::Range([band.min(), band.max()])
-    }
-}
-
-impl From<Option<GainBounds>> for Value {
-    fn from(bounds: Option<GainBounds>) -> Self {
-        bounds.map_or(Self::Nothing, |bounds| Self::Range([bounds.lower, bounds.upper]))
-    }
-}
-
-impl PartialEq for Setting {
-    fn eq(&self, other: &Self) -> bool {
-        self.key == other.key
-    }
-}
-
-impl Setting {
-    /// The decision that gives the setting a value.
-    pub fn to(&'static self, value: impl Into<Value>) -> Edit {
-        Edit::Set(self, value.into())
-    }
-
-    /// Its value.
-    pub fn value(&self, settings: &Settings) -> Value {
-        match self.kind {
-            Kind::Number { get, .. } => Value::Number(get(settings)),
-            Kind::Optional { get, .. } => get(settings).into(),
-            Kind::Range { get, .. } => get(settings).map_or(Value::Nothing, Value::Range),
-            Kind::Flag { get, .. } => Value::Flag(get(settings)),
-            Kind::Choice { get, .. } => Value::Choice(get(settings)),
-        }
-    }
-
-    /// Gives it a value, or refuses one outside its range and leaves the settings as they were.
-    pub(super) fn set(&self, settings: &mut Settings, value: Value) -> Result<(), EditRefusal> {
-        self.check(value)?;
-        match (self.kind, value) {
-            (Kind::Number { set, .. }, Value::Number(value)) => set(settings, value),
-            (Kind::Optional { set, .. }, Value::Number(value)) => set(settings, Some(value)),
-            (Kind::Optional { set, .. }, _) => set(settings, None),
-            (Kind::Range { set, .. }, Value::Range(ends)) => set(settings, Some(ends))?,
-            (Kind::Range { set, .. }, _) => set(settings, None)?,
-            (Kind::Flag { set, .. }, Value::Flag(value)) => set(settings, value),
-            (Kind::Choice { set, .. }, Value::Choice(index)) => set(settings, index),
-            _ => {}
-        }
-        Ok(())
-    }
-
-    /// Refuses a value that the setting may not have.
-    pub fn check(&self, value: Value) -> Result<(), EditRefusal> {
-        match (self.kind, value) {
-            (Kind::Number { range, whole: true, .. }, Value::Number(found)) if found.fract() == 0.0 => {
-                self.check_range("a whole number", found, range)
-            }
-            (Kind::Number { range, whole: true, .. }, Value::Number(found)) => {
-                Err(self.out_of_range("a whole number", found, range))
-            }
-            (Kind::Number { range, .. } | Kind::Optional { range, .. }, Value::Number(found)) => {
-                self.check_range(&self.a_number(), found, range)
-            }
-            (Kind::Range { range: [least, most], .. }, Value::Range([lower, upper])) => {
-                self.check_range("a lower end", lower, [least, most])?;
-                self.check_range("an upper end", upper, [lower, most])
-            }
-            (Kind::Choice { words, .. }, Value::Choice(index)) => {
-                self.check_range("a whole number", index as f64, [0.0, words.len() as f64 - 1.0])
-            }
-            (Kind::Flag { .. }, Value::Flag(_)) | (Kind::Optional { .. }, Value::Nothing) => Ok(()),
-            (Kind::Range { nothing: Some(_), .. }, Value::Nothing) => Ok(()),
-            _ => Err(EditRefusal::NotAValue { setting: self.name }),
-        }
-    }
-
-    fn check_range(&self, what: &str, found: f64, range: [f64; 2]) -> Result<(), EditRefusal> {
-        let is_within = (range[0]..=range[1]).contains(&found);
-        if is_within { Ok(()) } else { Err(self.out_of_range(what, found, range)) }
-    }
-
-    fn out_of_range(&self, what: &str, found: f64, [least, most]: [f64; 2]) -> EditRefusal {
-        let expected = format!("{what} from {} to {}", number(least), number(most));
-        EditRefusal::OutOfRange { setting: self.name, expected, found }
-    }
-
-    fn a_number(&self) -> String {
-        if self.unit.file.is_empty() { "a number".to_owned() } else { format!("a number of {}", self.unit.file) }
-    }
-
-    /// Its value in words.
-    pub fn words(&self, settings: &Settings) -> String {
-        self.text(self.value(settings))
-    }
-
-    /// A value in words: "20 ms", "by the quantile", "median".
-    pub fn text(&self, value: Value) -> String {
-        let Unit { shown, scale, .. } = self.unit;
-        let unit = if shown.is_empty() { String::new() } else { format!(" {shown}") };
-        match (self.kind, value) {
-            (_, Value::Number(value)) => format!("{}{unit}", number(scale * value)),
-            (_, Value::Range([lower, upper])) => {
-                format!("{} to {}{unit}", number(scale * lower), number(scale * upper))
-            }
-            (Kind::Flag { words, .. }, Value::Flag(flag)) => words[usize::from(flag)].to_owned(),
-            (Kind::Choice { words, .. }, Value::Choice(index)) => words[index][1].to_owned(),
-            (Kind::Optional { nothing, .. } | Kind::Range { nothing: Some(nothing), .. }, _) => nothing[1].to_owned(),
-            _ => String::new(),
-        }
-    }
-
-    /// What a command line may say of it: "none|delay|lead", "off|on|NUMBER".
-    pub fn syntax(&self) -> String {
-        match self.kind {
-            Kind::Number { .. } => "NUMBER".to_owned(),
-            Kind::Optional { nothing, on, .. } => {
-                format!("{}{}|NUMBER", nothing[0], if on.is_some() { "|on" } else { "" })
-            }
-            Kind::Range { .. } => "LO HI".to_owned(),
-            Kind::Flag { .. } => String::new(),
-            Kind::Choice { words, .. } => words.iter().map(|words| words[0]).collect::<Vec<_>>().join("|"),
-        }
-    }
-
-    /// The value that a command line says; a flag is said by its being there.
-    ///
-    /// # Errors
-    /// What was expected, and what was found.
-    pub fn read(&self, said: &[&str]) -> Result<Value, String> {
-        let real = |text: &str| text.trim().parse::<f64>().map_err(|_| format!("expected a number, found {text}"));
-        match (self.kind, said) {
-            (Kind::Flag { .. }, _) => Ok(Value::Flag(true)),
-            (Kind::Optional { nothing, .. } | Kind::Range { nothing: Some(nothing), .. }, [word])
-                if *word == nothing[0] =>
-            {
-                Ok(Value::Nothing)
-            }
-            (Kind::Optional { on: Some(on), .. }, ["on"]) => Ok(Value::Number(on)),
-            (Kind::Optional { nothing, on, .. }, [text]) => text.parse().map(Value::Number).map_err(|_| {
-                let on = if on.is_some() { ", on" } else { "" };
-                format!("expected {}{on} or a number, found {text}", nothing[0])
-            }),
-            (Kind::Number { range: [least, most], whole: true, .. }, [text]) => {
-                let found = text.trim().parse::<usize>().ok().map(|count| count as f64);
-                let found = found.filter(|count| (least..=most).contains(count));
-                let expected = || format!("expected a whole number from {least} to {most}, found {text}");
-                found.map(Value::Number).ok_or_else(expected)
-            }
-            (Kind::Number { .. }, [text]) => real(text).map(Value::Number),
-            (Kind::Range { .. }, [lower, upper]) => Ok(Value::Range([real(lower)?, real(upper)?])),
-            (Kind::Choice { words, .. }, [text]) => {
-                let found = words.iter().position(|words| words[0] == *text);
-                found.map(Value::Choice).ok_or_else(|| {
-                    let (last, others) = words.split_last().map_or(("", words), |(last, others)| (last[0], others));
-                    let others: Vec<&str> = others.iter().map(|words| words[0]).collect();
-                    format!("expected {} or {last}, found {text}", others.join(", "))
-                })
-            }
-            _ => Err(format!("expected {}, found {}", self.syntax(), said.join(" "))),
-        }
-    }
-}
-
-impl Settings {
-    /// Refuses values outside their ranges: the first, with its setting.
-    ///
-    /// # Errors
-    /// The setting, and why its value is refused.
-    pub fn check(&self) -> Result<(), (&'static Setting, EditRefusal)> {
-        let check =
-            |setting: &&'static Setting| setting.check(setting.value(self)).map_err(|refusal| (*setting, refusal));
-        SETTINGS.iter().try_for_each(check)
-    }
-}
+use super::{
+    Choice, Control, DEFAULT_COHERENCE, DelayFrom, Digits, Kind, PhaseCorrection, Place, Setting, Settings, Study, Unit,
+};
 
 const PURE: Unit = Unit { file: "", shown: "", scale: 1.0 };
 const PERCENT: Unit = Unit { file: "", shown: "%", scale: 100.0 };
 
-/// A row before what is special about it.
-const fn row(name: &'static str, key: &'static str, option: &'static str, help: &'static str, kind: Kind) -> Setting {
+/// A row of name, key and option before what is special about it.
+const fn row([name, key, option]: [&'static str; 3], help: &'static str, kind: Kind) -> Setting {
     let control = Control {
         place: Place::Elsewhere,
         caption: "",
@@ -470,9 +69,7 @@ const fn choice(
 
 /// Weight of the regularisation of the output gains, eq. (7); beyond its range the optimum no longer moves.
 pub static ALPHA_GAIN: Setting = row(
-    "α of the gains",
-    "alpha_gain",
-    "--alpha",
+    ["α of the gains", "alpha_gain", "--alpha"],
     "Weight that keeps the output gains, eq. (7), near 1; 0 is the limit α → 0",
     real([0.0, 1e6], |of| of.alpha_gain, |of, alpha| of.alpha_gain = alpha),
 )
@@ -480,9 +77,7 @@ pub static ALPHA_GAIN: Setting = row(
 
 /// Weight of the regularisation of the output delays, eq. (11), or of all signed delays (M15.4).
 pub static ALPHA_DELAY: Setting = row(
-    "α of the delays",
-    "alpha_delay",
-    "--alpha-delay",
+    ["α of the delays", "alpha_delay", "--alpha-delay"],
     "Weight that keeps the output delays, eq. (11), or all signed delays (M15) near 0; 0 is the limit α → 0",
     real([0.0, 1e6], |of| of.alpha_delay, |of, alpha| of.alpha_delay = alpha),
 )
@@ -490,9 +85,7 @@ pub static ALPHA_DELAY: Setting = row(
 
 /// How the phase is corrected.
 pub static PHASE: Setting = row(
-    "phase correction",
-    "phase",
-    "--phase",
+    ["phase correction", "phase", "--phase"],
     "How the phase is corrected: not at all, by delays, or by a delay or a lead filter a channel",
     choice(
         &[
@@ -512,9 +105,7 @@ pub static PHASE: Setting = row(
 
 /// Which D the delays are fitted to.
 pub static DELAY_FROM: Setting = row(
-    "delay estimate",
-    "delay_from",
-    "--delay-from",
+    ["delay estimate", "delay_from", "--delay-from"],
     "Which D the delays are fitted to: the median of phase over frequency, or a straight line over the band",
     choice(
         &[
@@ -530,9 +121,7 @@ pub static DELAY_FROM: Setting = row(
 
 /// Order of the lead filters.
 pub static LEAD_ORDER: Setting = row(
-    "order of the lead filters",
-    "lead.order",
-    "--lead-order",
+    ["order of the lead filters", "lead.order", "--lead-order"],
     "Order of every lead filter (M15.3)",
     choice(
         &[
@@ -552,9 +141,7 @@ fn has_leads(study: &Study) -> bool {
 
 /// `n` of the lead filters, of which the lag time constant is `1 / (n omega_B)` (M15.3).
 pub static LEAD_POLE: Setting = row(
-    "n of the lead filters",
-    "lead.n",
-    "--lead-n",
+    ["n of the lead filters", "lead.n", "--lead-n"],
     "Lag of every lead filter: 1/(n ω_B), ω_B the top of the band; smaller: less noise, and more lead in reach",
     real([2.0, 10.0], |of| of.lead.pole, |of, pole| of.lead.pole = pole),
 )
@@ -564,9 +151,7 @@ pub static LEAD_POLE: Setting = row(
 
 /// Greatest gain of a lead filter at high frequency, 0 to 40 dB.
 pub static LEAD_LIMIT: Setting = row(
-    "R_max of the lead filters",
-    "lead.r_max",
-    "--lead-r-max",
+    ["R_max of the lead filters", "lead.r_max", "--lead-r-max"],
     "Greatest gain of one channel's filter far above the band (10 is 20 dB): it bounds the lead of a channel",
     real([1.0, 100.0], |of| of.lead.limit, |of, limit| of.lead.limit = limit),
 )
@@ -576,9 +161,7 @@ pub static LEAD_LIMIT: Setting = row(
 
 /// Band of comparison.
 pub static BAND: Setting = row(
-    "frequency band",
-    "band_rad_s",
-    "--band",
+    ["frequency band", "band_rad_s", "--band"],
     "Band of comparison [rad/s]; drag its lines in the plot too",
     Kind::Range {
         range: [LEAST_OMEGA, GREATEST_OMEGA],
@@ -597,9 +180,7 @@ pub static BAND: Setting = row(
 
 /// Number of frequencies in the band.
 pub static POINTS: Setting = row(
-    "number of frequencies",
-    "points",
-    "--points",
+    ["number of frequencies", "points", "--points"],
     "Number of logarithmically spaced frequencies in the band",
     whole([2.0, 5000.0], |of| of.points as f64, |of, points| of.points = points as usize),
 )
@@ -608,9 +189,7 @@ pub static POINTS: Setting = row(
 
 /// Quantile that sets the bounds, at most the median.
 pub static QUANTILE: Setting = row(
-    "bound quantile",
-    "quantile",
-    "--quantile",
+    ["bound quantile", "quantile", "--quantile"],
     "Bounds are this quantile, and its complement, of |H_ref|/|H_sim| and of Δφ/ω",
     real([0.0, 0.5], |of| of.quantile, |of, quantile| of.quantile = quantile),
 )
@@ -620,9 +199,7 @@ pub static QUANTILE: Setting = row(
 
 /// Bounds of the gains by hand, -120 to 120 dB; nothing goes back to the quantiles.
 pub static GAIN_BOUNDS: Setting = row(
-    "gain bounds",
-    "gain_bounds",
-    "--gain-bounds",
+    ["gain bounds", "gain_bounds", "--gain-bounds"],
     "Least and greatest gain of every channel set by hand, for every condition; auto: from the quantiles of each",
     Kind::Range {
         range: [1e-6, 1e6],
@@ -640,9 +217,7 @@ pub static GAIN_BOUNDS: Setting = row(
 
 /// Upper bound of the delays \[s\] by hand; nothing goes back to the quantile.
 pub static DELAY_UPPER: Setting = row(
-    "upper delay bound",
-    "delay_upper_s",
-    "--delay-bound",
+    ["upper delay bound", "delay_upper_s", "--delay-bound"],
     "Greatest delay of every channel set by hand, for every condition; auto: from the quantiles of each",
     Kind::Optional {
         range: [0.0, 1e3],
@@ -658,9 +233,7 @@ pub static DELAY_UPPER: Setting = row(
 
 /// Mismatch of a loop of held gains that counts as agreement \[dB\].
 pub static AGREEMENT: Setting = row(
-    "loop tolerance",
-    "agreement_db",
-    "--agreement",
+    ["loop tolerance", "agreement_db", "--agreement"],
     "A loop of held gains that disagrees by no more than this [dB] counts as agreeing",
     real([0.0, 3.0], |of| of.agreement_db, |of, tolerance| of.agreement_db = tolerance),
 )
@@ -669,9 +242,7 @@ pub static AGREEMENT: Setting = row(
 
 /// Median or mean over frequency in J.
 pub static COST_AVERAGE: Setting = row(
-    "average in J",
-    "cost_average",
-    "--cost-average",
+    ["average in J", "cost_average", "--cost-average"],
     "How squared errors are averaged over frequency in J",
     choice(
         &[
@@ -686,9 +257,7 @@ pub static COST_AVERAGE: Setting = row(
 
 /// What the gains minimise.
 pub static GAIN_OBJECTIVE: Setting = row(
-    "objective of the gains",
-    "gain_objective",
-    "--gain-objective",
+    ["objective of the gains", "gain_objective", "--gain-objective"],
     "What the gains minimise",
     choice(
         &[
@@ -703,9 +272,7 @@ pub static GAIN_OBJECTIVE: Setting = row(
 
 /// Which models G is taken from.
 pub static GAIN_SOURCE: Setting = row(
-    "source of G",
-    "gain_from",
-    "--gain-from",
+    ["source of G", "gain_from", "--gain-from"],
     "What G is taken from: the two representatives, or the mean over all pairs of kept models",
     choice(
         &[
@@ -720,9 +287,7 @@ pub static GAIN_SOURCE: Setting = row(
 
 /// Level of every bar, interval and test.
 pub static LEVEL: Setting = row(
-    "confidence level",
-    "error_bars.level",
-    "--level",
+    ["confidence level", "error_bars.level", "--level"],
     "Level of every error bar, interval and test",
     real([0.5, 0.999], |of| of.uncertainty.level, |of, level| of.uncertainty.level = level),
 )
@@ -732,9 +297,7 @@ pub static LEVEL: Setting = row(
 
 /// Degrees of freedom that a condition's identification part borrows at most.
 pub static POOLING: Setting = row(
-    "pooling (degrees of freedom borrowed)",
-    "error_bars.prior_degrees",
-    "--pooling",
+    ["pooling (degrees of freedom borrowed)", "error_bars.prior_degrees", "--pooling"],
     "Degrees of freedom that a condition's identification part borrows from the other conditions at most; 0 trusts the condition \
      alone",
     real([0.0, 100.0], |of| of.uncertainty.prior_degrees, |of, degrees| of.uncertainty.prior_degrees = degrees),
@@ -744,9 +307,7 @@ pub static POOLING: Setting = row(
 
 /// Least coherence of a frequency that counts.
 pub static COHERENCE: Setting = row(
-    "coherence threshold",
-    "coherence_threshold",
-    "--coherence",
+    ["coherence threshold", "coherence_threshold", "--coherence"],
     "Least coherence γ² of measured responses that is used: off, on, or the least (on is 0.6); off: every frequency counts alike",
     Kind::Optional {
         range: [0.0, 1.0],
@@ -761,9 +322,7 @@ pub static COHERENCE: Setting = row(
 
 /// Number of averages of measured responses that do not say it.
 pub static AVERAGES: Setting = row(
-    "averages of measured responses",
-    "error_bars.averages",
-    "--averages",
+    ["averages of measured responses", "error_bars.averages", "--averages"],
     "Number of independent averages of measured responses whose files do not say it",
     Kind::Optional {
         range: [1e-6, 1e6],
@@ -776,9 +335,7 @@ pub static AVERAGES: Setting = row(
 
 /// Length of the windows of measured responses that do not say it \[s\].
 pub static WINDOW: Setting = row(
-    "windows of measured responses",
-    "error_bars.window_s",
-    "--averaging-window",
+    ["windows of measured responses", "error_bars.window_s", "--averaging-window"],
     "Length of the windows of measured responses whose files do not say it",
     Kind::Optional {
         range: [1e-6, 1e6],
@@ -792,9 +349,7 @@ pub static WINDOW: Setting = row(
 
 /// Whether those windows overlap by half.
 pub static HALF_OVERLAP: Setting = row(
-    "windows overlap",
-    "error_bars.half_overlap",
-    "--half-overlap",
+    ["windows overlap", "error_bars.half_overlap", "--half-overlap"],
     "The windows of measured responses overlap by half",
     Kind::Flag {
         words: ["not", "by half"],
@@ -805,9 +360,7 @@ pub static HALF_OVERLAP: Setting = row(
 
 /// The form of the schedule.
 pub static SCHEDULE: Setting = row(
-    "schedule",
-    "schedule.kind",
-    "--degree",
+    ["schedule", "schedule.kind", "--degree"],
     "Degree of the schedule's polynomial in airspeed, 0 to 3, or a lookup table",
     choice(
         &[
@@ -825,9 +378,7 @@ pub static SCHEDULE: Setting = row(
 
 /// What is regressed on airspeed.
 pub static SCHEDULED_QUANTITY: Setting = row(
-    "scheduled quantity",
-    "schedule.of",
-    "--schedule-of",
+    ["scheduled quantity", "schedule.of", "--schedule-of"],
     "What is regressed on airspeed",
     choice(
         &[
@@ -842,9 +393,7 @@ pub static SCHEDULED_QUANTITY: Setting = row(
 
 /// Whether delays are scheduled too.
 pub static SCHEDULE_DELAYS: Setting = row(
-    "delays",
-    "schedule.delays",
-    "--schedule-delays",
+    ["delays", "schedule.delays", "--schedule-delays"],
     "Schedule the delays of the channels too, clamped to their bounds (M11)",
     Kind::Flag {
         words: ["not scheduled", "scheduled"],
@@ -857,9 +406,7 @@ pub static SCHEDULE_DELAYS: Setting = row(
 
 /// Degree of the polynomial of signed delays.
 pub static TAU_DEGREE: Setting = row(
-    "degree of the signed delays",
-    "schedule.tau_degree",
-    "--tau-degree",
+    ["degree of the signed delays", "schedule.tau_degree", "--tau-degree"],
     "Degree of the polynomial of signed delays in airspeed; 0: lags of servos and sensors do not depend on it (M15.5)",
     choice(
         &[
@@ -881,9 +428,7 @@ pub static TAU_DEGREE: Setting = row(
 
 /// Airspeeds this close to the next one are one \[kt\].
 pub static AIRSPEED_TOLERANCE: Setting = row(
-    "airspeed tolerance",
-    "schedule.airspeed_tolerance_kt",
-    "--airspeed-tolerance",
+    ["airspeed tolerance", "schedule.airspeed_tolerance_kt", "--airspeed-tolerance"],
     "Airspeeds this close to the next one [kt] count as one, for the table and for the degree",
     real(
         [0.0, 100.0],
@@ -897,9 +442,7 @@ pub static AIRSPEED_TOLERANCE: Setting = row(
 
 /// What is scheduled beside airspeed.
 pub static SECOND_VARIABLE: Setting = row(
-    "second variable",
-    "schedule.second_variable",
-    "--second-variable",
+    ["second variable", "schedule.second_variable", "--second-variable"],
     "Schedule gains with a second variable beside airspeed",
     choice(
         &[

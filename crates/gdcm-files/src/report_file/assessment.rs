@@ -41,7 +41,7 @@ pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
          identification part; the bar is Student's t times the root of the sum of squares (M13). What neither bundle makes is rest: \
          real, or model form. An error common to all identified models is not seen, and a bar is not a bound.",
     );
-    let beyond: Vec<_> = uncertainty.differences.iter().filter(|of| of.is_beyond(uncertainty.level)).collect();
+    let beyond: Vec<_> = uncertainty.differences.iter().filter(|of| of.is_significant(uncertainty.level)).collect();
     page.paragraph(&uncertainty.differences_in_words());
     page.list(beyond.iter().map(|of| format!("{}: {}.", dataset.pair_name(of.pair), of.words(uncertainty.level))));
     let pairs: Vec<Pair> = dataset.measuring_pairs().marked().take(PAIRS_DRAWN).collect();

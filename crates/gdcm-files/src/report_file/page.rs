@@ -196,7 +196,7 @@ impl Page {
 /// Whether a column is one of figures, or of words so short that they stand in one line.
 fn class_of(table: &Table, column: usize) -> &'static str {
     let is_short = table.rows.iter().all(|row| row[column].chars().count() <= SHORT);
-    match (table.has_figures(column), is_short) {
+    match (table.has_numbers(column), is_short) {
         (true, _) => "n",
         (false, true) => "s",
         (false, false) => "",

@@ -71,7 +71,7 @@ fn a_model_set_aside_is_named_with_what_it_lacks_and_its_pin_does_not_count() {
     let found = pinned.condition(ONLY).unwrap();
     assert_eq!(found.comparison.delta, free.condition(ONLY).unwrap().comparison.delta);
     let caution = words(&pinned, found).concat();
-    for part in ["identified model \"i4\" is set aside", "I0 → O0, I1 → O1", "11.9", "pinned does not count"] {
+    for part in ["identified model \"i4\" is set aside", "I0 → O0, I1 → O1", "11.9", "not used as representative"] {
         assert!(caution.contains(part), "expected \"{part}\" in: {caution}");
     }
     let written = &Corrections::of(&pinned, "", &BTreeSet::from([ONLY])).conditions[0];

@@ -180,7 +180,7 @@ fn the_order_of_conditions_and_models_touches_no_decision_and_no_result() {
     ] {
         study.apply(&edit).unwrap();
     }
-    let (carried, differences) = study.carried_over(Arc::new(reversed(&study.dataset)));
+    let (carried, differences) = study.reconciled(Arc::new(reversed(&study.dataset)));
     assert_eq!(differences, []);
     assert_eq!((&carried.choices, &carried.settings), (&study.choices, &study.settings));
     let (before, after) = (analyze(&mut engine, &study), analyze(&mut engine, &carried));
@@ -211,7 +211,7 @@ fn of_a_dataset_with_one_other_model_one_response_is_computed() {
         Condition::new(condition.flight_state().clone(), physics, bundle(BundleKind::Identified)).unwrap()
     });
     let replaced = Dataset::new(study.dataset.header(), conditions.collect()).unwrap();
-    let (carried, differences) = study.carried_over(Arc::new(replaced));
+    let (carried, differences) = study.reconciled(Arc::new(replaced));
     assert_eq!(differences.len(), 1);
     let after = curves(&carried);
     let kept: Vec<bool> = before.physics.iter().zip(&after.physics).map(|(a, b)| Arc::ptr_eq(a, b)).collect();

@@ -534,7 +534,7 @@ fn under_leads_every_bar_stands_beside_the_value_that_it_is_of() {
 fn a_model_with_another_band_is_another_model() {
     let [wide, narrow, again] = [3.0, 1.5, 3.0].map(|sd_db| study_of(&dataset_with_band(sd_db)));
     let changed = |dataset: &Study| {
-        let (_, differences) = wide.carried_over(Arc::clone(&dataset.dataset));
+        let (_, differences) = wide.reconciled(Arc::clone(&dataset.dataset));
         differences.iter().map(ToString::to_string).collect::<Vec<_>>()
     };
     assert_eq!(changed(&again), Vec::<String>::new());

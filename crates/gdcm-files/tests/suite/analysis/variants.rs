@@ -150,12 +150,12 @@ fn what_differs_between_decisions_is_told_in_plain_words() {
 }
 
 #[test]
-fn reasons_and_variants_are_carried_over_to_a_changed_dataset() {
+fn reasons_and_variants_are_reconciled_to_a_changed_dataset() {
     let mut study = study_of_example();
     let other = ModelId::new(ConditionId(3), BundleKind::Physics, "nominal");
     let because = |model: &ModelId| Edit::RejectBecause { model: model.clone(), reason: "step".to_owned() };
     apply(&mut study, &[because(&other), because(&nominal_of_10()), keep("strict"), Edit::Restore(nominal_of_10())]);
-    let (carried, differences) = study.carried_over(shorter_example());
+    let (carried, differences) = study.reconciled(shorter_example());
     assert_eq!(carried.reason(&other), Some("step"));
     let variant = carried.of_variant("strict").unwrap();
     assert_eq!((variant.reason(&other), variant.choices.len()), (Some("step"), 10));

@@ -13,8 +13,8 @@ use gdcm_core::records::{RecordChannels, RecordGuess, RecordLayout, RecordTable,
 use gdcm_core::study::{AdoptedModels, Edit, IdentifyJob, OfferedModels};
 use gdcm_files::{DatasetOrigin, FileError, FolderProgress, example_records, load_records, read_records};
 
-use super::fault::Fault;
 use super::files::DialogPurpose;
+use super::threads::Fault;
 use super::window::GdcmApp;
 
 /// Records that were read, by condition, and what could not be.

@@ -126,7 +126,8 @@ impl ConditionAnalysis {
 
     /// Whether the delays were asked for the D of M15.2, which leads always are, and not for that of eq. (9).
     pub fn asks_band_delays(&self) -> bool {
-        self.delay_problem.delta == self.comparison.delta.band_delay_s
+        let (asked, delta) = (&self.delay_problem.delta, &self.comparison.delta);
+        *asked == delta.band_delay_s && *asked != delta.delay_s
     }
 
     /// The value of which [`Self::wanted_delay_s`] is one: its bar stands beside it (M13).

@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 use gdcm_core::dataset::{ConditionId, ModelId, Pair};
 use gdcm_core::study::{AcrossRole, ExplainTarget};
 
+use gdcm_files::figure::{AirspeedCache, ErrorCache, ResponseCache};
+
 use super::arrangement::Arrangement;
 use super::curve_display::CurveDisplay;
 use super::plot::{
@@ -16,11 +18,8 @@ use super::plot::{
 use super::plot_style::PlotStyle;
 use super::table_view::Sorting;
 use super::views::AssessedFigures;
-use super::views::CachedAcross;
-use super::views::CachedErrors;
 use super::views::CachedEvidence;
 use super::views::CachedModes;
-use super::views::CachedShapes;
 use super::views::PairSet;
 
 /// What is shown, none of which changes a result.
@@ -87,7 +86,7 @@ pub struct Display {
     /// Ranges and transforms of the plot of several conditions.
     pub across: BodeView,
     /// Shapes of several conditions' responses, kept from frame to frame.
-    pub across_shapes: CachedAcross,
+    pub across_shapes: AirspeedCache,
     /// The name that the present decisions are to be kept under, as typed.
     pub variant_name: String,
     /// Orders of the tables of the comparison: what differs, and what it does.
@@ -97,11 +96,11 @@ pub struct Display {
     /// Transforms of the assessment.
     pub assessment: AssessmentView,
     /// Shapes of the responses drawn, kept from frame to frame.
-    pub shapes: BTreeMap<Pair, CachedShapes>,
+    pub shapes: BTreeMap<Pair, ResponseCache>,
     /// The curves that the Bode plot shows.
     pub drawn: Vec<BodeCurve>,
     /// Errors drawn, kept from frame to frame.
-    pub errors: CachedErrors,
+    pub errors: ErrorCache,
     /// The curves that the plot of errors shows.
     pub drawn_errors: Vec<BodeCurve>,
 }
@@ -140,14 +139,14 @@ impl Display {
             evidence_sorting: Sorting::default(),
             across_role: AcrossRole::default(),
             across: BodeView::default(),
-            across_shapes: CachedAcross::default(),
+            across_shapes: AirspeedCache::default(),
             variant_name: String::new(),
             compare_sorting: [Sorting::default(); 2],
             overview: OverviewView::default(),
             assessment: AssessmentView::default(),
             shapes: BTreeMap::new(),
             drawn: Vec::new(),
-            errors: CachedErrors::default(),
+            errors: ErrorCache::default(),
             drawn_errors: Vec::new(),
         }
     }

@@ -32,14 +32,7 @@ mod user_state;
 pub mod variables;
 mod zip_files;
 
-pub use corrections_file::{
-    Assessment, BarEntry, BarsEntry, ByName, ChannelBars, Channels, ConditionAssessment, ConditionCorrections,
-    ConflictEntry, Corrections, CostTable, CostTables, DatasetLabel, DelayOutcome, DifferenceEntry, Explanation,
-    GainOutcome, LeadChannels, LeadEntry, NetGain, RESULT_FILES, ReasonEntry, RemedyEntry, ScatterEntry,
-    ScheduleBandEntry, ScheduleUsed, ScheduledDelays, ScheduledGains, ScheduledSecond, ScheduledTaus,
-    SecondVariableEntry, SensitivityEntry, SetAsideEntry, SourceEntry, SplitEntry, Table, UncertaintyEntry,
-    UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult, read_corrections, result_paths, write_results,
-};
+pub use corrections_file::*;
 pub use csv_table::{csv_text, save_table};
 pub use dataset_file::{
     DatasetOrigin, LoadedDataset, add_dataset, dataset_faults, embedded_example, load_dataset, load_dataset_bytes,

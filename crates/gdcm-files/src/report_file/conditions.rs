@@ -71,7 +71,7 @@ fn draw(
     let curves = engine.curves(&study.dataset, id, grid, &Unobtrusive(progress))?;
     if let Some((curves, result)) = curves.zip(analysis.condition(id)) {
         let schedule = analysis.schedule.as_ref().ok();
-        add_plots(page, &ConditionSource { study, analysis: result, schedule, curves: &curves });
+        add_plots(page, result, &ConditionSource { study, analysis: Some(result), schedule, curves: &curves });
     }
     Ok(())
 }
@@ -285,11 +285,11 @@ fn kept_word(study: &Study, result: &ConditionAnalysis, kind: BundleKind, name: 
 const IN_A_FIGURE: usize = 10;
 
 /// Adds the responses that matter, what the fit sees of them, every response, and the poles.
-fn add_plots(page: &mut Page, source: &ConditionSource<'_>) {
+fn add_plots(page: &mut Page, result: &ConditionAnalysis, source: &ConditionSource<'_>) {
     let id = source.curves.condition.id();
     let measuring: Vec<Pair> = source.study.dataset.measuring_pairs().marked().collect();
     let drawn = &measuring[..measuring.len().min(PAIRS_DRAWN)];
-    let options = BodeOptions { hidden_models: models_hidden(source.study, source.analysis), ..BodeOptions::default() };
+    let options = BodeOptions { hidden_models: models_hidden(source.study, result), ..BodeOptions::default() };
     for pairs in drawn.chunks(IN_A_FIGURE) {
         let title = format!("Condition {id}, responses{}", on_axis_words(source));
         let caption = "Magnitude and phase of every model, and of the representative under its own and under the scheduled \

@@ -11,7 +11,7 @@ use super::threads::{Mailbox, ReplySender, caught};
 use crate::view::results::FirstResult;
 use gdcm_core::correction::{Problem, Solution};
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::study::{ConditionAnalysis, ConditionFailure, Engine, Progress, Study};
+use gdcm_core::study::{ConditionAnalysis, ConditionFailure, Engine, Progress, Study, WantedFirst};
 
 /// What is to be computed. All of it is shared, so that a request costs next to nothing.
 #[derive(Clone, Debug)]
@@ -152,7 +152,13 @@ impl Answering {
     fn answer(&self, request: &Request, engine: &mut Engine, proven: &mut Vec<Arc<Problem>>) {
         let started = Instant::now();
         let progress = RequestProgress { thread: self, request, started, compared: AtomicBool::new(false) };
-        let Ok(analysis) = engine.analyze(&request.study, &progress) else {
+        let tell = |outcome: &Result<ConditionAnalysis, ConditionFailure>| {
+            let (dataset, condition) = (Arc::clone(&request.study.dataset), request.condition);
+            let first = FirstResult { generation: request.generation, dataset, condition, outcome: outcome.clone() };
+            self.replies.send(move |app| app.state.results.first = Some(first));
+        };
+        let first = WantedFirst { condition: request.condition, tell: &tell };
+        let Ok(analysis) = engine.analyze_first(&request.study, Some(first), &progress) else {
             return;
         };
         let elapsed_ms = 1e3 * started.elapsed().as_secs_f64();
@@ -200,16 +206,5 @@ impl Progress for RequestProgress<'_> {
                 }
             });
         }
-    }
-
-    fn wanted_first(&self) -> Option<ConditionId> {
-        Some(self.request.condition)
-    }
-
-    fn first_result(&self, outcome: &Result<ConditionAnalysis, ConditionFailure>) {
-        let (dataset, condition) = (Arc::clone(&self.request.study.dataset), self.request.condition);
-        let generation = self.request.generation;
-        let first = FirstResult { generation, dataset, condition, outcome: outcome.clone() };
-        self.thread.replies.send(move |app| app.state.results.first = Some(first));
     }
 }

@@ -9,12 +9,10 @@ use gdcm_core::assembly::FoundModel;
 use gdcm_core::dataset::PairTable;
 
 use super::file_error::FileError;
-use super::models_file::{ModelText, model_text};
+use super::models_file::{IDENTIFIED, model_text};
 use super::output_set::OutputSet;
+use crate::dataset_file::ModelText;
 use crate::json_text::Nested;
-
-const FORMAT: &str = "gdcm-identified";
-const VERSION: u64 = 1;
 
 /// What identification found, in the records' own units.
 #[derive(Clone, Debug, Default)]
@@ -100,19 +98,12 @@ pub struct RecordReport {
 struct IdentifiedText<'m> {
     format: &'static str,
     version: u64,
-    models: Vec<RecommendedText<'m>>,
+    models: Vec<ModelText>,
     measured: Option<MeasuredText<'m>>,
     poles: &'m [PoleEstimate],
     validation: &'m IdentifiedValidation,
     records: &'m [RecordReport],
     cautions: &'m [String],
-}
-
-#[derive(Serialize)]
-struct RecommendedText<'m> {
-    #[serde(flatten)]
-    model: ModelText<'m>,
-    recommended: bool,
 }
 
 #[derive(Serialize)]
@@ -130,11 +121,9 @@ struct MeasuredText<'m> {
 pub fn add_identified(found: &IdentifiedModels, path: &Path, outputs: &mut OutputSet) -> Result<(), FileError> {
     let models = found.models.iter().enumerate();
     let text = IdentifiedText {
-        format: FORMAT,
-        version: VERSION,
-        models: models
-            .map(|(index, model)| RecommendedText { model: model_text(model), recommended: index == 0 })
-            .collect(),
+        format: IDENTIFIED.name,
+        version: IDENTIFIED.version,
+        models: models.map(|(index, model)| ModelText { recommended: Some(index == 0), ..model_text(model) }).collect(),
         measured: found.measured.as_ref().map(measured_text),
         poles: &found.poles,
         validation: &found.validation,

@@ -23,6 +23,7 @@ use crate::location::Outline;
 use crate::mat::{self, Subsystem, is_hdf5};
 use crate::mat73::{self, FileWrapper, ObjectDecoder};
 use crate::model_files::found::{LooseMatrix, matrix_letter, models_of_dataset, models_of_matrices, models_of_table};
+use crate::models_file::found_models;
 use crate::npy::{read_npy, read_npz};
 use crate::recognise::{Recognised, recognise};
 use crate::source::{Source, read_bytes};
@@ -102,6 +103,9 @@ fn of_bytes(
             let recognised = models_of_table(&table, name).map_err(wrong)?;
             FileModels { recognised, headings: Some(table.headings()), ..FileModels::default() }
         }
+        Contents::Models(models) => {
+            FileModels { recognised: Recognised { models, ..Recognised::default() }, ..FileModels::default() }
+        }
         Contents::Dataset(dataset) => {
             let recognised = Recognised { models: models_of_dataset(&dataset, name), ..Recognised::default() };
             FileModels { recognised, ..FileModels::default() }
@@ -146,6 +150,8 @@ pub(crate) enum Contents {
     Table(Box<TextTable>),
     /// A dataset of this program.
     Dataset(Box<Dataset>),
+    /// Models of this program.
+    Models(Vec<FoundModel>),
 }
 
 /// What the bytes of a file hold.
@@ -183,6 +189,9 @@ fn json_contents(bytes: &[u8], path: &Path) -> Result<Contents, FileError> {
     if Outline::format_of(source.text()).as_deref() == Some("\"gdcm-dataset\"") {
         let loaded = load_dataset_bytes(bytes, DatasetOrigin::File(path.to_owned()))?;
         return Ok(Contents::Dataset(Box::new(loaded.dataset.as_ref().clone())));
+    }
+    if let Some(models) = found_models(source.text(), path) {
+        return Ok(Contents::Models(models));
     }
     let variables =
         variables_of(source.text()).map_err(|fault| FileError::Variables { path: path.to_owned(), fault })?;

@@ -226,7 +226,7 @@ fn of_single(
                 found.add(of_table(*table).of_file(place.0, place.1));
                 Ok(found)
             }
-            Contents::Dataset(_) => {
+            Contents::Dataset(_) | Contents::Models(_) => {
                 let passed_over = vec!["a dataset, not a record".to_owned()];
                 Ok(FoundRecords { passed_over, ..FoundRecords::default() })
             }

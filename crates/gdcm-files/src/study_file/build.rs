@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::dataset_file::{identified_model_of, record_of};
+use crate::dataset_file::ModelText;
 use crate::file_error::ContentError;
 use crate::file_error::ContentFault;
 use crate::settings_entry::SettingsEntry;
@@ -70,10 +70,10 @@ pub(super) fn taken_of(
     let of = |(index, text): (usize, TakenText)| {
         let mut place = Location::condition(index + 1, text.condition);
         place.entry = "taken".to_owned();
-        let drafts = text.identified_models.into_iter().map(identified_model_of);
+        let drafts = text.identified_models.into_iter().map(ModelText::into_identified);
         let models = drafts.map(|draft| Ok(dataset.identified_model(draft)?.0)).collect::<Result<_, ContentError>>()?;
         let records = text.records.into_iter().enumerate();
-        let records = records.map(|(index, record)| record_of(&place, index + 1, record)).collect::<Result<_, _>>()?;
+        let records = records.map(|(index, record)| record.into_record(&place, index + 1)).collect::<Result<_, _>>()?;
         Ok((ConditionId(text.condition), Arc::new(AdoptedModels { models, records })))
     };
     text.into_iter().enumerate().map(of).collect()

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::dataset_file::{identified_text, record_text};
+use crate::dataset_file::{ModelText, RecordText};
 use crate::settings_entry::SettingsEntry;
 use gdcm_core::dataset::{BundleKind, Condition, ConditionId, Model};
 use gdcm_core::study::{AdoptedModels, BundleChoice, ConditionInventory, Inventory, Study};
@@ -33,8 +33,8 @@ pub(super) fn text_of(study: &Study, dataset: DatasetReference) -> StudyText {
 fn taken_text(condition: ConditionId, taken: &AdoptedModels) -> TakenText {
     TakenText {
         condition: condition.0,
-        identified_models: taken.models.iter().map(identified_text).collect(),
-        records: taken.records.iter().map(record_text).collect(),
+        identified_models: taken.models.iter().map(ModelText::of_model).collect(),
+        records: taken.records.iter().map(RecordText::of).collect(),
     }
 }
 

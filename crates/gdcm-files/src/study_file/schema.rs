@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::dataset_file::{IdentifiedText, RecordText};
+use crate::dataset_file::{ModelText, RecordText};
 use crate::json_text::Format;
 use crate::json_text::list;
 use crate::settings_entry::SettingsEntry;
@@ -38,7 +38,7 @@ pub(super) struct StudyText {
 pub(super) struct TakenText {
     pub(super) condition: i64,
     #[serde(deserialize_with = "list::<MOST_MODELS, _, _>")]
-    pub(super) identified_models: Vec<IdentifiedText>,
+    pub(super) identified_models: Vec<ModelText>,
     #[serde(default, deserialize_with = "list::<MOST_RECORDS, _, _>")]
     pub(super) records: Vec<RecordText>,
 }

@@ -7,11 +7,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::view::assembling::{AssemblingCommand, AssemblyState, Reading};
-use crate::view::command::{Command, FormKind};
+use crate::view::command::FormKind;
 use gdcm_core::assembly::Rules;
 use gdcm_files::{
-    Existing, FileError, FolderProgress, FoundModels, OutputSet, add_dataset, add_rules, load_rules, read_models,
-    relative_folder, rules_path, sources_folder,
+    FileError, FolderProgress, FoundModels, add_dataset, add_rules, load_rules, read_models, relative_folder,
+    rules_path, sources_folder,
 };
 
 use super::background_jobs::ReplySender;
@@ -113,11 +113,11 @@ impl GdcmApp {
             AssemblingCommand::Undo => bench.undo(),
             AssemblingCommand::Redo => bench.redo(),
             AssemblingCommand::Select(part) => bench.selected = part,
-            AssemblingCommand::Sort(column) => bench.sort(column),
+            AssemblingCommand::Sort(column) => bench.sorting = bench.sorting.clicked(column),
             AssemblingCommand::ShowResponse(place) => bench.preview.response = place,
             AssemblingCommand::LoadRules(path) => self.take_rules(path),
-            AssemblingCommand::SaveRules(path) => self.save_rules(path, Existing::Keep),
-            AssemblingCommand::MakeDataset(path) => self.make_dataset(path, Existing::Keep),
+            AssemblingCommand::SaveRules(path) => self.save_rules(path),
+            AssemblingCommand::MakeDataset(path) => self.make_dataset(path),
         }
         if let Some(bench) = &self.state.assembling
             && bench.assembly().rules().headings != headings
@@ -206,25 +206,16 @@ impl GdcmApp {
     }
 
     /// Writes the rules; asks before it overwrites a file.
-    pub(super) fn save_rules(&mut self, path: PathBuf, existing: Existing) {
+    fn save_rules(&mut self, path: PathBuf) {
         let Some(rules) = self.said() else { return };
         let path = self.at_home(path);
-        let mut outputs = OutputSet::new(existing, self.inputs());
-        match add_rules(&rules, &path, &mut outputs).and_then(|()| outputs.persist()) {
-            Ok(()) => {
-                self.state.forms.shown = None;
-                self.done(format!("saved {}", sanitized_path(&path)));
-            }
-            Err(FileError::Exists { paths }) => {
-                let command = AssemblingCommand::SaveRules(path).into();
-                self.ask_to_overwrite(&paths, FormKind::Models, command);
-            }
-            Err(error) => self.notify_error(error.to_string()),
-        }
+        let mut outputs = self.outputs();
+        let saved = add_rules(&rules, &path, &mut outputs).and_then(|()| outputs.persist());
+        self.saved_to(saved, &path, FormKind::Models, AssemblingCommand::SaveRules(path.clone()).into());
     }
 
     /// Writes the dataset and its rules, and opens it; asks before it overwrites a file.
-    pub(super) fn make_dataset(&mut self, path: PathBuf, existing: Existing) {
+    fn make_dataset(&mut self, path: PathBuf) {
         let Some(bench) = &self.state.assembling else { return };
         let path = self.at_home(path);
         let folder = relative_folder(sources_folder(&bench.sources), &path);
@@ -233,7 +224,7 @@ impl GdcmApp {
         };
         let rules = bench.assembly().rules().clone();
         let beside = rules_path(&path);
-        let mut outputs = OutputSet::new(existing, self.inputs());
+        let mut outputs = self.outputs();
         let written = outputs
             .check(&[&path, &beside])
             .and_then(|()| add_dataset(&dataset, &path, &mut outputs))
@@ -245,11 +236,7 @@ impl GdcmApp {
                 self.state.assembling = None;
                 self.open(path, None);
             }
-            Err(FileError::Exists { paths }) => {
-                let command: Command = AssemblingCommand::MakeDataset(path).into();
-                self.ask_to_overwrite(&paths, FormKind::Models, command);
-            }
-            Err(error) => self.notify_error(error.to_string()),
+            Err(error) => self.written(Err(error), FormKind::Models, AssemblingCommand::MakeDataset(path).into()),
         }
     }
 }

@@ -3,7 +3,6 @@
 
 use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use crate::view::assembling::AssemblingCommand;
 use crate::view::bars::Bar;
@@ -11,10 +10,10 @@ use crate::view::command::{Command, FormKind};
 use crate::view::display::Preferences;
 use crate::view::records::RecordsCommand;
 use crate::view::state::{RecentFile, State};
-use gdcm_core::study::{Analysis, Difference, Study, Table};
+use gdcm_core::study::{Difference, Study};
 use gdcm_files::{
     Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, add_recent_file, at_home, embedded_example,
-    file_exists, load_any, open_study_of, recent_files, save_study, save_table,
+    file_exists, load_any, open_study_of, recent_files, save_study,
 };
 
 use super::fault::Fault;
@@ -301,21 +300,9 @@ impl GdcmApp {
         }
     }
 
-    /// Asks in a form whether to overwrite files, which `command` would do.
-    pub(super) fn ask_to_overwrite(&mut self, paths: &[PathBuf], form: FormKind, command: Command) {
-        self.state.forms.existing = paths.iter().map(|path| sanitized_path(path)).collect();
-        self.state.forms.shown = Some(form);
-        self.overwriting = Some(command);
-    }
-
     /// A path as it is typed, with the home directory in the place of `~`.
     pub(super) fn at_home(&self, typed: PathBuf) -> PathBuf {
         at_home(&typed, self.home.as_deref())
-    }
-
-    /// What the program reads from, which is never overwritten by results.
-    pub(super) fn inputs(&self) -> Vec<PathBuf> {
-        self.saved.path.iter().cloned().chain(self.loaded.origin.file()).collect()
     }
 
     /// A name for the study's file.
@@ -326,43 +313,6 @@ impl GdcmApp {
         let stem = self.loaded.path().and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
         let stem = stem.unwrap_or_else(|| "example".to_owned());
         format!("{}.{STUDY_EXTENSION}", stem.trim_end_matches(".json"))
-    }
-
-    /// Asks where to save a table as it is now.
-    pub(super) fn ask_save_table(&mut self, name: &str, table: Arc<Table>) {
-        let name: String = name.chars().filter(|letter| letter.is_alphanumeric() || *letter == ' ').collect();
-        self.state.forms.table = Some(table);
-        self.state.forms.table_path = format!("{}.csv", name.replace(' ', "-"));
-        self.state.forms.shown = Some(FormKind::SaveTable);
-    }
-
-    /// Saves a table of the window as CSV.
-    pub(super) fn save_table(&mut self, table: Arc<Table>, path: PathBuf, existing: Existing) {
-        let path = self.at_home(path);
-        match save_table(&table, &path, OutputSet::new(existing, self.inputs())) {
-            Ok(()) => {
-                self.state.forms.shown = None;
-                self.done(format!("saved {}", sanitized_path(&path)));
-            }
-            Err(FileError::Exists { paths }) => {
-                self.ask_to_overwrite(&paths, FormKind::SaveTable, Command::SaveTable(table, path));
-            }
-            Err(error) => self.notify_error(error.to_string()),
-        }
-    }
-
-    /// The analysis, where it is complete and of what is decided now; otherwise a sentence that says why not. `what` could be done
-    /// again once it is.
-    pub(super) fn analysis_to_write(&self, what: &str) -> Result<Arc<Analysis>, String> {
-        let results = &self.state.results;
-        if results.stopped {
-            return Err(format!("{}, for computing was stopped; compute first", self.state.after_stop()));
-        }
-        if !results.background.proofs.is_empty() {
-            return Err(format!("the gains are still being proven; {what} again in a moment, or stop it"));
-        }
-        let analysis = results.analysis.clone().filter(|_| !results.is_waiting());
-        analysis.ok_or_else(|| format!("the newest results are still being computed; {what} again in a moment"))
     }
 }
 

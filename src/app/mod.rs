@@ -3,13 +3,12 @@
 mod analysis_thread;
 mod assembling;
 mod background_jobs;
-mod exports;
 pub mod fault;
-mod figures;
 mod files;
 mod job_queue;
 mod keyboard;
 mod launch;
+mod outputs;
 mod records;
 mod recovery;
 mod reload;

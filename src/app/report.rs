@@ -63,19 +63,19 @@ impl GdcmApp {
     }
 
     /// Has the report written; asks before it overwrites a file.
-    pub(super) fn write_report(&mut self, path: PathBuf, existing: Existing) {
+    pub(super) fn write_report(&mut self, path: PathBuf) {
         let analysis = match self.analysis_to_write("write the report") {
             Ok(analysis) => analysis,
             Err(why) => return self.notify_error(why),
         };
-        let (path, inputs) = (self.at_home(path), self.inputs());
-        match OutputSet::new(existing, inputs.clone()).check(&[&path]) {
+        let (path, inputs, existing) = (self.at_home(path), self.inputs(), self.existing);
+        match self.outputs().check(&[&path]) {
             Ok(()) => {
                 let source = ReportSource::of(&self.loaded, self.saved.path.as_deref());
                 self.state.forms.shown = None;
                 self.reporting = Some(ReportJob { analysis, source, path, existing, inputs });
             }
-            Err(error) => self.report_failed(path, error),
+            Err(error) => self.written(Err(error), FormKind::Report, Command::WriteReport(path)),
         }
     }
 
@@ -84,16 +84,7 @@ impl GdcmApp {
         self.reporting = None;
         match outcome {
             Ok(()) => self.done(format!("wrote the report {}", sanitized_path(&job.path))),
-            Err(error) => self.report_failed(job.path, error),
-        }
-    }
-
-    fn report_failed(&mut self, path: PathBuf, error: FileError) {
-        match error {
-            FileError::Exists { paths } => {
-                self.ask_to_overwrite(&paths, FormKind::Report, Command::WriteReport(path));
-            }
-            error => self.notify_error(error.to_string()),
+            Err(error) => self.written(Err(error), FormKind::Report, Command::WriteReport(job.path)),
         }
     }
 

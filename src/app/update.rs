@@ -4,7 +4,6 @@ use egui::ViewportCommand;
 use gdcm_core::message_text::sanitized;
 
 use crate::view::arrangement::Arrangement;
-use crate::view::assembling::AssemblingCommand;
 use crate::view::command::{Command, FormKind};
 use crate::view::curve_display::CurveCommand;
 use crate::view::display::Display;
@@ -116,14 +115,14 @@ impl GdcmApp {
                 self.ask_save_table(kind.name(), table.into());
             }
             Command::AskSaveShownTable(table) => self.ask_save_table(&table.title, table.clone()),
-            Command::SaveTable(table, path) => self.save_table(table, path, Existing::Keep),
+            Command::SaveTable(table, path) => self.save_table(table, path),
             Command::Assembling(command) => self.assemble(command),
             Command::Records(command) => self.records(command),
             Command::CopyFigure(view) => self.copy_figure(view),
             Command::AskSaveFigure(view, format) => self.ask_save_figure(view, format),
-            Command::SaveFigure(view, width, path) => self.save_figure((view, width), path, Existing::Keep),
+            Command::SaveFigure(view, width, path) => self.save_figure(view, width, path),
             Command::AskReport => self.ask_report(),
-            Command::WriteReport(path) => self.write_report(path, Existing::Keep),
+            Command::WriteReport(path) => self.write_report(path),
             Command::FocusField(name) => self.focus_next(NextFocus::Field(name)),
             Command::LeaveRegion { forward } => self.focus_next(NextFocus::Region { forward }),
             Command::StartTour => self.state.tour = Some(0),
@@ -155,9 +154,9 @@ impl GdcmApp {
             Command::Quit if self.state.unsaved && !self.closing => self.ask_to_lose(PendingAction::Quit),
             Command::Quit => self.quit(),
             Command::SaveStudy => self.save(),
-            Command::SaveStudyAs(path) => self.save_as(path, Existing::Keep),
-            Command::Export => self.export(Existing::Keep),
-            Command::ExportAs(format, path) => self.export_as(format, path, Existing::Keep),
+            Command::SaveStudyAs(path) => self.save_as(path, self.existing),
+            Command::Export => self.export(),
+            Command::ExportAs(format, path) => self.export_as(format, path),
             Command::Overwrite => self.overwrite(),
             Command::SaveAndGoOn => self.save_and_go_on(),
             Command::DiscardAndGoOn => {
@@ -248,18 +247,10 @@ impl GdcmApp {
     /// Does what was asked whether to overwrite files.
     fn overwrite(&mut self) {
         self.state.forms.existing.clear();
-        match self.overwriting.take() {
-            Some(Command::SaveStudyAs(path)) => self.save_as(path, Existing::Replace),
-            Some(Command::Export) => self.export(Existing::Replace),
-            Some(Command::ExportAs(format, path)) => self.export_as(format, path, Existing::Replace),
-            Some(Command::SaveTable(table, path)) => self.save_table(table, path, Existing::Replace),
-            Some(Command::Assembling(AssemblingCommand::SaveRules(path))) => self.save_rules(path, Existing::Replace),
-            Some(Command::Assembling(AssemblingCommand::MakeDataset(path))) => {
-                self.make_dataset(path, Existing::Replace);
-            }
-            Some(Command::SaveFigure(view, width, path)) => self.save_figure((view, width), path, Existing::Replace),
-            Some(Command::WriteReport(path)) => self.write_report(path, Existing::Replace),
-            _ => {}
+        if let Some(command) = self.overwriting.take() {
+            self.existing = Existing::Replace;
+            self.carry_out_one(command);
+            self.existing = Existing::Keep;
         }
     }
 

@@ -21,7 +21,7 @@ use crate::view::{
 use gdcm_core::correction::{ProblemError, Solution};
 use gdcm_core::dataset::ConditionId;
 use gdcm_core::study::{Analysis, ConditionCurves, CurvesJob, ProofJob, Study};
-use gdcm_files::{LoadedDataset, LostStudy, Opened, is_first_start};
+use gdcm_files::{Existing, LoadedDataset, LostStudy, Opened, is_first_start};
 
 use super::analysis_thread::{AnalysisThread, Request};
 use super::assembling::ModelReader;
@@ -57,6 +57,8 @@ pub struct GdcmApp {
     pub(super) goes_on_once_saved: bool,
     /// What waits for the answer whether to write over files.
     pub(super) overwriting: Option<Command>,
+    /// What becomes of files that are there: they are replaced only while what was asked about is done.
+    pub(super) existing: Existing,
     pub(super) closing: bool,
     /// The report that is being written.
     pub(super) reporting: Option<ReportJob>,
@@ -110,6 +112,7 @@ impl GdcmApp {
             postponed: None,
             goes_on_once_saved: false,
             overwriting: None,
+            existing: Existing::Keep,
             closing: false,
             reporting: None,
             earlier: Vec::new(),

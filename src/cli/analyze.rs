@@ -8,9 +8,9 @@ use gdcm_files::{make_directory, result_paths, write_results};
 use super::arguments::AnalyzeArguments;
 use super::evidence_sections::leave_one_out_section;
 use super::failure::Failure;
-use super::progress::TerminalProgress;
 use super::study_options::{analysis_of, engine, outputs_of, study_of};
 use super::summary::summary;
+use super::terminal::TerminalProgress;
 use super::terminal::{say, say_error};
 
 /// Analyses, writes the results, and prints a summary.

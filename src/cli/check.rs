@@ -11,7 +11,7 @@ use gdcm_files::{FileError, LoadedDataset, Opened, OpenedStudy, dataset_faults};
 
 use super::arguments::OpeningArguments;
 use super::failure::Failure;
-use super::opening::open;
+use super::open;
 use super::summary::LABEL;
 use super::terminal::{say, say_error};
 use super::text_table::{Side, TextTable, labelled};

@@ -12,8 +12,8 @@ use super::analyze::check_result;
 use super::arguments::StudyArguments;
 use super::export_arguments::ExportArguments;
 use super::failure::Failure;
-use super::progress::TerminalProgress;
 use super::study_options::{analysis_of, engine, outputs_of, study_of};
+use super::terminal::TerminalProgress;
 use super::terminal::say;
 
 /// Analyses, writes what is asked for, and says what is to be known of it.

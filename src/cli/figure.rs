@@ -13,8 +13,8 @@ use gdcm_files::{figure_format, write_figure};
 
 use super::arguments::{FigureArguments, PairChoice};
 use super::failure::Failure;
-use super::progress::TerminalProgress;
 use super::study_options::{analysis_of, engine, names, outputs_of, pairs_of, study_of};
+use super::terminal::TerminalProgress;
 use super::terminal::say;
 
 /// Makes one figure as a file, and says so.

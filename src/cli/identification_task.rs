@@ -16,8 +16,8 @@ use super::destination::Group;
 use super::failure::Failure;
 use super::identification_outcome::identified_models;
 use super::identify_arguments::ChannelDelay;
-use super::progress::TerminalProgress;
 use super::read_record::{ReadRecord, record_table};
+use super::terminal::TerminalProgress;
 
 /// Models are to be identified from these records.
 pub(super) struct IdentificationTask {

@@ -16,8 +16,6 @@ mod identification_task;
 mod identify;
 mod identify_arguments;
 mod models;
-mod opening;
-mod progress;
 mod read_record;
 mod report;
 mod sections;
@@ -26,7 +24,7 @@ mod summary;
 mod terminal;
 mod text_table;
 
-use gdcm_core::message_text::sanitized_path;
+use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::error::Error;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -35,7 +33,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::{ContextKind, ContextValue};
 
-use gdcm_files::{Existing, write_example};
+use gdcm_files::{Existing, Opened, load_any, open_study_of, write_example};
 
 use arguments::Arguments;
 use failure::Failure;
@@ -83,6 +81,23 @@ pub fn run(command: &Command) -> ExitCode {
         Command::Check { file, opening } => check::check(file, opening),
         Command::Example { directory, force } => example(directory, existing(*force)),
     })
+}
+
+/// Opens a dataset or a study; what is different in a study's dataset is told on standard error, a line each.
+fn open(file: &Path, arguments: &OpeningArguments) -> Result<Opened, Failure> {
+    let opened = match &arguments.dataset {
+        Some(dataset) => Opened::Study(open_study_of(file, dataset)?),
+        None => load_any(file)?,
+    };
+    if let Opened::Study(study) = &opened {
+        for difference in &study.differences {
+            say_error(&format!("{}: {}", sanitized_path(file), sanitized(&difference.to_string())));
+        }
+        if arguments.strict && !study.differences.is_empty() {
+            return Err(Failure::Different { path: sanitized_path(file), count: study.differences.len() });
+        }
+    }
+    Ok(opened)
 }
 
 /// Writes the embedded example into a directory and says where.

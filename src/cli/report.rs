@@ -6,8 +6,8 @@ use gdcm_files::{ReportSource, report as report_of, save_report};
 use super::analyze::check_result;
 use super::arguments::ReportArguments;
 use super::failure::Failure;
-use super::progress::TerminalProgress;
 use super::study_options::{analysis_of, engine, outputs_of, study_of};
+use super::terminal::TerminalProgress;
 use super::terminal::say;
 
 /// Analyses, and writes all that was found and done as one page.

@@ -92,7 +92,7 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> TextTable<
             figure(Some(result.correction.net_gain(pair).value()), 3),
             figure(half(Scalar::NetGain(pair), 100.0), 1),
             figure(result.wanted_delay_s(pair).map(s_to_ms), 1),
-            figure(half(Scalar::Delay(pair), 1e3), 1),
+            figure(half(result.wanted_delay(pair), 1e3), 1),
             figure(Some(s_to_ms(result.correction.net_delay(pair).value_s())), 1),
             figure(cost.map(|cost| cost.uncorrected.total()), 1),
             figure(cost.map(|cost| cost.corrected.total()), 1),

@@ -11,7 +11,7 @@ use gdcm_files::{LoadedDataset, OutputSet, embedded_example};
 use super::arguments::{CoherenceChoice, GainSourceChoice, PairList, Rejection, SecondVariableChoice, StudyArguments};
 use super::existing;
 use super::failure::Failure;
-use super::opening::open as open_file;
+use super::open as open_file;
 use super::terminal::say_error;
 
 /// The study, and the dataset that it is about; cautions of the file are told on standard error.

@@ -1,8 +1,13 @@
-//! Words on standard output and standard error.
+//! Words on standard output and standard error, and progress where that is a terminal.
 
-use gdcm_core::message_text::sanitized;
 use std::io::{ErrorKind, Write};
+use std::time::{Duration, Instant};
 
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use gdcm_core::identification::Watch;
+use gdcm_core::message_text::sanitized;
+use gdcm_core::study::Progress;
 use gdcm_files::system_words;
 
 use super::failure::Failure;
@@ -21,4 +26,57 @@ pub(super) fn say(text: &str) -> Result<(), Failure> {
 /// Prints one line on standard error; there is nowhere to complain of a failure to do so.
 pub(super) fn say_error(line: &str) {
     let _ = writeln!(std::io::stderr(), "gdcm: {}", sanitized(line));
+}
+
+/// An analysis that is done sooner needs no progress.
+const QUICK: Duration = Duration::from_millis(500);
+
+/// A bar on standard error, where that is a terminal, once the analysis takes longer than half a second.
+pub(super) struct TerminalProgress {
+    bar: ProgressBar,
+    started: Instant,
+}
+
+impl TerminalProgress {
+    /// `doing` says what takes the time.
+    pub(super) fn new(doing: &str) -> Self {
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
+        // A template that is not understood leaves the bar its own looks.
+        if let Ok(style) = ProgressStyle::with_template(&format!("{doing} {{bar:40}} {{percent}} %")) {
+            bar.set_style(style);
+        }
+        Self { bar, started: Instant::now() }
+    }
+}
+
+impl Drop for TerminalProgress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Progress for TerminalProgress {
+    fn cancelled(&self) -> bool {
+        false
+    }
+
+    fn advanced(&self, done: usize, total: usize) {
+        if self.bar.is_hidden() && self.started.elapsed() >= QUICK {
+            // Draws nothing where standard error is no terminal.
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+        self.bar.set_length(total as u64);
+        self.bar.set_position(done as u64);
+    }
+}
+
+impl Watch for TerminalProgress {
+    fn progress(&self, done: f64, _what: &str) {
+        const PARTS: f64 = 1000.0;
+        self.advanced((PARTS * done) as usize, PARTS as usize);
+    }
+
+    fn is_stopped(&self) -> bool {
+        false
+    }
 }

@@ -8,8 +8,8 @@ use egui::{Key, Modifiers, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo}
 use super::command::Command;
 use super::command_table::Entry;
 use super::command_table::every_command;
+use super::controls::{Room, row_text, row_text_within, row_ui};
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
-use super::row::{Room, row_text, row_text_within, row_ui};
 use super::state::State;
 
 /// Rows that are drawn: whoever looks for more types another letter.

@@ -7,10 +7,10 @@ use gdcm_core::dataset::{Condition, ConditionId, FlightState};
 use gdcm_core::study::Edit;
 
 use super::command::Command;
+use super::controls::table_heading_ui;
+use super::controls::{Room, row_text, row_text_within, row_ui};
 use super::focus::{Region, region_ui};
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
-use super::row::table_heading_ui;
-use super::row::{Room, row_text, row_text_within, row_ui};
 use super::state::State;
 use super::tables::TableKind;
 

@@ -13,11 +13,11 @@ use gdcm_core::uncertainty::{Bar, Scalar};
 use gdcm_core::units::s_to_ms;
 
 use super::command::Command;
+use super::controls::table_heading_ui;
 use super::explanation::question_menu_ui;
 use super::explanation::{gain_conflict_marks, toggle_costs};
 use super::focus::{Region, region_ui};
 use super::palette::{Palette, SMALL_SIZE};
-use super::row::table_heading_ui;
 use super::state::State;
 use super::tables::TableKind;
 use super::views::bar_words;
@@ -238,7 +238,7 @@ impl<'a> Cell<'a> {
         }
         let beside = self.other_delay_s().filter(|other| (other - delay).abs() >= APART_S);
         let about =
-            self.half(Scalar::Delay(self.pair)).map_or_else(String::new, |half| format!(" ±{:.0}", s_to_ms(half)));
+            self.half(shown.wanted_delay(self.pair)).map_or_else(String::new, |half| format!(" ±{:.0}", s_to_ms(half)));
         let beside = beside.map_or(format!("{about} ms"), |other| format!(" ({:.0})", s_to_ms(other)));
         text(28.0, &format!("{:.0}{beside}", s_to_ms(delay)), 10.5, palette.dim_text);
         if let Some(cost) = shown.cost[self.pair] {
@@ -303,9 +303,11 @@ impl<'a> Cell<'a> {
             ui.label(format!("D of eq. (9): {median_ms:.1} ms; of the line through the phase, M15.2: {band_ms:.1} ms"));
         }
         ui.label(format!("net gain k_o k_i = {:.4}", shown.correction.net_gain(self.pair).value()));
-        for (name, scalar) in
-            [("G", Scalar::Gain(self.pair)), ("D", Scalar::Delay(self.pair)), ("net gain", Scalar::NetGain(self.pair))]
-        {
+        for (name, scalar) in [
+            ("G", Scalar::Gain(self.pair)),
+            ("D", shown.wanted_delay(self.pair)),
+            ("net gain", Scalar::NetGain(self.pair)),
+        ] {
             if let Some((bar, level)) = self.bar(scalar) {
                 ui.label(format!("{name} {}", bar_words(bar, scalar, level)));
             }

@@ -8,11 +8,11 @@ use gdcm_core::study::{Edit, ExplainTarget};
 
 use super::command::Command;
 use super::command_table::open_suggestions;
+use super::controls::table_heading_ui;
+use super::controls::{ROW_HEIGHT, elided_among, row_text};
 use super::explanation::question_menu_ui;
 use super::focus::{Region, region_ui};
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
-use super::row::table_heading_ui;
-use super::row::{ROW_HEIGHT, elided_among, row_text};
 use super::state::State;
 use super::tables::TableKind;
 

@@ -71,8 +71,7 @@ mod tests {
 
     use super::super::plot_style::*;
     use crate::view::palette::Palette;
-    use crate::view::plot::RoleLook;
-    use crate::view::plot::{LineLook, Role};
+    use crate::view::plot::{CurveStyle, Role};
 
     /// What is seen of a linear colour: all of it, or what is left without one kind of cones. Machado, Oliveira and Fernandes,
     /// "A Physiologically-based Model for Simulation of Color Vision Deficiency", IEEE TVCG 15(6), 2009, severity 1.0.
@@ -122,15 +121,15 @@ mod tests {
     const APART: f32 = 23.0;
 
     /// The looks of every role in both themes.
-    fn roles(curve_colors: CurveColors) -> Vec<Vec<(Role, LineLook)>> {
+    fn roles(curve_colors: CurveColors) -> Vec<Vec<(Role, CurveStyle)>> {
         let of = |theme: Palette| {
             let palette = theme.with_looks(PlotStyle { curve_colors, ..PlotStyle::default() });
-            Role::ALL.into_iter().map(|role| (role, role.look(false, &palette))).collect()
+            Role::ALL.into_iter().map(|role| (role, palette.role_style(role, false))).collect()
         };
         [Palette::dark(), Palette::light()].map(of).to_vec()
     }
 
-    fn assert_told_apart(curve_colors: CurveColors, is_told: impl Fn(&LineLook, &LineLook, f32) -> bool) {
+    fn assert_told_apart(curve_colors: CurveColors, is_told: impl Fn(&CurveStyle, &CurveStyle, f32) -> bool) {
         for looks in roles(curve_colors) {
             for (place, (role, look)) in looks.iter().enumerate() {
                 for (other, other_look) in &looks[place + 1..] {
@@ -146,7 +145,7 @@ mod tests {
     #[test]
     fn roles_of_two_colours_are_told_apart_by_colour_alone_to_all_eyes() {
         // Some roles share a colour, and differ in pattern or width; translucent ones come back with a rounding error.
-        let is_shared = |a: &LineLook, b: &LineLook| distance(a.color, b.color, &SIGHTS[0].1) < 2.3;
+        let is_shared = |a: &CurveStyle, b: &CurveStyle| distance(a.color, b.color, &SIGHTS[0].1) < 2.3;
         assert_told_apart(CurveColors::ForAllEyes, |a, b, distance| is_shared(a, b) || distance > APART);
     }
 

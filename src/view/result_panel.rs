@@ -11,11 +11,11 @@ use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::s_to_ms;
 
 use super::command::{Command, FormKind};
+use super::controls::{heading_ui, table_menu_ui};
 use super::explanation::figure_ui;
 use super::explanation::{details_shown, remarks_shown};
 use super::focus::{Region, region_ui};
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
-use super::row::{heading_ui, table_menu_ui};
 use super::state::State;
 use super::tables::TableKind;
 use super::views::bar_words;

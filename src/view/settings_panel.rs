@@ -14,11 +14,11 @@ use gdcm_core::units::s_to_ms;
 
 use super::coherence_setting::coherence_ui;
 use super::command::Command;
+use super::controls::heading_ui;
 use super::focus::{Region, region_ui};
 use super::number_field::{Entered, NumberField, gain_text};
 use super::palette::{Palette, SMALL_SIZE};
 use super::phase_setting::phase_ui;
-use super::row::heading_ui;
 use super::state::State;
 
 /// Largest alpha on the slider; more can be typed.

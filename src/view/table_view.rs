@@ -23,13 +23,18 @@ impl Sorting {
         })
     }
 
-    /// The rows of a table in this order: figures by value, words by letters, empty cells last. Equal rows stay as they are.
+    /// The rows of a table in this order: numbers by value, words by letters, empty cells last. Equal rows stay as they are.
     pub fn order(self, table: &Table) -> Vec<usize> {
-        let mut order: Vec<usize> = (0..table.rows.len()).collect();
+        self.order_of(table.rows.len(), |row, column| table.rows[row].get(column).cloned().unwrap_or_default())
+    }
+
+    /// The same of so many rows, by what stands in the cell of a row and a column.
+    pub fn order_of(self, rows: usize, cell: impl Fn(usize, usize) -> String) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..rows).collect();
         let Some((column, falling)) = self.0 else { return order };
-        let cell = |row: usize| table.rows[row].get(column).map_or("", String::as_str);
+        let cells: Vec<String> = order.iter().map(|&row| cell(row, column)).collect();
         order.sort_by(|a, b| {
-            let (a, b) = (cell(*a), cell(*b));
+            let (a, b) = (&cells[*a], &cells[*b]);
             let compared = match (figure(a), figure(b)) {
                 (Some(a), Some(b)) => a.total_cmp(&b),
                 _ => a.cmp(b),
@@ -40,7 +45,8 @@ impl Sorting {
         order
     }
 
-    fn mark(self, column: usize) -> &'static str {
+    /// The mark on the heading of a column.
+    pub fn mark(self, column: usize) -> &'static str {
         match self.0 {
             Some((sorted, false)) if sorted == column => " ▲",
             Some((sorted, true)) if sorted == column => " ▼",

@@ -213,7 +213,7 @@ fn response_figures(shown: &ConditionAnalysis, sure: &Sureness<'_>, pair: Pair) 
     let cost = shown.cost[pair];
     let (before, after) = (cost.map(|cost| cost.uncorrected), cost.map(|cost| cost.corrected));
     let [[gain, gain_inner], [delay, delay_inner], [net, net_inner]] =
-        [Scalar::Gain(pair), Scalar::Delay(pair), Scalar::NetGain(pair)].map(|scalar| sure.halves(scalar));
+        [Scalar::Gain(pair), shown.wanted_delay(pair), Scalar::NetGain(pair)].map(|scalar| sure.halves(scalar));
     [
         shown.wanted_gain(pair),
         gain,

@@ -167,7 +167,7 @@ fn records_of_many_conditions_fill_each_its_own_and_leave_the_others_as_they_are
                 "{}",
                 ended.out
             );
-            // What the window takes, in its order: the refined models, then CT-PBSID as it is.
+            // What the window takes, in its order: the refined models, then CT-PBSID (unrefined).
             let names: Vec<&str> = new.bundle(BundleKind::Identified).iter().map(|model| model.name.as_str()).collect();
             assert!(
                 names[0].starts_with("CT-PBSID, refined, order ")

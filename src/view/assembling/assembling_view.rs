@@ -1,145 +1,111 @@
-//! The whole of the assembling view: sources above, table and problems at the left, one model and the channels at the right.
+//! The whole of the view that imports models: sources above, table and problems at the left, one model and the channels at the right.
 
-use egui::{
-    Button, CentralPanel, CollapsingHeader, Frame, Grid, Key, Margin, Panel, RichText, Role, ScrollArea, TextEdit, Ui,
-    WidgetInfo,
-};
+use egui::{Button, CentralPanel, CollapsingHeader, Frame, Grid, Margin, Panel, RichText, Role, ScrollArea, Ui};
 
 use crate::view::command::Command;
+use crate::view::controls::{button_ui, entry_ui, is_entered, named, number_entry_ui, text_field_ui};
 use crate::view::palette::{Palette, SMALL_SIZE};
 use gdcm_core::assembly::{ChannelRule, ProblemKind, Rules, UnitRule};
 use gdcm_core::units::number;
 
 use super::assembly_state::{AssemblingCommand, AssemblyState};
-use super::details::{details_ui, entry_ui, typed_number};
+use super::details::details_ui;
 use super::preview::preview_ui;
 use super::table::{problems_ui, table_ui};
 
 /// Draws the view in the place of everything below the menu.
-pub fn assembling_ui(ui: &mut Ui, bench: &mut AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn assembling_ui(ui: &mut Ui, assembly: &mut AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
     let bar = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(10, 6));
-    Panel::top("sources of models").frame(bar).show(ui, |ui| sources_ui(ui, bench, palette, commands));
-    Panel::bottom("what is made of models").frame(bar).show(ui, |ui| making_ui(ui, bench, palette, commands));
-    let side = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(10, 6));
-    let width = ui.available_width();
-    let panel = Panel::right("one model")
-        .frame(side)
-        .default_size((0.34 * width).clamp(300.0, 560.0))
-        .size_range(280.0..=760.0);
-    panel.show(ui, |ui| right_ui(ui, bench, palette, commands));
+    Panel::top("sources of models").frame(bar).show(ui, |ui| sources_ui(ui, assembly, palette, commands));
+    Panel::bottom("what is made of models").frame(bar).show(ui, |ui| making_ui(ui, assembly, palette, commands));
+    let width = (0.34 * ui.available_width()).clamp(300.0, 560.0);
+    let side = Panel::right("one model").frame(bar).default_size(width).size_range(280.0..=760.0);
+    side.show(ui, |ui| right_ui(ui, assembly, palette, commands));
     let middle = Frame::new().fill(palette.background).inner_margin(Margin::symmetric(8, 6));
     CentralPanel::default().frame(middle).show(ui, |ui| {
         let height = ui.available_height();
-        let panel = Panel::bottom("problems of models")
-            .resizable(true)
-            .default_size(0.24 * height)
-            .size_range(60.0..=0.6 * height);
-        panel.show(ui, |ui| problems_ui(ui, bench, palette, commands));
-        table_ui(ui, bench, palette, commands);
+        let problems = Panel::bottom("problems of models").resizable(true);
+        let problems = problems.default_size(0.24 * height).size_range(60.0..=0.6 * height);
+        problems.show(ui, |ui| problems_ui(ui, assembly, palette, commands));
+        table_ui(ui, assembly, palette, commands);
     });
 }
 
-fn right_ui(ui: &mut Ui, bench: &mut AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
+fn right_ui(ui: &mut Ui, assembly: &mut AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
     let height = ui.available_height();
-    let panel = Panel::bottom("response of one model")
-        .resizable(true)
-        .default_size(0.42 * height)
-        .size_range(140.0..=0.7 * height);
-    panel.show(ui, |ui| preview_ui(ui, bench, palette, commands));
+    let response = Panel::bottom("response of one model").resizable(true);
+    let response = response.default_size(0.42 * height).size_range(140.0..=0.7 * height);
+    response.show(ui, |ui| preview_ui(ui, assembly, palette, commands));
     ScrollArea::vertical().id_salt("one model").auto_shrink(false).show(ui, |ui| {
-        details_ui(ui, bench, palette, commands);
+        details_ui(ui, assembly, palette, commands);
         ui.add_space(6.0);
-        CollapsingHeader::new("Channels and units")
-            .default_open(true)
-            .show(ui, |ui| channels_ui(ui, bench, palette, commands));
+        let channels = CollapsingHeader::new("Channels and units").default_open(true);
+        channels.show(ui, |ui| channels_ui(ui, assembly, palette, commands));
     });
 }
 
-fn sources_ui(ui: &mut Ui, bench: &mut AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
+fn sources_ui(ui: &mut Ui, assembly: &mut AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
-        ui.label(RichText::new("Put models together").strong());
-        let entered = path_ui(
-            ui,
-            "Folder or file of models",
-            &mut bench.source_path,
-            "path of a folder or a file; or drop them here",
-        );
-        let path = bench.source_path.trim();
+        ui.label(RichText::new("Import models").strong());
+        let hint = "path of a folder or a file; or drop them here";
+        let entered = path_ui(ui, "Folder or file of models", &mut assembly.source_path, hint);
+        let path = assembly.source_path.trim();
         if (ui.add_enabled(!path.is_empty(), Button::new("Add")).clicked() || entered) && !path.is_empty() {
             commands.push(AssemblingCommand::Add(vec![path.into()]).into());
         }
-        if ui.button("Choose folder…").clicked() {
-            commands.push(AssemblingCommand::AskFolder.into());
+        let (undo, redo) = assembly.steps();
+        let hint = "Back to the dataset that is open; nothing of this is kept";
+        for (text, enabled, hint, command) in [
+            ("Choose folder…", true, "", AssemblingCommand::AskFolder),
+            ("Undo change", undo, "", AssemblingCommand::Undo),
+            ("Redo change", redo, "", AssemblingCommand::Redo),
+            ("Cancel import", true, hint, AssemblingCommand::Close),
+        ] {
+            ui.add_enabled_ui(enabled, |ui| button_ui(ui, Button::new(text), hint, command, commands));
         }
-        let (undo, redo) = bench.steps();
-        if ui.add_enabled(undo, Button::new("Undo change")).clicked() {
-            commands.push(AssemblingCommand::Undo.into());
-        }
-        if ui.add_enabled(redo, Button::new("Redo change")).clicked() {
-            commands.push(AssemblingCommand::Redo.into());
-        }
-        if ui.button("Leave").on_hover_text("Back to the dataset that is open; nothing of this is kept").clicked() {
-            commands.push(AssemblingCommand::Close.into());
-        }
-        reading_ui(ui, bench, palette, commands);
+        reading_ui(ui, assembly, palette, commands);
     });
 }
 
-fn reading_ui(ui: &mut Ui, bench: &AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
-    let small = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
-    match &bench.reading {
-        Some(reading) => {
-            ui.spinner();
-            let taken = match reading.taken >> 20 {
-                0 => String::new(),
-                megabytes => format!(", {megabytes} MiB of values"),
-            };
-            ui.label(small(format!("reading {} of {}: {}{taken}", reading.number, reading.of, reading.name)));
-            if ui.button("Stop reading").clicked() {
-                commands.push(AssemblingCommand::StopReading.into());
-            }
-        }
-        None => {
-            let taken = bench.assembly().parts().iter().filter(|part| !part.row.left_out).count();
-            ui.label(small(format!("{taken} of {} models taken", bench.assembly().parts().len())));
-        }
-    }
+fn reading_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
+    let Some(reading) = &assembly.reading else {
+        let parts = assembly.assembly().parts();
+        let included = parts.iter().filter(|part| !part.row.left_out).count();
+        ui.label(palette.small(format!("{included} of {} models included", parts.len())));
+        return;
+    };
+    ui.spinner();
+    let taken = match reading.taken >> 20 {
+        0 => String::new(),
+        megabytes => format!(", {megabytes} MiB of values"),
+    };
+    ui.label(palette.small(format!("reading {} of {}: {}{taken}", reading.number, reading.of, reading.name)));
+    button_ui(ui, Button::new("Stop reading"), "", AssemblingCommand::StopReading, commands);
 }
 
 fn path_ui(ui: &mut Ui, name: &str, text: &mut String, hint: &str) -> bool {
     let width = (0.22 * ui.available_width()).clamp(120.0, 360.0);
-    let response = ui.add(TextEdit::singleline(text).hint_text(hint).desired_width(width));
-    response.widget_info(|| {
-        let mut info = WidgetInfo::labeled(Role::TextInput, true, name);
-        info.current_text_value = Some(text.clone());
-        info
-    });
-    response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter))
+    let response = text_field_ui(ui, name, text, hint, width);
+    is_entered(ui, &response)
 }
 
-fn making_ui(ui: &mut Ui, bench: &mut AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
+fn making_ui(ui: &mut Ui, assembly: &mut AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
-        settings_ui(ui, bench, palette, commands);
-        path_ui(ui, "Path of the rules", &mut bench.rules_path, "path of a .gdcm-rules.json file");
-        let rules = bench.rules_path.trim();
-        let is_path = !rules.is_empty();
-        if ui.add_enabled(is_path, Button::new("Take rules")).on_hover_text("Rules that were written before").clicked()
-        {
-            commands.push(AssemblingCommand::LoadRules(rules.into()).into());
-        }
-        if ui
-            .add_enabled(is_path, Button::new("Write rules"))
-            .on_hover_text("For the next folder of this kind")
-            .clicked()
-        {
-            commands.push(AssemblingCommand::SaveRules(rules.into()).into());
-        }
-        path_ui(ui, "Path of the dataset to make", &mut bench.dataset_path, "path of a .json.gz file");
-        let path = bench.dataset_path.trim();
-        let is_ready = !path.is_empty() && bench.assembly().problems().is_empty();
+        dataset_ui(ui, assembly, palette, commands);
+        path_ui(ui, "Path of the rules", &mut assembly.rules_path, "path of a .gdcm-rules.json file");
+        let path = assembly.rules_path.trim();
+        ui.add_enabled_ui(!path.is_empty(), |ui| {
+            let load = AssemblingCommand::LoadRules(path.into());
+            button_ui(ui, Button::new("Load rules"), "Rules that were saved before", load, commands);
+            let save = AssemblingCommand::SaveRules(path.into());
+            button_ui(ui, Button::new("Save rules"), "For the next folder of this kind", save, commands);
+        });
+        path_ui(ui, "Path of the dataset to make", &mut assembly.dataset_path, "path of a .json.gz file");
+        let path = assembly.dataset_path.trim();
+        let is_ready = !path.is_empty() && assembly.assembly().problems().is_empty();
         let button = ui.add_enabled(is_ready, Button::new(RichText::new("Make dataset").strong()));
         let hint = "Writes the dataset and, beside it, its rules, and opens it";
-        let why_not = "Say what is missing first, and where the dataset is to be written";
+        let why_not = "Complete the items first, and say where the dataset is to be written";
         if button.on_hover_text(hint).on_disabled_hover_text(why_not).clicked() {
             commands.push(AssemblingCommand::MakeDataset(path.into()).into());
         }
@@ -147,131 +113,81 @@ fn making_ui(ui: &mut Ui, bench: &mut AssemblyState, palette: &Palette, commands
 }
 
 /// Name and band of the dataset.
-fn settings_ui(ui: &mut Ui, bench: &AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
-    let rules = bench.assembly().rules();
-    let dim = |text: &str| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
-    ui.label(dim("dataset"));
+fn dataset_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
+    let rules = assembly.assembly().rules();
+    ui.label(palette.small("dataset"));
     if let Some(name) = entry_ui(ui, "Name of the dataset", &rules.name, "name", 140.0) {
-        let mut rules = rules.clone();
-        name.trim().clone_into(&mut rules.name);
-        commands.push(AssemblingCommand::Change(Box::new(rules)).into());
+        commands.push(assembly.changed(|rules| name.trim().clone_into(&mut rules.name)));
     }
-    ui.label(dim("band [rad/s]"));
-    let ends = [("Lower end of the dataset's band", rules.band.0), ("Upper end of the dataset's band", rules.band.1)];
-    for (index, (name, value)) in ends.into_iter().enumerate() {
-        let Some(text) = entry_ui(ui, name, &gdcm_core::units::number(value), "rad/s", 50.0) else { continue };
-        match typed_number(&text) {
-            Ok(Some(value)) => {
-                let mut rules = rules.clone();
-                if index == 0 {
-                    rules.band.0 = value
-                } else {
-                    rules.band.1 = value
-                }
-                commands.push(AssemblingCommand::Change(Box::new(rules)).into());
-            }
-            Ok(None) => {}
-            Err(why) => commands.push(Command::Refuse(format!("{name}: {why}"))),
-        }
+    ui.label(palette.small("band [rad/s]"));
+    let name = "Lower end of the dataset's band";
+    if let Some(low) = number_entry_ui(ui, name, &number(rules.band.0), "rad/s", 50.0, commands).flatten() {
+        commands.push(assembly.changed(|rules| rules.band.0 = low));
+    }
+    let name = "Upper end of the dataset's band";
+    if let Some(high) = number_entry_ui(ui, name, &number(rules.band.1), "rad/s", 50.0, commands).flatten() {
+        commands.push(assembly.changed(|rules| rules.band.1 = high));
     }
 }
 
-/// One side of the model.
-#[derive(Clone, Copy)]
-enum Side {
-    Inputs,
-    Outputs,
-}
+/// The inputs or the outputs among the rules.
+type Channels = fn(&mut Rules) -> &mut Vec<ChannelRule>;
+/// A text of a channel's rule: its name in accessible names, the hint, the width, what stands in it, what is typed.
+type ChannelField = (&'static str, &'static str, f32, fn(&ChannelRule) -> String, fn(&mut ChannelRule, String));
 
-impl Side {
-    fn word(self) -> &'static str {
-        match self {
-            Self::Inputs => "input",
-            Self::Outputs => "output",
-        }
-    }
-
-    fn channels(self, rules: &mut Rules) -> &mut Vec<ChannelRule> {
-        match self {
-            Self::Inputs => &mut rules.inputs,
-            Self::Outputs => &mut rules.outputs,
-        }
-    }
-}
+const SIDES: [(&str, Channels); 2] = [("input", |rules| &mut rules.inputs), ("output", |rules| &mut rules.outputs)];
+const FIELDS: [ChannelField; 3] = [
+    ("Name", "name", 90.0, |channel| channel.name.clone(), |channel, text| channel.name = text),
+    ("Unit", "?", 80.0, |channel| channel.unit.clone(), |channel, text| channel.unit = text),
+    (
+        "Unit in files",
+        "as files say",
+        110.0,
+        |channel| channel.unit_in_files.clone().unwrap_or_default(),
+        |channel, text| channel.unit_in_files = Some(text).filter(|text| !text.is_empty()),
+    ),
+];
 
 /// Names and units of every channel, and conversions that units alone do not give.
-pub(super) fn channels_ui(ui: &mut Ui, bench: &AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
-    let rules = bench.assembly().rules();
+fn channels_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
+    let mut rules = assembly.assembly().rules().clone();
     Grid::new("channels of the dataset").num_columns(4).spacing([6.0, 3.0]).show(ui, |ui| {
         for heading in ["channel", "unit", "where files do not say", ""] {
-            ui.label(RichText::new(heading).size(SMALL_SIZE).color(palette.dim_text));
+            ui.label(palette.small(heading));
         }
         ui.end_row();
-        for (side, channels) in [(Side::Inputs, &rules.inputs), (Side::Outputs, &rules.outputs)] {
-            for (index, channel) in channels.iter().enumerate() {
-                channel_ui(ui, bench, (side, index), channel, commands);
+        for (side, channels) in SIDES {
+            for (index, channel) in channels(&mut rules).iter().enumerate() {
+                for (what, hint, width, shown, typed) in FIELDS {
+                    let name = format!("{what} of {side} {}", index + 1);
+                    if let Some(text) = entry_ui(ui, &name, &shown(channel), hint, width) {
+                        let text = text.trim().to_owned();
+                        commands.push(assembly.changed(|rules| typed(&mut channels(rules)[index], text)));
+                    }
+                }
+                let name = format!("Remove {side} {}", channel.name);
+                if named(ui.small_button("×"), Role::Button, &name).on_hover_text(&name).clicked() {
+                    commands.push(assembly.changed(|rules| drop(channels(rules).remove(index))));
+                }
+                ui.end_row();
             }
         }
     });
     ui.horizontal(|ui| {
-        for side in [Side::Inputs, Side::Outputs] {
-            if ui.small_button(format!("Add {}", side.word())).clicked() {
-                let mut rules = rules.clone();
-                let channels = side.channels(&mut rules);
-                channels.push(ChannelRule::named(format!("{} {}", side.word(), channels.len() + 1)));
-                push(rules, commands);
-            }
+        for (side, channels) in SIDES {
+            let name = format!("{side} {}", channels(&mut rules).len() + 1);
+            let add = assembly.changed(|rules| channels(rules).push(ChannelRule::named(name)));
+            button_ui(ui, Button::new(format!("Add {side}")).small(), "", add, commands);
         }
     });
-    conversions_ui(ui, bench, palette, commands);
-}
-
-fn push(rules: Rules, commands: &mut Vec<Command>) {
-    commands.push(AssemblingCommand::Change(Box::new(rules)).into());
-}
-
-fn channel_ui(
-    ui: &mut Ui,
-    bench: &AssemblyState,
-    (side, index): (Side, usize),
-    channel: &ChannelRule,
-    commands: &mut Vec<Command>,
-) {
-    let changed = |change: &dyn Fn(&mut ChannelRule)| {
-        let mut rules = bench.assembly().rules().clone();
-        if let Some(channel) = side.channels(&mut rules).get_mut(index) {
-            change(channel);
-        }
-        rules
-    };
-    let name = |what: &str| format!("{what} of {} {}", side.word(), index + 1);
-    if let Some(text) = entry_ui(ui, &name("Name"), &channel.name, "name", 90.0) {
-        push(changed(&|channel| text.trim().clone_into(&mut channel.name)), commands);
-    }
-    if let Some(text) = entry_ui(ui, &name("Unit"), &channel.unit, "?", 80.0) {
-        push(changed(&|channel| text.trim().clone_into(&mut channel.unit)), commands);
-    }
-    let in_files = channel.unit_in_files.clone().unwrap_or_default();
-    if let Some(text) = entry_ui(ui, &name("Unit in files"), &in_files, "as files say", 110.0) {
-        let said = Some(text.trim().to_owned()).filter(|text| !text.is_empty());
-        push(changed(&|channel| channel.unit_in_files.clone_from(&said)), commands);
-    }
-    let remove = ui.small_button("×");
-    let label = format!("Remove {} {}", side.word(), channel.name);
-    remove.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
-    if remove.on_hover_text(&label).clicked() {
-        let mut rules = bench.assembly().rules().clone();
-        side.channels(&mut rules).remove(index);
-        push(rules, commands);
-    }
-    ui.end_row();
+    conversions_ui(ui, assembly, palette, commands);
 }
 
 /// A factor for each conversion that is asked for, and for those that were said.
-fn conversions_ui(ui: &mut Ui, bench: &AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
-    let rules = bench.assembly().rules();
+fn conversions_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
+    let rules = assembly.assembly().rules();
     let mut asked: Vec<(String, String, String)> = Vec::new();
-    for problem in bench.assembly().problems() {
+    for problem in assembly.assembly().problems() {
         if let ProblemKind::Conversion { channel, from, to } = &problem.kind {
             let conversion = (channel.clone(), from.clone(), to.clone());
             if !asked.contains(&conversion) {
@@ -281,25 +197,19 @@ fn conversions_ui(ui: &mut Ui, bench: &AssemblyState, palette: &Palette, command
     }
     let said = rules.units.iter().map(|unit| (unit.channel.clone(), unit.from.clone(), String::new()));
     for (channel, from, to) in said.chain(asked) {
-        let known = rules.units.iter().find(|unit| unit.channel == channel && unit.from == from);
+        let is_it = |unit: &UnitRule| unit.channel == channel && unit.from == from;
+        let known = rules.units.iter().find(|unit| is_it(unit)).map_or(String::new(), |unit| number(unit.factor));
         ui.horizontal(|ui| {
             ui.label(RichText::new(format!("{channel}: 1 {from} =")).size(SMALL_SIZE).color(palette.text));
-            let value = known.map_or(String::new(), |unit| number(unit.factor));
             let name = format!("Factor of {channel} from {from}");
-            if let Some(text) = entry_ui(ui, &name, &value, "factor", 60.0) {
-                match typed_number(&text) {
-                    Ok(factor) => push(with_factor(rules, (&channel, &from), factor), commands),
-                    Err(why) => commands.push(Command::Refuse(format!("{name}: {why}"))),
-                }
+            if let Some(factor) = number_entry_ui(ui, &name, &known, "factor", 60.0, commands) {
+                commands.push(assembly.changed(|rules| {
+                    rules.units.retain(|unit| !is_it(unit));
+                    let (channel, from) = (channel.clone(), from.clone());
+                    rules.units.extend(factor.map(|factor| UnitRule { channel, from, factor }));
+                }));
             }
-            ui.label(RichText::new(to).size(SMALL_SIZE).color(palette.dim_text));
+            ui.label(palette.small(to.as_str()));
         });
     }
-}
-
-fn with_factor(rules: &Rules, (channel, from): (&str, &str), factor: Option<f64>) -> Rules {
-    let mut rules = rules.clone();
-    rules.units.retain(|unit| !(unit.channel == channel && unit.from == from));
-    rules.units.extend(factor.map(|factor| UnitRule { channel: channel.to_owned(), from: from.to_owned(), factor }));
-    rules
 }

@@ -4,8 +4,11 @@ use std::path::PathBuf;
 
 use gdcm_core::assembly::{Assembly, FoundModel, Headings, RowRule, Rules, proposed_rules};
 
+use crate::view::command::Command;
+use crate::view::table_view::Sorting;
+
 use super::preview::Preview;
-use super::table::Column;
+use super::table::COLUMNS;
 
 /// Most steps that can be undone.
 const MOST_STEPS: usize = 200;
@@ -29,8 +32,8 @@ pub enum AssemblingCommand {
     Redo,
     /// Show a model.
     Select(usize),
-    /// Sort the table by a column; by the same one the other way round.
-    Sort(Column),
+    /// Sort the table by the column of this index; by the same one the other way round.
+    Sort(usize),
     /// Show the response of this place in the preview.
     ShowResponse(usize),
     /// Take rules from a file.
@@ -76,8 +79,8 @@ pub struct AssemblyState {
     pub reading: Option<Reading>,
     /// Index of the model shown.
     pub selected: usize,
-    /// Column that the table is sorted by, and whether downwards.
-    pub sorting: Option<(Column, bool)>,
+    /// How the table is sorted.
+    pub sorting: Sorting,
     /// The response of the model shown.
     pub preview: Preview,
     /// Path of a folder or a file, as typed.
@@ -101,7 +104,7 @@ impl Default for AssemblyState {
             tables: Headings::new(),
             reading: None,
             selected: 0,
-            sorting: None,
+            sorting: Sorting::default(),
             preview: Preview::default(),
             source_path: String::new(),
             rules_path: String::new(),
@@ -176,61 +179,51 @@ impl AssemblyState {
         self.assembly = self.assembly.with_rules(rules);
     }
 
-    /// The rules with something else said about one model.
-    pub fn said_of(&self, part: usize, say: impl FnOnce(&mut RowRule)) -> Rules {
+    /// The command that changes the rules in this way.
+    pub fn changed(&self, change: impl FnOnce(&mut Rules)) -> Command {
         let mut rules = self.assembly.rules().clone();
-        if let Some(part) = self.assembly.parts().get(part) {
-            say(rules.rows.entry(part.found.key()).or_default());
-        }
-        rules
+        change(&mut rules);
+        AssemblingCommand::Change(Box::new(rules)).into()
     }
 
-    /// The rules with another heading of a column of a table; the file's own headings stand where nothing else is said.
-    pub fn with_heading(&self, file: &str, column: usize, heading: &str) -> Rules {
-        let mut rules = self.assembly.rules().clone();
-        if let Some(headings) = self.tables.get(file) {
+    /// The command that says something else about one model.
+    pub fn said_of(&self, part: usize, say: impl FnOnce(&mut RowRule)) -> Command {
+        self.changed(|rules| {
+            if let Some(part) = self.assembly.parts().get(part) {
+                say(rules.rows.entry(part.found.key()).or_default());
+            }
+        })
+    }
+
+    /// The command that gives a column of a table another heading; the file's own headings stand where nothing else is said.
+    pub fn with_heading(&self, file: &str, column: usize, heading: &str) -> Command {
+        self.changed(|rules| {
+            let Some(headings) = self.tables.get(file) else { return };
             let said = rules.headings.entry(file.to_owned()).or_insert_with(|| headings.clone());
             if let Some(place) = said.get_mut(column) {
                 heading.trim().clone_into(place);
             }
-        }
-        rules
+        })
     }
 
-    /// The rules with the same said about every model below `part`, in the order of the table, of its folder.
-    pub fn filled_down(&self, part: usize, say: impl Fn(&mut RowRule)) -> Rules {
-        let mut rules = self.assembly.rules().clone();
+    /// The command that says the same about every model below `part`, in the order of the table, of its folder.
+    pub fn filled_down(&self, part: usize, say: impl Fn(&mut RowRule)) -> Command {
         let parts = self.assembly.parts();
         let folder = |part: usize| {
             parts.get(part).map(|part| part.found.file().rsplit_once('/').map_or("", |(folder, _)| folder))
         };
         let order = self.order();
         let below = order.iter().skip_while(|index| **index != part);
-        for index in below.filter(|index| folder(**index) == folder(part)) {
-            say(rules.rows.entry(parts[*index].found.key()).or_default());
-        }
-        rules
+        self.changed(|rules| {
+            for index in below.filter(|index| folder(**index) == folder(part)) {
+                say(rules.rows.entry(parts[*index].found.key()).or_default());
+            }
+        })
     }
 
     /// Indices of the models in the order of the table.
     pub fn order(&self) -> Vec<usize> {
         let parts = self.assembly.parts();
-        let mut order: Vec<usize> = (0..parts.len()).collect();
-        if let Some((column, falls)) = self.sorting {
-            order.sort_by(|a, b| {
-                let compared = column.compare(&parts[*a], &parts[*b]);
-                if falls { compared.reverse() } else { compared }
-            });
-        }
-        order
-    }
-
-    /// Sorts by a column: rising, falling, as found.
-    pub fn sort(&mut self, column: Column) {
-        self.sorting = match self.sorting {
-            Some((sorted, false)) if sorted == column => Some((column, true)),
-            Some((sorted, true)) if sorted == column => None,
-            _ => Some((column, false)),
-        };
+        self.sorting.order_of(parts.len(), |row, column| COLUMNS[column].text(&parts[row]))
     }
 }

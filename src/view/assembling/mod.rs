@@ -1,4 +1,4 @@
-//! Putting models of many files together: a table with a line a model, what each is to be, and its response.
+//! Importing models of many files: a table with a line a model, what each is to be, and its response.
 
 mod assembling_view;
 mod assembly_state;
@@ -8,5 +8,4 @@ mod table;
 
 pub use assembling_view::assembling_ui;
 pub use assembly_state::{AssemblingCommand, AssemblyState, Reading};
-pub use details::{entry_ui, typed_number};
-pub use table::{Column, cell_text};
+pub use table::{COLUMNS, Column};

@@ -31,13 +31,13 @@ pub struct Preview {
 }
 
 /// The response of the model shown, and which one.
-pub(super) fn preview_ui(ui: &mut Ui, bench: &mut AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
+pub(super) fn preview_ui(ui: &mut Ui, assembly: &mut AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
     // A panel without content would shrink.
     ui.set_min_size(ui.available_size());
-    let (selected, band) = (bench.selected, bench.assembly().rules().band);
-    let Some(found) = bench.assembly().parts().get(selected).map(|part| part.found.clone()) else { return };
+    let (selected, band) = (assembly.selected, assembly.assembly().rules().band);
+    let Some(found) = assembly.assembly().parts().get(selected).map(|part| part.found.clone()) else { return };
     let count = (found.inputs.len() * found.outputs.len()).max(1);
-    let place = bench.preview.response.min(count - 1);
+    let place = assembly.preview.response.min(count - 1);
     let names: Vec<String> = (0..count).map(|place| pair_name(&found, place)).collect();
     let choices: Vec<(usize, &str, &str)> =
         names.iter().enumerate().map(|(place, name)| (place, name.as_str(), "Response shown")).collect();
@@ -47,24 +47,24 @@ pub(super) fn preview_ui(ui: &mut Ui, bench: &mut AssemblyState, palette: &Palet
         commands.push(AssemblingCommand::ShowResponse(chosen).into());
     }
     let key = found.key();
-    if bench.preview.drawn.as_ref().is_none_or(|(of, at, _)| (of, *at) != (&key, place)) {
-        let is_other_model = bench.preview.drawn.as_ref().is_none_or(|(of, ..)| *of != key);
-        bench.preview.drawn = Some((key, place, curve(&found, place, band).into_iter().collect()));
+    if assembly.preview.drawn.as_ref().is_none_or(|(of, at, _)| (of, *at) != (&key, place)) {
+        let is_other_model = assembly.preview.drawn.as_ref().is_none_or(|(of, ..)| *of != key);
+        assembly.preview.drawn = Some((key, place, curve(&found, place, band).into_iter().collect()));
         // A measured response may be at other frequencies than the model shown before.
         if is_other_model {
-            bench.preview.view.request_fit();
+            assembly.preview.view.request_fit();
         } else {
-            bench.preview.view.request_refit();
+            assembly.preview.view.request_refit();
         }
     }
-    let Some((_, _, curves)) = &bench.preview.drawn else { return };
+    let Some((_, _, curves)) = &assembly.preview.drawn else { return };
     let scene = BodeScene {
         quantity: BodeQuantity::RESPONSE_OF_FOUND_MODEL,
         unit: FrequencyUnit::default(),
         message: Some("This response cannot be computed"),
         ..BodeScene::of(&names[place], curves, band)
     };
-    bode_ui(ui, &scene, &mut bench.preview.view, palette);
+    bode_ui(ui, &scene, &mut assembly.preview.view, palette);
 }
 
 /// "LON → Q", in the file's own names.

@@ -6,6 +6,7 @@ use egui::{
 };
 use egui_plot::{Axis, LineStyle, PlotTransform, PlotUi, Span, VLine};
 
+use super::LogAxis;
 use super::axes::{LABELLED_HEIGHT, TICKS_HEIGHT, axis_hints, caption_font, keep_ground, quiet_plot};
 use super::axis_strip::axis_strips_ui;
 use super::bode::BodeScene;
@@ -18,7 +19,6 @@ use super::log_axis::FrequencyUnit;
 use super::navigation::{Turn, plot_keys, turned};
 use super::picking::drawn_box_ui;
 use super::rule::{rules_ui, strips_ui};
-use super::{LogAxis, RoleLook};
 use crate::view::palette::Palette;
 
 /// Width of the vertical axes \[pt\]: the same above and below, so that the frequencies stand under one another.
@@ -150,7 +150,7 @@ fn draw_curves<'a>(
     }
     curves.sort_by_key(|(_, curve)| (is_emphasized(curve), curve.role.layer(curve.rejected)));
     for (index, curve) in curves {
-        let mut look = curve.role.look(curve.rejected, palette);
+        let mut look = palette.role_style(curve.role, curve.rejected);
         if is_emphasized(curve) {
             look = look.emphasized();
         } else if scene.stale {
@@ -174,7 +174,7 @@ fn image_of_many(
         return None;
     }
     curves.sort_by_key(|(_, curve)| curve.role.layer(curve.rejected));
-    let look = |curve: &BodeCurve| curve.role.look(curve.rejected, palette);
+    let look = |curve: &BodeCurve| palette.role_style(curve.role, curve.rejected);
     let still = StillScene {
         frame: *transform.frame(),
         pixels_per_point: ctx.pixels_per_point(),

@@ -6,7 +6,7 @@ use vello_cpu::color::AlphaColor;
 use vello_cpu::kurbo::{Affine, BezPath, Circle, Join, Shape as _, Stroke as PathStroke};
 use vello_cpu::{Pixmap, RenderContext, RenderSettings, Resources};
 
-use super::curve_style::LineLook;
+use super::curve_style::CurveStyle;
 
 /// From so many curves on an image is worth its memory: filling their lines takes longer than everything else in a frame.
 pub(super) const MANY: usize = 200;
@@ -21,7 +21,7 @@ pub(super) struct StillScene {
     /// Pixels to a point.
     pub(super) pixels_per_point: f32,
     /// The points of each curve, by the number under which they were made, and its look; from bottom to top.
-    pub(super) curves: Vec<(u64, LineLook)>,
+    pub(super) curves: Vec<(u64, CurveStyle)>,
 }
 
 /// Many curves that stand still, as one image. Without a graphics processor a frame of a thousand curves is bound by the
@@ -189,7 +189,7 @@ mod tests {
     use super::*;
 
     fn scene(curves: &[u64], left: f32) -> StillScene {
-        let look = LineLook { color: Color32::RED, width: 2.0, pattern: LinePattern::Solid };
+        let look = CurveStyle { color: Color32::RED, width: 2.0, pattern: LinePattern::Solid };
         let frame = Rect::from_min_size(pos2(left, 20.3), vec2(50.0, 30.0));
         StillScene { frame, pixels_per_point: 1.5, curves: curves.iter().map(|serial| (*serial, look)).collect() }
     }

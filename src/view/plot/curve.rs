@@ -7,7 +7,7 @@ use egui::{Color32, Pos2, Shape, Ui};
 use egui_plot::{PlotBounds, PlotGeometry, PlotItem, PlotItemBase, PlotPoint, PlotTransform};
 pub use gdcm_files::figure::CurveId;
 
-use super::curve_style::{LineLook, Role};
+use super::curve_style::{CurveStyle, Role};
 
 /// Which of the two stacked plots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -208,12 +208,12 @@ impl CurveNumbers {
 pub(super) struct CurveItem<'a> {
     base: PlotItemBase,
     runs: &'a [Vec<PlotPoint>],
-    look: LineLook,
+    look: CurveStyle,
 }
 
 impl<'a> CurveItem<'a> {
     /// The curve through each of `runs`.
-    pub(super) fn new(runs: &'a [Vec<PlotPoint>], look: LineLook) -> Self {
+    pub(super) fn new(runs: &'a [Vec<PlotPoint>], look: CurveStyle) -> Self {
         Self { base: PlotItemBase::new(String::new()), runs, look }
     }
 

@@ -2,6 +2,7 @@
 
 use egui::{Color32, Pos2, Shape, Stroke};
 pub use gdcm_files::figure::Role;
+use gdcm_files::figure::{Color, Dash, Hue};
 
 use crate::view::palette::Palette;
 
@@ -34,14 +35,12 @@ pub enum LinePattern {
 
 /// Gap between dashes as a part of their length.
 const GAP_OF_DASH: f32 = 0.618;
-/// Of a double line, the part that is ground.
-const GROUND_OF_DOUBLE: f32 = 0.42;
 /// Length of a dot between dashes \[pt\].
 const DOT_LENGTH: f32 = 1.8;
 
 /// Colour, width and pattern of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LineLook {
+pub struct CurveStyle {
     /// Colour of the line.
     pub color: Color32,
     /// Width of the line \[pt\].
@@ -50,7 +49,7 @@ pub struct LineLook {
     pub pattern: LinePattern,
 }
 
-impl LineLook {
+impl CurveStyle {
     /// This line as it is drawn while something points at it.
     pub fn emphasized(self) -> Self {
         let color = self.color.to_opaque();
@@ -89,7 +88,10 @@ impl LineLook {
             LinePattern::Solid => shapes.push(Shape::line(path, stroke)),
             LinePattern::Double { ground } => {
                 shapes.push(Shape::line(path.clone(), stroke));
-                shapes.push(Shape::line(path, Stroke::new(GROUND_OF_DOUBLE * self.width, ground)));
+                shapes.push(Shape::line(
+                    path,
+                    Stroke::new(gdcm_files::figure::Stroke::GROUND_OF_DOUBLE as f32 * self.width, ground),
+                ));
             }
             LinePattern::Dashed { length } => {
                 Shape::dashed_line_many(&path, stroke, length, GAP_OF_DASH * length, shapes);
@@ -105,39 +107,46 @@ impl LineLook {
     }
 }
 
-/// The dots of what is left out.
-const DOTTED: LinePattern = LinePattern::Dotted { spacing: 4.5 };
-
-/// How a role looks on the screen.
-pub trait RoleLook {
-    /// How a curve of this role is drawn. A rejected nominal model stays red, but dotted.
-    fn look(self, rejected: bool, palette: &Palette) -> LineLook;
-}
-
-impl RoleLook for Role {
-    fn look(self, rejected: bool, palette: &Palette) -> LineLook {
-        let look = |color, width, pattern| LineLook { color, width: width * palette.line_width, pattern };
-        let dashed = |length| LinePattern::Dashed { length };
-        match self.shown(rejected) {
-            Self::Nominal if rejected => look(palette.nominal, 1.3, DOTTED),
-            Self::Nominal => look(palette.nominal, 1.6, LinePattern::DashDotted { length: 11.0 }),
-            Self::Perturbed => look(palette.perturbed.gamma_multiply(0.8), 1.0, LinePattern::Solid),
-            Self::Representative => look(palette.perturbed, 2.8, LinePattern::Solid),
-            Self::Identified => look(palette.identified, 1.2, dashed(5.0)),
-            // Wide and open: the corrected curve that is to lie on it fills it, so that both are seen where they agree.
-            Self::IdentifiedRepresentative => {
-                look(palette.identified, 4.6, LinePattern::Double { ground: palette.background })
+impl Palette {
+    /// A colour by what it means, in this theme.
+    pub fn color(&self, color: Color) -> Color32 {
+        let of_hue = match color.hue {
+            Hue::Background => self.background,
+            Hue::Grid => self.grid,
+            Hue::Text => self.text,
+            Hue::DimText => self.dim_text,
+            Hue::Nominal => self.nominal,
+            Hue::Perturbed => self.perturbed,
+            Hue::Identified => self.identified,
+            Hue::Corrected => self.corrected,
+            Hue::Rejected => self.rejected,
+            Hue::Accent => self.accent,
+            Hue::Warning => self.warning,
+            Hue::Good => self.good,
+            Hue::OfAirspeed(step) => {
+                self.perturbed.lerp_to_gamma(self.identified, f32::from(step) / f32::from(u8::MAX))
             }
-            Self::Corrected => look(palette.corrected, 2.2, LinePattern::Solid),
-            Self::Scheduled => look(palette.corrected, 2.2, dashed(9.0)),
-            Self::WithoutLeads => look(palette.corrected, 1.4, LinePattern::DashDotted { length: 5.0 }),
-            Self::Rejected => look(palette.rejected, 1.0, DOTTED),
-            // From blue over grey to amber, as in scales made for colour-blind eyes.
-            Self::OfAirspeed(step) => {
-                let part = f32::from(step) / f32::from(u8::MAX);
-                look(palette.perturbed.lerp_to_gamma(palette.identified, part), 1.8, LinePattern::Solid)
-            }
-        }
+        };
+        if color.percent == 100 { of_hue } else { of_hue.gamma_multiply(f32::from(color.percent) / 100.0) }
+    }
+
+    /// A line as this theme draws it, as wide as the engineer wants it.
+    pub fn curve_style(&self, line: gdcm_files::figure::Stroke) -> CurveStyle {
+        let pattern = match line.dash {
+            Dash::Solid => LinePattern::Solid,
+            Dash::Double => LinePattern::Double { ground: self.background },
+            Dash::Long => LinePattern::Dashed { length: 9.0 },
+            Dash::Short => LinePattern::Dashed { length: 5.0 },
+            Dash::Dotted => LinePattern::Dotted { spacing: 4.5 },
+            Dash::DashDot => LinePattern::DashDotted { length: 11.0 },
+            Dash::ShortDashDot => LinePattern::DashDotted { length: 5.0 },
+        };
+        CurveStyle { color: self.color(line.color), width: line.width_pt as f32 * self.line_width, pattern }
+    }
+
+    /// How a curve of a role is drawn.
+    pub fn role_style(&self, role: Role, rejected: bool) -> CurveStyle {
+        self.curve_style(role.line(rejected))
     }
 }
 
@@ -145,11 +154,11 @@ impl RoleLook for Role {
 mod tests {
     use egui::pos2;
 
-    use super::super::curve_style::*;
+    use super::*;
 
     fn shapes(pattern: LinePattern) -> usize {
         let mut shapes = Vec::new();
-        let look = LineLook { color: Color32::WHITE, width: 2.0, pattern };
+        let look = CurveStyle { color: Color32::WHITE, width: 2.0, pattern };
         look.add_shapes(vec![pos2(0.0, 0.0), pos2(100.0, 0.0)], &mut shapes);
         shapes.len()
     }
@@ -163,16 +172,31 @@ mod tests {
         assert_eq!(shapes(LinePattern::DashDotted { length: 8.0 }), 13);
         assert_eq!(shapes(LinePattern::Dotted { spacing: 5.0 }), 20);
     }
-}
 
-#[cfg(test)]
-mod tests2 {
-    use super::super::curve_style::*;
+    #[test]
+    fn paper_has_the_colours_of_the_light_theme() {
+        let light = Palette::light();
+        let roles = [Hue::Nominal, Hue::Perturbed, Hue::Identified, Hue::Corrected, Hue::Rejected];
+        for hue in roles.into_iter().chain([Hue::Text, Hue::DimText, Hue::Accent, Hue::Warning, Hue::Good]) {
+            let [red, green, blue, _] = light.color(Color::of(hue)).to_array();
+            assert_eq!([red, green, blue], hue.on_paper(), "{hue:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_solid_or_broken_in_the_window_is_so_on_paper() {
+        for role in Role::ALL {
+            let (window, paper) = (Palette::light().role_style(role, false), role.stroke(false));
+            assert_eq!(window.is_broken(), !paper.dash.pattern_pt().is_empty(), "{role:?}");
+        }
+        assert_eq!(Role::Corrected.stroke(false).dash, Dash::Solid);
+        assert_eq!(Role::Scheduled.stroke(false).dash, Dash::Long);
+    }
 
     #[test]
     fn a_rejected_nominal_model_stays_red_but_is_dotted() {
         let palette = Palette::dark();
-        let look = Role::Nominal.look(true, &palette);
+        let look = palette.role_style(Role::Nominal, true);
         assert_eq!(look.color, palette.nominal);
         assert!(matches!(look.pattern, LinePattern::Dotted { .. }));
     }
@@ -181,7 +205,7 @@ mod tests2 {
     fn before_and_after_and_the_reference_differ_in_pattern_and_in_width() {
         let palette = Palette::light();
         for other in [Role::Nominal, Role::Identified, Role::IdentifiedRepresentative] {
-            let (corrected, other) = (Role::Corrected.look(false, &palette), other.look(false, &palette));
+            let (corrected, other) = (palette.role_style(Role::Corrected, false), palette.role_style(other, false));
             assert!(corrected.pattern != other.pattern && (corrected.width - other.width).abs() > 0.5, "{other:?}");
         }
     }
@@ -190,8 +214,8 @@ mod tests2 {
     fn widths_follow_the_engineer() {
         let palette = Palette { line_width: 2.0, ..Palette::dark() };
         for role in Role::ALL {
-            let (wide, usual) = (role.look(false, &palette), role.look(false, &Palette::dark()));
-            assert_eq!(wide, LineLook { width: 2.0 * usual.width, ..usual });
+            let (wide, usual) = (palette.role_style(role, false), Palette::dark().role_style(role, false));
+            assert_eq!(wide, CurveStyle { width: 2.0 * usual.width, ..usual });
         }
     }
 
@@ -200,7 +224,7 @@ mod tests2 {
         for palette in [Palette::dark(), Palette::light()] {
             for a in Role::ALL {
                 for b in Role::ALL.into_iter().filter(|b| *b != a) {
-                    let (a, b) = (a.look(false, &palette), b.look(false, &palette));
+                    let (a, b) = (palette.role_style(a, false), palette.role_style(b, false));
                     assert!(a.pattern != b.pattern || (a.width - b.width).abs() > 0.5, "{a:?} {b:?}");
                 }
             }

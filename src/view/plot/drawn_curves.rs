@@ -4,7 +4,6 @@ use std::borrow::Cow;
 
 use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
 
-use super::RoleLook;
 use super::curve::{BodeCurve, CurveNumbers, LogFrequencies, Pane, runs_in_view};
 use crate::view::palette::Palette;
 
@@ -93,7 +92,7 @@ impl DrawnCurve {
 }
 
 fn margin(curve: &BodeCurve, palette: &Palette) -> f64 {
-    if curve.role.look(curve.rejected, palette).is_broken() { PATTERN_MARGIN } else { LINE_MARGIN }
+    if palette.role_style(curve.role, curve.rejected).is_broken() { PATTERN_MARGIN } else { LINE_MARGIN }
 }
 
 /// The points of `run`, ascending in x, that have to be drawn: whatever reaches farthest in its column of pixels, unless the curve

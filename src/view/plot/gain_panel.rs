@@ -11,7 +11,6 @@ use gdcm_core::dataset::ConditionId;
 pub use gdcm_files::figure::{Across, Measure};
 use gdcm_files::figure::{LabelledDot, Range, Surroundings};
 
-use super::RoleLook;
 use super::axes::{LABELLED_HEIGHT, Ladder, axis_hints, caption_font, quiet_plot, tick_text};
 use super::curve_style::{LinePattern, Role};
 use super::dot::{DOT_RADIUS, Dot, PlacedLabels, area, point, position};
@@ -214,7 +213,7 @@ fn draw_lines(plot: &mut PlotUi<'_>, panel: &GainPanel, palette: &Palette) {
     plot.hline(
         HLine::new("", panel.measure.null()).color(reference).width(1.0).style(LineStyle::Dashed { length: 3.0 }),
     );
-    let look = Role::Scheduled.look(false, palette);
+    let look = palette.role_style(Role::Scheduled, false);
     let schedule: Vec<[f64; 2]> = panel.drawable_schedule().collect();
     let style = match look.pattern {
         LinePattern::Dashed { length } => LineStyle::Dashed { length },

@@ -5,10 +5,9 @@ use std::sync::Arc;
 
 use egui::{Align2, CursorIcon, Galley, Painter, Rect, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2};
 
-use super::RoleLook;
 use super::axes::caption_font;
 use super::curve::BodeCurve;
-use super::curve_style::{LineLook, Role};
+use super::curve_style::{CurveStyle, Role};
 use crate::view::palette::Palette;
 
 const ROW_HEIGHT: f32 = 16.5;
@@ -24,7 +23,7 @@ const NAME_LENGTH: usize = 22;
 pub(super) struct LegendEntry {
     pub(super) role: Role,
     pub(super) text: String,
-    pub(super) look: LineLook,
+    pub(super) look: CurveStyle,
     /// Whether the curves of the role are drawn.
     pub(super) shown: bool,
 }
@@ -36,7 +35,7 @@ pub(super) fn entries(curves: &[BodeCurve], hidden: &BTreeSet<Role>, palette: &P
         let first = members.first()?;
         // One line for kept and rejected nominal models: dotted only where none is kept.
         let rejected = members.iter().all(|curve| curve.rejected);
-        let look = first.role.look(rejected, palette);
+        let look = palette.role_style(first.role, rejected);
         Some(LegendEntry { role, text: text(role, &members, rejected), look, shown: !hidden.contains(&role) })
     };
     Role::ALL.into_iter().filter_map(of_role).collect()
@@ -123,7 +122,7 @@ fn head_ui(ui: &Ui, (rect, plot): (Rect, &str), is_unfolded: bool, palette: &Pal
 
 /// The lines of the legend, laid out.
 struct Rows {
-    rows: Vec<(LineLook, Arc<Galley>)>,
+    rows: Vec<(CurveStyle, Arc<Galley>)>,
     /// Size of the whole, with its head and the space around.
     size: Vec2,
 }
@@ -167,7 +166,7 @@ fn paint_row(
     painter: &Painter,
     place: Rect,
     entry: &LegendEntry,
-    look: LineLook,
+    look: CurveStyle,
     galley: Arc<Galley>,
     palette: &Palette,
 ) {

@@ -9,11 +9,11 @@ use egui::{
 use gdcm_core::response::wrap;
 use gdcm_files::figure::decimals;
 
+use super::LogAxis;
 use super::bode::BodeScene;
 use super::curve::{BodeCurve, Pane};
 use super::curve_style::Role;
 use super::quantity::BodeQuantity;
-use super::{LogAxis, RoleLook};
 use crate::view::palette::{Palette, SMALL_SIZE};
 
 /// "nominal · 2.9 dB · −99°" at `omega` \[rad/s\].
@@ -148,7 +148,7 @@ impl Table {
         let head = (None, names.map(|name| text(name.to_owned(), palette.dim_text)).collect());
         let row = |row: &ReadoutRow| {
             let cells = std::iter::once(row.role.short_name().to_owned()).chain(row.cells.iter().cloned());
-            let color = row.role.look(false, palette).color.to_opaque();
+            let color = palette.role_style(row.role, false).color.to_opaque();
             (Some(color), cells.map(|cell| text(cell, palette.text)).collect())
         };
         let lines: Vec<(Option<Color32>, Vec<Arc<Galley>>)> =

@@ -4,7 +4,7 @@ use egui::{Align2, FontId, Rangef, Rect, Ui, pos2, vec2};
 use egui_plot::{FilledArea, PlotBounds, PlotPoint, PlotTransform, PlotUi};
 
 use super::curve::Pane;
-use super::curve_style::{LineLook, LinePattern};
+use super::curve_style::{CurveStyle, LinePattern};
 use crate::view::palette::Palette;
 
 /// How a figure depends on the frequency.
@@ -44,14 +44,14 @@ pub enum RuleKind {
 }
 
 impl RuleKind {
-    fn look(self, palette: &Palette) -> LineLook {
+    fn look(self, palette: &Palette) -> CurveStyle {
         let (color, width, pattern) = match self {
             Self::Delta => (palette.text, 0.9, LinePattern::Dotted { spacing: 4.0 }),
             Self::Bound => (palette.warning, 1.0, LinePattern::DashDotted { length: 9.0 }),
             Self::Quantile => (palette.dim_text, 0.9, LinePattern::Dashed { length: 3.0 }),
             Self::Envelope => (palette.good, 1.0, LinePattern::Solid),
         };
-        LineLook { color, width: width * palette.line_width, pattern }
+        CurveStyle { color, width: width * palette.line_width, pattern }
     }
 }
 

@@ -5,7 +5,6 @@ use egui_plot::{Axis, HLine, Line, Plot, PlotBounds, PlotPoint, PlotTransform, P
 use gdcm_core::dataset::ModelId;
 use gdcm_files::figure::{Range, step_above};
 
-use super::RoleLook;
 use super::axes::{LABELLED_HEIGHT, Ladder, VERTICAL_TICK_GAP, axis_hints, caption_font, quiet_plot, tick_text};
 use super::curve_style::Role;
 use super::navigation::turned;
@@ -215,7 +214,7 @@ impl PoleMark {
 
     /// Draws the mark at `center`.
     pub(super) fn paint(&self, painter: &Painter, center: Pos2, is_emphasized: bool, palette: &Palette) {
-        let look = self.role.look(self.rejected, palette);
+        let look = palette.role_style(self.role, self.rejected);
         let matters = matches!(self.role, Role::Nominal | Role::Representative | Role::IdentifiedRepresentative);
         let radius = match (matters, is_emphasized) {
             (_, true) => 6.0,

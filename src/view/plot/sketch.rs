@@ -4,7 +4,6 @@ use egui::{Painter, Pos2, Rect, Shape};
 use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
 use gdcm_files::figure::{Range, decimals};
 
-use super::RoleLook;
 use super::curve::{BodeCurve, CurveNumbers, LogFrequencies, Pane, runs_in_view};
 use super::curve_style::Role;
 use super::drawn_curves::{Pixel, thinned};
@@ -163,7 +162,7 @@ impl Sparkline {
         palette: &Palette,
         pixels_per_point: f32,
     ) -> Vec<Shape> {
-        let mut look = curve.role.look(curve.rejected, palette).in_miniature();
+        let mut look = palette.role_style(curve.role, curve.rejected).in_miniature();
         if curve.highlighted {
             look = look.emphasized();
         }

@@ -9,28 +9,22 @@ use egui::{Id, Rect, RichText, ScrollArea, Sense, Ui, vec2};
 use crate::view::command::Command;
 use crate::view::palette::Palette;
 use crate::view::plot::{Chart, ChartAxis, ChartLine, ChartSpan, chart_ui};
-use crate::view::state::State;
 use gdcm_core::dataset::Band;
 use gdcm_core::executor::Sequential;
 use gdcm_core::identification::{FlightRecord, Piece, Treatment, spectra};
 
-use super::records_state::ConditionRecords;
+use super::records_state::{ConditionRecords, Page};
 use super::simulation::{simulated, time_models_ui};
 
 /// Least height of a chart \[pt\]; more of them scroll.
 const LEAST_HEIGHT: f32 = 84.0;
 
 /// A chart for each input and output, with the responses of models to the same inputs where those are asked for.
-pub(super) fn histories_ui(
-    ui: &mut Ui,
-    state: &State,
-    records: &ConditionRecords,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
+pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
+    let Page { state, records, palette } = page;
     let Some(row) = records.rows.get(records.chosen) else { return };
     let Some(flight) = &row.flight else {
-        ui.label(RichText::new("Say first which columns are its channels: page Columns").color(palette.warning));
+        ui.label(RichText::new("Choose first which columns are its channels: page Columns").color(palette.warning));
         return;
     };
     let dataset = state.dataset();
@@ -108,7 +102,8 @@ const SMOOTHED: usize = 5;
 type Amplitudes = Vec<Arc<[[f64; 2]]>>;
 
 /// A chart for each input: its spectrum in every record, the chosen one on top.
-pub(super) fn inputs_ui(ui: &mut Ui, state: &State, records: &ConditionRecords, palette: &Palette) {
+pub(super) fn inputs_ui(ui: &mut Ui, page: Page<'_>) {
+    let Page { state, records, palette } = page;
     let dataset = state.dataset();
     let unit = state.display.unit;
     let band = records

@@ -6,7 +6,6 @@ use egui::{Label, ProgressBar, RichText, Ui};
 
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
-use crate::view::state::State;
 use gdcm_core::dataset::BundleKind;
 use gdcm_core::identification::{
     Caution, Hold, Identification, IdentificationCaution, IdentificationError, Role, Signal,
@@ -15,21 +14,16 @@ use gdcm_core::study::{ChannelTimeSkew, OfferedModels};
 use gdcm_core::units::s_to_ms;
 
 use super::histories::{Source, kept};
-use super::records_state::{ConditionRecords, RecordsCommand};
+use super::record_list::{BAD, CHI_SQUARED};
+use super::records_state::{ConditionRecords, Page, RecordsCommand};
 
 /// Above this the held-out records speak against the model (M14, section 4).
 const HELD_OUT: f64 = 1.15;
 
 /// How far the identification is, or what came of it.
-pub(super) fn outcome_ui(
-    ui: &mut Ui,
-    state: &State,
-    records: &ConditionRecords,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
+pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
+    let Page { state, records, palette } = page;
     ui.add_space(6.0);
-    let small = |text: String, color| RichText::new(text).size(SMALL_SIZE).color(color);
     let with_records = state.records.conditions.values().filter(|of| of.used_rows().next().is_some()).count();
     if with_records > 1 && state.records.running.is_empty() {
         let all = format!("Identify all {with_records} conditions");
@@ -39,13 +33,13 @@ pub(super) fn outcome_ui(
         let found = state.records.conditions.values().filter(|of| of.identification().is_some()).count();
         if found > 1 {
             let hint = "In place of the identified models of these conditions; one step to undo";
-            let take = format!("Take the models of {found} conditions");
+            let take = format!("Use the models of {found} conditions");
             offered_menu_ui(ui, (&take, hint), |offered| commands.push(RecordsCommand::TakeAll(offered).into()));
         }
     }
     if let Some([low, high]) = records.band {
-        ui.label(small(format!("Band from {low:.2} to {high:.1} rad/s, not the study's"), palette.dim_text));
-        actions_ui(ui, vec![("Take the study's band".to_owned(), RecordsCommand::SetBand(None))], commands);
+        ui.label(palette.small(format!("Band from {low:.2} to {high:.1} rad/s, not the study's")));
+        actions_ui(ui, vec![("Use the study's band".to_owned(), RecordsCommand::SetBand(None))], commands);
     }
     if let Some(job) = state.records.running(state.condition().id()) {
         let told = job.told();
@@ -62,9 +56,9 @@ pub(super) fn outcome_ui(
             (done as f32 / total.max(1) as f32, told.step)
         };
         ui.add(ProgressBar::new(part).desired_height(6.0));
-        ui.label(small(step, palette.dim_text));
+        ui.label(palette.small(step));
         if told.first_model.is_some() {
-            ui.label(small("The first model is drawn; it is being refined".to_owned(), palette.dim_text));
+            ui.label(palette.small("The first model is drawn; it is being refined"));
         }
         return;
     }
@@ -76,13 +70,13 @@ pub(super) fn outcome_ui(
         }
         Some((_, Ok(found))) => {
             if records.changed {
-                ui.label(small("Of other records or settings than those chosen now".to_owned(), palette.warning));
+                ui.label(palette.small_warning("Out of date: records or settings changed"));
             }
             summary_ui(ui, found, palette);
             for caution in &found.cautions {
                 caution_ui(ui, (&caution.to_string(), actions(records, caution)), palette, commands);
             }
-            late_channel_ui(ui, state, records, palette, commands);
+            late_channel_ui(ui, page, commands);
         }
     }
 }
@@ -92,7 +86,7 @@ pub(super) fn offered_menu_ui(ui: &mut Ui, (text, hint): (&str, &str), take: imp
     let menu = ui.menu_button(text, |ui| {
         let choices = [
             ("The refined models", OfferedModels::REFINED),
-            ("The refined models, and CT-PBSID as it is", OfferedModels::WITH_PLAIN),
+            ("The refined models, and CT-PBSID (unrefined)", OfferedModels::WITH_PLAIN),
             ("The measured response", OfferedModels::MEASURED),
         ];
         let chosen = choices.into_iter().find(|(words, _)| ui.button(*words).clicked())?;
@@ -110,11 +104,9 @@ fn summary_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
     ui.label(RichText::new(format!("CT-PBSID, refined: order {order}")).strong());
     let color = |is_good: bool| if is_good { palette.good } else { palette.warning };
     ui.horizontal_wrapped(|ui| {
-        ui.label("J/dof");
-        ui.label(RichText::new(format!("{:.2}", found.cost)).color(color(found.cost <= super::record_list::BAD)))
-            .on_hover_text(
-                "Cost per degree of freedom over the records of the fit; 1 is what noise explains (M14, section 6)",
-            );
+        ui.label("χ²/dof");
+        ui.label(RichText::new(format!("{:.2}", found.cost)).color(color(found.cost <= BAD)))
+            .on_hover_text(CHI_SQUARED);
         if let Some(held_out) = found.held_out_cost {
             ui.label("· held out");
             ui.label(RichText::new(format!("{held_out:.2}")).color(color(held_out <= HELD_OUT * found.cost)))
@@ -123,8 +115,7 @@ fn summary_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
                 );
         }
     });
-    let small = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
-    ui.label(small(format!(
+    ui.label(palette.small(format!(
         "Laguerre pole {:.2} rad/s, past window {}; {} models in the bundle",
         found.laguerre_pole,
         found.past,
@@ -140,13 +131,8 @@ fn caution_ui(ui: &mut Ui, (words, actions): (&str, Vec<Action>), palette: &Pale
 }
 
 /// A channel that is late in all records alike, which only a physics model can tell.
-fn late_channel_ui(
-    ui: &mut Ui,
-    state: &State,
-    records: &ConditionRecords,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
+fn late_channel_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
+    let Page { state, records, palette } = page;
     let Some((job, Ok(found))) = &records.found else { return };
     let (dataset, condition) = (state.dataset(), state.condition());
     let Some(physics) = condition.bundle(BundleKind::Physics).get(condition.nominal()) else { return };
@@ -166,7 +152,7 @@ fn taken_out(records: &ConditionRecords, signal: &Signal, delay_s: f64) -> Actio
         Role::Output => of.outputs.get(signal.index),
     });
     let delay_s = known.map_or(0.0, |channel| channel.delay_s) + delay_s;
-    let text = format!("Take {:.0} ms out of {}", s_to_ms(delay_s), signal.name);
+    let text = format!("Remove {:.0} ms from {}", s_to_ms(delay_s), signal.name);
     (text, RecordsCommand::SetDelay(signal.clone(), delay_s))
 }
 

@@ -1,18 +1,16 @@
 //! The records of a condition line by line, and which columns of one are its channels.
 
-use egui::{Align, ComboBox, Grid, Label, Layout, RichText, Role as AccessRole, ScrollArea, Sense, Ui, WidgetInfo};
+use egui::{Align, Checkbox, ComboBox, Grid, Label, Layout, RichText, Role as AccessRole, ScrollArea, Sense, Ui, vec2};
 
-use crate::view::assembling::{entry_ui, typed_number};
 use crate::view::command::Command;
+use crate::view::controls::{elided_among, named, named_switch, number_entry_ui};
 use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE};
-use crate::view::row::elided_among;
-use crate::view::state::State;
 use gdcm_core::dataset::RecordKind;
 use gdcm_core::identification::{Role, Signal};
 use gdcm_core::records::{ColumnUse, RecordLayout, TimeBase};
 use gdcm_core::units::{ms_to_s, number, s_to_ms};
 
-use super::records_state::{ConditionRecords, RecordRow, RecordsCommand};
+use super::records_state::{ConditionRecords, Page, RecordRow, RecordsCommand};
 
 /// Width of all columns but the names \[pt\].
 const OTHER_COLUMNS: f32 = 124.0;
@@ -20,25 +18,23 @@ const OTHER_COLUMNS: f32 = 124.0;
 const LEAST_NAME: f32 = 60.0;
 /// Cost per degree of freedom up to which a record is fitted well, and from which it is not (M14, section 6).
 pub(super) const GOOD: f64 = 1.2;
+/// What the cost of a fit means.
+pub(super) const CHI_SQUARED: &str =
+    "Cost per degree of freedom of the recommended model; 1 is what noise explains (M14, section 6)";
 /// See [`GOOD`].
 pub(super) const BAD: f64 = 1.5;
 
 /// A line a record: whether it is used and held out, and how well the model fits it.
-pub(super) fn record_list_ui(
-    ui: &mut Ui,
-    (records, is_example): (&ConditionRecords, bool),
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    let small = |text: &str| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
+pub(super) fn record_list_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
+    let Page { state, records, palette } = page;
     if records.rows.is_empty() {
         let text = "No flight records of this condition yet. Add files or a folder above, or drop them here: CSV, text, .mat, \
                     .npz or .zip, with names for the columns.";
-        ui.add(Label::new(small(text)).wrap());
-        if is_example {
+        ui.add(Label::new(palette.small(text)).wrap());
+        if state.records.is_example {
             let text = "Of the example, the program holds the records of conditions 3 and 10; those of all are in \
                         assets/example-records.zip of its source.";
-            ui.add(Label::new(small(text)).wrap());
+            ui.add(Label::new(palette.small(text)).wrap());
         }
         return;
     }
@@ -48,13 +44,13 @@ pub(super) fn record_list_ui(
             ("use", "Whether anything is done with the record"),
             ("hold", "Held out: kept from the fit, to judge the model by"),
             ("record", "A click shows it"),
-            ("J", "Cost per degree of freedom of the recommended model; 1 is what noise explains"),
+            ("χ²/dof", CHI_SQUARED),
         ] {
-            ui.label(small(heading)).on_hover_text(hint);
+            ui.label(palette.small(heading)).on_hover_text(hint);
         }
         ui.end_row();
         for index in 0..records.rows.len() {
-            row_ui(ui, records, (index, width), palette, commands);
+            row_ui(ui, page, index, width, commands);
             ui.end_row();
         }
     });
@@ -70,13 +66,8 @@ pub(super) fn record_list_ui(
     }
 }
 
-fn row_ui(
-    ui: &mut Ui,
-    records: &ConditionRecords,
-    (index, width): (usize, f32),
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
+fn row_ui(ui: &mut Ui, page: Page<'_>, index: usize, width: f32, commands: &mut Vec<Command>) {
+    let Page { records, palette, .. } = page;
     let row = &records.rows[index];
     let name = &row.table.name;
     for (label, before, command) in [
@@ -84,10 +75,8 @@ fn row_ui(
         (format!("Hold out {name}"), row.guess.held_out, RecordsCommand::SetHeldOut),
     ] {
         let mut value = before;
-        let enabled = row.flight.is_some();
-        let shown = ui.add_enabled(enabled, egui::Checkbox::without_text(&mut value));
-        shown.widget_info(|| WidgetInfo::selected(AccessRole::CheckBox, enabled, value, &label));
-        if shown.changed() {
+        let shown = ui.add_enabled(row.flight.is_some(), Checkbox::without_text(&mut value));
+        if named_switch(shown, AccessRole::CheckBox, value, label).changed() {
             commands.push(command(index, value).into());
         }
     }
@@ -98,36 +87,33 @@ fn row_ui(
     let shown_name = elided_among(ui, name, neighbours, width, BODY_SIZE);
     let text = RichText::new(&shown_name).size(BODY_SIZE).color(color);
     let text = if is_chosen { text.strong().background_color(palette.selected) } else { text };
-    let label = format!("Record {name}");
-    let size = egui::vec2(width, ui.spacing().interact_size.y);
-    let layout = Layout::left_to_right(Align::Center);
-    let shown = ui.allocate_ui_with_layout(size, layout, |ui| {
+    let size = vec2(width, ui.spacing().interact_size.y);
+    let shown = ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
         ui.set_min_width(width);
         ui.add(Label::new(text).truncate().sense(Sense::click()))
     });
-    let shown = shown.inner;
-    shown.widget_info(|| WidgetInfo::selected(AccessRole::Button, true, is_chosen, &label));
+    let shown = named_switch(shown.inner, AccessRole::Button, is_chosen, format!("Record {name}"));
     let shown = if shown_name == *name { shown } else { shown.on_hover_text(name) };
     if shown.clicked() {
         commands.push(RecordsCommand::Choose(index).into());
     }
-    match cost_of(records, index) {
-        Some(cost) => {
-            let color = match cost {
-                cost if cost <= GOOD => palette.good,
-                cost if cost <= BAD => palette.text,
-                _ => palette.warning,
-            };
-            ui.label(RichText::new(format!("{cost:.2}")).color(color))
-        }
-        None => ui.label(""),
+    ui.label(cost_of(records, index).map_or(RichText::new(""), |cost| cost_text(cost, palette)));
+}
+
+/// A cost per degree of freedom, in the colour of what it says of the fit.
+pub(super) fn cost_text(cost: f64, palette: &Palette) -> RichText {
+    let color = match cost {
+        cost if cost <= GOOD => palette.good,
+        cost if cost <= BAD => palette.text,
+        _ => palette.warning,
     };
+    RichText::new(format!("{cost:.2}")).color(color)
 }
 
 /// Which manoeuvre a record is of.
 fn kind_ui(ui: &mut Ui, index: usize, row: &RecordRow, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        ui.label(RichText::new(format!("{}: a", row.table.name)).size(SMALL_SIZE).color(palette.dim_text));
+        ui.label(palette.small(format!("{}: a", row.table.name)));
         let kinds = ComboBox::from_id_salt("kind of a record").width(90.0).selected_text(row.guess.kind.word());
         let kinds = kinds.show_ui(ui, |ui| {
             for kind in RecordKind::ALL {
@@ -136,7 +122,7 @@ fn kind_ui(ui: &mut Ui, index: usize, row: &RecordRow, palette: &Palette, comman
                 }
             }
         });
-        kinds.response.widget_info(|| WidgetInfo::labeled(AccessRole::ComboBox, true, "Manoeuvre of the record"));
+        named(kinds.response, AccessRole::ComboBox, "Manoeuvre of the record");
     });
 }
 
@@ -149,21 +135,22 @@ fn cost_of(records: &ConditionRecords, index: usize) -> Option<f64> {
 
 const FIELD_WIDTH: f32 = 90.0;
 
-/// A line for the time and for each channel: column, factor, delay.
-pub(super) fn columns_ui(
-    ui: &mut Ui,
-    state: &State,
-    records: &ConditionRecords,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
+/// A line for the time and for each channel: column, factor, time skew.
+pub(super) fn columns_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
+    let Page { state, records, palette } = page;
     let Some(row) = records.rows.get(records.chosen) else { return };
-    let small = |text: &str| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
-    ui.label(small("What is said here holds for every record of the condition that has columns of these names."));
+    ui.label(
+        palette.small("What is set here holds for every record of the condition that has columns of these names."),
+    );
     ScrollArea::vertical().id_salt("columns of a record").auto_shrink(false).show(ui, |ui| {
         Grid::new("columns of a record").num_columns(4).striped(true).spacing([10.0, 4.0]).show(ui, |ui| {
-            for heading in ["channel", "column of the file", "times", "logged late [ms]"] {
-                ui.label(small(heading));
+            for (heading, hint) in [
+                ("channel", "Of the dataset"),
+                ("column of the file", "Which holds it"),
+                ("factor", "From the unit of the file to that of the dataset"),
+                ("time skew [ms]", "How much later the channel is logged than it happened"),
+            ] {
+                ui.label(palette.small(heading)).on_hover_text(hint);
             }
             ui.end_row();
             time_row_ui(ui, records.chosen, row, commands);
@@ -176,7 +163,7 @@ pub(super) fn columns_ui(
             }
         });
         for note in &row.table.notes {
-            ui.label(small(note));
+            ui.label(palette.small(note));
         }
     });
 }
@@ -187,30 +174,22 @@ fn time_row_ui(ui: &mut Ui, record: usize, row: &RecordRow, commands: &mut Vec<C
         Some(TimeBase::Column { column, seconds }) => (Some(column), seconds),
         _ => (None, 1.0),
     };
-    if let Some(column) = column_ui(ui, "Column of the time", row, chosen) {
-        let layout = RecordLayout { time: Some(TimeBase::Column { column, seconds }), ..row.layout.clone() };
-        commands.push(RecordsCommand::SetLayout(record, layout).into());
-    }
-    let typed = entry_ui(ui, "Seconds of a unit of time", &number(seconds), "1", FIELD_WIDTH);
-    match (typed.map(|text| typed_number(&text)), chosen) {
-        (Some(Ok(Some(seconds))), Some(column)) => {
-            let layout = RecordLayout { time: Some(TimeBase::Column { column, seconds }), ..row.layout.clone() };
-            commands.push(RecordsCommand::SetLayout(record, layout).into());
-        }
-        (Some(Err(why)), _) => commands.push(Command::Refuse(why)),
-        _ => {}
-    }
+    let with = |column, seconds| {
+        let time = Some(TimeBase::Column { column, seconds });
+        RecordsCommand::SetLayout(record, RecordLayout { time, ..row.layout.clone() }).into()
+    };
+    commands.extend(column_ui(ui, "Column of the time", row, chosen).map(|column| with(column, seconds)));
+    let typed = number_entry_ui(ui, "Seconds of a unit of time", &number(seconds), "1", FIELD_WIDTH, commands);
+    commands.extend(typed.flatten().zip(chosen).map(|(seconds, column)| with(column, seconds)));
     ui.end_row();
 }
 
 fn channel_row_ui(ui: &mut Ui, records: &ConditionRecords, signal: &Signal, unit: &str, commands: &mut Vec<Command>) {
-    let record = records.chosen;
-    let row = &records.rows[record];
-    let name = &signal.name;
+    let (row, name) = (&records.rows[records.chosen], &signal.name);
     ui.label(format!("{name} [{unit}]"));
-    let uses = match signal.role {
-        Role::Input => &row.layout.inputs,
-        Role::Output => &row.layout.outputs,
+    let (uses, channels) = match signal.role {
+        Role::Input => (&row.layout.inputs, &records.inputs),
+        Role::Output => (&row.layout.outputs, &records.outputs),
     };
     let used = uses.get(signal.index).copied().flatten();
     let with = |used: ColumnUse| {
@@ -222,31 +201,19 @@ fn channel_row_ui(ui: &mut Ui, records: &ConditionRecords, signal: &Signal, unit
         if let Some(place) = uses.get_mut(signal.index) {
             *place = Some(used);
         }
-        RecordsCommand::SetLayout(record, layout)
+        RecordsCommand::SetLayout(records.chosen, layout).into()
     };
     let factor = used.map_or(1.0, |used| used.factor);
-    if let Some(column) = column_ui(ui, &format!("Column of {name}"), row, used.map(|used| used.column)) {
-        commands.push(with(ColumnUse { column, factor }).into());
-    }
-    let typed = entry_ui(ui, &format!("Factor of the column of {name}"), &number(factor), "1", FIELD_WIDTH);
-    match (typed.map(|text| typed_number(&text)), used) {
-        (Some(Ok(Some(factor))), Some(used)) => commands.push(with(ColumnUse { factor, ..used }).into()),
-        (Some(Err(why)), _) => commands.push(Command::Refuse(why)),
-        _ => {}
-    }
-    let channels = match signal.role {
-        Role::Input => &records.inputs,
-        Role::Output => &records.outputs,
-    };
+    let column = column_ui(ui, &format!("Column of {name}"), row, used.map(|used| used.column));
+    commands.extend(column.map(|column| with(ColumnUse { column, factor })));
+    let label = format!("Factor of the column of {name}");
+    let typed = number_entry_ui(ui, &label, &number(factor), "1", FIELD_WIDTH, commands);
+    commands.extend(typed.flatten().zip(used).map(|(factor, used)| with(ColumnUse { factor, ..used })));
     let delay_s = channels.get(signal.index).map_or(0.0, |channel| channel.delay_s);
-    let label = format!("Delay of {name}");
-    match entry_ui(ui, &label, &number(s_to_ms(delay_s)), "0", FIELD_WIDTH).map(|text| typed_number(&text)) {
-        Some(Ok(delay)) => {
-            commands.push(RecordsCommand::SetDelay(signal.clone(), ms_to_s(delay.unwrap_or(0.0))).into());
-        }
-        Some(Err(why)) => commands.push(Command::Refuse(why)),
-        None => {}
-    }
+    let label = format!("Time skew of {name}");
+    let typed = number_entry_ui(ui, &label, &number(s_to_ms(delay_s)), "0", FIELD_WIDTH, commands);
+    let set = |delay_ms: Option<f64>| RecordsCommand::SetDelay(signal.clone(), ms_to_s(delay_ms.unwrap_or(0.0))).into();
+    commands.extend(typed.map(set));
     ui.end_row();
 }
 
@@ -267,6 +234,6 @@ fn column_ui(ui: &mut Ui, name: &str, row: &RecordRow, chosen: Option<usize>) ->
             }
         }
     });
-    shown.response.widget_info(|| WidgetInfo::labeled(AccessRole::ComboBox, true, name));
+    named(shown.response, AccessRole::ComboBox, name);
     taken
 }

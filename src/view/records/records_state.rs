@@ -4,12 +4,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use egui::Ui;
+
 use gdcm_core::dataset::{ConditionId, ConditionRecord, Dataset, RecordKind};
 use gdcm_core::identification::{
     ChannelPreparation, FlightRecord, Hold, Identification, IdentificationError, Options, Preparation, Role, Signal,
 };
 use gdcm_core::records::{RecordChannels, RecordGuess, RecordLayout, RecordTable};
 use gdcm_core::study::{AdoptedModels, IdentifyJob, OfferedModels, identified_bundle, pieces_used};
+
+use crate::view::palette::Palette;
+use crate::view::state::State;
 
 use super::simulation::TimeModel;
 
@@ -38,38 +43,26 @@ impl RecordsPage {
     pub const ALL: [Self; 7] =
         [Self::Histories, Self::Inputs, Self::Response, Self::Stabilisation, Self::Poles, Self::Fit, Self::Columns];
 
-    /// Its name.
-    pub fn name(self) -> &'static str {
+    /// Its name; its name where there is little room, for all of them stand in one line; and what it shows, in a sentence.
+    pub fn words(self) -> (&'static str, &'static str, &'static str) {
         match self {
-            Self::Histories => "Time",
-            Self::Inputs => "Inputs",
-            Self::Response => "Response",
-            Self::Stabilisation => "Stabilisation",
-            Self::Poles => "Identified poles",
-            Self::Fit => "Fit",
-            Self::Columns => "Columns",
-        }
-    }
-
-    /// Its name where there is little room: all of them stand in one line.
-    pub fn short_name(self) -> &'static str {
-        match self {
-            Self::Stabilisation => "Orders",
-            Self::Poles => "Poles",
-            _ => self.name(),
-        }
-    }
-
-    /// What it shows, in a sentence.
-    pub fn purpose(self) -> &'static str {
-        match self {
-            Self::Histories => "Every channel of the chosen record over time; what was bridged or cut is marked",
-            Self::Inputs => "Which input was moved in which record, and up to which frequency",
-            Self::Response => "The measured response with its error bars, under the models and their bands",
-            Self::Stabilisation => "Poles of the models of every order: those that stay are the aircraft's",
-            Self::Poles => "Poles of the recommended model with their standard deviations; grey: not determined",
-            Self::Fit => "How well the model fits each record and output, in frequency and in time",
-            Self::Columns => "Which columns of the chosen record are its time and its channels",
+            Self::Histories => {
+                ("Time", "Time", "Every channel of the chosen record over time; what was bridged or cut is marked")
+            }
+            Self::Inputs => ("Inputs", "Inputs", "Which input was moved in which record, and up to which frequency"),
+            Self::Response => {
+                ("Response", "Response", "The measured response with its error bars, under the models and their bands")
+            }
+            Self::Stabilisation => {
+                ("Stabilisation", "Orders", "Poles of the models of every order: those that stay are the aircraft's")
+            }
+            Self::Poles => (
+                "Identified poles",
+                "Poles",
+                "Poles of the recommended model with their standard deviations; grey: not determined",
+            ),
+            Self::Fit => ("Fit", "Fit", "How well the model fits each record and output, in frequency and in time"),
+            Self::Columns => ("Columns", "Columns", "Which columns of the chosen record are its time and its channels"),
         }
     }
 }
@@ -223,6 +216,28 @@ impl ConditionRecords {
         };
         let entries: Vec<ConditionRecord> = used.map(entry).collect();
         Some(Arc::new(identified_bundle(found, offered, entries)))
+    }
+}
+
+/// What the pages of the view draw: the records of the condition shown.
+#[derive(Clone, Copy)]
+pub(super) struct Page<'a> {
+    /// What the window shows.
+    pub(super) state: &'a State,
+    /// The records of the condition shown.
+    pub(super) records: &'a ConditionRecords,
+    /// The colours of the theme.
+    pub(super) palette: &'a Palette,
+}
+
+impl Page<'_> {
+    /// What was identified; where nothing was, that is said.
+    pub(super) fn identification_ui(&self, ui: &mut Ui) -> Option<&Identification> {
+        let found = self.records.identification();
+        if found.is_none() {
+            ui.label(self.palette.dim("Nothing was identified yet: choose Identify above."));
+        }
+        found.map(AsRef::as_ref)
     }
 }
 

@@ -1,10 +1,11 @@
 //! The Records view: the records at the left, one page about them at the right.
 
 use egui::scroll_area::ScrollBarVisibility;
-use egui::{Button, Frame, Label, Margin, Panel, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
+use egui::{Button, Frame, Label, Margin, Panel, Role, ScrollArea, Ui};
 
 use crate::view::command::Command;
-use crate::view::palette::{Palette, SMALL_SIZE};
+use crate::view::controls::{button_ui, is_entered, named_switch, text_field_ui};
+use crate::view::palette::Palette;
 use crate::view::state::State;
 
 use super::histories::histories_ui;
@@ -12,7 +13,7 @@ use super::histories::inputs_ui;
 use super::outcome::{offered_menu_ui, outcome_ui};
 use super::record_list::columns_ui;
 use super::record_list::record_list_ui;
-use super::records_state::{ConditionRecords, RecordsCommand, RecordsPage};
+use super::records_state::{ConditionRecords, Page, RecordsCommand, RecordsPage};
 use super::response::identified_poles_ui;
 use super::response::response_ui;
 use super::response::stabilisation_ui;
@@ -24,12 +25,9 @@ const LIST_WIDTH: f32 = 340.0;
 /// What is done with all records. Laid out from right to left.
 pub fn records_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let condition = state.condition().id();
-    let bench = &state.records;
-    let records = bench.conditions.get(&condition);
-    if bench.running(condition).is_some() {
-        if ui.button("Stop identifying").clicked() {
-            commands.push(RecordsCommand::Stop.into());
-        }
+    let records = state.records.conditions.get(&condition);
+    if state.records.running(condition).is_some() {
+        button_ui(ui, Button::new("Stop identifying"), "", RecordsCommand::Stop, commands);
         ui.spinner();
         return;
     }
@@ -40,9 +38,9 @@ pub fn records_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>
     }
     if records.is_some_and(|records| records.identification().is_some()) {
         let hint = "In place of the identified models of this condition; one step to undo";
-        offered_menu_ui(ui, ("Take these models", hint), |offered| commands.push(RecordsCommand::Take(offered).into()));
+        offered_menu_ui(ui, ("Use these models", hint), |offered| commands.push(RecordsCommand::Take(offered).into()));
     }
-    if state.study.taken_models().any(|(id, _)| id == condition) && ui.button("Put the file's models back").clicked() {
+    if state.study.taken_models().any(|(id, _)| id == condition) && ui.button("Restore the file's models").clicked() {
         commands.push(RecordsCommand::Return.into());
     }
 }
@@ -53,26 +51,27 @@ pub fn records_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comman
     let mut path = std::mem::take(&mut state.records.path);
     let nothing = ConditionRecords::default();
     let records = state.records.conditions.get(&condition).unwrap_or(&nothing);
+    let page = Page { state, records, palette };
     let width = LIST_WIDTH.min(0.4 * ui.available_width());
     let panel = Panel::left("records").resizable(true).default_size(width).size_range(180.0..=480.0);
     panel.show(ui, |ui| {
         ScrollArea::vertical().id_salt("records").auto_shrink(false).show(ui, |ui| {
             source_ui(ui, state, &mut path, palette, commands);
-            record_list_ui(ui, (records, state.records.is_example), palette, commands);
-            outcome_ui(ui, state, records, palette, commands);
+            record_list_ui(ui, page, commands);
+            outcome_ui(ui, page, commands);
         });
     });
     // Clear of the line between list and page.
     Frame::new().inner_margin(Margin { left: 6, ..Margin::ZERO }).show(ui, |ui| {
         pages_ui(ui, state.records.page, commands);
         match state.records.page {
-            RecordsPage::Histories => histories_ui(ui, state, records, palette, commands),
-            RecordsPage::Inputs => inputs_ui(ui, state, records, palette),
-            RecordsPage::Response => response_ui(ui, state, records, palette),
-            RecordsPage::Stabilisation => stabilisation_ui(ui, state, records, palette),
-            RecordsPage::Poles => identified_poles_ui(ui, records, palette),
-            RecordsPage::Fit => fit_ui(ui, state, records, palette, commands),
-            RecordsPage::Columns => columns_ui(ui, state, records, palette, commands),
+            RecordsPage::Histories => histories_ui(ui, page, commands),
+            RecordsPage::Inputs => inputs_ui(ui, page),
+            RecordsPage::Response => response_ui(ui, page),
+            RecordsPage::Stabilisation => stabilisation_ui(ui, page),
+            RecordsPage::Poles => identified_poles_ui(ui, page),
+            RecordsPage::Fit => fit_ui(ui, page, commands),
+            RecordsPage::Columns => columns_ui(ui, page, commands),
         }
     });
     state.records.path = path;
@@ -85,13 +84,13 @@ fn pages_ui(ui: &mut Ui, shown: RecordsPage, commands: &mut Vec<Command>) {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
             for page in RecordsPage::ALL {
-                let label = format!("Page {}", page.name());
-                let tab = ui.selectable_label(page == shown, page.short_name());
-                tab.widget_info(|| WidgetInfo::selected(Role::Button, true, page == shown, &label));
+                let (name, short_name, purpose) = page.words();
+                let tab = ui.selectable_label(page == shown, short_name);
+                let tab = named_switch(tab, Role::Button, page == shown, format!("Page {name}"));
                 if tab.gained_focus() {
                     tab.scroll_to_me(None);
                 }
-                if tab.on_hover_text(format!("{}: {}", page.name(), page.purpose())).clicked() {
+                if tab.on_hover_text(format!("{name}: {purpose}")).clicked() {
                     commands.push(RecordsCommand::Show(page).into());
                 }
             }
@@ -102,28 +101,21 @@ fn pages_ui(ui: &mut Ui, shown: RecordsPage, commands: &mut Vec<Command>) {
 /// Where records come from.
 fn source_ui(ui: &mut Ui, state: &State, path: &mut String, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        if ui.button("Add records…").on_hover_text("CSV, text, .mat, .npz, .zip: files of flight records").clicked() {
-            commands.push(RecordsCommand::AskFiles.into());
-        }
+        let add = Button::new("Add records…");
+        button_ui(ui, add, "CSV, text, .mat, .npz, .zip: files of flight records", RecordsCommand::AskFiles, commands);
         let width = (ui.available_width() - 8.0).max(40.0);
-        let field = ui.add(TextEdit::singleline(path).hint_text("or a path").desired_width(width));
-        field.widget_info(|| {
-            let mut info = WidgetInfo::labeled(Role::TextInput, true, "Path of records");
-            info.current_text_value = Some(path.clone());
-            info
-        });
-        if field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) && !path.trim().is_empty() {
+        let field = text_field_ui(ui, "Path of records", path, "or a path", width);
+        if is_entered(ui, &field) && !path.trim().is_empty() {
             commands.push(RecordsCommand::Add(vec![path.trim().into()]).into());
         }
     });
-    let small = |text: String, color| RichText::new(text).size(SMALL_SIZE).color(color);
     if let Some(reading) = &state.records.reading {
         ui.horizontal(|ui| {
             ui.spinner();
-            ui.label(small(format!("reading {}", reading.name), palette.dim_text));
+            ui.label(palette.small(format!("reading {}", reading.name)));
         });
     }
     for fault in &state.records.faults {
-        ui.add(Label::new(small(fault.clone(), palette.warning)).wrap());
+        ui.add(Label::new(palette.small_warning(fault)).wrap());
     }
 }

@@ -15,7 +15,7 @@ use gdcm_core::identification::{
 use gdcm_core::units::neper_to_db;
 
 use super::histories::kept;
-use super::records_state::ConditionRecords;
+use super::records_state::Page;
 
 /// Frequencies of a model's curve.
 const POINTS: usize = 200;
@@ -38,7 +38,8 @@ struct DrawnResponse {
 }
 
 /// Magnitude above, phase below; the first model while it is being refined.
-pub(super) fn response_ui(ui: &mut Ui, state: &State, records: &ConditionRecords, palette: &Palette) {
+pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
+    let Page { state, records, palette } = page;
     let pair = state.display.pair;
     let running = state.records.running(state.condition().id());
     let first = running.and_then(|job| job.told().first_model);
@@ -173,13 +174,11 @@ fn measured_points(points: &[MeasuredPoint], pair: Pair) -> Vec<([f64; 5], bool)
 }
 
 /// Moduli of the poles over frequency, one row an order; crosses stay where the order before has them.
-pub(super) fn stabilisation_ui(ui: &mut Ui, state: &State, records: &ConditionRecords, palette: &Palette) {
-    let Some(found) = records.identification() else {
-        ui.label(RichText::new("Nothing was identified yet: choose Identify above.").color(palette.dim_text));
-        return;
-    };
+pub(super) fn stabilisation_ui(ui: &mut Ui, page: Page<'_>) {
+    let Page { state, records, palette } = page;
+    let Some(found) = page.identification_ui(ui) else { return };
     let text = "Crosses: within 5 % of a pole of the order two below. Circles: not. Dotted: the band.";
-    ui.label(RichText::new(text).size(crate::view::palette::SMALL_SIZE).color(palette.dim_text));
+    ui.label(palette.small(text));
     let unit = state.display.unit;
     let across = unit.axis_label();
     let title = "Stabilisation diagram: |λ| of the models of every order, at the best Laguerre pole and past window";
@@ -202,13 +201,11 @@ pub(super) fn stabilisation_ui(ui: &mut Ui, state: &State, records: &ConditionRe
 }
 
 /// The s-plane with an error bar on every pole.
-pub(super) fn identified_poles_ui(ui: &mut Ui, records: &ConditionRecords, palette: &Palette) {
-    let Some(found) = records.identification() else {
-        ui.label(RichText::new("Nothing was identified yet: choose Identify above.").color(palette.dim_text));
-        return;
-    };
+pub(super) fn identified_poles_ui(ui: &mut Ui, page: Page<'_>) {
+    let palette = page.palette;
+    let Some(found) = page.identification_ui(ui) else { return };
     let text = "± 1.96 standard deviations. Grey: below the band, or not determined by these records.";
-    ui.label(RichText::new(text).size(SMALL_SIZE).color(palette.dim_text));
+    ui.label(palette.small(text));
     let mut chart = Chart::new("Poles of CT-PBSID, refined", ChartAxis::Linear, "Re λ [rad/s]", "Im λ [rad/s]");
     chart.verticals = vec![0.0];
     for determined in [false, true] {

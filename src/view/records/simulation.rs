@@ -14,8 +14,8 @@ use gdcm_core::identification::{Preparation, StateSpaceMatrices, Validation};
 use gdcm_core::study::SimulationJob;
 
 use super::histories::kept;
-use super::record_list::{BAD, GOOD};
-use super::records_state::{ConditionRecords, RecordsCommand};
+use super::record_list::cost_text;
+use super::records_state::{ConditionRecords, Page, RecordsCommand};
 
 /// A model that can be compared with a record in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -158,7 +158,7 @@ fn matrices(state: &State, records: &ConditionRecords, model: TimeModel) -> Opti
 /// Which models are drawn beside the record.
 pub(super) fn time_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
-        ui.label(RichText::new("response to the same inputs, and fit, of:").size(SMALL_SIZE).color(palette.dim_text));
+        ui.label(palette.small("response to the same inputs, and fit, of:"));
         for model in TimeModel::ALL {
             let mut shown = state.records.time_models.contains(&model);
             let text = RichText::new(format!("{} model", model.name())).size(SMALL_SIZE).color(model.color(palette));
@@ -174,16 +174,11 @@ pub(super) fn time_models_ui(ui: &mut Ui, state: &State, palette: &Palette, comm
 const GOOD_THEIL: f64 = 0.25;
 
 /// Tables of the fit: by record, by output, and in time.
-pub(super) fn fit_ui(
-    ui: &mut Ui,
-    state: &State,
-    records: &ConditionRecords,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
+pub(super) fn fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
+    let Page { state, palette, .. } = page;
     ScrollArea::vertical().id_salt("fit").auto_shrink(false).show(ui, |ui| {
-        if let Some(found) = records.identification() {
-            ui.label(RichText::new("In frequency: J per degree of freedom; 1 is what noise explains").strong());
+        if let Some(found) = page.identification_ui(ui) {
+            ui.label(RichText::new("In frequency: χ² per degree of freedom; 1 is what noise explains").strong());
             Grid::new("fit of records").num_columns(3).striped(true).show(ui, |ui| {
                 for fit in &found.record_fits {
                     let name = found.record_uses.get(fit.record).map_or("", |of| of.record.as_str());
@@ -201,25 +196,15 @@ pub(super) fn fit_ui(
                     ui.end_row();
                 }
             });
-        } else {
-            ui.label(RichText::new("Nothing was identified yet: choose Identify above.").color(palette.dim_text));
         }
         ui.add_space(10.0);
-        time_ui(ui, state, records, palette, commands);
+        time_ui(ui, page, commands);
     });
 }
 
-fn cost_text(cost: f64, palette: &Palette) -> RichText {
-    let color = match cost {
-        cost if cost <= GOOD => palette.good,
-        cost if cost <= BAD => palette.text,
-        _ => palette.warning,
-    };
-    RichText::new(format!("{cost:.2}")).color(color)
-}
-
 /// Fit and Theil's coefficient of each model asked for, of the record shown.
-fn time_ui(ui: &mut Ui, state: &State, records: &ConditionRecords, palette: &Palette, commands: &mut Vec<Command>) {
+fn time_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
+    let Page { state, records, palette } = page;
     let name = records.rows.get(records.chosen).map_or("", |row| row.table.name.as_str());
     ui.label(RichText::new(format!("In time: {name}, fit in % and Theil's coefficient")).strong());
     time_models_ui(ui, state, palette, commands);
@@ -247,5 +232,5 @@ fn time_ui(ui: &mut Ui, state: &State, records: &ConditionRecords, palette: &Pal
         model.absence_ui(ui, state, palette);
     }
     let text = "A fit in time hardly tells models apart: rank them by the cost of what was held out.";
-    ui.label(RichText::new(text).size(SMALL_SIZE).color(palette.dim_text));
+    ui.label(palette.small(text));
 }

@@ -9,7 +9,7 @@ use gdcm_core::study::{AcrossCurves, AcrossJob, AcrossRole, display_band};
 
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
-use crate::view::plot::{BodeCurve, BodeEvent, BodeQuantity, BodeScene, CurveId, Role, RoleLook, bode_ui};
+use crate::view::plot::{BodeCurve, BodeEvent, BodeQuantity, BodeScene, CurveId, Role, bode_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 
@@ -38,7 +38,8 @@ fn paint_key(ui: &Ui, rect: Rect, palette: &Palette) {
     let width = rect.width() / f32::from(KEY_STEPS);
     for step in 0..KEY_STEPS {
         let corner = Pos2::new(rect.left() + width * f32::from(step), rect.top());
-        let color = Role::OfAirspeed(step.saturating_mul(u8::MAX / (KEY_STEPS - 1))).look(false, palette).color;
+        let role = Role::OfAirspeed(step.saturating_mul(u8::MAX / (KEY_STEPS - 1)));
+        let color = palette.role_style(role, false).color;
         ui.painter().rect_filled(Rect::from_min_size(corner, vec2(width + 0.5, rect.height())), 0.0, color);
     }
 }

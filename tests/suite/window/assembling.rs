@@ -1,12 +1,12 @@
 //! Putting models together in the window, by its controls.
 
-use gdcm::view::assembling::{AssemblingCommand, AssemblyState, Column, cell_text};
+use gdcm::view::assembling::{AssemblingCommand, AssemblyState, COLUMNS};
 
 use super::views::give;
 use super::*;
 
 fn bench(window: &Window) -> &AssemblyState {
-    state(window).assembling.as_ref().expect("models are being put together")
+    state(window).assembling.as_ref().expect("models are being imported")
 }
 
 fn type_into(window: &mut Window, field: &str, text: &str) {
@@ -32,8 +32,8 @@ fn a_folder_is_put_together_by_its_labels_and_opened() {
     type_into(&mut window, "Folder or file of models", folder.path().to_str().unwrap());
     wait_for_models(&mut window);
     assert_eq!(bench(&window).assembly().parts().len(), 3);
-    assert!(window.query_by_label_contains("still to be said").is_some());
-    assert!(window.query_by_label_contains("not taken: ").is_some(), "the broken file is named");
+    assert!(window.query_by_label_contains("to complete").is_some());
+    assert!(window.query_by_label_contains("not read: ").is_some(), "the broken file is named");
 
     type_into(&mut window, "Name of input 1", "LON");
     type_into(&mut window, "Unit of input 1", "%");
@@ -62,13 +62,13 @@ fn what_is_said_of_a_model_is_filled_down_undone_and_shown() {
     give(&mut window, AssemblingCommand::Add(vec![folder.path().to_owned()]));
     wait_for_models(&mut window);
     window.run_steps(2);
-    let column = |window: &Window, column: Column| -> Vec<String> {
-        bench(window).assembly().parts().iter().map(|part| cell_text(column, part)).collect()
+    let altitudes = |window: &Window| -> Vec<String> {
+        bench(window).assembly().parts().iter().map(|part| COLUMNS[4].text(part)).collect()
     };
     window.get_by_label_contains("Model c1_60kt/V+5kt.mat").click();
     window.run_steps(2);
     type_into(&mut window, "Model altitude", "high");
-    let before = column(&window, Column::Altitude);
+    let before = altitudes(&window);
     assert_eq!(before.iter().filter(|cell| *cell == "high").count(), 1);
     let first = bench(&window).order()[0];
     let selected = bench(&window).selected;
@@ -78,14 +78,10 @@ fn what_is_said_of_a_model_is_filled_down_undone_and_shown() {
     }
     window.get_by_label("Fill down altitude").click();
     window.run_steps(3);
-    assert!(
-        column(&window, Column::Altitude).iter().all(|cell| cell == "high"),
-        "{:?}",
-        column(&window, Column::Altitude)
-    );
+    assert!(altitudes(&window).iter().all(|cell| cell == "high"), "{:?}", altitudes(&window));
     click(&mut window, "Undo change");
-    assert!(!column(&window, Column::Altitude).iter().all(|cell| cell == "high"));
-    click(&mut window, "Leave");
+    assert!(!altitudes(&window).iter().all(|cell| cell == "high"));
+    click(&mut window, "Cancel import");
     assert!(state(&window).assembling.is_none());
 }
 

@@ -55,10 +55,10 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
     let held_out = found.held_out_cost.expect("the validation record is held out");
     assert!(held_out <= 1.15 * found.cost, "held out {held_out} of {}", found.cost);
     for page in RecordsPage::ALL {
-        click(&mut window, &format!("Page {}", page.name()));
+        click(&mut window, &format!("Page {}", page.words().0));
         assert_eq!(state(&window).records.page, page);
     }
-    click(&mut window, "Take these models");
+    click(&mut window, "Use these models");
     click(&mut window, "The refined models");
     let taken = identified_models(&window);
     assert!(taken[0].starts_with("CT-PBSID, refined"), "{taken:?}");
@@ -69,7 +69,7 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
     assert!(bands.is_some(), "the recommended model says how sure it is");
     settle(&mut window);
     assert!(state(&window).shown().is_some(), "the correction follows the models taken");
-    click(&mut window, "Put the file's models back");
+    click(&mut window, "Restore the file's models");
     assert_eq!(identified_models(&window), before);
     give(&mut window, gdcm::view::command::Command::Undo);
     assert_eq!(identified_models(&window), taken);
@@ -208,7 +208,7 @@ fn what_is_late_in_all_records_and_a_band_that_they_do_not_show_are_mended_by_th
     window.run_steps(2);
     let [low, high] = records(&window).unwrap().band.expect("the band was taken");
     assert!(low == 0.5 && (7.0..=11.0).contains(&high), "{high}");
-    click(&mut window, "Take the study's band");
+    click(&mut window, "Use the study's band");
     assert_eq!(records(&window).unwrap().band, None);
 }
 

@@ -3,14 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use super::*;
 use crate::dataset::{Dataset, DatasetDraft, Origin, ResponseDraft};
-
-use super::channel_match::ChannelMatch;
-use super::found_model::{ChannelLabel, FoundModel};
-use super::merge::merged;
-use super::problem::{Problem, ProblemKind};
-use super::row::{Row, RowRole};
-use super::rules::{ChannelRule, Rules};
 
 /// One model, and what it is to be.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,10 @@
-//! A model as some file gave it.
+//! A model as some file gave it, what it is to be in the dataset, and the rules proposed where none were made yet.
 
+use std::collections::BTreeMap;
+
+use super::{ChannelRule, Rules, same_channel};
 use crate::dataset::{ConditionRecord, ModelDraft, ResponseDraft};
+use crate::units::number;
 
 /// What a file says of one channel.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -83,4 +87,126 @@ impl FoundModel {
             (None, None) => channels,
         }
     }
+}
+
+/// The role of a model in its condition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum RowRole {
+    /// The physics model at the condition's own trim.
+    Nominal,
+    /// A physics model at a perturbed trim.
+    Perturbed,
+    /// Identified from flight, or measured.
+    Identified,
+}
+
+impl RowRole {
+    /// Every role.
+    pub const ALL: [Self; 3] = [Self::Nominal, Self::Perturbed, Self::Identified];
+
+    /// Its word in files and tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Nominal => "nominal",
+            Self::Perturbed => "perturbed",
+            Self::Identified => "identified",
+        }
+    }
+
+    /// The role of a word.
+    pub fn of(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|role| role.word() == word)
+    }
+}
+
+/// What one model is to be in the dataset, as far as it is known.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Row {
+    /// Whether it is left out.
+    pub left_out: bool,
+    /// Number of its condition.
+    pub condition: Option<i64>,
+    /// Its role.
+    pub role: Option<RowRole>,
+    /// Its name in its bundle.
+    pub name: String,
+    /// True airspeed of the condition \[kt\].
+    pub airspeed_kt: Option<f64>,
+    /// Altitude class.
+    pub altitude: Option<String>,
+    /// Altitude \[ft\].
+    pub altitude_ft: Option<f64>,
+    /// Weight class.
+    pub weight: Option<String>,
+    /// Mass \[kg\].
+    pub mass_kg: Option<f64>,
+    /// Identification method.
+    pub method: Option<String>,
+    /// Offsets of the trim, by coordinate ("roll_deg").
+    pub perturbation: BTreeMap<String, f64>,
+}
+
+impl Row {
+    /// "45 kt"; none where it is not said.
+    pub fn airspeed_words(&self) -> Option<String> {
+        self.airspeed_kt.map(|airspeed| format!("{} kt", number(airspeed)))
+    }
+
+    /// "high", or else "2000 ft"; nothing where neither is said.
+    pub fn altitude_words(&self) -> String {
+        self.altitude.clone().or(self.altitude_ft.map(|feet| format!("{} ft", number(feet)))).unwrap_or_default()
+    }
+
+    /// "low", or else "6600 kg"; nothing where neither is said.
+    pub fn weight_words(&self) -> String {
+        self.weight.clone().or(self.mass_kg.map(|mass| format!("{} kg", number(mass)))).unwrap_or_default()
+    }
+}
+
+/// The responses that matter in a helicopter, output and input (the paper's Table 2).
+const ON_AXIS: [(&str, &str); 5] = [("P", "LAT"), ("Q", "LON"), ("R", "PED"), ("NY", "PED"), ("NZ", "COL")];
+
+/// Rules with the channels that the models have, by their own names and units, the standard patterns, and the on-axis responses of
+/// a helicopter as far as there are such channels. What the files do not say stays open.
+pub fn proposed_rules(name: &str, models: &[FoundModel]) -> Rules {
+    let inputs = channels(models, "input", |model| &model.inputs);
+    let outputs = channels(models, "output", |model| &model.outputs);
+    let find = |channels: &[ChannelRule], name: &str| {
+        channels.iter().find(|channel| same_channel(&channel.name, name)).map(|channel| channel.name.clone())
+    };
+    let on_axis =
+        ON_AXIS.iter().filter_map(|(output, input)| Some((find(&outputs, output)?, find(&inputs, input)?))).collect();
+    Rules { name: name.to_owned(), inputs, outputs, on_axis, ..Rules::default() }
+}
+
+/// Channels with names of their own, in the order of the model that has most of them; those of other models that it lacks behind.
+fn channels(models: &[FoundModel], side: &str, of: fn(&FoundModel) -> &Vec<ChannelLabel>) -> Vec<ChannelRule> {
+    let named = |model: &FoundModel| of(model).iter().filter(|label| label.name.is_some()).count();
+    let mut order: Vec<&FoundModel> = models.iter().collect();
+    order.sort_by_key(|model| std::cmp::Reverse(named(model)));
+    let first_is_measured = order.first().is_some_and(|model| model.response().is_some());
+    let mut channels: Vec<ChannelRule> = Vec::new();
+    for model in order {
+        // Models with matrices have all channels of the dataset; measured responses may have one each.
+        let is_open = channels.is_empty() || (model.response().is_some() && first_is_measured);
+        for label in of(model) {
+            let Some(name) = &label.name else { continue };
+            let unit = label.unit.clone().unwrap_or_default();
+            let known = channels.iter().position(|channel| same_channel(&channel.name, name));
+            match known.map(|known| &mut channels[known]) {
+                Some(known) if known.unit.is_empty() => known.unit = unit,
+                Some(_) => {}
+                None if is_open => channels.push(ChannelRule { unit, ..ChannelRule::named(name) }),
+                None => {}
+            }
+        }
+    }
+    // Matrices without names have all channels of the dataset, whatever a measured response beside them is called.
+    let all_unnamed = models.iter().filter(|model| model.response().is_none()).all(|model| named(model) == 0);
+    if channels.is_empty() || all_unnamed {
+        let count = models.iter().map(|model| of(model).len()).max().unwrap_or(0);
+        let missing = channels.len() + 1..=count;
+        channels.extend(missing.map(|number| ChannelRule::named(format!("{side} {number}"))));
+    }
+    channels
 }

@@ -1,6 +1,6 @@
 //! What is still to be said before the files are a dataset.
 
-use super::row::RowRole;
+use super::RowRole;
 
 /// What is missing or contradicts itself.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,9 +1,11 @@
-//! What the engineer says about the files of a folder: all that the assembling depends on besides the files.
+//! What the engineer says about the files of a folder: all that assembling depends on besides the files.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
-use super::pattern::{NamePattern, standard_patterns};
-use super::row::{Row, RowRole};
+use regex::{Regex, RegexBuilder};
+
+use super::{Row, RowRole};
 
 /// A channel of the dataset, and what files that do not say call its unit.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -134,5 +136,223 @@ impl Default for Rules {
             headings: Headings::new(),
             rows: BTreeMap::new(),
         }
+    }
+}
+
+/// Longest pattern, and memory that one may take once it is compiled \[bytes\].
+const LONGEST: usize = 1000;
+const MOST_MEMORY: usize = 1 << 20;
+
+/// How names are read: a regular expression whose named groups say what they hold.
+///
+/// | group | holds |
+/// |---|---|
+/// | `condition`, `airspeed_kt`, `altitude`, `altitude_ft`, `weight`, `mass_kg`, `method`, `name` | that |
+/// | `by_roll_deg`, `by_airspeed_kt`, `by_...` | the offset of the trim in the coordinate `roll_deg`, ... (`+5`, `-5`, `p5`, `m5`) |
+/// | `nominal`, `perturbed`, `identified` | anything: the role is this |
+#[derive(Clone)]
+pub struct NamePattern {
+    regex: Regex,
+}
+
+/// Why a text is no pattern.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PatternError {
+    /// It is no regular expression.
+    #[error("\"{pattern}\" is no regular expression: {reason}")]
+    Syntax {
+        /// The text.
+        pattern: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A group has a name that says nothing.
+    #[error(
+        "\"{pattern}\": a group is named \"{group}\"; groups are condition, airspeed_kt, altitude, altitude_ft, weight, mass_kg, \
+             method, name, nominal, perturbed, identified, or by_ and a coordinate such as roll_deg"
+    )]
+    Group {
+        /// The text.
+        pattern: String,
+        /// The group's name.
+        group: String,
+    },
+}
+
+const GROUPS: [&str; 11] = [
+    "condition",
+    "airspeed_kt",
+    "altitude",
+    "altitude_ft",
+    "weight",
+    "mass_kg",
+    "method",
+    "name",
+    "nominal",
+    "perturbed",
+    "identified",
+];
+/// What a group of an offset begins with.
+const OFFSET: &str = "by_";
+
+impl NamePattern {
+    /// The pattern that a text spells; case makes no difference.
+    pub fn new(pattern: &str) -> Result<Self, PatternError> {
+        let wrong = |reason: String| PatternError::Syntax { pattern: pattern.to_owned(), reason };
+        if pattern.len() > LONGEST {
+            return Err(wrong(format!("it is longer than {LONGEST} letters")));
+        }
+        let built = RegexBuilder::new(pattern).case_insensitive(true).size_limit(MOST_MEMORY).build();
+        let regex =
+            built.map_err(|error| wrong(error.to_string().lines().last().unwrap_or_default().trim().to_owned()))?;
+        let unknown = regex.capture_names().flatten().find(|name| !GROUPS.contains(name) && !name.starts_with(OFFSET));
+        match unknown {
+            Some(group) => Err(PatternError::Group { pattern: pattern.to_owned(), group: group.to_owned() }),
+            None => Ok(Self { regex }),
+        }
+    }
+
+    /// The text that spells it.
+    pub fn as_str(&self) -> &str {
+        self.regex.as_str()
+    }
+
+    /// Puts what a name says into the fields of a row that are still empty.
+    pub fn read(&self, name: &str, row: &mut Row) {
+        for found in self.regex.captures_iter(name) {
+            for group in self.regex.capture_names().flatten() {
+                if let Some(text) = found.name(group) {
+                    put(group, text.as_str(), row);
+                }
+            }
+        }
+    }
+}
+
+fn put(group: &str, text: &str, row: &mut Row) {
+    let number = || text.replace(',', ".").parse::<f64>().ok().filter(|value| value.is_finite());
+    let word = || Some(text.to_lowercase());
+    match group {
+        "condition" => row.condition = row.condition.or_else(|| text.parse().ok()),
+        "airspeed_kt" => row.airspeed_kt = row.airspeed_kt.or_else(number),
+        "altitude_ft" => row.altitude_ft = row.altitude_ft.or_else(number),
+        "mass_kg" => row.mass_kg = row.mass_kg.or_else(number),
+        "altitude" => row.altitude = row.altitude.take().or_else(word),
+        "weight" => row.weight = row.weight.take().or_else(word),
+        "method" => row.method = row.method.take().or_else(|| Some(text.to_owned())),
+        "name" if row.name.is_empty() => text.clone_into(&mut row.name),
+        "nominal" | "perturbed" | "identified" => row.role = row.role.or(RowRole::of(group)),
+        _ => {
+            if let (Some(coordinate), Some(offset)) = (group.strip_prefix(OFFSET), offset(text)) {
+                row.perturbation.entry(coordinate.to_owned()).or_insert(offset);
+            }
+        }
+    }
+}
+
+/// `+5`, `-5`, `p5`, `m5`, `plus5`, `minus2.5`.
+fn offset(text: &str) -> Option<f64> {
+    let text = text.to_lowercase();
+    let signs = [("minus", -1.0), ("plus", 1.0), ("-", -1.0), ("+", 1.0), ("m", -1.0), ("p", 1.0)];
+    let signed = signs.iter().find_map(|(mark, sign)| Some((text.strip_prefix(mark)?, *sign)));
+    let (digits, sign) = signed.unwrap_or((&text, 1.0));
+    let value: f64 = digits.trim_start_matches(['_', ' ']).parse().ok()?;
+    value.is_finite().then_some(sign * value)
+}
+
+impl fmt::Debug for NamePattern {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "NamePattern({})", self.as_str())
+    }
+}
+
+impl PartialEq for NamePattern {
+    fn eq(&self, other: &Self) -> bool {
+        self.as_str() == other.as_str()
+    }
+}
+
+/// How names are usually read: `c03_045kt_high/roll+5`, `cond 3/V-10kt`, `120kt_low_heavy/flight`.
+pub fn standard_patterns() -> Vec<NamePattern> {
+    const SIGNED: &str = r"(?:[+-]|p|m|plus|minus)[_ ]?\d+(?:\.\d+)?";
+    let offset = |words: &str, coordinate: &str| format!(r"(?:^|[/_#, -])(?:{words})[_ ]?(?<by_{coordinate}>{SIGNED})");
+    let texts = [
+        r"(?:^|[/_ -])(?:c|cond|condition|fc|case|point)[_ -]?0*(?<condition>\d+)(?:[/_ .#-]|$)".to_owned(),
+        r"(?:^|[/_ ])v?0*(?<airspeed_kt>\d+(?:\.\d+)?)[_ ]?(?:kt|kts|ktas|kcas|kias|knots)(?:[/_ .#-]|$)".to_owned(),
+        r"-(?<airspeed_kt>\d{3})[_ ]?(?:kt|kts|ktas|kcas|kias|knots)(?:[/_ .#-]|$)".to_owned(),
+        r"(?:^|[/_ -])(?<altitude_ft>\d{3,5})[_ ]?ft(?:[/_ .#-]|$)".to_owned(),
+        r"(?:^|[/_ -])(?<mass_kg>\d{3,6})[_ ]?kg(?:[/_ .#-]|$)".to_owned(),
+        r"(?:^|[/_ -])(?<weight>light|heavy)(?:[/_ .#-]|$)".to_owned(),
+        r"(?:^|[/_ -])(?<weight>low|high)[_ ]?(?:w|weight|gw|mass)(?:[/_ .#-]|$)".to_owned(),
+        r"(?:^|[/_ -])(?<altitude>low|high)[_ ]?(?:alt|altitude)?[/_ -](?<weight>low|high)(?:[/_ .#-]|$)".to_owned(),
+        r"(?:^|[/_ -])(?<altitude>low|high)[_ ]?(?:alt|altitude)?(?:[/_ .#-]|$)".to_owned(),
+        offset("roll|phi|bank", "roll_deg"),
+        offset("v|dv|speed|airspeed|tas|ias", "airspeed_kt"),
+        offset("roc|climb|rateofclimb|hdot", "rate_of_climb_fpm"),
+        offset("pitch|theta", "pitch_deg"),
+        offset("beta|slip|sideslip", "sideslip_deg"),
+        r"(?:^|[/_ #-])(?<nominal>nominal|nom|trim|baseline)(?:[/_ .#-]|$)".to_owned(),
+        r"(?:^|[/_ #-])(?<identified>identified|ident|id|sysid|sid|(?:ct-?)?pbsid|n4sid|cifer|flight|flt|measured|frf)\d*(?:[/_ .#-]|$)"
+            .to_owned(),
+        r"(?:^|[/_ #-])(?<perturbed>perturbed|pert)\d*(?:[/_ .#-]|$)".to_owned(),
+    ];
+    // Each is tried by a test: none is left out here.
+    texts.iter().filter_map(|text| NamePattern::new(text).ok()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(name: &str) -> Row {
+        let mut row = Row::default();
+        for pattern in standard_patterns() {
+            pattern.read(name, &mut row);
+        }
+        row
+    }
+
+    #[test]
+    fn a_name_says_condition_airspeed_altitude_and_perturbation() {
+        assert_eq!(standard_patterns().len(), 17);
+        let row = read("c03_045kt_high/roll+5");
+        assert_eq!((row.condition, row.airspeed_kt, row.altitude.as_deref()), (Some(3), Some(45.0), Some("high")));
+        assert_eq!(row.perturbation.into_iter().collect::<Vec<_>>(), [("roll_deg".to_owned(), 5.0)]);
+        let row = read("fc-12/120kt_low_heavy/V-10kt roc+150fpm");
+        assert_eq!((row.condition, row.airspeed_kt, row.weight.as_deref()), (Some(12), Some(120.0), Some("heavy")));
+        let offsets: Vec<f64> = row.perturbation.values().copied().collect();
+        assert_eq!(offsets, [-10.0, 150.0], "airspeed_kt, rate_of_climb_fpm");
+    }
+
+    #[test]
+    fn low_and_high_are_altitude_first_and_weight_then() {
+        let row = read("60kt_low_high/nominal");
+        assert_eq!(
+            (row.altitude.as_deref(), row.weight.as_deref(), row.role),
+            (Some("low"), Some("high"), Some(RowRole::Nominal))
+        );
+        let row = read("V090kt_2000ft_6600kg/CT-PBSID 2");
+        assert_eq!((row.airspeed_kt, row.altitude_ft, row.mass_kg), (Some(90.0), Some(2000.0), Some(6600.0)));
+        assert_eq!(read("x/flight_1").role, Some(RowRole::Identified));
+    }
+
+    #[test]
+    fn a_perturbed_airspeed_is_no_airspeed() {
+        for name in ["V+10kt", "a/V-10kt", "c1/v_m10kt"] {
+            let row = read(name);
+            assert_eq!(row.airspeed_kt, None, "{name}");
+            assert_eq!(row.perturbation.get("airspeed_kt").map(|by| by.abs()), Some(10.0), "{name}");
+        }
+    }
+
+    #[test]
+    fn what_a_pattern_of_the_engineer_finds_first_stands() {
+        let mut row = Row::default();
+        NamePattern::new("case(?<condition>\\d)").unwrap().read("case7/c03", &mut row);
+        standard_patterns().iter().for_each(|pattern| pattern.read("case7/c03", &mut row));
+        assert_eq!(row.condition, Some(7));
+        let unknown = NamePattern::new("(?<speed>\\d+)").unwrap_err();
+        assert!(unknown.to_string().contains("\"speed\""), "{unknown}");
+        assert!(matches!(NamePattern::new("(").unwrap_err(), PatternError::Syntax { .. }));
     }
 }

@@ -1,10 +1,12 @@
-//! One gain and one delay or lead for each channel, and what they make of a response (M10, M11).
+//! One gain and one delay or lead for each channel (M10, M11, M15), what they make of a response, and a channel as states.
 
+use std::sync::{Arc, OnceLock};
+
+use nalgebra::{DMatrix, DVector, RowDVector};
+
+use super::LeadDesign;
 use crate::dataset::Pair;
-use crate::response::{GainDelay, LeadFilter};
-
-use super::channel::Channel;
-use super::channel_leads::ChannelLeads;
+use crate::response::{GainDelay, LeadFilter, LeadOrder};
 
 /// The correction `M_O H M_I`, each channel `k e^(-tau s)`, eq. (12), or `k L(s)` (M15).
 #[derive(Clone, Debug, PartialEq)]
@@ -105,5 +107,253 @@ impl ChannelCorrection {
         let gain = self.net_gain(pair).value();
         let delay_s = self.output_delays_s[pair.output] + self.input_delays_s[pair.input];
         (gain > 0.0).then(|| GainDelay::new(gain, delay_s))
+    }
+}
+
+/// One channel: an input or an output, each with a gain and a delay of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Channel {
+    /// The input of this index.
+    Input(usize),
+    /// The output of this index.
+    Output(usize),
+}
+
+impl Channel {
+    /// The channel's name, or its number (from 1) where the list of names is too short.
+    pub fn name(self, inputs: &[String], outputs: &[String]) -> String {
+        let (names, index, kind) = match self {
+            Channel::Input(index) => (inputs, index, "input"),
+            Channel::Output(index) => (outputs, index, "output"),
+        };
+        names.get(index).cloned().unwrap_or_else(|| format!("{kind} {}", index + 1))
+    }
+}
+
+/// The response in words: "PED → NY".
+pub(crate) fn pair_name(pair: Pair, inputs: &[String], outputs: &[String]) -> String {
+    let input = Channel::Input(pair.input).name(inputs, outputs);
+    format!("{input} → {}", Channel::Output(pair.output).name(inputs, outputs))
+}
+
+/// Several responses in words: "A, B and C".
+pub(crate) fn pair_names(pairs: &[Pair], inputs: &[String], outputs: &[String]) -> String {
+    let names: Vec<String> = pairs.iter().map(|&pair| pair_name(pair, inputs, outputs)).collect();
+    match names.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        Some((last, _)) => last.clone(),
+        None => String::new(),
+    }
+}
+
+/// One signed delay for each channel: a pure delay where positive, a lead filter where negative (M15.5).
+///
+/// Filters, and their curves over the band, are computed when they are first asked for, once for all clones.
+#[derive(Clone, Debug)]
+pub struct ChannelLeads {
+    design: Arc<LeadDesign>,
+    inputs_s: Vec<f64>,
+    outputs_s: Vec<f64>,
+    filters: Arc<OnceLock<[Vec<Option<LeadFilter>>; 2]>>,
+    curves: Arc<OnceLock<LeadCurves>>,
+}
+
+impl PartialEq for ChannelLeads {
+    /// What is computed of them follows.
+    fn eq(&self, other: &Self) -> bool {
+        (&self.inputs_s, &self.outputs_s, &self.design) == (&other.inputs_s, &other.outputs_s, &other.design)
+    }
+}
+
+impl ChannelLeads {
+    /// Signed delays \[s\] of m inputs and p outputs, with the filters of `design`.
+    pub fn new(design: Arc<LeadDesign>, inputs_s: Vec<f64>, outputs_s: Vec<f64>) -> Self {
+        Self { design, inputs_s, outputs_s, filters: Arc::default(), curves: Arc::default() }
+    }
+
+    /// Which filter a signed delay has.
+    pub fn design(&self) -> &Arc<LeadDesign> {
+        &self.design
+    }
+
+    /// Signed delay of each input \[s\], m values.
+    pub fn inputs_s(&self) -> &[f64] {
+        &self.inputs_s
+    }
+
+    /// Signed delay of each output \[s\], p values.
+    pub fn outputs_s(&self) -> &[f64] {
+        &self.outputs_s
+    }
+
+    /// Signed delay of a channel \[s\].
+    pub fn tau_s(&self, channel: Channel) -> f64 {
+        match channel {
+            Channel::Input(input) => self.inputs_s[input],
+            Channel::Output(output) => self.outputs_s[output],
+        }
+    }
+
+    /// The lead filters of every input and of every output; none where the signed delay is not negative.
+    pub fn filters(&self) -> &[Vec<Option<LeadFilter>>; 2] {
+        self.filters.get_or_init(|| {
+            let of = |taus_s: &Vec<f64>| taus_s.iter().map(|&tau_s| self.design.filter(tau_s)).collect();
+            [&self.inputs_s, &self.outputs_s].map(of)
+        })
+    }
+
+    /// The lead filter of a channel; none where its signed delay is not negative.
+    pub fn filter(&self, channel: Channel) -> Option<LeadFilter> {
+        match (channel, self.filters()) {
+            (Channel::Input(input), [inputs, _]) => inputs[input],
+            (Channel::Output(output), [_, outputs]) => outputs[output],
+        }
+    }
+
+    /// The part of each signed delay that is a pure delay \[s\]: of the inputs, of the outputs.
+    pub fn delays_s(&self) -> [Vec<f64>; 2] {
+        [&self.inputs_s, &self.outputs_s].map(|taus_s| taus_s.iter().map(|tau_s| tau_s.max(0.0)).collect())
+    }
+
+    /// What the filters are at each frequency of the design's band.
+    pub fn curves(&self) -> &LeadCurves {
+        self.curves.get_or_init(|| {
+            let curve = |filter: &Option<LeadFilter>| filter.map(|filter| LeadCurve::of(filter, self.design.omega()));
+            let [inputs, outputs] =
+                self.filters().each_ref().map(|filters| filters.iter().map(curve).collect::<Vec<_>>());
+            LeadCurves { inputs, outputs }
+        })
+    }
+}
+
+/// Magnitude and phase of every channel's lead filter at the frequencies of a band.
+#[derive(Clone, Debug)]
+pub struct LeadCurves {
+    inputs: Vec<Option<LeadCurve>>,
+    outputs: Vec<Option<LeadCurve>>,
+}
+
+/// Magnitude \[dB\] and phase \[rad\] of a filter or of two in series.
+#[derive(Clone, Debug)]
+pub struct LeadCurve {
+    /// `20 log10 |L|` at each frequency.
+    pub magnitude_db: Vec<f64>,
+    /// `arg L` at each frequency, continuous.
+    pub phase: Vec<f64>,
+}
+
+impl LeadCurve {
+    fn of(filter: LeadFilter, omega: &[f64]) -> Self {
+        Self {
+            magnitude_db: omega.iter().map(|&omega| filter.magnitude_db(omega)).collect(),
+            phase: omega.iter().map(|&omega| filter.phase(omega)).collect(),
+        }
+    }
+
+    fn in_series(&self, other: &Self) -> Self {
+        let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + b).collect();
+        Self { magnitude_db: sum(&self.magnitude_db, &other.magnitude_db), phase: sum(&self.phase, &other.phase) }
+    }
+}
+
+impl LeadCurves {
+    /// What the filters of a response's two channels do to it; nothing where neither has one.
+    pub fn on(&self, pair: Pair) -> Option<LeadCurve> {
+        match (&self.inputs[pair.input], &self.outputs[pair.output]) {
+            (Some(input), Some(output)) => Some(input.in_series(output)),
+            (one, other) => one.as_ref().or(other.as_ref()).cloned(),
+        }
+    }
+}
+
+/// A delay or a lead filter of one channel as a state-space model of one input and one output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelModel {
+    /// System matrix, n x n.
+    pub a: DMatrix<f64>,
+    /// Input column, n values.
+    pub b: DVector<f64>,
+    /// Output row, n values.
+    pub c: RowDVector<f64>,
+    /// Feed-through.
+    pub d: f64,
+}
+
+impl ChannelModel {
+    /// No delay: `y = u`, without states.
+    pub fn none() -> Self {
+        Self { a: DMatrix::zeros(0, 0), b: DVector::zeros(0), c: RowDVector::zeros(0), d: 1.0 }
+    }
+
+    /// `z^-count`, exactly: `count` states, each of which holds the one before it for one sample.
+    pub fn samples(count: usize) -> Self {
+        if count == 0 {
+            return Self::none();
+        }
+        let one_at = |at: usize| move |index: usize| if index == at { 1.0 } else { 0.0 };
+        Self {
+            a: DMatrix::from_fn(count, count, |row, column| if row == column + 1 { 1.0 } else { 0.0 }),
+            b: DVector::from_fn(count, |row, _| one_at(0)(row)),
+            c: RowDVector::from_fn(count, |_, column| one_at(count - 1)(column)),
+            d: 0.0,
+        }
+    }
+
+    /// A lead filter in continuous time, exactly (M15.3): with `w1 = 1 / a`, `w2 = 1 / b` of second order `A = [0 1; -w2^2 -sqrt(2)
+    /// w2]`, `B = [0; 1]`, `C = [R (w1^2 - w2^2)  R sqrt(2) (w1 - w2)]`, `D = R`, of first order `A = -w2`, `B = 1`, `C = R (w1 -
+    /// w2)`, `D = R`.
+    pub fn lead(filter: LeadFilter) -> Self {
+        const ROOT: f64 = std::f64::consts::SQRT_2;
+        let (w1, w2, r) = (filter.zero_rad_s(), filter.lag_rad_s(), filter.gain_at_infinity());
+        match filter.order() {
+            LeadOrder::First => Self {
+                a: DMatrix::from_element(1, 1, -w2),
+                b: DVector::from_element(1, 1.0),
+                c: RowDVector::from_element(1, r * (w1 - w2)),
+                d: r,
+            },
+            LeadOrder::Second => Self {
+                a: DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -w2 * w2, -ROOT * w2]),
+                b: DVector::from_column_slice(&[0.0, 1.0]),
+                c: RowDVector::from_row_slice(&[r * (w1 * w1 - w2 * w2), r * ROOT * (w1 - w2)]),
+                d: r,
+            },
+        }
+    }
+
+    /// The lead filter in discrete time of this sample time \[s\], by Tustin's rule `s = 2 (z - 1) / (T (z + 1))`: with `M = (I - A
+    /// T/2)^-1` it is `M (I + A T/2)`, `T M B`, `C M`, `D + C M B T/2`. None where `T` puts a pole of the filter on that of the rule.
+    pub fn sampled_lead(filter: LeadFilter, sample_time_s: f64) -> Option<Self> {
+        let Self { a, b, c, d } = Self::lead(filter);
+        let (one, half) = (DMatrix::identity(a.nrows(), a.nrows()), 0.5 * sample_time_s * &a);
+        let inverse = (&one - &half).try_inverse()?;
+        let direct = (&c * &inverse * &b).sum() * 0.5 * sample_time_s;
+        Some(Self { a: &inverse * (&one + &half), b: sample_time_s * &inverse * b, c: &c * inverse, d: d + direct })
+    }
+
+    /// Number of states.
+    pub fn order(&self) -> usize {
+        self.b.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_come_out_as_many_steps_later() {
+        for count in 0..4 {
+            let model = ChannelModel::samples(count);
+            assert_eq!(model.order(), count);
+            let mut x = DVector::zeros(count);
+            let mut out = Vec::new();
+            for u in [1.0, 2.0, 3.0, 4.0, 5.0] {
+                out.push((&model.c * &x).sum() + model.d * u);
+                x = &model.a * &x + &model.b * u;
+            }
+            let delayed: Vec<f64> = [0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0][3 - count..][..5].to_vec();
+            assert_eq!(out, delayed, "{count} samples");
+        }
     }
 }

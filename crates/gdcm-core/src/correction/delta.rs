@@ -1,12 +1,11 @@
 //! Delta gain and delta delay: what one gain and one delay of a response would have to be, eq. (5), (9); and the bounds that their
 //! spread over the band gives to the channels (M7).
 
+use super::GainBounds;
 use crate::dataset::{Pair, PairTable};
 use crate::fidelity::{CountedFrequencies, Mismatch};
 use crate::response::{PolarResponse, quantile};
 use crate::units::db_to_ratio;
-
-use super::GainBounds;
 
 /// Which models G is taken from; D is always that of the representatives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

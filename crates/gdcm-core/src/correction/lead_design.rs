@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
+use super::band_delay_s;
 use crate::response::{LeadFilter, LeadOrder};
-
-use super::delta::band_delay_s;
 
 /// What the lead filters of all channels have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]

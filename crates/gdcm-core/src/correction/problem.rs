@@ -1,7 +1,6 @@
 //! What the channels are asked to do.
 
-use super::branch_and_bound::SearchStopped;
-use super::quantity::{Coordinate, GainObjective, Quantity};
+use super::{Coordinate, GainObjective, Quantity, SearchStopped};
 use crate::dataset::{Pair, PairTable};
 
 /// Least and greatest value of every channel (M7): gains `0 < lower <= upper`, delays \[s\] `lower = 0`, signed delays \[s\]

@@ -1,11 +1,6 @@
 //! What would let every held entry be held.
 
-use super::branch_and_bound::{Effort, SearchStopped};
-use super::channel::pair_name;
-use super::components::Components;
-use super::problem::Problem;
-use super::quantity::{Quantity, three_digits_down, three_digits_up};
-use super::reach::{Held, is_reachable};
+use super::*;
 use crate::dataset::Pair;
 
 /// Single changes after which every held entry can be held at its delta; empty where it takes several.
@@ -99,13 +94,13 @@ fn changes(held: &Held, suspects: &[Pair], effort: &Effort<'_>) -> Result<Change
 fn loops_agree(components: &Components, held: &Held) -> bool {
     held.entries.iter().all(|(pair, sum)| {
         let reached = components.inputs[pair.input].offset.value + components.outputs[pair.output].offset.value;
-        (reached - sum).abs() <= super::reach::STRAIN
+        (reached - sum).abs() <= super::STRAIN
     })
 }
 
 /// The spread of a component with both inputs and outputs; a single channel is always possible.
 fn spread(components: &Components, component: usize) -> Option<Spread> {
-    let ends = |channels: &[super::components::Placement]| {
+    let ends = |channels: &[super::Placement]| {
         let offsets =
             channels.iter().filter(|channel| channel.component == component).map(|channel| channel.offset.value);
         offsets.fold(None, |ends: Option<(f64, f64)>, offset| match ends {

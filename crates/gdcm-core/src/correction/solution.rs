@@ -1,10 +1,6 @@
 //! The gains or delays found, and how sure they are.
 
-use super::branch_and_bound::Limit;
-use super::channel::pair_name;
-use super::conflict::Conflict;
-use super::quantity::Quantity;
-use super::remedy::Remedy;
+use super::{Conflict, Limit, Quantity, Remedy, pair_name};
 use crate::dataset::{Pair, PairTable};
 use crate::units::{s_to_ms, telling, told_apart};
 

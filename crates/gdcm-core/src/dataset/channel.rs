@@ -1,4 +1,6 @@
-//! One input or output of the helicopter.
+//! Channels of the helicopter, one response of a dataset, and a table with one entry for each response.
+
+use std::ops::{Index, IndexMut};
 
 /// An input (a control position) or an output (a measured motion), as the dataset names it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -15,5 +17,118 @@ impl Channel {
     /// A channel with a name and a unit, and no description.
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
         Self { name: name.into(), unit: unit.into(), description: String::new() }
+    }
+}
+
+/// One response: from an input channel to an output channel.
+///
+/// The index order is `[output, input]` everywhere (M1).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Pair {
+    /// Index of the output channel, in the dataset's order.
+    pub output: usize,
+    /// Index of the input channel, in the dataset's order.
+    pub input: usize,
+}
+
+impl Pair {
+    /// The response of output channel `output` to input channel `input`.
+    pub fn new(output: usize, input: usize) -> Self {
+        Self { output, input }
+    }
+}
+
+/// A table with one entry for each response: `p` rows (outputs) by `m` columns (inputs).
+#[derive(Clone, Debug, PartialEq)]
+pub struct PairTable<T> {
+    outputs: usize,
+    inputs: usize,
+    entries: Vec<T>,
+}
+
+impl<T> PairTable<T> {
+    /// The table whose entry of each response is `entry(pair)`.
+    pub fn from_fn(outputs: usize, inputs: usize, mut entry: impl FnMut(Pair) -> T) -> Self {
+        let entries = (0..outputs)
+            .flat_map(|output| (0..inputs).map(move |input| Pair { output, input }))
+            .map(&mut entry)
+            .collect();
+        Self { outputs, inputs, entries }
+    }
+
+    /// Number of output channels, `p`.
+    pub fn outputs(&self) -> usize {
+        self.outputs
+    }
+
+    /// Number of input channels, `m`.
+    pub fn inputs(&self) -> usize {
+        self.inputs
+    }
+
+    /// The entry of a response; `None` where the table has no such response.
+    pub fn get(&self, pair: Pair) -> Option<&T> {
+        (pair.output < self.outputs() && pair.input < self.inputs()).then(|| &self[pair])
+    }
+
+    /// Every response, row by row.
+    pub fn pairs(&self) -> impl Iterator<Item = Pair> + use<T> {
+        let inputs = self.inputs;
+        (0..self.outputs).flat_map(move |output| (0..inputs).map(move |input| Pair { output, input }))
+    }
+
+    /// Every response with its entry, row by row.
+    pub fn iter(&self) -> impl Iterator<Item = (Pair, &T)> {
+        self.pairs().zip(&self.entries)
+    }
+
+    /// Every response with its entry to change, row by row.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = (Pair, &mut T)> {
+        self.pairs().zip(&mut self.entries)
+    }
+
+    /// The table of `f(pair, entry)`.
+    pub fn map<U>(&self, mut f: impl FnMut(Pair, &T) -> U) -> PairTable<U> {
+        PairTable::from_fn(self.outputs, self.inputs, |pair| f(pair, &self[pair]))
+    }
+}
+
+impl<T: Clone> PairTable<T> {
+    /// The table with the same entry everywhere.
+    pub fn filled(outputs: usize, inputs: usize, entry: T) -> Self {
+        Self { outputs, inputs, entries: vec![entry; outputs * inputs] }
+    }
+}
+
+impl PairTable<bool> {
+    /// The responses marked `true`, row by row.
+    pub fn marked(&self) -> impl Iterator<Item = Pair> + '_ {
+        self.iter().filter(|(_, marked)| **marked).map(|(pair, _)| pair)
+    }
+}
+
+impl<T> Index<Pair> for PairTable<T> {
+    type Output = T;
+
+    fn index(&self, pair: Pair) -> &T {
+        assert!(
+            pair.output < self.outputs && pair.input < self.inputs,
+            "{pair:?} is outside a {} x {} table",
+            self.outputs,
+            self.inputs
+        );
+        &self.entries[pair.output * self.inputs + pair.input]
+    }
+}
+
+impl<T> IndexMut<Pair> for PairTable<T> {
+    fn index_mut(&mut self, pair: Pair) -> &mut T {
+        assert!(
+            pair.output < self.outputs && pair.input < self.inputs,
+            "{pair:?} is outside a {} x {} table",
+            self.outputs,
+            self.inputs
+        );
+        &mut self.entries[pair.output * self.inputs + pair.input]
     }
 }

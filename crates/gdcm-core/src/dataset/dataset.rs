@@ -1,13 +1,9 @@
-//! The whole of what the engineer loads.
+//! The whole of what the engineer loads, and the frequency band over which models are compared.
 
 use std::sync::Arc;
 
-use super::band::Band;
-use super::channel::Channel;
-use super::condition::Condition;
-use super::identity::{BundleKind, ConditionId, ModelId};
-use super::model::{Dynamics, Model};
-use super::pair::{Pair, PairTable};
+use super::{BundleKind, Channel, Condition, ConditionId, Dynamics, Model, ModelId, Pair, PairTable};
+use crate::units::number;
 
 /// Channels, on-axis responses, the default band, and the flight conditions with their models (M1).
 ///
@@ -259,4 +255,70 @@ fn check_conditions(conditions: &[Condition], outputs: usize, inputs: usize) -> 
         }
     }
     Ok(())
+}
+
+/// Least lower end of a band \[rad/s\]: a period of 17 hours.
+pub const LEAST_OMEGA: f64 = 1e-4;
+/// Greatest upper end of a band \[rad/s\]: 16 kHz.
+pub const GREATEST_OMEGA: f64 = 1e5;
+
+/// A frequency band \[rad/s\], `LEAST_OMEGA <= min < max <= GREATEST_OMEGA`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Band {
+    min: f64,
+    max: f64,
+}
+
+/// A band that is empty, or reaches beyond the least or the greatest frequency.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "the frequency band must be {} <= min < max <= {} (rad/s), found min {}, max {}",
+    number(LEAST_OMEGA), number(GREATEST_OMEGA), number(*min), number(*max)
+)]
+pub struct BandError {
+    /// The lower end given \[rad/s\].
+    pub min: f64,
+    /// The upper end given \[rad/s\].
+    pub max: f64,
+}
+
+impl Band {
+    /// The band from `min` to `max` \[rad/s\].
+    pub fn new(min: f64, max: f64) -> Result<Self, BandError> {
+        if LEAST_OMEGA <= min && min < max && max <= GREATEST_OMEGA {
+            Ok(Self { min, max })
+        } else {
+            Err(BandError { min, max })
+        }
+    }
+
+    /// A band that may reach beyond the limits of comparison, `0 < min < max`: the one drawn around such a band does.
+    pub fn beyond(min: f64, max: f64) -> Result<Self, BandError> {
+        if 0.0 < min && min < max && max.is_finite() { Ok(Self { min, max }) } else { Err(BandError { min, max }) }
+    }
+
+    /// Lower end \[rad/s\].
+    pub fn min(self) -> f64 {
+        self.min
+    }
+
+    /// Upper end \[rad/s\].
+    pub fn max(self) -> f64 {
+        self.max
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reversed_empty_or_non_positive_band_is_refused() {
+        let nan = f64::NAN;
+        for (min, max) in [(12.0, 0.5), (1.0, 1.0), (0.0, 1.0), (-1.0, 1.0), (nan, 1.0), (1.0, nan), (1.0, 1.1e5)] {
+            assert!(Band::new(min, max).is_err(), "{min} .. {max}");
+        }
+        assert!(Band::new(0.5, 12.0).is_ok() && Band::new(LEAST_OMEGA, GREATEST_OMEGA).is_ok());
+        assert!(Band::beyond(1e-300, 1e300).is_ok() && Band::beyond(0.0, 1.0).is_err());
+    }
 }

@@ -2,9 +2,8 @@
 
 use nalgebra::Complex;
 
+use super::PairTable;
 use crate::units::number;
-
-use super::pair::PairTable;
 
 /// A frequency response measured (or exported) at `N` frequencies, in place of a state-space model.
 ///

@@ -1,14 +1,12 @@
-//! One model of a bundle: where it comes from and how its response is known.
+//! One model of a bundle: where it comes from, how its response is known and how uncertain it is, and the hash of its numbers.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use nalgebra::DMatrix;
 use sha2::{Digest, Sha256};
 
-use super::content::ContentHash;
-use super::measured_response::MeasuredResponse;
-use super::model_bands::ModelBands;
-use super::state_space::StateSpace;
+use super::{MeasuredResponse, MeasuredResponseError, PairTable, StateSpace, Timing, check_frequencies, check_values};
 
 /// How the response of a model is known.
 #[derive(Clone, Debug, PartialEq)]
@@ -148,5 +146,175 @@ impl Model {
             (Dynamics::Measured(_), Origin::Identified { order, .. }) => *order,
             (Dynamics::Measured(_), _) => None,
         }
+    }
+}
+
+/// Standard deviations of a model's response over frequency, as the identification estimates them (M14).
+///
+/// A curve holds to `1 - 2 Phi(-z)` between `H_dB - z sd_db` and `H_dB + z sd_db`, and the same of its phase.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelBands {
+    omega: Vec<f64>,
+    sd_db: PairTable<Vec<f64>>,
+    sd_deg: PairTable<Vec<f64>>,
+}
+
+impl ModelBands {
+    /// The standard deviations of magnitude \[dB\] and phase \[deg\] at `omega` \[rad/s\], both p x m tables of `N` values.
+    ///
+    /// # Errors
+    /// Frequencies that do not rise, tables of another length, numbers that are not finite or negative.
+    pub fn new(
+        omega: Vec<f64>,
+        sd_db: PairTable<Vec<f64>>,
+        sd_deg: PairTable<Vec<f64>>,
+    ) -> Result<Self, MeasuredResponseError> {
+        check_frequencies(&omega)?;
+        for (array, table) in [("sd_db", &sd_db), ("sd_deg", &sd_deg)] {
+            check_values(array, table, omega.len(), "a number not below zero", |value| {
+                value.is_finite() && value >= 0.0
+            })?;
+        }
+        Ok(Self { omega, sd_db, sd_deg })
+    }
+
+    /// Frequencies \[rad/s\], strictly rising.
+    pub fn omega(&self) -> &[f64] {
+        &self.omega
+    }
+
+    /// Standard deviation of the magnitude \[dB\], one for each frequency.
+    pub fn sd_db(&self) -> &PairTable<Vec<f64>> {
+        &self.sd_db
+    }
+
+    /// Standard deviation of the phase \[deg\], one for each frequency.
+    pub fn sd_deg(&self) -> &PairTable<Vec<f64>> {
+        &self.sd_deg
+    }
+
+    /// Adds every number to a hash.
+    pub(super) fn add_to(&self, hash: &mut Sha256) {
+        hash.update(b"bands");
+        add_numbers(hash, &self.omega);
+        for table in [&self.sd_db, &self.sd_deg] {
+            table.iter().for_each(|(_, deviations)| add_numbers(hash, deviations));
+        }
+    }
+}
+
+/// SHA-256 of every number that the response of a model depends on: models of one hash have one response.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ContentHash([u8; 32]);
+
+impl ContentHash {
+    /// The hash of a model's matrices and timing, or of its measured frequencies, values, coherence and valid bands; shapes
+    /// included.
+    pub fn of(dynamics: &Dynamics) -> Self {
+        let mut hash = Sha256::new();
+        match dynamics {
+            Dynamics::StateSpace(model) => add_state_space(&mut hash, model),
+            Dynamics::Measured(response) => add_measured(&mut hash, response),
+        }
+        Self(hash.finalize().into())
+    }
+
+    /// The hash itself.
+    pub fn bytes(&self) -> &[u8; 32] {
+        &self.0
+    }
+}
+
+/// Adds numbers after how many there are.
+pub(super) fn add_numbers(hash: &mut Sha256, numbers: &[f64]) {
+    hash.update((numbers.len() as u64).to_le_bytes());
+    let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+    hash.update(&bytes);
+}
+
+fn add_state_space(hash: &mut Sha256, model: &StateSpace) {
+    hash.update(b"state space");
+    let add = |hash: &mut Sha256, matrix: &DMatrix<f64>| {
+        hash.update((matrix.nrows() as u64).to_le_bytes());
+        add_numbers(hash, matrix.as_slice());
+    };
+    [model.a(), model.b(), model.c(), model.d()].into_iter().for_each(|matrix| add(hash, matrix));
+    // Nothing is added for a plain model: its hash stays what it was before there was any timing.
+    if !model.timing().is_plain() {
+        let Timing { sample_time_s, input_delays_s, output_delays_s } = model.timing();
+        hash.update(b"timing");
+        add_numbers(hash, sample_time_s.as_slice());
+        add_numbers(hash, input_delays_s.as_deref().unwrap_or_default());
+        add_numbers(hash, output_delays_s.as_deref().unwrap_or_default());
+    }
+}
+
+fn add_measured(hash: &mut Sha256, response: &MeasuredResponse) {
+    hash.update(b"measured");
+    add_numbers(hash, response.omega());
+    hash.update((response.values().outputs() as u64).to_le_bytes());
+    for (_, values) in response.values().iter() {
+        let parts: Vec<f64> = values.iter().flat_map(|value| [value.re, value.im]).collect();
+        add_numbers(hash, &parts);
+    }
+    for (_, coherence) in response.coherence().into_iter().flat_map(|table| table.iter()) {
+        add_numbers(hash, coherence);
+    }
+    if let Some(bands) = response.valid_bands() {
+        hash.update(b"valid bands");
+        bands.iter().for_each(|(_, band)| add_numbers(hash, band));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_negative_deviation_is_refused_with_its_place() {
+        let table = |values: &[f64]| PairTable::filled(1, 1, values.to_vec());
+        let bands = |sd_deg: &[f64]| ModelBands::new(vec![1.0, 2.0], table(&[0.0, 0.5]), table(sd_deg));
+        assert_eq!(bands(&[1.0, 2.0]).unwrap().sd_deg()[crate::dataset::Pair::new(0, 0)], [1.0, 2.0]);
+        let words = bands(&[1.0, -2.0]).unwrap_err().to_string();
+        assert_eq!(words, "sd_deg, output 1, input 1, entry 2: expected a number not below zero, found -2");
+        assert!(matches!(bands(&[1.0]), Err(MeasuredResponseError::Length { array: "sd_deg", .. })));
+        assert!(bands(&[1.0, f64::INFINITY]).is_err());
+    }
+}
+
+#[cfg(test)]
+mod content_tests {
+    use super::*;
+
+    fn model(a: f64, b: &[f64]) -> Dynamics {
+        let b = DMatrix::from_row_slice(1, b.len(), b);
+        let d = DMatrix::zeros(1, b.ncols());
+        Dynamics::StateSpace(StateSpace::new(DMatrix::from_element(1, 1, a), b, DMatrix::identity(1, 1), d).unwrap())
+    }
+
+    #[test]
+    fn models_of_the_same_numbers_have_one_hash_and_any_other_number_gives_another() {
+        assert_eq!(ContentHash::of(&model(-1.0, &[2.0])), ContentHash::of(&model(-1.0, &[2.0])));
+        let next = f64::from_bits((-1.0_f64).to_bits() + 1);
+        assert_ne!(ContentHash::of(&model(-1.0, &[2.0])), ContentHash::of(&model(next, &[2.0])));
+        assert_ne!(ContentHash::of(&model(-1.0, &[2.0, 0.0])), ContentHash::of(&model(-1.0, &[2.0])));
+    }
+
+    #[test]
+    fn a_model_without_timing_has_the_hash_that_it_always_had() {
+        let hash = |dynamics: &Dynamics| ContentHash::of(dynamics).bytes()[..4].to_vec();
+        let plain = model(-1.0, &[2.0]);
+        assert_eq!(hash(&plain), [198, 153, 200, 246]);
+        let Dynamics::StateSpace(matrices) = plain.clone() else { unreachable!() };
+        let timed = |sample_time_s, delay_s| {
+            let timing = Timing { sample_time_s, input_delays_s: Some(vec![delay_s]), output_delays_s: None };
+            Dynamics::StateSpace(matrices.clone().timed(timing).unwrap())
+        };
+        assert_eq!(hash(&timed(None, 0.0)), hash(&plain));
+        let others = [timed(Some(0.01), 0.0), timed(None, 0.01), timed(Some(0.01), 0.01)];
+        let mut hashes: Vec<Vec<u8>> = others.iter().chain([&plain]).map(hash).collect();
+        hashes.sort();
+        hashes.dedup();
+        assert_eq!(hashes.len(), 4);
     }
 }

@@ -1,8 +1,8 @@
-//! A linear time-invariant model in state-space form.
+//! A linear time-invariant model in state-space form, with its sampling and the delays of its channels (M2a).
 
 use nalgebra::DMatrix;
 
-use super::timing::{Timing, TimingError};
+use crate::units::number;
 
 /// A linear model `x' = A x + B u`, `y = C x + D u`, with `n` states, `m` inputs and `p` outputs; of discrete time, and with
 /// delayed channels, where its [`Timing`] says so (M2a).
@@ -127,6 +127,109 @@ impl StateSpace {
     }
 }
 
+/// Greatest delay of a channel \[s\].
+pub const GREATEST_CHANNEL_DELAY_S: f64 = 60.0;
+
+/// What a model's matrices do not say: whether they act in steps of time, and how long its channels take (M2a).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Timing {
+    /// Sample time T \[s\] of a discrete-time model; none in continuous time.
+    pub sample_time_s: Option<f64>,
+    /// Delay of each input \[s\]; none where nothing is delayed.
+    pub input_delays_s: Option<Vec<f64>>,
+    /// Delay of each output \[s\]; none where nothing is delayed.
+    pub output_delays_s: Option<Vec<f64>>,
+}
+
+/// Why a sample time or delays cannot be those of a model.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum TimingError {
+    /// A sample time is not finite or not positive.
+    #[error("sample_time_s: expected a positive number of seconds (none at all for continuous time), found {}", number(*value))]
+    SampleTime {
+        /// What stands there.
+        value: f64,
+    },
+    /// A list of delays has another length than there are channels.
+    #[error("{list}: expected {expected} delays, one for each channel, found {found}")]
+    Count {
+        /// `input_delays_s` or `output_delays_s`.
+        list: &'static str,
+        /// Number of channels.
+        expected: usize,
+        /// Number of delays.
+        found: usize,
+    },
+    /// A delay is negative, too long or not finite.
+    #[error("{list}, entry {entry}: expected a delay from 0 to {GREATEST_CHANNEL_DELAY_S} s, found {}", number(*value))]
+    Delay {
+        /// `input_delays_s` or `output_delays_s`.
+        list: &'static str,
+        /// Entry, counted from 1.
+        entry: usize,
+        /// What stands there.
+        value: f64,
+    },
+}
+
+impl Timing {
+    /// Whether there is nothing to say: continuous time, nothing delayed.
+    pub fn is_plain(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Frequency \[rad/s\] from which a discrete-time model has no response, `pi / T`.
+    pub fn nyquist_rad_s(&self) -> Option<f64> {
+        self.sample_time_s.map(|sample_time_s| std::f64::consts::PI / sample_time_s)
+    }
+
+    /// `tau_o + tau_i` \[s\] of one response.
+    pub fn delay_s(&self, output: usize, input: usize) -> f64 {
+        let of = |delays: &Option<Vec<f64>>, channel: usize| {
+            delays.as_ref().and_then(|delays| delays.get(channel)).copied().unwrap_or_default()
+        };
+        of(&self.output_delays_s, output) + of(&self.input_delays_s, input)
+    }
+
+    /// The timing in words: "discrete time, T = 0.01 s, input delays 0.02, 0 s"; nothing where it is plain.
+    pub fn words(&self) -> String {
+        let delays = |name: &str, delays: &Option<Vec<f64>>| {
+            let delays: Vec<String> = delays.as_ref()?.iter().map(|delay_s| number(*delay_s)).collect();
+            Some(format!("{name} delays {} s", delays.join(", ")))
+        };
+        let sampled = self.sample_time_s.map(|sample_time_s| format!("discrete time, T = {} s", number(sample_time_s)));
+        let parts = [sampled, delays("input", &self.input_delays_s), delays("output", &self.output_delays_s)];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    }
+
+    /// The timing of a model of `outputs` and `inputs`, delays that are all zero left out: such a model is the one without.
+    pub(super) fn checked(self, outputs: usize, inputs: usize) -> Result<Self, TimingError> {
+        if let Some(value) = self.sample_time_s.filter(|value| !value.is_finite() || *value <= 0.0) {
+            return Err(TimingError::SampleTime { value });
+        }
+        Ok(Self {
+            sample_time_s: self.sample_time_s,
+            input_delays_s: checked_delays("input_delays_s", self.input_delays_s, inputs)?,
+            output_delays_s: checked_delays("output_delays_s", self.output_delays_s, outputs)?,
+        })
+    }
+}
+
+fn checked_delays(
+    list: &'static str,
+    delays: Option<Vec<f64>>,
+    expected: usize,
+) -> Result<Option<Vec<f64>>, TimingError> {
+    let Some(delays) = delays else { return Ok(None) };
+    if delays.len() != expected {
+        return Err(TimingError::Count { list, expected, found: delays.len() });
+    }
+    if let Some(index) = delays.iter().position(|delay| !(0.0..=GREATEST_CHANNEL_DELAY_S).contains(delay)) {
+        return Err(TimingError::Delay { list, entry: index + 1, value: delays[index] });
+    }
+    Ok(Some(delays).filter(|delays| delays.iter().any(|delay| *delay != 0.0)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -157,5 +260,40 @@ mod tests {
         )
         .unwrap();
         assert_eq!((model.order(), model.inputs(), model.outputs()), (0, 2, 1));
+    }
+}
+
+#[cfg(test)]
+mod timing_tests {
+    use super::*;
+
+    fn timing(sample_time_s: Option<f64>, input_delays_s: &[f64]) -> Timing {
+        Timing { sample_time_s, input_delays_s: Some(input_delays_s.to_vec()), output_delays_s: None }
+    }
+
+    #[test]
+    fn delays_that_are_all_zero_are_no_delays() {
+        assert!(timing(None, &[0.0, 0.0]).checked(1, 2).unwrap().is_plain());
+        let delayed = timing(None, &[0.0, 0.02]).checked(1, 2).unwrap();
+        assert_eq!((delayed.delay_s(0, 0), delayed.delay_s(0, 1)), (0.0, 0.02));
+    }
+
+    #[test]
+    fn what_cannot_be_a_sample_time_or_a_delay_is_named() {
+        let error = |timing: Timing| timing.checked(1, 2).unwrap_err().to_string();
+        assert!(error(timing(Some(0.0), &[])).contains("none at all for continuous time"));
+        assert!(error(timing(Some(f64::INFINITY), &[0.0; 2])).contains("sample_time_s"));
+        assert_eq!(error(timing(None, &[0.0])), "input_delays_s: expected 2 delays, one for each channel, found 1");
+        assert_eq!(
+            error(timing(None, &[0.0, -0.1])),
+            "input_delays_s, entry 2: expected a delay from 0 to 60 s, found -0.1"
+        );
+        assert!(error(timing(None, &[f64::NAN, 61.0])).contains("entry 1"));
+    }
+
+    #[test]
+    fn a_timing_is_told_in_words() {
+        assert_eq!(timing(Some(0.01), &[0.02, 0.0]).words(), "discrete time, T = 0.01 s, input delays 0.02, 0 s");
+        assert_eq!(Timing::default().words(), "");
     }
 }

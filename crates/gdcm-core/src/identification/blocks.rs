@@ -7,8 +7,7 @@
 //!
 //! A block holds a complex pair *or* two real poles, so that pairs may split and merge.
 
-use super::StateSpaceMatrices;
-use super::eigenvectors::ComplexSchur;
+use super::*;
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Imaginary part over modulus below which an eigenvalue is real: what the Schur iteration leaves of it.

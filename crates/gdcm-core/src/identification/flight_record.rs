@@ -1,6 +1,7 @@
 //! A flight record as it was logged, and the pieces of it that identification uses.
 
 use nalgebra::DMatrix;
+use std::fmt;
 
 /// A flight record: samples of every input and output at stamped times, in the units of the file.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,4 +29,119 @@ pub struct Piece {
     pub inputs: DMatrix<f64>,
     /// Outputs, one row a sample.
     pub outputs: DMatrix<f64>,
+}
+
+// What a column of a flight record is.
+
+/// Whether a signal drives the aircraft or answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Role {
+    /// A measured input.
+    Input,
+    /// A measured output.
+    Output,
+}
+
+impl fmt::Display for Role {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if *self == Self::Input { "input" } else { "output" })
+    }
+}
+
+/// A channel of the flight records, by place and by name.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Signal {
+    /// Input or output.
+    pub role: Role,
+    /// Which of them, counted from 0.
+    pub index: usize,
+    /// Its name, for people.
+    pub name: String,
+}
+
+impl fmt::Display for Signal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.name)
+    }
+}
+
+/// The names of `signals` in a row: `P, Q and R`.
+pub(super) fn names(signals: &[Signal]) -> String {
+    match signals {
+        [] => String::new(),
+        [one] => one.name.clone(),
+        [most @ .., last] => {
+            let most: Vec<_> = most.iter().map(|signal| signal.name.as_str()).collect();
+            format!("{} and {last}", most.join(", "))
+        }
+    }
+}
+
+// Gaps of a record.
+
+/// Why something is missing.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cause {
+    /// Rows have no time stamp.
+    StampsMissing,
+    /// Time jumps from one row to the next.
+    RowsMissing,
+    /// Channels have no value.
+    SamplesMissing {
+        /// Which.
+        signals: Vec<Signal>,
+    },
+    /// Outputs stood still while others moved.
+    Frozen {
+        /// Which.
+        signals: Vec<Signal>,
+    },
+    /// What is left between two gaps is shorter than the least piece.
+    PieceTooShort {
+        /// Its length \[s\].
+        length_s: f64,
+    },
+}
+
+/// What was done about a gap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Treatment {
+    /// Straight lines were drawn across it.
+    Bridged,
+    /// It was left out.
+    CutOut,
+}
+
+impl Treatment {
+    /// What is done about a gap that is short enough, or not.
+    pub(super) fn of(short: bool) -> Self {
+        if short { Self::Bridged } else { Self::CutOut }
+    }
+}
+
+/// A gap of a record: from the last good sample to the next.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gap {
+    /// On the record's clock \[s\].
+    pub start_s: f64,
+    /// On the record's clock \[s\].
+    pub end_s: f64,
+    /// Why.
+    pub cause: Cause,
+    /// What was done.
+    pub treatment: Treatment,
+}
+
+impl fmt::Display for Gap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:.2} to {:.2} s: ", self.start_s, self.end_s)?;
+        match &self.cause {
+            Cause::StampsMissing => f.write_str("time stamps missing")?,
+            Cause::RowsMissing => f.write_str("rows missing")?,
+            Cause::SamplesMissing { signals } => write!(f, "{} missing", names(signals))?,
+            Cause::Frozen { signals } => write!(f, "{} frozen", names(signals))?,
+            Cause::PieceTooShort { length_s } => write!(f, "only {length_s:.1} s between gaps")?,
+        }
+        f.write_str(if self.treatment == Treatment::Bridged { ", bridged" } else { ", left out" })
+    }
 }

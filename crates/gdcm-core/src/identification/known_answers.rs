@@ -1,5 +1,7 @@
 //! Known answers for the tests of this module: made-up systems, computed by independent numpy code.
 
+use super::*;
+use crate::executor::Sequential;
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 
@@ -33,4 +35,20 @@ pub(super) fn complex_matrix(value: &Value) -> DMatrix<Complex<f64>> {
 pub(super) fn response(value: &Value) -> Vec<DMatrix<Complex<f64>>> {
     let part = |name: &str| value[name].as_array().unwrap().iter().map(matrix).collect::<Vec<_>>();
     part("re").iter().zip(part("im")).map(|(re, im)| re.zip_map(&im, Complex::new)).collect()
+}
+
+/// The lines of all records of a case, of noise one.
+pub(super) fn known_records(known: &Value) -> Likelihood<'static> {
+    let pieces = known["records"].as_array().unwrap().iter().enumerate().map(|(record, known)| {
+        let spectrum = Spectrum {
+            record,
+            duration_s: number(&known["T"]),
+            omega: numbers(&known["w"]),
+            inputs: complex_matrix(&known["U"]).transpose(),
+            outputs: complex_matrix(&known["Y"]).transpose(),
+        };
+        let weights = vec![DMatrix::identity(2, 2); spectrum.omega.len()];
+        Lines::weighted(&spectrum, weights)
+    });
+    Likelihood { pieces: pieces.collect(), executor: &Sequential }
 }

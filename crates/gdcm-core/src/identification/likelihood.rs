@@ -13,8 +13,7 @@
 //! end and its initial and final states are what tau, c1 and c0 stand for. `J` over its degrees of freedom is 1 where the
 //! model is adequate, because W makes the noise white with real and imaginary parts of variance one.
 
-use super::blocks::BlockModel;
-use super::{NoiseCovariance, Spectrum};
+use super::*;
 use crate::executor::{Executor, each};
 use nalgebra::{Complex, DMatrix, DVector};
 

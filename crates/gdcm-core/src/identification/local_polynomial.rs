@@ -1,6 +1,6 @@
 //! The local polynomial method: the frequency response straight from the lines, without a model.
 
-use super::{MeasuredPoint, MeasuredResponse, Spectrum};
+use super::*;
 use crate::executor::{Executor, each};
 use nalgebra::{Complex, DMatrix, DVector};
 

@@ -1,71 +1,38 @@
 //! Identified models from flight records (M14).
 mod blocks;
-mod bundle;
 mod candidate;
-mod caution;
-mod channel_delay;
-mod clock;
-mod data_matrix;
-mod eigenvectors;
-mod evidence;
-mod examination;
-mod fast_modes;
-mod first_order_hold;
+mod cautions;
+mod diagnostics;
 mod flight_record;
-mod gap;
-mod identification_caution;
-mod identification_error;
-mod identified;
 mod identify;
 #[cfg(test)]
 mod known_answers;
-mod laguerre_bank;
-mod laguerre_model;
+mod laguerre;
 mod likelihood;
 mod local_polynomial;
-mod low_pass;
 mod measured_response;
-mod noise_covariance;
+mod modal_form;
 mod normal_system;
 mod options;
 mod order;
-mod polish;
 mod preparation;
-mod record_fit;
+mod prepared_data;
 mod refinement;
-mod report;
-mod scaling;
-mod signal;
+mod sampling;
 mod spectrum;
-mod stabilisation;
-mod state_space_matrices;
-mod steps;
 mod subspace;
-mod track;
 mod triangular_factor;
 mod uncertainty;
 mod validation;
-mod watch;
-pub use caution::Caution;
-pub use first_order_hold::FirstOrderHold;
-pub use flight_record::{FlightRecord, Piece};
-pub use gap::{Cause, Gap, Treatment};
-pub use identification_caution::IdentificationCaution;
-pub use identification_error::IdentificationError;
-pub use identified::{Identification, IdentifiedModel, Origin};
-pub use identify::identify;
-pub use local_polynomial::{LocalPolynomialError, local_polynomial, log_spaced};
-pub use low_pass::{CutOff, LowPass};
-pub use measured_response::{Excitation, MeasuredPoint, MeasuredResponse, TRUSTED_COHERENCE};
-pub use noise_covariance::NoiseCovariance;
-pub use options::Options;
-pub use preparation::{ChannelPreparation, Hold, Preparation, PreparationError, Prepared, RecordUse, prepare};
-pub use record_fit::RecordFit;
-pub use scaling::{Scales, ScalingError};
-pub use signal::{Role, Signal};
-pub use spectrum::{Spectrum, spectra};
-pub use stabilisation::StabilisationPoint;
-pub use state_space_matrices::StateSpaceMatrices;
-pub use uncertainty::{Bands, PoleEstimate, TWO_SIDED_95};
-pub use validation::{Validation, ValidationError, ValidationSettings, ValidationWindow, validate};
-pub use watch::{Unwatched, Watch};
+
+#[cfg(test)]
+use self::known_answers::*;
+use self::{
+    blocks::*, laguerre::*, likelihood::*, normal_system::*, order::*, refinement::*, sampling::*, subspace::*,
+    triangular_factor::*,
+};
+pub use self::{
+    candidate::*, cautions::*, diagnostics::*, flight_record::*, identify::*, local_polynomial::*,
+    measured_response::*, modal_form::*, options::*, preparation::*, prepared_data::*, spectrum::*, uncertainty::*,
+    validation::*,
+};

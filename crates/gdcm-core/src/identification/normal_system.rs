@@ -12,8 +12,7 @@
 //!
 //! With tau in X the gradient is exact: variable projection in the form of Kaufman, BIT 15, 1975.
 
-use super::blocks::{Block, BlockModel};
-use super::likelihood::{DEPENDENT, Likelihood, Lines, PieceCost, pseudo_inverse_root, whiten};
+use super::*;
 use crate::executor::each;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -345,27 +344,9 @@ fn parts(scalars: &DMatrix<Complex<f64>>) -> DMatrix<f64> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use super::*;
-    use crate::executor::Sequential;
-    use crate::identification::Spectrum;
-    use crate::identification::known_answers::{answers, complex_matrix, matrix, number, numbers};
     use serde_json::Value;
-
-    pub(in crate::identification) fn known_records(known: &Value) -> Likelihood<'static> {
-        let pieces = known["records"].as_array().unwrap().iter().enumerate().map(|(record, known)| {
-            let spectrum = Spectrum {
-                record,
-                duration_s: number(&known["T"]),
-                omega: numbers(&known["w"]),
-                inputs: complex_matrix(&known["U"]).transpose(),
-                outputs: complex_matrix(&known["Y"]).transpose(),
-            };
-            let weights = vec![DMatrix::identity(2, 2); spectrum.omega.len()];
-            Lines::weighted(&spectrum, weights)
-        });
-        Likelihood { pieces: pieces.collect(), executor: &Sequential }
-    }
 
     fn known_start(known: &Value) -> BlockModel {
         let start = &known["blocks_at_start"];

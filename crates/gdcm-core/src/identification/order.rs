@@ -8,11 +8,7 @@
 //!
 //! A record that was held out decides between orders whose BIC differ by less than 1 %.
 
-use super::IdentificationError;
-use super::blocks::BlockModel;
-use super::likelihood::Likelihood;
-use super::polish::Fit;
-use super::steps::Steps;
+use super::*;
 use crate::executor::each;
 use std::collections::BTreeMap;
 

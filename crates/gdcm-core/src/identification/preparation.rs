@@ -1,11 +1,6 @@
 //! From flight records as they were logged to pieces without gaps on a uniform grid (M14, 1).
 
-use super::caution::{Caution, channel_cautions};
-use super::clock::Clock;
-use super::gap::{Cause, Gap, Treatment};
-use super::signal::names;
-use super::track::Track;
-use super::{FlightRecord, Piece, Role, Signal};
+use super::*;
 use crate::executor::{Executor, each};
 use nalgebra::DMatrix;
 

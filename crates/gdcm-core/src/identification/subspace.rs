@@ -10,9 +10,7 @@
 //!
 //! Chiuso, "The role of vector autoregressive modeling in predictor-based subspace identification", Automatica 43, 2007.
 
-use super::StateSpaceMatrices;
-use super::laguerre_model::LaguerreModel;
-use super::triangular_factor::{TriangularFactor, least_squares, ridge_solution};
+use super::*;
 use nalgebra::{DMatrix, DMatrixView};
 
 /// How a predictor is made.
@@ -114,9 +112,6 @@ fn side_by_side(parts: &[DMatrixView<'_, f64>]) -> DMatrix<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identification::Piece;
-    use crate::identification::data_matrix::Projections;
-    use crate::identification::known_answers::{answers, matrix, number, numbers, response};
 
     #[test]
     fn a_system_without_noise_comes_back() {

@@ -4,9 +4,8 @@ use std::fmt;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::ScheduleError;
 use crate::dataset::FlightState;
-
-use super::schedule::ScheduleError;
 
 /// A column of which less than this is left beside the others is a combination of them.
 const DEPENDENT: f64 = 1e-9;

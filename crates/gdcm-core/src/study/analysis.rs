@@ -7,6 +7,7 @@ use crate::correction::{ChannelCorrection, GainBounds, Problem, ProblemError, So
 use crate::dataset::{BundleKind, Condition, ConditionId, Pair, PairTable};
 use crate::fidelity::{Discontinuity, Representative};
 use crate::schedule::{CostChange, Evidence, LeadEvidence, Schedule, ScheduleError, evidence, lead_evidence};
+use crate::uncertainty::Scalar;
 
 use super::{BundleMetrics, Caution, Comparison, LeadCompensated, LeadOffer, Study, Uncertainty, scheduled_points};
 
@@ -121,6 +122,17 @@ impl ConditionAnalysis {
     /// D of a response as the delays were asked for it \[s\]: of eq. (9), or of M15.2.
     pub fn wanted_delay_s(&self, pair: Pair) -> Option<f64> {
         self.delay_problem.delta[pair]
+    }
+
+    /// Whether the delays were asked for the D of M15.2, which leads always are, and not for that of eq. (9).
+    pub fn asks_band_delays(&self) -> bool {
+        self.delay_problem.delta == self.comparison.delta.band_delay_s
+    }
+
+    /// The value of which [`Self::wanted_delay_s`] is one: its bar stands beside it (M13).
+    pub fn wanted_delay(&self, pair: Pair) -> Scalar {
+        let is_median = self.delay_problem.delta[pair] == self.comparison.delta.delay_s[pair];
+        if is_median { Scalar::Delay(pair) } else { Scalar::BandDelay(pair) }
     }
 
     /// Bounds of every channel gain.

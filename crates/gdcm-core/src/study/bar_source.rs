@@ -17,13 +17,12 @@ pub(super) fn bar_source<'a>(
     let figures = SwapOptimum::of(result).figures();
     let by_coherence = told_by_coherence(analysis, result);
     let by_band = told_by_band(analysis, result);
-    let is_matched = |pair: Pair| result.held()[pair] && result.gains.unmatched.iter().all(|miss| miss.pair != pair);
     let told = figures.map(|scalar, _| {
         let (pair, deviation): (Pair, fn(&CoherenceError) -> f64) = match scalar {
-            Scalar::Gain(pair) => (pair, |error| error.ln_gain),
-            Scalar::NetGain(pair) if is_matched(pair) => (pair, |error| error.ln_gain),
-            Scalar::Delay(pair) => (pair, |error| error.delay_s),
-            _ => return None,
+            _ if !takes_reported_error(result, scalar) => return None,
+            Scalar::Gain(pair) | Scalar::NetGain(pair) => (pair, |error| error.ln_gain),
+            Scalar::Delay(pair) | Scalar::BandDelay(pair) => (pair, |error| error.delay_s),
+            Scalar::ChannelGain(_) | Scalar::ChannelDelay(_) => return None,
         };
         let part = |(error, degrees): (CoherenceError, f64)| Part { variance: deviation(&error).powi(2), degrees };
         let coherence = by_coherence.as_ref().and_then(|told| told[pair]).map(part);
@@ -38,6 +37,23 @@ pub(super) fn bar_source<'a>(
         told,
         delay_bounds_s: [result.delay_problem.bounds.lower, result.delay_problem.bounds.upper],
     }
+}
+
+/// Whether the error that the identified representative tells of itself counts for a value: for G, D and the net gains that are held
+/// and matched, which are G (M13.2). The other net gains and the channels rest on the spread of the models alone: what one response's
+/// error does to them is not known without that of all responses together.
+pub(super) fn takes_reported_error(result: &ConditionAnalysis, scalar: Scalar) -> bool {
+    let is_matched = |pair: Pair| result.held()[pair] && result.gains.unmatched.iter().all(|miss| miss.pair != pair);
+    match scalar {
+        Scalar::Gain(_) | Scalar::Delay(_) | Scalar::BandDelay(_) => true,
+        Scalar::NetGain(pair) => is_matched(pair),
+        Scalar::ChannelGain(_) | Scalar::ChannelDelay(_) => false,
+    }
+}
+
+/// Whether the identified representative of a condition tells an error of its own.
+pub(super) fn reports_error(analysis: &Analysis, result: &ConditionAnalysis) -> bool {
+    told_by_band(analysis, result).is_some() || told_by_coherence(analysis, result).is_some()
 }
 
 /// The error of each response of the identified representative that its coherence tells, with its degrees of freedom; none where it

@@ -143,7 +143,8 @@ impl ConditionStages {
         Ok(solved.ok().map(|solved| SwapOptimum {
             correction: solved.correction(),
             gain: solved.gain_problem.delta.clone(),
-            delay_s: solved.delay_problem.delta.clone(),
+            delay_s: comparison.delta.delay_s.clone(),
+            band_delay_s: comparison.delta.band_delay_s.clone(),
         }))
     }
 

@@ -140,7 +140,7 @@ pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncer
     let (inputs, outputs) = study.dataset.names_of_channels();
     let top = study.settings.band.max();
     let half_ms = |pair: Pair| {
-        let bar = sure?.conditions.get(&result.condition.id())?.bars[Scalar::Delay(pair)].as_ref()?;
+        let bar = sure?.conditions.get(&result.condition.id())?.bars[Scalar::BandDelay(pair)].as_ref()?;
         Some(format!(" ± {}", telling(s_to_ms(bar.half_width(sure?.level)?), 0)))
     };
     let wants = |pair: Pair| {

@@ -28,12 +28,13 @@ pub(super) struct Swapping<'a> {
     pub(super) responses: &'a ConditionResponses,
 }
 
-/// What comes of a swap: the correction, and the G and D \[s\] that it was asked for.
+/// What comes of a swap: the correction, and the G that it was asked for, and both D \[s\].
 #[derive(Clone, Debug)]
 pub(super) struct SwapOptimum {
     pub(super) correction: ChannelCorrection,
     pub(super) gain: PairTable<Option<f64>>,
     pub(super) delay_s: PairTable<Option<f64>>,
+    pub(super) band_delay_s: PairTable<Option<f64>>,
 }
 
 impl SwapOptimum {
@@ -42,17 +43,19 @@ impl SwapOptimum {
         Self {
             correction: analysis.correction.clone(),
             gain: analysis.gain_problem.delta.clone(),
-            delay_s: analysis.delay_problem.delta.clone(),
+            delay_s: analysis.comparison.delta.delay_s.clone(),
+            band_delay_s: analysis.comparison.delta.band_delay_s.clone(),
         }
     }
 
     /// The figures that have bars; signed delays where there are leads.
     pub(super) fn figures(&self) -> Figures {
-        let Self { correction, gain, delay_s } = self;
+        let Self { correction, gain, delay_s, band_delay_s } = self;
         ScalarTable::from_fn(gain.outputs(), gain.inputs(), |scalar| {
             let figure = match scalar {
                 Scalar::Gain(pair) => gain[pair]?.ln(),
                 Scalar::Delay(pair) => delay_s[pair]?,
+                Scalar::BandDelay(pair) => band_delay_s[pair]?,
                 Scalar::NetGain(pair) => correction.net_gain(pair).value().ln(),
                 Scalar::ChannelGain(Channel::Input(input)) => correction.input_gains[input].ln(),
                 Scalar::ChannelGain(Channel::Output(output)) => correction.output_gains[output].ln(),

@@ -15,27 +15,15 @@
 //! ```
 
 mod bar;
-mod coherence;
 mod difference;
 mod least_squares;
-mod part;
-mod quantiles;
-mod scalar;
 mod scatter;
-mod schedule_band;
 mod second_variable;
-mod settings;
 mod spread;
 
-pub use bar::{Bar, IdentificationSource};
-pub use coherence::{CoherenceError, Measurement};
-pub use difference::{Difference, holm};
-pub use least_squares::{Design, Fit, MOST_COLUMNS};
-pub use part::{Part, pooled, satterthwaite};
-pub use quantiles::{chi_squared_quantile, fisher_upper, student_quantile, student_two_sided};
-pub use scalar::{Scalar, ScalarTable};
-pub use scatter::VarianceDecomposition;
-pub use schedule_band::{BandWidths, ScheduleBand};
-pub use second_variable::{SecondVariableDesign, SecondVariableEffect, SecondVariableError, scaled};
-pub use settings::{GREATEST_MEASUREMENT, GREATEST_PRIOR, LEVELS, UncertaintySettings};
-pub use spread::{BarSource, ConditionSpread, Figures, ReportedUncertainty, bars};
+pub use bar::*;
+pub use difference::*;
+pub use least_squares::*;
+pub use scatter::*;
+pub use second_variable::*;
+pub use spread::*;

@@ -1,9 +1,6 @@
 //! What the scatter of one figure over the conditions is made of (M13.5).
 
-use super::bar::Bar;
-use super::least_squares::Design;
-use super::part::{Part, satterthwaite};
-use super::quantiles::{chi_squared_quantile, fisher_upper};
+use super::{Bar, Design, Part, chi_squared_quantile, fisher_upper, satterthwaite};
 
 /// The scatter of one figure about a fit, split into what the bundles make of it and the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]

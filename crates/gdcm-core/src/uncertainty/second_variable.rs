@@ -1,7 +1,6 @@
 //! Whether a second variable says something of the gains that airspeed does not (M13.7).
 
-use super::least_squares::Design;
-use super::quantiles::{student_quantile, student_two_sided};
+use super::{Design, student_quantile, student_two_sided};
 
 /// The effect of a second variable on one figure, beside the schedule with airspeed.
 #[derive(Clone, Copy, Debug, PartialEq)]

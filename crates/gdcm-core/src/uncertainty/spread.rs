@@ -1,8 +1,13 @@
-//! What the swaps of a condition's models do to its figures, and the bars that all conditions' swaps make.
+//! What substituting the models of a condition does to its values, the bars that all conditions give, and the error that the
+//! coherence of a measurement tells (M13.2).
 
-use super::bar::{Bar, IdentificationSource};
-use super::part::{Part, pooled};
-use super::scalar::{Scalar, ScalarTable};
+use std::f64::consts::PI;
+use std::ops::{Index, IndexMut};
+
+use super::{Bar, IdentificationSource, Part, pooled};
+use crate::correction::Channel;
+use crate::dataset::Pair;
+use crate::response::median;
 
 /// One figure of each kind, where it exists.
 pub type Figures = ScalarTable<Option<f64>>;
@@ -101,6 +106,166 @@ fn range(scalar: Scalar, delay_bounds_s: [f64; 2]) -> [f64; 2] {
     }
 }
 
+/// One figure of a condition's analysis, `q` of M13.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Scalar {
+    /// `ln G` of a response.
+    Gain(Pair),
+    /// `D` of a response \[s\] by eq. (9).
+    Delay(Pair),
+    /// `D` of a response \[s\] by the line through its phase (M15.2).
+    BandDelay(Pair),
+    /// `ln k_o k_i` of a response.
+    NetGain(Pair),
+    /// `ln k` of a channel.
+    ChannelGain(Channel),
+    /// `tau` of a channel \[s\].
+    ChannelDelay(Channel),
+}
+
+impl Scalar {
+    /// Whether it is a time; otherwise it is the natural logarithm of a gain.
+    pub fn is_delay(self) -> bool {
+        matches!(self, Self::Delay(_) | Self::BandDelay(_) | Self::ChannelDelay(_))
+    }
+}
+
+/// A table with one entry for each figure of a condition with `p` outputs and `m` inputs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScalarTable<T> {
+    outputs: usize,
+    inputs: usize,
+    entries: Vec<T>,
+}
+
+impl<T> ScalarTable<T> {
+    /// The table whose entry of each figure is `entry(figure)`.
+    pub fn from_fn(outputs: usize, inputs: usize, entry: impl FnMut(Scalar) -> T) -> Self {
+        Self { outputs, inputs, entries: scalars(outputs, inputs).map(entry).collect() }
+    }
+
+    /// Every figure with its entry.
+    pub fn iter(&self) -> impl Iterator<Item = (Scalar, &T)> {
+        scalars(self.outputs, self.inputs).zip(&self.entries)
+    }
+
+    /// The table of `f(figure, entry)`.
+    pub fn map<U>(&self, mut f: impl FnMut(Scalar, &T) -> U) -> ScalarTable<U> {
+        let entries = self.iter().map(|(scalar, entry)| f(scalar, entry)).collect();
+        ScalarTable { outputs: self.outputs, inputs: self.inputs, entries }
+    }
+
+    fn place(&self, scalar: Scalar) -> usize {
+        let (p, m) = (self.outputs, self.inputs);
+        let of_pair = |pair: Pair| {
+            assert!(pair.output < p && pair.input < m, "{pair:?} is outside a {p} x {m} table");
+            pair.output * m + pair.input
+        };
+        let of_channel = |channel| match channel {
+            Channel::Input(input) => input,
+            Channel::Output(output) => m + output,
+        };
+        match scalar {
+            Scalar::Gain(pair) => of_pair(pair),
+            Scalar::Delay(pair) => p * m + of_pair(pair),
+            Scalar::BandDelay(pair) => 2 * p * m + of_pair(pair),
+            Scalar::NetGain(pair) => 3 * p * m + of_pair(pair),
+            Scalar::ChannelGain(channel) => 4 * p * m + of_channel(channel),
+            Scalar::ChannelDelay(channel) => 4 * p * m + p + m + of_channel(channel),
+        }
+    }
+}
+
+impl<T> Index<Scalar> for ScalarTable<T> {
+    type Output = T;
+
+    fn index(&self, scalar: Scalar) -> &T {
+        &self.entries[self.place(scalar)]
+    }
+}
+
+impl<T> IndexMut<Scalar> for ScalarTable<T> {
+    fn index_mut(&mut self, scalar: Scalar) -> &mut T {
+        let place = self.place(scalar);
+        &mut self.entries[place]
+    }
+}
+
+/// Every figure, in the order of the entries.
+fn scalars(outputs: usize, inputs: usize) -> impl Iterator<Item = Scalar> {
+    let pairs = move |of: fn(Pair) -> Scalar| {
+        (0..outputs).flat_map(move |output| (0..inputs).map(move |input| of(Pair::new(output, input))))
+    };
+    let channels = move |of: fn(Channel) -> Scalar| {
+        (0..inputs)
+            .map(move |input| of(Channel::Input(input)))
+            .chain((0..outputs).map(move |output| of(Channel::Output(output))))
+    };
+    pairs(Scalar::Gain)
+        .chain(pairs(Scalar::Delay))
+        .chain(pairs(Scalar::BandDelay))
+        .chain(pairs(Scalar::NetGain))
+        .chain(channels(Scalar::ChannelGain))
+        .chain(channels(Scalar::ChannelDelay))
+}
+
+/// How a response was measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measurement {
+    /// Number of independent averages, `n_d`.
+    pub averages: f64,
+    /// Length of the windows \[s\], `T_w`; none where it is not known: the whole band then has one error.
+    pub window_s: Option<f64>,
+    /// `C_epsilon`: 1, or the root of 0.55 for windows that overlap by half.
+    pub factor: f64,
+}
+
+/// Standard deviations of ln G and of D \[s\] that coherence tells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoherenceError {
+    /// Of ln G.
+    pub ln_gain: f64,
+    /// Of D \[s\].
+    pub delay_s: f64,
+}
+
+impl Measurement {
+    /// Degrees of freedom of an error that coherence tells, `2 n_d`.
+    pub fn degrees(&self) -> f64 {
+        2.0 * self.averages
+    }
+
+    /// `epsilon = C sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))`: standard deviation of `ln |H|` and, in rad, of `arg H`.
+    ///
+    /// J. S. Bendat and A. G. Piersol, *Random Data*, 4th ed. (2010), section 9.
+    fn deviation(&self, coherence: f64) -> f64 {
+        self.factor * ((1.0 - coherence) / (coherence * 2.0 * self.averages)).sqrt()
+    }
+
+    /// `kappa = sqrt(min(1, (pi/2) sum f_j^2))` with `f_j` the share of the frequencies \[rad/s\] with
+    /// `floor(omega T_w / (4 pi)) = j`: errors of frequencies closer than `4 pi / T_w` are one error.
+    fn averaging(&self, omega: &[f64]) -> f64 {
+        let Some(window_s) = self.window_s else { return 1.0 };
+        let cell = |omega: &f64| (omega * window_s / (4.0 * PI)).floor();
+        let shares = omega.chunk_by(|a, b| cell(a) == cell(b)).map(|chunk| chunk.len() as f64 / omega.len() as f64);
+        (0.5 * PI * shares.map(|share| share * share).sum::<f64>()).min(1.0).sqrt()
+    }
+
+    /// The error over a band of `omega` \[rad/s\], rising, at which the response has these coherences; frequencies with less than
+    /// `threshold`, or none at all, are left out. None where none is left.
+    pub fn error(&self, omega: &[f64], coherence: &[f64], threshold: f64) -> Option<CoherenceError> {
+        let is_measured = |coherence: f64| coherence > 0.0 && coherence >= threshold;
+        let measured = || omega.iter().zip(coherence).filter(|(_, coherence)| is_measured(**coherence));
+        let mut gains: Vec<f64> = measured().map(|(_, &coherence)| self.deviation(coherence)).collect();
+        let mut delays: Vec<f64> = measured().map(|(omega, &coherence)| self.deviation(coherence) / omega).collect();
+        if gains.is_empty() || self.averages.is_nan() || self.averages <= 0.0 {
+            return None;
+        }
+        let kappa = self.averaging(omega);
+        Some(CoherenceError { ln_gain: kappa * median(&mut gains), delay_s: kappa * median(&mut delays) })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -113,5 +278,19 @@ mod tests {
             assert!(told.replaces(None) && told.replaces(Some(part(0.01))));
             assert!(!told.replaces(Some(part(0.09))));
         }
+    }
+}
+
+#[cfg(test)]
+mod scalar_tests {
+    use super::*;
+
+    #[test]
+    fn every_figure_has_a_place_of_its_own() {
+        let mut table = ScalarTable::from_fn(3, 2, |scalar| scalar);
+        assert!(table.iter().all(|(scalar, entry)| scalar == *entry && table[scalar] == scalar));
+        assert_eq!(table.iter().count(), 4 * 6 + 2 * 5);
+        table[Scalar::ChannelDelay(Channel::Output(2))] = Scalar::Gain(Pair::new(0, 0));
+        assert_eq!(table.iter().last().map(|(_, entry)| *entry), Some(Scalar::Gain(Pair::new(0, 0))));
     }
 }

@@ -97,7 +97,7 @@ fn channel_rows(analysis: &Analysis, condition: &Condition) -> Vec<[String; 20]>
     inputs.chain(outputs).collect()
 }
 
-const RESPONSE_HEADER: [&str; 32] = [
+const RESPONSE_HEADER: [&str; 34] = [
     "condition",
     "airspeed_kt",
     "output",
@@ -130,6 +130,8 @@ const RESPONSE_HEADER: [&str; 32] = [
     "u_net_gain_identification",
     "degrees_of_freedom",
     "left_in_band",
+    "D_band_low_s",
+    "D_band_high_s",
 ];
 
 /// `assessment.csv`: G, D \[s\], net gains and J of the nominal model before and under the scheduled correction, of every response of the
@@ -155,7 +157,7 @@ fn response_row(
     condition: &Condition,
     scheduled: Option<&ChannelCorrection>,
     pair: Pair,
-) -> [String; 32] {
+) -> [String; 34] {
     let dataset = &analysis.study.dataset;
     let result = analysis.condition(condition.id());
     let delta = result.map(|result| &result.comparison.delta);
@@ -168,6 +170,7 @@ fn response_row(
     let bars = Bars { analysis, condition: condition.id() };
     let [gain_low, gain_high] = bars.ends(Scalar::Gain(pair));
     let [delay_low_s, delay_high_s] = bars.ends(Scalar::Delay(pair));
+    let [band_low_s, band_high_s] = bars.ends(Scalar::BandDelay(pair));
     let [net_low, net_high] = bars.ends(Scalar::NetGain(pair));
     let [u_physics, u_identification, degrees] = bars.parts(Scalar::NetGain(pair));
     [
@@ -203,6 +206,8 @@ fn response_row(
         u_identification,
         degrees,
         cell(bars.left_in_band(pair)),
+        band_low_s,
+        band_high_s,
     ]
 }
 

@@ -44,6 +44,9 @@ pub struct BarsEntry {
     /// Of each D.
     #[serde(rename = "D_s")]
     pub delta_delay_s: Vec<Vec<Option<BarEntry>>>,
+    /// Of each band delay, where the channels were asked for those (M15.2).
+    #[serde(rename = "D_band_s", default, skip_serializing_if = "Vec::is_empty")]
+    pub band_delay_s: Vec<Vec<Option<BarEntry>>>,
     /// Of each channel gain.
     pub gains: ChannelBars,
     /// Of each channel delay.
@@ -225,9 +228,11 @@ impl BarsEntry {
                 (0..names.outputs.len()).map(|output| entry(scalar(Channel::Output(output)))).collect::<Vec<_>>(),
             ),
         };
+        let asks_band_delays = analysis.condition(condition)?.asks_band_delays();
         Some(Self {
             delta_gain: table(Scalar::Gain),
             delta_delay_s: table(Scalar::Delay),
+            band_delay_s: if asks_band_delays { table(Scalar::BandDelay) } else { Vec::new() },
             gains: channels(Scalar::ChannelGain),
             delays_s: channels(Scalar::ChannelDelay),
         })

@@ -23,9 +23,9 @@ struct Part {
 }
 
 const PARTS: [Part; 3] = [
-    Part { name: "ΔJ", color: Color::new(0x1f, 0x3d, 0x5c), of: CostChange::total },
-    Part { name: "ΔJ magnitude", color: Color::new(0xdf, 0x9a, 0x3c), of: CostChange::magnitude },
-    Part { name: "ΔJ phase", color: Color::new(0xd3, 0xdd, 0xe9), of: CostChange::phase },
+    Part { name: "ΔJ", color: Color::INK, of: CostChange::total },
+    Part { name: "ΔJ magnitude", color: Color::DIM, of: CostChange::magnitude },
+    Part { name: "ΔJ phase", color: Color::DIM.tint(45), of: CostChange::phase },
 ];
 
 /// ΔJ and its parts in each condition, of each of `pairs`; below 0 is better.

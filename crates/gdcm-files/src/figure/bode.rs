@@ -10,14 +10,14 @@ use gdcm_core::units::db_to_ratio;
 
 use super::axis::{Axis, Range};
 use super::condition_source::{ConditionSource, CurveId, ResponseLine, SourceModel, settings_words};
-use super::drawing::Color;
+use super::drawing::{Color, Hue};
 use super::figure::{Figure, Panel, Plot};
 use super::mark::{Along, Band, Curve, Mark, Note, Place};
 use super::request::{FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use super::role::Role;
 
 /// The ground of the band of comparison.
-const BAND: Color = Color::new(0xec, 0xf2, 0xf8);
+const BAND: Color = Color::of(Hue::Accent).tint(8);
 /// Height that fitting gives to values outside the band on either side, as a part of the height within it.
 const OUTSIDE_PART: f64 = 0.4;
 /// Height of the magnitude, where that of the phase is 1.

@@ -169,37 +169,99 @@ impl Shape {
     }
 }
 
-/// A colour, as on a screen (sRGB).
+/// What a colour means: the same in the themes of the window and on paper, each of which has a colour of its own for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Hue {
+    /// Paper, and the ground of the plots of the window.
+    Background,
+    /// Grid lines.
+    Grid,
+    /// Titles and what is read first.
+    Text,
+    /// Labels, frames, and what is read second.
+    DimText,
+    /// The nominal physics model.
+    Nominal,
+    /// The other physics models.
+    Perturbed,
+    /// Models identified from flight.
+    Identified,
+    /// Corrected models, and the schedule.
+    Corrected,
+    /// What is left out.
+    Rejected,
+    /// The band of comparison, and what was looked through.
+    Accent,
+    /// Cautions, and what got worse.
+    Warning,
+    /// Proofs, and what got better.
+    Good,
+    /// From that of perturbed models, 0, to that of identified ones, 255, as in scales made for colour-blind eyes.
+    OfAirspeed(u8),
+}
+
+impl Hue {
+    /// Red, green and blue on paper (sRGB): those of the light theme, on white.
+    pub fn on_paper(self) -> [u8; 3] {
+        let rgb: u32 = match self {
+            Self::Background => 0xffffff,
+            Self::Grid => 0xdfe2e7,
+            Self::Text => 0x22262e,
+            Self::DimText => 0x586070,
+            Self::Nominal => 0xc62f2f,
+            Self::Perturbed => 0x3566c8,
+            Self::Identified => 0xb57a00,
+            Self::Corrected => 0x1d8a47,
+            Self::Rejected => 0x646c79,
+            Self::Accent => 0x1b67a6,
+            Self::Warning => 0x8f5400,
+            Self::Good => 0x187049,
+            Self::OfAirspeed(step) => {
+                return mixed(Self::Perturbed.on_paper(), Self::Identified.on_paper(), f64::from(step) / 255.0);
+            }
+        };
+        [(rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8]
+    }
+}
+
+/// The colour that is this part of the way to another one.
+fn mixed(from: [u8; 3], to: [u8; 3], part: f64) -> [u8; 3] {
+    let mix = |from: u8, to: u8| (f64::from(from) + part * (f64::from(to) - f64::from(from))).round() as u8;
+    std::array::from_fn(|at| mix(from[at], to[at]))
+}
+
+/// A colour by what it means, and how strong it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Color {
-    /// Red, green and blue, 0 to 255.
-    pub rgb: [u8; 3],
+    /// What it means.
+    pub hue: Hue,
+    /// How strong it is \[%\]: 100 as it is, 0 the background.
+    pub percent: u8,
 }
 
 impl Color {
     /// Paper.
-    pub const WHITE: Self = Self::new(0xff, 0xff, 0xff);
+    pub const WHITE: Self = Self::of(Hue::Background);
     /// Titles and what is read first.
-    pub const INK: Self = Self::new(0x22, 0x26, 0x2e);
+    pub const INK: Self = Self::of(Hue::Text);
     /// Labels, frames, and what is read second.
-    pub const DIM: Self = Self::new(0x4a, 0x51, 0x5c);
+    pub const DIM: Self = Self::of(Hue::DimText);
     /// Grid lines.
-    pub const GRID: Self = Self::new(0xdf, 0xe2, 0xe7);
+    pub const GRID: Self = Self::of(Hue::Grid);
 
-    /// The colour of these parts, 0 to 255 each.
-    pub const fn new(red: u8, green: u8, blue: u8) -> Self {
-        Self { rgb: [red, green, blue] }
+    /// A hue as it is.
+    pub const fn of(hue: Hue) -> Self {
+        Self { hue, percent: 100 }
     }
 
-    /// The colour that is this part of the way to another one.
-    pub fn mixed(self, other: Self, part: f64) -> Self {
-        let mix = |from: u8, to: u8| (f64::from(from) + part * (f64::from(to) - f64::from(from))).round() as u8;
-        Self { rgb: std::array::from_fn(|at| mix(self.rgb[at], other.rgb[at])) }
+    /// This colour thinned with the background.
+    pub const fn tint(self, percent: u8) -> Self {
+        Self { percent, ..self }
     }
 
-    /// This colour thinned with white; 1 leaves it as it is, 0 leaves white.
-    pub fn tint(self, strength: f64) -> Self {
-        Self::WHITE.mixed(self, strength.clamp(0.0, 1.0))
+    /// Red, green and blue on paper (sRGB).
+    pub fn rgb(self) -> [u8; 3] {
+        mixed(Hue::Background.on_paper(), self.hue.on_paper(), f64::from(self.percent.min(100)) / 100.0)
     }
 }
 
@@ -209,6 +271,8 @@ pub enum Dash {
     /// One unbroken line.
     #[default]
     Solid,
+    /// Two lines with the background between them, which another line may fill.
+    Double,
     /// Long dashes.
     Long,
     /// Short dashes.
@@ -217,20 +281,20 @@ pub enum Dash {
     Dotted,
     /// Dashes with a dot between them.
     DashDot,
-    /// Dashes with two dots between them.
-    DashDotDot,
+    /// Short dashes with a dot between them.
+    ShortDashDot,
 }
 
 impl Dash {
     /// Lengths of dashes and gaps in turn \[pt\]; none of a solid line.
     pub fn pattern_pt(self) -> &'static [f64] {
         match self {
-            Self::Solid => &[],
+            Self::Solid | Self::Double => &[],
             Self::Long => &[7.0, 2.0],
             Self::Short => &[3.0, 1.6],
             Self::Dotted => &[0.9, 1.7],
             Self::DashDot => &[6.0, 1.8, 1.2, 1.8],
-            Self::DashDotDot => &[5.0, 1.6, 1.2, 1.6, 1.2, 1.6],
+            Self::ShortDashDot => &[3.0, 1.5, 1.0, 1.5],
         }
     }
 }
@@ -255,6 +319,29 @@ impl Stroke {
     /// A line of dashes.
     pub const fn dashed(color: Color, width_pt: f64, dash: Dash) -> Self {
         Self { color, width_pt, dash }
+    }
+
+    /// This line of the window as it is printed: finer, for paper shows more.
+    pub fn printed(self) -> Self {
+        Self { width_pt: Self::PRINTED * self.width_pt, ..self }
+    }
+
+    /// Width on paper as a part of that in the window.
+    const PRINTED: f64 = 0.55;
+    /// Of a double line, the part that is background.
+    pub const GROUND_OF_DOUBLE: f64 = 0.42;
+
+    /// The lines that are drawn for it, one over another.
+    pub fn layers(self) -> Vec<Self> {
+        match self.dash {
+            Dash::Double => {
+                vec![
+                    Self::solid(self.color, self.width_pt),
+                    Self::solid(Color::WHITE, Self::GROUND_OF_DOUBLE * self.width_pt),
+                ]
+            }
+            _ => vec![self],
+        }
     }
 }
 
@@ -317,10 +404,10 @@ mod tests {
 
     #[test]
     fn a_tint_lies_between_the_colour_and_white() {
-        let color = Color::new(200, 0, 100);
-        assert_eq!(color.tint(1.0), color);
-        assert_eq!(color.tint(0.0), Color::WHITE);
-        assert_eq!(color.tint(0.5), Color::new(228, 128, 178));
+        let color = Color::of(Hue::Nominal);
+        assert_eq!(color.rgb(), [0xc6, 0x2f, 0x2f]);
+        assert_eq!(color.tint(0).rgb(), [255, 255, 255]);
+        assert_eq!(color.tint(50).rgb(), [227, 151, 151]);
     }
 }
 

@@ -10,17 +10,17 @@ use gdcm_core::units::{ratio_to_db, s_to_ms};
 use super::axis::{Axis, Range};
 use super::bode::BodeOptions;
 use super::condition_source::ConditionSource;
-use super::drawing::{Color, Dash, Stroke};
+use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::mark::{Curve, Mark, Rule};
 use super::request::PhaseErrorUnit;
-use super::role::{AMBER, GREY, Role};
+use super::role::Role;
 use super::ticks::decimals;
 
 const DELTA: Stroke = Stroke::dashed(Color::INK, 0.7, Dash::Dotted);
-const BOUND: Stroke = Stroke::dashed(AMBER, 0.7, Dash::DashDot);
+const BOUND: Stroke = Stroke::dashed(Color::of(Hue::Warning), 0.7, Dash::DashDot);
 const QUANTILE: Stroke = Stroke::dashed(Color::DIM, 0.5, Dash::Short);
-const MUAD: Stroke = Stroke::dashed(GREY, 0.9, Dash::Long);
+const MUAD: Stroke = Stroke::solid(Color::of(Hue::Good), 0.55);
 
 impl PhaseErrorUnit {
     /// A difference of phases \[rad\] at `omega` as it is drawn.

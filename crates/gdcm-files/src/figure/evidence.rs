@@ -6,17 +6,16 @@ use gdcm_core::uncertainty::VarianceDecomposition;
 
 use super::axis::{Axis, Range};
 use super::condition_source::{schedule_words, settings_words};
-use super::drawing::{Color, Stroke};
+use super::drawing::{Color, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::mark::{Bars, DotShape, Dots, Intervals, Note, Place};
-use super::role::{AMBER, BLUE, RED};
 
 /// Width of a stacked bar, where places are 1 apart.
 const BAR: f64 = 0.56;
 /// How far the dots of one place stand apart.
 const APART: f64 = 0.24;
 /// The interval of the rest.
-const INTERVAL: Stroke = Stroke::solid(Color::new(0xe2, 0x99, 0x99), 2.4);
+const INTERVAL: Stroke = Stroke::solid(Color::of(Hue::Nominal).tint(50), 2.4);
 /// Intervals are seen up to so many times the scatter.
 const MOST_SEEN: f64 = 4.0;
 /// The shares end at 100 %; the numbers above them have the rest \[%\].
@@ -27,9 +26,8 @@ const ABOVE: f64 = 109.0;
 /// What the scatter is about, in the order of the places of an axis.
 const ABOUT: [&str; 2] = ["airspeed", "schedule"];
 /// The parts of a scatter, from below; in print they differ by how dark they are.
-const PARTS: [(&str, Color); 3] =
-    [("trim", BLUE_IN_PRINT), ("identification", AMBER), ("rest: real, or model form", RED)];
-const BLUE_IN_PRINT: Color = Color::new(0xb8, 0xc9, 0xec);
+const PARTS: [(&str, Hue); 3] =
+    [("trim", Hue::Perturbed), ("identification", Hue::Identified), ("rest: real, or model form", Hue::Nominal)];
 
 /// The split of the scatter of each of `pairs` that has one, at equal airspeed and about the schedule: shares of the variance as stacked
 /// bars, below them the scatter itself, what the bundles explain, and the rest with its interval; none where bars were not computed,
@@ -64,8 +62,8 @@ fn shares(scatter: &PairScatter) -> Panel {
         let bars: Vec<[f64; 2]> = splits(scatter).filter_map(share).collect();
         let on: Vec<f64> = bars.iter().map(|[x, _]| feet[*x as usize]).collect();
         bars.iter().for_each(|[x, share]| feet[*x as usize] += share);
-        let (name, color) = PARTS[part];
-        Bars { name: name.to_owned(), color, width: BAR, bars, feet: on, beside: 0.0 }
+        let (name, hue) = PARTS[part];
+        Bars { name: name.to_owned(), color: Color::of(hue), width: BAR, bars, feet: on, beside: 0.0 }
     });
     let bars: Vec<Bars> = bars.collect();
     let note = |x: f64, y: f64, text: String, upright: bool| Note { at: Place::Value { x, y, upright }, text };
@@ -83,8 +81,8 @@ fn deviations(scatter: &PairScatter, level: f64) -> Panel {
     let scatter_of: fn(&VarianceDecomposition) -> f64 = |split| split.scatter;
     let figures = [
         ("scatter", DotShape::Circle, Color::INK, scatter_of),
-        ("what the bundles explain", DotShape::Diamond, BLUE, VarianceDecomposition::explained),
-        ("rest", DotShape::Square, RED, VarianceDecomposition::rest),
+        ("what the bundles explain", DotShape::Diamond, Color::of(Hue::Perturbed), VarianceDecomposition::explained),
+        ("rest", DotShape::Square, Color::of(Hue::Nominal), VarianceDecomposition::rest),
     ];
     let dots = figures.into_iter().zip([-APART, 0.0, APART]).map(|((name, shape, color, of), beside)| {
         let dots = Dots::new(name, shape, color).key(name).filled(shape != DotShape::Diamond);

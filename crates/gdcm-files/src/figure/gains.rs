@@ -11,29 +11,29 @@ use gdcm_core::units::s_to_ms;
 
 use super::axis::{Axis, Range};
 use super::condition_source::{schedule_words, settings_words};
-use super::drawing::{Color, Dash, Stroke};
+use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::mark::{Bracket, Brackets, Curve, Dot, DotShape, Dots, Intervals, Rule, Spans};
-use super::role::{BLUE, GREY, RED, Role};
+use super::role::Role;
 use super::ticks::decimals;
 
 /// Samples of a schedule between its ends.
 const SAMPLES: usize = 120;
 const NULL: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
 /// A bar, and that of the identification in it.
-const BAR: Stroke = Stroke::solid(BLUE, 0.6);
-const INNER_BAR: Stroke = Stroke { color: Color::new(0x9b, 0xb3, 0xe4), width_pt: 2.4, dash: Dash::Solid };
+const BAR: Stroke = Stroke::solid(Color::of(Hue::Perturbed), 0.6);
+const INNER_BAR: Stroke = Stroke::solid(Color::of(Hue::Perturbed).tint(50), 2.4);
 /// How far bars may widen the range of the dots, as a part of it.
 const OF_BARS: f64 = 0.5;
 /// Brackets of differences at one airspeed.
-const BRACKET_BEYOND: Stroke = Stroke::solid(RED, 0.7);
-const BRACKET_WITHIN: Stroke = Stroke::solid(GREY, 0.4);
+const BRACKET_BEYOND: Stroke = Stroke::solid(Color::of(Hue::Warning), 0.7);
+const BRACKET_WITHIN: Stroke = Stroke::solid(Color::DIM, 0.4);
 const BEYOND: &str = "difference, times what the bundles explain";
 const WITHIN: &str = "difference within what they can make";
 /// Height of a plot as a part of its width, and where bars and brackets stand in it.
 const ASPECTS: [f64; 2] = [0.95, 1.3];
 /// The ground of the bounds.
-const BOUNDS: Color = Color::new(0xe2, 0xea, 0xf3);
+const BOUNDS: Color = Color::of(Hue::Accent).tint(16);
 /// Width of that ground over airspeed \[kt\], and over conditions.
 const BOUNDS_WIDTHS: [f64; 2] = [3.0, 0.7];
 
@@ -234,7 +234,7 @@ impl Quantity<'_> {
         let curve = schedule.map(|schedule| {
             let (x, y): (Vec<f64>, Vec<f64>) =
                 scheduled_samples(schedule, &self.of).into_iter().map(|[x, y]| (x, y)).unzip();
-            let stroke = Stroke { color: Role::Scheduled.stroke(false).color, ..Stroke::solid(Color::INK, 1.2) };
+            let stroke = Role::Scheduled.stroke(false);
             Curve::new("schedule", stroke, x, y).key("schedule")
         });
         let panel = Panel::new(x, y).with_all(self.spans(analysis, across));
@@ -345,7 +345,7 @@ impl Quantity<'_> {
                 Some(group) => group.dots.push(dot),
                 None => {
                     let shape = if classes.is_first_altitude(state) { DotShape::Circle } else { DotShape::Diamond };
-                    let color = if chosen { BLUE } else { GREY };
+                    let color = Color::of(if chosen { Hue::Perturbed } else { Hue::Rejected });
                     let group = Dots::new(&name, shape, color)
                         .filled(classes.is_first_weight(state) && !choice.held_out)
                         .key(&name);

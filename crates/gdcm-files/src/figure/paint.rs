@@ -23,8 +23,8 @@ const HALF_HEIGHT: f64 = 0.34;
 const FRAME: Stroke = Stroke::solid(Color::DIM, 0.6);
 const GRID: Stroke = Stroke::solid(Color::GRID, 0.4);
 /// From a dot to its label, where that stands away from it.
-const LEADER: Stroke = Stroke::solid(Color::new(0x8a, 0x91, 0x9c), 0.4);
-const GUIDE: Stroke = Stroke::solid(Color::new(0xb4, 0xba, 0xc4), 0.4);
+const LEADER: Stroke = Stroke::solid(Color::DIM.tint(60), 0.4);
+const GUIDE: Stroke = Stroke::solid(Color::DIM.tint(40), 0.4);
 /// Half the width of a dot \[pt\].
 const DOT: f64 = 2.1;
 /// Distance of a bracket from its values, and length of its ends \[pt\].
@@ -91,7 +91,10 @@ fn legend(shapes: &mut Vec<Shape>, entries: &[Entry], top: f64, inner: f64) -> f
         }
         let start = MARGIN + x;
         shapes.extend(match entry.sample {
-            Sample::Line(stroke) => vec![Shape::line([[start, y], [start + sample, y]], stroke)],
+            Sample::Line(stroke) => {
+                let line = |stroke| Shape::line([[start, y], [start + sample, y]], stroke);
+                stroke.layers().into_iter().map(line).collect()
+            }
             Sample::Dot { shape, color, filled } => dot([start + 0.5 * sample, y], shape, color, filled),
             Sample::Ground(color) => vec![Shape::rectangle(Area::new(start, y - 3.0, sample, 6.0), Some(color), None)],
         });
@@ -239,7 +242,9 @@ fn curve_lines(placed: &Placed<'_>, curve: &Curve) -> Vec<Shape> {
         curve.points().map(|point| placed.at(point).filter(|place| place.iter().all(|c| c.abs() < 1e6))).collect();
     let runs = points.split(Option::is_none).map(|run| run.iter().copied().flatten().collect::<Vec<[f64; 2]>>());
     let lines = runs.filter(|run| run.len() > 1);
-    lines.map(|run| Shape::line(simplified(&run, TOLERANCE), curve.stroke)).collect()
+    let lines: Vec<Vec<[f64; 2]>> = lines.map(|run| simplified(&run, TOLERANCE)).collect();
+    let layers = curve.stroke.layers().into_iter();
+    layers.flat_map(|stroke| lines.iter().map(move |line| Shape::line(line.clone(), stroke))).collect()
 }
 
 fn bar_shapes(placed: &Placed<'_>, bars: &Bars) -> Vec<Shape> {

@@ -3,7 +3,7 @@
 use gdcm_core::dataset::BundleKind;
 use serde::{Deserialize, Serialize};
 
-use super::drawing::{Color, Dash, Stroke};
+use super::drawing::{Color, Dash, Hue, Stroke};
 use super::mark::{DotShape, Mark};
 
 /// What a curve stands for.
@@ -30,17 +30,6 @@ pub enum Role {
     /// A model of one of several conditions: 0 is the slowest, 255 the fastest.
     OfAirspeed(u8),
 }
-
-/// Of the nominal model.
-pub const RED: Color = Color::new(0xc6, 0x2f, 0x2f);
-/// Of the other physics models.
-pub const BLUE: Color = Color::new(0x35, 0x66, 0xc8);
-/// Of identified models.
-pub const AMBER: Color = Color::new(0xb5, 0x7a, 0x00);
-/// Of corrected models.
-pub const GREEN: Color = Color::new(0x1d, 0x8a, 0x47);
-/// Of what is left out.
-pub const GREY: Color = Color::new(0x76, 0x7e, 0x8a);
 
 impl Role {
     /// The name where there is little room.
@@ -112,23 +101,29 @@ impl Role {
         if rejected && self != Self::Nominal { Self::Rejected } else { self }
     }
 
-    /// The line on paper. Where colours are not printed, dashes and widths tell the roles apart.
-    pub fn stroke(self, rejected: bool) -> Stroke {
+    /// The line in the window. Where colours are not seen, dashes and widths tell the roles apart. A rejected nominal model stays
+    /// red, but dotted.
+    pub fn line(self, rejected: bool) -> Stroke {
+        let line = |hue, width_pt, dash| Stroke { color: Color::of(hue), width_pt, dash };
         match self.shown(rejected) {
-            Self::Nominal if rejected => Stroke::dashed(RED, 1.1, Dash::Dotted),
-            Self::Nominal => Stroke::dashed(RED, 1.0, Dash::DashDot),
-            Self::Perturbed => Stroke::solid(BLUE.tint(0.7), 0.4),
-            Self::Representative => Stroke::solid(BLUE, 1.1),
-            Self::Identified => Stroke::dashed(AMBER, 0.6, Dash::Short),
-            // Wider than the corrected curve that is to lie on it, so that both are seen where they agree.
-            Self::IdentifiedRepresentative => Stroke::solid(AMBER.tint(0.75), 2.6),
-            Self::Corrected => Stroke::dashed(GREEN, 1.3, Dash::Long),
-            Self::Scheduled => Stroke::dashed(GREEN, 1.2, Dash::DashDotDot),
-            Self::WithoutLeads => Stroke::solid(GREEN, 0.75),
-            Self::Rejected => Stroke::dashed(GREY, 0.6, Dash::Dotted),
-            // From blue to amber, as in scales made for colour-blind eyes.
-            Self::OfAirspeed(step) => Stroke::solid(BLUE.mixed(AMBER, f64::from(step) / 255.0), 1.1),
+            Self::Nominal if rejected => line(Hue::Nominal, 1.3, Dash::Dotted),
+            Self::Nominal => line(Hue::Nominal, 1.6, Dash::DashDot),
+            Self::Perturbed => Stroke::solid(Color::of(Hue::Perturbed).tint(80), 1.0),
+            Self::Representative => line(Hue::Perturbed, 2.8, Dash::Solid),
+            Self::Identified => line(Hue::Identified, 1.2, Dash::Short),
+            // Wide and open: the corrected curve that is to lie on it fills it, so that both are seen where they agree.
+            Self::IdentifiedRepresentative => line(Hue::Identified, 4.6, Dash::Double),
+            Self::Corrected => line(Hue::Corrected, 2.2, Dash::Solid),
+            Self::Scheduled => line(Hue::Corrected, 2.2, Dash::Long),
+            Self::WithoutLeads => line(Hue::Corrected, 1.4, Dash::ShortDashDot),
+            Self::Rejected => line(Hue::Rejected, 1.0, Dash::Dotted),
+            Self::OfAirspeed(step) => line(Hue::OfAirspeed(step), 1.8, Dash::Solid),
         }
+    }
+
+    /// The line on paper: that of the window, as fine as it can be printed.
+    pub fn stroke(self, rejected: bool) -> Stroke {
+        self.line(rejected).printed()
     }
 
     /// The entry in the legend of a figure.
@@ -234,7 +229,7 @@ mod tests {
     #[test]
     fn a_rejected_nominal_model_stays_red_but_is_dotted() {
         let stroke = Role::Nominal.stroke(true);
-        assert_eq!((stroke.color, stroke.dash), (RED, Dash::Dotted));
+        assert_eq!((stroke.color, stroke.dash), (Color::of(Hue::Nominal), Dash::Dotted));
         assert_eq!(Role::Nominal.key(true), "nominal (rejected)");
         assert_eq!(Role::Perturbed.key(true), "rejected");
     }

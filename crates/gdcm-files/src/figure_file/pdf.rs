@@ -152,7 +152,7 @@ impl Page {
 }
 
 fn parts(color: Color) -> [f32; 3] {
-    color.rgb.map(|part| f32::from(part) / 255.0)
+    color.rgb().map(|part| f32::from(part) / 255.0)
 }
 
 /// Units of a PDF's letters in their size.

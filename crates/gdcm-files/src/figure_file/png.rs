@@ -103,7 +103,7 @@ fn draw(context: &mut RenderContext, path: &BezPath, fill: Option<Color>, stroke
 }
 
 fn take_color(context: &mut RenderContext, color: Color) {
-    let [red, green, blue] = color.rgb;
+    let [red, green, blue] = color.rgb();
     context.set_paint(AlphaColor::from_rgb8(red, green, blue));
 }
 

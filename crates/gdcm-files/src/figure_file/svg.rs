@@ -130,7 +130,7 @@ fn paint(fill: Option<Color>, stroke: Option<Stroke>) -> String {
 }
 
 fn hex(color: Color) -> String {
-    let [red, green, blue] = color.rgb;
+    let [red, green, blue] = color.rgb();
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 

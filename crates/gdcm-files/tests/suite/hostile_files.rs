@@ -3,6 +3,7 @@
 //! A short run is a test. `GDCM_FUZZ_SECONDS=600 cargo test --release -p gdcm-files --test suite hostile_files -- --nocapture` tries each seed's
 //! format for so long and says how many files were tried.
 
+use crate::made_up::tries;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -10,8 +11,6 @@ use gdcm_files::models_of_bytes;
 
 /// Memory that the variables of a file may take here.
 const MOST: u64 = 64 << 20;
-/// Files of each format in the short run.
-const SHORT_RUN: usize = 400;
 
 /// Numbers that are hard on readers of sizes.
 const HARD: [u32; 8] = [0, 1, 0x7fff_ffff, 0x8000_0000, 0xffff_ffff, 0xffff_fff8, 0x0010_0000, 0xdd00_0000];
@@ -84,8 +83,10 @@ fn try_all(format: &str, seeds: &[(String, Vec<u8>)]) {
     let seconds = std::env::var("GDCM_FUZZ_SECONDS").ok().and_then(|text| text.parse::<u64>().ok());
     let until = seconds.map(|seconds| Instant::now() + Duration::from_secs(seconds));
     let mut dice = Dice(20_261_122);
+    // Every seed has its turn.
+    let enough = tries(100, 400).max(seeds.len());
     let (mut tried, mut read) = (0usize, 0usize);
-    while until.map_or(tried < SHORT_RUN, |until| Instant::now() < until) {
+    while until.map_or(tried < enough, |until| Instant::now() < until) {
         let (name, seed) = &seeds[tried % seeds.len()];
         let bytes = damaged(seed, &mut dice);
         match models_of_bytes(&bytes, name, MOST) {

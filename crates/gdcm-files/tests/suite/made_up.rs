@@ -4,6 +4,12 @@ use gdcm_core::identification::{FlightRecord, StateSpaceMatrices};
 use nalgebra::{DMatrix, DVector, dmatrix};
 use serde_json::{Value, json};
 
+/// How often something is tried: `few` times, or `many` where the environment says `GDCM_THOROUGH`, as it does before a change is
+/// taken in.
+pub fn tries<N>(few: N, many: N) -> N {
+    if std::env::var_os("GDCM_THOROUGH").is_some() { many } else { few }
+}
+
 /// What disturbs a flight; by default the air is still and the sensors are exact.
 #[derive(Clone, Copy, Default)]
 pub struct Gusts {

@@ -28,27 +28,18 @@
 //! 10: convex envelopes term by term. The tangent plane bounds the convex underestimator wherever Newton's method has come to, so
 //! the bound needs no convergence; its rounding is counted term by term ([`Rounded`]).
 
-mod budget;
-mod differences;
-mod envelope;
-mod exponential;
 mod newton;
-mod node;
 mod node_tests;
 mod objective;
-mod rounded;
 mod search;
 mod term;
 #[cfg(test)]
 mod tests;
 mod underestimator;
 
-pub use budget::{Limit, ProofBudget};
-
-pub(crate) use budget::{Effort, SearchStopped};
-pub(crate) use exponential::{Group, fixed_square, product};
-pub(crate) use newton::Newton;
-pub(crate) use objective::Objective;
-pub(crate) use rounded::Rounded;
-pub(crate) use search::{Minima, search};
-pub(crate) use term::{Function, SquareEntry, Term, quadratic_terms};
+pub(crate) use newton::*;
+use node_tests::*;
+pub(crate) use objective::*;
+pub use search::*;
+pub(crate) use term::*;
+use underestimator::*;

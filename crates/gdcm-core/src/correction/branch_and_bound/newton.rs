@@ -1,7 +1,6 @@
 //! Newton's method down to a local minimum over the box of the scales.
 
-use super::budget::Effort;
-use super::objective::{Curvature, Differentiable, Expansion};
+use super::{Curvature, Differentiable, Effort, Expansion};
 
 /// A projected Newton method: each step minimises the quadratic model over the box exactly, so that the set of active bounds is
 /// right as soon as the model is. Clipping an unconstrained step instead stalls at corners.

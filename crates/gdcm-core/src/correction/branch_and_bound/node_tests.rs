@@ -2,11 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::differences::DifferenceBounds;
-use super::exponential::Range;
-use super::objective::{Expansion, Objective};
-use super::term::Term;
-use super::underestimator::quadratic_bound;
+use super::{DifferenceBounds, Expansion, Objective, Range, Term, quadratic_bound};
 
 /// The objective with what decides about its local minima.
 pub(super) struct NodeTests<'a> {

@@ -1,7 +1,6 @@
 //! The objective after the constraints are eliminated, as a function of the scales.
 
-use super::rounded::Rounded;
-use super::term::Term;
+use super::{Rounded, Term};
 
 /// Value, gradient and Hessian (row-major) of a function of the scales, with bounds on the rounding of the first two.
 #[derive(Clone, Debug, Default)]

@@ -1,12 +1,10 @@
-//! The branch and bound itself.
+//! The branch and bound itself: its open nodes, and what it may spend, counted and never timed, so that results repeat.
 
-use super::budget::{Effort, Limit, PROOF, ProofBudget, SearchStopped};
-use super::differences::DifferenceBounds;
-use super::newton::Newton;
-use super::node::{Node, OpenNodes};
-use super::node_tests::NodeTests;
-use super::objective::{Curvature, Differentiable, Expansion, Objective};
-use super::underestimator::{Underestimator, tangent_bound};
+use std::cell::Cell;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use super::*;
 
 /// Minima within this factor of the best are listed.
 const NEAR: f64 = 1.01;
@@ -341,5 +339,177 @@ impl<'a> Search<'a> {
             nodes: self.nodes,
             all_minima: self.all_minima && left >= cutoff,
         }
+    }
+}
+
+/// A relative gap that counts as proof.
+pub(crate) const PROOF: f64 = 1e-9;
+
+/// How far the search for a proof goes. Both are counted, never timed: results repeat.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ProofBudget {
+    /// Work in all, in units of one term of the objective evaluated (20 to 30 ns of one core). What is begun is ended.
+    pub work: u64,
+    /// Work after the proof, to find every other local minimum within 1 %.
+    pub listing: u64,
+    /// Bytes of the nodes that are still open.
+    pub bytes: usize,
+}
+
+impl Default for ProofBudget {
+    /// About two seconds of one core and 64 MB: far more than a condition with its on-axis responses held needs. Of that at most
+    /// some milliseconds for the other minima.
+    fn default() -> Self {
+        Self { work: 80_000_000, listing: 200_000, bytes: 64_000_000 }
+    }
+}
+
+/// What ended a search before the proof.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Limit {
+    /// [`ProofBudget::work`].
+    Work,
+    /// [`ProofBudget::bytes`].
+    Memory,
+    /// Double precision: no bound can be sharper.
+    Rounding,
+}
+
+/// The search was told to stop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct SearchStopped;
+
+/// Counts the work of one search, and asks now and then whether it is still wanted.
+pub(crate) struct Effort<'a> {
+    stop: &'a dyn Fn() -> bool,
+    work: Cell<u64>,
+    asked_at: Cell<u64>,
+    stopped: Cell<bool>,
+}
+
+impl<'a> Effort<'a> {
+    /// Work between two questions: half a millisecond.
+    const ASKING: u64 = 20_000;
+
+    /// Nothing spent yet.
+    pub(crate) fn new(stop: &'a dyn Fn() -> bool) -> Self {
+        Self { stop, work: Cell::new(0), asked_at: Cell::new(0), stopped: Cell::new(stop()) }
+    }
+
+    /// Counts `work`.
+    pub(crate) fn spend(&self, work: u64) {
+        let spent = self.work.get() + work;
+        self.work.set(spent);
+        if spent - self.asked_at.get() >= Self::ASKING {
+            self.asked_at.set(spent);
+            self.stopped.set(self.stopped.get() || (self.stop)());
+        }
+    }
+
+    /// Work so far.
+    pub(crate) fn spent(&self) -> u64 {
+        self.work.get()
+    }
+
+    /// Whether the search was told to stop.
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.stopped.get()
+    }
+
+    /// An error where the search was told to stop.
+    pub(crate) fn check(&self) -> Result<(), SearchStopped> {
+        if self.is_stopped() { Err(SearchStopped) } else { Ok(()) }
+    }
+}
+
+/// A part of the box that is still to be searched.
+pub(super) struct Node {
+    /// No point of the part is below this.
+    pub(super) bound: f64,
+    pub(super) region: DifferenceBounds,
+    /// Where the search of its underestimator's minimum begins.
+    pub(super) start: Vec<f64>,
+}
+
+impl PartialEq for Node {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Node {}
+
+impl PartialOrd for Node {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Node {
+    /// The least bound is the greatest, so that a heap gives it first.
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.bound.total_cmp(&self.bound)
+    }
+}
+
+/// The open nodes, least bound first, in no more memory than allowed.
+pub(super) struct OpenNodes {
+    heap: BinaryHeap<Node>,
+    most: usize,
+    /// Least bound of the nodes for which there was no room.
+    refused: f64,
+}
+
+impl OpenNodes {
+    /// None yet, of so many scales each, in at most so many bytes; one there is always room for.
+    pub(super) fn new(scales: usize, bytes: usize) -> Self {
+        // What an allocation takes besides its content, twice, and the growth of the heap, which doubles its memory.
+        let of_node = DifferenceBounds::bytes(scales) + scales * size_of::<f64>() + 32 + 3 * size_of::<Node>();
+        Self { heap: BinaryHeap::new(), most: (bytes / of_node).max(1), refused: f64::INFINITY }
+    }
+
+    /// Adds a node, or only its bound where there is no room.
+    pub(super) fn push(&mut self, node: Node) {
+        if self.heap.len() < self.most {
+            self.heap.push(node);
+        } else {
+            self.refused = self.refused.min(node.bound);
+        }
+    }
+
+    /// Whether a node found no room.
+    pub(super) fn is_full(&self) -> bool {
+        self.refused < f64::INFINITY
+    }
+
+    /// Takes the node of least bound.
+    pub(super) fn pop(&mut self) -> Option<Node> {
+        self.heap.pop()
+    }
+
+    /// The least bound of all, refused ones too; infinite where there are none.
+    pub(super) fn least_bound(&self) -> f64 {
+        self.heap.peek().map_or(f64::INFINITY, |node| node.bound).min(self.refused)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nodes_beyond_the_memory_leave_their_bound_only() {
+        let node =
+            |bound: f64| Node { bound, region: DifferenceBounds::of_box(&[0.0; 20], &[0.0; 20]), start: vec![0.0; 20] };
+        let mut open = OpenNodes::new(20, 40_000);
+        let kept = (0..100).take_while(|&index| {
+            open.push(node(100.0 - f64::from(index)));
+            !open.is_full()
+        });
+        // 400 differences of 8 bytes, and the rest of a node.
+        let kept = kept.count();
+        assert!((9..=12).contains(&kept), "{kept}");
+        assert_eq!(open.least_bound(), 100.0 - kept as f64);
+        assert_eq!(open.pop().map(|node| node.bound), Some(101.0 - kept as f64));
     }
 }

@@ -4,17 +4,11 @@ use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
 use proptest::prelude::*;
 
-use super::budget::{Effort, ProofBudget};
-use super::differences::DifferenceBounds;
-use super::newton::Newton;
-use super::node_tests::NodeTests;
-use super::objective::{Curvature, Differentiable, Expansion, Objective};
-use super::search::search;
-use super::underestimator::{Underestimator, tangent_bound};
-use crate::correction::components::Components;
-use crate::correction::objective::{floor, objective};
-use crate::correction::problem::{Bounds, Problem};
-use crate::correction::quantity::{GainObjective, Quantity};
+use super::*;
+use crate::correction::Components;
+use crate::correction::{Bounds, Problem};
+use crate::correction::{GainObjective, Quantity};
+use crate::correction::{floor, objective};
 use crate::dataset::{Pair, PairTable};
 
 type Exact = FBig<HalfEven, 2>;
@@ -48,9 +42,8 @@ impl Sample {
 
     /// The exact logarithms of the gains: an input's is its component's scale, a held output's what its entry leaves.
     fn logarithms(&self, scales: &[f64]) -> (Vec<Exact>, Vec<Exact>) {
-        let input = |placed: &crate::correction::components::Placement| {
-            exact(placed.offset.value) + exact(scales[placed.component])
-        };
+        let input =
+            |placed: &crate::correction::Placement| exact(placed.offset.value) + exact(scales[placed.component]);
         let inputs: Vec<Exact> = self.components.inputs.iter().map(input).collect();
         let output = |index: usize| {
             let held = self.problem.held_entries().find(|(pair, _)| pair.output == index);

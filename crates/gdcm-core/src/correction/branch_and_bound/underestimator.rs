@@ -1,11 +1,6 @@
-//! A convex function below the objective, over one node, and the lower bounds that it gives.
+//! A convex function below the objective over one node (part of the box of the scales), and the lower bounds that it gives.
 
-use super::differences::DifferenceBounds;
-use super::envelope::{Line, envelope, enveloped};
-use super::exponential::Derivatives;
-use super::objective::{Curvature, Differentiable, Expansion, Objective};
-use super::rounded::Rounded;
-use super::term::{Function, Term, both};
+use super::*;
 
 /// What stands for a term over the node: the term itself where it is convex, else the convex envelopes of its exponentials.
 #[derive(Clone, Copy, Debug)]
@@ -193,11 +188,161 @@ pub(super) fn quadratic_bound(
     (farthest <= within).then_some(bound - 4.0 * f64::EPSILON * bound.abs())
 }
 
+/// The scales whose differences stay within bounds: `s_j - s_i <= bound(i, j)` for any two, the ground (0) included.
+///
+/// The bounds are closed under addition (shortest paths; "difference bound matrices"), so that each is the least that follows.
+#[derive(Clone, Debug)]
+pub(crate) struct DifferenceBounds {
+    count: usize,
+    bounds: Vec<f64>,
+}
+
+impl DifferenceBounds {
+    /// The box `lower <= s <= upper`, the ground last.
+    pub(crate) fn of_box(lower: &[f64], upper: &[f64]) -> Self {
+        let count = lower.len();
+        let mut bounds = vec![0.0; count * count];
+        for from in 0..count {
+            for to in (0..count).filter(|&to| to != from) {
+                bounds[from * count + to] = upper[to] - lower[from];
+            }
+        }
+        Self { count, bounds }
+    }
+
+    /// The least and the greatest `s_to - s_from`.
+    pub(crate) fn range(&self, from: usize, to: usize) -> (f64, f64) {
+        (-self.bounds[to * self.count + from], self.bounds[from * self.count + to])
+    }
+
+    /// The part with `s_to - s_from <= most`, with what follows for every other difference, or `None` where it is empty.
+    pub(crate) fn below(&self, from: usize, to: usize, most: f64) -> Option<Self> {
+        let count = self.count;
+        if most + self.bounds[to * count + from] < 0.0 {
+            return None;
+        }
+        let mut part = self.clone();
+        for i in 0..count {
+            for j in (0..count).filter(|&j| j != i) {
+                let (before, after) = (self.bounds[i * count + from], self.bounds[to * count + j]);
+                // Rounded outward, so that no point of the part is lost.
+                let implied = before + most + after + 2.0 * f64::EPSILON * (before.abs() + most.abs() + after.abs());
+                let bound = &mut part.bounds[i * count + j];
+                *bound = bound.min(implied);
+            }
+        }
+        part.bounds[from * count + to] = part.bounds[from * count + to].min(most);
+        Some(part)
+    }
+
+    /// The part with `s_to - s_from >= least`, or `None` where it is empty.
+    pub(crate) fn above(&self, from: usize, to: usize, least: f64) -> Option<Self> {
+        self.below(to, from, -least)
+    }
+
+    /// The least bounds that hold these and `scales`.
+    pub(crate) fn hull(&self, scales: &[f64]) -> Self {
+        let count = self.count;
+        let bound = |index: usize| self.bounds[index].max(scales[index % count] - scales[index / count]);
+        Self { count, bounds: (0..count * count).map(bound).collect() }
+    }
+
+    /// Bytes that the bounds of so many scales take.
+    pub(crate) fn bytes(count: usize) -> usize {
+        count * count * size_of::<f64>()
+    }
+
+    /// Writes the least and greatest value of each scale.
+    pub(crate) fn write_box(&self, lower: &mut [f64], upper: &mut [f64]) {
+        let ground = self.count - 1;
+        for scale in 0..ground {
+            (lower[scale], upper[scale]) = self.range(ground, scale);
+            // An empty interval can only be rounding: `below` has refused empty parts.
+            upper[scale] = upper[scale].max(lower[scale]);
+        }
+    }
+
+    /// Whether the bounds hold `scales`.
+    pub(crate) fn holds(&self, scales: &[f64]) -> bool {
+        let slack = 1e-13;
+        (0..self.count)
+            .all(|i| (0..self.count).all(|j| scales[j] - scales[i] <= self.bounds[i * self.count + j] + slack))
+    }
+}
+
+/// The line of a convex envelope: it replaces the exponential left of `until`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    until: f64,
+    at: f64,
+    value: Rounded,
+    slope: f64,
+}
+
+/// The exponential at `v` with the line of its envelope, if there is one, in place of what lies left of it.
+pub(super) fn enveloped(function: &Exponential, line: Option<&Line>, v: f64) -> Derivatives {
+    match line {
+        Some(line) if v < line.until => {
+            let rise = line.slope * (v - line.at);
+            let moved = f64::EPSILON * (2.0 * rise.abs() + (line.slope * v).abs());
+            let mut value = line.value;
+            value.add(Rounded { value: rise, error: moved });
+            Derivatives { value, slope: Rounded { value: line.slope, error: 0.0 }, curvature: 0.0 }
+        }
+        _ if function.is_zero() => Derivatives::default(),
+        _ => function.at(v, v.exp()),
+    }
+}
+
+/// The line of the convex envelope of an exponential over `[low, high]`: none where it is convex there, the chord where the line
+/// from the left end is nowhere tangent, else the tangent, with the exponential itself to the right of it.
+pub(super) fn envelope(function: &Exponential, (low, high): (f64, f64)) -> Option<Line> {
+    if function.is_zero() || low >= function.inflection() {
+        return None;
+    }
+    let start = function.at(low, low.exp());
+    let end = function.at(high, high.exp());
+    // Height over the left end of the tangent at b: falls as b moves right of the inflection.
+    let overshoot = |b: f64, at: &Derivatives| at.value.value + at.slope.value * (low - b) - start.value.value;
+    if high <= function.inflection() || overshoot(high, &end) >= 0.0 {
+        return Some(chord((low, start.value), (high, end.value)));
+    }
+    let (mut over, mut under) = (function.inflection().max(low), high);
+    let mut tangent = end;
+    // Newton's method from the bracket's right side, any point of which is valid: near the tangent is near enough.
+    for _ in 0..14 {
+        let excess = overshoot(under, &tangent);
+        let newton = under - excess / (tangent.curvature * (low - under));
+        let next = if over < newton && newton < under { newton } else { 0.5 * (over + under) };
+        let at = function.at(next, next.exp());
+        if overshoot(next, &at) > 0.0 {
+            over = next;
+        } else {
+            under = next;
+            tangent = at;
+        }
+        if -overshoot(under, &tangent) <= 1e-9 * start.value.value {
+            break;
+        }
+    }
+    let error = start.value.error + tangent.value.error + 2.0 * tangent.slope.error * (under - low);
+    let value = Rounded { value: tangent.value.value, error: error + 4.0 * f64::EPSILON * start.value.value };
+    Some(Line { until: under, at: under, value, slope: tangent.slope.value })
+}
+
+/// The line through both ends, or below them by their rounding.
+fn chord((low, start): (f64, Rounded), (high, end): (f64, Rounded)) -> Line {
+    let slope = if high > low { (end.value - start.value) / (high - low) } else { 0.0 };
+    let error = start.error + end.error + 4.0 * f64::EPSILON * (start.value.abs() + end.value.abs());
+    let value = start.value.min(end.value - slope * (high - low));
+    Line { until: f64::INFINITY, at: low, value: Rounded { value, error }, slope }
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::exponential::{Exponential, Group};
+    use super::super::{Exponential, Group};
     use super::*;
 
     fn exponential(weight: f64, centre: f64) -> Exponential {

@@ -3,12 +3,8 @@
 use nalgebra::DMatrix;
 use pulp::Arch;
 
+use super::{BLOCK, HouseholderReduction, Subdiagonal, SystemTable, balance};
 use crate::dataset::{Pair, StateSpace};
-
-use super::balancing::balance;
-use super::householder_reduction::HouseholderReduction;
-use super::pivoting::Subdiagonal;
-use super::system_table::{BLOCK, SystemTable};
 
 /// Columns that elimination computes at once.
 pub const PANEL: usize = 3;

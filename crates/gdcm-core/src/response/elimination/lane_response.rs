@@ -1,14 +1,12 @@
-//! The frequency response of a reduced model, a vector of frequencies at a time.
+//! The frequency response of a reduced model: Gaussian elimination of its states at a vector of frequencies at a time.
+
+use std::ops::{Deref, DerefMut};
 
 use nalgebra::Complex;
 use pulp::{Simd, WithSimd};
 
+use super::{EliminatedRows, HessenbergForm, Interchanged, PANEL, Panel, frequencies};
 use crate::dataset::PairTable;
-
-use super::complex_lanes::frequencies;
-use super::hessenberg_form::{HessenbergForm, PANEL};
-use super::lane_elimination::{Elimination, GROUP};
-use super::panel::Panel;
 use crate::response::frequency_response::FrequencyResponse;
 
 /// `H(j omega)` of a reduced model, to be evaluated with the vectors of an instruction set.
@@ -126,6 +124,216 @@ fn places(form: &HessenbergForm, rows: usize) -> PairTable<usize> {
         }
     }
     places
+}
+
+/// Frequencies that choose their pivots together, whatever the length of a vector.
+pub const GROUP: usize = 8;
+
+/// What elimination of the states makes of `[G - j omega I, K; L, D']`, one frequency to a lane: in place of D' stands the
+/// response.
+///
+/// The next row, which is real, takes half the operations of the active one: it clears a column unless in some lane of the
+/// group the entry of the active row is more than tau times as large. Multipliers within G are then at most tau, and since each
+/// row of G enters as it is, entries grow at most to `n tau` times the largest.
+pub struct Elimination<S: Simd, const R: usize> {
+    vectors: Vec<EliminatedRows<S, R>>,
+    /// How many of them are in use.
+    used: usize,
+    /// Whether the last group had interchanges in each panel of states, as the next then mostly has.
+    expected: Vec<bool>,
+}
+
+impl<S: Simd, const R: usize> Elimination<S, R> {
+    /// Room for a model.
+    #[inline(always)]
+    pub fn with_room_for(simd: S, form: &HessenbergForm) -> Self {
+        let count = GROUP / S::F64_LANES;
+        let mut vectors = Vec::with_capacity(count);
+        for _ in 0..count {
+            vectors.push(EliminatedRows::with_room_for(simd, form));
+        }
+        Self { vectors, used: 0, expected: vec![false; form.state_panels()] }
+    }
+
+    /// The rows of each vector.
+    #[inline(always)]
+    pub fn vectors_mut(&mut self) -> &mut [EliminatedRows<S, R>] {
+        &mut self.vectors[..self.used]
+    }
+
+    /// Eliminates all states at the frequencies `omega` of a group \[rad/s / alpha\].
+    ///
+    /// A panel of columns is cleared as if no row were interchanged; where that is found not to hold, it is cleared again
+    /// column by column; and where that was so in the last group, only so. Both ways give the same bits.
+    #[inline(always)]
+    pub fn run(&mut self, simd: S, form: &HessenbergForm, omega: &[S::f64s]) {
+        self.used = omega.len();
+        let vectors = &mut self.vectors[..self.used];
+        for (rows, omega) in vectors.iter_mut().zip(omega) {
+            rows.start(*omega);
+        }
+        for (panel, expected) in self.expected.iter_mut().enumerate() {
+            if *expected || !clear(simd, form, panel, vectors) {
+                *expected = clear_with_interchanges(simd, form, panel, vectors) != [false; PANEL];
+            }
+            for rows in &mut *vectors {
+                rows.follow(simd, form, panel);
+            }
+        }
+        for rows in vectors {
+            rows.finish(simd, form);
+        }
+    }
+}
+
+/// Clears a panel without an interchange; whether no vector asks for one.
+#[inline(always)]
+fn clear<S: Simd, const R: usize>(
+    simd: S,
+    form: &HessenbergForm,
+    panel: usize,
+    vectors: &mut [EliminatedRows<S, R>],
+) -> bool {
+    // A closure in place of the loop would not have the instructions of the vectors.
+    for rows in vectors {
+        if !rows.clear(simd, form, panel) {
+            return false;
+        }
+    }
+    true
+}
+
+/// Clears a panel column by column, with an interchange in all vectors where one of them asks for it; returns where.
+#[inline(always)]
+fn clear_with_interchanges<S: Simd, const R: usize>(
+    simd: S,
+    form: &HessenbergForm,
+    panel: usize,
+    vectors: &mut [EliminatedRows<S, R>],
+) -> Interchanged {
+    let mut required = [false; PANEL];
+    'again: loop {
+        let mut required_so_far = required;
+        for (index, rows) in vectors.iter_mut().enumerate() {
+            let found = rows.clear_with_interchanges(simd, form, panel, required_so_far);
+            let first_new = (0..PANEL).find(|&offset| found[offset] && !required_so_far[offset]);
+            if let (1.., Some(first_new)) = (index, first_new) {
+                // The vectors before did without: all begin again, with what holds for the columns up to this one.
+                required = [false; PANEL];
+                required[..=first_new].copy_from_slice(&found[..=first_new]);
+                continue 'again;
+            }
+            required_so_far = found;
+        }
+        return required_so_far;
+    }
+}
+
+/// Numbers in a [`Block`]: as many as the longest vector register holds.
+pub const BLOCK: usize = LINE;
+
+/// Neighbouring entries of a row. Loops over them become vector instructions of whatever length the processor has.
+pub type Block = [f64; BLOCK];
+
+/// `[A B; C D]`, row by row, with zeros after each row up to a whole number of blocks.
+#[derive(Clone, Debug)]
+pub struct SystemTable {
+    states: usize,
+    blocks: usize,
+    entries: AlignedNumbers,
+}
+
+impl SystemTable {
+    /// Zeros for so many states, columns of B and rows of C.
+    pub fn zeros(states: usize, inputs: usize, outputs: usize) -> Self {
+        let blocks = (states + inputs).div_ceil(BLOCK).max(1);
+        Self { states, blocks, entries: AlignedNumbers::zeros(blocks * BLOCK * (states + outputs)) }
+    }
+
+    /// Rows of A.
+    #[inline(always)]
+    pub fn states(&self) -> usize {
+        self.states
+    }
+
+    /// Blocks in a row.
+    #[inline(always)]
+    pub fn blocks(&self) -> usize {
+        self.blocks
+    }
+
+    /// Numbers in a row, the zeros at its end included.
+    #[inline(always)]
+    pub fn width(&self) -> usize {
+        self.blocks * BLOCK
+    }
+
+    /// All numbers, row by row.
+    #[inline(always)]
+    pub fn numbers(&self) -> &[f64] {
+        &self.entries
+    }
+
+    /// A row, its blocks as numbers.
+    #[inline(always)]
+    pub fn row(&self, row: usize) -> &[f64] {
+        &self.numbers()[row * self.width()..(row + 1) * self.width()]
+    }
+
+    /// All numbers to change, row by row.
+    #[inline(always)]
+    pub fn numbers_mut(&mut self) -> &mut [f64] {
+        &mut self.entries
+    }
+
+    /// Every row as blocks.
+    #[inline(always)]
+    pub fn rows(&self) -> impl ExactSizeIterator<Item = &[Block]> {
+        self.entries.as_chunks().0.chunks_exact(self.blocks)
+    }
+
+    /// Every row as blocks to change.
+    #[inline(always)]
+    pub fn rows_mut(&mut self) -> impl Iterator<Item = &mut [Block]> {
+        self.entries.as_chunks_mut().0.chunks_exact_mut(self.blocks)
+    }
+}
+
+/// Numbers in a cache line, and in the longest vector register.
+pub const LINE: usize = 8;
+
+/// Numbers that begin on a cache line: a vector that lies across two of them takes twice as long to read and to write.
+#[derive(Clone, Debug)]
+pub struct AlignedNumbers {
+    /// A copy begins where the copied ones did, on a cache line or not: that costs time, not correctness.
+    numbers: Vec<f64>,
+    start: usize,
+    count: usize,
+}
+
+impl AlignedNumbers {
+    /// So many zeros.
+    pub fn zeros(count: usize) -> Self {
+        let numbers = vec![0.0_f64; count + LINE - 1];
+        let start = numbers.as_ptr().align_offset(LINE * size_of::<f64>()).min(LINE - 1);
+        Self { numbers, start, count }
+    }
+}
+
+impl Deref for AlignedNumbers {
+    type Target = [f64];
+
+    #[inline(always)]
+    fn deref(&self) -> &[f64] {
+        &self.numbers[self.start..self.start + self.count]
+    }
+}
+
+impl DerefMut for AlignedNumbers {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut [f64] {
+        &mut self.numbers[self.start..self.start + self.count]
+    }
 }
 
 #[cfg(test)]
@@ -314,5 +522,25 @@ mod tests {
         for values in on_vectors(&whole, &omega) {
             assert!(difference(&values, &sum) < 1e-14);
         }
+    }
+}
+
+#[cfg(test)]
+mod system_table_tests {
+    use super::*;
+
+    #[test]
+    fn numbers_begin_on_a_cache_line() {
+        for count in [0, 1, 7, 8, 9, 100] {
+            let numbers = AlignedNumbers::zeros(count);
+            assert_eq!((numbers.len(), numbers.as_ptr().align_offset(64)), (count, 0));
+        }
+    }
+
+    #[test]
+    fn a_copy_has_the_same_numbers() {
+        let mut numbers = AlignedNumbers::zeros(5);
+        numbers.copy_from_slice(&[1.0, 2.0, 3.0, 4.0, 5.0]);
+        assert_eq!(numbers.clone()[..], numbers[..]);
     }
 }

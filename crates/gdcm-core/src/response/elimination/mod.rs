@@ -17,16 +17,11 @@
 //! pivot threshold of Duff, Erisman & Reid, "Direct Methods for Sparse Matrices", 2nd ed. 2017, 5.2. Steps 3 to 5 run over
 //! panels of three columns, so that only the multiples of the next rows are written to memory (`eliminated_rows`).
 
-mod balancing;
-mod complex_lanes;
 mod eliminated_rows;
 mod hessenberg_form;
 mod householder_reduction;
-mod lane_elimination;
 mod lane_response;
-mod panel;
-mod pivoting;
-mod system_table;
+mod lanes;
 
 use pulp::Arch;
 
@@ -34,9 +29,11 @@ use crate::dataset::StateSpace;
 
 use super::frequency_response::FrequencyResponse;
 
-pub(super) use balancing::balance;
-pub(super) use hessenberg_form::HessenbergForm;
-use lane_response::LaneResponse;
+use eliminated_rows::*;
+pub(super) use hessenberg_form::*;
+pub(super) use householder_reduction::*;
+use lane_response::*;
+use lanes::*;
 
 /// `H(j omega) = C (j omega I - A)^-1 B + D` at each `omega` \[rad/s\]: a p x m table of `N` values.
 ///

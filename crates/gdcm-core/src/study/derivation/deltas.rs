@@ -4,7 +4,7 @@ use crate::correction::{Channel, GainSource};
 use crate::dataset::{BundleKind, ConditionId, Pair};
 use crate::fidelity::Mismatch;
 use crate::schedule::{Regression, Schedule, ScheduledQuantity};
-use crate::study::{Analysis, ConditionSwaps};
+use crate::study::{Analysis, ConditionSwaps, reports_error, takes_reported_error};
 use crate::uncertainty::{Bar, Part, Scalar};
 use crate::units::{db_to_ratio, number, s_to_ms};
 
@@ -66,7 +66,7 @@ fn mean_gain(context: &Context<'_>, pair: Pair, value: f64) -> Derivation {
 pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let value = s_to_ms(context.result.wanted_delay_s(pair)?);
     let mismatch = context.mismatch(pair)?;
-    if context.result.delay_problem.delta == context.result.comparison.delta.band_delay_s {
+    if context.result.asks_band_delays() {
         return Some(band_delay(context, pair, mismatch, value));
     }
     let mut rests_on = context.models_and_frequencies(mismatch);
@@ -174,20 +174,28 @@ pub(super) fn delay_bound(context: &Context<'_>) -> Derivation {
 
 /// The bar of a figure with its parts, and the figure of every swap; nothing where it has no bar, or that was not computed.
 pub(super) fn sure(analysis: &Analysis, asked: &ExplainTarget) -> Vec<String> {
-    let Some((condition, scalar)) = scalar_of(asked) else { return Vec::new() };
+    let Some((condition, scalar)) = scalar_of(analysis, asked) else { return Vec::new() };
     let Some(uncertainty) = &analysis.uncertainty else { return Vec::new() };
     let Some(of) = uncertainty.conditions.get(&condition) else { return Vec::new() };
     let Some(bar) = &of.bars[scalar] else { return Vec::new() };
     let mut lines = bar_lines(bar, scalar, uncertainty.level);
+    let result = analysis.condition(condition).filter(|result| !takes_reported_error(result, scalar));
+    if result.is_some_and(|result| reports_error(analysis, result)) {
+        lines.push(SPREAD_ALONE.to_owned());
+    }
     lines.extend(swap_lines(analysis, condition, &of.swaps, scalar));
     lines
 }
 
+/// Of a net gain that is not held and of a channel, where the identified models tell an error of their own.
+const SPREAD_ALONE: &str = "its identification part is the spread of the models alone, too small where they share their records: the error \
+     that a model tells of itself counts for G, D and the net gains that are held (M13.2)";
+
 /// The condition and the figure with a bar that is asked about.
-fn scalar_of(asked: &ExplainTarget) -> Option<(ConditionId, Scalar)> {
+fn scalar_of(analysis: &Analysis, asked: &ExplainTarget) -> Option<(ConditionId, Scalar)> {
     Some(match asked {
         ExplainTarget::DeltaGain(id, pair) => (*id, Scalar::Gain(*pair)),
-        ExplainTarget::DeltaDelay(id, pair) => (*id, Scalar::Delay(*pair)),
+        ExplainTarget::DeltaDelay(id, pair) => (*id, analysis.condition(*id)?.wanted_delay(*pair)),
         ExplainTarget::NetGain(id, pair) => (*id, Scalar::NetGain(*pair)),
         ExplainTarget::Gain(id, channel) => (*id, Scalar::ChannelGain(*channel)),
         ExplainTarget::Delay(id, channel) => (*id, Scalar::ChannelDelay(*channel)),

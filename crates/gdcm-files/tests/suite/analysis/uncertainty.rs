@@ -4,9 +4,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use gdcm_core::correction::Channel;
-use gdcm_core::dataset::ModelId;
+use gdcm_core::dataset::{Dataset, ModelId};
 use gdcm_core::schedule::{ScheduleKind, ScheduleSettings, SecondVariable};
-use gdcm_core::study::{AirspeedDifference, Cancelled, PairScatter, Progress, Uncertainty};
+use gdcm_core::study::{
+    AirspeedDifference, Cancelled, ExplainTarget, PairScatter, PhaseCorrection, Progress, Uncertainty, derivation,
+};
 use gdcm_core::uncertainty::{
     Bar, Design, Difference, IdentificationSource, Part, Scalar, ScheduleBand, SecondVariableDesign,
     VarianceDecomposition, holm,
@@ -481,6 +483,46 @@ fn the_bars_of_a_dataset_with_other_bands_are_made_anew() {
     // The band's deviations are taken as known: half of them is half the bar.
     assert!((half(&of_wide) / half(&of_narrow) - 2.0).abs() < 1e-9, "{} {}", half(&of_wide), half(&of_narrow));
     assert_eq!(of_wide, bars(&wide), "and back again");
+}
+
+#[test]
+fn a_bar_that_rests_on_the_spread_alone_says_so_beside_a_model_that_tells_its_error() {
+    let mut study = study_of(&dataset_with_band(1.0));
+    let (held, free) = (Pair::new(0, 0), Pair::new(0, 1));
+    set(&mut study, Setting::Constrained(free, false));
+    let (mut analysis, uncertainty) = uncertainty_of(&study);
+    analysis.uncertainty = Some(Arc::new(uncertainty));
+    let says_so = |asked: ExplainTarget| {
+        let found = derivation(&analysis, &asked).unwrap();
+        found.rests_on.iter().any(|line| line.contains("the spread of the models alone"))
+    };
+    let told = ConditionId(1);
+    assert!(!says_so(ExplainTarget::DeltaGain(told, free)) && !says_so(ExplainTarget::NetGain(told, held)));
+    assert!(says_so(ExplainTarget::NetGain(told, free)));
+    assert!(says_so(ExplainTarget::Gain(told, Channel::Input(0))));
+    let untold = ConditionId(2);
+    assert!(!says_so(ExplainTarget::NetGain(untold, free)), "no model of that condition tells its error");
+}
+
+#[test]
+fn under_leads_every_bar_stands_beside_the_value_that_it_is_of() {
+    let example = &crate::REFERENCE_DATASET.dataset;
+    let first_two = example.conditions()[..2].iter().map(|condition| condition.as_ref().clone()).collect();
+    let mut study = Study::new(Arc::new(Dataset::new(example.header(), first_two).unwrap()));
+    set(&mut study, Setting::Phase(PhaseCorrection::Lead));
+    let (mut analysis, uncertainty) = uncertainty_of(&study);
+    analysis.uncertainty = Some(Arc::new(uncertainty));
+    let written = Corrections::of(&analysis, "", &analysis.conditions.keys().copied().collect());
+    let written = serde_json::to_value(&written).unwrap();
+    for condition in list(&written["conditions"]) {
+        for key in ["D_s", "D_band_s"] {
+            let entries = |table: &Value| -> Vec<Value> { list(table).iter().flat_map(list).cloned().collect() };
+            for (value, bar) in entries(&condition[key]).iter().zip(entries(&condition["bars"][key])) {
+                let middle = 0.5 * numbers(&bar["interval"]).iter().sum::<f64>();
+                assert!((middle - number(value)).abs() < 1e-12, "{key}: a bar about {middle} beside {value}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -6,7 +6,7 @@ use gdcm_core::correction::Channel;
 use gdcm_core::dataset::{ConditionId, Pair};
 use gdcm_core::study::{Analysis, CURVE_POINTS, ConditionCurves, Edit, Engine, Study, Unobserved, display_band};
 use gdcm_files::figure::{
-    Axis, Bars, Color, ColumnWidth, ConditionSource, Curve, Dash, Figure, FigureFormat, FigureKind, FigureRequest,
+    Axis, Bars, Color, ColumnWidth, ConditionSource, Curve, Dash, Figure, FigureFormat, FigureKind, FigureRequest, Hue,
     Panel, Plot, Range, Stroke, all_channels,
 };
 use gdcm_files::write_as;
@@ -76,7 +76,7 @@ fn diagonal() -> Figure {
         .plot(Plot::new("LON → Q").panel(Panel::new(x, y).with(curve.key("rising"))))
 }
 
-const RED: Color = Color::new(0xe0, 0x10, 0x20);
+const RED: Color = Color::of(Hue::Nominal);
 
 fn bytes(figure: &Figure, width: ColumnWidth, format: FigureFormat) -> Vec<u8> {
     let mut bytes = Vec::new();

@@ -1,6 +1,7 @@
 //! Scales, low-pass, lines and the measured response.
 
 use super::common::{Threads, complex, known, list, matrix, noise, noisy, noisy_spectra};
+use crate::made_up::tries;
 use gdcm_core::executor::Sequential;
 use gdcm_core::identification::*;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -342,7 +343,7 @@ fn results_are_the_same_to_the_last_bit_for_any_number_of_threads() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(16))]
+    #![proptest_config(ProptestConfig::with_cases(tries(6, 16)))]
 
     #[test]
     fn trims_and_drifts_do_not_change_the_response(trim in -100.0..100.0, drift in -1.0..1.0, record in 0_usize..4, channel in 0_usize..4) {

@@ -1,6 +1,7 @@
 //! From records as logged to pieces.
 
 use super::common::{known, list, matrix, noise};
+use crate::made_up::tries;
 use gdcm_core::executor::Sequential;
 use gdcm_core::identification::*;
 use nalgebra::DMatrix;
@@ -363,7 +364,7 @@ fn hostile_records_are_refused_or_cut_and_never_panic() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig::with_cases(tries(16, 48)))]
 
     #[test]
     fn pieces_are_finite_within_the_samples_and_never_longer_than_the_record(

@@ -1,6 +1,7 @@
 //! Models against records in time.
 
 use super::common::{known, list, matrix, noise, noisy};
+use crate::made_up::tries;
 use gdcm_core::executor::Sequential;
 use gdcm_core::identification::*;
 use nalgebra::{DMatrix, DVector};
@@ -202,7 +203,7 @@ fn hostile_models_and_records_are_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig::with_cases(tries(8, 24)))]
 
     #[test]
     fn trims_and_units_do_not_change_the_fit(trim in -1e3..1e3, gain in 0.01..100.0, seed in 0_u64..1000) {

@@ -1,5 +1,6 @@
 //! Every explanation is put to the test: what it says would help helps, and less does not.
 
+use crate::made_up::tries;
 use gdcm_core::correction::{Bounds, Channel, Conflict, ConflictKind, GainObjective, Problem, ProofBudget, Quantity};
 use gdcm_core::dataset::{Pair, PairTable};
 use proptest::prelude::*;
@@ -271,7 +272,7 @@ fn next_above(value: f64) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: tries(64, 500), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn every_gain_conflict_is_impossible_as_it_is_and_possible_without_any_one_of_its_parts(

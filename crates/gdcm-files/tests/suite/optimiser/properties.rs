@@ -1,5 +1,6 @@
 //! What must hold of every answer.
 
+use crate::made_up::tries;
 use gdcm_core::correction::{Bounds, GainObjective, Limit, Outcome, Problem, ProofBudget, Quantity, Solution};
 use gdcm_core::dataset::{Pair, PairTable};
 use proptest::prelude::*;
@@ -24,7 +25,7 @@ fn held_and_inside(problem: &Problem, solution: &Solution) -> Result<(), TestCas
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: tries(64, 300), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn gains_hold_what_is_held_and_stay_inside_the_bounds(problem in gain_problems((6, 4), 1.5, Pattern::Any)) {
@@ -145,7 +146,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: tries(12, 24), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn gains_of_any_size_that_is_allowed_are_answered(

@@ -1,0 +1,486 @@
+//! A dataset before it is checked: what any reader fills, whatever the file; and the checks, up to the first fault or for all of them.
+
+use std::sync::Arc;
+
+use nalgebra::DMatrix;
+
+use super::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
+use super::{
+    Band, BandError, BundleKind, Channel, Condition, ConditionError, ConditionRecord, Dataset, DatasetError,
+    DatasetHeader, Dynamics, Estimate, FlightState, Location, MeasuredResponse, MeasuredResponseError, Model,
+    ModelBands, Origin, Pair, PairTable, Provenance, StateSpace, StateSpaceError, Timing,
+};
+
+/// A table of numbers for each response and frequency, `[output][input][frequency]`, the last index running fastest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResponseArray {
+    /// Number of outputs, inputs and frequencies.
+    pub shape: [usize; 3],
+    /// The numbers.
+    pub values: Vec<f64>,
+}
+
+/// A measured frequency response, unchecked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResponseDraft {
+    /// Frequencies \[rad/s\].
+    pub omega: Vec<f64>,
+    /// Real parts.
+    pub re: ResponseArray,
+    /// Imaginary parts.
+    pub im: ResponseArray,
+    /// Coherence, where it is given.
+    pub coherence: Option<ResponseArray>,
+    /// First and last trusted frequency of each response \[rad/s\], where they are given.
+    pub valid_bands: Option<ResponseArray>,
+    /// How it was estimated.
+    pub estimate: Estimate,
+}
+
+/// Standard deviations of a model's response, unchecked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BandsDraft {
+    /// Frequencies \[rad/s\].
+    pub omega: Vec<f64>,
+    /// Standard deviation of magnitudes \[dB\].
+    pub sd_db: ResponseArray,
+    /// Standard deviation of phases \[deg\].
+    pub sd_deg: ResponseArray,
+}
+
+/// One model, unchecked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelDraft {
+    /// Name.
+    pub name: String,
+    /// What it is of.
+    pub origin: Origin,
+    /// Matrices A, B, C, D, each where it is given.
+    pub matrices: [Option<DMatrix<f64>>; 4],
+    /// Sample time and delays, where they are given.
+    pub timing: Timing,
+    /// Measured response, where it is given.
+    pub response: Option<ResponseDraft>,
+    /// Which file it comes from.
+    pub source: Option<Provenance>,
+    /// Names of the states, for people; none where they are not known.
+    pub states: Vec<String>,
+    /// How uncertain its response is, where that is given.
+    pub bands: Option<BandsDraft>,
+}
+
+/// One flight condition, unchecked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConditionDraft {
+    /// What describes it besides its models.
+    pub flight_state: FlightState,
+    /// Physics models.
+    pub physics: Vec<ModelDraft>,
+    /// Identified models.
+    pub identified: Vec<ModelDraft>,
+    /// Flight records.
+    pub records: Vec<ConditionRecord>,
+}
+
+/// A dataset, unchecked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DatasetDraft {
+    /// Name for people.
+    pub name: String,
+    /// What the data are and where they come from.
+    pub description: String,
+    /// Input channels.
+    pub inputs: Vec<Channel>,
+    /// Output channels.
+    pub outputs: Vec<Channel>,
+    /// On-axis responses: output, input.
+    pub on_axis: Vec<(String, String)>,
+    /// Lower and upper end of the default band \[rad/s\].
+    pub band: (f64, f64),
+    /// Flight conditions.
+    pub conditions: Vec<ConditionDraft>,
+}
+
+/// What is wrong in a draft.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DraftFault {
+    /// A list has more entries than the program takes.
+    #[error("expected at most {most} entries, found {found}")]
+    TooMany {
+        /// The limit.
+        most: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// A table has another shape than the channels or the states require.
+    #[error("expected {expected}, found {found}")]
+    Shape {
+        /// The shape required, in words.
+        expected: String,
+        /// The shape found, in words.
+        found: String,
+    },
+    /// A pair names a channel that the dataset does not have.
+    #[error("the dataset has no {kind} \"{name}\"; a pair is written [output, input]")]
+    UnknownChannel {
+        /// "output" or "input".
+        kind: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// A pair stands twice in a list.
+    #[error("the pair [\"{output}\", \"{input}\"] stands twice; remove one")]
+    DuplicatePair {
+        /// The output's name.
+        output: String,
+        /// The input's name.
+        input: String,
+    },
+    /// A model has some matrices, but not all four.
+    #[error("matrix {matrix} is missing; a model needs A, B, C and D")]
+    MissingMatrix {
+        /// `A`, `B`, `C` or `D`.
+        matrix: char,
+    },
+    /// A model has both matrices and frequency data.
+    #[error("both matrices and a measured response are given; keep one of them")]
+    BothDynamics,
+    /// A model has neither matrices nor frequency data.
+    #[error("neither matrices A, B, C, D nor a measured response is given; add one of them")]
+    NoDynamics,
+    /// Frequency data have a sample time or delays.
+    #[error(
+        "a measured response has its delays in it: take out sample_time_s, input_delays_s and output_delays_s, which go with \
+         matrices A, B, C, D"
+    )]
+    TimedResponse,
+    /// A physics model is given by frequency data.
+    #[error("a physics model needs matrices A, B, C, D; a measured response is for identified models")]
+    MeasuredPhysics,
+    /// The ends of the band are wrong.
+    #[error(transparent)]
+    Band(#[from] BandError),
+    /// The matrices are no state-space model.
+    #[error(transparent)]
+    StateSpace(#[from] StateSpaceError),
+    /// The frequency data are no response.
+    #[error(transparent)]
+    MeasuredResponse(#[from] MeasuredResponseError),
+    /// The models are no condition.
+    #[error(transparent)]
+    Condition(#[from] ConditionError),
+    /// The conditions are no dataset.
+    #[error(transparent)]
+    Dataset(#[from] DatasetError),
+}
+
+/// What is wrong in a draft, and where. Boxed, so that results that are mostly right stay small.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DraftError {
+    /// Where.
+    pub place: Box<Location>,
+    /// What.
+    pub fault: Box<DraftFault>,
+}
+
+impl DraftError {
+    pub(super) fn new(place: Location, fault: impl Into<DraftFault>) -> Self {
+        Self { place: Box::new(place), fault: Box::new(fault.into()) }
+    }
+}
+
+/// Something odd but harmless in a draft.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Warning {
+    /// Where.
+    pub place: Location,
+    /// What, in words.
+    pub words: String,
+}
+
+impl DatasetDraft {
+    /// The dataset, with what is odd about it: every check there is, in this one place.
+    pub fn checked(self) -> Result<(Dataset, Vec<Warning>), DraftError> {
+        check_count("inputs", self.inputs.len(), MOST_CHANNELS)?;
+        check_count("outputs", self.outputs.len(), MOST_CHANNELS)?;
+        check_count("conditions", self.conditions.len(), MOST_CONDITIONS)?;
+        let band = Band::new(self.band.0, self.band.1);
+        // It names itself.
+        let band = band.map_err(|error| DraftError::new(Location::default(), error))?;
+        let on_axis = on_axis_table(&self.outputs, &self.inputs, &self.on_axis)?;
+        let mut checker = Checker::of(&self);
+        let conditions = self.conditions.into_iter().enumerate();
+        let conditions =
+            conditions.map(|(index, draft)| checker.condition(index + 1, draft)).collect::<Result<_, _>>()?;
+        let Self { name, description, inputs, outputs, .. } = self;
+        let header = DatasetHeader { name, description, inputs, outputs, on_axis, band };
+        // These errors name the list or the condition themselves.
+        let dataset = Dataset::new(header, conditions).map_err(|error| DraftError::new(Location::default(), error))?;
+        Ok((dataset, checker.oddities))
+    }
+}
+
+pub(super) fn check_count(list: &str, found: usize, most: usize) -> Result<(), DraftError> {
+    let fault = DraftFault::TooMany { most, found };
+    if found > most { Err(DraftError::new(Location::entry(list), fault)) } else { Ok(()) }
+}
+
+pub(super) fn check_records(condition: &Location, found: usize) -> Result<(), DraftError> {
+    let fault = DraftFault::TooMany { most: MOST_RECORDS, found };
+    if found > MOST_RECORDS { Err(DraftError::new(condition.at("records"), fault)) } else { Ok(()) }
+}
+
+pub(super) fn on_axis_table(
+    outputs: &[Channel],
+    inputs: &[Channel],
+    pairs: &[(String, String)],
+) -> Result<PairTable<bool>, DraftError> {
+    let mut table = PairTable::filled(outputs.len(), inputs.len(), false);
+    for (index, (output, input)) in pairs.iter().enumerate() {
+        let wrong = |fault| DraftError::new(Location::entry(format!("on-axis pair {}", index + 1)), fault);
+        let find = |channels: &[Channel], kind: &'static str, name: &String| {
+            let found = channels.iter().position(|channel| channel.name == *name);
+            found.ok_or_else(|| wrong(DraftFault::UnknownChannel { kind, name: name.clone() }))
+        };
+        let pair = Pair::new(find(outputs, "output", output)?, find(inputs, "input", input)?);
+        if std::mem::replace(&mut table[pair], true) {
+            return Err(wrong(DraftFault::DuplicatePair { output: output.clone(), input: input.clone() }));
+        }
+    }
+    Ok(table)
+}
+
+impl Dataset {
+    /// The identified model of a draft with this dataset's channels, and what is odd about it.
+    ///
+    /// # Errors
+    /// What keeps the draft from being a model of the dataset, with its place in the model.
+    pub fn identified_model(&self, draft: ModelDraft) -> Result<(Model, Vec<Warning>), DraftError> {
+        let (outputs, inputs) = (self.outputs().len(), self.inputs().len());
+        let mut checker = Checker { outputs, inputs, oddities: Vec::new() };
+        let model = checker.model(Location::default(), BundleKind::Identified, draft)?;
+        Ok((model, checker.oddities))
+    }
+}
+
+/// What the checks of models need to know, and note.
+pub(super) struct Checker {
+    outputs: usize,
+    inputs: usize,
+    oddities: Vec<Warning>,
+}
+
+impl Checker {
+    /// For the models of a draft.
+    pub(super) fn of(draft: &DatasetDraft) -> Self {
+        Self { outputs: draft.outputs.len(), inputs: draft.inputs.len(), oddities: Vec::new() }
+    }
+
+    fn condition(&mut self, position: usize, draft: ConditionDraft) -> Result<Condition, DraftError> {
+        let place = Location::condition(position, draft.flight_state.id.0);
+        let physics = self.bundle(&place, BundleKind::Physics, draft.physics)?;
+        let identified = self.bundle(&place, BundleKind::Identified, draft.identified)?;
+        check_records(&place, draft.records.len())?;
+        let condition = Condition::new(draft.flight_state, physics, identified);
+        condition
+            .and_then(|condition| condition.with_records(draft.records))
+            .map_err(|error| DraftError::new(place, error))
+    }
+
+    fn bundle(
+        &mut self,
+        condition: &Location,
+        kind: BundleKind,
+        drafts: Vec<ModelDraft>,
+    ) -> Result<Vec<Model>, DraftError> {
+        if drafts.len() > MOST_MODELS {
+            let fault = DraftFault::TooMany { most: MOST_MODELS, found: drafts.len() };
+            return Err(DraftError::new(condition.at(format!("{kind} models")), fault));
+        }
+        let drafts = drafts.into_iter().enumerate();
+        drafts.map(|(index, draft)| self.model(condition.model(kind, index + 1, &draft.name), kind, draft)).collect()
+    }
+
+    /// The model of a draft at a place.
+    pub(super) fn model(&mut self, place: Location, kind: BundleKind, draft: ModelDraft) -> Result<Model, DraftError> {
+        let has_matrices = draft.matrices.iter().any(Option::is_some);
+        let dynamics = match (has_matrices, draft.response) {
+            (_, Some(_)) if kind == BundleKind::Physics => {
+                return Err(DraftError::new(place, DraftFault::MeasuredPhysics));
+            }
+            (true, Some(_)) => return Err(DraftError::new(place, DraftFault::BothDynamics)),
+            (false, None) => return Err(DraftError::new(place, DraftFault::NoDynamics)),
+            (false, Some(_)) if !draft.timing.is_plain() => {
+                return Err(DraftError::new(place, DraftFault::TimedResponse));
+            }
+            (true, None) => Dynamics::StateSpace(self.state_space(&place, draft.matrices, draft.timing)?),
+            (false, Some(response)) => Dynamics::Measured(self.measured(&place, response)?),
+        };
+        if let (Dynamics::StateSpace(model), Origin::Identified { order: Some(order), .. }) = (&dynamics, &draft.origin)
+            && model.order() != *order
+        {
+            let words = format!("order says {order}, the matrices have {} states", model.order());
+            self.oddities.push(Warning { place: place.clone(), words });
+        }
+        let bands = draft.bands.as_ref().map(|bands| self.bands(&place, bands)).transpose()?.map(Arc::new);
+        let states = self.state_names(place, &dynamics, draft.states);
+        Ok(Model { name: draft.name, origin: draft.origin, dynamics, source: draft.source, states, bands })
+    }
+
+    /// The names of a model's states, if there is one for each.
+    fn state_names(&mut self, place: Location, dynamics: &Dynamics, names: Vec<String>) -> Arc<[String]> {
+        let order = match dynamics {
+            Dynamics::StateSpace(model) => model.order(),
+            Dynamics::Measured(_) => 0,
+        };
+        if names.len() == order {
+            return names.into();
+        }
+        if order > 0 && !names.is_empty() {
+            let words = format!("{} names for {order} states: they are left out", names.len());
+            self.oddities.push(Warning { place, words });
+        }
+        Arc::default()
+    }
+
+    /// The model of four matrices, with `p` outputs and `m` inputs.
+    fn state_space(
+        &self,
+        place: &Location,
+        matrices: [Option<DMatrix<f64>>; 4],
+        timing: Timing,
+    ) -> Result<StateSpace, DraftError> {
+        let (p, m) = (self.outputs, self.inputs);
+        let [a, b, c, d] = matrices;
+        let given = |matrix: char, of: Option<DMatrix<f64>>| {
+            of.ok_or_else(|| DraftError::new(place.clone(), DraftFault::MissingMatrix { matrix }))
+        };
+        let (a, b, c, d) = (given('A', a)?, given('B', b)?, given('C', c)?, given('D', d)?);
+        // Checked before the others are checked against it, so that they are not blamed for it.
+        if d.shape() != (p, m) {
+            let fault = DraftFault::Shape {
+                expected: format!("{p} x {m} (outputs x inputs)"),
+                found: format!("{} x {}", d.nrows(), d.ncols()),
+            };
+            return Err(DraftError::new(place.at("matrix D"), fault));
+        }
+        // A list without entries does not say how long its lists would be.
+        let stateless = a.nrows() == 0;
+        let b = if stateless && b.nrows() == 0 { DMatrix::zeros(0, m) } else { b };
+        let c = if stateless && c.is_empty() { DMatrix::zeros(p, 0) } else { c };
+        let model = StateSpace::new(a, b, c, d).and_then(|model| model.timed(timing));
+        model.map_err(|error| DraftError::new(place.clone(), error))
+    }
+
+    fn measured(&self, place: &Location, draft: ResponseDraft) -> Result<MeasuredResponse, DraftError> {
+        let count = draft.omega.len();
+        let table = |array: &ResponseArray, part: &str| {
+            self.table(place, array, &format!("measured response, {part}"), (count, "frequencies"))
+        };
+        let (re, im) = (table(&draft.re, "re")?, table(&draft.im, "im")?);
+        let coherence = draft.coherence.as_ref().map(|array| table(array, "coherence")).transpose()?;
+        let wrong = |error| DraftError::new(place.at("measured response"), error);
+        let response = MeasuredResponse::new(draft.omega, &re, &im, coherence).map_err(wrong)?;
+        let response = match &draft.valid_bands {
+            None => response,
+            Some(array) => {
+                let bands =
+                    self.table(place, array, "measured response, valid_band_rad_s", (2, "first and last frequency"))?;
+                response.with_valid_bands(bands.map(|_, band| [band[0], band[1]])).map_err(wrong)?
+            }
+        };
+        Ok(response.with_estimate(draft.estimate))
+    }
+
+    fn bands(&self, place: &Location, draft: &BandsDraft) -> Result<ModelBands, DraftError> {
+        let count = draft.omega.len();
+        let table = |array, part: &str| self.table(place, array, &format!("bands, {part}"), (count, "frequencies"));
+        let (sd_db, sd_deg) = (table(&draft.sd_db, "sd_db")?, table(&draft.sd_deg, "sd_deg")?);
+        let bands = ModelBands::new(draft.omega.clone(), sd_db, sd_deg);
+        bands.map_err(|error| DraftError::new(place.at("bands"), error))
+    }
+
+    /// A table of frequency data, `count` numbers for each pair.
+    fn table(
+        &self,
+        place: &Location,
+        array: &ResponseArray,
+        part: &str,
+        (count, of): (usize, &str),
+    ) -> Result<PairTable<Vec<f64>>, DraftError> {
+        let shape = [self.outputs, self.inputs, count];
+        if array.shape != shape {
+            let fault = DraftFault::Shape {
+                expected: format!("{} (outputs x inputs x {of})", dimensions(shape)),
+                found: dimensions(array.shape),
+            };
+            return Err(DraftError::new(place.at(part), fault));
+        }
+        Ok(PairTable::from_fn(self.outputs, self.inputs, |Pair { output, input }| {
+            let start = (output * self.inputs + input) * count;
+            array.values[start..start + count].to_vec()
+        }))
+    }
+}
+
+fn dimensions(shape: [usize; 3]) -> String {
+    shape.map(|length| length.to_string()).join(" x ")
+}
+
+/// More faults than this are not looked for: a file of another kind has one in every model.
+const MOST_FAULTS: usize = 1000;
+
+impl DatasetDraft {
+    /// Every fault with its place, in the order of the draft; none where it is a dataset. What one fault hides, such as names that
+    /// stand twice beside models that are wrong, comes out once that is mended.
+    pub fn faults(&self) -> Vec<DraftError> {
+        let mut faults: Vec<DraftError> = Vec::new();
+        let counts = [
+            check_count("inputs", self.inputs.len(), MOST_CHANNELS),
+            check_count("outputs", self.outputs.len(), MOST_CHANNELS),
+            check_count("conditions", self.conditions.len(), MOST_CONDITIONS),
+        ];
+        faults.extend(counts.into_iter().filter_map(Result::err));
+        let band = Band::new(self.band.0, self.band.1);
+        faults.extend(band.err().map(|error| DraftError::new(Location::default(), error)));
+        faults.extend(on_axis_table(&self.outputs, &self.inputs, &self.on_axis).err());
+        for (index, condition) in self.conditions.iter().enumerate() {
+            if faults.len() >= MOST_FAULTS {
+                return faults;
+            }
+            let mut checker = Checker::of(self);
+            faults.extend(faults_of_condition(&mut checker, index + 1, condition));
+        }
+        if faults.is_empty() {
+            faults.extend(self.clone().checked().err());
+        }
+        faults
+    }
+}
+
+fn faults_of_condition(checker: &mut Checker, position: usize, draft: &ConditionDraft) -> Vec<DraftError> {
+    let place = Location::condition(position, draft.flight_state.id.0);
+    let mut faults = Vec::new();
+    let mut bundle = |kind: BundleKind, drafts: &[super::ModelDraft]| -> Vec<Model> {
+        let drafts = drafts.iter().enumerate();
+        let checked =
+            drafts.map(|(index, draft)| checker.model(place.model(kind, index + 1, &draft.name), kind, draft.clone()));
+        let mut models = Vec::new();
+        for model in checked {
+            match model {
+                Ok(model) => models.push(model),
+                Err(fault) => faults.push(fault),
+            }
+        }
+        models
+    };
+    let physics = bundle(BundleKind::Physics, &draft.physics);
+    let identified = bundle(BundleKind::Identified, &draft.identified);
+    faults.extend(check_records(&place, draft.records.len()).err());
+    if faults.is_empty() {
+        let condition = Condition::new(draft.flight_state.clone(), physics, identified)
+            .and_then(|condition| condition.with_records(draft.records.clone()));
+        faults.extend(condition.err().map(|error| DraftError::new(place, error)));
+    }
+    faults
+}

@@ -1,0 +1,228 @@
+//! Laguerre projections of a record onto its own future (M14, section 3).
+//!
+//! ```text
+//! s_k(t) = int_0^inf l_k(tau) s(t + tau) dtau,   l_k <-> sqrt(2a)/(s + a) ((a - s)/(a + s))^k,   k = 0 ... p
+//!
+//! 1  c = 2/dt, g = sqrt(2a)/(a + c), alpha = (a - c)/(a + c)                  (bilinear rule)
+//! 2  x = the record less its last sample, from its end to its beginning
+//! 3  y_0[n] = g (x[n] + x[n-1]) - alpha y_0[n-1]                              zero initial state
+//! 4  y_k[n] = alpha y_{k-1}[n] + y_{k-1}[n-1] - alpha y_k[n-1]                k = 1 ... p
+//! 5  each y_k from its end to its beginning
+//! ```
+//!
+//! Bergamasco & Lovera, "Continuous-time predictor-based subspace identification using Laguerre filters", IET Control
+//! Theory & Applications 5(7), 2011.
+
+use super::*;
+use crate::executor::{Executor, each};
+use nalgebra::{DMatrix, DVector};
+
+/// The filters of one Laguerre pole at one sample time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LaguerreBank {
+    /// Gain of the first filter.
+    gain: f64,
+    /// Pole of every filter with its sign changed, and zero of the all-pass filters.
+    alpha: f64,
+}
+
+impl LaguerreBank {
+    /// The filters with the pole `-pole` rad/s for samples every `sample_time_s`.
+    pub(super) fn new(pole: f64, sample_time_s: f64) -> Self {
+        let c = 2.0 / sample_time_s;
+        Self { gain: (2.0 * pole).sqrt() / (pole + c), alpha: (pole - c) / (pole + c) }
+    }
+
+    /// Projections at every sample of a signal that ends near 0, one column for each of k = 0 ... `past`.
+    pub(super) fn projections(self, signal: &[f64], past: usize) -> DMatrix<f64> {
+        let samples = signal.len();
+        let mut projections = DMatrix::zeros(samples, past + 1);
+        let (mut before, mut state) = (0.0, 0.0);
+        for (&now, to) in signal.iter().zip(projections.column_mut(0).iter_mut()).rev() {
+            state = self.gain * (now + before) - self.alpha * state;
+            before = now;
+            *to = state;
+        }
+        let all = projections.as_mut_slice();
+        for k in 1..=past {
+            let (done, rest) = all.split_at_mut(k * samples);
+            let (mut before, mut state) = (0.0, 0.0);
+            for (&now, to) in done[(k - 1) * samples..].iter().zip(&mut rest[..samples]).rev() {
+                state = self.alpha * (now - state) + before;
+                before = now;
+                *to = state;
+            }
+        }
+        projections
+    }
+}
+
+// The data matrix of CT-PBSID, and its triangular factor for one Laguerre pole (M14, section 3, steps 1 and 2).
+//
+// ```text
+// row t_i = [z_0(t_i) | z_1(t_i) | ... | z_p(t_i)],   z_k = [u~_k; y~_k] the projections of inputs and outputs
+//
+// 1  instants t_i every `spacing` s, but for the last min((2p + 4)/a, 0.3 T) s of a piece
+// 2  from each column of a piece what [1, t_i] explains is taken off: trim and drift vanish exactly
+// 3  R of the rows of each piece, merged in the order of the pieces
+// ```
+
+/// Share of a piece that the projections' unfinished ends may cost at most.
+const LARGEST_END: f64 = 0.3;
+
+/// Which projections, and how far apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Projections {
+    /// Laguerre pole `a` \[rad/s\].
+    pub(super) pole: f64,
+    /// `p`: projections 0 to `past` of every channel.
+    pub(super) past: usize,
+    /// Time between two instants \[s\].
+    pub(super) spacing_s: f64,
+}
+
+impl Projections {
+    /// The rows of one piece, with its trim and drift.
+    pub(super) fn rows(&self, piece: &Piece) -> DMatrix<f64> {
+        let samples = piece.inputs.nrows();
+        let duration = samples as f64 * piece.sample_time_s;
+        let end = ((2.0 * self.past as f64 + 4.0) / self.pole).min(LARGEST_END * duration);
+        let step = ((self.spacing_s / piece.sample_time_s).round() as usize).max(1);
+        let last = samples.saturating_sub((end / piece.sample_time_s).ceil() as usize);
+        let instants: Vec<usize> = (0..last).step_by(step).collect();
+        let (inputs, outputs) = (piece.inputs.ncols(), piece.outputs.ncols());
+        let channels = inputs + outputs;
+        let mut rows = DMatrix::zeros(instants.len(), (self.past + 1) * channels);
+        let bank = LaguerreBank::new(self.pole, piece.sample_time_s);
+        for (channel, signal) in piece.inputs.column_iter().chain(piece.outputs.column_iter()).enumerate() {
+            let end = signal.iter().next_back().copied().unwrap_or_default();
+            let signal: Vec<f64> = signal.iter().map(|sample| sample - end).collect();
+            let projections = bank.projections(&signal, self.past);
+            for (k, projection) in projections.column_iter().enumerate() {
+                let mut column = rows.column_mut(k * channels + channel);
+                column.iter_mut().zip(&instants).for_each(|(to, &instant)| *to = projection[instant]);
+            }
+        }
+        rows
+    }
+
+    /// The triangular factor of the data matrix of all pieces.
+    ///
+    /// The same to the last bit on any number of threads: which pieces are factored together does not depend on it.
+    pub(super) fn factor(&self, pieces: &[Piece], executor: &dyn Executor) -> TriangularFactor {
+        /// Two parts keep two cores busy with three poles; merging a further one costs as much as a piece of 6 s.
+        const PARTS: usize = 2;
+        let part = |pieces: &[Piece]| {
+            let channels = pieces.first().map_or(0, |piece| piece.inputs.ncols() + piece.outputs.ncols());
+            let mut factor = TriangularFactor::empty((self.past + 1) * channels);
+            for piece in pieces {
+                let mut rows = self.rows(piece);
+                take_off_trend(&mut rows);
+                factor.append(&rows);
+            }
+            factor
+        };
+        let mut parts = each(executor, pieces.chunks(pieces.len().div_ceil(PARTS).max(1)), part).into_iter();
+        let Some(mut factor) = parts.next() else { return TriangularFactor::empty(0) };
+        for other in parts {
+            factor.merge(&other);
+        }
+        factor
+    }
+
+    /// Rows that the pieces give.
+    pub(super) fn count(&self, pieces: &[Piece]) -> usize {
+        let of_piece = |piece: &Piece| {
+            let duration = piece.inputs.nrows() as f64 * piece.sample_time_s;
+            let end = ((2.0 * self.past as f64 + 4.0) / self.pole).min(LARGEST_END * duration);
+            ((duration - end) / self.spacing_s.max(piece.sample_time_s)) as usize
+        };
+        pieces.iter().map(of_piece).sum()
+    }
+}
+
+/// Takes what `[1, i]` explains off every column.
+fn take_off_trend(rows: &mut DMatrix<f64>) {
+    let count = rows.nrows();
+    let middle = (count.max(1) - 1) as f64 / 2.0;
+    let ramp = DVector::from_fn(count, |row, _| row as f64 - middle);
+    let squared = ramp.norm_squared();
+    for mut column in rows.column_iter_mut() {
+        let mean = column.sum() / count as f64;
+        column.add_scalar_mut(-mean);
+        if squared > 0.0 {
+            let slope = ramp.dot(&column) / squared;
+            column.axpy(-slope, &ramp, 1.0);
+        }
+    }
+}
+
+// The law that Laguerre projections obey, and the model in continuous time behind it.
+
+/// `xi_{k+1} = Ao xi_k + Bo u~_k + Ko e~_k`, `y~_k = Co xi_k + Do u~_k + e~_k` for the projections k = 0, 1, ... with the pole `a`.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct LaguerreModel {
+    /// `a` \[rad/s\].
+    pub(super) pole: f64,
+    /// `Ao`, `Bo`, `Co`, `Do` \[-\].
+    pub(super) matrices: StateSpaceMatrices,
+}
+
+impl LaguerreModel {
+    /// The model in continuous time; none where `Ao` has the eigenvalue -1.
+    ///
+    /// ```text
+    /// M = (Ao + I)^-1,   A = a M (Ao - I),   B = sqrt(2a) M Bo,   C = sqrt(2a) Co M,   D = Do - Co M Bo
+    /// ```
+    pub(super) fn continuous(&self) -> Option<StateSpaceMatrices> {
+        let StateSpaceMatrices { a, b, c, d } = &self.matrices;
+        let identity = DMatrix::identity(a.nrows(), a.nrows());
+        let m = (a + &identity).try_inverse()?;
+        let (mb, cm) = (&m * b, c * &m);
+        let root = (2.0 * self.pole).sqrt();
+        let model =
+            StateSpaceMatrices { a: &m * (a - &identity) * self.pole, b: &mb * root, c: cm * root, d: d - c * mb };
+        model.is_finite().then_some(model)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn projections_are_those_of_independent_code() {
+        let known = &answers()["bank"];
+        let signals = matrix(&known["x"]);
+        let bank = LaguerreBank::new(number(&known["a"]), number(&known["dt"]));
+        let count = number(&known["nk"]) as usize;
+        for channel in 0..signals.ncols() {
+            let projections = bank.projections(signals.column(channel).as_slice(), count - 1);
+            for (sample, expected) in known["expected"].as_array().unwrap().iter().enumerate() {
+                for k in 0..count {
+                    // Independent numpy code; the tolerance stands in its file.
+                    assert!((projections[(sample, k)] - number(&expected[k][channel])).abs() < 1e-12);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_continuous_model_is_that_of_independent_code() {
+        let known = &answers()["laguerre_to_ct"];
+        let of = |name: &str| matrix(&known[name]);
+        let matrices = StateSpaceMatrices { a: of("Ao"), b: of("Bo"), c: of("Co"), d: of("Do") };
+        let model = LaguerreModel { pole: number(&known["a"]), matrices }.continuous().unwrap();
+        for (found, name) in [(&model.a, "A"), (&model.b, "B"), (&model.c, "C"), (&model.d, "D")] {
+            // Independent numpy code; the tolerance stands in its file.
+            assert!((found - of(name)).amax() < 1e-12, "{name}");
+        }
+    }
+
+    #[test]
+    fn an_eigenvalue_of_minus_one_has_no_continuous_model() {
+        let one = DMatrix::from_element(1, 1, 1.0);
+        let matrices = StateSpaceMatrices { a: -&one, b: one.clone(), c: one.clone(), d: one };
+        assert_eq!(LaguerreModel { pole: 2.0, matrices }.continuous(), None);
+    }
+}

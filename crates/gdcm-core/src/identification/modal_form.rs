@@ -1,0 +1,253 @@
+//! The complex Schur form of a real matrix, its reordering, and its eigenvectors.
+
+use nalgebra::{Complex, DMatrix, DVector, Schur};
+
+/// `A = Q T Q^H` with `Q` unitary and `T` upper triangular.
+pub(super) struct ComplexSchur {
+    /// Schur vectors.
+    pub(super) q: DMatrix<Complex<f64>>,
+    /// Triangular, with the eigenvalues on its diagonal.
+    pub(super) t: DMatrix<Complex<f64>>,
+}
+
+impl ComplexSchur {
+    /// The form of a square matrix; none where the iteration does not end.
+    pub(super) fn of(a: &DMatrix<f64>) -> Option<Self> {
+        let (q, t) = Schur::try_new(a.map(Complex::from), f64::EPSILON, 100 * (a.nrows() + 1))?.unpack();
+        Some(Self { q, t })
+    }
+
+    /// Exchanges neighbours until the eigenvalues that are `first` stand first; gives how many there are.
+    pub(super) fn order_by(&mut self, first: impl Fn(Complex<f64>) -> bool) -> usize {
+        let mut placed = 0;
+        for at in 0..self.t.nrows() {
+            if first(self.t[(at, at)]) {
+                for upper in (placed..at).rev() {
+                    self.exchange(upper);
+                }
+                placed += 1;
+            }
+        }
+        placed
+    }
+
+    /// Exchanges the eigenvalues at `upper` and `upper + 1` by one rotation of these two rows and columns.
+    fn exchange(&mut self, upper: usize) {
+        let lower = upper + 1;
+        let (first, second) = (self.t[(upper, upper)], self.t[(lower, lower)]);
+        // The eigenvector of `second` in these two rows.
+        let (x, y) = (self.t[(upper, lower)], second - first);
+        let norm = x.norm().hypot(y.norm());
+        if norm == 0.0 {
+            return;
+        }
+        let (c, s) = (x / norm, y / norm);
+        for matrix in [&mut self.t, &mut self.q] {
+            for row in 0..matrix.nrows() {
+                let (left, right) = (matrix[(row, upper)], matrix[(row, lower)]);
+                matrix[(row, upper)] = left * c + right * s;
+                matrix[(row, lower)] = right * c.conj() - left * s.conj();
+            }
+        }
+        for column in 0..self.t.ncols() {
+            let (above, below) = (self.t[(upper, column)], self.t[(lower, column)]);
+            self.t[(upper, column)] = above * c.conj() + below * s.conj();
+            self.t[(lower, column)] = below * c - above * s;
+        }
+        self.t[(lower, upper)] = Complex::new(0.0, 0.0);
+        (self.t[(upper, upper)], self.t[(lower, lower)]) = (second, first);
+    }
+
+    /// The eigenvector of length one of the eigenvalue at `at` of the diagonal, by back substitution.
+    pub(super) fn eigenvector(&self, at: usize) -> DVector<Complex<f64>> {
+        let smallest = f64::EPSILON * self.t.camax();
+        let mut x = DVector::zeros(at + 1);
+        x[at] = Complex::new(1.0, 0.0);
+        for row in (0..at).rev() {
+            let sum: Complex<f64> = (row + 1..=at).map(|k| self.t[(row, k)] * x[k]).sum();
+            let gap = self.t[(row, row)] - self.t[(at, at)];
+            x[row] = -sum / if gap.norm() < smallest { Complex::new(smallest, 0.0) } else { gap };
+        }
+        let vector = self.q.columns(0, at + 1) * x;
+        let norm = vector.norm();
+        vector.unscale(norm)
+    }
+}
+
+// A model without its modes far above the band, their static part kept.
+//
+// ```text
+// 1  A = Q T Q^H, T upper triangular; neighbours on its diagonal are exchanged until the slow ones stand first
+// 2  Q1 an orthonormal real basis of what the first columns of Q span, Q2 of its complement
+// 3  [Q1 Q2]' A [Q1 Q2] = [A1 A12; 0 A2];  A1 X - X A2 = -A12 (Sylvester)
+// 4  slow: A1, B1 = Q1'B - X Q2'B, C1 = C Q1;   fast: A2, B2 = Q2'B, C2 = C (Q1 X + Q2)
+// 5  D + C2 (-A2)^-1 B2
+// ```
+//
+// Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 7.6.
+
+impl StateSpaceMatrices {
+    /// The model without the modes with `|lambda| > limit` \[rad/s\], equal to it at omega = 0; none where an iteration does not
+    /// end or fast and slow modes cannot be told apart.
+    pub(super) fn without_fast_modes(&self, limit: f64) -> Option<Self> {
+        let mut schur = ComplexSchur::of(&self.a)?;
+        let slow = schur.order_by(|eigenvalue| eigenvalue.norm() <= limit);
+        let order = self.order();
+        if slow == order {
+            return Some(self.clone());
+        }
+        let basis = real_basis(&schur.q, slow);
+        let (q1, q2) = (basis.columns(0, slow), basis.columns(slow, order - slow));
+        let (a1, a2) = (q1.transpose() * &self.a * q1, q2.transpose() * &self.a * q2);
+        let x = sylvester(&a1, &a2, &(q1.transpose() * &self.a * q2))?;
+        let b2 = q2.transpose() * &self.b;
+        let c2 = &self.c * (q1 * &x + q2);
+        let model = Self {
+            a: a1,
+            b: q1.transpose() * &self.b - &x * &b2,
+            c: &self.c * q1,
+            d: &self.d - c2 * a2.lu().solve(&b2)?,
+        };
+        model.is_finite().then_some(model)
+    }
+}
+
+/// An orthonormal basis whose first `count` columns span the same as the first `count` columns of `q`, which are conjugates of
+/// each other or real.
+fn real_basis(q: &DMatrix<Complex<f64>>, count: usize) -> DMatrix<f64> {
+    let order = q.nrows();
+    // The projector on the span is real, with the eigenvalues one and zero.
+    let leading = q.columns(0, count);
+    let projector = DMatrix::from_fn(order, order, |row, column| {
+        leading.row(row).iter().zip(leading.row(column).iter()).map(|(x, y)| (x * y.conj()).re).sum()
+    });
+    let eigen = nalgebra::SymmetricEigen::<f64, nalgebra::Dyn>::new(projector);
+    let mut by_size: Vec<usize> = (0..order).collect();
+    by_size.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]));
+    eigen.eigenvectors.select_columns(&by_size)
+}
+
+/// `X` of `A1 X - X A2 = -A12`.
+fn sylvester(a1: &DMatrix<f64>, a2: &DMatrix<f64>, a12: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let (rows, columns) = a12.shape();
+    let identity = |size| DMatrix::<f64>::identity(size, size);
+    let system = identity(columns).kronecker(a1) - a2.transpose().kronecker(&identity(rows));
+    let stacked = nalgebra::DVector::from_column_slice((-a12).as_slice());
+    Some(DMatrix::from_column_slice(rows, columns, system.lu().solve(&stacked)?.as_slice()))
+}
+
+// Four matrices of a model in continuous time.
+
+/// `dx/dt = A x + B u`, `y = C x + D u`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StateSpaceMatrices {
+    /// `A`, n x n.
+    pub a: DMatrix<f64>,
+    /// `B`, n x inputs.
+    pub b: DMatrix<f64>,
+    /// `C`, outputs x n.
+    pub c: DMatrix<f64>,
+    /// `D`, outputs x inputs.
+    pub d: DMatrix<f64>,
+}
+
+impl StateSpaceMatrices {
+    /// Number of states n.
+    #[must_use]
+    pub fn order(&self) -> usize {
+        self.a.nrows()
+    }
+
+    /// `C (j omega - A)^-1 B + D`, outputs x inputs; none where `j omega` is a pole.
+    #[must_use]
+    pub fn response(&self, omega: f64) -> Option<DMatrix<Complex<f64>>> {
+        let order = self.order();
+        let shifted = DMatrix::from_fn(order, order, |row, column| {
+            Complex::new(-self.a[(row, column)], if row == column { omega } else { 0.0 })
+        });
+        let states = shifted.lu().solve(&self.b.map(Complex::from))?;
+        let response = self.c.map(Complex::from) * states + self.d.map(Complex::from);
+        response.iter().all(|value| value.re.is_finite() && value.im.is_finite()).then_some(response)
+    }
+
+    /// The poles, as the Schur iteration gives them; none where it does not end.
+    #[must_use]
+    pub fn poles(&self) -> Option<Vec<Complex<f64>>> {
+        let schur = nalgebra::Schur::try_new(self.a.clone(), f64::EPSILON, 100 * (self.order() + 1))?;
+        Some(schur.complex_eigenvalues().iter().copied().collect())
+    }
+
+    /// Whether every entry is finite.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        [&self.a, &self.b, &self.c, &self.d].iter().all(|matrix| matrix.iter().all(|entry| entry.is_finite()))
+    }
+
+    /// The model with every input and output in other units: `scale[output, input]` times the response.
+    #[must_use]
+    pub(super) fn in_units(&self, inputs: &[f64], outputs: &[f64]) -> Self {
+        let mut scaled = self.clone();
+        for (input, scale) in inputs.iter().enumerate() {
+            scaled.b.column_mut(input).unscale_mut(*scale);
+            scaled.d.column_mut(input).unscale_mut(*scale);
+        }
+        for (output, scale) in outputs.iter().enumerate() {
+            scaled.c.row_mut(output).scale_mut(*scale);
+            scaled.d.row_mut(output).scale_mut(*scale);
+        }
+        scaled
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identification::known_answers::*;
+
+    fn sample(size: usize) -> DMatrix<f64> {
+        DMatrix::from_fn(size, size, |row, column| ((1.0 + 7.3 * row as f64) * (1.0 + 2.9 * column as f64)).sin())
+    }
+
+    #[test]
+    fn the_form_still_gives_the_matrix_after_its_reordering() {
+        let a = sample(9);
+        let mut form = ComplexSchur::of(&a).unwrap();
+        let before: Vec<_> = form.t.diagonal().iter().copied().collect();
+        let count = form.order_by(|eigenvalue| eigenvalue.re > 0.0);
+        assert_eq!(count, before.iter().filter(|eigenvalue| eigenvalue.re > 0.0).count());
+        assert!((0..9).all(|at| (form.t[(at, at)].re > 0.0) == (at < count)));
+        // A few dozen rotations, each backward stable.
+        assert!((&form.q * &form.t * form.q.adjoint() - a.map(Complex::from)).norm() < 1e-13 * a.norm());
+    }
+
+    #[test]
+    fn an_eigenvector_is_stretched_by_its_eigenvalue() {
+        let a = sample(9).map(Complex::from);
+        let form = ComplexSchur::of(&sample(9)).unwrap();
+        for at in 0..9 {
+            let vector = form.eigenvector(at);
+            assert!((&a * &vector - &vector * form.t[(at, at)]).norm() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn what_is_left_is_that_of_independent_code() {
+        let known = &answers()["drop_fast"];
+        let of = |name: &str| matrix(&known[name]);
+        let model = StateSpaceMatrices { a: of("A"), b: of("B"), c: of("C"), d: of("D") };
+        let slow = model.without_fast_modes(number(&known["wmax"])).unwrap();
+        assert_eq!(slow.order() as f64, number(&known["order"]));
+        for (omega, expected) in numbers(&known["w"]).into_iter().zip(response(&known["H"])) {
+            // Independent numpy code; the tolerance stands in its file.
+            assert!((slow.response(omega).unwrap() - expected).camax() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_model_without_fast_modes_stays_as_it_is() {
+        let known = &answers()["drop_fast"];
+        let of = |name: &str| matrix(&known[name]);
+        let model = StateSpaceMatrices { a: of("A"), b: of("B"), c: of("C"), d: of("D") };
+        assert_eq!(model.without_fast_modes(1000.0).unwrap(), model);
+    }
+}

@@ -94,8 +94,9 @@ fn row_of_texts<T: ToString>(texts: impl Iterator<Item = T>) -> Value {
 mod tests {
     use super::super::exported_model::exported_models;
     use super::*;
-    use crate::npy::{read_npz, write_npz};
+    use crate::npy::write_npz;
     use crate::variables::MemoryBudget;
+    use crate::zip_files::read_npz;
     use crate::{embedded_example, mat};
     use gdcm_core::study::{Engine, ExportFormat, ExportRequest, Study, Unobserved};
 

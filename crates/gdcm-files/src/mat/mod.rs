@@ -9,6 +9,10 @@ mod matrix;
 mod subsystem;
 mod writer;
 
+use std::path::Path;
+
+use crate::file_error::FileError;
+use crate::importer::{Contents, Importer};
 use crate::mat::level5::{ByteOrder, Cursor, DataKind, Element, matrix, unpacked};
 use crate::mat::matrix::{Arrays, field_names, long_words, places};
 use crate::variables::{ElementKind, MemoryBudget, Value, Variable, VariableFault};
@@ -22,6 +26,27 @@ const HDF5_SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
 const LEVEL_5: u8 = 1;
 /// What [`read`] reads.
 const EXPECTED: &str = "a .mat file of MATLAB up to version 7";
+
+/// Files of MATLAB up to version 7.
+pub(crate) struct Mat;
+
+impl Importer for Mat {
+    fn name(&self) -> &'static str {
+        "a .mat file of MATLAB up to version 7"
+    }
+
+    fn endings(&self) -> &'static [&'static str] {
+        &["mat"]
+    }
+
+    fn recognises(&self, bytes: &[u8], ending: &str) -> bool {
+        ending == "mat" || matches!(level5::version(bytes), Some((_, LEVEL_5)))
+    }
+
+    fn read(&self, bytes: &[u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Contents, FileError> {
+        Contents::variables(read(bytes, budget), path)
+    }
+}
 
 /// The variables of a file, in their order.
 ///

@@ -14,6 +14,7 @@ mod dataset;
 mod values;
 
 use std::collections::HashMap;
+use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use hdf5_pure::{
@@ -21,11 +22,42 @@ use hdf5_pure::{
     ReferenceType, Source, is_hdf5_bytes,
 };
 
+use crate::file_error::FileError;
+use crate::importer::{Contents, Importer};
+use crate::mat::{Subsystem, is_hdf5};
 use crate::mat73::dataset::{Elements, Order};
 use crate::mat73::values::{Objects, Sparse, empty, records, rows, strings};
 use crate::variables::{self, CellArray, ElementKind, MemoryBudget, StructArray, Value, Variable, VariableFault};
 
 pub use crate::mat73::values::{FileWrapper, ObjectDecoder};
+
+/// MATLAB 7.3 and HDF5.
+pub(crate) struct Hdf5;
+
+impl Importer for Hdf5 {
+    fn name(&self) -> &'static str {
+        "an HDF5 file, as MATLAB writes with -v7.3"
+    }
+
+    fn endings(&self) -> &'static [&'static str] {
+        &["mat", "h5", "hdf5"]
+    }
+
+    fn recognises(&self, bytes: &[u8], _: &str) -> bool {
+        is_hdf5(bytes)
+    }
+
+    fn read(&self, bytes: &[u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Contents, FileError> {
+        // The objects lie in it as in the files of the versions before.
+        let decoder = |wrapper: FileWrapper| -> Result<Box<ObjectDecoder<'static>>, VariableFault> {
+            let subsystem = Subsystem::new(wrapper.cells)?.with_long_words(wrapper.long_words);
+            Ok(Box::new(move |reference: &[u32], variable: &str, budget: &MemoryBudget<'_>| {
+                subsystem.object(reference, variable, budget)
+            }))
+        };
+        Contents::variables(read_with_objects(bytes, budget, decoder), path)
+    }
+}
 
 /// Reads all variables, and objects of MATLAB's classes by `decoder`, which is made of the part of the file in which they lie.
 pub fn read_with_objects<'d>(

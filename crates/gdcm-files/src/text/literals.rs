@@ -26,7 +26,7 @@ const RECORDS: [(&str, &[&str]); 4] =
 
 /// What statements set.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Literals {
+pub struct Statements {
     /// The variables in the order in which they were first set, with their last values. One whose value is not understood is
     /// [`Value::Opaque`] with the reason, its line and its column.
     pub variables: Vec<Variable>,
@@ -35,13 +35,13 @@ pub struct Literals {
 }
 
 /// Reads variables from MATLAB or Octave statements.
-pub fn read_literals(text: &str, budget: &MemoryBudget) -> Result<Literals, VariableFault> {
+pub fn read_literals(text: &str, budget: &MemoryBudget) -> Result<Statements, VariableFault> {
     refuse_binary(text, "MATLAB statements")?;
     let scanner = Scanner { text, at: 0, line: 1, line_start: 0 };
     let mut reading = Reading {
         scanner,
         budget,
-        read: Literals { variables: Vec::new(), notes: Vec::new() },
+        read: Statements { variables: Vec::new(), notes: Vec::new() },
         places: HashMap::new(),
         blocks: 0,
     };
@@ -305,7 +305,7 @@ impl<'t> Scanner<'t> {
 struct Reading<'t, 'm> {
     scanner: Scanner<'t>,
     budget: &'m MemoryBudget<'m>,
-    read: Literals,
+    read: Statements,
     /// Where the variables stand among those read.
     places: HashMap<&'t str, usize>,
     /// How many conditions and loops are open.
@@ -806,7 +806,7 @@ mod tests {
 
     use super::*;
 
-    fn read(text: &str) -> Result<Literals, VariableFault> {
+    fn read(text: &str) -> Result<Statements, VariableFault> {
         read_literals(text, &MemoryBudget::new(1 << 22, &|_| false))
     }
 

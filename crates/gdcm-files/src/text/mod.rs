@@ -1,12 +1,11 @@
 //! Texts that hold numbers: tables in columns, frequency responses, matrices and MATLAB literals.
 
-mod column_guess;
+mod column_meaning;
 mod columns;
 mod frequency_columns;
 mod heading;
 mod literals;
 mod matrix_text;
-mod response_columns;
 mod separator;
 mod word_columns;
 
@@ -16,8 +15,9 @@ use crate::file_error::FileError;
 use crate::importer::{Contents, Importer};
 use crate::variables::MemoryBudget;
 
+pub(crate) use column_meaning::says_quantity;
 pub(crate) use columns::{TextTable, read_table};
-pub(crate) use frequency_columns::{FrequencyColumns, RecognisedResponse, ResponsePoints, says_quantity};
+pub(crate) use frequency_columns::{FrequencyColumns, RecognisedResponse, ResponsePoints};
 pub(crate) use matrix_text::{read_matrices, read_matrix};
 pub(crate) use separator::{decode, sections};
 pub(crate) use word_columns::{NumberedText, numbered_words};

@@ -49,7 +49,7 @@ impl Importer for Npy {
 /// A number alone becomes 1 x 1, an array of n elements the row 1 x n. Booleans, whole numbers, floats and complex numbers become an
 /// [`Array`], texts a [`TextArray`], records a [`StructArray`].
 pub fn read_npy(bytes: &[u8], name: &str, meter: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
-    let header = Header::parse(bytes, name)?;
+    let header = Header::parse(bytes, name, meter)?;
     let damaged = |what: &str| VariableFault::Damaged { variable: name.to_owned(), what: what.to_owned(), offset: 8 };
     let too_many = || damaged("the shape has more elements than can be counted");
     let length =

@@ -142,19 +142,19 @@ enum TextContents {
 }
 
 /// A matrix where the file is named as one, matrices under names where there are some, else a table.
-fn models_text(text: &str, path: &Path, meter: &MemoryBudget<'_>) -> Result<TextContents, VariableFault> {
+fn models_text(text: &str, path: &Path, budget: &MemoryBudget<'_>) -> Result<TextContents, VariableFault> {
     if let Some((letter, _)) = matrix_letter(stem(path)) {
-        let variable = read_matrix(text, &letter.to_string(), meter)?;
+        let variable = read_matrix(text, &letter.to_string(), budget)?;
         return Ok(TextContents::Variables { variables: vec![variable], notes: Vec::new() });
     }
     let looks_named = text.lines().take(50).any(|line| {
         let line = line.trim().trim_end_matches(['=', ':', '[']).trim_end();
         matches!(line, "A" | "B" | "C" | "D")
     });
-    if looks_named && let Ok(matrices) = read_matrices(text, meter) {
+    if looks_named && let Ok(matrices) = read_matrices(text, budget) {
         return Ok(TextContents::Variables { variables: matrices.variables, notes: matrices.notes });
     }
-    read_table(text, meter).map(TextContents::Table)
+    read_table(text, budget).map(TextContents::Table)
 }
 
 fn stem(path: &Path) -> &str {

@@ -104,7 +104,7 @@ pub(super) fn visit_files(
 
 impl ZipFile<'_, '_> {
     /// Unpacks the file, and no further than the archive says: a few kilobytes can unpack to gigabytes. `name` is what faults call it.
-    pub(super) fn unpack(&self, name: &str, meter: &MemoryBudget<'_>) -> Result<Vec<u8>, VariableFault> {
+    pub(super) fn unpack(&self, name: &str, budget: &MemoryBudget<'_>) -> Result<Vec<u8>, VariableFault> {
         let unsupported = |what: String| {
             let remedy = "pack it again by deflate, without a password".to_owned();
             VariableFault::Unsupported { variable: name.to_owned(), what, remedy }
@@ -118,7 +118,7 @@ impl ZipFile<'_, '_> {
         if length > (packed.len() as u64).saturating_mul(LARGEST_RATIO) {
             return Err(damaged(name, "it claims more bytes than it can unpack to", self.offset));
         }
-        meter.take(length, 1, name)?;
+        budget.take(length, 1, name)?;
         let unpacked = match self.entry.compression_method() {
             CompressionMethod::STORE => read_whole(found.verifying_reader(packed), length),
             CompressionMethod::DEFLATE => read_whole(found.verifying_reader(DeflateDecoder::new(packed)), length),

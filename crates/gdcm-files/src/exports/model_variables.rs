@@ -105,10 +105,10 @@ mod tests {
         let study = Study::new(embedded_example().unwrap().dataset);
         let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
         let models = exported_models(&analysis, &ExportRequest::new(ExportFormat::StateSpace)).unwrap();
-        let meter = MemoryBudget::new(1 << 28, &|_| false);
-        let arrays = read_npz(&write_npz(&model_arrays(&models, &study.dataset)).unwrap(), &meter).unwrap();
+        let budget = MemoryBudget::new(1 << 28, &|_| false);
+        let arrays = read_npz(&write_npz(&model_arrays(&models, &study.dataset)).unwrap(), &budget).unwrap();
         let bytes = mat::write_packed(&[models_variable(&models, &study.dataset)]).unwrap();
-        let [Variable { value: Value::Struct(records), .. }] = &mat::read(&bytes, &meter).unwrap()[..] else {
+        let [Variable { value: Value::Struct(records), .. }] = &mat::read(&bytes, &budget).unwrap()[..] else {
             panic!("one struct array")
         };
         for (place, model) in models.iter().enumerate() {

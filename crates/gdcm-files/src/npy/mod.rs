@@ -48,8 +48,8 @@ impl Importer for Npy {
 ///
 /// A number alone becomes 1 x 1, an array of n elements the row 1 x n. Booleans, whole numbers, floats and complex numbers become an
 /// [`Array`], texts a [`TextArray`], records a [`StructArray`].
-pub fn read_npy(bytes: &[u8], name: &str, meter: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
-    let header = Header::parse(bytes, name, meter)?;
+pub fn read_npy(bytes: &[u8], name: &str, budget: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+    let header = Header::parse(bytes, name, budget)?;
     let damaged = |what: &str| VariableFault::Damaged { variable: name.to_owned(), what: what.to_owned(), offset: 8 };
     let too_many = || damaged("the shape has more elements than can be counted");
     let length =
@@ -65,7 +65,7 @@ pub fn read_npy(bytes: &[u8], name: &str, meter: &MemoryBudget<'_>) -> Result<Ve
     }
     let stored =
         StoredArray { element: &header.element, shape: &header.shape, column_major: header.column_major, data };
-    Ok(vec![Variable { name: name.to_owned(), value: stored.value(name, meter)? }])
+    Ok(vec![Variable { name: name.to_owned(), value: stored.value(name, budget)? }])
 }
 
 /// The elements of an array as they stand in a file.
@@ -77,26 +77,26 @@ struct StoredArray<'a> {
 }
 
 impl StoredArray<'_> {
-    fn value(&self, name: &str, meter: &MemoryBudget<'_>) -> Result<Value, VariableFault> {
+    fn value(&self, name: &str, budget: &MemoryBudget<'_>) -> Result<Value, VariableFault> {
         let elements = self.places(name)?.len() as u64;
         match self.element {
             Element::Number(number) => {
-                meter.take(elements, 8, name)?;
+                budget.take(elements, 8, name)?;
                 let re = self.numbers(*number, 0, name)?;
                 Ok(Value::Array(Array { shape: matrix_shape(self.shape), kind: number.kind(), re, im: None }))
             }
             Element::Complex(part) => {
-                meter.take(elements, 16, name)?;
+                budget.take(elements, 16, name)?;
                 let (re, im) = (self.numbers(*part, 0, name)?, Some(self.numbers(*part, part.size(), name)?));
                 Ok(Value::Array(Array { shape: matrix_shape(self.shape), kind: ElementKind::Float, re, im }))
             }
             Element::Unicode { .. } | Element::Bytes { .. } => {
-                meter.take(elements, (size_of::<String>() + self.element.size()) as u64, name)?;
+                budget.take(elements, (size_of::<String>() + self.element.size()) as u64, name)?;
                 let texts = self.places(name)?.map(|place| self.text(place)).collect();
                 Ok(Value::Text(TextArray { shape: matrix_shape(self.shape), texts }))
             }
             Element::Record { fields, .. } => {
-                let fields = fields.iter().map(|field| self.field(field, name, meter)).collect::<Result<_, _>>()?;
+                let fields = fields.iter().map(|field| self.field(field, name, budget)).collect::<Result<_, _>>()?;
                 Ok(Value::Struct(StructArray { shape: matrix_shape(self.shape), fields }))
             }
         }
@@ -139,14 +139,14 @@ impl StoredArray<'_> {
         &self,
         field: &Field,
         name: &str,
-        meter: &MemoryBudget<'_>,
+        budget: &MemoryBudget<'_>,
     ) -> Result<(String, Vec<Value>), VariableFault> {
         let places = self.places(name)?;
-        meter.take(places.len() as u64, size_of::<Value>() as u64, name)?;
+        budget.take(places.len() as u64, size_of::<Value>() as u64, name)?;
         let values = places.map(|place| {
             let record = self.at(place).get(field.offset..).unwrap_or_default();
             StoredArray { element: &field.element, shape: &field.shape, column_major: false, data: record }
-                .value(name, meter)
+                .value(name, budget)
         });
         Ok((field.name.clone(), values.collect::<Result<_, _>>()?))
     }

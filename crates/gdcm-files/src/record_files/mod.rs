@@ -91,11 +91,21 @@ impl FoundRecords {
             Contents::Archive { variables, files, ignored } => {
                 self.ignored.extend(ignored);
                 for (inner, contents) in files {
+                    let mut found = FoundRecords::default();
                     let taken = contents.and_then(|contents| {
                         let (path, sha256) = (Path::new(&inner), sha256.clone());
-                        self.take(ImportedFile { path, name: &inner, sha256, contents }, budget)
+                        found.take(ImportedFile { path, name: &inner, sha256, contents }, budget)
                     });
                     self.faults.extend(taken.err().map(|error| error.to_string()));
+                    self.faults.append(&mut found.faults);
+                    self.ignored.append(&mut found.ignored);
+                    // A file in the archive is what a variable is in others.
+                    for mut table in found.tables {
+                        let variable = table.source.variable.map(|variable| format!("{inner}, {variable}"));
+                        let (file, variable) = (name.to_owned(), Some(variable.unwrap_or_else(|| inner.clone())));
+                        table.source = RecordSource { file, variable, ..table.source };
+                        self.tables.push(table);
+                    }
                     if self.tables.len() > MOST_RECORDS {
                         return Err(wrong(VariableFault::TooLarge { variable: inner, most_mib: MOST_MEMORY >> 20 }));
                     }
@@ -158,8 +168,8 @@ impl Columns {
 }
 
 /// The columns of a text; where these change on the way, of every part that is long enough to be a record.
-fn of_text(text: &str, meter: &MemoryBudget<'_>) -> Result<Vec<Columns>, VariableFault> {
-    let first = match of_whole_text(text, meter) {
+fn of_text(text: &str, budget: &MemoryBudget<'_>) -> Result<Vec<Columns>, VariableFault> {
+    let first = match of_whole_text(text, budget) {
         Err(fault @ (VariableFault::Line { .. } | VariableFault::Format { .. })) => fault,
         whole => return whole.map(|columns| vec![columns]),
     };
@@ -167,7 +177,7 @@ fn of_text(text: &str, meter: &MemoryBudget<'_>) -> Result<Vec<Columns>, Variabl
     let count = parts.len();
     let mut found = Vec::new();
     for (index, (line, part)) in parts.into_iter().enumerate().filter(|_| count > 1) {
-        match of_whole_text(part, meter) {
+        match of_whole_text(part, budget) {
             Ok(columns) if columns.columns.first().is_some_and(|column| column.values.len() >= Separation::FEWEST) => {
                 let note = format!("one of {count} tables in the file, from line {line}");
                 let notes = [vec![note], columns.notes].concat();
@@ -181,14 +191,14 @@ fn of_text(text: &str, meter: &MemoryBudget<'_>) -> Result<Vec<Columns>, Variabl
 }
 
 /// The columns of one table: of one with words or times of the clock among its numbers, with numbers in their place.
-fn of_whole_text(text: &str, meter: &MemoryBudget<'_>) -> Result<Columns, VariableFault> {
-    let first = match read_table(text, meter) {
+fn of_whole_text(text: &str, budget: &MemoryBudget<'_>) -> Result<Columns, VariableFault> {
+    let first = match read_table(text, budget) {
         Err(fault @ (VariableFault::Line { .. } | VariableFault::Format { .. })) => fault,
         table => return table.map(of_table),
     };
-    let Some(NumberedText { text, notes }) = numbered_words(text, meter)? else { return Err(first) };
+    let Some(NumberedText { text, notes }) = numbered_words(text, budget)? else { return Err(first) };
     // What is wrong in the text as it stands says more than what is wrong in this one.
-    let mut columns = of_table(read_table(&text, meter).map_err(|_| first)?);
+    let mut columns = of_table(read_table(&text, budget).map_err(|_| first)?);
     columns.notes.extend(notes);
     Ok(columns)
 }

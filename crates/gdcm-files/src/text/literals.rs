@@ -544,9 +544,11 @@ impl<'t> Reading<'t, '_> {
                     if sign == close {
                         return Ok((rows, columns, elements));
                     }
-                    let is_operator = !spaced || self.scanner.rest()[sign.len_utf8()..].starts_with([' ', '\t']);
+                    let space_behind = self.scanner.rest()[sign.len_utf8()..].starts_with([' ', '\t']);
+                    let is_operator =
+                        if spaced { space_behind && "+-*/^:.\\".contains(sign) } else { "+-*/^:.\\'".contains(sign) };
                     let before = self.scanner.text[..self.scanner.at].trim_end().chars().next_back();
-                    if row > 0 && before != Some(',') && (is_operator && "+-*/^:'.\\".contains(sign)) {
+                    if row > 0 && before != Some(',') && is_operator {
                         return refused(format!("nothing is computed here; {REMEDY}"), place);
                     }
                     self.budget.take(2, size_of::<T>() as u64, "")?;

@@ -20,7 +20,7 @@ use gdcm_core::dataset::{
 use gdcm_core::fidelity::Discontinuity;
 use gdcm_core::response::{FrequencyGrid, PolarResponse};
 use gdcm_core::study::{
-    BundleMetrics, ConditionResponses, Edit, Engine, Execution, PhaseCorrection, Setting, Study, Unobserved,
+    BundleMetrics, ConditionResponses, Edit, Engine, Execution, PhaseCorrection, Study, Unobserved, setting,
 };
 use gdcm_files::{embedded_example, load_dataset};
 
@@ -95,21 +95,21 @@ fn all_conditions(criterion: &mut Criterion, name: &str, engine: impl Fn() -> En
             });
         });
     };
-    let set = |study: &mut Study, setting: Setting| study.apply(&Edit::Set(setting)).expect("within its range");
-    drag("alpha dragged", &|study, turn| set(study, Setting::AlphaGain(1.0 + 1e-6 * turn)));
-    let under_lead = |study: &mut Study, setting: Setting| {
-        set(study, Setting::Phase(PhaseCorrection::Lead));
-        set(study, setting);
+    let set = |study: &mut Study, edit: Edit| study.apply(&edit).expect("within its range");
+    drag("alpha dragged", &|study, turn| set(study, setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn)));
+    let under_lead = |study: &mut Study, edit: Edit| {
+        set(study, setting::PHASE.to(PhaseCorrection::Lead));
+        set(study, edit);
     };
-    drag("alpha dragged under lead", &|study, turn| under_lead(study, Setting::AlphaGain(1.0 + 1e-6 * turn)));
+    drag("alpha dragged under lead", &|study, turn| under_lead(study, setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn)));
     drag("alpha of the delays dragged under lead", &|study, turn| {
-        under_lead(study, Setting::AlphaDelay(1.0 + 1e-6 * turn));
+        under_lead(study, setting::ALPHA_DELAY.to(1.0 + 1e-6 * turn));
     });
-    drag("n dragged under lead", &|study, turn| under_lead(study, Setting::LeadPole(3.0 + 1e-6 * turn)));
-    drag("R_max dragged under lead", &|study, turn| under_lead(study, Setting::LeadLimit(10.0 + 1e-6 * turn)));
+    drag("n dragged under lead", &|study, turn| under_lead(study, setting::LEAD_POLE.to(3.0 + 1e-6 * turn)));
+    drag("R_max dragged under lead", &|study, turn| under_lead(study, setting::LEAD_LIMIT.to(10.0 + 1e-6 * turn)));
     drag("band edge dragged", &|study, turn| {
         let band = Band::new(0.5, 12.0 + 1e-6 * turn).expect("rising");
-        set(study, Setting::Band(band));
+        set(study, setting::BAND.to(band));
     });
     drag("model rejected", &|study, turn| {
         let id = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
@@ -144,7 +144,7 @@ fn ratios(_: &mut Criterion) {
     let (mut engine, mut dragged, mut alpha) = (Engine::default(), study.clone(), 1.0);
     let drag = shortest(50, || {
         alpha += 1e-6;
-        dragged.apply(&Edit::Set(Setting::AlphaGain(alpha))).expect("within its range");
+        dragged.apply(&setting::ALPHA_GAIN.to(alpha)).expect("within its range");
         engine.analyze(&dragged, &Unobserved)
     });
     println!("alpha dragged: everything anew would take {:.0} times as long", anew.div_duration_f64(drag));
@@ -213,7 +213,7 @@ fn bars_of(criterion: &mut Criterion, name: &str, dataset: Arc<Dataset>) {
         bencher.iter(|| {
             turn += 1.0;
             // What every swap depends on, and no response.
-            study.apply(&Edit::Set(Setting::AlphaGain(1.0 + 1e-6 * turn))).expect("within its range");
+            study.apply(&setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn)).expect("within its range");
             let analysis = reps(&study, &mut engine);
             engine.uncertainty(&analysis, &Unobserved)
         });

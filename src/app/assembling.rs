@@ -220,7 +220,7 @@ impl GdcmApp {
         let path = self.at_home(path);
         let folder = relative_folder(sources_folder(&bench.sources), &path);
         let Some(dataset) = bench.assembly().dataset(&folder) else {
-            return self.notify_error("some things are still to be said before the dataset can be made".to_owned());
+            return self.notify_error("items are to be completed before the dataset can be made".to_owned());
         };
         let rules = bench.assembly().rules().clone();
         let beside = rules_path(&path);

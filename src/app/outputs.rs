@@ -8,9 +8,12 @@ use std::sync::Arc;
 use crate::view::arrangement::View;
 use crate::view::command::{Command, FormKind};
 use crate::view::figures::{figure_name, figure_of};
-use gdcm_core::study::{Analysis, ExportFormat, ExportRequest, Table};
+use gdcm_core::study::{Analysis, Table};
 use gdcm_files::figure::{ColumnWidth, Figure, FigureFormat};
-use gdcm_files::{ExportSource, FileError, OutputSet, csv_text, save_table, write_export, write_figure, write_results};
+use gdcm_files::{
+    ExportFormat, ExportRequest, ExportSource, FileError, OutputSet, csv_text, save_table, write_export, write_figure,
+    write_results,
+};
 
 use super::window::GdcmApp;
 
@@ -32,7 +35,7 @@ impl GdcmApp {
         let form = &mut self.state.forms.export_as;
         if form.path.is_empty() {
             let stem = stem.unwrap_or_else(|| "example".to_owned());
-            form.path = format!("{}.{}", stem.trim_end_matches(".json"), form.format.extension());
+            form.path = format!("{}.{}", stem.trim_end_matches(".json"), form.format.about().extension);
         }
     }
 
@@ -41,7 +44,8 @@ impl GdcmApp {
         let Some(analysis) = self.complete_results() else { return };
         let path = self.at_home(path);
         let source = ExportSource { name: self.state.study_name.clone(), sha256: self.loaded.sha256.clone() };
-        let written = write_export(&analysis, &source, &ExportRequest::new(format), &path, self.outputs());
+        let request = ExportRequest { format, ..ExportRequest::default() };
+        let written = write_export(&analysis, &source, &request, &path, self.outputs());
         let words = |remarks: Vec<String>| {
             let remark = match remarks.as_slice() {
                 [] => String::new(),

@@ -50,7 +50,7 @@ impl GdcmApp {
         self.keep_open();
         self.state.bars.retain(|bar| !matches!(bar, Bar::Differences { .. }));
         let name = loaded.file_name();
-        let (study, differences) = self.state.study.carried_over(Arc::clone(&loaded.dataset));
+        let (study, differences) = self.state.study.reconciled(Arc::clone(&loaded.dataset));
         let before = std::mem::replace(&mut self.state.study, study);
         self.state.history.record_reload(before, format!("reload {name}"));
         self.earlier.push(loaded);

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand};
+use clap::parser::ValueSource;
+use clap::{Arg, ArgAction, ArgMatches, Args, FromArgMatches, Parser, Subcommand};
 
-use gdcm_core::schedule::HIGHEST_DEGREE;
-use gdcm_core::study::{AcrossRole, DEFAULT_COHERENCE, DelayFrom, LEAST_POINTS, MOST_POINTS, PhaseCorrection};
+use gdcm_core::study::{AcrossRole, Kind, SETTINGS, Setting};
 use gdcm_files::figure::{ColumnWidth, FigureKind, Role};
 
-use super::export_arguments::ExportArguments;
+use super::export::ExportArguments;
 use super::identify_arguments::IdentifyArguments;
 
 /// Gain-Delay Correction Method: matches physics-based helicopter models to flight.
@@ -103,41 +103,58 @@ pub struct OpeningArguments {
     pub strict: bool,
 }
 
+/// An option for each row of the table of settings.
+#[derive(Clone, Debug)]
+pub struct SettingOptions {
+    /// The settings said, with their words, in the order of the table.
+    pub said: Vec<(&'static Setting, Vec<String>)>,
+}
+
+impl FromArgMatches for SettingOptions {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let said = SETTINGS.into_iter().filter_map(|setting| {
+            let is_said = matches.value_source(setting.option) == Some(ValueSource::CommandLine);
+            let words = matches.get_raw(setting.option).into_iter().flatten();
+            is_said.then(|| (setting, words.map(|word| word.to_string_lossy().into_owned()).collect()))
+        });
+        Ok(Self { said: said.collect() })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Args for SettingOptions {
+    fn augment_args(command: clap::Command) -> clap::Command {
+        command.args(SETTINGS.map(|setting| {
+            let (name, unit) = (setting.option, setting.unit.file);
+            let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
+            let argument = Arg::new(name).long(name.trim_start_matches('-')).help(format!("{}{unit}", setting.help));
+            match setting.kind {
+                Kind::Flag { .. } => argument.action(ArgAction::SetTrue),
+                Kind::Range { nothing: None, .. } => argument.value_names(["LO", "HI"]).num_args(2),
+                Kind::Range { .. } => argument.value_names(["LO", "HI"]).num_args(1..=2),
+                _ => argument.value_name(setting.syntax()),
+            }
+            .allow_negative_numbers(true)
+        }))
+    }
+
+    fn augment_args_for_update(command: clap::Command) -> clap::Command {
+        Self::augment_args(command)
+    }
+}
+
 /// What is to be analysed, and how.
 #[derive(Debug, Args)]
 pub struct StudyArguments {
     /// Dataset or study; without it, the embedded example (synthetic data).
     pub file: Option<PathBuf>,
-    /// Weight of the regularisation of the gains, from 0.
-    #[arg(long, value_name = "A", value_parser = real_number, allow_negative_numbers = true)]
-    pub alpha: Option<f64>,
-    /// Weight of the regularisation of the delays, from 0.
-    #[arg(long, value_name = "A", value_parser = real_number, allow_negative_numbers = true)]
-    pub alpha_delay: Option<f64>,
-    /// Band of comparison, in rad/s.
-    #[arg(long, num_args = 2, value_names = ["LO", "HI"], value_parser = real_number, allow_negative_numbers = true)]
-    pub band: Option<Vec<f64>>,
-    /// Number of frequencies in the band.
-    #[arg(long, value_name = "N", value_parser = whole_number::<LEAST_POINTS, MOST_POINTS>, allow_negative_numbers = true)]
-    pub points: Option<usize>,
-    /// Degree of the schedule's polynomial, 0 to 3.
-    #[arg(long, value_name = "D", value_parser = whole_number::<0, HIGHEST_DEGREE>, allow_negative_numbers = true)]
-    pub degree: Option<usize>,
-    /// How the phase is corrected: not at all, by delays, or by a delay or a lead filter a channel.
-    #[arg(long, value_name = "none|delay|lead", value_parser = phase_correction)]
-    pub phase: Option<PhaseCorrection>,
-    /// Which D the delays are fitted to: the median of phase over frequency, or a straight line over the band.
-    #[arg(long, value_name = "median|band", value_parser = delay_from)]
-    pub delay_from: Option<DelayFrom>,
-    /// Schedule the delays with airspeed too.
-    #[arg(long)]
-    pub schedule_delays: bool,
-    /// Mismatch up to which a loop of held gains counts as agreeing, in dB.
-    #[arg(long, value_name = "DB", value_parser = real_number, allow_negative_numbers = true)]
-    pub agreement: Option<f64>,
-    /// Whether the coherence of measured responses counts: off, on, or the least that does (on is 0.6).
-    #[arg(long, value_name = "off|on|LEAST", allow_negative_numbers = true)]
-    pub coherence: Option<CoherenceChoice>,
+    /// The settings that it says.
+    #[command(flatten)]
+    pub settings: SettingOptions,
     /// Responses to hold, OUTPUT/INPUT, separated by commas (P/LAT,Q/LON); "none" holds none. Without it, the on-axis ones.
     #[arg(long, value_name = "PAIRS")]
     pub on: Option<PairList>,
@@ -147,15 +164,6 @@ pub struct StudyArguments {
     /// Conditions, by their ids, separated by commas, to keep from the schedule and to judge it by.
     #[arg(long, value_name = "IDS", value_delimiter = ',', allow_negative_numbers = true)]
     pub hold_out: Vec<i64>,
-    /// Schedule gains with a second variable beside airspeed.
-    #[arg(long, value_name = "altitude|mass")]
-    pub second_variable: Option<SecondVariableChoice>,
-    /// What G is taken from: the two representatives, or the mean over all pairs of kept models.
-    #[arg(long, value_name = "representatives|mean")]
-    pub gain_from: Option<GainSourceChoice>,
-    /// Level of error bars, intervals and tests, from 0.5 to 0.999.
-    #[arg(long, value_name = "L", value_parser = real_number, allow_negative_numbers = true)]
-    pub level: Option<f64>,
     /// Reject every physics model that is suggested as an outlier.
     #[arg(long)]
     pub reject_suggested: bool,
@@ -179,24 +187,6 @@ pub struct AnalyzeArguments {
     /// Overwrite results that are there already.
     #[arg(long)]
     pub force: bool,
-}
-
-/// A variable besides airspeed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum SecondVariableChoice {
-    /// Altitude, in ft.
-    Altitude,
-    /// Mass, in kg.
-    Mass,
-}
-
-/// What G is taken from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum GainSourceChoice {
-    /// The two representatives.
-    Representatives,
-    /// The mean of ln G over all kept pairs.
-    Mean,
 }
 
 /// Which figure is to be made, of what, and where it goes.
@@ -321,36 +311,6 @@ pub(super) fn real_number(text: &str) -> Result<f64, String> {
 pub(super) fn whole_number<const LEAST: usize, const MOST: usize>(text: &str) -> Result<usize, String> {
     let number = text.trim().parse().ok().filter(|number| (LEAST..=MOST).contains(number));
     number.ok_or_else(|| format!("expected a whole number from {LEAST} to {MOST}, found {text}"))
-}
-
-fn phase_correction(text: &str) -> Result<PhaseCorrection, String> {
-    let found = PhaseCorrection::ALL.into_iter().find(|phase| phase.name() == text);
-    found.ok_or_else(|| format!("expected none, delay or lead, found {text}"))
-}
-
-fn delay_from(text: &str) -> Result<DelayFrom, String> {
-    let found = DelayFrom::ALL.into_iter().find(|from| from.name() == text);
-    found.ok_or_else(|| format!("expected median or band, found {text}"))
-}
-
-/// Whether coherence counts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CoherenceChoice {
-    /// The least that does; none where it counts for nothing.
-    pub threshold: Option<f64>,
-}
-
-impl FromStr for CoherenceChoice {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let threshold = match text {
-            "off" => None,
-            "on" => Some(DEFAULT_COHERENCE),
-            number => Some(number.parse().map_err(|_| format!("expected off, on or a number, found {number}"))?),
-        };
-        Ok(Self { threshold })
-    }
 }
 
 /// Responses by the names of their channels.

@@ -18,19 +18,11 @@ pub(super) fn evidence_section(analysis: &Analysis) -> String {
     let mut text = labelled(0, "Scatter", LABEL, "of the on-axis net gains, and what the bundles make of it:");
     let table = Table { title: String::new(), ..scatter_table(&analysis.study.dataset, uncertainty) };
     table.text().lines().for_each(|line| text.push_str(&format!("  {}\n", sanitized(line))));
-    let differences = &uncertainty.differences;
-    let beyond: Vec<_> = differences.iter().filter(|difference| difference.is_beyond(uncertainty.level)).collect();
-    if let Some(count) = uncertainty.too_many_differences {
-        let words = format!("{count} at equal airspeed are too many to compare");
-        text.push_str(&labelled(0, "Differences", LABEL, &words));
-    }
-    let words = format!(
-        "of {} differences at equal airspeed {} are more than the bundles explain (error bars of {level:.0} %, Holm)",
-        differences.len(),
-        beyond.len()
-    );
+    let significant = uncertainty.differences.iter().filter(|difference| difference.is_significant(uncertainty.level));
+    let words =
+        format!("{} (error bars of {level:.0} %, Holm)", uncertainty.differences_in_words().trim_end_matches('.'));
     text.push_str(&labelled(0, "Differences", LABEL, &words));
-    for difference in beyond {
+    for difference in significant {
         let words = format!("{}: {}", pair_name(difference.pair), difference.words(uncertainty.level));
         text.push_str(&labelled(2, "", LABEL - 2, &words));
     }

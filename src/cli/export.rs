@@ -1,20 +1,88 @@
-//! `gdcm export`.
+//! `gdcm export`: what it takes, and what it does.
 
-use gdcm_core::message_text::{sanitized, sanitized_path};
+use std::path::PathBuf;
+use std::str::FromStr;
 use std::sync::Arc;
 
-use gdcm_core::correction::Pade;
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+
+use gdcm_core::correction::{HIGHEST_PADE_ORDER, Pade};
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::study::{ExportFormat, ExportRequest, ExportedRole, Study};
-use gdcm_files::{ExportSource, check_export, write_export};
+use gdcm_core::message_text::{sanitized, sanitized_path};
+use gdcm_core::study::{AssessedCorrection, Study};
+use gdcm_files::{EXPORTERS, ExportFormat, ExportRequest, ExportSource, ExportedRole, check_export, write_export};
 
 use super::analyze::check_result;
-use super::arguments::StudyArguments;
-use super::export_arguments::ExportArguments;
+use super::arguments::{StudyArguments, real_number, whole_number};
 use super::failure::Failure;
 use super::study_options::{analysis_of, engine, outputs_of, study_of};
 use super::terminal::TerminalProgress;
 use super::terminal::say;
+
+/// What is to be exported, as what, and where it goes.
+#[derive(Debug, Args)]
+pub struct ExportArguments {
+    /// What is to be analysed, and how.
+    #[command(flatten)]
+    pub study: StudyArguments,
+    /// As what.
+    #[arg(long = "as", value_name = "FORMAT", value_parser = formats())]
+    pub format: ExportFormat,
+    /// Airspeeds of a lookup table, in kt, rising, separated by commas (40,60,80). Without it, those of the scheduled conditions.
+    #[arg(long, value_name = "AIRSPEEDS", allow_negative_numbers = true)]
+    pub breakpoints: Option<Breakpoints>,
+    /// The condition whose corrected model is written, by its id; without it, every one.
+    #[arg(long, value_name = "ID", allow_negative_numbers = true)]
+    pub condition: Option<i64>,
+    /// Which of its physics models: nominal, representative, or one by its name [default: nominal].
+    #[arg(long, value_name = "MODEL", allow_hyphen_values = true)]
+    pub model: Option<String>,
+    /// The correction of the models: scheduled, or each condition's own [default: scheduled].
+    #[arg(long, value_name = "CORRECTION", value_parser = corrections())]
+    pub correction: Option<AssessedCorrection>,
+    /// Order of the Pade approximants that stand for delays of models, 1 to 8 [default: 2].
+    #[arg(long, value_name = "N", value_parser = whole_number::<1, HIGHEST_PADE_ORDER>, allow_negative_numbers = true)]
+    pub pade: Option<usize>,
+    /// The file; of corrected models the end of its name says what it is: .mat, .json or .npz.
+    #[arg(long, value_name = "PATH")]
+    pub out: PathBuf,
+    /// Overwrite a file that is there already.
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Airspeeds of a lookup table \[kt\].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Breakpoints {
+    /// The airspeeds, rising.
+    pub airspeeds_kt: Vec<f64>,
+}
+
+impl FromStr for Breakpoints {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let airspeeds_kt = text.split(',').map(real_number).collect::<Result<Vec<f64>, _>>()?;
+        let rising = airspeeds_kt.windows(2).all(|pair| pair[0] < pair[1]);
+        if !rising || !airspeeds_kt.iter().all(|airspeed| airspeed.is_finite()) {
+            return Err(format!("expected airspeeds that rise, as 40,60,80, found {text}"));
+        }
+        Ok(Self { airspeeds_kt })
+    }
+}
+
+fn formats() -> impl TypedValueParser<Value = ExportFormat> {
+    let values = EXPORTERS.map(|exporter| PossibleValue::new(exporter.about().name).help(exporter.about().words));
+    PossibleValuesParser::new(values).try_map(|name| ExportFormat::named(&name).ok_or("there is no such format"))
+}
+
+fn corrections() -> impl TypedValueParser<Value = AssessedCorrection> {
+    PossibleValuesParser::new(["scheduled", "own"]).map(|name| match name.as_str() {
+        "own" => AssessedCorrection::Own,
+        _ => AssessedCorrection::Scheduled,
+    })
+}
 
 /// Analyses, writes what is asked for, and says what is to be known of it.
 pub(super) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
@@ -32,7 +100,7 @@ pub(super) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     let source = ExportSource { name: name(&arguments.study), sha256: loaded.sha256.clone() };
     let remarks = write_export(&analysis, &source, &request, &arguments.out, outputs)?;
     let remarks: String = remarks.iter().map(|remark| format!("{}\n", sanitized(remark))).collect();
-    say(&format!("{}: {}\n{remarks}", sanitized_path(&arguments.out), request.format.words()))
+    say(&format!("{}: {}\n{remarks}", sanitized_path(&arguments.out), request.format.about().words))
 }
 
 /// What an export is called: the file of the study or of the dataset.
@@ -44,17 +112,18 @@ fn name(arguments: &StudyArguments) -> String {
 /// The request of a command line; an option that its format knows nothing of is refused.
 fn request(study: &Study, arguments: &ExportArguments) -> Result<ExportRequest, Failure> {
     let format = arguments.format;
-    let is_table = matches!(format, ExportFormat::TableCsv | ExportFormat::TableMat);
-    let is_models = format == ExportFormat::StateSpace;
-    let misplaced = [
-        ("--breakpoints", arguments.breakpoints.is_some() && !is_table, "table-csv and table-mat"),
-        ("--condition", arguments.condition.is_some() && !is_models, "state-space"),
-        ("--model", arguments.model.is_some() && !is_models, "state-space"),
-        ("--correction", arguments.correction.is_some() && !is_models, "state-space"),
-        ("--pade", arguments.pade.is_some() && !is_models, "state-space"),
+    let given = [
+        ("--breakpoints", arguments.breakpoints.is_some()),
+        ("--condition", arguments.condition.is_some()),
+        ("--model", arguments.model.is_some()),
+        ("--correction", arguments.correction.is_some()),
+        ("--pade", arguments.pade.is_some()),
     ];
-    if let Some((option, _, of)) = misplaced.into_iter().find(|(_, is_misplaced, _)| *is_misplaced) {
-        return Err(Failure::Option { option, reason: format!("is an option of --as {of}") });
+    let misplaced = |(option, is_given): &(&str, bool)| *is_given && !format.about().options.contains(option);
+    if let Some((option, _)) = given.into_iter().find(misplaced) {
+        let takes = EXPORTERS.iter().map(|exporter| exporter.about()).filter(|about| about.options.contains(&option));
+        let names: Vec<&str> = takes.map(|about| about.name).collect();
+        return Err(Failure::Option { option, reason: format!("is an option of --as {}", names.join(" and ")) });
     }
     let condition = arguments.condition.map(ConditionId);
     if let Some(id) = condition.filter(|id| study.dataset.condition(*id).is_none()) {
@@ -73,6 +142,18 @@ fn request(study: &Study, arguments: &ExportArguments) -> Result<ExportRequest, 
         role,
         correction: arguments.correction.unwrap_or_default(),
         pade: arguments.pade.and_then(Pade::new).unwrap_or_default(),
-        ..ExportRequest::new(format)
+        format,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn breakpoints_rise() {
+        let of = |text: &str| text.parse::<Breakpoints>().map(|found| found.airspeeds_kt);
+        assert_eq!(of("40, 60,80.5"), Ok(vec![40.0, 60.0, 80.5]));
+        assert!(of("60,40").is_err() && of("40,40").is_err() && of("40,NaN").is_err() && of("").is_err());
+    }
 }

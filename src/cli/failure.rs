@@ -24,7 +24,7 @@ pub(super) enum Failure {
     #[error("{path}: {count} faults; once they are mended, check the file again")]
     Faulty { path: String, count: usize },
     /// Something is still to be said before files are a dataset.
-    #[error("no dataset was made: {count} {} still to be said; say it in {rules} and give it with --rules", if *count == 1 { "thing is" } else { "things are" })]
+    #[error("no dataset was made: {count} {} to complete; do so in {rules} and give it with --rules", if *count == 1 { "item" } else { "items" })]
     Incomplete { count: usize, rules: String },
     /// Records whose columns are not clear, or cannot be what they are taken for; each was told.
     #[error("{wrong} of {of} {} cannot be taken as they are: say which column is which (--inputs P=COLUMN, --time), or leave them out", if *of == 1 { "record" } else { "records" })]

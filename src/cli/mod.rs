@@ -8,7 +8,6 @@ mod check;
 mod destination;
 mod evidence_sections;
 mod export;
-mod export_arguments;
 mod failure;
 mod figure;
 mod identification_outcome;
@@ -43,7 +42,7 @@ pub use arguments::{
     AnalyzeArguments, AssembleArguments, Command, ConvertArguments, FigureArguments, OpeningArguments, PairChoice,
     PairList, Rejection, ReportArguments, StudyArguments,
 };
-pub use export_arguments::{Breakpoints, ExportArguments};
+pub use export::{Breakpoints, ExportArguments};
 pub use identify_arguments::{ChannelDelay, ChannelList, IdentifyArguments, OfferedChoice};
 
 /// What the command line asks for.

@@ -1,14 +1,11 @@
 //! The study that a command is about, with what the command line says on top of it.
 
 use crate::executor::Pool;
-use gdcm_core::correction::GainSource;
-use gdcm_core::dataset::{Band, BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
-use gdcm_core::schedule::{ScheduleKind, ScheduleSettings, SecondVariable};
-use gdcm_core::study::{Analysis, Edit, Engine, Progress, Setting, Study};
-use gdcm_core::uncertainty::UncertaintySettings;
+use gdcm_core::dataset::{BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
+use gdcm_core::study::{Analysis, Edit, Engine, Progress, Study};
 use gdcm_files::{LoadedDataset, OutputSet, embedded_example};
 
-use super::arguments::{CoherenceChoice, GainSourceChoice, PairList, Rejection, SecondVariableChoice, StudyArguments};
+use super::arguments::{PairList, Rejection, StudyArguments};
 use super::existing;
 use super::failure::Failure;
 use super::open as open_file;
@@ -60,59 +57,11 @@ pub(super) fn analysis_of(
 
 /// Puts the options into the study, over what it says itself.
 fn take_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure> {
-    let mut set = |option, setting| study.apply(&Edit::Set(setting)).map_err(Failure::refused(option));
-    if let Some(alpha) = arguments.alpha {
-        set("--alpha", Setting::AlphaGain(alpha))?;
-    }
-    if let Some(alpha) = arguments.alpha_delay {
-        set("--alpha-delay", Setting::AlphaDelay(alpha))?;
-    }
-    if let Some([low, high]) = arguments.band.as_deref() {
-        let band =
-            Band::new(*low, *high).map_err(|error| Failure::Option { option: "--band", reason: error.to_string() })?;
-        set("--band", Setting::Band(band))?;
-    }
-    if let Some(points) = arguments.points {
-        set("--points", Setting::Points(points))?;
-    }
-    if let Some(phase) = arguments.phase {
-        set("--phase", Setting::Phase(phase))?;
-    }
-    if let Some(from) = arguments.delay_from {
-        set("--delay-from", Setting::DelayFrom(from))?;
-    }
-    if let Some(agreement_db) = arguments.agreement {
-        set("--agreement", Setting::Agreement(agreement_db))?;
-    }
-    if let Some(CoherenceChoice { threshold }) = arguments.coherence {
-        set("--coherence", Setting::Coherence(threshold))?;
-    }
-    if arguments.schedule_delays {
-        let schedule = ScheduleSettings { delays: true, ..study.settings.schedule };
-        study.apply(&Edit::Set(Setting::Schedule(schedule))).map_err(Failure::refused("--schedule-delays"))?;
-    }
-    if let Some(degree) = arguments.degree {
-        let schedule = ScheduleSettings { kind: ScheduleKind::Polynomial { degree }, ..study.settings.schedule };
-        study.apply(&Edit::Set(Setting::Schedule(schedule))).map_err(Failure::refused("--degree"))?;
-    }
-    if let Some(choice) = arguments.second_variable {
-        let variable = match choice {
-            SecondVariableChoice::Altitude => SecondVariable::Altitude,
-            SecondVariableChoice::Mass => SecondVariable::Mass,
-        };
-        let schedule = ScheduleSettings { second: Some(variable), ..study.settings.schedule };
-        study.apply(&Edit::Set(Setting::Schedule(schedule))).map_err(Failure::refused("--second-variable"))?;
-    }
-    if let Some(choice) = arguments.gain_from {
-        let source = match choice {
-            GainSourceChoice::Representatives => GainSource::Representatives,
-            GainSourceChoice::Mean => GainSource::MeanOfPairs,
-        };
-        study.apply(&Edit::Set(Setting::GainSource(source))).map_err(Failure::refused("--gain-from"))?;
-    }
-    if let Some(level) = arguments.level {
-        let uncertainty = UncertaintySettings { level, ..study.settings.uncertainty };
-        study.apply(&Edit::Set(Setting::Uncertainty(uncertainty))).map_err(Failure::refused("--level"))?;
+    for (setting, words) in &arguments.settings.said {
+        let option = setting.option;
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let value = setting.read(&words).map_err(|reason| Failure::Option { option, reason })?;
+        study.apply(&setting.to(value)).map_err(Failure::refused(option))?;
     }
     for &id in &arguments.hold_out {
         let edit = Edit::SetHeldOut { condition: ConditionId(id), held_out: true };
@@ -148,8 +97,7 @@ fn hold(study: &mut Study, list: &PairList) -> Result<(), Failure> {
     let dataset = study.dataset.clone();
     let held = pairs_of(&dataset, list, "--on")?;
     for pair in dataset.on_axis().pairs() {
-        let setting = Setting::Constrained(pair, held.contains(&pair));
-        study.apply(&Edit::Set(setting)).map_err(Failure::refused("--on"))?;
+        study.apply(&Edit::Hold(pair, held.contains(&pair))).map_err(Failure::refused("--on"))?;
     }
     Ok(())
 }

@@ -88,8 +88,8 @@ fn assessment_lines(analysis: &Analysis) -> String {
     let words = format!(
         "under the schedule J of the nominal models falls in {better} of {compared} {which}responses of {conditions} conditions"
     );
-    let fails_between = analysis.schedule.as_ref().is_ok_and(Schedule::fails_between);
-    let words = if fails_between {
+    let fails = analysis.schedule.as_ref().is_ok_and(Schedule::interpolation_fails);
+    let words = if fails {
         format!(
             "at the conditions' own airspeeds, {words}; between them the schedule must not be used (see its caution)"
         )

@@ -7,9 +7,10 @@ use egui_tiles::{
 
 use super::arrangement::{View, ViewTitle};
 use super::command::Command;
+use super::controls::entries_ui;
 use super::figures::figure_button_ui;
 use super::focus::{Region, region_ui};
-use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
+use super::palette::{BODY_SIZE, Palette};
 use super::state::State;
 
 /// Height of a row of tabs \[pt\].
@@ -64,7 +65,7 @@ fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &Palette) {
     };
     // A title of a few letters says nothing.
     if ui.available_width() > LEAST_TITLE {
-        let text = RichText::new(&title).size(SMALL_SIZE).color(palette.dim_text);
+        let text = palette.small(&title);
         ui.add(egui::Label::new(text).truncate());
     }
 }
@@ -72,7 +73,7 @@ fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &Palette) {
 /// Says that what stands beside is of older settings than the result of the condition shown.
 fn older_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     if state.others_are_older() {
-        let text = RichText::new("of older settings").size(SMALL_SIZE).color(palette.warning);
+        let text = palette.small_warning("of older settings");
         ui.label(text).on_hover_text("The condition shown is computed anew already; the others are on their way");
     }
 }
@@ -113,16 +114,13 @@ impl Behavior<View> for Views<'_> {
             );
         }
         tab.context_menu(|ui| {
-            for (text, direction) in
-                [("Put beside the others", LinearDir::Horizontal), ("Put below the others", LinearDir::Vertical)]
-            {
-                if ui.button(text).clicked() {
-                    self.commands.push(Command::SplitView(view, direction));
-                    ui.close();
-                }
-            }
+            let places = [
+                ("Put beside the others", Command::SplitView(view, LinearDir::Horizontal)),
+                ("Put below the others", Command::SplitView(view, LinearDir::Vertical)),
+            ];
+            entries_ui(ui, places, self.commands);
         });
-        tab.on_hover_text(format!("{}. Drag the tab to split the plots; secondary click: more", view.kind().purpose))
+        tab.on_hover_text(format!("{}. Drag the tab to split the plots; right-click: more", view.kind().purpose))
     }
 
     fn top_bar_right_ui(&mut self, tiles: &Tiles<View>, ui: &mut Ui, _tile: TileId, tabs: &Tabs, _scroll: &mut f32) {

@@ -3,7 +3,7 @@
 use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
 
 use gdcm_core::dataset::{BundleKind, ModelId, Pair};
-use gdcm_core::study::{Edit, OfferedModels, PhaseCorrection, Setting};
+use gdcm_core::study::{Edit, Kind, OfferedModels, Place, SETTINGS, Value};
 use gdcm_files::figure::FigureFormat;
 
 use super::arrangement::{Preset, View};
@@ -61,7 +61,7 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// An entry without shortcut and menu.
+    /// An entry that only the palette has, without shortcut.
     pub(super) fn new(name: impl Into<String>, meaning: &'static str, command: Command) -> Self {
         let (shortcuts, reach) = (Vec::new(), Reach::Everywhere);
         Self { name: name.into(), meaning, shortcuts, reach, menu: None, enabled: true, command }
@@ -89,42 +89,13 @@ impl Entry {
     }
 }
 
+/// The entries of one group of a menu.
+fn group<const N: usize>(menu: Menu, group: u8, entries: [Entry; N]) -> impl Iterator<Item = Entry> {
+    entries.into_iter().map(move |entry| entry.within(menu, group))
+}
+
 const CTRL: Modifiers = Modifiers::COMMAND;
 const CTRL_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
-
-/// What can be done with the flight records of the condition shown.
-fn record_entries(state: &State) -> Vec<Entry> {
-    let condition = state.condition().id();
-    let of = |id| state.records.conditions.get(&id);
-    let has_records = of(condition).is_some_and(|records| records.used_rows().next().is_some());
-    let is_found = of(condition).is_some_and(|records| records.identification().is_some());
-    let is_taken = state.study.taken_models().any(|(id, _)| id == condition);
-    let all = state.records.conditions.values().any(|records| records.used_rows().next().is_some());
-    let entry =
-        |name, meaning, command: RecordsCommand, enabled| Entry::new(name, meaning, command.into()).enabled(enabled);
-    vec![
-        Entry::new(
-            "Add flight records…",
-            "Of the condition that their names say, or of the one shown",
-            RecordsCommand::AskFiles.into(),
-        )
-        .within(Menu::File, 1),
-        entry(
-            "Identify models",
-            "Of the condition shown, from its flight records",
-            RecordsCommand::Identify,
-            has_records,
-        ),
-        entry("Identify models of all conditions", "From their flight records", RecordsCommand::IdentifyAll, all),
-        entry(
-            "Take the identified models",
-            "Into the condition shown",
-            RecordsCommand::Take(OfferedModels::REFINED),
-            is_found,
-        ),
-        entry("Put the file's identified models back", "Into the condition shown", RecordsCommand::Return, is_taken),
-    ]
-}
 
 /// The commands of the menus and of the keys, in the order in which menus and the page of keys show them.
 pub fn command_table(state: &State) -> Vec<Entry> {
@@ -132,75 +103,82 @@ pub fn command_table(state: &State) -> Vec<Entry> {
     entries.extend(edit_entries(state));
     entries.extend(view_entries(state));
     entries.extend(curve_entries(state));
-    entries.extend(phase_entries(state));
+    entries.extend(setting_entries(state));
     entries.extend(record_entries(state));
-    entries.extend(field_entries());
-    entries.extend(TableKind::ALL.map(|kind| {
-        Entry::new(format!("Copy table: {}", kind.name()), "As text, one line a row", Command::CopyTable(kind))
-    }));
-    entries.extend(
-        TableKind::ALL.map(|kind| {
-            Entry::new(format!("Save table: {}…", kind.name()), "As a CSV file", Command::AskSaveTable(kind))
-        }),
-    );
-    entries.extend(views_with_figure().map(|view| {
-        let name = format!("Copy numbers of {}", view.name());
-        Entry::new(name, "As CSV, to the clipboard", Command::CopyFigure(view))
-    }));
-    entries.extend(views_with_figure().map(|view| {
+    for kind in TableKind::ALL {
+        let (copy, save) = (format!("Copy table: {}", kind.name()), format!("Save table: {}…", kind.name()));
+        entries.push(Entry::new(copy, "As text, one line a row", Command::CopyTable(kind)));
+        entries.push(Entry::new(save, "As a CSV file", Command::AskSaveTable(kind)));
+    }
+    for view in views_with_figure() {
+        let (copy, save) = (format!("Copy numbers of {}", view.name()), format!("Save figure: {}…", view.name()));
+        entries.push(Entry::new(copy, "As CSV, to the clipboard", Command::CopyFigure(view)));
         let command = Command::AskSaveFigure(view, FigureFormat::Svg);
-        Entry::new(format!("Save figure: {}…", view.name()), "As SVG, PNG or PDF, or its numbers as CSV", command)
-    }));
+        entries.push(Entry::new(save, "As SVG, PNG or PDF, or its numbers as CSV", command));
+    }
     entries.extend(help_entries());
     entries
 }
 
+/// The command that shows a form.
+fn form(form: FormKind) -> Command {
+    Command::ShowForm(Some(form))
+}
+
 fn file_entries(state: &State) -> Vec<Entry> {
-    let form = |form| Command::ShowForm(Some(form));
-    vec![
-        Entry::new("Open…", "A dataset or a study, with the desktop's dialog", Command::AskOpen)
-            .keys(CTRL, Key::O)
-            .within(Menu::File, 0),
+    let open = [
+        Entry::new("Open…", "A dataset or a study, with the desktop's dialog", Command::AskOpen).keys(CTRL, Key::O),
         Entry::new("Open by path…", "A dataset or a study, by its path; ~ is the home directory", form(FormKind::Open))
-            .keys(CTRL_SHIFT, Key::O)
-            .within(Menu::File, 0),
-        Entry::new("Open the example", "The simulated dataset that comes with the program", Command::OpenExample)
-            .within(Menu::File, 0),
+            .keys(CTRL_SHIFT, Key::O),
+        Entry::new("Open the example", "The simulated dataset that comes with the program", Command::OpenExample),
         Entry::new(
-            "Put models together…",
+            "Import models…",
             "A dataset of a folder of model files: MATLAB, NumPy, JSON, text",
-            Command::Assembling(AssemblingCommand::Open),
-        )
-        .within(Menu::File, 0),
-        Entry::new("Save study", "Where it was saved last", Command::SaveStudy)
-            .keys(CTRL, Key::S)
-            .within(Menu::File, 1),
-        Entry::new("Save study as…", "With the desktop's dialog", Command::AskSaveStudy)
-            .keys(CTRL_SHIFT, Key::S)
-            .within(Menu::File, 1),
-        Entry::new(
-            "Export corrections…",
-            "Write corrections.json, corrections.csv and assessment.csv",
-            form(FormKind::Export),
-        )
-        .keys(CTRL, Key::E)
-        .within(Menu::File, 2)
-        .enabled(state.analysis().is_some()),
+            AssemblingCommand::Open.into(),
+        ),
+    ];
+    let save = [
+        Entry::new("Save study", "Where it was saved last", Command::SaveStudy).keys(CTRL, Key::S),
+        Entry::new("Save study as…", "With the desktop's dialog", Command::AskSaveStudy).keys(CTRL_SHIFT, Key::S),
+    ];
+    let words = "Write corrections.json, corrections.csv and assessment.csv";
+    let export = [
+        Entry::new("Export corrections…", words, form(FormKind::Export)).keys(CTRL, Key::E),
         Entry::new(
             "Write report…",
             "All that was done and found as one page to print, with every plot",
             Command::AskReport,
-        )
-        .within(Menu::File, 2)
-        .enabled(state.analysis().is_some()),
+        ),
         Entry::new(
             "Export as…",
             "For MATLAB, Python, C or a lookup table; corrected models as state-space",
             form(FormKind::ExportAs),
-        )
-        .within(Menu::File, 2)
-        .enabled(state.analysis().is_some()),
-        Entry::new("Quit", "Close the window", Command::Quit).keys(CTRL, Key::Q).within(Menu::File, 3),
+        ),
+    ];
+    let export = export.map(|entry| entry.enabled(state.analysis().is_some()));
+    let quit = [Entry::new("Quit", "Close the window", Command::Quit).keys(CTRL, Key::Q)];
+    let menu = Menu::File;
+    group(menu, 0, open).chain(group(menu, 1, save)).chain(group(menu, 2, export)).chain(group(menu, 3, quit)).collect()
+}
+
+/// What can be done with the flight records of the condition shown.
+fn record_entries(state: &State) -> [Entry; 5] {
+    let condition = state.condition().id();
+    let of = |id| state.records.conditions.get(&id);
+    let has_records = of(condition).is_some_and(|records| records.used_rows().next().is_some());
+    let is_found = of(condition).is_some_and(|records| records.identification().is_some());
+    let is_taken = state.study.taken_models().any(|(id, _)| id == condition);
+    let all = state.records.conditions.values().any(|records| records.used_rows().next().is_some());
+    let entry = |name, meaning, command: RecordsCommand| Entry::new(name, meaning, command.into());
+    let (of_files, here) = ("Of the condition that their names say, or of the one shown", "Into the condition shown");
+    [
+        entry("Add flight records…", of_files, RecordsCommand::AskFiles).within(Menu::File, 1),
+        entry("Identify models", "Of the condition shown, from its flight records", RecordsCommand::Identify)
+            .enabled(has_records),
+        entry("Identify models of all conditions", "From their flight records", RecordsCommand::IdentifyAll)
+            .enabled(all),
+        entry("Use the identified models", here, RecordsCommand::Take(OfferedModels::REFINED)).enabled(is_found),
+        entry("Restore the file's identified models", here, RecordsCommand::Return).enabled(is_taken),
     ]
 }
 
@@ -209,65 +187,53 @@ fn edit_entries(state: &State) -> Vec<Entry> {
     let (undo, redo) = (state.history.undo_label(), state.history.redo_label());
     let condition = state.condition().id();
     let choice = state.study.choice(condition);
-    let suggested = open_suggestions(state);
-    let reject = match suggested.len() {
+    let models = open_suggestions(state);
+    let reject = match models.len() {
         0 => "Reject suggested".to_owned(),
         count => format!("Reject {count} suggested"),
     };
-    let any_rejected = !choice.physics.rejected.is_empty() || !choice.identified.rejected.is_empty();
-    let (scheduled, pair) = (choice.scheduled, state.display.pair);
+    let (is_any_suggested, scheduled) = (!models.is_empty(), choice.scheduled);
+    let is_any_rejected = !choice.physics.rejected.is_empty() || !choice.identified.rejected.is_empty();
     let schedule =
-        if scheduled { "Leave this condition out of the schedule" } else { "Take this condition into the schedule" };
-    vec![
+        if scheduled { "Leave this condition out of the schedule" } else { "Include this condition in the schedule" };
+    let edit = |name: String, meaning, edit: Edit| Entry::new(name, meaning, edit.into());
+    let history = [
         Entry::new(step("Undo", undo), "Take the last decision back", Command::Undo)
             .keys(CTRL, Key::Z)
-            .within(Menu::Edit, 0)
             .enabled(undo.is_some()),
         Entry::new(step("Redo", redo), "Bring a decision taken back again", Command::Redo)
             .keys(CTRL_SHIFT, Key::Z)
             .keys(CTRL, Key::Y)
-            .within(Menu::Edit, 0)
             .enabled(redo.is_some()),
-        Entry::new(
-            reject,
-            "Reject the suggested outliers of this condition",
-            Edit::RejectAll { condition, models: suggested.clone() }.into(),
-        )
-        .keys(CTRL, Key::R)
-        .within(Menu::Edit, 1)
-        .enabled(!suggested.is_empty()),
-        Entry::new(
-            "Restore all models of this condition",
-            "Put every rejected model of this condition back",
-            Edit::RestoreAll { condition }.into(),
-        )
-        .within(Menu::Edit, 1)
-        .enabled(any_rejected),
-        hold_entry(state, pair).free_key(Key::Space).within(Menu::Edit, 2),
-        Entry::new(
-            "Hold exactly the on-axis responses",
-            "As the dataset names them, and no others",
-            Edit::ConstrainOnAxis.into(),
-        )
-        .within(Menu::Edit, 2),
-        Entry::new(
-            schedule,
-            "Whether its gains enter the regression over airspeed",
-            Edit::SetScheduled { condition, scheduled: !scheduled }.into(),
-        )
-        .within(Menu::Edit, 3),
-    ]
+    ];
+    let restore = "Put every rejected model of this condition back";
+    let models = [
+        edit(reject, "Reject the suggested outliers of this condition", Edit::RejectAll { condition, models })
+            .keys(CTRL, Key::R)
+            .enabled(is_any_suggested),
+        edit("Restore all models of this condition".to_owned(), restore, Edit::RestoreAll { condition })
+            .enabled(is_any_rejected),
+    ];
+    let on_axis = "Hold exactly the on-axis responses".to_owned();
+    let held = [
+        hold_entry(state, state.display.pair).free_key(Key::Space),
+        edit(on_axis, "As the dataset names them, and no others", Edit::ConstrainOnAxis),
+    ];
+    let scheduled = Edit::SetScheduled { condition, scheduled: !scheduled };
+    let scheduled = [edit(schedule.to_owned(), "Whether its gains enter the regression over airspeed", scheduled)];
+    let menu = Menu::Edit;
+    let entries = group(menu, 0, history).chain(group(menu, 1, models)).chain(group(menu, 2, held));
+    entries.chain(group(menu, 3, scheduled)).collect()
 }
 
-/// "Hold LON → Q" or "Free LON → Q"; a response that has no G cannot be held.
+/// "Hold LON → Q exactly" or "Release LON → Q"; a response that has no G cannot be held.
 pub(super) fn hold_entry(state: &State, pair: Pair) -> Entry {
-    let held = state.study.settings.constrained[pair];
-    let verb = if held { "Free" } else { "Hold" };
+    let (held, name) = (state.study.settings.constrained[pair], state.dataset().pair_name(pair));
     let is_undefined = state.shown().is_some_and(|shown| shown.comparison.undefined[pair].is_some());
     Entry::new(
-        format!("{verb} {} exactly", state.dataset().pair_name(pair)),
+        if held { format!("Release {name}") } else { format!("Hold {name} exactly") },
         "Hold a response exactly, or leave it to the fit",
-        Edit::Set(Setting::Constrained(pair, !held)).into(),
+        Edit::Hold(pair, !held).into(),
     )
     .enabled(held || !is_undefined)
 }
@@ -284,35 +250,26 @@ fn view_entries(state: &State) -> Vec<Entry> {
         FrequencyUnit::RadPerSecond => ("Frequencies in Hz", FrequencyUnit::Hertz),
         FrequencyUnit::Hertz => ("Frequencies in rad/s", FrequencyUnit::RadPerSecond),
     };
-    let mut entries = vec![
-        Entry::new("Fit the plots", "Bring every curve back into view", Command::FitPlots)
-            .free_key(Key::F)
-            .within(Menu::View, 0),
-        Entry::new(unit_name, "In every plot over frequency", Command::SetFrequencyUnit(unit)).within(Menu::View, 0),
+    let plots = [
+        Entry::new("Fit the plots", "Bring every curve back into view", Command::FitPlots).free_key(Key::F),
+        Entry::new(unit_name, "In every plot over frequency", Command::SetFrequencyUnit(unit)),
     ];
-    entries.extend(steps(state));
-    let show = |view: View| {
-        Entry::new(format!("Show {}", view.name()), view.kind().purpose, Command::ShowView(view)).within(Menu::View, 2)
-    };
-    entries.extend(View::ALL.map(show));
-    let arrange = |preset: Preset| Entry::new(preset.name(), ARRANGED, Command::Arrange(preset)).within(Menu::View, 3);
-    entries.extend(Preset::ALL.map(arrange));
-    entries.extend([
-        Entry::new("Next part of the window", PARTS, Command::LeaveRegion { forward: true })
-            .keys(Modifiers::NONE, Key::F6)
-            .within(Menu::View, 4),
-        Entry::new("Previous part of the window", PARTS, Command::LeaveRegion { forward: false })
-            .keys(Modifiers::SHIFT, Key::F6)
-            .within(Menu::View, 4),
-    ]);
+    let show = |view: View| Entry::new(format!("Show {}", view.name()), view.kind().purpose, Command::ShowView(view));
+    let arrange = |preset: Preset| Entry::new(preset.name(), ARRANGED, Command::Arrange(preset));
+    let parts =
+        [(Modifiers::NONE, "Next part of the window", true), (Modifiers::SHIFT, "Previous part of the window", false)];
+    let part =
+        |(modifiers, name, forward)| Entry::new(name, PARTS, Command::LeaveRegion { forward }).keys(modifiers, Key::F6);
     let themes = [
         ("Theme of the desktop", "Light or dark as the desktop is", ThemePreference::System),
-        ("Dark theme", "Light text on a dark ground", ThemePreference::Dark),
-        ("Light theme", "Dark text on a light ground", ThemePreference::Light),
+        ("Dark theme", "Light text on a dark background", ThemePreference::Dark),
+        ("Light theme", "Dark text on a light background", ThemePreference::Light),
     ];
-    let theme = |(name, meaning, theme)| Entry::new(name, meaning, Command::SetTheme(theme)).within(Menu::View, 5);
-    entries.extend(themes.map(theme));
-    entries
+    let theme = |(name, meaning, theme)| Entry::new(name, meaning, Command::SetTheme(theme));
+    let menu = Menu::View;
+    let entries = group(menu, 0, plots).chain(group(menu, 1, steps(state))).chain(group(menu, 2, View::ALL.map(show)));
+    let entries = entries.chain(group(menu, 3, Preset::ALL.map(arrange))).chain(group(menu, 4, parts.map(part)));
+    entries.chain(group(menu, 5, themes.map(theme))).collect()
 }
 
 const ARRANGED: &str = "Every plot goes back to its place in this arrangement";
@@ -325,10 +282,7 @@ fn steps(state: &State) -> [Entry; 4] {
     let to_condition = |name, key, place: Option<usize>| {
         let found = place.and_then(|place| conditions.get(place));
         let command = Command::SelectCondition(found.unwrap_or(&conditions[here]).id());
-        Entry::new(name, "In the order of the list", command)
-            .free_key(key)
-            .within(Menu::View, 1)
-            .enabled(found.is_some())
+        Entry::new(name, "In the order of the list", command).free_key(key).enabled(found.is_some())
     };
     let (inputs, outputs) = (state.dataset().inputs().len(), state.dataset().outputs().len());
     let at = state.display.pair.output * inputs + state.display.pair.input;
@@ -336,10 +290,7 @@ fn steps(state: &State) -> [Entry; 4] {
         let found = place.filter(|place| *place < inputs * outputs);
         let place = found.unwrap_or(at);
         let command = Command::FocusPair(Pair::new(place / inputs, place % inputs));
-        Entry::new(name, "Row by row of the matrix", command)
-            .free_key(key)
-            .within(Menu::View, 1)
-            .enabled(found.is_some())
+        Entry::new(name, "Row by row of the matrix", command).free_key(key).enabled(found.is_some())
     };
     [
         to_condition("Next condition", Key::ArrowDown, Some(here + 1)),
@@ -349,46 +300,42 @@ fn steps(state: &State) -> [Entry; 4] {
     ]
 }
 
-/// Fields that the palette goes to, by their accessible names.
-const FIELDS: [(&str, &str); 11] = [
-    ("Set α gains (alpha)…", "α gains"),
-    ("Set α delays (alpha)…", "α delays"),
-    ("Set the lower end of the band…", "Band from"),
-    ("Set the upper end of the band…", "Band to"),
-    ("Set the number of frequencies…", "Frequencies in the band"),
-    ("Set the quantile of the bounds…", "Quantile of the bounds"),
-    ("Set the lower gain bound…", "Lower gain bound"),
-    ("Set the upper gain bound…", "Upper gain bound"),
-    ("Set the delay bound…", "Upper delay bound"),
-    ("Set the agreement tolerance…", "Agreement tolerance"),
-    ("Set the airspeed tolerance…", "Airspeed tolerance"),
-];
-
-fn phase_entries(state: &State) -> impl Iterator<Item = Entry> {
-    let now = state.study.settings.phase;
-    PhaseCorrection::ALL.into_iter().map(move |phase| {
-        let meaning = "How the phase is corrected, in every condition (M9, M15)";
-        let command = Edit::Set(Setting::Phase(phase)).into();
-        Entry::new(format!("Phase correction: {}", phase.words()), meaning, command).enabled(phase != now)
-    })
+/// Every choice of every setting, and the way to every field of one.
+fn setting_entries(state: &State) -> Vec<Entry> {
+    let mut entries = Vec::new();
+    for setting in SETTINGS.into_iter().filter(|setting| setting.control.place != Place::Hidden) {
+        let mut field = |what: String, label| {
+            let name = format!("Set the {what} ({})…", setting.option.trim_start_matches('-'));
+            entries.push(Entry::new(name, "Goes to its field", Command::FocusField(label)));
+        };
+        match setting.kind {
+            Kind::Number { .. } | Kind::Optional { .. } => field(setting.name.to_owned(), setting.control.label),
+            Kind::Range { ends, .. } => {
+                field(format!("lower end of the {}", setting.name), ends[0]);
+                field(format!("upper end of the {}", setting.name), ends[1]);
+            }
+            Kind::Choice { words, get, .. } => {
+                let now = get(&state.study.settings);
+                entries.extend(words.iter().enumerate().map(|(index, [_, text, _])| {
+                    let name = format!("{}: {text}", setting.control.label);
+                    Entry::new(name, setting.help, setting.to(Value::Choice(index)).into()).enabled(index != now)
+                }));
+            }
+            Kind::Flag { .. } => {}
+        }
+    }
+    entries
 }
 
-fn field_entries() -> impl Iterator<Item = Entry> {
-    FIELDS.into_iter().map(|(name, field)| Entry::new(name, "Goes to its field", Command::FocusField(field)))
-}
-
-fn help_entries() -> [Entry; 4] {
-    let form = |form| Command::ShowForm(Some(form));
-    [
-        Entry::new("Command palette", "Find any command by its name", form(FormKind::Palette))
-            .keys(CTRL, Key::K)
-            .within(Menu::Help, 0),
+fn help_entries() -> impl Iterator<Item = Entry> {
+    let help = [
+        Entry::new("Command palette", "Find any command by its name", form(FormKind::Palette)).keys(CTRL, Key::K),
         Entry::new("Keys and gestures", "Every key, and what the pointer does", form(FormKind::Shortcuts))
-            .keys(Modifiers::NONE, Key::F1)
-            .within(Menu::Help, 0),
-        Entry::new("Guided tour", "Five steps through the window", Command::StartTour).within(Menu::Help, 0),
-        Entry::new("About gdcm", "Version and licence", form(FormKind::About)).within(Menu::Help, 1),
-    ]
+            .keys(Modifiers::NONE, Key::F1),
+        Entry::new("Guided tour", "Five steps through the window", Command::StartTour),
+    ];
+    let about = [Entry::new("About gdcm", "Version and licence", form(FormKind::About))];
+    group(Menu::Help, 0, help).chain(group(Menu::Help, 1, about))
 }
 
 /// Those of the table, and one for each condition, response, model and recent file.
@@ -424,29 +371,27 @@ fn model_entries(state: &State) -> Vec<Entry> {
     let choice = state.study.choice(condition.id());
     let mut entries = Vec::new();
     for bundle in [BundleKind::Physics, BundleKind::Identified] {
-        for model in condition.bundle(bundle) {
-            let id = ModelId::new(condition.id(), bundle, &model.name);
-            let name = &model.name;
-            if choice.bundle(bundle).rejected.contains(name) {
-                let restore = Edit::Restore(id).into();
-                entries.push(Entry::new(format!("Restore {bundle} model {name}"), "Put it back", restore));
-                let ask = Command::AskReason(ModelId::new(condition.id(), bundle, name));
-                let text = format!("Say why {bundle} model {name} is rejected…");
-                entries.push(Entry::new(text, "In words, kept in the study", ask));
+        for name in condition.bundle(bundle).iter().map(|model| &model.name) {
+            let id = ModelId::new(condition.id(), bundle, name);
+            let choice = choice.bundle(bundle);
+            let mut entry = |text: String, meaning, command| entries.push(Entry::new(text, meaning, command));
+            let ask = Command::AskReason(id.clone());
+            let kept_in_words = "In words, kept in the study";
+            if choice.rejected.contains(name) {
+                entry(format!("Restore {bundle} model {name}"), "Put it back", Edit::Restore(id).into());
+                entry(format!("Say why {bundle} model {name} is rejected…"), kept_in_words, ask);
                 continue;
             }
-            let reject = Edit::Reject(id.clone()).into();
-            entries.push(Entry::new(format!("Reject {bundle} model {name}"), "Take it out of its bundle", reject));
-            let ask = Command::AskReason(id.clone());
-            let text = format!("Reject {bundle} model {name} with a reason…");
-            entries.push(Entry::new(text, "In words, kept in the study", ask));
-            let (text, edit) = if choice.bundle(bundle).pinned.as_ref() == Some(name) {
-                ("Unpin", Edit::Unpin { condition: condition.id(), bundle })
+            let out = "Take it out of its bundle";
+            entry(format!("Reject {bundle} model {name}"), out, Edit::Reject(id.clone()).into());
+            entry(format!("Reject {bundle} model {name} with a reason…"), kept_in_words, ask);
+            let (text, edit) = if choice.pinned.as_ref() == Some(name) {
+                let edit = Edit::Unpin { condition: condition.id(), bundle };
+                (format!("Use the medoid as representative, not {bundle} model {name}"), edit)
             } else {
-                ("Pin", Edit::Pin(id))
+                (format!("Use {bundle} model {name} as representative"), Edit::Pin(id))
             };
-            let meaning = "Whether it represents its bundle whatever the medoid is";
-            entries.push(Entry::new(format!("{text} {bundle} model {name}"), meaning, edit.into()));
+            entry(text, "Whether it represents its bundle whatever the medoid is", edit.into());
         }
     }
     entries

@@ -7,8 +7,7 @@ use gdcm_core::dataset::{Condition, ConditionId, FlightState};
 use gdcm_core::study::Edit;
 
 use super::command::Command;
-use super::controls::table_heading_ui;
-use super::controls::{Room, row_text, row_text_within, row_ui};
+use super::controls::{Room, entries_ui, row_text, row_text_within, row_ui, table_heading_ui};
 use super::focus::{Region, region_ui};
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 use super::state::State;
@@ -22,8 +21,8 @@ pub fn conditions_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
 fn list_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let conditions = state.dataset().conditions();
     let older = if state.others_are_older() { " · marks of older settings" } else { "" };
-    let figure = format!("{}{older}", conditions.len());
-    table_heading_ui(ui, palette, ("Conditions", &figure), TableKind::Conditions, commands);
+    let count = format!("{}{older}", conditions.len());
+    table_heading_ui(ui, palette, ("Conditions", &count), TableKind::Conditions, commands);
     column_headings_ui(ui, palette);
     for condition in conditions {
         let id = condition.id();
@@ -42,7 +41,7 @@ fn list_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
         if response.clicked() {
             commands.push(Command::SelectCondition(id));
         }
-        response.context_menu(|ui| menu_ui(ui, id, (!marks.left_out, marks.held_out), commands));
+        response.context_menu(|ui| menu_ui(ui, id, &marks, commands));
         response.on_hover_ui(|ui| tooltip_ui(ui, condition, &marks));
     }
 }
@@ -90,17 +89,14 @@ fn paint_flight_state(ui: &Ui, row: Rect, marked_from: f32, condition: &Conditio
     }
 }
 
-fn menu_ui(ui: &mut Ui, condition: ConditionId, (scheduled, held_out): (bool, bool), commands: &mut Vec<Command>) {
-    let text = if held_out { "Hold out no more" } else { "Hold out, to judge the schedule" };
-    if ui.button(format!("{text}: condition {condition}")).clicked() {
-        commands.push(Edit::SetHeldOut { condition, held_out: !held_out }.into());
-        ui.close();
-    }
-    let text = if scheduled { "Leave out of the schedule" } else { "Take into the schedule" };
-    if ui.button(format!("{text}: condition {condition}")).clicked() {
-        commands.push(Edit::SetScheduled { condition, scheduled: !scheduled }.into());
-        ui.close();
-    }
+fn menu_ui(ui: &mut Ui, condition: ConditionId, marks: &Marks, commands: &mut Vec<Command>) {
+    let hold_out = if marks.held_out { "No longer hold out" } else { "Hold out, to judge the schedule" };
+    let schedule = if marks.left_out { "Include in the schedule" } else { "Leave out of the schedule" };
+    let entries = [
+        (hold_out, Edit::SetHeldOut { condition, held_out: !marks.held_out }),
+        (schedule, Edit::SetScheduled { condition, scheduled: marks.left_out }),
+    ];
+    entries_ui(ui, entries.map(|(text, edit)| (format!("{text}: condition {condition}"), edit.into())), commands);
 }
 
 /// What the list says about a condition: what is still to do there.
@@ -134,7 +130,7 @@ impl Marks {
                 let is_open = |model: &String| !choice.physics.rejected.contains(model);
                 marks.suggested = result.suggested().iter().filter(|model| is_open(model)).count();
                 marks.unmatched_gains = result.gains.unmatched.len();
-                let is_open = |missed: &&Unmatched| result.led.is_some() || missed.delta >= 0.0;
+                let is_open = |missed: &&Unmatched| result.compensated.is_some() || missed.delta >= 0.0;
                 marks.unmatched_delays = result.delays.unmatched.iter().filter(is_open).count();
             }
         }
@@ -174,35 +170,28 @@ impl Marks {
     }
 
     fn sentences(&self) -> Vec<String> {
-        let mut sentences = Vec::new();
-        let mut say = |is_so: bool, text: String| {
-            if is_so {
-                sentences.push(text);
-            }
-        };
-        say(self.suggested > 0, format!("⚠ {}: physics models suggested as outliers, not rejected", self.suggested));
-        say(self.unmatched_gains > 0, format!("k {}: held gains that could not be matched", self.unmatched_gains));
-        say(
-            self.unmatched_delays > 0,
-            format!("τ {}: held delays that could not be matched, besides those that need lead", self.unmatched_delays),
-        );
-        say(
-            self.held_out,
-            "Held out: analysed, and the schedule is judged by it; the secondary button ends that".to_owned(),
-        );
-        say(self.left_out, "Left out of the schedule; the secondary button takes it in".to_owned());
-        sentences.extend(self.failure.clone());
-        sentences
+        let counted = [
+            ("⚠", self.suggested, "physics models suggested as outliers, not rejected"),
+            ("k", self.unmatched_gains, "held gains that could not be matched"),
+            ("τ", self.unmatched_delays, "held delays that could not be matched, besides those that need lead"),
+        ];
+        let counted = counted.into_iter().filter(|(_, count, _)| *count > 0);
+        let counted = counted.map(|(symbol, count, words)| format!("{symbol} {count}: {words}"));
+        let held_out = "Held out: analysed, and the schedule is judged by it; right-click ends that";
+        let left_out = "Left out of the schedule; right-click includes it";
+        let states = [(self.held_out, held_out), (self.left_out, left_out)];
+        let states = states.into_iter().filter(|(is_so, _)| *is_so).map(|(_, words)| words.to_owned());
+        counted.chain(states).chain(self.failure.clone()).collect()
     }
 }
 
 fn tooltip_ui(ui: &mut Ui, condition: &Condition, marks: &Marks) {
     let state = condition.flight_state();
     ui.label(RichText::new(&state.name).strong());
-    let mut figures = vec![format!("{} kt true airspeed", state.airspeed_kt)];
-    figures.extend(state.altitude_ft.map(|feet| format!("{feet} ft")));
-    figures.extend(state.mass_kg.map(|mass| format!("{mass} kg")));
-    ui.label(figures.join(" · "));
+    let mut values = vec![format!("{} kt true airspeed", state.airspeed_kt)];
+    values.extend(state.altitude_ft.map(|feet| format!("{feet} ft")));
+    values.extend(state.mass_kg.map(|mass| format!("{mass} kg")));
+    ui.label(values.join(" · "));
     for sentence in marks.sentences() {
         ui.label(sentence);
     }

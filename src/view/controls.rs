@@ -40,12 +40,18 @@ pub fn named_switch(response: Response, role: Role, is_on: bool, name: impl Into
     response
 }
 
+/// Says a hint where there is one: an empty one would be an empty box.
+fn hint_ui(response: Response, hint: impl Into<String>) -> Response {
+    let hint = hint.into();
+    if hint.is_empty() { response } else { response.on_hover_text(hint) }
+}
+
 /// A check box; whether it is on after a click on it.
 pub fn check_ui(ui: &mut Ui, is_on: bool, text: impl Into<String>, hint: impl Into<String>) -> Option<bool> {
     let mut value = is_on;
     let response = ui.checkbox(&mut value, text.into());
     let changed = response.changed();
-    response.on_hover_text(hint.into());
+    hint_ui(response, hint);
     changed.then_some(value)
 }
 
@@ -57,7 +63,7 @@ pub fn button_ui(
     command: impl Into<Command>,
     commands: &mut Vec<Command>,
 ) {
-    if ui.add(button).on_hover_text(hint).clicked() {
+    if hint_ui(ui.add(button), hint).clicked() {
         commands.push(command.into());
     }
 }
@@ -185,35 +191,35 @@ pub fn row_text(ui: &Ui, row: Rect, x: f32, text: &str, size: f32, color: Color3
     ui.painter().text(pos2(left, row.center().y), align, text, FontId::proportional(size), color)
 }
 
-/// A dim heading on the left, a figure on the right.
-pub fn heading_ui(ui: &mut Ui, palette: &Palette, title: &str, figure: &str) -> egui::Response {
+/// A dim heading on the left, a value on the right.
+pub fn heading_ui(ui: &mut Ui, palette: &Palette, title: &str, value: &str) -> egui::Response {
     ui.add_space(4.0);
     let shown = ui.horizontal(|ui| {
         ui.label(palette.small(title).strong());
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.label(palette.small(figure));
+            ui.label(palette.small(value));
         });
     });
     shown.response
 }
 
-/// The same over a table: the secondary button copies it or saves it, as the palette does.
+/// The same over a table: a right-click copies it or saves it, as the palette does.
 pub fn table_heading_ui(
     ui: &mut Ui,
     palette: &Palette,
-    (title, figure): (&str, &str),
+    (title, value): (&str, &str),
     kind: TableKind,
     commands: &mut Vec<Command>,
 ) {
-    let heading = heading_ui(ui, palette, title, figure);
+    let heading = heading_ui(ui, palette, title, value);
     table_menu_ui(ui, &heading, kind, commands);
 }
 
-/// What the secondary button offers on the heading of a table.
+/// What a right-click offers on the heading of a table.
 pub fn table_menu_ui(ui: &mut Ui, heading: &egui::Response, kind: TableKind, commands: &mut Vec<Command>) {
     // No stop of the Tab key: nothing on it can be pressed.
     let response = ui.interact(heading.rect, heading.id.with("table"), Sense::CLICK);
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("Heading of {}", kind.name())));
+    let response = named(response, Role::Label, format!("Heading of {}", kind.name()));
     response.context_menu(|ui| {
         let choices = [("Copy table", Command::CopyTable(kind)), ("Save table as CSV…", Command::AskSaveTable(kind))];
         entries_ui(ui, choices, commands);

@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 use gdcm_core::dataset::{ConditionId, ModelId, Pair};
 use gdcm_core::study::{AcrossRole, ExplainTarget};
 
+use gdcm_files::figure::{AirspeedCache, ErrorCache, ResponseCache};
+
 use super::arrangement::Arrangement;
 use super::curve_display::CurveDisplay;
 use super::plot::{
@@ -15,16 +17,10 @@ use super::plot::{
 };
 use super::plot_style::PlotStyle;
 use super::table_view::Sorting;
-use super::views::AssessedFigures;
-use super::views::CachedAcross;
-use super::views::CachedErrors;
-use super::views::CachedEvidence;
-use super::views::CachedModes;
-use super::views::CachedShapes;
-use super::views::PairSet;
+use super::views::{AssessedFigures, CachedEvidence, CachedModes, PairSet};
 
 /// What is shown, none of which changes a result.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Display {
     /// The condition shown.
     pub condition: ConditionId,
@@ -34,7 +30,7 @@ pub struct Display {
     pub hovered: Option<ModelId>,
     /// The only model shown beside the representatives.
     pub isolated: Option<ModelId>,
-    /// The figure whose derivation is shown.
+    /// The value whose derivation is shown.
     pub asked: Option<ExplainTarget>,
     /// How the plots share the middle of the window.
     pub arrangement: Arrangement,
@@ -57,7 +53,7 @@ pub struct Display {
     /// Transforms of the net-gain plots.
     pub net_gain: GainView,
     /// What the channel plots measure, and over what.
-    pub channel_figure: (Measure, Across),
+    pub channel_values: (Measure, Across),
     /// Transforms of the channel plots.
     pub channels: ChannelsView,
     /// Ranges and transforms of the plots of poles.
@@ -72,8 +68,8 @@ pub struct Display {
     pub assessed: AssessedFigures,
     /// Order of the table of the assessment.
     pub assessment_sorting: Sorting,
-    /// Whether the plots of gains show error bars and bands.
-    pub show_bars: bool,
+    /// Whether the plots of gains show no error bars and bands.
+    pub hide_bars: bool,
     /// Orders of the tables of the evidence: differences, second variables, forms of the schedule.
     pub evidence_tables: [Sorting; 3],
     /// Whether the evidence for the schedule stands beside the net gains.
@@ -87,7 +83,7 @@ pub struct Display {
     /// Ranges and transforms of the plot of several conditions.
     pub across: BodeView,
     /// Shapes of several conditions' responses, kept from frame to frame.
-    pub across_shapes: CachedAcross,
+    pub across_shapes: AirspeedCache,
     /// The name that the present decisions are to be kept under, as typed.
     pub variant_name: String,
     /// Orders of the tables of the comparison: what differs, and what it does.
@@ -97,11 +93,11 @@ pub struct Display {
     /// Transforms of the assessment.
     pub assessment: AssessmentView,
     /// Shapes of the responses drawn, kept from frame to frame.
-    pub shapes: BTreeMap<Pair, CachedShapes>,
+    pub shapes: BTreeMap<Pair, ResponseCache>,
     /// The curves that the Bode plot shows.
     pub drawn: Vec<BodeCurve>,
     /// Errors drawn, kept from frame to frame.
-    pub errors: CachedErrors,
+    pub errors: ErrorCache,
     /// The curves that the plot of errors shows.
     pub drawn_errors: Vec<BodeCurve>,
 }
@@ -109,47 +105,7 @@ pub struct Display {
 impl Display {
     /// A condition and a response, in plots that fit what they show.
     pub(super) fn of(condition: ConditionId, pair: Pair) -> Self {
-        Self {
-            condition,
-            pair,
-            hovered: None,
-            isolated: None,
-            asked: None,
-            arrangement: Arrangement::default(),
-            unit: FrequencyUnit::default(),
-            looks: PlotStyle::default(),
-            curves: CurveDisplay::default(),
-            bode: BodeView::default(),
-            error: BodeView::default(),
-            net_gain_pairs: PairSet::default(),
-            once_held: BTreeSet::new(),
-            picked_pairs: BTreeSet::new(),
-            net_gain: GainView::default(),
-            channel_figure: (Measure::default(), Across::default()),
-            channels: ChannelsView::default(),
-            poles: PolesView::default(),
-            show_zeros: false,
-            modes: CachedModes::default(),
-            modes_sorting: Sorting::default(),
-            assessed: AssessedFigures::default(),
-            assessment_sorting: Sorting::default(),
-            show_bars: true,
-            evidence_tables: [Sorting::default(); 3],
-            show_evidence: false,
-            evidence: CachedEvidence::default(),
-            evidence_sorting: Sorting::default(),
-            across_role: AcrossRole::default(),
-            across: BodeView::default(),
-            across_shapes: CachedAcross::default(),
-            variant_name: String::new(),
-            compare_sorting: [Sorting::default(); 2],
-            overview: OverviewView::default(),
-            assessment: AssessmentView::default(),
-            shapes: BTreeMap::new(),
-            drawn: Vec::new(),
-            errors: CachedErrors::default(),
-            drawn_errors: Vec::new(),
-        }
+        Self { condition, pair, ..Self::default() }
     }
 
     /// Shows all of the curves in the plots over frequency.

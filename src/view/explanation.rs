@@ -9,18 +9,19 @@ use gdcm_core::dataset::Pair;
 use gdcm_core::study::{ConditionAnalysis, Derivation, ExplainTarget, Remark, derivation, details, remarks};
 
 use super::command::Command;
+use super::controls::entries_ui;
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 use super::state::State;
 
 /// What asks for a derivation, everywhere.
 pub const QUESTION: &str = "How was this computed?";
 
-/// Shows how the figure asked about was computed; it follows the results while it is open.
+/// Shows how the value asked about was computed; it follows the results while it is open.
 pub fn derivation_window_ui(ctx: &Context, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(asked) = &state.display.asked else { return };
     let mut open = true;
     let found = state.analysis_with_bars().and_then(|analysis| derivation(&analysis, asked));
-    let title = found.as_ref().map_or("There is no such figure now", |found| found.title.as_str());
+    let title = found.as_ref().map_or("There is no such value now", |found| found.title.as_str());
     let window = Window::new(RichText::new(title).size(BODY_SIZE).strong());
     let window = window.id(Id::unique("derivation")).open(&mut open).default_width(420.0).resizable(true);
     window.show(ctx, |ui| match &found {
@@ -41,7 +42,7 @@ fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &
         ui.label(RichText::new(step).monospace());
     }
     ui.add_space(4.0);
-    ui.label(RichText::new("It rests on").size(SMALL_SIZE).color(palette.dim_text));
+    ui.label(palette.small("It rests on"));
     for part in &found.rests_on {
         ui.label(RichText::new(part).size(SMALL_SIZE));
     }
@@ -49,7 +50,7 @@ fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &
         if ui.button("Copy the derivation").clicked() {
             commands.push(Command::CopyText(text_of(found)));
         }
-        ui.label(RichText::new(found.section).size(SMALL_SIZE).color(palette.dim_text));
+        ui.label(palette.small(found.section));
     });
 }
 
@@ -61,8 +62,8 @@ fn text_of(found: &Derivation) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// A figure whose click asks how it was computed.
-pub fn figure_ui(
+/// A value whose click asks how it was computed.
+pub fn value_label_ui(
     ui: &mut Ui,
     text: impl Into<WidgetText>,
     asked: ExplainTarget,
@@ -75,15 +76,10 @@ pub fn figure_ui(
     response.on_hover_cursor(CursorIcon::Help)
 }
 
-/// The part of a menu that asks how figures were computed.
-pub fn question_menu_ui(ui: &mut Ui, figures: Vec<(String, ExplainTarget)>, commands: &mut Vec<Command>) {
+/// The part of a menu that asks how values were computed.
+pub fn question_menu_ui(ui: &mut Ui, values: Vec<(String, ExplainTarget)>, commands: &mut Vec<Command>) {
     ui.menu_button(QUESTION, |ui| {
-        for (name, asked) in figures {
-            if ui.button(name).clicked() {
-                commands.push(Command::Explain(Some(asked)));
-                ui.close();
-            }
-        }
+        entries_ui(ui, values.into_iter().map(|(name, asked)| (name, Command::Explain(Some(asked)))), commands);
     });
 }
 

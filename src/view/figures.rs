@@ -1,28 +1,24 @@
 //! What a view shows as a figure on paper, and the button that takes it away.
 
 use egui::containers::menu::MenuButton;
-use egui::{RichText, Role, Ui, WidgetInfo};
-use gdcm_files::figure::{BodeOptions, ConditionSource, Figure, FigureFormat, FigureKind, FigureRequest, all_channels};
+use egui::{RichText, Role, Ui};
+use gdcm_files::figure::{BodeOptions, Figure, FigureFormat, FigureKind, FigureRequest, all_channels};
 
 use super::arrangement::View;
 use super::command::Command;
+use super::controls::named;
 use super::palette::SMALL_SIZE;
 use super::plot::{BodeView, Pane};
 use super::state::State;
-use super::views::net_gain_pairs;
 use super::views::{assessed_pairs, assessment_choice};
+use super::views::{bode_options, condition_source, net_gain_pairs};
 
 /// The figure that a view shows; none until its results are there.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {
-    let bars = state.display.show_bars || view.kind().figure.is_some_and(FigureKind::needs_bars);
+    let bars = !state.display.hide_bars || view.kind().figure.is_some_and(FigureKind::needs_bars);
     let with_bars = if bars { state.analysis_with_bars() } else { state.analysis().cloned() };
     let analysis = with_bars.as_ref();
-    let source = state.shown().zip(state.curves()).map(|(shown, curves)| ConditionSource {
-        study: &state.study,
-        analysis: shown,
-        schedule: analysis.and_then(|analysis| analysis.schedule.as_ref().ok()),
-        curves,
-    });
+    let source = condition_source(state);
     request(state, view)?.figure(analysis, source.as_ref())
 }
 
@@ -57,26 +53,14 @@ fn request(state: &State, view: View) -> Option<FigureRequest> {
         View::Evidence => dataset.measuring_pairs().marked().collect(),
         _ => Vec::new(),
     };
-    let (measure, across) = display.channel_figure;
+    let (measure, across) = display.channel_values;
     let ranges = match view {
         View::Bode => chosen(&display.bode),
         View::Error => chosen(&display.error),
         View::Across => chosen(&display.across),
         _ => BodeOptions::default(),
     };
-    let bode = BodeOptions {
-        unit: display.unit,
-        magnitude: display.curves.magnitude,
-        phase: display.curves.phase,
-        phase_error: display.curves.phase_error,
-        turns: display.curves.turns.clone(),
-        shows_muad: display.curves.shows_muad,
-        zeros_of: display.show_zeros.then_some(display.pair),
-        hidden: display.curves.hidden_roles.clone(),
-        hidden_models: display.curves.hidden_models.clone(),
-        isolated: display.isolated.clone().filter(|model| model.condition == state.condition().id()),
-        ..ranges
-    };
+    let bode = BodeOptions { omega: ranges.omega, values: ranges.values, ..bode_options(state) };
     let assessed = Some(assessment_choice(state));
     let usual = FigureRequest::new(kind, pairs, all_channels(dataset));
     Some(FigureRequest { measure, across, assessed, across_role: display.across_role, bode, ..usual })
@@ -107,7 +91,6 @@ pub(super) fn figure_button_ui(ui: &mut Ui, view: View, commands: &mut Vec<Comma
             }
         }
     });
-    let name = format!("Save or copy {}", view.name());
-    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+    let button = named(button, Role::Button, format!("Save or copy {}", view.name()));
     button.on_hover_text("This plot on paper, or its numbers: copy, CSV, SVG, PNG, PDF");
 }

@@ -32,7 +32,7 @@ const STEPS: [Step; 5] = [
         region: Region::Models,
         title: "The bundle of models",
         words: "Each physics model is one perturbed trim; its bar says how far it lies from what the perturbation explains. \
-                The box rejects or restores it, the star lets it represent the bundle.",
+                The box rejects or restores it, the star makes it the representative.",
     },
     Step {
         region: Region::Plots,
@@ -44,12 +44,12 @@ const STEPS: [Step; 5] = [
         region: Region::Matrix,
         title: "What is held",
         words: "Each cell is a response: the gain and the delay that would match it, and its cost before and after. Filled \
-                cells are held exactly; the box, or the space bar, holds or frees one.",
+                cells are held exactly; the box, or the space bar, holds or releases one.",
     },
     Step {
         region: Region::Result,
         title: "The result, to be taken away",
-        words: "The gains and delays of every channel, whether they are proven, and why. Export writes the corrections; Ctrl+Z \
+        words: "The gains and delays of every channel, whether gains and phase are met, and why. Export writes the corrections; Ctrl+Z \
                 takes any decision back; Ctrl+K finds every command.",
     },
 ];
@@ -124,17 +124,17 @@ const GESTURES: &[(&str, &str)] = &[
     ("click on a curve", "reject or restore its model"),
     ("Alt+click on a curve", "show it alone; again: show all"),
     ("drag, wheel", "move, zoom a plot; on an axis: that axis alone"),
-    ("drag with the secondary button", "zoom to a box"),
+    ("right-drag", "zoom to a box"),
     ("Shift+drag", "select the curves that a box touches, to reject or restore them at once"),
-    ("double click in a plot", "on empty ground: fit it; on an axis: type its limits"),
-    ("secondary click in a plot", "what can be done with the curve, or with the frequency there"),
+    ("double click in a plot", "beside the curves: fit it; on an axis: type its limits"),
+    ("right-click in a plot", "what can be done with the curve, or with the frequency there"),
     ("click in a legend", "hide the curves of a role, or show them"),
     ("Arrows, + −, Home", "in a plot that has the focus: move, zoom (Shift: frequencies only), fit"),
     ("Escape", "end the isolation of a model, and a selection"),
     ("drag an end of the band", "move the band of comparison"),
-    ("click on a cell", "show its response; on its box, or twice: hold or free it"),
-    ("click on a star", "let this model represent its bundle; again: the medoid represents"),
-    ("secondary click", "on a heading: copy or save its table; on a cell or a condition: more"),
+    ("click on a cell", "show its response; on its box, or twice: hold or release it"),
+    ("click on a star", "use this model as representative; again: use the medoid"),
+    ("right-click", "on a heading: copy or save its table; on a cell or a condition: more"),
 ];
 
 /// Marks in the list of conditions: what is still to do there.

@@ -8,17 +8,17 @@ use egui::{
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::Pair;
 use gdcm_core::fidelity::{ACCEPTABLE, INDISTINGUISHABLE};
-use gdcm_core::study::{ConditionAnalysis, Edit, ExplainTarget, Setting, Uncertainty, Undefined};
-use gdcm_core::uncertainty::{Bar, Scalar};
+use gdcm_core::study::{ConditionAnalysis, Edit, ExplainTarget, Undefined};
+use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::s_to_ms;
 
 use super::command::Command;
-use super::controls::table_heading_ui;
+use super::controls::{check_ui, entries_ui, named_switch, table_heading_ui};
 use super::explanation::question_menu_ui;
 use super::explanation::{gain_conflict_marks, toggle_costs};
 use super::focus::{Region, region_ui};
 use super::palette::{Palette, SMALL_SIZE};
-use super::state::State;
+use super::state::{State, Sureness};
 use super::tables::TableKind;
 use super::views::bar_words;
 
@@ -31,11 +31,11 @@ const LOCK_SIZE: f32 = 15.0;
 const GAIN_PLACES: [f32; 2] = [34.0, 44.0];
 /// In a narrower cell the bar has no room beside G, and is told where the pointer is \[pt\].
 const LEAST_WITH_BAR: f32 = 74.0;
-/// Two figures of D this far apart \[s\] stand beside one another.
+/// Two values of D this far apart \[s\] stand beside one another.
 const APART_S: f64 = 2e-3;
 
 /// Every response as a cell. A click on the cell chooses the response for the large plot; a click on its box, a double click or
-/// the space bar holds or frees it; the secondary button offers more.
+/// the space bar holds or releases it; a right-click offers more.
 pub fn matrix_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let heading = ("Constraints", "G · delay · J before→after");
     table_heading_ui(ui, palette, heading, TableKind::Matrix, commands);
@@ -91,8 +91,7 @@ struct Cell<'a> {
     /// Whether it is not matched, or keeps others from being matched.
     in_conflict: bool,
     shown: Option<&'a ConditionAnalysis>,
-    /// How sure its figures are; none until that is computed, or where it is of older settings.
-    uncertainty: Option<&'a Uncertainty>,
+    sureness: Sureness<'a>,
     /// What holding or freeing it would cost, in words; empty until that is known.
     toggle_costs: Vec<String>,
 }
@@ -105,23 +104,12 @@ impl<'a> Cell<'a> {
             focused: state.display.pair == pair,
             on_axis: state.dataset().on_axis()[pair],
             constrained: state.study.settings.constrained[pair],
-            fitted: state.study.settings.fitted[pair],
+            fitted: !state.study.settings.ignored[pair],
             in_conflict,
             shown: state.shown(),
-            uncertainty: state.uncertainty().filter(|_| !state.others_are_older()).map(|of| of.as_ref()),
+            sureness: state.sureness(),
             toggle_costs: toggle_costs(state, pair),
         }
-    }
-
-    /// How sure one of its figures is.
-    fn bar(&self, scalar: Scalar) -> Option<(&'a Bar, f64)> {
-        let uncertainty = self.uncertainty?;
-        Some((uncertainty.bar(self.shown?.condition.id(), scalar)?, uncertainty.level))
-    }
-
-    /// Half-width of its bar.
-    fn half(&self, scalar: Scalar) -> Option<f64> {
-        self.bar(scalar).and_then(|(bar, level)| bar.half_width(level))
     }
 
     fn gain(&self) -> Option<f64> {
@@ -146,8 +134,7 @@ impl<'a> Cell<'a> {
 
     fn ui(&self, ui: &mut Ui, rect: Rect, palette: &Palette, commands: &mut Vec<Command>) {
         let response = ui.interact(rect, ui.scope_id().with(("cell", self.pair)), Sense::click());
-        response
-            .widget_info(|| WidgetInfo::selected(Role::Button, true, self.focused, format!("Response {}", self.name)));
+        let response = named_switch(response, Role::Button, self.focused, format!("Response {}", self.name));
         if response.gained_focus() {
             response.scroll_to_me(None);
         }
@@ -156,7 +143,7 @@ impl<'a> Cell<'a> {
         let space = response.has_focus() && ui.input(|input| input.key_pressed(Key::Space));
         if lock.clicked() || response.double_clicked() || space {
             if self.constrained || !self.is_undefined() {
-                commands.push(Edit::Set(Setting::Constrained(self.pair, !self.constrained)).into());
+                commands.push(Edit::Hold(self.pair, !self.constrained).into());
             }
         } else if response.clicked() {
             commands.push(Command::FocusPair(self.pair));
@@ -186,8 +173,8 @@ impl<'a> Cell<'a> {
         }
         let hint = match (self.undefined(), self.constrained) {
             (Some(why), _) => format!("{} cannot be held: {}", self.name, why.words()),
-            (_, true) => "Held exactly; click to free it".to_owned(),
-            (_, false) => "Free; click to hold it exactly".to_owned(),
+            (_, true) => "Held exactly; click to release it".to_owned(),
+            (_, false) => "Released; click to hold it exactly".to_owned(),
         };
         response.on_hover_text(hint)
     }
@@ -211,10 +198,10 @@ impl<'a> Cell<'a> {
         if self.focused {
             painter.rect_stroke(rect, 1.0, Stroke::new(2.0, palette.accent), StrokeKind::Inside);
         }
-        self.paint_figures(ui, rect, palette);
+        self.paint_values(ui, rect, palette);
     }
 
-    fn paint_figures(&self, ui: &Ui, rect: Rect, palette: &Palette) {
+    fn paint_values(&self, ui: &Ui, rect: Rect, palette: &Palette) {
         let text = |y: f32, text: &str, size: f32, color: Color32| {
             // Clear of the box in the left corner and of the bar's room in the right one, where the cell is narrow.
             let is_first = y < LOCK_SIZE + 4.0;
@@ -231,14 +218,16 @@ impl<'a> Cell<'a> {
         };
         let strong = if self.fitted { palette.text } else { palette.rejected };
         text(13.0, &format!("{gain:.2}"), 14.5, strong);
-        if let Some(half) = self.half(Scalar::Gain(self.pair)).filter(|_| rect.width() >= LEAST_WITH_BAR) {
+        if let Some(half) = self.sureness.half(Scalar::Gain(self.pair)).filter(|_| rect.width() >= LEAST_WITH_BAR) {
             let place = pos2(rect.right() - 3.0, rect.top() + 13.0);
             let words = format!("±{:.0}%", 100.0 * half);
             ui.painter().text(place, Align2::RIGHT_CENTER, words, FontId::proportional(9.0), palette.dim_text);
         }
         let beside = self.other_delay_s().filter(|other| (other - delay).abs() >= APART_S);
-        let about =
-            self.half(shown.wanted_delay(self.pair)).map_or_else(String::new, |half| format!(" ±{:.0}", s_to_ms(half)));
+        let about = self
+            .sureness
+            .half(shown.wanted_delay(self.pair))
+            .map_or_else(String::new, |half| format!(" ±{:.0}", s_to_ms(half)));
         let beside = beside.map_or(format!("{about} ms"), |other| format!(" ({:.0})", s_to_ms(other)));
         text(28.0, &format!("{:.0}{beside}", s_to_ms(delay)), 10.5, palette.dim_text);
         if let Some(cost) = shown.cost[self.pair] {
@@ -253,23 +242,18 @@ impl<'a> Cell<'a> {
     }
 
     fn menu_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let mut constrained = self.constrained;
-        if ui.checkbox(&mut constrained, format!("Hold {} exactly", self.name)).changed() {
-            commands.push(Edit::Set(Setting::Constrained(self.pair, constrained)).into());
-            ui.close();
-        }
-        let mut fitted = self.fitted;
-        if ui.checkbox(&mut fitted, format!("Fit {} in the objective", self.name)).changed() {
-            commands.push(Edit::Set(Setting::Fitted(self.pair, fitted)).into());
-            ui.close();
-        }
-        if ui.button("Hold exactly the on-axis responses").clicked() {
-            commands.push(Edit::ConstrainOnAxis.into());
-            ui.close();
-        }
+        let mut switch = |ui: &mut Ui, is_on: bool, text: String, edit: fn(Pair, bool) -> Edit| {
+            if let Some(is_on) = check_ui(ui, is_on, text, "") {
+                commands.push(edit(self.pair, is_on).into());
+                ui.close();
+            }
+        };
+        switch(ui, self.constrained, format!("Hold {} exactly", self.name), Edit::Hold);
+        switch(ui, self.fitted, format!("Fit {} in the objective", self.name), Edit::Fit);
+        entries_ui(ui, [("Hold exactly the on-axis responses", Edit::ConstrainOnAxis.into())], commands);
         if let Some(shown) = self.shown.filter(|_| !self.is_undefined()) {
             let (id, pair) = (shown.condition.id(), self.pair);
-            let figures = [
+            let values = [
                 ("G", ExplainTarget::DeltaGain(id, pair)),
                 ("D", ExplainTarget::DeltaDelay(id, pair)),
                 ("Net gain", ExplainTarget::NetGain(id, pair)),
@@ -277,13 +261,13 @@ impl<'a> Cell<'a> {
                 ("J before", ExplainTarget::CostBefore(id, pair)),
                 ("J after", ExplainTarget::CostAfter(id, pair)),
             ];
-            question_menu_ui(ui, figures.map(|(name, asked)| (name.to_owned(), asked)).into(), commands);
+            question_menu_ui(ui, values.map(|(name, asked)| (name.to_owned(), asked)).into(), commands);
         }
     }
 
     fn tooltip_ui(&self, ui: &mut Ui) {
         ui.label(RichText::new(&self.name).strong());
-        let mut words = vec![if self.constrained { "held exactly" } else { "free" }];
+        let mut words = vec![if self.constrained { "held exactly" } else { "released" }];
         words.push(if self.fitted { "fitted" } else { "ignored in the objective" });
         if self.on_axis {
             words.push("on-axis");
@@ -308,7 +292,7 @@ impl<'a> Cell<'a> {
             ("D", shown.wanted_delay(self.pair)),
             ("net gain", Scalar::NetGain(self.pair)),
         ] {
-            if let Some((bar, level)) = self.bar(scalar) {
+            if let Some((bar, level)) = self.sureness.bar(scalar) {
                 ui.label(format!("{name} {}", bar_words(bar, scalar, level)));
             }
         }
@@ -324,12 +308,12 @@ impl<'a> Cell<'a> {
             ));
             ui.label(format!("J {:.1} → {:.1}: {}", before.total(), after.total(), verdict(after.total())));
         }
-        ui.label("Click: show it · box, double click or space: hold or free it · secondary click: more");
+        ui.label("Click: show it · box, double click or space: hold or release it · right-click: more");
     }
 }
 
 fn change_color(before: f64, after: f64, palette: &Palette) -> Color32 {
-    // A change that rounds away in the figures shown is none.
+    // A change that rounds away in the digits shown is none.
     if (after - before).abs() < 0.5 {
         palette.dim_text
     } else if after < before {

@@ -8,8 +8,8 @@ use gdcm_core::study::{Edit, ExplainTarget};
 
 use super::command::Command;
 use super::command_table::open_suggestions;
-use super::controls::table_heading_ui;
-use super::controls::{ROW_HEIGHT, elided_among, row_text};
+use super::controls::{ROW_HEIGHT, elided_among, entries_ui, named, named_switch, row_text, table_heading_ui};
+
 use super::explanation::question_menu_ui;
 use super::focus::{Region, region_ui};
 use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
@@ -58,8 +58,8 @@ fn bundle_ui(ui: &mut Ui, state: &State, palette: &Palette, kind: BundleKind, co
         BundleKind::Physics => format!("Physics models of {}", state.condition().id()),
         BundleKind::Identified => "Identified models".to_owned(),
     };
-    let figure = format!("{} of {}", models.len() - rejected.len(), models.len());
-    table_heading_ui(ui, palette, (&title, &figure), TableKind::of_bundle(kind), commands);
+    let kept = format!("{} of {}", models.len() - rejected.len(), models.len());
+    table_heading_ui(ui, palette, (&title, &kept), TableKind::of_bundle(kind), commands);
     let names = short_names(models);
     for (place, model) in models.iter().enumerate() {
         let neighbours = [place.checked_sub(1), Some(place + 1)].map(|place| names.get(place?).copied());
@@ -122,8 +122,7 @@ impl<'a> ModelRow<'a> {
         let width = ui.available_width();
         // No stop of the Tab key: what can be done is on its box, on its star, and in the palette.
         let (rect, response) = ui.allocate_exact_size(vec2(width, ROW_HEIGHT), Sense::CLICK);
-        let name = format!("{} model {}", self.id.bundle, self.model.name);
-        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &name));
+        let response = named(response, Role::Label, format!("{} model {}", self.id.bundle, self.model.name));
         if self.pointed || response.contains_pointer() {
             ui.painter().rect_filled(rect, 3.0, palette.raised);
         }
@@ -131,8 +130,8 @@ impl<'a> ModelRow<'a> {
         self.star_ui(ui, rect, palette, commands);
         // Of a thousand rows few are in sight.
         if ui.is_rect_visible(rect) {
-            let figure_width = self.paint_figure(ui, rect, palette);
-            self.paint_name(ui, rect, figure_width, palette);
+            let value_width = self.paint_value(ui, rect, palette);
+            self.paint_name(ui, rect, value_width, palette);
         }
         if response.contains_pointer() {
             commands.push(Command::Hover(self.id.clone()));
@@ -142,26 +141,19 @@ impl<'a> ModelRow<'a> {
     }
 
     fn menu_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let mut entry = |ui: &mut Ui, text: &str, command: Command| {
-            if ui.button(text).clicked() {
-                commands.push(command);
-                ui.close();
-            }
-        };
-        if self.kept {
-            entry(ui, "Reject", Edit::Reject(self.id.clone()).into());
-            entry(ui, "Reject with a reason…", Command::AskReason(self.id.clone()));
+        let id = &self.id;
+        let decisions = if self.kept {
+            [("Reject", Edit::Reject(id.clone()).into()), ("Reject with a reason…", Command::AskReason(id.clone()))]
         } else {
-            entry(ui, "Restore", Edit::Restore(self.id.clone()).into());
-            entry(ui, "Say why it is rejected…", Command::AskReason(self.id.clone()));
-        }
-        entry(ui, "Copy its name", Command::CopyText(self.model.name.clone()));
-        let ratio =
-            self.ratio.map(|_| ("Discontinuity ratio".to_owned(), ExplainTarget::DiscontinuityRatio(self.id.clone())));
-        let score = self.score.map(|_| ("Mean distance".to_owned(), ExplainTarget::Score(self.id.clone())));
-        let figures: Vec<(String, ExplainTarget)> = ratio.into_iter().chain(score).collect();
-        if !figures.is_empty() {
-            question_menu_ui(ui, figures, commands);
+            [("Restore", Edit::Restore(id.clone()).into()), ("Say why it is rejected…", Command::AskReason(id.clone()))]
+        };
+        entries_ui(ui, decisions, commands);
+        entries_ui(ui, [("Copy its name", Command::CopyText(self.model.name.clone()))], commands);
+        let ratio = self.ratio.map(|_| ("Discontinuity ratio", ExplainTarget::DiscontinuityRatio(id.clone())));
+        let score = self.score.map(|_| ("Mean distance", ExplainTarget::Score(id.clone())));
+        let values: Vec<_> = ratio.into_iter().chain(score).map(|(name, asked)| (name.to_owned(), asked)).collect();
+        if !values.is_empty() {
+            question_menu_ui(ui, values, commands);
         }
     }
 
@@ -170,21 +162,21 @@ impl<'a> ModelRow<'a> {
         let place = Rect::from_min_size(rect.min + vec2(3.0, 0.0), vec2(18.0, rect.height()));
         let checkbox = ui.put(place, Checkbox::without_text(&mut kept));
         let name = format!("Keep {} model {}", self.id.bundle, self.model.name);
-        checkbox.widget_info(|| WidgetInfo::selected(Role::CheckBox, ui.is_enabled(), self.kept, &name));
+        let checkbox = named_switch(checkbox, Role::CheckBox, self.kept, name);
         if checkbox.changed() {
             commands.push(if kept { Edit::Restore(self.id.clone()) } else { Edit::Reject(self.id.clone()) }.into());
         }
         checkbox.on_hover_text(if self.kept { "Reject this model" } else { "Restore this model" });
     }
 
-    /// The star of the representative: a click pins the model, or lets the medoid represent again.
+    /// The star of the representative: a click chooses the model, or goes back to the medoid.
     fn star_ui(&self, ui: &mut Ui, rect: Rect, palette: &Palette, commands: &mut Vec<Command>) {
         let place = Rect::from_min_size(pos2(rect.left() + 24.0, rect.top()), vec2(16.0, rect.height()));
         let id = ui.scope_id().with(("star", &self.id));
         let can_represent = self.pinned || (self.kept && self.set_aside.is_none());
         let sense = if can_represent { Sense::click() } else { Sense::hover() };
         let response = ui.interact(place, id, sense);
-        let name = format!("Pin {} model {}", self.id.bundle, self.model.name);
+        let name = format!("Use {} model {} as representative", self.id.bundle, self.model.name);
         response.widget_info(|| WidgetInfo::selected(Role::CheckBox, can_represent, self.pinned, &name));
         let visible = self.represents || response.hovered() || response.has_focus();
         if visible && can_represent {
@@ -201,27 +193,26 @@ impl<'a> ModelRow<'a> {
                 .push(if self.pinned { Edit::Unpin { condition, bundle } } else { Edit::Pin(self.id.clone()) }.into());
         }
         let hint = match (self.pinned, self.represents) {
-            _ if !can_represent => "Cannot represent the bundle: rejected or set aside",
-            (true, _) if self.set_aside.is_some() => "Pinned in vain, for it is set aside; click: unpin it",
-            (true, _) => "Pinned by hand; click: the medoid represents again",
-            (false, true) => "Represents the bundle (medoid); click: pin it",
-            (false, false) => "Click: let this model represent the bundle",
+            _ if !can_represent => "Cannot be the representative: rejected or set aside",
+            (true, _) if self.set_aside.is_some() => "Chosen as representative, but set aside; click: use the medoid",
+            (true, _) => "Representative, chosen by hand; click: use the medoid again",
+            (false, true) => "Representative (medoid); click: keep it as representative",
+            (false, false) => "Click: use as representative",
         };
         response.on_hover_text(hint);
     }
 
     /// The ratio with its bar, or the order; returns the width taken on the right.
-    fn paint_figure(&self, ui: &Ui, rect: Rect, palette: &Palette) -> f32 {
+    fn paint_value(&self, ui: &Ui, rect: Rect, palette: &Palette) -> f32 {
         let dim = if self.kept { palette.text } else { palette.rejected };
         if self.set_aside.is_some() {
             row_text(ui, rect, -5.0, "set aside", SMALL_SIZE, palette.warning);
             return 60.0;
         }
         if let Some(ratio) = self.ratio {
-            let suspect = ratio > SUGGESTION_RATIO;
             row_text(ui, rect, -5.0, &format!("{ratio:.2}"), BODY_SIZE, dim);
             if rect.width() < LEAST_WITH_BAR {
-                if suspect {
+                if self.is_suspect() {
                     ui.painter().circle_filled(pos2(rect.right() - 40.0, rect.center().y), 3.0, palette.warning);
                 }
                 return 48.0;
@@ -231,27 +222,22 @@ impl<'a> ModelRow<'a> {
             ui.painter().rect_filled(bar, 2.0, palette.line);
             // Four times what the perturbation explains fills the bar.
             let part = (ratio / 4.0).clamp(0.0, 1.0) as f32;
-            let color = if suspect { palette.warning } else { palette.accent };
+            let color = if self.is_suspect() { palette.warning } else { palette.accent };
             ui.painter().rect_filled(Rect::from_min_size(bar.min, vec2(full * part, 4.0)), 2.0, color);
             return 88.0;
         }
-        match (self.id.bundle, self.model.order()) {
-            (BundleKind::Identified, Some(order)) => {
-                row_text(ui, rect, -5.0, &format!("order {order}"), SMALL_SIZE, palette.dim_text);
-                60.0
-            }
-            (BundleKind::Identified, None) => {
-                row_text(ui, rect, -5.0, "measured", SMALL_SIZE, palette.dim_text);
-                60.0
-            }
-            _ => 5.0,
+        if self.id.bundle == BundleKind::Identified {
+            let words = self.model.order().map_or("measured".to_owned(), |order| format!("order {order}"));
+            row_text(ui, rect, -5.0, &words, SMALL_SIZE, palette.dim_text);
+            return 60.0;
         }
+        5.0
     }
 
-    fn paint_name(&self, ui: &Ui, rect: Rect, figure_width: f32, palette: &Palette) {
+    fn paint_name(&self, ui: &Ui, rect: Rect, value_width: f32, palette: &Palette) {
         let color = if self.kept { palette.text } else { palette.rejected };
         let left = rect.left() + 42.0;
-        let room = rect.right() - figure_width - left;
+        let room = rect.right() - value_width - left;
         let name = elided_among(ui, self.name, self.neighbours, room, BODY_SIZE);
         let mut job = egui::text::LayoutJob::simple_singleline(name, egui::FontId::proportional(BODY_SIZE), color);
         if !self.kept {
@@ -263,41 +249,34 @@ impl<'a> ModelRow<'a> {
 
     fn tooltip_ui(&self, ui: &mut Ui) {
         ui.label(RichText::new(&self.model.name).strong());
-        if let Some(perturbation) = self.model.perturbation() {
-            let offsets: Vec<String> = perturbation
-                .iter()
-                .filter(|(_, value)| **value != 0.0)
-                .map(|(name, value)| format!("{name} {value:+}"))
-                .collect();
-            ui.label(if offsets.is_empty() { "at the trim of the condition".to_owned() } else { offsets.join(", ") });
+        let trim = self.model.perturbation().map(|perturbation| {
+            let offsets = perturbation.iter().filter(|(_, value)| **value != 0.0);
+            let offsets: Vec<String> = offsets.map(|(name, value)| format!("{name} {value:+}")).collect();
+            if offsets.is_empty() { "at the trim of the condition".to_owned() } else { offsets.join(", ") }
+        });
+        let timing = match &self.model.dynamics {
+            Dynamics::StateSpace(matrices) => Some(matrices.timing()).filter(|timing| !timing.is_plain()),
+            _ => None,
+        };
+        let verdict = if self.is_suspect() { ": suggested as an outlier" } else { "" };
+        let sentences = [
+            trim,
+            method(self.model).map(|method| format!("identified by {method}")),
+            self.model.order().map(|order| format!("{order} states")),
+            timing.map(|timing| timing.words()),
+            self.set_aside.clone(),
+            self.reason.as_ref().map(|reason| format!("rejected: {reason}")),
+            self.model.source.as_ref().map(|source| format!("from {}", source.words())),
+            self.ratio.map(|ratio| format!("discontinuity ratio {ratio:.3}{verdict}")),
+            self.score.map(|score| format!("mean distance to the other kept models {score:.3}")),
+        ];
+        for sentence in sentences.into_iter().flatten() {
+            ui.label(sentence);
         }
-        if let Origin::Identified { method: Some(method), .. } = &self.model.origin {
-            ui.label(format!("identified by {method}"));
-        }
-        if let Some(order) = self.model.order() {
-            ui.label(format!("{order} states"));
-        }
-        if let Dynamics::StateSpace(matrices) = &self.model.dynamics
-            && !matrices.timing().is_plain()
-        {
-            ui.label(matrices.timing().words());
-        }
-        if let Some(why) = &self.set_aside {
-            ui.label(why);
-        }
-        if let Some(reason) = &self.reason {
-            ui.label(format!("rejected: {reason}"));
-        }
-        if let Some(source) = &self.model.source {
-            ui.label(format!("from {}", source.words()));
-        }
-        if let Some(ratio) = self.ratio {
-            let verdict = if ratio > SUGGESTION_RATIO { ": suggested as an outlier" } else { "" };
-            ui.label(format!("discontinuity ratio {ratio:.3}{verdict}"));
-        }
-        if let Some(score) = self.score {
-            ui.label(format!("mean distance to the other kept models {score:.3}"));
-        }
+    }
+
+    fn is_suspect(&self) -> bool {
+        self.ratio.is_some_and(|ratio| ratio > SUGGESTION_RATIO)
     }
 }
 

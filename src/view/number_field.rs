@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 
 use egui::{Context, DragValue, Id, Key, Response, Role, Ui, WidgetInfo, vec2};
 
+use gdcm_core::study::Digits;
 use gdcm_core::units::number;
 
 const HEIGHT: f32 = 18.0;
@@ -29,8 +30,8 @@ pub struct NumberField<'a> {
     pub step: f64,
     /// Least width \[pt\]; 0 leaves it to the text.
     pub width: f32,
-    /// The number as it is shown.
-    pub text: fn(f64) -> String,
+    /// How the number is written.
+    pub digits: Digits,
 }
 
 /// What became of a field in this frame.
@@ -50,7 +51,7 @@ impl<'a> NumberField<'a> {
     /// A field for any pure number in the range, as wide as its text.
     pub fn new(name: &'a str, hint: &'a str, range: RangeInclusive<f64>) -> Self {
         let (unit, shows_unit, is_whole) = ("", false, false);
-        Self { name, hint, unit, shows_unit, range, is_whole, step: 0.01, width: 0.0, text: significant }
+        Self { name, hint, unit, shows_unit, range, is_whole, step: 0.01, width: 0.0, digits: Digits::Significant }
     }
 
     /// The field with `value` in it. A number is dragged within the range; one that is typed is taken up by Enter, or when the
@@ -65,7 +66,7 @@ impl<'a> NumberField<'a> {
         let mut field = DragValue::new(&mut entered)
             .update_while_editing(false)
             .speed(self.step)
-            .custom_formatter(|value, _| (self.text)(value))
+            .custom_formatter(|value, _| number_text(self.digits, value))
             .custom_parser(read);
         if self.shows_unit {
             field = field.suffix(format!(" {}", self.unit));
@@ -91,7 +92,7 @@ impl<'a> NumberField<'a> {
         if is_escaped {
             return None;
         }
-        if text == (self.text)(value) {
+        if text == number_text(self.digits, value) {
             return Some(value);
         }
         let number = number_in(text, self.unit);
@@ -120,7 +121,7 @@ impl<'a> NumberField<'a> {
         let kind = if self.is_whole { "a whole number" } else { "a number" };
         let (least, most) = (number(*self.range.start()), number(*self.range.end()));
         let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
-        let stays = (self.text)(before);
+        let stays = number_text(self.digits, before);
         format!("{}: expected {kind} from {least} to {most}{unit}, found {found}; it stays {stays}{unit}", self.name)
     }
 }
@@ -139,6 +140,15 @@ fn number_in(text: &str, unit: &str) -> Option<f64> {
     let is_decimal_comma = text.matches(',').count() == 1 && !text.contains('.');
     let text = if is_decimal_comma { text.replace(',', ".") } else { text };
     text.parse().ok().filter(|value: &f64| value.is_finite())
+}
+
+/// A number as a field writes it.
+fn number_text(digits: Digits, value: f64) -> String {
+    match digits {
+        Digits::Significant => significant(value),
+        Digits::Decimals(decimals) => format!("{value:.decimals$}"),
+        Digits::Gain => gain_text(value),
+    }
 }
 
 /// Three significant digits, without an exponent from 0.001 to 9999.

@@ -7,8 +7,10 @@ use std::sync::Arc;
 use gdcm_core::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
 use gdcm_core::study::{
     AcrossCurves, Analysis, AssessmentTable, ConditionAnalysis, ConditionCurves, ConditionFailure, ConditionModes,
-    Difference, ExportFormat, History, Study, Table, Toggles, Uncertainty,
+    Difference, History, Study, Table, Toggles, Uncertainty,
 };
+use gdcm_core::uncertainty::{Bar as ErrorBar, Scalar};
+use gdcm_files::ExportFormat;
 use gdcm_files::figure::ColumnWidth;
 
 use super::arrangement::View;
@@ -153,7 +155,7 @@ pub struct State {
     pub tour: Option<usize>,
     /// Flight records, and what was identified from them.
     pub records: RecordsState,
-    /// Models that are being put together, in the place of the study.
+    /// Models that are being imported, in the place of the study.
     pub assembling: Option<AssemblyState>,
 }
 
@@ -280,14 +282,20 @@ impl State {
         Arc::ptr_eq(&analysis.study.dataset, &self.study.dataset).then_some(analysis)
     }
 
-    /// How sure the figures of the newest analysis are; none until that is computed, beside the live answer.
+    /// How sure the values of the newest analysis are; none until that is computed, beside the live answer.
     pub fn uncertainty(&self) -> Option<&Arc<Uncertainty>> {
         let (job, uncertainty) = self.results.uncertainty.as_ref()?;
         self.analysis()?;
         Arc::ptr_eq(&job.analysis, self.results.analysis.as_ref()?).then_some(uncertainty)
     }
 
-    /// The newest analysis with how sure its figures are, as far as that is computed: what files and derivations are made of.
+    /// How sure the values of the condition shown are; none until that is computed, or where it is of older settings.
+    pub fn sureness(&self) -> Sureness<'_> {
+        let uncertainty = self.uncertainty().filter(|_| !self.others_are_older());
+        Sureness { condition: self.condition().id(), uncertainty: uncertainty.map(AsRef::as_ref) }
+    }
+
+    /// The newest analysis with how sure its values are, as far as that is computed: what files and derivations are made of.
     pub fn analysis_with_bars(&self) -> Option<Analysis> {
         let analysis = self.analysis()?.clone();
         Some(Analysis { uncertainty: self.uncertainty().cloned(), ..analysis })
@@ -323,6 +331,31 @@ impl State {
     /// A model of the condition shown.
     pub fn model_id(&self, bundle: BundleKind, name: &str) -> ModelId {
         ModelId::new(self.condition().id(), bundle, name)
+    }
+}
+
+/// How sure the values of the condition shown are.
+#[derive(Clone, Copy, Debug)]
+pub struct Sureness<'a> {
+    condition: ConditionId,
+    uncertainty: Option<&'a Uncertainty>,
+}
+
+impl<'a> Sureness<'a> {
+    /// The bar of a value, and its level.
+    pub fn bar(&self, scalar: Scalar) -> Option<(&'a ErrorBar, f64)> {
+        let uncertainty = self.uncertainty?;
+        Some((uncertainty.bar(self.condition, scalar)?, uncertainty.level))
+    }
+
+    /// Half-width of its bar: relative, of delays \[s\].
+    pub fn half(&self, scalar: Scalar) -> Option<f64> {
+        self.bar(scalar).and_then(|(bar, level)| bar.half_width(level))
+    }
+
+    /// The level of all bars.
+    pub fn level(&self) -> Option<f64> {
+        self.uncertainty.map(|of| of.level)
     }
 }
 

@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use egui::{Align, Button, Color32, Grid, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo};
+use egui::{Align, Button, Color32, Grid, Label, Layout, RichText, Role, ScrollArea, Sense, Ui};
 
 use gdcm_core::study::Table;
 
 use super::command::Command;
+use super::controls::{entries_ui, named};
 use super::palette::{Palette, SMALL_SIZE};
 
 /// By which column a table is sorted, and whether downwards; by none as it was made.
@@ -35,7 +36,7 @@ impl Sorting {
         let cells: Vec<String> = order.iter().map(|&row| cell(row, column)).collect();
         order.sort_by(|a, b| {
             let (a, b) = (&cells[*a], &cells[*b]);
-            let compared = match (figure(a), figure(b)) {
+            let compared = match (number_in(a), number_in(b)) {
                 (Some(a), Some(b)) => a.total_cmp(&b),
                 _ => a.cmp(b),
             };
@@ -56,7 +57,7 @@ impl Sorting {
 }
 
 /// The number that a cell begins with, whichever its minus sign.
-fn figure(cell: &str) -> Option<f64> {
+fn number_in(cell: &str) -> Option<f64> {
     cell.split_whitespace().next()?.replacen('\u{2212}', "-", 1).parse().ok()
 }
 
@@ -77,7 +78,7 @@ pub struct TableLook<'a> {
     pub selected: &'a dyn Fn(usize) -> bool,
 }
 
-/// Draws a table that scrolls where it is too large. Its headings sort it; the secondary button copies or saves it.
+/// Draws a table that scrolls where it is too large. Its headings sort it; a right-click copies or saves it.
 pub fn table_ui(
     ui: &mut Ui,
     table: &Table,
@@ -90,12 +91,11 @@ pub fn table_ui(
     ScrollArea::both().id_salt(("table", &table.title)).auto_shrink(false).show(ui, |ui| {
         Grid::new(("cells", &table.title)).spacing([12.0, 3.0]).striped(true).show(ui, |ui| {
             for (column, heading) in table.columns.iter().enumerate() {
-                let text = RichText::new(format!("{heading}{}", sorting.mark(column))).size(SMALL_SIZE);
-                let button = ui.add(Button::new(text.color(palette.dim_text)).frame(false));
-                let name = format!("Sort {} by {heading}", table.title);
-                button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+                let text = palette.small(format!("{heading}{}", sorting.mark(column)));
+                let button = ui.add(Button::new(text).frame(false));
+                let button = named(button, Role::Button, format!("Sort {} by {heading}", table.title));
                 button.context_menu(|ui| copy_ui(ui, table, commands));
-                if button.on_hover_text("Sort; secondary click: copy or save the table").clicked() {
+                if button.on_hover_text("Sort; right-click: copy or save the table").clicked() {
                     *sorting = sorting.clicked(column);
                 }
             }
@@ -106,7 +106,7 @@ pub fn table_ui(
                     let color = (look.color)(row, column).unwrap_or(palette.text);
                     let text = RichText::new(cell).size(SMALL_SIZE).color(color);
                     let text = if selected { text.background_color(palette.selected) } else { text };
-                    let layout = if figure(cell).is_some() { Align::Max } else { Align::Min };
+                    let layout = if number_in(cell).is_some() { Align::Max } else { Align::Min };
                     let label = Label::new(text).sense(Sense::click()).selectable(false).extend();
                     let response = ui.with_layout(Layout::top_down(layout), |ui| ui.add(label)).inner;
                     response.context_menu(|ui| copy_ui(ui, table, commands));
@@ -122,14 +122,11 @@ pub fn table_ui(
 }
 
 fn copy_ui(ui: &mut Ui, table: &Table, commands: &mut Vec<Command>) {
-    if ui.button("Copy the table as text").clicked() {
-        commands.push(Command::CopyText(table.text()));
-        ui.close();
-    }
-    if ui.button("Save the table as CSV…").clicked() {
-        commands.push(Command::AskSaveShownTable(Arc::new(table.clone())));
-        ui.close();
-    }
+    let entries = [
+        ("Copy the table as text", Command::CopyText(table.text())),
+        ("Save the table as CSV…", Command::AskSaveShownTable(Arc::new(table.clone()))),
+    ];
+    entries_ui(ui, entries, commands);
 }
 
 #[cfg(test)]
@@ -145,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn figures_are_sorted_by_value_and_words_by_letters() {
+    fn numbers_are_sorted_by_value_and_words_by_letters() {
         let by = |column| Sorting::default().clicked(column);
         assert_eq!(by(1).order(&table()), [1, 3, 0, 2], "empty cells last");
         assert_eq!(by(1).clicked(1).order(&table()), [0, 3, 1, 2], "downwards too");

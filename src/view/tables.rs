@@ -1,13 +1,13 @@
 //! The tables of the window as texts, to be copied and saved.
 
 use gdcm_core::correction::Channel as CorrectedChannel;
-use gdcm_core::dataset::{BundleKind, ConditionId, Pair};
+use gdcm_core::dataset::{BundleKind, Pair};
 use gdcm_core::fidelity::SUGGESTION_RATIO;
-use gdcm_core::study::{ConditionAnalysis, Table, Uncertainty};
+use gdcm_core::study::{ConditionAnalysis, Table};
 use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::s_to_ms;
 
-use super::state::State;
+use super::state::{State, Sureness};
 
 /// A table of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +49,7 @@ impl TableKind {
     }
 }
 
-/// The table as it is now. Figures have every digit; those that are not known are empty.
+/// The table as it is now. Numbers have every digit; those that are not known are empty.
 pub fn table_of(state: &State, kind: TableKind) -> Table {
     match kind {
         TableKind::Conditions => conditions(state),
@@ -60,8 +60,8 @@ pub fn table_of(state: &State, kind: TableKind) -> Table {
     }
 }
 
-/// A figure with every digit; nothing where there is none.
-fn figure(value: Option<f64>) -> String {
+/// A number with every digit; nothing where there is none.
+fn digits(value: Option<f64>) -> String {
     // Debug writes an exponent where Display would write hundreds of zeros.
     value.filter(|value| value.is_finite()).map_or(String::new(), |value| format!("{value:?}"))
 }
@@ -104,11 +104,11 @@ fn conditions(state: &State) -> Table {
         table.row([
             id.to_string(),
             flight_state.name.clone(),
-            figure(Some(flight_state.airspeed_kt)),
+            digits(Some(flight_state.airspeed_kt)),
             flight_state.altitude.clone().unwrap_or_default(),
-            figure(flight_state.altitude_ft),
+            digits(flight_state.altitude_ft),
             flight_state.weight.clone().unwrap_or_default(),
-            figure(flight_state.mass_kg),
+            digits(flight_state.mass_kg),
             yes(choice.scheduled),
             suggested,
             count(|result| result.gains.unmatched.len()),
@@ -135,8 +135,8 @@ fn models(state: &State, bundle: BundleKind) -> Table {
             yes(choice.pinned.as_ref() == Some(&model.name)),
             yes(shown.is_some_and(|shown| shown.representative_name(bundle) == model.name)),
             model.order().map_or(String::new(), |order| order.to_string()),
-            figure(shown.and_then(|shown| shown.score(bundle, &model.name))),
-            figure(ratio),
+            digits(shown.and_then(|shown| shown.score(bundle, &model.name))),
+            digits(ratio),
             ratio.map_or(String::new(), |ratio| yes(ratio > SUGGESTION_RATIO)),
         ]);
     }
@@ -167,53 +167,37 @@ fn matrix(state: &State) -> Table {
         "J_phase before",
         "J_phase after",
     ];
-    let sure = Sureness::of(state);
-    let mut table = Table::new(title(state, &sure.title(TableKind::Matrix)), columns);
+    let sure = state.sureness();
+    let mut table = Table::new(title_with_bars(state, TableKind::Matrix), columns);
     for pair in state.dataset().on_axis().pairs() {
         let (output, input) = state.dataset().channel_names(pair);
         let settings = &state.study.settings;
-        let flags = [state.dataset().on_axis()[pair], settings.constrained[pair], settings.fitted[pair]].map(yes);
-        let figures = state.shown().map_or([None; 16], |shown| response_figures(shown, &sure, pair));
-        table.row([output, input].into_iter().chain(flags).chain(figures.map(figure)));
+        let flags = [state.dataset().on_axis()[pair], settings.constrained[pair], !settings.ignored[pair]].map(yes);
+        let values = state.shown().map_or([None; 16], |shown| response_values(shown, sure, pair));
+        table.row([output, input].into_iter().chain(flags).chain(values.map(digits)));
     }
     table
 }
 
-/// How sure the figures of the condition shown are; nothing of it until that is computed, or where it is of older settings.
-struct Sureness<'a> {
-    condition: ConditionId,
-    uncertainty: Option<&'a Uncertainty>,
+/// What a table is of, with the level of its bars.
+fn title_with_bars(state: &State, kind: TableKind) -> String {
+    let level = state.sureness().level().map(|level| format!(", ± of {:.0} %", 100.0 * level));
+    title(state, &format!("{}{}", kind.name(), level.unwrap_or_default()))
 }
 
-impl<'a> Sureness<'a> {
-    fn of(state: &'a State) -> Self {
-        let uncertainty = state.uncertainty().filter(|_| !state.others_are_older());
-        Self { condition: state.condition().id(), uncertainty: uncertainty.map(AsRef::as_ref) }
-    }
-
-    /// What the table is of, with the level of its bars.
-    fn title(&self, kind: TableKind) -> String {
-        let level = self.uncertainty.map(|of| format!(", ± of {:.0} %", 100.0 * of.level));
-        format!("{}{}", kind.name(), level.unwrap_or_default())
-    }
-
-    /// Half-width of the bar of a figure, and of its inner bar, "for this physics model": \[%\], of delays \[ms\].
-    fn halves(&self, scalar: Scalar) -> [Option<f64>; 2] {
-        let Some((bar, level)) = self.uncertainty.and_then(|of| Some((of.bar(self.condition, scalar)?, of.level)))
-        else {
-            return [None; 2];
-        };
-        let shown = |half: f64| if scalar.is_delay() { s_to_ms(half) } else { 100.0 * half };
-        [bar.half_width(level), bar.inner_half_width(level)].map(|half| half.map(shown))
-    }
+/// Half-width of the bar of a value, and of its inner bar, "for this physics model": \[%\], of delays \[ms\].
+fn halves(sure: &Sureness<'_>, scalar: Scalar) -> [Option<f64>; 2] {
+    let Some((bar, level)) = sure.bar(scalar) else { return [None; 2] };
+    let shown = |half: f64| if scalar.is_delay() { s_to_ms(half) } else { 100.0 * half };
+    [bar.half_width(level), bar.inner_half_width(level)].map(|half| half.map(shown))
 }
 
 /// G, D, net gain, each with its bars, net delay, and J, J_mag and J_phase before and after.
-fn response_figures(shown: &ConditionAnalysis, sure: &Sureness<'_>, pair: Pair) -> [Option<f64>; 16] {
+fn response_values(shown: &ConditionAnalysis, sure: Sureness<'_>, pair: Pair) -> [Option<f64>; 16] {
     let cost = shown.cost[pair];
     let (before, after) = (cost.map(|cost| cost.uncorrected), cost.map(|cost| cost.corrected));
     let [[gain, gain_inner], [delay, delay_inner], [net, net_inner]] =
-        [Scalar::Gain(pair), shown.wanted_delay(pair), Scalar::NetGain(pair)].map(|scalar| sure.halves(scalar));
+        [Scalar::Gain(pair), shown.wanted_delay(pair), Scalar::NetGain(pair)].map(|scalar| halves(&sure, scalar));
     [
         shown.wanted_gain(pair),
         gain,
@@ -245,8 +229,8 @@ fn channels(state: &State) -> Table {
         "τ ± [ms]",
         "τ ± of identification [ms]",
     ];
-    let sure = Sureness::of(state);
-    let mut table = Table::new(title(state, &sure.title(TableKind::Channels)), columns);
+    let sure = state.sureness();
+    let mut table = Table::new(title_with_bars(state, TableKind::Channels), columns);
     let correction = state.shown().map(|shown| &shown.correction);
     let (inputs, outputs) = (state.dataset().inputs(), state.dataset().outputs());
     let of_inputs = (0..inputs.len()).map(CorrectedChannel::Input);
@@ -257,10 +241,10 @@ fn channels(state: &State) -> Table {
             CorrectedChannel::Output(output) => ("output", correction.map(|of| of.output_gains[output])),
         };
         let delay_ms = correction.map(|of| s_to_ms(of.delay_s(channel)));
-        let [half, inner] = sure.halves(Scalar::ChannelGain(channel));
-        let [delay_half, delay_inner] = sure.halves(Scalar::ChannelDelay(channel));
-        let figures = [gain, half, inner, delay_ms, delay_half, delay_inner].map(figure);
-        table.row([side.to_owned(), named.name.clone()].into_iter().chain(figures));
+        let [half, inner] = halves(&sure, Scalar::ChannelGain(channel));
+        let [delay_half, delay_inner] = halves(&sure, Scalar::ChannelDelay(channel));
+        let values = [gain, half, inner, delay_ms, delay_half, delay_inner].map(digits);
+        table.row([side.to_owned(), named.name.clone()].into_iter().chain(values));
     }
     table
 }

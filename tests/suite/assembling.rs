@@ -224,7 +224,7 @@ fn a_folder_of_matrices_without_names_is_made_a_dataset_by_rules_from_the_shell(
     let models: usize =
         example.conditions().iter().flat_map(|of| BundleKind::BOTH.map(|kind| of.bundle(kind).len())).sum();
     let others = format!("and {} other models", models - 1);
-    assert!(said.contains("the unit of input 1 is not said") && said.contains(&others), "{said}");
+    assert!(said.contains("input 1: choose a unit") && said.contains(&others), "{said}");
     assert!(!out.exists(), "nothing half made");
     // The rules that were proposed, with the names and units of the channels.
     let path = folder.path().join("made.gdcm-rules.json");

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use gdcm_core::study::{Edit, Setting, Study};
+use gdcm_core::study::{DelayFrom, PhaseCorrection, Study, setting};
 use gdcm_files::{load_dataset, read_corrections, save_study};
 use serde_json::{Value, json};
 
@@ -142,9 +142,9 @@ fn every_option_reaches_the_analysis() {
     let written = read_corrections(&desk.path("out/corrections.json")).unwrap();
     let settings = &written.settings;
     assert_eq!((settings.alpha_gain, settings.alpha_delay, settings.points), (0.25, 2.0, 31));
-    assert_eq!(settings.band_rad_s, [1.0, 8.0]);
+    assert_eq!(<[f64; 2]>::from(settings.band), [1.0, 8.0]);
     let pair = |output: &str, input: &str| (output.to_owned(), input.to_owned());
-    assert_eq!(settings.constrained, [pair("P", "LAT"), pair("Q", "LAT")]);
+    assert_eq!(settings.constrained.0, [pair("P", "LAT"), pair("Q", "LAT")]);
     assert_eq!(written.schedule.unwrap().degree, Some(1));
     assert_eq!(
         (&written.conditions[0].rejected, &written.conditions[1].rejected),
@@ -161,7 +161,7 @@ fn delays_are_scheduled_and_a_tolerance_is_set_by_options() {
     let written = read_corrections(&desk.path("out/corrections.json")).unwrap();
     assert!(written.settings.schedule.delays && written.schedule.unwrap().delays_s.is_some());
     assert_eq!(written.settings.agreement_db, 0.2);
-    let words = ["--agreement: agreement tolerance: expected a number of dB from 0 to 3, found 4"];
+    let words = ["--agreement: loop tolerance: expected a number of dB from 0 to 3, found 4"];
     desk.gdcm(&["analyze", "small.json", "--out", "out", "--force", "--agreement", "4"]).assert_failed(2, &words);
 }
 
@@ -183,7 +183,7 @@ fn the_phase_is_corrected_as_an_option_says() {
         assert!(ended.out.split_whitespace().collect::<Vec<_>>().join(" ").contains(words), "{}", ended.out);
     }
     let led = read();
-    assert_eq!((led.settings.phase.name(), led.settings.delay_from.name()), ("lead", "median"));
+    assert_eq!((led.settings.phase, led.settings.delay_from), (PhaseCorrection::Lead, DelayFrom::Median));
     let condition = &led.conditions[0];
     let lat = condition.lead.as_ref().unwrap().inputs.get("LAT").unwrap();
     // From independent numpy code.
@@ -207,7 +207,7 @@ fn the_phase_is_corrected_as_an_option_says() {
         read().conditions.iter().all(|of| of.lead.is_none() && of.delays_s.outputs.0.iter().all(|(_, s)| *s == 0.0))
     );
     analyze(&["--delay-from", "band"]).assert_done();
-    assert_eq!((read().settings.phase.name(), read().settings.delay_from.name()), ("delay", "band"));
+    assert_eq!((read().settings.phase, read().settings.delay_from), (PhaseCorrection::Delay, DelayFrom::Band));
     analyze(&["--phase", "later"]).assert_failed(2, &["expected none, delay or lead, found later"]);
 }
 
@@ -247,7 +247,7 @@ fn sample_times_and_delays_are_told() {
 fn no_pair_held_is_a_choice_of_its_own() {
     let desk = Desk::new();
     desk.gdcm(&["analyze", "small.json", "--out", "out", "--on", "none"]).assert_done();
-    assert!(read_corrections(&desk.path("out/corrections.json")).unwrap().settings.constrained.is_empty());
+    assert!(read_corrections(&desk.path("out/corrections.json")).unwrap().settings.constrained.0.is_empty());
 }
 
 #[test]
@@ -273,8 +273,8 @@ fn a_study_stands_in_place_of_a_dataset_and_options_over_what_it_says() {
     let desk = Desk::new();
     let loaded = load_dataset(&desk.path("small.json")).unwrap();
     let mut study = Study::new(loaded.dataset.clone());
-    for setting in [Setting::AlphaGain(0.1 + 0.2), Setting::Points(33)] {
-        study.apply(&Edit::Set(setting)).unwrap();
+    for edit in [setting::ALPHA_GAIN.to(0.1 + 0.2), setting::POINTS.to(33)] {
+        study.apply(&edit).unwrap();
     }
     save_study(&study, &loaded, &desk.path("a.gdcm-study.json")).unwrap();
     desk.gdcm(&["analyze", "a.gdcm-study.json", "--out", "out", "--points", "44"]).assert_done();

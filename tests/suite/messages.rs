@@ -6,8 +6,7 @@ use std::path::Path;
 
 use gdcm_core::correction::GainBounds;
 use gdcm_core::dataset::{Band, GREATEST_OMEGA, LEAST_OMEGA};
-use gdcm_core::schedule::{ScheduleKind, ScheduleSettings};
-use gdcm_core::study::{Edit, GREATEST_DELAY_S, GREATEST_GAIN, LARGEST_ALPHA, LEAST_GAIN, Setting, Study};
+use gdcm_core::study::{Kind, SETTINGS, Study, setting};
 use gdcm_core::units::number;
 use gdcm_files::{DatasetOrigin, load_dataset, load_dataset_bytes, open_study, save_study};
 use proptest::prelude::*;
@@ -76,40 +75,23 @@ fn a_number_of_three_hundred_digits_is_written_with_an_exponent() {
 
 #[test]
 fn the_bounds_that_a_message_names_are_those_that_are_refused() {
-    let schedule = |degree: f64| {
-        let kind = ScheduleKind::Polynomial { degree: degree as usize };
-        Setting::Schedule(ScheduleSettings { kind, ..ScheduleSettings::default() })
-    };
-    let lower = |lower| Setting::GainBounds(Some(GainBounds { lower, upper: GREATEST_GAIN }));
-    let upper = |upper| Setting::GainBounds(Some(GainBounds { lower: 0.5, upper }));
-    type Of<'a> = &'a dyn Fn(f64) -> Setting;
-    let ranges: [(Of, f64, f64); 8] = [
-        (&Setting::AlphaGain, 0.0, LARGEST_ALPHA),
-        (&Setting::AlphaDelay, 0.0, LARGEST_ALPHA),
-        (&Setting::Quantile, 0.0, 0.5),
-        (&lower, LEAST_GAIN, GREATEST_GAIN),
-        (&upper, 0.5, GREATEST_GAIN),
-        (&|upper| Setting::DelayUpper(Some(upper)), 0.0, GREATEST_DELAY_S),
-        (&|points| Setting::Points(points as usize), 2.0, 5000.0),
-        (&schedule, 0.0, 3.0),
-    ];
-    let loaded = gdcm_files::embedded_example().unwrap();
-    for (setting, least, greatest) in ranges {
-        let mut study = Study::new(loaded.dataset.clone());
-        let mut apply = |value| study.apply(&Edit::Set(setting(value)));
-        for value in [least, greatest] {
-            assert_eq!(apply(value), Ok(()), "{:?}", setting(value));
-        }
-        let is_whole = matches!(setting(least), Setting::Points(_) | Setting::Schedule(_));
-        let (below, above) =
-            if is_whole { (least - 1.0, greatest + 1.0) } else { (least.next_down(), greatest.next_up()) };
-        let expected = format!("from {} to {}, found ", number(least), number(greatest));
-        // A negative count is refused where it is read.
-        for value in [below, above].into_iter().filter(|value| !is_whole || *value >= 0.0) {
+    let study = Study::new(gdcm_files::embedded_example().unwrap().dataset);
+    for setting in SETTINGS {
+        let (Kind::Number { range, .. } | Kind::Optional { range, .. }) = setting.kind else { continue };
+        let is_whole = matches!(setting.kind, Kind::Number { whole: true, .. });
+        let apply = |value: f64| study.clone().apply(&setting.to(value));
+        range.iter().for_each(|value| assert_eq!(apply(*value), Ok(()), "{}", setting.name));
+        let [least, greatest] = range;
+        let beyond = if is_whole { [least - 1.0, greatest + 1.0] } else { [least.next_down(), greatest.next_up()] };
+        for value in beyond {
             let message = apply(value).unwrap_err().to_string();
-            assert!(message.ends_with(&format!("{expected}{}", number(value))), "{message}");
+            let words = format!("from {} to {}, found {}", number(least), number(greatest), number(value));
+            assert!(message.ends_with(&words), "{message}");
         }
     }
+    let bounds = |lower, upper| study.clone().apply(&setting::GAIN_BOUNDS.to(Some(GainBounds { lower, upper })));
+    assert_eq!(bounds(1e-6, 1e6), Ok(()));
+    assert!(bounds(0.5, 0.4).unwrap_err().to_string().ends_with("from 0.5 to 1000000, found 0.4"));
     assert!(Band::new(LEAST_OMEGA, GREATEST_OMEGA).is_ok());
     for (min, max) in [(LEAST_OMEGA.next_down(), 1.0), (1.0, GREATEST_OMEGA.next_up())] {
         let message = Band::new(min, max).unwrap_err().to_string();
@@ -121,8 +103,8 @@ fn the_bounds_that_a_message_names_are_those_that_are_refused() {
 fn a_number_on_the_command_line_is_refused_with_its_option_and_its_range() {
     let desk = Desk::new();
     for (options, message) in [
-        (["--degree", "-1"].as_slice(), "gdcm: --degree: expected a whole number from 0 to 3, found -1\n"),
-        (&["--degree", "2.5"], "gdcm: --degree: expected a whole number from 0 to 3, found 2.5\n"),
+        (["--degree", "-1"].as_slice(), "gdcm: --degree: expected 0, 1, 2, 3 or table, found -1\n"),
+        (&["--degree", "2.5"], "gdcm: --degree: expected 0, 1, 2, 3 or table, found 2.5\n"),
         (&["--points", "-5"], "gdcm: --points: expected a whole number from 2 to 5000, found -5\n"),
         (&["--points", "1e3"], "gdcm: --points: expected a whole number from 2 to 5000, found 1e3\n"),
         (&["--alpha", "-1"], "gdcm: --alpha: α of the gains: expected a number from 0 to 1000000, found -1\n"),

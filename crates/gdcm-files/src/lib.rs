@@ -26,7 +26,6 @@ mod record_files;
 mod recovery_file;
 mod report_file;
 mod rules_file;
-mod settings_entry;
 mod source;
 mod strides;
 mod study_file;
@@ -34,20 +33,16 @@ mod text;
 pub mod variables;
 mod zip_files;
 
-pub use corrections_file::{
-    Assessment, BarEntry, BarsEntry, ByName, ChannelBars, Channels, ConditionAssessment, ConditionCorrections,
-    ConflictEntry, Corrections, CostTable, CostTables, DatasetLabel, DelayOutcome, DifferenceEntry, Explanation,
-    GainOutcome, LeadChannels, LeadEntry, NetGain, RESULT_FILES, ReasonEntry, RemedyEntry, ScatterEntry,
-    ScheduleBandEntry, ScheduleUsed, ScheduledDelays, ScheduledGains, ScheduledSecond, ScheduledTaus,
-    SecondVariableEntry, SensitivityEntry, SetAsideEntry, SourceEntry, SplitEntry, Table, UncertaintyEntry,
-    UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult, read_corrections, result_paths, write_results,
-};
+pub use corrections_file::*;
 pub use csv_table::{csv_text, save_table};
 pub use dataset_file::{
     DatasetOrigin, LoadedDataset, add_dataset, dataset_faults, embedded_example, load_dataset, load_dataset_bytes,
     save_dataset, write_example,
 };
-pub use exports::{ExportFault, ExportSource, check_export, write_export};
+pub use exports::{
+    About, EXPORTERS, ExportFault, ExportFormat, ExportRequest, ExportSource, ExportedRole, Exporter, check_export,
+    write_export,
+};
 pub use figure_file::{figure_format, write_as, write_figure};
 pub use file_error::{ContentFault, FileError, system_words};
 pub use first_start::is_first_start;
@@ -69,8 +64,5 @@ pub use record_files::{
 pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
 pub use report_file::{ReportSource, report, save_report};
 pub use rules_file::{add_rules, load_rules, rules_path};
-pub use settings_entry::{
-    ErrorBarsEntry, KindWord, LeadSettingsEntry, ScheduleEntry, SecondVariableWord, SettingsEntry,
-};
 pub use source::{FileStamp, at_home, file_exists, file_sha256};
 pub use study_file::{OpenedStudy, STUDY_EXTENSION, open_study, open_study_of, relative_folder, save_study};

@@ -1,5 +1,6 @@
 //! Models as they were found, `gdcm-models` 1, which `gdcm convert` writes, and as they were identified, `gdcm-identified` 1.
 
+use std::io::{self, Write};
 use std::path::Path;
 
 use gdcm_core::assembly::{ChannelLabel, Facts, FoundModel};
@@ -27,12 +28,15 @@ struct ModelsText {
 
 /// Adds the models as a file to `outputs`.
 pub fn add_models(models: &[FoundModel], path: &Path, outputs: &mut OutputSet) -> Result<(), FileError> {
+    outputs.add(path, |file| write_models(models, file))
+}
+
+/// Writes the text of that file.
+pub(super) fn write_models(models: &[FoundModel], file: &mut dyn Write) -> io::Result<()> {
     let models = models.iter().map(model_text).collect();
     let text = ModelsText { format: MODELS.name.to_owned(), version: MODELS.version, models };
-    outputs.add(path, |file| {
-        serde_json::to_writer(&mut *file, &text)?;
-        file.write_all(b"\n")
-    })
+    serde_json::to_writer(&mut *file, &text)?;
+    file.write_all(b"\n")
 }
 
 /// The text of a model outside a dataset.

@@ -16,7 +16,7 @@ use super::log_axis::FrequencyUnit;
 use super::picking::{Hit, nearest, touched};
 use super::quantity::BodeQuantity;
 use super::readout::{Readout, curve_tooltip_ui, readout_box_ui};
-use super::rule::{BodeBand, Rule};
+use super::rule::{BodeBand, ReferenceLine};
 use crate::view::palette::Palette;
 
 /// Part of the height that the magnitude plot gets.
@@ -36,7 +36,7 @@ pub struct BodeScene<'a> {
     /// The curves, in any order.
     pub curves: &'a [BodeCurve],
     /// Labelled lines across the panes.
-    pub rules: &'a [Rule],
+    pub rules: &'a [ReferenceLine],
     /// Areas around curves.
     pub bands: &'a [BodeBand],
     /// Frequencies marked along the lower edge of each pane \[rad/s\].

@@ -18,7 +18,7 @@ use super::drawn_curves::{DrawnCurves, Pixel};
 use super::log_axis::FrequencyUnit;
 use super::navigation::{Turn, plot_keys, turned};
 use super::picking::drawn_box_ui;
-use super::rule::{rules_ui, strips_ui};
+use super::rule::{draw_band, rules_ui, strips_ui};
 use crate::view::palette::Palette;
 
 /// Width of the vertical axes \[pt\]: the same above and below, so that the frequencies stand under one another.
@@ -61,7 +61,7 @@ pub(super) fn pane_ui(
             let transform = PlotTransform::new(*plot.transform().frame(), bounds, false);
             let pixel = Pixel::of(&transform, plot.ctx().pixels_per_point(), TOLERANCE);
             drawn.update(scene.curves, pane, (bounds, pixel), palette);
-            scene.bands.iter().for_each(|band| band.draw(plot, pane, &bounds, palette));
+            scene.bands.iter().for_each(|band| draw_band(plot, band, pane, &bounds, palette));
             let image = image_of_many(plot.ctx(), scene, drawn, image, &transform, palette);
             draw_curves(plot, scene, drawn, image, emphasis, palette);
             outside_shade(plot, scene.band, palette);
@@ -107,13 +107,13 @@ fn pane_plot<'a>(id: Id, pane: Pane, rect: Rect, scene: &BodeScene<'_>, palette:
         Pane::Magnitude => (String::new(), TICKS_HEIGHT),
         Pane::Phase => (unit.axis_label(), LABELLED_HEIGHT),
     };
-    let frequency_text = move |mark| unit.tick_text(mark);
+    let frequency_text = move |mark| LogAxis(unit).tick_text(mark);
     let (values, value_label) = (scene.quantity.unit(pane), scene.quantity.axis_label(pane));
     let value_text = move |mark| values.tick_text(mark);
     quiet_plot(id, palette)
         .width(rect.width())
         .height(rect.height())
-        .x_grid_spacer(unit.spacer())
+        .x_grid_spacer(LogAxis(unit).spacer())
         .y_grid_spacer(values.spacer())
         .custom_x_axes(vec![axis_hints(Axis::X, &frequency_label, frequency_height, palette, frequency_text)])
         .custom_y_axes(vec![axis_hints(Axis::Y, &value_label, VALUE_AXIS_WIDTH, palette, value_text)])

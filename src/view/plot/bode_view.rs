@@ -7,7 +7,9 @@ use gdcm_files::figure::Range;
 use super::axis_strip::{LimitsForm, PlotAxis};
 use super::bode::BodeScene;
 use super::cached_raster::CachedRaster;
-use super::curve::{BodeCurve, CurveId, Pane};
+use gdcm_files::figure::fitted_values;
+
+use super::curve::{CurveId, Pane};
 use super::curve_menu::MenuSubject;
 use super::drawn_curves::DrawnCurves;
 use super::legend::LegendState;
@@ -20,8 +22,6 @@ const DECADES: Range = Range { min: 1e-3, max: 12.0 };
 const LOG_OMEGA: Range = Range { min: -30.0, max: 30.0 };
 /// Space above and below the curves after fitting, as a part of their height.
 const FIT_MARGIN: f64 = 0.04;
-/// Height that fitting gives to values outside the band on either side, as a part of the height within it.
-const OUTSIDE_PART: f64 = 0.4;
 
 /// What the Bode plot remembers between frames.
 ///
@@ -304,56 +304,5 @@ impl BodeView {
                 }
             }
         }
-    }
-}
-
-/// The values to show: all within the band, and outside it as far as they leave room for those within.
-fn fitted_values(curves: &[BodeCurve], pane: Pane, (min, max): (f64, f64)) -> Option<Range> {
-    let points = || curves.iter().flat_map(|curve| curve.omega.iter().zip(curve.values(pane)));
-    let all = Range::of(points().map(|(_, value)| *value))?;
-    let within = points().filter(|(omega, _)| (min..=max).contains(*omega));
-    let Some(within) = Range::of(within.map(|(_, value)| *value)) else {
-        return Some(all);
-    };
-    let room = within.with_margin(OUTSIDE_PART, 0.0);
-    Some(Range::new(all.min.max(room.min), all.max.min(room.max)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::curve_style::Role;
-    use super::*;
-    use crate::view::plot::curve::numbered;
-
-    fn fitted(magnitude_db: &[f64]) -> Option<Range> {
-        let curve = BodeCurve {
-            id: numbered(0),
-            label: String::new(),
-            detail: String::new(),
-            role: Role::Perturbed,
-            rejected: true,
-            highlighted: false,
-            hidden: false,
-            omega: vec![0.3, 0.5, 1.0, 10.0, 20.0].into(),
-            magnitude_db: magnitude_db.into(),
-            phase_deg: vec![0.0; 5].into(),
-        };
-        fitted_values(&[curve], Pane::Magnitude, (0.5, 12.0))
-    }
-
-    #[test]
-    fn fitting_shows_all_that_is_within_the_band_and_what_is_near_it() {
-        assert_eq!(fitted(&[2.0, 0.0, -5.0, -10.0, -12.0]), Some(Range::new(-12.0, 2.0)));
-    }
-
-    #[test]
-    fn a_peak_outside_the_band_does_not_flatten_what_is_within() {
-        assert_eq!(fitted(&[90.0, 0.0, -5.0, -10.0, -12.0]), Some(Range::new(-12.0, 10.0 * OUTSIDE_PART)));
-    }
-
-    #[test]
-    fn without_values_in_the_band_all_are_shown() {
-        assert_eq!(fitted(&[3.0, f64::NAN, f64::NAN, f64::NAN, -50.0]), Some(Range::new(-50.0, 3.0)));
-        assert_eq!(fitted(&[f64::NAN; 5]), None);
     }
 }

@@ -210,8 +210,8 @@ fn empty_chart<'a>(id: Id, rect: Rect, chart: &Chart<'_>, palette: &Palette) -> 
             tick_text,
         )]),
         ChartAxis::Frequency(unit) => {
-            let text = move |mark| unit.tick_text(mark);
-            plot.x_grid_spacer(unit.spacer()).custom_x_axes(vec![axis_hints(
+            let text = move |mark| LogAxis(unit).tick_text(mark);
+            plot.x_grid_spacer(LogAxis(unit).spacer()).custom_x_axes(vec![axis_hints(
                 Axis::X,
                 chart.across_label,
                 height,

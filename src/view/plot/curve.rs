@@ -5,120 +5,9 @@ use std::sync::Arc;
 
 use egui::{Color32, Pos2, Shape, Ui};
 use egui_plot::{PlotBounds, PlotGeometry, PlotItem, PlotItemBase, PlotPoint, PlotTransform};
-pub use gdcm_files::figure::CurveId;
+pub use gdcm_files::figure::{BodeCurve, CurveId, LogFrequencies, Pane};
 
-use super::curve_style::{CurveStyle, Role};
-
-/// Which of the two stacked plots.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Pane {
-    /// Magnitude \[dB\], above.
-    Magnitude,
-    /// Phase \[deg\], below.
-    Phase,
-}
-
-/// A frequency response with its name and its role.
-#[derive(Clone, Debug)]
-pub struct BodeCurve {
-    /// How events name this curve.
-    pub id: CurveId,
-    /// The name that hovering shows.
-    pub label: String,
-    /// A second line for hovering: what the caller wants to say about it, and what a click does. May be empty.
-    pub detail: String,
-    /// What the curve stands for.
-    pub role: Role,
-    /// Whether the model is left out.
-    pub rejected: bool,
-    /// Whether another view points at it.
-    pub highlighted: bool,
-    /// Whether the engineer does not want to see it; the legend names its role all the same.
-    pub hidden: bool,
-    /// Frequencies \[rad/s\], ascending.
-    pub omega: Arc<[f64]>,
-    /// Magnitude \[dB\] at each frequency; a value that is not finite leaves a gap.
-    pub magnitude_db: Arc<[f64]>,
-    /// Phase \[deg\] at each frequency; a value that is not finite leaves a gap.
-    pub phase_deg: Arc<[f64]>,
-}
-
-impl BodeCurve {
-    /// What a pane shows of this curve.
-    pub fn values(&self, pane: Pane) -> &[f64] {
-        self.shared_values(pane)
-    }
-
-    /// [`Self::values`] with their owner: whoever holds it can tell later whether they are still the same.
-    pub(super) fn shared_values(&self, pane: Pane) -> &Arc<[f64]> {
-        match pane {
-            Pane::Magnitude => &self.magnitude_db,
-            Pane::Phase => &self.phase_deg,
-        }
-    }
-
-    /// The points of a pane in plot coordinates, `[log10 omega, value]`; gaps are points that are not finite.
-    pub fn points(&self, pane: Pane) -> impl Iterator<Item = [f64; 2]> + '_ {
-        self.omega.iter().zip(self.values(pane)).map(|(omega, value)| [omega.log10(), *value])
-    }
-
-    /// [`Self::points`], with logarithms taken once for all the curves on the same frequencies.
-    pub(super) fn points_on<'a>(
-        &'a self,
-        axis: &'a mut LogFrequencies,
-        pane: Pane,
-    ) -> impl Iterator<Item = [f64; 2]> + 'a {
-        axis.of(&self.omega).iter().zip(self.values(pane)).map(|(log_omega, value)| [*log_omega, *value])
-    }
-
-    /// Those of [`Self::points_on`] from `low` to `high` in `log10 omega`, and one on either side.
-    pub(super) fn points_between<'a>(
-        &'a self,
-        axis: &'a mut LogFrequencies,
-        pane: Pane,
-        (low, high): (f64, f64),
-    ) -> impl Iterator<Item = [f64; 2]> + 'a {
-        let log_omega = axis.of(&self.omega);
-        let from = log_omega.partition_point(|at| *at < low).saturating_sub(1);
-        let count = log_omega[from..].partition_point(|at| *at <= high) + 1;
-        let points = log_omega.iter().zip(self.values(pane)).skip(from).take(count);
-        points.map(|(log_omega, value)| [*log_omega, *value])
-    }
-
-    /// The value at `omega` \[rad/s\], linear in `log10 omega` between points; nothing outside them or beside a gap.
-    pub fn value_at(&self, pane: Pane, omega: f64) -> Option<f64> {
-        let values = self.values(pane);
-        let after = self.omega.partition_point(|at| *at < omega);
-        let value = if self.omega.get(after) == Some(&omega) {
-            *values.get(after)?
-        } else {
-            let before = after.checked_sub(1)?;
-            let (start, end) = (self.omega.get(before)?, self.omega.get(after)?);
-            let fraction = (omega / start).ln() / (end / start).ln();
-            let (from, to) = (values.get(before)?, values.get(after)?);
-            from + fraction * (to - from)
-        };
-        value.is_finite().then_some(value)
-    }
-}
-
-/// The logarithms of the frequencies asked for last: the curves of a scene mostly share theirs.
-#[derive(Clone, Debug, Default)]
-pub(super) struct LogFrequencies {
-    omega: Arc<[f64]>,
-    log_omega: Vec<f64>,
-}
-
-impl LogFrequencies {
-    /// `log10` of each of `omega`.
-    fn of(&mut self, omega: &Arc<[f64]>) -> &[f64] {
-        if !Arc::ptr_eq(&self.omega, omega) {
-            self.omega = Arc::clone(omega);
-            self.log_omega = omega.iter().map(|omega| omega.log10()).collect();
-        }
-        &self.log_omega
-    }
-}
+use super::curve_style::CurveStyle;
 
 /// Splits points into runs that are finite throughout and come within `margin` of `view`, a part of its size.
 ///
@@ -171,18 +60,8 @@ pub(super) fn numbered(number: u64) -> CurveId {
 /// A curve of three values, an octave apart, the same in both panes.
 #[cfg(test)]
 pub(super) fn sample_curve(id: u64, values: &[f64]) -> BodeCurve {
-    BodeCurve {
-        id: numbered(id),
-        label: String::new(),
-        detail: String::new(),
-        role: Role::Perturbed,
-        rejected: false,
-        highlighted: false,
-        hidden: false,
-        omega: vec![1.0, 2.0, 4.0].into(),
-        magnitude_db: values.into(),
-        phase_deg: values.into(),
-    }
+    let curve = BodeCurve::new(numbered(id), gdcm_files::figure::Role::Perturbed);
+    curve.with(&vec![1.0, 2.0, 4.0].into(), &values.into(), &values.into())
 }
 
 /// The numbers that a pane showed of a curve. They are held, so that no others can take their place in memory.
@@ -272,11 +151,6 @@ mod tests {
         PlotBounds::from_min_max(UNIT[0], UNIT[1])
     }
 
-    fn curve(magnitude_db: &[f64]) -> BodeCurve {
-        let omega: Vec<f64> = (0..magnitude_db.len()).map(|k| 10f64.powi(k as i32)).collect();
-        BodeCurve { omega: omega.into(), ..sample_curve(1, magnitude_db) }
-    }
-
     proptest! {
         #[test]
         fn no_line_leads_across_a_gap(
@@ -305,37 +179,5 @@ mod tests {
             assert_eq!(runs.len(), 1);
             assert_eq!(runs[0].len(), count, "those within, and one on either side to lead there");
         }
-    }
-
-    #[test]
-    fn values_between_points_follow_the_logarithm_of_the_frequency() {
-        let curve = curve(&[0.0, -20.0, -40.0]);
-        let value = |omega| curve.value_at(Pane::Magnitude, omega);
-        assert_eq!(value(10.0), Some(-20.0));
-        assert!(value(10f64.sqrt()).is_some_and(|db| (db + 10.0).abs() < 1e-12));
-        assert_eq!(value(0.5), None);
-        assert_eq!(value(101.0), None);
-    }
-
-    #[test]
-    fn points_between_two_frequencies_lead_to_both() {
-        let curve = curve(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
-        let mut axis = LogFrequencies::default();
-        let mut between = |low, high| -> Vec<f64> {
-            curve.points_between(&mut axis, Pane::Magnitude, (low, high)).map(|[x, _]| x).collect()
-        };
-        assert_eq!(between(1.5, 2.5), [1.0, 2.0, 3.0]);
-        assert_eq!(between(2.0, 3.0), [1.0, 2.0, 3.0, 4.0]);
-        assert_eq!(between(-9.0, 0.5), [0.0, 1.0]);
-        assert_eq!(between(4.5, 9.0), [4.0, 5.0]);
-        assert_eq!(between(7.0, 9.0), [5.0]);
-    }
-
-    #[test]
-    fn there_is_no_value_beside_a_gap() {
-        let curve = curve(&[0.0, f64::NAN, 3.0]);
-        assert_eq!(curve.value_at(Pane::Phase, 10.0), None);
-        assert_eq!(curve.value_at(Pane::Phase, 30.0), None);
-        assert_eq!(curve.value_at(Pane::Phase, 100.0), Some(3.0));
     }
 }

@@ -18,41 +18,28 @@ const LINEAR_BELOW: f64 = 0.9;
 /// From 9 to 10, the narrowest gap between the lines of a decade \[decades\].
 const NINE_TO_TEN: f64 = 0.045_757_490_560_675_115;
 
-/// An axis of `log10(omega)` in a unit of frequency.
-pub trait LogAxis: Copy {
-    /// An angular frequency as a reader wants it: "ω 2.05 rad/s" or "f 0.326 Hz".
-    fn readout(self, omega: f64) -> String;
+/// The axis of `log10(omega)` in a unit of frequency.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LogAxis(pub FrequencyUnit);
+
+impl LogAxis {
     /// The text of the tick at `mark`, a `log10(omega)`.
-    fn tick_text(self, mark: GridMark) -> String;
+    pub fn tick_text(self, mark: GridMark) -> String {
+        compact(self.0.of_omega(10f64.powf(mark.value)))
+    }
+
     /// Ticks and grid lines between `bounds`, both `log10(omega)`, on an axis of `decades_per_point`.
-    fn marks(self, bounds: (f64, f64), decades_per_point: f64) -> Vec<GridMark>;
-    /// [`Self::marks`] as egui_plot asks for them, where the base step is one point.
-    fn spacer(self) -> impl Fn(GridInput) -> Vec<GridMark>;
-}
-
-impl LogAxis for FrequencyUnit {
-    fn readout(self, omega: f64) -> String {
-        let quantity = match self {
-            Self::RadPerSecond => "ω",
-            Self::Hertz => "f",
-        };
-        format!("{quantity} {} {}", three_digits(self.of_omega(omega)), self.symbol())
-    }
-
-    fn tick_text(self, mark: GridMark) -> String {
-        compact(self.of_omega(10f64.powf(mark.value)))
-    }
-
-    fn marks(self, bounds: (f64, f64), decades_per_point: f64) -> Vec<GridMark> {
+    pub fn marks(self, bounds: (f64, f64), decades_per_point: f64) -> Vec<GridMark> {
         if !(decades_per_point > 0.0 && bounds.0 < bounds.1 && bounds.0.is_finite() && bounds.1.is_finite()) {
             return Vec::new();
         }
-        let shift = self.of_omega(1.0).log10();
+        let shift = self.0.of_omega(1.0).log10();
         let marks = logarithmic_marks((bounds.0 + shift, bounds.1 + shift), decades_per_point);
         marks.into_iter().map(|mark| GridMark { value: mark.value - shift, ..mark }).collect()
     }
 
-    fn spacer(self) -> impl Fn(GridInput) -> Vec<GridMark> {
+    /// [`Self::marks`] as egui_plot asks for them, where the base step is one point.
+    pub fn spacer(self) -> impl Fn(GridInput) -> Vec<GridMark> {
         move |input| self.marks(input.bounds, input.base_step_size)
     }
 }
@@ -135,20 +122,6 @@ fn within(value: f64, bounds: (f64, f64)) -> bool {
     (bounds.0 - slack..=bounds.1 + slack).contains(&value)
 }
 
-/// Three significant digits.
-fn three_digits(value: f64) -> String {
-    let decimals = if value.abs() >= 100.0 {
-        0
-    } else if value.abs() >= 10.0 {
-        1
-    } else if value.abs() >= 1.0 {
-        2
-    } else {
-        3
-    };
-    format!("{value:.decimals$}")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -156,11 +129,11 @@ mod tests {
     fn labels(unit: FrequencyUnit, omega: (f64, f64), points: f64) -> Vec<String> {
         let bounds = (omega.0.log10(), omega.1.log10());
         let decades_per_point = (bounds.1 - bounds.0) / points;
-        let marks = unit.marks(bounds, decades_per_point);
+        let marks = LogAxis(unit).marks(bounds, decades_per_point);
         marks
             .into_iter()
             .filter(|mark| is_labelled(*mark, decades_per_point))
-            .map(|mark| unit.tick_text(mark))
+            .map(|mark| LogAxis(unit).tick_text(mark))
             .collect()
     }
 
@@ -193,7 +166,7 @@ mod tests {
         for width in [1e-4, 0.01, 0.1, 0.4, 0.8, 1.3, 1.8, 3.0, 7.0, 12.0] {
             for points in [150.0, 400.0, 900.0, 2500.0] {
                 let per_point = width / points;
-                let marks = FrequencyUnit::RadPerSecond.marks((-0.52, -0.52 + width), per_point);
+                let marks = LogAxis(FrequencyUnit::RadPerSecond).marks((-0.52, -0.52 + width), per_point);
                 let labelled: Vec<_> = marks.iter().filter(|m| is_labelled(**m, per_point)).collect();
                 assert!(labelled.len() < 80, "{width} {points}: {}", labelled.len());
                 for pair in labelled.windows(2) {
@@ -206,19 +179,13 @@ mod tests {
 
     #[test]
     fn a_decade_has_nine_lines_where_there_is_room() {
-        let marks = FrequencyUnit::RadPerSecond.marks((0.0, 1.0 - 1e-6), 1.0 / 400.0);
+        let marks = LogAxis(FrequencyUnit::RadPerSecond).marks((0.0, 1.0 - 1e-6), 1.0 / 400.0);
         assert_eq!(marks.len(), 9);
     }
 
     #[test]
     fn bounds_that_are_no_range_give_no_marks() {
-        assert!(FrequencyUnit::RadPerSecond.marks((1.0, 1.0), 0.1).is_empty());
-        assert!(FrequencyUnit::RadPerSecond.marks((f64::NAN, 1.0), 0.1).is_empty());
-    }
-
-    #[test]
-    fn a_frequency_reads_in_its_unit() {
-        assert_eq!(FrequencyUnit::RadPerSecond.readout(2.0494), "ω 2.05 rad/s");
-        assert_eq!(FrequencyUnit::Hertz.readout(2.0494), "f 0.326 Hz");
+        assert!(LogAxis(FrequencyUnit::RadPerSecond).marks((1.0, 1.0), 0.1).is_empty());
+        assert!(LogAxis(FrequencyUnit::RadPerSecond).marks((f64::NAN, 1.0), 0.1).is_empty());
     }
 }

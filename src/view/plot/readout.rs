@@ -9,7 +9,6 @@ use egui::{
 use gdcm_core::response::wrap;
 use gdcm_files::figure::decimals;
 
-use super::LogAxis;
 use super::bode::BodeScene;
 use super::curve::{BodeCurve, Pane};
 use super::curve_style::Role;

@@ -3,73 +3,10 @@
 use egui::{Align2, FontId, Rangef, Rect, Ui, pos2, vec2};
 use egui_plot::{FilledArea, PlotBounds, PlotPoint, PlotTransform, PlotUi};
 
-use super::curve::Pane;
-use super::curve_style::{CurveStyle, LinePattern};
+pub use gdcm_files::figure::{BodeBand, Level, Pane, ReferenceKind, ReferenceLine};
+
 use crate::view::palette::Palette;
 
-/// How a figure depends on the frequency.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Level {
-    /// It is this everywhere.
-    Constant(f64),
-    /// It is this times omega \[rad/s\]: what a delay takes from the phase.
-    PerOmega(f64),
-    /// It is what it is at each of these frequencies: omega \[rad/s\], rising, and value.
-    Sampled(Vec<[f64; 2]>),
-}
-
-impl Level {
-    /// The points of the line between two frequencies: `log10 omega` and value.
-    fn points(&self, from: f64, to: f64) -> Vec<[f64; 2]> {
-        let log_omega = (0..=POINTS).map(|point| from + (to - from) * point as f64 / POINTS as f64);
-        match self {
-            Self::Constant(value) => vec![[from, *value], [to, *value]],
-            Self::PerOmega(slope) => log_omega.map(|x| [x, slope * 10f64.powf(x)]).collect(),
-            Self::Sampled(points) => points.iter().map(|[omega, value]| [omega.log10(), *value]).collect(),
-        }
-    }
-}
-
-/// What a rule stands for; what comes first gets its label first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum RuleKind {
-    /// What the fit asks for: G, D.
-    Delta,
-    /// A bound of the channels: LB, UB.
-    Bound,
-    /// A quantile over the band.
-    Quantile,
-    /// What a pilot does not notice.
-    Envelope,
-}
-
-impl RuleKind {
-    fn look(self, palette: &Palette) -> CurveStyle {
-        let (color, width, pattern) = match self {
-            Self::Delta => (palette.text, 0.9, LinePattern::Dotted { spacing: 4.0 }),
-            Self::Bound => (palette.warning, 1.0, LinePattern::DashDotted { length: 9.0 }),
-            Self::Quantile => (palette.dim_text, 0.9, LinePattern::Dashed { length: 3.0 }),
-            Self::Envelope => (palette.good, 1.0, LinePattern::Solid),
-        };
-        CurveStyle { color, width: width * palette.line_width, pattern }
-    }
-}
-
-/// A labelled line across a pane.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Rule {
-    /// The pane it lies in.
-    pub pane: Pane,
-    /// What it stands for.
-    pub kind: RuleKind,
-    /// What stands on it: "G 0.83 (−1.7 dB)".
-    pub label: String,
-    /// Where it lies.
-    pub level: Level,
-}
-
-/// Points of a rule that is no straight line.
-const POINTS: usize = 80;
 /// Font of the labels.
 const FONT: FontId = FontId::proportional(10.5);
 /// Least distance between two labels \[pt\].
@@ -77,7 +14,7 @@ const LABEL_GAP: f32 = 12.0;
 
 /// Draws the rules of a pane into the plot that was drawn as `transform` says, with their labels at the left, beside one another where
 /// the lines are close. A label without room is left out.
-pub(super) fn rules_ui(ui: &Ui, rules: &[Rule], pane: Pane, transform: &PlotTransform, palette: &Palette) {
+pub(super) fn rules_ui(ui: &Ui, rules: &[ReferenceLine], pane: Pane, transform: &PlotTransform, palette: &Palette) {
     let frame = *transform.frame();
     let painter = ui.painter().with_clip_rect(frame.shrink(1.0));
     let mut shapes = Vec::new();
@@ -86,9 +23,9 @@ pub(super) fn rules_ui(ui: &Ui, rules: &[Rule], pane: Pane, transform: &PlotTran
         let path = path(&rule.level, transform);
         let left = frame.left() + LABEL_LEFT;
         let at = path.iter().find(|at| at.x >= left).or(path.first());
-        let look = rule.kind.look(palette);
+        let look = palette.curve_style(rule.kind.line());
         if let Some(at) = at.filter(|at| frame.y_range().contains(at.y)) {
-            labels.push((rule.kind, at.y, rule.label.as_str(), look.color));
+            labels.push((rule.kind, at.y, format!("{}{}", rule.label, rule.note), look.color));
         }
         look.add_shapes(path, &mut shapes);
     }
@@ -98,7 +35,7 @@ pub(super) fn rules_ui(ui: &Ui, rules: &[Rule], pane: Pane, transform: &PlotTran
     for (_, y, label, color) in labels {
         let Some(bottom) = free_place(y - 1.0, frame.y_range(), &taken) else { continue };
         taken.push(bottom);
-        let galley = painter.layout_no_wrap(label.to_owned(), FONT, color);
+        let galley = painter.layout_no_wrap(label, FONT, color);
         let place: Rect = Align2::LEFT_BOTTOM.anchor_size(pos2(frame.left() + LABEL_LEFT, bottom), galley.size());
         painter.rect_filled(place.expand(1.0), 2.0, palette.background.gamma_multiply(0.75));
         painter.galley(place.min, galley, color);
@@ -141,32 +78,19 @@ pub(super) fn strips_ui(ui: &Ui, ranges: &[(f64, f64)], transform: &PlotTransfor
 /// Height of a strip along the lower edge \[pt\].
 const STRIP_HEIGHT: f32 = 5.0;
 
-/// How far a response may lie from its curve.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct BodeBand {
-    /// Frequencies \[rad/s\], ascending.
-    pub omega: Vec<f64>,
-    /// Lower and upper magnitude \[dB\].
-    pub magnitude_db: Vec<[f64; 2]>,
-    /// Lower and upper phase \[deg\].
-    pub phase_deg: Vec<[f64; 2]>,
-}
-
-impl BodeBand {
-    /// Draws what is in `view` of the band in a pane, stretch by stretch: where a value is not finite, or a wrapped phase jumps, it has
-    /// a gap.
-    pub(super) fn draw(&self, plot: &mut PlotUi<'_>, pane: Pane, view: &PlotBounds, palette: &Palette) {
-        let values = match pane {
-            Pane::Magnitude => &self.magnitude_db,
-            Pane::Phase => &self.phase_deg,
-        };
-        let points: Vec<[f64; 3]> =
-            self.omega.iter().zip(values).map(|(omega, [lower, upper])| [omega.log10(), *lower, *upper]).collect();
-        for run in points.chunk_by(|from, to| is_in_view(from, to, view)).filter(|run| run.len() > 1) {
-            let column = |index: usize| run.iter().map(|point| point[index]).collect::<Vec<f64>>();
-            let fill = palette.identified.gamma_multiply(0.22);
-            plot.add(FilledArea::new("", &column(0), &column(1), &column(2)).fill_color(fill).allow_hover(false));
-        }
+/// Draws what is in `view` of the band in a pane, stretch by stretch: where a value is not finite, or a wrapped phase jumps, it has
+/// a gap.
+pub(super) fn draw_band(plot: &mut PlotUi<'_>, band: &BodeBand, pane: Pane, view: &PlotBounds, palette: &Palette) {
+    let values = match pane {
+        Pane::Magnitude => &band.magnitude_db,
+        Pane::Phase => &band.phase_deg,
+    };
+    let points: Vec<[f64; 3]> =
+        band.omega.iter().zip(values).map(|(omega, [lower, upper])| [omega.log10(), *lower, *upper]).collect();
+    for run in points.chunk_by(|from, to| is_in_view(from, to, view)).filter(|run| run.len() > 1) {
+        let column = |index: usize| run.iter().map(|point| point[index]).collect::<Vec<f64>>();
+        let fill = palette.identified.gamma_multiply(0.22);
+        plot.add(FilledArea::new("", &column(0), &column(1), &column(2)).fill_color(fill).allow_hover(false));
     }
 }
 
@@ -180,14 +104,6 @@ fn is_in_view(from: &[f64; 3], to: &[f64; 3], view: &PlotBounds) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_delay_takes_phase_in_proportion_to_frequency() {
-        assert_eq!(Level::Constant(3.0).points(0.0, 1.0), [[0.0, 3.0], [1.0, 3.0]]);
-        let points = Level::PerOmega(-2.0).points(0.0, 1.0);
-        assert_eq!((points[0], points[POINTS]), ([0.0, -2.0], [1.0, -20.0]));
-        assert_eq!(Level::Sampled(vec![[100.0, 5.0]]).points(0.0, 1.0), [[2.0, 5.0]]);
-    }
 
     #[test]
     fn labels_keep_clear_of_one_another_and_one_without_room_is_left_out() {

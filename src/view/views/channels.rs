@@ -17,7 +17,7 @@ use crate::view::state::State;
 
 /// Gains or delays, over airspeed or over conditions. Laid out from right to left.
 pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let shown = state.display.channel_figure;
+    let shown = state.display.channel_values;
     let (mut measure, mut across) = shown;
     let axes = [
         (Across::Airspeed, "over airspeed", "With the schedule"),
@@ -37,7 +37,7 @@ pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command
 
 /// Gain or delay of every channel against airspeed (Figures 3 and 4).
 pub fn channels_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    let (measure, across) = state.display.channel_figure;
+    let (measure, across) = state.display.channel_values;
     let (inputs, outputs) = channel_panels(state, measure, across);
     let scene = ChannelsScene { inputs: &inputs, outputs: &outputs, message: Some(state.results.absence()) };
     let events = channels_ui(ui, &scene, &mut state.display.channels, palette);
@@ -71,7 +71,7 @@ pub(super) fn brackets(uncertainty: &Uncertainty, scalar: Scalar, dots: &[Dot]) 
     let value = |id: ConditionId| dots.iter().find(|dot| dot.condition == id).map(|dot| dot.value);
     let bracket = |of: &AirspeedDifference| {
         let ([one, other], ratio) = (of.conditions.map(value), of.difference.ratio()?);
-        let (label, beyond) = (format!("{ratio:.1}×"), of.is_beyond(uncertainty.level));
+        let (label, beyond) = (format!("{ratio:.1}×"), of.is_significant(uncertainty.level));
         Some(Bracket { x: of.airspeed_kt, ends: [one?, other?], label, beyond })
     };
     uncertainty.greatest_differences(pair).into_iter().filter_map(bracket).collect()

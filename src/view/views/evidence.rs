@@ -5,7 +5,7 @@ use std::sync::Arc;
 use egui::{Align, Align2, Color32, FontId, Layout, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
 use gdcm_core::dataset::{ConditionId, Pair};
 use gdcm_core::schedule::{Evidence, KindEvidence, LeadEvidence, LeadFit, ScheduleKind};
-use gdcm_core::study::{Analysis, Edit, Setting, Table, Uncertainty, difference_table, second_variable_table};
+use gdcm_core::study::{Analysis, Table, Uncertainty, difference_table, second_variable_table, setting};
 use gdcm_core::uncertainty::VarianceDecomposition;
 use gdcm_core::units::{s_to_ms, signed};
 
@@ -45,7 +45,7 @@ pub fn evidence_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
 
 /// What the differences come to, in a sentence each.
 fn answer_ui(ui: &mut Ui, state: &State, uncertainty: &Uncertainty, palette: &Palette) {
-    let beyond: Vec<_> = uncertainty.differences.iter().filter(|of| of.is_beyond(uncertainty.level)).collect();
+    let beyond: Vec<_> = uncertainty.differences.iter().filter(|of| of.is_significant(uncertainty.level)).collect();
     for of in beyond {
         let words = format!("{}: {}", state.dataset().pair_name(of.pair), of.words(uncertainty.level));
         ui.label(RichText::new(words).size(SMALL_SIZE).color(palette.text));
@@ -113,11 +113,11 @@ fn split_words(split: &VarianceDecomposition, level: f64) -> String {
     let percent = |variance: f64| 100.0 * variance.sqrt();
     let times = split.ratio().map_or_else(String::new, |ratio| format!(", {ratio:.1} times"));
     let interval =
-        split.rest_interval(level).map(|[low, high]| format!(" ({:.1} to {:.1})", 100.0 * low, 100.0 * high));
+        split.unexplained_interval(level).map(|[low, high]| format!(" ({:.1} to {:.1})", 100.0 * low, 100.0 * high));
     format!(
         "{:.1} %{times}; rest {:.1} %{}",
         percent(split.scatter),
-        percent(split.rest()),
+        percent(split.unexplained()),
         interval.unwrap_or_default()
     )
 }
@@ -134,7 +134,7 @@ fn tables_ui(
     let (table, differences) = difference_table(state.dataset(), uncertainty);
     heading(ui, &table.title);
     let color = |row: usize, column: usize| {
-        let beyond = differences.get(row).is_some_and(|of| of.is_beyond(uncertainty.level));
+        let beyond = differences.get(row).is_some_and(|of| of.is_significant(uncertainty.level));
         (column == 6 && beyond).then_some(palette.warning)
     };
     let look = TableLook { color: &color, selected: &|_| false };
@@ -164,8 +164,7 @@ fn tables_ui(
         if let Some(click) = click
             && let Some(&kind) = kinds.get(click.row)
         {
-            let schedule = gdcm_core::schedule::ScheduleSettings { kind, ..schedule };
-            commands.push(Edit::Set(Setting::Schedule(schedule)).into());
+            commands.push(setting::SCHEDULE.to(kind).into());
         }
     }
     state.display.evidence = cached;

@@ -19,6 +19,7 @@ pub use channels::*;
 pub use compare::*;
 pub use error::*;
 pub use evidence::*;
+pub(in crate::view) use frequency::{bode_options, condition_source};
 pub use net_gain::*;
 pub use overview::*;
 pub use poles::*;

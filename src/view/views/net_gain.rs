@@ -4,8 +4,7 @@ use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
 use gdcm_core::correction::{Channel as CorrectedChannel, ChannelCorrection};
 use gdcm_core::dataset::{Channel, ConditionId, FlightState, Pair};
-use gdcm_core::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity, SecondVariable};
-use gdcm_core::study::{Analysis, ConditionAnalysis, Edit, ExplainTarget, PhaseCorrection, Setting};
+use gdcm_core::study::{Analysis, ConditionAnalysis, Edit, ExplainTarget, setting};
 use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::s_to_ms;
 use gdcm_files::figure::{Classes, is_scheduled, scheduled_samples};
@@ -14,15 +13,11 @@ use serde::{Deserialize, Serialize};
 use super::channels::{bar_sentences, brackets, dot_bar, gain_bands};
 use super::evidence::{coefficient_table, evidence_table, lead_evidence_table, residual_table};
 use crate::view::command::Command;
-use crate::view::number_field::NumberField;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{Across, Dot, DotShape, GainEvent, GainPanel, Measure, NamedFigure, NetGainScene, net_gain_ui};
-use crate::view::settings_panel::choice_ui;
+use crate::view::settings_panel::{choice_ui, setting_ui};
 use crate::view::state::State;
 use crate::view::table_view::{Sorting, TableLook, table_ui};
-
-/// Widest airspeed tolerance \[kt\].
-const WIDEST_TOLERANCE_KT: f64 = 100.0;
 
 /// The key of the dots is not narrower \[pt\].
 const LEAST_KEY: f32 = 120.0;
@@ -47,7 +42,7 @@ pub fn net_gain_header_ui(ui: &mut Ui, state: &State, palette: &Palette, command
 }
 
 fn controls_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    schedule_ui(ui, state.study.settings.schedule, state.study.settings.phase, commands);
+    schedule_ui(ui, state, palette, commands);
     ui.label(RichText::new("schedule").size(SMALL_SIZE).color(palette.dim_text));
     let mut shown = state.display.show_evidence;
     let hint =
@@ -61,7 +56,7 @@ fn controls_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
 
 /// The switch of error bars and bands, by this name.
 pub(super) fn bars_switch_ui(ui: &mut Ui, state: &State, name: &str, commands: &mut Vec<Command>) {
-    let mut shown = state.display.show_bars;
+    let mut shown = !state.display.hide_bars;
     let level = 100.0 * state.study.settings.uncertainty.level;
     let hint = format!(
         "Bars of {level:.0} %: thick for the physics model chosen (identification), thin with not knowing the trim flown. Bands of the \
@@ -133,7 +128,7 @@ fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
             if let Some(click) = table_ui(ui, &table, &mut sorting, &look, palette, commands)
                 && let Some(&kind) = kinds.get(click.row)
             {
-                commands.push(Edit::Set(Setting::Schedule(ScheduleSettings { kind, ..schedule })).into());
+                commands.push(setting::SCHEDULE.to(kind).into());
             }
             let plain = TableLook { color: &|_, _| None, selected: &|_| false };
             let leads = lead_evidence_table(state, cached.leads());
@@ -162,72 +157,17 @@ pub(super) fn gain_command(state: &State, event: GainEvent) -> Option<Command> {
 }
 
 /// The form of the schedule. Laid out from right to left.
-fn schedule_ui(ui: &mut Ui, settings: ScheduleSettings, phase: PhaseCorrection, commands: &mut Vec<Command>) {
-    let mut chosen = settings;
-    choice_ui(
-        ui,
-        "Scheduled quantity",
-        &mut chosen.quantity,
-        &[
-            (ScheduledQuantity::LnGain, "of ln k", "The product of regressions is the regression of the product"),
-            (ScheduledQuantity::Gain, "of k", "Regresses the gain itself"),
-        ],
-    );
-    let polynomial = |degree| ScheduleKind::Polynomial { degree };
-    choice_ui(
-        ui,
-        "Schedule",
-        &mut chosen.kind,
-        &[
-            (polynomial(0), "constant", "Polynomial of degree 0 in airspeed"),
-            (polynomial(1), "degree 1", "Polynomial of degree 1 in airspeed"),
-            (polynomial(2), "degree 2", "Polynomial of degree 2 in airspeed"),
-            (polynomial(3), "degree 3", "Polynomial of degree 3 in airspeed"),
-            (ScheduleKind::Table, "table", "Mean of each cluster of airspeeds, linear between"),
-        ],
-    );
-    choice_ui(
-        ui,
-        "Second variable of the schedule",
-        &mut chosen.second,
-        &[
-            (None, "airspeed only", "The paper"),
-            (Some(SecondVariable::Altitude), "and altitude", "Only where the view Evidence says that it is needed"),
-            (Some(SecondVariable::Mass), "and mass", "Only where the view Evidence says that it is needed"),
-        ],
-    );
-    let hint = "Airspeeds this close to the next one [kt] count as one, for the table and for the degree";
-    let tolerance = NumberField {
-        unit: "kt",
-        shows_unit: true,
-        step: 0.1,
-        text: |airspeed_kt| format!("{airspeed_kt:.1}"),
-        ..NumberField::new("Airspeed tolerance", hint, 0.0..=WIDEST_TOLERANCE_KT)
-    };
-    let entered = tolerance.ui(ui, chosen.airspeed_tolerance_kt);
-    chosen.airspeed_tolerance_kt = entered.value.unwrap_or(chosen.airspeed_tolerance_kt);
-    if phase == PhaseCorrection::Lead {
-        let degrees = [
-            (
-                0,
-                "τ constant",
-                "One signed delay for all airspeeds: lags of servos and sensors do not depend on them (M15.5)",
-            ),
-            (1, "τ degree 1", "Polynomial of degree 1 in airspeed"),
-            (2, "τ degree 2", "Polynomial of degree 2 in airspeed"),
-            (3, "τ degree 3", "Polynomial of degree 3 in airspeed"),
-        ];
-        choice_ui(ui, "Schedule of the signed delays", &mut chosen.tau_degree, &degrees);
-    } else {
-        let hint = "Schedule the delays of the channels too, cut to their bounds (M11)";
-        ui.checkbox(&mut chosen.delays, "delays too").on_hover_text(hint);
-    }
-    if chosen != settings {
-        commands.push(Edit::Set(Setting::Schedule(chosen)).into());
-    }
-    commands.extend(entered.refusal.map(Command::Refuse));
-    if entered.is_ended {
-        commands.push(Command::EndEdit);
+fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let rows = [
+        &setting::SCHEDULED_QUANTITY,
+        &setting::SCHEDULE,
+        &setting::SECOND_VARIABLE,
+        &setting::AIRSPEED_TOLERANCE,
+        &setting::SCHEDULE_DELAYS,
+        &setting::TAU_DEGREE,
+    ];
+    for setting in rows.into_iter().filter(|setting| (setting.control.applies)(&state.study)) {
+        setting_ui(ui, state, setting, palette, commands);
     }
 }
 
@@ -383,7 +323,7 @@ struct Figure {
 impl Figure {
     fn panel(self, state: &State, analysis: &Analysis, across: Across) -> GainPanel {
         let classes = Classes::of(state.dataset());
-        let uncertainty = state.uncertainty().filter(|_| state.display.show_bars).map(|of| of.as_ref());
+        let uncertainty = state.uncertainty().filter(|_| !state.display.hide_bars).map(|of| of.as_ref());
         let place = |index: usize, flight_state: &FlightState| match across {
             Across::Airspeed => flight_state.airspeed_kt,
             Across::Conditions => index as f64,

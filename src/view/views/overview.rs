@@ -3,8 +3,7 @@
 use egui::Ui;
 use gdcm_core::dataset::Pair;
 
-use super::bode::bode_curves;
-use super::frequency::wished;
+use super::frequency::{bode_curves, wished};
 use crate::view::arrangement::View;
 use crate::view::command::Command;
 use crate::view::explanation::channel_names;

@@ -46,14 +46,14 @@ fn the_palette_finds_commands_by_some_letters() {
     let mut window = window();
     ask(&mut window, "cond 10");
     assert_eq!(state(&window).condition().id(), ConditionId(10));
-    ask(&mut window, "pin physics V+10kt");
+    ask(&mut window, "use physics V+10kt");
     assert_eq!(state(&window).study.choice(ConditionId(10)).physics.pinned.as_deref(), Some("V+10kt"));
     ask(&mut window, "rej sug");
     assert_eq!(state(&window).study.choice(ConditionId(10)).physics.rejected.len(), 3);
     ask(&mut window, "show ped ny");
     let target = pair(&window, "NY", "PED");
     assert_eq!(state(&window).display.pair, target);
-    ask(&mut window, "free ped ny");
+    ask(&mut window, "release ped ny");
     assert!(!state(&window).study.settings.constrained[target]);
     ask(&mut window, "undo");
     assert!(state(&window).study.settings.constrained[target]);

@@ -229,7 +229,7 @@ fn gains_that_the_answer_leaves_open_are_proven_beside_it() {
     let mut window = window_with(example(), Setup { engine: Arc::new(engine), ..Setup::default() });
     wait_until(&mut window, "every proof", |window| !state(window).results.background.is_busy());
     settle(&mut window);
-    window.get_by_label("proven");
+    window.get_by_label("global optimum");
     let proven = Engine::default().analyze(&study, &Unobserved).unwrap();
     let shown = state(&window).analysis().unwrap();
     for (condition, (beside, alone)) in shown.conditions.values().zip(proven.conditions.values()).enumerate() {

@@ -105,18 +105,18 @@ fn at_least_one_model_stays_in_each_bundle() {
 #[test]
 fn a_pinned_model_represents_its_bundle() {
     let mut window = window();
-    click(&mut window, "Pin physics model V+10kt");
+    click(&mut window, "Use physics model V+10kt as representative");
     let representative =
         |window: &Window| state(window).shown().unwrap().representative_name(BundleKind::Physics).to_owned();
     assert_eq!(representative(&window), "V+10kt");
-    click(&mut window, "Pin physics model V+10kt");
+    click(&mut window, "Use physics model V+10kt as representative");
     assert_eq!(representative(&window), "nominal", "the medoid again");
 }
 
 #[test]
 fn the_badge_says_proven_and_every_cell_says_what_holding_or_freeing_it_costs() {
     let mut window = window();
-    window.get_by_label("proven");
+    window.get_by_label("global optimum");
     wait_for_toggles(&mut window);
     for (output, input, word) in [("Q", "LON", "holding LON → Q costs"), ("Q", "PED", "holding PED → Q would")] {
         let costs = toggle_costs(state(&window), pair(&window, output, input));

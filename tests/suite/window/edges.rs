@@ -20,10 +20,10 @@ fn window_on(text: &str) -> Window {
 fn the_window_offers_to_ignore_an_unusual_gain() {
     let mut window = window_on(&two_lags([[1.0, 0.01], [0.0, 1.0]], [[1.2, 0.2], [0.0, 0.9]]).to_string());
     let pair = Pair::new(0, 1);
-    assert!(window.state().state().study.settings.fitted[pair]);
+    assert!(!window.state().state().study.settings.ignored[pair]);
     window.get_by_label("Ignore I1 → O0").click();
     settle(&mut window);
-    assert!(!window.state().state().study.settings.fitted[pair]);
+    assert!(window.state().state().study.settings.ignored[pair]);
     assert!(window.query_by_label("Ignore I1 → O0").is_none(), "what is ignored is no caution");
 }
 
@@ -31,7 +31,7 @@ fn the_window_offers_to_ignore_an_unusual_gain() {
 fn a_model_set_aside_cannot_be_pinned_in_the_window() {
     let mut window = window_on(SHORT);
     for model in ["i3", "i4"] {
-        window.get_by_label(&format!("Pin identified model {model}")).click();
+        window.get_by_label(&format!("Use identified model {model} as representative")).click();
         settle(&mut window);
         let pinned = window.state().state().study.choice(ConditionId(1)).identified.pinned.clone();
         assert_eq!(pinned.as_deref(), Some("i3"), "after a click on the star of {model}");

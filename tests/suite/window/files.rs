@@ -15,7 +15,7 @@ fn a_file_that_cannot_be_read_leaves_what_is_open_and_says_what_is_wrong() {
     let path = folder.path().join("broken.json");
     std::fs::write(&path, "{\"format\": \"gdcm-dataset\", ").unwrap();
     open_by_path(&mut window, &path);
-    assert!(window.query_by_label("Lose them").is_none(), "nothing is asked for a file that cannot be shown");
+    assert!(window.query_by_label("Don't save").is_none(), "nothing is asked for a file that cannot be shown");
     let notice = state(&window).notice.clone().expect("the trouble is shown");
     assert_eq!(notice.kind, NoticeKind::Trouble);
     assert!(notice.text.contains("broken.json"), "{}", notice.text);
@@ -28,13 +28,13 @@ fn whether_to_lose_decisions_is_asked_once_the_file_is_found_good() {
     let mut window = window();
     click(&mut window, "Keep physics model V+10kt");
     let before = state(&window).study.clone();
-    for answer in ["Cancel", "Lose them"] {
+    for answer in ["Cancel", "Don't save"] {
         window.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(small_dataset())));
         wait_until(&mut window, "the question", |window| window.query_by_label(answer).is_some());
         assert_eq!(state(&window).study, before, "what is open stays until the answer");
         assert!(state(&window).unsaved);
         click(&mut window, answer);
-        let opened = answer == "Lose them";
+        let opened = answer == "Don't save";
         assert_eq!(state(&window).dataset().conditions().len() == 2, opened, "{answer}");
         assert_eq!(state(&window).unsaved, !opened, "{answer}");
     }
@@ -72,14 +72,14 @@ fn a_study_whose_dataset_is_gone_loses_no_decision_before_the_dataset_is_found()
     let mut window = window();
     click(&mut window, "Keep physics model V+10kt");
     open_by_path(&mut window, &study);
-    assert!(window.query_by_label("Lose them").is_none(), "where its dataset is comes first");
+    assert!(window.query_by_label("Don't save").is_none(), "where its dataset is comes first");
     fill(&mut window, "Path of the dataset", &folder.path().join("nowhere.json"));
     click(&mut window, "Open with this dataset");
     assert!(state(&window).unsaved && state(&window).dataset().conditions().len() == 11);
     open_by_path(&mut window, &study);
     fill(&mut window, "Path of the dataset", &moved);
     click(&mut window, "Open with this dataset");
-    click(&mut window, "Lose them");
+    click(&mut window, "Don't save");
     assert!(!state(&window).unsaved && state(&window).dataset().conditions().len() == 2);
 }
 
@@ -130,7 +130,7 @@ fn a_study_is_saved_and_opens_with_the_same_result() {
     settle(&mut window);
     assert!(state(&window).unsaved);
     open_by_path(&mut window, &path);
-    click(&mut window, "Lose them");
+    click(&mut window, "Don't save");
     click(&mut window, CONDITION_10);
     assert_eq!(net_gain(&window, "Q", "LON"), gain, "to the last digit");
 }

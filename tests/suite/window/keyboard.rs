@@ -70,14 +70,14 @@ fn f6_goes_through_the_parts_of_the_window_and_comes_back_to_where_the_focus_was
     press(&mut window, Modifiers::NONE, Key::F6);
     press(&mut window, Modifiers::NONE, Key::F6);
     press(&mut window, Modifiers::NONE, Key::Tab);
-    assert_eq!(focused(&window), "Pin physics model nominal");
+    assert_eq!(focused(&window), "Use physics model nominal as representative");
     press(&mut window, Modifiers::SHIFT, Key::F6);
     assert!(focused(&window).starts_with("Condition 1: "));
     press(&mut window, Modifiers::SHIFT, Key::F6);
     assert_eq!(focused(&window), "Export corrections…", "round the end");
     press(&mut window, Modifiers::NONE, Key::F6);
     press(&mut window, Modifiers::NONE, Key::F6);
-    assert_eq!(focused(&window), "Pin physics model nominal", "where it was");
+    assert_eq!(focused(&window), "Use physics model nominal as representative", "where it was");
 }
 
 #[test]

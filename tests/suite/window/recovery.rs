@@ -132,7 +132,7 @@ fn decisions_that_are_lost_on_purpose_are_not_offered() {
     let mut window = with_decisions(example(), directory.path());
     window.key_press_modifiers(Modifiers::COMMAND, Key::Q);
     window.run_steps(2);
-    window.get_by_label("Lose them").click();
+    window.get_by_label("Don't save").click();
     window.run_steps(2);
     drop(window);
     let limit = Instant::now() + LIMIT;
@@ -149,7 +149,7 @@ fn decisions_stay_safe_where_what_was_to_be_opened_in_their_place_cannot_be_read
     let broken = folder.path().join("broken.json");
     std::fs::write(&broken, "{").unwrap();
     open_by_path(&mut window, &broken);
-    assert!(window.query_by_label("Lose them").is_none());
+    assert!(window.query_by_label("Don't save").is_none());
     assert_eq!(state(&window).notice.as_ref().map(|notice| notice.kind), Some(NoticeKind::Trouble));
     assert!(state(&window).unsaved && !kept(directory.path()).is_empty());
 }

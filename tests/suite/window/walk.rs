@@ -3,7 +3,7 @@
 use gdcm::view::arrangement::View;
 use gdcm::view::command::Command as Action;
 use gdcm::view::command_table::every_command;
-use gdcm_core::study::{Edit, Engine, Setting, Unobserved};
+use gdcm_core::study::{Engine, Unobserved, setting};
 
 use super::*;
 use crate::made_up::tries;
@@ -45,8 +45,8 @@ pub(super) fn stays_within(command: &Action) -> bool {
 
 fn random_command(window: &Window, dice: &mut Dice) -> Option<Action> {
     match dice.below(12) {
-        0 => Some(Edit::Set(Setting::AlphaGain(10f64.powi(dice.below(5) as i32 - 2))).into()),
-        1 => Some(Edit::Set(Setting::Points(20 + dice.below(60))).into()),
+        0 => Some(setting::ALPHA_GAIN.to(10f64.powi(dice.below(5) as i32 - 2)).into()),
+        1 => Some(setting::POINTS.to(20 + dice.below(60)).into()),
         2 => Some(Action::Undo),
         3 => Some(Action::Redo),
         _ => {

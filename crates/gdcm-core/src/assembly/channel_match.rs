@@ -1,6 +1,6 @@
-//! Which channel of a file is which of the dataset: the names by which the field calls the same channel, and their units.
+//! Which channel of a file is which of the dataset, and what its numbers are multiplied by.
 
-use super::{ChannelLabel, ChannelRule, ProblemKind, UnitRule, conversion_factor};
+use super::{ChannelLabel, ChannelRule, ProblemKind, UnitRule, conversion_factor, same_channel};
 
 /// A channel of the file that becomes one of the dataset.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,122 +117,6 @@ impl ChannelMatch {
     }
 }
 
-/// Each channel with its other names, all folded (see [`folded`]); those such as "elevyoke1" are a flight simulator's. A name stands in one row only.
-const ALIASES: &[(&str, &[&str])] = &[
-    (
-        "lon",
-        &[
-            "long",
-            "longitudinal",
-            "longcyc",
-            "cyclong",
-            "dlon",
-            "deltalon",
-            "dlong",
-            "deltalong",
-            "db",
-            "deltab",
-            "de",
-            "deltae",
-            "xb",
-            "xlon",
-            "b1s",
-            "theta1s",
-            "pitchstick",
-            "elevator",
-            "loncyc",
-            "longstick",
-            "elevyoke1",
-        ],
-    ),
-    (
-        "lat",
-        &[
-            "lateral",
-            "latcyc",
-            "cyclat",
-            "dlat",
-            "deltalat",
-            "da",
-            "deltaa",
-            "xa",
-            "xlat",
-            "a1s",
-            "theta1c",
-            "rollstick",
-            "aileron",
-            "latstick",
-            "ailrnyoke1",
-        ],
-    ),
-    (
-        "ped",
-        &[
-            "pedal",
-            "pedals",
-            "dped",
-            "deltaped",
-            "dp",
-            "deltap",
-            "dr",
-            "deltar",
-            "xp",
-            "xped",
-            "thetatr",
-            "thetat",
-            "rudder",
-            "tailrotor",
-            "yawpedal",
-            "ruddryoke1",
-        ],
-    ),
-    ("col", &["coll", "collective", "dcol", "deltacol", "dcoll", "dc", "deltac", "xc", "xcol", "theta0", "theta0m"]),
-    ("p", &["rollrate", "pb", "pbody", "omegax"]),
-    ("q", &["pitchrate", "qb", "qbody", "omegay"]),
-    ("r", &["yawrate", "rb", "rbody", "omegaz"]),
-    ("nx", &["ax", "axb", "longitudinalacceleration", "longaccel", "accx", "gloadaxial"]),
-    ("ny", &["ay", "ayb", "lateralacceleration", "lataccel", "accy", "gloadside"]),
-    (
-        "nz",
-        &["az", "azb", "verticalacceleration", "vertaccel", "normalacceleration", "loadfactor", "accz", "gloadnorml"],
-    ),
-    ("u", &["ub", "ubody", "forwardspeed"]),
-    ("v", &["vb", "vbody", "sidewardspeed", "sidespeed"]),
-    ("w", &["wb", "wbody", "heave", "verticalspeed", "heavevelocity"]),
-    ("phi", &["roll", "rollangle", "rollattitude", "bank", "bankangle"]),
-    ("theta", &["pitch", "pitchangle", "pitchattitude"]),
-    ("psi", &["yaw", "heading", "yawangle"]),
-];
-
-/// A name without case, marks and blanks, Greek letters spelt out: "δ_a" is "deltaa".
-fn folded(name: &str) -> String {
-    let mut words = String::with_capacity(name.len());
-    for letter in name.chars().flat_map(char::to_lowercase) {
-        match letter {
-            'δ' | 'Δ' => words.push_str("delta"),
-            'θ' | 'ϑ' => words.push_str("theta"),
-            'φ' | 'ϕ' => words.push_str("phi"),
-            'ψ' => words.push_str("psi"),
-            'ω' => words.push_str("omega"),
-            letter if letter.is_alphanumeric() => words.push(letter),
-            _ => {}
-        }
-    }
-    words
-}
-
-/// The name that stands for all that call the same channel.
-fn canonical(name: &str) -> String {
-    let name = folded(name);
-    let row = ALIASES.iter().find(|(first, others)| *first == name || others.contains(&name.as_str()));
-    row.map_or(name, |(first, _)| (*first).to_owned())
-}
-
-/// Whether two names call the same channel: the same but for case and marks, or names that the field uses for one another.
-pub fn same_channel(a: &str, b: &str) -> bool {
-    a == b || canonical(a) == canonical(b)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -286,33 +170,5 @@ mod tests {
         assert!(matches!(&found.problems[..], [ProblemKind::AmbiguousChannel { .. }]));
         let exact = [label("P", "deg/s"), label("roll rate", "deg/s")];
         assert!(ChannelMatch::of("output", &exact, &rules, &[], false).problems.is_empty());
-    }
-}
-
-#[cfg(test)]
-mod channel_alias_tests {
-    use std::collections::BTreeSet;
-
-    use super::*;
-
-    #[test]
-    fn the_names_of_the_field_are_one_another() {
-        for (a, b) in
-            [("LAT", "δ_a"), ("lat", "Xa"), ("P", "roll rate"), ("q", "Pitch_Rate"), ("PED", "pedals"), ("NZ", "az")]
-        {
-            assert!(same_channel(a, b), "{a} {b}");
-        }
-        for (a, b) in [("LON", "LAT"), ("P", "PED"), ("roll", "roll rate"), ("P", "Q")] {
-            assert!(!same_channel(a, b), "{a} {b}");
-        }
-    }
-
-    #[test]
-    fn no_name_stands_for_two_channels() {
-        let names: Vec<&str> =
-            ALIASES.iter().flat_map(|(first, others)| std::iter::once(*first).chain(others.iter().copied())).collect();
-        let unique: BTreeSet<&str> = names.iter().copied().collect();
-        assert_eq!(unique.len(), names.len());
-        assert!(names.iter().all(|name| folded(name) == **name), "they are folded");
     }
 }

@@ -9,6 +9,7 @@
 #[expect(clippy::module_inception, reason = "the folder is named for its noun, and so is the file that holds it")]
 mod assembly;
 mod channel_match;
+mod channel_name;
 mod found_model;
 mod merge;
 mod physical_unit;
@@ -17,6 +18,7 @@ mod rules;
 
 pub use assembly::*;
 pub use channel_match::*;
+pub use channel_name::*;
 pub use found_model::*;
 use merge::*;
 pub use physical_unit::*;

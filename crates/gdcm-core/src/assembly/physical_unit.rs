@@ -21,15 +21,23 @@ pub enum Dimension {
     Part,
     /// Force.
     Force,
+    /// Time.
+    Time,
+    /// Cycles over time.
+    Frequency,
+    /// Logarithm of a ratio.
+    Level,
 }
 
-/// A unit: what it measures, and how many of the dimension's own units (rad, s, m, N, 1) it is.
+/// A unit: what it measures, and how many of the dimension's own units (rad, m, N, s, Hz, dB, 1 and what they make) it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhysicalUnit {
     /// What it measures.
     pub dimension: Dimension,
-    /// Its size in rad, rad/s, rad/s^2, m, m/s, m/s^2, 1 or N.
+    /// Its size in rad, rad/s, rad/s^2, m, m/s, m/s^2, 1, N, s, Hz or dB.
     pub size: f64,
+    /// Its usual spelling.
+    pub name: &'static str,
 }
 
 /// Metres in a foot (international yard and pound agreement, 1959).
@@ -41,45 +49,62 @@ const KNOT: f64 = 1852.0 / 3600.0;
 /// Newtons in a pound-force.
 const POUND_FORCE: f64 = 4.448_221_615_260_5;
 
+/// Every unit that is known: its dimension, its size, and its spellings as [`folded_unit`] leaves them, the usual one first.
+const UNITS: &[(Dimension, f64, &[&str])] = {
+    use Dimension::*;
+    &[
+        (Angle, 1.0, &["rad", "radian"]),
+        (Angle, 1e-3, &["mrad"]),
+        (Angle, PI / 180.0, &["deg", "degree"]),
+        (AngularRate, 1.0, &["rad/s", "rps", "rad/s1"]),
+        (AngularRate, 1e3, &["rad/ms", "rad/millis"]),
+        (AngularRate, 1.0 / 60.0, &["rad/min"]),
+        (AngularRate, PI / 180.0, &["deg/s", "dps"]),
+        (AngularRate, TAU / 60.0, &["rpm", "rev/min"]),
+        (AngularAcceleration, 1.0, &["rad/s2"]),
+        (AngularAcceleration, PI / 180.0, &["deg/s2"]),
+        (Length, 1.0, &["m"]),
+        (Length, 0.01, &["cm"]),
+        (Length, 0.001, &["mm"]),
+        (Length, FOOT / 12.0, &["in", "inch"]),
+        (Length, FOOT, &["ft", "foot", "feet"]),
+        (Speed, 1.0, &["m/s", "mps"]),
+        (Speed, FOOT, &["ft/s", "fps"]),
+        (Speed, FOOT / 60.0, &["ft/min", "fpm"]),
+        (Speed, KNOT, &["kt", "kts", "knot"]),
+        (Speed, 1.0 / 3.6, &["km/h"]),
+        (Acceleration, 1.0, &["m/s2", "mps2"]),
+        (Acceleration, FOOT, &["ft/s2", "fps2"]),
+        (Acceleration, GRAVITY, &["g", "gs", "g's", "gee"]),
+        (Part, 0.01, &["%", "pct", "percent"]),
+        (Part, 1.0, &["1", "-", "part", "fraction", "frac", "normalized", "normalised"]),
+        (Force, 1.0, &["N", "n", "newton"]),
+        (Force, POUND_FORCE, &["lb", "lbf", "lbs"]),
+        (Time, 1.0, &["s"]),
+        (Time, 1e-3, &["ms", "millis"]),
+        (Time, 1e-6, &["µs", "μs", "us", "micros"]),
+        (Time, 1e-9, &["ns", "nanos"]),
+        (Time, 60.0, &["min"]),
+        (Time, 3600.0, &["h", "hr", "hour", "hours"]),
+        (Time, 86_400.0, &["days", "day", "d"]),
+        (Frequency, 1.0, &["Hz", "hz", "hertz", "cps", "cycle/s", "cycles/s"]),
+        (Frequency, 1e3, &["kHz", "khz"]),
+        (Level, 1.0, &["dB", "db", "decibel"]),
+    ]
+};
+
 impl PhysicalUnit {
-    /// The unit that a text spells, however engineers write it: "deg/s", "°/sec", "dps", "ft/s^2", "g", "% of stick".
+    /// The unit that a text spells, however engineers write it: "deg/s", "°/sec", "dps", "ft/s^2", "g", "% of stick", "msec".
     pub fn of(text: &str) -> Option<Self> {
-        use Dimension::{Acceleration, Angle, AngularAcceleration, AngularRate, Force, Length, Part, Speed};
-        let (dimension, size) = match plain(text).as_str() {
-            "rad" | "radian" => (Angle, 1.0),
-            "mrad" => (Angle, 1e-3),
-            "deg" | "degree" => (Angle, PI / 180.0),
-            "rad/s" | "rps" | "rad/s1" => (AngularRate, 1.0),
-            "deg/s" | "dps" => (AngularRate, PI / 180.0),
-            "rpm" | "rev/min" => (AngularRate, TAU / 60.0),
-            "rad/s2" => (AngularAcceleration, 1.0),
-            "deg/s2" => (AngularAcceleration, PI / 180.0),
-            "m" => (Length, 1.0),
-            "cm" => (Length, 0.01),
-            "mm" => (Length, 0.001),
-            "in" | "inch" => (Length, FOOT / 12.0),
-            "ft" | "foot" | "feet" => (Length, FOOT),
-            "m/s" | "mps" => (Speed, 1.0),
-            "ft/s" | "fps" => (Speed, FOOT),
-            "ft/min" | "fpm" => (Speed, FOOT / 60.0),
-            "kt" | "kts" | "knot" => (Speed, KNOT),
-            "km/h" => (Speed, 1.0 / 3.6),
-            "m/s2" | "mps2" => (Acceleration, 1.0),
-            "ft/s2" | "fps2" => (Acceleration, FOOT),
-            "g" | "gs" | "g's" | "gee" => (Acceleration, GRAVITY),
-            "%" | "pct" | "percent" => (Part, 0.01),
-            "1" | "-" | "part" | "fraction" | "frac" | "normalized" | "normalised" => (Part, 1.0),
-            "n" | "newton" => (Force, 1.0),
-            "lb" | "lbf" | "lbs" => (Force, POUND_FORCE),
-            _ => return None,
-        };
-        Some(Self { dimension, size })
+        let text = folded_unit(text);
+        let (dimension, size, names) = UNITS.iter().find(|(_, _, names)| names.contains(&text.as_str()))?;
+        Some(Self { dimension: *dimension, size: *size, name: names[0] })
     }
 }
 
 /// A unit without case, blanks, brackets and other ways of writing the same.
-fn plain(text: &str) -> String {
-    let text = text.trim().trim_matches(['[', ']', '(', ')']).to_lowercase();
+fn folded_unit(text: &str) -> String {
+    let text = text.trim().trim_matches(['[', ']', '(', ')']).trim_end_matches('.').to_lowercase();
     let text =
         ["of stick", "of travel", "of full travel", "stick"].iter().fold(text, |text, word| text.replace(word, ""));
     let text: String = text.chars().filter(|letter| !letter.is_whitespace()).collect();
@@ -90,11 +115,15 @@ fn plain(text: &str) -> String {
         ("**2", "2"),
         ("^2", "2"),
         ("²", "2"),
+        ("./", "/"),
         ("/s/s", "/s2"),
         ("/sec/sec", "/s2"),
         ("seconds", "s"),
         ("second", "s"),
+        ("secs", "s"),
         ("sec", "s"),
+        ("minutes", "min"),
+        ("minute", "min"),
         ("per", "/"),
         ("inches", "inch"),
         ("knots", "knot"),
@@ -132,6 +161,18 @@ mod tests {
             assert_eq!(conversion_factor(a, b), Some(1.0), "{a} {b}");
         }
         assert_eq!(conversion_factor("% of stick", "fraction of stick"), Some(0.01));
+    }
+
+    #[test]
+    fn every_spelling_is_folded_and_stands_once() {
+        let names: Vec<&str> = UNITS.iter().flat_map(|(_, _, names)| names.iter().copied()).collect();
+        for (place, name) in names.iter().enumerate() {
+            assert!(!names[..place].contains(name), "{name} stands twice");
+            assert!(PhysicalUnit::of(name).is_some(), "{name}");
+        }
+        for (text, name) in [("secs", "s"), ("msecs", "ms"), ("Milliseconds", "ms"), ("usec", "µs"), ("Hertz", "Hz")] {
+            assert_eq!(PhysicalUnit::of(text).map(|unit| unit.name), Some(name), "{text}");
+        }
     }
 
     #[test]

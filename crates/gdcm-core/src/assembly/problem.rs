@@ -6,23 +6,23 @@ use super::RowRole;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ProblemKind {
     /// No model is taken.
-    #[error("no model is taken; add files that hold models")]
+    #[error("no model is included; add files that hold models")]
     NoModels,
     /// The dataset has no inputs, or no outputs.
     #[error("the dataset has no {0}; say which there are")]
     NoChannels(&'static str),
     /// A channel of the dataset has no unit.
-    #[error("the unit of {0} is not said; say in which the dataset is to have it")]
+    #[error("{0}: choose a unit")]
     NoUnit(String),
     /// Files that do not say the unit of a channel.
-    #[error("the file does not say in which unit it has {channel}; say it for all files that do not")]
+    #[error("{channel}: choose the unit that it has in files that do not say one")]
     UnitOfFile {
         /// The channel of the dataset.
         channel: String,
     },
     /// A unit that cannot be converted.
     #[error(
-        "{channel} is in {from} in the file and in {to} in the dataset: there is no factor from one to the other; say one"
+        "{channel} is in {from} in the file and in {to} in the dataset: there is no factor from one to the other; enter one"
     )]
     Conversion {
         /// The channel of the dataset.
@@ -73,13 +73,13 @@ pub enum ProblemKind {
         found: usize,
     },
     /// The condition is not said.
-    #[error("its condition is not said")]
+    #[error("choose its condition")]
     NoCondition,
     /// The role is not said.
-    #[error("its role is not said: nominal, perturbed or identified")]
+    #[error("choose its role: nominal, perturbed or identified")]
     NoRole,
     /// The airspeed is not said.
-    #[error("the airspeed of its condition is not said")]
+    #[error("enter the airspeed of its condition")]
     NoAirspeed,
     /// Rows of one condition contradict one another.
     #[error("condition {condition}: {field} is {first} and {second}; one condition has one")]

@@ -137,10 +137,10 @@ impl Conflict {
             (name(channels.0), name(channels.1))
         };
         let entries = pair_names(&self.entries, inputs, outputs);
-        let (cannot, free) = match self.entries.len() {
-            1 => (format!("{entries} cannot be held"), "free it"),
-            2 => (format!("{entries} cannot both be held"), "free one of them"),
-            _ => (format!("{entries} cannot all be held"), "free one of them"),
+        let (cannot, release) = match self.entries.len() {
+            1 => (format!("{entries} cannot be held"), "release it"),
+            2 => (format!("{entries} cannot both be held"), "release one of them"),
+            _ => (format!("{entries} cannot all be held"), "release one of them"),
         };
         let sentence = match self.quantity {
             Quantity::Gain(_) => self.gain_sentence(&entries, names),
@@ -148,15 +148,15 @@ impl Conflict {
             Quantity::SignedDelay => self.signed_delay_sentence(&entries, names),
         };
         match self.kind {
-            ConflictKind::Loop { .. } => format!("{sentence}; free one of them."),
-            ConflictKind::Unclear => format!("{cannot}; free one of them."),
+            ConflictKind::Loop { .. } => format!("{sentence}; release one of them."),
+            ConflictKind::Unclear => format!("{cannot}; release one of them."),
             ConflictKind::BelowLower { .. } if self.quantity == Quantity::SignedDelay => {
-                format!("{cannot}: {sentence} or {free}.")
+                format!("{cannot}: {sentence} or {release}.")
             }
-            _ if self.is_lone_lead() => format!("{sentence}; {free}."),
-            ConflictKind::BelowLower { lower: None, .. } => format!("{cannot}: {sentence}; {free}."),
-            ConflictKind::TooFarApart { lower: Some(_), .. } => format!("{cannot}: {sentence}, or {free}."),
-            _ => format!("{cannot}: {sentence} or {free}."),
+            _ if self.is_lone_lead() => format!("{sentence}; {release}."),
+            ConflictKind::BelowLower { lower: None, .. } => format!("{cannot}: {sentence}; {release}."),
+            ConflictKind::TooFarApart { lower: Some(_), .. } => format!("{cannot}: {sentence}, or {release}."),
+            _ => format!("{cannot}: {sentence} or {release}."),
         }
     }
 

@@ -126,9 +126,9 @@ impl CorrectedModel {
             return Err(CorrectedModelError::TooManyStates { states });
         }
         let plant = Blocks::of_gained(model, correction);
-        let mut whole = Blocks::beside(&inputs).then(&plant).then(&Blocks::beside(&outputs));
+        let mut whole = Blocks::block_diagonal(&inputs).then(&plant).then(&Blocks::block_diagonal(&outputs));
         if correction.leads.is_some() {
-            whole = Blocks::beside(&input_leads).then(&whole).then(&Blocks::beside(&output_leads));
+            whole = Blocks::block_diagonal(&input_leads).then(&whole).then(&Blocks::block_diagonal(&output_leads));
         }
         let timing = Timing { sample_time_s: sampling, ..Timing::default() };
         let model = StateSpace::new(whole.a, whole.b, whole.c, whole.d)?.timed(timing)?;
@@ -235,7 +235,7 @@ impl Blocks {
     }
 
     /// Channels beside one another, each with its own delay.
-    fn beside(channels: &[ChannelModel]) -> Self {
+    fn block_diagonal(channels: &[ChannelModel]) -> Self {
         let (states, count) = (channels.iter().map(ChannelModel::order).sum(), channels.len());
         let mut blocks = Self {
             a: DMatrix::zeros(states, states),

@@ -1,19 +1,23 @@
 //! Delta gain and delta delay: what one gain and one delay of a response would have to be, eq. (5), (9); and the bounds that their
 //! spread over the band gives to the channels (M7).
 
+use serde::{Deserialize, Serialize};
+
 use super::GainBounds;
 use crate::dataset::{Pair, PairTable};
-use crate::fidelity::{CountedFrequencies, Mismatch};
+use crate::fidelity::{CoherenceWeights, Mismatch};
 use crate::response::{PolarResponse, quantile};
 use crate::units::db_to_ratio;
 
 /// Which models G is taken from; D is always that of the representatives.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum GainSource {
     /// The two representatives (the paper).
     #[default]
+    #[serde(rename = "representatives")]
     Representatives,
     /// Every pair of a kept physics and a kept identified model: `G = exp(mean of ln G)`.
+    #[serde(rename = "mean")]
     MeanOfPairs,
 }
 
@@ -82,11 +86,12 @@ const LARGEST_DB: f64 = 1000.0;
 pub fn mismatch_table(
     simulated: &PolarResponse,
     reference: &PolarResponse,
-    counted: Option<&PairTable<CountedFrequencies>>,
+    coherence_weights: Option<&PairTable<CoherenceWeights>>,
 ) -> PairTable<Option<Mismatch>> {
     simulated.curves().map(|pair, simulated| {
         let mismatch = Mismatch::new(simulated.as_ref()?, reference.curves()[pair].as_ref()?);
-        let mismatch = mismatch.counting(counted.map(|counted| &counted[pair]))?;
+        let mismatch =
+            mismatch.coherence_weighted(coherence_weights.map(|coherence_weights| &coherence_weights[pair]))?;
         mismatch.magnitude_db.iter().all(|error| error.abs() < LARGEST_DB).then_some(mismatch)
     })
 }

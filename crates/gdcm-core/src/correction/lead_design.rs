@@ -2,17 +2,21 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use super::band_delay_s;
 use crate::response::{LeadFilter, LeadOrder};
 
 /// What the lead filters of all channels have in common.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeadSettings {
     /// Order of the filters.
     pub order: LeadOrder,
     /// `n`: the lag time constant is `b = 1 / (n omega_B)`, `omega_B` the top of the band.
+    #[serde(rename = "n")]
     pub pole: f64,
     /// `R_max`: greatest gain of one channel's filter at high frequency (ratio).
+    #[serde(rename = "r_max")]
     pub limit: f64,
 }
 

@@ -1,16 +1,31 @@
 //! What the channels are asked to do.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Coordinate, GainObjective, Quantity, SearchStopped};
 use crate::dataset::{Pair, PairTable};
 
 /// Least and greatest value of every channel (M7): gains `0 < lower <= upper`, delays \[s\] `lower = 0`, signed delays \[s\]
 /// `lower <= 0 <= upper` (M15.4).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "[f64; 2]", into = "[f64; 2]")]
 pub struct Bounds {
     /// Least value.
     pub lower: f64,
     /// Greatest value.
     pub upper: f64,
+}
+
+impl From<[f64; 2]> for Bounds {
+    fn from([lower, upper]: [f64; 2]) -> Self {
+        Self { lower, upper }
+    }
+}
+
+impl From<Bounds> for [f64; 2] {
+    fn from(bounds: Bounds) -> Self {
+        [bounds.lower, bounds.upper]
+    }
 }
 
 /// Mismatch of a loop of held delays that counts as agreement \[s\]: half of the last digit in which delays are told.

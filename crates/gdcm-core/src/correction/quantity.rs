@@ -2,16 +2,20 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use super::*;
 
 /// What "close to G" means.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum GainObjective {
     /// `sum w (G - k_o k_i)^2 + alpha sum (k_o - 1)^2`, equation (7) of the paper.
     #[default]
+    #[serde(rename = "ratio")]
     Ratio,
     /// `sum w (20 log10 G - 20 log10 k_o k_i)^2 + alpha sum (20 log10 k_o)^2`: errors up and down count alike, and an entry with
     /// a large `G` counts no more than another. Convex.
+    #[serde(rename = "dB")]
     Decibel,
 }
 

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use super::{BundleKind, Channel, Condition, ConditionId, Dynamics, Model, ModelId, Pair, PairTable};
 use crate::units::number;
 
@@ -263,7 +265,8 @@ pub const LEAST_OMEGA: f64 = 1e-4;
 pub const GREATEST_OMEGA: f64 = 1e5;
 
 /// A frequency band \[rad/s\], `LEAST_OMEGA <= min < max <= GREATEST_OMEGA`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "[f64; 2]", into = "[f64; 2]")]
 pub struct Band {
     min: f64,
     max: f64,
@@ -280,6 +283,20 @@ pub struct BandError {
     pub min: f64,
     /// The upper end given \[rad/s\].
     pub max: f64,
+}
+
+impl TryFrom<[f64; 2]> for Band {
+    type Error = BandError;
+
+    fn try_from([min, max]: [f64; 2]) -> Result<Self, BandError> {
+        Self::new(min, max)
+    }
+}
+
+impl From<Band> for [f64; 2] {
+    fn from(band: Band) -> Self {
+        [band.min, band.max]
+    }
 }
 
 impl Band {

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use crate::message_text::quoted;
 
 /// A condition of a dataset that is being read.
@@ -104,7 +106,7 @@ impl fmt::Display for BundleKind {
 }
 
 /// A flight condition: the id that its dataset gives it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct ConditionId(pub i64);
 
 impl fmt::Display for ConditionId {

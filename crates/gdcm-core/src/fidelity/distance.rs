@@ -84,14 +84,14 @@ pub struct ComparedModel<'a> {
     /// Its responses.
     pub responses: &'a PolarResponse,
     /// Which frequencies of each count, where it is measured with coherence (M4a).
-    pub counted: Option<&'a PairTable<CountedFrequencies>>,
+    pub coherence_weights: Option<&'a PairTable<CoherenceWeights>>,
 }
 
 impl ComparedModel<'_> {
     /// J with this model as the reference, by its coherence; none where it says nothing.
     fn cost_as_reference(&self, a: &PolarCurve, b: &PolarCurve, pair: Pair) -> Option<f64> {
-        let mismatch = Mismatch::new(a, b).counting(Some(&self.counted?[pair]))?;
-        let weights = mismatch.counted.as_ref().map(CountedFrequencies::weights);
+        let mismatch = Mismatch::new(a, b).coherence_weighted(Some(&self.coherence_weights?[pair]))?;
+        let weights = mismatch.coherence_weights.as_ref().map(CoherenceWeights::weights);
         let (magnitude_db, phase) = (mismatch.magnitude_db.iter().copied(), mismatch.phase.iter().copied());
         Some(Cost::of(magnitude_db, phase, weights, CostAverage::Mean, &mut Vec::new()).total())
     }
@@ -105,7 +105,7 @@ impl ComparedModel<'_> {
 pub fn distances_from(a: usize, models: &[ComparedModel<'_>], compared: &[Pair]) -> Vec<f64> {
     let of_pair = |b: &ComparedModel<'_>, pair: Pair| {
         let (from, to) = (models[a].responses.curves()[pair].as_ref()?, b.responses.curves()[pair].as_ref()?);
-        if models[a].counted.is_none() && b.counted.is_none() {
+        if models[a].coherence_weights.is_none() && b.coherence_weights.is_none() {
             return Some(mean_cost(from, to));
         }
         let ways = [models[a], *b].map(|reference| reference.cost_as_reference(from, to, pair));
@@ -310,12 +310,15 @@ mod tests {
         let grid = FrequencyGrid::logarithmic(crate::dataset::Band::new(1.0, 9.0).unwrap(), 100);
         let of = |model| PolarResponse::of(&FrequencyResponse::of(model, &grid));
         let responses: Vec<PolarResponse> = models.iter().map(of).collect();
-        let counted: Vec<_> =
-            models.iter().map(|model| CountedFrequencies::of_model(model, grid.omega(), threshold)).collect();
+        let coherence_weights: Vec<_> =
+            models.iter().map(|model| CoherenceWeights::of_model(model, grid.omega(), threshold)).collect();
         let models: Vec<ComparedModel<'_>> = responses
             .iter()
-            .zip(&counted)
-            .map(|(responses, counted)| ComparedModel { responses, counted: counted.as_ref() })
+            .zip(&coherence_weights)
+            .map(|(responses, coherence_weights)| ComparedModel {
+                responses,
+                coherence_weights: coherence_weights.as_ref(),
+            })
             .collect();
         (0..models.len()).flat_map(|a| distances_from(a, &models, &[Pair::new(0, 0)])).collect()
     }

@@ -17,7 +17,7 @@ pub struct Mismatch {
     pub phase: Vec<f64>,
     /// At which frequencies those stand and what each counts, where the reference's coherence says so (M4a); otherwise they stand
     /// at each frequency of the grid and count alike.
-    pub counted: Option<CountedFrequencies>,
+    pub coherence_weights: Option<CoherenceWeights>,
     /// Angle \[rad\], a multiple of 2 pi, that `Delta phi` is shifted by once its turns are decided on: none of the
     /// representatives' (M13.1).
     pub turn: f64,
@@ -32,22 +32,27 @@ impl Mismatch {
         Self {
             magnitude_db: difference(&simulated.magnitude_db, &reference.magnitude_db),
             phase,
-            counted: None,
+            coherence_weights: None,
             turn: 0.0,
         }
     }
 
     /// What is left of it at the frequencies that count, as if there were no others: all, where coherence does not say; none
     /// where none counts (M4a).
-    pub fn counting(self, counted: Option<&CountedFrequencies>) -> Option<Self> {
-        let Some(counted) = counted else { return Some(self) };
-        let (magnitude_db, phase) = (counted.pick(&self.magnitude_db), counted.pick(&self.phase));
-        (!counted.is_empty()).then(|| Self { magnitude_db, phase, counted: Some(counted.clone()), turn: self.turn })
+    pub fn coherence_weighted(self, coherence_weights: Option<&CoherenceWeights>) -> Option<Self> {
+        let Some(coherence_weights) = coherence_weights else { return Some(self) };
+        let (magnitude_db, phase) = (coherence_weights.pick(&self.magnitude_db), coherence_weights.pick(&self.phase));
+        (!coherence_weights.is_empty()).then(|| Self {
+            magnitude_db,
+            phase,
+            coherence_weights: Some(coherence_weights.clone()),
+            turn: self.turn,
+        })
     }
 
     /// The frequencies \[rad/s\] at which it stands: all of the grid, or those that count.
     pub fn omega<'a>(&'a self, grid: &'a [f64]) -> &'a [f64] {
-        self.counted.as_ref().map_or(grid, CountedFrequencies::omega)
+        self.coherence_weights.as_ref().map_or(grid, CoherenceWeights::omega)
     }
 
     /// The median of a figure of each frequency, weighted where not all count alike (M6, M4a).
@@ -60,15 +65,15 @@ impl Mismatch {
 
     /// A figure of each frequency at which it stands, in its place on a grid of `points`; not a number where none counts.
     pub fn on_grid(&self, values: Vec<f64>, points: usize) -> Vec<f64> {
-        match &self.counted {
+        match &self.coherence_weights {
             None => values,
-            Some(counted) => counted.spread(&values, points),
+            Some(coherence_weights) => coherence_weights.spread(&values, points),
         }
     }
 
     /// What each frequency at which it stands counts, where not all count alike (M4a).
     pub fn weights(&self) -> Option<&[f64]> {
-        self.counted.as_ref().map(CountedFrequencies::weights)
+        self.coherence_weights.as_ref().map(CoherenceWeights::weights)
     }
 
     /// J after a correction of the simulated response (M4, M10). The correction takes `omega tau` from the phase, of which the
@@ -85,14 +90,16 @@ impl Mismatch {
     pub fn multiplied(&self, magnitude_db: &[f64], phase: &[f64]) -> Self {
         let on = |own: &[f64], factor: &[f64]| -> Vec<f64> {
             let sum = |factor: &[f64]| own.iter().zip(factor).map(|(own, factor)| own + factor).collect();
-            self.counted.as_ref().map_or_else(|| sum(factor), |counted| sum(&counted.pick(factor)))
+            self.coherence_weights
+                .as_ref()
+                .map_or_else(|| sum(factor), |coherence_weights| sum(&coherence_weights.pick(factor)))
         };
         let mut phase = on(&self.phase, phase);
         phase.iter_mut().for_each(|angle| *angle = wrap(*angle));
         Self {
             magnitude_db: on(&self.magnitude_db, magnitude_db),
             phase,
-            counted: self.counted.clone(),
+            coherence_weights: self.coherence_weights.clone(),
             turn: self.turn,
         }
     }
@@ -132,7 +139,7 @@ impl Mismatch {
 
     /// The same difference, its phase shifted by whole turns so that its median is the nearest to `median_phase` \[rad\]: that of
     /// a swapped pair beside the representatives' (M13.1).
-    pub fn beside(mut self, omega: &[f64], median_phase: f64) -> Self {
+    pub fn align_branch(mut self, omega: &[f64], median_phase: f64) -> Self {
         self.turn += TAU * ((median_phase - self.median_phase(omega)) / TAU).round();
         self
     }
@@ -160,7 +167,7 @@ fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
 
 /// The frequencies of one response at which its coherence says that it was measured, each with its weight.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CountedFrequencies {
+pub struct CoherenceWeights {
     /// Places on the grid, rising.
     places: Vec<usize>,
     omega: Vec<f64>,
@@ -173,21 +180,21 @@ pub fn coherence_weight(coherence: f64) -> f64 {
     (1.58 * (1.0 - (-coherence).exp())).powi(2)
 }
 
-impl CountedFrequencies {
+impl CoherenceWeights {
     /// Those `omega` \[rad/s\] whose coherence is not under `threshold` and that lie in the response's valid band.
     pub fn of(omega: &[f64], coherence: &[f64], threshold: f64, valid_band: Option<[f64; 2]>) -> Self {
-        let mut counted = Self { places: Vec::new(), omega: Vec::new(), weights: Vec::new() };
+        let mut coherence_weights = Self { places: Vec::new(), omega: Vec::new(), weights: Vec::new() };
         let is_valid = |omega: f64| valid_band.is_none_or(|[low, high]| (low..=high).contains(&omega));
         for (place, (&omega, &coherence)) in omega.iter().zip(coherence).enumerate() {
             let weight = coherence_weight(coherence);
             // A weight of zero would count in N' and nowhere else.
             if coherence >= threshold && weight > 0.0 && is_valid(omega) {
-                counted.places.push(place);
-                counted.omega.push(omega);
-                counted.weights.push(weight);
+                coherence_weights.places.push(place);
+                coherence_weights.omega.push(omega);
+                coherence_weights.weights.push(weight);
             }
         }
-        counted
+        coherence_weights
     }
 
     /// Those of every response of a model; none where it has no coherence, so that all frequencies count alike.
@@ -266,7 +273,7 @@ mod tests {
         let omega: Vec<f64> = (1..=120).map(|k| 0.1 * f64::from(k)).collect();
         let turn = |omega: f64| TAU / (1.0 + (-40.0 * (omega - 2.0)).exp());
         let phase = omega.iter().map(|omega| wrap(-0.07 * omega + turn(*omega))).collect();
-        let mismatch = Mismatch { magnitude_db: vec![0.0; 120], phase, counted: None, turn: 0.0 };
+        let mismatch = Mismatch { magnitude_db: vec![0.0; 120], phase, coherence_weights: None, turn: 0.0 };
         let cost = mismatch.cost(&omega, GainDelay::new(1.0, -0.07), CostAverage::Median);
         // Squares of what is left of the turn at 6 rad/s: e^-160.
         assert!(cost.phase < 1e-20, "{cost:?}");
@@ -285,15 +292,16 @@ mod tests {
             reference.magnitude_db[k] = 40.0;
         }
         let coherence: Vec<f64> = (0..240).map(|k| if (50..80).contains(&k) { 0.1 } else { 0.8 }).collect();
-        let counted = CountedFrequencies::of(&omega, &coherence, 0.6, None);
-        let mismatch = Mismatch::new(&curve(0.0, 0.0, &omega), &reference).counting(Some(&counted)).unwrap();
+        let coherence_weights = CoherenceWeights::of(&omega, &coherence, 0.6, None);
+        let mismatch =
+            Mismatch::new(&curve(0.0, 0.0, &omega), &reference).coherence_weighted(Some(&coherence_weights)).unwrap();
         let (phase, left) = (mismatch.phase_difference(&omega), mismatch.omega(&omega));
         assert_eq!((phase.len(), left.len()), (210, 210));
         assert!(phase.iter().zip(left).all(|(phase, omega)| (phase - 0.3 * omega).abs() < 1e-13));
         let right = GainDelay::new(db_to_ratio(1.0), 0.3);
         assert!(mismatch.cost(&omega, right, CostAverage::Mean).total() < 1e-20);
-        let nothing = CountedFrequencies::of(&omega, &[0.0; 240], 0.6, None);
-        assert_eq!(mismatch.counting(Some(&nothing)), None);
+        let nothing = CoherenceWeights::of(&omega, &[0.0; 240], 0.6, None);
+        assert_eq!(mismatch.coherence_weighted(Some(&nothing)), None);
     }
 
     #[test]
@@ -319,12 +327,12 @@ mod counted_tests {
     fn what_is_under_the_threshold_or_outside_the_valid_band_is_left_out() {
         let omega = [1.0, 2.0, 3.0, 4.0, 5.0];
         let coherence = [1.0, 0.59, 0.6, 0.9, f64::NAN];
-        let counted = CountedFrequencies::of(&omega, &coherence, 0.6, Some([1.5, 4.0]));
-        assert_eq!((counted.omega(), counted.len()), ([3.0, 4.0].as_slice(), 2));
-        assert_eq!(counted.weights(), [coherence_weight(0.6), coherence_weight(0.9)]);
-        assert_eq!(counted.pick(&[10.0, 20.0, 30.0, 40.0, 50.0]), [30.0, 40.0]);
-        let spread = counted.spread(&[30.0, 40.0], 5);
+        let coherence_weights = CoherenceWeights::of(&omega, &coherence, 0.6, Some([1.5, 4.0]));
+        assert_eq!((coherence_weights.omega(), coherence_weights.len()), ([3.0, 4.0].as_slice(), 2));
+        assert_eq!(coherence_weights.weights(), [coherence_weight(0.6), coherence_weight(0.9)]);
+        assert_eq!(coherence_weights.pick(&[10.0, 20.0, 30.0, 40.0, 50.0]), [30.0, 40.0]);
+        let spread = coherence_weights.spread(&[30.0, 40.0], 5);
         assert!(spread[2..4] == [30.0, 40.0] && [0, 1, 4].iter().all(|place: &usize| spread[*place].is_nan()));
-        assert!(CountedFrequencies::of(&omega, &[0.0; 5], 0.0, None).is_empty(), "nothing was measured");
+        assert!(CoherenceWeights::of(&omega, &[0.0; 5], 0.0, None).is_empty(), "nothing was measured");
     }
 }

@@ -1,6 +1,7 @@
 //! What speaks against the recommended model, record by record and channel by channel (M14, section 10).
 
 use super::*;
+use crate::response::median;
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Cost per degree of freedom above which a model is not adequate.
@@ -72,7 +73,7 @@ impl Diagnostics<'_> {
         }
         let caution = |(k, one): (usize, &WithoutRecord)| {
             let others = distances.iter().enumerate().filter(|(other, _)| *other != k).map(|(_, distance)| *distance);
-            let ratio = distances[k] / median(others.collect());
+            let ratio = distances[k] / median(&mut others.collect::<Vec<f64>>());
             let (record, name) = (one.record, self.record_name(one.record));
             let stands_out = ratio.is_finite() && ratio > DECISIVE;
             stands_out.then_some(IdentificationCaution::DecisiveRecord { record, name, ratio })

@@ -1,6 +1,7 @@
 //! The measured frequency response, with what speaks for it.
 
 use super::*;
+use crate::response::median;
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Below this median partial coherence an input was not moved, or only together with another (M14, 2).
@@ -106,10 +107,11 @@ impl MeasuredResponse {
     #[must_use]
     pub fn excitation(&self) -> Excitation {
         let inputs = self.points.first().map_or(0, |point| point.response.ncols());
-        let of_input = |i: usize| median(self.points.iter().map(|point| point.greatest_coherence(i)).collect());
+        let middle = |of: &dyn Fn(&MeasuredPoint) -> f64| median(&mut self.points.iter().map(of).collect::<Vec<f64>>());
+        let of_input = |i: usize| middle(&|point| point.greatest_coherence(i));
         Excitation {
             partial_coherence: (0..inputs).map(of_input).collect(),
-            condition: median(self.points.iter().map(|point| point.condition).collect()),
+            condition: middle(&|point| point.condition),
         }
     }
 
@@ -126,17 +128,6 @@ impl MeasuredResponse {
             ..point.clone()
         };
         Self { points: self.points.iter().map(point).collect() }
-    }
-}
-
-/// The middle value, of an even number the mean of the middle two; 0 of none.
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let n = values.len();
-    match n {
-        0 => 0.0,
-        n if n % 2 == 1 => values[n / 2],
-        n => 0.5 * (values[n / 2 - 1] + values[n / 2]),
     }
 }
 

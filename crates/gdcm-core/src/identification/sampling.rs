@@ -95,10 +95,7 @@ impl Clock {
 
 /// The value below which `share` of the values lie; the middle two are averaged for a half, 0 of none.
 pub(super) fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let place = share * values.len().saturating_sub(1) as f64;
-    let (low, high) = (values.get(place.floor() as usize), values.get(place.ceil() as usize));
-    low.zip(high).map_or(0.0, |(low, high)| if low == high { *low } else { low + (high - low) * place.fract() })
+    if values.is_empty() { 0.0 } else { crate::response::quantile(&mut values, share) }
 }
 
 // The samples of one channel that count, and the straight lines between them.

@@ -11,6 +11,7 @@
 
 use super::*;
 use crate::executor::{Executor, each};
+use crate::fidelity::Cost;
 use crate::units::neper_to_db;
 use nalgebra::{Complex, DMatrix};
 
@@ -244,27 +245,10 @@ pub(super) fn without_each_record(likelihood: &Likelihood, fit: &Fit, systems: &
 /// J = 20 median (dB)^2 + 20 * 0.0175 median (deg)^2
 /// ```
 pub(super) fn distance(one: &BlockModel, other: &BlockModel, omegas: &[f64], identified: &[(usize, usize)]) -> f64 {
-    const MODULUS_WEIGHT: f64 = 20.0;
-    const PHASE_WEIGHT: f64 = 20.0 * 0.0175;
     let ratios: Vec<_> =
         omegas.iter().map(|&omega| one.response(omega).zip_map(&other.response(omega), |a, b| a / b)).collect();
-    let of_pair = |pair: &(usize, usize)| {
-        let decibels = median(ratios.iter().map(|ratio| (20.0 * ratio[*pair].norm().log10()).powi(2)).collect());
-        let degrees = median(ratios.iter().map(|ratio| ratio[*pair].arg().to_degrees().powi(2)).collect());
-        MODULUS_WEIGHT * decibels + PHASE_WEIGHT * degrees
-    };
+    let of_pair = |pair: &(usize, usize)| Cost::of_ratios(ratios.iter().map(|ratio| ratio[*pair])).total();
     identified.iter().map(of_pair).sum::<f64>() / identified.len().max(1) as f64
-}
-
-/// The middle value, of an even number the mean of the middle two; 0 of none.
-pub(super) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let count = values.len();
-    match count {
-        0 => 0.0,
-        count if count % 2 == 1 => values[count / 2],
-        count => 0.5 * (values[count / 2 - 1] + values[count / 2]),
-    }
 }
 
 #[cfg(test)]

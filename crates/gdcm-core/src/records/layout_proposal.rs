@@ -1,6 +1,6 @@
 //! Columns proposed for the time and the channels of a record.
 
-use crate::assembly::{ChannelRule, conversion_factor, same_channel};
+use crate::assembly::{ChannelRule, conversion_factor, folded_name, same_channel};
 use crate::units::number;
 
 use super::layout_problem::{LayoutCaution, LayoutProblem};
@@ -181,11 +181,6 @@ impl LayoutProposal {
     }
 }
 
-/// A name without case and marks.
-fn plain(name: &str) -> String {
-    name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
-}
-
 /// The columns that can be a channel.
 fn candidates(table: &RecordTable, rule: &ChannelRule, side: ColumnSide) -> Vec<usize> {
     let named = |is_it: &dyn Fn(&str) -> bool| -> Vec<usize> {
@@ -197,7 +192,7 @@ fn candidates(table: &RecordTable, rule: &ChannelRule, side: ColumnSide) -> Vec<
     let mut found = named(&|name| names.iter().any(|wanted| wanted == name));
     if found.is_empty() {
         // What the engineer says, however it is typed: "elev_yoke1" is "elev,yoke1", and no other name of the stick.
-        found = named(&|name| rule.aliases.iter().any(|wanted| plain(name) == plain(wanted)));
+        found = named(&|name| rule.aliases.iter().any(|wanted| folded_name(name) == folded_name(wanted)));
     }
     if found.is_empty() {
         found = named(&|name| names.iter().any(|wanted| same_channel(name, wanted)));

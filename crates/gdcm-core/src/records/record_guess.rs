@@ -1,6 +1,6 @@
 //! What the name of a record says about it.
 
-use crate::assembly::{NamePattern, Row};
+use crate::assembly::{NamePattern, Row, folded_name};
 use crate::dataset::{ConditionId, Dataset, RecordKind};
 
 use super::record_table::RecordTable;
@@ -44,7 +44,7 @@ impl RecordGuess {
     pub fn of(name: &str, patterns: &[NamePattern]) -> Self {
         let lower = name.to_lowercase();
         // "3-2-1-1" and "hold_out" are "3211" and "holdout".
-        let joined: String = lower.chars().filter(|c| c.is_alphanumeric()).collect();
+        let joined = folded_name(name);
         let holds = |words: &[&str]| words.iter().any(|word| joined.contains(word));
         let kind = if holds(&SWEEPS) {
             RecordKind::Sweep

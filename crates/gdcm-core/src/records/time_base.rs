@@ -1,5 +1,7 @@
 //! What says when the samples of a record were taken.
 
+use crate::assembly::{Dimension, PhysicalUnit, time_name_rank};
+
 use super::record_table::{RecordColumn, RecordTable};
 
 /// What says when the samples of a record were taken.
@@ -56,7 +58,7 @@ impl TimeBase {
     pub(super) fn find(table: &RecordTable) -> Option<usize> {
         let rank = |index: usize| {
             let column = &table.columns[index];
-            let by_name = if table.named { name_rank(&column.name) } else { (index == 0).then_some(2) }?;
+            let by_name = if table.named { time_name_rank(&column.name) } else { (index == 0).then_some(2) }?;
             // A column that stands still or falls most of the time is a time by its name only.
             Some((u8::from(!mostly_rises(&column.values)), by_name, index))
         };
@@ -65,37 +67,10 @@ impl TimeBase {
     }
 }
 
-/// How surely a name is that of the time, 0 the surest; none where it is not.
-fn name_rank(name: &str) -> Option<u8> {
-    let words: Vec<String> =
-        name.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).map(str::to_lowercase).collect();
-    let mut words: Vec<&str> = words.iter().map(String::as_str).collect();
-    if words.len() > 1 && words.last().is_some_and(|word| seconds_in(word).is_some()) {
-        words.pop();
-    }
-    match words.as_slice() {
-        ["time" | "t" | "times"] => Some(0),
-        [
-            "tout" | "timestamp" | "timestamps" | "elapsed" | "seconds" | "tsec" | "timesec" | "zeit" | "temps"
-            | "tempo",
-        ] => Some(1),
-        words if words.iter().any(|word| matches!(*word, "time" | "timestamp")) => Some(2),
-        _ => None,
-    }
-}
-
 /// Seconds in a unit of time, and its usual spelling.
-pub(super) fn seconds_in(unit: &str) -> Option<(&'static str, f64)> {
-    Some(match unit.trim().to_lowercase().as_str() {
-        "s" | "sec" | "secs" | "second" | "seconds" => ("s", 1.0),
-        "ms" | "msec" | "msecs" | "millis" | "millisecond" | "milliseconds" => ("ms", 1e-3),
-        "us" | "µs" | "μs" | "usec" | "microsecond" | "microseconds" => ("µs", 1e-6),
-        "ns" | "nsec" | "nanosecond" | "nanoseconds" => ("ns", 1e-9),
-        "min" | "minute" | "minutes" => ("min", 60.0),
-        "h" | "hr" | "hour" | "hours" => ("h", 3600.0),
-        "d" | "day" | "days" => ("days", SECONDS_A_DAY),
-        _ => return None,
-    })
+fn seconds_in(unit: &str) -> Option<(&'static str, f64)> {
+    let unit = PhysicalUnit::of(unit).filter(|unit| unit.dimension == Dimension::Time)?;
+    Some((unit.name, unit.size))
 }
 
 fn unit_of(stamps: &RecordColumn) -> ((&'static str, f64), String) {

@@ -172,7 +172,7 @@ impl ResponseShape {
     }
 
     /// The shape moved by whole turns as near to `reference` as they bring it (M2).
-    pub fn laid_on(self, reference: &Self) -> Self {
+    pub fn phase_aligned(self, reference: &Self) -> Self {
         let radians = |phase: &[f64]| phase.iter().map(|degrees| degrees.to_radians()).collect::<Vec<f64>>();
         let offset = nearest_turn_offset(&radians(&self.phase_deg), &radians(&reference.phase_deg)).to_degrees();
         if offset == 0.0 {
@@ -361,7 +361,7 @@ mod response_shape_tests {
     #[test]
     fn a_shape_is_moved_by_whole_turns_only() {
         let shape = |phase: f64| ResponseShape { magnitude_db: [0.0, 0.0].into(), phase_deg: [phase, phase].into() };
-        let laid = shape(350.0).laid_on(&shape(-20.0));
+        let laid = shape(350.0).phase_aligned(&shape(-20.0));
         assert!((laid.phase_deg[0] + 10.0).abs() < 1e-12);
     }
 }

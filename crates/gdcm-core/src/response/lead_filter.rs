@@ -3,12 +3,15 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
+use serde::{Deserialize, Serialize};
+
 use nalgebra::Complex;
 
 use crate::units::ratio_to_db;
 
 /// Order of a lead filter's numerator and denominator.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(try_from = "usize", into = "usize")]
 pub enum LeadOrder {
     /// `(1 + a s) / (1 + b s)`: its gain rises with `omega^2` within the band.
     First,
@@ -24,6 +27,22 @@ impl LeadOrder {
             LeadOrder::First => 1,
             LeadOrder::Second => 2,
         }
+    }
+}
+
+impl TryFrom<usize> for LeadOrder {
+    type Error = String;
+
+    fn try_from(order: usize) -> Result<Self, String> {
+        let orders = [Self::First, Self::Second];
+        let found = orders.into_iter().find(|known| known.number() == order);
+        found.ok_or_else(|| format!("order of the lead filters: expected 1 or 2, found {order}"))
+    }
+}
+
+impl From<LeadOrder> for usize {
+    fn from(order: LeadOrder) -> Self {
+        order.number()
     }
 }
 

@@ -112,13 +112,13 @@ pub fn evidence(points: &[ScheduledPoint<'_>], settings: ScheduleSettings) -> Re
     let of_kind = |kind| {
         let settings = ScheduleSettings { kind, delays: false, ..settings };
         let schedule = Schedule::fitted(points, settings)?;
-        let scheduled = points.iter().map(|point| Some(schedule.at_both(point.airspeed_kt, point.second))).collect();
+        let scheduled = points.iter().map(|point| Some(schedule.evaluate(point.airspeed_kt, point.second))).collect();
         let unseen = (0..points.len()).map(|left_out| {
             let others: Vec<ScheduledPoint<'_>> =
                 points[..left_out].iter().chain(&points[left_out + 1..]).copied().collect();
             Schedule::fitted(&others, settings)
                 .ok()
-                .map(|schedule| schedule.at_both(points[left_out].airspeed_kt, points[left_out].second))
+                .map(|schedule| schedule.evaluate(points[left_out].airspeed_kt, points[left_out].second))
         });
         let degree = schedule.degree();
         Ok(Predicted { points, scheduled, unseen: unseen.collect() }.evidence(kind, degree))

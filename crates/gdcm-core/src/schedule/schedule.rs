@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use super::{Airspeeds, Regression, SecondTerm, SecondVariable, design};
 use crate::correction::{Channel, ChannelCorrection, ChannelLeads, LeadDesign};
 use crate::dataset::{ConditionId, FlightState};
@@ -29,16 +31,19 @@ pub enum ScheduleKind {
 }
 
 /// What is regressed on airspeed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum ScheduledQuantity {
     /// `ln k`: the product of two channels' regressions is the regression of their product.
+    #[serde(rename = "ln k")]
     LnGain,
     /// `k` itself.
+    #[serde(rename = "k")]
     Gain,
 }
 
 /// How channel gains are scheduled.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "ScheduleEntry", into = "ScheduleEntry")]
 pub struct ScheduleSettings {
     /// The form.
     pub kind: ScheduleKind,
@@ -53,6 +58,66 @@ pub struct ScheduleSettings {
     pub airspeed_tolerance_kt: f64,
     /// Variable whose effect on the gains is scheduled beside that of airspeed (M13.7).
     pub second: Option<SecondVariable>,
+}
+
+/// [`ScheduleSettings`] in files, where the degree stands beside the form.
+#[derive(Serialize, Deserialize)]
+struct ScheduleEntry {
+    kind: FormEntry,
+    degree: Option<usize>,
+    of: ScheduledQuantity,
+    delays: bool,
+    #[serde(default = "default_tolerance_kt")]
+    airspeed_tolerance_kt: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    second_variable: Option<SecondVariable>,
+    #[serde(default, skip_serializing_if = "is_zero")]
+    tau_degree: usize,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum FormEntry {
+    Polynomial,
+    Table,
+}
+
+fn default_tolerance_kt() -> f64 {
+    DEFAULT_TOLERANCE_KT
+}
+
+fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
+
+impl TryFrom<ScheduleEntry> for ScheduleSettings {
+    type Error = String;
+
+    fn try_from(entry: ScheduleEntry) -> Result<Self, String> {
+        let kind = match (entry.kind, entry.degree) {
+            (FormEntry::Table, _) => ScheduleKind::Table,
+            (FormEntry::Polynomial, Some(degree)) if degree <= HIGHEST_DEGREE => ScheduleKind::Polynomial { degree },
+            (FormEntry::Polynomial, Some(degree)) => {
+                return Err(format!("degree: expected a whole number from 0 to {HIGHEST_DEGREE}, found {degree}"));
+            }
+            // As serde itself says it, so that readers tell it alike.
+            (FormEntry::Polynomial, None) => return Err("missing field `degree`".to_owned()),
+        };
+        let ScheduleEntry { of: quantity, delays, airspeed_tolerance_kt, second_variable: second, tau_degree, .. } =
+            entry;
+        Ok(Self { kind, quantity, delays, tau_degree, airspeed_tolerance_kt, second })
+    }
+}
+
+impl From<ScheduleSettings> for ScheduleEntry {
+    fn from(settings: ScheduleSettings) -> Self {
+        let (kind, degree) = match settings.kind {
+            ScheduleKind::Polynomial { degree } => (FormEntry::Polynomial, Some(degree)),
+            ScheduleKind::Table => (FormEntry::Table, None),
+        };
+        let ScheduleSettings { quantity: of, delays, airspeed_tolerance_kt, tau_degree, second, .. } = settings;
+        Self { kind, degree, of, delays, airspeed_tolerance_kt, second_variable: second, tau_degree }
+    }
 }
 
 impl Default for ScheduleSettings {
@@ -274,7 +339,7 @@ impl Schedule {
     }
 
     /// Whether it is nothing to go by between the conditions: a gain overshoots there, or is not positive.
-    pub fn fails_between(&self) -> bool {
+    pub fn interpolation_fails(&self) -> bool {
         let fails = |caution: &ScheduleCaution| {
             matches!(caution, ScheduleCaution::Overshoot { .. } | ScheduleCaution::NotPositive)
         };
@@ -334,16 +399,16 @@ impl Schedule {
     /// Scheduled delays are cut to their bounds: from zero to the conditions' upper bounds, linear between them. A second variable
     /// is in the middle of its range.
     pub fn at(&self, airspeed_kt: f64) -> ChannelCorrection {
-        self.at_both(airspeed_kt, None)
+        self.evaluate(airspeed_kt, None)
     }
 
     /// The scheduled correction at the airspeed and the second variable of a condition.
     pub fn at_state(&self, state: &FlightState) -> ChannelCorrection {
-        self.at_both(state.airspeed_kt, self.settings.second.and_then(|variable| variable.value(state)))
+        self.evaluate(state.airspeed_kt, self.settings.second.and_then(|variable| variable.value(state)))
     }
 
     /// As [`Schedule::at`], at a value of the second variable; beyond the range of the conditions' the end value holds.
-    pub fn at_both(&self, airspeed_kt: f64, second: Option<f64>) -> ChannelCorrection {
+    pub fn evaluate(&self, airspeed_kt: f64, second: Option<f64>) -> ChannelCorrection {
         let gain = |regression: &Regression, beside: f64| {
             let value = regression.at(&self.airspeeds, airspeed_kt) + beside;
             match self.settings.quantity {
@@ -498,10 +563,10 @@ mod tests {
         };
         assert_eq!((*channel, *between_kt, *range), (Channel::Input(0), [63.0, 120.0], [1.0, 1.1]));
         assert!((airspeed_kt - 90.0).abs() < 1.0 && (gain / 1.1_f64.powf(1.0 / 0.19) - 1.0).abs() < 0.01);
-        assert!(wild.fails_between());
+        assert!(wild.interpolation_fails());
         let lowered = of([60.0, 61.0, 120.0], 2.0);
         assert_eq!(lowered.cautions, [ScheduleCaution::DegreeLowered { asked: 2, clusters: 2 }]);
-        assert_eq!((lowered.degree(), lowered.fails_between()), (Some(1), false));
+        assert_eq!((lowered.degree(), lowered.interpolation_fails()), (Some(1), false));
     }
 
     #[test]

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use nalgebra::{DMatrix, DVector};
 
 use super::ScheduleError;
@@ -11,7 +13,8 @@ use crate::dataset::FlightState;
 const DEPENDENT: f64 = 1e-9;
 
 /// A variable besides airspeed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum SecondVariable {
     /// Altitude \[ft\].
     Altitude,
@@ -183,13 +186,13 @@ mod tests {
         for kind in [ScheduleKind::Polynomial { degree: 1 }, ScheduleKind::Table] {
             let schedule = schedule(kind, &FLOWN, gain).unwrap();
             for (kt, feet) in [(60.0, 8e3), (75.0, 5e3), (120.0, 2e3)] {
-                let found = schedule.at_both(kt, Some(feet)).input_gains[0];
+                let found = schedule.evaluate(kt, Some(feet)).input_gains[0];
                 // Least squares with a condition number of about 5.
                 assert!((found / gain(kt, feet) - 1.0).abs() < 1e-13, "{kind:?} at {kt} kt, {feet} ft: {found}");
             }
-            let beyond = schedule.at_both(90.0, Some(20e3)).input_gains[0];
+            let beyond = schedule.evaluate(90.0, Some(20e3)).input_gains[0];
             assert!((beyond / gain(90.0, 8e3) - 1.0).abs() < 1e-13, "the end value holds");
-            assert_eq!(schedule.at(90.0), schedule.at_both(90.0, Some(5e3)), "the middle, where nothing is said");
+            assert_eq!(schedule.at(90.0), schedule.evaluate(90.0, Some(5e3)), "the middle, where nothing is said");
         }
     }
 

@@ -97,7 +97,7 @@ pub struct ConditionAnalysis {
     /// Optimal delays, eq. (11), or signed delays, M15.4.
     pub delays: Arc<Solution>,
     /// What the leads leave, where leads are asked for (M15.5).
-    pub led: Option<Arc<LeadCompensated>>,
+    pub compensated: Option<Arc<LeadCompensated>>,
     /// What leads would buy, where all held responses want lead and leads are not asked for.
     pub offer: Option<LeadOffer>,
     /// Both as one correction.

@@ -211,7 +211,7 @@ impl Caution {
             Caution::NoSuggestions(error) => error.to_string(),
             Caution::SetAside { model, lacks, why, pinned } => {
                 let why = why.map_or("zero somewhere in the band".to_owned(), NotFinite::words);
-                let pin = if *pinned { "; that it is pinned does not count" } else { "" };
+                let pin = if *pinned { "; it is not used as representative, as was chosen" } else { "" };
                 let (model, lacks) = (model.words(), names(lacks));
                 format!("{model} is set aside: it has no {lacks}, which another model of its bundle has ({why}){pin}")
             }

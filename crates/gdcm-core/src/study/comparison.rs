@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::correction::{Delta, delta_gains, mismatch_table};
 use crate::dataset::{BundleKind, Condition, ConditionId, Dynamics, Pair, PairTable};
 use crate::fidelity::{
-    BundleDistance, ComparedModel, Cost, CostAverage, CountedFrequencies, Discontinuity, DiscontinuityError, FitError,
+    BundleDistance, CoherenceWeights, ComparedModel, Cost, CostAverage, Discontinuity, DiscontinuityError, FitError,
     MeasuredPairs, Mismatch, Representative, distances_from,
 };
 use crate::response::{FrequencyGrid, FrequencyResponse, GainDelay, PolarResponse};
@@ -39,8 +39,9 @@ impl BundleMetrics {
     ) -> Result<Self, Cancelled> {
         let distances = |kind| {
             let models = condition.bundle(kind).iter();
-            let counted = models.map(|model| CountedFrequencies::of_model(&model.dynamics, grid.omega(), coherence));
-            distances(responses.bundle(kind), &counted.collect::<Vec<_>>(), measuring, execution)
+            let coherence_weights =
+                models.map(|model| CoherenceWeights::of_model(&model.dynamics, grid.omega(), coherence));
+            distances(responses.bundle(kind), &coherence_weights.collect::<Vec<_>>(), measuring, execution)
         };
         let (physics, identified) = (distances(BundleKind::Physics)?, distances(BundleKind::Identified)?);
         let models = condition.bundle(BundleKind::Physics);
@@ -84,12 +85,13 @@ fn measured_pairs(
 
 fn distances(
     responses: &[Arc<FrequencyResponse>],
-    counted: &[Option<PairTable<CountedFrequencies>>],
+    coherence_weights: &[Option<PairTable<CoherenceWeights>>],
     measuring: &PairTable<bool>,
     execution: &Execution<'_>,
 ) -> Result<BundleDistance, Cancelled> {
     let (polar, measured) = measured_pairs(responses, measuring, execution)?;
-    let model = |model: usize| ComparedModel { responses: &polar[model], counted: counted[model].as_ref() };
+    let model =
+        |model: usize| ComparedModel { responses: &polar[model], coherence_weights: coherence_weights[model].as_ref() };
     let compared: Vec<ComparedModel<'_>> = measured.compared_models().into_iter().map(model).collect();
     let rows = execution.each(compared.len(), 1, |place| distances_from(place, &compared, &measured.compared))?;
     execution.step(polar.len() - compared.len());
@@ -126,7 +128,7 @@ pub struct ModelMismatch {
 
 impl ModelMismatch {
     fn of(simulated: &Compared, reference: &Compared, omega: &[f64], average: CostAverage) -> Self {
-        let mismatch = mismatch_table(&simulated.polar, &reference.polar, reference.counted.as_ref());
+        let mismatch = mismatch_table(&simulated.polar, &reference.polar, reference.coherence_weights.as_ref());
         let cost = mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.cost(omega, GainDelay::NONE, average)));
         Self { mismatch, cost }
     }
@@ -226,7 +228,7 @@ impl Comparison {
         let (physics, identified): (Vec<Compared>, Vec<Compared>) = (physics.collect(), identified.collect());
         let mut sums = self.delta.gain.map(|_, _| (0.0, 0_usize));
         for (simulated, reference) in physics.iter().flat_map(|a| identified.iter().map(move |b| (a, b))) {
-            let mismatch = mismatch_table(&simulated.polar, &reference.polar, reference.counted.as_ref());
+            let mismatch = mismatch_table(&simulated.polar, &reference.polar, reference.coherence_weights.as_ref());
             for (pair, gain) in delta_gains(&mismatch).iter() {
                 let Some(gain) = gain else { continue };
                 let (sum, count) = &mut sums[pair];
@@ -241,7 +243,7 @@ impl Comparison {
 
     /// The comparison of another pair of models in place of the representatives, as if it were pinned: each phase difference is
     /// laid beside that of the representatives (M13.1). Costs, the nominal model and cautions are left out.
-    pub(super) fn swapped(
+    pub(super) fn substituted(
         &self,
         [physics, identified]: [usize; 2],
         simulated: &Compared,
@@ -249,10 +251,10 @@ impl Comparison {
         omega: &[f64],
         median_phases: &PairTable<Option<f64>>,
     ) -> Self {
-        let mut mismatch = mismatch_table(&simulated.polar, &reference.polar, reference.counted.as_ref());
+        let mut mismatch = mismatch_table(&simulated.polar, &reference.polar, reference.coherence_weights.as_ref());
         for (pair, entry) in mismatch.iter_mut() {
             *entry = entry.take().map(|entry| match median_phases[pair] {
-                Some(median_phase) => entry.beside(omega, median_phase),
+                Some(median_phase) => entry.align_branch(omega, median_phase),
                 None => entry,
             });
         }
@@ -308,7 +310,7 @@ pub(super) struct Compared {
     polar: PolarResponse,
     nothing: PairTable<bool>,
     /// Which frequencies count, where coherence says that.
-    counted: Option<PairTable<CountedFrequencies>>,
+    coherence_weights: Option<PairTable<CoherenceWeights>>,
 }
 
 impl Compared {
@@ -316,7 +318,7 @@ impl Compared {
         let mut polar = PolarResponse::of(response);
         let nothing = polar.numerically_nothing();
         polar.clear(&nothing);
-        Self { polar, nothing, counted: None }
+        Self { polar, nothing, coherence_weights: None }
     }
 
     /// An identified model, by its coherence where there is a threshold for it (M4a).
@@ -326,7 +328,7 @@ impl Compared {
         grid: &FrequencyGrid,
         coherence: Option<f64>,
     ) -> Self {
-        Self { counted: CountedFrequencies::of_model(flight, grid.omega(), coherence), ..Self::of(response) }
+        Self { coherence_weights: CoherenceWeights::of_model(flight, grid.omega(), coherence), ..Self::of(response) }
     }
 
     fn has(&self, pair: Pair) -> bool {
@@ -335,6 +337,6 @@ impl Compared {
 
     /// How many frequencies of a response count, where coherence says which do.
     fn left(&self, pair: Pair) -> Option<usize> {
-        self.counted.as_ref().map(|counted| counted[pair].len())
+        self.coherence_weights.as_ref().map(|coherence_weights| coherence_weights[pair].len())
     }
 }

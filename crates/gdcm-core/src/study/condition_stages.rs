@@ -13,8 +13,9 @@ use crate::schedule::{CostChange, assess};
 
 use super::{
     BundleMetrics, Cancelled, Caution, Comparison, ConditionAnalysis, ConditionChoice, ConditionFailure,
-    ConditionModels, ConditionResponses, ConditionSwaps, DelayFrom, Execution, GridKey, LeadCompensated, LeadOffer,
-    Memo, OfferKey, PhaseCorrection, Purpose, Settings, Study, SwapMemo, SwapOptimum, Swapping,
+    ConditionModels, ConditionResponses, ConditionSubstitutions, DelayFrom, Execution, GridKey, LeadCompensated,
+    LeadOffer, Memo, OfferKey, PhaseCorrection, Purpose, Settings, Study, SubstitutedOptimum, Substituting,
+    SubstitutionMemo,
 };
 
 /// What the distances depend on, besides the models: the grid, the responses that measure them, and the coherence that counts.
@@ -33,13 +34,13 @@ pub(super) struct ConditionStages {
     figures: Memo<FiguresKey, Arc<BundleMetrics>>,
     comparison: Memo<ComparisonKey, Result<Arc<Comparison>, ConditionFailure>>,
     delay_upper_s: Memo<DelayBoundKey, f64>,
-    led: Memo<(ComparisonKey, ChannelLeads), Arc<LeadCompensated>>,
+    compensated: Memo<(ComparisonKey, ChannelLeads), Arc<LeadCompensated>>,
     gain_bounds: Memo<GainBoundsKey, GainBounds>,
     offer: Memo<(ComparisonKey, OfferKey), PhaseLeft>,
     gains: Memo<Arc<Problem>, Solved>,
     delays: Memo<Arc<Problem>, Solved>,
     cost: Memo<(ComparisonKey, ChannelCorrection), Arc<PairTable<Option<CostChange>>>>,
-    swaps: SwapMemo,
+    substitutions: SubstitutionMemo,
 }
 
 impl ConditionStages {
@@ -50,13 +51,13 @@ impl ConditionStages {
             figures: Memo::default(),
             comparison: Memo::default(),
             delay_upper_s: Memo::default(),
-            led: Memo::default(),
+            compensated: Memo::default(),
             gain_bounds: Memo::default(),
             offer: Memo::default(),
             gains: Memo::default(),
             delays: Memo::default(),
             cost: Memo::default(),
-            swaps: SwapMemo::default(),
+            substitutions: SubstitutionMemo::default(),
         }
     }
 
@@ -112,19 +113,19 @@ impl ConditionStages {
 
     /// How the figures of the condition change when other models stand in for the representatives of `analysis` (M13.1); what is
     /// kept of that is not computed again.
-    pub(super) fn swaps(
+    pub(super) fn substitutions(
         &mut self,
         study: &Study,
         analysis: &ConditionAnalysis,
         grid: &FrequencyGrid,
         execution: &Execution<'_>,
-    ) -> Result<ConditionSwaps, Cancelled> {
+    ) -> Result<ConditionSubstitutions, Cancelled> {
         let grid_key = (study.settings.band, study.settings.points);
         let responses = self.models.responses(Purpose::Comparison, grid_key, grid, execution)?;
-        let swapping = Swapping { study, analysis, grid, responses: &responses };
+        let substituting = Substituting { study, analysis, grid, responses: &responses };
         let models = &self.models;
-        self.swaps.complete(&swapping, execution, |comparison, execution| {
-            Self::of(models.clone()).optimum(comparison, &swapping, execution)
+        self.substitutions.complete(&substituting, execution, |comparison, execution| {
+            Self::of(models.clone()).optimum(comparison, &substituting, execution)
         })
     }
 
@@ -132,15 +133,15 @@ impl ConditionStages {
     fn optimum(
         &mut self,
         comparison: &Comparison,
-        swapping: &Swapping<'_>,
+        substituting: &Substituting<'_>,
         execution: &Execution<'_>,
-    ) -> Result<Option<SwapOptimum>, Cancelled> {
-        let (settings, measuring) = (&swapping.study.settings, swapping.study.dataset.measuring_pairs());
-        let key = comparison_key(swapping.study, swapping.analysis.condition.id());
-        let omega = swapping.grid.omega();
-        let asked = SolveInput { settings, measuring: &measuring, omega, comparison, key: &key };
-        let solved = self.solve(&asked, SWAP_PROOF, execution)?;
-        Ok(solved.ok().map(|solved| SwapOptimum {
+    ) -> Result<Option<SubstitutedOptimum>, Cancelled> {
+        let (settings, measuring) = (&substituting.study.settings, substituting.study.dataset.measuring_pairs());
+        let key = comparison_key(substituting.study, substituting.analysis.condition.id());
+        let omega = substituting.grid.omega();
+        let input = SolveInput { settings, measuring: &measuring, omega, comparison, key: &key };
+        let solved = self.solve(&input, SUBSTITUTION_PROOF, execution)?;
+        Ok(solved.ok().map(|solved| SubstitutedOptimum {
             correction: solved.correction(),
             gain: solved.gain_problem.delta.clone(),
             delay_s: comparison.delta.delay_s.clone(),
@@ -179,31 +180,31 @@ impl ConditionStages {
             Err(failure) => return Ok(Err(failure)),
         };
         let cost_key = key.clone();
-        let asked =
+        let input =
             SolveInput { settings, measuring: &measuring, omega: grid.omega(), comparison: &comparison, key: &key };
-        let solved = match self.solve(&asked, proofs, execution)? {
+        let solved = match self.solve(&input, proofs, execution)? {
             Ok(solved) => solved,
             Err(failure) => return Ok(Err(failure)),
         };
         let correction = solved.correction();
         let cost = self.cost.get((cost_key, correction.clone()), |(_, correction)| {
             let (models, omega, average) = (&comparison.representative, grid.omega(), settings.cost_average);
-            Arc::new(match &solved.led {
+            Arc::new(match &solved.compensated {
                 None => assess(&models.mismatch, &models.cost, correction, omega, average),
-                Some(led) => {
-                    let corrected = led.cost(|pair| correction.without_leads_on(pair), omega, average);
+                Some(compensated) => {
+                    let corrected = compensated.cost(|pair| correction.without_leads_on(pair), omega, average);
                     corrected
                         .map(|pair, cost| Some(CostChange { uncorrected: models.cost[pair]?, corrected: (*cost)? }))
                 }
             })
         });
-        let offer = match self.phase_left(&asked, &solved, execution)? {
+        let offer = match self.phase_left(&input, &solved, execution)? {
             Ok(Some(left)) => LeadOffer::of(&left, &cost),
             // An offer that cannot be made is none.
             Ok(None) | Err(_) => None,
         };
         let cautions = cautions_of(settings, &comparison, &figures);
-        let Optima { gain_problem, delay_problem, gains, delays, led } = solved;
+        let Optima { gain_problem, delay_problem, gains, delays, compensated } = solved;
         Ok(Ok(ConditionAnalysis {
             condition: Arc::clone(condition),
             figures,
@@ -212,7 +213,7 @@ impl ConditionStages {
             delay_problem,
             gains,
             delays,
-            led,
+            compensated,
             offer,
             correction,
             cost,
@@ -223,20 +224,20 @@ impl ConditionStages {
     /// The phase that leads would leave, where they are not asked for.
     fn phase_left(
         &mut self,
-        asked: &SolveInput<'_>,
+        input: &SolveInput<'_>,
         solved: &Optima,
         execution: &Execution<'_>,
     ) -> Result<PhaseLeft, Cancelled> {
-        let settings = asked.settings;
+        let settings = input.settings;
         if settings.phase == PhaseCorrection::Lead {
             return Ok(Ok(None));
         }
-        let bound_key = (asked.key.clone(), settings.quantile, settings.delay_upper_s);
-        let upper_s = self.delay_upper_s.get(bound_key, |_| asked.delay_upper_s());
-        let key = (asked.key.clone(), OfferKey::of(settings, &solved.gain_problem.constrained, upper_s));
+        let bound_key = (input.key.clone(), settings.quantile, settings.delay_upper_s);
+        let upper_s = self.delay_upper_s.get(bound_key, |_| input.delay_upper_s());
+        let key = (input.key.clone(), OfferKey::of(settings, &solved.gain_problem.constrained, upper_s));
         let stop = || execution.progress().cancelled();
         self.offer.get_or_fail(key, |(_, key)| {
-            match key.phase_left(asked.comparison, (asked.omega, settings.cost_average), &stop) {
+            match key.phase_left(input.comparison, (input.omega, settings.cost_average), &stop) {
                 Err(ProblemError::Stopped) => Err(Cancelled),
                 left => Ok(left),
             }
@@ -246,21 +247,21 @@ impl ConditionStages {
     /// The delays, then the gains on what leads leave (M15.5).
     fn solve(
         &mut self,
-        asked: &SolveInput<'_>,
+        input: &SolveInput<'_>,
         proofs: ProofBudget,
         execution: &Execution<'_>,
     ) -> Result<Result<Optima, ConditionFailure>, Cancelled> {
-        let settings = asked.settings;
+        let settings = input.settings;
         let stop = || execution.progress().cancelled();
         let solve = |problem: &Arc<Problem>| match solve(problem, proofs, &stop) {
             Err(ProblemError::Stopped) => Err(Cancelled),
             solved => Ok(solved.map(Arc::new)),
         };
-        let bound_key = (asked.key.clone(), settings.quantile, settings.delay_upper_s);
-        let upper_s = self.delay_upper_s.get(bound_key, |_| asked.delay_upper_s());
+        let bound_key = (input.key.clone(), settings.quantile, settings.delay_upper_s);
+        let upper_s = self.delay_upper_s.get(bound_key, |_| input.delay_upper_s());
         let design = (settings.phase == PhaseCorrection::Lead)
-            .then(|| Arc::new(LeadDesign::new(settings.lead, asked.omega.into())));
-        let delay_problem = Arc::new(asked.delay_problem(upper_s, design.as_deref()));
+            .then(|| Arc::new(LeadDesign::new(settings.lead, input.omega.into())));
+        let delay_problem = Arc::new(input.delay_problem(upper_s, design.as_deref()));
         let delays = self.delays.get_or_fail(Arc::clone(&delay_problem), solve)?;
         let leads = match (&delays, design) {
             (Err(error), Some(_)) => return Ok(Err(ConditionFailure::Delays(error.clone()))),
@@ -269,16 +270,16 @@ impl ConditionStages {
             }
             (_, None) => None,
         };
-        let led = leads.clone().map(|leads| {
-            let mismatch = &asked.comparison.representative.mismatch;
-            self.led.get((asked.key.clone(), leads), |(_, leads)| LeadCompensated::of(mismatch, leads))
+        let compensated = leads.clone().map(|leads| {
+            let mismatch = &input.comparison.representative.mismatch;
+            self.compensated.get((input.key.clone(), leads), |(_, leads)| LeadCompensated::of(mismatch, leads))
         });
-        let bounds_key = (asked.key.clone(), leads, settings.quantile, settings.gain_bounds);
-        let bounds = self.gain_bounds.get(bounds_key, |_| asked.gain_bounds(led.as_deref()));
-        let gain_problem = Arc::new(asked.gain_problem(bounds, led.as_deref()));
+        let bounds_key = (input.key.clone(), leads, settings.quantile, settings.gain_bounds);
+        let bounds = self.gain_bounds.get(bounds_key, |_| input.gain_bounds(compensated.as_deref()));
+        let gain_problem = Arc::new(input.gain_problem(bounds, compensated.as_deref()));
         let gains = self.gains.get_or_fail(Arc::clone(&gain_problem), solve)?;
         Ok(match (gains, delays) {
-            (Ok(gains), Ok(delays)) => Ok(Optima { gain_problem, delay_problem, gains, delays, led }),
+            (Ok(gains), Ok(delays)) => Ok(Optima { gain_problem, delay_problem, gains, delays, compensated }),
             (Err(error), _) => Err(ConditionFailure::Gains(error)),
             (_, Err(error)) => Err(ConditionFailure::Delays(error)),
         })
@@ -292,8 +293,8 @@ fn comparison_key(study: &Study, condition: ConditionId) -> ComparisonKey {
     (figures_key, study.choice(condition).of_models(), settings.cost_average, settings.gain_source)
 }
 
-/// The budget of the proof of a swap's gains: as far as that of a live answer, without a look for other minima.
-const SWAP_PROOF: ProofBudget = ProofBudget { work: 1_000_000, listing: 0, bytes: 64_000_000 };
+/// The budget of the proof of a substitution's gains: as far as that of a live answer, without a look for other minima.
+const SUBSTITUTION_PROOF: ProofBudget = ProofBudget { work: 1_000_000, listing: 0, bytes: 64_000_000 };
 
 /// What the optima of a condition are asked for.
 struct SolveInput<'a> {
@@ -311,18 +312,19 @@ impl SolveInput<'_> {
         settings.delay_upper_s.unwrap_or_else(by_quantile)
     }
 
-    fn gain_bounds(&self, led: Option<&LeadCompensated>) -> GainBounds {
-        let mismatch = led.map_or(&self.comparison.representative.mismatch, |led| &led.mismatch);
+    fn gain_bounds(&self, compensated: Option<&LeadCompensated>) -> GainBounds {
+        let mismatch =
+            compensated.map_or(&self.comparison.representative.mismatch, |compensated| &compensated.mismatch);
         self.settings.gain_bounds.unwrap_or_else(|| gain_bounds(mismatch, self.measuring, self.settings.quantile))
     }
 
-    fn gain_problem(&self, bounds: GainBounds, led: Option<&LeadCompensated>) -> Problem {
+    fn gain_problem(&self, bounds: GainBounds, compensated: Option<&LeadCompensated>) -> Problem {
         let (settings, delta) = (self.settings, &self.comparison.delta);
         Problem {
             quantity: Quantity::Gain(settings.gain_objective),
-            delta: led.map_or(&delta.gain, |led| &led.gain).clone(),
+            delta: compensated.map_or(&delta.gain, |compensated| &compensated.gain).clone(),
             constrained: settings.constrained.map(|pair, held| *held && delta.gain[pair].is_some()),
-            fitted: settings.fitted.clone(),
+            fitted: settings.fitted(),
             bounds,
             alpha: settings.alpha_gain,
             agreement: settings.agreement_db,
@@ -340,7 +342,7 @@ impl SolveInput<'_> {
             quantity: if design.is_some() { Quantity::SignedDelay } else { Quantity::Delay },
             delta: if from_band { delta.band_delay_s.clone() } else { delta.delay_s.clone() },
             constrained: settings.constrained.map(held),
-            fitted: settings.fitted.clone(),
+            fitted: settings.fitted(),
             bounds: Bounds { lower: design.map_or(0.0, LeadDesign::lower_s), upper: upper_s },
             alpha: settings.alpha_delay,
             agreement: DELAY_AGREEMENT_S,
@@ -360,12 +362,12 @@ struct Optima {
     delay_problem: Arc<Problem>,
     gains: Arc<Solution>,
     delays: Arc<Solution>,
-    led: Option<Arc<LeadCompensated>>,
+    compensated: Option<Arc<LeadCompensated>>,
 }
 
 impl Optima {
     fn correction(&self) -> ChannelCorrection {
-        let leads = self.led.as_ref().map(|led| led.leads.clone());
+        let leads = self.compensated.as_ref().map(|compensated| compensated.leads.clone());
         let of_delays = || [self.delays.inputs.clone(), self.delays.outputs.clone()];
         let [input_delays_s, output_delays_s] = leads.as_ref().map_or_else(of_delays, ChannelLeads::delays_s);
         ChannelCorrection {
@@ -401,8 +403,8 @@ fn cautions_of(settings: &Settings, comparison: &Comparison, figures: &BundleMet
     let mut cautions: Vec<Caution> = undefined.collect();
     cautions.extend(figures.discontinuity.as_ref().err().cloned().map(Caution::NoSuggestions));
     cautions.extend(comparison.cautions.iter().cloned());
-    let fitted = settings.fitted.marked();
-    cautions.extend(fitted.filter_map(|pair| Caution::of_gain(pair, comparison.delta.gain[pair]?)));
+    let fitted = settings.fitted();
+    cautions.extend(fitted.marked().filter_map(|pair| Caution::of_gain(pair, comparison.delta.gain[pair]?)));
     cautions
 }
 

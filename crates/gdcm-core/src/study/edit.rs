@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::dataset::{BundleKind, Condition, ConditionId, ModelId, Pair};
+use crate::dataset::{BandError, BundleKind, Condition, ConditionId, ModelId, Pair, PairTable};
 use crate::units::number;
 
-use super::{AdoptedModels, ConditionChoice, Setting, Study};
+use super::{AdoptedModels, ConditionChoice, Setting, Study, Value};
 
 /// One decision about a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,8 +64,12 @@ pub enum Edit {
     },
     /// Hold exactly the dataset's on-axis responses.
     ConstrainOnAxis,
-    /// Change a setting of the whole study.
-    Set(Setting),
+    /// Hold a response exactly, or free it.
+    Hold(Pair, bool),
+    /// Fit a response, or ignore it in the objective.
+    Fit(Pair, bool),
+    /// Give a setting of the whole study a value ([`Setting::to`]).
+    Set(&'static Setting, Value),
     /// Put models identified from flight records into conditions, in place of the identified models there.
     TakeModels(Vec<(ConditionId, Arc<AdoptedModels>)>),
     /// Put the identified models of the dataset's file back into a condition.
@@ -112,7 +116,7 @@ pub enum EditRefusal {
         model: String,
     },
     /// A rejected model cannot represent its bundle.
-    #[error("condition {condition}: \"{model}\" is rejected; restore it before pinning it")]
+    #[error("condition {condition}: \"{model}\" is rejected; restore it before using it as representative")]
     PinRejected {
         /// The condition's id.
         condition: ConditionId,
@@ -170,6 +174,15 @@ pub enum EditRefusal {
         /// The value given.
         found: f64,
     },
+    /// The two ends of the band are wrong.
+    #[error(transparent)]
+    Band(#[from] BandError),
+    /// A setting cannot have a value of this kind.
+    #[error("{setting}: this is not one of its values")]
+    NotAValue {
+        /// The setting's name.
+        setting: &'static str,
+    },
     /// The dataset has no such condition.
     #[error("the dataset has no condition {condition}")]
     NoCondition {
@@ -205,17 +218,23 @@ impl Edit {
             Edit::RestoreAll { condition } => format!("restore all (condition {condition})"),
             Edit::RejectEach(models) => format!("reject {} models", models.len()),
             Edit::RestoreEach(models) => format!("restore {} models", models.len()),
-            Edit::Pin(id) => format!("pin {}", name_of(id)),
-            Edit::Unpin { condition, .. } => format!("unpin (condition {condition})"),
+            Edit::Pin(id) => format!("use {} as representative", name_of(id)),
+            Edit::Unpin { condition, .. } => format!("use the medoid as representative (condition {condition})"),
             Edit::SetScheduled { condition, scheduled: true } => format!("schedule condition {condition}"),
             Edit::SetScheduled { condition, .. } => format!("leave condition {condition} out"),
             Edit::SetHeldOut { condition, held_out: true } => format!("hold condition {condition} out"),
-            Edit::SetHeldOut { condition, .. } => format!("hold condition {condition} out no more"),
+            Edit::SetHeldOut { condition, .. } => format!("no longer hold condition {condition} out"),
             Edit::ConstrainOnAxis => "hold the on-axis responses".to_owned(),
-            Edit::Set(setting) => setting.label(&study.dataset),
+            Edit::Hold(pair, held) => {
+                format!("{} {}", if *held { "hold" } else { "release" }, study.dataset.pair_name(*pair))
+            }
+            Edit::Fit(pair, fitted) => {
+                format!("{} {}", if *fitted { "fit" } else { "ignore" }, study.dataset.pair_name(*pair))
+            }
+            Edit::Set(setting, _) => setting.name.to_owned(),
             Edit::TakeModels(taken) => match taken.as_slice() {
-                [(condition, _)] => format!("take identified models (condition {condition})"),
-                _ => format!("take identified models ({} conditions)", taken.len()),
+                [(condition, _)] => format!("use identified models (condition {condition})"),
+                _ => format!("use identified models ({} conditions)", taken.len()),
             },
             Edit::ReturnModels { condition } => {
                 format!("put the file's identified models back (condition {condition})")
@@ -230,7 +249,7 @@ impl Edit {
     /// Whether two decisions in a row are one to the engineer: two positions of the same slider.
     pub fn continues(&self, earlier: &Edit) -> bool {
         match (self, earlier) {
-            (Edit::Set(later), Edit::Set(earlier)) => later.continues(earlier),
+            (Edit::Set(later, _), Edit::Set(earlier, _)) => later == earlier,
             _ => false,
         }
     }
@@ -261,7 +280,9 @@ impl Study {
             Edit::SetScheduled { condition, scheduled } => self.condition(*condition)?.1.scheduled = *scheduled,
             Edit::SetHeldOut { condition, held_out } => self.condition(*condition)?.1.held_out = *held_out,
             Edit::ConstrainOnAxis => self.settings.constrained = self.dataset.on_axis().clone(),
-            Edit::Set(setting) => return self.settings.apply(setting),
+            Edit::Hold(pair, held) => mark(&mut self.settings.constrained, *pair, *held)?,
+            Edit::Fit(pair, fitted) => mark(&mut self.settings.ignored, *pair, !*fitted)?,
+            Edit::Set(setting, value) => return setting.set(&mut self.settings, *value),
             Edit::TakeModels(taken) => return self.take_models(taken),
             Edit::ReturnModels { condition } => return self.return_models(*condition),
             Edit::KeepVariant { name } => return self.keep_variant(name),
@@ -352,6 +373,14 @@ impl Study {
         choice.pinned = Some(id.name.clone());
         Ok(())
     }
+}
+
+fn mark(table: &mut PairTable<bool>, pair: Pair, value: bool) -> Result<(), EditRefusal> {
+    if pair.output >= table.outputs() || pair.input >= table.inputs() {
+        return Err(EditRefusal::NoResponse { pair });
+    }
+    table[pair] = value;
+    Ok(())
 }
 
 pub(super) fn check_length(what: &'static str, text: &str, most: usize) -> Result<(), EditRefusal> {

@@ -101,21 +101,21 @@ impl Engine {
         Ok(Analysis { study, omega, conditions, schedule, assessment, uncertainty: None })
     }
 
-    /// How sure each figure of `analysis` is (M13). Swaps of models that do not depend on what changed since the last call are not
+    /// How sure each figure of `analysis` is (M13). Substitutions of models that do not depend on what changed since the last call are not
     /// computed again.
     pub fn uncertainty(&mut self, analysis: &Analysis, progress: &dyn Progress) -> Result<Uncertainty, Cancelled> {
         let study = &analysis.study;
         self.take(&study.dataset);
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
-        // A response and a swap for each model.
+        // A response and a substitution for each model.
         let total = study.dataset.conditions().iter().map(|of| 2 * model_count(of)).sum();
         let execution = Execution::new(self.executor.as_ref(), progress, total);
         let analysed =
             self.conditions.iter_mut().filter_map(|(id, stages)| Some((*id, stages, analysis.condition(*id)?)));
-        let swaps = execution.each_mut(analysed.collect(), |(id, stages, condition)| {
-            Ok((id, stages.swaps(study, condition, &grid, &execution)?))
+        let substitutions = execution.each_mut(analysed.collect(), |(id, stages, condition)| {
+            Ok((id, stages.substitutions(study, condition, &grid, &execution)?))
         })?;
-        Ok(Uncertainty::of(analysis, &swaps))
+        Ok(Uncertainty::of(analysis, &substitutions))
     }
 
     /// The curves of every model of one condition on `points` frequencies of `band`; none of a condition that is not there.
@@ -218,8 +218,8 @@ fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCautio
     const NOTHING_S: f64 = 2e-3;
     let chosen = study.dataset.conditions().iter().filter(|condition| study.choice(condition.id()).is_in_schedule());
     let leads = chosen.filter_map(|condition| {
-        let led = outcomes.get(&condition.id())?.as_ref().ok()?.led.as_ref()?;
-        Some((condition.id(), &led.leads))
+        let compensated = outcomes.get(&condition.id())?.as_ref().ok()?.compensated.as_ref()?;
+        Some((condition.id(), &compensated.leads))
     });
     let leads: Vec<(ConditionId, &ChannelLeads)> = leads.collect();
     let (inputs, outputs) = (study.dataset.inputs().len(), study.dataset.outputs().len());

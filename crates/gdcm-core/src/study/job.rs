@@ -305,7 +305,7 @@ impl PartialEq for UncertaintyJob {
 }
 
 impl Job for UncertaintyJob {
-    /// An engine that keeps responses and swaps from one analysis to the next.
+    /// An engine that keeps responses and substitutions from one analysis to the next.
     type Tools = Engine;
     type Output = Arc<Uncertainty>;
 

@@ -22,7 +22,7 @@ pub struct LeadCompensated {
     pub leads: ChannelLeads,
     /// Difference of every response that both models have; the pure delays among the leads are not in it.
     pub mismatch: PairTable<Option<Mismatch>>,
-    /// G of the led representative, `[output, input]`.
+    /// G of the compensated representative, `[output, input]`.
     pub gain: PairTable<Option<f64>>,
 }
 
@@ -72,7 +72,7 @@ pub(super) struct OfferKey {
 
 impl OfferKey {
     pub(super) fn of(settings: &Settings, held: &PairTable<bool>, upper_s: f64) -> Self {
-        Self { held: held.clone(), fitted: settings.fitted.clone(), upper_s, lead: settings.lead }
+        Self { held: held.clone(), fitted: settings.fitted(), upper_s, lead: settings.lead }
     }
 
     /// J_phase of each response that leads would leave; none where not all held responses want lead.
@@ -136,7 +136,7 @@ const ABOVE: f64 = 10.0;
 /// a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB above the band". What a response wants has its bar, where `sure` knows
 /// it: "65 ± 4 ms" (M13).
 pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncertainty>) -> Vec<String> {
-    let Some(led) = &result.led else { return Vec::new() };
+    let Some(compensated) = &result.compensated else { return Vec::new() };
     let (inputs, outputs) = study.dataset.names_of_channels();
     let top = study.settings.band.max();
     let half_ms = |pair: Pair| {
@@ -148,13 +148,13 @@ pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncer
         let wanted_s = result.wanted_delay_s(pair)?;
         let ms = |tau_s: f64| telling(s_to_ms(tau_s.abs()), 0);
         let part = |channel: Channel| {
-            let tau_s = led.leads.tau_s(channel);
+            let tau_s = compensated.leads.tau_s(channel);
             let sign = if (tau_s > 0.0) == (wanted_s > 0.0) || tau_s == 0.0 { "" } else { "−" };
             format!("{sign}{} on {}", ms(tau_s), channel.name(&inputs, &outputs))
         };
         let gain_db: f64 = [output, input]
             .iter()
-            .filter_map(|channel| led.leads.filter(*channel))
+            .filter_map(|channel| compensated.leads.filter(*channel))
             .map(LeadFilter::gain_at_infinity_db)
             .sum();
         let price = if gain_db > 0.05 { format!("; {} dB above the band", signed(gain_db, 1)) } else { String::new() };
@@ -171,7 +171,7 @@ pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncer
     };
     let channels = (0..inputs.len()).map(Channel::Input).chain((0..outputs.len()).map(Channel::Output));
     let filters: Vec<(Channel, LeadFilter)> =
-        channels.filter_map(|channel| Some((channel, led.leads.filter(channel)?))).collect();
+        channels.filter_map(|channel| Some((channel, compensated.leads.filter(channel)?))).collect();
     let replaced = filters.iter().map(|(channel, filter)| {
         let at_above = filter.magnitude_db(ABOVE * top);
         format!(
@@ -200,7 +200,7 @@ pub fn servo_words(filter: LeadFilter) -> String {
 
 /// What has to be known of leads, where they are asked for, in words (M15.6).
 pub fn lead_cautions(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
-    let remarks = if result.led.is_some() { lead_remarks(study, result) } else { Vec::new() };
+    let remarks = if result.compensated.is_some() { lead_remarks(study, result) } else { Vec::new() };
     remarks.into_iter().filter(|remark| remark.kind != RemarkKind::Good).map(|remark| remark.text).collect()
 }
 
@@ -267,9 +267,9 @@ fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
 
 /// What filters of first order add to the gain within the band, which the gains take back.
 fn first_order_words(study: &Study, result: &ConditionAnalysis) -> Option<String> {
-    let led = result.led.as_ref()?;
+    let compensated = result.compensated.as_ref()?;
     let rises = result.held().marked().filter_map(|pair| {
-        let rise = result.comparison.delta.gain[pair]? / led.gain[pair]?;
+        let rise = result.comparison.delta.gain[pair]? / compensated.gain[pair]?;
         Some((pair, ratio_to_db(rise)))
     });
     let (pair, rise_db) = rises.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;

@@ -4,9 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId, PairTable};
 
-use super::{AdoptedModels, ConditionChoice, Edit, Settings, Study, Variant};
+use super::{AdoptedModels, ConditionChoice, Edit, ResponseNames, Settings, Study, Variant};
 
 /// One thing in which a dataset differs from the one that a study was made with, or a decision that has no place in it.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,12 +86,8 @@ impl fmt::Display for Difference {
 /// Every decision of a study by the names of channels, conditions and models: it outlives the dataset that it was taken about.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decisions {
-    /// Settings; which responses are held and fitted is in the two lists instead.
-    pub settings: Settings,
-    /// Responses held exactly: output, input.
-    pub constrained: Vec<(String, String)>,
-    /// Responses that the objective ignores: output, input.
-    pub ignored: Vec<(String, String)>,
+    /// Settings.
+    pub settings: Settings<ResponseNames>,
     /// Choices in each condition.
     pub choices: BTreeMap<ConditionId, ConditionChoice>,
     /// Models taken in place of those of the file.
@@ -101,12 +99,8 @@ pub struct Decisions {
 impl Decisions {
     /// The decisions of a study.
     pub fn of(study: &Study) -> Self {
-        let dataset = &study.dataset;
-        let names = |table: &PairTable<bool>| table.marked().map(|pair| dataset.channel_names(pair)).collect();
         Self {
-            settings: study.settings.clone(),
-            constrained: names(&study.settings.constrained),
-            ignored: names(&study.settings.fitted.map(|_, fitted| !fitted)),
+            settings: study.settings.named(&study.dataset),
             choices: study.choices.clone(),
             taken: study.taken_models().map(|(id, taken)| (id, Arc::clone(taken))).collect(),
             variants: study
@@ -121,9 +115,7 @@ impl Decisions {
     pub fn applied_to(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
         let mut study = Study::new(dataset);
         let mut differences = Vec::new();
-        let constrained = marked("hold", &self.constrained, &study, &mut differences);
-        let fitted = marked("ignore", &self.ignored, &study, &mut differences).map(|_, ignored| !ignored);
-        study.settings = Settings { constrained, fitted, ..self.settings.clone() };
+        study.settings = self.settings.with_responses(|verb, names| marked(verb, names, &study, &mut differences));
         for taken in &self.taken {
             let edit = Edit::TakeModels(vec![taken.clone()]);
             carry_out(&edit, &mut study, &mut differences);
@@ -144,14 +136,9 @@ impl Decisions {
 }
 
 /// The listed responses as a table.
-fn marked(
-    verb: &str,
-    listed: &[(String, String)],
-    study: &Study,
-    differences: &mut Vec<Difference>,
-) -> PairTable<bool> {
+fn marked(verb: &str, listed: &ResponseNames, study: &Study, differences: &mut Vec<Difference>) -> PairTable<bool> {
     let mut table = study.settings.constrained.map(|_, _| false);
-    for (output, input) in listed {
+    for (output, input) in &listed.0 {
         match study.dataset.find_pair(output, input) {
             Some(pair) => table[pair] = true,
             None => differences.push(Difference::NotApplied {
@@ -188,7 +175,7 @@ fn carry_out(edit: &Edit, study: &mut Study, differences: &mut Vec<Difference>) 
 
 impl Study {
     /// This study of another state of its dataset: with every decision that still applies, and all that is different.
-    pub fn carried_over(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
+    pub fn reconciled(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
         let mut differences = Inventory::of(self.file_dataset()).differences(&dataset);
         let (study, not_applied) = Decisions::of(self).applied_to(dataset);
         differences.extend(not_applied);
@@ -201,9 +188,13 @@ impl Inventory {
     pub fn differences(&self, dataset: &Dataset) -> Vec<Difference> {
         let now = Inventory::of(dataset);
         let mut differences = Vec::new();
-        let ids: BTreeSet<ConditionId> = self.conditions.keys().chain(now.conditions.keys()).copied().collect();
+        let by_id = |inventory: &'_ Inventory| -> BTreeMap<ConditionId, ConditionInventory> {
+            inventory.0.iter().map(|condition| (condition.id, condition.clone())).collect()
+        };
+        let (before, now) = (by_id(self), by_id(&now));
+        let ids: BTreeSet<ConditionId> = before.keys().chain(now.keys()).copied().collect();
         for id in ids {
-            match (self.conditions.get(&id), now.conditions.get(&id)) {
+            match (before.get(&id), now.get(&id)) {
                 (Some(_), None) => differences.push(Difference::ConditionRemoved(id)),
                 (None, Some(_)) => differences.push(Difference::ConditionAdded(id)),
                 (Some(before), Some(now)) => {
@@ -241,8 +232,10 @@ fn compare_bundles(
 }
 
 /// The models of one condition: name, and fingerprint of the numbers, the bands and the trim.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConditionInventory {
+    /// The condition.
+    pub id: ConditionId,
     /// True airspeed \[kt\].
     pub airspeed_kt: f64,
     /// The physics models.
@@ -258,6 +251,7 @@ impl ConditionInventory {
             models.map(|model| (model.name.clone(), model.fingerprint())).collect()
         };
         Self {
+            id: condition.id(),
             airspeed_kt: condition.flight_state().airspeed_kt,
             physics: models(BundleKind::Physics),
             identified: models(BundleKind::Identified),
@@ -274,16 +268,12 @@ impl ConditionInventory {
 }
 
 /// What a dataset holds, small enough to stand in the file of a study: of it, a study tells what has changed since.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Inventory {
-    /// Each condition.
-    pub conditions: BTreeMap<ConditionId, ConditionInventory>,
-}
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Inventory(pub Vec<ConditionInventory>);
 
 impl Inventory {
     /// The inventory of a dataset.
     pub fn of(dataset: &Dataset) -> Self {
-        let conditions = dataset.conditions().iter();
-        Self { conditions: conditions.map(|condition| (condition.id(), ConditionInventory::of(condition))).collect() }
+        Self(dataset.conditions().iter().map(|condition| ConditionInventory::of(condition)).collect())
     }
 }

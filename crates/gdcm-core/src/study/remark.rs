@@ -101,7 +101,8 @@ fn agreement_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
 /// That coherence weighs, where it leaves nothing out; a caution says so where it does (M4a).
 fn coherence_remark(result: &ConditionAnalysis) -> Option<Remark> {
     let mismatches = result.comparison.representative.mismatch.iter();
-    let weighed = mismatches.filter(|(_, entry)| entry.as_ref().is_some_and(|entry| entry.counted.is_some())).count();
+    let weighed =
+        mismatches.filter(|(_, entry)| entry.as_ref().is_some_and(|entry| entry.coherence_weights.is_some())).count();
     let is_told = result.cautions.iter().any(|caution| matches!(caution, Caution::NotCoherent { .. }));
     (weighed > 0 && !is_told)
         .then(|| Remark::new(RemarkKind::Good, format!("Coherence weighs J, G and D of {weighed} responses.")))

@@ -3,16 +3,19 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::dataset::{BundleKind, ConditionId, Dataset, ModelId};
 
 use super::{Edit, EditRefusal, Settings, Taken, check_length};
 
 /// The engineer's choices in one bundle.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct BundleChoice {
     /// Names of the rejected models.
     pub rejected: BTreeSet<String>,
-    /// Why, in the engineer's words, for those of them where that was said.
+    /// Why, in the engineer's words, for those of them where that was said; studies of older programs do not say it.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub reasons: BTreeMap<String, String>,
     /// Name of the model that represents the bundle in place of the medoid; never a rejected one.
     pub pinned: Option<String>,

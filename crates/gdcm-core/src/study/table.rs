@@ -38,7 +38,7 @@ impl Table {
         let widths: Vec<usize> = (0..self.columns.len())
             .map(|column| cells_of(column).map(|cell| cell.chars().count()).max().unwrap_or(0))
             .collect();
-        let figures: Vec<bool> = (0..self.columns.len()).map(|column| self.has_figures(column)).collect();
+        let figures: Vec<bool> = (0..self.columns.len()).map(|column| self.has_numbers(column)).collect();
         let mut text = if self.title.is_empty() { String::new() } else { format!("{}\n", self.title) };
         for record in records() {
             let cells = record.iter().zip(&widths).zip(&figures).map(|((cell, &width), figures)| {
@@ -51,14 +51,14 @@ impl Table {
     }
 
     /// Whether every cell of a column that is not empty is a figure, and there is one.
-    pub fn has_figures(&self, column: usize) -> bool {
+    pub fn has_numbers(&self, column: usize) -> bool {
         let mut cells = self.rows.iter().map(|row| row[column].as_str()).filter(|cell| !cell.is_empty()).peekable();
-        cells.peek().is_some() && cells.all(is_figure)
+        cells.peek().is_some() && cells.all(is_number)
     }
 }
 
 /// Whether a text is a number, with whichever minus sign, or the dash that stands for none.
-fn is_figure(cell: &str) -> bool {
+fn is_number(cell: &str) -> bool {
     cell == "–" || cell == "—" || cell.replacen('\u{2212}', "-", 1).parse::<f64>().is_ok()
 }
 
@@ -80,18 +80,13 @@ fn probability(p: Option<f64>) -> String {
 
 /// The differences of net gains at equal airspeed, the most times what the bundles explain first, with the difference of each row.
 pub fn difference_table(dataset: &Dataset, uncertainty: &Uncertainty) -> (Table, Vec<AirspeedDifference>) {
-    let columns = ["response", "conditions", "airspeed [kt]", "difference [%]", "times", "Holm p", "verdict"];
+    let columns = ["response", "conditions", "airspeed [kt]", "difference [%]", "× expected", "Holm p", "verdict"];
     let mut table = Table::new("Differences at equal airspeed", columns);
     let mut differences = uncertainty.differences.clone();
     let ratio = |of: &AirspeedDifference| of.difference.ratio().unwrap_or_default();
     differences.sort_by(|a, b| ratio(b).total_cmp(&ratio(a)));
     for of in &differences {
         let [first, second] = of.conditions;
-        let verdict = match (of.p_holm, of.is_beyond(uncertainty.level)) {
-            (None, _) => "no spread",
-            (_, true) => "real, or model form",
-            (_, false) => "within what they can make",
-        };
         table.row([
             dataset.pair_name(of.pair),
             format!("{first} and {second}"),
@@ -99,7 +94,7 @@ pub fn difference_table(dataset: &Dataset, uncertainty: &Uncertainty) -> (Table,
             signed(100.0 * of.difference.delta, 1),
             cell(of.difference.ratio(), 1),
             probability(of.p_holm),
-            verdict.to_owned(),
+            of.verdict(uncertainty.level).to_owned(),
         ]);
     }
     (table, differences)
@@ -144,16 +139,16 @@ pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
         "response",
         "about",
         "scatter [%]",
-        "trim [%]",
+        "trim uncertainty [%]",
         "identification [%]",
-        "rest [%]",
-        "rest, interval [%]",
-        "times",
+        "unexplained [%]",
+        "unexplained, interval [%]",
+        "× expected",
     ];
     let mut table = Table::new("What the scatter of the net gains is made of", columns);
     let deviation = |variance: f64| percent(Some(variance.sqrt()));
     let interval = |split: &VarianceDecomposition| {
-        let ends = split.rest_interval(uncertainty.level);
+        let ends = split.unexplained_interval(uncertainty.level);
         ends.map_or_else(|| NONE.to_owned(), |[low, high]| format!("{} to {}", percent(Some(low)), percent(Some(high))))
     };
     for scatter in &uncertainty.scatter {
@@ -165,7 +160,7 @@ pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
                 deviation(split.scatter),
                 deviation(split.trim),
                 deviation(split.identification),
-                deviation(split.rest()),
+                deviation(split.unexplained()),
                 interval(split),
                 cell(split.ratio(), 1),
             ]);
@@ -182,9 +177,9 @@ pub fn bar_table(analysis: &Analysis, uncertainty: &Uncertainty) -> Table {
         "response",
         "net gain",
         &level,
-        "trim [%]",
+        "trim uncertainty [%]",
         "identification [%]",
-        "left in the band [%]",
+        "residual in the band [%]",
         "remarks",
     ];
     let mut table = Table::new("Error bars of the net gains", columns);

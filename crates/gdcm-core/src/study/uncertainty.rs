@@ -11,7 +11,7 @@ use crate::uncertainty::{
     SecondVariableEffect, SecondVariableError, VarianceDecomposition, bars, holm,
 };
 
-use super::{Analysis, ConditionAnalysis, ConditionSwaps, bar_source, left_in_band};
+use super::{Analysis, ConditionAnalysis, ConditionSubstitutions, bar_source, left_in_band};
 
 /// How sure the figures of an analysis are.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +40,7 @@ pub struct ConditionUncertainty {
     /// `(Q84 - Q16) / 2` over the band of `ln |H_ref| / |H_sim|` of the representatives: what one gain leaves over.
     pub left_in_band: PairTable<Option<f64>>,
     /// What the bars are made of.
-    pub swaps: ConditionSwaps,
+    pub substitutions: ConditionSubstitutions,
 }
 
 /// What the scatter of one on-axis net gain is made of (M13.5).
@@ -118,19 +118,23 @@ impl ScheduleBands {
 }
 
 impl Uncertainty {
-    /// What the swaps of the conditions of an analysis say.
-    pub(super) fn of(analysis: &Analysis, swaps: &[(ConditionId, ConditionSwaps)]) -> Self {
+    /// What the substitutions of the conditions of an analysis say.
+    pub(super) fn of(analysis: &Analysis, substitutions: &[(ConditionId, ConditionSubstitutions)]) -> Self {
         let (study, level) = (&analysis.study, analysis.study.settings.uncertainty.level);
-        let analysed: Vec<(&ConditionAnalysis, &ConditionSwaps)> =
-            swaps.iter().filter_map(|(id, swaps)| Some((analysis.condition(*id)?, swaps))).collect();
+        let analysed: Vec<(&ConditionAnalysis, &ConditionSubstitutions)> = substitutions
+            .iter()
+            .filter_map(|(id, substitutions)| Some((analysis.condition(*id)?, substitutions)))
+            .collect();
         let sources: Vec<BarSource<'_>> =
-            analysed.iter().map(|(result, swaps)| bar_source(analysis, result, swaps)).collect();
+            analysed.iter().map(|(result, substitutions)| bar_source(analysis, result, substitutions)).collect();
         let made = bars(&sources, study.settings.uncertainty.prior_degrees);
-        let of_condition =
-            |((result, swaps), bars): (&(&ConditionAnalysis, &ConditionSwaps), ScalarTable<Option<Bar>>)| {
-                let swaps = ConditionSwaps::clone(swaps);
-                (result.condition.id(), ConditionUncertainty { bars, left_in_band: left_in_band(result), swaps })
-            };
+        let of_condition = |((result, substitutions), bars): (
+            &(&ConditionAnalysis, &ConditionSubstitutions),
+            ScalarTable<Option<Bar>>,
+        )| {
+            let substitutions = ConditionSubstitutions::clone(substitutions);
+            (result.condition.id(), ConditionUncertainty { bars, left_in_band: left_in_band(result), substitutions })
+        };
         let conditions: BTreeMap<ConditionId, ConditionUncertainty> =
             analysed.iter().zip(made).map(of_condition).collect();
         let scheduled = analysis.scheduled();
@@ -172,15 +176,19 @@ impl Uncertainty {
 
     /// What the differences at equal airspeed come to, in a sentence.
     pub fn differences_in_words(&self) -> String {
-        let beyond = self.differences.iter().filter(|of| of.is_beyond(self.level)).count();
+        let beyond = self.differences.iter().filter(|of| of.is_significant(self.level)).count();
         match (self.differences.len(), beyond) {
             (0, _) => self.too_many_differences.map_or_else(
                 || "No two conditions fly at equal airspeed.".to_owned(),
                 |count| format!("{count} differences at equal airspeed are too many to compare."),
             ),
-            (all, 0) => format!("All {all} differences at equal airspeed are within what the bundles can make."),
+            (all, 0) => format!(
+                "None of the {all} pairs of conditions at equal airspeed has significantly different net gains."
+            ),
             (all, found) => {
-                format!("{found} of {all} differences at equal airspeed are more than the bundles explain.")
+                format!(
+                    "{found} of {all} pairs of conditions at equal airspeed have significantly different net gains."
+                )
             }
         }
     }
@@ -268,12 +276,22 @@ pub struct AirspeedDifference {
 }
 
 impl AirspeedDifference {
-    /// Whether it is more than the bundles of both conditions explain.
-    pub fn is_beyond(&self, level: f64) -> bool {
+    /// Whether it is more than is expected from trim and identification uncertainty.
+    pub fn is_significant(&self, level: f64) -> bool {
         self.p_holm.is_some_and(|p| p < 1.0 - level)
     }
 
-    /// The difference in words: "conditions 3 and 5 (45 kt) differ by 13 %, 5.4 times what the bundles explain: real, or model form".
+    /// What the test says of it.
+    pub fn verdict(&self, level: f64) -> &'static str {
+        match (self.p_holm, self.is_significant(level)) {
+            (None, _) => "no spread",
+            (_, true) => "significant: a physical effect, or a model-form error",
+            (_, false) => "not significant",
+        }
+    }
+
+    /// The difference in words: "conditions 3 and 5 (45 kt) differ by 13 %, 5.4 × expected from trim and identification uncertainty; significant: a
+    /// physical effect, or a model-form error".
     pub fn words(&self, level: f64) -> String {
         let [first, second] = self.conditions;
         let (airspeed, percent) = (self.airspeed_kt, 100.0 * self.difference.delta.abs());
@@ -281,8 +299,7 @@ impl AirspeedDifference {
         let Some(ratio) = self.difference.ratio() else {
             return format!("{differ}; their bundles have no spread to compare that with");
         };
-        let verdict = if self.is_beyond(level) { "real, or model form" } else { "within what they can make" };
-        format!("{differ}, {ratio:.1} times what the bundles explain: {verdict}")
+        format!("{differ}, {ratio:.1} × expected from trim and identification uncertainty; {}", self.verdict(level))
     }
 }
 

@@ -1,5 +1,7 @@
 //! The error bar of one value (M13.3): its settings, and the variances that it is made of.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Measurement, student_quantile};
 
 /// Why a part is what it is, where that is not the spread of the models.
@@ -21,9 +23,9 @@ pub struct Bar {
     /// The figure itself, `q_0`.
     pub value: f64,
     /// What not knowing the trim flown makes, `s_phys`; none where no other physics model is kept.
-    pub trim: Option<Part>,
+    pub trim: Option<VarianceComponent>,
     /// What not knowing the flight's response better makes, `s_id`; none where nothing says it.
-    pub identification: Option<Part>,
+    pub identification: Option<VarianceComponent>,
     /// Where the identification part comes from.
     pub source: IdentificationSource,
     /// Swaps in which the figure does not exist.
@@ -44,24 +46,24 @@ impl Bar {
     }
 
     /// The parts that are known.
-    pub fn parts(&self) -> impl Iterator<Item = Part> + use<> {
+    pub fn parts(&self) -> impl Iterator<Item = VarianceComponent> + use<> {
         [self.trim, self.identification].into_iter().flatten()
     }
 
     /// Degrees of freedom of `u`; none where the bundle has no spread.
-    pub fn degrees(&self) -> Option<f64> {
+    pub fn degrees_of_freedom(&self) -> Option<f64> {
         satterthwaite(self.parts())
     }
 
     /// Half-width `h = t(max(nu, 1)) u` of the whole bar; none where there is no spread, or none is known.
     pub fn half_width(&self, level: f64) -> Option<f64> {
-        self.degrees().map(|degrees| student_quantile(level, degrees) * self.deviation())
+        self.degrees_of_freedom().map(|degrees| student_quantile(level, degrees) * self.deviation())
     }
 
     /// Half-width of the inner bar, "for this physics model": `t(nu_id) s_id`.
     pub fn inner_half_width(&self, level: f64) -> Option<f64> {
         let part = self.identification.filter(|part| part.variance > 0.0)?;
-        Some(student_quantile(level, part.degrees) * part.variance.sqrt())
+        Some(student_quantile(level, part.degrees_of_freedom) * part.variance.sqrt())
     }
 
     /// The whole bar, cut to the values that the figure can have.
@@ -108,17 +110,17 @@ impl Bar {
 
 /// A variance with its degrees of freedom. Of a gain the variance is that of its natural logarithm, of a delay \[s^2\].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Part {
+pub struct VarianceComponent {
     /// The mean square.
     pub variance: f64,
     /// Degrees of freedom, at least 1; infinite where it is taken as known.
-    pub degrees: f64,
+    pub degrees_of_freedom: f64,
 }
 
 /// Changes of an optimum that are no larger, in natural logarithms or \[s\], are rounding: identical models have no spread.
 const ROUNDING: f64 = 1e-9;
 
-impl Part {
+impl VarianceComponent {
     /// The mean square of some changes about the representative's figure (M13.1); none of none.
     ///
     /// Not a variance about the mean, and never divided by the number of models: a further model does not make the trim flown
@@ -127,7 +129,7 @@ impl Part {
         let degrees = changes.len() as f64;
         let beyond_rounding = changes.iter().filter(|change| change.abs() > ROUNDING);
         let square: f64 = beyond_rounding.map(|change| change * change).sum();
-        (!changes.is_empty()).then(|| Self { variance: square / degrees, degrees })
+        (!changes.is_empty()).then(|| Self { variance: square / degrees, degrees_of_freedom: degrees })
     }
 
     /// The same part, so many times as large in variance.
@@ -139,15 +141,15 @@ impl Part {
 /// Degrees of freedom of a sum of parts, `u^4 / sum(s^4 / nu)`; none where all of them are zero.
 ///
 /// F. E. Satterthwaite, "An approximate distribution of estimates of variance components", Biometrics Bulletin 2 (1946).
-pub fn satterthwaite(parts: impl IntoIterator<Item = Part>) -> Option<f64> {
-    let parts: Vec<Part> = parts.into_iter().filter(|part| part.variance > 0.0).collect();
+pub fn satterthwaite(parts: impl IntoIterator<Item = VarianceComponent>) -> Option<f64> {
+    let parts: Vec<VarianceComponent> = parts.into_iter().filter(|part| part.variance > 0.0).collect();
     // Beside the greatest: the squares of small variances underflow.
     let greatest = parts.iter().map(|part| part.variance).fold(0.0, f64::max);
     let (mut sum, mut spread) = (0.0, 0.0);
     for part in &parts {
         let share = part.variance / greatest;
         sum += share;
-        spread += share * share / part.degrees;
+        spread += share * share / part.degrees_of_freedom;
     }
     (!parts.is_empty()).then(|| sum * sum / spread)
 }
@@ -156,29 +158,24 @@ pub fn satterthwaite(parts: impl IntoIterator<Item = Part>) -> Option<f64> {
 /// `d_0 = min(prior, sum of the others' n)`. None where no condition has two identified models.
 ///
 /// `own` is the mean square of each condition, none where it has one model only, which then borrows all of it.
-pub fn pooled(own: &[Option<Part>], prior_degrees: f64) -> Vec<Option<Part>> {
-    let count: f64 = own.iter().flatten().map(|part| part.degrees).sum();
-    let square: f64 = own.iter().flatten().map(|part| part.degrees * part.variance).sum();
-    let of_condition = |own: &Option<Part>| {
-        let (n, variance) = own.map_or((0.0, 0.0), |own| (own.degrees, own.variance));
+pub fn pooled(own: &[Option<VarianceComponent>], prior_degrees: f64) -> Vec<Option<VarianceComponent>> {
+    let count: f64 = own.iter().flatten().map(|part| part.degrees_of_freedom).sum();
+    let square: f64 = own.iter().flatten().map(|part| part.degrees_of_freedom * part.variance).sum();
+    let of_condition = |own: &Option<VarianceComponent>| {
+        let (n, variance) = own.map_or((0.0, 0.0), |own| (own.degrees_of_freedom, own.variance));
         let borrowed = prior_degrees.min(count - n);
         let degrees = n + borrowed;
         // A prior of zero degrees leaves a condition with one model nothing to go by.
-        (count > 0.0 && degrees > 0.0)
-            .then(|| Part { variance: (n * variance + borrowed * square / count) / degrees, degrees })
+        (count > 0.0 && degrees > 0.0).then(|| VarianceComponent {
+            variance: (n * variance + borrowed * square / count) / degrees,
+            degrees_of_freedom: degrees,
+        })
     };
     own.iter().map(of_condition).collect()
 }
 
-/// Least and greatest level of a bar.
-pub const LEVELS: [f64; 2] = [0.5, 0.999];
-/// Greatest weight of the other conditions' identification.
-pub const GREATEST_PRIOR: f64 = 100.0;
-/// Greatest number of averages, and greatest length of a window \[s\].
-pub const GREATEST_MEASUREMENT: f64 = 1e6;
-
 /// How bars are made; no gain and no delay depends on it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct UncertaintySettings {
     /// Level `L` of every bar, interval and test.
     pub level: f64,
@@ -186,10 +183,13 @@ pub struct UncertaintySettings {
     /// condition alone.
     pub prior_degrees: f64,
     /// Number of independent averages of measured responses that do not say it; none: their coherence is not used.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub averages: Option<f64>,
     /// Length of the windows \[s\] of measured responses that do not say it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window_s: Option<f64>,
     /// Whether those windows overlap by half, which makes `C_epsilon` the root of 0.55 in place of 1.
+    #[serde(default)]
     pub half_overlap: bool,
 }
 
@@ -216,8 +216,11 @@ mod tests {
     fn bar(trim: f64, identification: f64) -> Bar {
         Bar {
             value: 0.1,
-            trim: Some(Part { variance: trim * trim, degrees: 4.0 }),
-            identification: Some(Part { variance: identification * identification, degrees: 5.0 }),
+            trim: Some(VarianceComponent { variance: trim * trim, degrees_of_freedom: 4.0 }),
+            identification: Some(VarianceComponent {
+                variance: identification * identification,
+                degrees_of_freedom: 5.0,
+            }),
             source: IdentificationSource::Spread,
             left_out: 0,
             range: [f64::NEG_INFINITY, f64::INFINITY],
@@ -230,7 +233,7 @@ mod tests {
         let bar = bar(0.0316227766017, 0.0206881608656);
         let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-9, "{found} {expected}");
         near(bar.deviation(), 0.0377888872554);
-        near(bar.degrees().unwrap(), 7.11417375578);
+        near(bar.degrees_of_freedom().unwrap(), 7.11417375578);
         near(bar.half_width(0.9).unwrap(), 0.071421529124);
         near(bar.trim_share().unwrap(), 0.001 / 0.001428);
         assert_eq!(bar.remarks(), Vec::<&str>::new());
@@ -256,8 +259,10 @@ mod tests {
 mod part_tests {
     use super::*;
 
-    fn own(variances: &[f64], counts: &[f64]) -> Vec<Option<Part>> {
-        let part = |(&variance, &degrees): (&f64, &f64)| (degrees > 0.0).then_some(Part { variance, degrees });
+    fn own(variances: &[f64], counts: &[f64]) -> Vec<Option<VarianceComponent>> {
+        let part = |(&variance, &degrees): (&f64, &f64)| {
+            (degrees > 0.0).then_some(VarianceComponent { variance, degrees_of_freedom: degrees })
+        };
         variances.iter().zip(counts).map(part).collect()
     }
 
@@ -270,10 +275,10 @@ mod part_tests {
         for (part, (variance, degrees)) in five.iter().zip(expected) {
             let part = part.unwrap();
             // The reference has twelve digits.
-            assert!((part.variance - variance).abs() < 1e-14 && part.degrees == degrees, "{part:?}");
+            assert!((part.variance - variance).abs() < 1e-14 && part.degrees_of_freedom == degrees, "{part:?}");
         }
         let two = pooled(&own(&[0.0009, 0.0], &[2.0, 0.0]), 4.0);
-        assert_eq!(two, vec![Some(Part { variance: 0.0009, degrees: 2.0 }); 2]);
+        assert_eq!(two, vec![Some(VarianceComponent { variance: 0.0009, degrees_of_freedom: 2.0 }); 2]);
     }
 
     #[test]
@@ -284,14 +289,17 @@ mod part_tests {
     #[test]
     fn a_prior_of_nothing_trusts_the_condition_alone() {
         let alone = pooled(&own(&[0.0009, 0.0001, 0.0], &[2.0, 2.0, 0.0]), 0.0);
-        assert_eq!(alone[1], Some(Part { variance: 0.0001, degrees: 2.0 }));
+        assert_eq!(alone[1], Some(VarianceComponent { variance: 0.0001, degrees_of_freedom: 2.0 }));
         assert_eq!(alone[2], None, "one model says nothing by itself");
     }
 
     #[test]
     fn parts_of_nothing_have_no_degrees() {
-        assert_eq!(satterthwaite([Part { variance: 0.0, degrees: 4.0 }; 2]), None);
-        let only = satterthwaite([Part { variance: 0.0, degrees: 4.0 }, Part { variance: 1e-200, degrees: 5.0 }]);
+        assert_eq!(satterthwaite([VarianceComponent { variance: 0.0, degrees_of_freedom: 4.0 }; 2]), None);
+        let only = satterthwaite([
+            VarianceComponent { variance: 0.0, degrees_of_freedom: 4.0 },
+            VarianceComponent { variance: 1e-200, degrees_of_freedom: 5.0 },
+        ]);
         assert!((only.unwrap() - 5.0).abs() < 1e-12);
     }
 }

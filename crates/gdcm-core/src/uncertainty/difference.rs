@@ -12,7 +12,7 @@ pub struct Difference {
     /// `u_delta`, from the parts of both.
     pub deviation: f64,
     /// Degrees of freedom; none where neither has a spread.
-    pub degrees: Option<f64>,
+    pub degrees_of_freedom: Option<f64>,
 }
 
 impl Difference {
@@ -22,18 +22,18 @@ impl Difference {
         Self {
             delta: first.value - second.value,
             deviation,
-            degrees: satterthwaite(first.parts().chain(second.parts())),
+            degrees_of_freedom: satterthwaite(first.parts().chain(second.parts())),
         }
     }
 
     /// `|delta| / u_delta`: times what the bundles explain; none where they have no spread.
     pub fn ratio(&self) -> Option<f64> {
-        self.degrees.map(|_| self.delta.abs() / self.deviation)
+        self.degrees_of_freedom.map(|_| self.delta.abs() / self.deviation)
     }
 
     /// How likely so great a ratio is where there is no difference.
     pub fn p(&self) -> Option<f64> {
-        Some(student_two_sided(self.ratio()?, self.degrees?))
+        Some(student_two_sided(self.ratio()?, self.degrees_of_freedom?))
     }
 }
 

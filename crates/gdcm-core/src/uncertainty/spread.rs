@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 use std::ops::{Index, IndexMut};
 
-use super::{Bar, IdentificationSource, Part, pooled};
+use super::{Bar, IdentificationSource, VarianceComponent, pooled};
 use crate::correction::Channel;
 use crate::dataset::Pair;
 use crate::response::median;
@@ -16,7 +16,7 @@ pub type Figures = ScalarTable<Option<f64>>;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReportedUncertainty {
     /// Its variance with its degrees of freedom.
-    pub part: Part,
+    pub part: VarianceComponent,
     /// Who says it.
     pub source: IdentificationSource,
 }
@@ -24,8 +24,8 @@ pub struct ReportedUncertainty {
 /// The mean squares of one figure's changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Changes {
-    trim: Option<Part>,
-    own: Option<Part>,
+    trim: Option<VarianceComponent>,
+    own: Option<VarianceComponent>,
     left_out: usize,
 }
 
@@ -46,7 +46,11 @@ impl ConditionSpread {
             };
             let (by_trim, by_own) = (changed(trim), changed(own));
             let left_out = trim.len() + own.len() - by_trim.len() - by_own.len();
-            Changes { trim: Part::of_changes(&by_trim), own: Part::of_changes(&by_own), left_out }
+            Changes {
+                trim: VarianceComponent::of_changes(&by_trim),
+                own: VarianceComponent::of_changes(&by_own),
+                left_out,
+            }
         });
         Self { changes }
     }
@@ -70,7 +74,7 @@ pub struct BarSource<'a> {
 pub fn bars(conditions: &[BarSource<'_>], prior_degrees: f64) -> Vec<ScalarTable<Option<Bar>>> {
     let Some(first) = conditions.first() else { return Vec::new() };
     let identification = first.figures.map(|scalar, _| {
-        let own: Vec<Option<Part>> = conditions.iter().map(|of| of.spread.changes[scalar].own).collect();
+        let own: Vec<Option<VarianceComponent>> = conditions.iter().map(|of| of.spread.changes[scalar].own).collect();
         pooled(&own, prior_degrees)
     });
     let of_condition = |(place, of): (usize, &BarSource<'_>)| {
@@ -94,7 +98,7 @@ pub fn bars(conditions: &[BarSource<'_>], prior_degrees: f64) -> Vec<ScalarTable
 impl ReportedUncertainty {
     /// Whether it takes the place of the spread: where it is the larger. Models that each leave one record out spread less than any of
     /// them errs, by about the root of the number of records (Efron's jackknife); the band that they carry does not.
-    fn replaces(&self, spread: Option<Part>) -> bool {
+    fn replaces(&self, spread: Option<VarianceComponent>) -> bool {
         spread.is_none_or(|spread| self.part.variance > spread.variance)
     }
 }
@@ -231,7 +235,7 @@ pub struct CoherenceError {
 
 impl Measurement {
     /// Degrees of freedom of an error that coherence tells, `2 n_d`.
-    pub fn degrees(&self) -> f64 {
+    pub fn degrees_of_freedom(&self) -> f64 {
         2.0 * self.averages
     }
 
@@ -272,7 +276,7 @@ mod tests {
 
     #[test]
     fn the_larger_of_the_spread_and_of_what_a_model_says_of_itself_counts() {
-        let part = |variance: f64| Part { variance, degrees: 3.0 };
+        let part = |variance: f64| VarianceComponent { variance, degrees_of_freedom: 3.0 };
         for source in [IdentificationSource::ModelBand, IdentificationSource::Coherence] {
             let told = ReportedUncertainty { part: part(0.04), source };
             assert!(told.replaces(None) && told.replaces(Some(part(0.01))));

@@ -2,22 +2,22 @@
 
 use std::collections::BTreeSet;
 
-use crate::settings_entry::SettingsEntry;
-use gdcm_core::correction::{Outcome, Quantity, kkt_residual};
-use gdcm_core::dataset::{BundleKind, Condition, ConditionId, Model, PairTable, Provenance};
-use gdcm_core::fidelity::Cost;
-use gdcm_core::schedule::{Regression, Schedule, ScheduleKind, ScheduledQuantity};
-use gdcm_core::study::{Analysis, Assessed, Caution, ConditionAnalysis, ConditionChoice, lead_cautions};
-
-use super::explanation::Explanation;
-use super::names::{ByName, ChannelNames, rows};
-use super::schema::{
-    Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
-    DelayOutcome, GainOutcome, NetGain, ReasonEntry, ScheduleUsed, ScheduledDelays, ScheduledGains, ScheduledSecond,
-    ScheduledTaus, SetAsideEntry, SourceEntry, UnmatchedDelayEntry, UnmatchedGainEntry, WithoutResult,
+use gdcm_core::correction::{
+    ActiveConstraint, Channel, ChannelLeads, Conflict, ConflictKind, Outcome, Problem, Quantity, Sensitivity, Solution,
+    kkt_residual, sensitivities,
 };
-use super::uncertainty::{BarEntry, BarsEntry, UncertaintyEntry};
-use super::{NAME, VERSION};
+use gdcm_core::dataset::{self, BundleKind, Condition, ConditionId, Dataset, Model, Pair, PairTable, Provenance};
+use gdcm_core::fidelity::Cost;
+use gdcm_core::response::LeadFilter;
+use gdcm_core::schedule::{Regression, Schedule, ScheduleKind, ScheduledQuantity};
+use gdcm_core::study::{
+    AirspeedDifference, Analysis, Assessed, Caution, ConditionAnalysis, ConditionChoice, ConditionUncertainty,
+    PairScatter, SecondVariableTest, Uncertainty, lead_cautions,
+};
+use gdcm_core::uncertainty::{Bar, Scalar, VarianceDecomposition};
+
+use super::schema::*;
+use super::{ByName, NAME, VERSION};
 
 impl Corrections {
     /// The results of the chosen conditions, with the schedule of the whole study.
@@ -31,7 +31,7 @@ impl Corrections {
             version: VERSION,
             software: concat!("gdcm ", env!("CARGO_PKG_VERSION")).to_owned(),
             dataset: DatasetLabel { name: dataset.name().to_owned(), sha256: sha256.to_owned() },
-            settings: SettingsEntry::of(&analysis.study.settings, dataset),
+            settings: analysis.study.settings.named(dataset),
             conditions: Vec::new(),
             failed: Vec::new(),
             schedule: analysis.schedule.as_ref().ok().map(|schedule| gather.schedule(schedule)),
@@ -217,24 +217,24 @@ impl Gather<'_> {
             airspeed_mean_kt: airspeeds.mean_kt,
             airspeed_half_range_kt: airspeeds.half_range_kt,
             airspeed_range_kt: [airspeeds.min_kt, airspeeds.max_kt],
-            inputs: names.by_input(figures(&schedule.inputs)),
-            outputs: names.by_output(figures(&schedule.outputs)),
+            inputs: by_name(&names.inputs, figures(&schedule.inputs)),
+            outputs: by_name(&names.outputs, figures(&schedule.outputs)),
             second_variable: schedule.second.as_ref().map(|term| ScheduledSecond {
                 variable: term.variable.name().to_owned(),
                 unit: term.variable.unit().to_owned(),
                 middle: term.middle(),
                 half_range: term.half_range(),
-                inputs: names.by_input(term.inputs.clone()),
-                outputs: names.by_output(term.outputs.clone()),
+                inputs: by_name(&names.inputs, term.inputs.clone()),
+                outputs: by_name(&names.outputs, term.outputs.clone()),
             }),
             delays_s: schedule.delays.as_ref().map(|delays| ScheduledDelays {
-                inputs: names.by_input(figures(&delays.inputs)),
-                outputs: names.by_output(figures(&delays.outputs)),
+                inputs: by_name(&names.inputs, figures(&delays.inputs)),
+                outputs: by_name(&names.outputs, figures(&delays.outputs)),
                 upper_s: Some(delays.upper_s.figures().to_vec()),
             }),
             tau_s: schedule.leads.as_ref().map(|leads| ScheduledTaus {
-                inputs: names.by_input(figures(&leads.inputs)),
-                outputs: names.by_output(figures(&leads.outputs)),
+                inputs: by_name(&names.inputs, figures(&leads.inputs)),
+                outputs: by_name(&names.outputs, figures(&leads.outputs)),
                 bounds_s: leads.bounds_s,
             }),
             table: table.collect(),
@@ -281,4 +281,290 @@ fn cost_tables(result: &ConditionAnalysis) -> CostTables {
     };
     let corrected = result.cost.map(|_, change| change.map(|change| change.corrected));
     CostTables { uncorrected: table(&result.comparison.representative.cost), corrected: table(&corrected) }
+}
+
+/// The names of a dataset's channels.
+struct ChannelNames {
+    inputs: Vec<String>,
+    outputs: Vec<String>,
+}
+
+impl ChannelNames {
+    fn of(dataset: &Dataset) -> Self {
+        let names = |channels: &[dataset::Channel]| channels.iter().map(|channel| channel.name.clone()).collect();
+        Self { inputs: names(dataset.inputs()), outputs: names(dataset.outputs()) }
+    }
+
+    /// The names of a pair, output first.
+    fn pair(&self, pair: Pair) -> (String, String) {
+        (self.outputs[pair.output].clone(), self.inputs[pair.input].clone())
+    }
+
+    /// The name of a channel of the correction.
+    fn channel(&self, channel: Channel) -> String {
+        channel.name(&self.inputs, &self.outputs)
+    }
+
+    /// The names of the marked pairs.
+    fn marked(&self, table: &PairTable<bool>) -> Vec<(String, String)> {
+        table.marked().map(|pair| self.pair(pair)).collect()
+    }
+
+    /// A value for each channel.
+    fn by_channel<T>(&self, inputs: impl IntoIterator<Item = T>, outputs: impl IntoIterator<Item = T>) -> Channels<T> {
+        Channels { inputs: by_name(&self.inputs, inputs), outputs: by_name(&self.outputs, outputs) }
+    }
+
+    /// A number for each channel.
+    fn channels(&self, inputs: &[f64], outputs: &[f64]) -> Channels {
+        self.by_channel(inputs.iter().copied(), outputs.iter().copied())
+    }
+
+    /// The signed delay and the filter of each channel.
+    fn leads(&self, leads: &ChannelLeads) -> Channels<LeadEntry> {
+        let entry = |(&tau_s, filter): (&f64, &Option<LeadFilter>)| LeadEntry {
+            tau_s,
+            lead_s: filter.map(LeadFilter::lead_s),
+            zero_rad_s: filter.map(LeadFilter::zero_rad_s),
+            lag_rad_s: filter.map(LeadFilter::lag_rad_s),
+            gain_at_infinity_db: filter.map(LeadFilter::gain_at_infinity_db),
+        };
+        let [inputs, outputs] = leads.filters();
+        self.by_channel(
+            leads.inputs_s().iter().zip(inputs).map(entry),
+            leads.outputs_s().iter().zip(outputs).map(entry),
+        )
+    }
+}
+
+fn by_name<T>(names: &[String], values: impl IntoIterator<Item = T>) -> ByName<T> {
+    ByName(names.iter().cloned().zip(values).collect())
+}
+
+/// A table as rows of outputs; what is not finite is left empty, for JSON has no such numbers.
+fn rows<T>(table: &PairTable<Option<T>>, figure: impl Fn(&T) -> f64) -> Table {
+    let entry = |output, input| {
+        let entry = table[Pair { output, input }].as_ref().map(&figure);
+        entry.filter(|value| value.is_finite())
+    };
+    (0..table.outputs()).map(|output| (0..table.inputs()).map(|input| entry(output, input)).collect()).collect()
+}
+
+impl Explanation {
+    /// The explanation of the gains or of the delays.
+    fn of(problem: &Problem, solution: &Solution, names: &ChannelNames) -> Self {
+        let sensitivities = sensitivities(problem, solution);
+        Self {
+            conflicts: solution.conflicts.iter().map(|conflict| ConflictEntry::of(conflict, names)).collect(),
+            agreeing: solution.agreeing.iter().map(|agreement| ConflictEntry::of_agreement(agreement, names)).collect(),
+            remedy: solution.remedy.as_ref().map(|remedy| RemedyEntry {
+                upper: remedy.upper,
+                lower: remedy.lower,
+                free: remedy.free.iter().map(|&pair| names.pair(pair)).collect(),
+            }),
+            sensitivities: sensitivities.iter().map(|sensitivity| SensitivityEntry::of(sensitivity, names)).collect(),
+        }
+    }
+}
+
+impl ConflictEntry {
+    fn of(conflict: &Conflict, names: &ChannelNames) -> Self {
+        let (kind, figure, upper, lower) = match conflict.kind {
+            ConflictKind::AboveUpper { asked, upper, .. } => ("upper_bound", Some(asked), Some(upper), None),
+            ConflictKind::BelowLower { asked, lower: None, .. } => ("lead", Some(-asked), None, None),
+            ConflictKind::BelowLower { asked, lower, .. } => ("lower_bound", Some(asked), None, lower),
+            ConflictKind::TooFarApart { asked, upper, lower, .. } => ("both_bounds", Some(asked), Some(upper), lower),
+            ConflictKind::Loop { mismatch } => ("loop", Some(mismatch), None, None),
+            ConflictKind::Unclear => ("unclear", None, None, None),
+        };
+        Self {
+            kind: kind.to_owned(),
+            entries: conflict.entries.iter().map(|&pair| names.pair(pair)).collect(),
+            channels: conflict.channels().into_iter().map(|channel| names.channel(channel)).collect(),
+            figure,
+            upper,
+            lower,
+            words: conflict.words(&names.inputs, &names.outputs),
+        }
+    }
+
+    fn of_agreement(agreement: &Conflict, names: &ChannelNames) -> Self {
+        Self { words: agreement.agreement_words(&names.inputs, &names.outputs), ..Self::of(agreement, names) }
+    }
+}
+
+impl SensitivityEntry {
+    fn of(sensitivity: &Sensitivity, names: &ChannelNames) -> Self {
+        let (restraint, entry, channel) = match sensitivity.restraint {
+            ActiveConstraint::Held(pair) => ("held", Some(names.pair(pair)), None),
+            ActiveConstraint::LowerBound(channel) => ("lower_bound", None, Some(names.channel(channel))),
+            ActiveConstraint::UpperBound(channel) => ("upper_bound", None, Some(names.channel(channel))),
+        };
+        Self {
+            restraint: restraint.to_owned(),
+            entry,
+            channel,
+            per_unit: sensitivity.per_unit,
+            share_per_unit: sensitivity.share_per_unit,
+        }
+    }
+}
+
+impl BarEntry {
+    fn of(scalar: Scalar, bar: &Bar, level: f64) -> Self {
+        let told = |interval: Option<[f64; 2]>| {
+            interval.map(|ends| ends.map(|end| if scalar.is_delay() { end } else { end.exp() }))
+        };
+        Self {
+            interval: told(bar.interval(level)),
+            interval_identification: told(bar.inner_interval(level)),
+            u_physics: bar.trim.map(|part| part.variance.sqrt()),
+            u_identification: bar.identification.map(|part| part.variance.sqrt()),
+            degrees_of_freedom: bar.degrees_of_freedom().filter(|degrees| degrees.is_finite()),
+            left_in_band: None,
+            remarks: bar.remarks().into_iter().map(str::to_owned).collect(),
+        }
+    }
+
+    /// The bar of a net gain, with what one gain leaves over in the band.
+    fn of_net_gain(analysis: &Analysis, condition: ConditionId, pair: Pair) -> Option<Self> {
+        let uncertainty = analysis.uncertainty.as_ref()?;
+        let bar = uncertainty.bar(condition, Scalar::NetGain(pair))?;
+        let left_in_band = uncertainty.conditions.get(&condition)?.left_in_band[pair];
+        Some(Self { left_in_band, ..Self::of(Scalar::NetGain(pair), bar, uncertainty.level) })
+    }
+}
+
+impl BarsEntry {
+    /// The bars of a condition's other figures.
+    fn of(analysis: &Analysis, condition: ConditionId, names: &ChannelNames) -> Option<Self> {
+        let uncertainty = analysis.uncertainty.as_ref()?;
+        let of: &ConditionUncertainty = uncertainty.conditions.get(&condition)?;
+        let entry = |scalar| of.bars[scalar].as_ref().map(|bar| BarEntry::of(scalar, bar, uncertainty.level));
+        let table = |scalar: fn(Pair) -> Scalar| -> Vec<Vec<Option<BarEntry>>> {
+            let (outputs, inputs) = (names.outputs.len(), names.inputs.len());
+            let row = |output| (0..inputs).map(|input| entry(scalar(Pair::new(output, input)))).collect();
+            (0..outputs).map(row).collect()
+        };
+        let channels = |scalar: fn(Channel) -> Scalar| {
+            let inputs = (0..names.inputs.len()).map(|input| entry(scalar(Channel::Input(input))));
+            let outputs = (0..names.outputs.len()).map(|output| entry(scalar(Channel::Output(output))));
+            names.by_channel(inputs.collect::<Vec<_>>(), outputs.collect::<Vec<_>>())
+        };
+        let asks_band_delays = analysis.condition(condition)?.asks_band_delays();
+        Some(Self {
+            delta_gain: table(Scalar::Gain),
+            delta_delay_s: table(Scalar::Delay),
+            band_delay_s: if asks_band_delays { table(Scalar::BandDelay) } else { Vec::new() },
+            gains: channels(Scalar::ChannelGain),
+            delays_s: channels(Scalar::ChannelDelay),
+        })
+    }
+}
+
+impl SplitEntry {
+    fn of(split: &VarianceDecomposition, level: f64) -> Self {
+        Self {
+            degrees_of_freedom: split.freedom,
+            scatter: split.scatter.sqrt(),
+            physics: split.trim.sqrt(),
+            identification: split.identification.sqrt(),
+            rest: split.unexplained().sqrt(),
+            rest_interval: split.unexplained_interval(level),
+            shares: split.shares(),
+            ratio: split.ratio(),
+            p: split.p(),
+        }
+    }
+}
+
+impl UncertaintyEntry {
+    /// What follows from the bars of an analysis, where they are there.
+    fn of(analysis: &Analysis, names: &ChannelNames) -> Option<Self> {
+        let uncertainty = analysis.uncertainty.as_ref()?;
+        Some(Self {
+            level: uncertainty.level,
+            differences: differences(uncertainty, names),
+            scatter: scatter(uncertainty, names),
+            schedule_band: bands(analysis, uncertainty, names),
+            second_variable: second_variables(uncertainty, names),
+        })
+    }
+}
+
+fn differences(uncertainty: &Uncertainty, names: &ChannelNames) -> Vec<DifferenceEntry> {
+    let entry = |of: &AirspeedDifference| {
+        let (output, input) = names.pair(of.pair);
+        DifferenceEntry {
+            output,
+            input,
+            conditions: of.conditions.map(|id| id.0),
+            airspeed_kt: of.airspeed_kt,
+            delta: of.difference.delta,
+            u: of.difference.deviation,
+            degrees_of_freedom: of.difference.degrees_of_freedom.filter(|degrees| degrees.is_finite()),
+            ratio: of.difference.ratio(),
+            p: of.difference.p(),
+            p_holm: of.p_holm,
+            words: of.words(uncertainty.level),
+        }
+    };
+    uncertainty.differences.iter().map(entry).collect()
+}
+
+fn scatter(uncertainty: &Uncertainty, names: &ChannelNames) -> Vec<ScatterEntry> {
+    let entry = |of: &PairScatter| {
+        let (output, input) = names.pair(of.pair);
+        let split = |split: &Option<VarianceDecomposition>| {
+            split.as_ref().map(|split| SplitEntry::of(split, uncertainty.level))
+        };
+        ScatterEntry {
+            output,
+            input,
+            same_airspeed: split(&of.same_airspeed),
+            about_schedule: split(&of.about_schedule),
+        }
+    };
+    uncertainty.scatter.iter().map(entry).collect()
+}
+
+fn bands(analysis: &Analysis, uncertainty: &Uncertainty, names: &ChannelNames) -> Vec<ScheduleBandEntry> {
+    let (Ok(schedule), Some(bands)) = (&analysis.schedule, &uncertainty.bands) else { return Vec::new() };
+    let airspeed_kt = schedule.airspeeds.clusters_kt();
+    let pairs: PairTable<bool> = analysis.study.dataset.measuring_pairs();
+    let entry = |pair: Pair| {
+        let (output, input) = names.pair(pair);
+        let widths = airspeed_kt.iter().map(|&airspeed| bands.at(schedule, Scalar::NetGain(pair), airspeed));
+        let widths: Vec<_> = widths.collect::<Option<_>>()?;
+        Some(ScheduleBandEntry {
+            output,
+            input,
+            fit: airspeed_kt.iter().map(|&airspeed| schedule.at(airspeed).net_gain(pair).value().ln()).collect(),
+            confidence: widths.iter().map(|widths| widths.confidence).collect(),
+            scatter: widths.iter().map(|widths| widths.scatter).collect(),
+            airspeed_kt: airspeed_kt.clone(),
+        })
+    };
+    pairs.marked().filter_map(entry).collect()
+}
+
+fn second_variables(uncertainty: &Uncertainty, names: &ChannelNames) -> Vec<SecondVariableEntry> {
+    let entry = |of: &SecondVariableTest| {
+        let (output, input) = names.pair(of.pair);
+        let effect = of.effect.as_ref().ok();
+        SecondVariableEntry {
+            output,
+            input,
+            variable: of.variable.name().to_owned(),
+            effect: effect.map(|effect| effect.effect),
+            visible: effect.map(|effect| effect.visible),
+            p: effect.map(|effect| effect.p),
+            p_holm: of.p_holm,
+            left_out_without: effect.and_then(|effect| effect.left_out_without),
+            left_out_with: effect.and_then(|effect| effect.left_out_with),
+            needed: of.needed,
+            words: of.words(),
+        }
+    };
+    uncertainty.second_variables.iter().map(entry).collect()
 }

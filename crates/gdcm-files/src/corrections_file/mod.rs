@@ -1,15 +1,18 @@
 //! Result files: `corrections.json`, `corrections.csv`, `assessment.csv`.
 
-mod explanation;
 mod gather;
-mod names;
 mod schema;
 mod tables;
-mod uncertainty;
 
 use std::collections::BTreeSet;
+use std::fmt;
 use std::io::{self, Write};
+use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
+
+use serde::de::{Deserializer, MapAccess, Visitor};
+use serde::ser::Serializer;
+use serde::{Deserialize, Serialize};
 
 use gdcm_core::dataset::ConditionId;
 use gdcm_core::study::Analysis;
@@ -22,18 +25,7 @@ use tables::response_table;
 
 pub(super) use tables::channel_table;
 
-pub use explanation::{ConflictEntry, Explanation, RemedyEntry, SensitivityEntry};
-pub use names::ByName;
-pub use schema::{
-    Assessment, Channels, ConditionAssessment, ConditionCorrections, Corrections, CostTable, CostTables, DatasetLabel,
-    DelayOutcome, GainOutcome, LeadChannels, LeadEntry, NetGain, ReasonEntry, ScheduleUsed, ScheduledDelays,
-    ScheduledGains, ScheduledSecond, ScheduledTaus, SetAsideEntry, SourceEntry, Table, UnmatchedDelayEntry,
-    UnmatchedGainEntry, WithoutResult,
-};
-pub use uncertainty::{
-    BarEntry, BarsEntry, ChannelBars, DifferenceEntry, ScatterEntry, ScheduleBandEntry, SecondVariableEntry,
-    SplitEntry, UncertaintyEntry,
-};
+pub use schema::*;
 
 const NAME: &str = "gdcm-corrections";
 const VERSION: u64 = 1;
@@ -83,4 +75,45 @@ pub fn read_corrections(path: &Path) -> Result<Corrections, FileError> {
     let (corrections, _) = format.decode::<Corrections>(source.text(), path)?;
     format.check_read(&corrections.format, corrections.version, path)?;
     Ok(corrections)
+}
+
+/// One figure for each channel or model, by name, in the dataset's order: `{"LON": 1.1, "LAT": 1.0}`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ByName<T>(pub Vec<(String, T)>);
+
+impl<T> ByName<T> {
+    /// The figure of this name.
+    pub fn get(&self, name: &str) -> Option<&T> {
+        self.0.iter().find(|(named, _)| named == name).map(|(_, figure)| figure)
+    }
+}
+
+impl<T: Serialize> Serialize for ByName<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, figure)| (name, figure)))
+    }
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for ByName<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(Entries(PhantomData))
+    }
+}
+
+struct Entries<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for Entries<T> {
+    type Value = ByName<T>;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("an object with a figure for each name")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<ByName<T>, A::Error> {
+        let mut figures = Vec::new();
+        while let Some(entry) = entries.next_entry()? {
+            figures.push(entry);
+        }
+        Ok(ByName(figures))
+    }
 }

@@ -2,12 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::settings_entry::SettingsEntry;
 use gdcm_core::schedule::DEFAULT_TOLERANCE_KT;
+use gdcm_core::study::{ResponseNames, Settings};
 
-use super::explanation::Explanation;
-use super::names::ByName;
-use super::uncertainty::{BarEntry, BarsEntry, UncertaintyEntry};
+use super::ByName;
 
 /// A table `[output][input]` in the dataset's channel order; `None` (null) where a response has no such figure.
 pub type Table = Vec<Vec<Option<f64>>>;
@@ -24,7 +22,7 @@ pub struct Corrections {
     /// The dataset analysed.
     pub dataset: DatasetLabel,
     /// Every setting that changes a result.
-    pub settings: SettingsEntry,
+    pub settings: Settings<ResponseNames>,
     /// Result of each condition that has one.
     pub conditions: Vec<ConditionCorrections>,
     /// Conditions without a result.
@@ -102,7 +100,7 @@ pub struct ConditionCorrections {
     pub delays_s: Channels,
     /// Signed delays and lead filters, where leads were asked for (M15); `delays_s` then holds what is positive.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lead: Option<LeadChannels>,
+    pub lead: Option<Channels<LeadEntry>>,
     /// How good the gains are.
     pub gain_solution: GainOutcome,
     /// How good the delays are.
@@ -139,22 +137,13 @@ pub struct SetAsideEntry {
     pub why: String,
 }
 
-/// One figure for each channel.
+/// One value for each channel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Channels {
+pub struct Channels<T = f64> {
     /// Of each input.
-    pub inputs: ByName<f64>,
+    pub inputs: ByName<T>,
     /// Of each output.
-    pub outputs: ByName<f64>,
-}
-
-/// The lead of each channel.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LeadChannels {
-    /// Of each input.
-    pub inputs: ByName<LeadEntry>,
-    /// Of each output.
-    pub outputs: ByName<LeadEntry>,
+    pub outputs: ByName<T>,
 }
 
 /// The signed delay of a channel and, where it is negative, its lead filter `L(s) = (1 + sqrt(2) s/w1 + (s/w1)^2) / (1 + sqrt(2) s/w2 +
@@ -382,7 +371,7 @@ pub struct ScheduledGains {
     pub delays_s: Option<Channels>,
     /// The scheduled signed delays and filters, where leads were asked for (M15).
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lead: Option<LeadChannels>,
+    pub lead: Option<Channels<LeadEntry>>,
 }
 
 /// What the scheduled correction is worth.
@@ -432,4 +421,229 @@ pub struct SourceEntry {
     /// Names of the flight records that it was identified from.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub records: Vec<String>,
+}
+
+/// What explains one optimum.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Explanation {
+    /// Each smallest set of held responses and bounds that cannot hold together.
+    pub conflicts: Vec<ConflictEntry>,
+    /// Each loop of held responses that disagrees by no more than the tolerance, and counts as agreeing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub agreeing: Vec<ConflictEntry>,
+    /// Single changes after which everything held can be held; absent where nothing is in the way.
+    pub remedy: Option<RemedyEntry>,
+    /// What each held response and each active bound costs, the most expensive first.
+    pub sensitivities: Vec<SensitivityEntry>,
+}
+
+/// A smallest set of held responses and bounds that cannot hold together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConflictEntry {
+    /// What is in the way: `upper_bound`, `lower_bound`, `both_bounds`, `lead`, `loop` or `unclear`.
+    pub kind: String,
+    /// The held responses, `[output, input]`, of which one must be freed.
+    pub entries: Vec<(String, String)>,
+    /// The channels whose bounds are in the way.
+    pub channels: Vec<String>,
+    /// By how much: a product or ratio of gains, a sum or difference of delays \[s\], or the mismatch of a loop \[dB or s\].
+    pub figure: Option<f64>,
+    /// Upper bound that would resolve it.
+    pub upper: Option<f64>,
+    /// Lower bound that would resolve it.
+    pub lower: Option<f64>,
+    /// The same in words.
+    pub words: String,
+}
+
+/// Single changes after which everything held can be held.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RemedyEntry {
+    /// This upper bound.
+    pub upper: Option<f64>,
+    /// This lower bound.
+    pub lower: Option<f64>,
+    /// Freeing any one of these, `[output, input]`.
+    pub free: Vec<(String, String)>,
+}
+
+/// The multiplier of a held response or an active bound.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SensitivityEntry {
+    /// `held`, `lower_bound` or `upper_bound`.
+    pub restraint: String,
+    /// The held response, `[output, input]`.
+    pub entry: Option<(String, String)>,
+    /// The channel on its bound.
+    pub channel: Option<String>,
+    /// Change of the objective for each dB (gains) or ms (delays) by which it is raised.
+    pub per_unit: f64,
+    /// The same as a share of the objective.
+    pub share_per_unit: f64,
+}
+
+/// How sure one figure is. Of a gain the intervals are factors and the deviations those of its natural logarithm; of a delay \[s\].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct BarEntry {
+    /// The whole bar; none where the bundles have no spread.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interval: Option<[f64; 2]>,
+    /// The inner bar, for the physics model chosen.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interval_identification: Option<[f64; 2]>,
+    /// What not knowing the trim flown makes; none where it is not included.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub u_physics: Option<f64>,
+    /// What the identification makes; none where it is not included.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub u_identification: Option<f64>,
+    /// Degrees of freedom of both together; none where there is no spread, or where it is taken as known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub degrees_of_freedom: Option<f64>,
+    /// Half the width from the 16 % to the 84 % quantile, over the band, of what one gain leaves over \[ln\].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub left_in_band: Option<f64>,
+    /// What is not included, and where the identification part comes from.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub remarks: Vec<String>,
+}
+
+/// How sure the figures of one condition are, besides its net gains.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BarsEntry {
+    /// Of each G, `[output][input]`.
+    #[serde(rename = "G")]
+    pub delta_gain: Vec<Vec<Option<BarEntry>>>,
+    /// Of each D.
+    #[serde(rename = "D_s")]
+    pub delta_delay_s: Vec<Vec<Option<BarEntry>>>,
+    /// Of each band delay, where the channels were asked for those (M15.2).
+    #[serde(rename = "D_band_s", default, skip_serializing_if = "Vec::is_empty")]
+    pub band_delay_s: Vec<Vec<Option<BarEntry>>>,
+    /// Of each channel gain.
+    pub gains: Channels<Option<BarEntry>>,
+    /// Of each channel delay.
+    pub delays_s: Channels<Option<BarEntry>>,
+}
+
+/// What follows from the bars of all conditions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct UncertaintyEntry {
+    /// Level of every interval and test.
+    pub level: f64,
+    /// Differences of on-axis net gains of conditions at equal airspeed.
+    pub differences: Vec<DifferenceEntry>,
+    /// What the scatter of each on-axis net gain is made of.
+    pub scatter: Vec<ScatterEntry>,
+    /// The scheduled on-axis net gains with their bands.
+    pub schedule_band: Vec<ScheduleBandEntry>,
+    /// Whether the schedule needs a second variable.
+    pub second_variable: Vec<SecondVariableEntry>,
+}
+
+/// The difference of a net gain between two conditions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DifferenceEntry {
+    /// The output's name.
+    pub output: String,
+    /// The input's name.
+    pub input: String,
+    /// The two conditions.
+    pub conditions: [i64; 2],
+    /// Their airspeed \[kt\].
+    pub airspeed_kt: f64,
+    /// Difference of the logarithms.
+    pub delta: f64,
+    /// What both bundles make of it, as a standard deviation.
+    pub u: f64,
+    /// Its degrees of freedom.
+    pub degrees_of_freedom: Option<f64>,
+    /// Factor by which it exceeds what the bundles explain.
+    pub ratio: Option<f64>,
+    /// How likely that is where there is no difference.
+    pub p: Option<f64>,
+    /// The same after Holm's correction over all differences.
+    pub p_holm: Option<f64>,
+    /// In words.
+    pub words: String,
+}
+
+/// What the scatter of a net gain is made of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ScatterEntry {
+    /// The output's name.
+    pub output: String,
+    /// The input's name.
+    pub input: String,
+    /// At equal airspeed.
+    pub same_airspeed: Option<SplitEntry>,
+    /// About the schedule.
+    pub about_schedule: Option<SplitEntry>,
+}
+
+/// A scatter split into its parts, standard deviations of the natural logarithm.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SplitEntry {
+    /// Degrees of freedom.
+    pub degrees_of_freedom: usize,
+    /// The scatter.
+    pub scatter: f64,
+    /// What not knowing the trims makes.
+    pub physics: f64,
+    /// What the identification makes.
+    pub identification: f64,
+    /// What neither makes: a physical effect, or a model-form error.
+    pub rest: f64,
+    /// Its interval.
+    pub rest_interval: Option<[f64; 2]>,
+    /// Shares of trim, identification and rest in the variance.
+    pub shares: Option<[f64; 3]>,
+    /// Factor by which it exceeds what the bundles explain.
+    pub ratio: Option<f64>,
+    /// How likely that is where they explain all.
+    pub p: Option<f64>,
+}
+
+/// A scheduled net gain with its bands, as natural logarithms.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ScheduleBandEntry {
+    /// The output's name.
+    pub output: String,
+    /// The input's name.
+    pub input: String,
+    /// Airspeeds \[kt\].
+    pub airspeed_kt: Vec<f64>,
+    /// The scheduled `ln k_o k_i`.
+    pub fit: Vec<f64>,
+    /// Half-width of the confidence band.
+    pub confidence: Vec<f64>,
+    /// Half-width of the scatter band.
+    pub scatter: Vec<f64>,
+}
+
+/// Whether the schedule of a net gain needs a second variable.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SecondVariableEntry {
+    /// The output's name.
+    pub output: String,
+    /// The input's name.
+    pub input: String,
+    /// `altitude` or `mass`.
+    pub variable: String,
+    /// Effect on the logarithm from the lowest to the highest value; none where it cannot be told.
+    pub effect: Option<f64>,
+    /// An effect smaller than plus or minus this could not have been seen.
+    pub visible: Option<f64>,
+    /// How likely so great an effect is where there is none.
+    pub p: Option<f64>,
+    /// The same after Holm's correction.
+    pub p_holm: Option<f64>,
+    /// Leave-one-condition-out error without the variable, rms.
+    pub left_out_without: Option<f64>,
+    /// The same with it.
+    pub left_out_with: Option<f64>,
+    /// Whether it is needed.
+    pub needed: bool,
+    /// In words.
+    pub words: String,
 }

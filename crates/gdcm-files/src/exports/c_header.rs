@@ -2,13 +2,26 @@
 
 use std::fmt::Write;
 
-use super::curve::Curve;
-use super::export_fault::ExportFault;
-use super::heading::heading;
-use super::lookup_table::LookupTable;
-use super::number::{list, number};
-use super::quoted::{c_text, comment};
+use super::curve::{Curve, Language, c_text, comment, list, number};
 use super::scheduled_correction::{ScheduledChannel, ScheduledCorrection};
+use super::{About, Export, ExportFault, Exported, Exporter};
+
+/// The header.
+pub(super) struct CHeader;
+
+impl Exporter for CHeader {
+    fn about(&self) -> About {
+        About { name: "h", extension: "h", words: "C header, a function of airspeed", options: &[] }
+    }
+
+    fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
+        let correction = of.scheduled()?;
+        Ok(Exported::bytes(c_header(&correction)?).with(correction.notes))
+    }
+}
+
+const LANGUAGE: Language =
+    Language { exp: "exp", min: "fmin", max: "fmax", polynomial: "GDCM_POLYNOMIAL", table: "GDCM_TABLE" };
 
 /// What the function needs to interpolate.
 const TABLE: &str = "
@@ -37,7 +50,10 @@ static inline double gdcm_polynomial(int count, const double coefficients[], dou
     return value;
 }
 
-/* Gains and delays [s] at an airspeed [kt]@words. Gives 0, or 1 where an argument was cut to its range, or -1 and no values
+#define GDCM_TABLE(p, y, x) gdcm_table((int)(sizeof(p) / sizeof(*(p))), (p), (y), (x))
+#define GDCM_POLYNOMIAL(c, v) gdcm_polynomial((int)(sizeof(c) / sizeof(*(c))), (c), (v))
+
+/* Gains and delays [s] at an airspeed [kt]@words. Gives 0, or 1 where an argument was clamped to its range, or -1 and no values
  * where one is not a number. */
 static inline int gdcm_correction(double airspeed_kt@argument, double gain_in[], double gain_out[], double delay_in[],
                                   double delay_out[])
@@ -85,10 +101,7 @@ static inline double gdcm_lead_step(struct gdcm_lead *lead, double zero_s, doubl
 /// leads also `gdcm_leads` and `gdcm_lead_step`.
 pub fn c_header(correction: &ScheduledCorrection) -> Result<String, ExportFault> {
     correction.check()?;
-    let mut text = String::from("/*\n");
-    for line in heading(correction) {
-        let _ = writeln!(text, " * {line}");
-    }
+    let mut text = format!("/*\n{}", correction.comment_lines(" *"));
     text.push_str(" */\n#ifndef GDCM_CORRECTION_H\n#define GDCM_CORRECTION_H\n\n#include <math.h>\n\n");
     for (side, channels) in [("INPUT", &correction.inputs), ("OUTPUT", &correction.outputs)] {
         let _ = writeln!(text, "#define GDCM_{side}_COUNT {}", channels.len());
@@ -97,7 +110,7 @@ pub fn c_header(correction: &ScheduledCorrection) -> Result<String, ExportFault>
         }
     }
     let second = correction.second.as_ref();
-    let argument = second.map_or_else(String::new, |second| format!(", double {}", second.name));
+    let argument = correction.second_argument("double ");
     let words = second.map_or_else(String::new, |second| format!(" and a second variable, {}", second.words));
     text.push_str(&TABLE.replacen("@words", &words, 1).replacen("@argument", &argument, 1));
     let (least, most) = correction.airspeed_range_kt;
@@ -110,7 +123,7 @@ pub fn c_header(correction: &ScheduledCorrection) -> Result<String, ExportFault>
          if (airspeed_kt != airspeed_kt) {{\n        return -1;\n    }}\n    \
          (void)v;\n    (void)gain_in;\n    (void)gain_out;\n    (void)delay_in;\n    (void)delay_out;\n"
     );
-    let mut cut = "a != airspeed_kt".to_owned();
+    let mut clamped = "a != airspeed_kt".to_owned();
     if let Some(second) = second {
         let ((least, most), name) = (second.range, second.name);
         let (least, most) = (number(least), number(most));
@@ -120,14 +133,14 @@ pub fn c_header(correction: &ScheduledCorrection) -> Result<String, ExportFault>
              const double z = {};\n    if ({name} != {name}) {{\n        return -1;\n    }}\n    (void)z;\n",
             second.scaled_expression(),
         );
-        cut.push_str(&format!(" || b != {name}"));
+        clamped.push_str(&format!(" || b != {name}"));
     }
     for (side, channels) in [("in", &correction.inputs), ("out", &correction.outputs)] {
         for (index, channel) in channels.iter().enumerate() {
             write_channel(&mut text, side, index, channel);
         }
     }
-    let _ = write!(text, "    return {cut};\n}}\n");
+    let _ = write!(text, "    return {clamped};\n}}\n");
     if let Some(lead) = correction.lead {
         let _ = write!(
             text,
@@ -157,54 +170,15 @@ fn write_channel(text: &mut String, side: &str, index: usize, channel: &Schedule
     }
 }
 
+/// A block that gives `target` the value of a curve, its numbers in arrays of their own.
 fn write_curve(text: &mut String, target: &str, curve: &Curve) {
-    let body: String = lines(target, curve).iter().map(|line| format!("        {line}\n")).collect();
-    let _ = write!(text, "    {{\n{body}    }}\n");
-}
-
-/// The statements, of a block of their own, that give `target` the value of a curve.
-fn lines(target: &str, curve: &Curve) -> Vec<String> {
-    let value = |of_logarithm: bool, figure: String| if of_logarithm { format!("exp({figure})") } else { figure };
-    match curve {
-        Curve::Polynomial { of_logarithm, coefficients } => {
-            let sum = format!("gdcm_polynomial({}, c, v)", coefficients.len());
-            vec![
-                format!("static const double c[] = {{{}}};", list(coefficients)),
-                format!("{target} = {};", value(*of_logarithm, sum)),
-            ]
-        }
-        Curve::Table { of_logarithm, table } => {
-            let [points, values] = arrays(table);
-            vec![points, values, format!("{target} = {};", value(*of_logarithm, looked_up(table)))]
-        }
-        Curve::Beside { curve, of_logarithm, slope } => {
-            let inner: String = lines(target, curve).iter().map(|line| format!(" {line}")).collect();
-            let sum = format!("{target} + ({}) * z", number(*slope));
-            vec![format!("{{{inner} }}"), format!("{target} = {};", value(*of_logarithm, sum))]
-        }
-        Curve::Constant(value) => vec![format!("{target} = {};", number(*value))],
-        Curve::Cut { curve, least, most } => {
-            let inner: String = lines(target, curve).iter().map(|line| format!(" {line}")).collect();
-            let [points, values] = arrays(most);
-            vec![
-                format!("{{{inner} }}"),
-                points,
-                values,
-                format!("const double most = {};", looked_up(most)),
-                format!("if ({target} > most) {{ {target} = most; }}"),
-                format!("if ({target} < {0}) {{ {target} = {0}; }}", number(*least)),
-            ]
-        }
-    }
-}
-
-fn arrays(table: &LookupTable) -> [String; 2] {
-    [("p", &table.airspeed_kt), ("y", &table.values)]
-        .map(|(name, numbers)| format!("static const double {name}[] = {{{}}};", list(numbers)))
-}
-
-fn looked_up(table: &LookupTable) -> String {
-    format!("gdcm_table({}, p, y, a)", table.values.len())
+    let mut arrays = Vec::new();
+    let expression = LANGUAGE.expression(curve, &mut |numbers| {
+        let name = format!("c{}", arrays.len());
+        arrays.push(format!("        static const double {name}[] = {{{}}};\n", list(numbers)));
+        name
+    });
+    let _ = write!(text, "    {{\n{}        {target} = {expression};\n    }}\n", arrays.concat());
 }
 
 #[cfg(test)]

@@ -1,18 +1,41 @@
 //! A correction as a function file of MATLAB and Octave.
 
 use std::fmt::Write;
+use std::path::Path;
 
-use super::export_fault::ExportFault;
-use super::expression::Functions;
-use super::heading::heading;
-use super::number::number;
-use super::quoted::comment;
+use super::curve::{Language, comment, number};
+use super::matlab_struct::LONGEST_NAME;
 use super::scheduled_correction::{ScheduledChannel, ScheduledCorrection};
+use super::{About, Export, ExportFault, Exported, Exporter};
 
-const FUNCTIONS: Functions = Functions { exp: "exp", polynomial: "gdcm_polynomial", table: "gdcm_table" };
+/// The function file, whose name is that of the function.
+pub(super) struct MatlabFunction;
+
+impl Exporter for MatlabFunction {
+    fn about(&self) -> About {
+        About { name: "m", extension: "m", words: "MATLAB function of airspeed", options: &[] }
+    }
+
+    fn check_path(&self, path: &Path) -> Result<(), ExportFault> {
+        check_function_name(&stem(path))
+    }
+
+    fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
+        let correction = of.scheduled()?;
+        Ok(Exported::bytes(matlab_function(&correction, &stem(of.path))?).with(correction.notes))
+    }
+}
+
+/// The name of a file without its ending.
+fn stem(path: &Path) -> String {
+    path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+const LANGUAGE: Language =
+    Language { exp: "exp", min: "min", max: "max", polynomial: "gdcm_polynomial", table: "gdcm_table" };
 
 /// The functions below, whose names the file cannot have.
-const HELPERS: [&str; 2] = [FUNCTIONS.polynomial, FUNCTIONS.table];
+const HELPERS: [&str; 2] = [LANGUAGE.polynomial, LANGUAGE.table];
 
 /// Linear between the points, the end value outside; `interp1` refuses a table of one point.
 const TABLE: &str = "
@@ -35,9 +58,6 @@ function y = gdcm_polynomial(coefficients, v)
 end
 ";
 
-/// Longest name that MATLAB takes (`namelengthmax`).
-const LONGEST_NAME: usize = 63;
-
 /// Writes the file `name.m` with the function `[Mi, Mo, tau_i, tau_o] = name(airspeed_kt)`: diagonal matrices of gains, columns of
 /// delays \[s\]; of a correction with leads followed by `lead_i, lead_o`, time constants \[s\] of the filters. MATLAB calls a function by the name of its file.
 ///
@@ -47,7 +67,7 @@ pub fn matlab_function(correction: &ScheduledCorrection, name: &str) -> Result<S
     correction.check()?;
     check_function_name(name)?;
     let second = correction.second.as_ref();
-    let argument = second.map_or_else(String::new, |second| format!(", {}", second.name));
+    let argument = correction.second_argument("");
     let leads = if correction.lead.is_some() { ", lead_i, lead_o" } else { "" };
     let mut text = format!("function [Mi, Mo, tau_i, tau_o{leads}] = {name}(airspeed_kt{argument})\n");
     let _ = writeln!(
@@ -55,9 +75,7 @@ pub fn matlab_function(correction: &ScheduledCorrection, name: &str) -> Result<S
         "%{} Gain matrices Mi and Mo, delays tau_i and tau_o [s] at an airspeed [kt].",
         name.to_ascii_uppercase()
     );
-    for line in heading(correction) {
-        let _ = writeln!(text, "% {line}");
-    }
+    text.push_str(&correction.comment_lines("%"));
     if let Some(lead) = correction.lead {
         let tf = match lead.order {
             1 => "tf([a 1], [b 1])",
@@ -103,7 +121,7 @@ pub fn matlab_function(correction: &ScheduledCorrection, name: &str) -> Result<S
         if let Some(lead) = correction.lead {
             let _ = writeln!(text, "  lead_{name} = repmat({}, {count}, 2);", number(lead.lag_s));
             for (index, zero_s) in channels.iter().enumerate().filter_map(|(at, of)| Some((at, of.zero_s.as_ref()?))) {
-                let _ = writeln!(text, "  lead_{name}({}, 1) = {};", index + 1, FUNCTIONS.expression(zero_s));
+                let _ = writeln!(text, "  lead_{name}({}, 1) = {};", index + 1, LANGUAGE.in_brackets(zero_s));
             }
         }
     }
@@ -113,7 +131,7 @@ pub fn matlab_function(correction: &ScheduledCorrection, name: &str) -> Result<S
 }
 
 /// Refuses a name that no function of a file can have.
-pub(super) fn check_function_name(name: &str) -> Result<(), ExportFault> {
+fn check_function_name(name: &str) -> Result<(), ExportFault> {
     let is_name = name.starts_with(|first: char| first.is_ascii_alphabetic())
         && name.len() <= LONGEST_NAME
         && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
@@ -124,8 +142,8 @@ pub(super) fn check_function_name(name: &str) -> Result<(), ExportFault> {
 }
 
 fn write_channel(text: &mut String, side: &str, place: usize, channel: &ScheduledChannel) {
-    let _ = writeln!(text, "  M{side}({place}, {place}) = {};", FUNCTIONS.expression(&channel.gain));
-    let _ = writeln!(text, "  tau_{side}({place}) = {};", FUNCTIONS.expression(&channel.delay_s));
+    let _ = writeln!(text, "  M{side}({place}, {place}) = {};", LANGUAGE.in_brackets(&channel.gain));
+    let _ = writeln!(text, "  tau_{side}({place}) = {};", LANGUAGE.in_brackets(&channel.delay_s));
 }
 
 #[cfg(test)]

@@ -1,30 +1,227 @@
 //! A study's corrections for other tools: programs and tables that compute them outside of this one, corrected models, and all
-//! results as variables of MATLAB.
+//! results as variables of MATLAB. Each is an [`Exporter`]; the command line, the window and the documentation go by [`EXPORTERS`].
 
-mod airspeed;
-mod breakpoint_table;
+mod all_results;
 mod c_header;
-mod corrections_variable;
+mod corrected_models;
 mod curve;
-mod export_fault;
-mod export_file;
-mod exported_model;
-mod expression;
-mod fields;
-mod found_models;
-mod gather;
-mod heading;
+mod fault;
 mod lookup_table;
 mod matlab_function;
-mod model_variables;
-mod number;
+mod matlab_struct;
 mod python_module;
-mod quoted;
 mod scheduled_correction;
-mod table_csv;
-mod table_error;
-mod table_mat;
+#[cfg(test)]
+mod tests;
 
-pub use export_fault::ExportFault;
-pub use export_file::{check_export, write_export};
-pub use gather::ExportSource;
+use std::fmt;
+use std::io::{self, Write};
+use std::ops::Deref;
+use std::path::Path;
+
+use gdcm_core::correction::Pade;
+use gdcm_core::dataset::ConditionId;
+use gdcm_core::schedule::Schedule;
+use gdcm_core::study::{Analysis, AssessedCorrection};
+
+use crate::file_error::FileError;
+use crate::output_set::OutputSet;
+use scheduled_correction::ScheduledCorrection;
+
+pub use fault::ExportFault;
+
+/// Every export, in the order of their list.
+pub static EXPORTERS: [&dyn Exporter; 9] = [
+    &all_results::Mat,
+    &matlab_function::MatlabFunction,
+    &python_module::PythonModule,
+    &c_header::CHeader,
+    &lookup_table::TableCsv,
+    &lookup_table::TableMat,
+    &corrected_models::CorrectedModels,
+    &all_results::Csv,
+    &all_results::Json,
+];
+
+/// Something that a study's corrections can be exported as.
+pub trait Exporter: Sync {
+    /// What it is called and what it needs.
+    fn about(&self) -> About;
+
+    /// Refuses a name of a file that does not fit: a question for before the work.
+    ///
+    /// # Errors
+    /// What is wrong with the name.
+    fn check_path(&self, _path: &Path) -> Result<(), ExportFault> {
+        Ok(())
+    }
+
+    /// The contents of the file.
+    ///
+    /// # Errors
+    /// Why there are none.
+    fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault>;
+}
+
+/// What an export is called and what it needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct About {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// The end of a file's name.
+    pub extension: &'static str,
+    /// What it is, for people.
+    pub words: &'static str,
+    /// The options of the command line that it takes.
+    pub options: &'static [&'static str],
+}
+
+/// One of [`EXPORTERS`], the first of them before any choice.
+#[derive(Clone, Copy)]
+pub struct ExportFormat(&'static dyn Exporter);
+
+impl ExportFormat {
+    /// Every format, in the order of their list.
+    pub fn all() -> impl Iterator<Item = Self> {
+        EXPORTERS.into_iter().map(Self)
+    }
+
+    /// The format of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::all().find(|format| format.about().name == name)
+    }
+}
+
+impl Default for ExportFormat {
+    fn default() -> Self {
+        Self(EXPORTERS[0])
+    }
+}
+
+impl Deref for ExportFormat {
+    type Target = dyn Exporter;
+
+    fn deref(&self) -> &Self::Target {
+        self.0
+    }
+}
+
+impl PartialEq for ExportFormat {
+    fn eq(&self, other: &Self) -> bool {
+        self.about().name == other.about().name
+    }
+}
+
+impl fmt::Debug for ExportFormat {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.about().name)
+    }
+}
+
+/// Which physics model of a condition is exported.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum ExportedRole {
+    /// The one at the condition's own trim.
+    #[default]
+    Nominal,
+    /// The one that represents its bundle.
+    Representative,
+    /// The one of this name.
+    Named(String),
+}
+
+/// What is to be exported, and how; without any choice, nominal models under the schedule, delays in second order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ExportRequest {
+    /// As what.
+    pub format: ExportFormat,
+    /// Airspeeds of a lookup table \[kt\]; none for the distinct airspeeds of the scheduled conditions.
+    pub breakpoints_kt: Option<Vec<f64>>,
+    /// The condition whose corrected model is exported; none for every one.
+    pub condition: Option<ConditionId>,
+    /// Which of its models.
+    pub role: ExportedRole,
+    /// Under which correction.
+    pub correction: AssessedCorrection,
+    /// What its delays are approximated by.
+    pub pade: Pade,
+}
+
+/// Where a correction comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ExportSource {
+    /// What it is called: the name of the study.
+    pub name: String,
+    /// SHA-256 of the dataset's file, in hexadecimal.
+    pub sha256: String,
+}
+
+/// What an exporter is given.
+#[derive(Clone, Copy)]
+pub struct Export<'e> {
+    /// What was found.
+    pub analysis: &'e Analysis,
+    /// Where it comes from.
+    pub source: &'e ExportSource,
+    /// What is asked for.
+    pub request: &'e ExportRequest,
+    /// The file that it goes to.
+    pub path: &'e Path,
+}
+
+impl Export<'_> {
+    /// The schedule of the study.
+    fn schedule(&self) -> Result<&Schedule, ExportFault> {
+        self.analysis.schedule.as_ref().map_err(|error| ExportFault::Schedule(*error))
+    }
+
+    /// The correction that it makes at each airspeed.
+    fn scheduled(&self) -> Result<ScheduledCorrection, ExportFault> {
+        Ok(ScheduledCorrection::of(self.schedule()?, &self.analysis.study.dataset, self.source))
+    }
+}
+
+/// The contents of a file, with what is to be known of it, line by line.
+pub struct Exported<'e> {
+    write: Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'e>,
+    remarks: Vec<String>,
+}
+
+impl<'e> Exported<'e> {
+    fn new(write: impl FnOnce(&mut dyn Write) -> io::Result<()> + 'e) -> Self {
+        Self { write: Box::new(write), remarks: Vec::new() }
+    }
+
+    fn bytes(bytes: impl Into<Vec<u8>>) -> Self {
+        let bytes = bytes.into();
+        Self::new(move |file| file.write_all(&bytes))
+    }
+
+    fn with(self, remarks: Vec<String>) -> Self {
+        Self { remarks, ..self }
+    }
+}
+
+/// Refuses a name that does not fit what is to be exported: a question for before the work.
+///
+/// # Errors
+/// [`FileError::Export`] with what is wrong with it.
+pub fn check_export(format: ExportFormat, path: &Path) -> Result<(), FileError> {
+    format.check_path(path).map_err(|fault| FileError::export(path, fault))
+}
+
+/// Writes what a request asks for, and gives what is to be known of it, line by line.
+pub fn write_export(
+    analysis: &Analysis,
+    source: &ExportSource,
+    request: &ExportRequest,
+    path: &Path,
+    mut outputs: OutputSet,
+) -> Result<Vec<String>, FileError> {
+    check_export(request.format, path)?;
+    let exported = request.format.export(&Export { analysis, source, request, path });
+    let Exported { write, remarks } = exported.map_err(|fault| FileError::export(path, fault))?;
+    outputs.add(path, write)?;
+    outputs.persist()?;
+    Ok(remarks)
+}

@@ -2,15 +2,26 @@
 
 use std::fmt::Write;
 
-use super::curve::Curve;
-use super::export_fault::ExportFault;
-use super::expression::Functions;
-use super::heading::heading;
-use super::number::number;
-use super::quoted::python_text;
+use super::curve::{Curve, Language, number, python_text};
 use super::scheduled_correction::{ScheduledChannel, ScheduledCorrection};
+use super::{About, Export, ExportFault, Exported, Exporter};
 
-const FUNCTIONS: Functions = Functions { exp: "math.exp", polynomial: "_polynomial", table: "_table" };
+/// The module.
+pub(super) struct PythonModule;
+
+impl Exporter for PythonModule {
+    fn about(&self) -> About {
+        About { name: "py", extension: "py", words: "Python module, a function of airspeed", options: &[] }
+    }
+
+    fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
+        let correction = of.scheduled()?;
+        Ok(Exported::bytes(python_module(&correction)?).with(correction.notes))
+    }
+}
+
+const LANGUAGE: Language =
+    Language { exp: "math.exp", min: "min", max: "max", polynomial: "_polynomial", table: "_table" };
 
 /// What the module needs to compute curves.
 const CURVES: &str = r#"
@@ -70,10 +81,7 @@ def gdcm_lead_state_space(zero_s):
 /// also `gdcm_leads(airspeed_kt)` and `gdcm_lead_state_space(zero_s)`. It needs nothing but `math`.
 pub fn python_module(correction: &ScheduledCorrection) -> Result<String, ExportFault> {
     correction.check()?;
-    let mut text = String::new();
-    for line in heading(correction) {
-        let _ = writeln!(text, "# {line}");
-    }
+    let mut text = correction.comment_lines("#");
     let names = |channels: &[ScheduledChannel]| -> String {
         channels.iter().map(|channel| format!("    {},\n", python_text(&channel.name))).collect()
     };
@@ -85,8 +93,7 @@ pub fn python_module(correction: &ScheduledCorrection) -> Result<String, ExportF
         let (least, most) = second.range;
         let _ = writeln!(text, "{}_RANGE = ({}, {})", second.name.to_uppercase(), number(least), number(most));
     }
-    let argument = correction.second.as_ref().map_or_else(String::new, |second| format!(", {}", second.name));
-    text.push_str(&CURVES.replacen('@', &argument, 1));
+    text.push_str(&CURVES.replacen('@', &correction.second_argument(""), 1));
     let _ = writeln!(text, "    v = {}", correction.scaled_expression());
     if let Some(second) = &correction.second {
         let (name, range) = (second.name, format!("{}_RANGE", second.name.to_uppercase()));
@@ -99,7 +106,7 @@ pub fn python_module(correction: &ScheduledCorrection) -> Result<String, ExportF
         );
     }
     let curves = |channels: &[ScheduledChannel], of: fn(&ScheduledChannel) -> &Curve| -> String {
-        channels.iter().map(|channel| format!("        {},\n", FUNCTIONS.expression(of(channel)))).collect()
+        channels.iter().map(|channel| format!("        {},\n", LANGUAGE.in_brackets(of(channel)))).collect()
     };
     for (name, channels) in [("i", &correction.inputs), ("o", &correction.outputs)] {
         let _ = write!(text, "    gain_{name} = [\n{}    ]\n", curves(channels, |channel| &channel.gain));
@@ -111,7 +118,7 @@ pub fn python_module(correction: &ScheduledCorrection) -> Result<String, ExportF
         let _ = writeln!(text, "    v = {}", correction.scaled_expression());
         for (name, channels) in [("i", &correction.inputs), ("o", &correction.outputs)] {
             let zeros = channels.iter().filter_map(|channel| channel.zero_s.as_ref());
-            let zeros: String = zeros.map(|zero_s| format!("        {},\n", FUNCTIONS.expression(zero_s))).collect();
+            let zeros: String = zeros.map(|zero_s| format!("        {},\n", LANGUAGE.in_brackets(zero_s))).collect();
             let _ = write!(text, "    zero_{name} = [\n{zeros}    ]\n");
         }
         text.push_str("    return zero_i, zero_o\n");

@@ -1,27 +1,32 @@
-//! Responses of one condition: magnitude and phase of every model over frequency (Figures 2 and 5).
+//! Responses of one condition or of several on paper: magnitude above phase over frequency (Figures 2 and 5).
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use gdcm_core::dataset::{Band as BandOfComparison, ConditionId, ModelId, Pair};
-use gdcm_core::response::{FrequencyResponse, ResponseShape, wrapped_deg};
-use gdcm_core::study::{AcrossCurves, AcrossJob, AcrossRole, Analysis, CURVE_POINTS, Job, Unobserved, display_band};
+use gdcm_core::study::{AcrossJob, AcrossRole, Analysis, CURVE_POINTS, Job, Unobserved, display_band};
 use gdcm_core::units::db_to_ratio;
 
 use super::axis::{Axis, Range};
-use super::condition_source::{ConditionSource, CurveId, ResponseLine, SourceModel, settings_words};
+use super::condition_source::{ConditionSource, CurveId, settings_words};
+use super::curve::{BodeBand, BodeCurve, Level, Pane, ReferenceKind, ReferenceLine};
 use super::drawing::{Color, Hue};
 use super::figure::{Figure, Panel, Plot};
-use super::mark::{Along, Band, Curve, Mark, Note, Place};
+use super::mark::{Along, Band, Curve, Envelope, Mark, Note, Place, Rule};
 use super::request::{FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
+use super::responses::{AirspeedCache, ResponseCache, airspeed_curves, fitted_values, uncertainty_bands};
 use super::role::Role;
 
 /// The ground of the band of comparison.
 const BAND: Color = Color::of(Hue::Accent).tint(8);
-/// Height that fitting gives to values outside the band on either side, as a part of the height within it.
-const OUTSIDE_PART: f64 = 0.4;
+/// The ground of frequencies where what is left would be noticed.
+const NOTICED: Color = Color::of(Hue::Warning).tint(20);
+/// Around an identified model.
+const UNCERTAIN: Color = Color::of(Hue::Identified).tint(22);
 /// Height of the magnitude, where that of the phase is 1.
 const MAGNITUDE_WEIGHT: f64 = 1.35;
+/// Space above and below the curves, as a part of their height.
+const MARGIN: f64 = 0.04;
 
 /// What of the responses is shown, and how.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -53,126 +58,172 @@ pub struct BodeOptions {
 }
 
 impl BodeOptions {
-    /// Whether a model is shown: a representative always, another one unless some other is isolated.
-    pub(super) fn shows_model(&self, model: &SourceModel) -> bool {
-        if self.hidden_models.contains(&model.id) {
-            return false;
-        }
-        let represents = matches!(model.role, Role::Representative | Role::IdentifiedRepresentative);
-        represents || self.isolated.as_ref().is_none_or(|isolated| *isolated == model.id)
-    }
-
-    /// A phase \[deg\] with the turns that it was given by hand.
-    pub(super) fn turned(
-        &self,
-        condition: ConditionId,
-        pair: Pair,
-        curve: &CurveId,
-        phase_deg: &Arc<[f64]>,
-    ) -> Arc<[f64]> {
-        match self.turns.get(&(condition, pair, curve.clone())) {
-            Some(turns) => phase_deg.iter().map(|phase| phase + 360.0 * f64::from(*turns)).collect(),
-            None => Arc::clone(phase_deg),
-        }
-    }
-
     /// The axis of frequencies.
-    pub(super) fn frequency_axis(&self) -> Axis {
-        let in_unit = |range: Range| Range::new(self.unit.of_omega(range.min), self.unit.of_omega(range.max));
-        Axis::logarithmic(self.unit.axis_label()).showing(self.omega.map(in_unit))
+    fn frequency_axis(&self) -> Axis {
+        Axis::logarithmic(self.unit.axis_label()).showing(self.omega.map(|range| self.in_unit(range.min, range.max)))
+    }
+
+    fn in_unit(&self, from: f64, to: f64) -> Range {
+        Range::new(self.unit.of_omega(from), self.unit.of_omega(to))
     }
 
     /// The ground of the band of comparison.
-    pub(super) fn band(&self, source: &ConditionSource<'_>) -> Band {
-        ground_of(source.study.settings.band, self.unit)
+    fn band(&self, band: BandOfComparison) -> Band {
+        let range = self.in_unit(band.min(), band.max());
+        Band { along: Along::X, range, color: BAND, key: Some("band of comparison".to_owned()) }
     }
 }
 
-/// The ground of a band of comparison.
-pub(super) fn ground_of(band: BandOfComparison, unit: FrequencyUnit) -> Band {
-    let range = Range::new(unit.of_omega(band.min()), unit.of_omega(band.max()));
-    Band { along: Along::X, range, color: BAND, key: Some("band of comparison".to_owned()) }
+/// What stands in the panels of one response.
+pub(super) struct FrequencyPanels<'a> {
+    pub(super) curves: &'a [BodeCurve],
+    pub(super) references: &'a [ReferenceLine],
+    pub(super) bands: &'a [BodeBand],
+    /// Frequencies that are marked \[rad/s\].
+    pub(super) strips: &'a [(f64, f64)],
+    pub(super) options: &'a BodeOptions,
+}
+
+impl FrequencyPanels<'_> {
+    /// A pane as a panel with this vertical axis.
+    pub(super) fn panel(&self, pane: Pane, axis: Axis) -> Panel {
+        self.panel_of(pane, axis, |value| value)
+    }
+
+    /// The same, where values are drawn as `shown` says.
+    fn panel_of(&self, pane: Pane, axis: Axis, shown: impl Fn(f64) -> f64) -> Panel {
+        let mut visible: Vec<&BodeCurve> = self.curves.iter().filter(|curve| !curve.hidden).collect();
+        visible.sort_by_key(|curve| curve.role.layer(curve.rejected));
+        // The curves of a plot mostly share their frequencies: so do those of the figure then.
+        let mut frequencies: Option<(&Arc<[f64]>, Arc<[f64]>)> = None;
+        let mut in_unit = |omega| match &frequencies {
+            Some((of, frequency)) if Arc::ptr_eq(of, omega) => Arc::clone(frequency),
+            _ => {
+                let frequency: Arc<[f64]> = omega.iter().map(|omega| self.options.unit.of_omega(*omega)).collect();
+                frequencies = Some((omega, Arc::clone(&frequency)));
+                frequency
+            }
+        };
+        let curves: Vec<Curve> = visible
+            .iter()
+            .map(|curve| {
+                let values: Arc<[f64]> = curve.values(pane).iter().map(|value| shown(*value)).collect();
+                let key = match curve.role {
+                    Role::OfAirspeed(_) => curve.label.as_str(),
+                    role => role.key(curve.rejected),
+                };
+                Curve::new(&curve.label, curve.role.stroke(curve.rejected), in_unit(&curve.omega), values).key(key)
+            })
+            .collect();
+        let omega = self.curves.first().map(|curve| &curve.omega);
+        let references: Vec<Mark> = self
+            .references
+            .iter()
+            .filter(|line| line.pane == pane)
+            .filter_map(|line| Some(reference_mark(line, (omega?, in_unit(omega?)))))
+            .collect();
+        let strips = self.strips.iter().map(|&(from, to)| Band {
+            along: Along::X,
+            range: self.options.in_unit(from, to),
+            color: NOTICED,
+            key: Some("what is left would be noticed".to_owned()),
+        });
+        let bands = self.bands.iter().map(|band| self.envelope(band, pane, &shown));
+        let panel = Panel::new(self.options.frequency_axis(), axis).with_all(strips).with_all(bands);
+        panel.with_all(curves).with_all(references)
+    }
+
+    fn envelope(&self, band: &BodeBand, pane: Pane, shown: &impl Fn(f64) -> f64) -> Envelope {
+        let values = match pane {
+            Pane::Magnitude => &band.magnitude_db,
+            Pane::Phase => &band.phase_deg,
+        };
+        let frequencies = band.omega.iter().map(|omega| self.options.unit.of_omega(*omega));
+        let points = frequencies.zip(values).map(|(x, [low, high])| [x, shown(*low), shown(*high)]);
+        Envelope { name: "band of 95 %".to_owned(), color: UNCERTAIN, points: points.collect() }
+    }
+}
+
+/// A line that curves are read against: where it is level and has a label of its own a rule, else a curve over these frequencies.
+fn reference_mark(line: &ReferenceLine, (omega, frequency): (&Arc<[f64]>, Arc<[f64]>)) -> Mark {
+    let stroke = line.kind.line().printed();
+    match &line.level {
+        Level::Constant(value) if matches!(line.kind, ReferenceKind::Delta | ReferenceKind::Bound) => {
+            Rule::horizontal(*value, stroke).label(&line.label).into()
+        }
+        level => {
+            let values: Vec<f64> = omega.iter().map(|omega| level.at(*omega)).collect();
+            Curve::new(&line.label, stroke, frequency, values).key(line.kind.key()).into()
+        }
+    }
+}
+
+/// A figure of a plot of each of `pairs`, beside one another; where it is one, that one names the figure.
+pub(super) fn figure_of_pairs(
+    source: &ConditionSource<'_>,
+    pairs: &[Pair],
+    what: &str,
+    plot: impl Fn(Pair) -> Plot,
+) -> Figure {
+    let words = source.condition_words();
+    let title = match (pairs, what) {
+        ([pair], "") => format!("{} · {words}", source.dataset().pair_name(*pair)),
+        ([pair], _) => format!("{what} of {} · {words}", source.dataset().pair_name(*pair)),
+        (_, "") => words,
+        _ => format!("{what} · {words}"),
+    };
+    side_by_side(source.dataset(), pairs, plot, title).caption(source.caption())
+}
+
+fn side_by_side(
+    dataset: &gdcm_core::dataset::Dataset,
+    pairs: &[Pair],
+    plot: impl Fn(Pair) -> Plot,
+    title: String,
+) -> Figure {
+    let is_one = pairs.len() == 1;
+    let titled = |pair: &Pair| {
+        let title = if is_one { String::new() } else { dataset.pair_name(*pair) };
+        Plot { title, ..plot(*pair) }
+    };
+    let aspect = if is_one { 0.72 } else { 1.9 };
+    Figure::new(title).columns(5).aspect(aspect).shared_x().plots(pairs.iter().map(titled))
 }
 
 /// The responses `pairs` of one condition: a magnitude above a phase each, of every model and of the corrected ones.
 pub fn bode_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeOptions) -> Figure {
-    let names: Vec<String> = pairs.iter().map(|pair| source.dataset().pair_name(*pair)).collect();
-    let (title, aspect) = match &names[..] {
-        [name] => (format!("{name} · {}", source.condition_words()), 0.72),
-        _ => (source.condition_words(), 1.9),
-    };
-    let plots = pairs.iter().zip(&names).map(|(pair, name)| {
-        let title = if names.len() == 1 { "" } else { name };
-        plot(source, *pair, title, options)
-    });
-    Figure::new(title).caption(source.caption()).columns(5).aspect(aspect).shared_x().plots(plots)
+    figure_of_pairs(source, pairs, "", |pair| {
+        let curves = source.response_curves(pair, options, &mut ResponseCache::default());
+        let bands = uncertainty_bands(source.dataset(), pair, &curves);
+        let ratio_unit = ConditionSource::ratio_unit(source.dataset(), pair);
+        plot((&curves, &bands), source.study.settings.band, options, &ratio_unit)
+    })
 }
 
-fn plot(source: &ConditionSource<'_>, pair: Pair, title: &str, options: &BodeOptions) -> Plot {
-    let mut lines = source.lines(pair, options);
-    if options.phase == PhaseUnit::Wrapped {
-        lines.iter_mut().for_each(|line| line.shape.phase_deg = wrapped_deg(&line.shape.phase_deg).into());
-    }
-    let magnitudes = |line: &ResponseLine| Arc::clone(&line.shape.magnitude_db);
-    let phases = |line: &ResponseLine| Arc::clone(&line.shape.phase_deg);
-    let needed = |least: f64, of: &dyn Fn(&ResponseLine) -> Arc<[f64]>| {
-        needed_range(source, lines.iter().map(of)).map(|range| range.with_margin(0.04, least))
+fn plot(
+    (curves, bands): (&[BodeCurve], &[BodeBand]),
+    band: BandOfComparison,
+    options: &BodeOptions,
+    ratio_unit: &str,
+) -> Plot {
+    let visible: Vec<BodeCurve> = curves.iter().filter(|curve| !curve.hidden).cloned().collect();
+    let needed = |pane, least| {
+        fitted_values(&visible, pane, (band.min(), band.max())).map(|range| range.with_margin(MARGIN, least))
     };
-    let magnitude_db = options.values[0].or_else(|| needed(4.0, &magnitudes));
-    let phase_deg = options.values[1].or_else(|| needed(20.0, &phases));
+    let magnitude_db = options.values[0].or_else(|| needed(Pane::Magnitude, 4.0));
+    let phase_deg = options.values[1].or_else(|| needed(Pane::Phase, 20.0));
+    let panels = FrequencyPanels { curves, references: &[], bands, strips: &[], options };
     let magnitude = match options.magnitude {
-        MagnitudeUnit::Decibel => Axis::linear("Magnitude [dB]").showing(magnitude_db),
+        MagnitudeUnit::Decibel => panels.panel(Pane::Magnitude, Axis::linear("Magnitude [dB]").showing(magnitude_db)),
         MagnitudeUnit::Ratio => {
-            lines.iter_mut().for_each(|line| {
-                line.shape.magnitude_db = line.shape.magnitude_db.iter().map(|db| db_to_ratio(*db)).collect();
-            });
             let ratio = magnitude_db.map(|db| Range::new(db_to_ratio(db.min), db_to_ratio(db.max)));
-            Axis::logarithmic(format!("Magnitude [{}]", source.ratio_unit(pair))).showing(ratio)
+            let axis = Axis::logarithmic(format!("Magnitude [{ratio_unit}]")).showing(ratio);
+            panels.panel_of(Pane::Magnitude, axis, db_to_ratio)
         }
     };
-    let panel = |axis: Axis, of: fn(&ResponseLine) -> &Arc<[f64]>| {
-        let curves = response_curves(source, &lines, options.unit, of);
-        Panel::new(options.frequency_axis(), axis).with(options.band(source)).with_all(curves)
-    };
-    let phase = Axis::degrees("Phase [deg]").showing(phase_deg);
-    Plot::new(title)
-        .panel(panel(magnitude, |line| &line.shape.magnitude_db).weight(MAGNITUDE_WEIGHT))
-        .panel(panel(phase, |line| &line.shape.phase_deg))
-}
-
-/// The lines as marks; their frequencies are shared.
-pub(super) fn response_curves(
-    source: &ConditionSource<'_>,
-    lines: &[ResponseLine],
-    unit: FrequencyUnit,
-    of: fn(&ResponseLine) -> &Arc<[f64]>,
-) -> Vec<Mark> {
-    let frequency: Arc<[f64]> = source.omega().iter().map(|omega| unit.of_omega(*omega)).collect();
-    let curve = |line: &ResponseLine| {
-        let stroke = line.role.stroke(line.rejected);
-        let key = line.role.key(line.rejected);
-        Curve::new(&line.name, stroke, Arc::clone(&frequency), Arc::clone(of(line))).key(key).into()
-    };
-    lines.iter().map(curve).collect()
-}
-
-/// The values to show: all within the band, and outside it as far as they leave room for those within.
-fn needed_range(source: &ConditionSource<'_>, values: impl Iterator<Item = Arc<[f64]>>) -> Option<Range> {
-    let band = source.study.settings.band;
-    let omega = source.omega();
-    let (mut all, mut within) = (Vec::new(), Vec::new());
-    for values in values {
-        for (omega, value) in omega.iter().zip(values.iter()) {
-            all.push(*value);
-            if (band.min()..=band.max()).contains(omega) {
-                within.push(*value);
-            }
-        }
-    }
-    let all = Range::of(all)?;
-    let Some(within) = Range::of(within) else { return Some(all) };
-    let room = within.with_margin(OUTSIDE_PART, 0.0);
-    Some(Range::new(all.min.max(room.min), all.max.min(room.max)))
+    let phase = panels.panel(Pane::Phase, Axis::degrees("Phase [deg]").showing(phase_deg));
+    let ground = || options.band(band);
+    Plot::default().panel(magnitude.over(ground()).weight(MAGNITUDE_WEIGHT)).panel(phase.over(ground()))
 }
 
 /// The responses `pairs` of one model of every condition: a magnitude above a phase each, from blue for the slowest condition to
@@ -186,89 +237,37 @@ pub fn airspeeds_figure(
     let (dataset, settings) = (&analysis.study.dataset, &analysis.study.settings);
     let job = AcrossJob::of(dataset, Some(analysis), role, (display_band(settings.band), CURVE_POINTS));
     let curves = job.run(&mut (), &Unobserved).ok().filter(|curves| !curves.responses.is_empty())?;
-    let names: Vec<String> = pairs.iter().map(|pair| dataset.pair_name(*pair)).collect();
-    let (title, aspect) = match &names[..] {
-        [name] => (format!("{name} · every condition, {}", role.name()), 0.72),
-        _ => (format!("Every condition, {}", role.name()), 1.9),
+    let curves = Arc::new(curves);
+    let title = match pairs {
+        [pair] => format!("{} · every condition, {}", dataset.pair_name(*pair), role.name()),
+        _ => format!("Every condition, {}", role.name()),
     };
-    let plots = pairs.iter().zip(&names).map(|(pair, name)| {
-        let source = AirspeedSource { analysis, curves: &curves, role, pair: *pair, options };
-        source.plot(if names.len() == 1 { "" } else { name })
-    });
-    let figure = Figure::new(title).caption(settings_words(dataset, settings)).columns(5).aspect(aspect);
-    Some(figure.shared_x().plots(plots))
-}
-
-/// What the curves of one response are made of.
-struct AirspeedSource<'a> {
-    analysis: &'a Analysis,
-    curves: &'a AcrossCurves,
-    role: AcrossRole,
-    pair: Pair,
-    options: &'a BodeOptions,
-}
-
-impl AirspeedSource<'_> {
-    fn plot(&self, title: &str) -> Plot {
-        let mut lines: Vec<(ModelId, ResponseShape)> = Vec::new();
-        for (id, response) in &self.curves.responses {
-            let first = lines.first().map(|(_, shape)| shape.clone());
-            lines.extend(self.shape(id, response, first.as_ref()).map(|shape| (id.clone(), shape)));
-        }
-        let frequency: Arc<[f64]> =
-            self.curves.grid.omega().iter().map(|omega| self.options.unit.of_omega(*omega)).collect();
-        let marks = |of: fn(&ResponseShape) -> &Arc<[f64]>| -> Vec<Mark> {
-            lines.iter().map(|(id, shape)| self.curve(id, &frequency, of(shape)).into()).collect()
-        };
-        let panel = |axis: Axis, curves: Vec<Mark>| {
-            let ground = ground_of(self.analysis.study.settings.band, self.options.unit);
-            Panel::new(self.options.frequency_axis(), axis).with(ground).with_all(curves)
-        };
-        let magnitude = Axis::linear("Magnitude [dB]").showing(self.options.values[0]);
-        let phase = Axis::degrees("Phase [deg]").showing(self.options.values[1]);
-        let upper = panel(magnitude, marks(|shape| &shape.magnitude_db));
-        Plot::new(title).panel(upper.weight(1.35)).panel(panel(phase, marks(|shape| &shape.phase_deg)))
-    }
-
-    /// The response as it is drawn, its phase laid on that of the first; none where it has no correction.
-    fn shape(
-        &self,
-        id: &ModelId,
-        response: &FrequencyResponse,
-        first: Option<&ResponseShape>,
-    ) -> Option<ResponseShape> {
-        let correction = self.role.correction(id.condition, self.pair, Some(self.analysis))?;
-        let shape = ResponseShape::of(&response.curve(self.pair)).corrected(self.curves.grid.omega(), correction);
-        Some(match first {
-            Some(first) => shape.laid_on(first),
-            None => shape,
-        })
-    }
-
-    fn curve(&self, id: &ModelId, frequency: &Arc<[f64]>, values: &Arc<[f64]>) -> Curve {
-        let dataset = &self.analysis.study.dataset;
-        let airspeed_kt = dataset.condition(id.condition).map_or(f64::NAN, |of| of.flight_state().airspeed_kt);
-        let (least, most) = dataset.airspeed_range_kt();
-        let name = format!("{}: {airspeed_kt:.0} kt", id.condition);
-        let stroke = Role::of_airspeed(airspeed_kt, (least, most)).stroke(false);
-        Curve::new(name.clone(), stroke, Arc::clone(frequency), Arc::clone(values)).key(name)
-    }
+    let options =
+        BodeOptions { unit: options.unit, omega: options.omega, values: options.values, ..BodeOptions::default() };
+    let of_pair = |pair| {
+        let made_of = (&**dataset, Some(analysis));
+        let drawn = airspeed_curves(made_of, role, pair, &curves, &mut AirspeedCache::default());
+        plot((&drawn, &[]), settings.band, &options, "")
+    };
+    Some(side_by_side(dataset, pairs, of_pair, title).caption(settings_words(dataset, settings)))
 }
 
 /// The magnitude of every response of one condition, outputs down, inputs across, with J before and after the correction.
 pub fn overview_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> Figure {
     let dataset = source.dataset();
     let plots = dataset.on_axis().pairs().map(|pair| {
-        let lines = source.lines(pair, options);
-        let curves = response_curves(source, &lines, options.unit, |line| &line.shape.magnitude_db);
-        let panel = Panel::new(options.frequency_axis(), Axis::linear("Magnitude [dB]").at_least(4.0));
-        let panel = panel.with(options.band(source)).with_all(curves);
-        let note = source.analysis.cost[pair].map(|cost| {
+        let curves = source.response_curves(pair, options, &mut ResponseCache::default());
+        let panels = FrequencyPanels { curves: &curves, references: &[], bands: &[], strips: &[], options };
+        let panel = panels.panel(Pane::Magnitude, Axis::linear("Magnitude [dB]").at_least(4.0));
+        let cost = source.analysis.and_then(|analysis| analysis.cost[pair]);
+        let note = cost.map(|cost| {
             let text = format!("J {:.0} → {:.0}", cost.uncorrected.total(), cost.corrected.total());
             Note { at: Place::LowerLeft, text }
         });
-        let held = if source.analysis.held()[pair] { " *" } else { "" };
-        Plot::new(format!("{}{held}", dataset.pair_name(pair))).panel(panel.with_all(note))
+        let is_held = source.analysis.is_some_and(|analysis| analysis.held()[pair]);
+        let held = if is_held { " *" } else { "" };
+        let panel = panel.over(options.band(source.study.settings.band)).with_all(note);
+        Plot::new(format!("{}{held}", dataset.pair_name(pair))).panel(panel)
     });
     let figure =
         Figure::new(source.condition_words()).caption(format!("{} * held exactly.", source.caption())).plots(plots);

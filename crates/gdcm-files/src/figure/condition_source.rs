@@ -2,12 +2,16 @@
 
 use std::sync::Arc;
 
+use gdcm_core::correction::ChannelCorrection;
 use gdcm_core::dataset::{BundleKind, ConditionId, Dataset, FlightState, Model, ModelId, Pair};
-use gdcm_core::response::{GainDelay, ResponseShape};
+use gdcm_core::fidelity::SUGGESTION_RATIO;
+use gdcm_core::response::GainDelay;
 use gdcm_core::schedule::{Schedule, ScheduleKind, ScheduleSettings, ScheduledQuantity};
 use gdcm_core::study::{ConditionAnalysis, ConditionCurves, PhaseCorrection, Settings, Study};
+use gdcm_core::units::s_to_ms;
 
 use super::bode::BodeOptions;
+use super::curve::BodeCurve;
 use super::role::Role;
 use super::ticks::compact;
 
@@ -16,12 +20,12 @@ use super::ticks::compact;
 pub struct ConditionSource<'a> {
     /// The dataset, and what was decided about it.
     pub study: &'a Study,
-    /// The condition's result.
-    pub analysis: &'a ConditionAnalysis,
+    /// The condition's result; before there is one, the responses can be shown all the same.
+    pub analysis: Option<&'a ConditionAnalysis>,
     /// The schedule, where there is one.
     pub schedule: Option<&'a Schedule>,
     /// The responses of its models.
-    pub curves: &'a ConditionCurves,
+    pub curves: &'a Arc<ConditionCurves>,
 }
 
 /// What a curve stands for; unique within a scene.
@@ -37,7 +41,7 @@ pub enum CurveId {
     WithoutLeads,
 }
 
-/// A model of the condition.
+/// A model of the condition that is not left out of sight by another one alone.
 #[derive(Clone, Debug)]
 pub(super) struct SourceModel {
     pub(super) id: ModelId,
@@ -45,24 +49,14 @@ pub(super) struct SourceModel {
     pub(super) index: usize,
     pub(super) role: Role,
     pub(super) rejected: bool,
+    /// Whether the engineer does not want to see it.
+    pub(super) hidden: bool,
 }
 
-/// One line of a response's plot.
-#[derive(Clone, Debug)]
-pub(super) struct ResponseLine {
-    pub(super) id: CurveId,
-    pub(super) name: String,
-    pub(super) role: Role,
-    pub(super) rejected: bool,
-    pub(super) shape: ResponseShape,
-}
-
-/// The representative physics model after a correction.
+/// The representative physics model after a correction: a curve without numbers yet, and what it is made of.
 #[derive(Clone, Debug)]
 pub(super) struct CorrectedModel {
-    pub(super) id: CurveId,
-    pub(super) name: String,
-    pub(super) role: Role,
+    pub(super) curve: BodeCurve,
     /// Index of the physics model.
     pub(super) model: usize,
     pub(super) correction: GainDelay,
@@ -79,8 +73,8 @@ impl<'a> ConditionSource<'a> {
     }
 
     /// `(deg/s)/in`: the unit of the ratio of a response's output to its input.
-    pub(super) fn ratio_unit(&self, pair: Pair) -> String {
-        let (output, input) = (&self.dataset().outputs()[pair.output].unit, &self.dataset().inputs()[pair.input].unit);
+    pub fn ratio_unit(dataset: &Dataset, pair: Pair) -> String {
+        let (output, input) = (&dataset.outputs()[pair.output].unit, &dataset.inputs()[pair.input].unit);
         let bracketed = |unit: &str| if unit.contains('/') { format!("({unit})") } else { unit.to_owned() };
         format!("{}/{}", bracketed(output), bracketed(input))
     }
@@ -101,79 +95,80 @@ impl<'a> ConditionSource<'a> {
         caption
     }
 
-    /// Index of the identified model that the others are laid on and compared with.
-    pub(super) fn reference(&self) -> usize {
-        let name = self.analysis.representative_name(BundleKind::Identified);
-        self.curves.condition.position(BundleKind::Identified, name).unwrap_or(0)
+    /// The representative of a bundle; none before the bundle was compared.
+    fn representative(&self, kind: BundleKind) -> Option<&'a str> {
+        self.analysis.map(|analysis| analysis.representative_name(kind))
     }
 
-    /// Every model of a bundle, in file order.
-    pub(super) fn models(&self, kind: BundleKind) -> Vec<SourceModel> {
+    /// Index of the identified model that the others are laid on and compared with; the first one where nothing was compared.
+    pub(super) fn reference(&self) -> usize {
+        let name = self.representative(BundleKind::Identified);
+        name.and_then(|name| self.curves.condition.position(BundleKind::Identified, name)).unwrap_or(0)
+    }
+
+    /// The models of a bundle in file order; where one is isolated, that one and the representative.
+    pub(super) fn models(&self, kind: BundleKind, options: &BodeOptions) -> Vec<SourceModel> {
         let condition = &self.curves.condition;
-        let representative = self.analysis.representative_name(kind);
+        let representative = self.representative(kind);
+        let isolated = options.isolated.as_ref().filter(|id| id.condition == condition.id());
+        let is_visible = |name: &str| {
+            isolated.is_none_or(|id| (id.bundle == kind && id.name == name) || representative == Some(name))
+        };
         let of_model = |(index, model): (usize, &Model)| {
             let id = ModelId::new(condition.id(), kind, &model.name);
-            let role = Role::of_model(kind, model.is_nominal(), representative == model.name);
-            SourceModel { index, role, rejected: self.study.is_rejected(&id), id }
+            let role = Role::of_model(kind, model.is_nominal(), representative == Some(&model.name));
+            let rejected = self.study.is_rejected(&id);
+            let hidden = options.hidden.contains(&role.shown(rejected)) || options.hidden_models.contains(&id);
+            SourceModel { id, index, role, rejected, hidden }
         };
-        condition.bundle(kind).iter().enumerate().map(of_model).collect()
+        condition.bundle(kind).iter().enumerate().filter(|(_, model)| is_visible(&model.name)).map(of_model).collect()
+    }
+
+    /// The curve of a model, without numbers yet.
+    pub(super) fn curve_of(&self, model: SourceModel) -> BodeCurve {
+        let SourceModel { id, index, role, rejected, hidden } = model;
+        let detail = self.detail(&id, index);
+        let label = id.name.clone();
+        BodeCurve { label, detail, rejected, hidden, ..BodeCurve::new(CurveId::Model(id), role) }
+    }
+
+    /// "ratio 3.68, suggested as an outlier · from run 3".
+    fn detail(&self, id: &ModelId, index: usize) -> String {
+        let analysis = self.analysis.filter(|_| id.bundle == BundleKind::Physics);
+        let ratio = analysis.and_then(|analysis| analysis.discontinuity_ratio(&id.name)).map(|ratio| {
+            let verdict = if ratio > SUGGESTION_RATIO { ", suggested as an outlier" } else { "" };
+            format!("ratio {ratio:.2}{verdict}")
+        });
+        let source = self.curves.condition.bundle(id.bundle)[index].source.as_ref();
+        let source = source.map(|source| format!("from {}", source.words()));
+        ratio.into_iter().chain(source).collect::<Vec<_>>().join(" · ")
     }
 
     /// The representative physics model with the condition's own correction, with that of the schedule, and where there are leads
     /// without them.
-    pub(super) fn corrected_models(&self, pair: Pair) -> Vec<CorrectedModel> {
-        let name = self.analysis.representative_name(BundleKind::Physics);
+    pub(super) fn corrected_models(&self, pair: Pair, options: &BodeOptions) -> Vec<CorrectedModel> {
+        let Some(analysis) = self.analysis else { return Vec::new() };
+        let name = analysis.representative_name(BundleKind::Physics);
         let Some(model) = self.curves.condition.position(BundleKind::Physics, name) else {
             return Vec::new();
         };
-        let own = self.analysis.correction.on(pair).map(|correction| (CurveId::Corrected, Role::Corrected, correction));
-        let scheduled =
-            self.schedule.and_then(|schedule| schedule.at_state(self.curves.condition.flight_state()).on(pair));
-        let scheduled = scheduled.map(|correction| (CurveId::Scheduled, Role::Scheduled, correction));
-        let without = self.analysis.led.as_ref().and_then(|_| self.analysis.correction.without_leads_on(pair));
-        let without = without.map(|correction| (CurveId::WithoutLeads, Role::WithoutLeads, correction));
-        own.into_iter()
-            .chain(scheduled)
-            .chain(without)
-            .map(|(id, role, correction)| CorrectedModel {
-                id,
-                name: format!("{name}, {}", role.name()),
-                role,
-                model,
-                correction,
-            })
-            .collect()
-    }
-
-    /// The lines of a response's plot that are shown, what matters most last; phases are laid on that of the reference.
-    pub(super) fn lines(&self, pair: Pair, options: &BodeOptions) -> Vec<ResponseLine> {
-        let shape = |kind, index: usize| ResponseShape::of(&self.curves.bundle(kind)[index].curve(pair));
-        let reference = shape(BundleKind::Identified, self.reference());
-        let models = BundleKind::BOTH.into_iter().flat_map(|kind| self.models(kind));
-        let shown = models.filter(|model| options.shows_model(model));
-        let mut lines: Vec<ResponseLine> = shown
-            .map(|SourceModel { id, index, role, rejected }| {
-                let shape = shape(id.bundle, index).laid_on(&reference);
-                let name = id.name.clone();
-                ResponseLine { id: CurveId::Model(id), name, role, rejected, shape }
-            })
-            .collect();
-        let omega = self.curves.grid.omega();
-        for CorrectedModel { id, name, role, model, correction } in self.corrected_models(pair) {
-            let shape = shape(BundleKind::Physics, model).laid_on(&reference).corrected(omega, correction);
-            lines.push(ResponseLine { id, name, role, rejected: false, shape });
-        }
-        for line in &mut lines {
-            line.shape.phase_deg = options.turned(self.id(), pair, &line.id, &line.shape.phase_deg);
-        }
-        lines.retain(|line| !options.hidden.contains(&line.role.shown(line.rejected)));
-        lines.sort_by_key(|line| line.role.layer(line.rejected));
-        lines
-    }
-
-    /// Frequencies of the curves \[rad/s\].
-    pub(super) fn omega(&self) -> Arc<[f64]> {
-        self.curves.grid.omega().into()
+        let corrected = |id: CurveId, role: Role, words: &str, correction: &ChannelCorrection| {
+            let (gain, delay_ms) = (correction.net_gain(pair).value(), s_to_ms(correction.net_delay(pair).value_s()));
+            let detail = format!("net gain {gain:.3}, net delay {delay_ms:.1} ms");
+            let (label, hidden) = (format!("{name}, {words}"), options.hidden.contains(&role));
+            let curve = BodeCurve { label, detail, hidden, ..BodeCurve::new(id, role) };
+            Some(CorrectedModel { curve, model, correction: correction.on(pair)? })
+        };
+        let own = corrected(CurveId::Corrected, Role::Corrected, "corrected", &analysis.correction);
+        let scheduled = self.schedule.and_then(|schedule| {
+            let correction = schedule.at_state(self.curves.condition.flight_state());
+            corrected(CurveId::Scheduled, Role::Scheduled, "scheduled", &correction)
+        });
+        let without = analysis.compensated.as_ref().and_then(|_| {
+            let correction = analysis.correction.clone().without_leads();
+            corrected(CurveId::WithoutLeads, Role::WithoutLeads, "corrected without leads", &correction)
+        });
+        own.into_iter().chain(scheduled).chain(without).collect()
     }
 }
 

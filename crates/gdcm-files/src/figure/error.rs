@@ -3,217 +3,369 @@
 use std::sync::Arc;
 
 use gdcm_core::dataset::{BundleKind, Pair};
-use gdcm_core::fidelity::{CountedFrequencies, Mismatch, Muad};
-use gdcm_core::response::{GainDelay, PolarCurve, quantile};
+use gdcm_core::fidelity::{CoherenceWeights, Mismatch, Muad, leaves};
+use gdcm_core::response::{FrequencyResponse, GainDelay, PolarCurve, quantile, wrap};
+use gdcm_core::study::{ConditionAnalysis, ConditionCurves};
 use gdcm_core::units::{ratio_to_db, s_to_ms};
 
-use super::axis::{Axis, Range};
-use super::bode::BodeOptions;
-use super::condition_source::ConditionSource;
-use super::drawing::{Color, Dash, Hue, Stroke};
-use super::figure::{Figure, Panel, Plot};
-use super::mark::{Curve, Mark, Rule};
+use super::axis::Axis;
+use super::bode::{BodeOptions, FrequencyPanels, figure_of_pairs};
+use super::condition_source::{ConditionSource, CorrectedModel, CurveId};
+use super::curve::{BodeCurve, Level, Pane, ReferenceKind, ReferenceLine};
+use super::figure::{Figure, Plot};
 use super::request::PhaseErrorUnit;
-use super::role::Role;
-use super::ticks::decimals;
-
-const DELTA: Stroke = Stroke::dashed(Color::INK, 0.7, Dash::Dotted);
-const BOUND: Stroke = Stroke::dashed(Color::of(Hue::Warning), 0.7, Dash::DashDot);
-const QUANTILE: Stroke = Stroke::dashed(Color::DIM, 0.5, Dash::Short);
-const MUAD: Stroke = Stroke::solid(Color::of(Hue::Good), 0.55);
-
-impl PhaseErrorUnit {
-    /// A difference of phases \[rad\] at `omega` as it is drawn.
-    fn of(self, phase: f64, omega: f64) -> f64 {
-        match self {
-            Self::Degree => phase.to_degrees(),
-            Self::Millisecond => s_to_ms(phase / omega),
-        }
-    }
-
-    /// The delay \[s\] that a difference of phases as drawn is at `omega`.
-    fn delay_s(self, drawn: f64, omega: f64) -> f64 {
-        match self {
-            Self::Degree => drawn.to_radians() / omega,
-            Self::Millisecond => 1e-3 * drawn,
-        }
-    }
-
-    fn axis(self) -> Axis {
-        match self {
-            Self::Degree => Axis::degrees("Δφ [deg]").including(0.0).at_least(5.0),
-            Self::Millisecond => Axis::linear("Δφ/ω [ms]").including(0.0).at_least(5.0),
-        }
-    }
-}
-
-/// One model's error over the band.
-struct ErrorLine {
-    name: String,
-    role: Role,
-    /// `20 log10 |H_ref| / |H_sim|`.
-    ratio_db: Arc<[f64]>,
-    /// `Delta phi(H_sim, H_ref)`, or that over the frequency.
-    phase: Arc<[f64]>,
-}
 
 /// What the fit sees of `pairs`: the error of every kept physics model, and of the representative before and after its
 /// correction, with G, D and the bounds.
 pub fn error_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeOptions) -> Figure {
-    let names: Vec<String> = pairs.iter().map(|pair| source.dataset().pair_name(*pair)).collect();
-    let (title, aspect) = match &names[..] {
-        [name] => (format!("Error of {name} · {}", source.condition_words()), 0.72),
-        _ => (format!("Error · {}", source.condition_words()), 1.9),
-    };
-    let plots = pairs.iter().zip(&names).map(|(pair, name)| {
-        let title = if names.len() == 1 { "" } else { name };
-        plot(source, *pair, title, options)
-    });
-    Figure::new(title).caption(source.caption()).columns(5).aspect(aspect).shared_x().plots(plots)
-}
-
-fn plot(source: &ConditionSource<'_>, pair: Pair, title: &str, options: &BodeOptions) -> Plot {
-    let omega = omega_in_band(source);
-    let mut lines: Vec<ErrorLine> =
-        errors(source, pair, &omega, options).into_iter().filter(|line| !options.hidden.contains(&line.role)).collect();
-    lines.sort_by_key(|line| line.role.layer(false));
-    let frequency: Arc<[f64]> = omega.iter().map(|omega| options.unit.of_omega(*omega)).collect();
-    let curves = |of: fn(&ErrorLine) -> &Arc<[f64]>| -> Vec<Mark> {
-        let curve = |line: &ErrorLine| {
-            let values = Arc::clone(of(line));
-            Curve::new(&line.name, line.role.stroke(false), Arc::clone(&frequency), values)
-                .key(line.role.key(false))
-                .into()
+    figure_of_pairs(source, pairs, "Error", |pair| {
+        let curves = source.error_curves(pair, options, &mut ErrorCache::default());
+        let (references, strips) = (source.error_references(pair, options, &curves), noticed(&curves, options));
+        let panels = FrequencyPanels { curves: &curves, references: &references, bands: &[], strips: &strips, options };
+        let ratio = Axis::linear("|ident.| / |model| [dB]").including(0.0).at_least(1.0).showing(options.values[0]);
+        let phase = match options.phase_error {
+            PhaseErrorUnit::Degree => Axis::degrees("Δφ [deg]"),
+            PhaseErrorUnit::Millisecond => Axis::linear("Δφ/ω [ms]"),
         };
-        lines.iter().map(curve).collect()
-    };
-    let axis = || options.frequency_axis();
-    let bounds = source.analysis.gain_bounds();
-    let gain = source.analysis.wanted_gain(pair).map(|gain| {
-        let label = format!("G {} ({} dB)", decimals(gain, 3), decimals(ratio_to_db(gain), 1));
-        Rule::horizontal(ratio_to_db(gain), DELTA).label(label)
-    });
-    let bounds = [("LB", bounds.lower), ("UB", bounds.upper)].map(|(name, bound)| {
-        Rule::horizontal(ratio_to_db(bound), BOUND).label(format!("{name} {}", decimals(bound, 3)))
-    });
-    let delay = source.analysis.wanted_delay_s(pair).map(|delay_s| {
-        let values: Arc<[f64]> = omega.iter().map(|&at| options.phase_error.of(delay_s * at, at)).collect();
-        let name = format!("D {} ms", decimals(s_to_ms(delay_s), 1));
-        Curve::new(name.clone(), DELTA, Arc::clone(&frequency), values).key("delta gain, delta delay")
-    });
-    let mut references = quantile_lines(&lines, &omega, source.study.settings.quantile, options.phase_error);
-    if options.shows_muad {
-        references.extend(muad_lines(&omega, options.phase_error));
-    }
-    let ratio = Axis::linear("|ident.| / |model| [dB]").including(0.0).at_least(1.0);
-    let ratio = ratio.showing(options.values[0]);
-    let phase = options.phase_error.axis().showing(options.values[1]);
-    Plot::new(title)
-        .panel(
-            Panel::new(axis(), ratio)
-                .with_all(curves(|line| &line.ratio_db))
-                .with_all(gain)
-                .with_all(bounds)
-                .with_all(references.iter().map(|reference| reference.mark(&frequency, |line| &line.ratio_db))),
-        )
-        .panel(
-            Panel::new(axis(), phase)
-                .with_all(curves(|line| &line.phase))
-                .with_all(delay)
-                .with_all(references.iter().map(|reference| reference.mark(&frequency, |line| &line.phase))),
-        )
-}
-
-/// A line that errors are read against: a quantile, or the limit of what a pilot does not notice.
-struct ReferenceLine {
-    key: &'static str,
-    stroke: Stroke,
-    line: ErrorLine,
-}
-
-impl ReferenceLine {
-    fn new(key: &'static str, name: String, stroke: Stroke, ratio_db: Arc<[f64]>, phase: Arc<[f64]>) -> Self {
-        Self { key, stroke, line: ErrorLine { name, role: Role::IdentifiedRepresentative, ratio_db, phase } }
-    }
-
-    fn mark(&self, frequency: &Arc<[f64]>, of: fn(&ErrorLine) -> &Arc<[f64]>) -> Curve {
-        Curve::new(&self.line.name, self.stroke, Arc::clone(frequency), Arc::clone(of(&self.line))).key(self.key)
-    }
-}
-
-/// The quantiles of the representative's own error (M7 pools those of all on-axis responses).
-fn quantile_lines(lines: &[ErrorLine], omega: &[f64], q: f64, unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
-    let represents = |line: &&ErrorLine| line.role == Role::Representative;
-    // The nominal model keeps its role where it represents its bundle.
-    let own = lines.iter().find(represents).or(lines.iter().find(|line| line.role == Role::Nominal));
-    let Some(own) = own else { return Vec::new() };
-    // There is no error at frequencies that do not count.
-    let mut ratios_db: Vec<f64> = own.ratio_db.iter().copied().filter(|ratio| ratio.is_finite()).collect();
-    let delays_s = own.phase.iter().zip(omega).map(|(phase, at)| unit.delay_s(*phase, *at));
-    let mut delays_s: Vec<f64> = delays_s.filter(|delay| delay.is_finite()).collect();
-    let line = |q: f64| {
-        let ratio_db = quantile(&mut ratios_db, q);
-        let delay_s = quantile(&mut delays_s, q);
-        let phase = omega.iter().map(|at| unit.of(delay_s * at, *at)).collect();
-        let ratio_db = vec![ratio_db; omega.len()].into();
-        ReferenceLine::new("quantiles", format!("{:.0} % quantile", 100.0 * q), QUANTILE, ratio_db, phase)
-    };
-    [q, 1.0 - q].map(line).into()
-}
-
-/// The envelopes of unnoticeable added dynamics (MIL-STD-1797A); those of the magnitude stand mirrored, for its inverse is drawn.
-fn muad_lines(omega: &[f64], unit: PhaseErrorUnit) -> [ReferenceLine; 2] {
-    [(0, "lower"), (1, "upper")].map(|(end, word)| {
-        let ratio_db = omega.iter().map(|at| -Muad::at(*at).magnitude_db[end]).collect();
-        let phase = omega.iter().map(|at| unit.of(Muad::at(*at).phase_deg[end].to_radians(), *at)).collect();
-        ReferenceLine::new("unnoticed within, MUAD", format!("{word} limit, MUAD"), MUAD, ratio_db, phase)
+        let phase = phase.including(0.0).at_least(5.0).showing(options.values[1]);
+        Plot::default().panel(panels.panel(Pane::Magnitude, ratio)).panel(panels.panel(Pane::Phase, phase))
     })
 }
 
-fn omega_in_band(source: &ConditionSource<'_>) -> Vec<f64> {
-    let band = source.study.settings.band;
-    let range = Range::new(band.min(), band.max());
-    source.curves.grid.omega().iter().copied().filter(|omega| range.contains(*omega)).collect()
+impl ConditionSource<'_> {
+    /// The error over the band of every kept physics model, of the representative after its correction and after the schedule's, and
+    /// the reference as the line at zero. `cache` keeps their numbers while nothing of them changes.
+    pub fn error_curves(&self, pair: Pair, options: &BodeOptions, cache: &mut ErrorCache) -> Vec<BodeCurve> {
+        let (band, coherence) = (self.study.settings.band, self.study.settings.coherence_threshold);
+        let (reference, unit) = (self.reference(), options.phase_error);
+        let curves = Arc::clone(self.curves);
+        cache.refresh(Made { curves, pair, reference, band: (band.min(), band.max()), coherence, unit });
+        let mut drawn = Vec::new();
+        for model in self.models(BundleKind::Physics, options).into_iter().filter(|model| !model.rejected) {
+            if let Some((_, error)) = &cache.errors[model.index] {
+                drawn.push(self.curve_of(model).with(&cache.omega, &error.magnitude_db, &error.phase));
+            }
+        }
+        if !drawn.is_empty() {
+            let identified = self.models(BundleKind::Identified, options).into_iter();
+            let of_reference = identified.filter(|model| model.index == reference);
+            drawn.extend(of_reference.map(|model| self.curve_of(model).with(&cache.omega, &cache.zero, &cache.zero)));
+        }
+        for CorrectedModel { curve, model, correction } in self.corrected_models(pair, options) {
+            if let Some(error) = cache.corrected(&curve.id, model, correction) {
+                drawn.push(curve.with(&cache.omega, &error.magnitude_db, &error.phase));
+            }
+        }
+        drawn
+    }
+
+    /// G and D, the bounds of the channels, and quantiles of the representative's error among `drawn`, hidden or not: what the fit
+    /// makes of it (M6, M7).
+    pub fn error_references(&self, pair: Pair, options: &BodeOptions, drawn: &[BodeCurve]) -> Vec<ReferenceLine> {
+        let Some(analysis) = self.analysis else { return Vec::new() };
+        let unit = options.phase_error;
+        let mut lines = delta_rules(analysis, pair, unit);
+        lines.extend(bound_rules(analysis, unit));
+        let name = analysis.representative_name(BundleKind::Physics);
+        let is_representative = |curve: &&BodeCurve| matches!(&curve.id, CurveId::Model(id) if id.bundle == BundleKind::Physics && id.name == name);
+        if let Some(curve) = drawn.iter().find(is_representative) {
+            lines.extend(quantile_rules(curve, self.study.settings.quantile, unit));
+        }
+        if let Some(curve) = drawn.first().filter(|_| options.shows_muad) {
+            lines.extend(muad_rules(&curve.omega, unit));
+        }
+        lines
+    }
 }
 
-/// The reference as the line at zero, every kept physics model, and the corrected ones.
-fn errors(source: &ConditionSource<'_>, pair: Pair, omega: &[f64], options: &BodeOptions) -> Vec<ErrorLine> {
-    let all = source.curves.grid.omega();
-    let from = all.partition_point(|at| omega.first().is_some_and(|first| at < first));
-    let polar = |kind, index: usize| {
-        PolarCurve::of(source.curves.bundle(kind)[index].curve(pair).get(from..from + omega.len())?)
-    };
-    let Some(reference) = polar(BundleKind::Identified, source.reference()) else {
-        return Vec::new();
-    };
-    // Of a reference measured with coherence the errors at frequencies that do not count are gaps (M4a).
-    let flight = &source.curves.condition.bundle(BundleKind::Identified)[source.reference()].dynamics;
-    let counted = CountedFrequencies::of_model(flight, omega, source.study.settings.coherence_threshold);
-    let line = |name: String, role: Role, model: usize, correction: GainDelay| {
-        let mismatch = Mismatch::new(&polar(BundleKind::Physics, model)?, &reference);
-        let mismatch = mismatch.counting(counted.as_ref().map(|counted| &counted[pair]))?;
-        // On the branch of the model as it is (M6b), which a correction leaves it on.
+/// How far one response is from the reference, and on which branch.
+#[derive(Clone, Debug)]
+struct ErrorShape {
+    /// `20 log10 |H_sim| / |H_ref|`.
+    mismatch_db: Vec<f64>,
+    /// `Delta phi(H_sim, H_ref)` \[rad\] (M3, M6b): never a difference of two phases that were unwrapped apart.
+    phase: Vec<f64>,
+}
+
+/// What is drawn of it: `20 log10 |H_ref| / |H_sim|`, and `Delta phi` in degrees or `Delta phi / omega` in milliseconds.
+#[derive(Clone, Debug)]
+struct DrawnError {
+    magnitude_db: Arc<[f64]>,
+    phase: Arc<[f64]>,
+}
+
+impl ErrorShape {
+    /// The error at the frequencies that count; none where none does. Not a number at the others (M4a).
+    fn of(
+        simulated: &PolarCurve,
+        reference: &PolarCurve,
+        omega: &[f64],
+        coherence_weights: Option<&CoherenceWeights>,
+    ) -> Option<Self> {
+        let mismatch = Mismatch::new(simulated, reference).coherence_weighted(coherence_weights)?;
         let phase = mismatch.on_grid(mismatch.phase_difference(omega), omega.len());
-        let mismatch_db = mismatch.on_grid(mismatch.magnitude_db.clone(), omega.len());
-        Some(ErrorLine {
-            name,
-            role,
-            ratio_db: correction.magnitudes_db(&mismatch_db, omega).map(|db| -db).collect(),
-            phase: correction
-                .phases(&phase, omega)
-                .zip(omega)
-                .map(|(by, at)| options.phase_error.of(by, *at))
-                .collect(),
-        })
+        Some(Self { phase, mismatch_db: mismatch.on_grid(mismatch.magnitude_db.clone(), omega.len()) })
+    }
+
+    /// After a gain and a delay of the simulated response (M10), which leave it on its branch.
+    fn drawn(&self, correction: GainDelay, omega: &[f64], unit: PhaseErrorUnit) -> DrawnError {
+        let phase = correction.phases(&self.phase, omega).zip(omega);
+        DrawnError {
+            magnitude_db: correction.magnitudes_db(&self.mismatch_db, omega).map(|db| -db).collect(),
+            phase: match unit {
+                PhaseErrorUnit::Degree => phase.map(|(phase, _)| phase.to_degrees()).collect(),
+                PhaseErrorUnit::Millisecond => phase.map(|(phase, omega)| s_to_ms(phase / omega)).collect(),
+            },
+        }
+    }
+}
+
+/// What the errors are made of.
+#[derive(Clone, Debug)]
+struct Made {
+    curves: Arc<ConditionCurves>,
+    pair: Pair,
+    reference: usize,
+    band: (f64, f64),
+    /// Least coherence that counts.
+    coherence: Option<f64>,
+    unit: PhaseErrorUnit,
+}
+
+impl Made {
+    fn is_same(&self, other: &Self) -> bool {
+        let key = |made: &Self| (made.pair, made.reference, made.band, made.coherence, made.unit);
+        Arc::ptr_eq(&self.curves, &other.curves) && key(self) == key(other)
+    }
+
+    /// The response of a model in the band; nothing where it is zero or not finite somewhere in it.
+    fn polar(&self, response: &FrequencyResponse) -> Option<PolarCurve> {
+        let omega = self.curves.grid.omega();
+        let from = omega.partition_point(|omega| *omega < self.band.0);
+        let to = omega.partition_point(|omega| *omega <= self.band.1);
+        PolarCurve::of(response.curve(self.pair).get(from..to)?)
+    }
+
+    /// The frequencies among `omega` that count, where the reference's coherence says that.
+    fn coherence_weights(&self, omega: &[f64]) -> Option<CoherenceWeights> {
+        let flight = &self.curves.condition.bundle(BundleKind::Identified)[self.reference].dynamics;
+        Some(CoherenceWeights::of_model(flight, omega, self.coherence)?[self.pair].clone())
+    }
+
+    fn omega(&self) -> Arc<[f64]> {
+        let within = |omega: &&f64| (self.band.0..=self.band.1).contains(*omega);
+        self.curves.grid.omega().iter().filter(within).copied().collect()
+    }
+}
+
+/// Errors of every physics model of the condition shown for one response, kept while nothing of it changes.
+#[derive(Debug, Default)]
+pub struct ErrorCache {
+    made: Option<Made>,
+    omega: Arc<[f64]>,
+    /// Zero at each frequency: the reference itself.
+    zero: Arc<[f64]>,
+    /// In the order of the physics models.
+    errors: Vec<Option<(ErrorShape, DrawnError)>>,
+    /// Of each corrected curve: what it was made with, and what is drawn of it.
+    corrected: Vec<(CurveId, usize, GainDelay, DrawnError)>,
+}
+
+impl ErrorCache {
+    fn refresh(&mut self, made: Made) {
+        if self.made.as_ref().is_some_and(|before| before.is_same(&made)) {
+            return;
+        }
+        self.omega = made.omega();
+        self.zero = vec![0.0; self.omega.len()].into();
+        self.corrected.clear();
+        let reference = made.polar(&made.curves.identified[made.reference]);
+        let coherence_weights = made.coherence_weights(&self.omega);
+        let error = |response: &Arc<FrequencyResponse>| {
+            let shape =
+                ErrorShape::of(&made.polar(response)?, reference.as_ref()?, &self.omega, coherence_weights.as_ref())?;
+            let drawn = shape.drawn(GainDelay::NONE, &self.omega, made.unit);
+            Some((shape, drawn))
+        };
+        self.errors = made.curves.physics.iter().map(error).collect();
+        self.made = Some(made);
+    }
+
+    fn corrected(&mut self, id: &CurveId, model: usize, correction: GainDelay) -> Option<DrawnError> {
+        let same =
+            |made: &&(CurveId, usize, GainDelay, DrawnError)| (&made.0, made.1, made.2) == (id, model, correction);
+        if let Some((.., drawn)) = self.corrected.iter().find(same) {
+            return Some(drawn.clone());
+        }
+        let drawn = self.errors[model].as_ref()?.0.drawn(correction, &self.omega, self.made.as_ref()?.unit);
+        self.corrected.retain(|(of, ..)| of != id);
+        self.corrected.push((id.clone(), model, correction, drawn.clone()));
+        Some(drawn)
+    }
+}
+
+/// The envelopes of unnoticeable added dynamics over the frequencies of an error (MIL-STD-1797A). They are those of model over
+/// reference: what is drawn above is its inverse, what is drawn below is not.
+fn muad_rules(omega: &[f64], unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
+    let phase = |omega: f64, degrees: f64| match unit {
+        PhaseErrorUnit::Degree => degrees,
+        PhaseErrorUnit::Millisecond => s_to_ms(degrees.to_radians() / omega),
     };
-    let zero: Arc<[f64]> = vec![0.0; omega.len()].into();
-    let name = source.analysis.representative_name(BundleKind::Identified).to_owned();
-    let role = Role::IdentifiedRepresentative;
-    let mut lines = vec![ErrorLine { name, role, ratio_db: Arc::clone(&zero), phase: zero }];
-    let kept =
-        source.models(BundleKind::Physics).into_iter().filter(|model| !model.rejected && options.shows_model(model));
-    lines.extend(kept.filter_map(|of| line(of.id.name, of.role, of.index, GainDelay::NONE)));
-    let corrected = source.corrected_models(pair).into_iter();
-    lines.extend(corrected.filter_map(|of| line(of.name, of.role, of.model, of.correction)));
-    lines
+    let rule = |pane, label: &str, value: &dyn Fn(f64) -> f64| {
+        let level = Level::Sampled(omega.iter().map(|&omega| [omega, value(omega)]).collect());
+        ReferenceLine { note: String::new(), pane, kind: ReferenceKind::Envelope, label: label.to_owned(), level }
+    };
+    [(0, "unnoticed below, MUAD"), (1, "unnoticed above, MUAD")]
+        .into_iter()
+        .flat_map(|(end, label)| {
+            [
+                rule(Pane::Magnitude, label, &|omega| -Muad::at(omega).magnitude_db[end]),
+                rule(Pane::Phase, label, &|omega| phase(omega, Muad::at(omega).phase_deg[end])),
+            ]
+        })
+        .collect()
+}
+
+/// Where what is left of the mismatch would be noticed \[rad/s\]: that of the corrected curve among `drawn`, where that is asked for.
+pub fn noticed(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<(f64, f64)> {
+    let corrected = drawn.iter().find(|curve| curve.id == CurveId::Corrected).filter(|_| options.shows_muad);
+    let Some(curve) = corrected else { return Vec::new() };
+    let errors = curve.omega.iter().zip(curve.magnitude_db.iter().zip(curve.phase_deg.iter()));
+    let (mut omega, mut error_db, mut principal_deg) = (Vec::new(), Vec::new(), Vec::new());
+    // There is no error at frequencies that do not count.
+    for (&at, (&db, &phase)) in errors.filter(|(_, (db, _))| db.is_finite()) {
+        let radians = match options.phase_error {
+            PhaseErrorUnit::Degree => phase.to_radians(),
+            PhaseErrorUnit::Millisecond => 1e-3 * phase * at,
+        };
+        omega.push(at);
+        error_db.push(-db);
+        principal_deg.push(wrap(radians).to_degrees());
+    }
+    leaves(&omega, &error_db, &principal_deg)
+}
+
+/// A delay as a line in the pane of phase errors.
+fn delay_rule(kind: ReferenceKind, label: String, delay_s: f64, unit: PhaseErrorUnit) -> ReferenceLine {
+    let level = match unit {
+        PhaseErrorUnit::Degree => Level::PerOmega(delay_s.to_degrees()),
+        PhaseErrorUnit::Millisecond => Level::Constant(s_to_ms(delay_s)),
+    };
+    ReferenceLine { note: String::new(), pane: Pane::Phase, kind, label, level }
+}
+
+fn gain_rule(kind: ReferenceKind, label: String, gain: f64) -> ReferenceLine {
+    ReferenceLine { note: String::new(), pane: Pane::Magnitude, kind, label, level: Level::Constant(ratio_to_db(gain)) }
+}
+
+fn signed(value: f64) -> String {
+    format!("{value:.1}").replace('-', "\u{2212}")
+}
+
+fn delta_rules(shown: &ConditionAnalysis, pair: Pair, unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
+    let gain = shown.wanted_gain(pair).map(|gain| {
+        let label = format!("G {gain:.3} ({} dB)", signed(ratio_to_db(gain)));
+        let note = ", median over the band".to_owned();
+        ReferenceLine { note, ..gain_rule(ReferenceKind::Delta, label, gain) }
+    });
+    let delay = shown.wanted_delay_s(pair).map(|delay_s| {
+        let meaning = if delay_s < 0.0 { ": lead is missing" } else { "" };
+        let label = format!("D {} ms", signed(s_to_ms(delay_s)));
+        ReferenceLine { note: meaning.to_owned(), ..delay_rule(ReferenceKind::Delta, label, delay_s, unit) }
+    });
+    gain.into_iter().chain(delay).collect()
+}
+
+fn bound_rules(shown: &ConditionAnalysis, unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
+    let (bounds, delay_s) = (shown.gain_bounds(), shown.delay_upper_s());
+    vec![
+        gain_rule(ReferenceKind::Bound, format!("LB {:.3}", bounds.lower), bounds.lower),
+        gain_rule(ReferenceKind::Bound, format!("UB {:.3}", bounds.upper), bounds.upper),
+        delay_rule(ReferenceKind::Bound, format!("UB {} ms", signed(s_to_ms(delay_s))), delay_s, unit),
+    ]
+}
+
+/// The quantiles of one response's error: what M7 would take were there no others.
+fn quantile_rules(curve: &BodeCurve, q: f64, unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
+    let delays = curve.omega.iter().zip(curve.phase_deg.iter()).map(|(omega, phase)| match unit {
+        PhaseErrorUnit::Degree => phase.to_radians() / omega,
+        PhaseErrorUnit::Millisecond => 1e-3 * phase,
+    });
+    // There is no error at frequencies that do not count.
+    let finite = |values: &mut dyn Iterator<Item = f64>| values.filter(|value| value.is_finite()).collect::<Vec<f64>>();
+    let (mut ratios_db, mut delays_s) = (finite(&mut curve.magnitude_db.iter().copied()), finite(&mut { delays }));
+    let label = |q: f64| format!("{:.0} % quantile", 100.0 * q);
+    [q, 1.0 - q]
+        .into_iter()
+        .flat_map(|q| {
+            let level = Level::Constant(quantile(&mut ratios_db, q));
+            let of_magnitude = ReferenceLine {
+                note: String::new(),
+                pane: Pane::Magnitude,
+                kind: ReferenceKind::Quantile,
+                label: label(q),
+                level,
+            };
+            [of_magnitude, delay_rule(ReferenceKind::Quantile, label(q), quantile(&mut delays_s, q), unit)]
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    /// A gain \[dB\] and a lead \[s\] over the reference, a response of one.
+    fn error(omega: &[f64], gain_db: f64, lead_s: f64) -> ErrorShape {
+        let polar = |gain_db: f64, lead_s: f64| PolarCurve {
+            magnitude_db: vec![gain_db; omega.len()],
+            phase: omega.iter().map(|omega| wrap(omega * lead_s)).collect(),
+        };
+        ErrorShape::of(&polar(gain_db, lead_s), &polar(0.0, 0.0), omega, None).unwrap()
+    }
+
+    #[test]
+    fn the_right_gain_and_delay_bring_an_error_to_zero_on_its_branch() {
+        // At 12 rad/s the lead is 1.15 turns: the phases themselves wrap.
+        let omega: Vec<f64> = (1..=120).map(|k| 0.1 * f64::from(k)).collect();
+        let error = error(&omega, 2.0, 0.6);
+        let before = error.drawn(GainDelay::NONE, &omega, PhaseErrorUnit::Millisecond);
+        // Roundings of angles of a turn, divided by 0.1 rad/s.
+        assert!(before.phase.iter().all(|delay| (delay - 600.0).abs() < 1e-9) && omega[119] * 0.6 > TAU);
+        assert_eq!(before.magnitude_db[0], -2.0, "the model is to be made smaller");
+        let after = error.drawn(GainDelay::new(10f64.powf(-0.1), 0.6), &omega, PhaseErrorUnit::Degree);
+        let values = after.magnitude_db.iter().chain(after.phase.iter());
+        assert!(values.into_iter().all(|value| value.abs() < 1e-10));
+    }
+
+    #[test]
+    fn frequencies_that_do_not_count_are_gaps() {
+        let (omega, polar) = ([1.0, 2.0, 3.0], PolarCurve { magnitude_db: vec![1.0; 3], phase: vec![0.1; 3] });
+        let coherence_weights = CoherenceWeights::of(&omega, &[0.9, 0.2, 0.9], 0.6, None);
+        let shape = ErrorShape::of(&polar, &polar, &omega, Some(&coherence_weights)).unwrap();
+        assert!(shape.mismatch_db[1].is_nan() && shape.phase[1].is_nan());
+        assert_eq!((shape.mismatch_db[0], shape.phase[2]), (0.0, 0.0));
+        let nothing = CoherenceWeights::of(&omega, &[0.0; 3], 0.6, None);
+        assert!(ErrorShape::of(&polar, &polar, &omega, Some(&nothing)).is_none());
+    }
+
+    #[test]
+    fn a_delay_is_a_ray_in_degrees_and_level_in_milliseconds() {
+        let level = |unit| delay_rule(ReferenceKind::Delta, String::new(), 0.1, unit).level;
+        assert_eq!(level(PhaseErrorUnit::Degree), Level::PerOmega(0.1f64.to_degrees()));
+        assert_eq!(level(PhaseErrorUnit::Millisecond), Level::Constant(100.0));
+    }
+
+    #[test]
+    fn the_envelopes_of_model_over_reference_are_mirrored_where_the_inverse_is_drawn() {
+        let muad = Muad::at(2.0);
+        let rules = muad_rules(&[2.0], PhaseErrorUnit::Degree);
+        let of = |pane| rules.iter().filter(move |rule| rule.pane == pane).map(|rule| rule.level.clone());
+        let sampled = |value: f64| Level::Sampled(vec![[2.0, value]]);
+        let expected = muad.magnitude_db.map(|db| sampled(-db));
+        assert_eq!(of(Pane::Magnitude).collect::<Vec<_>>(), expected);
+        assert_eq!(of(Pane::Phase).collect::<Vec<_>>(), muad.phase_deg.map(sampled));
+    }
 }

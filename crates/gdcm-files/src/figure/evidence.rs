@@ -82,14 +82,14 @@ fn deviations(scatter: &PairScatter, level: f64) -> Panel {
     let figures = [
         ("scatter", DotShape::Circle, Color::INK, scatter_of),
         ("what the bundles explain", DotShape::Diamond, Color::of(Hue::Perturbed), VarianceDecomposition::explained),
-        ("rest", DotShape::Square, Color::of(Hue::Nominal), VarianceDecomposition::rest),
+        ("rest", DotShape::Square, Color::of(Hue::Nominal), VarianceDecomposition::unexplained),
     ];
     let dots = figures.into_iter().zip([-APART, 0.0, APART]).map(|((name, shape, color, of), beside)| {
         let dots = Dots::new(name, shape, color).key(name).filled(shape != DotShape::Diamond);
         splits(scatter).fold(dots, |dots, (x, split)| dots.dot(x + beside, percent(of(split)), ""))
     });
     let interval = |(x, split): (f64, &VarianceDecomposition)| {
-        let [low, high] = split.rest_interval(level)?;
+        let [low, high] = split.unexplained_interval(level)?;
         Some([x + APART, 100.0 * low, 100.0 * high])
     };
     let ends: Vec<[f64; 3]> = splits(scatter).filter_map(interval).collect();

@@ -161,6 +161,12 @@ impl Panel {
         self
     }
 
+    /// The same panel with one more mark, below all others.
+    pub fn over(mut self, ground: impl Into<Mark>) -> Self {
+        self.marks.insert(0, ground.into());
+        self
+    }
+
     /// The same panel of another height, relative to the others of its plot.
     pub fn weight(self, weight: f64) -> Self {
         Self { weight, ..self }

@@ -278,7 +278,7 @@ impl Quantity<'_> {
                 let label = difference.difference.ratio().filter(|_| beyond).map(|ratio| format!("{ratio:.1}×"));
                 Some(Bracket { x: difference.airspeed_kt, ends: [one?, other?], label: label.unwrap_or_default() })
             };
-            found.filter(|of| of.is_beyond(level) == beyond).filter_map(bracket).collect::<Vec<Bracket>>()
+            found.filter(|of| of.is_significant(level) == beyond).filter_map(bracket).collect::<Vec<Bracket>>()
         };
         let within = Brackets { name: WITHIN.to_owned(), stroke: BRACKET_WITHIN, brackets: of(false) };
         let beyond = Brackets { name: BEYOND.to_owned(), stroke: BRACKET_BEYOND, brackets: of(true) };

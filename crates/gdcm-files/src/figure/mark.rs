@@ -20,6 +20,8 @@ pub enum Mark {
     Rule(Rule),
     /// Parts of the vertical axis, one at each place.
     Spans(Spans),
+    /// The area between two lines.
+    Envelope(Envelope),
     /// How sure values are.
     Intervals(Intervals),
     /// Pairs of values that differ.
@@ -134,6 +136,17 @@ pub struct Spans {
     pub spans: Vec<[f64; 3]>,
 }
 
+/// The area between two lines over the same places: how far a curve may lie. It widens no range.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Envelope {
+    /// What it is: heads its numbers and is its entry in the legend.
+    pub name: String,
+    /// Its colour.
+    pub color: Color,
+    /// Where it is along x, ascending, its lower end, its upper end; one that is not finite leaves a gap.
+    pub points: Vec<[f64; 3]>,
+}
+
 /// How sure values are: an upright line at each. They widen no range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Intervals {
@@ -235,7 +248,7 @@ macro_rules! into_mark {
     };
 }
 
-into_mark!(Curve, Dots, Bars, Band, Rule, Spans, Intervals, Brackets, Guide, Note);
+into_mark!(Curve, Dots, Bars, Band, Rule, Spans, Envelope, Intervals, Brackets, Guide, Note);
 
 impl Curve {
     /// A line through the points `x[k]`, `y[k]`.
@@ -316,6 +329,7 @@ impl Mark {
             Mark::Band(_)
             | Mark::Rule(_)
             | Mark::Spans(_)
+            | Mark::Envelope(_)
             | Mark::Intervals(_)
             | Mark::Brackets(_)
             | Mark::Guide(_)

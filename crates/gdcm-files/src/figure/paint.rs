@@ -6,7 +6,7 @@ use super::figure::{ColumnWidth, Figure};
 use super::label_places::{LabelledDot, Surroundings, place_labels};
 use super::layout::{LABEL_LINE, LABEL_PT, Layout, Placed, SMALL_LINE, SMALL_PT, Side, TICK, width, wrapped};
 use super::mark::{
-    Along, Bars, Bracket, Brackets, Curve, DotShape, Dots, Guide, Intervals, Mark, Note, Place, Rule, Spans,
+    Along, Bars, Bracket, Brackets, Curve, DotShape, Dots, Envelope, Guide, Intervals, Mark, Note, Place, Rule, Spans,
 };
 use super::role::{Entry, Sample};
 
@@ -176,6 +176,15 @@ fn grounds(placed: &Placed<'_>) -> Vec<Shape> {
             });
             shapes.extend(areas);
         }
+        if let Mark::Envelope(Envelope { color, points, .. }) = mark {
+            let ends = |&[x, low, high]: &[f64; 3]| Some([placed.at([x, low])?, placed.at([x, high])?]);
+            let ends: Vec<Option<[[f64; 2]; 2]>> = points.iter().map(ends).collect();
+            for run in ends.split(Option::is_none).filter(|run| run.len() > 1) {
+                let (lower, upper): (Vec<_>, Vec<_>) = run.iter().flatten().map(|[low, high]| (*low, *high)).unzip();
+                let points = lower.into_iter().chain(upper.into_iter().rev()).collect();
+                shapes.push(Shape::Path { points, closed: true, fill: Some(*color), stroke: None });
+            }
+        }
     }
     shapes
 }
@@ -232,7 +241,7 @@ fn lines_of(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
             let places = brackets.iter().filter_map(|bracket| placed.bracket(bracket));
             places.map(|[spine, hooks]| bracket_line(spine, hooks, *stroke)).collect()
         }
-        Mark::Dots(_) | Mark::Band(_) | Mark::Spans(_) | Mark::Note(_) => Vec::new(),
+        Mark::Dots(_) | Mark::Band(_) | Mark::Spans(_) | Mark::Envelope(_) | Mark::Note(_) => Vec::new(),
     }
 }
 

@@ -45,10 +45,8 @@ pub fn poles_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> Opti
 
 /// The models that are shown, what matters most last.
 fn shown_models(source: &ConditionSource<'_>, options: &BodeOptions) -> Vec<SourceModel> {
-    let models = BundleKind::BOTH.into_iter().flat_map(|kind| source.models(kind));
-    let mut shown: Vec<_> = models
-        .filter(|model| options.shows_model(model) && !options.hidden.contains(&model.role.shown(model.rejected)))
-        .collect();
+    let models = BundleKind::BOTH.into_iter().flat_map(|kind| source.models(kind, options));
+    let mut shown: Vec<_> = models.filter(|model| !model.hidden).collect();
     shown.sort_by_key(|model| model.role.layer(model.rejected));
     shown
 }

@@ -154,6 +154,15 @@ impl FrequencyUnit {
         }
     }
 
+    /// An angular frequency as a reader wants it: "ω 2.05 rad/s" or "f 0.326 Hz".
+    pub fn readout(self, omega: f64) -> String {
+        let quantity = match self {
+            Self::RadPerSecond => "ω",
+            Self::Hertz => "f",
+        };
+        format!("{quantity} {} {}", three_digits(self.of_omega(omega)), self.symbol())
+    }
+
     /// What stands beside the axis.
     pub fn axis_label(self) -> String {
         format!("Frequency [{}]", self.symbol())
@@ -188,4 +197,29 @@ pub enum PhaseErrorUnit {
     Degree,
     /// Δφ/ω: the delay that would make up for it.
     Millisecond,
+}
+
+/// Three significant digits.
+fn three_digits(value: f64) -> String {
+    let decimals = if value.abs() >= 100.0 {
+        0
+    } else if value.abs() >= 10.0 {
+        1
+    } else if value.abs() >= 1.0 {
+        2
+    } else {
+        3
+    };
+    format!("{value:.decimals$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frequency_reads_in_its_unit() {
+        assert_eq!(FrequencyUnit::RadPerSecond.readout(2.0494), "ω 2.05 rad/s");
+        assert_eq!(FrequencyUnit::Hertz.readout(2.0494), "f 0.326 Hz");
+    }
 }

@@ -6,7 +6,7 @@ use gdcm_core::study::Table;
 
 use super::axis::Axis;
 use super::figure::{Figure, Panel};
-use super::mark::{Along, Bracket, Intervals, Mark, Spans};
+use super::mark::{Along, Bracket, Envelope, Intervals, Mark, Spans};
 
 impl Figure {
     /// The numbers of each panel: one column for each curve where all share their x, else one row for each point.
@@ -90,7 +90,9 @@ fn series(mark: &Mark) -> Vec<Series> {
             vec![of(&dots.name, dots.dots.iter().map(|dot| [dot.x, dot.y]).collect(), Some(labels))]
         }
         Mark::Bars(bars) => vec![of(&bars.name, bars.bars.clone(), None)],
-        Mark::Spans(Spans { name, spans: ends, .. }) | Mark::Intervals(Intervals { name, ends, .. }) => {
+        Mark::Spans(Spans { name, spans: ends, .. })
+        | Mark::Envelope(Envelope { name, points: ends, .. })
+        | Mark::Intervals(Intervals { name, ends, .. }) => {
             let end = |(end, at): (&str, usize)| {
                 of(&format!("{name}, {end}"), ends.iter().map(|ends| [ends[0], ends[at]]).collect(), None)
             };

@@ -9,7 +9,7 @@ mod state_space;
 
 use std::f64::consts::TAU;
 
-use gdcm_core::assembly::FoundModel;
+use gdcm_core::assembly::{Dimension, FoundModel, PhysicalUnit};
 use gdcm_core::dataset::{Estimate, ModelDraft, Origin, Provenance, ResponseArray, ResponseDraft, Timing};
 
 use crate::recognise::record::{Record, array_of, facts_of, inputs_of, list_of, matrix_of, outputs_of, texts_of};
@@ -241,22 +241,23 @@ pub(super) fn response(record: &Record<'_>, variable: &str) -> Result<FoundModel
 
 /// Frequencies \[rad/s\], and whether they stood in Hz.
 fn omega_of(record: &Record<'_>) -> Result<(Vec<f64>, bool), String> {
-    let unit = record
-        .get(UNITS)
-        .and_then(texts_of)
-        .and_then(|texts| texts.into_iter().next())
-        .unwrap_or_default()
-        .to_lowercase();
+    let unit = record.get(UNITS).and_then(texts_of).and_then(|texts| texts.into_iter().next()).unwrap_or_default();
+    let of_frequency = PhysicalUnit::of(&unit).filter(|unit| unit.dimension == Dimension::Frequency);
+    let of_rate = PhysicalUnit::of(&unit).filter(|unit| unit.name.starts_with("rad/"));
     let (values, is_hertz) = match (record.get(FREQUENCIES), record.get(HERTZ)) {
-        (Some(value), _) => (list_of("frequencies", value)?, unit == "hz" || unit == "hertz"),
+        (Some(value), _) => (list_of("frequencies", value)?, of_frequency.is_some()),
         (None, Some(value)) => (list_of("frequencies", value)?, true),
         (None, None) => return Err("frequencies are missing".to_owned()),
     };
-    let known = unit.is_empty() || is_hertz || unit.starts_with("rad");
-    if !known {
-        return Err(format!("frequencies are in \"{unit}\"; expected rad/s or Hz"));
-    }
-    let factor = if is_hertz { TAU } else { 1.0 };
+    let factor = match (is_hertz, of_rate) {
+        (true, _) => TAU * of_frequency.map_or(1.0, |unit| unit.size),
+        (false, Some(unit)) => unit.size,
+        // As MATLAB writes it where it says nothing.
+        (false, None) if matches!(unit.to_lowercase().as_str(), "" | "rad" | "rads" | "rad/timeunit") => 1.0,
+        (false, None) => {
+            return Err(format!("frequencies are in \"{}\"; expected rad/s or Hz", unit.to_lowercase()));
+        }
+    };
     Ok((values.into_iter().map(|value| value * factor).collect(), is_hertz))
 }
 

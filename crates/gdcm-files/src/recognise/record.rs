@@ -1,6 +1,6 @@
 //! Fields under names, wherever they stand: in a struct, in an object, in a file.
 
-use gdcm_core::assembly::{ChannelLabel, Facts};
+use gdcm_core::assembly::{ChannelLabel, Facts, SAMPLE_TIME_NAMES, folded_name};
 use gdcm_core::dataset::{GREATEST_CHANNEL_DELAY_S, Timing};
 use gdcm_core::units::number;
 use nalgebra::{Complex, DMatrix};
@@ -39,7 +39,7 @@ impl<'v> Record<'v> {
     /// MATLAB keep their numbers in `Data_`.
     pub(crate) fn of_struct(records: &'v StructArray, index: usize, class: Option<&'v str>, page: usize) -> Self {
         let mut fields = fields_of(records, index);
-        let holds_response = fields.iter().any(|(name, _)| plain(name) == RESPONSE_PART);
+        let holds_response = fields.iter().any(|(name, _)| folded_name(name) == RESPONSE_PART);
         if class.is_some() || holds_response {
             add_inner(&mut fields, page, DEEPEST_PART);
         }
@@ -48,7 +48,7 @@ impl<'v> Record<'v> {
 
     /// Number of models that an object is an array of: each has a record of numbers of its own.
     pub(crate) fn pages(records: &StructArray, index: usize) -> usize {
-        let data = fields_of(records, index).into_iter().find(|(name, _)| plain(name) == "data");
+        let data = fields_of(records, index).into_iter().find(|(name, _)| folded_name(name) == "data");
         match data {
             Some((_, Value::Object(object))) => object.records.shape.iter().product(),
             _ => 1,
@@ -58,7 +58,9 @@ impl<'v> Record<'v> {
     /// The field of the first of these names that there is: as it is written, else without case and underscores.
     pub(crate) fn get(&self, names: &[&str]) -> Option<&'v Value> {
         let exact = names.iter().find_map(|name| self.exact(name));
-        let loose = || names.iter().find_map(|name| self.fields.iter().find(|(field, _)| plain(field) == plain(name)));
+        let loose = || {
+            names.iter().find_map(|name| self.fields.iter().find(|(field, _)| folded_name(field) == folded_name(name)))
+        };
         exact.or_else(|| loose().map(|(_, value)| *value))
     }
 
@@ -85,7 +87,7 @@ fn add_inner<'v>(fields: &mut Vec<(&'v str, &'v Value)>, page: usize, deeper: us
     }
     let parts: Vec<&'v StructArray> = fields
         .iter()
-        .filter(|(name, _)| INNER_PARTS.contains(&plain(name).as_str()))
+        .filter(|(name, _)| INNER_PARTS.contains(&folded_name(name).as_str()))
         .filter_map(|(_, value)| match value {
             Value::Object(object) => Some(&object.records),
             Value::Struct(records) => Some(records),
@@ -97,11 +99,6 @@ fn add_inner<'v>(fields: &mut Vec<(&'v str, &'v Value)>, page: usize, deeper: us
         add_inner(&mut inner, 0, deeper - 1);
         fields.append(&mut inner);
     }
-}
-
-/// A name without case, underscores and blanks.
-fn plain(name: &str) -> String {
-    name.chars().filter(|letter| !matches!(letter, '_' | ' ')).flat_map(char::to_lowercase).collect()
 }
 
 // Names, units and facts beside the numbers of a model.
@@ -122,7 +119,6 @@ const OUTPUT_NAMES: &[&str] = &[
 const INPUT_UNITS: &[&str] = &["InputUnit", "input_units", "InputUnits", "u_units"];
 const OUTPUT_UNITS: &[&str] = &["OutputUnit", "output_units", "OutputUnits", "y_units"];
 const STATE_NAMES: &[&str] = &["StateName", "stname", "states", "state_names", "state_labels", "x_names", "xnames"];
-const SAMPLE_TIME: &[&str] = &["Ts", "dt", "tsam", "sample_time_s", "sample_time", "Tsample"];
 
 /// Texts in a value: an array of texts, a cell array of them.
 pub(crate) fn texts_of(value: &Value) -> Option<Vec<String>> {
@@ -217,7 +213,7 @@ pub(super) fn timing_of(record: &Record<'_>, (inputs, outputs): (usize, usize)) 
 }
 
 fn sample_time_of(record: &Record<'_>) -> Result<Option<f64>, String> {
-    let Some(value) = record.get(SAMPLE_TIME) else { return Ok(None) };
+    let Some(value) = record.get(&SAMPLE_TIME_NAMES) else { return Ok(None) };
     match scalar_of(value) {
         Some(0.0) => Ok(None),
         Some(sample_time) if sample_time > 0.0 => Ok(Some(sample_time)),

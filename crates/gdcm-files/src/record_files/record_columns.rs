@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use gdcm_core::assembly::{SAMPLE_TIME_NAMES, folded_name, time_name_rank};
 use gdcm_core::records::{ColumnSide, RecordColumn};
 
 use crate::recognise::record::{Record, label_of, texts_of};
@@ -22,12 +23,6 @@ const OUTPUT_UNITS: [&str; 4] = ["outputunit", "outputunits", "outunit", "yunits
 const NAMES: [&str; 9] =
     ["names", "channels", "columns", "labels", "variables", "header", "columnnames", "channelnames", "colheaders"];
 const UNITS: [&str; 3] = ["units", "columnunits", "channelunits"];
-const TIMES: [&str; 6] = ["t", "time", "times", "tout", "timestamp", "timestamps"];
-
-/// A name without case, marks and blanks.
-fn plain(name: &str) -> String {
-    name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
-}
 
 /// Samples under one name: how many, and in how many columns, the samples of a column behind one another.
 pub(super) struct Samples {
@@ -121,7 +116,7 @@ pub(super) fn columns_of(record: &Record<'_>, variable: &str) -> Option<Columns>
 /// The number of samples, and whether it is that of a time.
 fn length(record: &Record<'_>) -> Option<(usize, bool)> {
     let vector = |value: &Value| samples_of(value, None).filter(|samples| samples.values.len() == 1);
-    let time = record.fields().filter(|(name, _)| TIMES.contains(&plain(name).as_str()));
+    let time = record.fields().filter(|(name, _)| time_name_rank(name).is_some_and(|rank| rank < 2));
     let timed = time.filter_map(|(_, value)| vector(value)).map(|samples| samples.rows).max();
     if let Some(rows) = timed.filter(|rows| *rows >= FEWEST_TIMED) {
         return Some((rows, true));
@@ -142,7 +137,7 @@ fn sample_time(record: &Record<'_>) -> Option<f64> {
         Some(Value::Array(array)) => array.re.first().copied().filter(|value| array.len() == 1 && *value > 0.0),
         _ => None,
     };
-    let step = scalar(&["Ts", "dt", "sample_time_s", "sample_time", "sampling_time", "tsam"]);
+    let step = scalar(&SAMPLE_TIME_NAMES);
     let rate = || scalar(&["fs", "sample_rate", "sampling_rate", "sample_rate_hz", "fsamp"]);
     step.or_else(|| rate().map(|rate| 1.0 / rate)).filter(|step| step.is_finite())
 }
@@ -158,10 +153,10 @@ struct Labels {
 impl Labels {
     fn of(record: &Record<'_>, field: &str, count: usize) -> Self {
         let list = |keys: &[&str]| {
-            let found = record.fields().find(|(name, _)| keys.contains(&plain(name).as_str()));
+            let found = record.fields().find(|(name, _)| keys.contains(&folded_name(name).as_str()));
             found.and_then(|(_, value)| texts_of(value)).filter(|texts| texts.len() == count)
         };
-        let name = plain(field);
+        let name = folded_name(field);
         // One column called u is as likely a speed.
         let is_side = |names: &[&str]| names.contains(&name.as_str()) && (count > 1 || name.len() > 1);
         let own = [format!("{name}names"), format!("{name}labels"), format!("{name}channels")];

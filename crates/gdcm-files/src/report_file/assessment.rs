@@ -1,14 +1,63 @@
-//! What the scheduled correction is worth.
+//! What the scheduled correction is worth, and how sure the results are (M13).
+
+use std::sync::Arc;
 
 use gdcm_core::dataset::{Pair, PairTable};
-use gdcm_core::study::{Analysis, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, Table};
+use gdcm_core::study::{
+    Analysis, AssessedCondition, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, Cancelled,
+    Engine, Progress, Table, bar_table, difference_table, held_out_verdict, scatter_table, second_variable_table,
+};
 use gdcm_core::units::signed;
 
-use super::extent::{CONDITIONS_DRAWN, PAIRS_DRAWN};
-use super::page::Page;
-use super::settings::average_word;
-use crate::figure::assessment_figure;
-use crate::figure::decimals;
+use super::Unobtrusive;
+use super::page::{CONDITIONS_DRAWN, PAIRS_DRAWN, Page};
+use super::study::average_word;
+use crate::figure::{assessment_figure, decimals, evidence_figure};
+
+/// The analysis with how sure its figures are.
+///
+/// # Errors
+/// [`Cancelled`] soon after `progress` says so.
+pub(super) fn with_bars(
+    analysis: &Analysis,
+    engine: &mut Engine,
+    progress: &dyn Progress,
+) -> Result<Analysis, Cancelled> {
+    let uncertainty = match &analysis.uncertainty {
+        Some(uncertainty) => Arc::clone(uncertainty),
+        None => Arc::new(engine.uncertainty(analysis, &Unobtrusive(progress))?),
+    };
+    Ok(Analysis { uncertainty: Some(uncertainty), ..analysis.clone() })
+}
+
+/// Adds the section on the uncertainty, where bars are there.
+pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
+    let Some(uncertainty) = &analysis.uncertainty else { return };
+    let dataset = &analysis.study.dataset;
+    page.section("Uncertainty");
+    page.paragraph(
+        "Each figure is computed again with every other kept physics model, then with every other identified model, in place of the \
+         representative. The rms change of the first is its trim part, of the second, averaged with that of the other conditions, its \
+         identification part; the bar is Student's t times the root of the sum of squares (M13). What neither bundle makes is rest: \
+         real, or model form. An error common to all identified models is not seen, and a bar is not a bound.",
+    );
+    let beyond: Vec<_> = uncertainty.differences.iter().filter(|of| of.is_significant(uncertainty.level)).collect();
+    page.paragraph(&uncertainty.differences_in_words());
+    page.list(beyond.iter().map(|of| format!("{}: {}.", dataset.pair_name(of.pair), of.words(uncertainty.level))));
+    let pairs: Vec<Pair> = dataset.measuring_pairs().marked().take(PAIRS_DRAWN).collect();
+    if let Some(figure) = evidence_figure(analysis, &pairs) {
+        let caption = "Shares of the variance, and standard deviations of ln k_o k_i, about the mean of each airspeed and about the \
+                       schedule; above the bars, scatter, times what the bundles explain.";
+        page.figure(&figure, &figure.title, caption);
+    }
+    page.table(&scatter_table(dataset, uncertainty));
+    page.table(&difference_table(dataset, uncertainty).0);
+    page.table(&second_variable_table(dataset, uncertainty));
+    page.table(&bar_table(analysis, uncertainty));
+    if let Some(words) = held_out_verdict(analysis, usual_choice(analysis)) {
+        page.paragraph(&format!("Conditions {words}."));
+    }
+}
 
 /// Responses in one figure, in four rows.
 const IN_A_FIGURE: usize = 12;
@@ -21,8 +70,8 @@ pub(super) fn usual_choice(analysis: &Analysis) -> AssessmentChoice {
     AssessmentChoice { model: AssessedModel::Nominal, correction: AssessedCorrection::Scheduled, average }
 }
 
-/// Adds the section.
-pub(super) fn add(page: &mut Page, analysis: &Analysis) {
+/// Adds the section on the assessment.
+pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
     page.section("Assessment");
     let choice = usual_choice(analysis);
     let table = AssessmentTable::of(analysis, choice);
@@ -53,7 +102,7 @@ pub(super) fn add(page: &mut Page, analysis: &Analysis) {
 }
 
 /// The words with a capital letter first.
-fn capital(words: &str) -> String {
+pub(super) fn capital(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
@@ -72,18 +121,14 @@ fn add_figures(page: &mut Page, analysis: &Analysis, choice: AssessmentChoice, p
 /// ΔJ of every response in every condition, as many conditions side by side as fit.
 fn add_tables(page: &mut Page, analysis: &Analysis, found: &AssessmentTable, pairs: &[Pair], of: &str) {
     let shown = &found.conditions[..found.conditions.len().min(CONDITIONS_DRAWN)];
-    for conditions in shown.chunks(COLUMNS) {
-        let names = conditions.iter().map(|assessed| format!("cond. {}", assessed.condition));
-        let columns = std::iter::once("response".to_owned()).chain(names);
-        let mut table = Table::new(format!("ΔJ of {of}"), columns);
-        for &pair in pairs {
-            let cells = conditions
-                .iter()
-                .map(|assessed| assessed.changes[pair].map_or("–".to_owned(), |change| signed(change.total(), 1)));
-            table.row(std::iter::once(analysis.study.dataset.pair_name(pair)).chain(cells));
-        }
-        page.table(&table);
+    let names = shown.iter().map(|assessed| format!("cond. {}", assessed.condition));
+    let mut table = Table::new(format!("ΔJ of {of}"), std::iter::once("response".to_owned()).chain(names));
+    for &pair in pairs {
+        let change = |assessed: &AssessedCondition| assessed.changes[pair].map(|change| signed(change.total(), 1));
+        let cells = shown.iter().map(|assessed| change(assessed).unwrap_or("–".to_owned()));
+        table.row(std::iter::once(analysis.study.dataset.pair_name(pair)).chain(cells));
     }
+    page.wide_table(&table, COLUMNS);
     let more = found.conditions.len() - shown.len();
     if more > 0 {
         page.paragraph(&format!(

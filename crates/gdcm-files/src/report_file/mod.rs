@@ -2,19 +2,9 @@
 
 mod assessment;
 mod conditions;
-mod evidence;
-mod extent;
-mod left_out;
-mod markup;
-mod method;
-mod models;
 mod page;
-mod plots;
-mod responses;
 mod schedule;
-mod settings;
-mod sources;
-mod summary;
+mod study;
 
 use std::path::Path;
 
@@ -26,6 +16,8 @@ use super::output_set::OutputSet;
 use gdcm_core::message_text::sanitized;
 
 use page::Page;
+
+const PROGRAM: &str = concat!("gdcm ", env!("CARGO_PKG_VERSION"));
 
 /// What a report says of the files that a study is made of.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -60,20 +52,33 @@ pub fn report(
     engine: &mut Engine,
     progress: &dyn Progress,
 ) -> Result<String, Cancelled> {
-    let analysis = &evidence::with_bars(analysis, engine, progress)?;
+    let analysis = &assessment::with_bars(analysis, engine, progress)?;
     let mut page = Page::default();
-    summary::add(&mut page, analysis);
-    settings::add(&mut page, &analysis.study);
-    sources::add_files(&mut page, &analysis.study, source);
-    left_out::add(&mut page, analysis);
+    study::add_summary(&mut page, analysis);
+    study::add_settings(&mut page, &analysis.study);
+    study::add_files(&mut page, &analysis.study, source);
+    study::add_left_out(&mut page, analysis);
     conditions::add(&mut page, analysis, engine, progress)?;
-    schedule::add(&mut page, analysis);
-    evidence::add(&mut page, analysis);
-    assessment::add(&mut page, analysis);
-    method::add(&mut page);
-    sources::add_models(&mut page, &analysis.study);
+    schedule::add_schedule(&mut page, analysis);
+    assessment::add_uncertainty(&mut page, analysis);
+    assessment::add_assessment(&mut page, analysis);
+    page.section("The method");
+    page.fixed(include_str!("method.html"));
+    study::add_models(&mut page, &analysis.study);
     let title = format!("Gain and delay corrections of {}", analysis.study.dataset.name());
-    Ok(page.finish(&title, &sources::title_lines(source)))
+    let study = source.study.as_ref().map_or(String::new(), |study| format!("Study {study}. "));
+    Ok(page.finish(&title, &[format!("{study}Dataset {}. Made by {PROGRAM}.", source.dataset)]))
+}
+
+/// Tells whether the report is still wanted, and nothing of the steps within one of its own.
+struct Unobtrusive<'a>(&'a dyn Progress);
+
+impl Progress for Unobtrusive<'_> {
+    fn cancelled(&self) -> bool {
+        self.0.cancelled()
+    }
+
+    fn advanced(&self, _done: usize, _total: usize) {}
 }
 
 /// Writes a report, whole or not at all.

@@ -1,10 +1,31 @@
-//! A page that is written from top to bottom: numbered sections, tables and figures, and the list of what it holds.
+//! A page that is written from top to bottom: numbered sections, tables and figures, and the list of what it holds; in markup that is
+//! HTML and well-formed XML at once.
 
-use crate::figure::{ColumnWidth, Drawing, Figure};
-use crate::figure_file::inline_svg;
+use gdcm_core::message_text::sanitized;
 use gdcm_core::study::Table;
 
-use super::markup::{classed, element, words};
+use crate::figure::{ColumnWidth, Drawing, Figure};
+use crate::figure_file::{escaped, inline_svg};
+
+/// Conditions that have figures; all have tables.
+pub(super) const CONDITIONS_DRAWN: usize = 60;
+/// Responses of a kind that have figures.
+pub(super) const PAIRS_DRAWN: usize = 40;
+/// Responses that a table of all of them may have; beyond, it has the on-axis and the held ones.
+pub(super) const PAIRS_LISTED: usize = 48;
+/// Models of a bundle that are listed and drawn.
+pub(super) const MODELS_SHOWN: usize = 40;
+/// Names in a sentence.
+pub(super) const NAMES_SHOWN: usize = 12;
+
+/// Names with commas; of many, the first, and how many more there are.
+pub(super) fn names<S: AsRef<str>>(all: &[S]) -> String {
+    let shown = all.iter().take(NAMES_SHOWN).map(AsRef::as_ref).collect::<Vec<_>>().join(", ");
+    match all.len().saturating_sub(NAMES_SHOWN) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
+    }
+}
 
 /// How far a line of a figure may be from the points that it stands for \[pt\]: less than the finest line is wide, so that it
 /// cannot be seen, and a quarter of the file.
@@ -118,6 +139,19 @@ impl Page {
         }
     }
 
+    /// A table of which as many columns stand side by side as fit, each time behind the first.
+    pub(super) fn wide_table(&mut self, table: &Table, columns: usize) {
+        for from in (1..table.columns.len()).step_by(columns) {
+            let part = |cells: &[String]| {
+                let to = (from + columns).min(cells.len());
+                std::iter::once(&cells[0]).chain(&cells[from..to]).cloned().collect::<Vec<_>>()
+            };
+            let mut sheet = Table::new(table.title.clone(), part(&table.columns));
+            sheet.rows = table.rows.iter().map(|row| part(row)).collect();
+            self.table(&sheet);
+        }
+    }
+
     /// A figure under its number, with these words in place of its own title and caption.
     pub(super) fn figure(&mut self, figure: &Figure, title: &str, caption: &str) {
         self.figures += 1;
@@ -162,11 +196,26 @@ impl Page {
 /// Whether a column is one of figures, or of words so short that they stand in one line.
 fn class_of(table: &Table, column: usize) -> &'static str {
     let is_short = table.rows.iter().all(|row| row[column].chars().count() <= SHORT);
-    match (table.has_figures(column), is_short) {
+    match (table.has_numbers(column), is_short) {
         (true, _) => "n",
         (false, true) => "s",
         (false, false) => "",
     }
+}
+
+/// Words from wherever they come as a page takes them: nothing in them is markup, nothing in them is invisible.
+fn words(text: &str) -> String {
+    escaped(&sanitized(text))
+}
+
+/// An element with these words in it.
+fn element(tag: &str, text: &str) -> String {
+    format!("<{tag}>{}</{tag}>\n", words(text))
+}
+
+/// An element of a class with these words in it.
+fn classed(tag: &str, class: &str, text: &str) -> String {
+    format!("<{tag} class=\"{class}\">{}</{tag}>\n", words(text))
 }
 
 #[cfg(test)]
@@ -233,5 +282,25 @@ mod tests {
         let labels: Vec<_> = document.descendants().filter(|node| node.has_tag_name("svg")).collect();
         let said = labels.iter().map(|svg| (svg.attribute("role"), svg.attribute("aria-label"))).collect::<Vec<_>>();
         assert_eq!(said, [(Some("img"), Some("One")), (Some("img"), Some("Two"))]);
+    }
+
+    #[test]
+    fn words_from_a_file_are_no_markup_and_hide_nothing() {
+        let name = "<b onclick=\"x\">V+5kt & 'roll'\u{1b}[2J\u{202e}";
+        let text = "&lt;b onclick=&quot;x&quot;&gt;V+5kt &amp; 'roll'\\u{1b}[2J\\u{202e}";
+        assert_eq!(words(name), text);
+        assert_eq!(element("td", name), format!("<td>{text}</td>\n"));
+    }
+
+    #[test]
+    fn letters_of_every_language_stay() {
+        assert_eq!(words("Höhe Δφ → 重量"), "Höhe Δφ → 重量");
+    }
+
+    #[test]
+    fn of_many_names_the_first_are_given_and_the_others_counted() {
+        assert_eq!(names(&["a", "b"]), "a, b");
+        let many: Vec<String> = (0..1000).map(|number| number.to_string()).collect();
+        assert!(names(&many).ends_with("10, 11 and 988 more"), "{}", names(&many));
     }
 }

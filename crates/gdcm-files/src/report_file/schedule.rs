@@ -6,9 +6,8 @@ use gdcm_core::schedule::{Schedule, ScheduleSettings, ScheduledQuantity};
 use gdcm_core::study::{Analysis, Study, Table};
 use gdcm_core::units::{number, s_to_ms};
 
-use super::extent::{PAIRS_DRAWN, names};
-use super::page::Page;
-use super::settings::schedule_words;
+use super::page::{PAIRS_DRAWN, Page, names};
+use super::study::schedule_words;
 use crate::figure::{Across, Measure, all_channels, channels_figure, net_gain_figure};
 use crate::figure::{compact, decimals};
 
@@ -20,7 +19,7 @@ const PAIRS_IN_A_FIGURE: usize = 10;
 const COLUMNS: usize = 10;
 
 /// Adds the section.
-pub(super) fn add(page: &mut Page, analysis: &Analysis) {
+pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
     page.section("Channels and schedule");
     page.subsection("Channels over the conditions");
     let is_input = |channel: &Channel| matches!(channel, Channel::Input(_));
@@ -46,7 +45,7 @@ pub(super) fn add(page: &mut Page, analysis: &Analysis) {
     }
     page.subsection("Schedule over airspeed");
     match &analysis.schedule {
-        Ok(schedule) => add_schedule(page, analysis, schedule, &[inputs, outputs].concat()),
+        Ok(schedule) => add_airspeed(page, analysis, schedule, &[inputs, outputs].concat()),
         Err(error) => page.paragraph(&format!("{error}.")),
     }
 }
@@ -68,7 +67,7 @@ fn add_channels(
     }
 }
 
-fn add_schedule(page: &mut Page, analysis: &Analysis, schedule: &Schedule, channels: &[Channel]) {
+fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, channels: &[Channel]) {
     let (inputs, outputs) = analysis.study.dataset.names_of_channels();
     let (low, high) = (number(schedule.airspeeds.min_kt), number(schedule.airspeeds.max_kt));
     let left_out = not_scheduled(analysis);
@@ -119,16 +118,13 @@ fn add_coefficients(page: &mut Page, schedule: &Schedule, (inputs, outputs): (&[
     } else {
         format!("The schedule: coefficients of {of} in the scaled airspeed, {}", found.scale)
     };
-    for from in (0..found.columns.len()).step_by(COLUMNS) {
-        let to = (from + COLUMNS).min(found.columns.len());
-        let columns = std::iter::once("channel".to_owned()).chain(found.columns[from..to].iter().cloned());
-        let mut table = Table::new(title.clone(), columns);
-        for row in &found.rows {
-            let figures = row.figures[from..to].iter().map(|figure| compact(*figure));
-            table.row(std::iter::once(row.name.clone()).chain(figures));
-        }
-        page.table(&table);
+    let columns = std::iter::once("channel".to_owned()).chain(found.columns.iter().cloned());
+    let mut table = Table::new(title, columns);
+    for row in &found.rows {
+        let values = row.figures.iter().map(|value| compact(*value));
+        table.row(std::iter::once(row.name.clone()).chain(values));
     }
+    page.wide_table(&table, COLUMNS);
 }
 
 /// The scheduled gains, net gains and, where they are scheduled, delays at the airspeeds of the conditions.
@@ -169,14 +165,12 @@ fn add_over_airspeed(
     title: &str,
     columns: Vec<(String, Cell)>,
 ) {
-    for columns in columns.chunks(COLUMNS) {
-        let names = std::iter::once("V [kt]").chain(columns.iter().map(|(name, _)| name.as_str()));
-        let mut table = Table::new(title, names);
-        for airspeed_kt in airspeeds_kt {
-            let correction = schedule.at(*airspeed_kt);
-            let cells = columns.iter().map(|(_, cell)| cell(&correction));
-            table.row(std::iter::once(decimals(*airspeed_kt, 1)).chain(cells));
-        }
-        page.table(&table);
+    let names = std::iter::once("V [kt]").chain(columns.iter().map(|(name, _)| name.as_str()));
+    let mut table = Table::new(title, names);
+    for airspeed_kt in airspeeds_kt {
+        let correction = schedule.at(*airspeed_kt);
+        let cells = columns.iter().map(|(_, cell)| cell(&correction));
+        table.row(std::iter::once(decimals(*airspeed_kt, 1)).chain(cells));
     }
+    page.wide_table(&table, COLUMNS);
 }

@@ -1,5 +1,7 @@
 //! What a column of a frequency response holds, from its name and unit.
 
+use gdcm_core::assembly::PhysicalUnit;
+
 /// What a column of a frequency response holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
@@ -126,13 +128,17 @@ impl ColumnMeaning {
 
 fn known_unit(unit: &str) -> KnownUnit {
     match unit.trim().to_lowercase().replace([' ', '.'], "").as_str() {
-        "rad/s" | "rad/sec" | "rad/second" | "rads" | "rps" | "1/s" | "rads^-1" | "rads-1" => {
-            KnownUnit::RadianPerSecond
-        }
-        "hz" | "cps" | "1/sec" => KnownUnit::Hertz,
-        "db" => KnownUnit::Decibel,
-        "deg" | "degree" | "degrees" | "°" => KnownUnit::Degree,
-        "rad" | "radian" | "radians" => KnownUnit::Radian,
+        // Of a column of frequencies, that is.
+        "1/s" | "rads" | "rads^-1" | "rads-1" => return KnownUnit::RadianPerSecond,
+        "1/sec" => return KnownUnit::Hertz,
+        _ => {}
+    }
+    match PhysicalUnit::of(unit).map(|unit| unit.name) {
+        Some("rad/s") => KnownUnit::RadianPerSecond,
+        Some("Hz") => KnownUnit::Hertz,
+        Some("dB") => KnownUnit::Decibel,
+        Some("deg") => KnownUnit::Degree,
+        Some("rad") => KnownUnit::Radian,
         _ => KnownUnit::Other,
     }
 }

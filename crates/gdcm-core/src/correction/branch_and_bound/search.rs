@@ -278,7 +278,7 @@ impl<'a> Search<'a> {
         let ends = if gap.is_none() { underestimator.concave_ends(start) } else { Vec::new() };
         if !ends.is_empty() {
             let count = if listing { ends.len() } else { 1 };
-            return self.peel(&ends[..count], region, bound, start);
+            return self.split_concave(&ends[..count], region, bound, start);
         }
         let widest = gap.or_else(|| underestimator.widest_slope()).map(|term| (term, region.range(term.from, term.to)));
         let Some((term, (low, high))) = widest.filter(|(_, (low, high))| high - low > 1e-11) else {
@@ -293,7 +293,7 @@ impl<'a> Search<'a> {
     }
 
     /// Takes off what lies beyond each end of a concave interval, seen from `start`, and keeps the rest as one node.
-    fn peel(&mut self, ends: &[(usize, usize, f64)], region: &DifferenceBounds, bound: f64, start: &[f64]) {
+    fn split_concave(&mut self, ends: &[(usize, usize, f64)], region: &DifferenceBounds, bound: f64, start: &[f64]) {
         let mut rest = Some(region.clone());
         for &(from, to, at) in ends {
             let Some(region) = rest else { return };

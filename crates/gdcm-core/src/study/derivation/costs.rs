@@ -36,7 +36,7 @@ pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation
         vec![format!("s = ({}) / {} = {}", sum_words(&distances), distances.len(), digits(value))]
     };
     let representative = result.representative_name(kind);
-    let models = format!("{} {kind} models kept; {representative} represents them", distances.len() + 1);
+    let models = format!("{} {kind} models kept; {representative} is used as representative", distances.len() + 1);
     Some(Derivation {
         title: context.title(&format!("score of {}", model.name)),
         equation: "s_a = mean over b ≠ a of d(a, b), d(a, b)² = mean over the responses of J(a against b)".to_owned(),

@@ -4,8 +4,8 @@ use crate::correction::{Channel, GainSource};
 use crate::dataset::{BundleKind, ConditionId, Pair};
 use crate::fidelity::Mismatch;
 use crate::schedule::{Regression, Schedule, ScheduledQuantity};
-use crate::study::{Analysis, ConditionSwaps, reports_error, takes_reported_error};
-use crate::uncertainty::{Bar, Part, Scalar};
+use crate::study::{Analysis, ConditionSubstitutions, reports_error, takes_reported_error};
+use crate::uncertainty::{Bar, Scalar, VarianceComponent};
 use crate::units::{db_to_ratio, number, s_to_ms};
 
 use super::{Context, Derivation, ExplainTarget, digits, median_words, spread};
@@ -23,7 +23,7 @@ fn delays_ms(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
 
 /// How the median over the frequencies that count comes about.
 fn middle_words(mismatch: &Mismatch, values: &[f64]) -> String {
-    match mismatch.counted {
+    match mismatch.coherence_weights {
         None => median_words(values),
         Some(_) => format!("where half of the weight lies of {}", spread(values)),
     }
@@ -31,11 +31,11 @@ fn middle_words(mismatch: &Mismatch, values: &[f64]) -> String {
 
 pub(super) fn gain(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let value = context.result.wanted_gain(pair)?;
-    let mismatch = context.led_mismatch(pair)?;
-    if context.settings().gain_source == GainSource::MeanOfPairs && context.result.led.is_none() {
+    let mismatch = context.compensated_mismatch(pair)?;
+    if context.settings().gain_source == GainSource::MeanOfPairs && context.result.compensated.is_none() {
         return Some(mean_gain(context, pair, value));
     }
-    let (equation, section) = match context.result.led {
+    let (equation, section) = match context.result.compensated {
         None => ("G = median_ω |H_ref| / |H_sim|", "M6, eq. (5)"),
         Some(_) => ("G = median_ω |H_ref| / |L_o H_sim L_i|", "M15.5, eq. (5)"),
     };
@@ -129,7 +129,7 @@ pub(super) fn gain_bounds(context: &Context<'_>) -> Derivation {
     let (with_numbers, rests_on) = match context.settings().gain_bounds {
         Some(_) => (vec![format!("LB = {lower}"), format!("UB = {upper}")], vec!["set by hand".to_owned()]),
         None => {
-            let pool = pooled(context, |pair| context.led_mismatch(pair));
+            let pool = pooled(context, |pair| context.compensated_mismatch(pair));
             let pool: Vec<f64> = pool.into_iter().flat_map(ratios).collect();
             let pool = spread(&pool);
             let steps = vec![
@@ -172,9 +172,9 @@ pub(super) fn delay_bound(context: &Context<'_>) -> Derivation {
     }
 }
 
-/// The bar of a figure with its parts, and the figure of every swap; nothing where it has no bar, or that was not computed.
-pub(super) fn sure(analysis: &Analysis, asked: &ExplainTarget) -> Vec<String> {
-    let Some((condition, scalar)) = scalar_of(analysis, asked) else { return Vec::new() };
+/// The bar of a figure with its parts, and the figure of every substitution; nothing where it has no bar, or that was not computed.
+pub(super) fn sure(analysis: &Analysis, target: &ExplainTarget) -> Vec<String> {
+    let Some((condition, scalar)) = scalar_of(analysis, target) else { return Vec::new() };
     let Some(uncertainty) = &analysis.uncertainty else { return Vec::new() };
     let Some(of) = uncertainty.conditions.get(&condition) else { return Vec::new() };
     let Some(bar) = &of.bars[scalar] else { return Vec::new() };
@@ -183,7 +183,7 @@ pub(super) fn sure(analysis: &Analysis, asked: &ExplainTarget) -> Vec<String> {
     if result.is_some_and(|result| reports_error(analysis, result)) {
         lines.push(SPREAD_ALONE.to_owned());
     }
-    lines.extend(swap_lines(analysis, condition, &of.swaps, scalar));
+    lines.extend(substitution_lines(analysis, condition, &of.substitutions, scalar));
     lines
 }
 
@@ -192,8 +192,8 @@ const SPREAD_ALONE: &str = "its identification part is the spread of the models 
      that a model tells of itself counts for G, D and the net gains that are held (M13.2)";
 
 /// The condition and the figure with a bar that is asked about.
-fn scalar_of(analysis: &Analysis, asked: &ExplainTarget) -> Option<(ConditionId, Scalar)> {
-    Some(match asked {
+fn scalar_of(analysis: &Analysis, target: &ExplainTarget) -> Option<(ConditionId, Scalar)> {
+    Some(match target {
         ExplainTarget::DeltaGain(id, pair) => (*id, Scalar::Gain(*pair)),
         ExplainTarget::DeltaDelay(id, pair) => (*id, analysis.condition(*id)?.wanted_delay(*pair)),
         ExplainTarget::NetGain(id, pair) => (*id, Scalar::NetGain(*pair)),
@@ -207,11 +207,13 @@ fn bar_lines(bar: &Bar, scalar: Scalar, level: f64) -> Vec<String> {
     let told = |deviation: f64| {
         if scalar.is_delay() { format!("{:.2} ms", s_to_ms(deviation)) } else { format!("{:.2} %", 100.0 * deviation) }
     };
-    let part = |name: &str, part: Option<Part>| match part {
-        Some(part) => format!("{name}: {} ({:.1} degrees of freedom)", told(part.variance.sqrt()), part.degrees),
+    let part = |name: &str, part: Option<VarianceComponent>| match part {
+        Some(part) => {
+            format!("{name}: {} ({:.1} degrees of freedom)", told(part.variance.sqrt()), part.degrees_of_freedom)
+        }
         None => format!("{name}: not included"),
     };
-    let whole = match (bar.half_width(level), bar.degrees()) {
+    let whole = match (bar.half_width(level), bar.degrees_of_freedom()) {
         (Some(half), Some(degrees)) => {
             format!(
                 "bar of {:.0} %: ± {} = t({degrees:.1}) · {} (M13)",
@@ -225,13 +227,18 @@ fn bar_lines(bar: &Bar, scalar: Scalar, level: f64) -> Vec<String> {
     let mut lines = vec![whole, part("trim", bar.trim), part("identification", bar.identification)];
     lines.extend(bar.remarks().into_iter().map(str::to_owned));
     if bar.left_out > 0 {
-        lines.push(format!("{} swaps have no such figure", bar.left_out));
+        lines.push(format!("{} substitutions have no such figure", bar.left_out));
     }
     lines
 }
 
 /// The figure with each other model in place of the representative.
-fn swap_lines(analysis: &Analysis, condition: ConditionId, swaps: &ConditionSwaps, scalar: Scalar) -> Vec<String> {
+fn substitution_lines(
+    analysis: &Analysis,
+    condition: ConditionId,
+    substitutions: &ConditionSubstitutions,
+    scalar: Scalar,
+) -> Vec<String> {
     let Some(result) = analysis.condition(condition) else { return Vec::new() };
     let line = |(kind, model, figures): &(BundleKind, usize, _)| {
         let name = &result.condition.bundle(*kind)[*model].name;
@@ -244,7 +251,7 @@ fn swap_lines(analysis: &Analysis, condition: ConditionId, swaps: &ConditionSwap
         };
         format!("with {kind} model {name}: {words}")
     };
-    swaps.swaps.iter().map(line).collect()
+    substitutions.substitutions.iter().map(line).collect()
 }
 
 pub(super) fn scheduled_gain(analysis: &Analysis, channel: Channel, airspeed_kt: f64) -> Option<Derivation> {

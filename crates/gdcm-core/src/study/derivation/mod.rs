@@ -66,13 +66,13 @@ pub struct Derivation {
 }
 
 /// How a figure of `analysis` was computed; `None` where it has no such figure. A few medians over frequency at most.
-pub fn derivation(analysis: &Analysis, asked: &ExplainTarget) -> Option<Derivation> {
+pub fn derivation(analysis: &Analysis, target: &ExplainTarget) -> Option<Derivation> {
     let of = |condition: &ConditionId| Context::of(analysis, *condition);
     let of_pair = |condition: &ConditionId, pair: &Pair| {
         analysis.study.dataset.on_axis().get(*pair)?;
         of(condition)
     };
-    let found = match asked {
+    let found = match target {
         ExplainTarget::DeltaGain(id, pair) => deltas::gain(&of_pair(id, pair)?, *pair),
         ExplainTarget::DeltaDelay(id, pair) => deltas::delay(&of_pair(id, pair)?, *pair),
         ExplainTarget::GainBounds(id) => Some(deltas::gain_bounds(&of(id)?)),
@@ -91,7 +91,7 @@ pub fn derivation(analysis: &Analysis, asked: &ExplainTarget) -> Option<Derivati
         ExplainTarget::ScheduledGain(channel, airspeed_kt) => deltas::scheduled_gain(analysis, *channel, *airspeed_kt),
     };
     found.map(|mut found| {
-        found.rests_on.extend(deltas::sure(analysis, asked));
+        found.rests_on.extend(deltas::sure(analysis, target));
         found
     })
 }
@@ -154,9 +154,9 @@ impl<'a> Context<'a> {
     }
 
     /// The same after the leads of the channels, where there are any (M15.5).
-    fn led_mismatch(&self, pair: Pair) -> Option<&'a Mismatch> {
-        match &self.result.led {
-            Some(led) => led.mismatch.get(pair)?.as_ref(),
+    fn compensated_mismatch(&self, pair: Pair) -> Option<&'a Mismatch> {
+        match &self.result.compensated {
+            Some(compensated) => compensated.mismatch.get(pair)?.as_ref(),
             None => self.mismatch(pair),
         }
     }
@@ -203,7 +203,7 @@ impl<'a> Context<'a> {
 
 /// How many frequencies count and how much, where coherence says that.
 fn counted_words(mismatch: &Mismatch) -> Option<String> {
-    let count = mismatch.counted.as_ref()?.len();
+    let count = mismatch.coherence_weights.as_ref()?.len();
     Some(format!("{count} of the frequencies, each by its coherence: W = [1.58 (1 − e^(−γ²))]² (M4a)"))
 }
 

@@ -64,7 +64,7 @@ fn a_saved_study_and_a_reloaded_dataset_keep_the_models_taken() {
     assert_eq!(opened.study, study);
     assert!(opened.differences.is_empty(), "{:?}", opened.differences);
 
-    let (reloaded, differences) = opened.study.carried_over(embedded_example().unwrap().dataset);
+    let (reloaded, differences) = opened.study.reconciled(embedded_example().unwrap().dataset);
     assert_eq!(reloaded, study, "models, and decisions about them");
     assert!(differences.is_empty(), "{differences:?}");
 }

@@ -1,7 +1,7 @@
 //! Assessments on wish, evidence for the schedule, and delays scheduled on wish.
 
 use gdcm_core::fidelity::CostAverage;
-use gdcm_core::schedule::{SCHEDULE_KINDS, ScheduleKind, ScheduleSettings};
+use gdcm_core::schedule::{SCHEDULE_KINDS, ScheduleKind};
 use gdcm_core::study::{AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentJob, AssessmentTable, Job};
 use std::sync::Arc;
 
@@ -106,11 +106,11 @@ fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
 #[test]
 fn delays_are_scheduled_within_the_bounds_of_their_conditions_where_that_is_asked_for() {
     let (mut study, mut engine) = (study_of_example(), Engine::default());
-    study.apply(&Edit::Set(Setting::Points(40))).unwrap();
+    study.apply(&setting::POINTS.to(40)).unwrap();
     let off = analyze(&mut engine, &study);
     let kind = ScheduleKind::Polynomial { degree: 3 };
-    let settings = ScheduleSettings { kind, delays: true, ..study.settings.schedule };
-    study.apply(&Edit::Set(Setting::Schedule(settings))).unwrap();
+    study.apply(&setting::SCHEDULE.to(kind)).unwrap();
+    study.apply(&setting::SCHEDULE_DELAYS.to(true)).unwrap();
     let on = analyze(&mut engine, &study);
     let schedule = on.schedule.as_ref().unwrap();
     let mut delayed = 0;

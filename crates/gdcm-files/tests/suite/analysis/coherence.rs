@@ -73,9 +73,9 @@ fn noisy() -> Arc<Dataset> {
     dataset(Some(&|response, omega| if response == 0 && NOISE.contains(&omega) { 0.1 } else { 0.9 }), None)
 }
 
-fn with(dataset: &Arc<Dataset>, settings: &[Setting]) -> Analysis {
+fn with(dataset: &Arc<Dataset>, edits: &[Edit]) -> Analysis {
     let mut study = Study::new(Arc::clone(dataset));
-    settings.iter().for_each(|setting| study.apply(&Edit::Set(setting.clone())).unwrap());
+    edits.iter().for_each(|edit| study.apply(edit).unwrap());
     analyze(&mut Engine::default(), &study)
 }
 
@@ -101,7 +101,7 @@ fn the_weights_are_those_of_the_reference() {
 
 #[test]
 fn frequencies_that_were_not_measured_leave_g_d_j_and_the_bounds() {
-    let analysis = with(&noisy(), &[Setting::CostAverage(CostAverage::Mean)]);
+    let analysis = with(&noisy(), &[setting::COST_AVERAGE.to(CostAverage::Mean)]);
     let result = only(&analysis);
     for (pair, gain) in result.comparison.delta.gain.iter() {
         // The response at the measured frequencies themselves, once to dB and back.
@@ -115,7 +115,7 @@ fn frequencies_that_were_not_measured_leave_g_d_j_and_the_bounds() {
     for pair in result.cost.pairs() {
         assert!((magnitude(pair) / expected - 1.0).abs() < 1e-11, "{pair:?}: the mean over those that count");
     }
-    let off = with(&noisy(), &[Setting::CostAverage(CostAverage::Mean), Setting::Coherence(None)]);
+    let off = with(&noisy(), &[setting::COST_AVERAGE.to(CostAverage::Mean), setting::COHERENCE.to(None::<f64>)]);
     let gain = only(&off).comparison.delta.gain[Pair::new(0, 0)].unwrap();
     assert!((gain / (3.0 * GAIN) - 1.0).abs() < 1e-12, "most of the band is noise of three times the gain");
     assert!(only(&off).gain_bounds().upper > 3.0);
@@ -125,9 +125,9 @@ fn frequencies_that_were_not_measured_leave_g_d_j_and_the_bounds() {
 fn equal_coherence_gives_the_medians_of_no_coherence_to_the_last_digit() {
     let equal = dataset(Some(&|_, _| 0.8), None);
     for points in [200, 131] {
-        let points = Setting::Points(points);
+        let points = setting::POINTS.to(points);
         let (on, off) =
-            (with(&equal, std::slice::from_ref(&points)), with(&equal, &[points, Setting::Coherence(None)]));
+            (with(&equal, std::slice::from_ref(&points)), with(&equal, &[points, setting::COHERENCE.to(None::<f64>)]));
         assert_eq!(on.study.settings.coherence_threshold, Some(DEFAULT_COHERENCE), "it is on by default");
         let (on, off) = (only(&on), only(&off));
         let [of_on, of_off] = [&on, &off].map(|of| &of.comparison.delta);
@@ -145,7 +145,7 @@ fn equal_coherence_gives_the_medians_of_no_coherence_to_the_last_digit() {
 fn a_dataset_without_coherence_gives_the_same_whether_it_is_on_or_off() {
     let plain = dataset(None, None);
     assert_eq!(Settings::of(&plain).coherence_threshold, None);
-    let (off, on) = (with(&plain, &[]), with(&plain, &[Setting::Coherence(Some(0.9))]));
+    let (off, on) = (with(&plain, &[]), with(&plain, &[setting::COHERENCE.to(Some(0.9))]));
     assert_eq!((&off.conditions, &off.schedule), (&on.conditions, &on.schedule));
 }
 
@@ -155,7 +155,7 @@ fn what_is_outside_the_valid_band_counts_for_nothing() {
     let banded = dataset(Some(&good), Some([8.0, 11.0]));
     let result = with(&banded, &[]);
     for (_, mismatch) in only(&result).comparison.representative.mismatch.iter() {
-        let omega = mismatch.as_ref().unwrap().counted.as_ref().unwrap().omega();
+        let omega = mismatch.as_ref().unwrap().coherence_weights.as_ref().unwrap().omega();
         assert!(omega.iter().all(|omega| (8.0..=11.0).contains(omega)) && omega.len() > 10);
     }
     let gain = only(&result).comparison.delta.gain[Pair::new(0, 0)].unwrap();
@@ -166,7 +166,7 @@ fn what_is_outside_the_valid_band_counts_for_nothing() {
 fn a_response_that_was_nowhere_measured_has_no_g_and_says_why() {
     let never = dataset(Some(&|response, _| if response == 0 { 0.2 } else { 0.9 }), None);
     let first = Pair::new(0, 0);
-    let analysis = with(&never, &[Setting::Constrained(first, true)]);
+    let analysis = with(&never, &[Edit::Hold(first, true)]);
     let result = only(&analysis);
     assert_eq!(result.comparison.delta.gain[first], None);
     assert_eq!(result.comparison.undefined[first], Some(Undefined::NotCoherent));
@@ -191,7 +191,7 @@ fn a_result_says_what_coherence_did() {
     let weighed = said.iter().find(|remark| remark.text.contains("Coherence weighs J, G and D of 4 responses"));
     assert_eq!(weighed.unwrap().kind, RemarkKind::Good);
 
-    let off = words(&with(&noisy(), &[Setting::Coherence(None)]));
+    let off = words(&with(&noisy(), &[setting::COHERENCE.to(None::<f64>)]));
     assert!(off.iter().any(|words| words.contains("which is switched off")), "{off:?}");
 }
 
@@ -199,7 +199,7 @@ fn a_result_says_what_coherence_did() {
 fn a_threshold_outside_0_to_1_is_refused() {
     let mut study = Study::new(noisy());
     for threshold in [-0.1, 1.1, f64::NAN] {
-        let refusal = study.apply(&Edit::Set(Setting::Coherence(Some(threshold)))).unwrap_err().to_string();
+        let refusal = study.apply(&setting::COHERENCE.to(Some(threshold))).unwrap_err().to_string();
         assert!(refusal.contains("coherence threshold: expected a number from 0 to 1"), "{refusal}");
     }
 }

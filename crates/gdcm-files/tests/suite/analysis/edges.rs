@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use gdcm_core::dataset::{Dataset, ModelId};
-use gdcm_core::schedule::{ScheduleCaution, ScheduleKind, ScheduleSettings};
+use gdcm_core::schedule::{ScheduleCaution, ScheduleKind};
 use gdcm_core::study::{Caution, ConditionAnalysis, ConditionFailure, Undefined};
 use gdcm_files::{DatasetOrigin, load_dataset_bytes};
 use serde_json::json;
@@ -71,7 +71,7 @@ fn a_model_set_aside_is_named_with_what_it_lacks_and_its_pin_does_not_count() {
     let found = pinned.condition(ONLY).unwrap();
     assert_eq!(found.comparison.delta, free.condition(ONLY).unwrap().comparison.delta);
     let caution = words(&pinned, found).concat();
-    for part in ["identified model \"i4\" is set aside", "I0 → O0, I1 → O1", "11.9", "pinned does not count"] {
+    for part in ["identified model \"i4\" is set aside", "I0 → O0, I1 → O1", "11.9", "not used as representative"] {
         assert!(caution.contains(part), "expected \"{part}\" in: {caution}");
     }
     let written = &Corrections::of(&pinned, "", &BTreeSet::from([ONLY])).conditions[0];
@@ -132,7 +132,7 @@ fn residues_of_differencing_count_as_zero_and_are_named() {
 fn a_response_that_is_numerically_nothing_is_not_held_for_that_reason() {
     let value = two_lags([[1.0, 1e-17], [0.0, 1.0]], [[1.2, 0.1], [0.0, 0.9]]);
     let pair = Pair::new(0, 1);
-    let analysis = only(&value, &[Edit::Set(Setting::Constrained(pair, true))]);
+    let analysis = only(&value, &[Edit::Hold(pair, true)]);
     let found = analysis.condition(ONLY).unwrap();
     assert!(!found.held()[pair]);
     let why = Undefined::NumericallyNothing(BundleKind::Physics);
@@ -151,7 +151,7 @@ fn an_unusual_gain_is_fitted_with_a_caution_that_ends_when_it_is_ignored() {
     let offered: Vec<Pair> = found.cautions.iter().filter_map(Caution::offers_to_ignore).collect();
     assert_eq!(offered, [pair]);
     assert!(words(&analysis, found).concat().contains("I1 → O0 has a G of 20.000, outside 0.1 to 10"));
-    let ignored = only(&value, &[Edit::Set(Setting::Fitted(pair, false))]);
+    let ignored = only(&value, &[Edit::Fit(pair, false)]);
     assert_eq!(ignored.condition(ONLY).unwrap().cautions.iter().filter_map(Caution::offers_to_ignore).count(), 0);
 }
 
@@ -197,15 +197,14 @@ fn airspeeds_a_hair_apart_are_one_point_of_the_schedule() {
 
 #[test]
 fn a_schedule_that_overshoots_says_where_and_the_assessment_claims_nothing_between() {
-    let wild = ScheduleSettings { airspeed_tolerance_kt: 0.0, ..ScheduleSettings::default() };
-    let study = &[Edit::Set(Setting::Schedule(wild))];
-    let analysis = only(&json(NEAR), study);
+    let wild = setting::AIRSPEED_TOLERANCE.to(0.0);
+    let analysis = only(&json(NEAR), std::slice::from_ref(&wild));
     let schedule = analysis.schedule.as_ref().unwrap();
-    assert!(schedule.fails_between());
+    assert!(schedule.interpolation_fails());
     let said = schedule.cautions[0].words(&["I0".into(), "I1".into()], &["O0".into(), "O1".into()]);
     assert!(said.contains("between 60.0 and 120.0 kt the gain of"), "{said}");
-    let table = ScheduleSettings { kind: ScheduleKind::Table, ..wild };
-    assert!(!only(&json(NEAR), &[Edit::Set(Setting::Schedule(table))]).schedule.unwrap().fails_between());
+    let table = setting::SCHEDULE.to(ScheduleKind::Table);
+    assert!(!only(&json(NEAR), &[wild, table]).schedule.unwrap().interpolation_fails());
 }
 
 #[test]

@@ -62,13 +62,13 @@ fn gains_and_delays_put_into_published_helicopters_are_found_again() {
         assert_eq!((dataset.outputs().len(), dataset.inputs().len()), shape, "{file}");
         let mut study = Study::new(Arc::new(dataset));
         let bounds = GainBounds { lower: 0.3, upper: 3.0 };
-        for setting in [
-            Setting::GainBounds(Some(bounds)),
-            Setting::DelayUpper(Some(0.1)),
-            Setting::AlphaGain(0.0),
-            Setting::AlphaDelay(0.0),
+        for edit in [
+            setting::GAIN_BOUNDS.to(Some(bounds)),
+            setting::DELAY_UPPER.to(Some(0.1)),
+            setting::ALPHA_GAIN.to(0.0),
+            setting::ALPHA_DELAY.to(0.0),
         ] {
-            study.apply(&Edit::Set(setting)).unwrap();
+            study.apply(&edit).unwrap();
         }
         let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
         let result = analysis.condition(ConditionId(1)).unwrap();
@@ -89,7 +89,7 @@ fn gains_and_delays_put_into_published_helicopters_are_found_again() {
 #[test]
 fn a_band_beyond_the_measured_frequencies_leaves_no_result_and_says_why() {
     let mut study = Study::new(Arc::new(dataset_of("compleib_HE2_AH64_130kt.json", 0.0)));
-    study.apply(&Edit::Set(Setting::Band(Band::new(0.1, 12.0).unwrap()))).unwrap();
+    study.apply(&setting::BAND.to(Band::new(0.1, 12.0).unwrap())).unwrap();
     let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
     let failure = analysis.conditions[&ConditionId(1)].as_ref().unwrap_err().to_string();
     assert!(failure.contains("over the whole band"), "{failure}");

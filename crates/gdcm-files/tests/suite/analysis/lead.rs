@@ -23,7 +23,7 @@ static EXAMPLE_WITH_LEADS: LazyLock<Analysis> = LazyLock::new(|| analyze(&mut En
 
 fn with_leads() -> Study {
     let mut study = study_of_example();
-    study.apply(&Edit::Set(Setting::Phase(PhaseCorrection::Lead))).unwrap();
+    study.apply(&setting::PHASE.to(PhaseCorrection::Lead)).unwrap();
     study
 }
 
@@ -132,11 +132,11 @@ fn schedule_names() -> (Vec<String>, Vec<String>) {
 fn gains_alone_are_those_of_delays_and_every_delay_is_none() {
     let (mut study, mut engine) = (study_of_example(), Engine::default());
     let delay = analyze(&mut engine, &study);
-    study.apply(&Edit::Set(Setting::Phase(PhaseCorrection::None))).unwrap();
+    study.apply(&setting::PHASE.to(PhaseCorrection::None)).unwrap();
     let none = analyze(&mut engine, &study);
-    study.apply(&Edit::Set(Setting::Phase(PhaseCorrection::Lead))).unwrap();
+    study.apply(&setting::PHASE.to(PhaseCorrection::Lead)).unwrap();
     analyze(&mut engine, &study);
-    study.apply(&Edit::Set(Setting::Phase(PhaseCorrection::Delay))).unwrap();
+    study.apply(&setting::PHASE.to(PhaseCorrection::Delay)).unwrap();
     let again = analyze(&mut engine, &study);
     for (id, found) in &delay.conditions {
         let found = found.as_ref().unwrap();
@@ -154,7 +154,7 @@ fn gains_alone_are_those_of_delays_and_every_delay_is_none() {
 #[test]
 fn delays_of_the_band_are_fitted_to_the_line_through_the_phase() {
     let mut study = study_of_example();
-    study.apply(&Edit::Set(Setting::DelayFrom(DelayFrom::Band))).unwrap();
+    study.apply(&setting::DELAY_FROM.to(DelayFrom::Band)).unwrap();
     let analysis = analyze(&mut Engine::default(), &study);
     for (id, found) in &analysis.conditions {
         let found = found.as_ref().unwrap();
@@ -269,14 +269,14 @@ fn known_signed_delays_and_gains_are_found_again() {
         let name = entry["name"].as_str().unwrap();
         let mut study = Study::new(Arc::new(known(entry, &reference["plant"])));
         let lead = lead_settings(entry);
-        for setting in [
-            Setting::Phase(PhaseCorrection::Lead),
-            Setting::LeadOrder(lead.order),
-            Setting::LeadPole(lead.pole),
-            Setting::AlphaDelay(number(&entry["alpha"])),
-            Setting::DelayUpper(Some(0.1)),
+        for edit in [
+            setting::PHASE.to(PhaseCorrection::Lead),
+            setting::LEAD_ORDER.to(lead.order),
+            setting::LEAD_POLE.to(lead.pole),
+            setting::ALPHA_DELAY.to(number(&entry["alpha"])),
+            setting::DELAY_UPPER.to(Some(0.1)),
         ] {
-            study.apply(&Edit::Set(setting)).unwrap();
+            study.apply(&edit).unwrap();
         }
         let analysis = analyze(&mut Engine::default(), &study);
         let result = analysis.condition(ConditionId(1)).unwrap();

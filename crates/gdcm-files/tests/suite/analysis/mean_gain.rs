@@ -10,8 +10,8 @@ use super::*;
 
 const CONDITION: ConditionId = ConditionId(10);
 
-fn set(study: &mut Study, setting: Setting) {
-    study.apply(&Edit::Set(setting)).unwrap();
+fn set(study: &mut Study, edit: Edit) {
+    study.apply(&edit).unwrap();
 }
 
 /// `|H|` of every kept model of a bundle at each frequency.
@@ -41,7 +41,7 @@ fn g_from_the_mean_is_the_mean_of_ln_g_of_every_pair_of_kept_models() {
     let models = rejected.iter().map(|name| ModelId::new(CONDITION, BundleKind::Physics, *name)).collect();
     study.apply(&Edit::RejectEach(models)).unwrap();
     let of_representatives = analyze(&mut Engine::default(), &study);
-    set(&mut study, Setting::GainSource(GainSource::MeanOfPairs));
+    set(&mut study, setting::GAIN_SOURCE.to(GainSource::MeanOfPairs));
     let analysis = analyze(&mut Engine::default(), &study);
     let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
     assert!(study.settings.points.is_multiple_of(2), "as the plain median takes them");
@@ -67,16 +67,16 @@ fn g_from_the_mean_is_the_mean_of_ln_g_of_every_pair_of_kept_models() {
 #[test]
 fn with_leads_g_from_the_mean_changes_nothing_and_the_settings_say_so() {
     let mut study = study_of_example();
-    set(&mut study, Setting::Phase(PhaseCorrection::Lead));
+    set(&mut study, setting::PHASE.to(PhaseCorrection::Lead));
     let of_representatives = analyze(&mut Engine::default(), &study);
     assert_eq!(study.settings.gain_source_words(), "the representatives");
-    set(&mut study, Setting::GainSource(GainSource::MeanOfPairs));
+    set(&mut study, setting::GAIN_SOURCE.to(GainSource::MeanOfPairs));
     let of_mean = analyze(&mut Engine::default(), &study);
     for (id, result) in &of_mean.conditions {
         let (with, without) = (result.as_ref().unwrap(), of_representatives.condition(*id).unwrap());
         assert_eq!(with.correction, without.correction, "condition {id}");
     }
     assert!(study.settings.gain_source_words().contains("without effect"), "{}", study.settings.gain_source_words());
-    set(&mut study, Setting::Phase(PhaseCorrection::Delay));
+    set(&mut study, setting::PHASE.to(PhaseCorrection::Delay));
     assert_eq!(study.settings.gain_source_words(), "the mean over all kept pairs");
 }

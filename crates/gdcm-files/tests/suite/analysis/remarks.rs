@@ -11,11 +11,11 @@ fn said(analysis: &Analysis, condition: i64) -> Vec<Remark> {
 #[test]
 fn a_held_response_that_goes_farther_from_flight_is_named_with_both_costs() {
     let (mut study, mut engine) = (study_of_example(), Engine::default());
-    study.apply(&Edit::Set(Setting::Points(40))).unwrap();
+    study.apply(&setting::POINTS.to(40)).unwrap();
     let held =
         [("NY", "LAT"), ("P", "PED"), ("R", "LAT")].map(|(output, input)| study.dataset.find_pair(output, input));
     for pair in study.dataset.on_axis().pairs() {
-        study.apply(&Edit::Set(Setting::Constrained(pair, held.contains(&Some(pair))))).unwrap();
+        study.apply(&Edit::Hold(pair, held.contains(&Some(pair)))).unwrap();
     }
     let analysis = &analyze(&mut engine, &study);
     let mut worse = 0;
@@ -38,7 +38,7 @@ fn a_held_response_that_goes_farther_from_flight_is_named_with_both_costs() {
 #[test]
 fn a_condition_that_is_left_out_of_the_schedule_says_so() {
     let (mut study, mut engine) = (study_of_example(), Engine::default());
-    study.apply(&Edit::Set(Setting::Points(40))).unwrap();
+    study.apply(&setting::POINTS.to(40)).unwrap();
     study.apply(&Edit::SetScheduled { condition: ConditionId(3), scheduled: false }).unwrap();
     let analysis = analyze(&mut engine, &study);
     let says =
@@ -49,18 +49,18 @@ fn a_condition_that_is_left_out_of_the_schedule_says_so() {
 #[test]
 fn a_tolerance_decides_whether_a_loop_of_held_gains_agrees() {
     let (mut study, mut engine) = (study_of_example(), Engine::default());
-    study.apply(&Edit::Set(Setting::Points(40))).unwrap();
+    study.apply(&setting::POINTS.to(40)).unwrap();
     // LON and COL to Q and NZ: a loop.
     for (output, input) in [("Q", "LON"), ("Q", "COL"), ("NZ", "LON"), ("NZ", "COL")] {
         let pair = study.dataset.find_pair(output, input).unwrap();
-        study.apply(&Edit::Set(Setting::Constrained(pair, true))).unwrap();
+        study.apply(&Edit::Hold(pair, true)).unwrap();
     }
     let strict = analyze(&mut engine, &study);
     let loops = strict.condition(ConditionId(1)).unwrap().gains.conflicts.clone();
     assert!(!loops.is_empty(), "four ratios of the example agree by chance only");
     assert!(said(&strict, 1).iter().any(|remark| remark.kind == RemarkKind::Trouble));
-    assert!(study.apply(&Edit::Set(Setting::Agreement(3.1))).unwrap_err().to_string().contains("agreement tolerance"));
-    study.apply(&Edit::Set(Setting::Agreement(3.0))).unwrap();
+    assert!(study.apply(&setting::AGREEMENT.to(3.1)).unwrap_err().to_string().contains("loop tolerance"));
+    study.apply(&setting::AGREEMENT.to(3.0)).unwrap();
     let lenient = analyze(&mut engine, &study);
     let result = lenient.condition(ConditionId(1)).unwrap();
     assert!(result.gains.matched && !result.gains.agreeing.is_empty(), "{:?}", result.gains.conflicts);

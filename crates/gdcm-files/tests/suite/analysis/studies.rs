@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex};
 /// A study of the example on few frequencies: what these tests ask does not depend on how many.
 fn short_study() -> Study {
     let mut study = study_of_example();
-    study.apply(&Edit::Set(Setting::Points(40))).unwrap();
+    study.apply(&setting::POINTS.to(40)).unwrap();
     study
 }
 
@@ -36,8 +36,10 @@ fn held_responses_have_their_delta_gain_as_net_gain_in_every_condition() {
 fn an_engine_that_has_seen_other_settings_gives_the_same_result_as_a_new_one() {
     let (mut study, mut used) = (short_study(), Engine::default());
     analyze(&mut used, &study);
-    for setting in [Setting::AlphaGain(0.01), Setting::Points(25), Setting::Quantile(0.1), Setting::AlphaGain(0.5)] {
-        study.apply(&Edit::Set(setting)).unwrap();
+    for edit in
+        [setting::ALPHA_GAIN.to(0.01), setting::POINTS.to(25), setting::QUANTILE.to(0.1), setting::ALPHA_GAIN.to(0.5)]
+    {
+        study.apply(&edit).unwrap();
         analyze(&mut used, &study);
     }
     assert_eq!(analyze(&mut used, &study), analyze(&mut Engine::default(), &study));
@@ -48,7 +50,7 @@ fn holding_another_response_changes_neither_representatives_nor_bounds() {
     let (mut study, mut engine) = (short_study(), Engine::default());
     let before = analyze(&mut engine, &study);
     let pair = study.dataset.find_pair("NX", "LON").unwrap();
-    study.apply(&Edit::Set(Setting::Constrained(pair, true))).unwrap();
+    study.apply(&Edit::Hold(pair, true)).unwrap();
     let after = analyze(&mut engine, &study);
     let first = ConditionId(1);
     assert_ne!(before.condition(first).unwrap().correction, after.condition(first).unwrap().correction);
@@ -178,7 +180,7 @@ fn the_order_of_conditions_and_models_touches_no_decision_and_no_result() {
     ] {
         study.apply(&edit).unwrap();
     }
-    let (carried, differences) = study.carried_over(Arc::new(reversed(&study.dataset)));
+    let (carried, differences) = study.reconciled(Arc::new(reversed(&study.dataset)));
     assert_eq!(differences, []);
     assert_eq!((&carried.choices, &carried.settings), (&study.choices, &study.settings));
     let (before, after) = (analyze(&mut engine, &study), analyze(&mut engine, &carried));
@@ -209,7 +211,7 @@ fn of_a_dataset_with_one_other_model_one_response_is_computed() {
         Condition::new(condition.flight_state().clone(), physics, bundle(BundleKind::Identified)).unwrap()
     });
     let replaced = Dataset::new(study.dataset.header(), conditions.collect()).unwrap();
-    let (carried, differences) = study.carried_over(Arc::new(replaced));
+    let (carried, differences) = study.reconciled(Arc::new(replaced));
     assert_eq!(differences.len(), 1);
     let after = curves(&carried);
     let kept: Vec<bool> = before.physics.iter().zip(&after.physics).map(|(a, b)| Arc::ptr_eq(a, b)).collect();

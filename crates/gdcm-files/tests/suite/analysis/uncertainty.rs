@@ -5,12 +5,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::{Dataset, ModelId};
-use gdcm_core::schedule::{ScheduleKind, ScheduleSettings, SecondVariable};
+use gdcm_core::schedule::{ScheduleKind, SecondVariable};
 use gdcm_core::study::{
     AirspeedDifference, Cancelled, ExplainTarget, PairScatter, PhaseCorrection, Progress, Uncertainty, derivation,
 };
 use gdcm_core::uncertainty::{
-    Bar, Design, Difference, IdentificationSource, Part, Scalar, ScheduleBand, SecondVariableDesign,
+    Bar, Design, Difference, IdentificationSource, Scalar, ScheduleBand, SecondVariableDesign, VarianceComponent,
     VarianceDecomposition, holm,
 };
 use gdcm_files::{DatasetOrigin, load_dataset_bytes};
@@ -40,8 +40,8 @@ fn study_of(dataset: &Value) -> Study {
     Study::new(load_dataset_bytes(&text, DatasetOrigin::EmbeddedExample).unwrap().dataset)
 }
 
-fn set(study: &mut Study, setting: Setting) {
-    study.apply(&Edit::Set(setting)).unwrap();
+fn set(study: &mut Study, edit: Edit) {
+    study.apply(&edit).unwrap();
 }
 
 fn uncertainty_of(study: &Study) -> (Analysis, Uncertainty) {
@@ -54,7 +54,7 @@ fn uncertainty_of(study: &Study) -> (Analysis, Uncertainty) {
 /// A bar against the reference's: parts and half-width, and the degrees of freedom where there are any.
 #[track_caller]
 fn assert_bar(what: &str, bar: &Bar, reference: &Value, tolerance: f64) {
-    let root = |part: Option<Part>| part.map_or(0.0, |part| part.variance.sqrt());
+    let root = |part: Option<VarianceComponent>| part.map_or(0.0, |part| part.variance.sqrt());
     assert_near(&format!("{what}: q"), bar.value, &reference["q"], tolerance);
     assert_near(&format!("{what}: trim"), root(bar.trim), &reference["u_phys"], tolerance);
     assert_near(&format!("{what}: identification"), root(bar.identification), &reference["u_id"], tolerance);
@@ -65,12 +65,16 @@ fn assert_bar(what: &str, bar: &Bar, reference: &Value, tolerance: f64) {
         tolerance,
     );
     if let Some(degrees) = reference["df_id"].as_f64() {
-        assert_eq!(bar.identification.unwrap().degrees, degrees, "{what}");
+        assert_eq!(bar.identification.unwrap().degrees_of_freedom, degrees, "{what}");
     }
     match reference["nu"].as_f64() {
         // A hundredth of a degree moves the quantile by less than the tolerance.
-        Some(degrees) => assert!((bar.degrees().unwrap() / degrees - 1.0).abs() < 1e-3, "{what}: {:?}", bar.degrees()),
-        None => assert_eq!(bar.degrees(), None, "{what}"),
+        Some(degrees) => assert!(
+            (bar.degrees_of_freedom().unwrap() / degrees - 1.0).abs() < 1e-3,
+            "{what}: {:?}",
+            bar.degrees_of_freedom()
+        ),
+        None => assert_eq!(bar.degrees_of_freedom(), None, "{what}"),
     }
 }
 
@@ -86,7 +90,7 @@ fn assert_split(what: &str, split: &VarianceDecomposition, reference: &Value, to
         ("scatter", split.scatter.sqrt()),
         ("physics", split.trim.sqrt()),
         ("identification", split.identification.sqrt()),
-        ("rest", split.rest().sqrt()),
+        ("rest", split.unexplained().sqrt()),
     ];
     figures
         .into_iter()
@@ -97,9 +101,9 @@ fn assert_split(what: &str, split: &VarianceDecomposition, reference: &Value, to
         assert!((found / expected - 1.0).abs() < 1e-3, "{what} {name}: found {found}, reference {expected}");
     };
     relative("ratio", split.ratio().unwrap());
-    relative("df_bundles", split.degrees.unwrap());
+    relative("df_bundles", split.degrees_of_freedom.unwrap());
     assert_near(what, split.p().unwrap(), &reference["p"], 100.0 * tolerance);
-    for (found, expected) in split.rest_interval(0.9).unwrap().iter().zip(list(&reference["rest_interval"])) {
+    for (found, expected) in split.unexplained_interval(0.9).unwrap().iter().zip(list(&reference["rest_interval"])) {
         assert_near(&format!("{what} interval"), *found, expected, 20.0 * tolerance);
     }
     for (found, expected) in split.shares().unwrap().iter().zip(list(&reference["shares"])) {
@@ -158,7 +162,7 @@ fn study_of_known_spread() -> (Study, Value) {
     let case = case("A_pure_gain_bundles");
     let mut study = study_of(&case["dataset"]);
     let kind = ScheduleKind::Polynomial { degree: 1 };
-    set(&mut study, Setting::Schedule(ScheduleSettings { kind, ..ScheduleSettings::default() }));
+    set(&mut study, setting::SCHEDULE.to(kind));
     (study, case)
 }
 
@@ -198,7 +202,7 @@ fn what_coherence_tells_takes_the_place_of_a_smaller_spread() {
             }
         }
         let mut study = study_of(&dataset);
-        set(&mut study, Setting::Points(40));
+        set(&mut study, setting::POINTS.to(40));
         let (_, found) = uncertainty_of(&study);
         let bar = |scalar| *found.bar(ConditionId(1), scalar).unwrap();
         let (gain, delay) = (bar(Scalar::Gain(Pair::new(0, 0))), bar(Scalar::Delay(Pair::new(0, 0))));
@@ -223,8 +227,9 @@ fn a_table_of_numbers_is_split_as_the_reference_does() {
     let by_airspeed = Design::new(&gdcm_core::schedule::airspeed_indicators(airspeeds, 1.0)).unwrap();
     for table in list(&case["tables"]) {
         let figures = numbers(&table["y"]);
-        let of =
-            |name: &str, place: usize, degrees| Some(Part { variance: number(&case[name][place]).powi(2), degrees });
+        let of = |name: &str, place: usize, degrees| {
+            Some(VarianceComponent { variance: number(&case[name][place]).powi(2), degrees_of_freedom: degrees })
+        };
         let bar = |place: usize| Bar {
             value: figures[place],
             trim: of("s_phys", place, 18.0),
@@ -353,7 +358,7 @@ fn one_model_left_says_what_is_not_included() {
     assert!(bar(1).half_width(0.9).unwrap() > 0.0, "the identification is left");
     let borrowed = bar(2).identification.unwrap();
     // Two of the first condition, none of the third, which has one model, and one of the fourth.
-    assert_eq!((borrowed.degrees, bar(2).remarks().len()), (3.0, 0), "borrowed from the other conditions");
+    assert_eq!((borrowed.degrees_of_freedom, bar(2).remarks().len()), (3.0, 0), "borrowed from the other conditions");
 }
 
 #[test]
@@ -366,7 +371,7 @@ fn without_a_second_identified_model_anywhere_the_bar_is_of_the_trim_only() {
     let (_, found) = uncertainty_of(&study_of(&dataset));
     let bar = found.bar(ConditionId(1), Scalar::Gain(Pair::new(0, 0))).unwrap();
     assert_eq!((bar.identification, bar.remarks()), (None, vec!["identification not included"]));
-    assert_eq!(bar.degrees(), Some(4.0));
+    assert_eq!(bar.degrees_of_freedom(), Some(4.0));
 }
 
 #[test]
@@ -437,7 +442,7 @@ fn bars_of_a_population_cover_the_truth_as_often_as_they_say() {
         "inputs": [{"name": "U", "unit": "%"}], "outputs": [{"name": "Y", "unit": "deg/s"}], "on_axis": [["Y", "U"]],
         "frequency_band": {"min": 0.5, "max": 12.0, "unit": "rad/s"}, "conditions": conditions});
     let mut study = study_of(&dataset);
-    set(&mut study, Setting::Points(5));
+    set(&mut study, setting::POINTS.to(5));
     let (_, found) = uncertainty_of(&study);
     let covers = |of: &gdcm_core::study::ConditionUncertainty| {
         let [low, high] = of.bars[Scalar::NetGain(Pair::new(0, 0))].unwrap().interval(0.9).unwrap();
@@ -489,7 +494,7 @@ fn the_bars_of_a_dataset_with_other_bands_are_made_anew() {
 fn a_bar_that_rests_on_the_spread_alone_says_so_beside_a_model_that_tells_its_error() {
     let mut study = study_of(&dataset_with_band(1.0));
     let (held, free) = (Pair::new(0, 0), Pair::new(0, 1));
-    set(&mut study, Setting::Constrained(free, false));
+    set(&mut study, Edit::Hold(free, false));
     let (mut analysis, uncertainty) = uncertainty_of(&study);
     analysis.uncertainty = Some(Arc::new(uncertainty));
     let says_so = |asked: ExplainTarget| {
@@ -509,7 +514,7 @@ fn under_leads_every_bar_stands_beside_the_value_that_it_is_of() {
     let example = &crate::REFERENCE_DATASET.dataset;
     let first_two = example.conditions()[..2].iter().map(|condition| condition.as_ref().clone()).collect();
     let mut study = Study::new(Arc::new(Dataset::new(example.header(), first_two).unwrap()));
-    set(&mut study, Setting::Phase(PhaseCorrection::Lead));
+    set(&mut study, setting::PHASE.to(PhaseCorrection::Lead));
     let (mut analysis, uncertainty) = uncertainty_of(&study);
     analysis.uncertainty = Some(Arc::new(uncertainty));
     let written = Corrections::of(&analysis, "", &analysis.conditions.keys().copied().collect());
@@ -529,7 +534,7 @@ fn under_leads_every_bar_stands_beside_the_value_that_it_is_of() {
 fn a_model_with_another_band_is_another_model() {
     let [wide, narrow, again] = [3.0, 1.5, 3.0].map(|sd_db| study_of(&dataset_with_band(sd_db)));
     let changed = |dataset: &Study| {
-        let (_, differences) = wide.carried_over(Arc::clone(&dataset.dataset));
+        let (_, differences) = wide.reconciled(Arc::clone(&dataset.dataset));
         differences.iter().map(ToString::to_string).collect::<Vec<_>>()
     };
     assert_eq!(changed(&again), Vec::<String>::new());

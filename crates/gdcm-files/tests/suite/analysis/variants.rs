@@ -63,7 +63,7 @@ fn a_refused_rejection_leaves_no_reason_and_undo_takes_both_back() {
 #[test]
 fn words_change_no_result_and_stand_in_the_results_beside_the_rejected() {
     let (mut study, mut engine) = (study_of_example(), Engine::default());
-    apply(&mut study, &[Edit::Set(Setting::Points(40)), Edit::Reject(nominal_of_10())]);
+    apply(&mut study, &[setting::POINTS.to(40), Edit::Reject(nominal_of_10())]);
     let without = analyze(&mut engine, &study);
     apply(&mut study, &[Edit::SetReason(nominal_of_10(), "step".to_owned()), keep("a")]);
     let with = analyze(&mut engine, &study);
@@ -83,7 +83,7 @@ fn words_change_no_result_and_stand_in_the_results_beside_the_rejected() {
 #[test]
 fn a_variant_brings_back_the_decisions_that_were_kept_and_stays() {
     let mut study = study_of_example();
-    apply(&mut study, &[Edit::Set(Setting::AlphaGain(0.1)), keep(" soft "), Edit::Set(Setting::AlphaGain(9.0))]);
+    apply(&mut study, &[setting::ALPHA_GAIN.to(0.1), keep(" soft "), setting::ALPHA_GAIN.to(9.0)]);
     let before = study.clone();
     apply(&mut study, &[Edit::TakeVariant { name: "soft".to_owned() }]);
     assert_eq!((study.settings.alpha_gain, study.variants.len()), (0.1, 1));
@@ -109,8 +109,8 @@ fn the_name_of_a_variant_is_given_once_and_can_be_changed_and_removed() {
 #[test]
 fn a_variant_is_analysed_like_a_study_with_its_decisions() {
     let mut study = study_of_example();
-    apply(&mut study, &[Edit::Set(Setting::Points(40)), Edit::Set(Setting::AlphaGain(0.01)), keep("soft")]);
-    apply(&mut study, &[Edit::Set(Setting::AlphaGain(1.0)), Edit::Reject(nominal_of_10())]);
+    apply(&mut study, &[setting::POINTS.to(40), setting::ALPHA_GAIN.to(0.01), keep("soft")]);
+    apply(&mut study, &[setting::ALPHA_GAIN.to(1.0), Edit::Reject(nominal_of_10())]);
     let job = VariantJob { study: study.of_variant("soft").unwrap() };
     let mut tools = Engine::default();
     analyze(&mut tools, &study);
@@ -132,9 +132,9 @@ fn what_differs_between_decisions_is_told_in_plain_words() {
     assert_eq!(decision_differences(&before, &after), []);
     let pair = before.dataset.find_pair("Q", "LON").unwrap();
     let reject = Edit::RejectBecause { model: nominal_of_10(), reason: "step".to_owned() };
-    apply(&mut after, &[Edit::Set(Setting::AlphaGain(0.1)), Edit::Set(Setting::Constrained(pair, false)), reject]);
+    apply(&mut after, &[setting::ALPHA_GAIN.to(0.1), Edit::Hold(pair, false), reject]);
     let left_out = Edit::SetScheduled { condition: ConditionId(3), scheduled: false };
-    apply(&mut after, &[left_out, keep("kept"), Edit::Set(Setting::DelayUpper(Some(0.02)))]);
+    apply(&mut after, &[left_out, keep("kept"), setting::DELAY_UPPER.to(Some(0.02))]);
     let words: Vec<String> =
         decision_differences(&before, &after).iter().map(|difference| difference.words()).collect();
     assert_eq!(
@@ -150,12 +150,12 @@ fn what_differs_between_decisions_is_told_in_plain_words() {
 }
 
 #[test]
-fn reasons_and_variants_are_carried_over_to_a_changed_dataset() {
+fn reasons_and_variants_are_reconciled_to_a_changed_dataset() {
     let mut study = study_of_example();
     let other = ModelId::new(ConditionId(3), BundleKind::Physics, "nominal");
     let because = |model: &ModelId| Edit::RejectBecause { model: model.clone(), reason: "step".to_owned() };
     apply(&mut study, &[because(&other), because(&nominal_of_10()), keep("strict"), Edit::Restore(nominal_of_10())]);
-    let (carried, differences) = study.carried_over(shorter_example());
+    let (carried, differences) = study.reconciled(shorter_example());
     assert_eq!(carried.reason(&other), Some("step"));
     let variant = carried.of_variant("strict").unwrap();
     assert_eq!((variant.reason(&other), variant.choices.len()), (Some("step"), 10));

@@ -3,17 +3,13 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use gdcm_core::correction::{GainBounds, GainObjective};
-use gdcm_core::dataset::{Band, BundleKind, ConditionId, ModelId, Pair};
-use gdcm_core::fidelity::CostAverage;
-use gdcm_core::response::LeadOrder;
-use gdcm_core::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
-use gdcm_core::study::{DelayFrom, Edit, PhaseCorrection, Setting, Study};
+use gdcm_core::dataset::{BundleKind, ConditionId, ModelId, Pair};
+use gdcm_core::study::{Edit, Kind, SETTINGS, Setting, Study, Value, setting};
 use gdcm_files::{
     FileError, LoadedDataset, Opened, embedded_example, load_any, load_dataset, open_study, open_study_of, save_study,
 };
 use proptest::prelude::*;
-use serde_json::{Value, json};
+use serde_json::{Value as Json, json};
 
 use super::SMALL;
 
@@ -44,15 +40,15 @@ impl Desk {
     }
 
     /// Saves a study without decisions and changes its text.
-    fn saved(&self, change: impl FnOnce(&mut Value)) {
+    fn saved(&self, change: impl FnOnce(&mut Json)) {
         let loaded = self.loaded();
         save_study(&Study::new(loaded.dataset.clone()), &loaded, &self.study()).unwrap();
-        let mut value: Value = serde_json::from_slice(&fs::read(self.study()).unwrap()).unwrap();
+        let mut value: Json = serde_json::from_slice(&fs::read(self.study()).unwrap()).unwrap();
         change(&mut value);
         fs::write(self.study(), serde_json::to_vec(&value).unwrap()).unwrap();
     }
 
-    fn refusal(&self, change: impl FnOnce(&mut Value)) -> String {
+    fn refusal(&self, change: impl FnOnce(&mut Json)) -> String {
         self.saved(change);
         open_study(&self.study()).unwrap_err().to_string()
     }
@@ -64,43 +60,47 @@ fn decided(study: &mut Study, edits: &[Edit]) {
     }
 }
 
+/// Any value that a setting may have, of two numbers from 0 to 1.
+fn value_of(setting: &Setting, [first, second]: [f64; 2]) -> Value {
+    let within = |[least, most]: [f64; 2], at: f64| least + at * (most - least);
+    match setting.kind {
+        Kind::Optional { .. } | Kind::Range { nothing: Some(_), .. } if second > 0.7 => Value::Nothing,
+        Kind::Number { range, whole: true, .. } => Value::Number(within(range, first).round()),
+        Kind::Number { range, .. } | Kind::Optional { range, .. } => Value::Number(within(range, first)),
+        Kind::Range { range, .. } => {
+            let lower = within(range, 0.9 * first);
+            Value::Range([lower, within([lower, range[1]], 0.1 + 0.9 * second)])
+        }
+        Kind::Flag { .. } => Value::Flag(first > 0.5),
+        Kind::Choice { words, .. } => Value::Choice((first * (words.len() as f64 - 0.01)) as usize),
+    }
+}
+
 fn edits() -> impl Strategy<Value = Vec<Edit>> {
-    let number = || 0.0..1e3_f64;
-    let setting = prop_oneof![
-        (0_usize..2, 0_usize..2, any::<bool>())
-            .prop_map(|(output, input, on)| Setting::Constrained(Pair::new(output, input), on)),
-        (0_usize..2, 0_usize..2, any::<bool>())
-            .prop_map(|(output, input, on)| Setting::Fitted(Pair::new(output, input), on)),
-        number().prop_map(Setting::AlphaGain),
-        number().prop_map(Setting::AlphaDelay),
-        (1e-3..1.0_f64, 1.1..1e3_f64).prop_map(|(min, max)| Setting::Band(Band::new(min, max).unwrap())),
-        (2_usize..5000).prop_map(Setting::Points),
-        prop::sample::select(vec![CostAverage::Median, CostAverage::Mean]).prop_map(Setting::CostAverage),
-        prop::sample::select(vec![GainObjective::Ratio, GainObjective::Decibel]).prop_map(Setting::GainObjective),
-        (0.0..0.5_f64).prop_map(Setting::Quantile),
-        (0.1..1.0_f64, 1.0..3.0_f64).prop_map(|(lower, upper)| Setting::GainBounds(Some(GainBounds { lower, upper }))),
-        prop::option::of(number()).prop_map(Setting::DelayUpper),
-        (0.0..3.0_f64).prop_map(Setting::Agreement),
-        prop::sample::select(PhaseCorrection::ALL.to_vec()).prop_map(Setting::Phase),
-        prop::sample::select(DelayFrom::ALL.to_vec()).prop_map(Setting::DelayFrom),
-        prop::sample::select(vec![LeadOrder::First, LeadOrder::Second]).prop_map(Setting::LeadOrder),
-        (2.0..10.0_f64).prop_map(Setting::LeadPole),
-        (1.0..100.0_f64).prop_map(Setting::LeadLimit),
-        prop::option::of(0.0..=1.0_f64).prop_map(Setting::Coherence),
-        (0_usize..=3, any::<bool>(), any::<bool>(), 0.0..100.0_f64).prop_map(|(degree, table, delays, tolerance)| {
-            let kind = if table { ScheduleKind::Table } else { ScheduleKind::Polynomial { degree } };
-            let quantity = if delays { ScheduledQuantity::Gain } else { ScheduledQuantity::LnGain };
-            Setting::Schedule(ScheduleSettings {
-                kind,
-                quantity,
-                delays,
-                airspeed_tolerance_kt: tolerance,
-                second: None,
-                tau_degree: degree,
-            })
-        }),
+    let pair = || (0_usize..2, 0_usize..2).prop_map(|(output, input)| Pair::new(output, input));
+    let edit = prop_oneof![
+        (pair(), any::<bool>()).prop_map(|(pair, on)| Edit::Hold(pair, on)),
+        (pair(), any::<bool>()).prop_map(|(pair, on)| Edit::Fit(pair, on)),
+        (prop::sample::select(SETTINGS.to_vec()), [0.0..1.0_f64, 0.0..1.0_f64])
+            .prop_map(|(setting, at)| setting.to(value_of(setting, at))),
     ];
-    prop::collection::vec(setting.prop_map(Edit::Set), 0..12)
+    prop::collection::vec(edit, 0..30)
+}
+
+#[test]
+fn every_setting_is_a_key_of_the_file() {
+    let desk = Desk::new();
+    let loaded = desk.loaded();
+    let mut study = Study::new(loaded.dataset.clone());
+    for setting in SETTINGS {
+        study.apply(&setting.to(value_of(setting, [0.6, 0.6]))).unwrap();
+    }
+    save_study(&study, &loaded, &desk.study()).unwrap();
+    let text: Json = serde_json::from_slice(&fs::read(desk.study()).unwrap()).unwrap();
+    for setting in SETTINGS {
+        let pointer = format!("/settings/{}", setting.key.replace('.', "/"));
+        assert!(text.pointer(&pointer).is_some(), "{}", setting.key);
+    }
 }
 
 proptest! {
@@ -141,7 +141,7 @@ fn a_study_of_an_older_program_has_neither_reasons_nor_variants_nor_a_tolerance_
     let opened = open_study(&desk.study()).unwrap();
     let mut expected = Study::new(opened.loaded.dataset.clone());
     assert_eq!(expected.settings.coherence_threshold, Some(0.6), "one response is measured with coherence");
-    decided(&mut expected, &[Edit::Set(Setting::Coherence(None))]);
+    decided(&mut expected, &[setting::COHERENCE.to(None::<f64>)]);
     assert_eq!(opened.study, expected, "an older program took no notice of coherence");
     assert_eq!(opened.study.settings.agreement_db, 0.05);
 }
@@ -161,7 +161,7 @@ fn a_wrong_variant_is_refused_with_its_name() {
 fn a_study_names_its_dataset_relative_to_itself_and_moves_with_it() {
     let desk = Desk::new();
     desk.saved(|_| {});
-    let text: Value = serde_json::from_slice(&fs::read(desk.study()).unwrap()).unwrap();
+    let text: Json = serde_json::from_slice(&fs::read(desk.study()).unwrap()).unwrap();
     assert_eq!(text["dataset"]["path"], json!("../data/small.json"));
     let moved = tempfile::tempdir().unwrap();
     let root = moved.path().join("elsewhere");
@@ -175,10 +175,10 @@ fn a_study_of_the_embedded_example_has_no_path() {
     let path = directory.path().join("example.gdcm-study.json");
     let loaded = embedded_example().unwrap();
     let mut study = Study::new(loaded.dataset.clone());
-    decided(&mut study, &[Edit::Set(Setting::AlphaGain(0.1 + 0.2))]);
+    decided(&mut study, &[setting::ALPHA_GAIN.to(0.1 + 0.2)]);
     save_study(&study, &loaded, &path).unwrap();
-    let text: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
-    assert_eq!((&text["dataset"]["path"], &text["dataset"]["name"]), (&Value::Null, &json!("embedded example")));
+    let text: Json = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    assert_eq!((&text["dataset"]["path"], &text["dataset"]["name"]), (&Json::Null, &json!("embedded example")));
     let Opened::Study(opened) = load_any(&path).unwrap() else { panic!("a study was saved") };
     assert_eq!(opened.study, study);
 }
@@ -207,13 +207,13 @@ fn a_study_whose_dataset_has_changed_opens_and_lists_what_is_different() {
     decided(
         &mut study,
         &[
-            Edit::Set(Setting::AlphaGain(0.5)),
+            setting::ALPHA_GAIN.to(0.5),
             Edit::Reject(model(7, BundleKind::Physics, "V+5kt")),
             Edit::Pin(model(7, BundleKind::Identified, "measured")),
         ],
     );
     save_study(&study, &loaded, &desk.study()).unwrap();
-    let mut value: Value = serde_json::from_str(SMALL).unwrap();
+    let mut value: Json = serde_json::from_str(SMALL).unwrap();
     let first = &mut value["conditions"][0];
     first["airspeed_kt"] = json!(61);
     let models = first["physics_models"].as_array_mut().unwrap();
@@ -242,7 +242,7 @@ fn a_study_whose_dataset_has_changed_opens_and_lists_what_is_different() {
 fn a_dataset_written_in_another_way_is_not_different() {
     let desk = Desk::new();
     desk.saved(|_| {});
-    let value: Value = serde_json::from_str(SMALL).unwrap();
+    let value: Json = serde_json::from_str(SMALL).unwrap();
     fs::write(desk.dataset(), serde_json::to_string_pretty(&value).unwrap()).unwrap();
     assert_eq!(differences(&desk), [""; 0]);
 }
@@ -272,7 +272,7 @@ fn a_dataset_that_has_moved_is_found_beside_the_study_or_where_it_is_said_to_be(
 #[test]
 fn a_study_that_holds_what_cannot_be_decided_is_refused_with_the_place() {
     let desk = Desk::new();
-    type Change = fn(&mut Value);
+    type Change = fn(&mut Json);
     let cases: [(Change, &str); 8] = [
         (|file| file["version"] = json!(9), "expected version 1 of gdcm-study, found 9"),
         (
@@ -287,7 +287,7 @@ fn a_study_that_holds_what_cannot_be_decided_is_refused_with_the_place() {
         (|file| file["settings"]["gain_bounds"] = json!([2, 1]), "settings, gain_bounds: gain bounds"),
         (
             |file| file["settings"]["schedule"]["degree"] = json!(4),
-            "settings, schedule: schedule: expected a whole number from 0 to 3",
+            "settings, schedule: degree: expected a whole number from 0 to 3",
         ),
         (|file| file["settings"]["cost_average"] = json!("mode"), "settings, cost_average"),
         (|file| file["conditions"][1]["id"] = json!(7), "condition 7 (number 2 in the file): condition 7 stands twice"),
@@ -308,21 +308,21 @@ fn a_study_beside_its_dataset_names_it_plainly() {
     let loaded = desk.loaded();
     let beside = desk.dataset().with_file_name("b.gdcm-study.json");
     save_study(&Study::new(loaded.dataset.clone()), &loaded, &beside).unwrap();
-    let text: Value = serde_json::from_slice(&fs::read(&beside).unwrap()).unwrap();
+    let text: Json = serde_json::from_slice(&fs::read(&beside).unwrap()).unwrap();
     assert_eq!(text["dataset"]["path"], json!("small.json"));
     assert!(matches!(load_any(Path::new(&beside)).unwrap(), Opened::Study(_)));
 }
 
 #[test]
 fn a_model_keeps_the_file_it_was_made_from_through_saving_and_into_the_corrections() {
-    let mut value: Value = serde_json::from_str(SMALL).unwrap();
+    let mut value: Json = serde_json::from_str(SMALL).unwrap();
     let source = json!({"file": "models/roll+5.mat", "sha256": "ab12", "variable": "sys", "made": "2026-03-01", "note": "trim 3"});
     value["conditions"][0]["physics_models"][1]["source"] = source.clone();
     let loaded = super::load(&serde_json::to_vec(&value).unwrap()).unwrap();
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("again.json");
     gdcm_files::save_dataset(&loaded.dataset, &path).unwrap();
-    let again: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    let again: Json = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
     assert_eq!(again["conditions"][0]["physics_models"][1]["source"], source);
     assert_eq!(again["conditions"][0]["physics_models"][0].get("source"), None);
     let study = Study::new(load_dataset(&path).unwrap().dataset);

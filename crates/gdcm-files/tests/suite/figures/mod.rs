@@ -39,7 +39,7 @@ impl Example {
     fn source(&self) -> ConditionSource<'_> {
         ConditionSource {
             study: &self.analysis.study,
-            analysis: self.analysis.condition(CONDITION).unwrap(),
+            analysis: self.analysis.condition(CONDITION),
             schedule: self.analysis.schedule.as_ref().ok(),
             curves: &self.curves,
         }

@@ -131,9 +131,9 @@ fn the_error_of_the_reference_is_nothing_and_a_correction_moves_the_median_of_a_
         table.rows.iter().map(|row| row[at].parse().unwrap()).collect()
     };
     let source = example.source();
-    let reference = source.analysis.representative_name(gdcm_core::dataset::BundleKind::Identified);
+    let reference = source.analysis.unwrap().representative_name(gdcm_core::dataset::BundleKind::Identified);
     assert!(column(reference).iter().all(|error| *error == 0.0));
-    let physics = source.analysis.representative_name(gdcm_core::dataset::BundleKind::Physics);
+    let physics = source.analysis.unwrap().representative_name(gdcm_core::dataset::BundleKind::Physics);
     let mut errors = column(&format!("{physics}, corrected"));
     // The curves have their own frequencies: a fifth as far apart as those that the median was taken of, and as many at the ends.
     assert!(gdcm_core::response::median(&mut errors).abs() < 0.02);
@@ -172,7 +172,7 @@ fn the_numbers_of_evidence_name_what_the_scatter_is_about() {
     let example = &*EXAMPLE;
     let figure = example.figure(FigureKind::Evidence, example.on_axis());
     let split = example.analysis.uncertainty.as_ref().unwrap().scatter[0].about_schedule.unwrap();
-    let [_, high] = split.rest_interval(0.9).unwrap();
+    let [_, high] = split.unexplained_interval(0.9).unwrap();
     let rows = figure.tables().swap_remove(1).rows;
     let row = |series: &str| rows.iter().find(|row| row[0] == series && row[2] == "schedule").unwrap();
     assert_eq!(row("scatter")[3], format!("{:?}", 100.0 * split.scatter.sqrt()));
@@ -209,7 +209,7 @@ fn numbers_and_factors_of_net_gains_do_not_cover_one_another_on_paper() {
     let figure = example.figure(FigureKind::NetGain, example.on_axis());
     let uncertainty = example.analysis.uncertainty.as_ref().unwrap();
     let greatest = example.on_axis().into_iter().flat_map(|pair| uncertainty.greatest_differences(pair));
-    let factors = greatest.filter(|of| of.is_beyond(uncertainty.level)).count();
+    let factors = greatest.filter(|of| of.is_significant(uncertainty.level)).count();
     for width in ColumnWidth::BOTH {
         let labels = labels_on_paper(&figure, width);
         assert_eq!(labels.iter().filter(|(words, _)| words.ends_with('×')).count(), factors, "{width:?}");
@@ -237,4 +237,21 @@ fn net_gains_on_paper_have_their_bars_and_brackets() {
     assert!(lower.len() == 11 && lower.contains(&&format!("{:?}", low.exp())), "{low} in {lower:?}");
     let bracket: Vec<&Vec<String>> = rows.iter().filter(|row| row[0] == beyond).collect();
     assert!(bracket.len() >= 2 && bracket.iter().all(|row| row[1].ends_with('×')), "{bracket:?}");
+}
+
+#[test]
+fn the_quantiles_of_an_error_are_those_of_the_representative_even_where_its_curve_is_hidden() {
+    let example = &*EXAMPLE;
+    let quantiles = |hidden: &[Role]| {
+        let bode = BodeOptions { hidden: hidden.iter().copied().collect(), ..BodeOptions::default() };
+        let pairs = vec![example.pair("Q", "LON")];
+        let figure = example.request(&FigureRequest { bode, ..FigureRequest::new(FigureKind::Error, pairs, vec![]) });
+        let table = figure.tables().remove(0);
+        let columns: Vec<usize> =
+            (0..table.columns.len()).filter(|at| table.columns[*at].contains("quantile")).collect();
+        columns.iter().map(|at| table.rows[0][*at].clone()).collect::<Vec<String>>()
+    };
+    let shown = quantiles(&[]);
+    assert_eq!(shown.len(), 2);
+    assert_eq!(quantiles(&[Role::Representative]), shown);
 }

@@ -54,7 +54,7 @@ fn a_product_above_the_bounds_is_explained() {
     assert_eq!(
         conflict.words(&names(&INPUTS), &names(&OUTPUTS)),
         "LAT → P cannot be held: with gains <= 1.400 the product k_LAT k_P is at most 1.960, not 2.500; set the upper bound to 1.59 \
-         or free it."
+         or release it."
     );
     assert!(is_matched(&bounded(&problem, 0.7, 1.59)));
     assert!(!is_matched(&bounded(&problem, 0.7, 1.58)));
@@ -86,7 +86,7 @@ fn two_entries_that_share_an_input_are_explained_by_their_ratio() {
     assert_eq!(
         conflict.words(&names(&INPUTS), &names(&OUTPUTS)),
         "PED → R and PED → NY cannot both be held: with k_NY <= 1.400 and k_R >= 0.700 their ratio is at most 2.000, not 2.500; \
-         set the upper bound to 1.75, or the lower bound to 0.56, or free one of them."
+         set the upper bound to 1.75, or the lower bound to 0.56, or release one of them."
     );
     assert!(is_matched(&bounded(&problem, 0.7, 1.75)) && !is_matched(&bounded(&problem, 0.7, 1.74)));
     assert!(is_matched(&bounded(&problem, 0.56, 1.4)) && !is_matched(&bounded(&problem, 0.561, 1.4)));
@@ -115,7 +115,7 @@ fn a_cycle_of_constraints_is_explained() {
         }
         let words = solution.conflicts[0].words(&names(&INPUTS), &names(&OUTPUTS));
         assert!(
-            words.contains("form a loop: their ratios disagree by") && words.ends_with("free one of them."),
+            words.contains("form a loop: their ratios disagree by") && words.ends_with("release one of them."),
             "{words}"
         );
     }

@@ -3,6 +3,8 @@
 use gdcm_core::dataset::ConditionId;
 use gdcm_core::schedule::ScheduleError;
 
+use crate::variables::VariableFault;
+
 /// Why something cannot be exported.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ExportFault {
@@ -36,6 +38,9 @@ pub enum ExportFault {
     /// The name of the file says none of the formats that models are written in.
     #[error("models are written to a name that ends in .mat, .json or .npz")]
     ModelsFormat,
+    /// The values cannot be written.
+    #[error(transparent)]
+    Variables(#[from] VariableFault),
     /// There is no schedule to be exported.
     #[error(transparent)]
     Schedule(#[from] ScheduleError),

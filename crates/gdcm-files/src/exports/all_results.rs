@@ -1,0 +1,200 @@
+//! Everything that an analysis found: `corrections.json`, `corrections.csv`, and the fields of the former as one struct of MATLAB.
+
+use std::collections::BTreeSet;
+
+use gdcm_core::dataset::{Channel, ConditionId, Dataset};
+use gdcm_core::study::Analysis;
+
+use super::matlab_struct::{Layout, Tree, cell_of_texts};
+use super::{About, Export, ExportFault, Exported, Exporter};
+use crate::corrections_file::{BarEntry, ByName, Corrections, NetGain, channel_table, write_corrections};
+use crate::mat;
+use crate::variables::{Value, Variable};
+
+/// `corrections.json`.
+pub(super) struct Json;
+/// `corrections.csv`.
+pub(super) struct Csv;
+/// The struct `corrections` of MATLAB.
+pub(super) struct Mat;
+
+impl Exporter for Json {
+    fn about(&self) -> About {
+        About { name: "json", extension: "json", words: "corrections.json alone", options: &[] }
+    }
+
+    fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
+        let Export { analysis, source, .. } = *of;
+        Ok(Exported::new(move |file| write_corrections(analysis, &source.sha256, &all(analysis), file)))
+    }
+}
+
+impl Exporter for Csv {
+    fn about(&self) -> About {
+        About { name: "csv", extension: "csv", words: "corrections.csv alone", options: &[] }
+    }
+
+    fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
+        let analysis = of.analysis;
+        Ok(Exported::new(move |file| channel_table(analysis, &all(analysis), file)))
+    }
+}
+
+impl Exporter for Mat {
+    fn about(&self) -> About {
+        About { name: "mat", extension: "mat", words: "MATLAB data: all corrections as one struct", options: &[] }
+    }
+
+    fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
+        let corrections = Corrections::of(of.analysis, &of.source.sha256, &all(of.analysis));
+        let value = corrections_struct(&corrections, &of.analysis.study.dataset);
+        Ok(Exported::bytes(mat::write(&[Variable { name: "corrections".to_owned(), value }])?))
+    }
+}
+
+fn all(analysis: &Analysis) -> BTreeSet<ConditionId> {
+    analysis.conditions.keys().copied().collect()
+}
+
+/// Figures of channels are arrays in the order of the dataset's `inputs` and `outputs`.
+const LAYOUT: Layout = Layout { by_channel: &["inputs", "outputs"], by_name: &["discontinuity"], columns: &["table"] };
+
+/// The fields of `corrections.json`. Lists of responses are matrices of truths with a row for each output and a column for each input,
+/// the figures of `net_gains` stand in the matrices of `net_gain_table`; beside them, what earlier programs wrote keeps its name.
+fn corrections_struct(corrections: &Corrections, dataset: &Dataset) -> Value {
+    // Every type of the file is one of JSON: what fails to be one would have failed when it was written.
+    let mut tree = Tree::of(corrections).unwrap_or(Tree::List(Vec::new()));
+    let pair_rows = |of: &dyn Fn(&str, &str) -> Tree| {
+        let row = |output: &Channel| dataset.inputs().iter().map(|input| of(&output.name, &input.name)).collect();
+        Tree::List(dataset.outputs().iter().map(|output| Tree::List(row(output))).collect())
+    };
+    let marked = |pairs: &[(String, String)]| {
+        pair_rows(&|output, input| Tree::Truth(pairs.iter().any(|pair| (&*pair.0, &*pair.1) == (output, input))))
+    };
+    if let Some(settings) = tree.get_mut("settings") {
+        settings.set("constrained", marked(&corrections.settings.constrained.0));
+        settings.set("ignored", marked(&corrections.settings.ignored.0));
+        if settings.get("coherence_threshold").is_none() {
+            settings.set("coherence_threshold", Tree::Null(()));
+        }
+    }
+    let conditions = tree.get_mut("conditions").map(Tree::entries_mut).unwrap_or_default();
+    for (condition, of) in conditions.iter_mut().zip(&corrections.conditions) {
+        condition.set("held", marked(&of.held));
+        condition.set("held_out", Tree::Truth(of.held_out));
+        let net_gain = |metric: &dyn Fn(&NetGain) -> Option<f64>| {
+            pair_rows(&|output, input| {
+                let found = of.net_gains.iter().find(|net| (&*net.output, &*net.input) == (output, input));
+                found.and_then(metric).map_or(Tree::Null(()), Tree::Number)
+            })
+        };
+        let bar = |metric: fn(&BarEntry) -> Option<f64>| net_gain(&|net| metric(&net.bar));
+        if let Some(Tree::List(entries)) = condition.get("net_gains") {
+            let rows = entries.chunks(dataset.inputs().len()).map(|row| Tree::List(row.to_vec())).collect();
+            condition.set("net_gain_table", Tree::List(rows));
+        }
+        condition.set("net_gains", net_gain(&|net| Some(net.gain)));
+        condition.set("net_gains_low", bar(|bar| bar.interval.map(|[low, _]| low)));
+        condition.set("net_gains_high", bar(|bar| bar.interval.map(|[_, high]| high)));
+        condition.set("u_physics", bar(|bar| bar.u_physics));
+        condition.set("u_identification", bar(|bar| bar.u_identification));
+        for (name, solution, field) in [
+            ("gain_objective", "gain_solution", "objective"),
+            ("gain_lower_bound", "gain_solution", "lower_bound"),
+            ("gain_proven", "gain_solution", "proven"),
+            ("gain_matched", "gain_solution", "matched"),
+            ("delay_objective_s2", "delay_solution", "objective"),
+            ("delay_matched", "delay_solution", "matched"),
+        ] {
+            let value = condition.get(solution).and_then(|solution| solution.get(field)).cloned();
+            condition.set(name, value.unwrap_or(Tree::Null(())));
+        }
+    }
+    match (&corrections.schedule, tree.get_mut("schedule").and_then(|schedule| schedule.get_mut("table"))) {
+        (None, _) => tree.set("schedule", Tree::List(Vec::new())),
+        (Some(_), table) => {
+            for row in table.map(Tree::entries_mut).unwrap_or_default() {
+                for (name, side) in [("input_delays_s", "inputs"), ("output_delays_s", "outputs")] {
+                    if let Some(Tree::Object(ByName(delays))) = row.get("delays_s").and_then(|delays| delays.get(side))
+                    {
+                        let delays = delays.iter().map(|(_, delay)| delay.clone()).collect();
+                        row.set(name, Tree::List(delays));
+                    }
+                }
+            }
+        }
+    }
+    let Value::Struct(mut records) = LAYOUT.value("", &tree) else { return LAYOUT.value("", &tree) };
+    for (side, channels) in [("input", dataset.inputs()), ("output", dataset.outputs())] {
+        let of = |part: fn(&Channel) -> &String| cell_of_texts(channels.iter().map(|channel| part(channel).clone()));
+        records.fields.push((format!("{side}s"), vec![of(|channel| &channel.name)]));
+        records.fields.push((format!("{side}_units"), vec![of(|channel| &channel.unit)]));
+    }
+    Value::Struct(records)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use gdcm_core::dataset::{BundleKind, ModelId};
+    use gdcm_core::schedule::SecondVariable;
+    use gdcm_core::study::{Edit, Engine, PhaseCorrection, Study, Unobserved, setting};
+
+    use super::*;
+    use crate::embedded_example;
+
+    /// The paths of everything that JSON holds, without places in lists and names of channels and models.
+    fn json_paths(json: &serde_json::Value, path: &str, found: &mut BTreeSet<String>) {
+        match json {
+            serde_json::Value::Array(list) => list.iter().for_each(|entry| json_paths(entry, path, found)),
+            serde_json::Value::Object(members) => {
+                for (name, value) in members {
+                    let is_name = ["inputs", "outputs", "discontinuity"].iter().any(|by| path.ends_with(by));
+                    json_paths(value, &if is_name { path.to_owned() } else { format!("{path}.{name}") }, found);
+                }
+            }
+            _ => {
+                found.insert(path.to_owned());
+            }
+        }
+    }
+
+    fn struct_paths(value: &Value, path: &str, found: &mut BTreeSet<String>) {
+        found.insert(path.to_owned());
+        match value {
+            Value::Struct(records) => {
+                for (name, values) in &records.fields {
+                    values.iter().for_each(|value| struct_paths(value, &format!("{path}.{name}"), found));
+                }
+            }
+            Value::Cell(cell) => cell.values.iter().for_each(|value| struct_paths(value, path, found)),
+            _ => {}
+        }
+    }
+
+    #[test]
+    fn the_struct_of_matlab_has_every_field_of_the_json() {
+        let model = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
+        let mut altitude = Study::new(embedded_example().unwrap().dataset);
+        altitude.settings.schedule.second = Some(SecondVariable::Altitude);
+        altitude.apply(&Edit::RejectBecause { model, reason: "trimmed badly".to_owned() }).unwrap();
+        let mut leads = Study::new(embedded_example().unwrap().dataset);
+        leads.apply(&setting::PHASE.to(PhaseCorrection::Lead)).unwrap();
+        let mut engine = Engine::default();
+        let (mut of_json, mut of_matlab) = (BTreeSet::new(), BTreeSet::new());
+        for study in [altitude, leads] {
+            let mut analysis = engine.analyze(&study, &Unobserved).unwrap();
+            analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &Unobserved).unwrap()));
+            let corrections = Corrections::of(&analysis, "ba78", &all(&analysis));
+            json_paths(&serde_json::to_value(&corrections).unwrap(), "", &mut of_json);
+            struct_paths(&corrections_struct(&corrections, &study.dataset), "", &mut of_matlab);
+        }
+        let of_json = of_json.iter().map(|path| path.replace(".net_gains.", ".net_gain_table."));
+        let missing: Vec<String> = of_json.filter(|path| !of_matlab.contains(path)).collect();
+        assert_eq!(missing, [""; 0]);
+        for path in [".schedule.second_variable.inputs", ".conditions.reasons.why", ".conditions.bars.G.interval"] {
+            assert!(of_matlab.contains(path), "{path} of {of_matlab:?}");
+        }
+    }
+}

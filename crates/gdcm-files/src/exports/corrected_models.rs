@@ -1,0 +1,379 @@
+//! Corrected models of the conditions as matrices, with the names of their states: for MATLAB, for `NumPy`, and as `gdcm-models`.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use nalgebra::DMatrix;
+
+use gdcm_core::assembly::{ChannelLabel, Facts, FoundModel};
+use gdcm_core::correction::{ChannelCorrection, CorrectedModel};
+use gdcm_core::dataset::{
+    BundleKind, Channel, Condition, ConditionId, Dataset, Dynamics, Model, ModelDraft, Origin, StateSpace,
+};
+use gdcm_core::study::{Analysis, AssessedCorrection, ConditionAnalysis};
+use gdcm_core::units::{number, telling};
+
+use super::matlab_struct::{Fields, cell_of_texts, matrix, records, scalar, text};
+use super::{About, Export, ExportFault, ExportRequest, Exported, ExportedRole, Exporter};
+use crate::mat;
+use crate::models_file::write_models;
+use crate::npy::write_npz;
+use crate::variables::{TextArray, Value, Variable};
+
+/// Corrected models, in the format that the end of the file's name says.
+pub(super) struct CorrectedModels;
+
+impl Exporter for CorrectedModels {
+    fn about(&self) -> About {
+        let options = &["--condition", "--model", "--correction", "--pade"];
+        About { name: "state-space", extension: "mat", words: "Corrected models as state-space", options }
+    }
+
+    fn check_path(&self, path: &Path) -> Result<(), ExportFault> {
+        ModelsFormat::of(path).map(drop)
+    }
+
+    fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
+        let models = exported_models(of.analysis, of.request)?;
+        let dataset = &of.analysis.study.dataset;
+        let remarks = models.iter().map(ExportedModel::words).collect();
+        let exported = match ModelsFormat::of(of.path)? {
+            // Packed: the matrices of delayed models are mostly zeros.
+            ModelsFormat::Mat => Exported::bytes(mat::write_packed(&[models_variable(&models, dataset)])?),
+            ModelsFormat::Npz => Exported::bytes(write_npz(&model_arrays(&models, dataset))?),
+            ModelsFormat::Json => {
+                let models = found_models(&models, dataset);
+                Exported::new(move |file| write_models(&models, file))
+            }
+        };
+        Ok(exported.with(remarks))
+    }
+}
+
+/// What corrected models are written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ModelsFormat {
+    Mat,
+    Json,
+    Npz,
+}
+
+impl ModelsFormat {
+    fn of(path: &Path) -> Result<Self, ExportFault> {
+        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default().to_lowercase();
+        match extension.as_str() {
+            "mat" => Ok(Self::Mat),
+            "json" => Ok(Self::Json),
+            "npz" => Ok(Self::Npz),
+            _ => Err(ExportFault::ModelsFormat),
+        }
+    }
+}
+
+/// A corrected model as it is written.
+struct ExportedModel {
+    /// Its condition.
+    condition: ConditionId,
+    /// True airspeed of the condition \[kt\].
+    airspeed_kt: f64,
+    /// Name of the physics model.
+    name: String,
+    /// "scheduled" or "own".
+    correction: &'static str,
+    /// The matrices.
+    model: StateSpace,
+    /// A name for each state.
+    states: Vec<String>,
+    /// How many of them are of delays.
+    delay_states: usize,
+    /// How many of them are of lead filters.
+    lead_states: usize,
+    /// Order of the approximants of its delays; 0 in discrete time, where delays are exact.
+    pade_order: usize,
+    /// Greatest phase error at the top of the band \[deg\].
+    phase_error_deg: f64,
+    /// Top of the band of comparison \[rad/s\].
+    band_top_rad_s: f64,
+}
+
+/// The corrected models that a request asks for, in the dataset's order.
+fn exported_models(analysis: &Analysis, request: &ExportRequest) -> Result<Vec<ExportedModel>, ExportFault> {
+    let dataset = &analysis.study.dataset;
+    if let Some(condition) = request.condition.filter(|&condition| dataset.condition(condition).is_none()) {
+        return Err(ExportFault::NoCondition { condition });
+    }
+    let asked = |condition: &&Arc<Condition>| request.condition.is_none_or(|id| id == condition.id());
+    let conditions = dataset.conditions().iter().filter(asked);
+    conditions.map(|condition| exported_model(analysis, request, condition)).collect()
+}
+
+fn exported_model(
+    analysis: &Analysis,
+    request: &ExportRequest,
+    condition: &Condition,
+) -> Result<ExportedModel, ExportFault> {
+    let id = condition.id();
+    let model = model_of(analysis, &request.role, condition)?;
+    let correction = correction_of(analysis, request.correction, condition)?;
+    let Dynamics::StateSpace(dynamics) = &model.dynamics else {
+        return Err(ExportFault::NoMatrices { condition: id, model: model.name.clone() });
+    };
+    let corrected = CorrectedModel::of(dynamics, &correction, request.pade).map_err(|error| {
+        let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+        let words = error.words(&inputs, &outputs);
+        ExportFault::Model { condition: id, model: model.name.clone(), words }
+    })?;
+    let band_top_rad_s = analysis.study.settings.band.max();
+    let is_sampled = dynamics.timing().sample_time_s.is_some();
+    Ok(ExportedModel {
+        condition: id,
+        airspeed_kt: condition.flight_state().airspeed_kt,
+        name: model.name.clone(),
+        correction: match request.correction {
+            AssessedCorrection::Scheduled => "scheduled",
+            AssessedCorrection::ScheduledWithoutLeads => "scheduled, without leads,",
+            AssessedCorrection::ScheduleOfOthers => "of the other conditions",
+            AssessedCorrection::Own => "own",
+        },
+        states: state_names(analysis, model, &corrected),
+        delay_states: corrected.input_states.iter().chain(&corrected.output_states).sum(),
+        lead_states: corrected.input_lead_states.iter().chain(&corrected.output_lead_states).sum(),
+        pade_order: if is_sampled { 0 } else { request.pade.order() },
+        phase_error_deg: corrected.phase_error(band_top_rad_s).to_degrees(),
+        band_top_rad_s,
+        model: corrected.model,
+    })
+}
+
+fn model_of<'c>(analysis: &Analysis, role: &ExportedRole, condition: &'c Condition) -> Result<&'c Model, ExportFault> {
+    let bundle = condition.bundle(BundleKind::Physics);
+    let name = match role {
+        ExportedRole::Nominal => return Ok(&bundle[condition.nominal()]),
+        ExportedRole::Representative => result_of(analysis, condition)?.representative_name(BundleKind::Physics),
+        ExportedRole::Named(name) => name,
+    };
+    let missing = || ExportFault::NoModel { condition: condition.id(), model: name.to_owned() };
+    condition.model(BundleKind::Physics, name).ok_or_else(missing)
+}
+
+fn correction_of(
+    analysis: &Analysis,
+    which: AssessedCorrection,
+    condition: &Condition,
+) -> Result<ChannelCorrection, ExportFault> {
+    match which {
+        AssessedCorrection::Own => Ok(result_of(analysis, condition)?.correction.clone()),
+        AssessedCorrection::Scheduled | AssessedCorrection::ScheduledWithoutLeads => {
+            let schedule = analysis.schedule.as_ref().map_err(|error| ExportFault::Schedule(*error))?;
+            let correction = schedule.at_state(condition.flight_state());
+            Ok(if which == AssessedCorrection::Scheduled { correction } else { correction.without_leads() })
+        }
+        AssessedCorrection::ScheduleOfOthers => {
+            let schedule = analysis.schedule_without(condition.id()).map_err(ExportFault::Schedule)?;
+            Ok(schedule.at_state(condition.flight_state()))
+        }
+    }
+}
+
+fn result_of<'a>(analysis: &'a Analysis, condition: &Condition) -> Result<&'a ConditionAnalysis, ExportFault> {
+    let without = |why: String| ExportFault::NoResult { condition: condition.id(), why };
+    match analysis.conditions.get(&condition.id()) {
+        Some(Ok(result)) => Ok(result),
+        Some(Err(failure)) => Err(without(failure.to_string())),
+        None => Err(without("it has no result".to_owned())),
+    }
+}
+
+/// "LON lead 1" and "LON delay 1" of the inputs, the model's own names, "Q delay 1" and "Q lead 1" of the outputs.
+fn state_names(analysis: &Analysis, model: &Model, corrected: &CorrectedModel) -> Vec<String> {
+    let dataset = &analysis.study.dataset;
+    let of_channels = |channels: &[Channel], what: &str, counts: &[usize]| -> Vec<String> {
+        let of = |(channel, &count): (&Channel, &usize)| {
+            let name = channel.name.clone();
+            (1..=count).map(move |place| format!("{name} {what} {place}")).collect::<Vec<_>>()
+        };
+        channels.iter().zip(counts).flat_map(of).collect()
+    };
+    let mut names = of_channels(dataset.inputs(), "lead", &corrected.input_lead_states);
+    names.extend(of_channels(dataset.inputs(), "delay", &corrected.input_states));
+    let mut last = of_channels(dataset.outputs(), "delay", &corrected.output_states);
+    last.extend(of_channels(dataset.outputs(), "lead", &corrected.output_lead_states));
+    let own = corrected.model.order() - names.len() - last.len();
+    names.extend((0..own).map(|state| model.state_name(state)));
+    names.extend(last);
+    names
+}
+
+impl ExportedModel {
+    /// What it is and how exact, in one line.
+    fn words(&self) -> String {
+        let Self { condition, name, correction, .. } = self;
+        format!("condition {condition}, model {name}, {correction} correction: {}", self.delay_words())
+    }
+
+    /// How exact its delays are.
+    fn delay_words(&self) -> String {
+        if self.pade_order == 0 && self.lead_states > 0 {
+            return format!(
+                "gains and delays exact, lead filters by Tustin's rule, phase error up to {} deg at {} rad/s",
+                telling(self.phase_error_deg, 3),
+                number(self.band_top_rad_s)
+            );
+        }
+        if self.lead_states > 0 && self.delay_states == 0 {
+            return "gains and lead filters exact".to_owned();
+        }
+        if self.pade_order == 0 || self.delay_states == 0 {
+            return "gains and delays exact".to_owned();
+        }
+        format!(
+            "{} exact, delays by Pade approximants of order {}, phase error up to {} deg at {} rad/s",
+            if self.lead_states > 0 { "gains and lead filters" } else { "gains" },
+            self.pade_order,
+            telling(self.phase_error_deg, 3),
+            number(self.band_top_rad_s)
+        )
+    }
+}
+
+/// The models under the names "condition 10, nominal"; their notes say what was done to them and how exact it is.
+fn found_models(models: &[ExportedModel], dataset: &Dataset) -> Vec<FoundModel> {
+    let labels = |channels: &[Channel]| -> Vec<ChannelLabel> {
+        let label =
+            |channel: &Channel| ChannelLabel { name: Some(channel.name.clone()), unit: Some(channel.unit.clone()) };
+        channels.iter().map(label).collect()
+    };
+    let found = |model: &ExportedModel| FoundModel {
+        draft: ModelDraft {
+            name: format!("condition {}, {}", model.condition, model.name),
+            origin: Origin::Perturbed { perturbation: None },
+            matrices: [model.model.a(), model.model.b(), model.model.c(), model.model.d()].map(|of| Some(of.clone())),
+            timing: model.model.timing().clone(),
+            response: None,
+            source: None,
+            states: model.states.clone(),
+            bands: None,
+        },
+        inputs: labels(dataset.inputs()),
+        outputs: labels(dataset.outputs()),
+        facts: Facts { condition: Some(model.condition.0), airspeed_kt: Some(model.airspeed_kt), ..Facts::default() },
+        notes: vec![model.words()],
+    };
+    models.iter().map(found).collect()
+}
+
+/// The variable `models`: one record for each model, with the properties of MATLAB's `ss`: `ss(m.A, m.B, m.C, m.D, m.Ts)`.
+fn models_variable(models: &[ExportedModel], dataset: &Dataset) -> Variable {
+    let names = |channels: &[Channel]| cell_of_texts(channels.iter().map(|channel| channel.name.clone()));
+    let units = |channels: &[Channel]| cell_of_texts(channels.iter().map(|channel| channel.unit.clone()));
+    let record = |model: &ExportedModel| {
+        let mut fields = Fields::default();
+        for (name, values) in matrices(model) {
+            fields.add(name, array(values));
+        }
+        fields.add("InputName", names(dataset.inputs()));
+        fields.add("OutputName", names(dataset.outputs()));
+        fields.add("InputUnit", units(dataset.inputs()));
+        fields.add("OutputUnit", units(dataset.outputs()));
+        fields.add("StateName", cell_of_texts(model.states.iter().cloned()));
+        for (name, metric) in METRICS {
+            fields.add(name, scalar(metric(model)));
+        }
+        fields.add("model", text(&model.name));
+        fields.add("correction", text(model.correction));
+        fields
+    };
+    Variable { name: "models".to_owned(), value: records(models.iter().map(record).collect()) }
+}
+
+/// A metric of a model, and its name.
+type Metric = (&'static str, fn(&ExportedModel) -> f64);
+
+const METRICS: [Metric; 6] = [
+    ("Ts", sample_time_s),
+    ("condition", |model| model.condition.0 as f64),
+    ("airspeed_kt", |model| model.airspeed_kt),
+    ("pade_order", |model| model.pade_order as f64),
+    ("phase_error_deg", |model| model.phase_error_deg),
+    ("band_top_rad_s", |model| model.band_top_rad_s),
+];
+
+/// The same as arrays, which is all that `NumPy` has: of model 0 `A_0`, `B_0`, `C_0`, `D_0` and `StateName_0`; one entry for each model in
+/// the others.
+fn model_arrays(models: &[ExportedModel], dataset: &Dataset) -> Vec<Variable> {
+    let variable = |name: String, value: Value| Variable { name, value };
+    let mut variables = Vec::new();
+    for (place, model) in models.iter().enumerate() {
+        let named = matrices(model).map(|(name, values)| variable(format!("{name}_{place}"), array(values)));
+        variables.extend(named);
+        variables.push(variable(format!("StateName_{place}"), row_of_texts(model.states.iter())));
+    }
+    for (name, channels) in [("Input", dataset.inputs()), ("Output", dataset.outputs())] {
+        let names = row_of_texts(channels.iter().map(|channel| &channel.name));
+        let units = row_of_texts(channels.iter().map(|channel| &channel.unit));
+        variables.extend([variable(format!("{name}Name"), names), variable(format!("{name}Unit"), units)]);
+    }
+    for (name, metric) in METRICS {
+        let values = models.iter().map(metric).collect();
+        variables.push(variable(name.to_owned(), matrix(1, models.len(), values)));
+    }
+    variables.push(variable("model".to_owned(), row_of_texts(models.iter().map(|model| &model.name))));
+    let corrections = models.iter().map(|model| model.correction);
+    variables.push(variable("correction".to_owned(), row_of_texts(corrections)));
+    variables
+}
+
+/// MATLAB's `Ts` \[s\]: 0 in continuous time.
+fn sample_time_s(model: &ExportedModel) -> f64 {
+    model.model.timing().sample_time_s.unwrap_or(0.0)
+}
+
+fn matrices(model: &ExportedModel) -> [(&'static str, &DMatrix<f64>); 4] {
+    let of = &model.model;
+    [("A", of.a()), ("B", of.b()), ("C", of.c()), ("D", of.d())]
+}
+
+fn array(values: &DMatrix<f64>) -> Value {
+    // Both run column by column.
+    matrix(values.nrows(), values.ncols(), values.as_slice().to_vec())
+}
+
+fn row_of_texts<T: ToString>(texts: impl Iterator<Item = T>) -> Value {
+    let texts: Vec<String> = texts.map(|text| text.to_string()).collect();
+    Value::Text(TextArray { shape: vec![1, texts.len()], texts })
+}
+
+#[cfg(test)]
+mod tests {
+    use gdcm_core::study::{Engine, Study, Unobserved};
+
+    use super::*;
+    use crate::embedded_example;
+    use crate::variables::MemoryBudget;
+    use crate::zip_files::read_npz;
+
+    #[test]
+    fn numpy_and_matlab_get_the_same_matrices_and_names() {
+        let study = Study::new(embedded_example().unwrap().dataset);
+        let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
+        let models = exported_models(&analysis, &ExportRequest::default()).unwrap();
+        let meter = MemoryBudget::new(1 << 28, &|_| false);
+        let arrays = read_npz(&write_npz(&model_arrays(&models, &study.dataset)).unwrap(), &meter).unwrap();
+        let bytes = mat::write_packed(&[models_variable(&models, &study.dataset)]).unwrap();
+        let [Variable { value: Value::Struct(records), .. }] = &mat::read(&bytes, &meter).unwrap()[..] else {
+            panic!("one struct array")
+        };
+        for (place, model) in models.iter().enumerate() {
+            for name in ["A", "B", "C", "D"] {
+                let found = arrays.iter().find(|array| array.name == format!("{name}_{place}")).unwrap();
+                assert_eq!(found.value, records.field(name).unwrap()[place], "{name} of model {place}");
+            }
+            assert_eq!(records.field("A").unwrap()[place], array(model.model.a()));
+            let names = arrays.iter().find(|array| array.name == format!("StateName_{place}")).unwrap();
+            assert_eq!(names.value, row_of_texts(model.states.iter()));
+        }
+        let airspeeds = arrays.iter().find(|array| array.name == "airspeed_kt").unwrap();
+        let values = models.iter().map(|model| model.airspeed_kt).collect();
+        assert_eq!(airspeeds.value, matrix(1, models.len(), values));
+    }
+}

@@ -1,0 +1,375 @@
+//! Anything that serde serializes as values of MATLAB: one schema for JSON and for `.mat`.
+
+use serde::{Deserialize, Serialize};
+
+use crate::corrections_file::ByName;
+use crate::variables::{Array, CellArray, ElementKind, StructArray, TextArray, Value};
+
+/// Longest name that MATLAB takes (`namelengthmax`).
+pub(super) const LONGEST_NAME: usize = 63;
+
+/// What serde serializes, as JSON holds it, with the members of objects in their order.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged)]
+pub(super) enum Tree {
+    Null(()),
+    Truth(bool),
+    Number(f64),
+    Text(String),
+    List(Vec<Tree>),
+    Object(ByName<Tree>),
+}
+
+static NULL: Tree = Tree::Null(());
+
+/// Which members are not simply lists and objects.
+pub(super) struct Layout {
+    /// Objects with a member for each channel: arrays in the order of the channels.
+    pub(super) by_channel: &'static [&'static str],
+    /// Objects whose members have names that MATLAB does not take: structs of `name` and `value`.
+    pub(super) by_name: &'static [&'static str],
+    /// Lists of objects that become one struct of columns in place of an array of structs.
+    pub(super) columns: &'static [&'static str],
+}
+
+impl Tree {
+    /// The tree of anything that serde serializes.
+    pub(super) fn of(data: &impl Serialize) -> serde_json::Result<Self> {
+        serde_json::from_str(&serde_json::to_string(data)?)
+    }
+
+    /// A member of an object.
+    pub(super) fn get(&self, name: &str) -> Option<&Self> {
+        let Self::Object(members) = self else { return None };
+        members.get(name)
+    }
+
+    /// The same, to be changed.
+    pub(super) fn get_mut(&mut self, name: &str) -> Option<&mut Self> {
+        let Self::Object(ByName(members)) = self else { return None };
+        members.iter_mut().find(|(named, _)| named == name).map(|(_, member)| member)
+    }
+
+    /// Adds a member to an object, or replaces it.
+    pub(super) fn set(&mut self, name: &str, value: Self) {
+        match self.get_mut(name) {
+            Some(member) => *member = value,
+            None => {
+                if let Self::Object(ByName(members)) = self {
+                    members.push((name.to_owned(), value));
+                }
+            }
+        }
+    }
+
+    /// The entries of a list, to be changed.
+    pub(super) fn entries_mut(&mut self) -> &mut [Self] {
+        match self {
+            Self::List(entries) => entries,
+            _ => &mut [],
+        }
+    }
+
+    /// The member at a place of an object; null where there is none.
+    fn member_at(&self, place: usize) -> &Self {
+        match self {
+            Self::Object(ByName(members)) => members.get(place).map_or(&NULL, |(_, member)| member),
+            _ => &NULL,
+        }
+    }
+
+    fn is_object(&self) -> bool {
+        matches!(self, Self::Object(_))
+    }
+
+    fn is_number(&self) -> bool {
+        matches!(self, Self::Number(_) | Self::Null(()))
+    }
+
+    fn number(&self) -> f64 {
+        if let Self::Number(number) = self { *number } else { f64::NAN }
+    }
+}
+
+impl Layout {
+    /// The value of a tree: objects are structs, lists of objects arrays of structs, rectangular lists of numbers matrices, lists of
+    /// texts columns of cells; what is null is NaN.
+    pub(super) fn value(&self, name: &str, tree: &Tree) -> Value {
+        match tree {
+            Tree::Null(()) => scalar(f64::NAN),
+            Tree::Truth(flag) => truth(*flag),
+            Tree::Number(number) => scalar(*number),
+            Tree::Text(words) => text(words),
+            Tree::List(entries) => self.list(name, entries),
+            Tree::Object(ByName(members)) if self.by_channel.contains(&name) => {
+                self.gathered(&[members.len()], members.iter().map(|(_, member)| member).collect())
+            }
+            Tree::Object(ByName(members)) if self.by_name.contains(&name) => {
+                let mut fields = Fields::default();
+                fields.add("name", cell_of_texts(members.iter().map(|(name, _)| name.clone())));
+                let values = members.iter().map(|(_, member)| member).collect();
+                fields.add("value", self.gathered(&[members.len()], values));
+                fields.record()
+            }
+            Tree::Object(_) => self.records(&[tree]),
+        }
+    }
+
+    fn list(&self, name: &str, entries: &[Tree]) -> Value {
+        if entries.is_empty() {
+            return Value::Cell(CellArray { shape: vec![0, 1], values: Vec::new() });
+        }
+        let all = |fits: fn(&Tree) -> bool| entries.iter().all(fits);
+        if all(|entry| entry.is_object()) {
+            let entries: Vec<&Tree> = entries.iter().collect();
+            return match self.columns.contains(&name) {
+                true => self.gathered(&[entries.len()], entries),
+                false => self.records(&entries),
+            };
+        }
+        if all(Tree::is_number) {
+            return row(entries.iter().map(Tree::number));
+        }
+        let rows: Option<Vec<&[Tree]>> =
+            entries.iter().map(|entry| if let Tree::List(row) = entry { Some(row.as_slice()) } else { None }).collect();
+        match rows.as_deref() {
+            Some([first, rest @ ..]) if rest.iter().all(|row| row.len() == first.len()) => {
+                let leaves = rows.iter().flatten().copied().flatten().collect();
+                self.gathered(&[entries.len(), first.len()], leaves)
+            }
+            _ => self.gathered(&[entries.len()], entries.iter().collect()),
+        }
+    }
+
+    /// A row of structs that all have the same fields; what one lacks is empty there.
+    fn records(&self, objects: &[&Tree]) -> Value {
+        let of = |name: &str| {
+            let values = objects.iter().map(|object| object.get(name));
+            values
+                .map(|value| value.map_or_else(|| matrix(0, 0, Vec::new()), |value| self.value(name, value)))
+                .collect()
+        };
+        let fields = names_of(objects).into_iter().map(|name| (valid_name(name), of(name))).collect();
+        Value::Struct(StructArray { shape: vec![1, objects.len()], fields })
+    }
+
+    /// Leaves of an array of this shape, its last index running fastest: of objects a struct of arrays, of numbers an array.
+    fn gathered(&self, shape: &[usize], leaves: Vec<&Tree>) -> Value {
+        if leaves.iter().any(|leaf| leaf.is_object()) {
+            let mut fields = Fields::default();
+            for name in names_of(&leaves) {
+                let values: Vec<&Tree> = leaves.iter().map(|leaf| leaf.get(name).unwrap_or(&NULL)).collect();
+                let lengths = values
+                    .iter()
+                    .filter_map(|value| if let Tree::Object(of) = value { Some(of.0.len()) } else { None });
+                let value = match lengths.max().filter(|_| self.by_channel.contains(&name)) {
+                    Some(length) => {
+                        let members = values.iter().flat_map(|value| (0..length).map(|at| value.member_at(at)));
+                        self.gathered(&[shape, &[length]].concat(), members.collect())
+                    }
+                    None => self.gathered(shape, values),
+                };
+                fields.add(&valid_name(name), value);
+            }
+            return fields.record();
+        }
+        if leaves.iter().all(|leaf| leaf.is_number()) {
+            return array(shape, leaves.iter().map(|leaf| leaf.number()).collect(), ElementKind::Float);
+        }
+        if let Some(flags) = leaves
+            .iter()
+            .map(|leaf| if let Tree::Truth(flag) = leaf { Some(*flag) } else { None })
+            .collect::<Option<Vec<_>>>()
+        {
+            return array(
+                shape,
+                flags.into_iter().map(|flag| f64::from(u8::from(flag))).collect(),
+                ElementKind::Logical,
+            );
+        }
+        let length = leaves.iter().find_map(|leaf| if let Tree::List(list) = leaf { Some(list.len()) } else { None });
+        let is_row = |leaf: &&Tree| match leaf {
+            Tree::List(list) => Some(list.len()) == length && list.iter().all(Tree::is_number),
+            leaf => matches!(leaf, Tree::Null(())),
+        };
+        if let Some(length) = length.filter(|&length| length > 0 && leaves.iter().all(is_row)) {
+            let numbers = leaves.iter().flat_map(|leaf| match leaf {
+                Tree::List(list) => list.iter().map(Tree::number).collect(),
+                _ => vec![f64::NAN; length],
+            });
+            return array(&[shape, &[length]].concat(), numbers.collect(), ElementKind::Float);
+        }
+        let values = leaves.iter().map(|leaf| match leaf {
+            Tree::Null(()) => matrix(0, 0, Vec::new()),
+            leaf => self.value("", leaf),
+        });
+        let shape = sides(shape);
+        Value::Cell(CellArray { values: first_index_fastest(&shape, values.collect()), shape })
+    }
+}
+
+/// The names of the members of all objects, each once, in the order in which they are met.
+fn names_of<'t>(objects: &[&'t Tree]) -> Vec<&'t str> {
+    let mut names: Vec<&str> = Vec::new();
+    for object in objects {
+        if let Tree::Object(ByName(members)) = object {
+            for (name, _) in members {
+                if !names.contains(&name.as_str()) {
+                    names.push(name);
+                }
+            }
+        }
+    }
+    names
+}
+
+/// A name that MATLAB takes for a field: a letter, then letters, digits and _.
+fn valid_name(name: &str) -> String {
+    let letters = name.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '_' });
+    let first = if name.starts_with(|first: char| first.is_ascii_alphabetic()) { "" } else { "x" };
+    first.chars().chain(letters).take(LONGEST_NAME).collect()
+}
+
+/// At least two sides; a list stands as a column.
+fn sides(shape: &[usize]) -> Vec<usize> {
+    if let [length] = shape { vec![*length, 1] } else { shape.to_vec() }
+}
+
+fn array(shape: &[usize], numbers: Vec<f64>, kind: ElementKind) -> Value {
+    let shape = sides(shape);
+    Value::Array(Array { re: first_index_fastest(&shape, numbers), kind, im: None, shape })
+}
+
+/// Entries of an array from the last index running fastest to the first one running fastest.
+fn first_index_fastest<T>(shape: &[usize], entries: Vec<T>) -> Vec<T> {
+    let mut placed: Vec<(usize, T)> = entries
+        .into_iter()
+        .enumerate()
+        .map(|(place, entry)| {
+            let (mut rest, mut indices) = (place, Vec::with_capacity(shape.len()));
+            for side in shape.iter().rev() {
+                indices.push(rest % side);
+                rest /= side;
+            }
+            let place = indices.iter().zip(shape.iter().rev()).fold(0, |place, (index, side)| place * side + index);
+            (place, entry)
+        })
+        .collect();
+    placed.sort_by_key(|(place, _)| *place);
+    placed.into_iter().map(|(_, entry)| entry).collect()
+}
+
+/// The fields of a record, in their order.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Fields {
+    fields: Vec<(String, Value)>,
+}
+
+impl Fields {
+    /// Adds a field. Names are ours: letters, digits and _.
+    pub(super) fn add(&mut self, name: &str, value: Value) {
+        self.fields.push((name.to_owned(), value));
+    }
+
+    /// One record.
+    pub(super) fn record(self) -> Value {
+        records(vec![self])
+    }
+}
+
+/// A row of records that all have the same fields.
+pub(super) fn records(records: Vec<Fields>) -> Value {
+    let shape = vec![1, records.len()];
+    let mut fields: Vec<(String, Vec<Value>)> = Vec::new();
+    for record in records {
+        for (place, (name, value)) in record.fields.into_iter().enumerate() {
+            match fields.get_mut(place) {
+                Some((_, values)) => values.push(value),
+                None => fields.push((name, vec![value])),
+            }
+        }
+    }
+    Value::Struct(StructArray { shape, fields })
+}
+
+/// A text.
+pub(super) fn text(text: impl Into<String>) -> Value {
+    Value::Text(TextArray { shape: vec![1, 1], texts: vec![text.into()] })
+}
+
+/// Texts below one another, each in a cell.
+pub(super) fn cell_of_texts(texts: impl IntoIterator<Item = String>) -> Value {
+    let values: Vec<Value> = texts.into_iter().map(text).collect();
+    Value::Cell(CellArray { shape: vec![values.len(), 1], values })
+}
+
+/// A number.
+pub(super) fn scalar(value: f64) -> Value {
+    matrix(1, 1, vec![value])
+}
+
+/// Numbers beside one another.
+pub(super) fn row(values: impl IntoIterator<Item = f64>) -> Value {
+    let values: Vec<f64> = values.into_iter().collect();
+    matrix(1, values.len(), values)
+}
+
+/// Numbers below one another.
+pub(super) fn column(values: impl IntoIterator<Item = f64>) -> Value {
+    let values: Vec<f64> = values.into_iter().collect();
+    matrix(values.len(), 1, values)
+}
+
+/// A matrix, given column by column.
+pub(super) fn matrix(rows: usize, columns: usize, values: Vec<f64>) -> Value {
+    Value::Array(Array::matrix(rows, columns, values))
+}
+
+fn truth(value: bool) -> Value {
+    Value::Array(Array { kind: ElementKind::Logical, ..Array::matrix(1, 1, vec![f64::from(u8::from(value))]) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAYOUT: Layout = Layout { by_channel: &["inputs"], by_name: &["ratios"], columns: &["table"] };
+
+    fn field(json: &str, path: &[&str]) -> Value {
+        let tree: Tree = serde_json::from_str(json).unwrap();
+        path.iter().fold(LAYOUT.value("", &tree), |value, name| {
+            let Value::Struct(records) = value else { panic!("{name} of {value:?}") };
+            records.field(name).unwrap()[0].clone()
+        })
+    }
+
+    #[test]
+    fn tables_are_matrices_and_what_is_null_is_nan() {
+        let Value::Array(table) = field("{\"G\": [[1, 2, 3], [4, null, 6]]}", &["G"]) else { panic!("an array") };
+        assert_eq!((table.shape, &table.re[..3]), (vec![2, 3], &[1.0, 4.0, 2.0][..]));
+        assert!(table.re[3].is_nan());
+        assert_eq!(field("{\"band\": [1, 2]}", &["band"]), row([1.0, 2.0]));
+    }
+
+    #[test]
+    fn objects_by_channel_are_arrays_in_their_order() {
+        let json = "{\"inputs\": {\"Z\": {\"u\": 1, \"ends\": [1, 2]}, \"A\": {\"u\": 2, \"ends\": null}}}";
+        assert_eq!(field(json, &["inputs", "u"]), column([1.0, 2.0]));
+        let Value::Array(ends) = field(json, &["inputs", "ends"]) else { panic!("an array") };
+        assert_eq!((ends.shape, &ends.re[..1], ends.re[2]), (vec![2, 2], &[1.0][..], 2.0));
+        let rows = "{\"table\": [{\"inputs\": {\"Z\": 1, \"A\": 2}}, {\"inputs\": {\"Z\": 3, \"A\": 4}}]}";
+        assert_eq!(field(rows, &["table", "inputs"]), matrix(2, 2, vec![1.0, 3.0, 2.0, 4.0]));
+    }
+
+    #[test]
+    fn records_that_lack_a_field_have_it_empty_and_names_are_valid() {
+        let json = "{\"of\": [{\"a\": true}, {\"2 b\": [[\"P\", \"LAT\"], [\"Q\", \"LON\"]]}]}";
+        let Value::Struct(of) = field(json, &["of"]) else { panic!("structs") };
+        assert_eq!(of.shape, [1, 2]);
+        assert_eq!(of.field("a").unwrap(), [truth(true), matrix(0, 0, Vec::new())]);
+        let Value::Cell(pairs) = &of.field("x2_b").unwrap()[1] else { panic!("cells") };
+        assert_eq!((&pairs.shape, &pairs.values[1]), (&vec![2, 2], &text("Q")));
+        let names = field("{\"ratios\": {\"V+5kt\": 1, \"V-5kt\": 2}}", &["ratios", "name"]);
+        assert_eq!(names, cell_of_texts(["V+5kt", "V-5kt"].map(str::to_owned)));
+    }
+}

@@ -1,0 +1,238 @@
+//! Exported programs, run by their interpreters and compilers, against the schedule itself.
+
+use std::process::Command;
+
+use gdcm_core::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity, SecondVariable};
+use gdcm_core::study::{Analysis, Edit, Engine, PhaseCorrection, Study, Unobserved, setting};
+
+use super::ExportSource;
+use super::c_header::c_header;
+use super::lookup_table::table_csv;
+use super::matlab_function::matlab_function;
+use super::python_module::python_module;
+use super::scheduled_correction::ScheduledCorrection;
+use crate::embedded_example;
+
+/// The example under every form of the schedule: kind, quantity, delays.
+fn analyses() -> Vec<(String, Analysis)> {
+    let mut engine = Engine::default();
+    let kinds = [ScheduleKind::Polynomial { degree: 2 }, ScheduleKind::Table];
+    let mut analyses = Vec::new();
+    for kind in kinds {
+        for quantity in [ScheduledQuantity::LnGain, ScheduledQuantity::Gain] {
+            for delays in [false, true] {
+                let mut study = Study::new(embedded_example().unwrap().dataset);
+                let schedule = ScheduleSettings { kind, quantity, delays, ..ScheduleSettings::default() };
+                study.settings.schedule = schedule;
+                let analysis = engine.analyze(&study, &Unobserved).unwrap();
+                analyses.push((format!("{kind:?}, {quantity:?}, delays {delays}"), analysis));
+            }
+        }
+    }
+    // Leads, of one signed delay for all airspeeds and of one that follows them.
+    for tau_degree in [0, 2] {
+        let mut study = Study::new(embedded_example().unwrap().dataset);
+        let schedule = ScheduleSettings { tau_degree, ..ScheduleSettings::default() };
+        study.apply(&setting::PHASE.to(PhaseCorrection::Lead)).unwrap();
+        study.settings.schedule = schedule;
+        let analysis = engine.analyze(&study, &Unobserved).unwrap();
+        analyses.push((format!("leads of degree {tau_degree}"), analysis));
+    }
+    // One airspeed: the range is none.
+    let mut study = Study::new(embedded_example().unwrap().dataset);
+    let conditions = study.dataset.clone();
+    let at = conditions.conditions()[3].flight_state().airspeed_kt;
+    for condition in conditions.conditions().iter().filter(|other| other.flight_state().airspeed_kt != at) {
+        study.apply(&Edit::SetScheduled { condition: condition.id(), scheduled: false }).unwrap();
+    }
+    analyses.push(("one airspeed".to_owned(), engine.analyze(&study, &Unobserved).unwrap()));
+    analyses
+}
+
+fn correction(analysis: &Analysis) -> ScheduledCorrection {
+    let source = ExportSource { name: "example".to_owned(), sha256: "ba78".to_owned() };
+    ScheduledCorrection::of(analysis.schedule.as_ref().unwrap(), &analysis.study.dataset, &source)
+}
+
+/// Fifty airspeeds \[kt\], from below the range of the example to above it, with both its ends.
+fn airspeeds() -> Vec<f64> {
+    (0..48).map(|index| 31.0 + f64::from(index) * 2.5).chain([45.0, 140.0]).collect()
+}
+
+/// What the program itself says, in the order in which the programs print.
+fn expected(analysis: &Analysis) -> Vec<f64> {
+    let schedule = analysis.schedule.as_ref().unwrap();
+    let values = |airspeed: f64| {
+        let at = schedule.at(airspeed);
+        [at.input_gains, at.output_gains, at.input_delays_s, at.output_delays_s].concat()
+    };
+    airspeeds().into_iter().flat_map(values).collect()
+}
+
+fn assert_same(words: &str, found: &[f64], expected: &[f64]) {
+    assert_eq!(found.len(), expected.len(), "{words}");
+    for (index, (a, b)) in found.iter().zip(expected).enumerate() {
+        // A delay that crosses zero is cut there: beside it, less than a femtosecond is nothing.
+        assert!((a - b).abs() <= 1e-12 * b.abs() + 1e-16, "{words}, value {index}: {a} instead of {b}");
+    }
+}
+
+/// Runs a program and compares what it prints; says so where it is not there.
+fn assert_run(words: &str, program: &str, arguments: &[&str], folder: &std::path::Path, expected: &[f64]) {
+    let output = Command::new(program).args(arguments).current_dir(folder).output().unwrap();
+    assert!(output.status.success(), "{words}: {}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let found: Vec<f64> = text.split_whitespace().map(|word| word.parse().unwrap()).collect();
+    assert_same(&format!("{program}, {words}"), &found, expected);
+}
+
+fn is_there(program: &str) -> bool {
+    let found = Command::new(program).arg("--version").output().is_ok();
+    if !found {
+        eprintln!("SKIPPED: {program} is not installed, its programs are not run against the schedule");
+    }
+    found
+}
+
+fn listed() -> String {
+    airspeeds().iter().map(|kt| format!("{kt:?}")).collect::<Vec<_>>().join(", ")
+}
+
+#[test]
+fn the_correction_is_the_schedule() {
+    for (words, analysis) in analyses() {
+        let correction = correction(&analysis);
+        let of = |airspeed: f64| {
+            let at = correction.clamp(airspeed);
+            let channels: Vec<_> = correction.inputs.iter().chain(&correction.outputs).collect();
+            let gains = channels.iter().map(|channel| channel.gain.at(at));
+            gains.chain(channels.iter().map(|channel| channel.delay_s.at(at))).collect::<Vec<_>>()
+        };
+        let found: Vec<f64> = airspeeds().into_iter().flat_map(of).collect();
+        assert_same(&words, &found, &expected(&analysis));
+        let says_zero = correction.notes.iter().any(|note| note.contains("delays are not scheduled"));
+        let settings = &analysis.study.settings;
+        let has_delays = settings.schedule.delays || settings.phase == PhaseCorrection::Lead;
+        assert_eq!(says_zero, !has_delays, "{words}");
+    }
+}
+
+#[test]
+fn a_module_of_python_gives_the_programs_own_numbers() {
+    if !is_there("python3") {
+        return;
+    }
+    for (words, analysis) in analyses() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("c.py"), python_module(&correction(&analysis)).unwrap()).unwrap();
+        let program = format!(
+            "import c\nfor a in [{}]:\n    mi, mo, ti, to = c.gdcm_correction(a)\n    \
+             print(*[repr(m[k][k]) for m in (mi, mo) for k in range(len(m))], *map(repr, ti + to))",
+            listed()
+        );
+        assert_run(&words, "python3", &["-c", &program], folder.path(), &expected(&analysis));
+    }
+}
+
+#[test]
+fn a_header_of_c_gives_the_programs_own_numbers() {
+    if !is_there("cc") {
+        return;
+    }
+    for (words, analysis) in analyses() {
+        let folder = tempfile::tempdir().unwrap();
+        let header = c_header(&correction(&analysis)).unwrap();
+        let main = format!(
+            "{header}\n#include <stdio.h>\nint main(void) {{ static const double s[] = {{{}}};\n\
+             double v[2 * (GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT)]; unsigned k, j;\n\
+             for (k = 0; k < sizeof s / sizeof *s; k++) {{\n\
+             gdcm_correction(s[k], v, v + GDCM_INPUT_COUNT, v + GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT,\n\
+             v + 2 * GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT);\n\
+             for (j = 0; j < sizeof v / sizeof *v; j++) printf(\"%.17g \", v[j]); }}\nreturn 0; }}\n",
+            listed()
+        );
+        std::fs::write(folder.path().join("main.c"), main).unwrap();
+        let flags = ["-std=c99", "-Wall", "-Wextra", "-Wshadow", "-Werror", "-pedantic", "-o", "main", "main.c", "-lm"];
+        let built = Command::new("cc").args(flags).current_dir(&folder).output().unwrap();
+        assert!(built.status.success(), "{words}: {}", String::from_utf8_lossy(&built.stderr));
+        let program = folder.path().join("main").display().to_string();
+        assert_run(&words, &program, &[], folder.path(), &expected(&analysis));
+    }
+}
+
+#[test]
+fn a_function_of_matlab_gives_the_programs_own_numbers() {
+    if !is_there("octave-cli") {
+        return;
+    }
+    for (words, analysis) in analyses() {
+        let folder = tempfile::tempdir().unwrap();
+        let function = matlab_function(&correction(&analysis), "my_study").unwrap();
+        std::fs::write(folder.path().join("my_study.m"), function).unwrap();
+        let program = format!(
+            "for s = [{}], [Mi, Mo, ti, to] = my_study(s); printf('%.17g ', [diag(Mi); diag(Mo); ti; to]); end",
+            listed()
+        );
+        assert_run(&words, "octave-cli", &["--eval", &program], folder.path(), &expected(&analysis));
+    }
+}
+
+/// The example with altitude as its second variable, and what it says at fifty airspeeds and three altitudes.
+fn with_altitude(kind: ScheduleKind) -> (ScheduledCorrection, Vec<f64>) {
+    let mut study = Study::new(embedded_example().unwrap().dataset);
+    let schedule = ScheduleSettings { kind, second: Some(SecondVariable::Altitude), ..ScheduleSettings::default() };
+    study.settings.schedule = schedule;
+    let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
+    let schedule = analysis.schedule.as_ref().unwrap();
+    let values = |airspeed: f64, altitude: f64| {
+        let at = schedule.evaluate(airspeed, Some(altitude));
+        [at.input_gains, at.output_gains, at.input_delays_s, at.output_delays_s].concat()
+    };
+    let pairs = || airspeeds().into_iter().flat_map(|airspeed| ALTITUDES.map(|altitude| (airspeed, altitude)));
+    (correction(&analysis), pairs().flat_map(|(airspeed, altitude)| values(airspeed, altitude)).collect())
+}
+
+/// Below the range of the example, in it, and above \[ft\].
+const ALTITUDES: [f64; 3] = [0.0, 4321.0, 20_000.0];
+
+#[test]
+fn a_second_variable_is_the_second_argument_of_every_program() {
+    for kind in [ScheduleKind::Polynomial { degree: 2 }, ScheduleKind::Table] {
+        let (correction, expected) = with_altitude(kind);
+        let words = format!("{kind:?} and altitude");
+        if is_there("python3") {
+            let folder = tempfile::tempdir().unwrap();
+            std::fs::write(folder.path().join("c.py"), python_module(&correction).unwrap()).unwrap();
+            let program = format!(
+                "import c\nfor a in [{}]:\n  for h in {ALTITUDES:?}:\n    mi, mo, ti, to = c.gdcm_correction(a, h)\n    \
+                 print(*[repr(m[k][k]) for m in (mi, mo) for k in range(len(m))], *map(repr, ti + to))",
+                listed()
+            );
+            assert_run(&words, "python3", &["-c", &program], folder.path(), &expected);
+        }
+        if is_there("cc") {
+            let folder = tempfile::tempdir().unwrap();
+            let header = c_header(&correction).unwrap();
+            let main = format!(
+                "{header}\n#include <stdio.h>\nint main(void) {{ static const double s[] = {{{}}}, h[] = {{0, 4321, 20000}};\n\
+                 double v[2 * (GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT)]; unsigned k, l, j;\n\
+                 for (k = 0; k < sizeof s / sizeof *s; k++) for (l = 0; l < 3; l++) {{\n\
+                 gdcm_correction(s[k], h[l], v, v + GDCM_INPUT_COUNT, v + GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT,\n\
+                 v + 2 * GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT);\n\
+                 for (j = 0; j < sizeof v / sizeof *v; j++) printf(\"%.17g \", v[j]); }}\nreturn 0; }}\n",
+                listed()
+            );
+            std::fs::write(folder.path().join("main.c"), main).unwrap();
+            let flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-o", "main", "main.c", "-lm"];
+            let built = Command::new("cc").args(flags).current_dir(&folder).output().unwrap();
+            assert!(built.status.success(), "{words}: {}", String::from_utf8_lossy(&built.stderr));
+            let program = folder.path().join("main").display().to_string();
+            assert_run(&words, &program, &[], folder.path(), &expected);
+        }
+        let function = matlab_function(&correction, "my_study").unwrap();
+        assert!(function.contains("my_study(airspeed_kt, altitude_ft)"), "{function}");
+        let text = table_csv(&correction, &[45.0, 90.0, 140.0]).unwrap();
+        let rows = text.lines().filter(|line| !line.starts_with('#')).count();
+        assert_eq!(rows, 1 + 3 * 3, "a heading, and each airspeed at three altitudes");
+    }
+}

@@ -1,0 +1,319 @@
+//! The curves of responses over frequency: of every model of a condition, and of one model of every condition.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use gdcm_core::dataset::{BundleKind, Dataset, ModelBands, ModelId, Pair};
+use gdcm_core::identification::TWO_SIDED_95;
+use gdcm_core::response::{FrequencyResponse, GainDelay, ResponseShape, wrapped_deg};
+use gdcm_core::study::{AcrossCurves, AcrossRole, Analysis, ConditionCurves};
+
+use super::axis::Range;
+use super::bode::BodeOptions;
+use super::condition_source::{ConditionSource, CorrectedModel, CurveId};
+use super::curve::{BodeBand, BodeCurve, Pane};
+use super::request::PhaseUnit;
+use super::role::Role;
+
+/// Height that fitting gives to values outside the band on either side, as a part of the height within it.
+const OUTSIDE_PART: f64 = 0.4;
+
+impl ConditionSource<'_> {
+    /// Every curve of one response, hidden ones too; phases are laid on that of the reference. `cache` keeps their numbers, and where
+    /// they are in memory, while nothing of them changes.
+    pub fn response_curves(&self, pair: Pair, options: &BodeOptions, cache: &mut ResponseCache) -> Vec<BodeCurve> {
+        cache.refresh(self.curves, pair, self.reference());
+        let mut drawn = Vec::new();
+        let mut draw = |cache: &mut ResponseCache, curve: BodeCurve, shape: ResponseShape| {
+            let turns = options.turns.get(&(self.id(), pair, curve.id.clone())).copied().unwrap_or(0);
+            let phase_deg = cache.presented(&curve.id, &shape.phase_deg, Presentation { unit: options.phase, turns });
+            drawn.push(moved_by_hand(curve, turns).with(&cache.omega, &shape.magnitude_db, &phase_deg));
+        };
+        for kind in BundleKind::BOTH {
+            for model in self.models(kind, options) {
+                let shape = cache.of_bundle(kind)[model.index].clone();
+                draw(cache, self.curve_of(model), shape);
+            }
+        }
+        for CorrectedModel { curve, model, correction } in self.corrected_models(pair, options) {
+            let shape = cache.corrected(&curve.id, Treatment { model, correction });
+            draw(cache, curve, shape);
+        }
+        drawn
+    }
+}
+
+/// A curve that says that its phase was moved up by so many turns.
+fn moved_by_hand(mut curve: BodeCurve, turns: i32) -> BodeCurve {
+    if turns != 0 {
+        let (way, count) = (if turns > 0 { "up" } else { "down" }, turns.unsigned_abs());
+        let noun = if count == 1 { "turn" } else { "turns" };
+        let moved = format!("phase moved {way} by {count} {noun}");
+        curve.detail = if curve.detail.is_empty() { moved } else { format!("{moved} · {}", curve.detail) };
+    }
+    curve
+}
+
+/// Shapes of every model of the condition shown for one response, kept while neither changes.
+#[derive(Debug, Default)]
+pub struct ResponseCache {
+    made_of: Option<(Arc<ConditionCurves>, Pair, usize)>,
+    omega: Arc<[f64]>,
+    physics: Vec<ResponseShape>,
+    identified: Vec<ResponseShape>,
+    /// Of each corrected curve: what it was made with, and its shape.
+    corrected: BTreeMap<CurveId, (Treatment, ResponseShape)>,
+    /// Phases that are not drawn as they are, by their curves.
+    presented: BTreeMap<CurveId, PresentedPhase>,
+}
+
+/// A phase that is not drawn as it is.
+#[derive(Clone, Debug)]
+struct PresentedPhase {
+    /// The phase as it is \[deg\].
+    phase_deg: Arc<[f64]>,
+    how: Presentation,
+    /// What is drawn of it \[deg\].
+    drawn_deg: Arc<[f64]>,
+}
+
+/// How a phase is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Presentation {
+    unit: PhaseUnit,
+    /// Whole turns up.
+    turns: i32,
+}
+
+impl Presentation {
+    /// The continuous phase \[deg\] as it is drawn. A wrapped one has a gap where it jumps, in place of a line from edge to edge.
+    fn of(self, phase_deg: &[f64]) -> Arc<[f64]> {
+        if self.unit == PhaseUnit::Unwrapped {
+            return phase_deg.iter().map(|phase| phase + 360.0 * f64::from(self.turns)).collect();
+        }
+        wrapped_deg(phase_deg).into()
+    }
+}
+
+/// What a corrected curve is made with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Treatment {
+    /// Index of the physics model.
+    model: usize,
+    correction: GainDelay,
+}
+
+impl ResponseCache {
+    /// Makes the shapes of `pair`; phases are laid on that of the identified model `reference`.
+    fn refresh(&mut self, curves: &Arc<ConditionCurves>, pair: Pair, reference: usize) {
+        let same = |(made_of, of_pair, of_reference): &(Arc<ConditionCurves>, Pair, usize)| {
+            Arc::ptr_eq(made_of, curves) && *of_pair == pair && *of_reference == reference
+        };
+        if self.made_of.as_ref().is_some_and(same) {
+            return;
+        }
+        let reference_shape = ResponseShape::of(&curves.identified[reference].curve(pair));
+        let shapes = |kind| {
+            let laid = |response: &Arc<FrequencyResponse>| {
+                ResponseShape::of(&response.curve(pair)).phase_aligned(&reference_shape)
+            };
+            curves.bundle(kind).iter().map(laid).collect()
+        };
+        self.physics = shapes(BundleKind::Physics);
+        self.identified = shapes(BundleKind::Identified);
+        self.omega = curves.grid.omega().into();
+        self.corrected.clear();
+        self.presented.clear();
+        self.made_of = Some((Arc::clone(curves), pair, reference));
+    }
+
+    /// The corrected shape of the curve `id`: the same one until it is made with something else.
+    fn corrected(&mut self, id: &CurveId, treatment: Treatment) -> ResponseShape {
+        match self.corrected.get(id) {
+            Some((with, shape)) if *with == treatment => shape.clone(),
+            _ => {
+                let shape = self.physics[treatment.model].corrected(&self.omega, treatment.correction);
+                self.corrected.insert(id.clone(), (treatment, shape.clone()));
+                shape
+            }
+        }
+    }
+
+    /// The phase of the curve `id` as it is drawn: the same one until something of it changes.
+    fn presented(&mut self, id: &CurveId, phase_deg: &Arc<[f64]>, how: Presentation) -> Arc<[f64]> {
+        if how == (Presentation { unit: PhaseUnit::Unwrapped, turns: 0 }) {
+            return Arc::clone(phase_deg);
+        }
+        let is_same = |before: &&PresentedPhase| Arc::ptr_eq(&before.phase_deg, phase_deg) && before.how == how;
+        if let Some(before) = self.presented.get(id).filter(is_same) {
+            return Arc::clone(&before.drawn_deg);
+        }
+        let drawn_deg = how.of(phase_deg);
+        let presented = PresentedPhase { phase_deg: Arc::clone(phase_deg), how, drawn_deg: Arc::clone(&drawn_deg) };
+        self.presented.insert(id.clone(), presented);
+        drawn_deg
+    }
+
+    fn of_bundle(&self, kind: BundleKind) -> &[ResponseShape] {
+        match kind {
+            BundleKind::Physics => &self.physics,
+            BundleKind::Identified => &self.identified,
+        }
+    }
+}
+
+/// The 95 % band of every identified model among `curves` that is drawn, is kept, and says how uncertain it is.
+pub fn uncertainty_bands(dataset: &Dataset, pair: Pair, curves: &[BodeCurve]) -> Vec<BodeBand> {
+    let band = |curve: &BodeCurve| {
+        let CurveId::Model(id) = &curve.id else { return None };
+        let is_shown = id.bundle == BundleKind::Identified && !curve.rejected && !curve.hidden;
+        let bands = dataset.model(id).filter(|_| is_shown)?.bands.as_ref()?;
+        Some(band_around(curve, bands, pair))
+    };
+    curves.iter().filter_map(band).collect()
+}
+
+fn band_around(curve: &BodeCurve, bands: &ModelBands, pair: Pair) -> BodeBand {
+    let (db, deg) = (&bands.sd_db()[pair], &bands.sd_deg()[pair]);
+    let mut band = BodeBand::default();
+    for (index, omega) in curve.omega.iter().enumerate() {
+        let Some((at, part)) = place(bands.omega(), *omega) else { continue };
+        let sd = |values: &[f64]| TWO_SIDED_95 * (values[at] + part * (values[at + 1] - values[at]));
+        let around = |value: f64, half: f64| [value - half, value + half];
+        band.omega.push(*omega);
+        band.magnitude_db.push(around(curve.magnitude_db[index], sd(db)));
+        band.phase_deg.push(around(curve.phase_deg[index], sd(deg)));
+    }
+    band
+}
+
+/// Between which two of `omegas` a frequency lies, and how far by its logarithm; none outside of them.
+fn place(omegas: &[f64], omega: f64) -> Option<(usize, f64)> {
+    let above = omegas.partition_point(|of| *of <= omega);
+    let at = above.checked_sub(1)?;
+    match omegas.get(above) {
+        Some(next) => Some((at, (omega / omegas[at]).ln() / (next / omegas[at]).ln())),
+        None if omegas[at] == omega && at > 0 => Some((at - 1, 1.0)),
+        None => None,
+    }
+}
+
+/// Shapes of one response of several models, kept while both stay the same.
+#[derive(Debug, Default)]
+pub struct AirspeedCache {
+    made_of: Option<(Arc<AcrossCurves>, Pair)>,
+    omega: Arc<[f64]>,
+    shapes: Vec<(ModelId, ResponseShape)>,
+}
+
+impl AirspeedCache {
+    /// Makes the shapes of `pair`; phases are laid on that of the first model.
+    fn refresh(&mut self, curves: &Arc<AcrossCurves>, pair: Pair) {
+        if self.made_of.as_ref().is_some_and(|(of, at)| Arc::ptr_eq(of, curves) && *at == pair) {
+            return;
+        }
+        let mut first: Option<ResponseShape> = None;
+        let shape = |(id, response): &(ModelId, Arc<FrequencyResponse>)| {
+            let shape = ResponseShape::of(&response.curve(pair));
+            let shape = match &first {
+                Some(first) => shape.phase_aligned(first),
+                None => shape,
+            };
+            first.get_or_insert_with(|| shape.clone());
+            (id.clone(), shape)
+        };
+        self.shapes = curves.responses.iter().map(shape).collect();
+        self.omega = curves.grid.omega().into();
+        self.made_of = Some((Arc::clone(curves), pair));
+    }
+}
+
+/// One response of one model of each condition, in the colour of its airspeed, under the correction of `role`; none of a condition
+/// without one.
+pub fn airspeed_curves(
+    (dataset, analysis): (&Dataset, Option<&Analysis>),
+    role: AcrossRole,
+    pair: Pair,
+    curves: &Arc<AcrossCurves>,
+    cache: &mut AirspeedCache,
+) -> Vec<BodeCurve> {
+    cache.refresh(curves, pair);
+    let curve = |(id, shape): &(ModelId, ResponseShape)| {
+        let state = dataset.condition(id.condition)?.flight_state();
+        let correction = role.correction(id.condition, pair, analysis)?;
+        let is_as_it_is = correction == GainDelay::NONE;
+        let shape = if is_as_it_is { shape.clone() } else { shape.corrected(&cache.omega, correction) };
+        let of_airspeed = Role::of_airspeed(state.airspeed_kt, dataset.airspeed_range_kt());
+        let curve = BodeCurve {
+            label: format!("condition {} · {:.0} kt", id.condition, state.airspeed_kt),
+            detail: format!("{} · {}", state.name, id.name),
+            ..BodeCurve::new(CurveId::Model(id.clone()), of_airspeed)
+        };
+        Some(curve.with(&cache.omega, &shape.magnitude_db, &shape.phase_deg))
+    };
+    cache.shapes.iter().filter_map(curve).collect()
+}
+
+/// The values to show: all within the band, and outside it as far as they leave room for those within.
+pub fn fitted_values(curves: &[BodeCurve], pane: Pane, (min, max): (f64, f64)) -> Option<Range> {
+    let points = || curves.iter().flat_map(|curve| curve.omega.iter().zip(curve.values(pane)));
+    let all = Range::of(points().map(|(_, value)| *value))?;
+    let within = points().filter(|(omega, _)| (min..=max).contains(*omega));
+    let Some(within) = Range::of(within.map(|(_, value)| *value)) else {
+        return Some(all);
+    };
+    let room = within.with_margin(OUTSIDE_PART, 0.0);
+    Some(Range::new(all.min.max(room.min), all.max.min(room.max)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wrapped_phase_stays_within_half_a_turn_and_has_a_gap_where_it_jumps() {
+        let wrapped = Presentation { unit: PhaseUnit::Wrapped, turns: 0 }.of(&[-100.0, -170.0, -190.0, -200.0]);
+        // Two roundings of angles below 360.
+        assert!((wrapped[1] + 170.0).abs() < 1e-12 && (wrapped[3] - 160.0).abs() < 1e-12);
+        assert!(wrapped[2].is_nan(), "{wrapped:?}");
+    }
+
+    #[test]
+    fn a_turn_by_hand_moves_a_phase_by_360_degrees() {
+        let up = Presentation { unit: PhaseUnit::Unwrapped, turns: 1 }.of(&[-100.0, f64::NAN]);
+        assert!(up[0] == 260.0 && up[1].is_nan());
+    }
+
+    #[test]
+    fn a_frequency_lies_between_two_by_its_logarithm_and_nowhere_outside() {
+        let omegas = [1.0, 10.0, 100.0];
+        assert_eq!(place(&omegas, 10.0), Some((1, 0.0)));
+        let (at, part) = place(&omegas, 10f64.powf(1.5)).unwrap();
+        assert!(at == 1 && (part - 0.5).abs() < 1e-12);
+        assert_eq!(place(&omegas, 100.0), Some((1, 1.0)), "the last one belongs to the band");
+        assert_eq!((place(&omegas, 0.9), place(&omegas, 101.0)), (None, None));
+    }
+
+    fn fitted(magnitude_db: &[f64]) -> Option<Range> {
+        let omega = vec![0.3, 0.5, 1.0, 10.0, 20.0].into();
+        let curve = BodeCurve::new(CurveId::Corrected, Role::Perturbed);
+        let curve = curve.with(&omega, &magnitude_db.into(), &magnitude_db.into());
+        fitted_values(&[curve], Pane::Magnitude, (0.5, 12.0))
+    }
+
+    #[test]
+    fn fitting_shows_all_that_is_within_the_band_and_what_is_near_it() {
+        assert_eq!(fitted(&[2.0, 0.0, -5.0, -10.0, -12.0]), Some(Range::new(-12.0, 2.0)));
+    }
+
+    #[test]
+    fn a_peak_outside_the_band_does_not_flatten_what_is_within() {
+        assert_eq!(fitted(&[90.0, 0.0, -5.0, -10.0, -12.0]), Some(Range::new(-12.0, 10.0 * OUTSIDE_PART)));
+    }
+
+    #[test]
+    fn without_values_in_the_band_all_are_shown() {
+        assert_eq!(fitted(&[3.0, f64::NAN, f64::NAN, f64::NAN, -50.0]), Some(Range::new(-50.0, 3.0)));
+        assert_eq!(fitted(&[f64::NAN; 5]), None);
+    }
+}

@@ -9,7 +9,6 @@ use gdcm_core::dataset::{
     ResponseArray, ResponseDraft, Timing,
 };
 
-use crate::dataset_file::draft_of;
 use crate::file_error::FileError;
 use crate::importer::{Contents, FolderProgress, ImportedFile, import, import_bytes, of_file};
 use crate::recognise::{Found, recognise};
@@ -205,7 +204,7 @@ fn found(dataset: &Dataset, facts: Facts, (condition, kind): (&Condition, Bundle
         ..model.source.clone().unwrap_or_default()
     };
     FoundModel {
-        draft: ModelDraft { source: Some(source), ..draft_of(model) },
+        draft: ModelDraft { source: Some(source), ..ModelDraft::of(model) },
         inputs: dataset.inputs().iter().map(label).collect(),
         outputs: dataset.outputs().iter().map(label).collect(),
         facts,

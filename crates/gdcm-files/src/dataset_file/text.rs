@@ -8,8 +8,8 @@ use gdcm_core::dataset::limits::{
 };
 use gdcm_core::dataset::{
     BandsDraft, BundleKind, Channel, Condition, ConditionDraft, ConditionId, ConditionRecord, Dataset, DatasetDraft,
-    Dynamics, Estimate, FlightState, Location, MeasuredResponse, Model, ModelBands, ModelDraft, Origin, PairTable,
-    Provenance, RecordKind, ResponseArray, ResponseDraft, Timing,
+    Estimate, FlightState, Location, Model, ModelDraft, Origin, Provenance, RecordKind, ResponseArray, ResponseDraft,
+    Timing,
 };
 use nalgebra::DMatrix;
 use serde::de::Deserializer;
@@ -460,7 +460,7 @@ impl ModelText {
 
     /// A model of a dataset, as files say it.
     pub(crate) fn of_model(model: &Model) -> Self {
-        Self::of(draft_of(model))
+        Self::of(ModelDraft::of(model))
     }
 
     /// A model, as files say it.
@@ -492,51 +492,6 @@ impl ModelText {
             ..Self::default()
         }
     }
-}
-
-/// The draft of a model of a dataset.
-pub(crate) fn draft_of(model: &Model) -> ModelDraft {
-    let (matrices, timing, response) = match &model.dynamics {
-        Dynamics::StateSpace(system) => {
-            let matrices = [system.a(), system.b(), system.c(), system.d()].map(|matrix| Some(matrix.clone()));
-            (matrices, system.timing().clone(), None)
-        }
-        Dynamics::Measured(response) => ([const { None }; 4], Timing::default(), Some(response_draft(response))),
-    };
-    ModelDraft {
-        name: model.name.clone(),
-        origin: model.origin.clone(),
-        matrices,
-        timing,
-        response,
-        source: model.source.clone(),
-        states: model.states.to_vec(),
-        bands: model.bands.as_deref().map(bands_draft),
-    }
-}
-
-fn response_draft(response: &MeasuredResponse) -> ResponseDraft {
-    let count = response.omega().len();
-    let values = response.values();
-    ResponseDraft {
-        omega: response.omega().to_vec(),
-        re: array_of(&values.map(|_, values| values.iter().map(|value| value.re).collect()), count),
-        im: array_of(&values.map(|_, values| values.iter().map(|value| value.im).collect()), count),
-        coherence: response.coherence().map(|table| array_of(table, count)),
-        valid_bands: response.valid_bands().map(|bands| array_of(&bands.map(|_, band| band.to_vec()), 2)),
-        estimate: response.estimate(),
-    }
-}
-
-fn bands_draft(bands: &ModelBands) -> BandsDraft {
-    let array = |table| array_of(table, bands.omega().len());
-    BandsDraft { omega: bands.omega().to_vec(), sd_db: array(bands.sd_db()), sd_deg: array(bands.sd_deg()) }
-}
-
-/// A table with so many numbers for each pair.
-fn array_of(table: &PairTable<Vec<f64>>, count: usize) -> ResponseArray {
-    let values = table.iter().flat_map(|(_, values)| values.iter().copied()).collect();
-    ResponseArray { shape: [table.outputs(), table.inputs(), count], values }
 }
 
 fn matrix(array: Nested<2>) -> DMatrix<f64> {

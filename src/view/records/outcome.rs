@@ -6,9 +6,9 @@ use egui::{Label, ProgressBar, RichText, Ui};
 
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
-use gdcm_core::dataset::BundleKind;
+use gdcm_core::dataset::{BundleKind, ChannelSide};
 use gdcm_core::identification::{
-    Hold, Identification, IdentificationCaution, IdentificationError, RecordCaution, Role, Signal,
+    Hold, Identification, IdentificationCaution, IdentificationError, RecordCaution, Signal,
 };
 use gdcm_core::study::{ChannelTimeSkew, OfferedModels};
 use gdcm_core::units::s_to_ms;
@@ -196,7 +196,7 @@ fn actions(records: &ConditionRecords, caution: &IdentificationCaution) -> Vec<A
         IdentificationCaution::Records(RecordCaution::SampleHold { signal, hold_s, .. }) => {
             let hold_s = *hold_s;
             let set = |text: &str, hold| (text.to_owned(), RecordsCommand::SetHold(signal.clone(), hold));
-            let command = (signal.role == Role::Input)
+            let command = (signal.role == ChannelSide::Input)
                 .then(|| set(&format!("{} is a held command", signal.name), Hold::Command { hold_s }));
             let others = [
                 set(&format!("{} is a slow sensor", signal.name), Hold::FreshSamples),

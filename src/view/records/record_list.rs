@@ -5,8 +5,8 @@ use egui::{Align, Checkbox, ComboBox, Grid, Label, Layout, RichText, Role as Acc
 use crate::view::command::Command;
 use crate::view::controls::{elided_among, named, named_switch, number_entry_ui};
 use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE};
-use gdcm_core::dataset::RecordKind;
-use gdcm_core::identification::{Role, Signal};
+use gdcm_core::dataset::{ChannelSide, RecordKind};
+use gdcm_core::identification::Signal;
 use gdcm_core::records::{ColumnUse, LaidOutRecord, RecordLayout, TimeBase};
 use gdcm_core::units::{ms_to_s, number, s_to_ms};
 
@@ -155,7 +155,7 @@ pub(super) fn columns_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
             ui.end_row();
             time_row_ui(ui, records.chosen, row, commands);
             let dataset = state.dataset();
-            for (role, channels) in [(Role::Input, dataset.inputs()), (Role::Output, dataset.outputs())] {
+            for (role, channels) in [(ChannelSide::Input, dataset.inputs()), (ChannelSide::Output, dataset.outputs())] {
                 for (index, channel) in channels.iter().enumerate() {
                     let signal = Signal { role, index, name: channel.name.clone() };
                     channel_row_ui(ui, records, &signal, &channel.unit, commands);
@@ -188,15 +188,15 @@ fn channel_row_ui(ui: &mut Ui, records: &ConditionRecords, signal: &Signal, unit
     let (row, name) = (&records.rows[records.chosen], &signal.name);
     ui.label(format!("{name} [{unit}]"));
     let (uses, channels) = match signal.role {
-        Role::Input => (&row.layout.inputs, &records.inputs),
-        Role::Output => (&row.layout.outputs, &records.outputs),
+        ChannelSide::Input => (&row.layout.inputs, &records.inputs),
+        ChannelSide::Output => (&row.layout.outputs, &records.outputs),
     };
     let used = uses.get(signal.index).copied().flatten();
     let with = |used: ColumnUse| {
         let mut layout = row.layout.clone();
         let uses = match signal.role {
-            Role::Input => &mut layout.inputs,
-            Role::Output => &mut layout.outputs,
+            ChannelSide::Input => &mut layout.inputs,
+            ChannelSide::Output => &mut layout.outputs,
         };
         if let Some(place) = uses.get_mut(signal.index) {
             *place = Some(used);

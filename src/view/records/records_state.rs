@@ -6,10 +6,8 @@ use std::sync::Arc;
 
 use egui::Ui;
 
-use gdcm_core::dataset::{ConditionId, Dataset, RecordKind};
-use gdcm_core::identification::{
-    ChannelPreparation, Hold, Identification, IdentificationError, Preparation, Role, Signal,
-};
+use gdcm_core::dataset::{ChannelSide, ConditionId, Dataset, RecordKind};
+use gdcm_core::identification::{ChannelPreparation, Hold, Identification, IdentificationError, Preparation, Signal};
 use gdcm_core::records::{LaidOutRecord, RecordLayout};
 use gdcm_core::study::{AdoptedModels, IdentificationRequest, IdentifyJob, NothingToIdentify, OfferedModels};
 
@@ -154,8 +152,8 @@ impl ConditionRecords {
     /// How a channel is prepared, to change.
     pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
         match signal.role {
-            Role::Input => self.inputs.get_mut(signal.index),
-            Role::Output => self.outputs.get_mut(signal.index),
+            ChannelSide::Input => self.inputs.get_mut(signal.index),
+            ChannelSide::Output => self.outputs.get_mut(signal.index),
         }
     }
 

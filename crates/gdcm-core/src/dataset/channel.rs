@@ -132,3 +132,18 @@ impl<T> IndexMut<Pair> for PairTable<T> {
         &mut self.entries[pair.output * self.inputs + pair.input]
     }
 }
+
+/// Whether a channel goes into the aircraft or comes out of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ChannelSide {
+    /// A stick, a pedal.
+    Input,
+    /// A rate, an acceleration.
+    Output,
+}
+
+impl std::fmt::Display for ChannelSide {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(if *self == Self::Input { "input" } else { "output" })
+    }
+}

@@ -248,10 +248,10 @@ pub enum RecordCaution {
 }
 
 /// What the steps in a channel may be, by whether it is an input.
-fn hold_choices(role: Role, hold_ms: f64) -> String {
+fn hold_choices(role: ChannelSide, hold_ms: f64) -> String {
     let half = 0.5 * hold_ms;
     let command = format!("a command held and logged once a hold (moved {half:.0} ms later), ");
-    let command = if role == Role::Input { command } else { String::new() };
+    let command = if role == ChannelSide::Input { command } else { String::new() };
     format!("{command}a slow sensor (only fresh samples kept, or moved {half:.0} ms earlier), ")
 }
 
@@ -322,13 +322,13 @@ fn correlated(segments: &[Segment], preparation: &Preparation) -> Vec<RecordCaut
             let power = (covariance[(first, first)] * covariance[(second, second)]).sqrt();
             let correlation: f64 = covariance[(first, second)] / power;
             match b.role {
-                Role::Input if correlation.abs() > TOGETHER => {
+                ChannelSide::Input if correlation.abs() > TOGETHER => {
                     cautions.push(RecordCaution::MovedTogether { signals: [a.clone(), b.clone()], correlation });
                 }
-                Role::Output if correlation.abs() > COPY => {
+                ChannelSide::Output if correlation.abs() > COPY => {
                     cautions.push(RecordCaution::Copy { copy: b.clone(), of: a.clone() })
                 }
-                Role::Input | Role::Output => {}
+                ChannelSide::Input | ChannelSide::Output => {}
             }
         }
     }

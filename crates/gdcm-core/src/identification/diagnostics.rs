@@ -43,7 +43,7 @@ impl Diagnostics<'_> {
         let worst = fitted().max_by(|a, b| a.cost.total_cmp(&b.cost));
         let output = fits.outputs.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(output, _)| output);
         if let Some(worst) = worst.filter(|_| cost > ADEQUATE) {
-            let (record, signal) = (self.record_name(worst.record), self.options.signal(Role::Output, output));
+            let (record, signal) = (self.record_name(worst.record), self.options.signal(ChannelSide::Output, output));
             cautions.push(IdentificationCaution::Inadequate { cost, record, signal });
         }
         for fit in fitted().filter(|fit| fit.cost > ADEQUATE.max(UNLIKE * cost)) {
@@ -96,7 +96,7 @@ impl Diagnostics<'_> {
     /// Responses that are not identified, in words.
     pub(super) fn unidentified_pairs(&self, pairs: &[(usize, usize)]) -> Option<IdentificationCaution> {
         let named = |&(output, input): &(usize, usize)| {
-            [self.options.signal(Role::Output, output), self.options.signal(Role::Input, input)]
+            [self.options.signal(ChannelSide::Output, output), self.options.signal(ChannelSide::Input, input)]
         };
         (!pairs.is_empty())
             .then(|| IdentificationCaution::PairsNotIdentified { pairs: pairs.iter().map(named).collect() })
@@ -125,7 +125,7 @@ const LEAST_RATIO: f64 = 6.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ChannelDelay {
     /// Input or output.
-    pub(super) role: Role,
+    pub(super) role: ChannelSide,
     /// Which, counted from 0.
     pub(super) index: usize,
     /// How late \[s\]; negative when it is early.
@@ -159,7 +159,8 @@ pub(super) fn channel_delay(
     }
     let share = 1.0 - last.cost / first.cost;
     let ratio = delay_s.abs() * last.square[channel].sqrt();
-    let (role, index) = if channel < inputs { (Role::Input, channel) } else { (Role::Output, channel - inputs) };
+    let (role, index) =
+        if channel < inputs { (ChannelSide::Input, channel) } else { (ChannelSide::Output, channel - inputs) };
     let told = delay_s.is_finite() && share >= LEAST_SHARE && ratio >= LEAST_RATIO;
     told.then_some(ChannelDelay { role, index, delay_s, gain: first.cost - last.cost })
 }

@@ -1,5 +1,6 @@
 //! A flight record as it was logged, and the segments of it that identification uses.
 
+use super::*;
 use nalgebra::{DMatrix, DVectorView};
 use std::fmt;
 
@@ -35,8 +36,8 @@ impl FlightRecord {
     /// The samples of a channel.
     pub(super) fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
         match signal.role {
-            Role::Input => self.inputs.column(signal.index),
-            Role::Output => self.outputs.column(signal.index),
+            ChannelSide::Input => self.inputs.column(signal.index),
+            ChannelSide::Output => self.outputs.column(signal.index),
         }
     }
 }
@@ -45,34 +46,19 @@ impl Segment {
     /// The samples of a channel.
     pub(super) fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
         match signal.role {
-            Role::Input => self.inputs.column(signal.index),
-            Role::Output => self.outputs.column(signal.index),
+            ChannelSide::Input => self.inputs.column(signal.index),
+            ChannelSide::Output => self.outputs.column(signal.index),
         }
     }
 }
 
 // What a column of a flight record is.
 
-/// Whether a signal goes into the aircraft or comes out of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Role {
-    /// A measured input.
-    Input,
-    /// A measured output.
-    Output,
-}
-
-impl fmt::Display for Role {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(if *self == Self::Input { "input" } else { "output" })
-    }
-}
-
 /// A channel of the flight records, by place and by name.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Signal {
     /// Input or output.
-    pub role: Role,
+    pub role: ChannelSide,
     /// Which of them, counted from 0.
     pub index: usize,
     /// Its name, for people.

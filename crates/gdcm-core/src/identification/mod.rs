@@ -25,7 +25,7 @@ mod triangular_factor;
 mod uncertainty;
 mod validation;
 
-use crate::dataset::{Pair, StateSpace};
+use crate::dataset::{ChannelSide, Pair, StateSpace};
 #[cfg(test)]
 use crate::progress::Unobserved;
 use crate::progress::{Cancelled, Progress, Shares};

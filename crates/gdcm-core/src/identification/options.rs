@@ -41,8 +41,8 @@ impl Options {
     }
 
     /// A channel by its place, with its name.
-    pub(super) fn signal(&self, role: Role, index: usize) -> Signal {
-        let channels = if role == Role::Input { &self.preparation.inputs } else { &self.preparation.outputs };
+    pub(super) fn signal(&self, role: ChannelSide, index: usize) -> Signal {
+        let channels = if role == ChannelSide::Input { &self.preparation.inputs } else { &self.preparation.outputs };
         Signal { role, index, name: channels.get(index).map_or_else(String::new, |channel| channel.name.clone()) }
     }
 

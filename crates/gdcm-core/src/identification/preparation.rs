@@ -100,23 +100,23 @@ impl Preparation {
             let signal = move |index, name: &String| Signal { role, index, name: name.clone() };
             channels.iter().enumerate().map(move |(index, channel)| (signal(index, &channel.name), channel))
         };
-        of_role(Role::Input, &self.inputs).chain(of_role(Role::Output, &self.outputs))
+        of_role(ChannelSide::Input, &self.inputs).chain(of_role(ChannelSide::Output, &self.outputs))
     }
 
     /// How a channel is prepared.
     pub fn channel(&self, signal: &Signal) -> Option<&ChannelPreparation> {
-        let channels = if signal.role == Role::Input { &self.inputs } else { &self.outputs };
+        let channels = if signal.role == ChannelSide::Input { &self.inputs } else { &self.outputs };
         channels.get(signal.index)
     }
 
     /// How a channel is prepared, to change.
     pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
-        let channels = if signal.role == Role::Input { &mut self.inputs } else { &mut self.outputs };
+        let channels = if signal.role == ChannelSide::Input { &mut self.inputs } else { &mut self.outputs };
         channels.get_mut(signal.index)
     }
 
     fn checked(&self) -> Result<(), PreparationError> {
-        for (role, channels) in [(Role::Input, &self.inputs), (Role::Output, &self.outputs)] {
+        for (role, channels) in [(ChannelSide::Input, &self.inputs), (ChannelSide::Output, &self.outputs)] {
             if channels.is_empty() {
                 return Err(PreparationError::NoChannels { role });
             }
@@ -190,7 +190,7 @@ pub enum PreparationError {
     #[error("no {role} is named: identification needs at least one input and one output")]
     NoChannels {
         /// Which are missing.
-        role: Role,
+        role: ChannelSide,
     },
     /// A record has other channels than the ones named.
     #[error("record {record} has {found} {role}s where {named} are named")]
@@ -198,7 +198,7 @@ pub enum PreparationError {
         /// The record's name.
         record: String,
         /// Inputs or outputs.
-        role: Role,
+        role: ChannelSide,
         /// How many it has.
         found: usize,
         /// How many are named.
@@ -392,8 +392,8 @@ fn prepare_record(
 
 fn check_shape(record: &FlightRecord, preparation: &Preparation) -> Result<(), PreparationError> {
     let counts = [
-        (Role::Input, record.inputs.ncols(), preparation.inputs.len()),
-        (Role::Output, record.outputs.ncols(), preparation.outputs.len()),
+        (ChannelSide::Input, record.inputs.ncols(), preparation.inputs.len()),
+        (ChannelSide::Output, record.outputs.ncols(), preparation.outputs.len()),
     ];
     for (role, found, named) in counts {
         if found != named {

@@ -171,13 +171,13 @@ fn check_inputs(segments: &[Segment], options: &Options) -> Result<(), Identific
     }
     let vector = eigen.eigenvectors.column(least);
     let involved = (0..inputs).filter(|&input| vector[input].abs() > 0.1 * vector.amax());
-    let signals = involved.map(|input| options.signal(Role::Input, input)).collect();
+    let signals = involved.map(|input| options.signal(ChannelSide::Input, input)).collect();
     Err(IdentificationError::InputsDepend { signals })
 }
 
 fn vibration_cautions(cut_off: &CutOff, options: &Options) -> Vec<IdentificationCaution> {
     let caution = |&(output, share): &(usize, f64)| IdentificationCaution::Vibration {
-        signal: options.signal(Role::Output, output),
+        signal: options.signal(ChannelSide::Output, output),
         percent: 100.0 * share,
         cut_off: cut_off.omega,
     };
@@ -191,7 +191,7 @@ fn band_caution(measured: &ResponseEstimate, options: &Options) -> Option<Identi
 
 fn excitation_cautions(measured: &ResponseEstimate, options: &Options) -> Vec<IdentificationCaution> {
     let excitation = measured.excitation();
-    let signal = |input| -> Signal { options.signal(Role::Input, input) };
+    let signal = |input| -> Signal { options.signal(ChannelSide::Input, input) };
     let not_swept = |input| IdentificationCaution::NotSwept {
         signal: signal(input),
         partial_coherence: excitation.partial_coherence[input],
@@ -243,7 +243,7 @@ pub enum ScalingError {
     #[error("{role} {} does not move in any record: leave it out", index + 1)]
     Constant {
         /// Input or output.
-        role: Role,
+        role: ChannelSide,
         /// Which, counted from 0.
         index: usize,
     },
@@ -266,8 +266,8 @@ impl Scales {
             scales.map(moved).collect::<Result<Vec<f64>, _>>()
         };
         Ok(Self {
-            inputs: scales(Role::Input, |segment| &segment.inputs)?,
-            outputs: scales(Role::Output, |segment| &segment.outputs)?,
+            inputs: scales(ChannelSide::Input, |segment| &segment.inputs)?,
+            outputs: scales(ChannelSide::Output, |segment| &segment.outputs)?,
         })
     }
 

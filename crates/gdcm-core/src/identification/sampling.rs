@@ -129,8 +129,8 @@ impl Track {
         for ((signal, channel), column) in preparation.channels().zip(&columns) {
             let moves = |from, to| columns.iter().any(|other| other.signal != signal && other.moves_between(from, to));
             let frozen = match signal.role {
-                Role::Output if !preparation.keep_frozen => column.frozen(clock, &moves),
-                Role::Output | Role::Input => Vec::new(),
+                ChannelSide::Output if !preparation.keep_frozen => column.frozen(clock, &moves),
+                ChannelSide::Output | ChannelSide::Input => Vec::new(),
             };
             let counts = column.counting(&frozen);
             let track = Self::of(column, &counts, clock, channel);

@@ -45,8 +45,8 @@ impl RecordLayout {
         };
         let (inputs, outputs) = if table.named {
             (
-                proposal.named(table, ("input", ColumnSide::Input), &channels.inputs, time_column),
-                proposal.named(table, ("output", ColumnSide::Output), &channels.outputs, time_column),
+                proposal.named(table, ("input", ChannelSide::Input), &channels.inputs, time_column),
+                proposal.named(table, ("output", ChannelSide::Output), &channels.outputs, time_column),
             )
         } else {
             proposal.in_order(table, channels, time_column)
@@ -98,7 +98,7 @@ impl LayoutProposal {
     fn named(
         &mut self,
         table: &RecordTable,
-        (side, of_file): (&'static str, ColumnSide),
+        (side, of_file): (&'static str, ChannelSide),
         rules: &[ChannelRule],
         time: Option<usize>,
     ) -> Vec<Option<ColumnUse>> {
@@ -177,7 +177,7 @@ impl LayoutProposal {
 }
 
 /// The columns that can be a channel.
-fn candidates(table: &RecordTable, rule: &ChannelRule, side: ColumnSide) -> Vec<usize> {
+fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec<usize> {
     let named = |is_it: &dyn Fn(&str) -> bool| -> Vec<usize> {
         let other_side = |column: usize| table.columns[column].side.is_some_and(|of_file| of_file != side);
         (0..table.columns.len()).filter(|&column| !other_side(column) && is_it(&table.columns[column].name)).collect()

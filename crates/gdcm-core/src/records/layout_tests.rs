@@ -181,10 +181,10 @@ fn inputs_and_outputs_that_the_file_tells_apart_are_taken_in_order() {
         |name: &str, side, scale: f64| RecordColumn { side: Some(side), ..column(name, "", move |k| scale * k.sin()) };
     let table = table(vec![
         column("t", "", |k| 0.01 * k),
-        side("inr_1", ColumnSide::Input, 10.0),
-        side("inr_2", ColumnSide::Input, 20.0),
-        side("outr_1", ColumnSide::Output, 30.0),
-        side("outr_2", ColumnSide::Output, 40.0),
+        side("inr_1", ChannelSide::Input, 10.0),
+        side("inr_2", ChannelSide::Input, 20.0),
+        side("outr_1", ChannelSide::Output, 30.0),
+        side("outr_2", ChannelSide::Output, 40.0),
     ]);
     let proposal = proposed(&table);
     assert_eq!(proposal.problems, []);

@@ -17,6 +17,8 @@ mod record_layout;
 mod record_table;
 mod time_base;
 
+use crate::dataset::ChannelSide;
+
 pub use self::{
     laid_out_record::*, layout_problem::*, layout_proposal::*, record_layout::*, record_table::*, time_base::*,
 };

@@ -4,15 +4,6 @@ use super::*;
 use crate::units::number;
 use std::ops::Range;
 
-/// On which side of the aircraft a file says that a column is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ColumnSide {
-    /// What goes in: a stick, a pedal.
-    Input,
-    /// What comes out: a rate, an acceleration.
-    Output,
-}
-
 /// A column of samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordColumn {
@@ -21,7 +12,7 @@ pub struct RecordColumn {
     /// Its unit, where the file says it.
     pub unit: Option<String>,
     /// Its side, where the file says it.
-    pub side: Option<ColumnSide>,
+    pub side: Option<ChannelSide>,
     /// Samples, in the file's unit; not a number where one is missing.
     pub values: Vec<f64>,
 }

@@ -16,8 +16,8 @@
 //!
 //! `common`, what all channels have in common, is no matter of one channel: the leads say it (M15, section 6).
 
-use crate::dataset::{Band, BundleKind, Condition, Dataset, Dynamics, Pair};
-use crate::identification::{ResponseEstimate, Role, Signal, TRUSTED_COHERENCE};
+use crate::dataset::{Band, BundleKind, ChannelSide, Condition, Dataset, Dynamics, Pair};
+use crate::identification::{ResponseEstimate, Signal, TRUSTED_COHERENCE};
 use crate::response::{FrequencyGrid, FrequencyResponse, median, unwrap};
 use crate::units::{s_to_ms, telling};
 
@@ -38,7 +38,7 @@ const MOST_LEFT: f64 = 0.2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChannelTimeSkew {
     /// Input or output.
-    pub role: Role,
+    pub role: ChannelSide,
     /// Which, counted from 0.
     pub index: usize,
     /// How late \[s\]; negative when it is early.
@@ -50,8 +50,8 @@ impl ChannelTimeSkew {
     pub fn of(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Option<Self> {
         let lags = lags(measured, band, physics)?;
         let (outputs, inputs) = measured.points.first()?.response.shape();
-        let rows = (0..outputs).map(|index| (Role::Output, index, inputs));
-        let columns = (0..inputs).map(|index| (Role::Input, index, outputs));
+        let rows = (0..outputs).map(|index| (ChannelSide::Output, index, inputs));
+        let columns = (0..inputs).map(|index| (ChannelSide::Input, index, outputs));
         let suspects: Vec<Suspect> = rows.chain(columns).filter_map(|of| Suspect::of(&lags, of)).collect();
         let most = suspects.iter().map(|suspect| suspect.explained).fold(0.0, f64::max);
         let suspects = suspects.into_iter().filter(|suspect| suspect.explained >= 0.5 * most);
@@ -66,7 +66,7 @@ impl ChannelTimeSkew {
 
     /// The channel of a dataset.
     pub fn signal(&self, dataset: &Dataset) -> Option<Signal> {
-        let channels = if self.role == Role::Input { dataset.inputs() } else { dataset.outputs() };
+        let channels = if self.role == ChannelSide::Input { dataset.inputs() } else { dataset.outputs() };
         let name = channels.get(self.index)?.name.clone();
         Some(Signal { role: self.role, index: self.index, name })
     }
@@ -144,10 +144,10 @@ struct Suspect {
 
 impl Suspect {
     /// A channel with so many responses, if it is late.
-    fn of(lags: &[Lag], (role, index, responses): (Role, usize, usize)) -> Option<Self> {
+    fn of(lags: &[Lag], (role, index, responses): (ChannelSide, usize, usize)) -> Option<Self> {
         let is_own = |lag: &&Lag| match role {
-            Role::Output => lag.pair.output == index,
-            Role::Input => lag.pair.input == index,
+            ChannelSide::Output => lag.pair.output == index,
+            ChannelSide::Input => lag.pair.input == index,
         };
         let (own, others): (Vec<&Lag>, Vec<&Lag>) = lags.iter().partition(is_own);
         if own.len() < 2 || 2 * own.len() <= responses || others.len() < 2 {
@@ -163,7 +163,7 @@ impl Suspect {
         let (before, after) = (left(common_s), left(common_s + delay_s));
         let is_late = delay_s.abs() > tolerance_s && agree && after <= MOST_LEFT * before;
         // The responses to an input that is logged late come too early.
-        let delay_s = if role == Role::Output { delay_s } else { -delay_s };
+        let delay_s = if role == ChannelSide::Output { delay_s } else { -delay_s };
         is_late.then_some(Self {
             channel: ChannelTimeSkew { role, index, delay_s },
             common_s,

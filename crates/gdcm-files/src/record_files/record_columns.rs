@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use gdcm_core::assembly::{SAMPLE_TIME_NAMES, folded_name, time_name_rank};
-use gdcm_core::records::{ColumnSide, RecordColumn};
+use gdcm_core::dataset::ChannelSide;
+use gdcm_core::records::RecordColumn;
 
 use crate::recognise::record::{Record, label_of, texts_of};
 use crate::record_files::Columns;
@@ -146,7 +147,7 @@ fn sample_time(record: &Record<'_>) -> Option<f64> {
 struct Labels {
     names: Option<Vec<String>>,
     units: Option<Vec<String>>,
-    side: Option<ColumnSide>,
+    side: Option<ChannelSide>,
     named: bool,
 }
 
@@ -164,9 +165,9 @@ impl Labels {
         let own_units = [format!("{name}units")];
         let own_units: Vec<&str> = own_units.iter().map(String::as_str).collect();
         let (side, names, units) = if is_side(&INPUTS) {
-            (Some(ColumnSide::Input), list(&INPUT_NAMES), list(&INPUT_UNITS))
+            (Some(ChannelSide::Input), list(&INPUT_NAMES), list(&INPUT_UNITS))
         } else if is_side(&OUTPUTS) {
-            (Some(ColumnSide::Output), list(&OUTPUT_NAMES), list(&OUTPUT_UNITS))
+            (Some(ChannelSide::Output), list(&OUTPUT_NAMES), list(&OUTPUT_UNITS))
         } else if count > 1 {
             (None, list(&NAMES), list(&UNITS))
         } else {
@@ -230,7 +231,7 @@ pub(super) fn simulink_columns(record: &Record<'_>, variable: &str) -> Option<Co
 
 /// What one side is called in both.
 struct Side {
-    side: ColumnSide,
+    side: ChannelSide,
     data: [&'static str; 2],
     names: [&'static str; 2],
     units: [&'static str; 2],
@@ -239,14 +240,14 @@ struct Side {
 }
 
 const IDDATA_INPUTS: Side = Side {
-    side: ColumnSide::Input,
+    side: ChannelSide::Input,
     data: ["InputData", "u"],
     names: ["InputName", "inname"],
     units: ["InputUnit", "inunit"],
     letter: 'u',
 };
 const IDDATA_OUTPUTS: Side = Side {
-    side: ColumnSide::Output,
+    side: ChannelSide::Output,
     data: ["OutputData", "y"],
     names: ["OutputName", "outname"],
     units: ["OutputUnit", "outunit"],

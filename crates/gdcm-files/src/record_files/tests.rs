@@ -3,7 +3,8 @@
 use super::*;
 use crate::variables::{Array, CellArray, Object, StructArray, TextArray, Value};
 use gdcm_core::assembly::ChannelRule;
-use gdcm_core::records::{ColumnSide, RecordChannels, RecordLayout, TimeWish};
+use gdcm_core::dataset::ChannelSide;
+use gdcm_core::records::{RecordChannels, RecordLayout, TimeWish};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/records/");
 
@@ -82,7 +83,7 @@ fn names_units_and_sides_are_those_of_the_file() {
             .map(|column| (column.name.clone(), column.unit.clone().unwrap_or_default(), column.side))
             .collect::<Vec<_>>()
     };
-    let (input, output) = (Some(ColumnSide::Input), Some(ColumnSide::Output));
+    let (input, output) = (Some(ChannelSide::Input), Some(ChannelSide::Output));
     let column = |name: &str, unit: &str, side| (name.to_owned(), unit.to_owned(), side);
     assert_eq!(of("units.csv")[..2], [column("time", "s", None), column("LON", "%", None)]);
     assert_eq!(of("comma.csv")[3], column("roll rate", "rad/s", None));
@@ -246,7 +247,7 @@ fn identification_data_of_matlab_and_of_octave_are_read() {
     let columns: Vec<(&str, Option<&str>)> =
         of.columns.iter().map(|column| (column.name.as_str(), column.unit.as_deref())).collect();
     assert_eq!(columns, [("u1", None), ("P", Some("rad/s")), ("Q", None)]);
-    assert_eq!((of.sample_time_s, of.columns[1].side), (Some(0.01), Some(ColumnSide::Output)));
+    assert_eq!((of.sample_time_s, of.columns[1].side), (Some(0.01), Some(ChannelSide::Output)));
     let octave = object(
         "iddata",
         vec![

@@ -1,10 +1,10 @@
 //! Channels that are logged late in all records alike, told against a physics model.
 
 use crate::made_up::{Flight, Gusts, stable_aircraft};
-use gdcm_core::dataset::{Dynamics, StateSpace};
+use gdcm_core::dataset::{ChannelSide, Dynamics, StateSpace};
 use gdcm_core::executor::Sequential;
 use gdcm_core::identification::{
-    FlightRecord, Preparation, ResponseEstimate, Role, local_polynomial, log_spaced, prepare, spectra,
+    FlightRecord, Preparation, ResponseEstimate, local_polynomial, log_spaced, prepare, spectra,
 };
 use gdcm_core::study::ChannelTimeSkew;
 use nalgebra::{DMatrix, DVectorViewMut};
@@ -25,7 +25,7 @@ fn late(mut channel: DVectorViewMut<'_, f64>) {
     (3..logged.len()).for_each(|sample| channel[sample] = logged[sample - 3]);
 }
 
-fn found(measured: &ResponseEstimate) -> Option<(Role, usize, f64)> {
+fn found(measured: &ResponseEstimate) -> Option<(ChannelSide, usize, f64)> {
     let late = ChannelTimeSkew::of(measured, BAND, &Dynamics::StateSpace(stable_aircraft()))?;
     Some((late.role, late.index, late.delay_s))
 }
@@ -35,11 +35,11 @@ fn a_channel_that_is_late_in_every_record_is_told_against_the_physics_model() {
     assert_eq!(found(&measured(|_| ())), None, "nothing is late");
     for index in 0..2 {
         let (role, of, delay_s) = found(&measured(|record| late(record.outputs.column_mut(index)))).unwrap();
-        assert_eq!((role, of), (Role::Output, index));
+        assert_eq!((role, of), (ChannelSide::Output, index));
         // The method's bias over its windows, and gusts, are some milliseconds.
         assert!((delay_s - 0.12).abs() < 0.01, "{delay_s}");
         let (role, of, delay_s) = found(&measured(|record| late(record.inputs.column_mut(index)))).unwrap();
-        assert_eq!((role, of), (Role::Input, index));
+        assert_eq!((role, of), (ChannelSide::Input, index));
         assert!((delay_s - 0.12).abs() < 0.01, "{delay_s}");
     }
 }
@@ -67,7 +67,7 @@ fn a_physics_model_that_is_wrong_otherwise_is_no_delay() {
 
 #[test]
 fn words_say_what_is_seen_and_what_else_it_may_be() {
-    let late = ChannelTimeSkew { role: Role::Output, index: 1, delay_s: -0.0401 };
+    let late = ChannelTimeSkew { role: ChannelSide::Output, index: 1, delay_s: -0.0401 };
     let words = late.words("Q", "nominal");
     assert!(
         words.starts_with("Q seems to be logged 40 ms early in all records: against the physics model \"nominal\""),

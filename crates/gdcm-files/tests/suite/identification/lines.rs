@@ -2,7 +2,7 @@
 
 use super::common::{Threads, complex, known, list, matrix, noise, noisy, noisy_spectra, response, slow_system};
 use crate::made_up::tries;
-use gdcm_core::dataset::StateSpace;
+use gdcm_core::dataset::{ChannelSide, StateSpace};
 use gdcm_core::executor::Sequential;
 use gdcm_core::identification::*;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -322,9 +322,9 @@ fn hostile_pieces_have_no_scales_and_no_lines() {
         outputs: DMatrix::from_fn(rows, 1, |n, _| n as f64),
     };
     assert_eq!(Scales::of(&[]), Err(ScalingError::NoSegments));
-    assert_eq!(Scales::of(&[segment(9, 0.1)]), Err(ScalingError::Constant { role: Role::Input, index: 0 }));
+    assert_eq!(Scales::of(&[segment(9, 0.1)]), Err(ScalingError::Constant { role: ChannelSide::Input, index: 0 }));
     assert_eq!(Scales::of(&[segment(9, f64::NAN)]), Err(ScalingError::NotFinite { segment: 0 }));
-    assert_eq!(Scales::of(&[segment(0, 0.0)]), Err(ScalingError::Constant { role: Role::Input, index: 0 }));
+    assert_eq!(Scales::of(&[segment(0, 0.0)]), Err(ScalingError::Constant { role: ChannelSide::Input, index: 0 }));
     for rows in 0..3 {
         assert_eq!(spectra(&[segment(rows, 1.0)], 1e9, &Sequential)[0].omega.len(), 0);
     }

@@ -2,10 +2,10 @@
 
 use super::common::{Threads, known, list, matrix, response, space};
 use crate::made_up::{Flight, Gusts, stable_aircraft};
-use gdcm_core::dataset::{ModelBands, Pair, StateSpace};
+use gdcm_core::dataset::{ChannelSide, ModelBands, Pair, StateSpace};
 use gdcm_core::executor::Sequential;
 use gdcm_core::identification::{
-    FlightRecord, Identification, IdentificationCaution, IdentificationError, Options, Preparation, Role, identify,
+    FlightRecord, Identification, IdentificationCaution, IdentificationError, Options, Preparation, identify,
 };
 use gdcm_core::progress::{Cancelled, Progress, Unobserved};
 use nalgebra::{Complex, DMatrix, dmatrix};
@@ -277,7 +277,7 @@ fn a_late_channel_of_one_record_is_named_with_its_delay() {
         .collect();
     assert_eq!(late.len(), 1, "{:?}", found.cautions);
     let (record, role, index, delay_s) = late[0];
-    assert_eq!((record, role, index), (2, Role::Output, 1));
+    assert_eq!((record, role, index), (2, ChannelSide::Output, 1));
     // The model without that record comes from one damped step, so that a part of the delay stays in it.
     assert!((delay_s - 0.12).abs() < 0.03, "{delay_s}");
     assert!(

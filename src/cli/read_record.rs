@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use gdcm_core::assembly::standard_patterns;
 use gdcm_core::dataset::ConditionRecord;
 use gdcm_core::records::{LayoutProposal, RecordChannels, RecordGuess, RecordLayout, RecordTable, TimeWish};
+use gdcm_core::study::Table;
 use gdcm_core::units::telling;
 use gdcm_files::{FoundRecords, read_records, relative_folder};
 
@@ -13,7 +14,7 @@ use super::failure::Failure;
 use super::identify_arguments::IdentifyArguments;
 use super::models::ReadingProgress;
 use super::terminal::say_error;
-use super::text_table::{Side, TextTable};
+use super::text_table::indented;
 
 /// A record as it was read.
 pub(super) struct ReadRecord {
@@ -102,9 +103,7 @@ impl ReadRecord {
 
 /// A line a record, each behind `indent` spaces.
 pub(super) fn record_table(records: &[ReadRecord], indent: usize) -> String {
-    use Side::{Left, Right};
-    let heads = [("record", Left), ("kind", Left), ("samples", Right), ("step", Right), ("length", Right), ("", Left)];
-    let mut table = TextTable::new(heads);
+    let mut table = Table::new("", ["record", "kind", "samples", "step", "length", ""]);
     for ReadRecord { table: record, layout, guess } in records {
         let step_s = layout.time.and_then(|time| time.step_s(record)).unwrap_or(f64::NAN);
         table.row([
@@ -116,5 +115,5 @@ pub(super) fn record_table(records: &[ReadRecord], indent: usize) -> String {
             if guess.held_out { "held out".to_owned() } else { String::new() },
         ]);
     }
-    table.lines(indent)
+    indented(&table, indent)
 }

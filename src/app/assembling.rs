@@ -14,9 +14,9 @@ use gdcm_files::{
     rules_path, sources_folder,
 };
 
-use super::background_jobs::ReplySender;
-use super::fault::Fault;
 use super::files::DialogPurpose;
+use super::threads::Fault;
+use super::threads::ReplySender;
 use super::window::GdcmApp;
 
 /// Bytes of values between two words about how far a file is read.
@@ -174,7 +174,7 @@ impl GdcmApp {
         let (models, files) = (found.models.len(), found.files);
         bench.add(&name.unwrap_or_default(), found.models);
         bench.faults.extend(found.faults);
-        bench.passed_over.extend(found.passed_over);
+        bench.ignored.extend(found.ignored);
         bench.tables.extend(found.tables);
         if bench.dataset_path.is_empty()
             && let Some(first) = paths.first()

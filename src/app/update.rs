@@ -81,10 +81,10 @@ impl GdcmApp {
                     display.picked_pairs.insert(pair);
                 }
             }
-            Command::ShowChannels(measure, across) => display.channel_figure = (measure, across),
+            Command::ShowChannels(measure, across) => display.channel_values = (measure, across),
             Command::Explain(asked) => display.asked = asked,
             Command::ShowZeros(shown) => display.show_zeros = shown,
-            Command::ShowBars(shown) => display.show_bars = shown,
+            Command::ShowBars(shown) => display.hide_bars = !shown,
             Command::ShowEvidence(shown) => display.show_evidence = shown,
             Command::ShowAcross(role) => {
                 display.across_role = role;

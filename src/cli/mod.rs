@@ -9,8 +9,6 @@ mod destination;
 mod export;
 mod failure;
 mod figure;
-mod identification_outcome;
-mod identification_task;
 mod identify;
 mod identify_arguments;
 mod models;

@@ -1,12 +1,13 @@
 //! The bars of the window: menus on top, messages below them, and the state of the computation at the foot.
 
-use egui::{Align, Button, CollapsingHeader, Frame, Layout, Margin, MenuBar, RichText, ThemePreference, Ui};
+use egui::{Align, Button, CollapsingHeader, Frame, Label, Layout, Margin, MenuBar, RichText, ThemePreference, Ui};
 
-use gdcm_core::dataset::BundleKind;
+use gdcm_core::dataset::{BundleKind, Condition};
 use gdcm_core::study::Assessed;
 
 use super::command::Command;
 use super::command_table::{Menu, command_table};
+use super::controls::button_ui;
 use super::palette::{Palette, SMALL_SIZE};
 use super::records::RecordsState;
 use super::results::{Background, bar_words};
@@ -75,39 +76,41 @@ fn recent_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     }
 }
 
+/// A button of the bar, which has no frame.
+fn bar_button_ui(
+    ui: &mut Ui,
+    (text, hint): (String, &str),
+    is_enabled: bool,
+    command: Command,
+    commands: &mut Vec<Command>,
+) {
+    ui.add_enabled_ui(is_enabled, |ui| button_ui(ui, Button::new(text).frame(false), hint, command, commands));
+}
+
 fn history_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let undo = state.history.undo_label();
-    let text = undo.map_or("↶ Undo".to_owned(), |label| format!("↶ Undo {label}"));
-    let button = ui.add_enabled(undo.is_some(), Button::new(text).frame(false));
-    if button.on_hover_text("Take the last decision back (Ctrl+Z)").clicked() {
-        commands.push(Command::Undo);
-    }
-    let redo = state.history.redo_label();
-    let text = redo.map_or("↷ Redo".to_owned(), |label| format!("↷ Redo {label}"));
-    let button = ui.add_enabled(redo.is_some(), Button::new(text).frame(false));
-    if button.on_hover_text("Bring it back again (Ctrl+Shift+Z)").clicked() {
-        commands.push(Command::Redo);
+    for (verb, label, hint, command) in [
+        ("↶ Undo", state.history.undo_label(), "Take the last decision back (Ctrl+Z)", Command::Undo),
+        ("↷ Redo", state.history.redo_label(), "Bring it back again (Ctrl+Shift+Z)", Command::Redo),
+    ] {
+        let text = label.map_or(verb.to_owned(), |label| format!("{verb} {label}"));
+        bar_button_ui(ui, (text, hint), label.is_some(), command, commands);
     }
 }
 
 fn theme_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
-    let dark = ui.visuals().dark_mode;
-    let (symbol, other, hint) = if dark {
-        ("◐ Light", ThemePreference::Light, "Change to the light theme")
-    } else {
-        ("◐ Dark", ThemePreference::Dark, "Change to the dark theme")
+    let (text, other, hint) = match ui.visuals().dark_mode {
+        true => ("◐ Light", ThemePreference::Light, "Change to the light theme"),
+        false => ("◐ Dark", ThemePreference::Dark, "Change to the dark theme"),
     };
-    if ui.add(Button::new(symbol).frame(false)).on_hover_text(hint).clicked() {
-        commands.push(Command::SetTheme(other));
-    }
+    bar_button_ui(ui, (text.to_owned(), hint), true, Command::SetTheme(other), commands);
 }
 
 fn title_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     let mark = if state.unsaved { " •" } else { "" };
-    let study = RichText::new(format!("· {}{mark}", state.study_name)).color(palette.dim_text);
+    let study = palette.dim(format!("· {}{mark}", state.study_name));
     let hint = if state.unsaved { "There are decisions that are not saved" } else { "Every decision is saved" };
-    ui.add(egui::Label::new(study).truncate()).on_hover_text(hint);
-    let name = egui::Label::new(state.dataset().name()).truncate();
+    ui.add(Label::new(study).truncate()).on_hover_text(hint);
+    let name = Label::new(state.dataset().name()).truncate();
     ui.add(name).on_hover_text(state.dataset().description());
 }
 
@@ -149,52 +152,46 @@ pub fn bars_ui(ui: &mut Ui, bars: &[Bar], palette: &Palette, commands: &mut Vec<
 }
 
 fn bar_ui(ui: &mut Ui, bar: &Bar, palette: &Palette, commands: &mut Vec<Command>) {
-    let close = || Command::CloseBar(bar.clone());
-    match bar {
+    let close = Command::CloseBar(bar.clone());
+    let (sentence, buttons) = match bar {
         Bar::Fault { sentence } => {
             let copy = Command::CopyText(sentence.clone());
-            let buttons = [("Compute again", Command::Compute), ("Copy this message", copy), ("Put away", close())];
-            row_ui(ui, sentence, buttons, palette, commands);
+            let buttons = vec![("Compute again", Command::Compute), ("Copy this message", copy), ("Put away", close)];
+            (sentence.clone(), buttons)
         }
         Bar::Recovery { offer, sentence } => {
-            let buttons = [
-                ("Restore", Command::RestoreRecovery(*offer)),
-                ("Discard", Command::DiscardRecovery(*offer)),
-                ("Later", close()),
-            ];
-            row_ui(ui, sentence, buttons, palette, commands);
+            let (restore, discard) = (Command::RestoreRecovery(*offer), Command::DiscardRecovery(*offer));
+            (sentence.clone(), vec![("Restore", restore), ("Discard", discard), ("Later", close)])
         }
         Bar::Changed { name } => {
-            let buttons = [("Reload", Command::Reload), ("Keep what is open", Command::KeepOpen)];
-            row_ui(ui, &format!("{name} has changed on disk."), buttons, palette, commands);
+            let buttons = vec![("Reload", Command::Reload), ("Keep what is open", Command::KeepOpen)];
+            (format!("{name} has changed on disk."), buttons)
         }
         Bar::Differences { name, sentences } => {
-            let count = sentences.len();
-            let number = if count == 1 { "1 difference".to_owned() } else { format!("{count} differences") };
-            let buttons = [("Put the list away", close())];
-            row_ui(ui, &format!("{name} was reloaded: {number}."), buttons, palette, commands);
-            list_ui(ui, sentences);
+            let number = counted(sentences.len(), "difference");
+            (format!("{name} was reloaded: {number}."), vec![("Put the list away", close)])
         }
+    };
+    row_ui(ui, &sentence, buttons, palette, commands);
+    if let Bar::Differences { sentences, .. } = bar {
+        list_ui(ui, sentences);
     }
 }
 
+/// "1 difference", "3 differences".
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
 /// A sentence that wraps, beside its buttons.
-fn row_ui<const N: usize>(
-    ui: &mut Ui,
-    sentence: &str,
-    buttons: [(&str, Command); N],
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
+fn row_ui(ui: &mut Ui, sentence: &str, buttons: Vec<(&str, Command)>, palette: &Palette, commands: &mut Vec<Command>) {
     ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
         for (text, command) in buttons.into_iter().rev() {
-            if ui.add(Button::new(text).small()).clicked() {
-                commands.push(command);
-            }
+            button_ui(ui, Button::new(text).small(), "", command, commands);
         }
         ui.with_layout(Layout::left_to_right(Align::Min), |ui| {
-            ui.label(RichText::new("●").size(SMALL_SIZE).color(palette.warning));
-            ui.add(egui::Label::new(RichText::new(sentence)).wrap());
+            ui.label(palette.small_warning("●"));
+            ui.add(Label::new(sentence).wrap());
         });
     });
 }
@@ -222,16 +219,13 @@ pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
         computation_ui(ui, state, palette, commands);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| match &state.notice {
             Some(notice) => {
-                if ui.add(Button::new("Dismiss").small()).clicked() {
-                    commands.push(Command::DismissNotice);
-                }
+                button_ui(ui, Button::new("Dismiss").small(), "", Command::DismissNotice, commands);
                 let color = if notice.kind == NoticeKind::Done { palette.good } else { palette.warning };
                 let text = RichText::new(&notice.text).size(SMALL_SIZE).color(color);
-                ui.add(egui::Label::new(text).truncate()).on_hover_text(&notice.text);
+                ui.add(Label::new(text).truncate()).on_hover_text(&notice.text);
             }
             None => {
-                let text = RichText::new(standing_remark(state)).size(SMALL_SIZE).color(palette.dim_text);
-                ui.add(egui::Label::new(text).truncate());
+                ui.add(Label::new(palette.small(standing_remark(state))).truncate());
             }
         });
     });
@@ -249,30 +243,29 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
         (None, false, _) => ("● up to date".to_owned(), palette.good),
     };
     ui.label(RichText::new(text).size(SMALL_SIZE).color(color));
-    let beside =
-        state.results.is_background_told(now).then(|| background_words(&state.results.background, &state.records));
     let is_stopped = state.results.background.stopped;
-    let beside = if is_stopped { Some("the rest was stopped".to_owned()) } else { beside };
+    let is_told = state.results.is_background_told(now);
+    let beside = match is_stopped {
+        true => Some("the rest was stopped".to_owned()),
+        false => is_told.then(|| background_words(&state.results.background, &state.records)),
+    };
     if let Some(words) = &beside {
-        ui.label(RichText::new(words).size(SMALL_SIZE).color(palette.dim_text));
+        ui.label(palette.small(words));
     }
     if state.results.stopped || is_stopped {
-        if ui.add(Button::new("Compute").small()).clicked() {
-            commands.push(Command::Compute);
-        }
-    } else if (state.results.is_stale(now) || beside.is_some()) && ui.add(Button::new("Stop").small()).clicked() {
-        commands.push(Command::StopComputing);
+        button_ui(ui, Button::new("Compute").small(), "", Command::Compute, commands);
+    } else if state.results.is_stale(now) || beside.is_some() {
+        button_ui(ui, Button::new("Stop").small(), "", Command::StopComputing, commands);
     }
-    let dim = |text: String| RichText::new(text).size(SMALL_SIZE).color(palette.dim_text);
-    let models: usize = state.dataset().conditions().iter().map(|condition| model_count(condition)).sum();
-    ui.label(dim(format!("{models} responses · {} frequencies", state.study.settings.points)));
+    let count = |condition: &Condition| BundleKind::BOTH.map(|kind| condition.bundle(kind).len()).iter().sum::<usize>();
+    let models: usize = state.dataset().conditions().iter().map(|condition| count(condition)).sum();
+    ui.label(palette.small(format!("{models} responses · {} frequencies", state.study.settings.points)));
     if state.analysis().is_some() {
-        ui.label(dim(format!("{:.1} ms", state.results.elapsed_ms))).on_hover_text("Time the newest analysis took");
+        let time = ui.label(palette.small(format!("{:.1} ms", state.results.elapsed_ms)));
+        time.on_hover_text("Time the newest analysis took");
     }
     if !state.file_cautions.is_empty() {
-        let count = state.file_cautions.len();
-        let text = if count == 1 { "1 caution".to_owned() } else { format!("{count} cautions") };
-        let label = ui.label(RichText::new(text).size(SMALL_SIZE).color(palette.warning));
+        let label = ui.label(palette.small_warning(counted(state.file_cautions.len(), "caution")));
         label.on_hover_text(state.file_cautions.join("\n"));
     }
 }
@@ -298,12 +291,8 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
         (0, Some(_)) => "curves …".to_owned(),
         (0, None) if background.bars.is_some() => bar_words(background.bars.unwrap_or_default()),
         (0, None) if background.views > 0 => "what the views show …".to_owned(),
-        (0, None) => "what holding and freeing would cost …".to_owned(),
+        (0, None) => "what holding and releasing would cost …".to_owned(),
     }
-}
-
-fn model_count(condition: &gdcm_core::dataset::Condition) -> usize {
-    condition.bundle(BundleKind::Physics).len() + condition.bundle(BundleKind::Identified).len()
 }
 
 /// Why the condition shown is left out of the assessment, or what the data are.

@@ -21,7 +21,7 @@ use super::tables::TableKind;
 use super::views::AssessedFigures;
 use super::views::PairSet;
 
-/// One wish of the engineer: what a click, a key or a menu entry stands for. Views push them; the window carries them out.
+/// One action of the engineer: what a click, a key or a menu entry stands for. Views push them; the window carries them out.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// Take a decision about the study.
@@ -64,7 +64,7 @@ pub enum Command {
     ShowAcross(AcrossRole),
     /// Assess something else, or show it in another form.
     Assess(AssessedFigures),
-    /// Show how a figure was computed, or put that away.
+    /// Show how a value was computed, or put that away.
     Explain(Option<ExplainTarget>),
     /// Read frequencies in another unit.
     SetFrequencyUnit(FrequencyUnit),
@@ -130,7 +130,7 @@ pub enum Command {
     AskSaveTable(TableKind),
     /// Ask where to save a table that a view shows.
     AskSaveShownTable(Arc<Table>),
-    /// Put models of files together.
+    /// Import models of files.
     Assembling(AssemblingCommand),
     /// Flight records, and models identified from them.
     Records(RecordsCommand),
@@ -186,7 +186,7 @@ pub enum FormKind {
     Reason,
     /// Where to save a table, by path.
     SaveTable,
-    /// What is made of models that are put together.
+    /// What is made of models that are imported.
     Models,
     /// Where to save a figure, by path, and how wide.
     SaveFigure,

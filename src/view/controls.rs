@@ -40,12 +40,18 @@ pub fn named_switch(response: Response, role: Role, is_on: bool, name: impl Into
     response
 }
 
+/// Says a hint where there is one: an empty one would be an empty box.
+fn hint_ui(response: Response, hint: impl Into<String>) -> Response {
+    let hint = hint.into();
+    if hint.is_empty() { response } else { response.on_hover_text(hint) }
+}
+
 /// A check box; whether it is on after a click on it.
 pub fn check_ui(ui: &mut Ui, is_on: bool, text: impl Into<String>, hint: impl Into<String>) -> Option<bool> {
     let mut value = is_on;
     let response = ui.checkbox(&mut value, text.into());
     let changed = response.changed();
-    response.on_hover_text(hint.into());
+    hint_ui(response, hint);
     changed.then_some(value)
 }
 
@@ -57,7 +63,7 @@ pub fn button_ui(
     command: impl Into<Command>,
     commands: &mut Vec<Command>,
 ) {
-    if ui.add(button).on_hover_text(hint).clicked() {
+    if hint_ui(ui.add(button), hint).clicked() {
         commands.push(command.into());
     }
 }

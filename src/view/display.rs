@@ -17,13 +17,10 @@ use super::plot::{
 };
 use super::plot_style::PlotStyle;
 use super::table_view::Sorting;
-use super::views::AssessedFigures;
-use super::views::CachedEvidence;
-use super::views::CachedModes;
-use super::views::PairSet;
+use super::views::{AssessedFigures, CachedEvidence, CachedModes, PairSet};
 
 /// What is shown, none of which changes a result.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Display {
     /// The condition shown.
     pub condition: ConditionId,
@@ -33,7 +30,7 @@ pub struct Display {
     pub hovered: Option<ModelId>,
     /// The only model shown beside the representatives.
     pub isolated: Option<ModelId>,
-    /// The figure whose derivation is shown.
+    /// The value whose derivation is shown.
     pub asked: Option<ExplainTarget>,
     /// How the plots share the middle of the window.
     pub arrangement: Arrangement,
@@ -56,7 +53,7 @@ pub struct Display {
     /// Transforms of the net-gain plots.
     pub net_gain: GainView,
     /// What the channel plots measure, and over what.
-    pub channel_figure: (Measure, Across),
+    pub channel_values: (Measure, Across),
     /// Transforms of the channel plots.
     pub channels: ChannelsView,
     /// Ranges and transforms of the plots of poles.
@@ -71,8 +68,8 @@ pub struct Display {
     pub assessed: AssessedFigures,
     /// Order of the table of the assessment.
     pub assessment_sorting: Sorting,
-    /// Whether the plots of gains show error bars and bands.
-    pub show_bars: bool,
+    /// Whether the plots of gains show no error bars and bands.
+    pub hide_bars: bool,
     /// Orders of the tables of the evidence: differences, second variables, forms of the schedule.
     pub evidence_tables: [Sorting; 3],
     /// Whether the evidence for the schedule stands beside the net gains.
@@ -108,47 +105,7 @@ pub struct Display {
 impl Display {
     /// A condition and a response, in plots that fit what they show.
     pub(super) fn of(condition: ConditionId, pair: Pair) -> Self {
-        Self {
-            condition,
-            pair,
-            hovered: None,
-            isolated: None,
-            asked: None,
-            arrangement: Arrangement::default(),
-            unit: FrequencyUnit::default(),
-            looks: PlotStyle::default(),
-            curves: CurveDisplay::default(),
-            bode: BodeView::default(),
-            error: BodeView::default(),
-            net_gain_pairs: PairSet::default(),
-            once_held: BTreeSet::new(),
-            picked_pairs: BTreeSet::new(),
-            net_gain: GainView::default(),
-            channel_figure: (Measure::default(), Across::default()),
-            channels: ChannelsView::default(),
-            poles: PolesView::default(),
-            show_zeros: false,
-            modes: CachedModes::default(),
-            modes_sorting: Sorting::default(),
-            assessed: AssessedFigures::default(),
-            assessment_sorting: Sorting::default(),
-            show_bars: true,
-            evidence_tables: [Sorting::default(); 3],
-            show_evidence: false,
-            evidence: CachedEvidence::default(),
-            evidence_sorting: Sorting::default(),
-            across_role: AcrossRole::default(),
-            across: BodeView::default(),
-            across_shapes: AirspeedCache::default(),
-            variant_name: String::new(),
-            compare_sorting: [Sorting::default(); 2],
-            overview: OverviewView::default(),
-            assessment: AssessmentView::default(),
-            shapes: BTreeMap::new(),
-            drawn: Vec::new(),
-            errors: ErrorCache::default(),
-            drawn_errors: Vec::new(),
-        }
+        Self { condition, pair, ..Self::default() }
     }
 
     /// Shows all of the curves in the plots over frequency.

@@ -15,7 +15,7 @@ use super::views::{bode_options, condition_source, net_gain_pairs};
 
 /// The figure that a view shows; none until its results are there.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {
-    let bars = state.display.show_bars || view.kind().figure.is_some_and(FigureKind::needs_bars);
+    let bars = !state.display.hide_bars || view.kind().figure.is_some_and(FigureKind::needs_bars);
     let with_bars = if bars { state.analysis_with_bars() } else { state.analysis().cloned() };
     let analysis = with_bars.as_ref();
     let source = condition_source(state);
@@ -53,7 +53,7 @@ fn request(state: &State, view: View) -> Option<FigureRequest> {
         View::Evidence => dataset.measuring_pairs().marked().collect(),
         _ => Vec::new(),
     };
-    let (measure, across) = display.channel_figure;
+    let (measure, across) = display.channel_values;
     let ranges = match view {
         View::Bode => chosen(&display.bode),
         View::Error => chosen(&display.error),

@@ -76,7 +76,7 @@ pub struct Results {
     pub assessment: Option<(AssessmentJob, Arc<AssessmentTable>)>,
     /// Responses of one model of each condition, and of which; see [`super::state::State::across`].
     pub across: Option<(AcrossJob, Arc<AcrossCurves>)>,
-    /// How sure the figures of an analysis are, and of which; see [`super::state::State::uncertainty`].
+    /// How sure the values of an analysis are, and of which; see [`super::state::State::uncertainty`].
     pub uncertainty: Option<(UncertaintyJob, Arc<Uncertainty>)>,
     /// Analyses of the variants.
     pub variants: Vec<(VariantJob, Arc<Analysis>)>,

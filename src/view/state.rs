@@ -282,7 +282,7 @@ impl State {
         Arc::ptr_eq(&analysis.study.dataset, &self.study.dataset).then_some(analysis)
     }
 
-    /// How sure the figures of the newest analysis are; none until that is computed, beside the live answer.
+    /// How sure the values of the newest analysis are; none until that is computed, beside the live answer.
     pub fn uncertainty(&self) -> Option<&Arc<Uncertainty>> {
         let (job, uncertainty) = self.results.uncertainty.as_ref()?;
         self.analysis()?;
@@ -295,7 +295,7 @@ impl State {
         Sureness { condition: self.condition().id(), uncertainty: uncertainty.map(AsRef::as_ref) }
     }
 
-    /// The newest analysis with how sure its figures are, as far as that is computed: what files and derivations are made of.
+    /// The newest analysis with how sure its values are, as far as that is computed: what files and derivations are made of.
     pub fn analysis_with_bars(&self) -> Option<Analysis> {
         let analysis = self.analysis()?.clone();
         Some(Analysis { uncertainty: self.uncertainty().cloned(), ..analysis })

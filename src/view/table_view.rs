@@ -36,7 +36,7 @@ impl Sorting {
         let cells: Vec<String> = order.iter().map(|&row| cell(row, column)).collect();
         order.sort_by(|a, b| {
             let (a, b) = (&cells[*a], &cells[*b]);
-            let compared = match (figure(a), figure(b)) {
+            let compared = match (number_in(a), number_in(b)) {
                 (Some(a), Some(b)) => a.total_cmp(&b),
                 _ => a.cmp(b),
             };
@@ -57,7 +57,7 @@ impl Sorting {
 }
 
 /// The number that a cell begins with, whichever its minus sign.
-fn figure(cell: &str) -> Option<f64> {
+fn number_in(cell: &str) -> Option<f64> {
     cell.split_whitespace().next()?.replacen('\u{2212}', "-", 1).parse().ok()
 }
 
@@ -106,7 +106,7 @@ pub fn table_ui(
                     let color = (look.color)(row, column).unwrap_or(palette.text);
                     let text = RichText::new(cell).size(SMALL_SIZE).color(color);
                     let text = if selected { text.background_color(palette.selected) } else { text };
-                    let layout = if figure(cell).is_some() { Align::Max } else { Align::Min };
+                    let layout = if number_in(cell).is_some() { Align::Max } else { Align::Min };
                     let label = Label::new(text).sense(Sense::click()).selectable(false).extend();
                     let response = ui.with_layout(Layout::top_down(layout), |ui| ui.add(label)).inner;
                     response.context_menu(|ui| copy_ui(ui, table, commands));
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn figures_are_sorted_by_value_and_words_by_letters() {
+    fn numbers_are_sorted_by_value_and_words_by_letters() {
         let by = |column| Sorting::default().clicked(column);
         assert_eq!(by(1).order(&table()), [1, 3, 0, 2], "empty cells last");
         assert_eq!(by(1).clicked(1).order(&table()), [0, 3, 1, 2], "downwards too");

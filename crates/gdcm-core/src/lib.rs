@@ -48,6 +48,29 @@
 //! D_oi = sum W omega Delta phi / sum W omega^2,   L(s) = (1 + sqrt(2) a s + a^2 s^2) / (1 + sqrt(2) b s + b^2 s^2).   (M15)
 //! ```
 //!
+//! # An example
+//!
+//! A helicopter of one response, `q = g / (s + 1)` times the stick, that answers in flight by a fifth more than its physics model:
+//!
+//! ```
+//! use gdcm_core::dataset::*;
+//! use gdcm_core::study::{Engine, Study, Unobserved};
+//! use nalgebra::dmatrix;
+//!
+//! let lag = |g| StateSpace::new(dmatrix![-1.0], dmatrix![g], dmatrix![1.0], dmatrix![0.0]).map(Dynamics::StateSpace);
+//! let nominal = Model::new("nominal", Origin::Nominal { perturbation: None }, lag(1.0)?);
+//! let flight = Model::new("flight", Origin::Identified { method: None, order: None }, lag(1.2)?);
+//! let hover = Condition::new(FlightState::at(ConditionId(1), 0.0), vec![nominal], vec![flight])?;
+//! let (inputs, outputs) = (vec![Channel::new("LON", "%")], vec![Channel::new("Q", "deg/s")]);
+//! let (on_axis, band) = (PairTable::filled(1, 1, true), Band::new(0.5, 12.0)?);
+//! let header = DatasetHeader { name: "one axis".into(), description: String::new(), inputs, outputs, on_axis, band };
+//! let study = Study::new(Dataset::new(header, vec![hover])?.into());
+//! let analysis = Engine::default().analyze(&study, &Unobserved)?;
+//! let correction = &analysis.condition(ConditionId(1)).ok_or("no result")?.correction;
+//! assert!((correction.net_gain(Pair::new(0, 0)).value() - 1.2).abs() < 1e-9);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # Notation
 //!
 //! | symbol | in code | meaning, unit |
@@ -76,13 +99,14 @@
 //! | [`message_text`] | text from files, fit for a message |
 //! | [`executor`] | who carries out pieces of work that do not depend on one another |
 //! | [`dataset`] | what the engineer loads: channels, models, flight conditions; checked once |
+//! | [`progress`] | how far long work is, and whether it is still wanted |
 //! | [`assembly`] | from the models of many files to one dataset: names, channels, units |
 //! | [`response`] | frequency responses, phase, poles and zeros, order statistics |
 //! | [`fidelity`] | cost J, distances in a bundle, representative, discontinuity, modes from model to model |
 //! | [`identification`] | identified models from flight records (M14) |
 //! | [`records`] | from the columns of record files to flight records: time, channels, units |
 //! | [`correction`] | G, D, bounds, gains, delays, leads, and what they do to a response |
-//! | [`schedule`] | regression over airspeed, what speaks for it, assessment |
+//! | [`schedule`] | regression over airspeed, its forms compared, assessment |
 //! | [`uncertainty`] | how sure each number is, what the scatter over the conditions is made of |
 //! | [`study`] | what the engineer does: settings, rejections, pins, variants, undo; the staged analysis, and how each number came about |
 
@@ -93,6 +117,7 @@ pub mod executor;
 pub mod fidelity;
 pub mod identification;
 pub mod message_text;
+pub mod progress;
 pub mod records;
 pub mod response;
 pub mod schedule;

@@ -1,4 +1,4 @@
-//! What is being put together: the models found, the rules about them, and what is shown of both.
+//! What is being imported: the models found, the rules about them, and what is shown of both.
 
 use std::path::PathBuf;
 
@@ -13,7 +13,7 @@ use super::table::COLUMNS;
 /// Most steps that can be undone.
 const MOST_STEPS: usize = 200;
 
-/// What the engineer asks for while models are put together.
+/// What the engineer asks for while models are imported.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AssemblingCommand {
     /// Begin, or go on.
@@ -36,7 +36,7 @@ pub enum AssemblingCommand {
     Sort(usize),
     /// Show the response of this place in the preview.
     ShowResponse(usize),
-    /// Take rules from a file.
+    /// Load rules from a file.
     LoadRules(PathBuf),
     /// Write the rules to a file.
     SaveRules(PathBuf),
@@ -59,8 +59,8 @@ pub struct Reading {
     pub taken: u64,
 }
 
-/// Models that are being put together.
-#[derive(Debug)]
+/// Models that are being imported.
+#[derive(Debug, Default)]
 pub struct AssemblyState {
     assembly: Assembly,
     earlier: Vec<Rules>,
@@ -72,7 +72,7 @@ pub struct AssemblyState {
     /// What could not be taken, in words.
     pub faults: Vec<String>,
     /// What is no model, in words.
-    pub passed_over: Vec<String>,
+    pub ignored: Vec<String>,
     /// The tables of columns among the files, with the headings that they were read by.
     pub tables: Headings,
     /// The reading under way.
@@ -89,28 +89,6 @@ pub struct AssemblyState {
     pub rules_path: String,
     /// Path of the dataset, as typed.
     pub dataset_path: String,
-}
-
-impl Default for AssemblyState {
-    fn default() -> Self {
-        Self {
-            assembly: Assembly::new(Vec::new(), Rules::default()),
-            earlier: Vec::new(),
-            later: Vec::new(),
-            are_said: false,
-            sources: Vec::new(),
-            faults: Vec::new(),
-            passed_over: Vec::new(),
-            tables: Headings::new(),
-            reading: None,
-            selected: 0,
-            sorting: Sorting::default(),
-            preview: Preview::default(),
-            source_path: String::new(),
-            rules_path: String::new(),
-            dataset_path: String::new(),
-        }
-    }
 }
 
 impl AssemblyState {
@@ -136,7 +114,7 @@ impl AssemblyState {
     pub fn forget_models(&mut self) {
         self.assembly = Assembly::new(Vec::new(), self.assembly.rules().clone());
         self.faults.clear();
-        self.passed_over.clear();
+        self.ignored.clear();
         self.tables.clear();
     }
 

@@ -17,7 +17,7 @@ use crate::view::state::State;
 
 /// Gains or delays, over airspeed or over conditions. Laid out from right to left.
 pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let shown = state.display.channel_figure;
+    let shown = state.display.channel_values;
     let (mut measure, mut across) = shown;
     let axes = [
         (Across::Airspeed, "over airspeed", "With the schedule"),
@@ -37,7 +37,7 @@ pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command
 
 /// Gain or delay of every channel against airspeed (Figures 3 and 4).
 pub fn channels_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    let (measure, across) = state.display.channel_figure;
+    let (measure, across) = state.display.channel_values;
     let (inputs, outputs) = channel_panels(state, measure, across);
     let scene = ChannelsScene { inputs: &inputs, outputs: &outputs, message: Some(state.results.absence()) };
     let events = channels_ui(ui, &scene, &mut state.display.channels, palette);

@@ -56,7 +56,7 @@ fn controls_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
 
 /// The switch of error bars and bands, by this name.
 pub(super) fn bars_switch_ui(ui: &mut Ui, state: &State, name: &str, commands: &mut Vec<Command>) {
-    let mut shown = state.display.show_bars;
+    let mut shown = !state.display.hide_bars;
     let level = 100.0 * state.study.settings.uncertainty.level;
     let hint = format!(
         "Bars of {level:.0} %: thick for the physics model chosen (identification), thin with not knowing the trim flown. Bands of the \
@@ -323,7 +323,7 @@ struct Figure {
 impl Figure {
     fn panel(self, state: &State, analysis: &Analysis, across: Across) -> GainPanel {
         let classes = Classes::of(state.dataset());
-        let uncertainty = state.uncertainty().filter(|_| state.display.show_bars).map(|of| of.as_ref());
+        let uncertainty = state.uncertainty().filter(|_| !state.display.hide_bars).map(|of| of.as_ref());
         let place = |index: usize, flight_state: &FlightState| match across {
             Across::Airspeed => flight_state.airspeed_kt,
             Across::Conditions => index as f64,

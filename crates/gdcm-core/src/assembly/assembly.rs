@@ -27,6 +27,13 @@ pub struct Assembly {
     problems: Vec<Problem>,
 }
 
+impl Default for Assembly {
+    /// One without models.
+    fn default() -> Self {
+        Self::new(Vec::new(), Rules::default())
+    }
+}
+
 impl Assembly {
     /// What `rules` make of `models`.
     pub fn new(models: Vec<FoundModel>, rules: Rules) -> Self {

@@ -106,7 +106,7 @@ impl fmt::Display for BundleKind {
 }
 
 /// A flight condition: the id that its dataset gives it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct ConditionId(pub i64);
 
 impl fmt::Display for ConditionId {

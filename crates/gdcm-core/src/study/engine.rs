@@ -4,14 +4,15 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::correction::{Channel, ChannelLeads, Problem, ProofBudget, Solution};
-use crate::dataset::{Band, BundleKind, Condition, ConditionId, Dataset};
+use crate::dataset::{Band, ConditionId, Dataset};
 use crate::executor::{Executor, Sequential};
 use crate::response::FrequencyGrid;
-use crate::schedule::{Schedule, ScheduleCaution, ScheduleError, ScheduledPoint, assess};
+use crate::schedule::{Schedule, ScheduleCaution, ScheduledPoint};
 
 use super::{
-    Analysis, Assessed, Cancelled, ConditionAnalysis, ConditionCurves, ConditionFailure, ConditionModels,
-    ConditionStages, Execution, KnownModels, Memo, Progress, Purpose, Study, Uncertainty, model_count,
+    Analysis, Assessed, AssessmentChoice, Cancelled, ConditionAnalysis, ConditionCurves, ConditionFailure,
+    ConditionModels, ConditionStages, Execution, KnownModels, Memo, Progress, Purpose, Study, Uncertainty, assessed,
+    model_count,
 };
 
 /// Computes analyses and keeps each stage's last result by what it is computed from, never by where that came from: of a dataset
@@ -84,21 +85,38 @@ impl Engine {
 
     /// The analysis of `study`; stages that do not depend on what changed since the last call are not computed again.
     pub fn analyze(&mut self, study: &Study, progress: &dyn Progress) -> Result<Analysis, Cancelled> {
+        self.analyze_first(study, None, progress)
+    }
+
+    /// As [`Engine::analyze`], with the result of one condition told before the others are begun.
+    pub fn analyze_first(
+        &mut self,
+        study: &Study,
+        first: Option<WantedFirst>,
+        progress: &dyn Progress,
+    ) -> Result<Analysis, Cancelled> {
         self.take(&study.dataset);
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
         let total = study.dataset.conditions().iter().map(|of| ConditionStages::steps(of)).sum();
         let execution = Execution::new(self.executor.as_ref(), progress, total);
-        let conditions = analyze_conditions(&mut self.conditions, study, &grid, self.proofs, &execution)?;
+        let conditions = analyze_conditions(&mut self.conditions, study, &grid, (self.proofs, first), &execution)?;
         let mut schedule = Schedule::of(&scheduled_points(study, &conditions), study.settings.schedule);
         if let Ok(schedule) = &mut schedule {
             schedule.cautions.extend(signed_delays_apart(study, &conditions));
         }
-        let all = study.dataset.conditions();
-        let assess = |index: usize| assessed(study, &all[index], conditions.get(&all[index].id()), &schedule, &grid);
-        let assessment = execution.each(all.len(), 0, assess)?;
-        let assessment = all.iter().map(|condition| condition.id()).zip(assessment).collect();
         let (study, omega) = (study.clone(), grid.omega().into());
-        Ok(Analysis { study, omega, conditions, schedule, assessment, uncertainty: None })
+        let mut analysis =
+            Analysis { study, omega, conditions, schedule, assessment: BTreeMap::new(), uncertainty: None };
+        let choice = AssessmentChoice::of_paper(&analysis.study.settings);
+        let ids: Vec<ConditionId> =
+            analysis.study.dataset.conditions().iter().map(|condition| condition.id()).collect();
+        let assess = |place: usize| match assessed(&analysis, ids[place], choice) {
+            Ok(of) => Assessed::Nominal(of.changes),
+            Err(why) => Assessed::LeftOut { why },
+        };
+        let assessment = execution.each(ids.len(), 0, assess)?;
+        analysis.assessment = ids.into_iter().zip(assessment).collect();
+        Ok(analysis)
     }
 
     /// How sure each figure of `analysis` is (M13). Substitutions of models that do not depend on what changed since the last call are not
@@ -172,21 +190,30 @@ impl Engine {
     }
 }
 
+/// The condition whose result is wanted before the others'.
+#[derive(Clone, Copy)]
+pub struct WantedFirst<'a> {
+    /// The condition.
+    pub condition: ConditionId,
+    /// Is told its result, which the whole analysis will contain.
+    pub tell: &'a (dyn Fn(&Result<ConditionAnalysis, ConditionFailure>) + Sync),
+}
+
 /// All conditions: first the one that is wanted first, by everybody together, then the others side by side.
 fn analyze_conditions(
     stages: &mut BTreeMap<ConditionId, ConditionStages>,
     study: &Study,
     grid: &FrequencyGrid,
-    proofs: ProofBudget,
+    (proofs, first): (ProofBudget, Option<WantedFirst>),
     execution: &Execution<'_>,
 ) -> Result<Outcomes, Cancelled> {
     let mut outcomes = Outcomes::new();
-    if let Some(first) = execution.progress().wanted_first()
-        && let Some(stages) = stages.get_mut(&first)
+    if let Some(first) = first
+        && let Some(stages) = stages.get_mut(&first.condition)
     {
         let outcome = stages.analyze(study, grid, proofs, execution)?;
-        execution.progress().first_result(&outcome);
-        outcomes.insert(first, outcome);
+        (first.tell)(&outcome);
+        outcomes.insert(first.condition, outcome);
     }
     let others = stages.iter_mut().filter(|(id, _)| !outcomes.contains_key(id)).collect();
     let others = execution.each_mut(others, |(id, stages): (&ConditionId, &mut ConditionStages)| {
@@ -236,29 +263,4 @@ fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCautio
             .then_some(ScheduleCaution::SignedDelayApart { channel, condition, tau_s, elsewhere_s })
     };
     channels.filter_map(caution).collect()
-}
-
-fn assessed(
-    study: &Study,
-    condition: &Condition,
-    outcome: Option<&Result<ConditionAnalysis, ConditionFailure>>,
-    schedule: &Result<Schedule, ScheduleError>,
-    grid: &FrequencyGrid,
-) -> Assessed {
-    let left_out = |why: String| Assessed::LeftOut { why };
-    let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()].name;
-    match (outcome, schedule) {
-        _ if study.choice(condition.id()).physics.rejected.contains(nominal) => {
-            left_out("the nominal model is rejected".to_owned())
-        }
-        (None, _) => left_out("it was not analysed".to_owned()),
-        (Some(Err(failure)), _) => left_out(failure.to_string()),
-        (_, Err(error)) => left_out(error.to_string()),
-        (Some(Ok(analysis)), Ok(schedule)) => {
-            let models = &analysis.comparison.nominal;
-            let correction = schedule.at_state(condition.flight_state());
-            let average = study.settings.cost_average;
-            Assessed::Nominal(assess(&models.mismatch, &models.cost, &correction, grid.omega(), average))
-        }
-    }
 }

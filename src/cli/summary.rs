@@ -51,7 +51,7 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
     let dataset = format!("{}, {}", sanitized(study.dataset.name()), loaded.origin);
     let phase = match settings.phase {
         PhaseCorrection::None => "left as it is".to_owned(),
-        PhaseCorrection::Delay => format!("corrected by delays; D is the {}", settings.delay_from.words()),
+        PhaseCorrection::Delay => format!("corrected by delays; D is the {}", settings.delay_from),
         PhaseCorrection::Lead => format!(
             "corrected by a delay or a lead filter a channel: order {}, n {}, R_max {}",
             settings.lead.order.number(),
@@ -294,7 +294,7 @@ fn evidence_section(analysis: &Analysis) -> String {
         }
     }
     for test in uncertainty.second_variables.iter().filter(|test| test.needed) {
-        text.push_str(&labelled(0, "Schedule", LABEL, &format!("{}: {}", pair_name(test.pair), test.words())));
+        text.push_str(&labelled(0, "Schedule", LABEL, &format!("{}: {}", pair_name(test.pair), test)));
     }
     text
 }

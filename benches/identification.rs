@@ -11,10 +11,11 @@ use std::time::Instant;
 use nalgebra::DMatrix;
 
 use gdcm::executor::Pool;
-use gdcm_core::assembly::standard_patterns;
-use gdcm_core::dataset::ConditionId;
-use gdcm_core::identification::{FlightRecord, Options, Preparation, StateSpaceMatrices, Watch, identify};
-use gdcm_core::records::{RecordChannels, RecordGuess, RecordLayout, TimeWish};
+use gdcm_core::dataset::{ConditionId, StateSpace};
+use gdcm_core::identification::Preparation;
+use gdcm_core::progress::Progress;
+use gdcm_core::records::{LaidOutRecord, RecordChannels, TimeWish};
+use gdcm_core::study::IdentificationRequest;
 use gdcm_files::{FolderProgress, embedded_example, read_records};
 
 struct Silent;
@@ -44,16 +45,18 @@ impl Stages {
     }
 }
 
-impl Watch for Stages {
-    fn progress(&self, _done: f64, what: &str) {
-        self.steps.lock().expect("nothing panics").push((self.now_ms(), what.to_owned()));
-    }
-
-    fn is_stopped(&self) -> bool {
+impl Progress for Stages {
+    fn cancelled(&self) -> bool {
         false
     }
 
-    fn first_model(&self, _model: &StateSpaceMatrices) {
+    fn advanced(&self, _done: usize, _total: usize) {}
+
+    fn step(&self, what: &str) {
+        self.steps.lock().expect("nothing panics").push((self.now_ms(), what.to_owned()));
+    }
+
+    fn first_model(&self, _model: &StateSpace) {
         *self.first_model.lock().expect("nothing panics") = Some(self.now_ms());
     }
 }
@@ -63,27 +66,18 @@ fn main() {
     let channels = RecordChannels::of_dataset(&dataset);
     let archive = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/example-records.zip");
     let tables = read_records(&[archive], &Silent).expect("the archive is there").tables;
-    let patterns = standard_patterns();
+    let records: Vec<LaidOutRecord> =
+        tables.into_iter().map(|table| LaidOutRecord::proposed(table, &channels, &TimeWish::default()).0).collect();
+    let (inputs, outputs) = dataset.names_of_channels();
+    let preparation = Preparation::of(&borrowed(&inputs), &borrowed(&outputs));
+    let band = dataset.band();
     let (mut all_ms, mut worst) = (0.0, 0.0f64);
     for condition in dataset.conditions() {
-        let of = |table: &&_| ConditionId(guess(table, &patterns).condition.unwrap_or(0)) == condition.id();
-        let tables: Vec<_> = tables.iter().filter(of).collect();
-        let flights: Vec<FlightRecord> = tables
-            .iter()
-            .map(|table| {
-                let layout = RecordLayout::proposed(table, &channels, &TimeWish::default()).layout;
-                layout.flight_record(table, &channels).expect("the columns are named")
-            })
-            .collect();
-        let held_out = (0..tables.len()).filter(|index| guess(tables[*index], &patterns).held_out).collect();
-        let names =
-            |channels: &[gdcm_core::dataset::Channel]| channels.iter().map(|of| of.name.clone()).collect::<Vec<_>>();
-        let (inputs, outputs) = (names(dataset.inputs()), names(dataset.outputs()));
-        let preparation = Preparation::of(&borrowed(&inputs), &borrowed(&outputs));
-        let band = dataset.band();
-        let options = Options { held_out, ..Options::new([band.min(), band.max()], preparation) };
+        let own = records.iter().filter(|record| record.guess.condition_of(&dataset) == Some(condition.id()));
+        let request = IdentificationRequest::of(own, preparation.clone(), [band.min(), band.max()]);
+        let request = request.expect("every condition has records");
         let stages = Stages::new();
-        let found = identify(&flights, &options, &Pool, &stages).expect("the example's flights are good");
+        let found = request.identify(&Pool, &stages).expect("the example's flights are good");
         let ms = stages.now_ms();
         all_ms += ms;
         let ratio = found.held_out_cost.unwrap_or(f64::NAN) / found.cost;
@@ -91,7 +85,7 @@ fn main() {
         println!(
             "condition {:2}: order {:2}, J/dof {:.3}, held out {ratio:.2} times that; first model {:4.0} ms, everything {ms:4.0} ms",
             condition.id(),
-            found.refined.matrices.order(),
+            found.refined.order().unwrap_or_default(),
             found.cost,
             stages.first_model.lock().expect("nothing panics").unwrap_or(f64::NAN),
         );
@@ -108,10 +102,6 @@ fn main() {
 
 fn borrowed(names: &[String]) -> Vec<&str> {
     names.iter().map(String::as_str).collect()
-}
-
-fn guess(table: &gdcm_core::records::RecordTable, patterns: &[gdcm_core::assembly::NamePattern]) -> RecordGuess {
-    RecordGuess::of(&table.name, patterns)
 }
 
 /// The normal matrix of one Gauss-Newton step as the product of a stored Jacobian: 8 records of 150 lines, 6 outputs, real and

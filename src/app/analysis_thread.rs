@@ -1,17 +1,17 @@
 //! The thread that answers what the study and the condition shown need, with a mailbox that keeps only the newest request.
 
 use std::io;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use super::background_jobs::{EngineMaker, ReplySender};
-use super::fault::caught;
+use super::background_jobs::EngineMaker;
 use super::job_queue::CANCEL_GRACE;
+use super::threads::{Mailbox, ReplySender, caught};
 use crate::view::results::FirstResult;
 use gdcm_core::correction::{Problem, Solution};
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::study::{ConditionAnalysis, ConditionFailure, Engine, Progress, Study};
+use gdcm_core::study::{ConditionAnalysis, ConditionFailure, Engine, Progress, Study, WantedFirst};
 
 /// What is to be computed. All of it is shared, so that a request costs next to nothing.
 #[derive(Clone, Debug)]
@@ -40,7 +40,7 @@ const NOTHING: u64 = u64::MAX;
 type Proof = (Arc<Problem>, Arc<Solution>);
 
 #[derive(Default)]
-struct Mailbox {
+struct Orders {
     request: Option<Request>,
     proofs: Vec<Proof>,
     closed: bool,
@@ -48,30 +48,22 @@ struct Mailbox {
 
 #[derive(Default)]
 struct Shared {
-    mailbox: Mutex<Mailbox>,
-    filled: Condvar,
+    orders: Mailbox<Orders>,
     /// Number of the newest request: work for an older one is given up.
     newest: AtomicU64,
 }
 
 impl Shared {
-    fn mailbox(&self) -> MutexGuard<'_, Mailbox> {
-        // A panic while the lock was held leaves a mailbox that is still whole.
-        self.mailbox.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// Waits for a request, for proofs or for both; none once the thread is to end.
     fn take(&self) -> Option<(Option<Request>, Vec<Proof>)> {
-        let mut mailbox = self.mailbox();
-        loop {
-            if mailbox.closed {
-                return None;
+        self.orders.wait(|orders| {
+            let is_empty = orders.request.is_none() && orders.proofs.is_empty();
+            match (orders.closed, is_empty) {
+                (true, _) => Some(None),
+                (false, true) => None,
+                (false, false) => Some(Some((orders.request.take(), std::mem::take(&mut orders.proofs)))),
             }
-            if mailbox.request.is_some() || !mailbox.proofs.is_empty() {
-                return Some((mailbox.request.take(), std::mem::take(&mut mailbox.proofs)));
-            }
-            mailbox = self.filled.wait(mailbox).unwrap_or_else(PoisonError::into_inner);
-        }
+        })
     }
 }
 
@@ -92,28 +84,25 @@ impl AnalysisThread {
     /// Asks for a computation in place of any that is not done yet.
     pub(super) fn request(&self, request: Request) {
         self.shared.newest.store(request.generation, Ordering::Release);
-        self.shared.mailbox().request = Some(request);
-        self.shared.filled.notify_one();
+        self.shared.orders.change(|orders| orders.request = Some(request));
     }
 
     /// Has the newest request answered once more, with a proof that a job has completed.
     pub(super) fn take_proof(&self, problem: Arc<Problem>, solution: Arc<Solution>) {
-        self.shared.mailbox().proofs.push((problem, solution));
-        self.shared.filled.notify_one();
+        self.shared.orders.change(|orders| orders.proofs.push((problem, solution)));
     }
 
     /// Gives up the request under way and the one that waits.
     pub(super) fn stop(&self) {
         self.shared.newest.store(NOTHING, Ordering::Release);
-        self.shared.mailbox().request = None;
+        self.shared.orders.change(|orders| orders.request = None);
     }
 }
 
 impl Drop for AnalysisThread {
     fn drop(&mut self) {
         self.stop();
-        self.shared.mailbox().closed = true;
-        self.shared.filled.notify_one();
+        self.shared.orders.change(|orders| orders.closed = true);
     }
 }
 
@@ -148,7 +137,13 @@ impl Answering {
     fn answer(&self, request: &Request, engine: &mut Engine) {
         let started = Instant::now();
         let progress = RequestProgress { thread: self, request, started, compared: AtomicBool::new(false) };
-        let Ok(analysis) = engine.analyze(&request.study, &progress) else {
+        let tell = |outcome: &Result<ConditionAnalysis, ConditionFailure>| {
+            let (dataset, condition) = (Arc::clone(&request.study.dataset), request.condition);
+            let first = FirstResult { generation: request.generation, dataset, condition, outcome: outcome.clone() };
+            self.replies.send(move |app| app.state.results.first = Some(first));
+        };
+        let first = WantedFirst { condition: request.condition, tell: &tell };
+        let Ok(analysis) = engine.analyze_first(&request.study, Some(first), &progress) else {
             return;
         };
         let (generation, elapsed_ms) = (request.generation, 1e3 * started.elapsed().as_secs_f64());
@@ -167,9 +162,9 @@ struct RequestProgress<'a> {
 impl RequestProgress<'_> {
     /// Whether the request that waits needs the very responses and distances that are being computed.
     fn is_of_use(&self) -> bool {
-        let mailbox = self.thread.shared.mailbox();
+        let orders = self.thread.shared.orders.lock();
         !self.compared.load(Ordering::Relaxed)
-            && mailbox.request.as_ref().is_some_and(|newer| newer.compares_the_same(self.request))
+            && orders.request.as_ref().is_some_and(|newer| newer.compares_the_same(self.request))
     }
 }
 
@@ -195,16 +190,5 @@ impl Progress for RequestProgress<'_> {
                 }
             });
         }
-    }
-
-    fn wanted_first(&self) -> Option<ConditionId> {
-        Some(self.request.condition)
-    }
-
-    fn first_result(&self, outcome: &Result<ConditionAnalysis, ConditionFailure>) {
-        let (dataset, condition) = (Arc::clone(&self.request.study.dataset), self.request.condition);
-        let generation = self.request.generation;
-        let first = FirstResult { generation, dataset, condition, outcome: outcome.clone() };
-        self.thread.replies.send(move |app| app.state.results.first = Some(first));
     }
 }

@@ -14,9 +14,9 @@ use gdcm_files::{
     rules_path, sources_folder,
 };
 
-use super::background_jobs::ReplySender;
-use super::fault::Fault;
 use super::files::DialogPurpose;
+use super::threads::Fault;
+use super::threads::ReplySender;
 use super::window::GdcmApp;
 
 /// Bytes of values between two words about how far a file is read.

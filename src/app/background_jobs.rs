@@ -4,15 +4,13 @@
 use std::io;
 use std::rc::Rc;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, channel};
 
-use egui::Context;
 use gdcm_core::correction::Outcome;
 use gdcm_core::executor::Executor;
 use gdcm_core::study::{CURVE_POINTS, CurvesJob, Engine, Job, ProofJob, TogglesJob, UncertaintyJob, display_band};
 
-use super::fault::{Fault, caught};
 use super::job_queue::JobQueue;
+use super::threads::{Fault, ReplySender};
 use super::window::GdcmApp;
 use crate::executor::Pool;
 use crate::view::arrangement::{Need, View};
@@ -21,44 +19,6 @@ use crate::view::state::State;
 
 /// Makes an engine, at the start and anew after a panic, which may leave its caches half made.
 pub type EngineMaker = Arc<dyn Fn() -> Engine + Send + Sync>;
-
-/// What a thread has the window do with what it made.
-pub(super) type Reply = Box<dyn FnOnce(&mut GdcmApp) + Send>;
-
-/// Where threads send their replies; the window wakes for each.
-#[derive(Clone)]
-pub(super) struct ReplySender {
-    sender: Sender<Reply>,
-    ctx: Context,
-}
-
-impl ReplySender {
-    pub(super) fn new(ctx: &Context) -> (Self, Receiver<Reply>) {
-        let (sender, receiver) = channel();
-        (Self { sender, ctx: ctx.clone() }, receiver)
-    }
-
-    pub(super) fn send(&self, reply: impl FnOnce(&mut GdcmApp) + Send + 'static) {
-        // The window is gone when nobody listens; the threads end soon after.
-        let _ = self.sender.send(Box::new(reply));
-        self.ctx.request_repaint();
-    }
-
-    /// Does a single piece of work in a thread of its own, and has the window take what comes of it.
-    pub(super) fn in_thread<T: Send + 'static>(
-        &self,
-        name: &str,
-        work: impl FnOnce() -> T + Send + 'static,
-        take: impl FnOnce(&mut GdcmApp, Result<T, Fault>) + Send + 'static,
-    ) -> io::Result<()> {
-        let replies = self.clone();
-        let work = move || {
-            let made = caught(work);
-            replies.send(move |app| take(app, made));
-        };
-        std::thread::Builder::new().name(name.to_owned()).spawn(work).map(drop)
-    }
-}
 
 /// One kind of job.
 struct JobKind<J: Job> {

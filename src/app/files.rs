@@ -16,7 +16,7 @@ use gdcm_files::{
     file_exists, load_any, open_study_of, recent_files, save_study,
 };
 
-use super::fault::Fault;
+use super::threads::Fault;
 use super::window::GdcmApp;
 
 /// The study as it was saved last.

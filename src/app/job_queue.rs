@@ -1,11 +1,11 @@
 //! A thread beside the live answer that does the jobs of one kind, one after the other. Two equal jobs are one: what is under way,
 //! done or stopped is known by the job itself.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::fault::{Fault, caught};
+use super::threads::{Fault, Mailbox, caught};
 use gdcm_core::study::{Cancelled, Job, Progress};
 
 /// What a job has made, or the fault that ended it; nothing is told of a job that was given up.
@@ -49,7 +49,7 @@ impl Progress for Run {
     }
 }
 
-struct Mailbox<J> {
+struct Orders<J> {
     /// The jobs asked for, the most urgent first.
     wanted: Vec<J>,
     running: Option<(J, Arc<Run>)>,
@@ -60,7 +60,7 @@ struct Mailbox<J> {
     closed: bool,
 }
 
-impl<J: Job> Mailbox<J> {
+impl<J: Job> Orders<J> {
     fn unfinished(&self) -> impl Iterator<Item = &J> {
         self.wanted.iter().filter(|job| !self.done.contains(job) && !self.stopped.contains(job))
     }
@@ -72,38 +72,22 @@ impl<J: Job> Mailbox<J> {
     }
 }
 
-struct Shared<J> {
-    mailbox: Mutex<Mailbox<J>>,
-    changed: Condvar,
-}
-
-impl<J: Job> Shared<J> {
-    fn mailbox(&self) -> MutexGuard<'_, Mailbox<J>> {
-        // A panic while the lock was held leaves a mailbox that is still whole.
-        self.mailbox.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Waits for a job that is to be begun; none once the queue is dropped.
-    fn take(&self) -> Option<(J, Arc<Run>)> {
-        let mut mailbox = self.mailbox();
-        loop {
-            if mailbox.closed {
-                return None;
-            }
-            let next = mailbox.unfinished().next().cloned();
-            if let Some(job) = next {
-                let run = Run::start();
-                mailbox.running = Some((job.clone(), Arc::clone(&run)));
-                return Some((job, run));
-            }
-            mailbox = self.changed.wait(mailbox).unwrap_or_else(PoisonError::into_inner);
+/// Waits for a job that is to be begun; none once the queue is dropped.
+fn take<J: Job>(orders: &Mailbox<Orders<J>>) -> Option<(J, Arc<Run>)> {
+    orders.wait(|orders| {
+        if orders.closed {
+            return Some(None);
         }
-    }
+        let job = orders.unfinished().next()?.clone();
+        let run = Run::start();
+        orders.running = Some((job.clone(), Arc::clone(&run)));
+        Some(Some((job, run)))
+    })
 }
 
 /// The jobs of one kind. Dropping it gives up the job under way and waits for nothing.
 pub(super) struct JobQueue<J: Job> {
-    shared: Arc<Shared<J>>,
+    orders: Arc<Mailbox<Orders<J>>>,
 }
 
 impl<J: Job> JobQueue<J> {
@@ -114,72 +98,71 @@ impl<J: Job> JobQueue<J> {
         tools: impl Fn() -> J::Tools + Send + 'static,
         deliver: impl Fn(J, Ending<J>) + Send + 'static,
     ) -> std::io::Result<Self> {
-        let mailbox =
-            Mailbox { wanted: Vec::new(), running: None, done: Vec::new(), stopped: Vec::new(), closed: false };
-        let shared = Arc::new(Shared { mailbox: Mutex::new(mailbox), changed: Condvar::new() });
-        let of_thread = Arc::clone(&shared);
+        let none = Orders { wanted: Vec::new(), running: None, done: Vec::new(), stopped: Vec::new(), closed: false };
+        let orders = Arc::new(Mailbox::new(none));
+        let of_thread = Arc::clone(&orders);
         std::thread::Builder::new().name(name.to_owned()).spawn(move || work(&of_thread, &tools, &deliver))?;
-        Ok(Self { shared })
+        Ok(Self { orders })
     }
 
     /// Asks for these jobs, the most urgent first, and for no others: one under way goes on if it is among them, and one that
     /// is done or was stopped is not begun again as long as it is.
     pub(super) fn want(&self, jobs: Vec<J>) {
-        let mut mailbox = self.shared.mailbox();
-        mailbox.done.retain(|job| jobs.contains(job));
-        mailbox.stopped.retain(|job| jobs.contains(job));
-        if let Some((job, run)) = &mailbox.running {
-            run.outdated.store(!jobs.contains(job), Ordering::Release);
-        }
-        mailbox.wanted = jobs;
-        self.shared.changed.notify_one();
+        self.orders.change(|orders| {
+            orders.done.retain(|job| jobs.contains(job));
+            orders.stopped.retain(|job| jobs.contains(job));
+            if let Some((job, run)) = &orders.running {
+                run.outdated.store(!jobs.contains(job), Ordering::Release);
+            }
+            orders.wanted = jobs;
+        });
     }
 
     /// The jobs that are asked for and neither done nor stopped.
     pub(super) fn unfinished(&self) -> Vec<J> {
-        self.shared.mailbox().unfinished().cloned().collect()
+        self.orders.lock().unfinished().cloned().collect()
     }
 
     /// Gives up what is under way and what waits.
     pub(super) fn stop(&self) {
-        let mut mailbox = self.shared.mailbox();
-        let left: Vec<J> = mailbox.unfinished().cloned().collect();
-        mailbox.stop_running();
-        mailbox.stopped.extend(left);
+        self.orders.change(|orders| {
+            let left: Vec<J> = orders.unfinished().cloned().collect();
+            orders.stop_running();
+            orders.stopped.extend(left);
+        });
     }
 
     /// Lets what was stopped be begun again.
     pub(super) fn resume(&self) {
-        self.shared.mailbox().stopped.clear();
-        self.shared.changed.notify_one();
+        self.orders.change(|orders| orders.stopped.clear());
     }
 
     /// Whether something that is asked for was stopped, by hand or by a fault.
     pub(super) fn is_stopped(&self) -> bool {
-        !self.shared.mailbox().stopped.is_empty()
+        !self.orders.lock().stopped.is_empty()
     }
 
     /// Steps done, of how many, where something is asked for that is not done.
     pub(super) fn progress(&self) -> Option<(usize, usize)> {
-        let mailbox = self.shared.mailbox();
-        mailbox.unfinished().next()?;
+        let orders = self.orders.lock();
+        orders.unfinished().next()?;
         let steps = |run: &Run| (run.done.load(Ordering::Relaxed), run.total.load(Ordering::Relaxed));
-        Some(mailbox.running.as_ref().map_or((0, 0), |(_, run)| steps(run)))
+        Some(orders.running.as_ref().map_or((0, 0), |(_, run)| steps(run)))
     }
 }
 
 impl<J: Job> Drop for JobQueue<J> {
     fn drop(&mut self) {
-        let mut mailbox = self.shared.mailbox();
-        mailbox.closed = true;
-        mailbox.stop_running();
-        self.shared.changed.notify_one();
+        self.orders.change(|orders| {
+            orders.closed = true;
+            orders.stop_running();
+        });
     }
 }
 
-fn work<J: Job>(shared: &Shared<J>, make_tools: &dyn Fn() -> J::Tools, deliver: &dyn Fn(J, Ending<J>)) {
+fn work<J: Job>(orders: &Mailbox<Orders<J>>, make_tools: &dyn Fn() -> J::Tools, deliver: &dyn Fn(J, Ending<J>)) {
     let mut tools = None;
-    while let Some((job, run)) = shared.take() {
+    while let Some((job, run)) = take(orders) {
         let outcome = caught(|| job.run(tools.get_or_insert_with(make_tools), run.as_ref()));
         let ending = match outcome {
             Ok(Err(Cancelled)) => None,
@@ -189,14 +172,14 @@ fn work<J: Job>(shared: &Shared<J>, make_tools: &dyn Fn() -> J::Tools, deliver: 
                 Some(Err(fault))
             }
         };
-        let mut mailbox = shared.mailbox();
-        mailbox.running = None;
+        let mut orders = orders.lock();
+        orders.running = None;
         let Some(ending) = ending else { continue };
-        if mailbox.wanted.contains(&job) {
-            let over = if ending.is_ok() { &mut mailbox.done } else { &mut mailbox.stopped };
+        if orders.wanted.contains(&job) {
+            let over = if ending.is_ok() { &mut orders.done } else { &mut orders.stopped };
             over.push(job.clone());
         }
-        drop(mailbox);
+        drop(orders);
         deliver(job, ending);
     }
 }

@@ -16,8 +16,8 @@ use gdcm_core::study::{Engine, LIVE_PROOF};
 use gdcm_files::{FileError, Opened, embedded_example, load_any};
 
 use super::background_jobs::EngineMaker;
-use super::fault::{self, Fault, caught};
 use super::recovery::{Autosave, LAST_WAIT, end_words};
+use super::threads::{self, Fault, caught};
 use super::window::{GdcmApp, PREFERENCES};
 
 /// What the desktop knows the program by; also the name of the directory for its data.
@@ -90,7 +90,7 @@ pub fn open(path: Option<PathBuf>) -> ExitCode {
         eprintln!("gdcm: {}", no_window(&reason));
         return ExitCode::from(NO_WINDOW);
     }
-    std::panic::set_hook(Box::new(fault::note));
+    std::panic::set_hook(Box::new(threads::note));
     let opening = Arc::new(OnceLock::new());
     match ending(caught(|| run(opened, models, Setup::of_program(), &opening)), opening.get()) {
         Ok(()) => ExitCode::SUCCESS,
@@ -200,7 +200,7 @@ mod tests {
         let autosave = Autosave::start(
             Some(folder.path()),
             Duration::from_secs(3),
-            super::super::background_jobs::ReplySender::new(&Context::default()).0,
+            super::super::threads::ReplySender::new(&Context::default()).0,
         )
         .unwrap();
         let words = ending(fault(), Some(&autosave)).unwrap_err();

@@ -3,7 +3,6 @@
 mod analysis_thread;
 mod assembling;
 mod background_jobs;
-pub mod fault;
 mod files;
 mod job_queue;
 mod keyboard;
@@ -13,6 +12,7 @@ mod records;
 mod recovery;
 mod reload;
 mod report;
+pub mod threads;
 mod update;
 mod window;
 

@@ -5,22 +5,21 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::view::arrangement::View;
-use crate::view::records::{ConditionRecords, RecordRow, RecordsCommand, RecordsPage, RecordsReading};
-use gdcm_core::assembly::standard_patterns;
+use crate::view::records::{ConditionRecords, RecordsCommand, RecordsPage, RecordsReading};
 use gdcm_core::dataset::{ConditionId, ConditionRecord, Dataset};
 use gdcm_core::identification::{Identification, IdentificationError};
-use gdcm_core::records::{RecordChannels, RecordGuess, RecordLayout, RecordTable, TimeWish};
+use gdcm_core::records::{LaidOutRecord, RecordChannels, RecordLayout, RecordTable, TimeWish};
 use gdcm_core::study::{AdoptedModels, Edit, IdentifyJob, OfferedModels};
 use gdcm_files::{DatasetOrigin, FileError, FolderProgress, example_records, load_records, read_records};
 
-use super::fault::Fault;
 use super::files::DialogPurpose;
+use super::threads::Fault;
 use super::window::GdcmApp;
 
 /// Records that were read, by condition, and what could not be.
 #[derive(Default)]
 struct ReadRecords {
-    rows: BTreeMap<ConditionId, Vec<RecordRow>>,
+    rows: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
     faults: Vec<String>,
 }
 
@@ -239,20 +238,18 @@ fn set_layout(records: &mut ConditionRecords, index: usize, layout: &RecordLayou
     for row in &mut records.rows {
         let Some(carried) = layout.carried_to(&row.table, &table) else { continue };
         let (used, guess) = (row.used, row.guess.clone());
-        *row = RecordRow { used, ..RecordRow::new(Arc::clone(&row.table), carried, guess, channels) };
+        *row = LaidOutRecord { used, ..LaidOutRecord::new(Arc::clone(&row.table), carried, guess, channels) };
     }
 }
 
-fn row_of(table: RecordTable, channels: &RecordChannels) -> RecordRow {
-    let guess = RecordGuess::of_table(&table, &standard_patterns());
-    let layout = RecordLayout::proposed(&table, channels, &TimeWish::default()).layout;
-    RecordRow::new(Arc::new(table), layout, guess, channels)
+fn row_of(table: RecordTable, channels: &RecordChannels) -> LaidOutRecord {
+    LaidOutRecord::proposed(table, channels, &TimeWish::default()).0
 }
 
 /// The records of a condition of the example that are inside the program.
 fn of_example(dataset: &Dataset, id: ConditionId) -> Result<ReadRecords, FileError> {
     let channels = RecordChannels::of_dataset(dataset);
-    let rows: Vec<RecordRow> = example_records(id.0)?.into_iter().map(|table| row_of(table, &channels)).collect();
+    let rows: Vec<LaidOutRecord> = example_records(id.0)?.into_iter().map(|table| row_of(table, &channels)).collect();
     Ok(ReadRecords { rows: BTreeMap::from([(id, rows)]), faults: Vec::new() })
 }
 

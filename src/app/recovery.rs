@@ -2,7 +2,7 @@
 //! at the next start.
 
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime};
 
 use gdcm_core::message_text::{sanitized, sanitized_path};
@@ -11,8 +11,8 @@ use gdcm_files::{FileError, LoadedDataset, LostStudy, Opened, RecoveryFile, lost
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
-use super::background_jobs::ReplySender;
 use super::files::{ReadFor, study_name};
+use super::threads::{Mailbox, ReplySender};
 use super::window::GdcmApp;
 use crate::view::bars::Bar;
 
@@ -58,7 +58,7 @@ impl Task {
 }
 
 #[derive(Default)]
-struct Mailbox {
+struct Orders {
     task: Option<Task>,
     /// To be removed once the decisions restored from them are kept anew, or saved.
     restored: Vec<LostStudy>,
@@ -71,23 +71,10 @@ struct Mailbox {
     closed: bool,
 }
 
-#[derive(Default)]
-struct Shared {
-    mailbox: Mutex<Mailbox>,
-    changed: Condvar,
-}
-
-impl Shared {
-    fn mailbox(&self) -> MutexGuard<'_, Mailbox> {
-        // A panic while the lock was held leaves a mailbox that is still whole.
-        self.mailbox.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
 /// Keeps decisions that are not saved. Without a directory it has nowhere to.
 #[derive(Clone)]
 pub struct Autosave {
-    shared: Arc<Shared>,
+    orders: Arc<Mailbox<Orders>>,
     has_thread: bool,
     keep_after: Duration,
 }
@@ -95,68 +82,62 @@ pub struct Autosave {
 impl Autosave {
     /// Starts the thread, which first offers what was lost.
     pub(super) fn start(directory: Option<&Path>, keep_after: Duration, replies: ReplySender) -> std::io::Result<Self> {
-        let shared = Arc::new(Shared::default());
-        let Some(directory) = directory else { return Ok(Self { shared, has_thread: false, keep_after }) };
-        let (of_thread, folder) = (Arc::clone(&shared), directory.join(FOLDER));
+        let orders = Arc::<Mailbox<Orders>>::default();
+        let Some(directory) = directory else { return Ok(Self { orders, has_thread: false, keep_after }) };
+        let (of_thread, folder) = (Arc::clone(&orders), directory.join(FOLDER));
         let work = move || {
             let lost = lost_studies(&folder);
             replies.send(move |app| app.offer(lost));
             work(&of_thread, &folder, &replies);
         };
         std::thread::Builder::new().name("autosave".to_owned()).spawn(work)?;
-        Ok(Self { shared, has_thread: true, keep_after })
+        Ok(Self { orders, has_thread: true, keep_after })
     }
 
     /// These decisions are not saved: the newest are in the recovery file soon after the first.
     pub(super) fn keep(&self, unsaved: Unsaved) {
-        let mut mailbox = self.shared.mailbox();
-        let due = match &mailbox.task {
-            Some(Task::Keep { due, .. }) => *due,
-            _ => Instant::now() + self.keep_after,
-        };
-        mailbox.task = Some(Task::Keep { unsaved: Box::new(unsaved), decided: SystemTime::now(), due });
-        self.shared.changed.notify_all();
+        self.orders.change(|orders| {
+            let due = match &orders.task {
+                Some(Task::Keep { due, .. }) => *due,
+                _ => Instant::now() + self.keep_after,
+            };
+            orders.task = Some(Task::Keep { unsaved: Box::new(unsaved), decided: SystemTime::now(), due });
+        });
     }
 
     /// Every decision is saved, or not wanted: there is nothing to recover.
     pub(super) fn clear(&self) {
-        self.shared.mailbox().task = Some(Task::Clear);
-        self.shared.changed.notify_all();
+        self.orders.change(|orders| orders.task = Some(Task::Clear));
     }
 
     /// The lost decisions are open again: their file goes as soon as they are kept anew, or saved.
     pub(super) fn restored(&self, lost: LostStudy) {
-        self.shared.mailbox().restored.push(lost);
+        self.orders.lock().restored.push(lost);
     }
 
     /// The lost decisions are not wanted.
     pub(super) fn discard(&self, lost: LostStudy) {
-        self.shared.mailbox().discarded.push(lost);
-        self.shared.changed.notify_all();
+        self.orders.change(|orders| orders.discarded.push(lost));
     }
 
     /// Why decisions could not be kept, if that was not taken yet.
     pub(super) fn failure(&self) -> Option<FileError> {
-        self.shared.mailbox().failure.take()
+        self.orders.lock().failure.take()
     }
 
     /// Does what waits now, and says what is kept after it, or why it is not; gives up waiting after `limit`.
     pub(super) fn flush(&self, limit: Duration) -> Result<Option<Kept>, String> {
-        let mut mailbox = self.shared.mailbox();
-        let still_busy = |mailbox: &mut Mailbox| mailbox.task.is_some() || mailbox.busy;
         if !self.has_thread {
-            let lost = matches!(mailbox.task, Some(Task::Keep { .. }));
+            let lost = matches!(self.orders.lock().task, Some(Task::Keep { .. }));
             return if lost { Err("there is no directory for them".to_owned()) } else { Ok(None) };
         }
-        mailbox.hurried = true;
-        self.shared.changed.notify_all();
-        let waited = self.shared.changed.wait_timeout_while(mailbox, limit, still_busy);
-        let (mut mailbox, timeout) = waited.unwrap_or_else(PoisonError::into_inner);
-        mailbox.hurried = false;
-        match mailbox.failure.take() {
+        self.orders.change(|orders| orders.hurried = true);
+        let (is_done, mut orders) = self.orders.wait_at_most(limit, |orders| orders.task.is_none() && !orders.busy);
+        orders.hurried = false;
+        match orders.failure.take() {
             Some(error) => Err(error.to_string()),
-            None if timeout.timed_out() => Err("the disk did not answer".to_owned()),
-            None => Ok(mailbox.kept.clone()),
+            None if !is_done => Err("the disk did not answer".to_owned()),
+            None => Ok(orders.kept.clone()),
         }
     }
 
@@ -164,51 +145,50 @@ impl Autosave {
     pub(super) fn close(&self, limit: Duration) {
         // Nobody is left to be told.
         let _ = self.flush(limit);
-        self.shared.mailbox().closed = true;
-        self.shared.changed.notify_all();
+        self.orders.change(|orders| orders.closed = true);
     }
 }
 
-fn work(shared: &Shared, folder: &Path, replies: &ReplySender) {
+fn work(all: &Mailbox<Orders>, folder: &Path, replies: &ReplySender) {
     let mut file = None;
     loop {
-        let mut mailbox = shared.mailbox();
-        let discarded = std::mem::take(&mut mailbox.discarded);
-        let task = due_task(&mut mailbox);
+        let mut orders = all.lock();
+        let discarded = std::mem::take(&mut orders.discarded);
+        let task = due_task(&mut orders);
         if task.is_none() && discarded.is_empty() {
-            if mailbox.closed {
+            if orders.closed {
                 return;
             }
-            let due = match &mailbox.task {
+            let due = match &orders.task {
                 Some(Task::Keep { due, .. }) => due.saturating_duration_since(Instant::now()),
                 _ => Duration::from_secs(3600),
             };
-            drop(shared.changed.wait_timeout(mailbox, due));
+            all.pause(orders, due);
             continue;
         }
-        mailbox.busy = true;
-        drop(mailbox);
+        orders.busy = true;
+        drop(orders);
         let removed = discarded.into_iter().try_for_each(LostStudy::remove);
         let outcome = task.as_ref().map(|task| carry_out(task, &mut file, folder));
-        let mut mailbox = shared.mailbox();
-        mailbox.busy = false;
-        mailbox.failure = removed.err().or_else(|| mailbox.failure.take());
+        let mut orders = all.lock();
+        orders.busy = false;
+        orders.failure = removed.err().or_else(|| orders.failure.take());
         match (outcome, task) {
             (Some(Ok(kept)), _) => {
-                mailbox.kept = kept;
-                let restored = std::mem::take(&mut mailbox.restored);
-                mailbox.discarded.extend(restored);
+                orders.kept = kept;
+                let restored = std::mem::take(&mut orders.restored);
+                orders.discarded.extend(restored);
             }
             (Some(Err(error)), task) => {
-                mailbox.failure = Some(error);
-                let again = task.filter(|_| !mailbox.hurried && !mailbox.closed).and_then(Task::again);
-                mailbox.task = mailbox.task.take().or(again);
+                orders.failure = Some(error);
+                let again = task.filter(|_| !orders.hurried && !orders.closed).and_then(Task::again);
+                orders.task = orders.task.take().or(again);
             }
             (None, _) => {}
         }
-        let failed = mailbox.failure.is_some();
-        drop(mailbox);
-        shared.changed.notify_all();
+        let failed = orders.failure.is_some();
+        drop(orders);
+        all.change(|_| ());
         if failed {
             replies.send(|app| app.tell_not_kept());
         }
@@ -216,9 +196,9 @@ fn work(shared: &Shared, folder: &Path, replies: &ReplySender) {
 }
 
 /// The task that waits, if its time has come.
-fn due_task(mailbox: &mut Mailbox) -> Option<Task> {
-    let hurried = mailbox.hurried || mailbox.closed;
-    mailbox.task.take_if(|task| match task {
+fn due_task(orders: &mut Orders) -> Option<Task> {
+    let hurried = orders.hurried || orders.closed;
+    orders.task.take_if(|task| match task {
         Task::Keep { due, .. } => hurried || Instant::now() >= *due,
         Task::Clear => true,
     })

@@ -1,13 +1,13 @@
 //! A dataset whose file changes on the disk while it is open: the thread that looks whether it has, and reading it again.
 
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 use std::time::Duration;
 
 use gdcm_files::{FileStamp, LoadedDataset, Opened, file_sha256, load_dataset};
 
-use super::background_jobs::ReplySender;
 use super::files::ReadFor;
+use super::threads::{Mailbox, ReplySender};
 use super::window::GdcmApp;
 use crate::view::bars::Bar;
 
@@ -87,49 +87,34 @@ struct Watched {
     closed: bool,
 }
 
-#[derive(Default)]
-struct Shared {
-    watched: Mutex<Watched>,
-    changed: Condvar,
-}
-
-impl Shared {
-    fn watched(&self) -> MutexGuard<'_, Watched> {
-        // A panic while the lock was held leaves a path that is still whole.
-        self.watched.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
 /// Looks at one file every second or two: its time and its length, and where these are new, its bytes. Polling, because
 /// network drives send no events.
 pub(super) struct DiskWatch {
-    shared: Arc<Shared>,
+    watched: Arc<Mailbox<Watched>>,
 }
 
 impl DiskWatch {
     /// Starts the thread.
     pub(super) fn start(every: Duration, replies: ReplySender) -> std::io::Result<Self> {
-        let shared = Arc::new(Shared::default());
-        let of_thread = Arc::clone(&shared);
+        let watched = Arc::<Mailbox<Watched>>::default();
+        let of_thread = Arc::clone(&watched);
         let look = move || look(&of_thread, every, &replies);
         std::thread::Builder::new().name("disk".to_owned()).spawn(look)?;
-        Ok(Self { shared })
+        Ok(Self { watched })
     }
 
     /// Looks at this file from now on, or at none.
     pub(super) fn watch(&self, path: Option<&Path>) {
-        let mut watched = self.shared.watched();
-        if watched.path.as_deref() != path {
-            watched.path = path.map(Path::to_owned);
-            self.shared.changed.notify_one();
+        let is_new = self.watched.lock().path.as_deref() != path;
+        if is_new {
+            self.watched.change(|watched| watched.path = path.map(Path::to_owned));
         }
     }
 }
 
 impl Drop for DiskWatch {
     fn drop(&mut self) {
-        self.shared.watched().closed = true;
-        self.shared.changed.notify_one();
+        self.watched.change(|watched| watched.closed = true);
     }
 }
 
@@ -169,19 +154,15 @@ impl Known {
     }
 }
 
-fn look(shared: &Shared, every: Duration, replies: &ReplySender) {
+fn look(watched: &Mailbox<Watched>, every: Duration, replies: &ReplySender) {
     let mut known = Known::default();
     loop {
-        let path = {
-            let watched = shared.watched();
-            let waits = |watched: &mut Watched| !watched.closed;
-            let waited = shared.changed.wait_timeout_while(watched, every, waits);
-            let (watched, _) = waited.unwrap_or_else(PoisonError::into_inner);
-            if watched.closed {
-                return;
-            }
-            watched.path.clone()
-        };
+        let (is_closed, watched) = watched.wait_at_most(every, |watched| watched.closed);
+        let path = watched.path.clone();
+        drop(watched);
+        if is_closed {
+            return;
+        }
         if let Some(seen) = path.and_then(|path| known.look(&path)) {
             replies.send(move |app| app.file_seen(&seen));
         }

@@ -25,14 +25,15 @@ use gdcm_files::{Existing, LoadedDataset, LostStudy, Opened, is_first_start};
 
 use super::analysis_thread::{AnalysisThread, Request};
 use super::assembling::ModelReader;
-use super::background_jobs::{BackgroundJobs, Reply, ReplySender};
-use super::fault::Fault;
+use super::background_jobs::BackgroundJobs;
 use super::files::{PendingAction, SavedStudy};
 use super::keyboard::{self, KeyOrder};
 use super::launch::{Setup, holds_models};
 use super::recovery::{Autosave, LAST_WAIT};
 use super::reload::DiskWatch;
 use super::report::ReportJob;
+use super::threads::Fault;
+use super::threads::{Reply, ReplySender};
 use super::update::NextFocus;
 
 /// The program's window.

@@ -5,16 +5,16 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use gdcm_core::dataset::{ConditionId, Dataset, DatasetHeader};
+use gdcm_core::records::LaidOutRecord;
 use gdcm_core::study::AdoptedModels;
 use gdcm_files::{Opened, OutputSet, add_dataset, load_any};
 
 use super::failure::Failure;
 use super::identify_arguments::IdentifyArguments;
-use super::read_record::ReadRecord;
 use super::terminal::say_error;
 
 /// Records that models are identified from together, and the condition that they are of; none without a dataset.
-pub(super) type Group = (Option<ConditionId>, Vec<ReadRecord>);
+pub(super) type Group = (Option<ConditionId>, Vec<LaidOutRecord>);
 
 /// A dataset that models are put into.
 pub(super) struct Destination {
@@ -50,11 +50,11 @@ impl Destination {
     }
 
     /// The records of each condition, in the order of the dataset; what is left out is told on standard error.
-    pub(super) fn groups(&self, records: Vec<ReadRecord>) -> Result<Vec<Group>, Failure> {
+    pub(super) fn groups(&self, records: Vec<LaidOutRecord>) -> Result<Vec<Group>, Failure> {
         if self.condition.is_some() {
             return Ok(vec![(self.condition, records)]);
         }
-        let mut groups: Vec<(ConditionId, Vec<ReadRecord>)> =
+        let mut groups: Vec<(ConditionId, Vec<LaidOutRecord>)> =
             self.dataset.conditions().iter().map(|condition| (condition.id(), Vec::new())).collect();
         for record in records {
             let id = record.guess.condition_of(&self.dataset);

@@ -1,23 +1,23 @@
 //! `gdcm identify`: models out of flight records.
 
-use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::path::{Path, PathBuf};
 
+use crate::executor::Pool;
 use gdcm_core::assembly::ChannelRule;
-use gdcm_core::dataset::Band;
-use gdcm_core::identification::Identification;
-use gdcm_core::records::RecordChannels;
-use gdcm_core::study::identified_bundle;
+use gdcm_core::dataset::{Band, BundleKind, ConditionId, ConditionRecord, Dataset};
+use gdcm_core::identification::{ChannelPreparation, Identification, IdentificationError, Preparation};
+use gdcm_core::message_text::{sanitized, sanitized_path};
+use gdcm_core::records::{LaidOutRecord, RecordChannels};
+use gdcm_core::study::{AdoptedModels, ChannelTimeSkew, IdentificationRequest};
 use gdcm_files::{IdentifiedModels, OutputSet, add_identified, make_directory};
 
-use super::destination::Destination;
+use super::destination::{Destination, Group};
 use super::existing;
 use super::failure::Failure;
-use super::identification_task::{IdentificationTask, preparation};
-use super::identify_arguments::{ChannelList, IdentifyArguments};
+use super::identify_arguments::{ChannelDelay, ChannelList, IdentifyArguments};
 use super::models::counted;
-use super::read_record::{hold_out, laid_out};
-use super::terminal::{say, say_error};
+use super::read_record::{hold_out, laid_out, record_table, relative_entry};
+use super::terminal::{TerminalProgress, say, say_error};
 
 /// The file of what was found.
 const IDENTIFIED: &str = "identified.json";
@@ -43,16 +43,19 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
                 continue;
             }
         };
-        let mut models = task.models(&found, &channels);
-        models.cautions.extend(destination.as_ref().and_then(|of| task.late_channel(&found, &of.dataset)));
-        models.cautions.iter().for_each(|caution| say_error(&format!("{}{}", task.label(), sanitized(caution))));
+        let records: Vec<ConditionRecord> =
+            task.records.iter().zip(&found.record_uses).map(|(record, used)| record.entry(used)).collect();
+        let late = destination.as_ref().and_then(|of| task.late_channel(&found, &of.dataset));
+        let cautions: Vec<String> = found.cautions.iter().map(ToString::to_string).chain(late).collect();
+        cautions.iter().for_each(|caution| say_error(&format!("{}{}", task.label(), sanitized(caution))));
         make_directory(&arguments.out)?;
+        let models = IdentifiedModels { found: &found, channels: &channels, records: &records, cautions: &cautions };
         add_identified(&models, file, &mut outputs)?;
         if let (Some(destination), Some(condition)) = (&mut destination, task.condition) {
-            let entries = task.entries(&found, &arguments.records, &destination.path);
-            destination.take(condition, &identified_bundle(&found, arguments.take.offered(), entries))?;
+            let entries = records.into_iter().map(|of| relative_entry(of, &arguments.records, &destination.path));
+            destination.take(condition, &AdoptedModels::of(&found, arguments.take.offered(), entries.collect()))?;
         }
-        lines += &outcome(task, file, &found, &models);
+        lines += &outcome(task, file, &found);
         taken += 1;
     }
     if taken == 0 {
@@ -64,6 +67,58 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     }
     outputs.persist()?;
     say(&lines)
+}
+
+/// Models are to be identified from the records of a condition.
+struct IdentificationTask {
+    /// The condition of the dataset; none without one.
+    condition: Option<ConditionId>,
+    records: Vec<LaidOutRecord>,
+    request: IdentificationRequest,
+}
+
+impl IdentificationTask {
+    /// The task of a group of records.
+    fn new((condition, records): Group, preparation: &Preparation, band: Band) -> Result<Self, Failure> {
+        let request = IdentificationRequest::of(records.iter(), preparation.clone(), [band.min(), band.max()]);
+        let refused = |why| Failure::Option { option: "--hold-out", reason: format!("{}{why}", label(condition)) };
+        Ok(Self { request: request.map_err(refused)?, condition, records })
+    }
+
+    /// Identification proper, with a word about how far it is on a terminal.
+    fn run(&self) -> Result<Identification, IdentificationError> {
+        let doing = self.condition.map_or_else(|| "identifying".to_owned(), |id| format!("identifying condition {id}"));
+        self.request.identify(&Pool, &TerminalProgress::new(&doing))
+    }
+
+    /// A channel that is late in all records by what the nominal physics model of the condition says, and the option that takes its
+    /// delay out.
+    fn late_channel(&self, found: &Identification, dataset: &Dataset) -> Option<String> {
+        let condition = dataset.condition(self.condition?)?;
+        let options = &self.request.options;
+        let late = ChannelTimeSkew::of_condition(&found.measured, options.band, condition)?;
+        let signal = late.signal(dataset)?;
+        let known = options.preparation.channel(&signal)?.delay_s;
+        let words = late.words(&signal.name, &condition.bundle(BundleKind::Physics).get(condition.nominal())?.name);
+        Some(format!("{words} (--delay {}={:.3})", signal.name, known + late.delay_s))
+    }
+
+    /// A line a record, below the condition where there is one.
+    fn table(&self) -> String {
+        match self.condition {
+            Some(id) => format!("condition {id}\n{}", record_table(&self.records, 2)),
+            None => record_table(&self.records, 0),
+        }
+    }
+
+    /// What stands before words about it.
+    fn label(&self) -> String {
+        label(self.condition)
+    }
+}
+
+fn label(condition: Option<ConditionId>) -> String {
+    condition.map_or_else(String::new, |id| format!("condition {id}: "))
 }
 
 /// What is to be identified: all records together, or those of each condition.
@@ -80,7 +135,7 @@ fn tasks(
         Some(destination) => destination.groups(records)?,
         None => vec![(None, records)],
     };
-    groups.into_iter().map(|group| IdentificationTask::new(group, channels, &preparation, band)).collect()
+    groups.into_iter().map(|group| IdentificationTask::new(group, &preparation, band)).collect()
 }
 
 /// Where what was found is written: a file for each condition where there are many.
@@ -90,14 +145,14 @@ fn identified_path(arguments: &IdentifyArguments, task: &IdentificationTask) -> 
 }
 
 /// One line of what was found and where it is.
-fn outcome(task: &IdentificationTask, file: &Path, found: &Identification, models: &IdentifiedModels) -> String {
+fn outcome(task: &IdentificationTask, file: &Path, found: &Identification) -> String {
     let held_out = found.held_out_cost.map_or_else(String::new, |cost| format!(", of what is held out {cost:.2}"));
     format!(
         "{}{}: {}; order {}, J per degree of freedom {:.2}{held_out}\n",
         task.label(),
         sanitized_path(file),
-        counted(models.models.len(), "model"),
-        found.refined.matrices.order(),
+        counted(2 + found.bundle.len(), "model"),
+        found.refined.order().unwrap_or_default(),
         found.cost,
     )
 }
@@ -141,4 +196,26 @@ fn band(arguments: &IdentifyArguments, destination: Option<&Destination>) -> Res
         (_, Some(destination)) => Ok(destination.dataset.band()),
         _ => Err(Failure::Option { option: "--band", reason: "expected two frequencies".to_owned() }),
     }
+}
+
+/// How the channels are prepared: their known delays are taken out.
+fn preparation(channels: &RecordChannels, delays: &[ChannelDelay]) -> Result<Preparation, Failure> {
+    let is_known =
+        |delay: &ChannelDelay| channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == delay.channel);
+    if let Some(unknown) = delays.iter().find(|delay| !is_known(delay)) {
+        let reason = format!("{} is none of the channels", unknown.channel);
+        return Err(Failure::Option { option: "--delay", reason });
+    }
+    let prepared = |rule: &ChannelRule| {
+        let delay = delays.iter().rfind(|delay| delay.channel == rule.name);
+        ChannelPreparation {
+            delay_s: delay.map_or(0.0, |delay| delay.delay_s),
+            ..ChannelPreparation::named(rule.name.clone())
+        }
+    };
+    Ok(Preparation {
+        inputs: channels.inputs.iter().map(prepared).collect(),
+        outputs: channels.outputs.iter().map(prepared).collect(),
+        ..Preparation::of(&[], &[])
+    })
 }

@@ -72,8 +72,9 @@ pub enum OfferedChoice {
     /// The refined model, its neighbours in order, and the models without each record.
     #[default]
     Refined,
-    /// The same, and CT-PBSID as it is.
-    WithPlain,
+    /// The same, and CT-PBSID without refinement.
+    #[value(alias = "with-plain")]
+    WithUnrefined,
     /// The measured response alone.
     Measured,
 }
@@ -83,7 +84,7 @@ impl OfferedChoice {
     pub fn offered(self) -> OfferedModels {
         match self {
             Self::Refined => OfferedModels::REFINED,
-            Self::WithPlain => OfferedModels::WITH_PLAIN,
+            Self::WithUnrefined => OfferedModels::WITH_UNREFINED,
             Self::Measured => OfferedModels::MEASURED,
         }
     }

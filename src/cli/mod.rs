@@ -10,8 +10,6 @@ mod evidence_sections;
 mod export;
 mod failure;
 mod figure;
-mod identification_outcome;
-mod identification_task;
 mod identify;
 mod identify_arguments;
 mod models;

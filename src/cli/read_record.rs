@@ -3,9 +3,8 @@
 use gdcm_core::message_text::sanitized;
 use std::path::{Path, PathBuf};
 
-use gdcm_core::assembly::standard_patterns;
 use gdcm_core::dataset::ConditionRecord;
-use gdcm_core::records::{LayoutProposal, RecordChannels, RecordGuess, RecordLayout, RecordTable, TimeWish};
+use gdcm_core::records::{LaidOutRecord, RecordChannels, RecordTable, TimeWish};
 use gdcm_core::units::telling;
 use gdcm_files::{FoundRecords, read_records, relative_folder};
 
@@ -15,37 +14,34 @@ use super::models::ReadingProgress;
 use super::terminal::say_error;
 use super::text_table::{Side, TextTable};
 
-/// A record as it was read.
-pub(super) struct ReadRecord {
-    pub(super) table: RecordTable,
-    pub(super) layout: RecordLayout,
-    pub(super) guess: RecordGuess,
-}
-
 /// Every record with its columns; what was chosen, and what is wrong, is told on standard error.
 pub(super) fn laid_out(
     arguments: &IdentifyArguments,
     channels: &mut RecordChannels,
-) -> Result<Vec<ReadRecord>, Failure> {
-    let tables = tables(arguments)?;
+) -> Result<Vec<LaidOutRecord>, Failure> {
     let wish = TimeWish { column: arguments.time.clone(), sample_time_s: arguments.sample_rate.map(|rate| 1.0 / rate) };
-    let patterns = standard_patterns();
-    let (mut records, mut wrong, mut told): (Vec<ReadRecord>, usize, Vec<String>) = (Vec::new(), 0, Vec::new());
-    for table in tables {
-        let LayoutProposal { layout, notes, problems, cautions } = RecordLayout::proposed(&table, channels, &wish);
-        let name = sanitized(&table.name);
+    let (mut records, mut told): (Vec<LaidOutRecord>, Vec<String>) = (Vec::new(), Vec::new());
+    for table in tables(arguments)? {
+        let (record, notes) = LaidOutRecord::proposed(table, channels, &wish);
+        let name = sanitized(&record.table.name);
+        let say = |words: &str| say_error(&format!("{name}: {}", sanitized(words)));
         // Records of one flight are alike: what is chosen is said once.
         if notes != told {
-            notes.iter().for_each(|note| say_error(&format!("{name}: {}", sanitized(note))));
+            notes.iter().for_each(|note| say(note));
             told = notes;
         }
-        cautions.iter().for_each(|caution| say_error(&format!("{name}: caution: {}", sanitized(&caution.to_string()))));
-        problems.iter().for_each(|problem| say_error(&format!("{name}: {}", sanitized(&problem.to_string()))));
-        wrong += usize::from(!problems.is_empty());
-        channels.take_units(&layout, &table);
-        let guess = RecordGuess::of_table(&table, &patterns);
-        records.push(ReadRecord { table, layout, guess });
+        record.cautions.iter().for_each(|caution| say(&format!("caution: {caution}")));
+        record.problems.iter().for_each(|problem| say(&problem.to_string()));
+        channels.take_units(&record.layout, &record.table);
+        records.push(record);
     }
+    // By the units that the channels have by now.
+    for record in records.iter_mut().filter(|record| record.problems.is_empty()) {
+        *record = LaidOutRecord::new(record.table.clone(), record.layout.clone(), record.guess.clone(), channels);
+        let name = sanitized(&record.table.name);
+        record.problems.iter().for_each(|of| say_error(&format!("{name}: {}", sanitized(&of.to_string()))));
+    }
+    let wrong = records.iter().filter(|record| !record.problems.is_empty()).count();
     if wrong > 0 { Err(Failure::Records { wrong, of: records.len() }) } else { Ok(records) }
 }
 
@@ -60,18 +56,18 @@ fn tables(arguments: &IdentifyArguments) -> Result<Vec<RecordTable>, Failure> {
 }
 
 /// Holds out the records asked for; without a word those whose names say so stay held out.
-pub(super) fn hold_out(wanted: &[String], records: &mut [ReadRecord]) -> Result<(), Failure> {
+pub(super) fn hold_out(wanted: &[String], records: &mut [LaidOutRecord]) -> Result<(), Failure> {
     if !wanted.is_empty() {
         records.iter_mut().for_each(|record| record.guess.held_out = false);
     }
     for wanted in wanted {
         let file = Path::new(wanted).file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        let is_it = |record: &&mut ReadRecord| {
+        let is_it = |record: &&mut LaidOutRecord| {
             let source = &record.table.source;
             let own = source.file.rsplit('/').next() == Some(&file);
             own || record.table.name == *wanted || source.variable.as_deref() == Some(wanted)
         };
-        let found: Vec<&mut ReadRecord> = records.iter_mut().filter(is_it).collect();
+        let found: Vec<&mut LaidOutRecord> = records.iter_mut().filter(is_it).collect();
         if found.is_empty() {
             let reason = format!("\"{wanted}\" is none of the records; give its file among them too");
             return Err(Failure::Option { option: "--hold-out", reason });
@@ -81,31 +77,28 @@ pub(super) fn hold_out(wanted: &[String], records: &mut [ReadRecord]) -> Result<
     Ok(())
 }
 
-impl ReadRecord {
-    /// What the dataset says of it, its file relative to the dataset's; `asked` are the files and folders that were read.
-    pub(super) fn entry(&self, asked: &[PathBuf], dataset: &Path) -> ConditionRecord {
-        let mut entry = self.layout.condition_record(&self.table, &self.guess);
-        // A file by itself, or below the folder that was asked for.
-        let place = asked.iter().find_map(|path| {
-            let own = path.file_name().is_some_and(|name| name.to_string_lossy() == self.table.source.file.as_str());
-            let below = path.join(&self.table.source.file);
-            if own { Some(path.clone()) } else { Some(below).filter(|_| path.is_dir()) }
-        });
-        if let Some(place) = place {
-            let folder = relative_folder(place.parent().unwrap_or(Path::new(".")), dataset);
-            let name = place.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-            entry.file = if folder.is_empty() || folder == "." { name } else { format!("{folder}/{name}") };
-        }
-        entry
+/// What a dataset at `dataset` says of a record, its file relative to the dataset's; `asked` are the files and folders that were read.
+pub(super) fn relative_entry(mut entry: ConditionRecord, asked: &[PathBuf], dataset: &Path) -> ConditionRecord {
+    // A file by itself, or below the folder that was asked for.
+    let place = asked.iter().find_map(|path| {
+        let own = path.file_name().is_some_and(|name| name.to_string_lossy() == entry.file.as_str());
+        let below = path.join(&entry.file);
+        if own { Some(path.clone()) } else { Some(below).filter(|_| path.is_dir()) }
+    });
+    if let Some(place) = place {
+        let folder = relative_folder(place.parent().unwrap_or(Path::new(".")), dataset);
+        let name = place.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        entry.file = if folder.is_empty() || folder == "." { name } else { format!("{folder}/{name}") };
     }
+    entry
 }
 
 /// A line a record, each behind `indent` spaces.
-pub(super) fn record_table(records: &[ReadRecord], indent: usize) -> String {
+pub(super) fn record_table(records: &[LaidOutRecord], indent: usize) -> String {
     use Side::{Left, Right};
     let heads = [("record", Left), ("kind", Left), ("samples", Right), ("step", Right), ("length", Right), ("", Left)];
     let mut table = TextTable::new(heads);
-    for ReadRecord { table: record, layout, guess } in records {
+    for LaidOutRecord { table: record, layout, guess, .. } in records {
         let step_s = layout.time.and_then(|time| time.step_s(record)).unwrap_or(f64::NAN);
         table.row([
             sanitized(&record.name),

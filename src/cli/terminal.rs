@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use gdcm_core::identification::Watch;
 use gdcm_core::message_text::sanitized;
 use gdcm_core::study::Progress;
 use gdcm_files::system_words;
@@ -67,16 +66,5 @@ impl Progress for TerminalProgress {
         }
         self.bar.set_length(total as u64);
         self.bar.set_position(done as u64);
-    }
-}
-
-impl Watch for TerminalProgress {
-    fn progress(&self, done: f64, _what: &str) {
-        const PARTS: f64 = 1000.0;
-        self.advanced((PARTS * done) as usize, PARTS as usize);
-    }
-
-    fn is_stopped(&self) -> bool {
-        false
     }
 }

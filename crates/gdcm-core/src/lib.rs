@@ -76,6 +76,7 @@
 //! | [`message_text`] | text from files, fit for a message |
 //! | [`executor`] | who carries out pieces of work that do not depend on one another |
 //! | [`dataset`] | what the engineer loads: channels, models, flight conditions; checked once |
+//! | [`progress`] | how far long work is, and whether it is still wanted |
 //! | [`assembly`] | from the models of many files to one dataset: names, channels, units |
 //! | [`response`] | frequency responses, phase, poles and zeros, order statistics |
 //! | [`fidelity`] | cost J, distances in a bundle, representative, discontinuity, modes from model to model |
@@ -93,6 +94,7 @@ pub mod executor;
 pub mod fidelity;
 pub mod identification;
 pub mod message_text;
+pub mod progress;
 pub mod records;
 pub mod response;
 pub mod schedule;

@@ -1,12 +1,15 @@
 //! Models identified from flight records, `gdcm-identified` 1: what `gdcm identify` writes.
 
+use std::iter::once;
 use std::path::Path;
 
-use nalgebra::Complex;
 use serde::Serialize;
 
-use gdcm_core::assembly::FoundModel;
-use gdcm_core::dataset::PairTable;
+use gdcm_core::assembly::{ChannelLabel, ChannelRule, Facts, FoundModel};
+use gdcm_core::dataset::{ConditionRecord, ModelDraft};
+use gdcm_core::identification::{EstimatePoint, Identification, PoleEstimate, ResponseEstimate};
+use gdcm_core::records::RecordChannels;
+use gdcm_core::units::neper_to_db;
 
 use super::file_error::FileError;
 use super::models_file::{ModelText, model_text};
@@ -16,84 +19,16 @@ use crate::json_text::Nested;
 const FORMAT: &str = "gdcm-identified";
 const VERSION: u64 = 1;
 
-/// What identification found, in the records' own units.
-#[derive(Clone, Debug, Default)]
-pub struct IdentifiedModels {
-    /// The models, the recommended one first.
-    pub models: Vec<FoundModel>,
-    /// The measured response, where there is one.
-    pub measured: Option<MeasuredEstimate>,
-    /// The poles of the recommended model.
-    pub poles: Vec<PoleEstimate>,
-    /// How well the recommended model holds.
-    pub validation: IdentifiedValidation,
+/// What an identification found, with what its file says beside it.
+pub struct IdentifiedModels<'f> {
+    /// What was found, in the units of the channels.
+    pub found: &'f Identification,
+    /// The channels.
+    pub channels: &'f RecordChannels,
     /// The records, in order.
-    pub records: Vec<RecordReport>,
+    pub records: &'f [ConditionRecord],
     /// What is to be minded, in words.
-    pub cautions: Vec<String>,
-}
-
-/// The non-parametric estimate of the response.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MeasuredEstimate {
-    /// Frequencies \[rad/s\].
-    pub omega: Vec<f64>,
-    /// Response, a value for each frequency.
-    pub values: PairTable<Vec<Complex<f64>>>,
-    /// Multiple coherence of each output, a value for each frequency.
-    pub coherence: Vec<Vec<f64>>,
-    /// Partial coherence of each response.
-    pub partial_coherence: PairTable<Vec<f64>>,
-    /// Standard deviation of the magnitude \[dB\].
-    pub sd_db: PairTable<Vec<f64>>,
-    /// Standard deviation of the phase \[deg\].
-    pub sd_deg: PairTable<Vec<f64>>,
-}
-
-/// A pole and how surely it is known.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct PoleEstimate {
-    /// Real part \[rad/s\].
-    pub re: f64,
-    /// Imaginary part \[rad/s\].
-    pub im: f64,
-    /// Standard deviation \[rad/s\].
-    pub sd: f64,
-    /// Whether the records determine it.
-    pub determined: bool,
-}
-
-/// How well a model holds against the records that it was made of, and against those that were held out.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct IdentifiedValidation {
-    /// Cost over its degrees of freedom of the records used.
-    pub fit_per_dof: Option<f64>,
-    /// The same of the records held out; none where there are none.
-    pub held_out_per_dof: Option<f64>,
-    /// Share of each output of the held-out records that the model reproduces in time \[%\], in the order of the outputs.
-    pub fit_percent: Vec<f64>,
-    /// Theil's coefficient of each output of the held-out records.
-    pub theil: Vec<f64>,
-}
-
-/// What was done with a record.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct RecordReport {
-    /// Its name.
-    pub name: String,
-    /// Its file.
-    pub file: String,
-    /// SHA-256 of the file.
-    pub sha256: String,
-    /// Which record of the file.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub variable: Option<String>,
-    /// Whether it was held out.
-    pub held_out: bool,
-    /// First and last time \[s\] of each piece that was used.
-    pub used_s: Vec<[f64; 2]>,
-    /// Why it, or a part of it, was not used.
-    pub why_not: Option<String>,
+    pub cautions: &'f [String],
 }
 
 #[derive(Serialize)]
@@ -101,10 +36,10 @@ struct IdentifiedText<'m> {
     format: &'static str,
     version: u64,
     models: Vec<RecommendedText<'m>>,
-    measured: Option<MeasuredText<'m>>,
-    poles: &'m [PoleEstimate],
-    validation: &'m IdentifiedValidation,
-    records: &'m [RecordReport],
+    measured: MeasuredText,
+    poles: Vec<PoleText>,
+    validation: ValidationText<'m>,
+    records: Vec<RecordText<'m>>,
     cautions: &'m [String],
 }
 
@@ -116,30 +51,84 @@ struct RecommendedText<'m> {
 }
 
 #[derive(Serialize)]
-struct MeasuredText<'m> {
-    omega_rad_s: &'m [f64],
+struct MeasuredText {
+    omega_rad_s: Vec<f64>,
     re: Nested<3>,
     im: Nested<3>,
-    coherence: &'m [Vec<f64>],
+    /// Multiple coherence of each output.
+    coherence: Nested<2>,
     partial_coherence: Nested<3>,
     sd_db: Nested<3>,
     sd_deg: Nested<3>,
 }
 
-/// Adds what identification found as a file to `outputs`; figures that are not finite become `null`.
-pub fn add_identified(found: &IdentifiedModels, path: &Path, outputs: &mut OutputSet) -> Result<(), FileError> {
-    let models = found.models.iter().enumerate();
+#[derive(Serialize)]
+struct PoleText {
+    re: f64,
+    im: f64,
+    sd: f64,
+    determined: bool,
+}
+
+#[derive(Serialize)]
+struct ValidationText<'m> {
+    /// Cost over its degrees of freedom of the records of the fit, and of those held out.
+    fit_per_dof: f64,
+    held_out_per_dof: Option<f64>,
+    /// Share of each output of the held-out records that the model reproduces in time \[%\], and Theil's coefficient of it.
+    fit_percent: &'m [Option<f64>],
+    theil: &'m [Option<f64>],
+}
+
+#[derive(Serialize)]
+struct RecordText<'m> {
+    name: &'m str,
+    file: &'m str,
+    sha256: &'m str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    variable: Option<&'m str>,
+    held_out: bool,
+    /// First and last time of each part that was used.
+    used_s: &'m [[f64; 2]],
+    /// Why a part of it was not used.
+    why_not: Option<String>,
+}
+
+/// Adds what identification found as a file to `outputs`: the recommended model first, then CT-PBSID without refinement, then the
+/// rest of the bundle; values that are not finite become `null`.
+pub fn add_identified(of: &IdentifiedModels, path: &Path, outputs: &mut OutputSet) -> Result<(), FileError> {
+    let found = of.found;
+    let label = |rule: &ChannelRule| ChannelLabel {
+        name: Some(rule.name.clone()),
+        unit: Some(rule.unit.clone()).filter(|unit| !unit.is_empty()),
+    };
+    let models = once(&found.refined).chain(once(&found.unrefined)).chain(&found.bundle).map(|model| FoundModel {
+        draft: ModelDraft::of(model),
+        inputs: of.channels.inputs.iter().map(label).collect(),
+        outputs: of.channels.outputs.iter().map(label).collect(),
+        facts: Facts::default(),
+        notes: Vec::new(),
+    });
+    let models: Vec<FoundModel> = models.collect();
+    let in_time = found.validation.as_ref();
     let text = IdentifiedText {
         format: FORMAT,
         version: VERSION,
         models: models
+            .iter()
+            .enumerate()
             .map(|(index, model)| RecommendedText { model: model_text(model), recommended: index == 0 })
             .collect(),
-        measured: found.measured.as_ref().map(measured_text),
-        poles: &found.poles,
-        validation: &found.validation,
-        records: &found.records,
-        cautions: &found.cautions,
+        measured: measured_text(&found.measured),
+        poles: found.poles.iter().map(pole_text).collect(),
+        validation: ValidationText {
+            fit_per_dof: found.cost,
+            held_out_per_dof: found.held_out_cost,
+            fit_percent: in_time.map_or(&[], |of| &of.fit_percent),
+            theil: in_time.map_or(&[], |of| &of.theil),
+        },
+        records: of.records.iter().enumerate().map(|(index, record)| record_text(found, index, record)).collect(),
+        cautions: of.cautions,
     };
     outputs.add(path, |file| {
         serde_json::to_writer(&mut *file, &text)?;
@@ -147,86 +136,121 @@ pub fn add_identified(found: &IdentifiedModels, path: &Path, outputs: &mut Outpu
     })
 }
 
-fn measured_text(measured: &MeasuredEstimate) -> MeasuredText<'_> {
-    let count = measured.omega.len();
-    let table = |table: &PairTable<Vec<f64>>| Nested {
-        shape: [table.outputs(), table.inputs(), count],
-        values: table.iter().flat_map(|(_, values)| values.iter().copied()).collect(),
+fn measured_text(measured: &ResponseEstimate) -> MeasuredText {
+    let points = &measured.points;
+    let (outputs, inputs) = points.first().map_or((0, 0), |point| point.response.shape());
+    let table = |value: &dyn Fn(&EstimatePoint, (usize, usize)) -> f64| {
+        let pairs = (0..outputs).flat_map(|output| (0..inputs).map(move |input| (output, input)));
+        let values = pairs.flat_map(|pair| points.iter().map(move |point| value(point, pair))).collect();
+        Nested { shape: [outputs, inputs, points.len()], values }
     };
-    let part = |of: fn(&Complex<f64>) -> f64| table(&measured.values.map(|_, values| values.iter().map(of).collect()));
+    let coherence = (0..outputs).flat_map(|output| points.iter().map(move |point| point.coherence[output])).collect();
     MeasuredText {
-        omega_rad_s: &measured.omega,
-        re: part(|value| value.re),
-        im: part(|value| value.im),
-        coherence: &measured.coherence,
-        partial_coherence: table(&measured.partial_coherence),
-        sd_db: table(&measured.sd_db),
-        sd_deg: table(&measured.sd_deg),
+        omega_rad_s: points.iter().map(|point| point.omega).collect(),
+        re: table(&|point, pair| point.response[pair].re),
+        im: table(&|point, pair| point.response[pair].im),
+        coherence: Nested { shape: [outputs, points.len()], values: coherence },
+        partial_coherence: table(&|point, pair| point.partial_coherence[pair]),
+        sd_db: table(&|point, pair| neper_to_db(point.sd(pair))),
+        sd_deg: table(&|point, pair| point.sd(pair).to_degrees()),
+    }
+}
+
+fn pole_text(of: &PoleEstimate) -> PoleText {
+    PoleText { re: of.pole.re, im: of.pole.im, sd: of.sd_re.hypot(of.sd_im), determined: of.determined }
+}
+
+fn record_text<'m>(found: &Identification, index: usize, record: &'m ConditionRecord) -> RecordText<'m> {
+    let gaps = found.record_uses.get(index).into_iter().flat_map(|used| &used.gaps);
+    let gaps: Vec<String> = gaps.map(ToString::to_string).collect();
+    RecordText {
+        name: &record.name,
+        file: &record.file,
+        sha256: record.sha256.as_deref().unwrap_or_default(),
+        variable: record.variable.as_deref(),
+        held_out: record.held_out,
+        used_s: &record.used_s,
+        why_not: Some(gaps.join("; ")).filter(|words| !words.is_empty()),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::DMatrix;
+    use std::sync::Arc;
+
+    use nalgebra::{Complex, DMatrix, DVector};
 
     use super::*;
     use crate::{Existing, models_of_bytes};
-    use gdcm_core::assembly::{ChannelLabel, Facts};
-    use gdcm_core::dataset::{BandsDraft, ModelDraft, Origin, Pair, Provenance, ResponseArray, Timing};
+    use gdcm_core::dataset::{Dynamics, Model, ModelBands, Origin, PairTable, Provenance, StateSpace};
 
-    fn model(name: &str, gain: f64) -> FoundModel {
-        let scalar = |value| Some(DMatrix::from_element(1, 1, value));
-        let label = |name: &str, unit: &str| ChannelLabel { name: Some(name.into()), unit: Some(unit.into()) };
-        let array = |value| ResponseArray { shape: [1, 1, 2], values: vec![value; 2] };
-        FoundModel {
-            draft: ModelDraft {
-                name: name.into(),
-                origin: Origin::Identified { method: Some("CT-PBSID".into()), order: Some(1) },
-                matrices: [scalar(-1.0), scalar(gain), scalar(1.0), scalar(0.0)],
-                timing: Timing::default(),
-                response: None,
-                source: Some(Provenance { records: vec!["LON 1".into()], ..Provenance::default() }),
-                states: Vec::new(),
-                bands: Some(BandsDraft { omega: vec![1.0, 2.0], sd_db: array(0.5), sd_deg: array(3.0) }),
-            },
-            inputs: vec![label("LON", "%")],
-            outputs: vec![label("Q", "deg/s")],
-            facts: Facts::default(),
-            notes: Vec::new(),
+    fn model(name: &str, gain: f64) -> Model {
+        let scalar = |value| DMatrix::from_element(1, 1, value);
+        let dynamics = StateSpace::new(scalar(-1.0), scalar(gain), scalar(1.0), scalar(0.0)).unwrap();
+        let origin = Origin::Identified { method: Some("CT-PBSID".into()), order: Some(1) };
+        let table = |value: f64| PairTable::filled(1, 1, vec![value; 2]);
+        Model {
+            source: Some(Provenance { records: vec!["LON 1".into()], ..Provenance::default() }),
+            bands: Some(Arc::new(ModelBands::new(vec![1.0, 2.0], table(0.5), table(3.0)).unwrap())),
+            ..Model::new(name, origin, Dynamics::StateSpace(dynamics))
         }
     }
 
-    fn written(found: &IdentifiedModels) -> Vec<u8> {
+    fn point(omega: f64, imaginary: f64, coherence: f64) -> EstimatePoint {
+        let scalar = |value| DMatrix::from_element(1, 1, value);
+        EstimatePoint {
+            omega,
+            response: DMatrix::from_element(1, 1, Complex::new(1.0, imaginary)),
+            variance: scalar(0.01),
+            noise: scalar(0.1),
+            power: DVector::from_element(1, 1.0),
+            coherence: DVector::from_element(1, coherence),
+            partial_coherence: scalar(0.7),
+            condition: 1.0,
+            half_width: 0.5,
+            freedom: 20,
+        }
+    }
+
+    fn found() -> Identification {
+        let pole = PoleEstimate { pole: Complex::from(-1.0), sd_re: 0.1, sd_im: 0.0, determined: true };
+        Identification {
+            refined: model("CT-PBSID, refined", 2.0),
+            unrefined: model("CT-PBSID", 3.0),
+            bundle: Vec::new(),
+            measured: ResponseEstimate { points: vec![point(1.0, -2.0, 0.9), point(2.0, f64::NAN, 0.8)] },
+            poles: vec![pole],
+            stabilisation: Vec::new(),
+            laguerre_pole: 1.0,
+            past: 8,
+            criteria: Vec::new(),
+            cost: 1.02,
+            held_out_cost: None,
+            record_fits: Vec::new(),
+            output_costs: Vec::new(),
+            validation: None,
+            record_uses: Vec::new(),
+            not_identified: Vec::new(),
+            cautions: Vec::new(),
+        }
+    }
+
+    fn written(cautions: &[String]) -> Vec<u8> {
+        let rule = |name: &str, unit: &str| ChannelRule { unit: unit.into(), ..ChannelRule::named(name) };
+        let channels = RecordChannels { inputs: vec![rule("LON", "%")], outputs: vec![rule("Q", "deg/s")] };
+        let record = ConditionRecord { used_s: vec![[0.0, 60.0]], ..ConditionRecord::new("LON 1", "lon_1.csv") };
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("identified.json");
         let mut outputs = OutputSet::new(Existing::Keep, Vec::new());
-        add_identified(found, &path, &mut outputs).unwrap();
+        let models = IdentifiedModels { found: &found(), channels: &channels, records: &[record], cautions };
+        add_identified(&models, &path, &mut outputs).unwrap();
         outputs.persist().unwrap();
         std::fs::read(path).unwrap()
     }
 
     #[test]
     fn every_key_of_the_format_is_written_and_the_recommended_model_comes_first() {
-        let mut values = PairTable::filled(1, 1, vec![Complex::new(1.0, -2.0); 2]);
-        values[Pair::new(0, 0)][1].im = f64::NAN;
-        let table = |value: f64| PairTable::filled(1, 1, vec![value; 2]);
-        let measured = MeasuredEstimate {
-            omega: vec![1.0, 2.0],
-            values,
-            coherence: vec![vec![0.9, 0.8]],
-            partial_coherence: table(0.7),
-            sd_db: table(0.1),
-            sd_deg: table(1.0),
-        };
-        let found = IdentifiedModels {
-            models: vec![model("CT-PBSID, refined", 2.0), model("CT-PBSID", 3.0)],
-            measured: Some(measured),
-            poles: vec![PoleEstimate { re: -1.0, im: 0.0, sd: 0.1, determined: true }],
-            validation: IdentifiedValidation { fit_per_dof: Some(1.02), ..IdentifiedValidation::default() },
-            records: vec![RecordReport { name: "LON 1".into(), used_s: vec![[0.0, 60.0]], ..RecordReport::default() }],
-            cautions: vec!["PED was not swept: its column is not identified".into()],
-        };
-        let bytes = written(&found);
+        let bytes = written(&["PED was not swept: its column is not identified".into()]);
         let text: serde_json::Value = serde_json::from_slice(&bytes).unwrap();
         assert_eq!((&text["format"], &text["version"]), (&"gdcm-identified".into(), &1.into()));
         assert_eq!(
@@ -242,14 +266,14 @@ mod tests {
             (&text["poles"][0]["sd"], &text["validation"]["held_out_per_dof"]),
             (&0.1.into(), &serde_json::Value::Null)
         );
+        assert_eq!(text["validation"]["fit_percent"], serde_json::json!([]));
         assert_eq!(text["records"][0]["used_s"], serde_json::json!([[0.0, 60.0]]));
         assert_eq!(text["cautions"][0], "PED was not swept: its column is not identified");
     }
 
     #[test]
     fn the_models_are_found_again_in_the_file() {
-        let found = IdentifiedModels { models: vec![model("a", 2.0), model("b", 3.0)], ..IdentifiedModels::default() };
-        let again = models_of_bytes(&written(&found), "identified.json", 1 << 24).unwrap();
+        let again = models_of_bytes(&written(&[]), "identified.json", 1 << 24).unwrap();
         let gains: Vec<f64> =
             again.models.iter().map(|model| model.draft.matrices[1].as_ref().unwrap()[(0, 0)]).collect();
         assert_eq!((gains, again.faults), (vec![2.0, 3.0], Vec::<String>::new()));

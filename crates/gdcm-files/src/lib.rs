@@ -45,9 +45,7 @@ pub use figure_file::{figure_format, write_as, write_figure};
 pub use file_error::{ContentFault, FileError, system_words};
 pub use first_start::is_first_start;
 pub use gdcm_core::dataset::limits::LARGEST_TEXT;
-pub use identified_file::{
-    IdentifiedModels, IdentifiedValidation, MeasuredEstimate, PoleEstimate, RecordReport, add_identified,
-};
+pub use identified_file::{IdentifiedModels, add_identified};
 pub use mat::write as write_mat;
 pub use model_files::{FileFormat, FolderProgress, FoundModels, models_of_bytes, read_models, sources_folder};
 pub use models_file::add_models;

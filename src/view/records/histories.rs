@@ -11,7 +11,7 @@ use crate::view::palette::Palette;
 use crate::view::plot::{Chart, ChartAxis, ChartLine, ChartSpan, chart_ui};
 use gdcm_core::dataset::Band;
 use gdcm_core::executor::Sequential;
-use gdcm_core::identification::{FlightRecord, Piece, Treatment, spectra};
+use gdcm_core::identification::{FlightRecord, Segment, Treatment, spectra};
 
 use super::records_state::{ConditionRecords, Page};
 use super::simulation::{simulated, time_models_ui};
@@ -159,7 +159,7 @@ fn amplitude(flight: &FlightRecord, highest: f64) -> Amplitudes {
         let mean = column.mean();
         column.add_scalar_mut(-mean);
     }
-    let piece = Piece { record: 0, start_s: 0.0, sample_time_s: step, inputs, outputs: flight.outputs.map(finite) };
+    let piece = Segment { record: 0, start_s: 0.0, sample_time_s: step, inputs, outputs: flight.outputs.map(finite) };
     let Some(spectrum) = spectra(&[piece], 2.0 * highest, &Sequential).into_iter().next() else { return Vec::new() };
     (0..flight.inputs.ncols())
         .map(|input| {

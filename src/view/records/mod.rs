@@ -8,6 +8,6 @@ mod records_view;
 mod response;
 mod simulation;
 
-pub use records_state::{ConditionRecords, RecordRow, RecordsCommand, RecordsPage, RecordsReading, RecordsState};
+pub use records_state::{ConditionRecords, RecordsCommand, RecordsPage, RecordsReading, RecordsState};
 pub use records_view::{records_header_ui, records_view_ui};
 pub use simulation::{TimeModel, simulation_jobs};

@@ -8,7 +8,7 @@ use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use gdcm_core::dataset::BundleKind;
 use gdcm_core::identification::{
-    Caution, Hold, Identification, IdentificationCaution, IdentificationError, Role, Signal,
+    Hold, Identification, IdentificationCaution, IdentificationError, RecordCaution, Role, Signal,
 };
 use gdcm_core::study::{ChannelTimeSkew, OfferedModels};
 use gdcm_core::units::s_to_ms;
@@ -66,7 +66,7 @@ pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
         None => {}
         Some((job, Err(why))) => {
             ui.add(Label::new(RichText::new(why.to_string()).color(palette.warning)).wrap());
-            actions_ui(ui, band_action(why, job.options.band).into_iter().collect(), commands);
+            actions_ui(ui, band_action(why, job.request.options.band).into_iter().collect(), commands);
         }
         Some((_, Ok(found))) => {
             if records.changed {
@@ -86,7 +86,7 @@ pub(super) fn offered_menu_ui(ui: &mut Ui, (text, hint): (&str, &str), take: imp
     let menu = ui.menu_button(text, |ui| {
         let choices = [
             ("The refined models", OfferedModels::REFINED),
-            ("The refined models, and CT-PBSID (unrefined)", OfferedModels::WITH_PLAIN),
+            ("The refined models, and CT-PBSID (unrefined)", OfferedModels::WITH_UNREFINED),
             ("The measured response", OfferedModels::MEASURED),
         ];
         let chosen = choices.into_iter().find(|(words, _)| ui.button(*words).clicked())?;
@@ -100,7 +100,7 @@ pub(super) fn offered_menu_ui(ui: &mut Ui, (text, hint): (&str, &str), take: imp
 }
 
 fn summary_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
-    let order = found.refined.matrices.order();
+    let order = found.refined.order().unwrap_or_default();
     ui.label(RichText::new(format!("CT-PBSID, refined: order {order}")).strong());
     let color = |is_good: bool| if is_good { palette.good } else { palette.warning };
     ui.horizontal_wrapped(|ui| {
@@ -137,7 +137,7 @@ fn late_channel_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let (dataset, condition) = (state.dataset(), state.condition());
     let Some(physics) = condition.bundle(BundleKind::Physics).get(condition.nominal()) else { return };
     let sources: [Source; 2] = [Arc::clone(found) as _, Arc::clone(condition) as _];
-    let of_condition = || ChannelTimeSkew::of_condition(&found.measured, job.options.band, condition);
+    let of_condition = || ChannelTimeSkew::of_condition(&found.measured, job.request.options.band, condition);
     let Some(late) = *kept(ui, "late channel", &sources, (), of_condition) else { return };
     let Some(signal) = late.signal(dataset) else { return };
     let words = late.words(&signal.name, &physics.name);
@@ -146,11 +146,7 @@ fn late_channel_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
 
 /// Takes a delay out of a channel, beside what had been taken out of it when that was found.
 fn taken_out(records: &ConditionRecords, signal: &Signal, delay_s: f64) -> Action {
-    let preparation = records.found.as_ref().map(|(job, _)| &job.options.preparation);
-    let known = preparation.and_then(|of| match signal.role {
-        Role::Input => of.inputs.get(signal.index),
-        Role::Output => of.outputs.get(signal.index),
-    });
+    let known = records.found.as_ref().and_then(|(job, _)| job.request.options.preparation.channel(signal));
     let delay_s = known.map_or(0.0, |channel| channel.delay_s) + delay_s;
     let text = format!("Remove {:.0} ms from {}", s_to_ms(delay_s), signal.name);
     (text, RecordsCommand::SetDelay(signal.clone(), delay_s))
@@ -197,7 +193,7 @@ fn actions(records: &ConditionRecords, caution: &IdentificationCaution) -> Vec<A
         }
         IdentificationCaution::BandNotShown { shown: band, .. }
         | IdentificationCaution::OrderLimit { narrower: band, .. } => vec![narrower(*band)],
-        IdentificationCaution::Records(Caution::Stair { signal, hold_s, .. }) => {
+        IdentificationCaution::Records(RecordCaution::Stair { signal, hold_s, .. }) => {
             let hold_s = *hold_s;
             let set = |text: &str, hold| (text.to_owned(), RecordsCommand::SetHold(signal.clone(), hold));
             let command = (signal.role == Role::Input)

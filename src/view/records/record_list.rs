@@ -7,10 +7,10 @@ use crate::view::controls::{elided_among, named, named_switch, number_entry_ui};
 use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 use gdcm_core::dataset::RecordKind;
 use gdcm_core::identification::{Role, Signal};
-use gdcm_core::records::{ColumnUse, RecordLayout, TimeBase};
+use gdcm_core::records::{ColumnUse, LaidOutRecord, RecordLayout, TimeBase};
 use gdcm_core::units::{ms_to_s, number, s_to_ms};
 
-use super::records_state::{ConditionRecords, Page, RecordRow, RecordsCommand};
+use super::records_state::{ConditionRecords, Page, RecordsCommand};
 
 /// Width of all columns but the names \[pt\].
 const OTHER_COLUMNS: f32 = 124.0;
@@ -59,8 +59,8 @@ pub(super) fn record_list_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Com
     for (words, color) in row
         .problems
         .iter()
-        .map(|words| (words, palette.warning))
-        .chain(row.cautions.iter().map(|words| (words, palette.dim_text)))
+        .map(|problem| (problem.to_string(), palette.warning))
+        .chain(row.cautions.iter().map(|caution| (caution.to_string(), palette.dim_text)))
     {
         ui.add(Label::new(RichText::new(words).size(SMALL_SIZE).color(color)).wrap());
     }
@@ -111,7 +111,7 @@ pub(super) fn cost_text(cost: f64, palette: &Palette) -> RichText {
 }
 
 /// Which manoeuvre a record is of.
-fn kind_ui(ui: &mut Ui, index: usize, row: &RecordRow, palette: &Palette, commands: &mut Vec<Command>) {
+fn kind_ui(ui: &mut Ui, index: usize, row: &LaidOutRecord, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         ui.label(palette.small(format!("{}: a", row.table.name)));
         let kinds = ComboBox::from_id_salt("kind of a record").width(90.0).selected_text(row.guess.kind.word());
@@ -168,7 +168,7 @@ pub(super) fn columns_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
     });
 }
 
-fn time_row_ui(ui: &mut Ui, record: usize, row: &RecordRow, commands: &mut Vec<Command>) {
+fn time_row_ui(ui: &mut Ui, record: usize, row: &LaidOutRecord, commands: &mut Vec<Command>) {
     ui.label("time [s]");
     let (chosen, seconds) = match row.layout.time {
         Some(TimeBase::Column { column, seconds }) => (Some(column), seconds),
@@ -218,7 +218,7 @@ fn channel_row_ui(ui: &mut Ui, records: &ConditionRecords, signal: &Signal, unit
 }
 
 /// A choice among the columns of a record; what was chosen anew.
-fn column_ui(ui: &mut Ui, name: &str, row: &RecordRow, chosen: Option<usize>) -> Option<usize> {
+fn column_ui(ui: &mut Ui, name: &str, row: &LaidOutRecord, chosen: Option<usize>) -> Option<usize> {
     let words = |column: usize| {
         row.table.columns.get(column).map_or("?".to_owned(), |of| match &of.unit {
             Some(unit) => format!("{} [{unit}]", of.name),

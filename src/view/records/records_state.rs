@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use egui::Ui;
 
-use gdcm_core::dataset::{ConditionId, ConditionRecord, Dataset, RecordKind};
+use gdcm_core::dataset::{ConditionId, Dataset, RecordKind};
 use gdcm_core::identification::{
-    ChannelPreparation, FlightRecord, Hold, Identification, IdentificationError, Options, Preparation, Role, Signal,
+    ChannelPreparation, Hold, Identification, IdentificationError, Preparation, Role, Signal,
 };
-use gdcm_core::records::{RecordChannels, RecordGuess, RecordLayout, RecordTable};
-use gdcm_core::study::{AdoptedModels, IdentifyJob, OfferedModels, identified_bundle, pieces_used};
+use gdcm_core::records::{LaidOutRecord, RecordLayout};
+use gdcm_core::study::{AdoptedModels, IdentificationRequest, IdentifyJob, NothingToIdentify, OfferedModels};
 
 use crate::view::palette::Palette;
 use crate::view::state::State;
@@ -108,40 +108,11 @@ pub enum RecordsCommand {
     Return,
 }
 
-/// A flight record of a condition.
-#[derive(Clone, Debug)]
-pub struct RecordRow {
-    /// As its file has it.
-    pub table: Arc<RecordTable>,
-    /// Which columns are its channels.
-    pub layout: RecordLayout,
-    /// What its name says.
-    pub guess: RecordGuess,
-    /// Whether it is used.
-    pub used: bool,
-    /// What keeps it from being used, in words.
-    pub problems: Vec<String>,
-    /// What is odd about it, in words.
-    pub cautions: Vec<String>,
-    /// Its samples in the units of the dataset; none while there are problems.
-    pub flight: Option<Arc<FlightRecord>>,
-}
-
-impl RecordRow {
-    /// A record with these columns for its channels.
-    pub fn new(table: Arc<RecordTable>, layout: RecordLayout, guess: RecordGuess, channels: &RecordChannels) -> Self {
-        let problems = layout.problems(&table, channels).iter().map(ToString::to_string).collect();
-        let cautions = layout.cautions(&table, channels).iter().map(ToString::to_string).collect();
-        let flight = layout.flight_record(&table, channels).ok().map(Arc::new);
-        Self { table, layout, guess, used: true, problems, cautions, flight }
-    }
-}
-
 /// The records of one condition, and what was made of them.
 #[derive(Clone, Debug, Default)]
 pub struct ConditionRecords {
     /// The records.
-    pub rows: Vec<RecordRow>,
+    pub rows: Vec<LaidOutRecord>,
     /// Index of the one shown.
     pub chosen: usize,
     /// How inputs are prepared, where that is not as they are.
@@ -158,7 +129,7 @@ pub struct ConditionRecords {
 
 impl ConditionRecords {
     /// Records of a condition of `dataset`.
-    pub fn new(rows: Vec<RecordRow>, dataset: &Dataset) -> Self {
+    pub fn new(rows: Vec<LaidOutRecord>, dataset: &Dataset) -> Self {
         let named = |channels: &[gdcm_core::dataset::Channel]| {
             channels.iter().map(|channel| ChannelPreparation::named(channel.name.clone())).collect()
         };
@@ -171,8 +142,8 @@ impl ConditionRecords {
     }
 
     /// The rows that are used, with their indices.
-    pub fn used_rows(&self) -> impl Iterator<Item = (usize, &RecordRow)> {
-        self.rows.iter().enumerate().filter(|(_, row)| row.used && row.flight.is_some())
+    pub fn used_rows(&self) -> impl Iterator<Item = (usize, &LaidOutRecord)> {
+        self.rows.iter().enumerate().filter(|(_, row)| row.used_flight().is_some())
     }
 
     /// The row of a record of the identification.
@@ -188,34 +159,25 @@ impl ConditionRecords {
         }
     }
 
-    /// The job of what is said now; in words why there is none.
-    pub fn job(&self, condition: ConditionId, band: [f64; 2]) -> Result<IdentifyJob, String> {
-        let records: Arc<[FlightRecord]> =
-            self.used_rows().filter_map(|(_, row)| Some(row.flight.as_ref()?.as_ref().clone())).collect();
-        if records.is_empty() {
-            return Err("there is no record to identify from: add some, or use those that are there".to_owned());
-        }
-        let preparation =
-            Preparation { inputs: self.inputs.clone(), outputs: self.outputs.clone(), ..Preparation::of(&[], &[]) };
-        let held_out = self.used_rows().enumerate().filter(|(_, (_, row))| row.guess.held_out);
-        let held_out: Vec<usize> = held_out.map(|(record, _)| record).collect();
-        if held_out.len() == records.len() {
-            return Err("every record is held out: at least one has to be left to identify from".to_owned());
-        }
-        let options = Options { held_out, ..Options::new(self.band.unwrap_or(band), preparation) };
-        Ok(IdentifyJob::new(condition, records, options))
+    /// How the channels are prepared.
+    pub fn preparation(&self) -> Preparation {
+        Preparation { inputs: self.inputs.clone(), outputs: self.outputs.clone(), ..Preparation::of(&[], &[]) }
+    }
+
+    /// The job of what is said now.
+    ///
+    /// # Errors
+    /// No record is used, or all are held out.
+    pub fn job(&self, condition: ConditionId, band: [f64; 2]) -> Result<IdentifyJob, NothingToIdentify> {
+        let request = IdentificationRequest::of(self.rows.iter(), self.preparation(), self.band.unwrap_or(band))?;
+        Ok(IdentifyJob::new(condition, request))
     }
 
     /// What is taken into the condition, where something was identified.
     pub fn taken(&self, offered: OfferedModels) -> Option<Arc<AdoptedModels>> {
         let found = self.identification()?;
-        let used = self.used_rows().map(|(_, row)| row).zip(&found.record_uses);
-        let entry = |(row, found): (&RecordRow, &gdcm_core::identification::RecordUse)| ConditionRecord {
-            used_s: row.flight.as_ref().map_or_else(Vec::new, |flight| pieces_used(flight, found)),
-            ..row.layout.condition_record(&row.table, &row.guess)
-        };
-        let entries: Vec<ConditionRecord> = used.map(entry).collect();
-        Some(Arc::new(identified_bundle(found, offered, entries)))
+        let entries = self.used_rows().zip(&found.record_uses).map(|((_, row), used)| row.entry(used));
+        Some(Arc::new(AdoptedModels::of(found, offered, entries.collect())))
     }
 }
 

@@ -7,11 +7,11 @@ use egui::{Color32, Label, Rect, RichText, Ui, vec2};
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, chart_ui};
 use crate::view::state::State;
-use gdcm_core::dataset::Pair;
+use gdcm_core::dataset::{Pair, StateSpace};
 use gdcm_core::identification::{
-    Identification, MeasuredPoint, PoleEstimate, StabilisationPoint, StateSpaceMatrices, TRUSTED_COHERENCE,
-    TWO_SIDED_95,
+    EstimatePoint, Identification, PoleEstimate, StabilisationPoint, TRUSTED_COHERENCE, TWO_SIDED_95, log_spaced,
 };
+use gdcm_core::response::evaluate;
 use gdcm_core::units::neper_to_db;
 
 use super::histories::kept;
@@ -34,7 +34,7 @@ struct DrawnResponse {
     recommended: Curve,
     /// Frequency, standard deviations \[dB, deg\].
     bands: Vec<[f64; 3]>,
-    plain: Curve,
+    unrefined: Curve,
 }
 
 /// Magnitude above, phase below; the first model while it is being refined.
@@ -45,14 +45,14 @@ pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
     let first = running.and_then(|job| job.told().first_model);
     let drawn = match (records.identification(), first) {
         (_, Some(first)) => {
-            let job = running.map_or([0.1, 10.0], |job| job.options.band);
+            let job = running.map_or([0.1, 10.0], |job| job.request.options.band);
             kept(ui, "first model", &[Arc::clone(&first) as _], pair, || DrawnResponse {
-                plain: model_curve(&first, job, pair, None),
+                unrefined: model_curve(&first, job, pair, None),
                 ..DrawnResponse::default()
             })
         }
         (Some(found), None) => {
-            let band = records.found.as_ref().map_or([0.1, 10.0], |(job, _)| job.options.band);
+            let band = records.found.as_ref().map_or([0.1, 10.0], |(job, _)| job.request.options.band);
             kept(ui, "response", &[Arc::clone(found) as _], pair, || drawn(found, band, pair))
         }
         (None, None) => {
@@ -108,7 +108,8 @@ fn chart_of<'a>(
         width: if dashed { 1.2 } else { 2.0 },
         dashed,
     };
-    chart.lines = vec![line(&drawn.plain, palette.accent, true), line(&drawn.recommended, palette.identified, false)];
+    chart.lines =
+        vec![line(&drawn.unrefined, palette.accent, true), line(&drawn.recommended, palette.identified, false)];
     for trusted in [false, true] {
         let points = drawn.measured.iter().filter(|(_, of)| *of == trusted);
         let points = points.map(|(at, _)| [at[0], at[part], TWO_SIDED_95 * at[part + 2]]).collect();
@@ -121,28 +122,34 @@ fn chart_of<'a>(
 fn drawn(found: &Identification, band: [f64; 2], pair: Pair) -> DrawnResponse {
     let measured = measured_points(&found.measured.points, pair);
     let reference = measured.iter().find(|(_, trusted)| *trusted).map(|(at, _)| (at[0], at[2]));
-    let omegas = found.bands.omega.iter();
-    let recommended = omegas.filter_map(|omega| Some((*omega, entry(&found.refined.matrices, *omega, pair)?)));
-    let recommended = Curve(shape(recommended, reference));
-    let at = |matrices: &[nalgebra::DMatrix<f64>], k: usize| matrices[k][(pair.output, pair.input)];
-    let bands = &found.bands;
-    let sd = |k: usize| [bands.omega[k], at(&bands.sd_db, k), at(&bands.sd_deg, k)];
+    let bands = found.refined.bands.as_ref();
+    let sd = bands.into_iter().flat_map(|bands| {
+        let (db, deg) = (&bands.sd_db()[pair], &bands.sd_deg()[pair]);
+        bands.omega().iter().zip(db.iter().zip(deg)).map(|(omega, (db, deg))| [*omega, *db, *deg])
+    });
     DrawnResponse {
-        recommended,
-        bands: (0..bands.omega.len()).map(sd).collect(),
-        plain: model_curve(&found.plain.matrices, band, pair, reference),
+        recommended: found
+            .refined
+            .state_space()
+            .map_or_else(Curve::default, |of| curve(of, bands.map_or(&[], |bands| bands.omega()), pair, reference)),
+        bands: sd.collect(),
+        unrefined: found
+            .unrefined
+            .state_space()
+            .map_or_else(Curve::default, |of| model_curve(of, band, pair, reference)),
         measured,
     }
 }
 
-fn entry(model: &StateSpaceMatrices, omega: f64, pair: Pair) -> Option<nalgebra::Complex<f64>> {
-    Some(model.response(omega)?[(pair.output, pair.input)])
+/// The response of a model, the phase on the branch nearest to `reference`.
+fn curve(model: &StateSpace, omegas: &[f64], pair: Pair, reference: Option<(f64, f64)>) -> Curve {
+    let values = evaluate(model, omegas).curve(pair).into_iter();
+    let finite = omegas.iter().copied().zip(values).filter(|(_, value)| value.re.is_finite() && value.im.is_finite());
+    Curve(shape(finite, reference))
 }
 
-fn model_curve(model: &StateSpaceMatrices, band: [f64; 2], pair: Pair, reference: Option<(f64, f64)>) -> Curve {
-    let (low, high) = ((band[0] / BEYOND).ln(), (band[1] * BEYOND).ln());
-    let omegas = (0..POINTS).map(|k| (low + (high - low) * k as f64 / (POINTS - 1) as f64).exp());
-    Curve(shape(omegas.filter_map(|omega| Some((omega, entry(model, omega, pair)?))), reference))
+fn model_curve(model: &StateSpace, band: [f64; 2], pair: Pair, reference: Option<(f64, f64)>) -> Curve {
+    curve(model, &log_spaced(band[0] / BEYOND, band[1] * BEYOND, POINTS), pair, reference)
 }
 
 /// Magnitude and phase, the phase unwrapped and on the branch nearest to `reference`, a frequency and its phase \[deg\].
@@ -161,12 +168,11 @@ fn shape(values: impl Iterator<Item = (f64, nalgebra::Complex<f64>)>, reference:
     points
 }
 
-fn measured_points(points: &[MeasuredPoint], pair: Pair) -> Vec<([f64; 5], bool)> {
+fn measured_points(points: &[EstimatePoint], pair: Pair) -> Vec<([f64; 5], bool)> {
     let at = (pair.output, pair.input);
     let shapes = shape(points.iter().map(|point| (point.omega, point.response[at])), None);
-    let with = |(shape, point): ([f64; 3], &MeasuredPoint)| {
-        let neper = (0.5 * point.variance[at]).sqrt() / point.response[at].norm();
-        let sd = if neper.is_finite() { neper } else { 0.0 };
+    let with = |(shape, point): ([f64; 3], &EstimatePoint)| {
+        let sd = Some(point.sd(at)).filter(|sd| sd.is_finite()).unwrap_or(0.0);
         let [omega, db, phase] = shape;
         ([omega, db, phase, neper_to_db(sd), sd.to_degrees()], point.partial_coherence[at] >= TRUSTED_COHERENCE)
     };
@@ -183,7 +189,7 @@ pub(super) fn stabilisation_ui(ui: &mut Ui, page: Page<'_>) {
     let across = unit.axis_label();
     let title = "Stabilisation diagram: |λ| of the models of every order, at the best Laguerre pole and past window";
     let mut chart = Chart::new(title, ChartAxis::Frequency(unit), &across, "order");
-    chart.verticals = records.found.iter().flat_map(|(job, _)| job.options.band).collect();
+    chart.verticals = records.found.iter().flat_map(|(job, _)| job.request.options.band).collect();
     for stable in [false, true] {
         let points = found.stabilisation.iter().filter(|point| point.stable == stable && point.pole.norm() > 0.0);
         let place = |point: &StabilisationPoint| [point.pole.norm(), point.order as f64, 0.0];

@@ -9,8 +9,8 @@ use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::ChartLine;
 use crate::view::state::State;
 use gdcm_core::correction::{CorrectedModel, Pade};
-use gdcm_core::dataset::{BundleKind, Dynamics, StateSpace};
-use gdcm_core::identification::{Preparation, StateSpaceMatrices, Validation};
+use gdcm_core::dataset::{BundleKind, StateSpace};
+use gdcm_core::identification::Validation;
 use gdcm_core::study::SimulationJob;
 
 use super::histories::kept;
@@ -108,11 +108,10 @@ fn simulated_points(validation: &Validation, output: usize) -> Vec<Arc<[[f64; 2]
 fn jobs(state: &State) -> Vec<(TimeModel, SimulationJob)> {
     let Some(records) = state.records.conditions.get(&state.condition().id()) else { return Vec::new() };
     let Some(record) = records.rows.get(records.chosen).and_then(|row| row.flight.as_ref()) else { return Vec::new() };
-    let preparation =
-        Preparation { inputs: records.inputs.clone(), outputs: records.outputs.clone(), ..Preparation::of(&[], &[]) };
+    let preparation = records.preparation();
     let of = |model: &TimeModel| {
         let (record, preparation) = (Arc::clone(record), preparation.clone());
-        Some((*model, SimulationJob { record, preparation, model: matrices(state, records, *model)? }))
+        Some((*model, SimulationJob { record, preparation, model: state_space(state, records, *model)? }))
     };
     state.records.time_models.iter().filter_map(of).collect()
 }
@@ -131,24 +130,15 @@ pub(super) fn simulated<'a>(state: &'a State, palette: &Palette) -> Vec<Simulate
     jobs(state).into_iter().map(of).collect()
 }
 
-/// The matrices of a model; none where it is not there, or is not one of continuous time.
-fn matrices(state: &State, records: &ConditionRecords, model: TimeModel) -> Option<StateSpaceMatrices> {
-    let plain = |of: &StateSpace| {
-        let is_plain = of.timing().is_plain();
-        is_plain.then(|| StateSpaceMatrices {
-            a: of.a().clone(),
-            b: of.b().clone(),
-            c: of.c().clone(),
-            d: of.d().clone(),
-        })
-    };
+/// A model; none where it is not there, or is not one of continuous time.
+fn state_space(state: &State, records: &ConditionRecords, model: TimeModel) -> Option<StateSpace> {
+    let plain = |of: &StateSpace| of.timing().is_plain().then(|| of.clone());
     if model == TimeModel::Identified {
-        return Some(records.identification()?.refined.matrices.clone());
+        return records.identification()?.refined.state_space().cloned();
     }
     let shown = state.shown()?;
     let name = shown.representative_name(BundleKind::Physics);
-    let physics = state.condition().model(BundleKind::Physics, name)?;
-    let Dynamics::StateSpace(physics) = &physics.dynamics else { return None };
+    let physics = state.condition().model(BundleKind::Physics, name)?.state_space()?;
     match model {
         TimeModel::Corrected => plain(&CorrectedModel::of(physics, &shown.correction, Pade::default()).ok()?.model),
         TimeModel::Identified | TimeModel::Physics => plain(physics),

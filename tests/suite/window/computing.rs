@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, Once};
 
-use gdcm::app::fault;
+use gdcm::app::threads;
 use gdcm_core::correction::{Outcome, ProofBudget};
 use gdcm_core::dataset::Condition;
 use gdcm_core::executor::{Executor, Task};
@@ -54,7 +54,7 @@ fn note_panics() {
     ONCE.call_once(|| {
         let before = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |panic| {
-            fault::note(panic);
+            threads::note(panic);
             before(panic);
         }));
     });

@@ -152,7 +152,11 @@ fn files_of_records_go_to_the_condition_that_their_names_say_and_what_is_wrong_i
     let records = &state(&window).records;
     assert_eq!(records.conditions[&ConditionId(3)].rows[0].table.name, "cond03_sweep_LON_9");
     let wrong = records.conditions[&CONDITION_10_ID].rows.iter().find(|row| row.table.name == "flight").unwrap();
-    assert!(wrong.flight.is_none() && wrong.problems.iter().any(|words| words.contains("NZ")), "{:?}", wrong.problems);
+    assert!(
+        wrong.flight.is_none() && wrong.problems.iter().any(|problem| problem.to_string().contains("NZ")),
+        "{:?}",
+        wrong.problems
+    );
 }
 
 /// A dataset of which condition 7 has a known aircraft for its physics model and four flights of it for records, in all of which Q is
@@ -179,8 +183,8 @@ pub(crate) fn late_dataset(folder: &Path) -> PathBuf {
     dataset["frequency_band"]["max"] = json!(24.0);
     let condition = &mut dataset["conditions"][0];
     condition["records"] = json!(entries);
-    condition["physics_models"] = json!([{"name": "nominal", "role": "nominal", "A": rows(&aircraft.a), "B": rows(&aircraft.b),
-        "C": rows(&aircraft.c), "D": rows(&aircraft.d)}]);
+    condition["physics_models"] = json!([{"name": "nominal", "role": "nominal", "A": rows(aircraft.a()), "B": rows(aircraft.b()),
+        "C": rows(aircraft.c()), "D": rows(aircraft.d())}]);
     let path = folder.join("late.json");
     std::fs::write(&path, dataset.to_string()).unwrap();
     path

@@ -110,6 +110,14 @@ impl Model {
         self.states.get(state).cloned().unwrap_or_else(|| format!("state {}", state + 1))
     }
 
+    /// Its matrices; none where its response is measured.
+    pub fn state_space(&self) -> Option<&StateSpace> {
+        match &self.dynamics {
+            Dynamics::StateSpace(model) => Some(model),
+            Dynamics::Measured(_) => None,
+        }
+    }
+
     /// Whether this is the physics model at the condition's own trim.
     pub fn is_nominal(&self) -> bool {
         matches!(self.origin, Origin::Nominal { .. })

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix};
 
 use super::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
 use super::{
@@ -67,6 +67,56 @@ pub struct ModelDraft {
     pub states: Vec<String>,
     /// How uncertain its response is, where that is given.
     pub bands: Option<BandsDraft>,
+}
+
+impl ResponseArray {
+    /// A table with as many numbers for every response.
+    fn of<V: AsRef<[f64]>>(table: &PairTable<V>) -> Self {
+        let length = table.iter().next().map_or(0, |(_, values)| values.as_ref().len());
+        let values = table.iter().flat_map(|(_, values)| values.as_ref().iter().copied()).collect();
+        Self { shape: [table.outputs(), table.inputs(), length], values }
+    }
+}
+
+impl ModelDraft {
+    /// A model as it may be written, or put together with others.
+    pub fn of(model: &Model) -> Self {
+        let (matrices, timing, response) = match &model.dynamics {
+            Dynamics::StateSpace(system) => {
+                let matrices = [system.a(), system.b(), system.c(), system.d()].map(|matrix| Some(matrix.clone()));
+                (matrices, system.timing().clone(), None)
+            }
+            Dynamics::Measured(response) => {
+                let part = |of: fn(&Complex<f64>) -> f64| {
+                    ResponseArray::of(&response.values().map(|_, values| values.iter().map(of).collect::<Vec<f64>>()))
+                };
+                let draft = ResponseDraft {
+                    omega: response.omega().to_vec(),
+                    re: part(|value| value.re),
+                    im: part(|value| value.im),
+                    coherence: response.coherence().map(ResponseArray::of),
+                    valid_bands: response.valid_bands().map(ResponseArray::of),
+                    estimate: response.estimate(),
+                };
+                ([None, None, None, None], Timing::default(), Some(draft))
+            }
+        };
+        let bands = model.bands.as_deref().map(|bands| BandsDraft {
+            omega: bands.omega().to_vec(),
+            sd_db: ResponseArray::of(bands.sd_db()),
+            sd_deg: ResponseArray::of(bands.sd_deg()),
+        });
+        Self {
+            name: model.name.clone(),
+            origin: model.origin.clone(),
+            matrices,
+            timing,
+            response,
+            source: model.source.clone(),
+            states: model.states.to_vec(),
+            bands,
+        }
+    }
 }
 
 /// One flight condition, unchecked.

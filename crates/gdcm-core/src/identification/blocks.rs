@@ -90,7 +90,7 @@ impl BlockModel {
 
     /// The model in blocks: each block of `|B| = |C|`, real poles in pairs by modulus. None where poles are too close for
     /// their eigenvectors to be told apart.
-    pub(super) fn of(model: &StateSpaceMatrices) -> Option<Self> {
+    pub(super) fn of(model: &StateSpace) -> Option<Self> {
         let modes = Modes::of(model)?;
         let order = model.order();
         let (mut blocks, mut basis, mut next) = (Vec::new(), DMatrix::zeros(order, order), 0);
@@ -99,8 +99,8 @@ impl BlockModel {
             next += block.size();
             blocks.push(block);
         }
-        let (b, c) = (basis.clone().lu().solve(&model.b)?, &model.c * basis);
-        let mut found = Self { blocks, b, c, d: model.d.clone() };
+        let (b, c) = (basis.clone().lu().solve(model.b())?, model.c() * basis);
+        let mut found = Self { blocks, b, c, d: model.d().clone() };
         found.balance();
         let finite = found.b.iter().chain(found.c.iter()).all(|entry| entry.is_finite());
         finite.then_some(found)
@@ -119,8 +119,8 @@ impl BlockModel {
         }
     }
 
-    /// The four matrices.
-    pub(super) fn matrices(&self) -> StateSpaceMatrices {
+    /// The model by its four matrices; none where they are not finite.
+    pub(super) fn state_space(&self) -> Option<StateSpace> {
         let mut a = DMatrix::zeros(self.order(), self.order());
         for (first, block) in self.rows() {
             match block {
@@ -132,7 +132,7 @@ impl BlockModel {
                 }
             }
         }
-        StateSpaceMatrices { a, b: self.b.clone(), c: self.c.clone(), d: self.d.clone() }
+        StateSpace::new(a, self.b.clone(), self.c.clone(), self.d.clone()).ok()
     }
 
     /// The model after a step in its parameters: those of the blocks, then `B`, `C`, `D` row by row.
@@ -230,9 +230,9 @@ struct Modes {
 }
 
 impl Modes {
-    fn of(model: &StateSpaceMatrices) -> Option<Self> {
+    fn of(model: &StateSpace) -> Option<Self> {
         let order = model.order();
-        let schur = ComplexSchur::of(&model.a)?;
+        let schur = ComplexSchur::of(model.a())?;
         let (mut complex, mut real) = (Vec::new(), Vec::new());
         for at in 0..order {
             let eigenvalue = schur.t[(at, at)];
@@ -253,7 +253,7 @@ impl Modes {
         real.sort_by(|(a, _), (b, _)| a.abs().total_cmp(&b.abs()));
         // The outputs of neighbouring real modes with one sign: their difference then says how they differ.
         for k in 1..real.len() {
-            if (&model.c * &real[k - 1].1).dot(&(&model.c * &real[k].1)) < 0.0 {
+            if (model.c() * &real[k - 1].1).dot(&(model.c() * &real[k].1)) < 0.0 {
                 real[k].1.neg_mut();
             }
         }
@@ -291,13 +291,14 @@ mod tests {
     use super::*;
     use nalgebra::dmatrix;
 
-    fn model() -> StateSpaceMatrices {
-        StateSpaceMatrices {
-            a: dmatrix![-0.4, 2.1, 0.0, 0.0, 0.1; -2.1, -0.4, 0.0, 0.3, 0.0; 0.0, 0.0, -1.5, 0.0, 0.0; 0.2, 0.0, -1.1, 0.15, 0.0; 1.0, 0.0, 0.0, 1.0, -7.0],
-            b: dmatrix![1.0, 0.2; 0.0, 0.6; 0.5, -1.0; -0.3, 0.8; 3.0, -2.0],
-            c: dmatrix![1.0, 0.0, 0.3, 0.0, 0.4; 0.0, 0.5, 0.0, 1.0, 1.0],
-            d: dmatrix![0.0, 0.05; 0.1, 0.0],
-        }
+    fn model() -> StateSpace {
+        StateSpace::new(
+            dmatrix![-0.4, 2.1, 0.0, 0.0, 0.1; -2.1, -0.4, 0.0, 0.3, 0.0; 0.0, 0.0, -1.5, 0.0, 0.0; 0.2, 0.0, -1.1, 0.15, 0.0; 1.0, 0.0, 0.0, 1.0, -7.0],
+            dmatrix![1.0, 0.2; 0.0, 0.6; 0.5, -1.0; -0.3, 0.8; 3.0, -2.0],
+            dmatrix![1.0, 0.0, 0.3, 0.0, 0.4; 0.0, 0.5, 0.0, 1.0, 1.0],
+            dmatrix![0.0, 0.05; 0.1, 0.0],
+        )
+        .unwrap()
     }
 
     #[test]
@@ -305,12 +306,12 @@ mod tests {
         let blocks = BlockModel::of(&model()).unwrap();
         assert_eq!(blocks.blocks.len(), 3);
         for omega in [0.1, 1.0, 2.1, 10.0] {
-            let expected = model().response(omega).unwrap();
+            let expected = response_at(&model(), omega);
             // Eigenvectors of condition below 100.
             assert!((blocks.response(omega) - &expected).camax() < 1e-12);
-            assert!((blocks.matrices().response(omega).unwrap() - expected).camax() < 1e-12);
+            assert!((response_at(&blocks.state_space().unwrap(), omega) - expected).camax() < 1e-12);
         }
-        for pole in model().poles().unwrap() {
+        for pole in poles(&model()).unwrap() {
             let mut poles = blocks.blocks.iter().flat_map(|block| block.poles());
             assert!(poles.any(|found| (found - pole).norm() < 1e-12), "{pole}");
         }
@@ -329,12 +330,8 @@ mod tests {
 
     #[test]
     fn two_equal_poles_give_a_word_and_no_infinity() {
-        let twice = StateSpaceMatrices {
-            a: dmatrix![-1.0, 0.0; 0.0, -1.0],
-            b: dmatrix![1.0; 2.0],
-            c: dmatrix![1.0, 1.0],
-            d: dmatrix![0.0],
-        };
-        assert!(BlockModel::of(&twice).is_none_or(|model| model.matrices().is_finite()));
+        let twice =
+            StateSpace::new(dmatrix![-1.0, 0.0; 0.0, -1.0], dmatrix![1.0; 2.0], dmatrix![1.0, 1.0], dmatrix![0.0]);
+        assert!(BlockModel::of(&twice.unwrap()).is_none_or(|model| model.state_space().is_some()));
     }
 }

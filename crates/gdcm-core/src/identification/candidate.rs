@@ -55,9 +55,9 @@ impl SubspaceSettings {
     /// The two cheapest poles and past windows, the cheaper first.
     pub(super) fn candidates(
         &self,
-        pieces: &[Piece],
+        pieces: &[Segment],
         likelihood: &Likelihood,
-        steps: &Steps,
+        progress: &Shares,
     ) -> Result<Vec<Candidate>, IdentificationError> {
         let pasts: Vec<usize> = self.pasts.iter().copied().filter(|&past| self.is_fed(pieces, past)).collect();
         let Some(&longest) = pasts.iter().max() else { return Ok(Vec::new()) };
@@ -65,10 +65,10 @@ impl SubspaceSettings {
         let share = SHARE / (self.poles.len() * (pasts.len() + 1)) as f64;
         let of_pole = |(k, &pole): (usize, &f64)| {
             let told = format!("pole {} of {}", k + 1, self.poles.len());
-            steps.advance(share, &format!("{told}, projections"))?;
+            progress.advance(share, &format!("{told}, projections"))?;
             let factor = self.projections(pole, longest).factor(pieces, executor);
             let of_past = |&past: &usize| {
-                steps.advance(share, &format!("{told}, past {past}"))?;
+                progress.advance(share, &format!("{told}, past {past}"))?;
                 Ok(self.candidate(&factor, pole, past, pieces, likelihood))
             };
             each(executor, &pasts, of_past).into_iter().collect::<Result<Vec<_>, IdentificationError>>()
@@ -96,10 +96,7 @@ impl SubspaceSettings {
         candidate: &Candidate,
         executor: &dyn Executor,
     ) -> Vec<(usize, Vec<nalgebra::Complex<f64>>)> {
-        let of_order = |&order: &usize| {
-            let model = self.slow(&candidate.subspace, order)?;
-            Some((order, model.poles()?))
-        };
+        let of_order = |&order: &usize| Some((order, poles(&self.slow(&candidate.subspace, order)?)?));
         each(executor, &self.orders, of_order).into_iter().flatten().collect()
     }
 
@@ -108,7 +105,7 @@ impl SubspaceSettings {
     }
 
     /// Whether the pieces give rows enough for a past window.
-    fn is_fed(&self, pieces: &[Piece], past: usize) -> bool {
+    fn is_fed(&self, pieces: &[Segment], past: usize) -> bool {
         let channels = pieces.first().map_or(0, |piece| piece.inputs.ncols() + piece.outputs.ncols());
         let slowest = self.poles.iter().copied().fold(f64::INFINITY, f64::min);
         self.projections(slowest, past).count(pieces) >= LEAST_ROWS * (past + 1) * channels
@@ -119,7 +116,7 @@ impl SubspaceSettings {
         factor: &TriangularFactor,
         pole: f64,
         past: usize,
-        pieces: &[Piece],
+        pieces: &[Segment],
         likelihood: &Likelihood,
     ) -> Option<Candidate> {
         let piece = pieces.first()?;
@@ -131,8 +128,8 @@ impl SubspaceSettings {
     }
 
     /// The model of an order without modes far above the band.
-    fn slow(&self, subspace: &Subspace, order: usize) -> Option<StateSpaceMatrices> {
-        subspace.model(order)?.continuous()?.without_fast_modes(FASTEST * self.highest)
+    fn slow(&self, subspace: &Subspace, order: usize) -> Option<StateSpace> {
+        without_fast_modes(&subspace.model(order)?.continuous()?, FASTEST * self.highest)
     }
 
     fn model(&self, subspace: &Subspace, order: usize) -> Option<BlockModel> {

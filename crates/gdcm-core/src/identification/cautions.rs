@@ -8,7 +8,7 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq)]
 pub enum IdentificationCaution {
     /// Something in the records themselves.
-    Records(Caution),
+    Records(RecordCaution),
     /// An input was not moved, or only together with others.
     NotSwept {
         /// The input.
@@ -200,7 +200,7 @@ const COPY: f64 = 0.9999;
 
 /// Something in the flight records that may spoil the identification, or that was done to them.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Caution {
+pub enum RecordCaution {
     /// A record with uneven sample times was interpolated, as allowed.
     Resampled {
         /// The record's name.
@@ -256,7 +256,7 @@ pub enum Caution {
     },
 }
 
-impl fmt::Display for Caution {
+impl fmt::Display for RecordCaution {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Resampled { record, percent } => {
@@ -295,18 +295,22 @@ fn stair(f: &mut fmt::Formatter<'_>, signal: &Signal, percent: f64, hold_ms: f64
 }
 
 /// The cautions about channels, from the records as logged and the pieces made of them.
-pub(super) fn channel_cautions(records: &[FlightRecord], pieces: &[Piece], preparation: &Preparation) -> Vec<Caution> {
+pub(super) fn channel_cautions(
+    records: &[FlightRecord],
+    pieces: &[Segment],
+    preparation: &Preparation,
+) -> Vec<RecordCaution> {
     let mut cautions = Vec::new();
     for (signal, channel) in preparation.channels() {
         let samples = |record| samples(record, &signal);
         let greatest = pieces.iter().map(|piece| column(piece, &signal).amax()).fold(0.0, f64::max);
         if let Some(limit) = channel.limit.filter(|limit| greatest > *limit) {
-            cautions.push(Caution::UnlikelyUnit { signal: signal.clone(), greatest, limit });
+            cautions.push(RecordCaution::UnlikelyUnit { signal: signal.clone(), greatest, limit });
         }
         if channel.hold == Hold::None
             && let Some((share, hold_s)) = stairs(records.iter().map(samples))
         {
-            cautions.push(Caution::Stair { signal, percent: 100.0 * share, hold_s });
+            cautions.push(RecordCaution::Stair { signal, percent: 100.0 * share, hold_s });
         }
     }
     cautions.extend(correlated(pieces, preparation));
@@ -324,7 +328,7 @@ fn samples(record: &FlightRecord, signal: &Signal) -> Vec<(f64, f64)> {
 }
 
 /// A channel of a piece.
-fn column<'a>(piece: &'a Piece, signal: &Signal) -> nalgebra::DVectorView<'a, f64> {
+fn column<'a>(piece: &'a Segment, signal: &Signal) -> nalgebra::DVectorView<'a, f64> {
     match signal.role {
         Role::Input => piece.inputs.column(signal.index),
         Role::Output => piece.outputs.column(signal.index),
@@ -346,11 +350,11 @@ fn stairs(records: impl Iterator<Item = Vec<(f64, f64)>>) -> Option<(f64, f64)> 
         }
     }
     let share = 1.0 - steps.len() as f64 / samples.max(1) as f64;
-    (samples >= SAMPLES_IN_MOTION && share > STAIR).then(|| (share, quantile(steps, 0.5)))
+    (samples >= SAMPLES_IN_MOTION && share > STAIR).then(|| (share, median(&mut steps)))
 }
 
 /// Channels that move together, by their correlation over all pieces.
-fn correlated(pieces: &[Piece], preparation: &Preparation) -> Vec<Caution> {
+fn correlated(pieces: &[Segment], preparation: &Preparation) -> Vec<RecordCaution> {
     let signals: Vec<Signal> = preparation.channels().map(|(signal, _)| signal).collect();
     let mut covariance = DMatrix::zeros(signals.len(), signals.len());
     for piece in pieces {
@@ -369,10 +373,10 @@ fn correlated(pieces: &[Piece], preparation: &Preparation) -> Vec<Caution> {
             let correlation: f64 = covariance[(first, second)] / power;
             match b.role {
                 Role::Input if correlation.abs() > TOGETHER => {
-                    cautions.push(Caution::MovedTogether { signals: [a.clone(), b.clone()], correlation });
+                    cautions.push(RecordCaution::MovedTogether { signals: [a.clone(), b.clone()], correlation });
                 }
                 Role::Output if correlation.abs() > COPY => {
-                    cautions.push(Caution::Copy { copy: b.clone(), of: a.clone() })
+                    cautions.push(RecordCaution::Copy { copy: b.clone(), of: a.clone() })
                 }
                 Role::Input | Role::Output => {}
             }

@@ -22,7 +22,7 @@ pub(super) struct Diagnostics<'a> {
     /// For names of channels.
     pub(super) options: &'a Options,
     /// What the model was made from.
-    pub(super) evidence: &'a PreparedData<'a>,
+    pub(super) data: &'a PreparedData<'a>,
     /// The model.
     pub(super) fit: &'a Fit,
     /// The models without each record.
@@ -36,17 +36,12 @@ impl Diagnostics<'_> {
     }
 
     /// What the costs say.
-    pub(super) fn adequacy(
-        &self,
-        cost: f64,
-        held_out_cost: Option<f64>,
-        fits: &[RecordFit],
-        outputs: &[f64],
-    ) -> Vec<IdentificationCaution> {
+    pub(super) fn adequacy(&self, fits: &RecordFits) -> Vec<IdentificationCaution> {
+        let cost = fits.cost;
         let mut cautions = Vec::new();
-        let fitted = || fits.iter().filter(|fit| !fit.held_out);
+        let fitted = || fits.records.iter().filter(|fit| !fit.held_out);
         let worst = fitted().max_by(|a, b| a.cost.total_cmp(&b.cost));
-        let output = outputs.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(output, _)| output);
+        let output = fits.outputs.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(output, _)| output);
         if let Some(worst) = worst.filter(|_| cost > ADEQUATE) {
             let (record, signal) = (self.record_name(worst.record), self.options.signal(Role::Output, output));
             cautions.push(IdentificationCaution::Inadequate { cost, record, signal });
@@ -55,7 +50,7 @@ impl Diagnostics<'_> {
             let name = self.record_name(fit.record);
             cautions.push(IdentificationCaution::UnlikeRecord { record: fit.record, name, cost: fit.cost });
         }
-        if let Some(ratio) = held_out_cost.map(|held_out| held_out / cost).filter(|ratio| *ratio > HELD_OUT) {
+        if let Some(ratio) = fits.held_out_cost.map(|held_out| held_out / cost).filter(|ratio| *ratio > HELD_OUT) {
             cautions.push(IdentificationCaution::HeldOut { ratio });
         }
         cautions
@@ -88,9 +83,9 @@ impl Diagnostics<'_> {
         let least = fitted.map(|fit| fit.cost).fold(f64::INFINITY, f64::min);
         let late = |fit: &RecordFit| {
             let spectra: Vec<&Spectrum> =
-                self.evidence.spectra.iter().filter(|spectrum| spectrum.record == fit.record).collect();
+                self.data.spectra.iter().filter(|spectrum| spectrum.record == fit.record).collect();
             let model = &self.without.iter().find(|one| one.record == fit.record)?.model;
-            Some((fit.record, channel_delay(&spectra, &self.evidence.noise, model)?))
+            Some((fit.record, channel_delay(&spectra, &self.data.noise, model)?))
         };
         let unlike = fits.iter().filter(|fit| !fit.held_out && fit.cost > UNLIKE * least);
         let (record, late) = unlike.filter_map(late).max_by(|a, b| a.1.gain.total_cmp(&b.1.gain))?;
@@ -195,7 +190,7 @@ impl Sums {
         let channels = model.b.ncols() + model.c.nrows();
         let mut sums = Self { product: DVector::zeros(channels), square: DVector::zeros(channels), cost: 0.0 };
         for spectrum in spectra {
-            let part = Lines::new(spectrum, noise)?.cost(model)?;
+            let part = SpectralLines::new(spectrum, noise)?.cost(model)?;
             let residual =
                 DVector::from_iterator(2 * part.residual.len(), part.residual.iter().flat_map(|e| [e.re, e.im]));
             let columns = columns(spectrum, noise, model)?;
@@ -257,11 +252,37 @@ pub struct RecordFit {
     pub held_out: bool,
 }
 
+/// How well a model fits all records, each record and each output.
+pub(super) struct RecordFits {
+    /// The fit of every record that has degrees of freedom, in the order of the records.
+    pub(super) records: Vec<RecordFit>,
+    /// `J` per degree of freedom of each output over the records of the fit.
+    pub(super) outputs: Vec<f64>,
+    /// `J` per degree of freedom over the records of the fit.
+    pub(super) cost: f64,
+    /// The same over the held-out records, where there are any.
+    pub(super) held_out_cost: Option<f64>,
+}
+
+impl RecordFits {
+    /// The fits of a model; none where a cost is not finite or nothing has degrees of freedom.
+    pub(super) fn of(data: &PreparedData, model: &BlockModel) -> Option<Self> {
+        let (fitted, held_out) = (data.likelihood.parts(model)?, data.held_out.parts(model)?);
+        let outputs = output_costs(&data.likelihood, model, &fitted);
+        let mut records = fits_of_records(&data.likelihood, model, &fitted, false);
+        let held_out = fits_of_records(&data.held_out, model, &held_out, true);
+        let (cost, held_out_cost) = (mean_cost(&records)?, mean_cost(&held_out));
+        records.extend(held_out);
+        records.sort_by_key(|fit| fit.record);
+        Some(Self { records, outputs, cost, held_out_cost })
+    }
+}
+
 /// The fit of each record that has degrees of freedom, by record.
 pub(super) fn fits_of_records(
     likelihood: &Likelihood,
     model: &BlockModel,
-    parts: &[PieceCost],
+    parts: &[SegmentCost],
     held_out: bool,
 ) -> Vec<RecordFit> {
     let of_record = |record: usize| {
@@ -274,14 +295,14 @@ pub(super) fn fits_of_records(
 }
 
 /// `J` per degree of freedom over records; none where they have none.
-pub(super) fn mean_cost(fits: &[RecordFit]) -> Option<f64> {
+fn mean_cost(fits: &[RecordFit]) -> Option<f64> {
     let freedom: f64 = fits.iter().map(|fit| fit.freedom as f64).sum();
     let cost: f64 = fits.iter().map(|fit| fit.cost * fit.freedom as f64).sum();
     (freedom > 0.0).then(|| cost / freedom)
 }
 
 /// `J` per degree of freedom of each output by itself: `sum |E_o|^2 / (Cv_oo / 2)` over its share of the degrees of freedom.
-pub(super) fn output_costs(likelihood: &Likelihood, model: &BlockModel, parts: &[PieceCost]) -> Vec<f64> {
+fn output_costs(likelihood: &Likelihood, model: &BlockModel, parts: &[SegmentCost]) -> Vec<f64> {
     let outputs = model.c.nrows();
     let freedom = likelihood.freedom(model.order()) as f64 / outputs as f64;
     let mut sums = vec![0.0; outputs];

@@ -18,7 +18,7 @@ pub struct FlightRecord {
 
 /// A piece of a flight record without gaps, on a uniform grid of time, all samples finite.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Piece {
+pub struct Segment {
     /// Which of the records it is of, counted from 0.
     pub record: usize,
     /// Time of its first sample \[s\], on the record's clock.

@@ -1,6 +1,7 @@
 //! Known answers for the tests of this module: made-up systems, computed by independent numpy code.
 
 use super::*;
+use crate::dataset::{Pair, StateSpace};
 use crate::executor::Sequential;
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
@@ -48,7 +49,13 @@ pub(super) fn known_records(known: &Value) -> Likelihood<'static> {
             outputs: complex_matrix(&known["Y"]).transpose(),
         };
         let weights = vec![DMatrix::identity(2, 2); spectrum.omega.len()];
-        Lines::weighted(&spectrum, weights)
+        SpectralLines::weighted(&spectrum, weights)
     });
     Likelihood { pieces: pieces.collect(), executor: &Sequential }
+}
+
+/// The response of a model at a frequency.
+pub(super) fn response_at(model: &StateSpace, omega: f64) -> DMatrix<Complex<f64>> {
+    let response = crate::response::evaluate(model, &[omega]);
+    DMatrix::from_fn(model.outputs(), model.inputs(), |output, input| response.curve(Pair::new(output, input))[0])
 }

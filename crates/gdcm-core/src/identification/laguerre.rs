@@ -83,7 +83,7 @@ pub(super) struct Projections {
 
 impl Projections {
     /// The rows of one piece, with its trim and drift.
-    pub(super) fn rows(&self, piece: &Piece) -> DMatrix<f64> {
+    pub(super) fn rows(&self, piece: &Segment) -> DMatrix<f64> {
         let samples = piece.inputs.nrows();
         let duration = samples as f64 * piece.sample_time_s;
         let end = ((2.0 * self.past as f64 + 4.0) / self.pole).min(LARGEST_END * duration);
@@ -109,10 +109,10 @@ impl Projections {
     /// The triangular factor of the data matrix of all pieces.
     ///
     /// The same to the last bit on any number of threads: which pieces are factored together does not depend on it.
-    pub(super) fn factor(&self, pieces: &[Piece], executor: &dyn Executor) -> TriangularFactor {
+    pub(super) fn factor(&self, pieces: &[Segment], executor: &dyn Executor) -> TriangularFactor {
         /// Two parts keep two cores busy with three poles; merging a further one costs as much as a piece of 6 s.
         const PARTS: usize = 2;
-        let part = |pieces: &[Piece]| {
+        let part = |pieces: &[Segment]| {
             let channels = pieces.first().map_or(0, |piece| piece.inputs.ncols() + piece.outputs.ncols());
             let mut factor = TriangularFactor::empty((self.past + 1) * channels);
             for piece in pieces {
@@ -131,8 +131,8 @@ impl Projections {
     }
 
     /// Rows that the pieces give.
-    pub(super) fn count(&self, pieces: &[Piece]) -> usize {
-        let of_piece = |piece: &Piece| {
+    pub(super) fn count(&self, pieces: &[Segment]) -> usize {
+        let of_piece = |piece: &Segment| {
             let duration = piece.inputs.nrows() as f64 * piece.sample_time_s;
             let end = ((2.0 * self.past as f64 + 4.0) / self.pole).min(LARGEST_END * duration);
             ((duration - end) / self.spacing_s.max(piece.sample_time_s)) as usize
@@ -165,7 +165,7 @@ pub(super) struct LaguerreModel {
     /// `a` \[rad/s\].
     pub(super) pole: f64,
     /// `Ao`, `Bo`, `Co`, `Do` \[-\].
-    pub(super) matrices: StateSpaceMatrices,
+    pub(super) matrices: StateSpace,
 }
 
 impl LaguerreModel {
@@ -174,15 +174,13 @@ impl LaguerreModel {
     /// ```text
     /// M = (Ao + I)^-1,   A = a M (Ao - I),   B = sqrt(2a) M Bo,   C = sqrt(2a) Co M,   D = Do - Co M Bo
     /// ```
-    pub(super) fn continuous(&self) -> Option<StateSpaceMatrices> {
-        let StateSpaceMatrices { a, b, c, d } = &self.matrices;
+    pub(super) fn continuous(&self) -> Option<StateSpace> {
+        let (a, b, c, d) = (self.matrices.a(), self.matrices.b(), self.matrices.c(), self.matrices.d());
         let identity = DMatrix::identity(a.nrows(), a.nrows());
         let m = (a + &identity).try_inverse()?;
         let (mb, cm) = (&m * b, c * &m);
         let root = (2.0 * self.pole).sqrt();
-        let model =
-            StateSpaceMatrices { a: &m * (a - &identity) * self.pole, b: &mb * root, c: cm * root, d: d - c * mb };
-        model.is_finite().then_some(model)
+        StateSpace::new(&m * (a - &identity) * self.pole, &mb * root, cm * root, d - c * mb).ok()
     }
 }
 
@@ -211,9 +209,9 @@ mod tests {
     fn the_continuous_model_is_that_of_independent_code() {
         let known = &answers()["laguerre_to_ct"];
         let of = |name: &str| matrix(&known[name]);
-        let matrices = StateSpaceMatrices { a: of("Ao"), b: of("Bo"), c: of("Co"), d: of("Do") };
+        let matrices = StateSpace::new(of("Ao"), of("Bo"), of("Co"), of("Do")).unwrap();
         let model = LaguerreModel { pole: number(&known["a"]), matrices }.continuous().unwrap();
-        for (found, name) in [(&model.a, "A"), (&model.b, "B"), (&model.c, "C"), (&model.d, "D")] {
+        for (found, name) in [(model.a(), "A"), (model.b(), "B"), (model.c(), "C"), (model.d(), "D")] {
             // Independent numpy code; the tolerance stands in its file.
             assert!((found - of(name)).amax() < 1e-12, "{name}");
         }
@@ -222,7 +220,7 @@ mod tests {
     #[test]
     fn an_eigenvalue_of_minus_one_has_no_continuous_model() {
         let one = DMatrix::from_element(1, 1, 1.0);
-        let matrices = StateSpaceMatrices { a: -&one, b: one.clone(), c: one.clone(), d: one };
+        let matrices = StateSpace::new(-&one, one.clone(), one.clone(), one).unwrap();
         assert_eq!(LaguerreModel { pole: 2.0, matrices }.continuous(), None);
     }
 }

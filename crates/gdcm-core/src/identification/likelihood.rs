@@ -22,7 +22,7 @@ pub(super) const DEPENDENT: f64 = 1e-12;
 
 /// The lines of one piece of a record, whitened.
 #[derive(Clone, Debug)]
-pub(super) struct Lines {
+pub(super) struct SpectralLines {
     /// Which of the records it is of, counted from 0.
     pub(super) record: usize,
     /// \[rad/s\].
@@ -41,7 +41,7 @@ pub(super) struct Lines {
 
 /// A piece's part of the cost.
 #[derive(Clone, Debug)]
-pub(super) struct PieceCost {
+pub(super) struct SegmentCost {
     /// `J_r`.
     pub(super) cost: f64,
     /// `tau_r`.
@@ -50,7 +50,7 @@ pub(super) struct PieceCost {
     pub(super) residual: DMatrix<Complex<f64>>,
 }
 
-impl Lines {
+impl SpectralLines {
     /// The lines of a spectrum in scaled units with the weights of `noise`; none where it has no weight.
     pub(super) fn new(spectrum: &Spectrum, noise: &NoiseCovariance) -> Option<Self> {
         let weights = spectrum.omega.iter().map(|&omega| noise.weight(omega)).collect::<Option<Vec<_>>>()?;
@@ -94,7 +94,7 @@ impl Lines {
     }
 
     /// This piece's part of the cost; none where it is not finite.
-    pub(super) fn cost(&self, model: &BlockModel) -> Option<PieceCost> {
+    pub(super) fn cost(&self, model: &BlockModel) -> Option<SegmentCost> {
         let (outputs, lines) = self.outputs.shape();
         let order = model.order();
         // Real and imaginary parts of [T e0], one row for each output of each line.
@@ -135,7 +135,7 @@ impl Lines {
         let cost = real.norm_squared() + imaginary.norm_squared();
         let residual = real.iter().zip(imaginary.iter()).map(|(re, im)| Complex::new(*re, *im));
         let residual = DMatrix::from_iterator(outputs, lines, residual);
-        cost.is_finite().then_some(PieceCost { cost, transient, residual })
+        cost.is_finite().then_some(SegmentCost { cost, transient, residual })
     }
 }
 
@@ -143,7 +143,7 @@ impl Lines {
 #[derive(Clone)]
 pub(super) struct Likelihood<'a> {
     /// In the order of the pieces.
-    pub(super) pieces: Vec<Lines>,
+    pub(super) pieces: Vec<SpectralLines>,
     /// Who works out the parts of the pieces.
     pub(super) executor: &'a dyn Executor,
 }
@@ -155,7 +155,7 @@ impl Likelihood<'_> {
     }
 
     /// Each piece's part of the cost; none where one is not finite.
-    pub(super) fn parts(&self, model: &BlockModel) -> Option<Vec<PieceCost>> {
+    pub(super) fn parts(&self, model: &BlockModel) -> Option<Vec<SegmentCost>> {
         each(self.executor, &self.pieces, |piece| piece.cost(model)).into_iter().collect()
     }
 

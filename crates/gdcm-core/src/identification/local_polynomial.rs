@@ -10,7 +10,7 @@ pub(super) const TERMS: usize = 3;
 const HALF_WIDTH: (f64, f64) = (0.45, 0.2);
 /// A window with too few lines is widened by this factor.
 const WIDER: f64 = 1.2;
-/// Lines beyond the unknowns and the outputs that a window has at least.
+/// SpectralLines beyond the unknowns and the outputs that a window has at least.
 const SPARE_LINES: usize = 6;
 /// A window of this half width \[rad/s\] must hold the lines that a single record needs, or the records are too short (M14, 10).
 const FAIR_HALF_WIDTH: f64 = 1.0;
@@ -42,9 +42,9 @@ pub enum LocalPolynomialError {
     TooFewLines {
         /// Centre of the window \[rad/s\].
         omega: f64,
-        /// Lines in it, over all records.
+        /// SpectralLines in it, over all records.
         lines: usize,
-        /// Lines it takes.
+        /// SpectralLines it takes.
         needed: usize,
     },
 }
@@ -94,7 +94,7 @@ pub fn local_polynomial(
     spectra: &[Spectrum],
     omegas: &[f64],
     executor: &dyn Executor,
-) -> Result<MeasuredResponse, LocalPolynomialError> {
+) -> Result<ResponseEstimate, LocalPolynomialError> {
     let first = spectra.first().ok_or(LocalPolynomialError::Nothing)?;
     let channels = |s: &Spectrum| (s.inputs.nrows(), s.outputs.nrows());
     if omegas.is_empty() || first.inputs.nrows() == 0 || first.outputs.nrows() == 0 {
@@ -111,7 +111,7 @@ pub fn local_polynomial(
     let point = |&omega: &f64| Ok(estimate(spectra, &Window::around(spectra, omega)?));
     let mut points = each(executor, omegas, point).into_iter().collect::<Result<Vec<_>, LocalPolynomialError>>()?;
     points.sort_by(|a, b| a.omega.total_cmp(&b.omega));
-    Ok(MeasuredResponse { points })
+    Ok(ResponseEstimate { points })
 }
 
 /// Whether the lines around `omega` \[rad/s\] are enough; false where there are no spectra.
@@ -125,7 +125,7 @@ struct Window {
     half_width: f64,
     /// Of each spectrum the first line inside and the first one beyond.
     lines: Vec<(usize, usize)>,
-    /// Lines inside, over all spectra.
+    /// SpectralLines inside, over all spectra.
     count: usize,
     /// Columns that the records' transients take: three each, or as many as the record has lines.
     transients: usize,
@@ -165,7 +165,7 @@ impl Window {
 }
 
 /// The estimate from the lines in `window`; see [`local_polynomial`].
-fn estimate(spectra: &[Spectrum], window: &Window) -> MeasuredPoint {
+fn estimate(spectra: &[Spectrum], window: &Window) -> EstimatePoint {
     let (inputs, outputs) = (spectra[0].inputs.nrows(), spectra[0].outputs.nrows());
     let unknowns = TERMS * inputs;
     let freedom = window.count - window.transients - unknowns;
@@ -194,7 +194,7 @@ fn estimate(spectra: &[Spectrum], window: &Window) -> MeasuredPoint {
     }
     let singular = r.view((0, 0), (inputs, inputs)).clone_owned().singular_values();
     let condition = (singular.max() / singular.min().max(f64::MIN_POSITIVE.sqrt() * singular.max())).powi(2);
-    MeasuredPoint {
+    EstimatePoint {
         omega: window.omega,
         response,
         variance,

@@ -10,7 +10,6 @@ mod known_answers;
 mod laguerre;
 mod likelihood;
 mod local_polynomial;
-mod measured_response;
 mod modal_form;
 mod normal_system;
 mod options;
@@ -18,6 +17,7 @@ mod order;
 mod preparation;
 mod prepared_data;
 mod refinement;
+mod response_estimate;
 mod sampling;
 mod spectrum;
 mod subspace;
@@ -25,14 +25,19 @@ mod triangular_factor;
 mod uncertainty;
 mod validation;
 
+use crate::dataset::{Pair, StateSpace};
+#[cfg(test)]
+use crate::progress::Unobserved;
+use crate::progress::{Cancelled, Progress, Shares};
+use crate::response::{median, quantile};
+
 #[cfg(test)]
 use self::known_answers::*;
 use self::{
-    blocks::*, laguerre::*, likelihood::*, normal_system::*, order::*, refinement::*, sampling::*, subspace::*,
-    triangular_factor::*,
+    blocks::*, laguerre::*, likelihood::*, modal_form::*, normal_system::*, order::*, refinement::*, sampling::*,
+    subspace::*, triangular_factor::*,
 };
 pub use self::{
-    candidate::*, cautions::*, diagnostics::*, flight_record::*, identify::*, local_polynomial::*,
-    measured_response::*, modal_form::*, options::*, preparation::*, prepared_data::*, spectrum::*, uncertainty::*,
-    validation::*,
+    candidate::*, cautions::*, diagnostics::*, flight_record::*, identify::*, local_polynomial::*, options::*,
+    preparation::*, prepared_data::*, response_estimate::*, spectrum::*, uncertainty::*, validation::*,
 };

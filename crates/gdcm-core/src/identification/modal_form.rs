@@ -1,5 +1,6 @@
 //! The complex Schur form of a real matrix, its reordering, and its eigenvectors.
 
+use crate::dataset::StateSpace;
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 /// `A = Q T Q^H` with `Q` unitary and `T` upper triangular.
@@ -86,30 +87,23 @@ impl ComplexSchur {
 //
 // Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 7.6.
 
-impl StateSpaceMatrices {
-    /// The model without the modes with `|lambda| > limit` \[rad/s\], equal to it at omega = 0; none where an iteration does not
-    /// end or fast and slow modes cannot be told apart.
-    pub(super) fn without_fast_modes(&self, limit: f64) -> Option<Self> {
-        let mut schur = ComplexSchur::of(&self.a)?;
-        let slow = schur.order_by(|eigenvalue| eigenvalue.norm() <= limit);
-        let order = self.order();
-        if slow == order {
-            return Some(self.clone());
-        }
-        let basis = real_basis(&schur.q, slow);
-        let (q1, q2) = (basis.columns(0, slow), basis.columns(slow, order - slow));
-        let (a1, a2) = (q1.transpose() * &self.a * q1, q2.transpose() * &self.a * q2);
-        let x = sylvester(&a1, &a2, &(q1.transpose() * &self.a * q2))?;
-        let b2 = q2.transpose() * &self.b;
-        let c2 = &self.c * (q1 * &x + q2);
-        let model = Self {
-            a: a1,
-            b: q1.transpose() * &self.b - &x * &b2,
-            c: &self.c * q1,
-            d: &self.d - c2 * a2.lu().solve(&b2)?,
-        };
-        model.is_finite().then_some(model)
+/// The model without the modes with `|lambda| > limit` \[rad/s\], equal to it at omega = 0; none where an iteration does not
+/// end or fast and slow modes cannot be told apart.
+pub(super) fn without_fast_modes(model: &StateSpace, limit: f64) -> Option<StateSpace> {
+    let (a, b, c, order) = (model.a(), model.b(), model.c(), model.order());
+    let mut schur = ComplexSchur::of(a)?;
+    let slow = schur.order_by(|eigenvalue| eigenvalue.norm() <= limit);
+    if slow == order {
+        return Some(model.clone());
     }
+    let basis = real_basis(&schur.q, slow);
+    let (q1, q2) = (basis.columns(0, slow), basis.columns(slow, order - slow));
+    let (a1, a2) = (q1.transpose() * a * q1, q2.transpose() * a * q2);
+    let x = sylvester(&a1, &a2, &(q1.transpose() * a * q2))?;
+    let b2 = q2.transpose() * b;
+    let c2 = c * (q1 * &x + q2);
+    let b1 = q1.transpose() * b - &x * &b2;
+    StateSpace::new(a1, b1, c * q1, model.d() - c2 * a2.lu().solve(&b2)?).ok()
 }
 
 /// An orthonormal basis whose first `count` columns span the same as the first `count` columns of `q`, which are conjugates of
@@ -136,67 +130,10 @@ fn sylvester(a1: &DMatrix<f64>, a2: &DMatrix<f64>, a12: &DMatrix<f64>) -> Option
     Some(DMatrix::from_column_slice(rows, columns, system.lu().solve(&stacked)?.as_slice()))
 }
 
-// Four matrices of a model in continuous time.
-
-/// `dx/dt = A x + B u`, `y = C x + D u`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StateSpaceMatrices {
-    /// `A`, n x n.
-    pub a: DMatrix<f64>,
-    /// `B`, n x inputs.
-    pub b: DMatrix<f64>,
-    /// `C`, outputs x n.
-    pub c: DMatrix<f64>,
-    /// `D`, outputs x inputs.
-    pub d: DMatrix<f64>,
-}
-
-impl StateSpaceMatrices {
-    /// Number of states n.
-    #[must_use]
-    pub fn order(&self) -> usize {
-        self.a.nrows()
-    }
-
-    /// `C (j omega - A)^-1 B + D`, outputs x inputs; none where `j omega` is a pole.
-    #[must_use]
-    pub fn response(&self, omega: f64) -> Option<DMatrix<Complex<f64>>> {
-        let order = self.order();
-        let shifted = DMatrix::from_fn(order, order, |row, column| {
-            Complex::new(-self.a[(row, column)], if row == column { omega } else { 0.0 })
-        });
-        let states = shifted.lu().solve(&self.b.map(Complex::from))?;
-        let response = self.c.map(Complex::from) * states + self.d.map(Complex::from);
-        response.iter().all(|value| value.re.is_finite() && value.im.is_finite()).then_some(response)
-    }
-
-    /// The poles, as the Schur iteration gives them; none where it does not end.
-    #[must_use]
-    pub fn poles(&self) -> Option<Vec<Complex<f64>>> {
-        let schur = nalgebra::Schur::try_new(self.a.clone(), f64::EPSILON, 100 * (self.order() + 1))?;
-        Some(schur.complex_eigenvalues().iter().copied().collect())
-    }
-
-    /// Whether every entry is finite.
-    #[must_use]
-    pub fn is_finite(&self) -> bool {
-        [&self.a, &self.b, &self.c, &self.d].iter().all(|matrix| matrix.iter().all(|entry| entry.is_finite()))
-    }
-
-    /// The model with every input and output in other units: `scale[output, input]` times the response.
-    #[must_use]
-    pub(super) fn in_units(&self, inputs: &[f64], outputs: &[f64]) -> Self {
-        let mut scaled = self.clone();
-        for (input, scale) in inputs.iter().enumerate() {
-            scaled.b.column_mut(input).unscale_mut(*scale);
-            scaled.d.column_mut(input).unscale_mut(*scale);
-        }
-        for (output, scale) in outputs.iter().enumerate() {
-            scaled.c.row_mut(output).scale_mut(*scale);
-            scaled.d.row_mut(output).scale_mut(*scale);
-        }
-        scaled
-    }
+/// The poles of a model, as the Schur iteration gives them; none where it does not end.
+pub(super) fn poles(model: &StateSpace) -> Option<Vec<Complex<f64>>> {
+    let schur = nalgebra::Schur::try_new(model.a().clone(), f64::EPSILON, 100 * (model.order() + 1))?;
+    Some(schur.complex_eigenvalues().iter().copied().collect())
 }
 
 #[cfg(test)]
@@ -234,12 +171,12 @@ mod tests {
     fn what_is_left_is_that_of_independent_code() {
         let known = &answers()["drop_fast"];
         let of = |name: &str| matrix(&known[name]);
-        let model = StateSpaceMatrices { a: of("A"), b: of("B"), c: of("C"), d: of("D") };
-        let slow = model.without_fast_modes(number(&known["wmax"])).unwrap();
+        let model = StateSpace::new(of("A"), of("B"), of("C"), of("D")).unwrap();
+        let slow = without_fast_modes(&model, number(&known["wmax"])).unwrap();
         assert_eq!(slow.order() as f64, number(&known["order"]));
         for (omega, expected) in numbers(&known["w"]).into_iter().zip(response(&known["H"])) {
             // Independent numpy code; the tolerance stands in its file.
-            assert!((slow.response(omega).unwrap() - expected).camax() < 1e-9);
+            assert!((response_at(&slow, omega) - expected).camax() < 1e-9);
         }
     }
 
@@ -247,7 +184,7 @@ mod tests {
     fn a_model_without_fast_modes_stays_as_it_is() {
         let known = &answers()["drop_fast"];
         let of = |name: &str| matrix(&known[name]);
-        let model = StateSpaceMatrices { a: of("A"), b: of("B"), c: of("C"), d: of("D") };
-        assert_eq!(model.without_fast_modes(1000.0).unwrap(), model);
+        let model = StateSpace::new(of("A"), of("B"), of("C"), of("D")).unwrap();
+        assert_eq!(without_fast_modes(&model, 1000.0).unwrap(), model);
     }
 }

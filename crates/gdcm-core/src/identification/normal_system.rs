@@ -61,7 +61,7 @@ impl NormalSystem {
 pub(super) fn normal_systems(
     likelihood: &Likelihood,
     model: &BlockModel,
-    parts: &[PieceCost],
+    parts: &[SegmentCost],
 ) -> Option<Vec<NormalSystem>> {
     let pieces = likelihood.pieces.iter().zip(parts);
     each(likelihood.executor, pieces, |(lines, part)| Gram::new(lines, model, part).system()).into_iter().collect()
@@ -72,7 +72,7 @@ pub(super) fn normal_systems(
 /// Columns are numbered: the parameters, then tau, c1, c0.
 struct Gram<'a> {
     model: &'a BlockModel,
-    lines: &'a Lines,
+    lines: &'a SpectralLines,
     residual: &'a DMatrix<Complex<f64>>,
     /// `W C R`, outputs x (n lines): n columns a line.
     resolvent: DMatrix<Complex<f64>>,
@@ -85,7 +85,7 @@ struct Gram<'a> {
 }
 
 impl<'a> Gram<'a> {
-    fn new(lines: &'a Lines, model: &'a BlockModel, part: &'a PieceCost) -> Self {
+    fn new(lines: &'a SpectralLines, model: &'a BlockModel, part: &'a SegmentCost) -> Self {
         let (order, inputs, outputs) = (model.order(), model.b.ncols(), model.c.nrows());
         let count = lines.omega.len();
         let mut resolvent = DMatrix::zeros(outputs, order * count);
@@ -396,7 +396,7 @@ mod tests {
                 inputs: piece.inputs.clone(),
                 outputs: piece.outputs.clone(),
             };
-            *piece = Lines::weighted(&spectrum, (0..piece.omega.len()).map(weight).collect());
+            *piece = SpectralLines::weighted(&spectrum, (0..piece.omega.len()).map(weight).collect());
         }
         let mut model = known_start(known);
         // A single pole beside the pairs.

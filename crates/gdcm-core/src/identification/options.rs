@@ -34,6 +34,12 @@ impl Options {
         }
     }
 
+    /// Names of the records that models are fitted to, but for the one of the number `without`.
+    pub(super) fn fitted(&self, records: &[FlightRecord], without: Option<usize>) -> Vec<String> {
+        let fitted = |index: &usize| !self.held_out.contains(index) && Some(*index) != without;
+        (0..records.len()).filter(fitted).map(|index| records[index].name.clone()).collect()
+    }
+
     /// A channel by its place, with its name.
     pub(super) fn signal(&self, role: Role, index: usize) -> Signal {
         let channels = if role == Role::Input { &self.preparation.inputs } else { &self.preparation.outputs };
@@ -133,12 +139,12 @@ pub enum IdentificationError {
          lower the least order, or leave out channels"
     )]
     NoModel {
-        /// Lines of all records.
+        /// SpectralLines of all records.
         lines: usize,
         /// Their length \[s\].
         seconds: f64,
     },
     /// It was stopped.
     #[error("the identification was stopped")]
-    Stopped,
+    Stopped(#[from] Cancelled),
 }

@@ -69,7 +69,7 @@ pub(super) fn search_order(
     starts: &BTreeMap<usize, Fit>,
     likelihood: &Likelihood,
     held_out: &Likelihood,
-    steps: &Steps,
+    progress: &Shares,
 ) -> Result<Option<OrderSearch>, IdentificationError> {
     let Some(mut order) = first(starts) else { return Ok(None) };
     let (mut fits, mut criteria) = (BTreeMap::<usize, Fit>::new(), BTreeMap::new());
@@ -77,7 +77,7 @@ pub(super) fn search_order(
         let near = [Some(order), order.checked_sub(STEP), order.checked_add(STEP)];
         let new: Vec<usize> =
             near.into_iter().flatten().filter(|n| starts.contains_key(n) && !fits.contains_key(n)).collect();
-        let polish = |n: &usize| starts[n].clone().polished(likelihood, STEPS, steps);
+        let polish = |n: &usize| starts[n].clone().polished(likelihood, STEPS, progress);
         for (&n, fit) in new.iter().zip(each(likelihood.executor, &new, polish)) {
             let fit = fit?;
             if let Some(value) = criterion(&fit, likelihood) {

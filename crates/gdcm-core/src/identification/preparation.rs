@@ -103,6 +103,18 @@ impl Preparation {
         of_role(Role::Input, &self.inputs).chain(of_role(Role::Output, &self.outputs))
     }
 
+    /// How a channel is prepared.
+    pub fn channel(&self, signal: &Signal) -> Option<&ChannelPreparation> {
+        let channels = if signal.role == Role::Input { &self.inputs } else { &self.outputs };
+        channels.get(signal.index)
+    }
+
+    /// How a channel is prepared, to change.
+    pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
+        let channels = if signal.role == Role::Input { &mut self.inputs } else { &mut self.outputs };
+        channels.get_mut(signal.index)
+    }
+
     fn checked(&self) -> Result<(), PreparationError> {
         for (role, channels) in [(Role::Input, &self.inputs), (Role::Output, &self.outputs)] {
             if channels.is_empty() {
@@ -145,15 +157,27 @@ pub struct RecordUse {
     pub gaps: Vec<Gap>,
 }
 
+impl RecordUse {
+    /// First and last time \[s\] of each part of the record between what was cut out of it.
+    pub fn spans(&self, record: &FlightRecord) -> Vec<[f64; 2]> {
+        let cut = || self.gaps.iter().filter(|gap| gap.treatment == Treatment::CutOut);
+        let finite = || record.time_s.iter().copied().filter(|time| time.is_finite());
+        let (Some(first), Some(last)) = (finite().next(), finite().next_back()) else { return Vec::new() };
+        let starts = std::iter::once(first).chain(cut().map(|gap| gap.end_s));
+        let ends = cut().map(|gap| gap.start_s).chain([last]);
+        starts.zip(ends).filter(|(start, end)| start < end).map(|(start, end)| [start, end]).collect()
+    }
+}
+
 /// Flight records, prepared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prepared {
     /// The pieces, by record and time; at least one.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<Segment>,
     /// What was used of each record, in the order of the records.
     pub records: Vec<RecordUse>,
     /// What the engineer should know.
-    pub cautions: Vec<Caution>,
+    pub cautions: Vec<RecordCaution>,
 }
 
 /// Why flight records cannot be prepared.
@@ -302,7 +326,7 @@ pub fn prepare(
 }
 
 /// Whether a channel has one value within each piece, but for rounding.
-fn is_constant(pieces: &[Piece], signal: &Signal) -> bool {
+fn is_constant(pieces: &[Segment], signal: &Signal) -> bool {
     pieces.iter().all(|piece| {
         let samples = match signal.role {
             Role::Input => piece.inputs.column(signal.index),
@@ -315,9 +339,9 @@ fn is_constant(pieces: &[Piece], signal: &Signal) -> bool {
 
 /// A record, prepared.
 struct PreparedRecord {
-    pieces: Vec<Piece>,
+    pieces: Vec<Segment>,
     used: RecordUse,
-    cautions: Vec<Caution>,
+    cautions: Vec<RecordCaution>,
     /// Length of its longest run without a gap \[s\], long enough or not.
     longest_s: f64,
 }
@@ -335,7 +359,7 @@ fn prepare_record(
         if !preparation.resample {
             return Err(PreparationError::UnevenSampling { record: name, percent });
         }
-        cautions.push(Caution::Resampled { record: name, percent });
+        cautions.push(RecordCaution::Resampled { record: name, percent });
     }
     let (tracks, mut gaps) = Track::all(record, &clock, preparation);
     gaps.extend(clock.gaps());
@@ -352,11 +376,11 @@ fn prepare_record(
         } else {
             let (cause, treatment) = (Cause::PieceTooShort { length_s }, Treatment::CutOut);
             gaps.push(Gap { start_s, end_s: start_s + length_s, cause, treatment });
-            cautions.push(Caution::PieceDropped { record: record.name.clone(), start_s, length_s });
+            cautions.push(RecordCaution::PieceDropped { record: record.name.clone(), start_s, length_s });
         }
     }
     if pieces.is_empty() {
-        cautions.push(Caution::RecordUnused { record: record.name.clone() });
+        cautions.push(RecordCaution::RecordUnused { record: record.name.clone() });
     }
     gaps.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
     let used_s = pieces.iter().map(|piece| piece.sample_time_s * piece.inputs.nrows() as f64).sum();
@@ -395,11 +419,11 @@ struct Run {
 }
 
 impl Run {
-    fn piece(self, record: usize, start_s: f64, sample_time_s: f64, preparation: &Preparation) -> Piece {
+    fn piece(self, record: usize, start_s: f64, sample_time_s: f64, preparation: &Preparation) -> Segment {
         let (inputs, outputs) = (preparation.inputs.len(), preparation.outputs.len());
         let width = inputs + outputs;
         let samples = self.rows.len() / width;
-        Piece {
+        Segment {
             record,
             start_s,
             sample_time_s,

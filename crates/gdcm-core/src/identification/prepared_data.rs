@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 /// Points of the measured response.
 const MEASURED_POINTS: usize = 40;
-/// Lines for the measured response reach this factor beyond those used, at both ends.
+/// SpectralLines for the measured response reach this factor beyond those used, at both ends.
 const BEYOND: f64 = 1.3;
 /// Condition number of the inputs' correlations above which one is a copy of the others.
 const COPY: f64 = 1e9;
@@ -18,13 +18,13 @@ pub(super) struct PreparedData<'a> {
     /// Units of the records over scaled units.
     pub(super) scales: Scales,
     /// Pieces to fit, low-passed for the projections.
-    pub(super) pieces: Vec<Piece>,
+    pub(super) pieces: Vec<Segment>,
     /// Held-out pieces in the units of the records.
-    pub(super) held_out_pieces: Vec<Piece>,
-    /// Lines to fit.
+    pub(super) held_out_pieces: Vec<Segment>,
+    /// SpectralLines to fit.
     pub(super) spectra: Vec<Spectrum>,
     /// The response without a model.
-    pub(super) measured: MeasuredResponse,
+    pub(super) measured: ResponseEstimate,
     /// The noise that it leaves.
     pub(super) noise: NoiseCovariance,
     /// The cost over the records of the fit.
@@ -41,26 +41,26 @@ impl<'a> PreparedData<'a> {
         records: &[FlightRecord],
         options: &Options,
         executor: &'a dyn Executor,
-        steps: &Steps,
+        progress: &Shares,
     ) -> Result<Self, IdentificationError> {
         if let Some(&record) = options.held_out.iter().find(|record| **record >= records.len()) {
             return Err(IdentificationError::HeldOutMissing { record, records: records.len() });
         }
         let prepared = prepare(records, &options.preparation, executor)?;
         check_sampling(&prepared.pieces, options)?;
-        let (held_out_pieces, pieces): (Vec<Piece>, Vec<Piece>) =
+        let (held_out_pieces, pieces): (Vec<Segment>, Vec<Segment>) =
             prepared.pieces.into_iter().partition(|piece| options.held_out.contains(&piece.record));
         if pieces.is_empty() {
             return Err(IdentificationError::NothingToFit);
         }
         let scales = Scales::of(&pieces)?;
-        let scaled = |pieces: &[Piece]| pieces.iter().map(|piece| scales.scaled(piece)).collect::<Vec<_>>();
+        let scaled = |pieces: &[Segment]| pieces.iter().map(|piece| scales.scaled(piece)).collect::<Vec<_>>();
         let pieces = scaled(&pieces);
         check_inputs(&pieces, options)?;
 
-        steps.next(0.02, "measured response")?;
+        progress.next(0.02, "measured response")?;
         let (lowest, highest) = (options.lowest(), options.highest());
-        let between = |pieces: &[Piece], highest: f64| {
+        let between = |pieces: &[Segment], highest: f64| {
             let lines =
                 spectra(pieces, highest, executor).into_iter().map(|lines| lines.between(lowest / BEYOND, highest));
             lines.filter(|lines| !lines.omega.is_empty()).collect::<Vec<_>>()
@@ -70,13 +70,13 @@ impl<'a> PreparedData<'a> {
         let measured = local_polynomial(&wide, &omegas, executor).map_err(|why| unmeasured(why, &wide, &omegas))?;
         let noise = NoiseCovariance::of(&measured).ok_or(IdentificationError::OutputsDepend)?;
         let likelihood = |spectra: &[Spectrum]| {
-            let pieces: Option<_> = spectra.iter().map(|lines| Lines::new(lines, &noise)).collect();
+            let pieces: Option<_> = spectra.iter().map(|lines| SpectralLines::new(lines, &noise)).collect();
             pieces.map(|pieces| Likelihood { pieces, executor }).ok_or(IdentificationError::OutputsDepend)
         };
         let narrow: Vec<Spectrum> = wide.iter().map(|lines| lines.between(lowest, highest)).collect();
         let (fit, held_out) = (likelihood(&narrow)?, likelihood(&between(&scaled(&held_out_pieces), highest))?);
 
-        steps.next(0.07, "low-pass")?;
+        progress.next(0.07, "low-pass")?;
         let cut_off = CutOff::choose(&pieces, highest, executor);
         let mut cautions: Vec<_> = prepared.cautions.into_iter().map(IdentificationCaution::Records).collect();
         cautions.extend(vibration_cautions(&cut_off, options));
@@ -96,6 +96,20 @@ impl<'a> PreparedData<'a> {
         })
     }
 
+    /// A model in the units of the records: the response of a pair is its scaled one times output over input.
+    pub(super) fn in_units(&self, model: &BlockModel) -> Option<StateSpace> {
+        let mut scaled = model.clone();
+        for (input, scale) in self.scales.inputs.iter().enumerate() {
+            scaled.b.column_mut(input).unscale_mut(*scale);
+            scaled.d.column_mut(input).unscale_mut(*scale);
+        }
+        for (output, scale) in self.scales.outputs.iter().enumerate() {
+            scaled.c.row_mut(output).scale_mut(*scale);
+            scaled.d.row_mut(output).scale_mut(*scale);
+        }
+        scaled.state_space()
+    }
+
     /// That no model came of this.
     pub(super) fn no_model(&self) -> IdentificationError {
         IdentificationError::NoModel {
@@ -105,7 +119,7 @@ impl<'a> PreparedData<'a> {
     }
 }
 
-fn check_sampling(pieces: &[Piece], options: &Options) -> Result<(), IdentificationError> {
+fn check_sampling(pieces: &[Segment], options: &Options) -> Result<(), IdentificationError> {
     let sample_time_s = pieces.iter().map(|piece| piece.sample_time_s).fold(0.0, f64::max);
     let seen = std::f64::consts::PI / sample_time_s;
     if options.highest() <= seen {
@@ -122,7 +136,7 @@ fn unmeasured(why: LocalPolynomialError, spectra: &[Spectrum], omegas: &[f64]) -
             spectra.iter().map(|lines| lines.between(omegas[from] / BEYOND, f64::INFINITY)).collect();
         omegas[from..].iter().all(|omega| is_measurable(&lines, *omega))
     };
-    // Lines are used from half the lower end of the band on; the windows of another band lie a little differently.
+    // SpectralLines are used from half the lower end of the band on; the windows of another band lie a little differently.
     const MARGIN: f64 = 1.05;
     let lowest = |from: usize| 2.0 * MARGIN * omegas[from];
     let widest = omegas.last().map_or(0.0, |highest| 0.5 * highest);
@@ -137,7 +151,7 @@ fn unmeasured(why: LocalPolynomialError, spectra: &[Spectrum], omegas: &[f64]) -
 }
 
 /// Refuses inputs of which one is a sum of others, by the condition of their correlations.
-fn check_inputs(pieces: &[Piece], options: &Options) -> Result<(), IdentificationError> {
+fn check_inputs(pieces: &[Segment], options: &Options) -> Result<(), IdentificationError> {
     let inputs = options.preparation.inputs.len();
     let mut gram = DMatrix::<f64>::zeros(inputs, inputs);
     for piece in pieces {
@@ -170,12 +184,12 @@ fn vibration_cautions(cut_off: &CutOff, options: &Options) -> Vec<Identification
     cut_off.vibrating.iter().map(caution).collect()
 }
 
-fn band_caution(measured: &MeasuredResponse, options: &Options) -> Option<IdentificationCaution> {
+fn band_caution(measured: &ResponseEstimate, options: &Options) -> Option<IdentificationCaution> {
     let shown = measured.shown_band(options.band)?;
     Some(IdentificationCaution::BandNotShown { band: options.band, shown })
 }
 
-fn excitation_cautions(measured: &MeasuredResponse, options: &Options) -> Vec<IdentificationCaution> {
+fn excitation_cautions(measured: &ResponseEstimate, options: &Options) -> Vec<IdentificationCaution> {
     let excitation = measured.excitation();
     let signal = |input| -> Signal { options.signal(Role::Input, input) };
     let not_swept = |input| IdentificationCaution::NotSwept {
@@ -244,9 +258,9 @@ impl Scales {
     ///
     /// # Errors
     /// No pieces, differing numbers of channels, values that are not finite, a constant channel.
-    pub fn of(pieces: &[Piece]) -> Result<Self, ScalingError> {
+    pub fn of(pieces: &[Segment]) -> Result<Self, ScalingError> {
         let first = pieces.first().ok_or(ScalingError::NoPieces)?;
-        let channels = |piece: &Piece| (piece.inputs.ncols(), piece.outputs.ncols());
+        let channels = |piece: &Segment| (piece.inputs.ncols(), piece.outputs.ncols());
         if let Some(piece) = pieces.iter().position(|p| channels(p) != channels(first)) {
             return Err(ScalingError::ChannelsDiffer { piece });
         }
@@ -262,7 +276,7 @@ impl Scales {
 
     /// `piece` in scaled units: every channel divided by its scale. Channels beyond those of the scales are not touched.
     #[must_use]
-    pub fn scaled(&self, piece: &Piece) -> Piece {
+    pub fn scaled(&self, piece: &Segment) -> Segment {
         let mut scaled = piece.clone();
         for (samples, scales) in [(&mut scaled.inputs, &self.inputs), (&mut scaled.outputs, &self.outputs)] {
             for (mut column, scale) in samples.column_iter_mut().zip(scales) {
@@ -280,7 +294,7 @@ impl Scales {
 }
 
 /// The rms of each channel about its mean in each piece, over all pieces; none for a constant channel.
-fn rms(pieces: &[Piece], side: fn(&Piece) -> &DMatrix<f64>) -> Result<Vec<Option<f64>>, ScalingError> {
+fn rms(pieces: &[Segment], side: fn(&Segment) -> &DMatrix<f64>) -> Result<Vec<Option<f64>>, ScalingError> {
     let channels = pieces.first().map_or(0, |piece| side(piece).ncols());
     let (mut squares, mut greatest, mut samples) = (vec![0.0; channels], vec![0.0_f64; channels], 0);
     for (index, piece) in pieces.iter().enumerate() {

@@ -29,7 +29,7 @@ pub(super) struct Fit {
     /// The model.
     pub(super) model: BlockModel,
     /// Each piece's part of the cost.
-    pub(super) parts: Vec<PieceCost>,
+    pub(super) parts: Vec<SegmentCost>,
     /// `J`.
     pub(super) cost: f64,
     damping: f64,
@@ -49,13 +49,13 @@ impl Fit {
         mut self,
         likelihood: &Likelihood,
         count: usize,
-        steps: &Steps,
+        progress: &Shares,
     ) -> Result<Self, IdentificationError> {
         for step in 1..=count {
             if self.ended {
                 break;
             }
-            steps.advance(SHARE, &format!("order {}, step {step} of {count}", self.model.order()))?;
+            progress.advance(SHARE, &format!("order {}, step {step} of {count}", self.model.order()))?;
             self.step(likelihood);
         }
         Ok(self)
@@ -93,7 +93,7 @@ pub(super) fn damped(
     system: &NormalSystem,
     cost: f64,
     damping: f64,
-) -> Option<(BlockModel, Vec<PieceCost>, f64)> {
+) -> Option<(BlockModel, Vec<SegmentCost>, f64)> {
     let mut damping = damping;
     for _ in 0..=FAILURES {
         if let Some(step) = system.damped_step(damping) {
@@ -110,7 +110,7 @@ pub(super) fn damped(
 }
 
 /// The sum in the order of the pieces.
-fn total(parts: &[PieceCost]) -> f64 {
+fn total(parts: &[SegmentCost]) -> f64 {
     parts.iter().map(|part| part.cost).sum()
 }
 
@@ -151,7 +151,7 @@ pub(super) struct Refinement<'a> {
 pub(super) fn propose(
     evidence: &PreparedData,
     options: &Options,
-    steps: &Steps,
+    progress: &Shares,
 ) -> Result<Proposal, IdentificationError> {
     let mut orders = options.orders.clone();
     orders.sort_unstable();
@@ -162,13 +162,15 @@ pub(super) fn propose(
         pasts: options.pasts.clone(),
         orders,
     };
-    steps.next(0.1, "projections")?;
-    let candidates = settings.candidates(&evidence.pieces, &evidence.likelihood, steps)?;
-    steps.next(0.3, "models of all orders")?;
+    progress.next(0.1, "projections")?;
+    let candidates = settings.candidates(&evidence.pieces, &evidence.likelihood, progress)?;
+    progress.next(0.3, "models of all orders")?;
     let best = candidates.first().ok_or_else(|| evidence.no_model())?;
     let starts = settings.starts(&candidates, &evidence.likelihood);
     let first = OrderSearch::first(&starts).ok_or_else(|| evidence.no_model())?;
-    steps.show(&in_units(evidence, &first.model.matrices()));
+    if let Some(first) = evidence.in_units(&first.model) {
+        progress.progress().first_model(&first);
+    }
     let stabilisation = stabilisation(&settings.poles_by_order(best, evidence.likelihood.executor));
     let &Candidate { pole: laguerre_pole, past, .. } = best;
     Ok(Proposal { laguerre_pole, past, starts, stabilisation })
@@ -178,15 +180,15 @@ pub(super) fn propose(
 pub(super) fn refine<'a>(
     evidence: &PreparedData<'a>,
     proposal: &Proposal,
-    steps: &Steps,
+    progress: &Shares,
 ) -> Result<Refinement<'a>, IdentificationError> {
-    steps.next(0.4, "order")?;
-    let search = search_order(&proposal.starts, &evidence.likelihood, &evidence.held_out, steps)?;
+    progress.next(0.4, "order")?;
+    let search = search_order(&proposal.starts, &evidence.likelihood, &evidence.held_out, progress)?;
     let search = search.ok_or_else(|| evidence.no_model())?;
     let chosen = search.fits.get(&search.order).ok_or_else(|| evidence.no_model())?.clone();
-    steps.next(0.7, "refinement")?;
-    let fit = chosen.polished(&evidence.likelihood, FURTHER_STEPS, steps)?;
-    let (likelihood, fit, cautions) = match reweighed(&evidence.likelihood, &fit, steps)? {
+    progress.next(0.7, "refinement")?;
+    let fit = chosen.polished(&evidence.likelihood, FURTHER_STEPS, progress)?;
+    let (likelihood, fit, cautions) = match reweighed(&evidence.likelihood, &fit, progress)? {
         Some((likelihood, fit, caution)) => (likelihood, fit, vec![caution]),
         None => (evidence.likelihood.clone(), fit, Vec::new()),
     };
@@ -201,7 +203,7 @@ pub(super) fn refine<'a>(
 fn reweighed<'a>(
     likelihood: &Likelihood<'a>,
     fit: &Fit,
-    steps: &Steps,
+    progress: &Shares,
 ) -> Result<Option<(Likelihood<'a>, Fit, IdentificationCaution)>, IdentificationError> {
     let costs: Vec<f64> =
         fits_of_records(likelihood, &fit.model, &fit.parts, false).iter().map(|record| record.cost).collect();
@@ -211,19 +213,14 @@ fn reweighed<'a>(
     }
     let mean = (costs.iter().map(|cost| cost.ln()).sum::<f64>() / costs.len() as f64).exp();
     let records = likelihood.records();
-    let weigh = |piece: &super::likelihood::Lines| {
+    let weigh = |piece: &super::likelihood::SpectralLines| {
         let cost = records.iter().position(|record| *record == piece.record).and_then(|k| costs.get(k));
         cost.map_or_else(|| piece.clone(), |cost| piece.with_noise(cost / mean))
     };
     let weighed = Likelihood { pieces: likelihood.pieces.iter().map(weigh).collect(), executor: likelihood.executor };
     let Some(start) = Fit::start(&weighed, fit.model.clone()) else { return Ok(None) };
-    let fit = start.polished(&weighed, STEPS_AFTER_WEIGHING, steps)?;
+    let fit = start.polished(&weighed, STEPS_AFTER_WEIGHING, progress)?;
     Ok(Some((weighed, fit, IdentificationCaution::Reweighed { ratio: greatest / least })))
-}
-
-/// A model in the units of the records.
-pub(super) fn in_units(evidence: &PreparedData, model: &StateSpaceMatrices) -> StateSpaceMatrices {
-    model.in_units(&evidence.scales.inputs, &evidence.scales.outputs)
 }
 
 #[cfg(test)]
@@ -234,13 +231,13 @@ mod tests {
     fn exact_lines_lead_to_the_exact_response() {
         let known = &answers()["likelihood_noise_free"];
         let of = |name: &str| matrix(&known["start"][name]);
-        let start = StateSpaceMatrices { a: of("A"), b: of("B"), c: of("C"), d: of("D") };
+        let start = StateSpace::new(of("A"), of("B"), of("C"), of("D")).unwrap();
         let likelihood = known_records(known);
         let fit = Fit::start(&likelihood, BlockModel::of(&start).unwrap()).unwrap();
         // Independent numpy code; the tolerances stand in its file.
         assert!((fit.cost / number(&known["cost_at_start"]) - 1.0).abs() < 1e-8, "{}", fit.cost);
         let count = number(&known["max_iterations"]) as usize;
-        let fit = fit.polished(&likelihood, count, &Steps::new(&Unwatched)).unwrap();
+        let fit = fit.polished(&likelihood, count, &Shares::new(&Unobserved)).unwrap();
         assert!(fit.cost <= number(&known["cost_after_at_most"]), "{}", fit.cost);
         for (omega, expected) in numbers(&known["w"]).into_iter().zip(response(&known["H"])) {
             assert!((fit.model.response(omega) - expected).camax() < 1e-6);

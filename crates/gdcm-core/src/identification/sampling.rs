@@ -40,9 +40,11 @@ impl Clock {
             }
         }
         let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let sample_time_s = quantile(steps.clone(), 0.5);
+        // A record of one stamp has no steps.
+        let of_steps = |mut values: Vec<f64>, q: f64| if values.is_empty() { 0.0 } else { quantile(&mut values, q) };
+        let sample_time_s = of_steps(steps.clone(), 0.5);
         let off = |step: &f64| (step / sample_time_s - (step / sample_time_s).round().max(1.0)).abs();
-        let jitter_percent = 100.0 * quantile(steps.iter().map(off).collect(), COUNTED);
+        let jitter_percent = 100.0 * of_steps(steps.iter().map(off).collect(), COUNTED);
         let longest_step_s = (longest_bridge as f64 + 1.5) * sample_time_s;
         Ok(Self { start_s, sample_time_s, jitter_percent, rows, times, longest_step_s })
     }
@@ -91,11 +93,6 @@ impl Clock {
             })
         })
     }
-}
-
-/// The value below which `share` of the values lie; the middle two are averaged for a half, 0 of none.
-pub(super) fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
-    if values.is_empty() { 0.0 } else { crate::response::quantile(&mut values, share) }
 }
 
 // The samples of one channel that count, and the straight lines between them.
@@ -220,7 +217,9 @@ impl Reader<'_> {
 fn fresh(column: &Column, clock: &Clock, places: &mut Vec<usize>) -> f64 {
     let differs = |pair: &[usize]| column.values[pair[0]] != column.values[pair[1]];
     let changes: Vec<f64> = places.windows(2).filter(|pair| differs(pair)).map(|pair| clock.times[pair[1]]).collect();
-    let held_s = quantile(changes.windows(2).map(|pair| pair[1] - pair[0]).collect(), 0.5).max(clock.sample_time_s);
+    let mut holds: Vec<f64> = changes.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    // The median of no holds is not a number, and the greater of the two the other one.
+    let held_s = median(&mut holds).max(clock.sample_time_s);
     let mut previous: Option<usize> = None;
     let mut last_s = f64::NEG_INFINITY;
     places.retain(|&k| {
@@ -279,7 +278,7 @@ impl Column {
         if equal.len() < RUNS_OF_A_MOVING {
             return Vec::new();
         }
-        let usual = quantile(equal.iter().map(|run| run.len() as f64).collect(), USUAL);
+        let usual = quantile(&mut equal.iter().map(|run| run.len() as f64).collect::<Vec<f64>>(), USUAL);
         let longest_s = FROZEN_S.max(UNUSUAL * usual * clock.sample_time_s).max(clock.longest_step_s);
         let frozen = |run: &&[usize]| {
             let (first, last) = (run[0], run[run.len() - 1]);

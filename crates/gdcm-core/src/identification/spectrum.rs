@@ -46,14 +46,14 @@ impl Spectrum {
 
 /// The lines of every piece up to `highest` \[rad/s\] and below half the sampling frequency, in the order of the pieces.
 #[must_use]
-pub fn spectra(pieces: &[Piece], highest: f64, executor: &dyn Executor) -> Vec<Spectrum> {
+pub fn spectra(pieces: &[Segment], highest: f64, executor: &dyn Executor) -> Vec<Spectrum> {
     let mut planner = RealFftPlanner::new();
     let plans: Vec<_> = pieces.iter().map(|piece| planner.plan_fft_forward(piece.inputs.nrows())).collect();
     each(executor, pieces.iter().zip(plans), |(piece, plan)| spectrum(piece, highest, &plan))
 }
 
 /// The lines of one piece up to `highest`, by the transform `plan` of its length.
-fn spectrum(piece: &Piece, highest: f64, plan: &Arc<dyn RealToComplex<f64>>) -> Spectrum {
+fn spectrum(piece: &Segment, highest: f64, plan: &Arc<dyn RealToComplex<f64>>) -> Spectrum {
     let duration_s = piece.sample_time_s * piece.inputs.nrows() as f64;
     let below_nyquist = piece.inputs.nrows().saturating_sub(1) / 2;
     let omega: Vec<f64> =
@@ -64,7 +64,7 @@ fn spectrum(piece: &Piece, highest: f64, plan: &Arc<dyn RealToComplex<f64>>) -> 
     Spectrum { record: piece.record, duration_s, omega, inputs, outputs }
 }
 
-/// Lines 1 to `lines` of each column of `samples`, times `factor`: one row a channel.
+/// SpectralLines 1 to `lines` of each column of `samples`, times `factor`: one row a channel.
 fn transform(
     samples: &DMatrix<f64>,
     lines: usize,
@@ -155,13 +155,13 @@ impl LowPass {
 
     /// `piece`, every channel filtered.
     #[must_use]
-    pub fn piece(&self, piece: &Piece) -> Piece {
+    pub fn piece(&self, piece: &Segment) -> Segment {
         let side = |samples: &DMatrix<f64>| {
             let filtered: Vec<f64> =
                 samples.as_slice().chunks(samples.nrows().max(1)).flat_map(|x| self.filter(x)).collect();
             DMatrix::from_vec(samples.nrows(), samples.ncols(), filtered)
         };
-        Piece { inputs: side(&piece.inputs), outputs: side(&piece.outputs), ..piece.clone() }
+        Segment { inputs: side(&piece.inputs), outputs: side(&piece.outputs), ..piece.clone() }
     }
 }
 
@@ -197,7 +197,7 @@ impl CutOff {
     /// The cut-off for `pieces` when lines up to `highest` \[rad/s\] are used: 5 `highest`, or 2 `highest` when more than 30 %
     /// of the variance of an output lies above that (M14, 1.5).
     #[must_use]
-    pub fn choose(pieces: &[Piece], highest: f64, executor: &dyn Executor) -> Self {
+    pub fn choose(pieces: &[Segment], highest: f64, executor: &dyn Executor) -> Self {
         let outputs = pieces.first().map_or(0, |piece| piece.outputs.ncols());
         let (mut all, mut above) = (vec![0.0; outputs], vec![0.0; outputs]);
         for spectrum in spectra(pieces, f64::INFINITY, executor) {
@@ -215,8 +215,8 @@ impl CutOff {
 
     /// `pieces`, every channel through the low-pass of this cut-off; as they are where there is nothing to take off.
     #[must_use]
-    pub fn apply(&self, pieces: &[Piece], executor: &dyn Executor) -> Vec<Piece> {
-        let filter = |piece: &Piece| match LowPass::new(self.omega, piece.sample_time_s) {
+    pub fn apply(&self, pieces: &[Segment], executor: &dyn Executor) -> Vec<Segment> {
+        let filter = |piece: &Segment| match LowPass::new(self.omega, piece.sample_time_s) {
             Some(low_pass) => low_pass.piece(piece),
             None => piece.clone(),
         };

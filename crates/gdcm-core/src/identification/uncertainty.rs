@@ -10,6 +10,7 @@
 //! The factor 2 was measured: bands of 95 % then hold 95 % of the true curves.
 
 use super::*;
+use crate::dataset::{ModelBands, Pair, PairTable};
 use crate::executor::{Executor, each};
 use crate::fidelity::Cost;
 use crate::units::neper_to_db;
@@ -23,17 +24,6 @@ const FREEDOM_OF_SCALE: f64 = 1e-9;
 const MEASURED_FACTOR: f64 = 2.0;
 /// No standard deviation is said to be more than this many times the modulus of the pole and the band: it is not known at all.
 const UNKNOWN: f64 = 1e3;
-
-/// Standard deviations of a response over frequency.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Bands {
-    /// \[rad/s\], ascending.
-    pub omega: Vec<f64>,
-    /// Of the modulus \[dB\], outputs x inputs, one for each frequency.
-    pub sd_db: Vec<DMatrix<f64>>,
-    /// Of the phase \[deg\], outputs x inputs, one for each frequency.
-    pub sd_deg: Vec<DMatrix<f64>>,
-}
 
 /// A pole and how well it is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,24 +85,25 @@ impl ParameterCovariance {
         (re, im)
     }
 
-    /// Standard deviations of the response of `model` at `omegas`, those of the neighbours `n - 2` and `n + 2` included.
+    /// Standard deviations of the response of `model` at `omegas`, those of the neighbours `n - 2` and `n + 2` included; none
+    /// where there are fewer than two frequencies.
     pub(super) fn bands(
         &self,
         model: &BlockModel,
         neighbours: &[&BlockModel],
         omegas: &[f64],
         executor: &dyn Executor,
-    ) -> Bands {
+    ) -> Option<ModelBands> {
         let (outputs, inputs) = (model.c.nrows(), model.b.ncols());
         let at: Vec<_> = omegas.iter().map(|&omega| Gradients::new(model, neighbours, omega)).collect();
         // Of each pair over frequency: dB and degrees.
         let of_pair = |pair: usize| self.pair_bands(model, &at, pair % outputs, pair / outputs);
         let all: Vec<Vec<(f64, f64)>> = each(executor, 0..outputs * inputs, of_pair);
-        let of = |k: usize, part: fn(&(f64, f64)) -> f64| {
-            DMatrix::from_fn(outputs, inputs, |output, input| part(&all[input * outputs + output][k]))
+        let of = |part: fn(&(f64, f64)) -> f64| {
+            let curve = |pair: Pair| all[pair.input * outputs + pair.output].iter().map(part).collect();
+            PairTable::from_fn(outputs, inputs, curve)
         };
-        let over = |part: fn(&(f64, f64)) -> f64| (0..omegas.len()).map(|k| of(k, part)).collect();
-        Bands { omega: omegas.to_vec(), sd_db: over(|pair| pair.0), sd_deg: over(|pair| pair.1) }
+        ModelBands::new(omegas.to_vec(), of(|sd| sd.0), of(|sd| sd.1)).ok()
     }
 
     fn pair_bands(&self, model: &BlockModel, at: &[Gradients], output: usize, input: usize) -> Vec<(f64, f64)> {
@@ -240,10 +231,6 @@ pub(super) fn without_each_record(likelihood: &Likelihood, fit: &Fit, systems: &
 }
 
 /// How far two models are apart: the cost `J` of M4 (medians over frequency), averaged over the pairs that are identified.
-///
-/// ```text
-/// J = 20 median (dB)^2 + 20 * 0.0175 median (deg)^2
-/// ```
 pub(super) fn distance(one: &BlockModel, other: &BlockModel, omegas: &[f64], identified: &[(usize, usize)]) -> f64 {
     let ratios: Vec<_> =
         omegas.iter().map(|&omega| one.response(omega).zip_map(&other.response(omega), |a, b| a / b)).collect();
@@ -290,16 +277,16 @@ mod tests {
         let band = numbers(&known["band"]);
         let preparation = Preparation::of(&["U1", "U2"], &["Y1", "Y2"]);
         let options = Options { held_out: vec![4], ..Options::new([band[0], band[1]], preparation) };
-        let steps = Steps::new(&Unwatched);
-        let evidence = PreparedData::new(&records, &options, &Sequential, &steps).unwrap();
+        let progress = Shares::new(&Unobserved);
+        let evidence = PreparedData::new(&records, &options, &Sequential, &progress).unwrap();
         let likelihood = &evidence.likelihood;
         let whole = |name: &str| numbers(&known[name]).into_iter().map(|value| value as usize).collect::<Vec<_>>();
         let (poles, pasts, orders) = (numbers(&known["poles_a"]), whole("pasts"), whole("orders"));
         let settings = SubspaceSettings { highest: band[1], poles, pasts, orders };
-        let candidates = settings.candidates(&evidence.pieces, likelihood, &steps).unwrap();
+        let candidates = settings.candidates(&evidence.pieces, likelihood, &progress).unwrap();
         let starts = settings.starts(&candidates, likelihood);
         let polished =
-            |model: BlockModel, count| Fit::start(likelihood, model).unwrap().polished(likelihood, count, &steps);
+            |model: BlockModel, count| Fit::start(likelihood, model).unwrap().polished(likelihood, count, &progress);
         let fit = polished(starts[&4].model.clone(), 8).unwrap();
         let below = polished(turned(&starts[&2].model), 3).unwrap();
         let above = polished(starts[&6].model.clone(), 3).unwrap();
@@ -309,12 +296,13 @@ mod tests {
         let spare = likelihood.freedom(4) - effective_parameters(&fit);
         let covariance = ParameterCovariance::new(&system, fit.cost / spare as f64).unwrap();
         let expected = &known["expected"];
-        let bands = covariance.bands(&fit.model, &[&below.model, &above.model], &numbers(&expected["w"]), &Sequential);
+        let bands =
+            covariance.bands(&fit.model, &[&below.model, &above.model], &numbers(&expected["w"]), &Sequential).unwrap();
         let tolerance = number(&expected["sd_tolerance_relative"]);
-        for k in 0..bands.omega.len() {
-            for (found, name) in [(&bands.sd_db[k], "sd_db"), (&bands.sd_deg[k], "sd_deg")] {
-                let expected = matrix(&expected[name][k]);
-                for (found, expected) in found.iter().zip(expected.iter()) {
+        for (found, name) in [(bands.sd_db(), "sd_db"), (bands.sd_deg(), "sd_deg")] {
+            for (Pair { output, input }, found) in found.iter() {
+                for (k, found) in found.iter().enumerate() {
+                    let expected = matrix(&expected[name][k])[(output, input)];
                     // Independent numpy code; the tolerance stands in its file.
                     assert!((found / expected - 1.0).abs() < tolerance, "{name} {k}: {found}, not {expected}");
                 }

@@ -72,7 +72,7 @@ pub enum ValidationError {
         /// Which record, counted from 0.
         record: usize,
     },
-    /// The model or its response over one sample is not finite, or its matrices do not fit each other.
+    /// The response of the model over one sample is not finite.
     #[error("the model cannot be simulated: its matrices do not fit each other or hold values that are not finite")]
     NotSimulated,
     /// The longest window is no time.
@@ -105,15 +105,15 @@ pub enum ValidationError {
 /// # Errors
 /// No pieces, other channels than the model's, a model that cannot be simulated, windows too short.
 pub fn validate(
-    model: &StateSpaceMatrices,
-    pieces: &[Piece],
+    model: &StateSpace,
+    pieces: &[Segment],
     settings: &ValidationSettings,
     executor: &dyn Executor,
 ) -> Result<Validation, ValidationError> {
     if pieces.is_empty() {
         return Err(ValidationError::NoPieces);
     }
-    let differs = |piece: &&Piece| (piece.outputs.ncols(), piece.inputs.ncols()) != model.d.shape();
+    let differs = |piece: &&Segment| (piece.outputs.ncols(), piece.inputs.ncols()) != model.d().shape();
     if let Some(piece) = pieces.iter().find(differs) {
         return Err(ValidationError::ChannelsDiffer { record: piece.record });
     }
@@ -134,22 +134,20 @@ pub fn validate(
 }
 
 /// Length of a window \[s\]; none where the model is not finite or its poles are not found.
-fn window_s(model: &StateSpaceMatrices, longest_s: f64) -> Option<f64> {
-    let simulable = model.a.is_square() && model.is_finite();
-    let poles = if simulable { model.poles()? } else { return None };
-    let fastest = poles.iter().map(|pole| pole.re).fold(0.0, f64::max);
+fn window_s(model: &StateSpace, longest_s: f64) -> Option<f64> {
+    let fastest = poles(model)?.iter().map(|pole| pole.re).fold(0.0, f64::max);
     Some(if fastest > 0.0 { longest_s.min(TIME_CONSTANTS / fastest) } else { longest_s })
 }
 
-fn filtered(piece: &Piece, cut_off: Option<f64>) -> Piece {
+fn filtered(piece: &Segment, cut_off: Option<f64>) -> Segment {
     let low_pass = cut_off.and_then(|omega| LowPass::new(omega, piece.sample_time_s));
     low_pass.map_or_else(|| piece.clone(), |low_pass| low_pass.piece(piece))
 }
 
 /// The windows of one piece; none where it is too short.
 fn windows(
-    model: &StateSpaceMatrices,
-    piece: &Piece,
+    model: &StateSpace,
+    piece: &Segment,
     window_s: f64,
     std: &[f64],
 ) -> Result<Vec<ValidationWindow>, ValidationError> {
@@ -295,17 +293,13 @@ pub struct FirstOrderHold {
 }
 
 impl FirstOrderHold {
-    /// `model` over `sample_time_s` \[s\]; none where its matrices do not fit each other or the result is not finite.
+    /// `model` over `sample_time_s` \[s\]; none where the result is not finite.
     #[must_use]
-    pub fn of(model: &StateSpaceMatrices, sample_time_s: f64) -> Option<Self> {
-        let (n, m, l) = (model.a.nrows(), model.b.ncols(), model.c.nrows());
-        let fits = model.a.ncols() == n && model.b.nrows() == n && model.c.ncols() == n && model.d.shape() == (l, m);
+    pub fn of(model: &StateSpace, sample_time_s: f64) -> Option<Self> {
+        let (n, m) = (model.order(), model.inputs());
         let mut exponent = DMatrix::zeros(n + 2 * m, n + 2 * m);
-        if !fits || !model.is_finite() {
-            return None;
-        }
-        exponent.view_mut((0, 0), (n, n)).copy_from(&model.a.scale(sample_time_s));
-        exponent.view_mut((0, n), (n, m)).copy_from(&model.b.scale(sample_time_s));
+        exponent.view_mut((0, 0), (n, n)).copy_from(&model.a().scale(sample_time_s));
+        exponent.view_mut((0, n), (n, m)).copy_from(&model.b().scale(sample_time_s));
         exponent.view_mut((n, n + m), (m, m)).fill_with_identity();
         if !exponent.norm().is_finite() {
             return None;
@@ -315,8 +309,8 @@ impl FirstOrderHold {
             phi: exponential.view((0, 0), (n, n)).into_owned(),
             gamma: exponential.view((0, n), (n, m)).into_owned(),
             gamma_slope: exponential.view((0, n + m), (n, m)).into_owned(),
-            c: model.c.clone(),
-            d: model.d.clone(),
+            c: model.c().clone(),
+            d: model.d().clone(),
         })
     }
 

@@ -1,13 +1,8 @@
 //! Columns proposed for the time and the channels of a record.
 
+use super::*;
 use crate::assembly::{ChannelRule, conversion_factor, folded_name, same_channel};
 use crate::units::number;
-
-use super::layout_problem::{LayoutCaution, LayoutProblem};
-use super::record_channels::RecordChannels;
-use super::record_layout::{ColumnUse, RecordLayout};
-use super::record_table::{ColumnSide, RecordTable};
-use super::time_base::TimeBase;
 
 /// What the engineer says about the time of records.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -8,23 +8,15 @@
 //!
 //! Nothing is resampled, filtered or taken off here: samples are the file's, times a factor.
 
+mod laid_out_record;
 mod layout_problem;
 mod layout_proposal;
 #[cfg(test)]
 mod layout_tests;
-mod plausibility;
-mod record_channels;
-mod record_guess;
 mod record_layout;
 mod record_table;
-mod separation;
 mod time_base;
 
-pub use layout_problem::{LayoutCaution, LayoutProblem};
-pub use layout_proposal::{LayoutProposal, TimeWish};
-pub use record_channels::RecordChannels;
-pub use record_guess::RecordGuess;
-pub use record_layout::{ColumnUse, RecordLayout};
-pub use record_table::{ColumnSide, RecordColumn, RecordSource, RecordTable};
-pub use separation::Separation;
-pub use time_base::TimeBase;
+pub use self::{
+    laid_out_record::*, layout_problem::*, layout_proposal::*, record_layout::*, record_table::*, time_base::*,
+};

@@ -1,5 +1,9 @@
 //! A record as its file has it: columns of samples.
 
+use super::*;
+use crate::units::number;
+use std::ops::Range;
+
 /// On which side of the aircraft a file says that a column is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColumnSide {
@@ -92,5 +96,204 @@ impl RecordTable {
         let rest = self.columns.len() - names.len();
         let more = if rest == 0 { String::new() } else { format!(" and {rest} more") };
         format!("{}{more}", names.join(", "))
+    }
+}
+
+// Several records in one table.
+
+/// What tells the records of one table apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Separation {
+    /// The table is one record.
+    None,
+    /// A column that has one number for each record.
+    ByColumn(usize),
+    /// A column of stamps that begins again.
+    ByTime(usize),
+}
+
+/// Names of columns that number records.
+const NUMBERS: [&str; 15] = [
+    "record",
+    "records",
+    "recordid",
+    "recordno",
+    "recordnumber",
+    "run",
+    "runid",
+    "runno",
+    "runnumber",
+    "manoeuvre",
+    "maneuver",
+    "segment",
+    "event",
+    "testpoint",
+    "experiment",
+];
+
+impl Separation {
+    /// Fewer samples than these are no record of several in a file.
+    pub const FEWEST: usize = 20;
+
+    /// What tells the records of a table apart, as far as names of columns and stamps say.
+    pub fn proposed(table: &RecordTable) -> Self {
+        let numbers = |index: &usize| {
+            let column = &table.columns[*index];
+            let name: String =
+                column.name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
+            NUMBERS.contains(&name.as_str()) && {
+                let runs = runs_of(&column.values);
+                runs.len() > 1
+                    && runs.iter().all(|run| run.len() >= Self::FEWEST && column.values[run.start].fract() == 0.0)
+            }
+        };
+        if let Some(column) = (0..table.columns.len()).find(numbers) {
+            return Self::ByColumn(column);
+        }
+        match TimeBase::find(table) {
+            Some(column)
+                if {
+                    let parts = rising_parts(&table.columns[column].values);
+                    parts.len() > 1 && parts.iter().all(|part| part.len() >= Self::FEWEST)
+                } =>
+            {
+                Self::ByTime(column)
+            }
+            _ => Self::None,
+        }
+    }
+}
+
+impl RecordTable {
+    /// The records of the table, each named by what tells it apart. Samples without a number belong to none.
+    pub fn separated(self, separation: Separation) -> Vec<RecordTable> {
+        let parts: Vec<(Range<usize>, String)> = match separation {
+            Separation::None => return vec![self],
+            Separation::ByColumn(column) => {
+                let Some(numbers) = self.columns.get(column) else { return vec![self] };
+                let mut seen: Vec<f64> = Vec::new();
+                let named = |run: Range<usize>| {
+                    let value = numbers.values[run.start];
+                    seen.push(value);
+                    let times = seen.iter().filter(|other| **other == value).count();
+                    let again = if times > 1 { format!(", part {times}") } else { String::new() };
+                    (run, format!("{} {}{again}", numbers.name, number(value)))
+                };
+                runs_of(&numbers.values).into_iter().map(named).collect()
+            }
+            Separation::ByTime(column) => {
+                let Some(stamps) = self.columns.get(column) else { return vec![self] };
+                let parts = rising_parts(&stamps.values).into_iter().enumerate();
+                parts.map(|(index, part)| (part, format!("part {}", index + 1))).collect()
+            }
+        };
+        let why = match separation {
+            Separation::ByColumn(column) => {
+                format!("one of {} records: column {} changes", parts.len(), self.quoted(column))
+            }
+            _ => format!("one of {} records: the time restarts", parts.len()),
+        };
+        parts.into_iter().map(|(rows, name)| self.part(rows, &name, &why)).collect()
+    }
+
+    fn part(&self, rows: Range<usize>, name: &str, why: &str) -> RecordTable {
+        let variable = self.source.variable.iter().map(String::as_str).chain([name]).collect::<Vec<_>>().join(", ");
+        let columns = self.columns.iter().map(|column| {
+            let values = column.values[rows.clone()].to_vec();
+            super::RecordColumn { values, ..column_without_samples(column) }
+        });
+        RecordTable {
+            name: format!("{}, {name}", self.name),
+            columns: columns.collect(),
+            named: self.named,
+            sample_time_s: self.sample_time_s,
+            source: RecordSource { variable: Some(variable), ..self.source.clone() },
+            notes: self.notes.iter().cloned().chain([why.to_owned()]).collect(),
+        }
+    }
+}
+
+fn column_without_samples(column: &super::RecordColumn) -> super::RecordColumn {
+    super::RecordColumn { name: column.name.clone(), unit: column.unit.clone(), side: column.side, values: Vec::new() }
+}
+
+/// Ranges of samples with one number each; none for those without.
+fn runs_of(numbers: &[f64]) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for (sample, value) in numbers.iter().enumerate().filter(|(_, value)| value.is_finite()) {
+        match runs.last_mut() {
+            Some(run) if run.end == sample && numbers[run.start] == *value => run.end += 1,
+            _ => runs.push(sample..sample + 1),
+        }
+    }
+    runs
+}
+
+/// Ranges of samples between restarts: falls of the stamps that are not made good within some samples, as a slip is.
+fn rising_parts(stamps: &[f64]) -> Vec<Range<usize>> {
+    let (mut parts, mut start, mut last) = (Vec::new(), 0, f64::NEG_INFINITY);
+    for (sample, stamp) in stamps.iter().enumerate().filter(|(_, stamp)| stamp.is_finite()) {
+        let stays_below =
+            || stamps[sample..].iter().take(Separation::FEWEST / 2).all(|later| later.is_nan() || *later < last);
+        if *stamp < last && stays_below() {
+            parts.push(start..sample);
+            start = sample;
+        }
+        last = *stamp;
+    }
+    parts.push(start..stamps.len());
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(columns: Vec<(&str, Vec<f64>)>) -> RecordTable {
+        let columns = columns.into_iter().map(|(name, values)| RecordColumn::new(name, values)).collect();
+        RecordTable {
+            name: "log".into(),
+            columns,
+            named: true,
+            sample_time_s: None,
+            source: RecordSource::default(),
+            notes: Vec::new(),
+        }
+    }
+
+    fn counted(from: usize, to: usize) -> Vec<f64> {
+        (from..to).map(|sample| sample as f64).collect()
+    }
+
+    #[test]
+    fn a_column_that_numbers_records_tells_them_apart() {
+        let runs = [vec![1.0; 30], vec![f64::NAN; 5], vec![2.0; 25], vec![1.0; 40]].concat();
+        let log = table(vec![("t", counted(0, 100)), ("Run No.", runs), ("P", counted(0, 100))]);
+        assert_eq!(Separation::proposed(&log), Separation::ByColumn(1));
+        let records = log.separated(Separation::ByColumn(1));
+        let names: Vec<&str> = records.iter().map(|record| record.name.as_str()).collect();
+        assert_eq!(names, ["log, Run No. 1", "log, Run No. 2", "log, Run No. 1, part 2"]);
+        assert_eq!(records[1].columns[2].values, counted(35, 60));
+        assert_eq!(records[1].source.variable.as_deref(), Some("Run No. 2"));
+    }
+
+    #[test]
+    fn time_that_restarts_begins_a_record_and_a_slip_does_not() {
+        let twice = [counted(0, 40), counted(0, 30)].concat();
+        let log = table(vec![("time", twice.clone()), ("P", twice)]);
+        assert_eq!(Separation::proposed(&log), Separation::ByTime(0));
+        let lengths: Vec<usize> = log.separated(Separation::ByTime(0)).iter().map(RecordTable::rows).collect();
+        assert_eq!(lengths, [40, 30]);
+        let mut slip = counted(0, 70);
+        slip[35] = 30.5;
+        let log = table(vec![("time", slip)]);
+        assert_eq!(Separation::proposed(&log), Separation::None);
+        assert_eq!(log.clone().separated(Separation::None), [log]);
+    }
+
+    #[test]
+    fn a_count_of_samples_numbers_no_records() {
+        let log = table(vec![("t", counted(0, 50)), ("record", counted(0, 50))]);
+        assert_eq!(Separation::proposed(&log), Separation::None);
     }
 }

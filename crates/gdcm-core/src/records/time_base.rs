@@ -1,8 +1,7 @@
 //! What says when the samples of a record were taken.
 
+use super::*;
 use crate::assembly::{Dimension, PhysicalUnit, time_name_rank};
-
-use super::record_table::{RecordColumn, RecordTable};
 
 /// What says when the samples of a record were taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,7 +121,6 @@ fn mostly_rises(stamps: &[f64]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::records::RecordSource;
 
     fn table(name: &str, unit: Option<&str>, stamps: Vec<f64>) -> RecordTable {
         let column = RecordColumn { unit: unit.map(str::to_owned), ..RecordColumn::new(name, stamps) };

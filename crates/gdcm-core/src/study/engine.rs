@@ -84,11 +84,21 @@ impl Engine {
 
     /// The analysis of `study`; stages that do not depend on what changed since the last call are not computed again.
     pub fn analyze(&mut self, study: &Study, progress: &dyn Progress) -> Result<Analysis, Cancelled> {
+        self.analyze_first(study, None, progress)
+    }
+
+    /// As [`Engine::analyze`], with the result of one condition told before the others are begun.
+    pub fn analyze_first(
+        &mut self,
+        study: &Study,
+        first: Option<WantedFirst>,
+        progress: &dyn Progress,
+    ) -> Result<Analysis, Cancelled> {
         self.take(&study.dataset);
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
         let total = study.dataset.conditions().iter().map(|of| ConditionStages::steps(of)).sum();
         let execution = Execution::new(self.executor.as_ref(), progress, total);
-        let conditions = analyze_conditions(&mut self.conditions, study, &grid, self.proofs, &execution)?;
+        let conditions = analyze_conditions(&mut self.conditions, study, &grid, (self.proofs, first), &execution)?;
         let mut schedule = Schedule::of(&scheduled_points(study, &conditions), study.settings.schedule);
         if let Ok(schedule) = &mut schedule {
             schedule.cautions.extend(signed_delays_apart(study, &conditions));
@@ -172,21 +182,30 @@ impl Engine {
     }
 }
 
+/// The condition whose result is wanted before the others'.
+#[derive(Clone, Copy)]
+pub struct WantedFirst<'a> {
+    /// The condition.
+    pub condition: ConditionId,
+    /// Is told its result, which the whole analysis will contain.
+    pub tell: &'a (dyn Fn(&Result<ConditionAnalysis, ConditionFailure>) + Sync),
+}
+
 /// All conditions: first the one that is wanted first, by everybody together, then the others side by side.
 fn analyze_conditions(
     stages: &mut BTreeMap<ConditionId, ConditionStages>,
     study: &Study,
     grid: &FrequencyGrid,
-    proofs: ProofBudget,
+    (proofs, first): (ProofBudget, Option<WantedFirst>),
     execution: &Execution<'_>,
 ) -> Result<Outcomes, Cancelled> {
     let mut outcomes = Outcomes::new();
-    if let Some(first) = execution.progress().wanted_first()
-        && let Some(stages) = stages.get_mut(&first)
+    if let Some(first) = first
+        && let Some(stages) = stages.get_mut(&first.condition)
     {
         let outcome = stages.analyze(study, grid, proofs, execution)?;
-        execution.progress().first_result(&outcome);
-        outcomes.insert(first, outcome);
+        (first.tell)(&outcome);
+        outcomes.insert(first.condition, outcome);
     }
     let others = stages.iter_mut().filter(|(id, _)| !outcomes.contains_key(id)).collect();
     let others = execution.each_mut(others, |(id, stages): (&ConditionId, &mut ConditionStages)| {

@@ -3,10 +3,8 @@
 use std::convert::Infallible;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::dataset::ConditionId;
 use crate::executor::{Executor, Sequential, each};
-
-use super::{ConditionAnalysis, ConditionFailure};
+use crate::progress::{Cancelled, Progress, Unobserved};
 
 /// Carries out the pieces of one analysis, stops between two of them, and tells how far it is.
 pub struct Execution<'a> {
@@ -74,42 +72,6 @@ impl<'a> Execution<'a> {
         pieces.into_iter().collect()
     }
 }
-
-/// Told of the progress of long work, and asked whether it is still wanted.
-///
-/// The work may be carried out by several threads, and each of them asks.
-pub trait Progress: Sync {
-    /// Whether the work should end now, without a result.
-    fn cancelled(&self) -> bool;
-
-    /// `done` of `total` steps are behind.
-    fn advanced(&self, done: usize, total: usize);
-
-    /// The condition whose result is wanted before the others'.
-    fn wanted_first(&self) -> Option<ConditionId> {
-        None
-    }
-
-    /// The result of the condition wanted first, which the whole analysis will contain.
-    fn first_result(&self, _result: &Result<ConditionAnalysis, ConditionFailure>) {}
-}
-
-/// Nobody observes: the work runs to its end.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Unobserved;
-
-impl Progress for Unobserved {
-    fn cancelled(&self) -> bool {
-        false
-    }
-
-    fn advanced(&self, _done: usize, _total: usize) {}
-}
-
-/// The work was stopped before its end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the analysis was stopped")]
-pub struct Cancelled;
 
 /// One value, kept as long as what it depends on stays the same.
 #[derive(Clone, Debug)]

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use gdcm_core::assembly::{ChannelLabel, Facts, FoundModel};
 use gdcm_core::dataset::{
-    BandsDraft, BundleKind, Channel, Condition, ConditionRecord, Dataset, Dynamics, Estimate, Model, ModelBands,
-    ModelDraft, Origin, PairTable, Provenance, ResponseArray, ResponseDraft, Timing,
+    BundleKind, Channel, Condition, ConditionRecord, Dataset, Estimate, Model, ModelDraft, Origin, Provenance,
+    ResponseArray, ResponseDraft, Timing,
 };
 
 use crate::recognise::{Recognised, recognise};
@@ -49,55 +49,18 @@ fn facts(condition: &Condition, name: &str) -> Facts {
 fn found(dataset: &Dataset, facts: Facts, (condition, kind): (&Condition, BundleKind), model: &Model) -> FoundModel {
     let state = condition.flight_state();
     let label = |channel: &Channel| ChannelLabel { name: Some(channel.name.clone()), unit: Some(channel.unit.clone()) };
-    let (matrices, timing, response) = match &model.dynamics {
-        Dynamics::StateSpace(system) => {
-            let matrices = [system.a(), system.b(), system.c(), system.d()].map(|matrix| Some(matrix.clone()));
-            (matrices, system.timing().clone(), None)
-        }
-        Dynamics::Measured(response) => {
-            let array = |table: PairTable<Vec<f64>>| {
-                let shape = [table.outputs(), table.inputs(), response.omega().len()];
-                ResponseArray { shape, values: table.pairs().flat_map(|pair| table[pair].clone()).collect() }
-            };
-            let draft = ResponseDraft {
-                omega: response.omega().to_vec(),
-                re: array(response.values().map(|_, values| values.iter().map(|value| value.re).collect())),
-                im: array(response.values().map(|_, values| values.iter().map(|value| value.im).collect())),
-                coherence: response.coherence().cloned().map(array),
-                valid_bands: None,
-                estimate: response.estimate(),
-            };
-            ([None, None, None, None], Timing::default(), Some(draft))
-        }
-    };
+    let source = Some(Provenance {
+        variable: Some(format!("{}/{kind}/{}", state.id, model.name)),
+        records: model.source.as_ref().map(|source| source.records.clone()).unwrap_or_default(),
+        ..Provenance::default()
+    });
     FoundModel {
-        draft: ModelDraft {
-            name: model.name.clone(),
-            origin: model.origin.clone(),
-            matrices,
-            timing,
-            response,
-            source: Some(Provenance {
-                variable: Some(format!("{}/{kind}/{}", state.id, model.name)),
-                records: model.source.as_ref().map(|source| source.records.clone()).unwrap_or_default(),
-                ..Provenance::default()
-            }),
-            states: model.states.to_vec(),
-            bands: model.bands.as_deref().map(bands_draft),
-        },
+        draft: ModelDraft { source, ..ModelDraft::of(model) },
         inputs: dataset.inputs().iter().map(label).collect(),
         outputs: dataset.outputs().iter().map(label).collect(),
         facts,
         notes: Vec::new(),
     }
-}
-
-fn bands_draft(bands: &ModelBands) -> BandsDraft {
-    let array = |table: &PairTable<Vec<f64>>| ResponseArray {
-        shape: [table.outputs(), table.inputs(), bands.omega().len()],
-        values: table.iter().flat_map(|(_, values)| values.iter().copied()).collect(),
-    };
-    BandsDraft { omega: bands.omega().to_vec(), sd_db: array(bands.sd_db()), sd_deg: array(bands.sd_deg()) }
 }
 
 // Matrices that have files to themselves: `A.csv`, `B.csv`, `C.csv` and `D.csv` of a folder, or `nominal_A.npy`, ….

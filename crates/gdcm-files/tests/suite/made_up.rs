@@ -1,6 +1,7 @@
 //! Made-up aircraft, flights of them in closed loop through gusts, and datasets: for the tests here and for those of the program.
 
-use gdcm_core::identification::{FlightRecord, StateSpaceMatrices};
+use gdcm_core::dataset::StateSpace;
+use gdcm_core::identification::FlightRecord;
 use nalgebra::{DMatrix, DVector, dmatrix};
 use serde_json::{Value, json};
 
@@ -30,7 +31,7 @@ impl Gusts {
 #[derive(Clone)]
 pub struct Flight {
     /// The aircraft.
-    pub aircraft: StateSpaceMatrices,
+    pub aircraft: StateSpace,
     /// What disturbs it.
     pub gusts: Gusts,
     /// Inputs = sweep - feedback outputs.
@@ -43,7 +44,7 @@ pub struct Flight {
 
 impl Flight {
     /// 40 s at 25 Hz with a light feedback.
-    pub fn of(aircraft: StateSpaceMatrices, gusts: Gusts) -> Self {
+    pub fn of(aircraft: StateSpace, gusts: Gusts) -> Self {
         Self { aircraft, gusts, feedback: dmatrix![0.2, 0.1; -0.1, 0.3], length_s: 40.0, sample_time_s: 0.04 }
     }
 
@@ -56,7 +57,7 @@ impl Flight {
     fn record(&self, seed: u64, record: usize) -> FlightRecord {
         const FINER: usize = 10;
         let step_s = self.sample_time_s / FINER as f64;
-        let StateSpaceMatrices { a, b, c, .. } = &self.aircraft;
+        let (a, b, c) = (self.aircraft.a(), self.aircraft.b(), self.aircraft.c());
         let (order, inputs, outputs) = (a.nrows(), b.ncols(), c.nrows());
         let mut random =
             Random(seed.wrapping_mul(1000).wrapping_add(record as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
@@ -125,13 +126,14 @@ impl Random {
 }
 
 /// A stable aircraft of two inputs and outputs.
-pub fn stable_aircraft() -> StateSpaceMatrices {
-    StateSpaceMatrices {
-        a: dmatrix![-0.4, 2.1, 0.0, 0.0; -2.1, -0.4, 0.0, 0.3; 0.0, 0.0, -1.5, 0.8; 0.2, 0.0, -1.1, -0.6],
-        b: dmatrix![1.0, 0.2; 0.0, 0.6; 0.5, -1.0; -0.3, 0.8],
-        c: dmatrix![0.6, 1.0, 0.3, 0.0; 0.2, 0.5, -0.8, 1.0],
-        d: DMatrix::zeros(2, 2),
-    }
+pub fn stable_aircraft() -> StateSpace {
+    StateSpace::new(
+        dmatrix![-0.4, 2.1, 0.0, 0.0; -2.1, -0.4, 0.0, 0.3; 0.0, 0.0, -1.5, 0.8; 0.2, 0.0, -1.1, -0.6],
+        dmatrix![1.0, 0.2; 0.0, 0.6; 0.5, -1.0; -0.3, 0.8],
+        dmatrix![0.6, 1.0, 0.3, 0.0; 0.2, 0.5, -0.8, 1.0],
+        DMatrix::zeros(2, 2),
+    )
+    .expect("its matrices fit")
 }
 
 /// Two lags, `c` beside what each output sees of the other's, as one physics and one identified model.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::*;
 use crate::EveryCore;
 use gdcm_core::dataset::{Condition, Dataset, Model, ModelId};
-use gdcm_core::study::{Cancelled, ConditionAnalysis, ConditionFailure, Progress};
+use gdcm_core::study::{Cancelled, ConditionAnalysis, ConditionFailure, Progress, WantedFirst};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
@@ -117,15 +117,16 @@ impl Progress for Onlooker {
         assert!(done <= total);
         self.heard.store(done, Ordering::Relaxed);
     }
+}
 
-    fn wanted_first(&self) -> Option<ConditionId> {
-        Some(self.first)
-    }
-
-    fn first_result(&self, result: &Result<ConditionAnalysis, ConditionFailure>) {
-        // Nothing but the condition wanted first is done by then.
-        assert!(self.heard.load(Ordering::Relaxed) <= 100);
-        self.seen.lock().unwrap().push(result.clone());
+impl Onlooker {
+    fn analyze(&self, engine: &mut Engine, study: &Study) -> Result<Analysis, Cancelled> {
+        let tell = |result: &Result<ConditionAnalysis, ConditionFailure>| {
+            // Nothing but the condition wanted first is done by then.
+            assert!(self.heard.load(Ordering::Relaxed) <= 100);
+            self.seen.lock().unwrap().push(result.clone());
+        };
+        engine.analyze_first(study, Some(WantedFirst { condition: self.first, tell: &tell }), self)
     }
 }
 
@@ -144,7 +145,7 @@ fn results_have_the_same_bits_whatever_the_number_of_threads() {
 #[test]
 fn the_condition_wanted_first_is_told_first_and_as_the_whole_analysis_has_it() {
     let (study, onlooker) = (short_study(), Onlooker::new(ConditionId(10), usize::MAX));
-    let analysis = Engine::with_executor(Box::new(EveryCore)).analyze(&study, &onlooker).unwrap();
+    let analysis = onlooker.analyze(&mut Engine::with_executor(Box::new(EveryCore)), &study).unwrap();
     assert_eq!(onlooker.seen.into_inner().unwrap(), [analysis.conditions[&ConditionId(10)].clone()]);
     let alone = analyze(&mut Engine::default(), &study);
     assert_eq!(analysis.conditions, alone.conditions, "the order of work is not the order of results");
@@ -154,7 +155,7 @@ fn the_condition_wanted_first_is_told_first_and_as_the_whole_analysis_has_it() {
 fn an_analysis_that_is_stopped_halfway_goes_on_from_there_with_the_same_result() {
     let (study, mut engine) = (short_study(), Engine::default());
     for steps in [1, 100, 400] {
-        assert_eq!(engine.analyze(&study, &Onlooker::new(ConditionId(1), steps)), Err(Cancelled));
+        assert_eq!(Onlooker::new(ConditionId(1), steps).analyze(&mut engine, &study), Err(Cancelled));
     }
     assert_eq!(analyze(&mut engine, &study), analyze(&mut Engine::default(), &study));
 }

@@ -4,21 +4,22 @@ use super::common::noisy_measured;
 use super::whole::quick;
 use crate::made_up::{Flight, Gusts, stable_aircraft};
 use gdcm_core::executor::Sequential;
-use gdcm_core::identification::{IdentificationCaution, IdentificationError, Options, Unwatched, identify};
+use gdcm_core::identification::{IdentificationCaution, IdentificationError, Options, identify};
+use gdcm_core::progress::Unobserved;
 
 #[test]
 fn a_band_beyond_the_sweeps_is_offered_up_to_their_end() {
     // The sweeps end at 8.06 rad/s; the window of a point there is 1.6 rad/s wide to either side.
     let records = Flight::of(stable_aircraft(), Gusts { states: 0.03, sensors: 0.05 }).records(21, 4);
     let wide = Options { band: [0.6, 24.0], ..quick((2, 2)) };
-    let found = identify(&records, &wide, &Sequential, &Unwatched).unwrap();
+    let found = identify(&records, &wide, &Sequential, &Unobserved).unwrap();
     let shown = found.cautions.iter().find_map(|caution| match caution {
         IdentificationCaution::BandNotShown { band: [0.6, 24.0], shown } => Some(*shown),
         _ => None,
     });
     let shown = shown.unwrap_or_else(|| panic!("{:?}", found.cautions));
     assert!(shown[0] == 0.6 && (7.0..=10.0).contains(&shown[1]), "{shown:?}");
-    let again = identify(&records, &Options { band: shown, ..wide }, &Sequential, &Unwatched).unwrap();
+    let again = identify(&records, &Options { band: shown, ..wide }, &Sequential, &Unobserved).unwrap();
     let is_of_band = |caution: &IdentificationCaution| matches!(caution, IdentificationCaution::BandNotShown { .. });
     assert!(!again.cautions.iter().any(is_of_band), "{:?}", again.cautions);
 }
@@ -49,7 +50,7 @@ fn records_too_short_for_the_lower_end_of_the_band_say_which_end_they_would_do_f
     // 11 s have two lines below 1.3 rad/s: 12 of 6 records, where 17 are needed.
     let short = Flight { length_s: 11.0, ..Flight::of(stable_aircraft(), Gusts::light()) };
     let records = short.records(22, 6);
-    let of_band = |band| identify(&records, &Options { band, ..quick((2, 2)) }, &Sequential, &Unwatched);
+    let of_band = |band| identify(&records, &Options { band, ..quick((2, 2)) }, &Sequential, &Unobserved);
     let refused = of_band([0.6, 6.0]).unwrap_err();
     let IdentificationError::TooShort { lowest, .. } = refused else { panic!("{refused}") };
     assert!(lowest > 0.6 && lowest < 6.0, "{lowest}");

@@ -1,7 +1,9 @@
 //! The known answers of M14 (source: independent numpy code), and small made-up systems.
 
+use gdcm_core::dataset::{Model, Pair, StateSpace};
 use gdcm_core::executor::{Executor, Sequential, Task};
-use gdcm_core::identification::{MeasuredResponse, Piece, Scales, Spectrum, local_polynomial, log_spaced, spectra};
+use gdcm_core::identification::{ResponseEstimate, Scales, Segment, Spectrum, local_polynomial, log_spaced, spectra};
+use gdcm_core::response::evaluate;
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 use std::sync::Mutex;
@@ -49,9 +51,9 @@ pub fn complex(value: &Value) -> DMatrix<Complex<f64>> {
 }
 
 /// The first `count` records of the case `noisy` as pieces.
-pub fn noisy(known: &Value, count: usize) -> Vec<Piece> {
+pub fn noisy(known: &Value, count: usize) -> Vec<Segment> {
     let records = known["noisy"]["records"].as_array().expect("records");
-    let piece = |(record, value): (usize, &Value)| Piece {
+    let piece = |(record, value): (usize, &Value)| Segment {
         record,
         start_s: 0.0,
         sample_time_s: value["dt"].as_f64().expect("a sample time"),
@@ -70,8 +72,26 @@ pub fn noisy_spectra() -> Vec<Spectrum> {
 }
 
 /// The measured response of the case `noisy`, in scaled units.
-pub fn noisy_measured() -> MeasuredResponse {
+pub fn noisy_measured() -> ResponseEstimate {
     local_polynomial(&noisy_spectra(), &log_spaced(0.3, 8.0, 40), &Sequential).expect("its records are long enough")
+}
+
+/// The response of a model at a frequency \[rad/s\].
+pub fn response(model: &StateSpace, omega: f64) -> DMatrix<Complex<f64>> {
+    let response = evaluate(model, &[omega]);
+    DMatrix::from_fn(model.outputs(), model.inputs(), |output, input| response.curve(Pair::new(output, input))[0])
+}
+
+/// The matrices of a model.
+pub fn space(model: &Model) -> &StateSpace {
+    model.state_space().expect("it has matrices")
+}
+
+/// The made-up system of the case `drop_fast` without its fast mode.
+pub fn slow_system() -> StateSpace {
+    let known = known();
+    let [a, b, c, d] = ["A", "B", "C", "D"].map(|key| matrix(&known["drop_fast"][key]));
+    StateSpace::new(a.view((0, 0), (4, 4)).into(), b.rows(0, 4).into(), c.columns(0, 4).into(), d).expect("it is whole")
 }
 
 /// Numbers between -1 and 1 that look random, the same ones for the same seed.

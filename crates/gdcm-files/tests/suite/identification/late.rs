@@ -4,21 +4,15 @@ use crate::made_up::{Flight, Gusts, stable_aircraft};
 use gdcm_core::dataset::{Dynamics, StateSpace};
 use gdcm_core::executor::Sequential;
 use gdcm_core::identification::{
-    FlightRecord, MeasuredResponse, Preparation, Role, StateSpaceMatrices, local_polynomial, log_spaced, prepare,
-    spectra,
+    FlightRecord, Preparation, ResponseEstimate, Role, local_polynomial, log_spaced, prepare, spectra,
 };
 use gdcm_core::study::ChannelTimeSkew;
-use nalgebra::DVectorViewMut;
+use nalgebra::{DMatrix, DVectorViewMut};
 
 const BAND: [f64; 2] = [0.6, 6.0];
 
-fn physics(aircraft: StateSpaceMatrices) -> Dynamics {
-    let StateSpaceMatrices { a, b, c, d } = aircraft;
-    Dynamics::StateSpace(StateSpace::new(a, b, c, d).unwrap())
-}
-
 /// Four flights of which every record was changed alike.
-fn measured(change: impl Fn(&mut FlightRecord)) -> MeasuredResponse {
+fn measured(change: impl Fn(&mut FlightRecord)) -> ResponseEstimate {
     let mut records = Flight::of(stable_aircraft(), Gusts::light()).records(31, 4);
     records.iter_mut().for_each(change);
     let prepared = prepare(&records, &Preparation::of(&["LON", "LAT"], &["P", "Q"]), &Sequential).unwrap();
@@ -31,8 +25,8 @@ fn late(mut channel: DVectorViewMut<'_, f64>) {
     (3..logged.len()).for_each(|sample| channel[sample] = logged[sample - 3]);
 }
 
-fn found(measured: &MeasuredResponse) -> Option<(Role, usize, f64)> {
-    let late = ChannelTimeSkew::of(measured, BAND, &physics(stable_aircraft()))?;
+fn found(measured: &ResponseEstimate) -> Option<(Role, usize, f64)> {
+    let late = ChannelTimeSkew::of(measured, BAND, &Dynamics::StateSpace(stable_aircraft()))?;
     Some((late.role, late.index, late.delay_s))
 }
 
@@ -59,13 +53,16 @@ fn what_all_channels_have_in_common_is_said_of_none() {
 #[test]
 fn a_physics_model_that_is_wrong_otherwise_is_no_delay() {
     let clean = measured(|_| ());
-    let mut turned = stable_aircraft();
+    let with = |a: DMatrix<f64>, c: DMatrix<f64>| {
+        let of = stable_aircraft();
+        Dynamics::StateSpace(StateSpace::new(a, of.b().clone(), c, of.d().clone()).unwrap())
+    };
+    let of = stable_aircraft();
+    let mut turned = of.c().clone();
     // The sign of an output.
-    turned.c.row_mut(1).neg_mut();
-    assert_eq!(ChannelTimeSkew::of(&clean, BAND, &physics(turned)), None);
-    let mut other = stable_aircraft();
-    other.a *= 1.6;
-    assert_eq!(ChannelTimeSkew::of(&clean, BAND, &physics(other)), None);
+    turned.row_mut(1).neg_mut();
+    assert_eq!(ChannelTimeSkew::of(&clean, BAND, &with(of.a().clone(), turned)), None);
+    assert_eq!(ChannelTimeSkew::of(&clean, BAND, &with(of.a() * 1.6, of.c().clone())), None);
 }
 
 #[test]

@@ -36,7 +36,7 @@ fn prepared(record: &FlightRecord, settings: &Preparation) -> Prepared {
     prepare(std::slice::from_ref(record), settings, &Sequential).unwrap()
 }
 
-fn words(cautions: &[Caution]) -> String {
+fn words(cautions: &[RecordCaution]) -> String {
     cautions.iter().map(|caution| caution.to_string() + "\n").collect()
 }
 

@@ -1,12 +1,13 @@
 //! Identification from flight records, from outside.
 
-use super::common::{Threads, known, list, matrix};
+use super::common::{Threads, known, list, matrix, response, space};
 use crate::made_up::{Flight, Gusts, stable_aircraft};
+use gdcm_core::dataset::{ModelBands, Pair, StateSpace};
 use gdcm_core::executor::Sequential;
 use gdcm_core::identification::{
-    FlightRecord, Identification, IdentificationCaution, IdentificationError, Options, Preparation, Role,
-    StateSpaceMatrices, Unwatched, Watch, identify,
+    FlightRecord, Identification, IdentificationCaution, IdentificationError, Options, Preparation, Role, identify,
 };
+use gdcm_core::progress::{Cancelled, Progress, Unobserved};
 use nalgebra::{Complex, DMatrix, dmatrix};
 use rayon::prelude::*;
 use serde_json::Value;
@@ -38,10 +39,10 @@ fn known_options(known: &Value) -> Options {
 #[test]
 fn a_noisy_closed_loop_gives_what_independent_code_gives() {
     let known = &known()["noisy"];
-    let found = identify(&known_records(known), &known_options(known), &Sequential, &Unwatched).unwrap();
+    let found = identify(&known_records(known), &known_options(known), &Sequential, &Unobserved).unwrap();
     let expected = &known["expected"];
     // Independent numpy code; the tolerances stand in its file.
-    assert_eq!(found.refined.matrices.order() as f64, expected["order"].as_f64().unwrap());
+    assert_eq!(space(&found.refined).order() as f64, expected["order"].as_f64().unwrap());
     for (order, value) in &found.criteria {
         let expected = expected["bic"][order.to_string()].as_f64().unwrap();
         assert!((value / expected - 1.0).abs() < 0.01, "BIC of order {order}: {value}, not {expected}");
@@ -52,7 +53,7 @@ fn a_noisy_closed_loop_gives_what_independent_code_gives() {
         expected[name][part].as_array().unwrap().iter().map(matrix).collect()
     };
     for (k, &omega) in omegas.iter().enumerate() {
-        let model = found.refined.matrices.response(omega).unwrap();
+        let model = response(space(&found.refined), omega);
         let of = |name: &str| part(name, "re")[k].zip_map(&part(name, "im")[k], Complex::new);
         let (same, truth) = (of("H"), of("H_true_with_hold"));
         for at in 0..model.len() {
@@ -82,8 +83,25 @@ pub fn quick(channels: (usize, usize)) -> Options {
     }
 }
 
+fn bands(found: &Identification) -> &ModelBands {
+    found.refined.bands.as_ref().expect("the recommended model has bands")
+}
+
+fn omegas(found: &Identification) -> &[f64] {
+    bands(found).omega()
+}
+
+/// Standard deviation of a response, output and input, at the frequency `k`.
+fn sd_db(found: &Identification, k: usize, (output, input): (usize, usize)) -> f64 {
+    bands(found).sd_db()[Pair { output, input }][k]
+}
+
+fn sd_deg(found: &Identification, k: usize, (output, input): (usize, usize)) -> f64 {
+    bands(found).sd_deg()[Pair { output, input }][k]
+}
+
 fn responses(found: &Identification) -> Vec<DMatrix<Complex<f64>>> {
-    found.bands.omega.iter().map(|&omega| found.refined.matrices.response(omega).unwrap()).collect()
+    omegas(&found).iter().map(|&omega| response(space(&found.refined), omega)).collect()
 }
 
 /// Greatest relative difference of the responses of two identifications.
@@ -104,11 +122,11 @@ fn difference(one: &Identification, other: impl Fn(usize, usize, usize) -> Compl
 fn exact_records_give_the_exact_model() {
     let aircraft = stable_aircraft();
     let flight = Flight { sample_time_s: 0.02, ..Flight::of(aircraft.clone(), Gusts::default()) };
-    let found = identify(&flight.records(1, 3), &quick((2, 2)), &Sequential, &Unwatched).unwrap();
+    let found = identify(&flight.records(1, 3), &quick((2, 2)), &Sequential, &Unobserved).unwrap();
     let mut worst = 0.0_f64;
-    for (omega, response) in found.bands.omega.iter().zip(responses(&found)) {
-        let truth = aircraft.response(*omega).unwrap();
-        worst = worst.max((response - &truth).camax() / truth.camax());
+    for (omega, own) in omegas(&found).iter().zip(responses(&found)) {
+        let truth = response(&aircraft, *omega);
+        worst = worst.max((own - &truth).camax() / truth.camax());
     }
     // A sum over samples is an integral but for (omega dt)^2 / 12 of the ends of the record: 1.2e-3 at 6 rad/s.
     assert!(worst < 1.5e-3, "{worst}");
@@ -117,13 +135,13 @@ fn exact_records_give_the_exact_model() {
 #[test]
 fn units_of_a_channel_only_scale_its_row_or_column() {
     let records = Flight::of(stable_aircraft(), Gusts::light()).records(2, 3);
-    let found = identify(&records, &quick((2, 2)), &Sequential, &Unwatched).unwrap();
+    let found = identify(&records, &quick((2, 2)), &Sequential, &Unobserved).unwrap();
     let mut other = records;
     for record in &mut other {
         record.inputs.column_mut(0).scale_mut(1024.0);
         record.outputs.column_mut(1).scale_mut(0.125);
     }
-    let scaled = identify(&other, &quick((2, 2)), &Sequential, &Unwatched).unwrap();
+    let scaled = identify(&other, &quick((2, 2)), &Sequential, &Unobserved).unwrap();
     let all = responses(&scaled);
     // Powers of two change no digit of the scaled channels.
     let factor = |o: usize, i: usize| [1.0, 0.125][o] / [1024.0, 1.0][i];
@@ -134,19 +152,19 @@ fn units_of_a_channel_only_scale_its_row_or_column() {
 #[test]
 fn the_order_of_records_and_channels_does_not_matter() {
     let records = Flight::of(stable_aircraft(), Gusts::light()).records(3, 3);
-    let found = identify(&records, &quick((2, 2)), &Sequential, &Unwatched).unwrap();
+    let found = identify(&records, &quick((2, 2)), &Sequential, &Unobserved).unwrap();
     let mut other: Vec<FlightRecord> = records.into_iter().rev().collect();
     for record in &mut other {
         record.inputs.swap_columns(0, 1);
         record.outputs.swap_columns(0, 1);
     }
-    let turned = identify(&other, &quick((2, 2)), &Sequential, &Unwatched).unwrap();
+    let turned = identify(&other, &quick((2, 2)), &Sequential, &Unobserved).unwrap();
     let all = responses(&turned);
     // The same minimum from another side: the polish stops at a gain of 1e-3 of the cost, so a small part of a standard
     // deviation is left.
-    let sd = |k: usize, o: usize, i: usize| found.bands.sd_db[k][(o, i)] / 8.686;
+    let sd = |k: usize, o: usize, i: usize| sd_db(&found, k, (o, i)) / 8.686;
     let greatest = difference(&found, |k, o, i| {
-        let own = found.refined.matrices.response(found.bands.omega[k]).unwrap()[(o, i)];
+        let own = response(space(&found.refined), omegas(&found)[k])[(o, i)];
         own * (1.0 + (all[k][(1 - o, 1 - i)] / own - 1.0) / (sd(k, o, i) + 1e-3))
     });
     assert!(greatest < 0.1, "{greatest}");
@@ -156,13 +174,13 @@ fn the_order_of_records_and_channels_does_not_matter() {
 #[test]
 fn trims_change_nothing_and_drifts_next_to_nothing() {
     let records = Flight::of(stable_aircraft(), Gusts::light()).records(4, 3);
-    let found = identify(&records, &quick((2, 2)), &Sequential, &Unwatched).unwrap();
+    let found = identify(&records, &quick((2, 2)), &Sequential, &Unobserved).unwrap();
     let mut other = records.clone();
     for record in &mut other {
         record.inputs.column_mut(0).add_scalar_mut(64.0);
         record.outputs.column_mut(0).add_scalar_mut(-16.0);
     }
-    let trimmed = identify(&other, &quick((2, 2)), &Sequential, &Unwatched).unwrap();
+    let trimmed = identify(&other, &quick((2, 2)), &Sequential, &Unobserved).unwrap();
     let all = responses(&trimmed);
     // Rounding of samples of 64 to 1e-14, against noise of 1e-2.
     assert!(difference(&found, |k, o, i| all[k][(o, i)]) < 1e-6);
@@ -172,28 +190,29 @@ fn trims_change_nothing_and_drifts_next_to_nothing() {
         let drift: Vec<f64> = record.time_s.iter().map(|time| 0.01 * time).collect();
         record.outputs.column_mut(1).iter_mut().zip(drift).for_each(|(sample, drift)| *sample += drift);
     }
-    let drifting = identify(&other, &quick((2, 2)), &Sequential, &Unwatched).unwrap();
+    let drifting = identify(&other, &quick((2, 2)), &Sequential, &Unobserved).unwrap();
     let all = responses(&drifting);
     for (k, (drifting, straight)) in all.iter().zip(responses(&found)).enumerate() {
         for (at, (drifting, straight)) in drifting.iter().zip(straight.iter()).enumerate() {
             let error = (drifting / straight).ln();
             // A drift is in the cost exactly, but the measured noise sees its 1/omega as a parabola: half a deviation.
-            assert!(8.686 * error.re.abs() < 0.5 * found.bands.sd_db[k][at] + 0.01, "{k} {at}");
+            assert!(8.686 * error.re.abs() < 0.5 * sd_db(&found, k, (at % 2, at / 2)) + 0.01, "{k} {at}");
         }
     }
 }
 
 #[test]
 fn an_unstable_aircraft_flown_in_closed_loop_comes_back_unstable() {
-    let aircraft = StateSpaceMatrices {
-        a: dmatrix![-1.0, 2.0, 0.0; -2.0, -1.0, 0.0; 0.0, 0.0, 0.9],
-        b: dmatrix![1.0, 0.2; 0.0, 0.6; 0.5, -0.8],
-        c: dmatrix![1.0, 0.0, 0.3; 0.0, 0.5, 1.0],
-        d: DMatrix::zeros(2, 2),
-    };
+    let aircraft = StateSpace::new(
+        dmatrix![-1.0, 2.0, 0.0; -2.0, -1.0, 0.0; 0.0, 0.0, 0.9],
+        dmatrix![1.0, 0.2; 0.0, 0.6; 0.5, -0.8],
+        dmatrix![1.0, 0.0, 0.3; 0.0, 0.5, 1.0],
+        DMatrix::zeros(2, 2),
+    )
+    .unwrap();
     let flight = Flight { feedback: dmatrix![0.0, 2.0; 0.0, -3.0], ..Flight::of(aircraft, Gusts::light()) };
     let options = Options { orders: vec![2, 3, 4, 5], ..quick((2, 2)) };
-    let found = identify(&flight.records(5, 4), &options, &Sequential, &Unwatched).unwrap();
+    let found = identify(&flight.records(5, 4), &options, &Sequential, &Unobserved).unwrap();
     let unstable: Vec<_> = found.poles.iter().filter(|pole| pole.pole.re > 0.0 && pole.determined).collect();
     assert_eq!(unstable.len(), 1, "{:?}", found.poles);
     assert!((unstable[0].pole.re - 0.9).abs() < 3.0 * unstable[0].sd_re.max(0.02), "{:?}", unstable[0]);
@@ -207,14 +226,14 @@ fn bands_hold_what_they_say() {
     let aircraft = stable_aircraft();
     let flight = Flight::of(aircraft.clone(), Gusts { states: 0.03, sensors: 0.05 });
     let run = |seed: u64| {
-        let found = identify(&flight.records(100 + seed, 3), &quick((2, 2)), &Sequential, &Unwatched).unwrap();
+        let found = identify(&flight.records(100 + seed, 3), &quick((2, 2)), &Sequential, &Unobserved).unwrap();
         let mut ratios = Vec::new();
-        for (k, response) in responses(&found).iter().enumerate() {
-            let truth = aircraft.response(found.bands.omega[k]).unwrap();
+        for (k, own) in responses(&found).iter().enumerate() {
+            let truth = response(&aircraft, omegas(&found)[k]);
             for at in (0..4).filter(|at| !found.not_identified.contains(&(at % 2, at / 2))) {
-                let error = (response[at] / truth[at]).ln();
-                ratios.push(8.686 * error.re.abs() / found.bands.sd_db[k][at]);
-                ratios.push(error.im.abs().to_degrees() / found.bands.sd_deg[k][at]);
+                let error = (own[at] / truth[at]).ln();
+                ratios.push(8.686 * error.re.abs() / sd_db(&found, k, (at % 2, at / 2)));
+                ratios.push(error.im.abs().to_degrees() / sd_deg(&found, k, (at % 2, at / 2)));
             }
         }
         ratios
@@ -231,7 +250,7 @@ fn bands_hold_what_they_say() {
 fn any_number_of_threads_gives_the_same_bits() {
     let known = &known()["noisy"];
     let (records, options) = (known_records(known), known_options(known));
-    let on = |threads: usize| identify(&records, &options, &Threads(threads), &Unwatched).unwrap();
+    let on = |threads: usize| identify(&records, &options, &Threads(threads), &Unobserved).unwrap();
     let one = on(1);
     assert!(one == on(4));
     assert!(one == on(3));
@@ -245,7 +264,7 @@ fn a_late_channel_of_one_record_is_named_with_its_delay() {
     for sample in 3..late.len() {
         records[2].outputs[(sample, 1)] = late[sample - 3];
     }
-    let found = identify(&records, &quick((2, 2)), &Sequential, &Unwatched).unwrap();
+    let found = identify(&records, &quick((2, 2)), &Sequential, &Unobserved).unwrap();
     let late: Vec<_> = found
         .cautions
         .iter()
@@ -268,9 +287,13 @@ fn a_late_channel_of_one_record_is_named_with_its_delay() {
 
 #[test]
 fn clean_records_raise_no_caution() {
-    let found =
-        identify(&Flight::of(stable_aircraft(), Gusts::light()).records(7, 5), &quick((2, 2)), &Sequential, &Unwatched)
-            .unwrap();
+    let found = identify(
+        &Flight::of(stable_aircraft(), Gusts::light()).records(7, 5),
+        &quick((2, 2)),
+        &Sequential,
+        &Unobserved,
+    )
+    .unwrap();
     assert_eq!(found.cautions, []);
     assert_eq!(found.validation, None);
 }
@@ -278,19 +301,18 @@ fn clean_records_raise_no_caution() {
 #[test]
 fn the_bundle_has_its_neighbours_and_a_model_without_each_record() {
     let records = Flight::of(stable_aircraft(), Gusts::light()).records(8, 3);
-    let found = identify(&records, &quick((2, 2)), &Sequential, &Unwatched).unwrap();
+    let found = identify(&records, &quick((2, 2)), &Sequential, &Unobserved).unwrap();
     let names: Vec<_> = found.bundle.iter().map(|model| model.name.as_str()).collect();
     for record in &records {
         assert!(names.iter().any(|name| name.ends_with(&record.name)), "{names:?}");
     }
     assert!(found.refined.name.starts_with("CT-PBSID, refined, order "));
-    assert_eq!(found.plain.matrices.order(), found.refined.matrices.order());
-    assert!(found.bundle.iter().all(|model| model.matrices.is_finite()));
+    assert_eq!(space(&found.unrefined).order(), space(&found.refined).order());
 }
 
 /// Hears everything, and stops after a number of steps.
 struct Listener {
-    heard: Mutex<Vec<(f64, String)>>,
+    heard: Mutex<Vec<(usize, String)>>,
     models: AtomicUsize,
     stop_after: usize,
 }
@@ -301,15 +323,24 @@ impl Listener {
     }
 }
 
-impl Watch for Listener {
-    fn progress(&self, done: f64, what: &str) {
-        self.heard.lock().unwrap().push((done, what.to_owned()));
-    }
-    fn is_stopped(&self) -> bool {
+impl Progress for Listener {
+    fn cancelled(&self) -> bool {
         self.heard.lock().is_ok_and(|heard| heard.len() >= self.stop_after)
     }
-    fn first_model(&self, model: &StateSpaceMatrices) {
-        assert!(model.is_finite());
+
+    fn advanced(&self, done: usize, total: usize) {
+        assert_eq!(total, 1000);
+        if let Some(last) = self.heard.lock().unwrap().last_mut() {
+            last.0 = done;
+        }
+    }
+
+    fn step(&self, what: &str) {
+        self.heard.lock().unwrap().push((0, what.to_owned()));
+    }
+
+    fn first_model(&self, model: &StateSpace) {
+        assert!(model.order() > 0);
         self.models.fetch_add(1, Ordering::Relaxed);
     }
 }
@@ -322,7 +353,7 @@ fn progress_goes_forward_to_its_end_and_shows_a_first_model() {
     let heard = listener.heard.into_inner().unwrap();
     assert!(heard.windows(2).all(|pair| pair[0].0 <= pair[1].0), "{heard:?}");
     assert!(heard.iter().any(|(_, what)| what == "pole 1 of 1, past 6"), "{heard:?}");
-    assert_eq!(heard.last().unwrap().0, 1.0);
+    assert_eq!(heard.last().unwrap().0, 1000);
     assert_eq!(listener.models.into_inner(), 1);
 }
 
@@ -336,7 +367,7 @@ fn an_identification_stops_between_any_two_steps() {
         let listener = Listener::new(stop_after);
         assert_eq!(
             identify(&records, &quick((2, 2)), &Sequential, &listener),
-            Err(IdentificationError::Stopped),
+            Err(IdentificationError::Stopped(Cancelled)),
             "{stop_after}"
         );
     }
@@ -344,13 +375,11 @@ fn an_identification_stops_between_any_two_steps() {
 
 /// An identification that ends well has finite models, one that does not has words.
 fn ends_in_words(records: &[FlightRecord], options: &Options) -> String {
-    match identify(records, options, &Sequential, &Unwatched) {
+    match identify(records, options, &Sequential, &Unobserved) {
         Ok(found) => {
-            let models = found.bundle.iter().chain([&found.refined, &found.plain]);
-            assert!(models.into_iter().all(|model| model.matrices.is_finite()));
-            let finite =
-                |matrices: &[DMatrix<f64>]| matrices.iter().all(|matrix| matrix.iter().all(|entry| entry.is_finite()));
-            assert!(finite(&found.bands.sd_db) && finite(&found.bands.sd_deg));
+            // Models and bands that are not finite cannot be made.
+            let models = found.bundle.iter().chain([&found.refined, &found.unrefined]);
+            assert!(models.into_iter().all(|model| model.state_space().is_some()) && found.refined.bands.is_some());
             assert!(found.poles.iter().all(|pole| pole.sd_re.is_finite() && pole.sd_im.is_finite()));
             found.cautions.iter().map(|caution| format!("{caution}\n")).collect()
         }
@@ -408,7 +437,7 @@ fn records_that_are_too_short_or_too_slow_are_refused_in_words() {
 #[test]
 fn impossible_settings_are_refused_in_words() {
     let records = Flight::of(stable_aircraft(), Gusts::light()).records(13, 2);
-    let refused = |options: Options| identify(&records, &options, &Sequential, &Unwatched).unwrap_err();
+    let refused = |options: Options| identify(&records, &options, &Sequential, &Unobserved).unwrap_err();
     for band in [[0.0, 6.0], [6.0, 0.6], [f64::NAN, 6.0], [0.6, f64::INFINITY]] {
         assert!(matches!(refused(Options { band, ..quick((2, 2)) }), IdentificationError::Band { .. }));
     }

@@ -17,7 +17,7 @@
 //! `rest`, what all channels have in common, is no matter of one channel: the leads say it (M15, section 6).
 
 use crate::dataset::{Band, BundleKind, Condition, Dataset, Dynamics, Pair};
-use crate::identification::{MeasuredResponse, Role, Signal, TRUSTED_COHERENCE};
+use crate::identification::{ResponseEstimate, Role, Signal, TRUSTED_COHERENCE};
 use crate::response::{FrequencyGrid, FrequencyResponse, median, unwrap};
 use crate::units::{s_to_ms, telling};
 
@@ -47,7 +47,7 @@ pub struct ChannelTimeSkew {
 
 impl ChannelTimeSkew {
     /// The channel whose delay explains why a measured response is late against that of a physics model; none where none stands out.
-    pub fn of(measured: &MeasuredResponse, band: [f64; 2], physics: &Dynamics) -> Option<Self> {
+    pub fn of(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Option<Self> {
         let lags = lags(measured, band, physics)?;
         let (outputs, inputs) = measured.points.first()?.response.shape();
         let rows = (0..outputs).map(|index| (Role::Output, index, inputs));
@@ -59,7 +59,7 @@ impl ChannelTimeSkew {
     }
 
     /// The same against the nominal physics model of a condition.
-    pub fn of_condition(measured: &MeasuredResponse, band: [f64; 2], condition: &Condition) -> Option<Self> {
+    pub fn of_condition(measured: &ResponseEstimate, band: [f64; 2], condition: &Condition) -> Option<Self> {
         let nominal = condition.bundle(BundleKind::Physics).get(condition.nominal())?;
         Self::of(measured, band, &nominal.dynamics)
     }
@@ -98,7 +98,7 @@ impl Lag {
 }
 
 /// The lags of the responses that are coherent over half of the band; none where the physics model has none on these frequencies.
-fn lags(measured: &MeasuredResponse, band: [f64; 2], physics: &Dynamics) -> Option<Vec<Lag>> {
+fn lags(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Option<Vec<Lag>> {
     let points: Vec<_> = measured.points.iter().filter(|point| (band[0]..=band[1]).contains(&point.omega)).collect();
     let (first, last) = (points.first()?, points.last()?);
     let grid = FrequencyGrid::logarithmic(Band::new(first.omega, last.omega).ok()?, points.len());

@@ -1,9 +1,10 @@
-//! What the name of a record says about it.
+//! A record with the columns that are its channels, and what its name says about it.
 
-use crate::assembly::{NamePattern, Row, folded_name};
-use crate::dataset::{ConditionId, Dataset, RecordKind};
-
-use super::record_table::RecordTable;
+use super::*;
+use crate::assembly::{NamePattern, Row, folded_name, standard_patterns};
+use crate::dataset::{ConditionId, ConditionRecord, Dataset, RecordKind};
+use crate::identification::{FlightRecord, RecordUse};
+use std::sync::Arc;
 
 /// What the names of folders and files say about a record.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -60,6 +61,53 @@ impl RecordGuess {
         let mut row = Row::default();
         patterns.iter().for_each(|pattern| pattern.read(name, &mut row));
         Self { kind, held_out, condition: row.condition, airspeed_kt: row.airspeed_kt }
+    }
+}
+
+/// A record as it was read, with the columns that are its channels.
+#[derive(Clone, Debug)]
+pub struct LaidOutRecord {
+    /// As its file has it.
+    pub table: Arc<RecordTable>,
+    /// Which columns are its channels.
+    pub layout: RecordLayout,
+    /// What its name says, or the engineer instead.
+    pub guess: RecordGuess,
+    /// Whether it is used.
+    pub used: bool,
+    /// What keeps it from being used.
+    pub problems: Vec<LayoutProblem>,
+    /// What is odd about it.
+    pub cautions: Vec<LayoutCaution>,
+    /// Its samples in the units of the channels; none while there are problems.
+    pub flight: Option<Arc<FlightRecord>>,
+}
+
+impl LaidOutRecord {
+    /// A record with these columns for its channels.
+    pub fn new(table: Arc<RecordTable>, layout: RecordLayout, guess: RecordGuess, channels: &RecordChannels) -> Self {
+        let (problems, cautions) = (layout.problems(&table, channels), layout.cautions(&table, channels));
+        let flight = layout.flight_record(&table, channels).ok().map(Arc::new);
+        Self { table, layout, guess, used: true, problems, cautions, flight }
+    }
+
+    /// A record with the columns proposed for its channels, and what was chosen, a line a choice.
+    pub fn proposed(table: RecordTable, channels: &RecordChannels, time: &TimeWish) -> (Self, Vec<String>) {
+        let LayoutProposal { layout, notes, problems, cautions } = RecordLayout::proposed(&table, channels, time);
+        let guess = RecordGuess::of_table(&table, &standard_patterns());
+        let flight = layout.flight_record(&table, channels).ok().map(Arc::new);
+        (Self { table: Arc::new(table), layout, guess, used: true, problems, cautions, flight }, notes)
+    }
+
+    /// Its samples, where it is used.
+    pub fn used_flight(&self) -> Option<&Arc<FlightRecord>> {
+        self.flight.as_ref().filter(|_| self.used)
+    }
+
+    /// What a dataset says of it: where it is, what its name tells, and the parts of it that an identification used.
+    pub fn entry(&self, found: &RecordUse) -> ConditionRecord {
+        let used_s = self.flight.as_ref().map_or_else(Vec::new, |flight| found.spans(flight));
+        ConditionRecord { used_s, ..self.layout.condition_record(&self.table, &self.guess) }
     }
 }
 

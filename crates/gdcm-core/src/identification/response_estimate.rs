@@ -1,7 +1,7 @@
 //! The measured frequency response, with what speaks for it.
 
 use super::*;
-use crate::response::median;
+use crate::dataset::{MeasuredResponse, PairTable};
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Below this median partial coherence an input was not moved, or only together with another (M14, 2).
@@ -16,7 +16,7 @@ const END: f64 = 0.2;
 
 /// The measured response at one frequency.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MeasuredPoint {
+pub struct EstimatePoint {
     /// \[rad/s\].
     pub omega: f64,
     /// `G0`, outputs x inputs.
@@ -36,15 +36,15 @@ pub struct MeasuredPoint {
     pub condition: f64,
     /// `h`, half width of the window of lines \[rad/s\].
     pub half_width: f64,
-    /// Lines used, less the unknowns: the degrees of freedom of `noise`.
+    /// SpectralLines used, less the unknowns: the degrees of freedom of `noise`.
     pub freedom: usize,
 }
 
 /// The measured response `G[output, input]` over frequency, by the local polynomial method (M14, 2).
 #[derive(Clone, Debug, PartialEq)]
-pub struct MeasuredResponse {
+pub struct ResponseEstimate {
     /// By ascending frequency, at least one.
-    pub points: Vec<MeasuredPoint>,
+    pub points: Vec<EstimatePoint>,
 }
 
 /// How far the inputs were moved, each by itself.
@@ -69,7 +69,13 @@ impl Excitation {
     }
 }
 
-impl MeasuredPoint {
+impl EstimatePoint {
+    /// Standard deviation of `ln G0` of an entry: of its real part, the log modulus \[Np\], and of its imaginary part, the phase
+    /// \[rad\].
+    pub fn sd(&self, pair: (usize, usize)) -> f64 {
+        (0.5 * self.variance[pair]).sqrt() / self.response[pair].norm()
+    }
+
     /// The partial coherence of an input with the output that it moves most, free of the share that as many columns of mere noise
     /// would explain, `1 - (1 - c) (freedom + 3) / freedom`: the greatest of many outputs is never small by chance.
     fn greatest_coherence(&self, input: usize) -> f64 {
@@ -80,13 +86,13 @@ impl MeasuredPoint {
     }
 }
 
-impl MeasuredResponse {
+impl ResponseEstimate {
     /// The part of a band \[rad/s\] that the records show, where its upper or its lower fifth (in logarithm) shows nothing: no input
     /// is coherent with any output there. It ends at the last frequencies where one is.
     #[must_use]
     pub fn shown_band(&self, band: [f64; 2]) -> Option<[f64; 2]> {
         let inside = self.points.iter().filter(|point| (band[0]..=band[1]).contains(&point.omega));
-        let is_shown = |point: &&MeasuredPoint| {
+        let is_shown = |point: &&EstimatePoint| {
             (0..point.response.ncols()).any(|input| point.greatest_coherence(input) >= TRUSTED_COHERENCE)
         };
         let mut shown = inside.filter(is_shown).map(|point| point.omega);
@@ -100,6 +106,19 @@ impl MeasuredResponse {
         (part != band && part[1] > part[0] * fifth).then_some(part)
     }
 
+    /// The estimate as a measured response, weighed by its partial coherence: what each input explains of what the others leave.
+    /// None where it has fewer than two points.
+    pub fn measured(&self) -> Option<MeasuredResponse> {
+        let (outputs, inputs) = self.points.first()?.response.shape();
+        let table = |value: &dyn Fn(&EstimatePoint, (usize, usize)) -> f64| {
+            let curve = |pair: Pair| self.points.iter().map(|point| value(point, (pair.output, pair.input))).collect();
+            PairTable::<Vec<f64>>::from_fn(outputs, inputs, curve)
+        };
+        let (re, im) = (table(&|point, at| point.response[at].re), table(&|point, at| point.response[at].im));
+        let coherence = table(&|point, at| point.partial_coherence[at].clamp(0.0, 1.0));
+        MeasuredResponse::new(self.points.iter().map(|point| point.omega).collect(), &re, &im, Some(coherence)).ok()
+    }
+
     /// How far the inputs were moved, each by itself.
     ///
     /// A coupled response may be weak though its input was moved well: for each input and frequency the output with the
@@ -107,11 +126,10 @@ impl MeasuredResponse {
     #[must_use]
     pub fn excitation(&self) -> Excitation {
         let inputs = self.points.first().map_or(0, |point| point.response.ncols());
-        let middle = |of: &dyn Fn(&MeasuredPoint) -> f64| median(&mut self.points.iter().map(of).collect::<Vec<f64>>());
-        let of_input = |i: usize| middle(&|point| point.greatest_coherence(i));
+        let over = |of: &dyn Fn(&EstimatePoint) -> f64| median(&mut self.points.iter().map(of).collect::<Vec<f64>>());
         Excitation {
-            partial_coherence: (0..inputs).map(of_input).collect(),
-            condition: middle(&|point| point.condition),
+            partial_coherence: (0..inputs).map(|input| over(&|point| point.greatest_coherence(input))).collect(),
+            condition: over(&|point| point.condition),
         }
     }
 
@@ -120,7 +138,7 @@ impl MeasuredResponse {
     pub fn in_units(&self, scales: &Scales) -> Self {
         let of_response = scales.of_response();
         let outputs = DVector::from_column_slice(&scales.outputs);
-        let point = |point: &MeasuredPoint| MeasuredPoint {
+        let point = |point: &EstimatePoint| EstimatePoint {
             response: point.response.zip_map(&of_response, |g, scale| g * scale),
             variance: point.variance.zip_map(&of_response, |v, scale| v * scale * scale),
             noise: point.noise.component_mul(&(&outputs * outputs.transpose())),
@@ -151,7 +169,7 @@ pub struct NoiseCovariance {
 impl NoiseCovariance {
     /// The covariance of the noise of `measured`; none where it has no points.
     #[must_use]
-    pub fn of(measured: &MeasuredResponse) -> Option<Self> {
+    pub fn of(measured: &ResponseEstimate) -> Option<Self> {
         let points = &measured.points;
         let smoothed = |k: usize| {
             let reach = SMOOTHING.len() / 2;

@@ -1,11 +1,32 @@
-//! Identified models taken into a condition in place of those of the dataset's file.
+//! From an identification to the identified bundle of a condition, and identified models taken into a condition in place of those of the dataset's file.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::dataset::{BundleKind, ConditionId, ConditionRecord, Dataset, Model};
+use crate::dataset::{BundleKind, ConditionId, ConditionRecord, Dataset, Dynamics, Model, Origin};
+use crate::identification::Identification;
 
 use super::{BundleChoice, EditRefusal, Study};
+
+/// Which models of an identification are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OfferedModels {
+    /// The refined model, its neighbours in order, and the models without each record (M14, section 5).
+    pub refined: bool,
+    /// CT-PBSID without refinement.
+    pub unrefined: bool,
+    /// The measured response itself, with its coherence (M4a).
+    pub measured: bool,
+}
+
+impl OfferedModels {
+    /// The bundle that M14 gives to M5.
+    pub const REFINED: Self = Self { refined: true, unrefined: false, measured: false };
+    /// The same, and CT-PBSID without refinement.
+    pub const WITH_UNREFINED: Self = Self { refined: true, unrefined: true, measured: false };
+    /// The measured response alone.
+    pub const MEASURED: Self = Self { refined: false, unrefined: false, measured: true };
+}
 
 /// Models identified from flight records, and these.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +38,24 @@ pub struct AdoptedModels {
 }
 
 impl AdoptedModels {
+    /// The offered models of an identification of `records`, the recommended one first.
+    pub fn of(found: &Identification, offered: OfferedModels, records: Vec<ConditionRecord>) -> Self {
+        let mut models = Vec::new();
+        if offered.refined {
+            models.extend(std::iter::once(&found.refined).chain(&found.bundle).cloned());
+        }
+        if offered.unrefined {
+            models.push(found.unrefined.clone());
+        }
+        if let Some(response) = found.measured.measured().filter(|_| offered.measured) {
+            let method = Some("local polynomial method".to_owned());
+            let origin = Origin::Identified { method, order: None };
+            let source = found.unrefined.source.clone();
+            models.push(Model { source, ..Model::new("measured", origin, Dynamics::Measured(response)) });
+        }
+        Self { models, records }
+    }
+
     /// The dataset with these models for the identified bundle of a condition, and these records among its own.
     ///
     /// # Errors

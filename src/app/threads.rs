@@ -1,0 +1,169 @@
+//! What the window and its threads share: mailboxes, replies, and panics, kept and put into words in place of a raw trace.
+
+use std::any::Any;
+use std::io;
+use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use egui::Context;
+
+use super::window::GdcmApp;
+
+/// What a thread waits for: whoever changes it wakes the thread.
+#[derive(Default)]
+pub(super) struct Mailbox<T> {
+    content: Mutex<T>,
+    changed: Condvar,
+}
+
+impl<T> Mailbox<T> {
+    pub(super) fn new(content: T) -> Self {
+        Self { content: Mutex::new(content), changed: Condvar::new() }
+    }
+
+    /// To look at it.
+    pub(super) fn lock(&self) -> MutexGuard<'_, T> {
+        // A panic while the lock was held leaves a content that is still whole.
+        self.content.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// To change it: every thread that waits looks at it once more.
+    pub(super) fn change<R>(&self, change: impl FnOnce(&mut T) -> R) -> R {
+        let changed = change(&mut self.lock());
+        self.changed.notify_all();
+        changed
+    }
+
+    /// Waits until `take` makes something of it.
+    pub(super) fn wait<R>(&self, mut take: impl FnMut(&mut T) -> Option<R>) -> R {
+        let mut content = self.lock();
+        loop {
+            if let Some(taken) = take(&mut content) {
+                return taken;
+            }
+            content = self.changed.wait(content).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    /// Waits for a change, whatever it is, or until the time is over.
+    pub(super) fn pause(&self, content: MutexGuard<'_, T>, limit: Duration) {
+        drop(self.changed.wait_timeout(content, limit));
+    }
+
+    /// Waits until it is so, or the time is over: whether it is so, with the content.
+    pub(super) fn wait_at_most(&self, limit: Duration, is_so: impl Fn(&T) -> bool) -> (bool, MutexGuard<'_, T>) {
+        let waited = self.changed.wait_timeout_while(self.lock(), limit, |content| !is_so(content));
+        let (content, timeout) = waited.unwrap_or_else(PoisonError::into_inner);
+        (!timeout.timed_out(), content)
+    }
+}
+
+/// What a thread has the window do with what it made.
+pub(super) type Reply = Box<dyn FnOnce(&mut GdcmApp) + Send>;
+
+/// Where threads send their replies; the window wakes for each.
+#[derive(Clone)]
+pub(super) struct ReplySender {
+    sender: Sender<Reply>,
+    ctx: Context,
+}
+
+impl ReplySender {
+    pub(super) fn new(ctx: &Context) -> (Self, Receiver<Reply>) {
+        let (sender, receiver) = channel();
+        (Self { sender, ctx: ctx.clone() }, receiver)
+    }
+
+    pub(super) fn send(&self, reply: impl FnOnce(&mut GdcmApp) + Send + 'static) {
+        // The window is gone when nobody listens; the threads end soon after.
+        let _ = self.sender.send(Box::new(reply));
+        self.ctx.request_repaint();
+    }
+
+    /// Does a single piece of work in a thread of its own, and has the window take what comes of it.
+    pub(super) fn in_thread<T: Send + 'static>(
+        &self,
+        name: &str,
+        work: impl FnOnce() -> T + Send + 'static,
+        take: impl FnOnce(&mut GdcmApp, Result<T, Fault>) + Send + 'static,
+    ) -> io::Result<()> {
+        let replies = self.clone();
+        let work = move || {
+            let made = caught(work);
+            replies.send(move |app| take(app, made));
+        };
+        std::thread::Builder::new().name(name.to_owned()).spawn(work).map(drop)
+    }
+}
+
+/// A panic: what it said, and where in the program's source.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// Its message, on one line.
+    pub message: String,
+    /// "src/study/engine.rs:49"; none where nobody noted it.
+    pub place: Option<String>,
+}
+
+impl Fault {
+    /// "index out of bounds at src/study/engine.rs:49".
+    pub fn words(&self) -> String {
+        match &self.place {
+            Some(place) => format!("{} at {place}", self.message),
+            None => self.message.clone(),
+        }
+    }
+}
+
+/// Faults noted and not told yet; a panic's place is known to the hook alone, and the thread that catches it may be another.
+static NOTED: Mutex<Vec<Fault>> = Mutex::new(Vec::new());
+/// Panics that nobody catches are few; more than this are not kept.
+const MOST_NOTED: usize = 50;
+
+/// To be called by the process's panic hook: keeps what was said, and where.
+pub fn note(panic: &PanicHookInfo<'_>) {
+    let place = panic.location().map(|location| format!("{}:{}", location.file(), location.line()));
+    let mut noted = NOTED.lock().unwrap_or_else(PoisonError::into_inner);
+    if noted.len() == MOST_NOTED {
+        noted.remove(0);
+    }
+    noted.push(Fault { message: message_of(panic.payload()), place });
+}
+
+/// What `work` makes, or the fault that ended it.
+pub(super) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
+    // What a panic leaves half made is thrown away by whoever calls this.
+    catch_unwind(AssertUnwindSafe(work)).map_err(|payload| {
+        let message = message_of(payload.as_ref());
+        let mut noted = NOTED.lock().unwrap_or_else(PoisonError::into_inner);
+        match noted.iter().rposition(|fault| fault.message == message) {
+            Some(index) => noted.remove(index),
+            None => Fault { message, place: None },
+        }
+    })
+}
+
+fn message_of(payload: &(dyn Any + Send)) -> String {
+    let text = payload.downcast_ref::<String>().map(String::as_str).or_else(|| payload.downcast_ref::<&str>().copied());
+    text.unwrap_or("a fault without a message").split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_caught_panic_keeps_its_message_on_one_line() {
+        let fault = caught(|| panic!("index {}\n  out of bounds", 3)).unwrap_err();
+        assert_eq!(fault.message, "index 3 out of bounds");
+        assert_eq!(caught(|| 7), Ok(7));
+    }
+
+    #[test]
+    fn the_place_is_told_where_it_is_known() {
+        let fault = Fault { message: "no".to_owned(), place: Some("src/a.rs:3".to_owned()) };
+        assert_eq!(fault.words(), "no at src/a.rs:3");
+    }
+}

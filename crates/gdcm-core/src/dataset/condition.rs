@@ -22,6 +22,14 @@ pub struct FlightState {
     pub mass_kg: Option<f64>,
 }
 
+impl FlightState {
+    /// A condition of which no more is said than its airspeed \[kt\], named by its id.
+    pub fn at(id: ConditionId, airspeed_kt: f64) -> Self {
+        let name = format!("condition {id}");
+        Self { id, name, airspeed_kt, altitude: None, altitude_ft: None, weight: None, mass_kg: None }
+    }
+}
+
 /// One flight condition: a bundle of physics models, exactly one of them nominal, a bundle of identified models, and the flight
 /// records that these come from, where the dataset says so.
 #[derive(Clone, Debug, PartialEq)]

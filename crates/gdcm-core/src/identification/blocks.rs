@@ -232,7 +232,7 @@ struct Modes {
 impl Modes {
     fn of(model: &StateSpace) -> Option<Self> {
         let order = model.order();
-        let schur = ComplexSchur::of(model.a())?;
+        let schur = crate::response::SchurForm::of(model.a())?;
         let (mut complex, mut real) = (Vec::new(), Vec::new());
         for at in 0..order {
             let eigenvalue = schur.t[(at, at)];

@@ -1,23 +1,10 @@
-//! The complex Schur form of a real matrix, its reordering, and its eigenvectors.
+//! The Schur form reordered, and a model without its modes far above the band.
 
 use crate::dataset::StateSpace;
-use nalgebra::{Complex, DMatrix, DVector, Schur};
+use crate::response::SchurForm;
+use nalgebra::{Complex, DMatrix};
 
-/// `A = Q T Q^H` with `Q` unitary and `T` upper triangular.
-pub(super) struct ComplexSchur {
-    /// Schur vectors.
-    pub(super) q: DMatrix<Complex<f64>>,
-    /// Triangular, with the eigenvalues on its diagonal.
-    pub(super) t: DMatrix<Complex<f64>>,
-}
-
-impl ComplexSchur {
-    /// The form of a square matrix; none where the iteration does not end.
-    pub(super) fn of(a: &DMatrix<f64>) -> Option<Self> {
-        let (q, t) = Schur::try_new(a.map(Complex::from), f64::EPSILON, 100 * (a.nrows() + 1))?.unpack();
-        Some(Self { q, t })
-    }
-
+impl SchurForm {
     /// Exchanges neighbours until the eigenvalues that are `first` stand first; gives how many there are.
     pub(super) fn order_by(&mut self, first: impl Fn(Complex<f64>) -> bool) -> usize {
         let mut placed = 0;
@@ -58,21 +45,6 @@ impl ComplexSchur {
         self.t[(lower, upper)] = Complex::new(0.0, 0.0);
         (self.t[(upper, upper)], self.t[(lower, lower)]) = (second, first);
     }
-
-    /// The eigenvector of length one of the eigenvalue at `at` of the diagonal, by back substitution.
-    pub(super) fn eigenvector(&self, at: usize) -> DVector<Complex<f64>> {
-        let smallest = f64::EPSILON * self.t.camax();
-        let mut x = DVector::zeros(at + 1);
-        x[at] = Complex::new(1.0, 0.0);
-        for row in (0..at).rev() {
-            let sum: Complex<f64> = (row + 1..=at).map(|k| self.t[(row, k)] * x[k]).sum();
-            let gap = self.t[(row, row)] - self.t[(at, at)];
-            x[row] = -sum / if gap.norm() < smallest { Complex::new(smallest, 0.0) } else { gap };
-        }
-        let vector = self.q.columns(0, at + 1) * x;
-        let norm = vector.norm();
-        vector.unscale(norm)
-    }
 }
 
 // A model without its modes far above the band, their static part kept.
@@ -91,7 +63,7 @@ impl ComplexSchur {
 /// end or fast and slow modes cannot be told apart.
 pub(super) fn without_fast_modes(model: &StateSpace, limit: f64) -> Option<StateSpace> {
     let (a, b, c, order) = (model.a(), model.b(), model.c(), model.order());
-    let mut schur = ComplexSchur::of(a)?;
+    let mut schur = SchurForm::of(a)?;
     let slow = schur.order_by(|eigenvalue| eigenvalue.norm() <= limit);
     if slow == order {
         return Some(model.clone());
@@ -148,23 +120,13 @@ mod tests {
     #[test]
     fn the_form_still_gives_the_matrix_after_its_reordering() {
         let a = sample(9);
-        let mut form = ComplexSchur::of(&a).unwrap();
+        let mut form = SchurForm::of(&a).unwrap();
         let before: Vec<_> = form.t.diagonal().iter().copied().collect();
         let count = form.order_by(|eigenvalue| eigenvalue.re > 0.0);
         assert_eq!(count, before.iter().filter(|eigenvalue| eigenvalue.re > 0.0).count());
         assert!((0..9).all(|at| (form.t[(at, at)].re > 0.0) == (at < count)));
         // A few dozen rotations, each backward stable.
         assert!((&form.q * &form.t * form.q.adjoint() - a.map(Complex::from)).norm() < 1e-13 * a.norm());
-    }
-
-    #[test]
-    fn an_eigenvector_is_stretched_by_its_eigenvalue() {
-        let a = sample(9).map(Complex::from);
-        let form = ComplexSchur::of(&sample(9)).unwrap();
-        for at in 0..9 {
-            let vector = form.eigenvector(at);
-            assert!((&a * &vector - &vector * form.t[(at, at)]).norm() < 1e-12);
-        }
     }
 
     #[test]

@@ -220,16 +220,16 @@ impl SPlane {
 }
 
 /// `A = Q T Q^H` with `Q` unitary and `T` upper triangular.
-pub(super) struct SchurForm {
+pub(crate) struct SchurForm {
     /// Schur vectors.
-    pub(super) q: DMatrix<Complex<f64>>,
+    pub(crate) q: DMatrix<Complex<f64>>,
     /// Triangular, with the eigenvalues on its diagonal.
-    pub(super) t: DMatrix<Complex<f64>>,
+    pub(crate) t: DMatrix<Complex<f64>>,
 }
 
 impl SchurForm {
     /// The form of a square matrix; `None` where the iteration does not come to an end.
-    pub(super) fn of(a: &DMatrix<f64>) -> Option<Self> {
+    pub(crate) fn of(a: &DMatrix<f64>) -> Option<Self> {
         let (q, t) = quasi_triangular(a)?;
         let blocks: Vec<usize> = (1..a.nrows()).filter(|&row| t[(row, row - 1)] != 0.0).map(|row| row - 1).collect();
         let mut form = Self { q: q.map(Complex::from), t: t.map(Complex::from) };
@@ -242,6 +242,11 @@ impl SchurForm {
     /// The eigenvalues, in the order of the diagonal; those of a pair are conjugate to the last digit.
     pub(super) fn eigenvalues(&self) -> Vec<Complex<f64>> {
         self.t.diagonal().iter().copied().collect()
+    }
+
+    /// The eigenvector of unit length of the eigenvalue at a place of the diagonal.
+    pub(crate) fn eigenvector(&self, at: usize) -> DVector<Complex<f64>> {
+        (&self.q * right(&self.t, at)).normalize()
     }
 
     /// Makes the block of the rows `first` and `first + 1` triangular.
@@ -437,6 +442,16 @@ mod schur_form_tests {
         assert!((again - a.map(Complex::from)).norm() < 1e-13 * a.norm());
         let below = (0..a.nrows()).flat_map(|row| (0..row).map(move |column| (row, column)));
         assert!(below.into_iter().all(|at| form.t[at].norm() <= 1e-15 * a.norm()));
+    }
+
+    #[test]
+    fn an_eigenvector_is_stretched_by_its_eigenvalue() {
+        let a = DMatrix::from_fn(9, 9, |row, column| ((1.0 + 7.3 * row as f64) * (1.0 + 2.9 * column as f64)).sin());
+        let form = SchurForm::of(&a).unwrap();
+        for at in 0..9 {
+            let vector = form.eigenvector(at);
+            assert!((a.map(Complex::from) * &vector - &vector * form.t[(at, at)]).norm() < 1e-12);
+        }
     }
 
     #[test]

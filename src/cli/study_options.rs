@@ -125,7 +125,7 @@ fn reject_suggested(study: &mut Study, analysis: &Analysis) -> Result<bool, Fail
     let before = study.clone();
     for (&condition, result) in &analysis.conditions {
         let models = result.as_ref().map(|result| result.suggested()).unwrap_or_default();
-        study.apply(&Edit::RejectAll { condition, models }).map_err(Failure::refused("--reject-suggested"))?;
+        study.apply(&Edit::reject_physics(condition, &models)).map_err(Failure::refused("--reject-suggested"))?;
     }
     Ok(*study != before)
 }

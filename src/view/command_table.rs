@@ -208,7 +208,7 @@ fn edit_entries(state: &State) -> Vec<Entry> {
     ];
     let restore = "Put every rejected model of this condition back";
     let models = [
-        edit(reject, "Reject the suggested outliers of this condition", Edit::RejectAll { condition, models })
+        edit(reject, "Reject the suggested outliers of this condition", Edit::reject_physics(condition, &models))
             .keys(CTRL, Key::R)
             .enabled(is_any_suggested),
         edit("Restore all models of this condition".to_owned(), restore, Edit::RestoreAll { condition })

@@ -35,7 +35,7 @@ fn at_once_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         let button = ui.add_enabled(!open.is_empty(), egui::Button::new(label));
         let hint = format!("Reject every model whose discontinuity ratio exceeds {SUGGESTION_RATIO} (Ctrl+R)");
         if button.on_hover_text(&hint).on_disabled_hover_text("No kept model is suggested as an outlier").clicked() {
-            commands.push(Edit::RejectAll { condition, models: open }.into());
+            commands.push(Edit::reject_physics(condition, &open).into());
         }
         let any = !rejected.is_empty() || !choice.identified.rejected.is_empty();
         let restore = ui.add_enabled(any, egui::Button::new("Restore all"));

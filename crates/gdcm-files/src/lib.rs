@@ -7,7 +7,7 @@ mod exports;
 pub mod figure;
 mod figure_file;
 mod file_error;
-mod first_start;
+
 mod identified_file;
 mod json_text;
 mod location;
@@ -18,7 +18,7 @@ mod models_file;
 mod npy;
 mod opened;
 mod output_set;
-mod recent_files;
+
 mod recognise;
 mod record_files;
 mod recovery_file;
@@ -28,6 +28,7 @@ mod source;
 mod strides;
 mod study_file;
 mod text;
+mod user_state;
 pub mod variables;
 mod zip_files;
 
@@ -43,7 +44,7 @@ pub use exports::{
 };
 pub use figure_file::{figure_format, write_as, write_figure};
 pub use file_error::{ContentFault, FileError, system_words};
-pub use first_start::is_first_start;
+
 pub use gdcm_core::dataset::limits::LARGEST_TEXT;
 pub use identified_file::{IdentifiedModels, add_identified};
 pub use mat::write as write_mat;
@@ -52,7 +53,6 @@ pub use models_file::add_models;
 pub use npy::write_npz;
 pub use opened::{Opened, load_any};
 pub use output_set::{Existing, OutputSet, make_directory, report_size_limit};
-pub use recent_files::{add_recent_file, recent_files};
 pub use record_files::{
     EXAMPLE_RECORD_CONDITIONS, FoundRecords, example_records, load_records, read_records, records_of_bytes,
 };
@@ -61,3 +61,4 @@ pub use report_file::{ReportSource, report, save_report};
 pub use rules_file::{add_rules, load_rules, rules_path};
 pub use source::{FileStamp, at_home, file_exists, file_sha256};
 pub use study_file::{OpenedStudy, STUDY_EXTENSION, open_study, open_study_of, relative_folder, save_study};
+pub use user_state::{add_recent_file, is_first_start, recent_files};

@@ -10,7 +10,7 @@ use crate::response::GainDelay;
 use crate::schedule::{CostChange, corrected_cost};
 use crate::units::signed;
 
-use super::{Analysis, Cancelled, ConditionAnalysis, Job, ModelMismatch, Progress, Undefined};
+use super::{Analysis, Cancelled, ConditionAnalysis, Job, ModelMismatch, Progress, Settings, Undefined};
 
 /// Which physics model is assessed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -45,6 +45,14 @@ pub struct AssessmentChoice {
     pub correction: AssessedCorrection,
     /// How squared errors are averaged in J.
     pub average: CostAverage,
+}
+
+impl AssessmentChoice {
+    /// What the paper assesses: the nominal model under the schedule.
+    pub(super) fn of_paper(settings: &Settings) -> Self {
+        let (model, correction) = (AssessedModel::Nominal, AssessedCorrection::Scheduled);
+        Self { model, correction, average: settings.cost_average }
+    }
 }
 
 /// One condition's part of an assessment.
@@ -193,21 +201,24 @@ pub(super) fn assessed(
         }
     };
     let models = if by_nominal { &result.comparison.nominal } else { &result.comparison.representative };
-    let changes = changes(models, &correction, &analysis.omega, choice.average);
+    let changes = changes(analysis, models, &correction, choice.average);
     let model = if by_nominal { nominal.as_str() } else { result.representative_name(BundleKind::Physics) };
     let missing = missing(result, models, &changes);
     Ok(AssessedCondition { condition: id, airspeed_kt, model: model.to_owned(), changes, missing })
 }
 
 fn changes(
+    analysis: &Analysis,
     models: &ModelMismatch,
     correction: &ChannelCorrection,
-    omega: &[f64],
     average: CostAverage,
 ) -> PairTable<Option<CostChange>> {
+    let omega = &analysis.omega;
+    let is_known = average == analysis.study.settings.cost_average;
     let corrected = corrected_cost(&models.mismatch, correction, omega, average);
     corrected.map(|pair, corrected| {
-        let uncorrected = models.mismatch[pair].as_ref()?.cost(omega, GainDelay::NONE, average);
+        let uncorrected = || Some(models.mismatch[pair].as_ref()?.cost(omega, GainDelay::NONE, average));
+        let uncorrected = if is_known { models.cost[pair]? } else { uncorrected()? };
         Some(CostChange { uncorrected, corrected: (*corrected)? })
     })
 }

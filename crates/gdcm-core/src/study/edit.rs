@@ -23,13 +23,6 @@ pub enum Edit {
     SetReason(ModelId, String),
     /// Put a rejected model back.
     Restore(ModelId),
-    /// Reject all of these models of one condition's physics bundle.
-    RejectAll {
-        /// The condition.
-        condition: ConditionId,
-        /// Names of the models.
-        models: Vec<String>,
-    },
     /// Put every rejected model of a condition back, in both bundles.
     RestoreAll {
         /// The condition.
@@ -204,6 +197,11 @@ pub enum EditRefusal {
 }
 
 impl Edit {
+    /// Rejects physics models of a condition, by their names.
+    pub fn reject_physics(condition: ConditionId, models: &[String]) -> Self {
+        Self::RejectEach(models.iter().map(|name| ModelId::new(condition, BundleKind::Physics, name)).collect())
+    }
+
     /// The decision in a few words, for the undo list: "reject nominal (condition 10)".
     pub fn label(&self, study: &Study) -> String {
         let name_of = |id: &ModelId| format!("{} (condition {})", id.name, id.condition);
@@ -212,9 +210,6 @@ impl Edit {
             Edit::RejectBecause { model, .. } => format!("reject {}", name_of(model)),
             Edit::SetReason(id, _) => format!("reason of {}", name_of(id)),
             Edit::Restore(id) => format!("restore {}", name_of(id)),
-            Edit::RejectAll { condition, models } => {
-                format!("reject {} suggested (condition {condition})", models.len())
-            }
             Edit::RestoreAll { condition } => format!("restore all (condition {condition})"),
             Edit::RejectEach(models) => format!("reject {} models", models.len()),
             Edit::RestoreEach(models) => format!("restore {} models", models.len()),
@@ -260,7 +255,6 @@ impl Study {
     pub fn apply(&mut self, edit: &Edit) -> Result<(), EditRefusal> {
         match edit {
             Edit::Reject(id) => return self.reject(id),
-            Edit::RejectAll { condition, models } => return self.reject_all(*condition, models),
             Edit::RejectEach(models) => return self.each(models, Self::reject),
             Edit::RestoreEach(models) => return self.each(models, Self::restore),
             Edit::Pin(id) => return self.pin(id),
@@ -352,15 +346,6 @@ impl Study {
         } else {
             choice.reasons.insert(id.name.clone(), reason.to_owned());
         }
-        Ok(())
-    }
-
-    fn reject_all(&mut self, condition: ConditionId, models: &[String]) -> Result<(), EditRefusal> {
-        let mut trial = self.clone();
-        for model in models {
-            trial.reject(&ModelId::new(condition, BundleKind::Physics, model))?;
-        }
-        *self = trial;
         Ok(())
     }
 

@@ -4,14 +4,15 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::correction::{Channel, ChannelLeads, Problem, ProofBudget, Solution};
-use crate::dataset::{Band, BundleKind, Condition, ConditionId, Dataset};
+use crate::dataset::{Band, ConditionId, Dataset};
 use crate::executor::{Executor, Sequential};
 use crate::response::FrequencyGrid;
-use crate::schedule::{Schedule, ScheduleCaution, ScheduleError, ScheduledPoint, assess};
+use crate::schedule::{Schedule, ScheduleCaution, ScheduledPoint};
 
 use super::{
-    Analysis, Assessed, Cancelled, ConditionAnalysis, ConditionCurves, ConditionFailure, ConditionModels,
-    ConditionStages, Execution, KnownModels, Memo, Progress, Purpose, Study, Uncertainty, model_count,
+    Analysis, Assessed, AssessmentChoice, Cancelled, ConditionAnalysis, ConditionCurves, ConditionFailure,
+    ConditionModels, ConditionStages, Execution, KnownModels, Memo, Progress, Purpose, Study, Uncertainty, assessed,
+    model_count,
 };
 
 /// Computes analyses and keeps each stage's last result by what it is computed from, never by where that came from: of a dataset
@@ -103,12 +104,19 @@ impl Engine {
         if let Ok(schedule) = &mut schedule {
             schedule.cautions.extend(signed_delays_apart(study, &conditions));
         }
-        let all = study.dataset.conditions();
-        let assess = |index: usize| assessed(study, &all[index], conditions.get(&all[index].id()), &schedule, &grid);
-        let assessment = execution.each(all.len(), 0, assess)?;
-        let assessment = all.iter().map(|condition| condition.id()).zip(assessment).collect();
         let (study, omega) = (study.clone(), grid.omega().into());
-        Ok(Analysis { study, omega, conditions, schedule, assessment, uncertainty: None })
+        let mut analysis =
+            Analysis { study, omega, conditions, schedule, assessment: BTreeMap::new(), uncertainty: None };
+        let choice = AssessmentChoice::of_paper(&analysis.study.settings);
+        let ids: Vec<ConditionId> =
+            analysis.study.dataset.conditions().iter().map(|condition| condition.id()).collect();
+        let assess = |place: usize| match assessed(&analysis, ids[place], choice) {
+            Ok(of) => Assessed::Nominal(of.changes),
+            Err(why) => Assessed::LeftOut { why },
+        };
+        let assessment = execution.each(ids.len(), 0, assess)?;
+        analysis.assessment = ids.into_iter().zip(assessment).collect();
+        Ok(analysis)
     }
 
     /// How sure each figure of `analysis` is (M13). Substitutions of models that do not depend on what changed since the last call are not
@@ -255,29 +263,4 @@ fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCautio
             .then_some(ScheduleCaution::SignedDelayApart { channel, condition, tau_s, elsewhere_s })
     };
     channels.filter_map(caution).collect()
-}
-
-fn assessed(
-    study: &Study,
-    condition: &Condition,
-    outcome: Option<&Result<ConditionAnalysis, ConditionFailure>>,
-    schedule: &Result<Schedule, ScheduleError>,
-    grid: &FrequencyGrid,
-) -> Assessed {
-    let left_out = |why: String| Assessed::LeftOut { why };
-    let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()].name;
-    match (outcome, schedule) {
-        _ if study.choice(condition.id()).physics.rejected.contains(nominal) => {
-            left_out("the nominal model is rejected".to_owned())
-        }
-        (None, _) => left_out("it was not analysed".to_owned()),
-        (Some(Err(failure)), _) => left_out(failure.to_string()),
-        (_, Err(error)) => left_out(error.to_string()),
-        (Some(Ok(analysis)), Ok(schedule)) => {
-            let models = &analysis.comparison.nominal;
-            let correction = schedule.at_state(condition.flight_state());
-            let average = study.settings.cost_average;
-            Assessed::Nominal(assess(&models.mismatch, &models.cost, &correction, grid.omega(), average))
-        }
-    }
 }

@@ -63,7 +63,7 @@ static EXAMPLE_WITH_SUGGESTIONS_REJECTED: LazyLock<Analysis> = LazyLock::new(|| 
     let first = analyze(&mut engine, &study);
     for (&condition, result) in &first.conditions {
         let models = result.as_ref().unwrap().suggested();
-        study.apply(&Edit::RejectAll { condition, models }).unwrap();
+        study.apply(&Edit::reject_physics(condition, &models)).unwrap();
     }
     analyze(&mut engine, &study)
 });

@@ -25,7 +25,7 @@ static EXAMPLE: LazyLock<Example> = LazyLock::new(|| {
     let (mut study, mut engine) = (Study::new(crate::EXAMPLE.dataset.clone()), Engine::default());
     let first = engine.analyze(&study, &Unobserved).unwrap();
     let models = first.condition(CONDITION).unwrap().suggested();
-    study.apply(&Edit::RejectAll { condition: CONDITION, models }).unwrap();
+    study.apply(&Edit::reject_physics(CONDITION, &models)).unwrap();
     let mut analysis = engine.analyze(&study, &Unobserved).unwrap();
     analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &Unobserved).unwrap()));
     let grid = (display_band(study.settings.band), CURVE_POINTS);

@@ -1,5 +1,6 @@
-//! The list of files opened and saved of late.
+//! What the program remembers of its user between two starts: the files opened and saved of late, and that it was started before.
 
+use std::fs::{OpenOptions, create_dir_all};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -48,6 +49,17 @@ pub fn add_recent_file(directory: &Path, file: &Path) -> Result<(), FileError> {
     write_whole(&directory.join(NAME), |writer| Ok(serde_json::to_writer_pretty(writer, &text)?))
 }
 
+/// The file that says so.
+const STARTED: &str = "started";
+
+/// Whether nothing in the program's directory says that it was started before; from now on something does. Where that cannot be
+/// kept, it is taken as started before: what the first start shows would come at every one.
+pub fn is_first_start(directory: &Path) -> bool {
+    let kept = create_dir_all(directory)
+        .and_then(|()| OpenOptions::new().write(true).create_new(true).open(directory.join(STARTED)));
+    kept.is_ok()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -72,5 +84,16 @@ mod tests {
         assert!(recent_files(directory.path()).is_empty());
         add_recent_file(directory.path(), Path::new("/data/a.json")).unwrap();
         assert_eq!(recent_files(directory.path()).len(), 1);
+    }
+
+    #[test]
+    fn only_one_start_is_the_first_and_none_where_nothing_can_be_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let directory = folder.path().join("gdcm");
+        assert!(is_first_start(&directory));
+        assert!(!is_first_start(&directory));
+        let file = folder.path().join("file");
+        std::fs::write(&file, "").unwrap();
+        assert!(!is_first_start(&file.join("gdcm")));
     }
 }

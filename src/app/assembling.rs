@@ -174,7 +174,7 @@ impl GdcmApp {
         let (models, files) = (found.models.len(), found.files);
         bench.add(&name.unwrap_or_default(), found.models);
         bench.faults.extend(found.faults);
-        bench.passed_over.extend(found.passed_over);
+        bench.ignored.extend(found.ignored);
         bench.tables.extend(found.tables);
         if bench.dataset_path.is_empty()
             && let Some(first) = paths.first()

@@ -283,7 +283,7 @@ fn of_files(dataset: &Dataset, shown: ConditionId, paths: &[PathBuf]) -> Result<
     let channels = RecordChannels::of_dataset(dataset);
     let read = read_records(paths, &Untold)?;
     let mut found = ReadRecords { faults: read.faults, ..ReadRecords::default() };
-    found.faults.extend(read.passed_over.into_iter().map(|words| format!("no record: {words}")));
+    found.faults.extend(read.ignored.into_iter().map(|words| format!("no record: {words}")));
     for table in read.tables {
         let row = row_of(table, &channels);
         let id = row.guess.condition_of(dataset).unwrap_or(shown);

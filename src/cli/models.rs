@@ -126,7 +126,7 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
 fn found_models(paths: &[PathBuf], headings: &Headings) -> Result<FoundModels, Failure> {
     let found = read_models(paths, headings, &ReadingProgress::new())?;
     found.faults.iter().for_each(|fault| say_error(&format!("not taken: {}", sanitized(fault))));
-    found.passed_over.iter().for_each(|words| say_error(&format!("no model: {}", sanitized(words))));
+    found.ignored.iter().for_each(|words| say_error(&format!("no model: {}", sanitized(words))));
     Ok(found)
 }
 

@@ -46,9 +46,9 @@ pub(super) fn laid_out(
 }
 
 fn tables(arguments: &IdentifyArguments) -> Result<Vec<RecordTable>, Failure> {
-    let FoundRecords { tables, faults, passed_over, .. } = read_records(&arguments.records, &ReadingProgress::new())?;
+    let FoundRecords { tables, faults, ignored, .. } = read_records(&arguments.records, &ReadingProgress::new())?;
     faults.iter().for_each(|fault| say_error(&format!("not taken: {}", sanitized(fault))));
-    passed_over.iter().for_each(|words| say_error(&format!("no record: {}", sanitized(words))));
+    ignored.iter().for_each(|words| say_error(&format!("no record: {}", sanitized(words))));
     if tables.is_empty() {
         return Err(Failure::Option { option: "RECORD", reason: "holds no record that could be taken".to_owned() });
     }

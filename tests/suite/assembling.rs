@@ -361,9 +361,10 @@ fn columns_are_read_by_the_headings_that_the_rules_say_in_place_of_the_file_s() 
     let path = folder.path().join("frf-omega-re-im.csv");
     std::fs::write(&path, "1,0,-90\n2,-6,-100\n4,-12,-120\n").unwrap();
     let of = |headings: &Headings| read_models(&[folder.path().to_owned()], headings, &Silent).unwrap();
-    let guessed = of(&Headings::new());
-    assert_eq!(guessed.tables["frf-omega-re-im.csv"], ["", "", ""]);
-    assert!(guessed.models.iter().all(|model| model.inputs[0].name.is_none()), "re and im are no channels");
+    let unsaid = of(&Headings::new());
+    assert_eq!(unsaid.tables["frf-omega-re-im.csv"], ["", "", ""]);
+    assert!(unsaid.models.is_empty(), "numbers alone do not say what they are");
+    assert!(unsaid.ignored[0].contains("under \"headings\" in the rules"), "{:?}", unsaid.ignored);
 
     let said = ["f [Hz]", "mag P/LAT [dB]", "phase P/LAT [deg]"].map(str::to_owned).to_vec();
     let headings = Headings::from([("frf-omega-re-im.csv".to_owned(), said.clone())]);

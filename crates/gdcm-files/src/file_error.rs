@@ -229,6 +229,10 @@ impl FileError {
         FileError::Unwritable { path: path.to_owned(), reason: reason.to_owned() }
     }
 
+    pub(super) fn variables(path: &Path, fault: VariableFault) -> Self {
+        FileError::Variables { path: path.to_owned(), fault }
+    }
+
     pub(super) fn export(path: &Path, fault: ExportFault) -> Self {
         FileError::Export { path: path.to_owned(), fault }
     }

@@ -12,12 +12,10 @@ use gdcm_core::records::RecordChannels;
 use gdcm_core::units::neper_to_db;
 
 use super::file_error::FileError;
-use super::models_file::{ModelText, model_text};
+use super::models_file::{IDENTIFIED, model_text};
 use super::output_set::OutputSet;
+use crate::dataset_file::ModelText;
 use crate::json_text::Nested;
-
-const FORMAT: &str = "gdcm-identified";
-const VERSION: u64 = 1;
 
 /// What an identification found, with what its file says beside it.
 pub struct IdentifiedModels<'f> {
@@ -35,19 +33,12 @@ pub struct IdentifiedModels<'f> {
 struct IdentifiedText<'m> {
     format: &'static str,
     version: u64,
-    models: Vec<RecommendedText<'m>>,
+    models: Vec<ModelText>,
     measured: MeasuredText,
     poles: Vec<PoleText>,
     validation: ValidationText<'m>,
     records: Vec<RecordText<'m>>,
     cautions: &'m [String],
-}
-
-#[derive(Serialize)]
-struct RecommendedText<'m> {
-    #[serde(flatten)]
-    model: ModelText<'m>,
-    recommended: bool,
 }
 
 #[derive(Serialize)]
@@ -112,12 +103,12 @@ pub fn add_identified(of: &IdentifiedModels, path: &Path, outputs: &mut OutputSe
     let models: Vec<FoundModel> = models.collect();
     let in_time = found.validation.as_ref();
     let text = IdentifiedText {
-        format: FORMAT,
-        version: VERSION,
+        format: IDENTIFIED.name,
+        version: IDENTIFIED.version,
         models: models
             .iter()
             .enumerate()
-            .map(|(index, model)| RecommendedText { model: model_text(model), recommended: index == 0 })
+            .map(|(index, model)| ModelText { recommended: Some(index == 0), ..model_text(model) })
             .collect(),
         measured: measured_text(&found.measured),
         poles: found.poles.iter().map(pole_text).collect(),

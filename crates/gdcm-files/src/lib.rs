@@ -9,7 +9,9 @@ mod figure_file;
 mod file_error;
 
 mod identified_file;
+mod importer;
 mod json_text;
+mod json_values;
 mod location;
 mod mat;
 mod mat73;
@@ -47,8 +49,9 @@ pub use file_error::{ContentFault, FileError, system_words};
 
 pub use gdcm_core::dataset::limits::LARGEST_TEXT;
 pub use identified_file::{IdentifiedModels, add_identified};
+pub use importer::{FolderProgress, sources_folder};
 pub use mat::write as write_mat;
-pub use model_files::{FileFormat, FolderProgress, FoundModels, models_of_bytes, read_models, sources_folder};
+pub use model_files::{FoundModels, models_of_bytes, read_models};
 pub use models_file::add_models;
 pub use npy::write_npz;
 pub use opened::{Opened, load_any};

@@ -1,95 +1,29 @@
-//! Models as they were found, `gdcm-models` 1: what `gdcm convert` writes.
+//! Models as they were found, `gdcm-models` 1, which `gdcm convert` writes, and as they were identified, `gdcm-identified` 1.
 
 use std::io::{self, Write};
 use std::path::Path;
 
-use serde::Serialize;
+use gdcm_core::assembly::{ChannelLabel, Facts, FoundModel};
+use gdcm_core::dataset::limits::MOST_MODELS_IN_ALL;
+use gdcm_core::dataset::{Origin, Provenance};
+use serde::{Deserialize, Serialize};
 
-use gdcm_core::assembly::{ChannelLabel, FoundModel};
-use gdcm_core::dataset::{Origin, ResponseArray};
+use crate::dataset_file::ModelText;
+use crate::file_error::FileError;
+use crate::json_text::{Format, list};
+use crate::output_set::OutputSet;
 
-use super::file_error::FileError;
-use super::output_set::OutputSet;
-use crate::json_text::Nested;
+/// What a file of models calls itself.
+pub(super) const MODELS: Format = Format { name: "gdcm-models", version: 1 };
+/// What a file of identified models calls itself.
+pub(super) const IDENTIFIED: Format = Format { name: "gdcm-identified", version: 1 };
 
-const FORMAT: &str = "gdcm-models";
-const VERSION: u64 = 1;
-
-#[derive(Serialize)]
-struct ModelsText<'m> {
-    format: &'static str,
+#[derive(Deserialize, Serialize)]
+struct ModelsText {
+    format: String,
     version: u64,
-    models: Vec<ModelText<'m>>,
-}
-
-#[derive(Serialize)]
-pub(super) struct ModelText<'m> {
-    name: &'m str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    method: Option<&'m str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    order: Option<usize>,
-    /// Names; empty where the file has none.
-    inputs: Vec<&'m str>,
-    outputs: Vec<&'m str>,
-    input_units: Vec<&'m str>,
-    output_units: Vec<&'m str>,
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    states: &'m [String],
-    #[serde(flatten)]
-    matrices: Option<MatricesText>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    sample_time_s: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    input_delays_s: Option<&'m [f64]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    output_delays_s: Option<&'m [f64]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    frequency_response: Option<ResponseText<'m>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    bands: Option<BandsText<'m>>,
-    source: SourceText<'m>,
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    notes: &'m [String],
-}
-
-#[derive(Serialize)]
-#[serde(rename_all = "UPPERCASE")]
-struct MatricesText {
-    a: Nested<2>,
-    b: Nested<2>,
-    c: Nested<2>,
-    d: Nested<2>,
-}
-
-#[derive(Serialize)]
-struct ResponseText<'m> {
-    omega_rad_s: &'m [f64],
-    re: Nested<3>,
-    im: Nested<3>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    coherence: Option<Nested<3>>,
-}
-
-#[derive(Serialize)]
-struct SourceText<'m> {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    file: Option<&'m str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    sha256: Option<&'m str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    variable: Option<&'m str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    made: Option<&'m str>,
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    records: &'m [String],
-}
-
-#[derive(Serialize)]
-struct BandsText<'m> {
-    omega_rad_s: &'m [f64],
-    sd_db: Nested<3>,
-    sd_deg: Nested<3>,
+    #[serde(deserialize_with = "list::<MOST_MODELS_IN_ALL, _, _>")]
+    models: Vec<ModelText>,
 }
 
 /// Adds the models as a file to `outputs`.
@@ -99,60 +33,129 @@ pub fn add_models(models: &[FoundModel], path: &Path, outputs: &mut OutputSet) -
 
 /// Writes the text of that file.
 pub(super) fn write_models(models: &[FoundModel], file: &mut dyn Write) -> io::Result<()> {
-    let text = ModelsText { format: FORMAT, version: VERSION, models: models.iter().map(model_text).collect() };
+    let models = models.iter().map(model_text).collect();
+    let text = ModelsText { format: MODELS.name.to_owned(), version: MODELS.version, models };
     serde_json::to_writer(&mut *file, &text)?;
     file.write_all(b"\n")
 }
 
-/// The text of a model, entry by entry.
-pub(super) fn model_text(model: &FoundModel) -> ModelText<'_> {
-    fn part<'m>(labels: &'m [ChannelLabel], of: impl Fn(&'m ChannelLabel) -> &'m Option<String>) -> Vec<&'m str> {
-        labels.iter().map(|label| of(label).as_deref().unwrap_or_default()).collect()
-    }
-    let draft = &model.draft;
-    let (method, order) = match &draft.origin {
-        Origin::Identified { method, order } => (method.as_deref(), *order),
-        Origin::Nominal { .. } | Origin::Perturbed { .. } => (None, None),
+/// The text of a model outside a dataset.
+pub(super) fn model_text(model: &FoundModel) -> ModelText {
+    let part = |labels: &[ChannelLabel], of: fn(&ChannelLabel) -> &Option<String>| {
+        Some(labels.iter().map(|label| of(label).clone().unwrap_or_default()).collect())
     };
-    let matrices = match &draft.matrices {
-        [Some(a), Some(b), Some(c), Some(d)] => {
-            let [a, b, c, d] = [a, b, c, d].map(Nested::of_matrix);
-            Some(MatricesText { a, b, c, d })
-        }
-        _ => None,
+    let text = ModelText::of(model.draft.clone());
+    let role = match &model.draft.origin {
+        // What a model is that says nothing of itself.
+        Origin::Perturbed { perturbation: None } => None,
+        Origin::Identified { .. } => Some("identified".to_owned()),
+        Origin::Nominal { .. } | Origin::Perturbed { .. } => text.role,
     };
-    let array = |array: &ResponseArray| Nested { shape: array.shape, values: array.values.clone() };
     ModelText {
-        name: if draft.name.is_empty() { model.file() } else { &draft.name },
-        method,
-        order,
+        name: if text.name.is_empty() { model.file().to_owned() } else { text.name },
+        role,
         inputs: part(&model.inputs, |label| &label.name),
         outputs: part(&model.outputs, |label| &label.name),
         input_units: part(&model.inputs, |label| &label.unit),
         output_units: part(&model.outputs, |label| &label.unit),
-        states: &draft.states,
-        matrices,
-        sample_time_s: draft.timing.sample_time_s,
-        input_delays_s: draft.timing.input_delays_s.as_deref(),
-        output_delays_s: draft.timing.output_delays_s.as_deref(),
-        frequency_response: draft.response.as_ref().map(|response| ResponseText {
-            omega_rad_s: &response.omega,
-            re: array(&response.re),
-            im: array(&response.im),
-            coherence: response.coherence.as_ref().map(array),
-        }),
-        bands: draft.bands.as_ref().map(|bands| BandsText {
-            omega_rad_s: &bands.omega,
-            sd_db: array(&bands.sd_db),
-            sd_deg: array(&bands.sd_deg),
-        }),
-        source: SourceText {
-            file: draft.source.as_ref().and_then(|source| source.file.as_deref()),
-            sha256: draft.source.as_ref().and_then(|source| source.sha256.as_deref()),
-            variable: draft.source.as_ref().and_then(|source| source.variable.as_deref()),
-            made: draft.source.as_ref().and_then(|source| source.made.as_deref()),
-            records: draft.source.as_ref().map(|source| source.records.as_slice()).unwrap_or_default(),
-        },
-        notes: &model.notes,
+        source: text.source.or_else(|| Some(Default::default())),
+        notes: Some(model.notes.clone()).filter(|notes| !notes.is_empty()),
+        ..text
+    }
+}
+
+/// The models of a text of this program; nothing where it is no such text.
+pub(super) fn found_models(text: &[u8], path: &Path) -> Option<Vec<FoundModel>> {
+    let read = |format: Format| {
+        let (text, _) = format.decode::<ModelsText>(text, path).ok()?;
+        format.check_read(&text.format, text.version, path).ok()?;
+        Some(text.models)
+    };
+    let models = read(MODELS).or_else(|| read(IDENTIFIED))?;
+    models.into_iter().enumerate().map(|(index, model)| found(model, index)).collect()
+}
+
+/// The model of a text, under the name that a list of models has for it; nothing where it has no size.
+fn found(mut text: ModelText, index: usize) -> Option<FoundModel> {
+    let origin =
+        text.origin().or_else(|| (text.method.is_some() || text.order.is_some()).then(|| text.identified_origin()));
+    let labels = |count: usize, names: Option<Vec<String>>, units: Option<Vec<String>>| -> Vec<ChannelLabel> {
+        let part = |list: &Option<Vec<String>>, at: usize| {
+            let list = list.as_ref().filter(|list| list.len() == count)?;
+            Some(list[at].clone()).filter(|text| !text.is_empty())
+        };
+        (0..count).map(|at| ChannelLabel { name: part(&names, at), unit: part(&units, at) }).collect()
+    };
+    let (outputs, inputs) = match (&text.b, &text.c, &text.frequency_response) {
+        (Some(b), Some(c), _) => (c.shape[0], b.shape[1]),
+        (.., Some(response)) => (response.re.shape[0], response.re.shape[1]),
+        _ => return None,
+    };
+    let inputs = labels(inputs, text.inputs.take(), text.input_units.take());
+    let outputs = labels(outputs, text.outputs.take(), text.output_units.take());
+    let notes = text.notes.take().unwrap_or_default();
+    let mut draft = text.into_draft(origin.unwrap_or(Origin::Perturbed { perturbation: None }));
+    let source = draft.source.get_or_insert_with(Provenance::default);
+    source.variable = Some(format!("models{{{}}}", index + 1));
+    let notes = if notes.is_empty() { source.note.take().into_iter().collect() } else { notes };
+    Some(FoundModel { draft, inputs, outputs, facts: Facts::default(), notes })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output_set::Existing;
+    use crate::{FoundModels, models_of_bytes};
+
+    const DATASET: &str = r#"{"format": "gdcm-dataset", "version": 1, "name": "one",
+        "inputs": [{"name": "LAT", "unit": "%"}], "outputs": [{"name": "P", "unit": "rad/s"}],
+        "frequency_band": {"min": 0.3, "max": 20.0, "unit": "rad/s"},
+        "conditions": [{"id": 3, "name": "hover", "airspeed_kt": 0.0,
+            "physics_models": [
+                {"name": "nominal", "role": "nominal", "A": [[-1.0]], "B": [[1.0]], "C": [[1.0]], "D": [[0.0]]},
+                {"name": "roll+5", "role": "perturbed", "perturbation": {"roll_deg": 5.0}, "states": ["p"],
+                 "A": [[-2.0]], "B": [[1.0]], "C": [[1.0]], "D": [[0.0]], "input_delays_s": [0.02]}],
+            "identified_models": [{"name": "measured", "method": "CIFER", "source": {"note": "flight 12"},
+                "frequency_response": {"omega_rad_s": [0.5, 1.0, 2.0], "re": [[[1.0, 0.9, 0.5]]], "im": [[[0.0, -0.1, -0.4]]],
+                    "coherence": [[[0.9, 0.8, 0.7]]], "valid_band_rad_s": [[[0.5, 1.5]]], "averages": 12.0,
+                    "window_s": 20.0}}]}]}"#;
+
+    fn written(models: &[FoundModel]) -> Vec<u8> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("models.json");
+        let mut outputs = OutputSet::new(Existing::Keep, Vec::new());
+        add_models(models, &path, &mut outputs).unwrap();
+        outputs.persist().unwrap();
+        std::fs::read(path).unwrap()
+    }
+
+    #[test]
+    fn converted_models_keep_all_that_a_dataset_says_of_them() {
+        let read = |bytes: &[u8], name: &str| -> FoundModels { models_of_bytes(bytes, name, 1 << 24).unwrap() };
+        let before = read(DATASET.as_bytes(), "one.json");
+        let text = written(&before.models);
+        let json: serde_json::Value = serde_json::from_slice(&text).unwrap();
+        let measured = &json["models"][2];
+        assert_eq!(measured["frequency_response"]["valid_band_rad_s"], serde_json::json!([[[0.5, 1.5]]]));
+        assert_eq!(measured["frequency_response"]["averages"], 12.0);
+        assert_eq!(measured["frequency_response"]["window_s"], 20.0);
+        assert_eq!(measured["source"]["note"], "flight 12");
+        assert_eq!(json["models"][1]["perturbation"], serde_json::json!({"roll_deg": 5.0}));
+        let again = read(&text, "models.json");
+        assert_eq!(again.faults, Vec::<String>::new());
+        for (before, again) in before.models.iter().zip(&again.models) {
+            let without_source = |model: &FoundModel| ModelText { source: None, ..model_text(model) };
+            let text = |model| serde_json::to_string(&without_source(model)).unwrap();
+            assert_eq!(text(before), text(again));
+            assert_eq!(before.draft.origin, again.draft.origin);
+        }
+        assert_eq!(again.models[2].draft.source.as_ref().unwrap().variable.as_deref(), Some("models{3}"));
+    }
+
+    #[test]
+    fn a_file_of_models_made_by_hand_is_read_as_far_as_it_goes() {
+        let text = br#"{"format": "gdcm-models", "version": 1, "models": [{"A": [[-1]], "B": [[1]], "C": [[1]], "D": [[0]]}]}"#;
+        let found = models_of_bytes(text, "models.json", 1 << 20).unwrap();
+        assert_eq!(found.models[0].draft.matrices[0].as_ref().unwrap()[(0, 0)], -1.0);
     }
 }

@@ -12,11 +12,18 @@ use gdcm_core::dataset::limits::LARGEST_TEXT;
 use sha2::{Digest, Sha256};
 
 use crate::file_error::FileError;
+use crate::variables::MemoryBudget;
 
 /// The two bytes that every gzip file starts with (RFC 1952).
-const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
+pub(super) const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
 /// What some editors put in front of UTF-8.
 const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
+
+/// How many bytes are unpacked before memory for more is asked for.
+const CHUNK: u64 = 1 << 16;
+
+/// Asks for the memory of so many bytes.
+type TakeMemory<'t> = &'t dyn Fn(u64) -> Result<(), FileError>;
 
 /// What a file holds: the hash of its bytes, and its text.
 #[derive(Debug)]
@@ -31,7 +38,7 @@ impl Source<'static> {
     pub(super) fn read(path: &Path) -> Result<Self, FileError> {
         let bytes = read_bytes(path, LARGEST_TEXT)?;
         let sha256 = sha256_hex(&bytes);
-        let text = if bytes.starts_with(&GZIP_MAGIC) { unpack(&bytes, path)? } else { bytes };
+        let text = if bytes.starts_with(&GZIP_MAGIC) { unpack(&bytes, path, &|_| Ok(()))? } else { bytes };
         Ok(Source { sha256, text: Cow::Owned(text) })
     }
 }
@@ -39,8 +46,18 @@ impl Source<'static> {
 impl<'b> Source<'b> {
     /// Takes bytes that are already at hand; `path` is what an error calls them.
     pub(super) fn of(bytes: &'b [u8], path: &Path) -> Result<Self, FileError> {
+        Self::taking(bytes, path, &|_| Ok(()))
+    }
+
+    /// As [`Source::of`], with the memory for what is unpacked taken from a budget.
+    pub(super) fn within(bytes: &'b [u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Self, FileError> {
+        // A text that grows is copied into twice its memory.
+        Self::taking(bytes, path, &|count| budget.take(count, 2, "").map_err(|fault| FileError::variables(path, fault)))
+    }
+
+    fn taking(bytes: &'b [u8], path: &Path, take: TakeMemory<'_>) -> Result<Self, FileError> {
         let text = if bytes.starts_with(&GZIP_MAGIC) {
-            Cow::Owned(unpack(bytes, path)?)
+            Cow::Owned(unpack(bytes, path, take)?)
         } else {
             check_length(bytes.len() as u64, LARGEST_TEXT, path)?;
             Cow::Borrowed(bytes)
@@ -71,17 +88,22 @@ pub(super) fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, FileError> {
 /// Unpacks as it goes, and no further than the limit: a few kilobytes can unpack to gigabytes.
 ///
 /// A file may have several members (RFC 1952), and zeros behind the last, with which tapes and copying programs fill their blocks.
-fn unpack(bytes: &[u8], path: &Path) -> Result<Vec<u8>, FileError> {
+fn unpack(bytes: &[u8], path: &Path, take: TakeMemory<'_>) -> Result<Vec<u8>, FileError> {
     let (mut text, mut rest) = (Vec::new(), bytes);
     while rest.iter().any(|&byte| byte != 0) {
         let mut member = GzDecoder::new(rest);
-        let left = (LARGEST_TEXT + 1).saturating_sub(text.len() as u64);
-        let unpacked = member.by_ref().take(left).read_to_end(&mut text);
-        check_length(text.len() as u64, LARGEST_TEXT, path)?;
-        unpacked.map_err(|error| match error.kind() {
-            ErrorKind::UnexpectedEof => FileError::GzipCutOff { path: path.to_owned() },
-            _ => FileError::Gzip { path: path.to_owned() },
-        })?;
+        loop {
+            take(CHUNK)?;
+            let unpacked = member.by_ref().take(CHUNK).read_to_end(&mut text);
+            check_length(text.len() as u64, LARGEST_TEXT, path)?;
+            let count = unpacked.map_err(|error| match error.kind() {
+                ErrorKind::UnexpectedEof => FileError::GzipCutOff { path: path.to_owned() },
+                _ => FileError::Gzip { path: path.to_owned() },
+            })?;
+            if count == 0 {
+                break;
+            }
+        }
         rest = member.into_inner();
     }
     Ok(text)

@@ -13,10 +13,7 @@ use gdcm_core::study::{
     AdoptedModels, BundleChoice, ConditionChoice, Decisions, Difference, Inventory, ResponseNames, Settings, Study,
 };
 
-use crate::dataset_file::{
-    DatasetOrigin, IdentifiedText, LoadedDataset, RecordText, dataset_from, embedded_example, identified_model_of,
-    identified_text, record_of, record_text,
-};
+use crate::dataset_file::{DatasetOrigin, LoadedDataset, ModelText, RecordText, dataset_from, embedded_example};
 use crate::file_error::{ContentError, ContentFault, FileError};
 use crate::json_text::Format;
 use crate::json_text::list;
@@ -70,7 +67,7 @@ struct StudyText {
 struct TakenText {
     condition: i64,
     #[serde(deserialize_with = "list::<MOST_MODELS, _, _>")]
-    identified_models: Vec<IdentifiedText>,
+    identified_models: Vec<ModelText>,
     #[serde(default, deserialize_with = "list::<MOST_RECORDS, _, _>")]
     records: Vec<RecordText>,
 }
@@ -129,8 +126,8 @@ impl StudyText {
         });
         let taken = study.taken_models().map(|(condition, taken)| TakenText {
             condition: condition.0,
-            identified_models: taken.models.iter().map(identified_text).collect(),
-            records: taken.records.iter().map(record_text).collect(),
+            identified_models: taken.models.iter().map(ModelText::of_model).collect(),
+            records: taken.records.iter().map(RecordText::of).collect(),
         });
         Self {
             format: FORMAT.name.to_owned(),
@@ -191,10 +188,10 @@ fn taken_of(text: Vec<TakenText>, dataset: &Dataset) -> Result<Vec<(ConditionId,
     let of = |(index, text): (usize, TakenText)| {
         let mut place = Location::condition(index + 1, text.condition);
         place.entry = "taken".to_owned();
-        let drafts = text.identified_models.into_iter().map(identified_model_of);
+        let drafts = text.identified_models.into_iter().map(ModelText::into_identified);
         let models = drafts.map(|draft| Ok(dataset.identified_model(draft)?.0)).collect::<Result<_, ContentError>>()?;
         let records = text.records.into_iter().enumerate();
-        let records = records.map(|(index, record)| record_of(&place, index + 1, record)).collect::<Result<_, _>>()?;
+        let records = records.map(|(index, record)| record.into_record(&place, index + 1)).collect::<Result<_, _>>()?;
         Ok((ConditionId(text.condition), Arc::new(AdoptedModels { models, records })))
     };
     text.into_iter().enumerate().map(of).collect()

@@ -235,7 +235,7 @@ pub struct MemoryBudget<'s> {
 }
 
 impl<'s> MemoryBudget<'s> {
-    /// A meter for at most `most` bytes; `stop` is told at every [`MemoryBudget::take`] how many are taken, and answers whether to stop.
+    /// A budget for at most `most` bytes; `stop` is told at every [`MemoryBudget::take`] how many are taken, and answers whether to stop.
     pub fn new(most: u64, stop: &'s dyn Fn(u64) -> bool) -> Self {
         Self { most, taken: Cell::new(0), stop }
     }

@@ -1,14 +1,75 @@
 //! Files in zip archives.
 
+use std::collections::HashSet;
 use std::io::Read;
+use std::path::Path;
 
 use flate2::bufread::DeflateDecoder;
 use rawzip::{CompressionMethod, ZipArchive, ZipFileHeaderRecord, ZipSliceArchive};
 
-use super::variables::{MemoryBudget, VariableFault};
+use crate::file_error::FileError;
+use crate::importer::{Contents, Importer, importer_of, is_known};
+use crate::npy::read_npy;
+use crate::variables::{MemoryBudget, Variable, VariableFault};
 
 /// The most bytes that one byte of deflate (RFC 1951) can become.
 const LARGEST_RATIO: u64 = 1032;
+
+/// What the name of every array of NumPy ends with.
+const ARRAY: &str = ".npy";
+
+/// Zip archives: arrays of NumPy (`.npz`), and files of any other format.
+pub(crate) struct Zip;
+
+impl Importer for Zip {
+    fn name(&self) -> &'static str {
+        "a zip archive"
+    }
+
+    fn endings(&self) -> &'static [&'static str] {
+        &["npz", "zip"]
+    }
+
+    fn recognises(&self, bytes: &[u8], _: &str) -> bool {
+        matches!(bytes, [b'P', b'K', 3 | 5, ..])
+    }
+
+    fn read(&self, bytes: &[u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Contents, FileError> {
+        read_archive(bytes, budget).map_err(|fault| FileError::variables(path, fault))
+    }
+}
+
+/// The arrays and the other files of an archive; archives in archives are not read.
+pub(crate) fn read_archive(bytes: &[u8], budget: &MemoryBudget<'_>) -> Result<Contents, VariableFault> {
+    let (mut names, mut variables) = (HashSet::new(), Vec::new());
+    let (mut files, mut ignored) = (Vec::new(), Vec::new());
+    visit_files(bytes, |file| {
+        // A few bytes in the archive's directory become a variable or a file, whatever it holds.
+        budget.take(1, (size_of::<Variable>() + size_of::<Contents>() + file.path.len()) as u64, "")?;
+        let path = Path::new(file.path);
+        if let Some(name) = file.path.strip_suffix(ARRAY) {
+            if !names.insert(name.to_owned()) {
+                return Err(VariableFault::Duplicate { name: name.to_owned() });
+            }
+            variables.extend(read_npy(&file.unpack(name, budget)?, name, budget)?);
+            return Ok(());
+        }
+        let unpacked = if is_known(path) { Some(file.unpack(file.path, budget)?) } else { None };
+        let importer = unpacked.as_deref().map(|bytes| (importer_of(bytes, path), bytes));
+        match importer.filter(|(importer, _)| importer.name() != Zip.name()) {
+            None => ignored.push(format!("{}: no file of a known kind", file.path)),
+            Some((importer, bytes)) => match importer.read(bytes, path, budget) {
+                Err(FileError::Variables {
+                    fault: fault @ (VariableFault::Stopped | VariableFault::TooLarge { .. }),
+                    ..
+                }) => return Err(fault),
+                contents => files.push((file.path.to_owned(), contents)),
+            },
+        }
+        Ok(())
+    })?;
+    Ok(Contents::Archive { variables, files, ignored })
+}
 
 /// A file in a zip archive (APPNOTE 6.3), packed as it is.
 pub(super) struct ZipFile<'z, 'b> {
@@ -43,7 +104,7 @@ pub(super) fn visit_files(
 
 impl ZipFile<'_, '_> {
     /// Unpacks the file, and no further than the archive says: a few kilobytes can unpack to gigabytes. `name` is what faults call it.
-    pub(super) fn unpack(&self, name: &str, meter: &MemoryBudget<'_>) -> Result<Vec<u8>, VariableFault> {
+    pub(super) fn unpack(&self, name: &str, budget: &MemoryBudget<'_>) -> Result<Vec<u8>, VariableFault> {
         let unsupported = |what: String| {
             let remedy = "pack it again by deflate, without a password".to_owned();
             VariableFault::Unsupported { variable: name.to_owned(), what, remedy }
@@ -57,7 +118,7 @@ impl ZipFile<'_, '_> {
         if length > (packed.len() as u64).saturating_mul(LARGEST_RATIO) {
             return Err(damaged(name, "it claims more bytes than it can unpack to", self.offset));
         }
-        meter.take(length, 1, name)?;
+        budget.take(length, 1, name)?;
         let unpacked = match self.entry.compression_method() {
             CompressionMethod::STORE => read_whole(found.verifying_reader(packed), length),
             CompressionMethod::DEFLATE => read_whole(found.verifying_reader(DeflateDecoder::new(packed)), length),
@@ -90,4 +151,12 @@ fn unreadable(bytes: &[u8]) -> VariableFault {
 /// A fault of what the archive, or a file in it, holds.
 pub(super) fn damaged(name: &str, what: &str, offset: u64) -> VariableFault {
     VariableFault::Damaged { variable: name.to_owned(), what: what.to_owned(), offset }
+}
+
+#[cfg(test)]
+pub(crate) fn read_npz(bytes: &[u8], budget: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+    match read_archive(bytes, budget)? {
+        Contents::Archive { variables, .. } => Ok(variables),
+        _ => Ok(Vec::new()),
+    }
 }

@@ -72,7 +72,7 @@ pub struct AssemblyState {
     /// What could not be taken, in words.
     pub faults: Vec<String>,
     /// What is no model, in words.
-    pub passed_over: Vec<String>,
+    pub ignored: Vec<String>,
     /// The tables of columns among the files, with the headings that they were read by.
     pub tables: Headings,
     /// The reading under way.
@@ -114,7 +114,7 @@ impl AssemblyState {
     pub fn forget_models(&mut self) {
         self.assembly = Assembly::new(Vec::new(), self.assembly.rules().clone());
         self.faults.clear();
-        self.passed_over.clear();
+        self.ignored.clear();
         self.tables.clear();
     }
 

@@ -146,7 +146,7 @@ pub(super) fn problems_ui(ui: &mut Ui, state: &AssemblyState, palette: &Palette,
             ui.label(palette.small(format!("and {} more", problems.len() - MOST_LINES)));
         }
         let not_read = state.faults.iter().map(|fault| palette.small_warning(format!("not read: {fault}")));
-        let no_models = state.passed_over.iter().map(|words| palette.small(format!("no model: {words}")));
+        let no_models = state.ignored.iter().map(|words| palette.small(format!("no model: {words}")));
         for text in not_read.chain(no_models).take(MOST_LINES) {
             ui.add(Label::new(text).wrap());
         }

@@ -1,8 +1,6 @@
 //! Dataset files, `*.json` and `*.json.gz`.
 
-mod build;
-mod export;
-mod schema;
+mod text;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -19,13 +17,9 @@ use super::source::Source;
 use crate::file_error::ContentError;
 use gdcm_core::message_text::{sanitized, sanitized_path};
 
-use build::draft_of;
-use export::text_of;
-use schema::{DatasetText, FORMAT};
+use text::{DatasetText, FORMAT};
 
-pub(super) use build::{identified_model_of, record_of};
-pub(super) use export::{identified_text, record_text};
-pub(super) use schema::{IdentifiedText, RecordText};
+pub(super) use text::{ModelText, RecordText};
 
 /// The example dataset: a synthetic UH-60A-class helicopter at the paper's eleven flight conditions.
 const EXAMPLE: &[u8] = include_bytes!("../../../../assets/example-dataset.json.gz");
@@ -108,7 +102,7 @@ pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
     let source = Source::read(path)?;
     let (text, _) = FORMAT.decode::<DatasetText>(source.text(), path)?;
     FORMAT.check_read(&text.format, text.version, path)?;
-    let draft = draft_of(text).map_err(|flaw| FileError::content_of(path, flaw, source.text()))?;
+    let (draft, _) = text.into_draft().map_err(|error| FileError::content_of(path, error, source.text()))?;
     let told = |error| FileError::content_of(path, ContentError::from(error), source.text());
     Ok(draft.faults().into_iter().map(told).collect())
 }
@@ -144,7 +138,7 @@ pub fn save_dataset(dataset: &Dataset, path: &Path) -> Result<(), FileError> {
 
 /// Adds a dataset to `outputs`; packed by gzip where the name ends in `.gz`.
 pub fn add_dataset(dataset: &Dataset, path: &Path, outputs: &mut OutputSet) -> Result<(), FileError> {
-    let text = text_of(dataset);
+    let text = DatasetText::of(dataset);
     let packed = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
     outputs.add(path, |file| {
         if packed {
@@ -163,7 +157,8 @@ pub(super) fn dataset_from(source: &Source<'_>, origin: DatasetOrigin) -> Result
     let path = origin.path();
     let (text, mut cautions) = FORMAT.decode::<DatasetText>(source.text(), &path)?;
     FORMAT.check_read(&text.format, text.version, &path)?;
-    let draft = draft_of(text).map_err(|flaw| FileError::content_of(&path, flaw, source.text()))?;
+    let (draft, misplaced) = text.into_draft().map_err(|error| FileError::content_of(&path, error, source.text()))?;
+    cautions.extend(misplaced);
     let (dataset, odd) =
         draft.checked().map_err(|error| FileError::content_of(&path, ContentError::from(error), source.text()))?;
     cautions.extend(odd.into_iter().map(|odd| format!("{}{}", odd.place.before(), odd.words)));

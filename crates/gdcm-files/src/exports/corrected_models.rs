@@ -349,8 +349,8 @@ mod tests {
 
     use super::*;
     use crate::embedded_example;
-    use crate::npy::read_npz;
     use crate::variables::MemoryBudget;
+    use crate::zip_files::read_npz;
 
     #[test]
     fn numpy_and_matlab_get_the_same_matrices_and_names() {

@@ -48,14 +48,14 @@ pub(super) fn begins(bytes: &[u8]) -> bool {
 }
 
 /// All variables of a file.
-pub(super) fn read(bytes: &[u8], meter: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+pub(super) fn read(bytes: &[u8], budget: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     let mut file = Cursor::file(bytes, ByteOrder::Little);
     let (mut variables, mut names) = (Vec::new(), HashSet::new());
     while !file.is_empty() {
-        meter.take(1, 2 * size_of::<Variable>() as u64, "")?;
+        budget.take(1, 2 * size_of::<Variable>() as u64, "")?;
         let header = header(&mut file)?;
         let name = name_of(file.take(header.name_length)?.rest());
-        let value = header.value(&mut file, meter).map_err(|fault| FieldPath::start(&name).name(fault))?;
+        let value = header.value(&mut file, budget).map_err(|fault| FieldPath::start(&name).name(fault))?;
         if !names.insert(name.clone()) {
             return Err(VariableFault::Duplicate { name });
         }
@@ -141,33 +141,33 @@ impl Stored {
 }
 
 impl Header {
-    fn value(&self, file: &mut Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Value, VariableFault> {
+    fn value(&self, file: &mut Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Value, VariableFault> {
         let start = *file;
-        let re = self.numbers(file, meter)?;
-        let im = if self.complex { Some(self.numbers(file, meter)?) } else { None };
+        let re = self.numbers(file, budget)?;
+        let im = if self.complex { Some(self.numbers(file, budget)?) } else { None };
         let shape = vec![self.rows, self.columns];
         match self.meaning {
             Meaning::Numbers => Ok(Value::Array(Array { shape, kind: self.stored.kind(), re, im })),
             Meaning::Text => {
-                meter.take(re.len() as u64, 16, "")?;
+                budget.take(re.len() as u64, 16, "")?;
                 let characters: Vec<u32> = re.iter().map(|&number| number as u32).collect();
-                Ok(Value::Text(rows(&characters, &shape, meter)?))
+                Ok(Value::Text(rows(&characters, &shape, budget)?))
             }
-            Meaning::Sparse => self.sparse(&re, start, meter).map(Value::Array),
+            Meaning::Sparse => self.sparse(&re, start, budget).map(Value::Array),
         }
     }
 
-    fn numbers(&self, file: &mut Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Vec<f64>, VariableFault> {
+    fn numbers(&self, file: &mut Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Vec<f64>, VariableFault> {
         let count = count(&[self.rows, self.columns]);
         let bytes = file.take(count.saturating_mul(self.stored.width()))?;
-        meter.take(count as u64, 8, "")?;
+        budget.take(count as u64, 8, "")?;
         Ok(self.stored.converted(bytes.rest(), self.order))
     }
 
     /// Columns of rows, of columns, of numbers and of their imaginary parts; the last row says how large the matrix is.
-    fn sparse(&self, columns: &[f64], start: Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Array, VariableFault> {
+    fn sparse(&self, columns: &[f64], start: Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Array, VariableFault> {
         let damaged = || start.damaged("a sparse matrix whose numbers do not fit it");
-        meter.take(columns.len() as u64, 8, "")?;
+        budget.take(columns.len() as u64, 8, "")?;
         let parts: Vec<&[f64]> = columns.chunks_exact(self.rows.max(1)).collect();
         let (rows, columns, re, im) = match *parts.as_slice() {
             [rows, columns, re] => (rows, columns, re, None),
@@ -187,7 +187,7 @@ impl Header {
             re: re.to_vec(),
             im: im.map(<[f64]>::to_vec),
         };
-        entries.filled(meter, damaged)
+        entries.filled(budget, damaged)
     }
 }
 

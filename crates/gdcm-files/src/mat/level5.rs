@@ -28,19 +28,19 @@ pub(super) fn version(bytes: &[u8]) -> Option<(ByteOrder, u8)> {
 }
 
 /// All variables of a file.
-pub(super) fn read(bytes: &[u8], order: ByteOrder, meter: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
-    let objects = match mat::objects(bytes, objects_at(bytes, order), order, meter) {
+pub(super) fn read(bytes: &[u8], order: ByteOrder, budget: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+    let objects = match mat::objects(bytes, objects_at(bytes, order), order, budget) {
         Ok(objects) => Ok(objects),
         Err(fault @ (VariableFault::TooLarge { .. } | VariableFault::Stopped)) => return Err(fault),
         Err(VariableFault::Damaged { what, .. }) => Err(format!("the objects of this file cannot be read: {what}")),
         Err(fault) => Err(format!("the objects of this file cannot be read: {fault}")),
     };
-    let arrays = Arrays { meter, objects: objects.as_ref().map_err(String::as_str) };
+    let arrays = Arrays { budget, objects: objects.as_ref().map_err(String::as_str) };
     let mut file = Cursor::file(bytes, order);
     file.pass(HEADER_BYTES)?;
     let (mut variables, mut names) = (Vec::new(), HashSet::new());
     while !file.is_empty() {
-        meter.take(1, 2 * size_of::<Variable>() as u64, "")?;
+        budget.take(1, 2 * size_of::<Variable>() as u64, "")?;
         // Arrays without a name are the machine's own notes, above all the objects.
         let Some(variable) = variable(&mut file, &arrays)? else { continue };
         if !names.insert(variable.name.clone()) {
@@ -66,13 +66,13 @@ fn variable(file: &mut Cursor<'_>, arrays: &Arrays<'_>) -> Result<Option<Variabl
         *file = behind(start, element, contents, *file)?;
         return Ok(variable);
     }
-    let bytes = unpacked(element.data, arrays.meter)?;
+    let bytes = unpacked(element.data, arrays.budget)?;
     let mut inner = Cursor::unpacked(&bytes, element.data.order, element.data.offset);
     named(&mut matrix(Element::read(&mut inner)?)?, arrays)
 }
 
 fn named(contents: &mut Cursor<'_>, arrays: &Arrays<'_>) -> Result<Option<Variable>, VariableFault> {
-    let header = Header::read(contents, arrays.meter)?;
+    let header = Header::read(contents, arrays.budget)?;
     if header.name.is_empty() {
         Element::pass_all(contents)?;
         return Ok(None);
@@ -385,21 +385,21 @@ pub(super) fn name_of(bytes: &[u8]) -> String {
 
 /// How many bytes one packed byte can become at most, rounded up (RFC 1951: 258 bytes from two bits).
 const MOST_EXPANSION: u64 = 1040;
-/// How many bytes are unpacked before the meter is asked again.
+/// How many bytes are unpacked before the budget is asked again.
 const CHUNK: u64 = 1 << 20;
 
 /// The bytes of a packed element: its tag, which says how many follow, and those.
-pub(super) fn unpacked(packed: Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Vec<u8>, VariableFault> {
+pub(super) fn unpacked(packed: Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Vec<u8>, VariableFault> {
     let mut decoder = ZlibDecoder::new(packed.rest());
     let mut bytes = Vec::new();
-    unpack_more(&mut decoder, 8, &mut bytes, packed, meter)?;
+    unpack_more(&mut decoder, 8, &mut bytes, packed, budget)?;
     let mut tag = Cursor::unpacked(&bytes, packed.order, packed.offset);
     tag.pass(4)?;
     let length = u64::from(tag.u32()?);
     if length > (packed.len() as u64).saturating_mul(MOST_EXPANSION) {
         return Err(packed.damaged(format!("{} packed bytes that claim to hold {length}", packed.len())));
     }
-    unpack_more(&mut decoder, length, &mut bytes, packed, meter)?;
+    unpack_more(&mut decoder, length, &mut bytes, packed, budget)?;
     // At the end lies a checksum, which is compared when the end is looked for.
     let more = decoder.read(&mut [0]).map_err(|_| packed.damaged("the packed bytes were changed"))?;
     if more != 0 {
@@ -413,13 +413,13 @@ fn unpack_more(
     length: u64,
     bytes: &mut Vec<u8>,
     packed: Cursor<'_>,
-    meter: &MemoryBudget<'_>,
+    budget: &MemoryBudget<'_>,
 ) -> Result<(), VariableFault> {
     let mut left = length;
     while left > 0 {
         let chunk = left.min(CHUNK);
         // Vectors grow by doubling.
-        meter.take(2 * chunk, 1, "")?;
+        budget.take(2 * chunk, 1, "")?;
         let found = decoder.by_ref().take(chunk).read_to_end(bytes).map_err(|error| match error.kind() {
             ErrorKind::UnexpectedEof => packed.damaged("the packed bytes end too early"),
             _ => packed.damaged("the packed bytes were changed"),

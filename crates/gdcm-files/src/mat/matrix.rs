@@ -13,7 +13,7 @@ use crate::variables::{
 #[derive(Clone, Copy)]
 pub(super) struct Arrays<'a> {
     /// Counts the memory.
-    pub(super) meter: &'a MemoryBudget<'a>,
+    pub(super) budget: &'a MemoryBudget<'a>,
     /// The objects of the file, or why they cannot be read.
     pub(super) objects: Result<&'a Subsystem, &'a str>,
 }
@@ -30,7 +30,7 @@ impl Arrays<'_> {
             ArrayClass::Float | ArrayClass::Integer => self.array(header, contents).map(Value::Array),
             ArrayClass::Sparse => self.sparse(header, contents).map(Value::Array),
             ArrayClass::Char => {
-                Element::read(contents).and_then(|element| text(&element, &header.shape, self.meter)).map(Value::Text)
+                Element::read(contents).and_then(|element| text(&element, &header.shape, self.budget)).map(Value::Text)
             }
             ArrayClass::Cell => self.cell(header, contents, trail).map(Value::Cell),
             ArrayClass::Struct => self.records(header, contents, trail).map(Value::Struct),
@@ -54,7 +54,7 @@ impl Arrays<'_> {
         if data.is_empty() {
             return Ok(Value::Array(Array::matrix(0, 0, Vec::new())));
         }
-        let header = Header::read(&mut data, self.meter)?;
+        let header = Header::read(&mut data, self.budget)?;
         let value = self.contents(&header, &mut data, trail)?;
         *contents = behind(start, element, data, *contents)?;
         Ok(value)
@@ -62,8 +62,8 @@ impl Arrays<'_> {
 
     fn array(&self, header: &Header, contents: &mut Cursor<'_>) -> Result<Array, VariableFault> {
         let count = header.count;
-        let re = numbers(&Element::read(contents)?, count, self.meter)?;
-        let im = if header.complex { Some(numbers(&Element::read(contents)?, count, self.meter)?) } else { None };
+        let re = numbers(&Element::read(contents)?, count, self.budget)?;
+        let im = if header.complex { Some(numbers(&Element::read(contents)?, count, self.budget)?) } else { None };
         Ok(Array { shape: header.shape.clone(), kind: header.element_kind(), re, im })
     }
 
@@ -72,8 +72,8 @@ impl Arrays<'_> {
         let &[height, width] = header.shape.as_slice() else {
             return Err(start.damaged("a sparse array that is no matrix"));
         };
-        let mut rows = places(&Element::read(contents)?, self.meter)?;
-        let starts = places(&Element::read(contents)?, self.meter)?;
+        let mut rows = places(&Element::read(contents)?, self.budget)?;
+        let starts = places(&Element::read(contents)?, self.budget)?;
         let stored = starts.last().copied().unwrap_or(0);
         let mut part = || {
             let mut element = Element::read(contents)?;
@@ -81,7 +81,7 @@ impl Arrays<'_> {
             if header.logical && element.kind == DataKind::F64 && element.data.len() < stored.saturating_mul(8) {
                 element.kind = DataKind::U8;
             }
-            numbers(&element, element.count()?, self.meter)
+            numbers(&element, element.count()?, self.budget)
         };
         let re = part()?;
         let im = if header.complex { Some(part()?) } else { None };
@@ -91,12 +91,12 @@ impl Arrays<'_> {
         }
         // Room for further numbers may have been left behind the last.
         rows.truncate(stored);
-        self.meter.take(stored as u64, 8, "")?;
+        self.budget.take(stored as u64, 8, "")?;
         let runs = starts.iter().zip(starts.iter().skip(1)).enumerate();
         let columns = runs.flat_map(|(column, (&from, &to))| std::iter::repeat_n(column, to - from)).collect();
         let kind = header.element_kind();
         let entries = Entries { shape: [height, width], kind, rows, columns, re, im };
-        entries.filled(self.meter, || start.damaged("a number outside its sparse matrix"))
+        entries.filled(self.budget, || start.damaged("a number outside its sparse matrix"))
     }
 
     fn cell(
@@ -126,7 +126,7 @@ impl Arrays<'_> {
         contents: &mut Cursor<'_>,
         trail: &FieldPath<'_>,
     ) -> Result<StructArray, VariableFault> {
-        let names = field_names(contents, self.meter)?;
+        let names = field_names(contents, self.budget)?;
         let count = header.count;
         self.room(count.saturating_mul(names.len()), contents)?;
         let mut fields: Vec<(String, Vec<Value>)> = Vec::with_capacity(names.len());
@@ -151,15 +151,15 @@ impl Arrays<'_> {
             return Err(contents.damaged(format!("{count} values in {} bytes", contents.len())));
         }
         // Vectors grow by doubling.
-        self.meter.take(count as u64, 2 * size_of::<Value>() as u64, "")?;
+        self.budget.take(count as u64, 2 * size_of::<Value>() as u64, "")?;
         Ok(count)
     }
 }
 
 /// The names of the fields of records, which stand before them.
-pub(super) fn field_names(contents: &mut Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Vec<String>, VariableFault> {
+pub(super) fn field_names(contents: &mut Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Vec<String>, VariableFault> {
     let lengths = Element::read(contents)?;
-    let &[length] = places(&lengths, meter)?.as_slice() else {
+    let &[length] = places(&lengths, budget)?.as_slice() else {
         return Err(lengths.data.damaged("records without a length of their names"));
     };
     let names = Element::read(contents)?;
@@ -167,7 +167,7 @@ pub(super) fn field_names(contents: &mut Cursor<'_>, meter: &MemoryBudget<'_>) -
     if (length == 0 && !bytes.is_empty()) || (length != 0 && !bytes.len().is_multiple_of(length)) {
         return Err(names.data.damaged("names of fields that do not fit their length"));
     }
-    meter.take((bytes.len() / length.max(1)) as u64, 128, "")?;
+    budget.take((bytes.len() / length.max(1)) as u64, 128, "")?;
     let mut seen = std::collections::HashSet::new();
     let mut found = Vec::new();
     for name in bytes.chunks_exact(length.max(1)).map(crate::mat::level5::name_of) {
@@ -187,36 +187,36 @@ pub(super) fn field_names(contents: &mut Cursor<'_>, meter: &MemoryBudget<'_>) -
 pub(super) fn numbers(
     element: &Element<'_>,
     count: usize,
-    meter: &MemoryBudget<'_>,
+    budget: &MemoryBudget<'_>,
 ) -> Result<Vec<f64>, VariableFault> {
     let found = element.count()?;
     if found != count {
         return Err(element.data.damaged(format!("{found} numbers where there should be {count}")));
     }
-    meter.take(count as u64, 8, "")?;
+    budget.take(count as u64, 8, "")?;
     Ok(converted(element.kind, element.data.rest(), element.data.order))
 }
 
 /// All whole numbers of an element: sizes and places.
-pub(super) fn places(element: &Element<'_>, meter: &MemoryBudget<'_>) -> Result<Vec<usize>, VariableFault> {
+pub(super) fn places(element: &Element<'_>, budget: &MemoryBudget<'_>) -> Result<Vec<usize>, VariableFault> {
     match element.kind {
         DataKind::I32 | DataKind::U32 => {}
         _ => return Err(element.data.damaged("numbers of another kind where sizes should stand")),
     }
     let count = element.count()?;
-    meter.take(count as u64, 8, "")?;
-    let values = numbers(element, count, meter)?;
+    budget.take(count as u64, 8, "")?;
+    let values = numbers(element, count, budget)?;
     let place = |value: f64| if value < 0.0 { None } else { Some(value as usize) };
     let places: Option<Vec<usize>> = values.into_iter().map(place).collect();
     places.ok_or_else(|| element.data.damaged("a negative size"))
 }
 
 /// All whole numbers of 64 bits of an element, if it holds such.
-pub(super) fn long_words(element: &Element<'_>, meter: &MemoryBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
+pub(super) fn long_words(element: &Element<'_>, budget: &MemoryBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
     if element.kind != DataKind::U64 {
         return Ok(None);
     }
-    meter.take(element.count()? as u64, 8, "")?;
+    budget.take(element.count()? as u64, 8, "")?;
     let order = element.data.order;
     Ok(Some(element.data.rest().as_chunks().0.iter().map(|&bytes| order.u64(bytes)).collect()))
 }
@@ -248,11 +248,11 @@ fn each<const N: usize>(bytes: &[u8], number: impl Fn([u8; N]) -> f64) -> Vec<f6
 pub(super) fn text(
     element: &Element<'_>,
     shape: &[usize],
-    meter: &MemoryBudget<'_>,
+    budget: &MemoryBudget<'_>,
 ) -> Result<TextArray, VariableFault> {
     let wanted = count(shape);
-    meter.take(wanted as u64, 16, "")?;
-    let mut characters = characters(element, wanted, meter)?;
+    budget.take(wanted as u64, 16, "")?;
+    let mut characters = characters(element, wanted, budget)?;
     if characters.is_empty() {
         // Old versions leave out characters that are all blank.
         characters = vec![u32::from(b' '); wanted];
@@ -261,13 +261,13 @@ pub(super) fn text(
         let found = characters.len();
         return Err(element.data.damaged(format!("{found} characters where there should be {wanted}")));
     }
-    rows(&characters, shape, meter)
+    rows(&characters, shape, budget)
 }
 
 /// The texts in the rows of an array of characters, of which there are as many as the shape says.
 ///
 /// An array without characters is one empty text, as MATLAB's `''` is, unless it has several rows.
-pub(super) fn rows(characters: &[u32], shape: &[usize], meter: &MemoryBudget<'_>) -> Result<TextArray, VariableFault> {
+pub(super) fn rows(characters: &[u32], shape: &[usize], budget: &MemoryBudget<'_>) -> Result<TextArray, VariableFault> {
     let (height, length) = (shape.first().copied().unwrap_or(1), shape.get(1).copied().unwrap_or(1));
     let pages = shape.get(2..).unwrap_or_default();
     if characters.is_empty() && height <= 1 {
@@ -275,7 +275,7 @@ pub(super) fn rows(characters: &[u32], shape: &[usize], meter: &MemoryBudget<'_>
     }
     let shape: Vec<usize> = [height, 1].iter().chain(pages).copied().collect();
     let texts = count(&shape);
-    meter.take(texts as u64, size_of::<String>() as u64, "")?;
+    budget.take(texts as u64, size_of::<String>() as u64, "")?;
     let page = height.saturating_mul(length);
     let row = |text: usize| {
         let first = (text / height).saturating_mul(page).saturating_add(text % height);
@@ -297,12 +297,12 @@ fn written(numbers: impl Iterator<Item = u32>) -> String {
     String::from_utf16_lossy(&units)
 }
 
-fn characters(element: &Element<'_>, wanted: usize, meter: &MemoryBudget<'_>) -> Result<Vec<u32>, VariableFault> {
+fn characters(element: &Element<'_>, wanted: usize, budget: &MemoryBudget<'_>) -> Result<Vec<u32>, VariableFault> {
     if element.kind == DataKind::Utf8 {
         return Ok(of_utf8(element.data.rest(), wanted));
     }
     let found = element.count()?;
-    Ok(numbers(element, found, meter)?.into_iter().map(|number| number as u32).collect())
+    Ok(numbers(element, found, budget)?.into_iter().map(|number| number as u32).collect())
 }
 
 /// The shape counts units of UTF-16 in files of MATLAB, characters in those of some other programs, and bytes in those that
@@ -343,12 +343,12 @@ impl Entries {
     /// `outside` is the fault that a number lies outside the matrix.
     pub(super) fn filled(
         &self,
-        meter: &MemoryBudget<'_>,
+        budget: &MemoryBudget<'_>,
         outside: impl Fn() -> VariableFault,
     ) -> Result<Array, VariableFault> {
         let [height, width] = self.shape;
         let count = (height as u64).saturating_mul(width as u64);
-        meter.take(count, if self.im.is_some() { 16 } else { 8 }, "")?;
+        budget.take(count, if self.im.is_some() { 16 } else { 8 }, "")?;
         let fill = |values: &[f64]| {
             let mut filled = vec![0.0; height.saturating_mul(width)];
             for ((&row, &column), value) in self.rows.iter().zip(&self.columns).zip(values) {
@@ -389,8 +389,8 @@ pub(super) fn opaque_value(
         Err(why) => return Ok(unread_because(&class, why, &variable)),
     };
     match (&contents, Reference::of(&contents)) {
-        (_, Some(reference)) => objects.referred(&reference, trail, arrays.meter),
-        (Value::Struct(records), None) => objects.enumeration(records, &class, trail, arrays.meter),
+        (_, Some(reference)) => objects.referred(&reference, trail, arrays.budget),
+        (Value::Struct(records), None) => objects.enumeration(records, &class, trail, arrays.budget),
         _ => Ok(unread_because(&class, "it refers to no object", &variable)),
     }
 }
@@ -579,16 +579,16 @@ mod sparse_tests {
 
     #[test]
     fn what_is_not_stored_is_zero() {
-        let meter = MemoryBudget::new(1000, &|_| false);
-        let array = entries([2, 2]).filled(&meter, || VariableFault::Stopped).unwrap();
+        let budget = MemoryBudget::new(1000, &|_| false);
+        let array = entries([2, 2]).filled(&budget, || VariableFault::Stopped).unwrap();
         assert_eq!((array.re, array.im), (vec![0.0, 3.0, 2.0, 0.0], Some(vec![0.0, 1.0, 0.0, 0.0])));
     }
 
     #[test]
     fn places_outside_and_sizes_beyond_the_limit_are_refused() {
-        let meter = MemoryBudget::new(1000, &|_| false);
-        assert_eq!(entries([1, 2]).filled(&meter, || VariableFault::Stopped), Err(VariableFault::Stopped));
-        let large = entries([usize::MAX, 1]).filled(&meter, || VariableFault::Stopped);
+        let budget = MemoryBudget::new(1000, &|_| false);
+        assert_eq!(entries([1, 2]).filled(&budget, || VariableFault::Stopped), Err(VariableFault::Stopped));
+        let large = entries([usize::MAX, 1]).filled(&budget, || VariableFault::Stopped);
         assert!(matches!(large, Err(VariableFault::TooLarge { .. })));
     }
 }

@@ -9,6 +9,10 @@ mod matrix;
 mod subsystem;
 mod writer;
 
+use std::path::Path;
+
+use crate::file_error::FileError;
+use crate::importer::{Contents, Importer};
 use crate::mat::level5::{ByteOrder, Cursor, DataKind, Element, matrix, unpacked};
 use crate::mat::matrix::{Arrays, field_names, long_words, places};
 use crate::variables::{ElementKind, MemoryBudget, Value, Variable, VariableFault};
@@ -23,19 +27,40 @@ const LEVEL_5: u8 = 1;
 /// What [`read`] reads.
 const EXPECTED: &str = "a .mat file of MATLAB up to version 7";
 
+/// Files of MATLAB up to version 7.
+pub(crate) struct Mat;
+
+impl Importer for Mat {
+    fn name(&self) -> &'static str {
+        "a .mat file of MATLAB up to version 7"
+    }
+
+    fn endings(&self) -> &'static [&'static str] {
+        &["mat"]
+    }
+
+    fn recognises(&self, bytes: &[u8], ending: &str) -> bool {
+        ending == "mat" || matches!(level5::version(bytes), Some((_, LEVEL_5)))
+    }
+
+    fn read(&self, bytes: &[u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Contents, FileError> {
+        Contents::variables(read(bytes, budget), path)
+    }
+}
+
 /// The variables of a file, in their order.
 ///
 /// What lies in a variable and cannot be decoded is [`crate::variables::Value::Opaque`]; bytes that contradict the format are a
 /// fault of the whole file.
-pub fn read(bytes: &[u8], meter: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+pub fn read(bytes: &[u8], budget: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     if is_hdf5(bytes) {
         return Err(format("an HDF5 file, as MATLAB writes with -v7.3"));
     }
     // The text that a file of level 5 begins with is what tells it from one of level 4: four bytes that are not zero.
     let text = bytes.get(..4).is_some_and(|start| !start.contains(&0));
     match level5::version(bytes) {
-        Some((order, LEVEL_5)) if text || !level4::begins(bytes) => level5::read(bytes, order, meter),
-        _ if level4::begins(bytes) => level4::read(bytes, meter),
+        Some((order, LEVEL_5)) if text || !level4::begins(bytes) => level5::read(bytes, order, budget),
+        _ if level4::begins(bytes) => level4::read(bytes, budget),
         Some((_, version)) if text => Err(format(format!("a .mat file of the unknown version {version}"))),
         _ => Err(format(beginning(bytes))),
     }
@@ -80,7 +105,7 @@ fn objects(
     bytes: &[u8],
     at: Option<usize>,
     order: ByteOrder,
-    meter: &MemoryBudget<'_>,
+    budget: &MemoryBudget<'_>,
 ) -> Result<Subsystem, VariableFault> {
     let mut file = Cursor::file(bytes, order);
     let none = || file.damaged("they lie nowhere in it");
@@ -88,17 +113,17 @@ fn objects(
     file.pass(at)?;
     let element = Element::read(&mut file)?;
     if element.kind != DataKind::Packed {
-        return within(matrix(element)?, meter);
+        return within(matrix(element)?, budget);
     }
-    let bytes = unpacked(element.data, meter)?;
+    let bytes = unpacked(element.data, budget)?;
     let mut inner = Cursor::unpacked(&bytes, order, element.data.offset);
-    within(matrix(Element::read(&mut inner)?)?, meter)
+    within(matrix(Element::read(&mut inner)?)?, budget)
 }
 
 /// The objects within an array of bytes.
-fn within(array: Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Subsystem, VariableFault> {
+fn within(array: Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Subsystem, VariableFault> {
     let mut array = array;
-    Header::read(&mut array, meter)?;
+    Header::read(&mut array, budget)?;
     let data = Element::read(&mut array)?.data;
     let order = match data.rest().get(2..4) {
         Some(b"IM") => ByteOrder::Little,
@@ -108,53 +133,53 @@ fn within(array: Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Subsystem, Vari
     let mut small = Cursor::unpacked(data.rest(), order, data.offset);
     small.pass(8)?;
     let mut systems = matrix(Element::read(&mut small)?)?;
-    if Header::read(&mut systems, meter)?.class != ArrayClass::Struct {
+    if Header::read(&mut systems, budget)?.class != ArrayClass::Struct {
         return Err(systems.damaged("they do not lie in a record"));
     }
-    for name in field_names(&mut systems, meter)? {
+    for name in field_names(&mut systems, budget)? {
         let system = matrix(Element::read(&mut systems)?)?;
         if name == SYSTEM {
-            return wrapped(system, meter);
+            return wrapped(system, budget);
         }
     }
     Err(systems.damaged("there are none of MATLAB's own classes"))
 }
 
 /// The objects within a `FileWrapper__`.
-fn wrapped(wrapper: Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Subsystem, VariableFault> {
+fn wrapped(wrapper: Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Subsystem, VariableFault> {
     let mut wrapper = wrapper;
-    let opaque = Header::read(&mut wrapper, meter)?.class == ArrayClass::Opaque;
+    let opaque = Header::read(&mut wrapper, budget)?.class == ArrayClass::Opaque;
     let (system, class) = (Element::read(&mut wrapper)?.name()?, Element::read(&mut wrapper)?.name()?);
     if !opaque || system != SYSTEM || class != WRAPPER {
         return Err(wrapper.damaged("they do not lie in a FileWrapper__"));
     }
     let mut contents = matrix(Element::read(&mut wrapper)?)?;
-    let header = Header::read(&mut contents, meter)?;
+    let header = Header::read(&mut contents, budget)?;
     if header.class != ArrayClass::Cell {
         return Err(contents.damaged("they do not lie in cells"));
     }
     let trail = FieldPath::start(WRAPPER);
-    let arrays = Arrays { meter, objects: Err("it lies in the objects of the file") };
+    let arrays = Arrays { budget, objects: Err("it lies in the objects of the file") };
     let (mut cells, mut words) = (Vec::new(), Vec::new());
     for at in 0..header.count {
         let cell = contents;
         let value = arrays.inner(&mut contents, &trail.step(Step::Cell(at))?)?;
-        words.extend(exact(cell, &value, meter)?.map(|words| (at, words)));
-        meter.take(1, 2 * size_of::<Value>() as u64, "")?;
+        words.extend(exact(cell, &value, budget)?.map(|words| (at, words)));
+        budget.take(1, 2 * size_of::<Value>() as u64, "")?;
         cells.push(value);
     }
-    Ok(Subsystem::new(cells)?.with_long_words(words))
+    Ok(Subsystem::new(cells, budget)?.with_long_words(words))
 }
 
 /// The numbers of a cell to the last digit, if they are whole numbers of 64 bits.
-fn exact(cell: Cursor<'_>, value: &Value, meter: &MemoryBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
+fn exact(cell: Cursor<'_>, value: &Value, budget: &MemoryBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
     if !matches!(value, Value::Array(array) if !array.is_empty()) {
         return Ok(None);
     }
     let mut cell = cell;
     let mut contents = Element::read(&mut cell)?.data;
-    let header = Header::read(&mut contents, meter)?;
-    if header.long_words { long_words(&Element::read(&mut contents)?, meter) } else { Ok(None) }
+    let header = Header::read(&mut contents, budget)?;
+    if header.long_words { long_words(&Element::read(&mut contents)?, budget) } else { Ok(None) }
 }
 
 // The way to a value within a variable.
@@ -266,7 +291,7 @@ struct Header {
 
 impl Header {
     /// Reads what stands before the contents.
-    fn read(contents: &mut Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Self, VariableFault> {
+    fn read(contents: &mut Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Self, VariableFault> {
         let flags = Element::read(contents)?;
         if flags.kind != DataKind::U32 {
             return Err(flags.data.damaged("an array without flags"));
@@ -275,11 +300,11 @@ impl Header {
         let number = bits & 0xff;
         let class = ArrayClass::of(number)
             .ok_or_else(|| flags.data.damaged(format!("an array of the unknown class {number}")))?;
-        let shape = if class == ArrayClass::Opaque { vec![1, 1] } else { shape(contents, meter)? };
+        let shape = if class == ArrayClass::Opaque { vec![1, 1] } else { shape(contents, budget)? };
         // Nobody who multiplies the sides shall come beyond what can be counted, not even on the way to none.
         let sides = shape.iter().try_fold(1_usize, |product, &length| product.checked_mul(length.max(1)));
         if sides.is_none() {
-            meter.take(u64::MAX, 1, "")?;
+            budget.take(u64::MAX, 1, "")?;
         }
         Ok(Header {
             class,
@@ -325,8 +350,8 @@ fn count(shape: &[usize]) -> usize {
     if shape.contains(&0) { 0 } else { product }
 }
 
-fn shape(contents: &mut Cursor<'_>, meter: &MemoryBudget<'_>) -> Result<Vec<usize>, VariableFault> {
-    let mut shape = places(&Element::read(contents)?, meter)?;
+fn shape(contents: &mut Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Vec<usize>, VariableFault> {
+    let mut shape = places(&Element::read(contents)?, budget)?;
     while shape.len() < 2 {
         shape.push(1);
     }

@@ -32,7 +32,7 @@ impl Elements {
         dataset: &Dataset,
         order: Order,
         path: &str,
-        meter: &MemoryBudget<'_>,
+        budget: &MemoryBudget<'_>,
     ) -> Result<Self, VariableFault> {
         let failed = |error| fault(&error, path);
         let too_many = || damaged(path, "there are more elements than can be counted");
@@ -42,8 +42,8 @@ impl Elements {
         let sides: Vec<usize> =
             sides.iter().map(|&side| usize::try_from(side).ok()).collect::<Option<_>>().ok_or_else(too_many)?;
         let elements = count(&sides).ok_or_else(too_many)?;
-        meter.take(elements as u64, size, path)?;
-        check(dataset, &sides, size, path, meter)?;
+        budget.take(elements as u64, size, path)?;
+        check(dataset, &sides, size, path, budget)?;
         let bytes = dataset.read_raw().map_err(failed)?;
         let (shape, size) = (matrix_shape(sides, order), usize::try_from(size).map_err(|_| too_many())?);
         let none = bytes.is_empty() && elements == 1;
@@ -74,9 +74,9 @@ impl Elements {
     }
 
     /// The numbers, if they are numbers.
-    pub(super) fn numbers(&self, path: &str, meter: &MemoryBudget<'_>) -> Result<Option<Array>, VariableFault> {
+    pub(super) fn numbers(&self, path: &str, budget: &MemoryBudget<'_>) -> Result<Option<Array>, VariableFault> {
         let Some(numbers) = NumberType::of(&self.datatype) else { return Ok(None) };
-        meter.take(self.count() as u64, if numbers.im.is_some() { 16 } else { 8 }, path)?;
+        budget.take(self.count() as u64, if numbers.im.is_some() { 16 } else { 8 }, path)?;
         let part = |offset: usize| {
             let decode = |place| numbers.number.decode(self.at(place).get(offset..).unwrap_or_default());
             self.places().map(decode).collect::<Vec<f64>>()
@@ -86,13 +86,13 @@ impl Elements {
     }
 
     /// Whole numbers of 64 bits without a sign, to the last digit, if that is what they are.
-    pub(super) fn words(&self, path: &str, meter: &MemoryBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
+    pub(super) fn words(&self, path: &str, budget: &MemoryBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
         let numbers = NumberType::of(&self.datatype);
         let kind = numbers.filter(|numbers| numbers.im.is_none()).map(|numbers| numbers.number.kind());
         if self.size != 8 || kind != Some(ElementKind::Integer) {
             return Ok(None);
         }
-        meter.take(self.count() as u64, 8, path)?;
+        budget.take(self.count() as u64, 8, path)?;
         let word = |place| self.at(place).iter().rev().fold(0, |word, &byte| word << 8 | u64::from(byte));
         Ok(Some(self.places().map(word).collect()))
     }
@@ -124,7 +124,7 @@ pub(super) fn check(
     sides: &[usize],
     size: u64,
     path: &str,
-    meter: &MemoryBudget<'_>,
+    budget: &MemoryBudget<'_>,
 ) -> Result<(), VariableFault> {
     let failed = |error| fault(&error, path);
     let Some(shape) = dataset.chunk_shape().map_err(failed)? else { return Ok(()) };
@@ -134,8 +134,8 @@ pub(super) fn check(
     let elements = shape.iter().copied().fold(1, u64::saturating_mul);
     let along = |(&side, &chunk): (&usize, &u64)| (side as u64).div_ceil(chunk);
     let most = sides.iter().zip(&shape).map(along).fold(1, u64::saturating_mul);
-    meter.take(elements, size, path)?;
-    meter.take(most, CHUNK, path)?;
+    budget.take(elements, size, path)?;
+    budget.take(most, CHUNK, path)?;
     let index = dataset.chunk_index().map_err(failed)?;
     if index == Some(ChunkIndex::BTreeV2) {
         let (what, remedy) = ("a dataset that can grow in two directions", "write it with a shape that is fixed");

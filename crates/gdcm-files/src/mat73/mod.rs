@@ -14,6 +14,7 @@ mod dataset;
 mod values;
 
 use std::collections::HashMap;
+use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use hdf5_pure::{
@@ -21,21 +22,52 @@ use hdf5_pure::{
     ReferenceType, Source, is_hdf5_bytes,
 };
 
+use crate::file_error::FileError;
+use crate::importer::{Contents, Importer};
+use crate::mat::{Subsystem, is_hdf5};
 use crate::mat73::dataset::{Elements, Order};
 use crate::mat73::values::{Objects, Sparse, empty, records, rows, strings};
 use crate::variables::{self, CellArray, ElementKind, MemoryBudget, StructArray, Value, Variable, VariableFault};
 
 pub use crate::mat73::values::{FileWrapper, ObjectDecoder};
 
+/// MATLAB 7.3 and HDF5.
+pub(crate) struct Hdf5;
+
+impl Importer for Hdf5 {
+    fn name(&self) -> &'static str {
+        "an HDF5 file, as MATLAB writes with -v7.3"
+    }
+
+    fn endings(&self) -> &'static [&'static str] {
+        &["mat", "h5", "hdf5"]
+    }
+
+    fn recognises(&self, bytes: &[u8], _: &str) -> bool {
+        is_hdf5(bytes)
+    }
+
+    fn read(&self, bytes: &[u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Contents, FileError> {
+        // The objects lie in it as in the files of the versions before.
+        let decoder = |wrapper: FileWrapper| -> Result<Box<ObjectDecoder<'static>>, VariableFault> {
+            let subsystem = Subsystem::new(wrapper.cells, budget)?.with_long_words(wrapper.long_words);
+            Ok(Box::new(move |reference: &[u32], variable: &str, budget: &MemoryBudget<'_>| {
+                subsystem.object(reference, variable, budget)
+            }))
+        };
+        Contents::variables(read_with_objects(bytes, budget, decoder), path)
+    }
+}
+
 /// Reads all variables, and objects of MATLAB's classes by `decoder`, which is made of the part of the file in which they lie.
 pub fn read_with_objects<'d>(
     bytes: &[u8],
-    meter: &MemoryBudget<'_>,
+    budget: &MemoryBudget<'_>,
     decoder: impl FnOnce(FileWrapper) -> Result<Box<ObjectDecoder<'d>>, VariableFault>,
 ) -> Result<Vec<Variable>, VariableFault> {
-    let opened = Opened::new(bytes, meter)?;
-    let objects = Objects::read(&opened, meter, decoder)?;
-    Reader { meter, objects: &objects }.variables(&opened.root())
+    let opened = Opened::new(bytes, budget)?;
+    let objects = Objects::read(&opened, budget, decoder)?;
+    Reader { budget, objects: &objects }.variables(&opened.root())
 }
 
 // Values as datasets and groups hold them, one within another.
@@ -45,9 +77,9 @@ const DEEPEST: usize = 64;
 /// What a value takes besides its elements while it is read: the library's view of its header, and the value itself \[bytes\].
 const HEADER: u64 = 1024;
 
-/// Reads values within the limits of a meter.
+/// Reads values within the limits of a budget.
 struct Reader<'r> {
-    meter: &'r MemoryBudget<'r>,
+    budget: &'r MemoryBudget<'r>,
     objects: &'r Objects<'r>,
 }
 
@@ -55,7 +87,7 @@ impl Reader<'_> {
     /// The variables that lie in the outermost group.
     fn variables(&self, root: &Group) -> Result<Vec<Variable>, VariableFault> {
         let mut variables = Vec::new();
-        for (name, object) in members(root, "", self.meter)? {
+        for (name, object) in members(root, "", self.budget)? {
             // What other variables refer to.
             if name != "#refs#" && name != "#subsystem#" {
                 let value = self.value(&object, &name, 0)?;
@@ -70,7 +102,7 @@ impl Reader<'_> {
         if depth >= DEEPEST {
             return Err(VariableFault::TooDeep { variable: path.to_owned() });
         }
-        self.meter.take(1, HEADER, path)?;
+        self.budget.take(1, HEADER, path)?;
         let value = match object {
             Object::Dataset(dataset) => self.dataset(dataset, path, depth),
             Object::Group(group) => group_value(self, group, path, depth),
@@ -86,9 +118,9 @@ impl Reader<'_> {
     fn dataset(&self, dataset: &Dataset, path: &str, depth: usize) -> Result<Value, VariableFault> {
         let marks = MatlabAttributes::new(&dataset.attrs().map_err(|error| fault(&error, path))?);
         let order = if marks.class.is_some() { Order::Columns } else { Order::Rows };
-        let elements = Elements::read(dataset, order, path, self.meter)?;
+        let elements = Elements::read(dataset, order, path, self.budget)?;
         if marks.empty {
-            return empty(&marks, &elements, path, self.meter);
+            return empty(&marks, &elements, path, self.budget);
         }
         if marks.decode == Decode::FunctionHandle {
             return Ok(unread("function_handle", "functions are not data"));
@@ -96,10 +128,10 @@ impl Reader<'_> {
         if is_reference(&elements.datatype) {
             return self.cell(dataset, &elements, path, depth);
         }
-        if let Some(mut array) = elements.numbers(path, self.meter)? {
+        if let Some(mut array) = elements.numbers(path, self.budget)? {
             return match (marks.decode, marks.class()) {
-                (Decode::Object, class) => self.objects.value(class, array, path, self.meter),
-                (_, "char") => Ok(Value::Text(rows(&array, path, self.meter)?)),
+                (Decode::Object, class) => self.objects.value(class, array, path, self.budget),
+                (_, "char") => Ok(Value::Text(rows(&array, path, self.budget)?)),
                 (_, "logical") => {
                     array.kind = ElementKind::Logical;
                     Ok(Value::Array(array))
@@ -107,10 +139,10 @@ impl Reader<'_> {
                 _ => Ok(Value::Array(array)),
             };
         }
-        if let Some(texts) = strings(dataset, &elements, path, self.meter)? {
+        if let Some(texts) = strings(dataset, &elements, path, self.budget)? {
             return Ok(Value::Text(texts));
         }
-        let records = records(&elements, path, self.meter)?;
+        let records = records(&elements, path, self.budget)?;
         Ok(records.map_or_else(|| unread("an HDF5 dataset", "it holds neither numbers nor texts"), Value::Struct))
     }
 
@@ -130,7 +162,7 @@ impl Reader<'_> {
     fn referred(&self, dataset: &Dataset, path: &str) -> Result<Vec<Object>, VariableFault> {
         let failed = |error| fault(&error, path);
         let elements = dataset.shape().map_err(failed)?.iter().copied().fold(1, u64::saturating_mul);
-        self.meter.take(elements, HEADER, path)?;
+        self.budget.take(elements, HEADER, path)?;
         dataset.dereference().map_err(failed)
     }
 }
@@ -153,12 +185,12 @@ struct Opened {
 
 impl Opened {
     /// Opens a file, which is copied; a user block such as MATLAB's may stand before it.
-    fn new(bytes: &[u8], meter: &MemoryBudget<'_>) -> Result<Self, VariableFault> {
+    fn new(bytes: &[u8], budget: &MemoryBudget<'_>) -> Result<Self, VariableFault> {
         if !is_hdf5_bytes(bytes) {
             let found = if bytes.is_empty() { "nothing" } else { "other bytes" };
             return Err(VariableFault::Format { expected: "a file of MATLAB 7.3 or HDF5", found: found.to_owned() });
         }
-        meter.take(bytes.len() as u64, 1, "")?;
+        budget.take(bytes.len() as u64, 1, "")?;
         // What a cache gave out would not count.
         let properties = FileAccessProperties::new().with_metadata_cache(MetadataCacheConfig::disabled());
         let source = Rationed::new(bytes.to_vec());
@@ -318,11 +350,11 @@ impl MatlabAttributes {
 const MEMBER: u64 = 256;
 
 /// The datasets and groups in a group, in the order of their names.
-fn members(group: &Group, path: &str, meter: &MemoryBudget<'_>) -> Result<Vec<(String, Object)>, VariableFault> {
+fn members(group: &Group, path: &str, budget: &MemoryBudget<'_>) -> Result<Vec<(String, Object)>, VariableFault> {
     let failed = |error| fault(&error, path);
     let datasets = group.iter_datasets().map_err(failed)?;
     let groups = group.iter_groups().map_err(failed)?;
-    meter.take((datasets.len() + groups.len()) as u64, MEMBER, path)?;
+    budget.take((datasets.len() + groups.len()) as u64, MEMBER, path)?;
     let datasets = datasets.map(|(name, dataset)| (name, Object::Dataset(Box::new(dataset))));
     let mut members: Vec<_> = datasets.chain(groups.map(|(name, group)| (name, Object::Group(group)))).collect();
     members.sort_by(|(one, _), (other, _)| one.cmp(other));
@@ -335,9 +367,9 @@ fn members(group: &Group, path: &str, meter: &MemoryBudget<'_>) -> Result<Vec<(S
 /// The value of a group.
 fn group_value(reader: &Reader<'_>, group: &Group, path: &str, depth: usize) -> Result<Value, VariableFault> {
     let marks = MatlabAttributes::new(&group.attrs().map_err(|error| fault(&error, path))?);
-    let mut members = members(group, path, reader.meter)?;
+    let mut members = members(group, path, reader.budget)?;
     if let Some(rows) = marks.sparse {
-        let sparse = Sparse { rows, marks: &marks, members: &members, path, meter: reader.meter };
+        let sparse = Sparse { rows, marks: &marks, members: &members, path, budget: reader.budget };
         return Ok(Value::Array(sparse.filled()?));
     }
     match (marks.decode, marks.class()) {
@@ -391,7 +423,7 @@ fn array(
     let mut records = StructArray { shape: Vec::new(), fields: Vec::with_capacity(members.len()) };
     for (name, object) in members {
         let Object::Dataset(dataset) = object else { continue };
-        let shape = Elements::read(dataset, Order::Columns, path, reader.meter)?.shape;
+        let shape = Elements::read(dataset, Order::Columns, path, reader.budget)?.shape;
         if !records.fields.is_empty() && records.shape != shape {
             return Err(damaged(&within(path, name), "a field has not as many values as there are records"));
         }
@@ -425,9 +457,9 @@ mod mat73_tests {
 
     /// Reads all variables of a MATLAB 7.3 file or a plain HDF5 file; objects of MATLAB's classes stay
     /// [`Value::Opaque`](crate::variables::Value::Opaque).
-    fn read(bytes: &[u8], meter: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
-        let opened = Opened::new(bytes, meter)?;
-        Reader { meter, objects: &Objects::Opaque("objects of classes are not read") }.variables(&opened.root())
+    fn read(bytes: &[u8], budget: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+        let opened = Opened::new(bytes, budget)?;
+        Reader { budget, objects: &Objects::Opaque("objects of classes are not read") }.variables(&opened.root())
     }
 
     fn file(name: &str) -> Vec<u8> {
@@ -536,8 +568,8 @@ mod mat73_tests {
 
     #[test]
     fn objects_are_given_to_their_decoder_with_the_part_in_which_they_lie() {
-        let (meter, bytes) = (MemoryBudget::new(1 << 24, &|_| false), file("objects.mat"));
-        let variables = read_with_objects(&bytes, &meter, |wrapper| {
+        let (budget, bytes) = (MemoryBudget::new(1 << 24, &|_| false), file("objects.mat"));
+        let variables = read_with_objects(&bytes, &budget, |wrapper| {
             assert_eq!(wrapper.cells.len(), 3);
             assert!(matches!(&wrapper.cells[0], Value::Array(bytes) if bytes.re == [4.0, 0.0, 0.0, 0.0]));
             assert_eq!(wrapper.long_words, [(2, vec![u64::MAX])]);
@@ -554,9 +586,9 @@ mod mat73_tests {
 
     #[test]
     fn other_variables_are_read_where_the_objects_are_damaged() {
-        let (meter, bytes) = (MemoryBudget::new(1 << 24, &|_| false), file("objects.mat"));
+        let (budget, bytes) = (MemoryBudget::new(1 << 24, &|_| false), file("objects.mat"));
         let fault = || VariableFault::TooDeep { variable: String::new() };
-        let variables = read_with_objects(&bytes, &meter, |_| Err(fault())).unwrap();
+        let variables = read_with_objects(&bytes, &budget, |_| Err(fault())).unwrap();
         assert_eq!(value(&variables, "before"), number(1.0));
         assert!(matches!(value(&variables, "sys"), Value::Opaque { why, .. } if why == fault().to_string()));
     }

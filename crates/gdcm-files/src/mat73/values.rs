@@ -10,7 +10,7 @@ use crate::variables::{Array, CellArray, ElementKind, MemoryBudget, StructArray,
 /// The texts in the rows of an array of characters' numbers (UTF-16), as many as the shape says.
 ///
 /// An array without characters is one empty text, as MATLAB's `''` is, unless it has several rows.
-pub(super) fn rows(codes: &Array, path: &str, meter: &MemoryBudget<'_>) -> Result<TextArray, VariableFault> {
+pub(super) fn rows(codes: &Array, path: &str, budget: &MemoryBudget<'_>) -> Result<TextArray, VariableFault> {
     let (height, length) = (codes.shape.first().copied().unwrap_or(1), codes.shape.get(1).copied().unwrap_or(1));
     if codes.is_empty() && height <= 1 {
         return Ok(TextArray { shape: vec![1, 1], texts: vec![String::new()] });
@@ -20,9 +20,9 @@ pub(super) fn rows(codes: &Array, path: &str, meter: &MemoryBudget<'_>) -> Resul
         *length = 1;
     }
     let texts = count(&shape).ok_or_else(|| damaged(path, "there are more rows than can be counted"))?;
-    meter.take(texts as u64, size_of::<String>() as u64, path)?;
+    budget.take(texts as u64, size_of::<String>() as u64, path)?;
     // A unit of UTF-16 takes up to three bytes.
-    meter.take(codes.len() as u64, 3, path)?;
+    budget.take(codes.len() as u64, 3, path)?;
     let row = |text: usize| {
         let first = (text / height).saturating_mul(height.saturating_mul(length)) + text % height;
         let places = (0..length).map(|column| first.saturating_add(column.saturating_mul(height)));
@@ -45,16 +45,16 @@ pub(super) fn strings(
     dataset: &Dataset,
     elements: &Elements,
     path: &str,
-    meter: &MemoryBudget<'_>,
+    budget: &MemoryBudget<'_>,
 ) -> Result<Option<TextArray>, VariableFault> {
-    meter.take(elements.count() as u64, (size_of::<String>()) as u64, path)?;
+    budget.take(elements.count() as u64, (size_of::<String>()) as u64, path)?;
     let texts = match &elements.datatype {
         Datatype::String { padding, size, .. } => {
-            meter.take(elements.count() as u64, u64::from(*size), path)?;
+            budget.take(elements.count() as u64, u64::from(*size), path)?;
             elements.places().map(|place| fixed(elements.at(place), padding)).collect()
         }
         Datatype::VariableLength { is_string: true, .. } => {
-            let mut texts = variable(dataset, elements.count(), path, meter)?;
+            let mut texts = variable(dataset, elements.count(), path, budget)?;
             elements.places().filter_map(|place| texts.get_mut(place).map(std::mem::take)).collect()
         }
         _ => return Ok(None),
@@ -66,7 +66,7 @@ fn variable(
     dataset: &Dataset,
     count: usize,
     path: &str,
-    meter: &MemoryBudget<'_>,
+    budget: &MemoryBudget<'_>,
 ) -> Result<Vec<String>, VariableFault> {
     if count == 0 {
         return Ok(Vec::new());
@@ -74,7 +74,7 @@ fn variable(
     let failed = |error| fault(&error, path);
     // Each string may be the same long one.
     let length = dataset.vlen_string_payload_size().map_err(failed)?;
-    meter.take(length, 1, path)?;
+    budget.take(length, 1, path)?;
     let most = usize::try_from(length).unwrap_or(usize::MAX);
     let options = VlenStringReadOptions::new().with_max_elements(count).with_max_payload_bytes(most);
     let texts = dataset.read_vlen_strings(options).map_err(failed)?;
@@ -88,10 +88,10 @@ pub(super) fn empty(
     marks: &MatlabAttributes,
     elements: &Elements,
     path: &str,
-    meter: &MemoryBudget<'_>,
+    budget: &MemoryBudget<'_>,
 ) -> Result<Value, VariableFault> {
     let wrong = || damaged(path, "the shape of an array without elements is wrong");
-    let sides = elements.words(path, meter)?.ok_or_else(wrong)?;
+    let sides = elements.words(path, budget)?.ok_or_else(wrong)?;
     let shape: Vec<usize> =
         sides.iter().map(|&side| usize::try_from(side).ok()).collect::<Option<_>>().ok_or_else(wrong)?;
     if shape.len() < 2 || count(&shape) != Some(0) {
@@ -104,7 +104,7 @@ pub(super) fn empty(
             let fields = marks.fields.iter().map(|name| (name.clone(), Vec::new())).collect();
             Value::Struct(StructArray { shape, fields })
         }
-        "char" => Value::Text(rows(&numbers(ElementKind::Integer), path, meter)?),
+        "char" => Value::Text(rows(&numbers(ElementKind::Integer), path, budget)?),
         "double" | "single" => Value::Array(numbers(ElementKind::Float)),
         "logical" => Value::Array(numbers(ElementKind::Logical)),
         "int8" | "int16" | "int32" | "int64" | "uint8" | "uint16" | "uint32" | "uint64" => {
@@ -120,20 +120,25 @@ pub(super) fn empty(
 pub(super) fn records(
     elements: &Elements,
     path: &str,
-    meter: &MemoryBudget<'_>,
+    budget: &MemoryBudget<'_>,
 ) -> Result<Option<StructArray>, VariableFault> {
     let Datatype::Compound { members, .. } = &elements.datatype else { return Ok(None) };
     let mut fields = Vec::with_capacity(members.len());
     for member in members {
         // A value, its shape and its one number.
-        meter.take(elements.count() as u64, size_of::<Value>() as u64 + 24, path)?;
-        let values = elements.places().map(|place| value(member, elements.at(place), path, meter));
+        budget.take(elements.count() as u64, size_of::<Value>() as u64 + 24, path)?;
+        let values = elements.places().map(|place| value(member, elements.at(place), path, budget));
         fields.push((member.name.clone(), values.collect::<Result<_, _>>()?));
     }
     Ok(Some(StructArray { shape: elements.shape.clone(), fields }))
 }
 
-fn value(member: &CompoundMember, record: &[u8], path: &str, meter: &MemoryBudget<'_>) -> Result<Value, VariableFault> {
+fn value(
+    member: &CompoundMember,
+    record: &[u8],
+    path: &str,
+    budget: &MemoryBudget<'_>,
+) -> Result<Value, VariableFault> {
     let offset = usize::try_from(member.byte_offset).unwrap_or(usize::MAX);
     let bytes = record.get(offset..).unwrap_or_default();
     if let Some(numbers) = NumberType::of(&member.datatype) {
@@ -143,7 +148,7 @@ fn value(member: &CompoundMember, record: &[u8], path: &str, meter: &MemoryBudge
     }
     if let Datatype::String { size, padding, .. } = &member.datatype {
         let bytes = &bytes[..bytes.len().min(*size as usize)];
-        meter.take(bytes.len() as u64, 1, path)?;
+        budget.take(bytes.len() as u64, 1, path)?;
         return Ok(Value::Text(TextArray { shape: vec![1, 1], texts: vec![fixed(bytes, padding)] }));
     }
     Ok(Value::Opaque {
@@ -160,7 +165,7 @@ pub(super) struct Sparse<'s> {
     pub(super) marks: &'s MatlabAttributes,
     pub(super) members: &'s [(String, Object)],
     pub(super) path: &'s str,
-    pub(super) meter: &'s MemoryBudget<'s>,
+    pub(super) budget: &'s MemoryBudget<'s>,
 }
 
 impl Sparse<'_> {
@@ -171,7 +176,7 @@ impl Sparse<'_> {
         let (indices, data) = (self.indices("ir")?.unwrap_or_default(), self.data()?);
         let columns = starts.len().checked_sub(1).ok_or_else(wrong)?;
         let cells = self.rows.saturating_mul(columns as u64);
-        self.meter.take(cells, if data.im.is_some() { 16 } else { 8 }, self.path)?;
+        self.budget.take(cells, if data.im.is_some() { 16 } else { 8 }, self.path)?;
         let (cells, rows) =
             (usize::try_from(cells).map_err(|_| wrong())?, usize::try_from(self.rows).map_err(|_| wrong())?);
         let (mut re, mut im) = (vec![0.0; cells], data.im.as_ref().map(|_| vec![0.0; cells]));
@@ -201,7 +206,7 @@ impl Sparse<'_> {
 
     fn indices(&self, name: &str) -> Result<Option<Vec<usize>>, VariableFault> {
         let Some(dataset) = self.member(name) else { return Ok(None) };
-        let words = Elements::read(dataset, Order::Columns, self.path, self.meter)?.words(self.path, self.meter)?;
+        let words = Elements::read(dataset, Order::Columns, self.path, self.budget)?.words(self.path, self.budget)?;
         let words = words.ok_or_else(|| damaged(self.path, "the places of a sparse matrix are no whole numbers"))?;
         Ok(Some(words.into_iter().map(|word| usize::try_from(word).unwrap_or(usize::MAX)).collect()))
     }
@@ -209,7 +214,8 @@ impl Sparse<'_> {
     /// The numbers; there is no dataset where there are none.
     fn data(&self) -> Result<Array, VariableFault> {
         let Some(dataset) = self.member("data") else { return Ok(Array::matrix(0, 0, Vec::new())) };
-        let numbers = Elements::read(dataset, Order::Columns, self.path, self.meter)?.numbers(self.path, self.meter)?;
+        let numbers =
+            Elements::read(dataset, Order::Columns, self.path, self.budget)?.numbers(self.path, self.budget)?;
         numbers.ok_or_else(|| damaged(self.path, "the elements of a sparse matrix are no numbers"))
     }
 }
@@ -243,13 +249,13 @@ impl<'d> Objects<'d> {
     /// Reads the part of the objects, where there is one, and makes the decoder of it.
     pub(super) fn read(
         opened: &Opened,
-        meter: &MemoryBudget<'_>,
+        budget: &MemoryBudget<'_>,
         decoder: impl FnOnce(FileWrapper) -> Result<Box<ObjectDecoder<'d>>, VariableFault>,
     ) -> Result<Self, VariableFault> {
         let Ok(dataset) = opened.root().group("#subsystem#").and_then(|group| group.dataset("MCOS")) else {
             return Ok(Self::Opaque("the file has no part in which objects lie"));
         };
-        match wrapper(&dataset, meter).and_then(decoder) {
+        match wrapper(&dataset, budget).and_then(decoder) {
             Ok(decoder) => Ok(Self::Decoded(decoder)),
             Err(fault @ (VariableFault::Stopped | VariableFault::TooLarge { .. })) => Err(fault),
             // The other variables can be read all the same.
@@ -263,7 +269,7 @@ impl<'d> Objects<'d> {
         class: &str,
         reference: Array,
         path: &str,
-        meter: &MemoryBudget<'_>,
+        budget: &MemoryBudget<'_>,
     ) -> Result<Value, VariableFault> {
         let opaque = |why: &str| Ok(Value::Opaque { class: class.to_owned(), why: why.to_owned() });
         match self {
@@ -273,7 +279,7 @@ impl<'d> Objects<'d> {
             Self::Decoded(decoder) => {
                 let word = |&number: &f64| (0.0..=f64::from(u32::MAX)).contains(&number).then_some(number as u32);
                 match reference.re.iter().map(word).collect::<Option<Vec<u32>>>() {
-                    Some(words) => decoder(&words, path, meter),
+                    Some(words) => decoder(&words, path, budget),
                     None => opaque("what refers to it is damaged"),
                 }
             }
@@ -281,12 +287,12 @@ impl<'d> Objects<'d> {
     }
 }
 
-fn wrapper(dataset: &Dataset, meter: &MemoryBudget<'_>) -> Result<FileWrapper, VariableFault> {
-    let reader = Reader { meter, objects: &Objects::References };
+fn wrapper(dataset: &Dataset, budget: &MemoryBudget<'_>) -> Result<FileWrapper, VariableFault> {
+    let reader = Reader { budget, objects: &Objects::References };
     let (mut cells, mut long_words) = (Vec::new(), Vec::new());
     for (index, object) in reader.referred(dataset, "")?.iter().enumerate() {
         if let Object::Dataset(dataset) = object {
-            long_words.extend(words(dataset, meter)?.map(|words| (index, words)));
+            long_words.extend(words(dataset, budget)?.map(|words| (index, words)));
         }
         cells.push(reader.value(object, "", 0)?);
     }
@@ -294,9 +300,9 @@ fn wrapper(dataset: &Dataset, meter: &MemoryBudget<'_>) -> Result<FileWrapper, V
 }
 
 /// What a dataset of whole numbers of 64 bits holds.
-fn words(dataset: &Dataset, meter: &MemoryBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
+fn words(dataset: &Dataset, budget: &MemoryBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
     if dataset.element_size().map_err(|error| fault(&error, ""))? != 8 {
         return Ok(None);
     }
-    Elements::read(dataset, Order::Columns, "", meter)?.words("", meter)
+    Elements::read(dataset, Order::Columns, "", budget)?.words("", budget)
 }

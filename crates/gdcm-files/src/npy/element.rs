@@ -1,7 +1,9 @@
 //! What the elements of an array are.
 
+use serde_json::Value as Json;
+
 use crate::strides::{NumberClass, StoredNumber};
-use crate::variables::VariableFault;
+use crate::variables::{MemoryBudget, VariableFault};
 
 /// Why elements cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -59,10 +61,10 @@ impl Element {
     }
 
     /// Reads the value of `descr`: a short text such as "<f8", or a list of fields.
-    pub(super) fn parse(descr: &Literal) -> Result<Self, ElementFault> {
+    pub(super) fn parse(descr: &Json) -> Result<Self, ElementFault> {
         match descr {
-            Literal::Text(code) => Self::parse_code(code),
-            Literal::Sequence(fields) => Self::parse_record(fields),
+            Json::String(code) => Self::parse_code(code),
+            Json::Array(fields) => Self::parse_record(fields),
             _ => Err(ElementFault::Damaged("the type of the elements is no text and no list".to_owned())),
         }
     }
@@ -100,7 +102,7 @@ impl Element {
         })
     }
 
-    fn parse_record(list: &[Literal]) -> Result<Self, ElementFault> {
+    fn parse_record(list: &[Json]) -> Result<Self, ElementFault> {
         let too_large = || ElementFault::Damaged("a record is too large".to_owned());
         let (mut fields, mut offset) = (Vec::with_capacity(list.len()), 0usize);
         for entry in list {
@@ -128,15 +130,15 @@ fn unread(class: &str, code: &str) -> Option<ElementFault> {
 }
 
 impl Field {
-    fn parse(entry: &Literal, offset: usize) -> Result<Self, ElementFault> {
+    fn parse(entry: &Json, offset: usize) -> Result<Self, ElementFault> {
         let wrong = || ElementFault::Damaged("a field of the records has no name and type".to_owned());
-        let Literal::Sequence(parts) = entry else { return Err(wrong()) };
+        let Json::Array(parts) = entry else { return Err(wrong()) };
         let [name, descr, shape @ ..] = parts.as_slice() else { return Err(wrong()) };
         let name = match name {
-            Literal::Text(name) => name.clone(),
+            Json::String(name) => name.clone(),
             // A field with a title: (title, name).
-            Literal::Sequence(titled) => match titled.as_slice() {
-                [Literal::Text(_), Literal::Text(name)] => name.clone(),
+            Json::Array(titled) => match titled.as_slice() {
+                [Json::String(_), Json::String(name)] => name.clone(),
                 _ => return Err(wrong()),
             },
             _ => return Err(wrong()),
@@ -151,13 +153,9 @@ impl Field {
 }
 
 /// The lengths along each dimension.
-pub(super) fn sides(shape: &Literal) -> Option<Vec<usize>> {
-    let Literal::Sequence(sides) = shape else { return None };
-    let side = |side: &Literal| match side {
-        Literal::Whole(side) => usize::try_from(*side).ok(),
-        _ => None,
-    };
-    sides.iter().map(side).collect()
+fn sides(shape: &Json) -> Option<Vec<usize>> {
+    let Json::Array(sides) = shape else { return None };
+    sides.iter().map(|side| usize::try_from(side.as_u64()?).ok()).collect()
 }
 
 // What stands before the elements of an array.
@@ -178,28 +176,21 @@ pub(super) struct Header {
 
 impl Header {
     /// Reads the header; `name` is what errors call the array.
-    pub(super) fn parse(bytes: &[u8], name: &str) -> Result<Self, VariableFault> {
+    pub(super) fn parse(bytes: &[u8], name: &str, budget: &MemoryBudget<'_>) -> Result<Self, VariableFault> {
         let (text, length) = text(bytes, name)?;
         let damaged =
             |what: &str| VariableFault::Damaged { variable: name.to_owned(), what: what.to_owned(), offset: 8 };
-        let Literal::Dictionary(mut entries) = Literal::parse(&text).map_err(damaged)? else {
-            return Err(damaged("the header is no dictionary"));
-        };
-        let count = entries.len();
-        let mut entry = |key: &str| {
-            let at = entries.iter().position(|(name, _)| name == key)?;
-            Some(entries.swap_remove(at).1)
-        };
-        let (Some(descr), Some(order), Some(shape), 3) =
-            (entry("descr"), entry("fortran_order"), entry("shape"), count)
-        else {
+        // As JSON, and as a tree of its values.
+        budget.take(text.len() as u64, 40, name)?;
+        let header = json_of(&text).map_err(damaged)?;
+        let entries = header.as_object().filter(|entries| entries.len() == 3);
+        let entry = |key: &str| entries.and_then(|entries| entries.get(key));
+        let (Some(descr), Some(order), Some(shape)) = (entry("descr"), entry("fortran_order"), entry("shape")) else {
             return Err(damaged("the header has not the keys descr, fortran_order and shape"));
         };
-        let Literal::Truth(column_major) = order else {
-            return Err(damaged("fortran_order is neither True nor False"));
-        };
-        let shape = sides(&shape).ok_or_else(|| damaged("the shape is no tuple of whole numbers"))?;
-        let element = Element::parse(&descr).map_err(|fault| match fault {
+        let column_major = order.as_bool().ok_or_else(|| damaged("fortran_order is neither True nor False"))?;
+        let shape = sides(shape).ok_or_else(|| damaged("the shape is no tuple of whole numbers"))?;
+        let element = Element::parse(descr).map_err(|fault| match fault {
             ElementFault::Damaged(what) => damaged(&what),
             ElementFault::Unsupported { what, remedy } => {
                 VariableFault::Unsupported { variable: name.to_owned(), what, remedy: remedy.to_owned() }
@@ -244,120 +235,52 @@ fn text(bytes: &[u8], name: &str) -> Result<(String, usize), VariableFault> {
 
 // The Python literals in which a header is written.
 
-/// Deeper than any header that `NumPy` writes for values this program reads.
-const DEEPEST: usize = 16;
-
-/// A value of a header: the part of Python's literals that `numpy.lib.format` writes.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Literal {
-    Text(String),
-    Whole(u64),
-    Truth(bool),
-    /// A tuple or a list.
-    Sequence(Vec<Literal>),
-    /// A dictionary whose keys are texts.
-    Dictionary(Vec<(String, Literal)>),
-}
-
-impl Literal {
-    /// Reads one literal, with blanks around it and nothing else; errors say in words what is wrong.
-    pub(super) fn parse(text: &str) -> Result<Self, &'static str> {
-        let mut scanner = Scanner { rest: text };
-        let literal = scanner.value(DEEPEST)?;
-        scanner.skip_blanks();
-        if scanner.rest.is_empty() { Ok(literal) } else { Err("something follows the header's dictionary") }
-    }
-}
-
-struct Scanner<'t> {
-    rest: &'t str,
-}
-
-impl Scanner<'_> {
-    fn skip_blanks(&mut self) {
-        self.rest = self.rest.trim_start_matches([' ', '\t', '\r', '\n']);
-    }
-
-    fn take(&mut self, sign: char) -> bool {
-        self.skip_blanks();
-        let rest = self.rest.strip_prefix(sign);
-        self.rest = rest.unwrap_or(self.rest);
-        rest.is_some()
-    }
-
-    fn value(&mut self, depth: usize) -> Result<Literal, &'static str> {
-        let deeper = depth.checked_sub(1).ok_or("the header is nested too deeply")?;
-        self.skip_blanks();
-        match self.rest.chars().next() {
-            Some('\'' | '"') => Ok(Literal::Text(self.text()?)),
-            Some('0'..='9') => self.whole(),
-            Some('(') => self.sequence('(', ')', deeper),
-            Some('[') => self.sequence('[', ']', deeper),
-            Some('{') => self.dictionary(deeper),
-            Some('T' | 'F') => self.truth(),
-            Some(_) => Err("the header holds something that is no value"),
-            None => Err("the header ends too early"),
-        }
-    }
-
-    fn text(&mut self) -> Result<String, &'static str> {
-        let quote = if self.rest.starts_with('"') { '"' } else { '\'' };
-        let body = &self.rest[1..];
-        let end = body.find(quote).ok_or("a text of the header does not end")?;
-        let text = &body[..end];
-        // Escapes would stand only in names of fields that hold quotes, backslashes or control characters.
-        if text.contains('\\') {
-            return Err("the header holds an escape");
-        }
-        self.rest = &body[end + 1..];
-        Ok(text.to_owned())
-    }
-
-    fn whole(&mut self) -> Result<Literal, &'static str> {
-        let end = self.rest.find(|sign: char| !sign.is_ascii_digit()).unwrap_or(self.rest.len());
-        let (digits, rest) = self.rest.split_at(end);
-        // Python 2 wrote an L behind long numbers.
-        self.rest = rest.strip_prefix('L').unwrap_or(rest);
-        digits.parse().map(Literal::Whole).map_err(|_| "a number of the header is too large")
-    }
-
-    fn truth(&mut self) -> Result<Literal, &'static str> {
-        for (word, truth) in [("True", true), ("False", false)] {
-            if let Some(rest) = self.rest.strip_prefix(word) {
-                self.rest = rest;
-                return Ok(Literal::Truth(truth));
+/// A header, which is a literal of Python, as JSON: texts in other quotes, tuples as lists, no comma behind the last, and other words
+/// for true and false.
+fn json_of(text: &str) -> Result<Json, &'static str> {
+    let mut json = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(sign) = rest.chars().next() {
+        let length = match sign {
+            '\'' | '"' => {
+                let end = rest[1..].find(sign).ok_or("a text of the header does not end")?;
+                // Escapes would stand only in names of fields that hold quotes, backslashes or control characters.
+                if rest[1..=end].contains('\\') {
+                    return Err("the header holds an escape");
+                }
+                json.push_str(&Json::from(&rest[1..=end]).to_string());
+                end + 2
             }
-        }
-        Err("the header holds something that is no value")
-    }
-
-    fn sequence(&mut self, open: char, close: char, depth: usize) -> Result<Literal, &'static str> {
-        let mut values = Vec::new();
-        self.take(open);
-        while !self.take(close) {
-            values.push(self.value(depth)?);
-            if !self.take(',') && !self.rest.starts_with(close) {
-                return Err("the header lacks a comma");
+            'T' | 'F' | 't' | 'f' | 'n' => {
+                let end = rest.find(|sign: char| !sign.is_alphanumeric()).unwrap_or(rest.len());
+                json.push_str(match &rest[..end] {
+                    "True" => "true",
+                    "False" => "false",
+                    _ => return Err("the header holds something that is no value"),
+                });
+                end
             }
-        }
-        Ok(Literal::Sequence(values))
-    }
-
-    fn dictionary(&mut self, depth: usize) -> Result<Literal, &'static str> {
-        let mut entries = Vec::new();
-        self.take('{');
-        while !self.take('}') {
-            let Literal::Text(key) = self.value(depth)? else { return Err("a key of the header is no text") };
-            if !self.take(':') {
-                return Err("the header lacks a colon");
+            '(' | '[' => {
+                json.push('[');
+                1
             }
-            entries.push((key, self.value(depth)?));
-            if !self.take(',') && !self.rest.starts_with('}') {
-                return Err("the header lacks a comma");
+            ')' | ']' | '}' => {
+                if json.ends_with(',') {
+                    json.pop();
+                }
+                json.push(if sign == '}' { '}' } else { ']' });
+                1
             }
-        }
-        Ok(Literal::Dictionary(entries))
+            // Python 2 wrote an L behind long numbers.
+            ' ' | '\t' | '\r' | '\n' | 'L' => 1,
+            _ => {
+                json.push(sign);
+                sign.len_utf8()
+            }
+        };
+        rest = &rest[length..];
     }
+    serde_json::from_str(&json).map_err(|_| "the header is no dictionary of texts, numbers and tuples")
 }
 
 #[cfg(test)]
@@ -365,7 +288,7 @@ mod element_tests {
     use super::*;
 
     fn parse(descr: &str) -> Result<Element, ElementFault> {
-        Element::parse(&Literal::parse(descr).unwrap())
+        Element::parse(&json_of(descr).unwrap())
     }
 
     #[test]
@@ -401,6 +324,10 @@ mod element_tests {
 mod header_tests {
     use super::*;
 
+    fn header_of(bytes: &[u8]) -> Result<Header, VariableFault> {
+        Header::parse(bytes, "x", &MemoryBudget::new(1 << 20, &|_| false))
+    }
+
     fn file(version: u8, text: &[u8]) -> Vec<u8> {
         let length = (text.len() as u32).to_le_bytes();
         let length = if version == 1 { &length[..2] } else { &length[..] };
@@ -411,10 +338,10 @@ mod header_tests {
     fn all_three_versions_are_read() {
         let text = b"{'descr': '<f8', 'fortran_order': True, 'shape': (2, 3), }\n";
         for version in 1..=3 {
-            let header = Header::parse(&file(version, text), "x").unwrap();
+            let header = header_of(&file(version, text)).unwrap();
             assert_eq!((header.column_major, header.shape), (true, vec![2, 3]));
         }
-        assert!(matches!(Header::parse(&file(4, text), "x"), Err(VariableFault::Unsupported { .. })));
+        assert!(matches!(header_of(&file(4, text)), Err(VariableFault::Unsupported { .. })));
     }
 
     #[test]
@@ -427,42 +354,30 @@ mod header_tests {
             "{'descr': '<f8', 'fortran_order': True, 'shape': 3}",
             "[]",
         ] {
-            assert!(
-                matches!(Header::parse(&file(1, text.as_bytes()), "x"), Err(VariableFault::Damaged { .. })),
-                "{text}"
-            );
+            assert!(matches!(header_of(&file(1, text.as_bytes())), Err(VariableFault::Damaged { .. })), "{text}");
         }
-        assert!(matches!(Header::parse(&file(3, &[0xff]), "x"), Err(VariableFault::Damaged { .. })));
-        assert!(matches!(Header::parse(b"PK", "x"), Err(VariableFault::Format { .. })));
+        assert!(matches!(header_of(&file(3, &[0xff])), Err(VariableFault::Damaged { .. })));
+        assert!(matches!(header_of(b"PK"), Err(VariableFault::Format { .. })));
     }
 }
 
 #[cfg(test)]
 mod literal_tests {
+    use serde_json::json;
+
     use super::*;
 
     #[test]
     fn a_header_of_numpy_is_read() {
-        let read =
-            Literal::parse("{'descr': [('a', '<f8', (2,))], 'fortran_order': False, 'shape': (3, 4L), }   \n").unwrap();
-        let text = |text: &str| Literal::Text(text.to_owned());
-        let field = Literal::Sequence(vec![text("a"), text("<f8"), Literal::Sequence(vec![Literal::Whole(2)])]);
-        let expected = Literal::Dictionary(vec![
-            ("descr".to_owned(), Literal::Sequence(vec![field])),
-            ("fortran_order".to_owned(), Literal::Truth(false)),
-            ("shape".to_owned(), Literal::Sequence(vec![Literal::Whole(3), Literal::Whole(4)])),
-        ]);
-        assert_eq!(read, expected);
+        let read = json_of("{'descr': [('a', '<f8', (2,))], 'fortran_order': False, 'shape': (3, 4L), }   \n").unwrap();
+        assert_eq!(read, json!({"descr": [["a", "<f8", [2]]], "fortran_order": false, "shape": [3, 4]}));
     }
 
     #[test]
     fn whatever_else_python_knows_is_refused() {
-        for text in
-            ["", "{", "{'a' 1}", "(1 2)", "-1", "1e3", "{1: 2}", "'a", "__import__('os')", "True1", "() ()", "'\\x00'"]
-        {
-            assert!(Literal::parse(text).is_err(), "{text}");
+        for text in ["", "{", "{'a' 1}", "{1: 2}", "'a", "__import__('os')", "True1", "() ()", "'\\x00'"] {
+            assert!(json_of(text).is_err(), "{text}");
         }
-        assert!(Literal::parse(&"(".repeat(100_000)).is_err());
-        assert!(Literal::parse("99999999999999999999999").is_err());
+        assert!(json_of(&"(".repeat(100_000)).is_err());
     }
 }

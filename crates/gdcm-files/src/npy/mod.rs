@@ -8,45 +8,38 @@ mod element;
 
 use std::collections::HashSet;
 use std::io::Write;
+use std::path::Path;
 
 use flate2::Compression;
 use flate2::write::DeflateEncoder;
 use rawzip::{CompressionMethod, ZipArchiveWriter};
 
+use crate::file_error::FileError;
+use crate::importer::{Contents, Importer};
 use crate::npy::element::{Element, Field, Header, MAGIC};
 use crate::strides::{Places, StoredNumber, count};
 use crate::variables::{Array, ElementKind, MemoryBudget, StructArray, TextArray, Value, Variable, VariableFault};
-use crate::zip_files::{ZipFile, damaged, visit_files};
 
-// Archives of several arrays.
+/// One array of NumPy.
+pub(crate) struct Npy;
 
-/// What the name of every array in an archive ends with.
-const SUFFIX: &str = ".npy";
+impl Importer for Npy {
+    fn name(&self) -> &'static str {
+        "an array of NumPy"
+    }
 
-/// Reads an `.npz` file of `NumPy`: a zip archive of `.npy` files, stored or deflated, whose names become those of the variables.
-/// Other files in it are named as what cannot be read.
-pub fn read_npz(bytes: &[u8], meter: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
-    let (mut names, mut variables) = (HashSet::new(), Vec::new());
-    visit_files(bytes, |file| {
-        // A few bytes in the archive's directory become a variable, whatever it holds.
-        meter.take(1, size_of::<Variable>() as u64, "")?;
-        let variable = variable(file, meter)?;
-        if !names.insert(variable.name.clone()) {
-            return Err(VariableFault::Duplicate { name: variable.name });
-        }
-        variables.push(variable);
-        Ok(())
-    })?;
-    Ok(variables)
-}
+    fn endings(&self) -> &'static [&'static str] {
+        &["npy"]
+    }
 
-fn variable(file: &ZipFile<'_, '_>, meter: &MemoryBudget<'_>) -> Result<Variable, VariableFault> {
-    let Some(name) = file.path.strip_suffix(SUFFIX) else {
-        let opaque = Value::Opaque { class: "a file".to_owned(), why: "it is no array of NumPy (.npy)".to_owned() };
-        return Ok(Variable { name: file.path.to_owned(), value: opaque });
-    };
-    let array = file.unpack(name, meter)?;
-    read_npy(&array, name, meter)?.pop().ok_or_else(|| damaged(name, "there is no array", file.offset))
+    fn recognises(&self, bytes: &[u8], _: &str) -> bool {
+        bytes.starts_with(MAGIC)
+    }
+
+    fn read(&self, bytes: &[u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Contents, FileError> {
+        let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
+        Contents::variables(read_npy(bytes, name, budget), path)
+    }
 }
 
 // Files of one array.
@@ -55,8 +48,8 @@ fn variable(file: &ZipFile<'_, '_>, meter: &MemoryBudget<'_>) -> Result<Variable
 ///
 /// A number alone becomes 1 x 1, an array of n elements the row 1 x n. Booleans, whole numbers, floats and complex numbers become an
 /// [`Array`], texts a [`TextArray`], records a [`StructArray`].
-pub fn read_npy(bytes: &[u8], name: &str, meter: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
-    let header = Header::parse(bytes, name)?;
+pub fn read_npy(bytes: &[u8], name: &str, budget: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+    let header = Header::parse(bytes, name, budget)?;
     let damaged = |what: &str| VariableFault::Damaged { variable: name.to_owned(), what: what.to_owned(), offset: 8 };
     let too_many = || damaged("the shape has more elements than can be counted");
     let length =
@@ -72,7 +65,7 @@ pub fn read_npy(bytes: &[u8], name: &str, meter: &MemoryBudget<'_>) -> Result<Ve
     }
     let stored =
         StoredArray { element: &header.element, shape: &header.shape, column_major: header.column_major, data };
-    Ok(vec![Variable { name: name.to_owned(), value: stored.value(name, meter)? }])
+    Ok(vec![Variable { name: name.to_owned(), value: stored.value(name, budget)? }])
 }
 
 /// The elements of an array as they stand in a file.
@@ -84,26 +77,26 @@ struct StoredArray<'a> {
 }
 
 impl StoredArray<'_> {
-    fn value(&self, name: &str, meter: &MemoryBudget<'_>) -> Result<Value, VariableFault> {
+    fn value(&self, name: &str, budget: &MemoryBudget<'_>) -> Result<Value, VariableFault> {
         let elements = self.places(name)?.len() as u64;
         match self.element {
             Element::Number(number) => {
-                meter.take(elements, 8, name)?;
+                budget.take(elements, 8, name)?;
                 let re = self.numbers(*number, 0, name)?;
                 Ok(Value::Array(Array { shape: matrix_shape(self.shape), kind: number.kind(), re, im: None }))
             }
             Element::Complex(part) => {
-                meter.take(elements, 16, name)?;
+                budget.take(elements, 16, name)?;
                 let (re, im) = (self.numbers(*part, 0, name)?, Some(self.numbers(*part, part.size(), name)?));
                 Ok(Value::Array(Array { shape: matrix_shape(self.shape), kind: ElementKind::Float, re, im }))
             }
             Element::Unicode { .. } | Element::Bytes { .. } => {
-                meter.take(elements, (size_of::<String>() + self.element.size()) as u64, name)?;
+                budget.take(elements, (size_of::<String>() + self.element.size()) as u64, name)?;
                 let texts = self.places(name)?.map(|place| self.text(place)).collect();
                 Ok(Value::Text(TextArray { shape: matrix_shape(self.shape), texts }))
             }
             Element::Record { fields, .. } => {
-                let fields = fields.iter().map(|field| self.field(field, name, meter)).collect::<Result<_, _>>()?;
+                let fields = fields.iter().map(|field| self.field(field, name, budget)).collect::<Result<_, _>>()?;
                 Ok(Value::Struct(StructArray { shape: matrix_shape(self.shape), fields }))
             }
         }
@@ -146,14 +139,14 @@ impl StoredArray<'_> {
         &self,
         field: &Field,
         name: &str,
-        meter: &MemoryBudget<'_>,
+        budget: &MemoryBudget<'_>,
     ) -> Result<(String, Vec<Value>), VariableFault> {
         let places = self.places(name)?;
-        meter.take(places.len() as u64, size_of::<Value>() as u64, name)?;
+        budget.take(places.len() as u64, size_of::<Value>() as u64, name)?;
         let values = places.map(|place| {
             let record = self.at(place).get(field.offset..).unwrap_or_default();
             StoredArray { element: &field.element, shape: &field.shape, column_major: false, data: record }
-                .value(name, meter)
+                .value(name, budget)
         });
         Ok((field.name.clone(), values.collect::<Result<_, _>>()?))
     }
@@ -253,6 +246,7 @@ fn file(descr: &str, shape: &[usize], data: &[u8]) -> Vec<u8> {
 #[cfg(test)]
 mod archive_tests {
     use crate::variables::Array;
+    use crate::zip_files::{read_archive, read_npz};
 
     use super::*;
 
@@ -276,9 +270,11 @@ mod archive_tests {
 
     #[test]
     fn other_files_in_the_archive_are_named() {
-        let variables = read(&file("with_text")).unwrap();
-        assert_eq!((variables.len(), variables[1].name.as_str()), (2, "readme.txt"));
-        assert!(matches!(variables[1].value, Value::Opaque { .. }));
+        let budget = MemoryBudget::new(1 << 20, &|_| false);
+        let Contents::Archive { variables, files, .. } = read_archive(&file("with_text"), &budget).unwrap() else {
+            panic!("an archive")
+        };
+        assert_eq!((variables.len(), files.len(), files[0].0.as_str()), (1, 1, "readme.txt"));
     }
 
     #[test]
@@ -452,6 +448,7 @@ mod array_file_tests {
 
 #[cfg(test)]
 mod archive_writer_tests {
+    use crate::zip_files::read_npz;
     use proptest::prelude::*;
 
     use crate::variables::{CellArray, MemoryBudget};

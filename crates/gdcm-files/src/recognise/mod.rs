@@ -16,96 +16,65 @@ use crate::recognise::record::{Record, array_of, facts_of, inputs_of, list_of, m
 use crate::recognise::state_space::{is_state_space, is_transfer_function, state_spaces, transfer_function};
 use crate::variables::{Array, StructArray, Value, Variable};
 
-/// Deepest nesting that is searched for models.
+/// Deepest nesting that is searched.
 const DEEPEST: usize = 16;
+/// Most models or records of one file.
+const MOST_FOUND: usize = 10_000;
+/// Most variables that are told where nothing was found.
+const MOST_TOLD: usize = 20;
 
-/// What was recognised among variables.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Recognised {
-    /// The models; their source names the variable only.
-    pub(super) models: Vec<FoundModel>,
-    /// What looks like a model but cannot be taken, with its place and why.
-    pub(super) faults: Vec<String>,
-    /// What is no model, in words.
-    pub(super) passed_over: Vec<String>,
+/// What was found among variables: models, or records.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Found<T> {
+    /// The models or records; their sources name the variable only.
+    pub(crate) items: Vec<T>,
+    /// What looks like one but cannot be taken, with its place and why.
+    pub(crate) faults: Vec<String>,
+    /// What is none, in words.
+    pub(crate) ignored: Vec<String>,
 }
 
-/// Every model among the variables of a file.
-pub(super) fn recognise(variables: &[Variable]) -> Recognised {
-    search(variables)
-}
-
-// Where in a file models are.
-
-/// Every model among variables: first what they are together, then each by itself, inside out.
-pub(super) fn search(variables: &[Variable]) -> Recognised {
-    let mut found = Recognised::default();
-    let together = Record::of_variables(variables);
-    found.take(&together, "");
-    found.take_suffixed(variables);
-    let is_alone = found.models.is_empty() && found.faults.is_empty();
-    for variable in variables {
-        found.descend(&variable.name, &variable.value, DEEPEST);
-        if is_alone && array_of(&variable.value).is_some() {
-            found.passed_over.push(format!("{}: {}", variable.name, variable.value.words()));
-        }
+impl<T> Default for Found<T> {
+    fn default() -> Self {
+        Self { items: Vec::new(), faults: Vec::new(), ignored: Vec::new() }
     }
+}
+
+/// What the fields of a record are, under the name of a variable: nothing where they are none of what is looked for.
+type Recognise<'r, T> = &'r dyn Fn(&Record<'_>, &str) -> Option<Vec<Result<T, String>>>;
+
+/// Everything that `recognise` knows among variables: first what they are together, then each by itself, from outside in.
+pub(crate) fn search<T>(variables: &[Variable], recognise: Recognise<'_, T>) -> Found<T> {
+    let mut search = Search { found: Found::default(), recognise };
+    search.take(&Record::of_variables(variables), "");
+    let is_alone = search.found.items.is_empty() && search.found.faults.is_empty();
+    for variable in variables {
+        search.descend(&variable.name, &variable.value, DEEPEST);
+    }
+    let mut found = search.found;
+    let nothing = found.items.is_empty() && found.faults.is_empty();
+    let told = variables.iter().filter(|of| nothing || is_alone && matches!(of.value, Value::Array(_)));
+    found.ignored.extend(told.take(MOST_TOLD).map(|of| format!("{}: {}", of.name, of.value.words())));
     found
 }
 
-impl Recognised {
-    /// Takes the model that fields are, if they are one; gives whether they are.
+struct Search<'r, T> {
+    found: Found<T>,
+    recognise: Recognise<'r, T>,
+}
+
+impl<T> Search<'_, T> {
+    /// Takes what fields are, if they are known; gives whether they are.
     fn take(&mut self, record: &Record<'_>, variable: &str) -> bool {
-        let models = if is_state_space(record) {
-            state_spaces(record, variable)
-        } else if is_response(record) {
-            vec![response(record, variable)]
-        } else if is_transfer_function(record) {
-            vec![transfer_function(record, variable)]
-        } else {
-            return false;
-        };
-        for model in models {
-            self.add(variable, model);
-        }
+        let Some(items) = (self.recognise)(record, variable) else { return false };
+        self.found.add(variable, items);
         true
     }
 
-    fn add(&mut self, variable: &str, model: Result<FoundModel, String>) {
-        let at = if variable.is_empty() { String::new() } else { format!("{variable}: ") };
-        match model {
-            Ok(model) => self.models.push(model),
-            Err(reason) => self.faults.push(format!("{at}{reason}")),
-        }
-    }
-
-    /// Matrices of several models beside one another: `A_nom, B_nom, ...`, `A1, B1, ...`.
-    fn take_suffixed(&mut self, variables: &[Variable]) {
-        let suffixes =
-            variables.iter().filter_map(|variable| variable.name.strip_prefix('A')).filter(|suffix| !suffix.is_empty());
-        for suffix in suffixes {
-            let letters = ["A", "B", "C", "D", "E"];
-            let renamed: Vec<Variable> = letters
-                .iter()
-                .filter_map(|letter| {
-                    let found = variables.iter().find(|variable| variable.name == format!("{letter}{suffix}"))?;
-                    let is_matrix = matrix_of(letter, &found.value).is_ok();
-                    is_matrix.then(|| Variable { name: (*letter).to_owned(), value: found.value.clone() })
-                })
-                .collect();
-            if renamed.len() >= 3 && is_state_space(&Record::of_variables(&renamed)) {
-                // Labels beside them are of all.
-                let labels = variables.iter().filter(|variable| !letters.contains(&variable.name.as_str())).cloned();
-                let together: Vec<Variable> = renamed.into_iter().chain(labels).collect();
-                self.take(&Record::of_variables(&together), suffix.trim_start_matches('_'));
-            }
-        }
-    }
-
-    /// PlotStyle for models in a value, and in what it holds.
+    /// Looks in a value, and in what it holds.
     fn descend(&mut self, name: &str, value: &Value, deeper: usize) {
-        if deeper == 0 {
-            self.faults.push(format!("{name}: values are nested too deeply to look for models in them"));
+        if deeper == 0 || self.found.items.len() >= MOST_FOUND {
+            self.found.faults.push(format!("{name}: too many values, or values nested too deeply, to look into"));
             return;
         }
         match value {
@@ -116,7 +85,7 @@ impl Recognised {
                     self.descend(&format!("{name}{{{}}}", index + 1), value, deeper - 1);
                 }
             }
-            Value::Opaque { class, why } => self.faults.push(format!("{name} ({class}): {why}")),
+            Value::Opaque { class, why } => self.found.faults.push(format!("{name} ({class}): {why}")),
             Value::Array(_) | Value::Text(_) => {}
         }
     }
@@ -126,20 +95,78 @@ impl Recognised {
         for index in 0..count {
             let name = if count == 1 { name.to_owned() } else { format!("{name}({})", index + 1) };
             let pages = Record::pages(records, index);
-            let mut is_model = false;
+            let mut is_known = false;
             for page in 0..pages {
                 let name = if pages == 1 { name.clone() } else { format!("{name}(:,:,{})", page + 1) };
-                is_model |= self.take(&Record::of_struct(records, index, class, page), &name);
+                is_known |= self.take(&Record::of_struct(records, index, class, page), &name);
             }
-            if is_model {
-                continue;
-            }
-            let record = Record::of_struct(records, index, None, 0);
-            for (field, value) in record.fields() {
+            let inner = Record::of_struct(records, index, None, 0);
+            for (field, value) in inner.fields().filter(|_| !is_known) {
                 self.descend(&format!("{name}.{field}"), value, deeper - 1);
             }
         }
     }
+}
+
+impl<T> Found<T> {
+    fn add(&mut self, variable: &str, items: Vec<Result<T, String>>) {
+        let at = if variable.is_empty() { String::new() } else { format!("{variable}: ") };
+        for item in items {
+            match item {
+                Ok(item) => self.items.push(item),
+                Err(reason) => self.faults.push(format!("{at}{reason}")),
+            }
+        }
+    }
+}
+
+/// Every model among the variables of a file.
+pub(crate) fn recognise(variables: &[Variable]) -> Found<FoundModel> {
+    let together = model_of(&Record::of_variables(variables), "").is_some();
+    let mut found = search(variables, &model_of);
+    let suffixed = suffixed(variables);
+    if !together && suffixed.items.len() + suffixed.faults.len() > 0 {
+        found.ignored.clear();
+    }
+    found.items.splice(0..0, suffixed.items);
+    found.faults.splice(0..0, suffixed.faults);
+    found
+}
+
+/// The models that fields are, if they are some.
+fn model_of(record: &Record<'_>, variable: &str) -> Option<Vec<Result<FoundModel, String>>> {
+    if is_state_space(record) {
+        Some(state_spaces(record, variable))
+    } else if is_response(record) {
+        Some(vec![response(record, variable)])
+    } else if is_transfer_function(record) {
+        Some(vec![transfer_function(record, variable)])
+    } else {
+        None
+    }
+}
+
+/// Matrices of several models beside one another: `A_nom, B_nom, ...`, `A1, B1, ...`.
+fn suffixed(variables: &[Variable]) -> Found<FoundModel> {
+    let mut found = Found::default();
+    let letters = ["A", "B", "C", "D", "E"];
+    let suffixes = variables.iter().filter_map(|variable| variable.name.strip_prefix('A'));
+    for suffix in suffixes.filter(|suffix| !suffix.is_empty()) {
+        let matrix = |letter: &&'static str| {
+            let variable = variables.iter().find(|variable| variable.name == format!("{letter}{suffix}"))?;
+            matrix_of(letter, &variable.value).is_ok().then_some((*letter, &variable.value))
+        };
+        let matrices: Vec<(&str, &Value)> = letters.iter().filter_map(matrix).collect();
+        if matrices.len() >= 3 && is_state_space(&Record::of_fields(matrices.iter().copied())) {
+            // Labels beside them are of all.
+            let labels = variables.iter().filter(|variable| !letters.contains(&variable.name.as_str()));
+            let labels = labels.map(|variable| (variable.name.as_str(), &variable.value));
+            let record = Record::of_fields(matrices.iter().copied().chain(labels));
+            let name = suffix.trim_start_matches('_');
+            found.add(name, model_of(&record, name).unwrap_or_default());
+        }
+    }
+    found
 }
 
 // Models by their responses over frequencies.
@@ -281,10 +308,10 @@ mod tests {
         vec![("A", scalar(-1.0)), ("B", scalar(gain)), ("C", scalar(1.0)), ("D", scalar(0.0))]
     }
 
-    fn gains(found: &Recognised) -> Vec<(String, f64)> {
+    fn gains(found: &Found<FoundModel>) -> Vec<(String, f64)> {
         let gain =
             |model: &FoundModel| (model.variable().to_owned(), model.draft.matrices[1].as_ref().unwrap()[(0, 0)]);
-        found.models.iter().map(gain).collect()
+        found.items.iter().map(gain).collect()
     }
 
     #[test]
@@ -297,14 +324,14 @@ mod tests {
         };
         let in_cell = CellArray { shape: vec![1, 1], values: vec![Value::Struct(record(model(2.0)))] };
         let nested = record(vec![("sys", Value::Struct(record(model(1.0)))), ("all", Value::Cell(in_cell))]);
-        let found = search(&[variable("c1", Value::Struct(nested)), variable("more", Value::Struct(of_two))]);
+        let found = recognise(&[variable("c1", Value::Struct(nested)), variable("more", Value::Struct(of_two))]);
         let expected = [("c1.sys", 1.0), ("c1.all{1}", 2.0), ("more(1)", 3.0), ("more(2)", 3.0)];
         assert_eq!(gains(&found), expected.map(|(name, gain)| (name.to_owned(), gain)));
         let loose: Vec<Variable> = model(4.0).into_iter().map(|(name, value)| variable(name, value)).collect();
-        assert_eq!(gains(&search(&loose)), [(String::new(), 4.0)]);
+        assert_eq!(gains(&recognise(&loose)), [(String::new(), 4.0)]);
         let suffixed: Vec<Variable> =
             model(5.0).into_iter().map(|(name, value)| variable(&format!("{name}_nom"), value)).collect();
-        assert_eq!(gains(&search(&suffixed)), [("nom".to_owned(), 5.0)]);
+        assert_eq!(gains(&recognise(&suffixed)), [("nom".to_owned(), 5.0)]);
     }
 
     #[test]
@@ -313,7 +340,7 @@ mod tests {
         let a = Array { shape: vec![1, 1, 2], kind: ElementKind::Float, re: vec![-1.0, -2.0], im: None };
         let mut fields = model(0.0);
         (fields[0].1, fields[1].1) = (Value::Array(a), Value::Array(pages));
-        let found = search(&[variable("sys", Value::Struct(record(fields)))]);
+        let found = recognise(&[variable("sys", Value::Struct(record(fields)))]);
         assert_eq!(gains(&found), [("sys(:,:,1)".to_owned(), 7.0), ("sys(:,:,2)".to_owned(), 8.0)]);
     }
 
@@ -326,10 +353,11 @@ mod tests {
         let data = Object { class: "ltipack.ssdata".to_owned(), records: data };
         let names = CellArray { shape: vec![1, 1], values: vec![text("LAT")] };
         let fields = vec![("InputName_", Value::Cell(names)), ("Data_", Value::Object(data))];
-        let found = search(&[variable("s", Value::Object(Object { class: "ss".to_owned(), records: record(fields) }))]);
+        let found =
+            recognise(&[variable("s", Value::Object(Object { class: "ss".to_owned(), records: record(fields) }))]);
         assert_eq!(gains(&found), [("s".to_owned(), 6.0)]);
-        assert_eq!(found.models[0].inputs[0].name.as_deref(), Some("LAT"));
-        assert_eq!(found.models[0].draft.timing.sample_time_s, Some(0.5));
+        assert_eq!(found.items[0].inputs[0].name.as_deref(), Some("LAT"));
+        assert_eq!(found.items[0].draft.timing.sample_time_s, Some(0.5));
     }
 
     #[test]
@@ -337,7 +365,7 @@ mod tests {
         let of = |change: fn(&mut Vec<(&'static str, Value)>)| {
             let mut fields = model(1.0);
             change(&mut fields);
-            search(&[variable("sys", Value::Struct(record(fields)))]).faults.join("; ")
+            recognise(&[variable("sys", Value::Struct(record(fields)))]).faults.join("; ")
         };
         assert_eq!(of(|fields| fields[1].1 = numbers(2, 1, &[1.0, 1.0])), "sys: B: expected 1 x 1, found 2 x 1");
         let not_finite = of(|fields| fields[0].1 = numbers(1, 1, &[f64::NAN]));
@@ -345,7 +373,7 @@ mod tests {
         assert!(of(|fields| fields.push(("Ts", numbers(1, 1, &[-1.0])))).contains("set Ts"));
         assert!(of(|fields| fields.push(("InternalDelay", numbers(1, 1, &[0.1])))).contains("absorb"));
         let opaque = Value::Opaque { class: "ss".to_owned(), why: "write A, B, C, D".to_owned() };
-        assert_eq!(search(&[variable("x", opaque)]).faults, ["x (ss): write A, B, C, D"]);
+        assert_eq!(recognise(&[variable("x", opaque)]).faults, ["x (ss): write A, B, C, D"]);
     }
 
     #[test]
@@ -363,8 +391,8 @@ mod tests {
             ("Frequency", numbers(1, 3, &[1.0, 2.0, 3.0])),
             ("FrequencyUnit", text),
         ];
-        let found = search(&[variable("h", Value::Struct(record(fields)))]);
-        let response = found.models[0].draft.response.as_ref().unwrap();
+        let found = recognise(&[variable("h", Value::Struct(record(fields)))]);
+        let response = found.items[0].draft.response.as_ref().unwrap();
         assert_eq!(response.re.values, [1.0, 2.0, 3.0, 10.0, 20.0, 30.0]);
         assert_eq!(response.omega[0], std::f64::consts::TAU);
     }

@@ -27,8 +27,12 @@ pub(crate) struct Record<'v> {
 impl<'v> Record<'v> {
     /// The variables of a file.
     pub(crate) fn of_variables(variables: &'v [Variable]) -> Self {
-        let fields = variables.iter().map(|variable| (variable.name.as_str(), &variable.value)).collect();
-        Self { fields, class: None, stands_alone: false }
+        Self::of_fields(variables.iter().map(|variable| (variable.name.as_str(), &variable.value)))
+    }
+
+    /// Values under names that stand beside others.
+    pub(crate) fn of_fields(fields: impl Iterator<Item = (&'v str, &'v Value)>) -> Self {
+        Self { fields: fields.collect(), class: None, stands_alone: false }
     }
 
     /// One record of a struct array. Of an object also what lies in its inner parts, the `page`-th where they are arrays: objects of

@@ -13,29 +13,18 @@ use std::path::{Path, PathBuf};
 
 use gdcm_core::assembly::standard_patterns;
 use gdcm_core::records::{RecordColumn, RecordGuess, RecordSource, RecordTable, Separation};
-use sha2::{Digest, Sha256};
 
 use crate::file_error::FileError;
-use crate::model_files::folder::files_of;
-use crate::model_files::{Contents, FileFormat, FolderProgress, contents_of, variables_of};
-use crate::npy::read_npy;
-use crate::recognise::record::Record;
+use crate::importer::{
+    Contents, FolderProgress, ImportedFile, MOST_MEMORY, import, import_bytes, import_file, of_file,
+};
+use crate::recognise::{Found, search};
 use crate::record_files::record_columns::{columns_of, experiments, is_iddata, simulink_columns, timetable_columns};
-use crate::source::{Source, read_bytes};
-use crate::text::{NumberedText, TextTable, decode, numbered_words, read_table, sections};
-use crate::variables::{MemoryBudget, StructArray, Value, Variable, VariableFault};
-use crate::zip_files::visit_files;
+use crate::text::{NumberedText, TextTable, numbered_words, read_table, sections};
+use crate::variables::{MemoryBudget, Variable, VariableFault};
 
-/// Memory that the columns of one file may take \[bytes\].
-const MOST_MEMORY: u64 = 1 << 30;
-/// Largest file of records \[bytes\].
-const LARGEST_FILE: u64 = 512 << 20;
 /// Most records of one file.
 const MOST_RECORDS: usize = 1000;
-/// Endings of files that may hold records.
-const ENDINGS: [&str; 15] =
-    ["csv", "txt", "tsv", "dat", "asc", "prn", "log", "out", "mat", "npz", "npy", "json", "gz", "zip", "h5"];
-
 /// What was found in files of records.
 #[derive(Clone, Debug, Default)]
 pub struct FoundRecords {
@@ -44,7 +33,7 @@ pub struct FoundRecords {
     /// What could not be read, each with its place and why.
     pub faults: Vec<String>,
     /// What is no record, in words.
-    pub passed_over: Vec<String>,
+    pub ignored: Vec<String>,
     /// Number of files that were read.
     pub files: usize,
 }
@@ -52,29 +41,17 @@ pub struct FoundRecords {
 /// The records of files and folders, folders with all that is in them. A file that cannot be read is a fault, and the rest is read;
 /// where only one was asked for, it is an error.
 pub fn read_records(paths: &[PathBuf], progress: &dyn FolderProgress) -> Result<FoundRecords, FileError> {
-    let files = files_of(paths, &ENDINGS)?;
-    let mut found = FoundRecords { files: files.len(), ..FoundRecords::default() };
-    for (index, (path, name)) in files.iter().enumerate() {
-        if progress.stopped(0) {
-            break;
-        }
-        progress.reading(index + 1, files.len(), name);
-        let bytes = read_bytes(path, LARGEST_FILE);
-        match bytes.and_then(|bytes| {
-            of_bytes(&bytes, path, name, &MemoryBudget::new(MOST_MEMORY, &|taken| progress.stopped(taken)))
-        }) {
-            Ok(of_file) => found.append(of_file, name),
-            Err(error) if paths.len() == 1 && files.len() == 1 => return Err(error),
-            Err(error) => found.faults.push(error.to_string()),
-        }
-    }
-    Ok(found)
+    let mut found = FoundRecords::default();
+    let (files, faults) = import(paths, progress, |file, budget| found.take(file, budget))?;
+    found.faults.extend(faults);
+    Ok(FoundRecords { files, ..found })
 }
 
 /// The records in the bytes of a file of this name, in no more than `most` bytes of memory for its columns.
 pub fn records_of_bytes(bytes: &[u8], name: &str, most: u64) -> Result<FoundRecords, FileError> {
-    let mut found = of_bytes(bytes, Path::new(name), name, &MemoryBudget::new(most, &|_| false))?;
-    found.files = 1;
+    let budget = MemoryBudget::new(most, &|_| false);
+    let mut found = FoundRecords { files: 1, ..FoundRecords::default() };
+    found.take(import_bytes(bytes, Path::new(name), name, &budget)?, &budget)?;
     Ok(found)
 }
 
@@ -84,8 +61,9 @@ pub fn records_of_bytes(bytes: &[u8], name: &str, most: u64) -> Result<FoundReco
 /// Those of reading; of a record that the file does not hold [`FileError::NoRecord`].
 pub fn load_records(path: &Path, variables: &[Option<&str>]) -> Result<Vec<Result<RecordTable, FileError>>, FileError> {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let bytes = read_bytes(path, LARGEST_FILE)?;
-    let found = of_bytes(&bytes, path, &name, &MemoryBudget::new(MOST_MEMORY, &|_| false))?;
+    let budget = MemoryBudget::new(MOST_MEMORY, &|_| false);
+    let mut found = FoundRecords::default();
+    found.take(import_file(path, &name, &budget)?, &budget)?;
     let held = found.tables.len();
     let record = |variable: &Option<&str>| {
         let record = found.tables.iter().find(|table| table.source.variable.as_deref() == *variable).cloned();
@@ -95,11 +73,58 @@ pub fn load_records(path: &Path, variables: &[Option<&str>]) -> Result<Vec<Resul
 }
 
 impl FoundRecords {
-    fn append(&mut self, mut other: Self, name: &str) {
-        let at = |words: String| if words.starts_with(name) { words } else { format!("{name}: {words}") };
-        self.tables.append(&mut other.tables);
-        self.faults.extend(other.faults.into_iter().map(at));
-        self.passed_over.extend(other.passed_over.into_iter().map(at));
+    fn take(&mut self, file: ImportedFile<'_>, budget: &MemoryBudget<'_>) -> Result<(), FileError> {
+        let ImportedFile { path, name, sha256, contents } = file;
+        let wrong = |fault| FileError::variables(path, fault);
+        match contents {
+            Contents::Variables { variables, notes } => {
+                self.add_found(search_records(&variables), &notes, (name, &sha256))
+            }
+            Contents::Text(text) => {
+                for columns in of_text(&text, budget).map_err(wrong)? {
+                    self.add(columns.of_file(name, &sha256));
+                }
+            }
+            Contents::Dataset(_) | Contents::Models(_) => {
+                self.ignored.push(format!("{name}: a dataset or models, not a record"));
+            }
+            Contents::Archive { variables, files, ignored } => {
+                self.ignored.extend(ignored);
+                for (inner, contents) in files {
+                    let mut found = FoundRecords::default();
+                    let taken = contents.and_then(|contents| {
+                        let (path, sha256) = (Path::new(&inner), sha256.clone());
+                        found.take(ImportedFile { path, name: &inner, sha256, contents }, budget)
+                    });
+                    self.faults.extend(taken.err().map(|error| error.to_string()));
+                    self.faults.append(&mut found.faults);
+                    self.ignored.append(&mut found.ignored);
+                    // A file in the archive is what a variable is in others.
+                    for mut table in found.tables {
+                        let variable = table.source.variable.map(|variable| format!("{inner}, {variable}"));
+                        let (file, variable) = (name.to_owned(), Some(variable.unwrap_or_else(|| inner.clone())));
+                        table.source = RecordSource { file, variable, ..table.source };
+                        self.tables.push(table);
+                    }
+                    if self.tables.len() > MOST_RECORDS {
+                        return Err(wrong(VariableFault::TooLarge { variable: inner, most_mib: MOST_MEMORY >> 20 }));
+                    }
+                }
+                if !variables.is_empty() {
+                    self.add_found(search_records(&variables), &[], (name, &sha256));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn add_found(&mut self, found: Found<Columns>, notes: &[String], (name, sha256): (&str, &str)) {
+        for mut columns in found.items {
+            columns.notes.extend(notes.iter().cloned());
+            self.add(columns.of_file(name, sha256));
+        }
+        self.faults.extend(of_file(name, found.faults));
+        self.ignored.extend(of_file(name, found.ignored));
     }
 
     /// Adds a table, its records apart.
@@ -142,111 +167,9 @@ impl Columns {
     }
 }
 
-fn of_bytes(bytes: &[u8], path: &Path, name: &str, meter: &MemoryBudget<'_>) -> Result<FoundRecords, FileError> {
-    let sha256: String = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
-    match FileFormat::of(bytes, path) {
-        FileFormat::Npz => of_archive(bytes, path, (name, &sha256), meter),
-        _ => of_single(bytes, path, (name, &sha256), meter),
-    }
-}
-
-/// The arrays of an archive, and every other file in it.
-fn of_archive(
-    bytes: &[u8],
-    path: &Path,
-    (name, sha256): (&str, &str),
-    meter: &MemoryBudget<'_>,
-) -> Result<FoundRecords, FileError> {
-    let (mut arrays, mut found) = (Vec::new(), FoundRecords::default());
-    visit_files(bytes, |file| {
-        let inner = file.unpack(file.path, meter)?;
-        if let Some(name) = file.path.strip_suffix(".npy") {
-            arrays.extend(read_npy(&inner, name, meter)?);
-            return Ok(());
-        }
-        let inner_path = Path::new(file.path);
-        if FileFormat::of(&inner, inner_path) == FileFormat::Npz || !has_ending(inner_path) {
-            found.passed_over.push(format!("{}: no file of records", file.path));
-            return Ok(());
-        }
-        match of_single(&inner, inner_path, (file.path, sha256), meter) {
-            Ok(of_file) => found.append(of_file, file.path),
-            Err(FileError::Variables {
-                fault: fault @ (VariableFault::Stopped | VariableFault::TooLarge { .. }),
-                ..
-            }) => {
-                return Err(fault);
-            }
-            Err(error) => found.faults.push(error.to_string()),
-        }
-        if found.tables.len() > MOST_RECORDS {
-            return Err(VariableFault::TooLarge { variable: file.path.to_owned(), most_mib: MOST_MEMORY >> 20 });
-        }
-        Ok(())
-    })
-    .map_err(|fault| FileError::Variables { path: path.to_owned(), fault })?;
-    // A file in the archive is what a variable is in others.
-    for table in &mut found.tables {
-        let inner = std::mem::replace(&mut table.source.file, name.to_owned());
-        let parts = [Some(inner), table.source.variable.take()];
-        table.source.variable = Some(parts.into_iter().flatten().collect::<Vec<_>>().join(", "));
-    }
-    found.append(of_variables(&arrays, Vec::new(), (name, sha256)), name);
-    Ok(found)
-}
-
-fn of_single(
-    bytes: &[u8],
-    path: &Path,
-    place: (&str, &str),
-    meter: &MemoryBudget<'_>,
-) -> Result<FoundRecords, FileError> {
-    let wrong = |fault| FileError::Variables { path: path.to_owned(), fault };
-    let decoded = |bytes: &[u8]| {
-        let mut found = FoundRecords::default();
-        for columns in of_text(&decode(bytes, meter)?.text, meter)? {
-            found.add(columns.of_file(place.0, place.1));
-        }
-        Ok(found)
-    };
-    match FileFormat::of(bytes, path) {
-        FileFormat::Text => decoded(bytes).map_err(wrong),
-        FileFormat::Json => {
-            let source = Source::of(bytes, path)?;
-            let first = source.text().iter().find(|byte| !byte.is_ascii_whitespace());
-            if !matches!(first, Some(b'{' | b'[')) {
-                return decoded(source.text()).map_err(wrong);
-            }
-            Ok(of_variables(&variables_of(source.text()).map_err(wrong)?, Vec::new(), place))
-        }
-        _ => match contents_of(bytes, path, meter)? {
-            Contents::Variables { variables, notes } => Ok(of_variables(&variables, notes, place)),
-            Contents::Table(table) => {
-                let mut found = FoundRecords::default();
-                found.add(of_table(*table).of_file(place.0, place.1));
-                Ok(found)
-            }
-            Contents::Dataset(_) => {
-                let passed_over = vec!["a dataset, not a record".to_owned()];
-                Ok(FoundRecords { passed_over, ..FoundRecords::default() })
-            }
-        },
-    }
-}
-
-fn of_variables(variables: &[Variable], notes: Vec<String>, (name, sha256): (&str, &str)) -> FoundRecords {
-    let Search { records, faults, passed_over } = Search::of(variables);
-    let mut found = FoundRecords { faults, passed_over, ..FoundRecords::default() };
-    for mut columns in records {
-        columns.notes.extend(notes.iter().cloned());
-        found.add(columns.of_file(name, sha256));
-    }
-    found
-}
-
 /// The columns of a text; where these change on the way, of every part that is long enough to be a record.
-fn of_text(text: &str, meter: &MemoryBudget<'_>) -> Result<Vec<Columns>, VariableFault> {
-    let first = match of_whole_text(text, meter) {
+fn of_text(text: &str, budget: &MemoryBudget<'_>) -> Result<Vec<Columns>, VariableFault> {
+    let first = match of_whole_text(text, budget) {
         Err(fault @ (VariableFault::Line { .. } | VariableFault::Format { .. })) => fault,
         whole => return whole.map(|columns| vec![columns]),
     };
@@ -254,7 +177,7 @@ fn of_text(text: &str, meter: &MemoryBudget<'_>) -> Result<Vec<Columns>, Variabl
     let count = parts.len();
     let mut found = Vec::new();
     for (index, (line, part)) in parts.into_iter().enumerate().filter(|_| count > 1) {
-        match of_whole_text(part, meter) {
+        match of_whole_text(part, budget) {
             Ok(columns) if columns.columns.first().is_some_and(|column| column.values.len() >= Separation::FEWEST) => {
                 let note = format!("one of {count} tables in the file, from line {line}");
                 let notes = [vec![note], columns.notes].concat();
@@ -268,14 +191,14 @@ fn of_text(text: &str, meter: &MemoryBudget<'_>) -> Result<Vec<Columns>, Variabl
 }
 
 /// The columns of one table: of one with words or times of the clock among its numbers, with numbers in their place.
-fn of_whole_text(text: &str, meter: &MemoryBudget<'_>) -> Result<Columns, VariableFault> {
-    let first = match read_table(text, meter) {
+fn of_whole_text(text: &str, budget: &MemoryBudget<'_>) -> Result<Columns, VariableFault> {
+    let first = match read_table(text, budget) {
         Err(fault @ (VariableFault::Line { .. } | VariableFault::Format { .. })) => fault,
         table => return table.map(of_table),
     };
-    let Some(NumberedText { text, notes }) = numbered_words(text, meter)? else { return Err(first) };
+    let Some(NumberedText { text, notes }) = numbered_words(text, budget)? else { return Err(first) };
     // What is wrong in the text as it stands says more than what is wrong in this one.
-    let mut columns = of_table(read_table(&text, meter).map_err(|_| first)?);
+    let mut columns = of_table(read_table(&text, budget).map_err(|_| first)?);
     columns.notes.extend(notes);
     Ok(columns)
 }
@@ -291,11 +214,6 @@ fn of_table(table: TextTable) -> Columns {
         RecordColumn { unit: units.get(index).cloned().flatten(), ..RecordColumn::new(name, values) }
     });
     Columns { variable: String::new(), columns: columns.collect(), named, sample_time_s: None, notes }
-}
-
-fn has_ending(path: &Path) -> bool {
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
-    ENDINGS.contains(&ending.as_str())
 }
 
 // The records of the embedded example.
@@ -319,82 +237,20 @@ pub fn example_records(condition: i64) -> Result<Vec<RecordTable>, FileError> {
     Ok(found.tables.into_iter().filter(is_of).collect())
 }
 
-// Where among variables records are.
-
-/// Deepest nesting that is searched for records.
-const DEEPEST: usize = 8;
-
-/// What was found among variables.
-#[derive(Default)]
-pub(super) struct Search {
-    pub(super) records: Vec<Columns>,
-    /// What looks like a record but cannot be taken, with its place and why.
-    pub(super) faults: Vec<String>,
-    /// What is no record, in words.
-    pub(super) passed_over: Vec<String>,
-}
-
-impl Search {
-    /// Every record among the variables of a file: what they are together, then each by itself, inside out.
-    pub(super) fn of(variables: &[Variable]) -> Self {
-        let mut search = Self::default();
-        let together = Record::of_variables(variables);
-        search.records.extend(columns_of(&together, ""));
-        for variable in variables {
-            search.descend(&variable.name, &variable.value, DEEPEST);
+/// Every record among the variables of a file.
+pub(super) fn search_records(variables: &[Variable]) -> Found<Columns> {
+    search(variables, &|record, variable| {
+        if is_iddata(record) {
+            return Some(match experiments(record, variable) {
+                Ok(found) => found.into_iter().map(Ok).collect(),
+                Err(why) => vec![Err(why)],
+            });
         }
-        if search.records.is_empty() && search.faults.is_empty() {
-            let words = variables.iter().map(|variable| format!("{}: {}", variable.name, variable.value.words()));
-            search.passed_over.extend(words.take(20));
-        }
-        search
-    }
-
-    fn descend(&mut self, name: &str, value: &Value, deeper: usize) {
-        if deeper == 0 || self.records.len() >= MOST_RECORDS {
-            self.faults
-                .push(format!("{name}: too many values, or values nested too deeply, to look for records in them"));
-            return;
-        }
-        match value {
-            Value::Struct(records) => self.descend_records(name, records, None, deeper),
-            Value::Object(object) => self.descend_records(name, &object.records, Some(&object.class), deeper),
-            Value::Cell(cell) => {
-                let holds_records =
-                    |value: &Value| matches!(value, Value::Struct(_) | Value::Object(_) | Value::Cell(_));
-                for (index, value) in cell.values.iter().enumerate().filter(|(_, value)| holds_records(value)) {
-                    self.descend(&format!("{name}{{{}}}", index + 1), value, deeper - 1);
-                }
-            }
-            Value::Opaque { class, why } => self.faults.push(format!("{name} ({class}): {why}")),
-            Value::Array(_) | Value::Text(_) => {}
-        }
-    }
-
-    fn descend_records(&mut self, name: &str, records: &StructArray, class: Option<&str>, deeper: usize) {
-        let count = records.shape.iter().product::<usize>();
-        for index in 0..count {
-            let name = if count == 1 { name.to_owned() } else { format!("{name}({})", index + 1) };
-            let record = Record::of_struct(records, index, class, 0);
-            if is_iddata(&record) {
-                match experiments(&record, &name) {
-                    Ok(found) => self.records.extend(found),
-                    Err(why) => self.faults.push(format!("{name}: {why}")),
-                }
-                continue;
-            }
-            let found = timetable_columns(&record, &name)
-                .or_else(|| simulink_columns(&record, &name))
-                .or_else(|| columns_of(&record, &name));
-            if let Some(columns) = found {
-                self.records.push(columns);
-                continue;
-            }
-            for (field, value) in Record::of_struct(records, index, None, 0).fields() {
-                self.descend(&format!("{name}.{field}"), value, deeper - 1);
-            }
-        }
-    }
+        let found = timetable_columns(record, variable)
+            .or_else(|| simulink_columns(record, variable))
+            .or_else(|| columns_of(record, variable));
+        found.map(|columns| vec![Ok(columns)])
+    })
 }
 
 #[cfg(test)]

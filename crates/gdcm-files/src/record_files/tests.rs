@@ -66,7 +66,7 @@ fn one_record_in_every_format_is_the_same_record() {
         "columns.json",
     ] {
         let found = read(name);
-        assert_eq!((found.tables.len(), &found.faults), (1, &Vec::new()), "{name}: {:?}", found.passed_over);
+        assert_eq!((found.tables.len(), &found.faults), (1, &Vec::new()), "{name}: {:?}", found.ignored);
         assert_eq!(found.tables[0].rows(), 60, "{name}");
         assert_eq!((found.tables[0].source.file.as_str(), found.tables[0].source.sha256.len()), (name, 64));
         assert_record(&found.tables[0], 3);
@@ -117,7 +117,7 @@ fn files_in_an_archive_are_records_of_it() {
     let sources: Vec<(&str, Option<&str>)> =
         found.tables.iter().map(|table| (table.source.file.as_str(), table.source.variable.as_deref())).collect();
     assert_eq!(sources, [("two.zip", Some("records/units.csv")), ("two.zip", Some("records/sides.mat"))]);
-    assert_eq!(found.passed_over, ["readme.md: no file of records"]);
+    assert_eq!(found.ignored, ["readme.md: no file of a known kind"]);
     found.tables.iter().for_each(|table| assert_record(table, 3));
 }
 
@@ -188,8 +188,8 @@ fn object(class: &str, fields: Vec<(&str, Value)>) -> Value {
     Value::Object(Object { class: class.to_owned(), records: record(fields) })
 }
 
-fn searched(name: &str, value: Value) -> Search {
-    Search::of(&[Variable { name: name.to_owned(), value }])
+fn searched(name: &str, value: Value) -> Found<Columns> {
+    search_records(&[Variable { name: name.to_owned(), value }])
 }
 
 /// A timetable of two variables over these row times, as MATLAB saves it.
@@ -209,7 +209,7 @@ fn timetable(row_times: Value) -> Value {
 #[test]
 fn timetables_have_their_row_times() {
     let duration = |rows: usize, ms: fn(usize) -> f64| object("duration", vec![("millis", numbers(rows, 1, ms))]);
-    let columns = |row_times: Value| searched("tt", timetable(row_times)).records.into_iter().next().unwrap();
+    let columns = |row_times: Value| searched("tt", timetable(row_times)).items.into_iter().next().unwrap();
     let of = columns(duration(60, |k| 20.0 * k as f64));
     let names: Vec<&str> = of.columns.iter().map(|column| column.name.as_str()).collect();
     assert_eq!(names, ["Time", "LON", "rates_1", "rates_2"]);
@@ -242,7 +242,7 @@ fn identification_data_of_matlab_and_of_octave_are_read() {
             ("OutputUnit_", texts(&["rad/s", ""])),
         ],
     );
-    let of = searched("z", matlab).records.into_iter().next().unwrap();
+    let of = searched("z", matlab).items.into_iter().next().unwrap();
     let columns: Vec<(&str, Option<&str>)> =
         of.columns.iter().map(|column| (column.name.as_str(), column.unit.as_deref())).collect();
     assert_eq!(columns, [("u1", None), ("P", Some("rad/s")), ("Q", None)]);
@@ -255,7 +255,7 @@ fn identification_data_of_matlab_and_of_octave_are_read() {
             ("tsam", numbers(1, 1, |_| 0.05)),
         ],
     );
-    assert_eq!(searched("z", octave).records[0].sample_time_s, Some(0.05));
+    assert_eq!(searched("z", octave).items[0].sample_time_s, Some(0.05));
     let over_frequency = object("iddata", vec![("y", numbers(60, 1, |_| 1.0)), ("Domain", texts(&["Frequency"]))]);
     assert_eq!(searched("z", over_frequency).faults, ["z: data over frequency are no record; save those over time"]);
 }
@@ -271,7 +271,7 @@ fn what_simulink_logs_with_time_is_a_record() {
     let fields = fields.map(|(at, name)| (name.to_owned(), vec![first[at].clone(), second[at].clone()])).collect();
     let signals = Value::Struct(StructArray { shape: vec![1, 2], fields });
     let logged = Value::Struct(record(vec![("time", numbers(60, 1, |k| 0.02 * k as f64)), ("signals", signals)]));
-    let of = searched("out", logged).records.into_iter().next().unwrap();
+    let of = searched("out", logged).items.into_iter().next().unwrap();
     let names: Vec<&str> = of.columns.iter().map(|column| column.name.as_str()).collect();
     assert_eq!((names, of.columns[1].unit.as_deref()), (vec!["time", "LON", "rates_1", "rates_2"], Some("%")));
 }
@@ -285,10 +285,10 @@ fn a_model_and_a_few_numbers_are_no_record() {
         ("C", numbers(6, 60, |_| 0.0)),
         ("D", scalar(0.0)),
     ];
-    assert!(searched("sys", Value::Struct(record(model))).records.is_empty());
+    assert!(searched("sys", Value::Struct(record(model))).items.is_empty());
     let short = vec![("t", numbers(10, 1, |k| k as f64)), ("P", numbers(10, 1, |k| k as f64))];
     let found = searched("x", Value::Struct(record(short)));
-    assert_eq!((found.records.len(), found.passed_over), (0, vec!["x: a 1 x 1 struct array".to_owned()]));
+    assert_eq!((found.items.len(), found.ignored), (0, vec!["x: a 1 x 1 struct array".to_owned()]));
 }
 
 #[test]

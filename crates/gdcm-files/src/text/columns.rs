@@ -61,12 +61,12 @@ impl TextTable {
 }
 
 /// Reads a table of numbers in columns: its separator, decimal mark, names and units are recognised.
-pub fn read_table(text: &str, meter: &MemoryBudget) -> Result<TextTable, VariableFault> {
+pub fn read_table(text: &str, budget: &MemoryBudget) -> Result<TextTable, VariableFault> {
     refuse_binary(text, EXPECTED)?;
-    let Some(layout) = Layout::recognise(text, meter)? else {
+    let Some(layout) = Layout::recognise(text, budget)? else {
         return Err(no_numbers(text));
     };
-    let mut reading = Reading::new(layout, meter)?;
+    let mut reading = Reading::new(layout, budget)?;
     for (number, line) in lines(text) {
         reading.line(number, line)?;
     }
@@ -88,7 +88,7 @@ pub(super) fn line_fault(line: usize, what: String) -> VariableFault {
 /// A table as far as it is read.
 struct Reading<'m> {
     layout: Layout,
-    meter: &'m MemoryBudget<'m>,
+    budget: &'m MemoryBudget<'m>,
     columns: Vec<Vec<f64>>,
     lines: Vec<usize>,
     skipped: Vec<(usize, String)>,
@@ -97,11 +97,11 @@ struct Reading<'m> {
 }
 
 impl<'m> Reading<'m> {
-    fn new(layout: Layout, meter: &'m MemoryBudget<'m>) -> Result<Self, VariableFault> {
+    fn new(layout: Layout, budget: &'m MemoryBudget<'m>) -> Result<Self, VariableFault> {
         // A column takes its header here, and its unit and name later.
-        meter.take(layout.columns as u64, 128, "")?;
+        budget.take(layout.columns as u64, 128, "")?;
         let (columns, lines) = (vec![Vec::new(); layout.columns], Vec::new());
-        Ok(Self { layout, meter, columns, lines, skipped: Vec::new(), missing: 0, notes: Vec::new() })
+        Ok(Self { layout, budget, columns, lines, skipped: Vec::new(), missing: 0, notes: Vec::new() })
     }
 
     fn line(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
@@ -156,7 +156,7 @@ impl<'m> Reading<'m> {
     }
 
     fn skip(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
-        self.meter.take(2 * line.len() as u64 + 64, 1, "")?;
+        self.budget.take(2 * line.len() as u64 + 64, 1, "")?;
         self.skipped.push((number, line.to_owned()));
         Ok(())
     }
@@ -168,7 +168,7 @@ impl<'m> Reading<'m> {
             self.columns.push(Vec::new());
         }
         // Vectors grow by doubling: half of what they take may be free.
-        self.meter.take(self.layout.columns as u64 + 1, 16, "")?;
+        self.budget.take(self.layout.columns as u64 + 1, 16, "")?;
         let (mut cells, mut ends_empty) = (self.layout.cells(line), false);
         for (index, column) in self.columns.iter_mut().enumerate() {
             let Some(cell) = cells.next() else {
@@ -275,14 +275,14 @@ struct Tally {
 impl Layout {
     /// Finds the separator and the decimal mark with which most lines are lines of numbers of one width; the wider table where
     /// several do; nothing where no line is a line of numbers.
-    pub(super) fn recognise(text: &str, meter: &MemoryBudget) -> Result<Option<Self>, VariableFault> {
+    pub(super) fn recognise(text: &str, budget: &MemoryBudget) -> Result<Option<Self>, VariableFault> {
         let mut tallies: Vec<Tally> = Vec::with_capacity(2 * Separator::ALL.len());
         for decimal_comma in [false, true] {
             let tally = |&separator| Tally { separator, decimal_comma, widths: BTreeMap::new(), lines: 0 };
             tallies.extend(Separator::ALL.iter().map(tally));
         }
         for (_, line) in lines(text) {
-            meter.take(0, 1, "")?;
+            budget.take(0, 1, "")?;
             if line.trim().is_empty() || comment(line).is_some() {
                 continue;
             }

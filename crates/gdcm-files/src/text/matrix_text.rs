@@ -14,13 +14,13 @@ pub struct NamedMatrices {
 }
 
 /// Reads one matrix, a row on each line; a line of names above it is passed over.
-pub fn read_matrix(text: &str, name: &str, meter: &MemoryBudget) -> Result<Variable, VariableFault> {
-    let table = read_table(text, meter)?;
+pub fn read_matrix(text: &str, name: &str, budget: &MemoryBudget) -> Result<Variable, VariableFault> {
+    let table = read_table(text, budget)?;
     if let Some((line, _)) = table.skipped.iter().find(|(_, line)| cell_number(line, table.decimal_comma).is_some()) {
         let what = format!("one number, where other rows have {}; complete the row", table.columns.len());
         return Err(VariableFault::Line { variable: name.to_owned(), line: *line, what });
     }
-    let value = matrix(&[table], 1.0, meter, name)?;
+    let value = matrix(&[table], 1.0, budget, name)?;
     Ok(Variable { name: name.to_owned(), value })
 }
 
@@ -28,11 +28,11 @@ pub fn read_matrix(text: &str, name: &str, meter: &MemoryBudget) -> Result<Varia
 ///
 /// A common factor ("1.0e+03 *") is applied, columns that are printed in several parts ("Columns 1 through 6") are put together,
 /// and names of rows and columns are passed over.
-pub fn read_matrices(text: &str, meter: &MemoryBudget) -> Result<NamedMatrices, VariableFault> {
+pub fn read_matrices(text: &str, budget: &MemoryBudget) -> Result<NamedMatrices, VariableFault> {
     refuse_binary(text, "matrices under their names")?;
-    let mut reading = Reading { found: Vec::new(), notes: Vec::new(), meter };
+    let mut reading = Reading { found: Vec::new(), notes: Vec::new(), budget };
     for (number, line) in lines(text) {
-        meter.take(0, 1, "")?;
+        budget.take(0, 1, "")?;
         if !line.trim().is_empty() && comment(line).is_none() && !is_rule(line) {
             reading.line(number, line)?;
         }
@@ -61,7 +61,7 @@ struct Begun {
 struct Reading<'m> {
     found: Vec<Begun>,
     notes: Vec<String>,
-    meter: &'m MemoryBudget<'m>,
+    budget: &'m MemoryBudget<'m>,
 }
 
 impl Reading<'_> {
@@ -99,7 +99,7 @@ impl Reading<'_> {
     }
 
     fn begin(&mut self, number: usize, name: &str, assigned: bool, rest: &str) -> Result<(), VariableFault> {
-        self.meter.take(256 + name.len() as u64, 1, name)?;
+        self.budget.take(256 + name.len() as u64, 1, name)?;
         let (name, parts) = (name.to_owned(), Vec::new());
         self.found.push(Begun { name, line: number, assigned, scale: 1.0, labelled: false, parts });
         if rest.is_empty() { Ok(()) } else { self.row(number, rest) }
@@ -128,7 +128,7 @@ impl Reading<'_> {
             let what = "numbers without a name; write the name of the matrix on a line above them".to_owned();
             return Err(line_fault(number, what));
         };
-        self.meter.take(2 * line.len() as u64 + 32, 1, &matrix.name)?;
+        self.budget.take(2 * line.len() as u64 + 32, 1, &matrix.name)?;
         if matrix.parts.is_empty() {
             matrix.parts.push(Part::default());
         }
@@ -141,7 +141,7 @@ impl Reading<'_> {
     }
 
     fn finish(self) -> Result<NamedMatrices, VariableFault> {
-        let Self { found, mut notes, meter } = self;
+        let Self { found, mut notes, budget } = self;
         let mut variables: Vec<Variable> = Vec::with_capacity(found.len());
         let mut names = std::collections::HashSet::with_capacity(found.len());
         for Begun { name, line, scale, mut parts, .. } in found {
@@ -156,8 +156,8 @@ impl Reading<'_> {
             if scale != 1.0 {
                 notes.push(format!("{name} is printed with the factor {scale:e}, and so with few digits"));
             }
-            let tables = parts.iter().map(|part| table(part, &name, meter)).collect::<Result<Vec<_>, _>>()?;
-            let value = matrix(&tables, scale, meter, &name)?;
+            let tables = parts.iter().map(|part| table(part, &name, budget)).collect::<Result<Vec<_>, _>>()?;
+            let value = matrix(&tables, scale, budget, &name)?;
             variables.push(Variable { name, value });
         }
         if variables.is_empty() {
@@ -181,9 +181,9 @@ fn row_of_numbers(line: &str) -> bool {
 }
 
 /// The rows of a part; faults name the line of the whole text.
-fn table(part: &Part, name: &str, meter: &MemoryBudget) -> Result<TextTable, VariableFault> {
+fn table(part: &Part, name: &str, budget: &MemoryBudget) -> Result<TextTable, VariableFault> {
     let place = |line: usize| part.numbers.get(line.saturating_sub(1)).copied().unwrap_or(line);
-    let table = read_table(&part.text, meter).map_err(|fault| match fault {
+    let table = read_table(&part.text, budget).map_err(|fault| match fault {
         VariableFault::Line { line, what, .. } => {
             VariableFault::Line { variable: name.to_owned(), line: place(line), what }
         }
@@ -199,7 +199,7 @@ fn table(part: &Part, name: &str, meter: &MemoryBudget) -> Result<TextTable, Var
 }
 
 /// Tables side by side as one matrix.
-fn matrix(tables: &[TextTable], scale: f64, meter: &MemoryBudget, name: &str) -> Result<Value, VariableFault> {
+fn matrix(tables: &[TextTable], scale: f64, budget: &MemoryBudget, name: &str) -> Result<Value, VariableFault> {
     let rows = tables.first().map_or(0, |table| table.lines.len());
     if let Some(other) = tables.iter().find(|table| table.lines.len() != rows) {
         let found = other.lines.len();
@@ -207,7 +207,7 @@ fn matrix(tables: &[TextTable], scale: f64, meter: &MemoryBudget, name: &str) ->
         return Err(VariableFault::Line { variable: name.to_owned(), line: other.first_line, what });
     }
     let columns = tables.iter().map(|table| table.columns.len()).sum();
-    meter.take((rows * columns) as u64, 8, name)?;
+    budget.take((rows * columns) as u64, 8, name)?;
     let values = tables.iter().flat_map(|table| table.columns.iter().flatten()).map(|value| scale * value).collect();
     Ok(Value::Array(Array::matrix(rows, columns, values)))
 }
@@ -284,11 +284,11 @@ mod matrix_text_tests {
 
     #[test]
     fn one_matrix_fills_a_file() {
-        let meter = MemoryBudget::new(1 << 20, &|_| false);
-        let variable = read_matrix("x1,x2\n1,2\n3,4\n5,6", "A", &meter).unwrap();
+        let budget = MemoryBudget::new(1 << 20, &|_| false);
+        let variable = read_matrix("x1,x2\n1,2\n3,4\n5,6", "A", &budget).unwrap();
         let expected = Array::matrix(3, 2, vec![1.0, 3.0, 5.0, 2.0, 4.0, 6.0]);
         assert_eq!(variable, Variable { name: "A".to_owned(), value: Value::Array(expected) });
-        let ragged = read_matrix("1\n2 3\n4 5\n", "A", &meter).unwrap_err().to_string();
+        let ragged = read_matrix("1\n2 3\n4 5\n", "A", &budget).unwrap_err().to_string();
         assert_eq!(ragged, "variable A: line 1: one number, where other rows have 2; complete the row");
     }
 

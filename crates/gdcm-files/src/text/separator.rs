@@ -242,12 +242,12 @@ const WINDOWS_1252: [char; 32] = [
 ];
 
 /// Finds out how a text is stored and gives its characters.
-pub fn decode(bytes: &[u8], meter: &MemoryBudget) -> Result<DecodedText, VariableFault> {
+pub fn decode(bytes: &[u8], budget: &MemoryBudget) -> Result<DecodedText, VariableFault> {
     if let Some(body) = bytes.strip_prefix(&[0xff, 0xfe]) {
-        return utf16(body, u16::from_le_bytes, meter);
+        return utf16(body, u16::from_le_bytes, budget);
     }
     if let Some(body) = bytes.strip_prefix(&[0xfe, 0xff]) {
-        return utf16(body, u16::from_be_bytes, meter);
+        return utf16(body, u16::from_be_bytes, budget);
     }
     let body = bytes.strip_prefix(&[0xef, 0xbb, 0xbf]).unwrap_or(bytes);
     if let Some(at) = body.iter().position(|&byte| byte == 0) {
@@ -255,7 +255,7 @@ pub fn decode(bytes: &[u8], meter: &MemoryBudget) -> Result<DecodedText, Variabl
         return Err(VariableFault::Format { expected: "a text", found });
     }
     // A character of Latin-1 takes at most three bytes of UTF-8.
-    meter.take(body.len() as u64, 3, "")?;
+    budget.take(body.len() as u64, 3, "")?;
     Ok(match std::str::from_utf8(body) {
         Ok(text) => DecodedText { text: text.to_owned(), encoding: Encoding::Utf8 },
         Err(_) => DecodedText { text: body.iter().map(|&byte| latin1(byte)).collect(), encoding: Encoding::Latin1 },
@@ -269,12 +269,12 @@ fn latin1(byte: u8) -> char {
     }
 }
 
-fn utf16(body: &[u8], word: fn([u8; 2]) -> u16, meter: &MemoryBudget) -> Result<DecodedText, VariableFault> {
+fn utf16(body: &[u8], word: fn([u8; 2]) -> u16, budget: &MemoryBudget) -> Result<DecodedText, VariableFault> {
     let (pairs, rest) = body.as_chunks::<2>();
     if !rest.is_empty() {
         return Err(VariableFault::CutOff { variable: String::new(), offset: body.len() as u64 + 2 });
     }
-    meter.take(pairs.len() as u64, 4, "")?;
+    budget.take(pairs.len() as u64, 4, "")?;
     let decoded = char::decode_utf16(pairs.iter().map(|&pair| word(pair)));
     let text: String = decoded.map(|character| character.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
     Ok(DecodedText { text, encoding: Encoding::Utf16 })

@@ -35,13 +35,13 @@ enum Kind {
 
 /// Numbers the words of a text in columns, each as it first comes, and turns times of the clock into seconds; nothing where the text
 /// has no columns of words beside columns of numbers. Columns have to be told apart by more than blanks.
-pub fn numbered_words(text: &str, meter: &MemoryBudget) -> Result<Option<NumberedText>, VariableFault> {
+pub fn numbered_words(text: &str, budget: &MemoryBudget) -> Result<Option<NumberedText>, VariableFault> {
     let Some((separator, columns)) = columns(text) else { return Ok(None) };
     let mut numbering = Numbering { columns, heading: None };
-    meter.take(text.len() as u64, 2, "")?;
+    budget.take(text.len() as u64, 2, "")?;
     let mut numbered = String::with_capacity(text.len());
     for (_, line) in lines(text) {
-        meter.take(0, 1, "")?;
+        budget.take(0, 1, "")?;
         let cells: Vec<String> = separator.cells(line).map(|cell| cell.trim().to_owned()).collect();
         if cells.len() == numbering.columns.len() && comment(line).is_none() {
             numbered.push_str(&numbering.line(cells, separator));

@@ -15,7 +15,7 @@ const MADE: &str = "any";
 /// Puts objects together, one in another.
 pub(super) struct Assembly<'s> {
     pub(super) subsystem: &'s Subsystem,
-    pub(super) meter: &'s MemoryBudget<'s>,
+    pub(super) budget: &'s MemoryBudget<'s>,
     /// The objects that are being put together: one that lies in itself would have no end.
     open: Vec<u32>,
 }
@@ -26,15 +26,15 @@ impl Subsystem {
         &self,
         reference: &Reference,
         trail: &FieldPath<'_>,
-        meter: &MemoryBudget<'_>,
+        budget: &MemoryBudget<'_>,
     ) -> Result<Value, VariableFault> {
-        Assembly::new(self, meter).referred(reference, trail)
+        Assembly::new(self, budget).referred(reference, trail)
     }
 }
 
 impl<'s> Assembly<'s> {
-    pub(super) fn new(subsystem: &'s Subsystem, meter: &'s MemoryBudget<'s>) -> Self {
-        Self { subsystem, meter, open: Vec::new() }
+    pub(super) fn new(subsystem: &'s Subsystem, budget: &'s MemoryBudget<'s>) -> Self {
+        Self { subsystem, budget, open: Vec::new() }
     }
 
     /// What a reference leads to; what is nested too deeply or cannot be decoded is opaque.
@@ -69,7 +69,7 @@ impl<'s> Assembly<'s> {
             (None, Some(Value::Array(array))) => exact_words(array),
             _ => None,
         };
-        words.map_or(Ok(None), |words| packed_text(&words, self.meter))
+        words.map_or(Ok(None), |words| packed_text(&words, self.budget))
     }
 
     fn records(&mut self, reference: &Reference, trail: &FieldPath<'_>) -> Result<StructArray, VariableFault> {
@@ -100,7 +100,7 @@ impl<'s> Assembly<'s> {
     /// Objects without a property that others of the array have get an empty one.
     fn fill(&self, values: &mut Vec<Value>, length: usize) -> Result<(), VariableFault> {
         let missing = length.saturating_sub(values.len());
-        self.meter.take(missing as u64, 2 * size_of::<Value>() as u64, "")?;
+        self.budget.take(missing as u64, 2 * size_of::<Value>() as u64, "")?;
         values.extend((0..missing).map(|_| Value::Array(Array::matrix(0, 0, Vec::new()))));
         Ok(())
     }
@@ -142,7 +142,7 @@ impl<'s> Assembly<'s> {
 
     fn property(&mut self, property: &Property, trail: &FieldPath<'_>) -> Result<Value, VariableFault> {
         let subsystem = self.subsystem;
-        self.meter.take(1, 256, "")?;
+        self.budget.take(1, 256, "")?;
         match property.content {
             Content::Cell(cell) => {
                 let value = subsystem.values.get(cell).ok_or_else(|| super::damaged("a property has no value"))?;
@@ -163,7 +163,7 @@ impl<'s> Assembly<'s> {
 
     /// A value of a cell, with the objects that it refers to in their places.
     pub(super) fn copy(&mut self, value: &Value, trail: &FieldPath<'_>) -> Result<Value, VariableFault> {
-        self.meter.take(1, own_weight(value), "")?;
+        self.budget.take(1, own_weight(value), "")?;
         if let Some(reference) = self.reference(value) {
             return self.referred(&reference, trail);
         }
@@ -171,7 +171,7 @@ impl<'s> Assembly<'s> {
             Value::Array(_) | Value::Text(_) | Value::Opaque { .. } => value.clone(),
             Value::Cell(cell) => Value::Cell(CellArray { shape: cell.shape.clone(), values: self.cells(cell, trail)? }),
             Value::Struct(records) if is_enumeration(records) => {
-                self.subsystem.enumeration(records, "", trail, self.meter)?
+                self.subsystem.enumeration(records, "", trail, self.budget)?
             }
             Value::Struct(records) => Value::Struct(self.copied(records, trail)?),
             Value::Object(object) => {

@@ -30,8 +30,11 @@ const BEFORE_VALUES: usize = 2;
 
 impl Subsystem {
     /// Takes the cells of a `FileWrapper__`, the first of which are the bytes of its directory.
-    pub fn new(cells: Vec<Value>) -> Result<Self, VariableFault> {
-        let directory = Directory::read(&directory_bytes(cells.first())?)?;
+    pub fn new(cells: Vec<Value>, budget: &MemoryBudget<'_>) -> Result<Self, VariableFault> {
+        let bytes = directory_bytes(cells.first())?;
+        // A name without letters takes one byte of the file, and a text of ours.
+        budget.take(bytes.len() as u64, 2 * size_of::<String>() as u64, "")?;
+        let directory = Directory::read(&bytes)?;
         let mut values = cells;
         let defaults = match values.pop() {
             Some(Value::Cell(defaults)) => defaults.values,
@@ -58,10 +61,10 @@ impl Subsystem {
     /// The object, or the array of objects, that a reference leads to: `[0xDD000000, number of dimensions, dimensions, numbers of
     /// the objects, number of the class]`.
     ///
-    /// What cannot be decoded is [`Value::Opaque`]; only the meter makes a fault.
-    pub fn object(&self, reference: &[u32], variable: &str, meter: &MemoryBudget<'_>) -> Result<Value, VariableFault> {
+    /// What cannot be decoded is [`Value::Opaque`]; only the budget makes a fault.
+    pub fn object(&self, reference: &[u32], variable: &str, budget: &MemoryBudget<'_>) -> Result<Value, VariableFault> {
         match Reference::parse(reference) {
-            Some(reference) => self.referred(&reference, &FieldPath::start(variable), meter),
+            Some(reference) => self.referred(&reference, &FieldPath::start(variable), budget),
             None => Ok(unread_because("object", "what refers to it is damaged", variable)),
         }
     }
@@ -248,8 +251,8 @@ const MISSING: u64 = u64::MAX;
 
 /// The texts packed as version, number of dimensions, dimensions, lengths and units of UTF-16, four to a number; `None` if the
 /// numbers are something else. A missing text is an empty one.
-pub(super) fn packed_text(words: &[u64], meter: &MemoryBudget<'_>) -> Result<Option<TextArray>, VariableFault> {
-    meter.take(words.len() as u64, 64, "")?;
+pub(super) fn packed_text(words: &[u64], budget: &MemoryBudget<'_>) -> Result<Option<TextArray>, VariableFault> {
+    budget.take(words.len() as u64, 64, "")?;
     Ok(unpacked(words))
 }
 
@@ -354,7 +357,7 @@ impl Subsystem {
         records: &StructArray,
         class: &str,
         trail: &FieldPath<'_>,
-        meter: &MemoryBudget<'_>,
+        budget: &MemoryBudget<'_>,
     ) -> Result<Value, VariableFault> {
         let number = numbers(records, "ClassName").and_then(|numbers| numbers.first().copied());
         let class = number.and_then(|number| self.directory.class(number)).unwrap_or(class);
@@ -364,7 +367,7 @@ impl Subsystem {
         let name = |&index: &f64| self.directory.name(*names.get(index as usize)?);
         let Some(members) = indices.re.iter().map(name).collect::<Option<Vec<_>>>() else { return Ok(opaque()) };
         let bytes = members.iter().map(|name| name.len() as u64 + 256).sum();
-        meter.take(1, bytes, "").map_err(|fault| trail.name(fault))?;
+        budget.take(1, bytes, "").map_err(|fault| trail.name(fault))?;
         let text = |name: &&str| Value::Text(TextArray { shape: vec![1, 1], texts: vec![(*name).to_owned()] });
         let fields = vec![(MEMBER.to_owned(), members.iter().map(text).collect())];
         let records = StructArray { shape: indices.shape.clone(), fields };
@@ -526,11 +529,11 @@ mod subsystem_tests {
         let empty = || Value::Array(Array::matrix(0, 0, Vec::new()));
         let text = Value::Array(Array::matrix(1, 6, words.to_vec()));
         let cells = vec![directory, empty(), empty(), text, empty()];
-        let subsystem = Subsystem::new(cells).unwrap();
-        let meter = MemoryBudget::new(1 << 16, &|_| false);
-        let found = subsystem.object(&[0xdd00_0000, 2, 1, 1, 3, 3], "t", &meter);
+        let subsystem = Subsystem::new(cells, &MemoryBudget::new(1 << 20, &|_| false)).unwrap();
+        let budget = MemoryBudget::new(1 << 16, &|_| false);
+        let found = subsystem.object(&[0xdd00_0000, 2, 1, 1, 3, 3], "t", &budget);
         assert_eq!(found, Ok(Value::Text(TextArray { shape: vec![1, 1], texts: vec!["ab".to_owned()] })));
-        assert!(matches!(subsystem.object(&[1, 2, 3], "t", &meter), Ok(Value::Opaque { .. })));
+        assert!(matches!(subsystem.object(&[1, 2, 3], "t", &budget), Ok(Value::Opaque { .. })));
     }
 
     proptest! {

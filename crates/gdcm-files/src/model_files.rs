@@ -1,21 +1,168 @@
-//! The models of a dataset of this program, to be put together with others.
+//! Models in files of whatever format, and in folders of them.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use gdcm_core::assembly::{ChannelLabel, Facts, FoundModel};
+use gdcm_core::assembly::{ChannelLabel, Facts, FoundModel, Headings};
 use gdcm_core::dataset::{
     BundleKind, Channel, Condition, ConditionRecord, Dataset, Estimate, Model, ModelDraft, Origin, Provenance,
     ResponseArray, ResponseDraft, Timing,
 };
 
-use crate::recognise::{Recognised, recognise};
-use crate::text::{FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable, says_quantity};
-use crate::variables::{Value, Variable, VariableFault};
+use crate::file_error::FileError;
+use crate::importer::{Contents, FolderProgress, ImportedFile, import, import_bytes, of_file};
+use crate::recognise::{Found, recognise};
+use crate::text::{
+    FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable, read_matrices, read_matrix, read_table,
+    says_quantity,
+};
+use crate::variables::{MemoryBudget, Value, Variable, VariableFault};
+
+/// What was found in files.
+#[derive(Clone, Debug, Default)]
+pub struct FoundModels {
+    /// The models, in the order of their files.
+    pub models: Vec<FoundModel>,
+    /// What could not be taken: files, and what looks like a model in them, each with its place and why.
+    pub faults: Vec<String>,
+    /// What is no model, in words.
+    pub ignored: Vec<String>,
+    /// The tables of columns among the files, with the headings that they were read by.
+    pub tables: Headings,
+    /// Number of files that were read.
+    pub files: usize,
+}
+
+/// The models of files and folders, folders with all that is in them; tables of columns by the headings that are said of them. A
+/// file that cannot be read is a fault, and the rest is read.
+pub fn read_models(
+    paths: &[PathBuf],
+    headings: &Headings,
+    progress: &dyn FolderProgress,
+) -> Result<FoundModels, FileError> {
+    let mut reading = ModelReading { headings, found: FoundModels::default(), matrices: Vec::new() };
+    let (files, faults) = import(paths, progress, |file, budget| reading.take(file, budget))?;
+    let mut found = reading.finish();
+    found.faults = [faults, found.faults].concat();
+    Ok(FoundModels { files, ..found })
+}
+
+/// The models in the bytes of a file of this name, in no more than `most` bytes of memory for what it holds.
+pub fn models_of_bytes(bytes: &[u8], name: &str, most: u64) -> Result<FoundModels, FileError> {
+    let budget = MemoryBudget::new(most, &|_| false);
+    let none = Headings::new();
+    let mut reading = ModelReading { headings: &none, found: FoundModels::default(), matrices: Vec::new() };
+    reading.take(import_bytes(bytes, Path::new(name), name, &budget)?, &budget)?;
+    Ok(FoundModels { files: 1, ..reading.finish() })
+}
+
+/// Files of models while they are read.
+struct ModelReading<'h> {
+    headings: &'h Headings,
+    found: FoundModels,
+    /// Matrices that have files to themselves.
+    matrices: Vec<LooseMatrix>,
+}
+
+impl ModelReading<'_> {
+    fn take(&mut self, file: ImportedFile<'_>, budget: &MemoryBudget<'_>) -> Result<(), FileError> {
+        let ImportedFile { path, name, sha256, contents } = file;
+        let wrong = |fault| FileError::variables(path, fault);
+        let recognised = match contents {
+            Contents::Variables { variables, notes } => self.of_variables(variables, notes, (name, &sha256)),
+            Contents::Text(text) => match models_text(&text, path, budget).map_err(wrong)? {
+                TextContents::Variables { variables, notes } => self.of_variables(variables, notes, (name, &sha256)),
+                TextContents::Table(mut table) => {
+                    if let Some(said) = self.headings.get(name) {
+                        table = table.with_headings(said).map_err(wrong)?;
+                    }
+                    let found = models_of_table(&table, name).map_err(wrong)?;
+                    self.found.tables.insert(name.to_owned(), table.headings());
+                    found
+                }
+            },
+            Contents::Dataset(dataset) => Found { items: models_of_dataset(&dataset, name), ..Found::default() },
+            Contents::Models(models) => Found { items: models, ..Found::default() },
+            Contents::Archive { variables, files, ignored } => {
+                for (inner, contents) in files {
+                    let (inner_name, inner_path) = (format!("{name}/{inner}"), Path::new(&inner));
+                    let taken = contents.and_then(|contents| {
+                        let sha256 = sha256.clone();
+                        self.take(ImportedFile { path: inner_path, name: &inner_name, sha256, contents }, budget)
+                    });
+                    self.found.faults.extend(taken.err().map(|error| format!("{name}: {error}")));
+                }
+                self.found.ignored.extend(of_file(name, ignored));
+                self.of_variables(variables, Vec::new(), (name, &sha256))
+            }
+        };
+        let Found { mut items, faults, ignored } = recognised;
+        for model in &mut items {
+            let source = model.draft.source.get_or_insert_with(Provenance::default);
+            source.file = Some(name.to_owned());
+            source.sha256 = Some(sha256.clone());
+            source.note = Some(model.notes.join("; ")).filter(|note| !note.is_empty());
+        }
+        self.found.models.append(&mut items);
+        self.found.faults.extend(of_file(name, faults));
+        self.found.ignored.extend(of_file(name, ignored));
+        Ok(())
+    }
+
+    fn of_variables(
+        &mut self,
+        variables: Vec<Variable>,
+        notes: Vec<String>,
+        (name, sha256): (&str, &str),
+    ) -> Found<FoundModel> {
+        if let Some(matrix) = LooseMatrix::of(&variables, name) {
+            self.matrices.push(LooseMatrix { sha256: sha256.to_owned(), ..matrix });
+            return Found::default();
+        }
+        let mut found = recognise(&variables);
+        for model in &mut found.items {
+            model.notes.extend(notes.iter().cloned());
+        }
+        found
+    }
+
+    fn finish(mut self) -> FoundModels {
+        let of_matrices = models_of_matrices(self.matrices);
+        self.found.models.extend(of_matrices.items);
+        self.found.faults.extend(of_matrices.faults);
+        self.found
+    }
+}
+
+/// What a text holds, where models are looked for.
+enum TextContents {
+    Variables { variables: Vec<Variable>, notes: Vec<String> },
+    Table(TextTable),
+}
+
+/// A matrix where the file is named as one, matrices under names where there are some, else a table.
+fn models_text(text: &str, path: &Path, budget: &MemoryBudget<'_>) -> Result<TextContents, VariableFault> {
+    if let Some((letter, _)) = matrix_letter(stem(path)) {
+        let variable = read_matrix(text, &letter.to_string(), budget)?;
+        return Ok(TextContents::Variables { variables: vec![variable], notes: Vec::new() });
+    }
+    let looks_named = text.lines().take(50).any(|line| {
+        let line = line.trim().trim_end_matches(['=', ':', '[']).trim_end();
+        matches!(line, "A" | "B" | "C" | "D")
+    });
+    if looks_named && let Ok(matrices) = read_matrices(text, budget) {
+        return Ok(TextContents::Variables { variables: matrices.variables, notes: matrices.notes });
+    }
+    read_table(text, budget).map(TextContents::Table)
+}
+
+fn stem(path: &Path) -> &str {
+    path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default()
+}
 
 /// Every model, with what the dataset says about it and its condition; `name` is the name of the dataset's file, relative to what was
 /// asked for.
-pub(super) fn models_of_dataset(dataset: &Dataset, name: &str) -> Vec<FoundModel> {
+fn models_of_dataset(dataset: &Dataset, name: &str) -> Vec<FoundModel> {
     let mut models = Vec::new();
     for condition in dataset.conditions() {
         let facts = facts(condition, name);
@@ -49,36 +196,38 @@ fn facts(condition: &Condition, name: &str) -> Facts {
 fn found(dataset: &Dataset, facts: Facts, (condition, kind): (&Condition, BundleKind), model: &Model) -> FoundModel {
     let state = condition.flight_state();
     let label = |channel: &Channel| ChannelLabel { name: Some(channel.name.clone()), unit: Some(channel.unit.clone()) };
-    let source = Some(Provenance {
+    let source = Provenance {
         variable: Some(format!("{}/{kind}/{}", state.id, model.name)),
-        records: model.source.as_ref().map(|source| source.records.clone()).unwrap_or_default(),
-        ..Provenance::default()
-    });
+        note: None,
+        file: None,
+        sha256: None,
+        ..model.source.clone().unwrap_or_default()
+    };
     FoundModel {
-        draft: ModelDraft { source, ..ModelDraft::of(model) },
+        draft: ModelDraft { source: Some(source), ..ModelDraft::of(model) },
         inputs: dataset.inputs().iter().map(label).collect(),
         outputs: dataset.outputs().iter().map(label).collect(),
         facts,
-        notes: Vec::new(),
+        notes: model.source.iter().filter_map(|source| source.note.clone()).collect(),
     }
 }
 
 // Matrices that have files to themselves: `A.csv`, `B.csv`, `C.csv` and `D.csv` of a folder, or `nominal_A.npy`, ….
 
 /// A matrix that has a file to itself.
-pub(super) struct LooseMatrix {
+struct LooseMatrix {
     /// The folder and what stands before the letter: matrices of the same are one model.
-    pub(super) group: String,
+    group: String,
     /// The file.
-    pub(super) file: String,
+    file: String,
     /// SHA-256 of the file.
-    pub(super) sha256: String,
+    sha256: String,
     /// The matrix, under its letter.
-    pub(super) variable: Variable,
+    variable: Variable,
 }
 
 /// The letter of a file that is named as a matrix, and what stands before it: "nominal_A" is A of "nominal".
-pub(super) fn matrix_letter(stem: &str) -> Option<(char, &str)> {
+fn matrix_letter(stem: &str) -> Option<(char, &str)> {
     let letter = stem.chars().last().filter(|letter| matches!(letter, 'A' | 'B' | 'C' | 'D' | 'E'))?;
     let before = &stem[..stem.len() - 1];
     let is_apart = before.is_empty() || before.ends_with(['_', '-', '.', ' ']);
@@ -87,7 +236,7 @@ pub(super) fn matrix_letter(stem: &str) -> Option<(char, &str)> {
 
 impl LooseMatrix {
     /// The only variable of a file that is named as a matrix.
-    pub(super) fn of(variables: &[Variable], file: &str) -> Option<Self> {
+    fn of(variables: &[Variable], file: &str) -> Option<Self> {
         let [variable] = variables else { return None };
         if !matches!(variable.value, Value::Array(_)) {
             return None;
@@ -105,23 +254,23 @@ impl LooseMatrix {
 }
 
 /// The models that loose matrices make, each group one; its file is the folder, or what stands before the letters.
-pub(super) fn models_of_matrices(loose: Vec<LooseMatrix>) -> Recognised {
+fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
     let mut groups: BTreeMap<String, Vec<LooseMatrix>> = BTreeMap::new();
     for matrix in loose {
         groups.entry(matrix.group.clone()).or_default().push(matrix);
     }
-    let mut found = Recognised::default();
+    let mut found = Found::default();
     for (group, matrices) in groups {
         let variables: Vec<Variable> = matrices.iter().map(|matrix| matrix.variable.clone()).collect();
         let mut of_group = recognise(&variables);
-        let is_model = !of_group.models.is_empty() || !of_group.faults.is_empty();
-        for model in &mut of_group.models {
+        let is_model = !of_group.items.is_empty() || !of_group.faults.is_empty();
+        for model in &mut of_group.items {
             let source = model.draft.source.get_or_insert_with(Provenance::default);
             source.file = Some(group.clone());
             let hashes = matrices.iter().map(|matrix| format!("{} {}", matrix.file, matrix.sha256));
             source.note = Some(format!("SHA-256 of its files: {}", hashes.collect::<Vec<_>>().join(", ")));
         }
-        found.models.append(&mut of_group.models);
+        found.items.append(&mut of_group.items);
         found.faults.extend(of_group.faults.into_iter().map(|fault| format!("{group}: {fault}")));
         if !is_model {
             let names: Vec<&str> = matrices.iter().map(|matrix| matrix.file.as_str()).collect();
@@ -134,12 +283,12 @@ pub(super) fn models_of_matrices(loose: Vec<LooseMatrix>) -> Recognised {
 // Frequency responses out of tables of columns.
 
 /// The responses of a table, each a model of one input and one output; a table that holds none is passed over in words.
-pub(super) fn models_of_table(table: &TextTable, file: &str) -> Result<Recognised, VariableFault> {
+fn models_of_table(table: &TextTable, file: &str) -> Result<Found<FoundModel>, VariableFault> {
     let columns = match FrequencyColumns::recognise(table) {
         Ok(columns) => columns,
         Err(fault) => {
             let words = format!("{file}: {} columns of numbers; {fault}", table.columns.len());
-            return Ok(Recognised { passed_over: vec![words], ..Recognised::default() });
+            return Ok(Found { ignored: vec![words], ..Found::default() });
         }
     };
     let values = columns.values(table)?;
@@ -152,7 +301,7 @@ pub(super) fn models_of_table(table: &TextTable, file: &str) -> Result<Recognise
         }
         model(response, points, (several, &named), notes)
     });
-    Ok(Recognised { models: models.collect(), ..Recognised::default() })
+    Ok(Found { items: models.collect(), ..Found::default() })
 }
 
 /// Output and input that the name of a file says, as its last two words: "flight_P_LAT", "frf LAT to P".
@@ -232,7 +381,7 @@ mod tests {
         let files =
             ["c1/A.csv", "c1/B.csv", "c1/C.csv", "c1/nom_A.csv", "c1/nom_B.csv", "c1/nom_C.csv", "c1/lone_A.csv"];
         let found = models_of_matrices(files.iter().map(|file| matrix(file, 1, 1)).collect());
-        let names: Vec<&str> = found.models.iter().map(|model| model.file()).collect();
+        let names: Vec<&str> = found.items.iter().map(|model| model.file()).collect();
         assert_eq!(names, ["c1", "c1/nom"]);
         assert_eq!(found.faults, ["c1/lone_A.csv: a model needs A, B and C"]);
     }

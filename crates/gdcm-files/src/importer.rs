@@ -1,0 +1,271 @@
+//! Files of numbers from other programs: what a format is, the formats there are, and the reading of files and folders of them.
+//!
+//! ```text
+//! bytes -> format, by what they begin with              (the ending of the name decides only between texts)
+//!       -> variables, a text, or the files of an archive    (the formats, which know nothing of models and records)
+//!       -> models or records                                (recognise)
+//! ```
+//!
+//! A new format is a type with [`Importer`] in a file of its own, and an entry in [`FORMATS`].
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use gdcm_core::assembly::FoundModel;
+use gdcm_core::dataset::Dataset;
+use sha2::{Digest, Sha256};
+
+use crate::file_error::FileError;
+use crate::json_values::Json;
+use crate::mat::Mat;
+use crate::mat73::Hdf5;
+use crate::npy::Npy;
+use crate::source::read_bytes;
+use crate::text::{Literals, Text};
+use crate::variables::{MemoryBudget, Variable, VariableFault};
+use crate::zip_files::Zip;
+
+/// Memory that what one file holds may take \[bytes\].
+pub(crate) const MOST_MEMORY: u64 = 1 << 30;
+/// Largest file \[bytes\].
+const LARGEST_FILE: u64 = 512 << 20;
+/// Most files that are looked at, and deepest folders inside one another.
+const MOST_FILES: usize = 20_000;
+const DEEPEST: usize = 16;
+
+/// A format of files of numbers.
+pub(crate) trait Importer: Sync {
+    /// What it is called.
+    fn name(&self) -> &'static str;
+
+    /// What the names of its files end with, in lower case.
+    fn endings(&self) -> &'static [&'static str];
+
+    /// Whether the bytes of a file whose name ends so are of it.
+    fn recognises(&self, bytes: &[u8], ending: &str) -> bool;
+
+    /// What the bytes hold; memory is taken from the budget before it is used. `path` is what errors call the file.
+    fn read(&self, bytes: &[u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Contents, FileError>;
+}
+
+/// The formats; a file is of the first that recognises it, and the last recognises any.
+const FORMATS: [&dyn Importer; 7] = [&Npy, &Zip, &Hdf5, &Mat, &Json, &Literals, &Text];
+
+/// What a file holds.
+pub(crate) enum Contents {
+    /// Values under names.
+    Variables {
+        /// The values.
+        variables: Vec<Variable>,
+        /// How they were read, where that is not plain.
+        notes: Vec<String>,
+    },
+    /// Numbers in lines: what they are depends on what is looked for.
+    Text(String),
+    /// A dataset of this program.
+    Dataset(Box<Dataset>),
+    /// Models of this program.
+    Models(Vec<FoundModel>),
+    /// The files of an archive.
+    Archive {
+        /// Its arrays, which belong together.
+        variables: Vec<Variable>,
+        /// Its other files by path, each with what it holds.
+        files: Vec<(String, Result<Contents, FileError>)>,
+        /// Files of no known kind, in words.
+        ignored: Vec<String>,
+    },
+}
+
+impl Contents {
+    /// Variables that were read, or why not.
+    pub(crate) fn variables(read: Result<Vec<Variable>, VariableFault>, path: &Path) -> Result<Self, FileError> {
+        let variables = read.map_err(|fault| FileError::variables(path, fault))?;
+        Ok(Self::Variables { variables, notes: Vec::new() })
+    }
+}
+
+/// The format of bytes of a file of this name.
+pub(crate) fn importer_of(bytes: &[u8], path: &Path) -> &'static dyn Importer {
+    let ending = ending_of(path);
+    FORMATS.into_iter().find(|format| format.recognises(bytes, &ending)).unwrap_or(&Text)
+}
+
+/// What is told while files are read, and whether to go on.
+pub trait FolderProgress {
+    /// A file is about to be read: its number from 1, how many there are, its name.
+    fn reading(&self, number: usize, of: usize, name: &str);
+    /// Whether the engineer wants no more, now that this many bytes of the file's values are read.
+    fn stopped(&self, taken: u64) -> bool;
+}
+
+/// A file that was read.
+pub(crate) struct ImportedFile<'f> {
+    /// Its path.
+    pub(crate) path: &'f Path,
+    /// Its name relative to what was asked for.
+    pub(crate) name: &'f str,
+    /// SHA-256 of its bytes, in lower-case hexadecimal.
+    pub(crate) sha256: String,
+    /// What it holds.
+    pub(crate) contents: Contents,
+}
+
+/// Reads the bytes of a file.
+pub(crate) fn import_bytes<'f>(
+    bytes: &[u8],
+    path: &'f Path,
+    name: &'f str,
+    budget: &MemoryBudget<'_>,
+) -> Result<ImportedFile<'f>, FileError> {
+    let contents = importer_of(bytes, path).read(bytes, path, budget)?;
+    let sha256 = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+    Ok(ImportedFile { path, name, sha256, contents })
+}
+
+/// Reads one file.
+pub(crate) fn import_file<'f>(
+    path: &'f Path,
+    name: &'f str,
+    budget: &MemoryBudget<'_>,
+) -> Result<ImportedFile<'f>, FileError> {
+    import_bytes(&read_bytes(path, LARGEST_FILE)?, path, name, budget)
+}
+
+/// Reads files and folders, folders with all that is in them, and gives each to `take`: how many there are, and why some could not be
+/// read. Where only one was asked for, that is an error.
+pub(crate) fn import(
+    paths: &[PathBuf],
+    progress: &dyn FolderProgress,
+    mut take: impl FnMut(ImportedFile<'_>, &MemoryBudget<'_>) -> Result<(), FileError>,
+) -> Result<(usize, Vec<String>), FileError> {
+    let files = files_of(paths)?;
+    let mut faults = Vec::new();
+    for (index, (path, name)) in files.iter().enumerate() {
+        if progress.stopped(0) {
+            break;
+        }
+        progress.reading(index + 1, files.len(), name);
+        let stop = |taken| progress.stopped(taken);
+        let budget = MemoryBudget::new(MOST_MEMORY, &stop);
+        match import_file(path, name, &budget).and_then(|file| take(file, &budget)) {
+            Ok(()) => {}
+            Err(error) if paths.len() == 1 && files.len() == 1 => return Err(error),
+            Err(error) => faults.push(error.to_string()),
+        }
+    }
+    Ok((files.len(), faults))
+}
+
+/// Words with the file in front that they are about, unless it stands there.
+pub(crate) fn of_file(name: &str, words: Vec<String>) -> impl Iterator<Item = String> {
+    words.into_iter().map(move |words| if words.starts_with(name) { words } else { format!("{name}: {words}") })
+}
+
+/// The folder from which the models of these files and folders name their files: that which was given first; a file alone lies in its
+/// folder.
+pub fn sources_folder(sources: &[PathBuf]) -> &Path {
+    let here = Path::new(".");
+    let first = sources.first().map_or(here, PathBuf::as_path);
+    let folder = if first.is_dir() { first } else { first.parent().unwrap_or(here) };
+    if folder.as_os_str().is_empty() { here } else { folder }
+}
+
+/// Files, and those of folders whose names end as those of a format, in the order of their names: their paths, and their names relative to what was asked
+/// for.
+fn files_of(paths: &[PathBuf]) -> Result<Vec<(PathBuf, String)>, FileError> {
+    let mut files = Vec::new();
+    for path in paths {
+        if path.is_dir() {
+            list(path, path, DEEPEST, &mut files)?;
+        } else {
+            let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+            files.push((path.clone(), name));
+        }
+    }
+    Ok(files)
+}
+
+/// The files below a folder, in the order of their names, with their paths relative to it.
+fn list(folder: &Path, root: &Path, deeper: usize, files: &mut Vec<(PathBuf, String)>) -> Result<(), FileError> {
+    let failed = |error: std::io::Error| FileError::reading(folder, &error);
+    let mut entries = fs::read_dir(folder).map_err(failed)?.collect::<Result<Vec<_>, _>>().map_err(failed)?;
+    entries.sort_by_key(|entry| natural(&entry.file_name().to_string_lossy()));
+    for entry in entries {
+        let path = entry.path();
+        let hidden = entry.file_name().to_string_lossy().starts_with('.');
+        // Links could lead in circles.
+        let kind = entry.file_type().map_err(failed)?;
+        if hidden || kind.is_symlink() && path.is_dir() {
+            continue;
+        }
+        if kind.is_dir() {
+            if deeper == 0 {
+                return Err(FileError::FolderTooDeep { path });
+            }
+            list(&path, root, deeper - 1, files)?;
+        } else if is_known(&path) {
+            let name = path.strip_prefix(root).unwrap_or(&path).to_string_lossy().replace('\\', "/");
+            files.push((path, name));
+        }
+        if files.len() > MOST_FILES {
+            return Err(FileError::TooManyFiles { path: root.to_owned(), most: MOST_FILES });
+        }
+    }
+    Ok(())
+}
+
+/// Whether the name of a file ends as those of some format do; studies are no sources of models or records.
+pub(crate) fn is_known(path: &Path) -> bool {
+    let ending = ending_of(path);
+    FORMATS.iter().any(|format| format.endings().contains(&ending.as_str()))
+        && !path.to_string_lossy().ends_with(".gdcm-study.json")
+}
+
+/// The ending of a file's name, in lower case.
+fn ending_of(path: &Path) -> String {
+    path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+/// A key that sorts "c2" before "c10".
+fn natural(name: &str) -> Vec<(String, u64)> {
+    let mut parts = Vec::new();
+    let (mut text, mut digits) = (String::new(), String::new());
+    for letter in name.chars().chain(['\0']) {
+        if letter.is_ascii_digit() && digits.len() < 18 {
+            digits.push(letter);
+            continue;
+        }
+        if !digits.is_empty() {
+            parts.push((std::mem::take(&mut text), digits.parse().unwrap_or(u64::MAX)));
+            digits.clear();
+        }
+        text.extend(letter.to_lowercase());
+    }
+    parts.push((text, 0));
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_what_it_begins_with_whatever_it_is_called() {
+        let of = |bytes: &[u8], name: &str| importer_of(bytes, Path::new(name)).name();
+        assert_eq!(of(b"\x93NUMPY\x01\x00", "a.mat"), Npy.name());
+        assert_eq!(of(b"PK\x03\x04", "a.txt"), Zip.name());
+        assert_eq!(of(b"\x89HDF\r\n\x1a\n", "a.mat"), Hdf5.name());
+        assert_eq!(of(b" {\"A\": 1}", "a.txt"), Json.name());
+        assert_eq!(of(b"A = [1 2];", "a.m"), Literals.name());
+        assert_eq!(of(b"1,2\n3,4\n", "a.csv"), Text.name());
+        let header = [&[b'M'; 124][..], &[0, 1, b'I', b'M']].concat();
+        assert_eq!(of(&header, "no extension"), Mat.name());
+    }
+    #[test]
+    fn names_are_sorted_as_people_count() {
+        let mut names = ["c10", "c2", "C1b", "c1", "roll+5", "roll-5"];
+        names.sort_by_key(|name| natural(name));
+        assert_eq!(names, ["c1", "C1b", "c2", "c10", "roll+5", "roll-5"]);
+    }
+}

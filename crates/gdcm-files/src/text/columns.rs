@@ -479,7 +479,7 @@ mod columns_tests {
     #[test]
     fn columns_with_nothing_in_the_last_keep_it_if_it_has_a_name() {
         let table = read("a,b,c\n1,2,\n4,5,\n").unwrap();
-        assert_eq!(table.names.unwrap(), ["a", "b", "c"]);
+        assert_eq!(table.names.as_deref().unwrap(), ["a", "b", "c"]);
         assert_eq!((table.columns.len(), missing(&table)), (3, 2));
     }
 

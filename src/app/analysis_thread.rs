@@ -33,6 +33,16 @@ impl Request {
     }
 }
 
+/// What is told with an analysis.
+pub(super) struct Answer {
+    /// Number of the request.
+    pub(super) generation: u64,
+    /// Time it took \[ms\].
+    pub(super) elapsed_ms: f64,
+    /// The problems whose proofs are new in it.
+    pub(super) proven: Vec<Arc<Problem>>,
+}
+
 /// In place of the newest request's number where nothing is wanted any more.
 const NOTHING: u64 = u64::MAX;
 
@@ -117,24 +127,29 @@ impl Answering {
     fn work(&self) {
         let mut engine = None;
         let mut newest: Option<Request> = None;
+        let mut proven = Vec::new();
         while let Some((request, proofs)) = self.shared.take() {
             newest = request.or(newest);
             let Some(request) = &newest else { continue };
             let answered = caught(|| {
                 let engine = engine.get_or_insert_with(|| (self.make_engine)());
-                proofs.into_iter().for_each(|(problem, solution)| engine.take_gains(&problem, &solution));
-                self.answer(request, engine)
+                for (problem, solution) in proofs {
+                    engine.take_gains(&problem, &solution);
+                    proven.push(problem);
+                }
+                self.answer(request, engine, &mut proven)
             });
             if let Err(fault) = answered {
                 engine = None;
+                proven.clear();
                 let generation = request.generation;
                 self.replies.send(move |app| app.answer_failed(generation, &fault));
             }
         }
     }
 
-    /// Sends the analysis; nothing where a newer request came first.
-    fn answer(&self, request: &Request, engine: &mut Engine) {
+    /// Sends the analysis and which proofs it has; nothing where a newer request came first.
+    fn answer(&self, request: &Request, engine: &mut Engine, proven: &mut Vec<Arc<Problem>>) {
         let started = Instant::now();
         let progress = RequestProgress { thread: self, request, started, compared: AtomicBool::new(false) };
         let tell = |outcome: &Result<ConditionAnalysis, ConditionFailure>| {
@@ -146,8 +161,9 @@ impl Answering {
         let Ok(analysis) = engine.analyze_first(&request.study, Some(first), &progress) else {
             return;
         };
-        let (generation, elapsed_ms) = (request.generation, 1e3 * started.elapsed().as_secs_f64());
-        self.replies.send(move |app| app.answered(generation, Arc::new(analysis), elapsed_ms));
+        let elapsed_ms = 1e3 * started.elapsed().as_secs_f64();
+        let answer = Answer { generation: request.generation, elapsed_ms, proven: std::mem::take(proven) };
+        self.replies.send(move |app| app.answered(answer, Arc::new(analysis)));
     }
 }
 

@@ -18,12 +18,12 @@ use crate::view::{
     bars, centre, conditions_panel, explanation, focus, forms, help, matrix_panel, models_panel, result_panel,
     settings_panel,
 };
-use gdcm_core::correction::{ProblemError, Solution};
+use gdcm_core::correction::{Problem, ProblemError, Solution};
 use gdcm_core::dataset::ConditionId;
 use gdcm_core::study::{Analysis, ConditionCurves, CurvesJob, ProofJob, Study};
 use gdcm_files::{Existing, LoadedDataset, LostStudy, Opened, is_first_start};
 
-use super::analysis_thread::{AnalysisThread, Request};
+use super::analysis_thread::{AnalysisThread, Answer, Request};
 use super::assembling::ModelReader;
 use super::background_jobs::BackgroundJobs;
 use super::files::{PendingAction, SavedStudy};
@@ -44,6 +44,8 @@ pub struct GdcmApp {
     pub(super) saved: SavedStudy,
     pub(super) analysis: AnalysisThread,
     pub(super) jobs: BackgroundJobs,
+    /// Problems with a proof that the results do not have yet.
+    proven: Vec<Arc<Problem>>,
     /// What the views shown need beside the live answer.
     pub(super) needs: Vec<Need>,
     pub(super) replies: ReplySender,
@@ -105,6 +107,7 @@ impl GdcmApp {
             saved,
             analysis,
             jobs,
+            proven: Vec::new(),
             needs: Vec::new(),
             replies,
             received,
@@ -166,6 +169,7 @@ impl GdcmApp {
     pub(super) fn stop_computing(&mut self) {
         self.analysis.stop();
         self.stop_jobs();
+        self.proven.clear();
         let results = &mut self.state.results;
         results.stopped = results.is_behind();
         results.waiting_since = None;
@@ -187,23 +191,25 @@ impl GdcmApp {
         let now = self.now();
         let results = &mut self.state.results;
         results.background = self.jobs.told();
+        results.background.proofs.extend(self.proven.iter().cloned());
         results.background_since = results.background.is_busy().then(|| results.background_since.unwrap_or(now));
     }
 
     /// Shows an analysis, and asks for the jobs that it leaves.
-    pub(super) fn answered(&mut self, generation: u64, analysis: Arc<Analysis>, elapsed_ms: f64) {
+    pub(super) fn answered(&mut self, answer: Answer, analysis: Arc<Analysis>) {
         let now = self.now();
         let results = &mut self.state.results;
         // One with a proof added has the number of the one without it, and took no time.
-        if results.received != generation {
-            results.elapsed_ms = elapsed_ms;
+        if results.received != answer.generation {
+            results.elapsed_ms = answer.elapsed_ms;
         }
-        results.received = generation;
+        results.received = answer.generation;
         results.analysis = Some(analysis);
         results.first = None;
         results.stopped &= results.is_behind();
         results.waiting_since = results.is_waiting().then_some(now);
         results.progress = None;
+        self.proven.retain(|problem| !answer.proven.contains(problem));
         self.want_jobs();
     }
 
@@ -215,12 +221,16 @@ impl GdcmApp {
             results.waiting_since = None;
             results.progress = None;
         }
+        self.proven.clear();
         self.tell_fault("the computation", fault);
     }
 
     /// Hands a proof to the thread that answers; a problem without an answer has been told by the live answer.
     pub(super) fn take_proof(&mut self, job: ProofJob, proof: Result<Arc<Solution>, ProblemError>) {
-        proof.into_iter().for_each(|solution| self.analysis.take_proof(Arc::clone(&job.problem), solution));
+        if let Ok(solution) = proof {
+            self.proven.push(Arc::clone(&job.problem));
+            self.analysis.take_proof(job.problem, solution);
+        }
     }
 
     /// Shows the curves of a condition, where they are of what is shown.

@@ -132,13 +132,13 @@ impl Args for SettingOptions {
             let (name, unit) = (setting.option, setting.unit.file);
             let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
             let argument = Arg::new(name).long(name.trim_start_matches('-')).help(format!("{}{unit}", setting.help));
-            match setting.kind {
-                Kind::Flag { .. } => argument.action(ArgAction::SetTrue),
+            let argument = match setting.kind {
+                Kind::Flag { .. } => return argument.action(ArgAction::SetTrue),
                 Kind::Range { nothing: None, .. } => argument.value_names(["LO", "HI"]).num_args(2),
-                Kind::Range { .. } => argument.value_names(["LO", "HI"]).num_args(1..=2),
+                Kind::Range { .. } => argument.value_name("LO HI").num_args(1..=2),
                 _ => argument.value_name(setting.syntax()),
-            }
-            .allow_negative_numbers(true)
+            };
+            argument.allow_negative_numbers(true)
         }))
     }
 

@@ -35,7 +35,7 @@ pub(super) fn evidence_section(analysis: &Analysis) -> String {
         }
     }
     for test in uncertainty.second_variables.iter().filter(|test| test.needed) {
-        text.push_str(&labelled(0, "Schedule", LABEL, &format!("{}: {}", pair_name(test.pair), test.words())));
+        text.push_str(&labelled(0, "Schedule", LABEL, &format!("{}: {}", pair_name(test.pair), test)));
     }
     text
 }

@@ -2,6 +2,7 @@
 
 use crate::executor::Pool;
 use gdcm_core::dataset::{BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
+use gdcm_core::message_text::sanitized;
 use gdcm_core::study::{Analysis, Edit, Engine, Progress, Study};
 use gdcm_files::{LoadedDataset, OutputSet, embedded_example};
 
@@ -60,7 +61,7 @@ fn take_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Fai
     for (setting, words) in &arguments.settings.said {
         let option = setting.option;
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
-        let value = setting.read(&words).map_err(|reason| Failure::Option { option, reason })?;
+        let value = setting.read(&words).map_err(|reason| Failure::Option { option, reason: sanitized(&reason) })?;
         study.apply(&setting.to(value)).map_err(Failure::refused(option))?;
     }
     for &id in &arguments.hold_out {

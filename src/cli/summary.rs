@@ -48,7 +48,7 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
     let dataset = format!("{}, {}", sanitized(study.dataset.name()), loaded.origin);
     let phase = match settings.phase {
         PhaseCorrection::None => "left as it is".to_owned(),
-        PhaseCorrection::Delay => format!("corrected by delays; D is the {}", settings.delay_from.words()),
+        PhaseCorrection::Delay => format!("corrected by delays; D is the {}", settings.delay_from),
         PhaseCorrection::Lead => format!(
             "corrected by a delay or a lead filter a channel: order {}, n {}, R_max {}",
             settings.lead.order.number(),

@@ -172,7 +172,7 @@ impl<'a> Cell<'a> {
             ui.painter().rect_stroke(square, 2.0, Stroke::new(1.0, color), StrokeKind::Inside);
         }
         let hint = match (self.undefined(), self.constrained) {
-            (Some(why), _) => format!("{} cannot be held: {}", self.name, why.words()),
+            (Some(why), _) => format!("{} cannot be held: {}", self.name, why),
             (_, true) => "Held exactly; click to release it".to_owned(),
             (_, false) => "Released; click to hold it exactly".to_owned(),
         };
@@ -275,7 +275,7 @@ impl<'a> Cell<'a> {
         ui.label(words.join(" · "));
         let Some(shown) = self.shown else { return };
         let (Some(gain), Some(delay)) = (self.gain(), shown.wanted_delay_s(self.pair)) else {
-            let why = self.undefined().map(|why| format!("No G, no D and no J: {}", why.words()));
+            let why = self.undefined().map(|why| format!("No G, no D and no J: {}", why));
             ui.label(why.unwrap_or_default());
             return;
         };

@@ -39,7 +39,7 @@ pub fn settings_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
             let mut panel = Panel { ui, state, palette, commands };
             match line[0].control.place {
                 Place::Slider => panel.slider_ui(line[0]),
-                _ => drop(ui.horizontal(|ui| Panel { ui, state, palette, commands }.line_ui(&line))),
+                _ => drop(ui.horizontal_wrapped(|ui| Panel { ui, state, palette, commands }.line_ui(&line))),
             }
         }
         Grid::new("settings").num_columns(2).spacing([8.0, 5.0]).show(ui, |ui| {

@@ -106,7 +106,7 @@
 //! | [`identification`] | identified models from flight records (M14) |
 //! | [`records`] | from the columns of record files to flight records: time, channels, units |
 //! | [`correction`] | G, D, bounds, gains, delays, leads, and what they do to a response |
-//! | [`schedule`] | regression over airspeed, what speaks for it, assessment |
+//! | [`schedule`] | regression over airspeed, its forms compared, assessment |
 //! | [`uncertainty`] | how sure each number is, what the scatter over the conditions is made of |
 //! | [`study`] | what the engineer does: settings, rejections, pins, variants, undo; the staged analysis, and how each number came about |
 

@@ -159,8 +159,8 @@ fn amplitude(flight: &FlightRecord, highest: f64) -> Amplitudes {
         let mean = column.mean();
         column.add_scalar_mut(-mean);
     }
-    let piece = Segment { record: 0, start_s: 0.0, sample_time_s: step, inputs, outputs: flight.outputs.map(finite) };
-    let Some(spectrum) = spectra(&[piece], 2.0 * highest, &Sequential).into_iter().next() else { return Vec::new() };
+    let segment = Segment { record: 0, start_s: 0.0, sample_time_s: step, inputs, outputs: flight.outputs.map(finite) };
+    let Some(spectrum) = spectra(&[segment], 2.0 * highest, &Sequential).into_iter().next() else { return Vec::new() };
     (0..flight.inputs.ncols())
         .map(|input| {
             let lines: Vec<[f64; 2]> = spectrum

@@ -193,7 +193,7 @@ fn actions(records: &ConditionRecords, caution: &IdentificationCaution) -> Vec<A
         }
         IdentificationCaution::BandNotShown { shown: band, .. }
         | IdentificationCaution::OrderLimit { narrower: band, .. } => vec![narrower(*band)],
-        IdentificationCaution::Records(RecordCaution::Stair { signal, hold_s, .. }) => {
+        IdentificationCaution::Records(RecordCaution::SampleHold { signal, hold_s, .. }) => {
             let hold_s = *hold_s;
             let set = |text: &str, hold| (text.to_owned(), RecordsCommand::SetHold(signal.clone(), hold));
             let command = (signal.role == Role::Input)

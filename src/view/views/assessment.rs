@@ -251,7 +251,7 @@ fn why_not(table: &AssessmentTable, condition: ConditionId, pair: Pair) -> Strin
     let left_out = table.left_out.iter().find(|left_out| left_out.condition == condition);
     let assessed = table.conditions.iter().find(|assessed| assessed.condition == condition);
     let missing = assessed.and_then(|assessed| assessed.missing.iter().find(|(missing, _)| *missing == pair));
-    let why = left_out.map(|left_out| left_out.why.as_str()).or(missing.map(|(_, why)| *why));
+    let why = left_out.map(|left_out| left_out.why.as_str()).or(missing.map(|(_, why)| why.as_str()));
     why.unwrap_or("not computed").to_owned()
 }
 

@@ -69,7 +69,7 @@ pub fn error_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) 
 pub fn error_message(state: &State, pair: Pair) -> String {
     match state.shown() {
         Some(shown) if shown.comparison.undefined[pair] == Some(Undefined::NotCoherent) => {
-            format!("{} is not compared: {}", state.dataset().pair_name(pair), Undefined::NotCoherent.words())
+            format!("{} is not compared: {}", state.dataset().pair_name(pair), Undefined::NotCoherent)
         }
         Some(shown) if shown.comparison.undefined[pair].is_some() => {
             let name = state.dataset().pair_name(pair);

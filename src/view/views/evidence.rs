@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::{Align, Align2, Color32, FontId, Layout, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
 use gdcm_core::dataset::{ConditionId, Pair};
-use gdcm_core::schedule::{Evidence, KindEvidence, LeadEvidence, LeadFit, ScheduleKind};
+use gdcm_core::schedule::{FormComparison, FormFit, LeadDegreeFit, LeadFit, ScheduleKind};
 use gdcm_core::study::{Analysis, Table, Uncertainty, difference_table, second_variable_table, setting};
 use gdcm_core::uncertainty::VarianceDecomposition;
 use gdcm_core::units::{s_to_ms, signed};
@@ -182,8 +182,8 @@ fn rows_high<R>(ui: &mut Ui, rows: usize, add: impl FnOnce(&mut Ui) -> R) -> R {
 #[derive(Debug, Default)]
 pub struct CachedEvidence {
     analysis: Option<Arc<Analysis>>,
-    found: Option<(Vec<ConditionId>, Evidence)>,
-    leads: Vec<LeadEvidence>,
+    found: Option<(Vec<ConditionId>, FormComparison)>,
+    leads: Vec<LeadDegreeFit>,
 }
 
 impl CachedEvidence {
@@ -194,26 +194,26 @@ impl CachedEvidence {
             return;
         };
         if !self.analysis.as_ref().is_some_and(|known| Arc::ptr_eq(known, analysis)) {
-            self.leads = analysis.lead_evidence();
-            self.found = analysis.evidence().ok().map(|evidence| (analysis.scheduled(), evidence));
+            self.leads = analysis.compare_lead_degrees();
+            self.found = analysis.compare_forms().ok().map(|evidence| (analysis.scheduled(), evidence));
             self.analysis = Some(Arc::clone(analysis));
         }
     }
 
     /// The evidence for each degree of the signed delays.
-    pub fn leads(&self) -> &[LeadEvidence] {
+    pub fn leads(&self) -> &[LeadDegreeFit] {
         &self.leads
     }
 
     /// The conditions of the schedule, and the evidence in their order.
-    pub fn found(&self) -> Option<(&[ConditionId], &Evidence)> {
+    pub fn found(&self) -> Option<(&[ConditionId], &FormComparison)> {
         self.found.as_ref().map(|(conditions, evidence)| (conditions.as_slice(), evidence))
     }
 }
 
 /// For each degree of the scheduled signed delays what it misses of each response shown, and what it would have missed of a condition
 /// that it has not seen; none where there are no leads.
-pub fn lead_evidence_table(state: &State, evidence: &[LeadEvidence]) -> Option<Table> {
+pub fn lead_evidence_table(state: &State, evidence: &[LeadDegreeFit]) -> Option<Table> {
     let pairs = net_gain_pairs(state);
     let names = pairs.iter().flat_map(|pair| {
         let name = state.dataset().pair_name(*pair);
@@ -249,7 +249,7 @@ fn percent(rms_ln: Option<f64>) -> String {
 
 /// For each form of the schedule what it misses of each response shown, and what it would have missed of a condition that it has
 /// not seen.
-pub fn evidence_table(state: &State, evidence: &Evidence) -> (Table, Vec<ScheduleKind>) {
+pub fn evidence_table(state: &State, evidence: &FormComparison) -> (Table, Vec<ScheduleKind>) {
     let pairs = net_gain_pairs(state);
     let names = pairs.iter().map(|pair| format!("{} [%]", state.dataset().pair_name(*pair)));
     let columns = ["schedule".to_owned(), "fit [%]".to_owned(), "unseen [%]".to_owned()].into_iter().chain(names);
@@ -266,14 +266,14 @@ pub fn evidence_table(state: &State, evidence: &Evidence) -> (Table, Vec<Schedul
 }
 
 /// Root mean square of the residuals over these responses.
-fn fit(kind: &KindEvidence, pairs: &[Pair]) -> Option<f64> {
+fn fit(kind: &FormFit, pairs: &[Pair]) -> Option<f64> {
     let squares = pairs.iter().map(|pair| kind.pairs[*pair].rms_ln().map(|rms| rms * rms));
     let squares: Vec<f64> = squares.collect::<Option<_>>()?;
     (!squares.is_empty()).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
 }
 
 /// Residual of each condition under the schedule as it is set, for each response shown \[% of the scheduled gain\].
-pub fn residual_table(state: &State, conditions: &[ConditionId], evidence: &Evidence) -> Option<Table> {
+pub fn residual_table(state: &State, conditions: &[ConditionId], evidence: &FormComparison) -> Option<Table> {
     let kind = evidence.of(state.study.settings.schedule.kind)?;
     let pairs = net_gain_pairs(state);
     let names = pairs.iter().map(|pair| format!("{} [%]", state.dataset().pair_name(*pair)));

@@ -145,7 +145,7 @@ fn a_number_out_of_order_or_out_of_range_is_refused_with_a_word_and_the_old_one_
         ("α gains", "-1", "from 0 to 1000000, found -1"),
         ("Frequencies in the band", "1", "a whole number from 2 to 5000, found 1"),
         ("Frequencies in the band", "20.5", "a whole number"),
-        ("Quantile of the bounds", "60", "from 0 to 50 %, found 60"),
+        ("Bound quantile", "60", "from 0 to 50 %, found 60"),
         ("Airspeed tolerance", "-1", "from 0 to 100 kt, found -1"),
         ("Band from", "low", "found \"low\""),
     ];

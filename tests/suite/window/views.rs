@@ -155,7 +155,7 @@ fn a_degree_is_chosen_on_evidence() {
     show(&mut window, View::NetGain);
     let before = state(&window).study.clone();
     click(&mut window, "evidence");
-    let evidence = state(&window).analysis().unwrap().evidence().unwrap();
+    let evidence = state(&window).analysis().unwrap().compare_forms().unwrap();
     let (conditions, shown) = state(&window).display.evidence.found().expect("the evidence is there");
     assert_eq!((conditions.len(), shown), (11, &evidence));
     click(&mut window, "Sort Errors of each form of the schedule by unseen [%]");

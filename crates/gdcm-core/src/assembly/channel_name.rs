@@ -132,19 +132,25 @@ pub fn time_name_rank(name: &str) -> Option<u8> {
     if words.len() > 1 && words.last().is_some_and(|word| PhysicalUnit::of(word).is_some_and(is_time)) {
         words.pop();
     }
-    match words.as_slice() {
-        ["time" | "t" | "times"] => Some(0),
-        [
-            "tout" | "timestamp" | "timestamps" | "elapsed" | "seconds" | "tsec" | "timesec" | "zeit" | "temps"
-            | "tempo",
-        ] => Some(1),
-        words if words.iter().any(|word| matches!(*word, "time" | "timestamp")) => Some(2),
-        _ => None,
+    match words.concat().as_str() {
+        "time" | "t" | "times" => Some(0),
+        "tout" | "timestamp" | "timestamps" | "elapsed" | "seconds" | "tsec" | "timesec" | "zeit" | "temps"
+        | "tempo" => Some(1),
+        _ => words.iter().any(|word| matches!(*word, "time" | "timestamp")).then_some(2),
     }
 }
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn the_time_is_known_by_its_name_with_or_without_marks_and_unit() {
+        let ranks = [("t [ms]", 0), ("Time_s", 0), ("time_stamps", 1), ("t_out", 1), ("real,_time", 2)];
+        for (name, rank) in ranks {
+            assert_eq!(time_name_rank(name), Some(rank), "{name}");
+        }
+        assert!(["theta", "Ts", "tail rotor"].iter().all(|name| time_name_rank(name).is_none()));
+    }
+
     use std::collections::BTreeSet;
 
     use super::*;

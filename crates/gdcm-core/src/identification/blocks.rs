@@ -1,4 +1,4 @@
-//! A model whose `A` is block diagonal: the parameters of the polish (M14, section 4).
+//! A model whose `A` is block diagonal: the parameters of the refinement (M14, section 4).
 //!
 //! ```text
 //! A = diag(F_1, F_2, ...),   F = [0 1; -a0 -a1],   and one block [a] of one row where n is odd;   B, C, D full

@@ -55,21 +55,21 @@ impl SubspaceSettings {
     /// The two cheapest poles and past windows, the cheaper first.
     pub(super) fn candidates(
         &self,
-        pieces: &[Segment],
+        segments: &[Segment],
         likelihood: &Likelihood,
         progress: &Shares,
     ) -> Result<Vec<Candidate>, IdentificationError> {
-        let pasts: Vec<usize> = self.pasts.iter().copied().filter(|&past| self.is_fed(pieces, past)).collect();
+        let pasts: Vec<usize> = self.pasts.iter().copied().filter(|&past| self.has_rows_for(segments, past)).collect();
         let Some(&longest) = pasts.iter().max() else { return Ok(Vec::new()) };
         let executor = likelihood.executor;
         let share = SHARE / (self.poles.len() * (pasts.len() + 1)) as f64;
         let of_pole = |(k, &pole): (usize, &f64)| {
             let told = format!("pole {} of {}", k + 1, self.poles.len());
             progress.advance(share, &format!("{told}, projections"))?;
-            let factor = self.projections(pole, longest).factor(pieces, executor);
+            let factor = self.projections(pole, longest).factor(segments, executor);
             let of_past = |&past: &usize| {
                 progress.advance(share, &format!("{told}, past {past}"))?;
-                Ok(self.candidate(&factor, pole, past, pieces, likelihood))
+                Ok(self.candidate(&factor, pole, past, segments, likelihood))
             };
             each(executor, &pasts, of_past).into_iter().collect::<Result<Vec<_>, IdentificationError>>()
         };
@@ -104,11 +104,11 @@ impl SubspaceSettings {
         Projections { pole, past, spacing_s: SPACING / self.highest }
     }
 
-    /// Whether the pieces give rows enough for a past window.
-    fn is_fed(&self, pieces: &[Segment], past: usize) -> bool {
-        let channels = pieces.first().map_or(0, |piece| piece.inputs.ncols() + piece.outputs.ncols());
+    /// Whether the segments give rows enough for a past window.
+    fn has_rows_for(&self, segments: &[Segment], past: usize) -> bool {
+        let channels = segments.first().map_or(0, |segment| segment.inputs.ncols() + segment.outputs.ncols());
         let slowest = self.poles.iter().copied().fold(f64::INFINITY, f64::min);
-        self.projections(slowest, past).count(pieces) >= LEAST_ROWS * (past + 1) * channels
+        self.projections(slowest, past).count(segments) >= LEAST_ROWS * (past + 1) * channels
     }
 
     fn candidate(
@@ -116,11 +116,11 @@ impl SubspaceSettings {
         factor: &TriangularFactor,
         pole: f64,
         past: usize,
-        pieces: &[Segment],
+        segments: &[Segment],
         likelihood: &Likelihood,
     ) -> Option<Candidate> {
-        let piece = pieces.first()?;
-        let channels = (piece.inputs.ncols(), piece.outputs.ncols());
+        let segment = segments.first()?;
+        let channels = (segment.inputs.ncols(), segment.outputs.ncols());
         let subspace = Subspace::new(factor, pole, channels, past, PREDICTOR)?;
         let order = self.orders.iter().copied().min_by_key(|order| order.abs_diff(RANKING_ORDER))?;
         let cost = likelihood.cost(&self.model(&subspace, order)?)?;
@@ -142,7 +142,7 @@ impl SubspaceSettings {
 /// Greatest relative distance of a stable pole from one of the order before.
 const STABLE: f64 = 0.05;
 
-/// A pole of the unpolished model of an order.
+/// A pole of the unrefined model of an order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StabilisationPoint {
     /// Order of the model.

@@ -2,14 +2,18 @@
 
 use super::*;
 use nalgebra::DMatrix;
-use std::fmt;
 
 /// Something that speaks against the model or a part of it, with what an action against it needs.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum IdentificationCaution {
     /// Something in the records themselves.
-    Records(RecordCaution),
+    #[error(transparent)]
+    Records(#[from] RecordCaution),
     /// An input was not moved, or only together with others.
+    #[error(
+        "{signal} was not swept, or only with another input (partial coherence {partial_coherence:.2}): its column is not \
+                 identified"
+    )]
     NotSwept {
         /// The input.
         signal: Signal,
@@ -17,11 +21,17 @@ pub enum IdentificationCaution {
         partial_coherence: f64,
     },
     /// Inputs were moved together.
+    #[error("the inputs were not moved independently (condition number {condition:.0}): sweep them one after another")]
     MovedTogether {
         /// Median condition number of their spectral matrix.
         condition: f64,
     },
     /// An end of the band shows nothing: no input moves any output there.
+    #[error(
+        "{} no input moves any output enough to be seen (partial coherence below {TRUSTED_COHERENCE}): the models are guesses \
+                 there. Narrow the band",
+        hidden_ends(*band, *shown)
+    )]
     BandNotShown {
         /// The band asked for \[rad/s\].
         band: [f64; 2],
@@ -29,6 +39,7 @@ pub enum IdentificationCaution {
         shown: [f64; 2],
     },
     /// An output vibrates above the band, so that the projections were filtered lower.
+    #[error("{percent:.0} % of {signal} is vibration above the band: CT-PBSID was run below {cut_off:.0} rad/s")]
     Vibration {
         /// The output.
         signal: Signal,
@@ -38,6 +49,10 @@ pub enum IdentificationCaution {
         cut_off: f64,
     },
     /// The model leaves much of all records.
+    #[error(
+        "the model leaves {cost:.1} times what noise explains, most of it in {record} and in {signal}: non-linear, wrongly \
+                 aligned in time, or a missing input"
+    )]
     Inadequate {
         /// Cost per degree of freedom; 1 is adequate.
         cost: f64,
@@ -47,6 +62,10 @@ pub enum IdentificationCaution {
         signal: Signal,
     },
     /// The model leaves much of one record.
+    #[error(
+        "{name} is unlike the others: the model leaves {cost:.1} times what noise explains. Another trim, a large amplitude or \
+                 a gust: it can be left out"
+    )]
     UnlikeRecord {
         /// Which record, counted from 0.
         record: usize,
@@ -56,6 +75,9 @@ pub enum IdentificationCaution {
         cost: f64,
     },
     /// Without one record the model is another.
+    #[error(
+        "without {name} the model changes {ratio:.0} times more than without another record: look at it, or leave it out"
+    )]
     DecisiveRecord {
         /// Which record, counted from 0.
         record: usize,
@@ -65,6 +87,10 @@ pub enum IdentificationCaution {
         ratio: f64,
     },
     /// A channel seems to be logged late in one record.
+    #[error(
+        "{name}: {signal} seems to be logged {:.0} ms {}. That delay can be taken out",
+        1e3 * delay_s.abs(), late_or_early(*delay_s)
+    )]
     Late {
         /// Which record, counted from 0.
         record: usize,
@@ -76,6 +102,11 @@ pub enum IdentificationCaution {
         delay_s: f64,
     },
     /// The criterion still falls at the highest order tried.
+    #[error(
+        "a higher order than {order} would fit still better: there is more in the band than that many states. Narrow the band, \
+                 say to {:.1} rad/s",
+        narrower[1]
+    )]
     OrderLimit {
         /// The highest order.
         order: usize,
@@ -83,112 +114,56 @@ pub enum IdentificationCaution {
         narrower: [f64; 2],
     },
     /// The model fits what was held out less well than what it was fitted to.
+    #[error(
+        "what was held out fits {ratio:.2} times less well than the records of the fit: the model may be fitted to their noise, \
+                 or the aircraft was flown differently"
+    )]
     HeldOut {
         /// Cost per degree of freedom on the held-out records over that of the fit.
         ratio: f64,
     },
     /// The records weigh differently because their turbulence does.
+    #[error("the records are unlike in noise (by {ratio:.1}): they were weighed accordingly")]
     Reweighed {
         /// Greatest over least cost per degree of freedom before.
         ratio: f64,
     },
     /// The held-out records cannot be compared with the model in time.
+    #[error("the model was not compared with the held-out records in time: {why}")]
     NotValidated {
         /// Why.
         why: ValidationError,
     },
     /// Responses that are not identified.
+    #[error("{} not identified: one standard deviation is over 3 dB", responses_are(pairs))]
     PairsNotIdentified {
         /// Output and input of each.
         pairs: Vec<[Signal; 2]>,
     },
 }
 
-impl fmt::Display for IdentificationCaution {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Records(caution) => caution.fmt(f),
-            Self::NotSwept { signal, partial_coherence } => {
-                write!(
-                    f,
-                    "{signal} was not swept, or only with another input (partial coherence {partial_coherence:.2}): "
-                )?;
-                f.write_str("its column is not identified")
-            }
-            Self::MovedTogether { condition } => {
-                write!(f, "the inputs were not moved independently (condition number {condition:.0}): ")?;
-                f.write_str("sweep them one after another")
-            }
-            Self::BandNotShown { band, shown } => {
-                let above = (shown[1] < band[1]).then(|| format!("above {:.1} rad/s", shown[1]));
-                let below = (shown[0] > band[0]).then(|| format!("below {:.2} rad/s", shown[0]));
-                let places: Vec<String> = below.into_iter().chain(above).collect();
-                write!(f, "{} no input moves any output enough to be seen ", places.join(" and "))?;
-                write!(
-                    f,
-                    "(partial coherence below {TRUSTED_COHERENCE}): the models are guesses there. Narrow the band"
-                )
-            }
-            Self::Vibration { signal, percent, cut_off } => {
-                write!(
-                    f,
-                    "{percent:.0} % of {signal} is vibration above the band: CT-PBSID was run below {cut_off:.0} rad/s"
-                )
-            }
-            Self::Inadequate { cost, record, signal } => {
-                write!(
-                    f,
-                    "the model leaves {cost:.1} times what noise explains, most of it in {record} and in {signal}: "
-                )?;
-                f.write_str("non-linear, wrongly aligned in time, or a missing input")
-            }
-            Self::UnlikeRecord { name, cost, .. } => {
-                write!(f, "{name} is unlike the others: the model leaves {cost:.1} times what noise explains. ")?;
-                f.write_str("Another trim, a large amplitude or a gust: it can be left out")
-            }
-            Self::DecisiveRecord { name, ratio, .. } => {
-                write!(
-                    f,
-                    "without {name} the model changes {ratio:.0} times more than without another record: look at it, "
-                )?;
-                f.write_str("or leave it out")
-            }
-            Self::Late { name, signal, delay_s, .. } => {
-                let (size, how) = (1e3 * delay_s.abs(), if *delay_s < 0.0 { "early" } else { "late" });
-                write!(f, "{name}: {signal} seems to be logged {size:.0} ms {how}. That delay can be taken out")
-            }
-            Self::OrderLimit { order, narrower } => {
-                write!(
-                    f,
-                    "a higher order than {order} would fit still better: there is more in the band than that many "
-                )?;
-                write!(f, "states. Narrow the band, say to {:.1} rad/s", narrower[1])
-            }
-            Self::HeldOut { ratio } => {
-                write!(f, "what was held out fits {ratio:.2} times less well than the records of the fit: ")?;
-                f.write_str("the model may be fitted to their noise, or the aircraft was flown differently")
-            }
-            Self::Reweighed { ratio } => {
-                write!(f, "the records are unlike in noise (by {ratio:.1}): they were weighed accordingly")
-            }
-            Self::NotValidated { why } => {
-                write!(f, "the model was not compared with the held-out records in time: {why}")
-            }
-            Self::PairsNotIdentified { pairs } => {
-                let names: Vec<_> = pairs.iter().map(|[output, input]| format!("{input} to {output}")).collect();
-                let (last, most) = names.split_last().map_or(("", &[][..]), |(last, most)| (last.as_str(), most));
-                let verb = if most.is_empty() { "is" } else { "are" };
-                let and = if most.is_empty() { "" } else { " and " };
-                write!(f, "{}{and}{last} {verb} not identified: one standard deviation is over 3 dB", most.join(", "))
-            }
-        }
-    }
+/// `below 0.80 rad/s and above 8.0 rad/s`: the ends of a band that are not shown.
+fn hidden_ends(band: [f64; 2], shown: [f64; 2]) -> String {
+    let below = (shown[0] > band[0]).then(|| format!("below {:.2} rad/s", shown[0]));
+    let above = (shown[1] < band[1]).then(|| format!("above {:.1} rad/s", shown[1]));
+    below.into_iter().chain(above).collect::<Vec<String>>().join(" and ")
+}
+
+/// `LON to P, LAT to P and LON to Q are`.
+fn responses_are(pairs: &[[Signal; 2]]) -> String {
+    let names: Vec<String> = pairs.iter().map(|[output, input]| format!("{input} to {output}")).collect();
+    format!("{} {}", listed(&names), if names.len() == 1 { "is" } else { "are" })
+}
+
+/// `late` or `early`.
+pub(crate) fn late_or_early(delay_s: f64) -> &'static str {
+    if delay_s < 0.0 { "early" } else { "late" }
 }
 
 // What the engineer should know of the flight records.
 
 /// A channel with more equal consecutive samples than this while it moves is a stair (M14, 1.3).
-const STAIR: f64 = 0.5;
+const HELD: f64 = 0.5;
 /// Equal samples for longer than this are a channel that does not move, and no stair \[s\].
 const STANDING_S: f64 = 1.0;
 /// With fewer samples than this in motion nothing is said about stairs.
@@ -199,9 +174,10 @@ const TOGETHER: f64 = 0.99;
 const COPY: f64 = 0.9999;
 
 /// Something in the flight records that may spoil the identification, or that was done to them.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RecordCaution {
     /// A record with uneven sample times was interpolated, as allowed.
+    #[error("{record}: the sample time varies by {percent:.0} %; it was interpolated to even steps")]
     Resampled {
         /// The record's name.
         record: String,
@@ -209,7 +185,8 @@ pub enum RecordCaution {
         percent: f64,
     },
     /// What is left between two gaps is too short.
-    PieceDropped {
+    #[error("{record}: {length_s:.1} s from {start_s:.2} s were left out, too short between gaps")]
+    SegmentDropped {
         /// The record's name.
         record: String,
         /// Where it begins \[s\].
@@ -218,12 +195,18 @@ pub enum RecordCaution {
         length_s: f64,
     },
     /// Nothing of a record is used.
+    #[error("{record}: nothing of it could be used")]
     RecordUnused {
         /// The record's name.
         record: String,
     },
     /// Most consecutive samples of a channel in motion are equal.
-    Stair {
+    #[error(
+        "{signal}: {percent:.0} % of consecutive samples are equal, it changes every {:.0} ms. Say which it is: {}or stairs that \
+                 are right as they are (nothing done, as now)",
+        1e3 * hold_s, hold_choices(signal.role, 1e3 * hold_s)
+    )]
+    SampleHold {
         /// The channel.
         signal: Signal,
         /// Share of equal samples \[%\].
@@ -232,6 +215,7 @@ pub enum RecordCaution {
         hold_s: f64,
     },
     /// A value that cannot be right in the channel's unit.
+    #[error("{signal} reaches {greatest:.3}, beyond {limit}: check its unit")]
     UnlikelyUnit {
         /// The channel.
         signal: Signal,
@@ -241,6 +225,10 @@ pub enum RecordCaution {
         limit: f64,
     },
     /// Two inputs always move together.
+    #[error(
+        "{} always moved together (correlation {correlation:.3}): their effects cannot be told apart",
+        names(signals)
+    )]
     MovedTogether {
         /// The inputs.
         signals: [Signal; 2],
@@ -248,6 +236,9 @@ pub enum RecordCaution {
         correlation: f64,
     },
     /// An output is a copy of another channel.
+    #[error(
+        "{copy} is a copy of the {} {of}: leave it out", of.role
+    )]
     Copy {
         /// The output.
         copy: Signal,
@@ -256,88 +247,47 @@ pub enum RecordCaution {
     },
 }
 
-impl fmt::Display for RecordCaution {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Resampled { record, percent } => {
-                write!(f, "{record}: the sample time varies by {percent:.0} %; it was interpolated to even steps")
-            }
-            Self::PieceDropped { record, start_s, length_s } => {
-                write!(f, "{record}: {length_s:.1} s from {start_s:.2} s were left out, too short between gaps")
-            }
-            Self::RecordUnused { record } => write!(f, "{record}: nothing of it could be used"),
-            Self::Stair { signal, percent, hold_s } => stair(f, signal, *percent, 1e3 * hold_s),
-            Self::UnlikelyUnit { signal, greatest, limit } => {
-                write!(f, "{signal} reaches {greatest:.3}, beyond {limit}: check its unit")
-            }
-            Self::MovedTogether { signals, correlation } => {
-                let names = names(signals);
-                write!(
-                    f,
-                    "{names} always moved together (correlation {correlation:.3}): their effects cannot be told apart"
-                )
-            }
-            Self::Copy { copy, of } => write!(f, "{copy} is a copy of the {} {of}: leave it out", of.role),
-        }
-    }
+/// What the steps in a channel may be, by whether it is an input.
+fn hold_choices(role: Role, hold_ms: f64) -> String {
+    let half = 0.5 * hold_ms;
+    let command = format!("a command held and logged once a hold (moved {half:.0} ms later), ");
+    let command = if role == Role::Input { command } else { String::new() };
+    format!("{command}a slow sensor (only fresh samples kept, or moved {half:.0} ms earlier), ")
 }
 
-fn stair(f: &mut fmt::Formatter<'_>, signal: &Signal, percent: f64, hold_ms: f64) -> fmt::Result {
-    write!(
-        f,
-        "{signal}: {percent:.0} % of consecutive samples are equal, it changes every {hold_ms:.0} ms. Say which it is: "
-    )?;
-    if signal.role == Role::Input {
-        write!(f, "a command held and logged once a hold (moved {:.0} ms later), ", 0.5 * hold_ms)?;
-    }
-    write!(f, "a slow sensor (only fresh samples kept, or moved {:.0} ms earlier), ", 0.5 * hold_ms)?;
-    f.write_str("or stairs that are right as they are (nothing done, as now)")
-}
-
-/// The cautions about channels, from the records as logged and the pieces made of them.
+/// The cautions about channels, from the records as logged and the segments made of them.
 pub(super) fn channel_cautions(
     records: &[FlightRecord],
-    pieces: &[Segment],
+    segments: &[Segment],
     preparation: &Preparation,
 ) -> Vec<RecordCaution> {
     let mut cautions = Vec::new();
     for (signal, channel) in preparation.channels() {
-        let samples = |record| samples(record, &signal);
-        let greatest = pieces.iter().map(|piece| column(piece, &signal).amax()).fold(0.0, f64::max);
+        let of_record = |record| samples(record, &signal);
+        let greatest = segments.iter().map(|segment| segment.channel(&signal).amax()).fold(0.0, f64::max);
         if let Some(limit) = channel.limit.filter(|limit| greatest > *limit) {
             cautions.push(RecordCaution::UnlikelyUnit { signal: signal.clone(), greatest, limit });
         }
         if channel.hold == Hold::None
-            && let Some((share, hold_s)) = stairs(records.iter().map(samples))
+            && let Some((share, hold_s)) = sample_hold(records.iter().map(of_record))
         {
-            cautions.push(RecordCaution::Stair { signal, percent: 100.0 * share, hold_s });
+            cautions.push(RecordCaution::SampleHold { signal, percent: 100.0 * share, hold_s });
         }
     }
-    cautions.extend(correlated(pieces, preparation));
+    cautions.extend(correlated(segments, preparation));
     cautions
 }
 
 /// Stamps and values of a channel in `record` where both are there.
 fn samples(record: &FlightRecord, signal: &Signal) -> Vec<(f64, f64)> {
-    let column = match signal.role {
-        Role::Input => record.inputs.column(signal.index),
-        Role::Output => record.outputs.column(signal.index),
-    };
+    let column = record.channel(signal);
     let stamped = record.time_s.iter().copied().zip(column.iter().copied());
     stamped.filter(|(time, value)| time.is_finite() && value.is_finite()).collect()
 }
 
-/// A channel of a piece.
-fn column<'a>(piece: &'a Segment, signal: &Signal) -> nalgebra::DVectorView<'a, f64> {
-    match signal.role {
-        Role::Input => piece.inputs.column(signal.index),
-        Role::Output => piece.outputs.column(signal.index),
-    }
-}
-
 /// Share of equal consecutive samples in a channel while it moves, and the median time between changes \[s\]; none where
 /// the share is a half or less.
-fn stairs(records: impl Iterator<Item = Vec<(f64, f64)>>) -> Option<(f64, f64)> {
+fn sample_hold(records: impl Iterator<Item = Vec<(f64, f64)>>) -> Option<(f64, f64)> {
     let (mut samples, mut steps) = (0, Vec::new());
     for record in records {
         let runs: Vec<_> = record.chunk_by(|a, b| a.1 == b.1).collect();
@@ -350,17 +300,17 @@ fn stairs(records: impl Iterator<Item = Vec<(f64, f64)>>) -> Option<(f64, f64)> 
         }
     }
     let share = 1.0 - steps.len() as f64 / samples.max(1) as f64;
-    (samples >= SAMPLES_IN_MOTION && share > STAIR).then(|| (share, median(&mut steps)))
+    (samples >= SAMPLES_IN_MOTION && share > HELD).then(|| (share, median(&mut steps)))
 }
 
-/// Channels that move together, by their correlation over all pieces.
-fn correlated(pieces: &[Segment], preparation: &Preparation) -> Vec<RecordCaution> {
+/// Channels that move together, by their correlation over all segments.
+fn correlated(segments: &[Segment], preparation: &Preparation) -> Vec<RecordCaution> {
     let signals: Vec<Signal> = preparation.channels().map(|(signal, _)| signal).collect();
     let mut covariance = DMatrix::zeros(signals.len(), signals.len());
-    for piece in pieces {
-        let mut centred = DMatrix::zeros(piece.inputs.nrows(), signals.len());
+    for segment in segments {
+        let mut centred = DMatrix::zeros(segment.inputs.nrows(), signals.len());
         for (signal, mut centre) in signals.iter().zip(centred.column_iter_mut()) {
-            centre.copy_from(&column(piece, signal));
+            centre.copy_from(&segment.channel(signal));
             let mean = centre.mean();
             centre.add_scalar_mut(-mean);
         }

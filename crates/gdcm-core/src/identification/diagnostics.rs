@@ -286,9 +286,9 @@ pub(super) fn fits_of_records(
     held_out: bool,
 ) -> Vec<RecordFit> {
     let of_record = |record: usize| {
-        let pieces = || likelihood.pieces.iter().zip(parts).filter(move |(piece, _)| piece.record == record);
-        let freedom = pieces().map(|(piece, _)| piece.freedom(model.order())).sum();
-        let cost = pieces().map(|(_, part)| part.cost).sum::<f64>() / freedom as f64;
+        let segments = || likelihood.segments.iter().zip(parts).filter(move |(segment, _)| segment.record == record);
+        let freedom = segments().map(|(segment, _)| segment.freedom(model.order())).sum();
+        let cost = segments().map(|(_, part)| part.cost).sum::<f64>() / freedom as f64;
         (freedom > 0).then_some(RecordFit { record, cost, freedom, held_out })
     };
     likelihood.records().into_iter().filter_map(of_record).collect()
@@ -306,8 +306,8 @@ fn output_costs(likelihood: &Likelihood, model: &BlockModel, parts: &[SegmentCos
     let outputs = model.c.nrows();
     let freedom = likelihood.freedom(model.order()) as f64 / outputs as f64;
     let mut sums = vec![0.0; outputs];
-    for (piece, part) in likelihood.pieces.iter().zip(parts) {
-        for (weight, residual) in piece.weights.iter().zip(part.residual.column_iter()) {
+    for (segment, part) in likelihood.segments.iter().zip(parts) {
+        for (weight, residual) in segment.weights.iter().zip(part.residual.column_iter()) {
             // The Cholesky factor of Cv / 2, by which the residual goes back to its outputs.
             let Some(factor) = weight.solve_lower_triangular(&nalgebra::DMatrix::identity(outputs, outputs)) else {
                 continue;

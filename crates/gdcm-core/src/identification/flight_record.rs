@@ -1,6 +1,6 @@
-//! A flight record as it was logged, and the pieces of it that identification uses.
+//! A flight record as it was logged, and the segments of it that identification uses.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVectorView};
 use std::fmt;
 
 /// A flight record: samples of every input and output at stamped times, in the units of the file.
@@ -16,7 +16,7 @@ pub struct FlightRecord {
     pub outputs: DMatrix<f64>,
 }
 
-/// A piece of a flight record without gaps, on a uniform grid of time, all samples finite.
+/// A segment of a flight record without gaps, on a uniform grid of time, all samples finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Segment {
     /// Which of the records it is of, counted from 0.
@@ -31,9 +31,29 @@ pub struct Segment {
     pub outputs: DMatrix<f64>,
 }
 
+impl FlightRecord {
+    /// The samples of a channel.
+    pub(super) fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
+        match signal.role {
+            Role::Input => self.inputs.column(signal.index),
+            Role::Output => self.outputs.column(signal.index),
+        }
+    }
+}
+
+impl Segment {
+    /// The samples of a channel.
+    pub(super) fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
+        match signal.role {
+            Role::Input => self.inputs.column(signal.index),
+            Role::Output => self.outputs.column(signal.index),
+        }
+    }
+}
+
 // What a column of a flight record is.
 
-/// Whether a signal drives the aircraft or answers.
+/// Whether a signal goes into the aircraft or comes out of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Role {
     /// A measured input.
@@ -67,13 +87,15 @@ impl fmt::Display for Signal {
 
 /// The names of `signals` in a row: `P, Q and R`.
 pub(super) fn names(signals: &[Signal]) -> String {
-    match signals {
+    listed(&signals.iter().map(|signal| signal.name.as_str()).collect::<Vec<_>>())
+}
+
+/// Words in a row: `P, Q and R`.
+pub(super) fn listed<S: AsRef<str> + std::borrow::Borrow<str>>(words: &[S]) -> String {
+    match words {
         [] => String::new(),
-        [one] => one.name.clone(),
-        [most @ .., last] => {
-            let most: Vec<_> = most.iter().map(|signal| signal.name.as_str()).collect();
-            format!("{} and {last}", most.join(", "))
-        }
+        [one] => one.as_ref().to_owned(),
+        [most @ .., last] => format!("{} and {}", most.join(", "), last.as_ref()),
     }
 }
 
@@ -96,8 +118,8 @@ pub enum Cause {
         /// Which.
         signals: Vec<Signal>,
     },
-    /// What is left between two gaps is shorter than the least piece.
-    PieceTooShort {
+    /// What is left between two gaps is shorter than the least segment.
+    SegmentTooShort {
         /// Its length \[s\].
         length_s: f64,
     },
@@ -140,7 +162,7 @@ impl fmt::Display for Gap {
             Cause::RowsMissing => f.write_str("rows missing")?,
             Cause::SamplesMissing { signals } => write!(f, "{} missing", names(signals))?,
             Cause::Frozen { signals } => write!(f, "{} frozen", names(signals))?,
-            Cause::PieceTooShort { length_s } => write!(f, "only {length_s:.1} s between gaps")?,
+            Cause::SegmentTooShort { length_s } => write!(f, "only {length_s:.1} s between gaps")?,
         }
         f.write_str(if self.treatment == Treatment::Bridged { ", bridged" } else { ", left out" })
     }

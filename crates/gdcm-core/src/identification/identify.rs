@@ -57,9 +57,9 @@ pub struct Identification {
 /// Identifies one flight condition from its records (M14, section 7).
 ///
 /// ```text
-/// 1  pieces of the records, scales, spectra, measured response, covariance of the noise                10 %
+/// 1  segments of the records, scales, spectra, measured response, covariance of the noise                10 %
 /// 2  CT-PBSID for each Laguerre pole and past window; models of all orders from the best two           40 %
-/// 3  order by BIC of polished models; the chosen one polished further, records weighed by their noise  80 %
+/// 3  order by BIC of refined models; the chosen one refined further, records weighed by their noise  80 %
 /// 4  covariance, bands, bundle, validation                                                            100 %
 /// ```
 ///
@@ -150,12 +150,12 @@ fn report(
         let name = format!("{REFINED}, without {}", diagnostics.record_name(one.record));
         model(name, REFINED, &one.model, Some(one.record))
     }));
-    let validation = match data.held_out_pieces.as_slice() {
+    let validation = match data.held_out_segments.as_slice() {
         [] => None,
-        pieces => {
+        segments => {
             let settings = ValidationSettings::filtered(options.highest());
             let model = data.in_units(&fit.model).ok_or_else(no_model)?;
-            let validation = validate(&model, pieces, &settings, executor);
+            let validation = validate(&model, segments, &settings, executor);
             validation.map_err(|why| cautions.push(IdentificationCaution::NotValidated { why })).ok()
         }
     };

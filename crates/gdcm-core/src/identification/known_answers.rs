@@ -40,7 +40,7 @@ pub(super) fn response(value: &Value) -> Vec<DMatrix<Complex<f64>>> {
 
 /// The lines of all records of a case, of noise one.
 pub(super) fn known_records(known: &Value) -> Likelihood<'static> {
-    let pieces = known["records"].as_array().unwrap().iter().enumerate().map(|(record, known)| {
+    let segments = known["records"].as_array().unwrap().iter().enumerate().map(|(record, known)| {
         let spectrum = Spectrum {
             record,
             duration_s: number(&known["T"]),
@@ -51,7 +51,7 @@ pub(super) fn known_records(known: &Value) -> Likelihood<'static> {
         let weights = vec![DMatrix::identity(2, 2); spectrum.omega.len()];
         SpectralLines::weighted(&spectrum, weights)
     });
-    Likelihood { pieces: pieces.collect(), executor: &Sequential }
+    Likelihood { segments: segments.collect(), executor: &Sequential }
 }
 
 /// The response of a model at a frequency.

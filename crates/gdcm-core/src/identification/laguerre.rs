@@ -62,12 +62,12 @@ impl LaguerreBank {
 // ```text
 // row t_i = [z_0(t_i) | z_1(t_i) | ... | z_p(t_i)],   z_k = [u~_k; y~_k] the projections of inputs and outputs
 //
-// 1  instants t_i every `spacing` s, but for the last min((2p + 4)/a, 0.3 T) s of a piece
-// 2  from each column of a piece what [1, t_i] explains is taken off: trim and drift vanish exactly
-// 3  R of the rows of each piece, merged in the order of the pieces
+// 1  instants t_i every `spacing` s, but for the last min((2p + 4)/a, 0.3 T) s of a segment
+// 2  from each column of a segment what [1, t_i] explains is taken off: trim and drift vanish exactly
+// 3  R of the rows of each segment, merged in the order of the segments
 // ```
 
-/// Share of a piece that the projections' unfinished ends may cost at most.
+/// Share of a segment that the projections' unfinished ends may cost at most.
 const LARGEST_END: f64 = 0.3;
 
 /// Which projections, and how far apart.
@@ -82,19 +82,19 @@ pub(super) struct Projections {
 }
 
 impl Projections {
-    /// The rows of one piece, with its trim and drift.
-    pub(super) fn rows(&self, piece: &Segment) -> DMatrix<f64> {
-        let samples = piece.inputs.nrows();
-        let duration = samples as f64 * piece.sample_time_s;
+    /// The rows of one segment, with its trim and drift.
+    pub(super) fn rows(&self, segment: &Segment) -> DMatrix<f64> {
+        let samples = segment.inputs.nrows();
+        let duration = samples as f64 * segment.sample_time_s;
         let end = ((2.0 * self.past as f64 + 4.0) / self.pole).min(LARGEST_END * duration);
-        let step = ((self.spacing_s / piece.sample_time_s).round() as usize).max(1);
-        let last = samples.saturating_sub((end / piece.sample_time_s).ceil() as usize);
+        let step = ((self.spacing_s / segment.sample_time_s).round() as usize).max(1);
+        let last = samples.saturating_sub((end / segment.sample_time_s).ceil() as usize);
         let instants: Vec<usize> = (0..last).step_by(step).collect();
-        let (inputs, outputs) = (piece.inputs.ncols(), piece.outputs.ncols());
+        let (inputs, outputs) = (segment.inputs.ncols(), segment.outputs.ncols());
         let channels = inputs + outputs;
         let mut rows = DMatrix::zeros(instants.len(), (self.past + 1) * channels);
-        let bank = LaguerreBank::new(self.pole, piece.sample_time_s);
-        for (channel, signal) in piece.inputs.column_iter().chain(piece.outputs.column_iter()).enumerate() {
+        let bank = LaguerreBank::new(self.pole, segment.sample_time_s);
+        for (channel, signal) in segment.inputs.column_iter().chain(segment.outputs.column_iter()).enumerate() {
             let end = signal.iter().next_back().copied().unwrap_or_default();
             let signal: Vec<f64> = signal.iter().map(|sample| sample - end).collect();
             let projections = bank.projections(&signal, self.past);
@@ -106,23 +106,23 @@ impl Projections {
         rows
     }
 
-    /// The triangular factor of the data matrix of all pieces.
+    /// The triangular factor of the data matrix of all segments.
     ///
-    /// The same to the last bit on any number of threads: which pieces are factored together does not depend on it.
-    pub(super) fn factor(&self, pieces: &[Segment], executor: &dyn Executor) -> TriangularFactor {
-        /// Two parts keep two cores busy with three poles; merging a further one costs as much as a piece of 6 s.
+    /// The same to the last bit on any number of threads: which segments are factored together does not depend on it.
+    pub(super) fn factor(&self, segments: &[Segment], executor: &dyn Executor) -> TriangularFactor {
+        /// Two parts keep two cores busy with three poles; merging a further one costs as much as a segment of 6 s.
         const PARTS: usize = 2;
-        let part = |pieces: &[Segment]| {
-            let channels = pieces.first().map_or(0, |piece| piece.inputs.ncols() + piece.outputs.ncols());
+        let part = |segments: &[Segment]| {
+            let channels = segments.first().map_or(0, |segment| segment.inputs.ncols() + segment.outputs.ncols());
             let mut factor = TriangularFactor::empty((self.past + 1) * channels);
-            for piece in pieces {
-                let mut rows = self.rows(piece);
+            for segment in segments {
+                let mut rows = self.rows(segment);
                 take_off_trend(&mut rows);
                 factor.append(&rows);
             }
             factor
         };
-        let mut parts = each(executor, pieces.chunks(pieces.len().div_ceil(PARTS).max(1)), part).into_iter();
+        let mut parts = each(executor, segments.chunks(segments.len().div_ceil(PARTS).max(1)), part).into_iter();
         let Some(mut factor) = parts.next() else { return TriangularFactor::empty(0) };
         for other in parts {
             factor.merge(&other);
@@ -130,14 +130,14 @@ impl Projections {
         factor
     }
 
-    /// Rows that the pieces give.
-    pub(super) fn count(&self, pieces: &[Segment]) -> usize {
-        let of_piece = |piece: &Segment| {
-            let duration = piece.inputs.nrows() as f64 * piece.sample_time_s;
+    /// Rows that the segments give.
+    pub(super) fn count(&self, segments: &[Segment]) -> usize {
+        let of_segment = |segment: &Segment| {
+            let duration = segment.inputs.nrows() as f64 * segment.sample_time_s;
             let end = ((2.0 * self.past as f64 + 4.0) / self.pole).min(LARGEST_END * duration);
-            ((duration - end) / self.spacing_s.max(piece.sample_time_s)) as usize
+            ((duration - end) / self.spacing_s.max(segment.sample_time_s)) as usize
         };
-        pieces.iter().map(of_piece).sum()
+        segments.iter().map(of_segment).sum()
     }
 }
 

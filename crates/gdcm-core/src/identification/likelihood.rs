@@ -20,7 +20,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 /// Share of the greatest eigenvalue of a transient's Gram matrix below which its columns depend on each other.
 pub(super) const DEPENDENT: f64 = 1e-12;
 
-/// The lines of one piece of a record, whitened.
+/// The lines of one segment of a record, whitened.
 #[derive(Clone, Debug)]
 pub(super) struct SpectralLines {
     /// Which of the records it is of, counted from 0.
@@ -39,7 +39,7 @@ pub(super) struct SpectralLines {
     drift: DMatrix<f64>,
 }
 
-/// A piece's part of the cost.
+/// A segment's part of the cost.
 #[derive(Clone, Debug)]
 pub(super) struct SegmentCost {
     /// `J_r`.
@@ -93,7 +93,7 @@ impl SpectralLines {
         (2 * outputs * self.omega.len()).saturating_sub(order + 2 * outputs)
     }
 
-    /// This piece's part of the cost; none where it is not finite.
+    /// This segment's part of the cost; none where it is not finite.
     pub(super) fn cost(&self, model: &BlockModel) -> Option<SegmentCost> {
         let (outputs, lines) = self.outputs.shape();
         let order = model.order();
@@ -139,43 +139,43 @@ impl SpectralLines {
     }
 }
 
-/// The pieces of all records that a model is fitted to.
+/// The segments of all records that a model is fitted to.
 #[derive(Clone)]
 pub(super) struct Likelihood<'a> {
-    /// In the order of the pieces.
-    pub(super) pieces: Vec<SpectralLines>,
-    /// Who works out the parts of the pieces.
+    /// In the order of the segments.
+    pub(super) segments: Vec<SpectralLines>,
+    /// Who works out the parts of the segments.
     pub(super) executor: &'a dyn Executor,
 }
 
 impl Likelihood<'_> {
     /// `N`: degrees of freedom for a model of an order.
     pub(super) fn freedom(&self, order: usize) -> usize {
-        self.pieces.iter().map(|piece| piece.freedom(order)).sum()
+        self.segments.iter().map(|segment| segment.freedom(order)).sum()
     }
 
-    /// Each piece's part of the cost; none where one is not finite.
+    /// Each segment's part of the cost; none where one is not finite.
     pub(super) fn parts(&self, model: &BlockModel) -> Option<Vec<SegmentCost>> {
-        each(self.executor, &self.pieces, |piece| piece.cost(model)).into_iter().collect()
+        each(self.executor, &self.segments, |segment| segment.cost(model)).into_iter().collect()
     }
 
-    /// `J`, summed in the order of the pieces.
+    /// `J`, summed in the order of the segments.
     pub(super) fn cost(&self, model: &BlockModel) -> Option<f64> {
         Some(self.parts(model)?.iter().map(|part| part.cost).sum())
     }
 
-    /// Numbers of the records that have pieces, ascending.
+    /// Numbers of the records that have segments, ascending.
     pub(super) fn records(&self) -> Vec<usize> {
-        let mut records: Vec<usize> = self.pieces.iter().map(|piece| piece.record).collect();
+        let mut records: Vec<usize> = self.segments.iter().map(|segment| segment.record).collect();
         records.sort_unstable();
         records.dedup();
         records
     }
 
-    /// The pieces of all records but one.
+    /// The segments of all records but one.
     pub(super) fn without(&self, record: usize) -> Self {
-        let pieces = self.pieces.iter().filter(|piece| piece.record != record).cloned().collect();
-        Self { pieces, executor: self.executor }
+        let segments = self.segments.iter().filter(|segment| segment.record != record).cloned().collect();
+        Self { segments, executor: self.executor }
     }
 }
 

@@ -73,7 +73,7 @@ pub fn log_spaced(lowest: f64, highest: f64, count: usize) -> Vec<f64> {
         .collect()
 }
 
-/// The response at each of `omegas` \[rad/s\] from the lines of all pieces together (M14, 2; after Pintelon, Schoukens,
+/// The response at each of `omegas` \[rad/s\] from the lines of all segments together (M14, 2; after Pintelon, Schoukens,
 /// Vandersteen & Barbe, Mech. Syst. Signal Process. 24, 2010, with the records' transients apart).
 ///
 /// Around each frequency, with `x = (omega_k - omega) / h`, the lines of record `r` obey

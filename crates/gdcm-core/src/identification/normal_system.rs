@@ -57,17 +57,17 @@ impl NormalSystem {
     }
 }
 
-/// The systems of all pieces at a model, in the order of the pieces; `parts` are the pieces' costs at it.
+/// The systems of all segments at a model, in the order of the segments; `parts` are the segments' costs at it.
 pub(super) fn normal_systems(
     likelihood: &Likelihood,
     model: &BlockModel,
     parts: &[SegmentCost],
 ) -> Option<Vec<NormalSystem>> {
-    let pieces = likelihood.pieces.iter().zip(parts);
-    each(likelihood.executor, pieces, |(lines, part)| Gram::new(lines, model, part).system()).into_iter().collect()
+    let segments = likelihood.segments.iter().zip(parts);
+    each(likelihood.executor, segments, |(lines, part)| Gram::new(lines, model, part).system()).into_iter().collect()
 }
 
-/// The vectors and scalars of one piece, and the Gram matrix that comes of them.
+/// The vectors and scalars of one segment, and the Gram matrix that comes of them.
 ///
 /// Columns are numbered: the parameters, then tau, c1, c0.
 struct Gram<'a> {
@@ -77,9 +77,9 @@ struct Gram<'a> {
     /// `W C R`, outputs x (n lines): n columns a line.
     resolvent: DMatrix<Complex<f64>>,
     /// `U` and 1, one column a line: the scalars of `B` and tau.
-    driven: DMatrix<Complex<f64>>,
+    resolvent_scalars: DMatrix<Complex<f64>>,
     /// `X`, `U`, 1/(j omega) and 1, one column a line: the scalars of `C`, `D`, c1 and c0.
-    fed: DMatrix<Complex<f64>>,
+    weight_scalars: DMatrix<Complex<f64>>,
     matrix: DMatrix<f64>,
     gradient: DVector<f64>,
 }
@@ -89,7 +89,8 @@ impl<'a> Gram<'a> {
         let (order, inputs, outputs) = (model.order(), model.b.ncols(), model.c.nrows());
         let count = lines.omega.len();
         let mut resolvent = DMatrix::zeros(outputs, order * count);
-        let (mut driven, mut fed) = (DMatrix::zeros(inputs + 1, count), DMatrix::zeros(order + inputs + 2, count));
+        let (mut resolvent_scalars, mut weight_scalars) =
+            (DMatrix::zeros(inputs + 1, count), DMatrix::zeros(order + inputs + 2, count));
         let mut cr = vec![Complex::default(); outputs * order];
         for (k, &omega) in lines.omega.iter().enumerate() {
             model.output_resolvent(omega, &mut cr);
@@ -98,25 +99,25 @@ impl<'a> Gram<'a> {
                 whiten(&lines.weights[k], column, |o, value| to[o] = value);
             }
             let input = lines.inputs.column(k);
-            driven.view_mut((0, k), (inputs, 1)).copy_from(&input);
-            driven[(inputs, k)] = Complex::from(1.0);
+            resolvent_scalars.view_mut((0, k), (inputs, 1)).copy_from(&input);
+            resolvent_scalars[(inputs, k)] = Complex::from(1.0);
             let mut x = model.b.map(Complex::from) * input + part.transient.map(Complex::from);
             model.resolve(omega, x.as_mut_slice());
-            fed.view_mut((0, k), (order, 1)).copy_from(&x);
-            fed.view_mut((order, k), (inputs, 1)).copy_from(&input);
-            fed[(order + inputs, k)] = Complex::new(0.0, -1.0 / omega);
-            fed[(order + inputs + 1, k)] = Complex::from(1.0);
+            weight_scalars.view_mut((0, k), (order, 1)).copy_from(&x);
+            weight_scalars.view_mut((order, k), (inputs, 1)).copy_from(&input);
+            weight_scalars[(order + inputs, k)] = Complex::new(0.0, -1.0 / omega);
+            weight_scalars[(order + inputs + 1, k)] = Complex::from(1.0);
         }
         let size = model.parameters() + order + 2 * outputs;
         let (matrix, gradient) = (DMatrix::zeros(size, size), DVector::zeros(model.parameters()));
-        Self { model, lines, residual: &part.residual, resolvent, driven, fed, matrix, gradient }
+        Self { model, lines, residual: &part.residual, resolvent, resolvent_scalars, weight_scalars, matrix, gradient }
     }
 
     /// The system with the transient eliminated; none where an iteration does not end.
     fn system(mut self) -> Option<NormalSystem> {
-        self.add_driven();
-        self.add_fed();
-        self.add_driven_with_fed();
+        self.add_resolvent();
+        self.add_weight();
+        self.add_resolvent_with_weight();
         self.add_blocks();
         self.add_gradient();
         let (size, parameters) = (self.matrix.nrows(), self.model.parameters());
@@ -129,24 +130,24 @@ impl<'a> Gram<'a> {
         Some(NormalSystem { matrix, gradient: self.gradient })
     }
 
-    /// Column of the vector `(W C R)_state` times the scalar `driven`.
-    fn of_driven(&self, state: usize, driven: usize) -> usize {
-        if driven < self.model.b.ncols() {
-            self.model.place_of_b(state, driven)
+    /// Column of the vector `(W C R)_state` times the scalar of this number.
+    fn resolvent_column(&self, state: usize, scalar: usize) -> usize {
+        if scalar < self.model.b.ncols() {
+            self.model.place_of_b(state, scalar)
         } else {
             self.model.parameters() + state
         }
     }
 
-    /// Column of the vector `W e_output` times the scalar `fed`.
-    fn of_fed(&self, output: usize, fed: usize) -> usize {
+    /// Column of the vector `W e_output` times the scalar of this number.
+    fn weight_column(&self, output: usize, scalar: usize) -> usize {
         let (order, inputs, outputs) = (self.model.order(), self.model.b.ncols(), self.model.c.nrows());
-        if fed < order {
-            self.model.place_of_c(output, fed)
-        } else if fed < order + inputs {
-            self.model.place_of_d(output, fed - order)
+        if scalar < order {
+            self.model.place_of_c(output, scalar)
+        } else if scalar < order + inputs {
+            self.model.place_of_d(output, scalar - order)
         } else {
-            self.model.parameters() + order + (fed - order - inputs) * outputs + output
+            self.model.parameters() + order + (scalar - order - inputs) * outputs + output
         }
     }
 
@@ -163,8 +164,8 @@ impl<'a> Gram<'a> {
     }
 
     /// `B` and tau with themselves.
-    fn add_driven(&mut self) {
-        let (order, scalars) = (self.model.order(), self.driven.nrows());
+    fn add_resolvent(&mut self) {
+        let (order, scalars) = (self.model.order(), self.resolvent_scalars.nrows());
         let pairs: Vec<_> = (0..order).flat_map(|i| (i..order).map(move |other| (i, other))).collect();
         let mut left = DMatrix::zeros(pairs.len(), 2 * self.lines.omega.len());
         for k in 0..self.lines.omega.len() {
@@ -175,17 +176,17 @@ impl<'a> Gram<'a> {
             }
         }
         let scalar_pairs: Vec<_> = (0..scalars).flat_map(|s| (0..scalars).map(move |t| (s, t))).collect();
-        let products = left * scalar_products(&self.driven, &self.driven, &scalar_pairs);
+        let products = left * scalar_products(&self.resolvent_scalars, &self.resolvent_scalars, &scalar_pairs);
         for (row, &(i, other)) in pairs.iter().enumerate() {
             for (column, &(s, t)) in scalar_pairs.iter().enumerate() {
-                self.put(self.of_driven(i, s), self.of_driven(other, t), products[(row, column)]);
+                self.put(self.resolvent_column(i, s), self.resolvent_column(other, t), products[(row, column)]);
             }
         }
     }
 
     /// `C`, `D`, c1 and c0 with themselves: `W'W` is real.
-    fn add_fed(&mut self) {
-        let (outputs, scalars) = (self.model.c.nrows(), self.fed.nrows());
+    fn add_weight(&mut self) {
+        let (outputs, scalars) = (self.model.c.nrows(), self.weight_scalars.nrows());
         let count = self.lines.omega.len();
         let pairs: Vec<_> = (0..outputs).flat_map(|o| (o..outputs).map(move |other| (o, other))).collect();
         let mut left = DMatrix::<f64>::zeros(pairs.len(), count);
@@ -196,16 +197,16 @@ impl<'a> Gram<'a> {
         }
         let scalar_pairs: Vec<_> = (0..scalars).flat_map(|s| (s..scalars).map(move |t| (s, t))).collect();
         let mut right = DMatrix::<f64>::zeros(scalar_pairs.len(), count);
-        for (k, fed) in self.fed.column_iter().enumerate() {
+        for (k, weight_scalars) in self.weight_scalars.column_iter().enumerate() {
             for (to, &(s, t)) in right.column_mut(k).iter_mut().zip(&scalar_pairs) {
-                *to = fed[s].re * fed[t].re + fed[s].im * fed[t].im;
+                *to = weight_scalars[s].re * weight_scalars[t].re + weight_scalars[s].im * weight_scalars[t].im;
             }
         }
         let products = left * right.transpose();
         for (row, &(o, other)) in pairs.iter().enumerate() {
             for (column, &(s, t)) in scalar_pairs.iter().enumerate() {
-                self.put(self.of_fed(o, s), self.of_fed(other, t), products[(row, column)]);
-                self.put(self.of_fed(o, t), self.of_fed(other, s), products[(row, column)]);
+                self.put(self.weight_column(o, s), self.weight_column(other, t), products[(row, column)]);
+                self.put(self.weight_column(o, t), self.weight_column(other, s), products[(row, column)]);
             }
         }
     }
@@ -218,7 +219,7 @@ impl<'a> Gram<'a> {
     }
 
     /// `B` and tau with `C`, `D`, c1 and c0.
-    fn add_driven_with_fed(&mut self) {
+    fn add_resolvent_with_weight(&mut self) {
         let (order, outputs) = (self.model.order(), self.model.c.nrows());
         let mut left = DMatrix::zeros(order * outputs, 2 * self.lines.omega.len());
         for k in 0..self.lines.omega.len() {
@@ -228,12 +229,12 @@ impl<'a> Gram<'a> {
                 (real[row], imaginary[row]) = (product.re, product.im);
             }
         }
-        let (drivers, feeders) = (self.driven.nrows(), self.fed.nrows());
-        let scalar_pairs: Vec<_> = (0..drivers).flat_map(|s| (0..feeders).map(move |t| (s, t))).collect();
-        let products = left * scalar_products(&self.driven, &self.fed, &scalar_pairs);
+        let (resolvent_count, weight_count) = (self.resolvent_scalars.nrows(), self.weight_scalars.nrows());
+        let scalar_pairs: Vec<_> = (0..resolvent_count).flat_map(|s| (0..weight_count).map(move |t| (s, t))).collect();
+        let products = left * scalar_products(&self.resolvent_scalars, &self.weight_scalars, &scalar_pairs);
         for row in 0..order * outputs {
             for (column, &(s, t)) in scalar_pairs.iter().enumerate() {
-                let (p, q) = (self.of_driven(row / outputs, s), self.of_fed(row % outputs, t));
+                let (p, q) = (self.resolvent_column(row / outputs, s), self.weight_column(row % outputs, t));
                 self.put(p, q, products[(row, column)]);
             }
         }
@@ -252,14 +253,14 @@ impl<'a> Gram<'a> {
     fn add_blocks(&mut self) {
         let (order, outputs) = (self.model.order(), self.model.c.nrows());
         let count = self.lines.omega.len();
-        let (drivers, feeders) = (self.driven.nrows(), self.fed.nrows());
+        let (resolvent_count, weight_count) = (self.resolvent_scalars.nrows(), self.weight_scalars.nrows());
         let columns = self.block_columns();
         for (p, &(vector, scalar, sign)) in columns.iter().enumerate() {
             let (mut with_resolvent, mut with_weight) =
                 (DMatrix::zeros(order, 2 * count), DMatrix::zeros(outputs, 2 * count));
             for k in 0..count {
                 // conj(s_p) goes into the left factor.
-                let s = self.fed[(scalar, k)].conj() * sign;
+                let s = self.weight_scalars[(scalar, k)].conj() * sign;
                 for i in 0..order {
                     let product = self.resolvent_product(k, vector, i) * s;
                     (with_resolvent[(i, 2 * k)], with_resolvent[(i, 2 * k + 1)]) = (product.re, -product.im);
@@ -269,15 +270,15 @@ impl<'a> Gram<'a> {
                     (with_weight[(o, 2 * k)], with_weight[(o, 2 * k + 1)]) = (product.re, -product.im);
                 }
             }
-            let by_driven = &with_resolvent * parts(&self.driven);
-            let by_fed = with_weight * parts(&self.fed);
+            let by_resolvent = &with_resolvent * parts(&self.resolvent_scalars);
+            let by_weight = with_weight * parts(&self.weight_scalars);
             for i in 0..order {
-                (0..drivers).for_each(|s| self.put(p, self.of_driven(i, s), by_driven[(i, s)]));
+                (0..resolvent_count).for_each(|s| self.put(p, self.resolvent_column(i, s), by_resolvent[(i, s)]));
             }
             for o in 0..outputs {
-                (0..feeders).for_each(|s| self.put(p, self.of_fed(o, s), by_fed[(o, s)]));
+                (0..weight_count).for_each(|s| self.put(p, self.weight_column(o, s), by_weight[(o, s)]));
             }
-            let by_states = with_resolvent * parts(&self.fed.rows(0, order).into_owned());
+            let by_states = with_resolvent * parts(&self.weight_scalars.rows(0, order).into_owned());
             for (q, &(other, other_scalar, other_sign)) in columns.iter().enumerate() {
                 self.put(p, q, by_states[(other, other_scalar)] * other_sign);
             }
@@ -290,24 +291,24 @@ impl<'a> Gram<'a> {
         let columns = self.block_columns();
         for k in 0..self.lines.omega.len() {
             let (e, weight) = (self.residual.column(k), &self.lines.weights[k]);
-            let seen = |i: usize| -> Complex<f64> {
+            let of_state = |i: usize| -> Complex<f64> {
                 let column = self.resolvent.column(k * order + i);
                 column.iter().zip(e.iter()).map(|(v, e)| v.conj() * e).sum()
             };
-            let seen: Vec<_> = (0..order).map(seen).collect();
+            let state_gradients: Vec<_> = (0..order).map(of_state).collect();
             for (p, &(vector, scalar, sign)) in columns.iter().enumerate() {
-                self.gradient[p] += sign * (self.fed[(scalar, k)].conj() * seen[vector]).re;
+                self.gradient[p] += sign * (self.weight_scalars[(scalar, k)].conj() * state_gradients[vector]).re;
             }
-            for (i, seen) in seen.iter().enumerate() {
+            for (i, own) in state_gradients.iter().enumerate() {
                 for j in 0..inputs {
-                    self.gradient[self.model.place_of_b(i, j)] += (self.driven[(j, k)].conj() * seen).re;
+                    self.gradient[self.model.place_of_b(i, j)] += (self.resolvent_scalars[(j, k)].conj() * own).re;
                 }
             }
             for o in 0..outputs {
-                let back: Complex<f64> = (o..outputs).map(|below| e[below] * weight[(below, o)]).sum();
+                let output_gradient: Complex<f64> = (o..outputs).map(|below| e[below] * weight[(below, o)]).sum();
                 for s in 0..order + inputs {
-                    let place = self.of_fed(o, s);
-                    self.gradient[place] += (self.fed[(s, k)].conj() * back).re;
+                    let place = self.weight_column(o, s);
+                    self.gradient[place] += (self.weight_scalars[(s, k)].conj() * output_gradient).re;
                 }
             }
         }
@@ -387,16 +388,16 @@ mod tests {
     fn the_gradient_is_that_of_finite_differences() {
         let known = &answers()["likelihood_noise_free"];
         let mut likelihood = known_records(known);
-        for piece in &mut likelihood.pieces {
+        for segment in &mut likelihood.segments {
             let weight = |k: usize| nalgebra::dmatrix![1.0 + 0.1 * (k as f64).sin(), 0.0; 0.4, 2.0 + (k as f64).cos()];
             let spectrum = Spectrum {
-                record: piece.record,
+                record: segment.record,
                 duration_s: 40.0,
-                omega: piece.omega.clone(),
-                inputs: piece.inputs.clone(),
-                outputs: piece.outputs.clone(),
+                omega: segment.omega.clone(),
+                inputs: segment.inputs.clone(),
+                outputs: segment.outputs.clone(),
             };
-            *piece = SpectralLines::weighted(&spectrum, (0..piece.omega.len()).map(weight).collect());
+            *segment = SpectralLines::weighted(&spectrum, (0..segment.omega.len()).map(weight).collect());
         }
         let mut model = known_start(known);
         // A single pole beside the pairs.
@@ -426,20 +427,21 @@ mod tests {
         let known = &answers()["likelihood_noise_free"];
         let likelihood = known_records(known);
         let model = known_start(known);
-        let piece = &likelihood.pieces[0];
-        let part = piece.cost(&model).unwrap();
-        let system = Gram::new(piece, &model, &part).system().unwrap();
+        let segment = &likelihood.segments[0];
+        let part = segment.cost(&model).unwrap();
+        let system = Gram::new(segment, &model, &part).system().unwrap();
         // Columns of the dense Jacobian by differences of W (G U + C R tau), exact up to rounding in B and D.
         let places = [model.place_of_b(1, 1), model.place_of_b(2, 0), model.place_of_d(1, 0), model.place_of_c(1, 2)];
         let column = |place: usize| {
             let step = DVector::from_fn(model.parameters(), |k, _| if k == place { 1.0 } else { 0.0 });
             let stepped = model.stepped(&step);
             let mut values = Vec::new();
-            for (k, &omega) in piece.omega.iter().enumerate() {
+            for (k, &omega) in segment.omega.iter().enumerate() {
                 let output = |model: &BlockModel| {
-                    let mut x = model.b.map(Complex::from) * piece.inputs.column(k) + part.transient.map(Complex::from);
+                    let mut x =
+                        model.b.map(Complex::from) * segment.inputs.column(k) + part.transient.map(Complex::from);
                     model.resolve(omega, x.as_mut_slice());
-                    model.c.map(Complex::from) * x + model.d.map(Complex::from) * piece.inputs.column(k)
+                    model.c.map(Complex::from) * x + model.d.map(Complex::from) * segment.inputs.column(k)
                 };
                 values.extend((output(&stepped) - output(&model)).iter().flat_map(|y| [y.re, y.im]));
             }
@@ -448,7 +450,7 @@ mod tests {
         let mut nuisance = Vec::new();
         for i in 0..4 {
             let mut values = Vec::new();
-            for &omega in &piece.omega {
+            for &omega in &segment.omega {
                 let mut cr = DMatrix::zeros(2, 4);
                 model.output_resolvent(omega, cr.as_mut_slice());
                 values.extend(cr.column(i).iter().flat_map(|y| [y.re, y.im]));
@@ -457,14 +459,14 @@ mod tests {
         }
         for o in 0..2 {
             let of = |line: &dyn Fn(f64) -> [f64; 2]| {
-                let values = piece.omega.iter().flat_map(|&w| {
+                let values = segment.omega.iter().flat_map(|&w| {
                     (0..2).flat_map(move |other| {
                         let [re, im] = [if other == o { 1.0 } else { 0.0 }; 2];
                         [(re, w), (im, w)]
                     })
                 });
                 let values = values.enumerate().map(|(k, (unit, w))| unit * line(w)[k % 2]);
-                DVector::from_iterator(4 * piece.omega.len(), values)
+                DVector::from_iterator(4 * segment.omega.len(), values)
             };
             nuisance.push(of(&|_| [1.0, 0.0]));
             nuisance.push(of(&|w| [0.0, -1.0 / w]));

@@ -3,7 +3,7 @@
 //! ```text
 //! BIC(n) = J (1 + k ln N / (N - k)),   k = n q + m l parameters that matter,   N degrees of freedom
 //! 1  n = 16, or the nearest there is
-//! 2  polish n - 2, n, n + 2; n = argmin BIC; until n stays
+//! 2  refinement n - 2, n, n + 2; n = argmin BIC; until n stays
 //! ```
 //!
 //! A record that was held out decides between orders whose BIC differ by less than 1 %.
@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 const FIRST: usize = 16;
 /// Distance of neighbours.
 const STEP: usize = 2;
-/// Steps of the polish while orders are compared.
+/// Steps of the refinement while orders are compared.
 const STEPS: usize = 3;
 /// Orders whose criteria differ by less, relatively, are told apart by the held-out record.
 const NEAR: f64 = 0.01;
@@ -35,7 +35,7 @@ pub(super) struct OrderSearch {
 }
 
 impl OrderSearch {
-    /// The unpolished model with which the search begins.
+    /// The unrefined model with which the search begins.
     pub(super) fn first(starts: &BTreeMap<usize, Fit>) -> Option<&Fit> {
         starts.get(&first(starts)?)
     }
@@ -64,7 +64,7 @@ fn criterion(fit: &Fit, likelihood: &Likelihood) -> Option<f64> {
     (n > k).then(|| fit.cost * (1.0 + k * n.ln() / (n - k)))
 }
 
-/// Searches the order from the unpolished models `starts`; none where no model can be afforded.
+/// Searches the order from the unrefined models `starts`; none where no model can be afforded.
 pub(super) fn search_order(
     starts: &BTreeMap<usize, Fit>,
     likelihood: &Likelihood,
@@ -77,8 +77,8 @@ pub(super) fn search_order(
         let near = [Some(order), order.checked_sub(STEP), order.checked_add(STEP)];
         let new: Vec<usize> =
             near.into_iter().flatten().filter(|n| starts.contains_key(n) && !fits.contains_key(n)).collect();
-        let polish = |n: &usize| starts[n].clone().polished(likelihood, STEPS, progress);
-        for (&n, fit) in new.iter().zip(each(likelihood.executor, &new, polish)) {
+        let refinement = |n: &usize| starts[n].clone().refined(likelihood, STEPS, progress);
+        for (&n, fit) in new.iter().zip(each(likelihood.executor, &new, refinement)) {
             let fit = fit?;
             if let Some(value) = criterion(&fit, likelihood) {
                 criteria.insert(n, value);
@@ -104,7 +104,7 @@ fn by_held_out(
     best: usize,
     held_out: &Likelihood,
 ) -> usize {
-    if held_out.pieces.is_empty() {
+    if held_out.segments.is_empty() {
         return best;
     }
     let Some(least) = criteria.get(&best) else { return best };

@@ -1,4 +1,4 @@
-//! From flight records as they were logged to pieces without gaps on a uniform grid (M14, 1).
+//! From flight records as they were logged to segments without gaps on a uniform grid (M14, 1).
 
 use super::*;
 use crate::executor::{Executor, each};
@@ -74,12 +74,12 @@ pub struct Preparation {
     pub keep_frozen: bool,
     /// The longest gap, in samples, that is bridged by a straight line; a longer one splits the record.
     pub longest_bridge: usize,
-    /// The least length of a piece \[s\].
-    pub least_piece_s: f64,
+    /// The least length of a segment \[s\].
+    pub least_segment_s: f64,
 }
 
 impl Preparation {
-    /// Every channel as it is, gaps of 3 samples bridged, pieces of 10 s.
+    /// Every channel as it is, gaps of 3 samples bridged, segments of 10 s.
     #[must_use]
     pub fn of(inputs: &[&str], outputs: &[&str]) -> Self {
         let channels = |names: &[&str]| names.iter().map(|name| ChannelPreparation::named(*name)).collect();
@@ -89,7 +89,7 @@ impl Preparation {
             resample: false,
             keep_frozen: false,
             longest_bridge: 3,
-            least_piece_s: 10.0,
+            least_segment_s: 10.0,
         }
     }
 
@@ -132,8 +132,8 @@ impl Preparation {
                 }
             }
         }
-        if !(self.least_piece_s.is_finite() && self.least_piece_s > 0.0) {
-            return Err(PreparationError::LeastPiece { seconds: self.least_piece_s });
+        if !(self.least_segment_s.is_finite() && self.least_segment_s > 0.0) {
+            return Err(PreparationError::LeastSegment { seconds: self.least_segment_s });
         }
         if self.longest_bridge > LONGEST_BRIDGE {
             return Err(PreparationError::Bridge { samples: self.longest_bridge });
@@ -151,7 +151,7 @@ pub struct RecordUse {
     pub sample_time_s: f64,
     /// From the first stamp to the last \[s\].
     pub logged_s: f64,
-    /// Sum of the lengths of its pieces \[s\].
+    /// Sum of the lengths of its segments \[s\].
     pub used_s: f64,
     /// Gaps, by the time at which they begin.
     pub gaps: Vec<Gap>,
@@ -172,8 +172,8 @@ impl RecordUse {
 /// Flight records, prepared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prepared {
-    /// The pieces, by record and time; at least one.
-    pub pieces: Vec<Segment>,
+    /// The segments, by record and time; at least one.
+    pub segments: Vec<Segment>,
     /// What was used of each record, in the order of the records.
     pub records: Vec<RecordUse>,
     /// What the engineer should know.
@@ -224,9 +224,9 @@ pub enum PreparationError {
         /// The delay or hold \[s\].
         seconds: f64,
     },
-    /// The least length of a piece is no length.
+    /// The least length of a segment is no length.
     #[error("a least piece of {seconds} s: it must be greater than 0")]
-    LeastPiece {
+    LeastSegment {
         /// As asked for \[s\].
         seconds: f64,
     },
@@ -261,13 +261,13 @@ pub enum PreparationError {
         /// 95th percentile of the deviation from whole multiples of the median sample time \[%\].
         percent: f64,
     },
-    /// No piece is long enough.
+    /// No segment is long enough.
     #[error(
         "nothing is left: the longest piece without a gap lasts {longest_s:.1} s, and {least_s:.1} s are the least. \
          Log longer records, mend the gaps, or leave out the channel that has them"
     )]
     NothingLeft {
-        /// Length of the longest piece \[s\].
+        /// Length of the longest segment \[s\].
         longest_s: f64,
         /// Least length \[s\].
         least_s: f64,
@@ -280,20 +280,20 @@ pub enum PreparationError {
     },
 }
 
-/// The pieces of `records` that can be used, what was used of each record, and what speaks against it (M14, 1).
+/// The segments of `records` that can be used, what was used of each record, and what speaks against it (M14, 1).
 ///
 /// ```text
 /// of each record
 ///   dt = median difference of the stamps; refuse stamps more than 20 % off the multiples of dt, unless allowed
 ///   of each channel the samples that count: a finite value, not frozen; of a slow sensor the fresh ones
 ///   its value at t: the straight line at t + shift between two of them no further apart than (bridge + 1.5) dt
-///   pieces = runs of the grid t_0 + k dt where every channel has a value, of at least 10 s
+///   segments = runs of the grid t_0 + k dt where every channel has a value, of at least 10 s
 /// ```
 ///
 /// No mean or trend is taken off, and nothing is filtered.
 ///
 /// # Errors
-/// Settings out of range, records that do not fit them, time that does not increase or is uneven, no piece left, a constant
+/// Settings out of range, records that do not fit them, time that does not increase or is uneven, no segment left, a constant
 /// channel.
 pub fn prepare(
     records: &[FlightRecord],
@@ -307,31 +307,28 @@ pub fn prepare(
     let prepared = each(executor, records.iter().enumerate(), |(k, record)| prepare_record(k, record, preparation));
     let prepared = prepared.into_iter().collect::<Result<Vec<_>, _>>()?;
     let longest_s = prepared.iter().map(|one| one.longest_s).fold(0.0, f64::max);
-    let (mut pieces, mut uses, mut cautions) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut segments, mut uses, mut cautions) = (Vec::new(), Vec::new(), Vec::new());
     for one in prepared {
-        pieces.extend(one.pieces);
+        segments.extend(one.segments);
         uses.push(one.used);
         cautions.extend(one.cautions);
     }
-    if pieces.is_empty() {
-        return Err(PreparationError::NothingLeft { longest_s, least_s: preparation.least_piece_s });
+    if segments.is_empty() {
+        return Err(PreparationError::NothingLeft { longest_s, least_s: preparation.least_segment_s });
     }
     let signals: Vec<Signal> = preparation.channels().map(|(signal, _)| signal).collect();
-    let constant: Vec<Signal> = signals.into_iter().filter(|signal| is_constant(&pieces, signal)).collect();
+    let constant: Vec<Signal> = signals.into_iter().filter(|signal| is_constant(&segments, signal)).collect();
     if !constant.is_empty() {
         return Err(PreparationError::Constant { signals: constant });
     }
-    cautions.extend(channel_cautions(records, &pieces, preparation));
-    Ok(Prepared { pieces, records: uses, cautions })
+    cautions.extend(channel_cautions(records, &segments, preparation));
+    Ok(Prepared { segments, records: uses, cautions })
 }
 
-/// Whether a channel has one value within each piece, but for rounding.
-fn is_constant(pieces: &[Segment], signal: &Signal) -> bool {
-    pieces.iter().all(|piece| {
-        let samples = match signal.role {
-            Role::Input => piece.inputs.column(signal.index),
-            Role::Output => piece.outputs.column(signal.index),
-        };
+/// Whether a channel has one value within each segment, but for rounding.
+fn is_constant(segments: &[Segment], signal: &Signal) -> bool {
+    segments.iter().all(|segment| {
+        let samples = segment.channel(signal);
         // Interpolation between equal samples may differ in the last digits.
         samples.max() - samples.min() <= 1e-12 * samples.amax()
     })
@@ -339,7 +336,7 @@ fn is_constant(pieces: &[Segment], signal: &Signal) -> bool {
 
 /// A record, prepared.
 struct PreparedRecord {
-    pieces: Vec<Segment>,
+    segments: Vec<Segment>,
     used: RecordUse,
     cautions: Vec<RecordCaution>,
     /// Length of its longest run without a gap \[s\], long enough or not.
@@ -365,28 +362,28 @@ fn prepare_record(
     gaps.extend(clock.gaps());
     let runs = runs(&clock, &tracks);
 
-    let (mut pieces, mut longest_s) = (Vec::new(), 0.0_f64);
+    let (mut segments, mut longest_s) = (Vec::new(), 0.0_f64);
     for run in runs {
         let (start_s, samples) = (clock.start_s + clock.sample_time_s * run.first, run.rows.len() / tracks.len());
         let length_s = clock.sample_time_s * samples as f64;
         longest_s = longest_s.max(length_s);
         // A hair of tolerance, so that 500 samples of 0.02 s are 10 s.
-        if length_s >= preparation.least_piece_s * (1.0 - 1e-9) {
-            pieces.push(run.piece(index, start_s, clock.sample_time_s, preparation));
+        if length_s >= preparation.least_segment_s * (1.0 - 1e-9) {
+            segments.push(run.segment(index, start_s, clock.sample_time_s, preparation));
         } else {
-            let (cause, treatment) = (Cause::PieceTooShort { length_s }, Treatment::CutOut);
+            let (cause, treatment) = (Cause::SegmentTooShort { length_s }, Treatment::CutOut);
             gaps.push(Gap { start_s, end_s: start_s + length_s, cause, treatment });
-            cautions.push(RecordCaution::PieceDropped { record: record.name.clone(), start_s, length_s });
+            cautions.push(RecordCaution::SegmentDropped { record: record.name.clone(), start_s, length_s });
         }
     }
-    if pieces.is_empty() {
+    if segments.is_empty() {
         cautions.push(RecordCaution::RecordUnused { record: record.name.clone() });
     }
     gaps.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
-    let used_s = pieces.iter().map(|piece| piece.sample_time_s * piece.inputs.nrows() as f64).sum();
+    let used_s = segments.iter().map(|segment| segment.sample_time_s * segment.inputs.nrows() as f64).sum();
     let (record, sample_time_s, logged_s) = (record.name.clone(), clock.sample_time_s, clock.logged_s());
     Ok(PreparedRecord {
-        pieces,
+        segments,
         used: RecordUse { record, sample_time_s, logged_s, used_s, gaps },
         cautions,
         longest_s,
@@ -419,7 +416,7 @@ struct Run {
 }
 
 impl Run {
-    fn piece(self, record: usize, start_s: f64, sample_time_s: f64, preparation: &Preparation) -> Segment {
+    fn segment(self, record: usize, start_s: f64, sample_time_s: f64, preparation: &Preparation) -> Segment {
         let (inputs, outputs) = (preparation.inputs.len(), preparation.outputs.len());
         let width = inputs + outputs;
         let samples = self.rows.len() / width;

@@ -17,10 +17,10 @@ pub(super) struct PreparedData<'a> {
     pub(super) record_uses: Vec<RecordUse>,
     /// Units of the records over scaled units.
     pub(super) scales: Scales,
-    /// Pieces to fit, low-passed for the projections.
-    pub(super) pieces: Vec<Segment>,
-    /// Held-out pieces in the units of the records.
-    pub(super) held_out_pieces: Vec<Segment>,
+    /// Segments to fit, low-passed for the projections.
+    pub(super) segments: Vec<Segment>,
+    /// Held-out segments in the units of the records.
+    pub(super) held_out_segments: Vec<Segment>,
     /// SpectralLines to fit.
     pub(super) spectra: Vec<Spectrum>,
     /// The response without a model.
@@ -47,37 +47,37 @@ impl<'a> PreparedData<'a> {
             return Err(IdentificationError::HeldOutMissing { record, records: records.len() });
         }
         let prepared = prepare(records, &options.preparation, executor)?;
-        check_sampling(&prepared.pieces, options)?;
-        let (held_out_pieces, pieces): (Vec<Segment>, Vec<Segment>) =
-            prepared.pieces.into_iter().partition(|piece| options.held_out.contains(&piece.record));
-        if pieces.is_empty() {
+        check_sampling(&prepared.segments, options)?;
+        let (held_out_segments, segments): (Vec<Segment>, Vec<Segment>) =
+            prepared.segments.into_iter().partition(|segment| options.held_out.contains(&segment.record));
+        if segments.is_empty() {
             return Err(IdentificationError::NothingToFit);
         }
-        let scales = Scales::of(&pieces)?;
-        let scaled = |pieces: &[Segment]| pieces.iter().map(|piece| scales.scaled(piece)).collect::<Vec<_>>();
-        let pieces = scaled(&pieces);
-        check_inputs(&pieces, options)?;
+        let scales = Scales::of(&segments)?;
+        let scaled = |segments: &[Segment]| segments.iter().map(|segment| scales.scaled(segment)).collect::<Vec<_>>();
+        let segments = scaled(&segments);
+        check_inputs(&segments, options)?;
 
         progress.next(0.02, "measured response")?;
         let (lowest, highest) = (options.lowest(), options.highest());
-        let between = |pieces: &[Segment], highest: f64| {
+        let between = |segments: &[Segment], highest: f64| {
             let lines =
-                spectra(pieces, highest, executor).into_iter().map(|lines| lines.between(lowest / BEYOND, highest));
+                spectra(segments, highest, executor).into_iter().map(|lines| lines.between(lowest / BEYOND, highest));
             lines.filter(|lines| !lines.omega.is_empty()).collect::<Vec<_>>()
         };
-        let wide = between(&pieces, BEYOND * highest);
+        let wide = between(&segments, BEYOND * highest);
         let omegas = log_spaced(lowest, highest, MEASURED_POINTS);
         let measured = local_polynomial(&wide, &omegas, executor).map_err(|why| unmeasured(why, &wide, &omegas))?;
         let noise = NoiseCovariance::of(&measured).ok_or(IdentificationError::OutputsDepend)?;
         let likelihood = |spectra: &[Spectrum]| {
-            let pieces: Option<_> = spectra.iter().map(|lines| SpectralLines::new(lines, &noise)).collect();
-            pieces.map(|pieces| Likelihood { pieces, executor }).ok_or(IdentificationError::OutputsDepend)
+            let segments: Option<_> = spectra.iter().map(|lines| SpectralLines::new(lines, &noise)).collect();
+            segments.map(|segments| Likelihood { segments, executor }).ok_or(IdentificationError::OutputsDepend)
         };
         let narrow: Vec<Spectrum> = wide.iter().map(|lines| lines.between(lowest, highest)).collect();
-        let (fit, held_out) = (likelihood(&narrow)?, likelihood(&between(&scaled(&held_out_pieces), highest))?);
+        let (fit, held_out) = (likelihood(&narrow)?, likelihood(&between(&scaled(&held_out_segments), highest))?);
 
         progress.next(0.07, "low-pass")?;
-        let cut_off = CutOff::choose(&pieces, highest, executor);
+        let cut_off = CutOff::choose(&segments, highest, executor);
         let mut cautions: Vec<_> = prepared.cautions.into_iter().map(IdentificationCaution::Records).collect();
         cautions.extend(vibration_cautions(&cut_off, options));
         cautions.extend(excitation_cautions(&measured, options));
@@ -85,8 +85,8 @@ impl<'a> PreparedData<'a> {
         Ok(Self {
             record_uses: prepared.records,
             scales,
-            pieces: cut_off.apply(&pieces, executor),
-            held_out_pieces,
+            segments: cut_off.apply(&segments, executor),
+            held_out_segments,
             spectra: narrow,
             measured,
             noise,
@@ -119,8 +119,8 @@ impl<'a> PreparedData<'a> {
     }
 }
 
-fn check_sampling(pieces: &[Segment], options: &Options) -> Result<(), IdentificationError> {
-    let sample_time_s = pieces.iter().map(|piece| piece.sample_time_s).fold(0.0, f64::max);
+fn check_sampling(segments: &[Segment], options: &Options) -> Result<(), IdentificationError> {
+    let sample_time_s = segments.iter().map(|segment| segment.sample_time_s).fold(0.0, f64::max);
     let seen = std::f64::consts::PI / sample_time_s;
     if options.highest() <= seen {
         return Ok(());
@@ -151,11 +151,11 @@ fn unmeasured(why: LocalPolynomialError, spectra: &[Spectrum], omegas: &[f64]) -
 }
 
 /// Refuses inputs of which one is a sum of others, by the condition of their correlations.
-fn check_inputs(pieces: &[Segment], options: &Options) -> Result<(), IdentificationError> {
+fn check_inputs(segments: &[Segment], options: &Options) -> Result<(), IdentificationError> {
     let inputs = options.preparation.inputs.len();
     let mut gram = DMatrix::<f64>::zeros(inputs, inputs);
-    for piece in pieces {
-        let mut centred = piece.inputs.clone();
+    for segment in segments {
+        let mut centred = segment.inputs.clone();
         for mut column in centred.column_iter_mut() {
             let mean = column.mean();
             column.add_scalar_mut(-mean);
@@ -208,7 +208,7 @@ fn excitation_cautions(measured: &ResponseEstimate, options: &Options) -> Vec<Id
 /// A channel whose rms about the mean is below this share of its greatest modulus is constant: what is left is rounding.
 const CONSTANT: f64 = 1e-12;
 
-/// The scale of every channel, in the units of the file: its rms about the mean of each piece, over all pieces (M14, 1.6).
+/// The scale of every channel, in the units of the file: its rms about the mean of each segment, over all segments (M14, 1.6).
 ///
 /// ```text
 /// s_c = sqrt( sum_r sum_n (x_c[n] - mean_r x_c)^2 / sum_r N_r )
@@ -221,63 +221,60 @@ pub struct Scales {
     pub outputs: Vec<f64>,
 }
 
-/// Why the pieces have no scales.
+/// Why the segments have no scales.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ScalingError {
     /// There is nothing to scale.
     #[error("there are no flight records")]
-    NoPieces,
-    /// A piece has other channels than the first.
-    #[error("piece {} of the flight records has another number of channels than the first", piece + 1)]
+    NoSegments,
+    /// A segment has other channels than the first.
+    #[error("piece {} of the flight records has another number of channels than the first", segment + 1)]
     ChannelsDiffer {
         /// Which, counted from 0.
-        piece: usize,
+        segment: usize,
     },
-    /// A piece holds a sample that is not finite, or one whose square is not.
-    #[error("piece {} of the flight records holds values that are not finite or absurdly large", piece + 1)]
+    /// A segment holds a sample that is not finite, or one whose square is not.
+    #[error("piece {} of the flight records holds values that are not finite or absurdly large", segment + 1)]
     NotFinite {
         /// Which, counted from 0.
-        piece: usize,
+        segment: usize,
     },
-    /// An input is constant in every piece.
-    #[error("input {} does not move in any record: leave it out", input + 1)]
-    InputConstant {
+    /// A channel is constant in every segment.
+    #[error("{role} {} does not move in any record: leave it out", index + 1)]
+    Constant {
+        /// Input or output.
+        role: Role,
         /// Which, counted from 0.
-        input: usize,
-    },
-    /// An output is constant in every piece.
-    #[error("output {} does not move in any record: leave it out", output + 1)]
-    OutputConstant {
-        /// Which, counted from 0.
-        output: usize,
+        index: usize,
     },
 }
 
 impl Scales {
-    /// The scales of the channels of `pieces`.
+    /// The scales of the channels of `segments`.
     ///
     /// # Errors
-    /// No pieces, differing numbers of channels, values that are not finite, a constant channel.
-    pub fn of(pieces: &[Segment]) -> Result<Self, ScalingError> {
-        let first = pieces.first().ok_or(ScalingError::NoPieces)?;
-        let channels = |piece: &Segment| (piece.inputs.ncols(), piece.outputs.ncols());
-        if let Some(piece) = pieces.iter().position(|p| channels(p) != channels(first)) {
-            return Err(ScalingError::ChannelsDiffer { piece });
+    /// No segments, differing numbers of channels, values that are not finite, a constant channel.
+    pub fn of(segments: &[Segment]) -> Result<Self, ScalingError> {
+        let first = segments.first().ok_or(ScalingError::NoSegments)?;
+        let channels = |segment: &Segment| (segment.inputs.ncols(), segment.outputs.ncols());
+        if let Some(segment) = segments.iter().position(|p| channels(p) != channels(first)) {
+            return Err(ScalingError::ChannelsDiffer { segment });
         }
-        let (inputs, outputs) = (rms(pieces, |piece| &piece.inputs)?, rms(pieces, |piece| &piece.outputs)?);
-        let of_all = |channels: Vec<Option<f64>>, constant: fn(usize) -> ScalingError| {
-            channels.into_iter().enumerate().map(|(k, s)| s.ok_or_else(|| constant(k))).collect::<Result<Vec<f64>, _>>()
+        let scales = |role, side: fn(&Segment) -> &DMatrix<f64>| {
+            let scales = rms(segments, side)?.into_iter().enumerate();
+            let moved = |(index, scale): (usize, Option<f64>)| scale.ok_or(ScalingError::Constant { role, index });
+            scales.map(moved).collect::<Result<Vec<f64>, _>>()
         };
         Ok(Self {
-            inputs: of_all(inputs, |input| ScalingError::InputConstant { input })?,
-            outputs: of_all(outputs, |output| ScalingError::OutputConstant { output })?,
+            inputs: scales(Role::Input, |segment| &segment.inputs)?,
+            outputs: scales(Role::Output, |segment| &segment.outputs)?,
         })
     }
 
-    /// `piece` in scaled units: every channel divided by its scale. Channels beyond those of the scales are not touched.
+    /// `segment` in scaled units: every channel divided by its scale. Channels beyond those of the scales are not touched.
     #[must_use]
-    pub fn scaled(&self, piece: &Segment) -> Segment {
-        let mut scaled = piece.clone();
+    pub fn scaled(&self, segment: &Segment) -> Segment {
+        let mut scaled = segment.clone();
         for (samples, scales) in [(&mut scaled.inputs, &self.inputs), (&mut scaled.outputs, &self.outputs)] {
             for (mut column, scale) in samples.column_iter_mut().zip(scales) {
                 column /= *scale;
@@ -293,18 +290,18 @@ impl Scales {
     }
 }
 
-/// The rms of each channel about its mean in each piece, over all pieces; none for a constant channel.
-fn rms(pieces: &[Segment], side: fn(&Segment) -> &DMatrix<f64>) -> Result<Vec<Option<f64>>, ScalingError> {
-    let channels = pieces.first().map_or(0, |piece| side(piece).ncols());
+/// The rms of each channel about its mean in each segment, over all segments; none for a constant channel.
+fn rms(segments: &[Segment], side: fn(&Segment) -> &DMatrix<f64>) -> Result<Vec<Option<f64>>, ScalingError> {
+    let channels = segments.first().map_or(0, |segment| side(segment).ncols());
     let (mut squares, mut greatest, mut samples) = (vec![0.0; channels], vec![0.0_f64; channels], 0);
-    for (index, piece) in pieces.iter().enumerate() {
-        let rows = side(piece).nrows();
+    for (index, segment) in segments.iter().enumerate() {
+        let rows = side(segment).nrows();
         samples += rows;
-        for (c, column) in side(piece).column_iter().enumerate() {
+        for (c, column) in side(segment).column_iter().enumerate() {
             let mean = if rows == 0 { 0.0 } else { column.sum() / rows as f64 };
             squares[c] += column.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>();
             if !squares[c].is_finite() {
-                return Err(ScalingError::NotFinite { piece: index });
+                return Err(ScalingError::NotFinite { segment: index });
             }
             greatest[c] = greatest[c].max(column.amax());
         }

@@ -1,4 +1,4 @@
-//! The polish of a model: Levenberg and Marquardt's iteration on the cost (M14, section 4).
+//! The refinement of a model: Levenberg and Marquardt's iteration on the cost (M14, section 4).
 //!
 //! ```text
 //! lambda = 1e-4;  for each step:
@@ -20,15 +20,15 @@ const DAMPING_FACTOR: f64 = 8.0;
 const FAILURES: usize = 8;
 /// Share of the whole work that a step is said to be.
 const SHARE: f64 = 0.02;
-/// Relative gain below which the polish is at its end.
+/// Relative gain below which the refinement is at its end.
 const LEAST_GAIN: f64 = 1e-3;
 
-/// A model, its cost, and how far its polish has come.
+/// A model, its cost, and how far its refinement has come.
 #[derive(Clone, Debug)]
 pub(super) struct Fit {
     /// The model.
     pub(super) model: BlockModel,
-    /// Each piece's part of the cost.
+    /// Each segment's part of the cost.
     pub(super) parts: Vec<SegmentCost>,
     /// `J`.
     pub(super) cost: f64,
@@ -37,7 +37,7 @@ pub(super) struct Fit {
 }
 
 impl Fit {
-    /// The unpolished model; none where its cost is not finite.
+    /// The unrefined model; none where its cost is not finite.
     pub(super) fn start(likelihood: &Likelihood, model: BlockModel) -> Option<Self> {
         let parts = likelihood.parts(&model)?;
         let cost = total(&parts);
@@ -45,7 +45,7 @@ impl Fit {
     }
 
     /// The model after at most `count` further steps, each of which is told.
-    pub(super) fn polished(
+    pub(super) fn refined(
         mut self,
         likelihood: &Likelihood,
         count: usize,
@@ -61,7 +61,7 @@ impl Fit {
         Ok(self)
     }
 
-    /// The systems of the pieces at the model.
+    /// The systems of the segments at the model.
     pub(super) fn systems(&self, likelihood: &Likelihood) -> Option<Vec<NormalSystem>> {
         normal_systems(likelihood, &self.model, &self.parts)
     }
@@ -109,14 +109,14 @@ pub(super) fn damped(
     None
 }
 
-/// The sum in the order of the pieces.
+/// The sum in the order of the segments.
 fn total(parts: &[SegmentCost]) -> f64 {
     parts.iter().map(|part| part.cost).sum()
 }
 
 // From models that CT-PBSID proposes to the recommended one (M14, section 7).
 
-/// Steps of the polish for the chosen order, after those of the comparison.
+/// Steps of the refinement for the chosen order, after those of the comparison.
 const FURTHER_STEPS: usize = 5;
 /// Steps after records were weighed anew.
 const STEPS_AFTER_WEIGHING: usize = 3;
@@ -149,7 +149,7 @@ pub(super) struct Refinement<'a> {
 
 /// Runs CT-PBSID for every pole and past window; shows a first model.
 pub(super) fn propose(
-    evidence: &PreparedData,
+    data: &PreparedData,
     options: &Options,
     progress: &Shares,
 ) -> Result<Proposal, IdentificationError> {
@@ -163,34 +163,34 @@ pub(super) fn propose(
         orders,
     };
     progress.next(0.1, "projections")?;
-    let candidates = settings.candidates(&evidence.pieces, &evidence.likelihood, progress)?;
+    let candidates = settings.candidates(&data.segments, &data.likelihood, progress)?;
     progress.next(0.3, "models of all orders")?;
-    let best = candidates.first().ok_or_else(|| evidence.no_model())?;
-    let starts = settings.starts(&candidates, &evidence.likelihood);
-    let first = OrderSearch::first(&starts).ok_or_else(|| evidence.no_model())?;
-    if let Some(first) = evidence.in_units(&first.model) {
+    let best = candidates.first().ok_or_else(|| data.no_model())?;
+    let starts = settings.starts(&candidates, &data.likelihood);
+    let first = OrderSearch::first(&starts).ok_or_else(|| data.no_model())?;
+    if let Some(first) = data.in_units(&first.model) {
         progress.progress().first_model(&first);
     }
-    let stabilisation = stabilisation(&settings.poles_by_order(best, evidence.likelihood.executor));
+    let stabilisation = stabilisation(&settings.poles_by_order(best, data.likelihood.executor));
     let &Candidate { pole: laguerre_pole, past, .. } = best;
     Ok(Proposal { laguerre_pole, past, starts, stabilisation })
 }
 
 /// Chooses the order and polishes its model further.
 pub(super) fn refine<'a>(
-    evidence: &PreparedData<'a>,
+    data: &PreparedData<'a>,
     proposal: &Proposal,
     progress: &Shares,
 ) -> Result<Refinement<'a>, IdentificationError> {
     progress.next(0.4, "order")?;
-    let search = search_order(&proposal.starts, &evidence.likelihood, &evidence.held_out, progress)?;
-    let search = search.ok_or_else(|| evidence.no_model())?;
-    let chosen = search.fits.get(&search.order).ok_or_else(|| evidence.no_model())?.clone();
+    let search = search_order(&proposal.starts, &data.likelihood, &data.held_out, progress)?;
+    let search = search.ok_or_else(|| data.no_model())?;
+    let chosen = search.fits.get(&search.order).ok_or_else(|| data.no_model())?.clone();
     progress.next(0.7, "refinement")?;
-    let fit = chosen.polished(&evidence.likelihood, FURTHER_STEPS, progress)?;
-    let (likelihood, fit, cautions) = match reweighed(&evidence.likelihood, &fit, progress)? {
+    let fit = chosen.refined(&data.likelihood, FURTHER_STEPS, progress)?;
+    let (likelihood, fit, cautions) = match reweighed(&data.likelihood, &fit, progress)? {
         Some((likelihood, fit, caution)) => (likelihood, fit, vec![caution]),
-        None => (evidence.likelihood.clone(), fit, Vec::new()),
+        None => (data.likelihood.clone(), fit, Vec::new()),
     };
     Ok(Refinement { search, fit, likelihood, cautions })
 }
@@ -213,13 +213,14 @@ fn reweighed<'a>(
     }
     let mean = (costs.iter().map(|cost| cost.ln()).sum::<f64>() / costs.len() as f64).exp();
     let records = likelihood.records();
-    let weigh = |piece: &super::likelihood::SpectralLines| {
-        let cost = records.iter().position(|record| *record == piece.record).and_then(|k| costs.get(k));
-        cost.map_or_else(|| piece.clone(), |cost| piece.with_noise(cost / mean))
+    let weigh = |segment: &super::likelihood::SpectralLines| {
+        let cost = records.iter().position(|record| *record == segment.record).and_then(|k| costs.get(k));
+        cost.map_or_else(|| segment.clone(), |cost| segment.with_noise(cost / mean))
     };
-    let weighed = Likelihood { pieces: likelihood.pieces.iter().map(weigh).collect(), executor: likelihood.executor };
+    let weighed =
+        Likelihood { segments: likelihood.segments.iter().map(weigh).collect(), executor: likelihood.executor };
     let Some(start) = Fit::start(&weighed, fit.model.clone()) else { return Ok(None) };
-    let fit = start.polished(&weighed, STEPS_AFTER_WEIGHING, progress)?;
+    let fit = start.refined(&weighed, STEPS_AFTER_WEIGHING, progress)?;
     Ok(Some((weighed, fit, IdentificationCaution::Reweighed { ratio: greatest / least })))
 }
 
@@ -237,7 +238,7 @@ mod tests {
         // Independent numpy code; the tolerances stand in its file.
         assert!((fit.cost / number(&known["cost_at_start"]) - 1.0).abs() < 1e-8, "{}", fit.cost);
         let count = number(&known["max_iterations"]) as usize;
-        let fit = fit.polished(&likelihood, count, &Shares::new(&Unobserved)).unwrap();
+        let fit = fit.refined(&likelihood, count, &Shares::new(&Unobserved)).unwrap();
         assert!(fit.cost <= number(&known["cost_after_at_most"]), "{}", fit.cost);
         for (omega, expected) in numbers(&known["w"]).into_iter().zip(response(&known["H"])) {
             assert!((fit.model.response(omega) - expected).camax() < 1e-6);

@@ -243,10 +243,7 @@ struct Column {
 
 impl Column {
     fn of(record: &FlightRecord, clock: &Clock, signal: Signal) -> Self {
-        let samples = match signal.role {
-            Role::Input => record.inputs.column(signal.index),
-            Role::Output => record.outputs.column(signal.index),
-        };
+        let samples = record.channel(&signal);
         Self { values: clock.rows.iter().map(|&row| samples[row]).collect(), signal }
     }
 

@@ -1,4 +1,4 @@
-//! The lines of a piece's Fourier transform.
+//! The lines of a segment's Fourier transform.
 
 use super::*;
 use crate::executor::{Executor, each};
@@ -7,7 +7,7 @@ use realfft::{RealFftPlanner, RealToComplex};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// The lines of one piece (M14, 2): one column a line, one row a channel.
+/// The lines of one segment (M14, 2): one column a line, one row a channel.
 ///
 /// ```text
 /// U(omega_k) = dt / sqrt(T) sum_n u[n] e^(-j omega_k n dt),   omega_k = 2 pi k / T,   T = N dt,   k >= 1
@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// No window, and no mean taken off but for arithmetic: lines from k = 1 do not hold it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
-    /// Which of the records the piece is of, counted from 0.
+    /// Which of the records the segment is of, counted from 0.
     pub record: usize,
     /// `T` \[s\].
     pub duration_s: f64,
@@ -44,24 +44,24 @@ impl Spectrum {
     }
 }
 
-/// The lines of every piece up to `highest` \[rad/s\] and below half the sampling frequency, in the order of the pieces.
+/// The lines of every segment up to `highest` \[rad/s\] and below half the sampling frequency, in the order of the segments.
 #[must_use]
-pub fn spectra(pieces: &[Segment], highest: f64, executor: &dyn Executor) -> Vec<Spectrum> {
+pub fn spectra(segments: &[Segment], highest: f64, executor: &dyn Executor) -> Vec<Spectrum> {
     let mut planner = RealFftPlanner::new();
-    let plans: Vec<_> = pieces.iter().map(|piece| planner.plan_fft_forward(piece.inputs.nrows())).collect();
-    each(executor, pieces.iter().zip(plans), |(piece, plan)| spectrum(piece, highest, &plan))
+    let plans: Vec<_> = segments.iter().map(|segment| planner.plan_fft_forward(segment.inputs.nrows())).collect();
+    each(executor, segments.iter().zip(plans), |(segment, plan)| spectrum(segment, highest, &plan))
 }
 
-/// The lines of one piece up to `highest`, by the transform `plan` of its length.
-fn spectrum(piece: &Segment, highest: f64, plan: &Arc<dyn RealToComplex<f64>>) -> Spectrum {
-    let duration_s = piece.sample_time_s * piece.inputs.nrows() as f64;
-    let below_nyquist = piece.inputs.nrows().saturating_sub(1) / 2;
+/// The lines of one segment up to `highest`, by the transform `plan` of its length.
+fn spectrum(segment: &Segment, highest: f64, plan: &Arc<dyn RealToComplex<f64>>) -> Spectrum {
+    let duration_s = segment.sample_time_s * segment.inputs.nrows() as f64;
+    let below_nyquist = segment.inputs.nrows().saturating_sub(1) / 2;
     let omega: Vec<f64> =
         (1..=below_nyquist).map(|k| TAU * k as f64 / duration_s).take_while(|&w| w <= highest).collect();
-    let factor = piece.sample_time_s / duration_s.sqrt();
-    let inputs = transform(&piece.inputs, omega.len(), factor, plan.as_ref());
-    let outputs = transform(&piece.outputs, omega.len(), factor, plan.as_ref());
-    Spectrum { record: piece.record, duration_s, omega, inputs, outputs }
+    let factor = segment.sample_time_s / duration_s.sqrt();
+    let inputs = transform(&segment.inputs, omega.len(), factor, plan.as_ref());
+    let outputs = transform(&segment.outputs, omega.len(), factor, plan.as_ref());
+    Spectrum { record: segment.record, duration_s, omega, inputs, outputs }
 }
 
 /// SpectralLines 1 to `lines` of each column of `samples`, times `factor`: one row a channel.
@@ -153,15 +153,15 @@ impl LowPass {
         (0..samples.len()).map(filtered).collect()
     }
 
-    /// `piece`, every channel filtered.
+    /// `segment`, every channel filtered.
     #[must_use]
-    pub fn piece(&self, piece: &Segment) -> Segment {
+    pub fn segment(&self, segment: &Segment) -> Segment {
         let side = |samples: &DMatrix<f64>| {
             let filtered: Vec<f64> =
                 samples.as_slice().chunks(samples.nrows().max(1)).flat_map(|x| self.filter(x)).collect();
             DMatrix::from_vec(samples.nrows(), samples.ncols(), filtered)
         };
-        Segment { inputs: side(&piece.inputs), outputs: side(&piece.outputs), ..piece.clone() }
+        Segment { inputs: side(&segment.inputs), outputs: side(&segment.outputs), ..segment.clone() }
     }
 }
 
@@ -194,13 +194,13 @@ pub struct CutOff {
 }
 
 impl CutOff {
-    /// The cut-off for `pieces` when lines up to `highest` \[rad/s\] are used: 5 `highest`, or 2 `highest` when more than 30 %
+    /// The cut-off for `segments` when lines up to `highest` \[rad/s\] are used: 5 `highest`, or 2 `highest` when more than 30 %
     /// of the variance of an output lies above that (M14, 1.5).
     #[must_use]
-    pub fn choose(pieces: &[Segment], highest: f64, executor: &dyn Executor) -> Self {
-        let outputs = pieces.first().map_or(0, |piece| piece.outputs.ncols());
+    pub fn choose(segments: &[Segment], highest: f64, executor: &dyn Executor) -> Self {
+        let outputs = segments.first().map_or(0, |segment| segment.outputs.ncols());
         let (mut all, mut above) = (vec![0.0; outputs], vec![0.0; outputs]);
-        for spectrum in spectra(pieces, f64::INFINITY, executor) {
+        for spectrum in spectra(segments, f64::INFINITY, executor) {
             for (k, omega) in spectrum.omega.iter().enumerate() {
                 for (output, line) in spectrum.outputs.column(k).iter().enumerate().take(outputs) {
                     all[output] += line.norm_sqr();
@@ -213,13 +213,13 @@ impl CutOff {
         Self { omega: highest * if vibrating.is_empty() { USUAL } else { VIBRATING }, vibrating }
     }
 
-    /// `pieces`, every channel through the low-pass of this cut-off; as they are where there is nothing to take off.
+    /// `segments`, every channel through the low-pass of this cut-off; as they are where there is nothing to take off.
     #[must_use]
-    pub fn apply(&self, pieces: &[Segment], executor: &dyn Executor) -> Vec<Segment> {
-        let filter = |piece: &Segment| match LowPass::new(self.omega, piece.sample_time_s) {
-            Some(low_pass) => low_pass.piece(piece),
-            None => piece.clone(),
+    pub fn apply(&self, segments: &[Segment], executor: &dyn Executor) -> Vec<Segment> {
+        let filter = |segment: &Segment| match LowPass::new(self.omega, segment.sample_time_s) {
+            Some(low_pass) => low_pass.segment(segment),
+            None => segment.clone(),
         };
-        each(executor, pieces, filter)
+        each(executor, segments, filter)
     }
 }

@@ -115,9 +115,9 @@ mod tests {
         let (inputs, outputs) = (matrix(&known["u"]), matrix(&known["y"]));
         let channels = (inputs.ncols(), outputs.ncols());
         let (dt, past) = (number(&known["dt"]), number(&known["p"]) as usize);
-        let piece = Segment { record: 0, start_s: 0.0, sample_time_s: dt, inputs, outputs };
+        let segment = Segment { record: 0, start_s: 0.0, sample_time_s: dt, inputs, outputs };
         let projections = Projections { pole: number(&known["a"]), past, spacing_s: dt };
-        let rows = projections.rows(&piece);
+        let rows = projections.rows(&segment);
         let mut factor = TriangularFactor::empty(rows.ncols());
         factor.append(&rows);
         let settings = PredictorSettings { longest_future: 2, ridge: 0.0 };

@@ -213,16 +213,16 @@ pub(super) fn without_each_record(likelihood: &Likelihood, fit: &Fit, systems: &
     }
     let sum = |keep: &dyn Fn(usize) -> bool| {
         let mut sum = NormalSystem::zero(fit.model.parameters());
-        let pieces = likelihood.pieces.iter().zip(systems);
-        pieces.filter(|(piece, _)| keep(piece.record)).for_each(|(_, system)| sum.add(system));
+        let segments = likelihood.segments.iter().zip(systems);
+        segments.filter(|(segment, _)| keep(segment.record)).for_each(|(_, system)| sum.add(system));
         sum
     };
     let all = sum(&|_| true);
     let without = |&record: &usize| {
         let rest = likelihood.without(record);
         let system = all.without(&sum(&|other| other == record));
-        let pieces = likelihood.pieces.iter().zip(&fit.parts);
-        let cost = pieces.filter(|(piece, _)| piece.record != record).map(|(_, part)| part.cost).sum();
+        let segments = likelihood.segments.iter().zip(&fit.parts);
+        let cost = segments.filter(|(segment, _)| segment.record != record).map(|(_, part)| part.cost).sum();
         // Where no step lowers the cost the full model is the best without the record as well.
         let stepped = damped(&rest, &fit.model, &system, cost, FIRST_DAMPING);
         WithoutRecord { record, model: stepped.map_or_else(|| fit.model.clone(), |(model, ..)| model) }
@@ -244,7 +244,7 @@ mod tests {
     use crate::executor::Sequential;
     use nalgebra::dmatrix;
 
-    /// Turns the second of two real modes of a block around, which a model does not show but the path of its polish does.
+    /// Turns the second of two real modes of a block around, which a model does not show but the path of its refinement does.
     fn turned(model: &BlockModel) -> BlockModel {
         let Block::Pair { a0, a1 } = model.blocks[0] else { panic!("a pair") };
         let poles = model.blocks[0].poles();
@@ -278,18 +278,18 @@ mod tests {
         let preparation = Preparation::of(&["U1", "U2"], &["Y1", "Y2"]);
         let options = Options { held_out: vec![4], ..Options::new([band[0], band[1]], preparation) };
         let progress = Shares::new(&Unobserved);
-        let evidence = PreparedData::new(&records, &options, &Sequential, &progress).unwrap();
-        let likelihood = &evidence.likelihood;
+        let data = PreparedData::new(&records, &options, &Sequential, &progress).unwrap();
+        let likelihood = &data.likelihood;
         let whole = |name: &str| numbers(&known[name]).into_iter().map(|value| value as usize).collect::<Vec<_>>();
         let (poles, pasts, orders) = (numbers(&known["poles_a"]), whole("pasts"), whole("orders"));
         let settings = SubspaceSettings { highest: band[1], poles, pasts, orders };
-        let candidates = settings.candidates(&evidence.pieces, likelihood, &progress).unwrap();
+        let candidates = settings.candidates(&data.segments, likelihood, &progress).unwrap();
         let starts = settings.starts(&candidates, likelihood);
-        let polished =
-            |model: BlockModel, count| Fit::start(likelihood, model).unwrap().polished(likelihood, count, &progress);
-        let fit = polished(starts[&4].model.clone(), 8).unwrap();
-        let below = polished(turned(&starts[&2].model), 3).unwrap();
-        let above = polished(starts[&6].model.clone(), 3).unwrap();
+        let refined =
+            |model: BlockModel, count| Fit::start(likelihood, model).unwrap().refined(likelihood, count, &progress);
+        let fit = refined(starts[&4].model.clone(), 8).unwrap();
+        let below = refined(turned(&starts[&2].model), 3).unwrap();
+        let above = refined(starts[&6].model.clone(), 3).unwrap();
 
         let mut system = NormalSystem::zero(fit.model.parameters());
         fit.systems(likelihood).unwrap().iter().for_each(|part| system.add(part));

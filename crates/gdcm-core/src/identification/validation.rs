@@ -52,7 +52,7 @@ pub struct ValidationWindow {
 /// A model against records in time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Validation {
-    /// The windows, by piece and time; at least one.
+    /// The windows, by segment and time; at least one.
     pub windows: Vec<ValidationWindow>,
     /// Of each output `100 (1 - rms(e) / std(y))`, at most 100; none where the output does not move.
     pub fit_percent: Vec<Option<f64>>,
@@ -63,10 +63,10 @@ pub struct Validation {
 /// Why a model cannot be compared with a record in time.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ValidationError {
-    /// There are no pieces.
+    /// There are no segments.
     #[error("there is no record to compare the model with")]
-    NoPieces,
-    /// The model has other inputs or outputs than a piece.
+    NoSegments,
+    /// The model has other inputs or outputs than a segment.
     #[error("record {} has other channels than the model", record + 1)]
     ChannelsDiffer {
         /// Which record, counted from 0.
@@ -92,38 +92,38 @@ pub enum ValidationError {
     NotFinite,
 }
 
-/// `model`, in the units of the file, against `pieces` in time (M14, 6): windows short enough for an unstable model, each with
+/// `model`, in the units of the file, against `segments` in time (M14, 6): windows short enough for an unstable model, each with
 /// its own initial state and output offsets.
 ///
 /// ```text
-/// window: 3 / max Re lambda, at most the longest; each piece in equal windows, no sample left out
+/// window: 3 / max Re lambda, at most the longest; each segment in equal windows, no sample left out
 /// y^ = C Phi^n x0 + offset + response to (u - mean u), inputs linear between samples
 /// x0, offset: least squares over the outputs, each over its std
 /// fit = 100 (1 - rms(y - y^) / std(y)),   Theil = rms(y - y^) / (rms(y) + rms(y^))
 /// ```
 ///
 /// # Errors
-/// No pieces, other channels than the model's, a model that cannot be simulated, windows too short.
+/// No segments, other channels than the model's, a model that cannot be simulated, windows too short.
 pub fn validate(
     model: &StateSpace,
-    pieces: &[Segment],
+    segments: &[Segment],
     settings: &ValidationSettings,
     executor: &dyn Executor,
 ) -> Result<Validation, ValidationError> {
-    if pieces.is_empty() {
-        return Err(ValidationError::NoPieces);
+    if segments.is_empty() {
+        return Err(ValidationError::NoSegments);
     }
-    let differs = |piece: &&Segment| (piece.outputs.ncols(), piece.inputs.ncols()) != model.d().shape();
-    if let Some(piece) = pieces.iter().find(differs) {
-        return Err(ValidationError::ChannelsDiffer { record: piece.record });
+    let differs = |segment: &&Segment| (segment.outputs.ncols(), segment.inputs.ncols()) != model.d().shape();
+    if let Some(segment) = segments.iter().find(differs) {
+        return Err(ValidationError::ChannelsDiffer { record: segment.record });
     }
     if settings.longest_window_s.is_nan() || settings.longest_window_s <= 0.0 {
         return Err(ValidationError::NoWindow);
     }
     let window_s = window_s(model, settings.longest_window_s).ok_or(ValidationError::NotSimulated)?;
-    let filtered = each(executor, pieces, |piece| filtered(piece, settings.low_pass));
-    let std = deviations(filtered.iter().map(|piece| &piece.outputs));
-    let windows = each(executor, &filtered, |piece| windows(model, piece, window_s, &std));
+    let filtered = each(executor, segments, |segment| filtered(segment, settings.low_pass));
+    let std = deviations(filtered.iter().map(|segment| &segment.outputs));
+    let windows = each(executor, &filtered, |segment| windows(model, segment, window_s, &std));
     let windows: Vec<ValidationWindow> =
         windows.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
     if windows.is_empty() {
@@ -139,23 +139,23 @@ fn window_s(model: &StateSpace, longest_s: f64) -> Option<f64> {
     Some(if fastest > 0.0 { longest_s.min(TIME_CONSTANTS / fastest) } else { longest_s })
 }
 
-fn filtered(piece: &Segment, cut_off: Option<f64>) -> Segment {
-    let low_pass = cut_off.and_then(|omega| LowPass::new(omega, piece.sample_time_s));
-    low_pass.map_or_else(|| piece.clone(), |low_pass| low_pass.piece(piece))
+fn filtered(segment: &Segment, cut_off: Option<f64>) -> Segment {
+    let low_pass = cut_off.and_then(|omega| LowPass::new(omega, segment.sample_time_s));
+    low_pass.map_or_else(|| segment.clone(), |low_pass| low_pass.segment(segment))
 }
 
-/// The windows of one piece; none where it is too short.
+/// The windows of one segment; none where it is too short.
 fn windows(
     model: &StateSpace,
-    piece: &Segment,
+    segment: &Segment,
     window_s: f64,
     std: &[f64],
 ) -> Result<Vec<ValidationWindow>, ValidationError> {
-    let held = FirstOrderHold::of(model, piece.sample_time_s).ok_or(ValidationError::NotSimulated)?;
-    let (samples, outputs) = piece.outputs.shape();
+    let held = FirstOrderHold::of(model, segment.sample_time_s).ok_or(ValidationError::NotSimulated)?;
+    let (samples, outputs) = segment.outputs.shape();
     // A millionth of a window is rounding.
     let count =
-        (samples as f64 * piece.sample_time_s / window_s - 1e-6).ceil().clamp(1.0, samples.max(1) as f64) as usize;
+        (samples as f64 * segment.sample_time_s / window_s - 1e-6).ceil().clamp(1.0, samples.max(1) as f64) as usize;
     let longest = samples.div_ceil(count);
     if (samples / count) * outputs < OVER_UNKNOWNS * (model.order() + outputs) {
         return Ok(Vec::new());
@@ -165,12 +165,12 @@ fn windows(
         // The product is taken in 128 bits: it may be large.
         let bound = |k: usize| (samples as u128 * k as u128 / count as u128) as usize;
         let (from, length) = (bound(k), bound(k + 1) - bound(k));
-        let measured = piece.outputs.rows(from, length).into_owned();
-        let simulated = best_simulation(&held, &free, &piece.inputs.rows(from, length).into_owned(), &measured, std)?;
+        let measured = segment.outputs.rows(from, length).into_owned();
+        let simulated = best_simulation(&held, &free, &segment.inputs.rows(from, length).into_owned(), &measured, std)?;
         Some(ValidationWindow {
-            record: piece.record,
-            start_s: piece.start_s + piece.sample_time_s * from as f64,
-            sample_time_s: piece.sample_time_s,
+            record: segment.record,
+            start_s: segment.start_s + segment.sample_time_s * from as f64,
+            sample_time_s: segment.sample_time_s,
             measured,
             simulated,
         })

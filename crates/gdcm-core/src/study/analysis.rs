@@ -6,7 +6,9 @@ use std::sync::Arc;
 use crate::correction::{ChannelCorrection, GainBounds, Problem, ProblemError, Solution};
 use crate::dataset::{BundleKind, Condition, ConditionId, Pair, PairTable};
 use crate::fidelity::{Discontinuity, Representative};
-use crate::schedule::{CostChange, Evidence, LeadEvidence, Schedule, ScheduleError, evidence, lead_evidence};
+use crate::schedule::{
+    CostChange, FormComparison, LeadDegreeFit, Schedule, ScheduleError, compare_forms, compare_lead_degrees,
+};
 use crate::uncertainty::Scalar;
 
 use super::{BundleMetrics, Caution, Comparison, LeadCompensated, LeadOffer, Study, Uncertainty, scheduled_points};
@@ -69,13 +71,13 @@ impl Analysis {
     ///
     /// # Errors
     /// [`ScheduleError`] where there is no schedule.
-    pub fn evidence(&self) -> Result<Evidence, ScheduleError> {
-        evidence(&scheduled_points(&self.study, &self.conditions), self.study.settings.schedule)
+    pub fn compare_forms(&self) -> Result<FormComparison, ScheduleError> {
+        compare_forms(&scheduled_points(&self.study, &self.conditions), self.study.settings.schedule)
     }
 
     /// What speaks for each degree of the scheduled signed delays; none where leads are not asked for (M15.5).
-    pub fn lead_evidence(&self) -> Vec<LeadEvidence> {
-        lead_evidence(&scheduled_points(&self.study, &self.conditions), self.study.settings.schedule)
+    pub fn compare_lead_degrees(&self) -> Vec<LeadDegreeFit> {
+        compare_lead_degrees(&scheduled_points(&self.study, &self.conditions), self.study.settings.schedule)
     }
 }
 
@@ -126,7 +128,8 @@ impl ConditionAnalysis {
 
     /// Whether the delays were asked for the D of M15.2, which leads always are, and not for that of eq. (9).
     pub fn asks_band_delays(&self) -> bool {
-        self.delay_problem.delta == self.comparison.delta.band_delay_s
+        let (asked, delta) = (&self.delay_problem.delta, &self.comparison.delta);
+        *asked == delta.band_delay_s && *asked != delta.delay_s
     }
 
     /// The value of which [`Self::wanted_delay_s`] is one: its bar stands beside it (M13).

@@ -10,7 +10,7 @@ use crate::response::GainDelay;
 use crate::schedule::{CostChange, corrected_cost};
 use crate::units::signed;
 
-use super::{Analysis, Cancelled, ConditionAnalysis, Job, ModelMismatch, Progress, Settings, Undefined};
+use super::{Analysis, Cancelled, ConditionAnalysis, Job, ModelMismatch, Progress, Settings};
 
 /// Which physics model is assessed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -67,7 +67,7 @@ pub struct AssessedCondition {
     /// J of each response before and after, against the identified representative.
     pub changes: PairTable<Option<CostChange>>,
     /// Why a response has none.
-    pub missing: Vec<(Pair, &'static str)>,
+    pub missing: Vec<(Pair, String)>,
 }
 
 /// A condition that an assessment leaves out, and why.
@@ -227,15 +227,14 @@ fn missing(
     result: &ConditionAnalysis,
     models: &ModelMismatch,
     changes: &PairTable<Option<CostChange>>,
-) -> Vec<(Pair, &'static str)> {
+) -> Vec<(Pair, String)> {
     let without = changes.iter().filter(|(_, change)| change.is_none()).map(|(pair, _)| pair);
     let why = |pair: Pair| match (&models.mismatch[pair], result.comparison.undefined[pair]) {
-        (Some(_), _) => "the scheduled net gain is not positive",
-        (None, Some(Undefined::NotCoherent)) => {
-            "its response was not measured: no frequency of the band is coherent enough"
+        (Some(_), _) => "the scheduled net gain is not positive".to_owned(),
+        (None, Some(why)) => why.to_string(),
+        (None, None) => {
+            "the nominal model's response is zero, numerically nothing or not finite somewhere in the band".to_owned()
         }
-        (None, Some(_)) => "its response is zero, numerically nothing or not finite somewhere in the band",
-        (None, None) => "the nominal model's response is zero, numerically nothing or not finite somewhere in the band",
     };
     without.map(|pair| (pair, why(pair))).collect()
 }

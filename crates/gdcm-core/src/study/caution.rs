@@ -1,5 +1,6 @@
 //! What the engineer has to know about a result that could be had all the same.
 
+use std::fmt;
 use std::sync::Arc;
 
 use crate::dataset::{BundleKind, Condition, Dynamics, Pair};
@@ -83,9 +84,11 @@ impl BundleModel {
     pub(super) fn of(condition: &Condition, bundle: BundleKind, model: usize) -> Self {
         Self { bundle, name: condition.bundle(bundle)[model].name.clone() }
     }
+}
 
-    fn words(&self) -> String {
-        format!("{} model \"{}\"", self.bundle, self.name)
+impl fmt::Display for BundleModel {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{} model \"{}\"", self.bundle, self.name)
     }
 }
 
@@ -100,22 +103,25 @@ pub enum Undefined {
     NotCoherent,
 }
 
-impl Undefined {
+impl fmt::Display for Undefined {
     /// The reason in words that begin with "its response".
-    pub fn words(self) -> String {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Undefined::ZeroOrNotFinite => "its response is zero or not finite somewhere in the band".to_owned(),
-            Undefined::NotCoherent => {
-                "its response was not measured: at no frequency of the band does its coherence count".to_owned()
+            Undefined::ZeroOrNotFinite => {
+                formatter.write_str("its response is zero or not finite somewhere in the band")
             }
-            Undefined::NumericallyNothing(bundle) => format!(
-                "its response is numerically nothing in the {} model: over the band less than 1e-6 of the greatest of its \
-                 output and of its input",
-                bundle
+            Undefined::NotCoherent => formatter.write_str(
+                "its response was not measured: no frequency of the band is coherent enough, or lies in the valid band",
             ),
+            Undefined::NumericallyNothing(bundle) => {
+                write!(formatter, "its response is numerically nothing in the {bundle} model: {NOTHING}")
+            }
         }
     }
 }
+
+/// What "numerically nothing" means (M6a).
+const NOTHING: &str = "over the band less than 1e-6 of the greatest response of its output and of its input";
 
 /// Why a model has responses that are not finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -157,26 +163,28 @@ impl NotFinite {
             }
         }
     }
+}
 
-    fn words(self) -> String {
+impl fmt::Display for NotFinite {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            NotFinite::Entry(entry) => format!("{entry}: correct the file, or reject the model"),
+            NotFinite::Entry(entry) => write!(formatter, "{entry}: correct the file, or reject the model"),
             NotFinite::Measured { min, max } => {
                 // Six decimals at most: what is lost is no reason to look for.
                 let round = |omega: f64| (omega * 1e6).round() / 1e6;
-                let (min, max) = (round(min), round(max));
-                format!("it is measured from {min} to {max} rad/s only: narrow the band, or reject the model")
+                let (min, max) = (round(*min), round(*max));
+                write!(formatter, "it is measured from {min} to {max} rad/s only: narrow the band, or reject the model")
             }
-            NotFinite::Sampled { sample_time_s, nyquist_rad_s } => format!(
+            NotFinite::Sampled { sample_time_s, nyquist_rad_s } => write!(
+                formatter,
                 "it is of discrete time, T = {} s, and has no response from π/T = {nyquist_rad_s:.4} rad/s on: narrow the \
                  band, or reject the model",
-                number(sample_time_s)
+                number(*sample_time_s)
             ),
-            NotFinite::Pole => {
+            NotFinite::Pole => formatter.write_str(
                 "a pole lies on a frequency of the grid, or its numbers overflow: change the band or the \
-                                number of frequencies, or reject the model"
-                    .to_owned()
-            }
+                 number of frequencies, or reject the model",
+            ),
         }
     }
 }
@@ -207,21 +215,19 @@ impl Caution {
     pub fn words(&self, pair_name: impl Fn(Pair) -> String) -> String {
         let names = |pairs: &[Pair]| pairs.iter().map(|pair| pair_name(*pair)).collect::<Vec<_>>().join(", ");
         match self {
-            Caution::HeldButUndefined { pair, why } => format!("{} is not held: {}", pair_name(*pair), why.words()),
+            Caution::HeldButUndefined { pair, why } => format!("{} is not held: {}", pair_name(*pair), why),
             Caution::NoSuggestions(error) => error.to_string(),
             Caution::SetAside { model, lacks, why, pinned } => {
-                let why = why.map_or("zero somewhere in the band".to_owned(), NotFinite::words);
+                let why = why.map_or("zero somewhere in the band".to_owned(), |why| why.to_string());
                 let pin = if *pinned { "; it is not used as representative, as was chosen" } else { "" };
-                let (model, lacks) = (model.words(), names(lacks));
+                let lacks = names(lacks);
                 format!("{model} is set aside: it has no {lacks}, which another model of its bundle has ({why}){pin}")
             }
             Caution::NotFinite { model, responses, why } => {
-                format!("{} has no {} over the whole band: {}", model.words(), names(responses), why.words())
+                format!("{} has no {} over the whole band: {}", model, names(responses), why)
             }
             Caution::NumericallyNothing { model, responses } => format!(
-                "of {}, {} are numerically nothing, less than 1e-6 of the greatest response of their output and of their \
-                 input: they have no G and no D, as if they were zero",
-                model.words(),
+                "of {model}, {} are numerically nothing ({NOTHING}): they have no G and no D, as if they were zero",
                 names(responses)
             ),
             Caution::NotCoherent { threshold, weighed, left_out, points } => format!(

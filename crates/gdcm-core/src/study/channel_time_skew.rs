@@ -7,14 +7,14 @@
 //! 1  of each response that is coherent over half of the band:   phi = arg(measured / physics), unwrapped
 //!       d = -sum W omega phi / sum W omega^2,   W = 1 / (var phi + (3 deg)^2)
 //! 2  of each output (a row of responses) and input (a column):
-//!       rest = median of d over all other responses,   s = 1.48 median |d - rest| over them
-//!       delay = median of d over its own - rest
-//! 3  it is late where |delay| > t and |d - rest - delay| <= t for each of its own, t = max(5 ms, 2.5 s),
-//!    and the delay explains four fifths of sum W (phi + omega rest)^2
-//! 4  of two channels each is late where the other is early: the one with the least |rest| is named
+//!       common = median of d over all other responses,   s = 1.48 median |d - common| over them
+//!       delay = median of d over its own - common
+//! 3  it is late where |delay| > t and |d - common - delay| <= t for each of its own, t = max(5 ms, 2.5 s),
+//!    and the delay explains four fifths of sum W (phi + omega common)^2
+//! 4  of two channels each is late where the other is early: the one with the least |common| is named
 //! ```
 //!
-//! `rest`, what all channels have in common, is no matter of one channel: the leads say it (M15, section 6).
+//! `common`, what all channels have in common, is no matter of one channel: the leads say it (M15, section 6).
 
 use crate::dataset::{Band, BundleKind, Condition, Dataset, Dynamics, Pair};
 use crate::identification::{ResponseEstimate, Role, Signal, TRUSTED_COHERENCE};
@@ -55,7 +55,7 @@ impl ChannelTimeSkew {
         let suspects: Vec<Suspect> = rows.chain(columns).filter_map(|of| Suspect::of(&lags, of)).collect();
         let most = suspects.iter().map(|suspect| suspect.explained).fold(0.0, f64::max);
         let suspects = suspects.into_iter().filter(|suspect| suspect.explained >= 0.5 * most);
-        suspects.min_by(|a, b| a.rest_s.abs().total_cmp(&b.rest_s.abs())).map(|suspect| suspect.channel)
+        suspects.min_by(|a, b| a.common_s.abs().total_cmp(&b.common_s.abs())).map(|suspect| suspect.channel)
     }
 
     /// The same against the nominal physics model of a condition.
@@ -137,7 +137,7 @@ fn lags(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Opti
 struct Suspect {
     channel: ChannelTimeSkew,
     /// What the others have in common \[s\].
-    rest_s: f64,
+    common_s: f64,
     /// The squared phase that its delay explains.
     explained: f64,
 }
@@ -154,16 +154,20 @@ impl Suspect {
             return None;
         }
         let middle = |of: &mut dyn Iterator<Item = f64>| median(&mut of.collect::<Vec<f64>>());
-        let rest_s = middle(&mut others.iter().map(|lag| lag.delay_s));
-        let scatter_s = OF_MEDIAN * middle(&mut others.iter().map(|lag| (lag.delay_s - rest_s).abs()));
-        let delay_s = middle(&mut own.iter().map(|lag| lag.delay_s)) - rest_s;
+        let common_s = middle(&mut others.iter().map(|lag| lag.delay_s));
+        let scatter_s = OF_MEDIAN * middle(&mut others.iter().map(|lag| (lag.delay_s - common_s).abs()));
+        let delay_s = middle(&mut own.iter().map(|lag| lag.delay_s)) - common_s;
         let tolerance_s = LEAST_S.max(STANDS_OUT * scatter_s);
-        let agree = own.iter().all(|lag| (lag.delay_s - rest_s - delay_s).abs() <= tolerance_s);
+        let agree = own.iter().all(|lag| (lag.delay_s - common_s - delay_s).abs() <= tolerance_s);
         let left = |delay_s: f64| own.iter().map(|lag| lag.left(delay_s)).sum::<f64>();
-        let (before, after) = (left(rest_s), left(rest_s + delay_s));
+        let (before, after) = (left(common_s), left(common_s + delay_s));
         let is_late = delay_s.abs() > tolerance_s && agree && after <= MOST_LEFT * before;
         // The responses to an input that is logged late come too early.
         let delay_s = if role == Role::Output { delay_s } else { -delay_s };
-        is_late.then_some(Self { channel: ChannelTimeSkew { role, index, delay_s }, rest_s, explained: before - after })
+        is_late.then_some(Self {
+            channel: ChannelTimeSkew { role, index, delay_s },
+            common_s,
+            explained: before - after,
+        })
     }
 }

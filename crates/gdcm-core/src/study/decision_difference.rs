@@ -1,6 +1,7 @@
 //! What differs between two sets of decisions about one dataset, in plain words.
 
 use std::collections::BTreeSet;
+use std::fmt;
 
 use crate::dataset::{BundleKind, ConditionId, PairTable};
 
@@ -21,10 +22,11 @@ impl DecisionDifference {
     fn new(what: impl Into<String>, before: impl Into<String>, after: impl Into<String>) -> Self {
         Self { what: what.into(), before: before.into(), after: after.into() }
     }
+}
 
-    /// The difference in words: "α of the gains: 1 → 0.1".
-    pub fn words(&self) -> String {
-        format!("{}: {} → {}", self.what, self.before, self.after)
+impl fmt::Display for DecisionDifference {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}: {} → {}", self.what, self.before, self.after)
     }
 }
 

@@ -181,7 +181,7 @@ impl Job for SimulationJob {
         }
         let found = prepared.map_err(|error| error.to_string()).and_then(|prepared| {
             let settings = ValidationSettings::unfiltered();
-            validate(&self.model, &prepared.pieces, &settings, executor.as_ref()).map_err(|error| error.to_string())
+            validate(&self.model, &prepared.segments, &settings, executor.as_ref()).map_err(|error| error.to_string())
         });
         Ok(found.map(Arc::new))
     }

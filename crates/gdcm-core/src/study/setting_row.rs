@@ -300,6 +300,8 @@ impl Setting {
             (Kind::Number { range, .. } | Kind::Optional { range, .. }, Value::Number(found)) => {
                 self.check_range(&self.a_number(), found, range)
             }
+            // The band, which cannot be nothing, says itself what it may be.
+            (Kind::Range { nothing: None, .. }, Value::Range([min, max])) => Ok(Band::new(min, max).map(drop)?),
             (Kind::Range { range: [least, most], .. }, Value::Range([lower, upper])) => {
                 self.check_range("a lower end", lower, [least, most])?;
                 self.check_range("an upper end", upper, [lower, most])

@@ -1,6 +1,8 @@
 //! Every setting that changes a result: the values, as files hold them. What each is called, may be and looks like stands in
 //! [`super::setting`].
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 use crate::correction::{GainBounds, GainObjective, GainSource, LeadSettings};
@@ -40,13 +42,12 @@ pub enum DelayFrom {
     Band,
 }
 
-impl DelayFrom {
-    /// In words.
-    pub fn words(self) -> &'static str {
-        match self {
+impl fmt::Display for DelayFrom {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
             Self::Median => "median of Δφ/ω, eq. (9)",
             Self::Band => "line through Δφ over the band",
-        }
+        })
     }
 }
 

@@ -2,6 +2,7 @@
 //! (M13).
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::sync::Arc;
 
 use crate::dataset::{Condition, ConditionId, Dataset, FlightState, Pair, PairTable};
@@ -69,19 +70,20 @@ pub struct SecondVariableTest {
     pub needed: bool,
 }
 
-impl SecondVariableTest {
+impl fmt::Display for SecondVariableTest {
     /// The test in words: "from the lowest to the highest altitude −7 % ± 6 %: not needed; an effect smaller than ± 6 % could not have
     /// been seen".
-    pub fn words(&self) -> String {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let variable = self.variable.name();
         let effect = match &self.effect {
             Ok(effect) => effect,
-            Err(error) => return format!("{variable}: {error}"),
+            Err(error) => return write!(formatter, "{variable}: {error}"),
         };
         let (percent, visible) = (100.0 * effect.effect, 100.0 * effect.visible);
         let verdict = if self.needed { "needed" } else { "not needed" };
         let sign = if percent < 0.0 { "−" } else { "+" };
-        format!(
+        write!(
+            formatter,
             "from the lowest to the highest {variable} {sign}{:.1} %: {verdict}; an effect smaller than ± {visible:.1} % could not have been seen",
             percent.abs()
         )

@@ -563,7 +563,7 @@ fn second_variables(uncertainty: &Uncertainty, names: &ChannelNames) -> Vec<Seco
             left_out_without: effect.and_then(|effect| effect.left_out_without),
             left_out_with: effect.and_then(|effect| effect.left_out_with),
             needed: of.needed,
-            words: of.words(),
+            words: of.to_string(),
         }
     };
     uncertainty.second_variables.iter().map(entry).collect()

@@ -231,7 +231,7 @@ fn response_cells(study: &Study, result: &ConditionAnalysis, pair: Pair) -> [Str
 fn undefined(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     let mut reasons: Vec<(String, Vec<String>)> = Vec::new();
     for (pair, why) in result.comparison.undefined.iter() {
-        let Some(why) = why.map(|why| why.words()) else { continue };
+        let Some(why) = why.map(|why| why.to_string()) else { continue };
         let name = study.dataset.pair_name(pair);
         match reasons.iter_mut().find(|(known, _)| *known == why) {
             Some((_, pairs)) => pairs.push(name),

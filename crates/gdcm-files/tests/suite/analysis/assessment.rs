@@ -84,7 +84,7 @@ fn a_sentence_sums_an_assessment_up() {
 #[test]
 fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
     let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
-    let (evidence, scheduled) = (analysis.evidence().unwrap(), analysis.scheduled());
+    let (evidence, scheduled) = (analysis.compare_forms().unwrap(), analysis.scheduled());
     assert_eq!((scheduled.len(), evidence.airspeeds_kt.len(), evidence.kinds.len()), (11, 11, SCHEDULE_KINDS.len()));
     let schedule = analysis.schedule.as_ref().unwrap();
     let of_kind = evidence.of(schedule.settings.kind).unwrap();

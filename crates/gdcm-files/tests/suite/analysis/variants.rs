@@ -135,8 +135,7 @@ fn what_differs_between_decisions_is_told_in_plain_words() {
     apply(&mut after, &[setting::ALPHA_GAIN.to(0.1), Edit::Hold(pair, false), reject]);
     let left_out = Edit::SetScheduled { condition: ConditionId(3), scheduled: false };
     apply(&mut after, &[left_out, keep("kept"), setting::DELAY_UPPER.to(Some(0.02))]);
-    let words: Vec<String> =
-        decision_differences(&before, &after).iter().map(|difference| difference.words()).collect();
+    let words: Vec<String> = decision_differences(&before, &after).iter().map(ToString::to_string).collect();
     assert_eq!(
         words,
         [

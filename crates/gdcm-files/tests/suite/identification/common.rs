@@ -8,7 +8,7 @@ use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 use std::sync::Mutex;
 
-/// So many threads, which take the last piece of work first.
+/// So many threads, which take the last segment of work first.
 pub struct Threads(pub usize);
 
 impl Executor for Threads {
@@ -50,24 +50,24 @@ pub fn complex(value: &Value) -> DMatrix<Complex<f64>> {
     matrix(&value["re"]).zip_map(&matrix(&value["im"]), Complex::new)
 }
 
-/// The first `count` records of the case `noisy` as pieces.
+/// The first `count` records of the case `noisy` as segments.
 pub fn noisy(known: &Value, count: usize) -> Vec<Segment> {
     let records = known["noisy"]["records"].as_array().expect("records");
-    let piece = |(record, value): (usize, &Value)| Segment {
+    let segment = |(record, value): (usize, &Value)| Segment {
         record,
         start_s: 0.0,
         sample_time_s: value["dt"].as_f64().expect("a sample time"),
         inputs: matrix(&value["u"]),
         outputs: matrix(&value["y"]),
     };
-    records.iter().take(count).enumerate().map(piece).collect()
+    records.iter().take(count).enumerate().map(segment).collect()
 }
 
 /// The spectra of the case `noisy` in scaled units, to 1.3 whi.
 pub fn noisy_spectra() -> Vec<Spectrum> {
-    let pieces = noisy(&known(), 4);
-    let scales = Scales::of(&pieces).expect("its channels move");
-    let scaled: Vec<_> = pieces.iter().map(|piece| scales.scaled(piece)).collect();
+    let segments = noisy(&known(), 4);
+    let scales = Scales::of(&segments).expect("its channels move");
+    let scaled: Vec<_> = segments.iter().map(|segment| scales.scaled(segment)).collect();
     spectra(&scaled, 1.3 * 4.0 / 3.0 * 6.0, &Sequential)
 }
 

@@ -16,7 +16,7 @@ fn measured(change: impl Fn(&mut FlightRecord)) -> ResponseEstimate {
     let mut records = Flight::of(stable_aircraft(), Gusts::light()).records(31, 4);
     records.iter_mut().for_each(change);
     let prepared = prepare(&records, &Preparation::of(&["LON", "LAT"], &["P", "Q"]), &Sequential).unwrap();
-    local_polynomial(&spectra(&prepared.pieces, 10.4, &Sequential), &log_spaced(0.3, 8.0, 40), &Sequential).unwrap()
+    local_polynomial(&spectra(&prepared.segments, 10.4, &Sequential), &log_spaced(0.3, 8.0, 40), &Sequential).unwrap()
 }
 
 /// Three samples of 40 ms later.

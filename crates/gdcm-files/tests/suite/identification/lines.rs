@@ -65,7 +65,7 @@ fn the_measured_response_is_that_of_the_known_answer() {
 fn exact(records: usize, samples: usize) -> (StateSpace, Vec<Segment>) {
     let model = slow_system();
     let held = FirstOrderHold::of(&model, 0.04).unwrap();
-    let piece = |record: usize| {
+    let segment = |record: usize| {
         let mut inputs = DMatrix::zeros(samples, 2);
         for (i, mut column) in inputs.column_iter_mut().enumerate() {
             let mut value = 0.0;
@@ -77,14 +77,14 @@ fn exact(records: usize, samples: usize) -> (StateSpace, Vec<Segment>) {
         let outputs = held.simulate(&DVector::from_element(4, record as f64 - 1.5), &inputs);
         Segment { record, start_s: 0.0, sample_time_s: 0.04, inputs, outputs }
     };
-    (model, (0..records).map(piece).collect())
+    (model, (0..records).map(segment).collect())
 }
 
 #[test]
 fn the_response_of_an_exact_record_is_that_of_the_system() {
-    let (model, pieces) = exact(4, 1500);
+    let (model, segments) = exact(4, 1500);
     let measured =
-        local_polynomial(&spectra(&pieces, 10.4, &Sequential), &log_spaced(0.5, 8.0, 12), &Sequential).unwrap();
+        local_polynomial(&spectra(&segments, 10.4, &Sequential), &log_spaced(0.5, 8.0, 12), &Sequential).unwrap();
     for point in &measured.points {
         let error = (&point.response - response(&model, point.omega)).camax();
         // The polynomial of second degree over a window of +-0.45 rad/s beside modes of damping 0.4 rad/s and more.
@@ -96,17 +96,17 @@ fn the_response_of_an_exact_record_is_that_of_the_system() {
 
 #[test]
 fn the_variance_of_the_response_is_the_spread_of_many_trials() {
-    let (model, pieces) = exact(2, 1000);
+    let (model, segments) = exact(2, 1000);
     let omegas = [3.0];
-    let truth = local_polynomial(&spectra(&pieces, 10.4, &Sequential), &omegas, &Sequential).unwrap().points[0]
+    let truth = local_polynomial(&spectra(&segments, 10.4, &Sequential), &omegas, &Sequential).unwrap().points[0]
         .response
         .clone();
     let (trials, mut predicted, mut spread) = (200, DMatrix::zeros(2, 2), DMatrix::zeros(2, 2));
     for trial in 0..trials {
-        let mut noisy = pieces.clone();
-        for (k, piece) in noisy.iter_mut().enumerate() {
+        let mut noisy = segments.clone();
+        for (k, segment) in noisy.iter_mut().enumerate() {
             let seed = 1000 + (10 * trial + k) as u64;
-            piece.outputs.iter_mut().zip(noise(seed, 2000)).for_each(|(y, v)| *y += 10.0 * v);
+            segment.outputs.iter_mut().zip(noise(seed, 2000)).for_each(|(y, v)| *y += 10.0 * v);
         }
         let point = &local_polynomial(&spectra(&noisy, 10.4, &Sequential), &omegas, &Sequential).unwrap().points[0];
         predicted += &point.variance / trials as f64;
@@ -121,17 +121,17 @@ fn the_variance_of_the_response_is_the_spread_of_many_trials() {
 
 #[test]
 fn the_noise_covariance_is_that_of_the_noise_put_in() {
-    let (_, mut pieces) = exact(6, 2000);
-    for (k, piece) in pieces.iter_mut().enumerate() {
+    let (_, mut segments) = exact(6, 2000);
+    for (k, segment) in segments.iter_mut().enumerate() {
         let noise = noise(50 + k as u64, 4000);
         for n in 0..2000 {
             // Far above what the polynomial cannot follow, which counts as noise too.
-            piece.outputs[(n, 0)] += 10.0 * noise[n];
-            piece.outputs[(n, 1)] += 10.0 * noise[n] + 5.0 * noise[2000 + n];
+            segment.outputs[(n, 0)] += 10.0 * noise[n];
+            segment.outputs[(n, 1)] += 10.0 * noise[n] + 5.0 * noise[2000 + n];
         }
     }
     let measured =
-        local_polynomial(&spectra(&pieces, 10.4, &Sequential), &log_spaced(0.5, 8.0, 40), &Sequential).unwrap();
+        local_polynomial(&spectra(&segments, 10.4, &Sequential), &log_spaced(0.5, 8.0, 40), &Sequential).unwrap();
     let covariance = NoiseCovariance::of(&measured).unwrap();
     // White noise of variance 100/3 has lines of power 100 dt / 3.
     let line = 4.0 / 3.0;
@@ -166,37 +166,40 @@ fn the_covariance_is_smoothed_over_neighbours_and_straight_in_log_frequency_betw
 
 #[test]
 fn exact_and_dependent_outputs_still_have_a_weight() {
-    let (_, mut pieces) = exact(4, 1500);
-    for piece in &mut pieces {
-        let sum = piece.outputs.column(0) * 2.0 + piece.outputs.column(1);
-        piece.outputs =
-            DMatrix::from_columns(&[piece.outputs.column(0).into_owned(), piece.outputs.column(1).into_owned(), sum]);
+    let (_, mut segments) = exact(4, 1500);
+    for segment in &mut segments {
+        let sum = segment.outputs.column(0) * 2.0 + segment.outputs.column(1);
+        segment.outputs = DMatrix::from_columns(&[
+            segment.outputs.column(0).into_owned(),
+            segment.outputs.column(1).into_owned(),
+            sum,
+        ]);
     }
     let measured =
-        local_polynomial(&spectra(&pieces, 10.4, &Sequential), &log_spaced(0.5, 8.0, 40), &Sequential).unwrap();
+        local_polynomial(&spectra(&segments, 10.4, &Sequential), &log_spaced(0.5, 8.0, 40), &Sequential).unwrap();
     let covariance = NoiseCovariance::of(&measured).unwrap();
     assert!([0.5, 1.0, 3.3, 8.0].iter().all(|&w| covariance.weight(w).is_some()));
 }
 
 #[test]
 fn an_input_that_copies_another_is_not_identified() {
-    let (_, mut pieces) = exact(4, 1500);
+    let (_, mut segments) = exact(4, 1500);
     assert_eq!(
-        local_polynomial(&spectra(&pieces, 10.4, &Sequential), &log_spaced(0.5, 8.0, 12), &Sequential)
+        local_polynomial(&spectra(&segments, 10.4, &Sequential), &log_spaced(0.5, 8.0, 12), &Sequential)
             .unwrap()
             .excitation()
             .not_identified()
             .count(),
         0
     );
-    for (k, piece) in pieces.iter_mut().enumerate() {
-        let copy = piece.inputs.column(0) * 2.0;
-        piece.inputs.column_mut(1).copy_from(&copy);
+    for (k, segment) in segments.iter_mut().enumerate() {
+        let copy = segment.inputs.column(0) * 2.0;
+        segment.inputs.column_mut(1).copy_from(&copy);
         let noise = noise(k as u64, 3000);
-        piece.outputs.iter_mut().zip(noise).for_each(|(y, v)| *y += 0.05 * v);
+        segment.outputs.iter_mut().zip(noise).for_each(|(y, v)| *y += 0.05 * v);
     }
     let measured =
-        local_polynomial(&spectra(&pieces, 10.4, &Sequential), &log_spaced(0.5, 8.0, 12), &Sequential).unwrap();
+        local_polynomial(&spectra(&segments, 10.4, &Sequential), &log_spaced(0.5, 8.0, 12), &Sequential).unwrap();
     let excitation = measured.excitation();
     assert!(excitation.moved_together());
     assert_eq!(excitation.not_identified().collect::<Vec<_>>(), [0, 1]);
@@ -205,29 +208,32 @@ fn an_input_that_copies_another_is_not_identified() {
 
 #[test]
 fn an_input_without_effect_is_not_identified() {
-    let (_, mut pieces) = exact(5, 1500);
-    for (k, piece) in pieces.iter_mut().enumerate() {
+    let (_, mut segments) = exact(5, 1500);
+    for (k, segment) in segments.iter_mut().enumerate() {
         let blind = DVector::from_vec(noise(900 + k as u64, 1500));
-        piece.inputs =
-            DMatrix::from_columns(&[piece.inputs.column(0).into_owned(), piece.inputs.column(1).into_owned(), blind]);
-        piece.outputs.iter_mut().zip(noise(k as u64, 3000)).for_each(|(y, v)| *y += 0.05 * v);
+        segment.inputs = DMatrix::from_columns(&[
+            segment.inputs.column(0).into_owned(),
+            segment.inputs.column(1).into_owned(),
+            blind,
+        ]);
+        segment.outputs.iter_mut().zip(noise(k as u64, 3000)).for_each(|(y, v)| *y += 0.05 * v);
     }
     let measured =
-        local_polynomial(&spectra(&pieces, 10.4, &Sequential), &log_spaced(0.5, 8.0, 40), &Sequential).unwrap();
+        local_polynomial(&spectra(&segments, 10.4, &Sequential), &log_spaced(0.5, 8.0, 40), &Sequential).unwrap();
     assert_eq!(measured.excitation().not_identified().collect::<Vec<_>>(), [2]);
 }
 
 #[test]
 fn vibration_lowers_the_cut_off_and_is_named() {
-    let (_, mut pieces) = exact(2, 1500);
-    assert_eq!(CutOff::choose(&pieces, 8.0, &Sequential), CutOff { omega: 40.0, vibrating: vec![] });
-    let vibration = pieces[0].outputs.column(1).amax();
-    for piece in &mut pieces {
-        (0..1500).for_each(|n| piece.outputs[(n, 1)] += vibration * (50.0 * 0.04 * n as f64).sin());
+    let (_, mut segments) = exact(2, 1500);
+    assert_eq!(CutOff::choose(&segments, 8.0, &Sequential), CutOff { omega: 40.0, vibrating: vec![] });
+    let vibration = segments[0].outputs.column(1).amax();
+    for segment in &mut segments {
+        (0..1500).for_each(|n| segment.outputs[(n, 1)] += vibration * (50.0 * 0.04 * n as f64).sin());
     }
-    let cut_off = CutOff::choose(&pieces, 8.0, &Sequential);
+    let cut_off = CutOff::choose(&segments, 8.0, &Sequential);
     assert_eq!((cut_off.omega, cut_off.vibrating.len(), cut_off.vibrating[0].0), (16.0, 1, 1));
-    let filtered = cut_off.apply(&pieces, &Sequential);
+    let filtered = cut_off.apply(&segments, &Sequential);
     let share = CutOff::choose(&filtered, 8.0, &Sequential).vibrating;
     assert_eq!(share, []);
 }
@@ -251,22 +257,22 @@ fn the_low_pass_passes_straight_lines_and_is_none_near_half_the_sampling_frequen
 
 #[test]
 fn short_records_say_how_long_they_should_be() {
-    let (_, pieces) = exact(1, 250);
-    let refused = local_polynomial(&spectra(&pieces, 10.4, &Sequential), &[0.3], &Sequential).unwrap_err();
+    let (_, segments) = exact(1, 250);
+    let refused = local_polynomial(&spectra(&segments, 10.4, &Sequential), &[0.3], &Sequential).unwrap_err();
     assert!(matches!(refused, LocalPolynomialError::TooFewLines { .. }));
     assert!(refused.to_string().contains("at least 21 s, better 52 s"), "{refused}");
 }
 
 #[test]
 fn records_cut_into_pieces_of_twenty_seconds_still_have_a_response() {
-    let (model, pieces) = exact(9, 1500);
-    let cut: Vec<Segment> = pieces
+    let (model, segments) = exact(9, 1500);
+    let cut: Vec<Segment> = segments
         .iter()
-        .flat_map(|piece| {
+        .flat_map(|segment| {
             (0..3).map(|k| Segment {
-                inputs: piece.inputs.rows(500 * k, 500).into(),
-                outputs: piece.outputs.rows(500 * k, 500).into(),
-                ..piece.clone()
+                inputs: segment.inputs.rows(500 * k, 500).into(),
+                outputs: segment.outputs.rows(500 * k, 500).into(),
+                ..segment.clone()
             })
         })
         .collect();
@@ -308,29 +314,29 @@ fn hostile_lines_are_refused() {
 
 #[test]
 fn hostile_pieces_have_no_scales_and_no_lines() {
-    let piece = |rows: usize, value: f64| Segment {
+    let segment = |rows: usize, value: f64| Segment {
         record: 0,
         start_s: 0.0,
         sample_time_s: 0.02,
         inputs: DMatrix::from_element(rows, 1, value),
         outputs: DMatrix::from_fn(rows, 1, |n, _| n as f64),
     };
-    assert_eq!(Scales::of(&[]), Err(ScalingError::NoPieces));
-    assert_eq!(Scales::of(&[piece(9, 0.1)]), Err(ScalingError::InputConstant { input: 0 }));
-    assert_eq!(Scales::of(&[piece(9, f64::NAN)]), Err(ScalingError::NotFinite { piece: 0 }));
-    assert_eq!(Scales::of(&[piece(0, 0.0)]), Err(ScalingError::InputConstant { input: 0 }));
+    assert_eq!(Scales::of(&[]), Err(ScalingError::NoSegments));
+    assert_eq!(Scales::of(&[segment(9, 0.1)]), Err(ScalingError::Constant { role: Role::Input, index: 0 }));
+    assert_eq!(Scales::of(&[segment(9, f64::NAN)]), Err(ScalingError::NotFinite { segment: 0 }));
+    assert_eq!(Scales::of(&[segment(0, 0.0)]), Err(ScalingError::Constant { role: Role::Input, index: 0 }));
     for rows in 0..3 {
-        assert_eq!(spectra(&[piece(rows, 1.0)], 1e9, &Sequential)[0].omega.len(), 0);
+        assert_eq!(spectra(&[segment(rows, 1.0)], 1e9, &Sequential)[0].omega.len(), 0);
     }
-    let other = Segment { outputs: DMatrix::zeros(9, 2), ..piece(9, 1.0) };
-    assert_eq!(Scales::of(&[piece(9, 1.0), other]), Err(ScalingError::ChannelsDiffer { piece: 1 }));
+    let other = Segment { outputs: DMatrix::zeros(9, 2), ..segment(9, 1.0) };
+    assert_eq!(Scales::of(&[segment(9, 1.0), other]), Err(ScalingError::ChannelsDiffer { segment: 1 }));
 }
 
 #[test]
 fn results_are_the_same_to_the_last_bit_for_any_number_of_threads() {
-    let pieces = noisy(&known(), 4);
-    let scales = Scales::of(&pieces).unwrap();
-    let scaled: Vec<_> = pieces.iter().map(|piece| scales.scaled(piece)).collect();
+    let segments = noisy(&known(), 4);
+    let scales = Scales::of(&segments).unwrap();
+    let scaled: Vec<_> = segments.iter().map(|segment| scales.scaled(segment)).collect();
     let on = |threads: usize| {
         let executor = Threads(threads);
         let lines = spectra(&scaled, 10.4, &executor);
@@ -345,12 +351,12 @@ proptest! {
 
     #[test]
     fn trims_and_drifts_do_not_change_the_response(trim in -100.0..100.0, drift in -1.0..1.0, record in 0_usize..4, channel in 0_usize..4) {
-        let pieces = noisy(&known(), 4);
+        let segments = noisy(&known(), 4);
         let omegas = log_spaced(0.3, 8.0, 12);
-        let before = local_polynomial(&spectra(&pieces, 10.4, &Sequential), &omegas, &Sequential).unwrap();
-        let mut moved = pieces.clone();
-        let piece = &mut moved[record];
-        let samples = if channel < 2 { &mut piece.inputs } else { &mut piece.outputs };
+        let before = local_polynomial(&spectra(&segments, 10.4, &Sequential), &omegas, &Sequential).unwrap();
+        let mut moved = segments.clone();
+        let segment = &mut moved[record];
+        let samples = if channel < 2 { &mut segment.inputs } else { &mut segment.outputs };
         // A constant for every channel; a ramp for outputs, where it is a transient: G of an input's ramp is an output's ramp.
         let drift = if channel < 2 { 0.0 } else { drift };
         samples.column_mut(channel % 2).iter_mut().enumerate().for_each(|(n, x)| *x += trim + 0.04 * drift * n as f64);
@@ -367,13 +373,13 @@ proptest! {
 
     #[test]
     fn records_and_channels_in_another_order_give_the_response_in_that_order(order in Just(vec![0_usize, 1, 2, 3]).prop_shuffle()) {
-        let pieces = noisy(&known(), 4);
+        let segments = noisy(&known(), 4);
         let omegas = log_spaced(0.5, 8.0, 7);
-        let before = local_polynomial(&spectra(&pieces, 10.4, &Sequential), &omegas, &Sequential).unwrap();
+        let before = local_polynomial(&spectra(&segments, 10.4, &Sequential), &omegas, &Sequential).unwrap();
         let swapped: Vec<Segment> = order.iter().map(|&k| Segment {
-            inputs: pieces[k].inputs.select_columns(&[1, 0]),
-            outputs: pieces[k].outputs.select_columns(&[1, 0]),
-            ..pieces[k].clone()
+            inputs: segments[k].inputs.select_columns(&[1, 0]),
+            outputs: segments[k].outputs.select_columns(&[1, 0]),
+            ..segments[k].clone()
         }).collect();
         let after = local_polynomial(&spectra(&swapped, 10.4, &Sequential), &omegas, &Sequential).unwrap();
         for (before, after) in before.points.iter().zip(&after.points) {
@@ -387,16 +393,16 @@ proptest! {
 
     #[test]
     fn units_change_the_response_by_their_ratio(gain in 1e-3..1e3) {
-        let pieces = noisy(&known(), 4);
+        let segments = noisy(&known(), 4);
         let omegas = log_spaced(0.5, 8.0, 5);
-        let response = |pieces: &[Segment]| {
-            let scales = Scales::of(pieces).unwrap();
-            let scaled: Vec<_> = pieces.iter().map(|piece| scales.scaled(piece)).collect();
+        let response = |segments: &[Segment]| {
+            let scales = Scales::of(segments).unwrap();
+            let scaled: Vec<_> = segments.iter().map(|segment| scales.scaled(segment)).collect();
             local_polynomial(&spectra(&scaled, 10.4, &Sequential), &omegas, &Sequential).unwrap().in_units(&scales)
         };
-        let before = response(&pieces);
-        let mut other = pieces.clone();
-        other.iter_mut().for_each(|piece| piece.inputs.column_mut(0).scale_mut(gain));
+        let before = response(&segments);
+        let mut other = segments.clone();
+        other.iter_mut().for_each(|segment| segment.inputs.column_mut(0).scale_mut(gain));
         for (before, after) in before.points.iter().zip(&response(&other).points) {
             for o in 0..2 {
                 prop_assert!((after.response[(o, 0)] * gain - before.response[(o, 0)]).norm() < 1e-9 * before.response.camax());

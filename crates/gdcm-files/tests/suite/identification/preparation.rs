@@ -1,4 +1,4 @@
-//! From records as logged to pieces.
+//! From records as logged to segments.
 
 use super::common::{known, list, matrix, noise};
 use crate::made_up::tries;
@@ -54,16 +54,16 @@ fn the_known_record_becomes_the_known_pieces() {
     let mut settings = Preparation::of(&["u"], &["y1", "y2"]);
     let delays = list(&case["delay_y"]);
     (0..2).for_each(|o| settings.outputs[o].delay_s = delays[o]);
-    settings.least_piece_s = case["min_len_s"].as_f64().unwrap();
+    settings.least_segment_s = case["min_len_s"].as_f64().unwrap();
     settings.longest_bridge = case["max_gap"].as_u64().unwrap() as usize;
     let prepared = prepared(&record, &settings);
     let expected = case["pieces"].as_array().unwrap();
-    assert_eq!(prepared.pieces.len(), expected.len());
-    for (piece, expected) in prepared.pieces.iter().zip(expected) {
-        assert!((piece.sample_time_s - expected["dt"].as_f64().unwrap()).abs() < 1e-9);
-        assert_eq!(piece.inputs.nrows() as u64, expected["samples"].as_u64().unwrap());
-        assert!((piece.inputs[0] - expected["first_u"].as_f64().unwrap()).abs() < 1e-9);
-        assert!((&piece.outputs - matrix(&expected["y"])).amax() < 1e-9);
+    assert_eq!(prepared.segments.len(), expected.len());
+    for (segment, expected) in prepared.segments.iter().zip(expected) {
+        assert!((segment.sample_time_s - expected["dt"].as_f64().unwrap()).abs() < 1e-9);
+        assert_eq!(segment.inputs.nrows() as u64, expected["samples"].as_u64().unwrap());
+        assert!((segment.inputs[0] - expected["first_u"].as_f64().unwrap()).abs() < 1e-9);
+        assert!((&segment.outputs - matrix(&expected["y"])).amax() < 1e-9);
     }
     let gaps: Vec<String> = prepared.records[0].gaps.iter().map(ToString::to_string).collect();
     assert_eq!(gaps, ["2.45 to 2.60 s: y1 missing, bridged", "7.45 to 9.50 s: rows missing, left out"]);
@@ -73,10 +73,10 @@ fn the_known_record_becomes_the_known_pieces() {
 fn a_record_without_gaps_stays_as_it_is() {
     let record = wandering(1000);
     let prepared = prepared(&record, &settings());
-    assert_eq!((prepared.pieces.len(), prepared.cautions.len(), prepared.records[0].gaps.len()), (1, 0, 0));
+    assert_eq!((prepared.segments.len(), prepared.cautions.len(), prepared.records[0].gaps.len()), (1, 0, 0));
     // Stamps of 0.02 n and a grid of n 0.02 differ by rounding, so values are interpolated by as much.
-    assert!((&prepared.pieces[0].inputs - &record.inputs).amax() < 1e-9);
-    assert!((&prepared.pieces[0].outputs - &record.outputs).amax() < 1e-9);
+    assert!((&prepared.segments[0].inputs - &record.inputs).amax() < 1e-9);
+    assert!((&prepared.segments[0].outputs - &record.outputs).amax() < 1e-9);
     assert!((prepared.records[0].used_s - 20.0).abs() < 1e-9);
 }
 
@@ -85,19 +85,20 @@ fn three_missing_samples_are_bridged_by_a_straight_line_and_four_split_the_recor
     let mut record = wandering(1500);
     (700..703).for_each(|n| record.outputs[(n, 1)] = f64::NAN);
     let bridged = prepared(&record, &settings());
-    assert_eq!(bridged.pieces.len(), 1);
+    assert_eq!(bridged.segments.len(), 1);
     let middle = 0.5 * (record.outputs[(699, 1)] + record.outputs[(703, 1)]);
-    assert!((bridged.pieces[0].outputs[(701, 1)] - middle).abs() < 1e-9);
+    assert!((bridged.segments[0].outputs[(701, 1)] - middle).abs() < 1e-9);
     assert_eq!(bridged.records[0].gaps[0].treatment, Treatment::Bridged);
 
     record.outputs[(703, 1)] = f64::NAN;
     let split = prepared(&record, &settings());
-    assert_eq!(split.pieces.len(), 2);
+    assert_eq!(split.segments.len(), 2);
     assert_eq!(split.records[0].gaps[0].to_string(), "13.98 to 14.08 s: Q missing, left out");
-    assert!((split.pieces[1].start_s - 14.08).abs() < 0.021);
+    assert!((split.segments[1].start_s - 14.08).abs() < 0.021);
     assert!(
-        (split.pieces[1].outputs.row(10) - record.outputs.row((split.pieces[1].start_s / 0.02).round() as usize + 10))
-            .amax()
+        (split.segments[1].outputs.row(10)
+            - record.outputs.row((split.segments[1].start_s / 0.02).round() as usize + 10))
+        .amax()
             < 1e-9
     );
 }
@@ -110,7 +111,7 @@ fn missing_stamps_and_missing_rows_are_gaps_with_their_own_words() {
     let prepared = prepared(&record, &settings());
     let gaps: Vec<String> = prepared.records[0].gaps.iter().map(ToString::to_string).collect();
     assert_eq!(gaps, ["11.98 to 13.00 s: time stamps missing, left out", "23.98 to 28.00 s: rows missing, left out"]);
-    assert_eq!(prepared.pieces.len(), 3);
+    assert_eq!(prepared.segments.len(), 3);
 }
 
 #[test]
@@ -119,9 +120,9 @@ fn short_pieces_are_dropped_with_a_caution_and_a_place() {
     record.outputs[(1100, 0)] = f64::NAN;
     (1101..1110).for_each(|n| record.inputs[(n, 0)] = f64::NAN);
     let prepared = prepared(&record, &settings());
-    assert_eq!(prepared.pieces.len(), 1);
+    assert_eq!(prepared.segments.len(), 1);
     assert!(words(&prepared.cautions).contains("sweep: 7.8 s from 22.2"), "{}", words(&prepared.cautions));
-    assert!(matches!(prepared.records[0].gaps.last().unwrap().cause, Cause::PieceTooShort { .. }));
+    assert!(matches!(prepared.records[0].gaps.last().unwrap().cause, Cause::SegmentTooShort { .. }));
 }
 
 #[test]
@@ -130,10 +131,10 @@ fn an_output_that_stands_still_while_the_others_move_is_a_gap() {
     let value = record.outputs[(800, 0)];
     (801..900).for_each(|n| record.outputs[(n, 0)] = value);
     let cut = prepared(&record, &settings());
-    assert_eq!(cut.pieces.len(), 2);
+    assert_eq!(cut.segments.len(), 2);
     assert_eq!(cut.records[0].gaps[0].to_string(), "16.00 to 18.00 s: P frozen, left out");
     let kept = prepared(&record, &Preparation { keep_frozen: true, ..settings() });
-    assert_eq!(kept.pieces.len(), 1);
+    assert_eq!(kept.segments.len(), 1);
 }
 
 #[test]
@@ -143,7 +144,7 @@ fn a_held_input_and_a_coarse_output_are_not_frozen() {
     // A resolution of 3 in a signal of about 7 repeats values for a second and more.
     record.outputs.column_mut(1).iter_mut().for_each(|y| *y = (*y / 3.0).round() * 3.0);
     let prepared = prepared(&record, &settings());
-    assert_eq!(prepared.pieces.len(), 1, "{:?}", prepared.records);
+    assert_eq!(prepared.segments.len(), 1, "{:?}", prepared.records);
 }
 
 #[test]
@@ -153,7 +154,7 @@ fn a_record_at_rest_before_its_sweep_is_not_frozen() {
         record.inputs.row_mut(n).fill(40.0);
         record.outputs.row_mut(n).fill(0.0);
     }
-    assert_eq!(prepared(&record, &settings()).pieces.len(), 1);
+    assert_eq!(prepared(&record, &settings()).segments.len(), 1);
 }
 
 #[test]
@@ -178,9 +179,10 @@ fn delays_and_holds_shift_a_channel_the_right_way() {
     settings.outputs[0].delay_s = 0.05;
     settings.inputs[0].hold = Hold::Command { hold_s: 0.1 };
     settings.outputs[1].hold = Hold::SlowSensor { hold_s: 0.2 };
-    let piece = prepared(&record, &settings).pieces.remove(0);
-    let time_s = piece.start_s + 0.02 * 100.0;
-    let shifts = [piece.inputs[(100, 0)], piece.inputs[(100, 1)], piece.outputs[(100, 0)], piece.outputs[(100, 1)]];
+    let segment = prepared(&record, &settings).segments.remove(0);
+    let time_s = segment.start_s + 0.02 * 100.0;
+    let shifts =
+        [segment.inputs[(100, 0)], segment.inputs[(100, 1)], segment.outputs[(100, 0)], segment.outputs[(100, 1)]];
     for (value, shift) in shifts.iter().zip([-0.05, 0.0, 0.05, 0.1]) {
         assert!((value - time_s - shift).abs() < 1e-9, "{value} {time_s} {shift}");
     }
@@ -197,10 +199,10 @@ fn fresh_samples_of_a_slow_sensor_are_joined_by_straight_lines() {
     settings.outputs[0].hold = Hold::FreshSamples;
     settings.inputs[1].hold = Hold::FreshSamples;
     let prepared = prepared(&record, &settings);
-    assert_eq!(prepared.pieces.len(), 1);
+    assert_eq!(prepared.segments.len(), 1);
     for n in 0..990 {
         // Straight lines over 0.1 s of a sine of 0.3 rad/s are off by (0.03)^2 / 8, about 1e-4.
-        assert!((prepared.pieces[0].outputs[(n, 0)] - (0.3 * 0.02 * n as f64).sin()).abs() < 1.2e-4, "{n}");
+        assert!((prepared.segments[0].outputs[(n, 0)] - (0.3 * 0.02 * n as f64).sin()).abs() < 1.2e-4, "{n}");
     }
 }
 
@@ -237,10 +239,10 @@ fn uneven_stamps_are_refused_unless_resampling_is_allowed() {
     let allowed = Preparation { resample: true, ..settings() };
     let prepared = prepared(&record, &allowed);
     assert!(words(&prepared.cautions).contains("interpolated to even steps"));
-    let piece = &prepared.pieces[0];
-    for n in 0..piece.outputs.nrows() {
+    let segment = &prepared.segments[0];
+    for n in 0..segment.outputs.nrows() {
         // Straight lines over at most 0.036 s of a sine of 1 rad/s: 0.036^2 / 8 = 1.6e-4.
-        assert!((piece.outputs[(n, 0)] - (piece.start_s + n as f64 * piece.sample_time_s).sin()).abs() < 1.7e-4);
+        assert!((segment.outputs[(n, 0)] - (segment.start_s + n as f64 * segment.sample_time_s).sin()).abs() < 1.7e-4);
     }
 }
 
@@ -248,7 +250,7 @@ fn uneven_stamps_are_refused_unless_resampling_is_allowed() {
 fn one_late_stamp_is_no_jitter() {
     let mut record = wandering(1000);
     record.time_s[400] += 0.009;
-    assert_eq!(prepared(&record, &settings()).pieces.len(), 1);
+    assert_eq!(prepared(&record, &settings()).segments.len(), 1);
 }
 
 #[test]
@@ -299,8 +301,8 @@ fn an_unused_record_does_not_spoil_the_others() {
     lost.name = "lost".into();
     lost.outputs.fill(f64::NAN);
     let prepared = prepare(&[lost, wandering(1000)], &settings(), &Sequential).unwrap();
-    assert_eq!(prepared.pieces.len(), 1);
-    assert_eq!(prepared.pieces[0].record, 1);
+    assert_eq!(prepared.segments.len(), 1);
+    assert_eq!(prepared.segments[0].record, 1);
     assert!(words(&prepared.cautions).contains("lost: nothing of it could be used"));
     assert_eq!(prepared.records[0].used_s, 0.0);
 }
@@ -336,7 +338,7 @@ fn hostile_records_are_refused_or_cut_and_never_panic() {
     // Stamps of absurd size: the grid is laid only where there are samples.
     let mut far = good.clone();
     far.time_s[999] = 1e300;
-    assert_eq!(of(far).unwrap().pieces.len(), 1);
+    assert_eq!(of(far).unwrap().segments.len(), 1);
     let mut infinite = good.clone();
     (infinite.time_s[0], infinite.time_s[999]) = (-1.7e308, 1.7e308);
     assert!(of(infinite).is_err());
@@ -347,10 +349,10 @@ fn hostile_records_are_refused_or_cut_and_never_panic() {
             prepare(std::slice::from_ref(&good), &shifted, &Sequential),
             Err(PreparationError::Shift { .. })
         ));
-        let least = Preparation { least_piece_s: -seconds, ..settings() };
+        let least = Preparation { least_segment_s: -seconds, ..settings() };
         assert!(matches!(
             prepare(std::slice::from_ref(&good), &least, &Sequential),
-            Err(PreparationError::LeastPiece { .. })
+            Err(PreparationError::LeastSegment { .. })
         ));
     }
     let bridge = Preparation { longest_bridge: usize::MAX, ..settings() };
@@ -359,7 +361,7 @@ fn hostile_records_are_refused_or_cut_and_never_panic() {
     huge.outputs[(3, 0)] = 1e300;
     assert!(
         prepare(&[huge], &settings(), &Sequential)
-            .is_ok_and(|prepared| prepared.pieces.iter().all(|p| p.outputs.iter().all(|y| y.is_finite())))
+            .is_ok_and(|prepared| prepared.segments.iter().all(|p| p.outputs.iter().all(|y| y.is_finite())))
     );
 }
 
@@ -382,25 +384,25 @@ proptest! {
             }
         }
         let mut settings = settings();
-        settings.least_piece_s = 1.0;
+        settings.least_segment_s = 1.0;
         settings.outputs[0].delay_s = delay_s;
         let prepared = prepared(&record, &settings);
         let greatest = record.inputs.iter().filter(|x| x.is_finite()).fold(0.0_f64, |a, b| a.max(b.abs()));
         prop_assert!(prepared.records[0].used_s <= 60.0 + 1e-9);
-        for piece in &prepared.pieces {
-            prop_assert!(piece.outputs.iter().all(|y| y.is_finite()));
-            prop_assert!(piece.inputs.amax() <= greatest);
-            prop_assert_eq!(piece.inputs.nrows(), piece.outputs.nrows());
+        for segment in &prepared.segments {
+            prop_assert!(segment.outputs.iter().all(|y| y.is_finite()));
+            prop_assert!(segment.inputs.amax() <= greatest);
+            prop_assert_eq!(segment.inputs.nrows(), segment.outputs.nrows());
             // Samples without a delay are those of the record wherever the record has them.
-            for n in 0..piece.inputs.nrows() {
-                let row = (piece.start_s / 0.02).round() as usize + n;
+            for n in 0..segment.inputs.nrows() {
+                let row = (segment.start_s / 0.02).round() as usize + n;
                 let logged = record.inputs[(row, 0)];
                 if logged.is_finite() && record.time_s[row].is_finite() {
-                    prop_assert!((piece.inputs[(n, 0)] - logged).abs() < 1e-9);
+                    prop_assert!((segment.inputs[(n, 0)] - logged).abs() < 1e-9);
                 }
             }
         }
-        for pair in prepared.pieces.windows(2) {
+        for pair in prepared.segments.windows(2) {
             prop_assert!(pair[1].start_s > pair[0].start_s + 0.02 * (pair[0].inputs.nrows() as f64 + 2.5));
         }
     }
@@ -415,8 +417,8 @@ proptest! {
         let straight = prepare(&records, &settings(), &Sequential).unwrap();
         let shuffled: Vec<_> = order.iter().map(|&k| records[k].clone()).collect();
         let prepared = prepare(&shuffled, &settings(), &Sequential).unwrap();
-        for (piece, &k) in prepared.pieces.iter().zip(&order) {
-            prop_assert_eq!(&piece.outputs, &straight.pieces[k].outputs);
+        for (segment, &k) in prepared.segments.iter().zip(&order) {
+            prop_assert_eq!(&segment.outputs, &straight.segments[k].outputs);
         }
     }
 }

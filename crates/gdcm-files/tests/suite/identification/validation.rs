@@ -53,8 +53,8 @@ fn a_ramp_and_a_step_are_answered_as_in_the_textbook() {
 #[test]
 fn the_exact_model_fits_a_record_whole_from_any_state_and_trim() {
     let model = slow_system();
-    let piece = record(&model, &[1.0, -2.0, 0.5, 3.0], 1234, 0.04);
-    let validation = validate(&model, &[piece], &ValidationSettings::unfiltered(), &Sequential).unwrap();
+    let segment = record(&model, &[1.0, -2.0, 0.5, 3.0], 1234, 0.04);
+    let validation = validate(&model, &[segment], &ValidationSettings::unfiltered(), &Sequential).unwrap();
     for (fit, theil) in validation.fit_percent.iter().zip(&validation.theil) {
         // Rounding of a least-squares problem with columns of condition about 1e3.
         assert!(fit.unwrap() > 100.0 - 1e-7 && theil.unwrap() < 1e-9);
@@ -64,15 +64,15 @@ fn the_exact_model_fits_a_record_whole_from_any_state_and_trim() {
 #[test]
 fn windows_follow_each_other_and_leave_no_sample_out() {
     let model = slow_system();
-    let piece = record(&model, &[0.0; 4], 1234, 0.04);
+    let segment = record(&model, &[0.0; 4], 1234, 0.04);
     let validation =
-        validate(&model, std::slice::from_ref(&piece), &ValidationSettings::unfiltered(), &Sequential).unwrap();
+        validate(&model, std::slice::from_ref(&segment), &ValidationSettings::unfiltered(), &Sequential).unwrap();
     assert_eq!(validation.windows.len(), 5, "49.36 s take five windows of at most 10 s");
     let mut next = 5.0;
     let mut rows = 0;
     for window in &validation.windows {
         assert!((window.start_s - next).abs() < 1e-9 && window.record == 3);
-        assert_eq!(window.measured, piece.outputs.rows(rows, window.measured.nrows()));
+        assert_eq!(window.measured, segment.outputs.rows(rows, window.measured.nrows()));
         next += 0.04 * window.measured.nrows() as f64;
         rows += window.measured.nrows();
     }
@@ -82,8 +82,8 @@ fn windows_follow_each_other_and_leave_no_sample_out() {
 #[test]
 fn an_unstable_model_has_windows_of_three_time_constants() {
     let model = unstable(0.5);
-    let piece = record(&model, &[1e-6, 0.0], 600, 0.05);
-    let validation = validate(&model, &[piece], &ValidationSettings::unfiltered(), &Sequential).unwrap();
+    let segment = record(&model, &[1e-6, 0.0], 600, 0.05);
+    let validation = validate(&model, &[segment], &ValidationSettings::unfiltered(), &Sequential).unwrap();
     assert_eq!(validation.windows.len(), 5, "30 s in windows of 3 / 0.5 = 6 s");
     assert!(validation.fit_percent.iter().all(|fit| fit.unwrap() > 99.999));
 }
@@ -91,9 +91,9 @@ fn an_unstable_model_has_windows_of_three_time_constants() {
 #[test]
 fn a_model_that_diverges_within_a_few_samples_is_refused_in_words() {
     let model = unstable(40.0);
-    let mut piece = record(&unstable(-1.0), &[0.0, 0.0], 600, 0.05);
-    piece.outputs.column_mut(0).add_scalar_mut(1.0);
-    let refused = validate(&model, &[piece], &ValidationSettings::unfiltered(), &Sequential).unwrap_err();
+    let mut segment = record(&unstable(-1.0), &[0.0, 0.0], 600, 0.05);
+    segment.outputs.column_mut(0).add_scalar_mut(1.0);
+    let refused = validate(&model, &[segment], &ValidationSettings::unfiltered(), &Sequential).unwrap_err();
     assert!(matches!(refused, ValidationError::TooShort { window_s } if (window_s - 0.075).abs() < 1e-12));
     assert!(refused.to_string().contains("too short to compare in time"));
 }
@@ -101,15 +101,15 @@ fn a_model_that_diverges_within_a_few_samples_is_refused_in_words() {
 #[test]
 fn noise_lowers_the_fit_by_its_share() {
     let model = slow_system();
-    let mut piece = record(&model, &[0.0; 4], 2500, 0.04);
-    let clean = piece.outputs.clone();
+    let mut segment = record(&model, &[0.0; 4], 2500, 0.04);
+    let clean = segment.outputs.clone();
     let std = (0..2).map(|o| clean.column(o).variance().sqrt()).collect::<Vec<_>>();
     for (o, std) in std.iter().enumerate() {
         // Uniform noise of +-1 has a standard deviation of 1 / sqrt 3; here a tenth of the output's.
         let noise = noise(99 + o as u64, 2500);
-        piece.outputs.column_mut(o).iter_mut().zip(noise).for_each(|(y, v)| *y += 0.1 * std * 3.0_f64.sqrt() * v);
+        segment.outputs.column_mut(o).iter_mut().zip(noise).for_each(|(y, v)| *y += 0.1 * std * 3.0_f64.sqrt() * v);
     }
-    let validation = validate(&model, &[piece], &ValidationSettings::unfiltered(), &Sequential).unwrap();
+    let validation = validate(&model, &[segment], &ValidationSettings::unfiltered(), &Sequential).unwrap();
     for (fit, theil) in validation.fit_percent.iter().zip(&validation.theil) {
         // 90 % less what the state and offset of each of ten windows take of the noise; Theil is half of the error's share.
         assert!((fit.unwrap() - 90.0).abs() < 0.6, "{fit:?}");
@@ -120,12 +120,12 @@ fn noise_lowers_the_fit_by_its_share() {
 #[test]
 fn vibration_above_the_low_pass_does_not_count() {
     let model = slow_system();
-    let mut piece = record(&model, &[0.0; 4], 2500, 0.02);
+    let mut segment = record(&model, &[0.0; 4], 2500, 0.02);
     for n in 0..2500 {
-        piece.outputs[(n, 0)] += 5.0 * (100.0 * 0.02 * n as f64).sin();
+        segment.outputs[(n, 0)] += 5.0 * (100.0 * 0.02 * n as f64).sin();
     }
-    let raw = validate(&model, std::slice::from_ref(&piece), &ValidationSettings::unfiltered(), &Sequential).unwrap();
-    let filtered = validate(&model, &[piece], &ValidationSettings::filtered(8.0), &Sequential).unwrap();
+    let raw = validate(&model, std::slice::from_ref(&segment), &ValidationSettings::unfiltered(), &Sequential).unwrap();
+    let filtered = validate(&model, &[segment], &ValidationSettings::filtered(8.0), &Sequential).unwrap();
     assert!(raw.fit_percent[0].unwrap() < 50.0);
     // The ends of the record, reflected in the middle of a vibration, keep a little of it.
     assert!(filtered.fit_percent[0].unwrap() > 95.0, "{:?}", filtered.fit_percent);
@@ -152,9 +152,9 @@ fn the_system_that_made_the_known_record_fits_it_about_as_well_as_the_identified
 
 #[test]
 fn an_output_that_does_not_move_has_no_fit() {
-    let mut piece = record(&slow_system(), &[0.0; 4], 600, 0.04);
-    piece.outputs.column_mut(1).fill(2.0);
-    let validation = validate(&slow_system(), &[piece], &ValidationSettings::unfiltered(), &Sequential).unwrap();
+    let mut segment = record(&slow_system(), &[0.0; 4], 600, 0.04);
+    segment.outputs.column_mut(1).fill(2.0);
+    let validation = validate(&slow_system(), &[segment], &ValidationSettings::unfiltered(), &Sequential).unwrap();
     assert_eq!(validation.fit_percent[1], None);
     assert!(validation.fit_percent[0].is_some());
 }
@@ -162,12 +162,15 @@ fn an_output_that_does_not_move_has_no_fit() {
 #[test]
 fn hostile_models_and_records_are_refused() {
     let good = slow_system();
-    let piece = record(&good, &[0.0; 4], 600, 0.04);
+    let segment = record(&good, &[0.0; 4], 600, 0.04);
     let settings = ValidationSettings::unfiltered();
-    let of = |model: &StateSpace| validate(model, std::slice::from_ref(&piece), &settings, &Sequential).map(|_| ());
-    assert_eq!(validate(&good, &[], &settings, &Sequential), Err(ValidationError::NoPieces));
+    let of = |model: &StateSpace| validate(model, std::slice::from_ref(&segment), &settings, &Sequential).map(|_| ());
+    assert_eq!(validate(&good, &[], &settings, &Sequential), Err(ValidationError::NoSegments));
     let no_window = ValidationSettings { longest_window_s: f64::NAN, low_pass: None };
-    assert_eq!(validate(&good, std::slice::from_ref(&piece), &no_window, &Sequential), Err(ValidationError::NoWindow));
+    assert_eq!(
+        validate(&good, std::slice::from_ref(&segment), &no_window, &Sequential),
+        Err(ValidationError::NoWindow)
+    );
 
     let with = |a: DMatrix<f64>, inputs: usize| {
         let b = good.b().columns(0, inputs).into_owned();
@@ -180,13 +183,16 @@ fn hostile_models_and_records_are_refused() {
     }
     assert_eq!(of(&with(good.a().clone(), 1)), Err(ValidationError::ChannelsDiffer { record: 3 }));
 
-    let mut broken = piece.clone();
+    let mut broken = segment.clone();
     broken.outputs[(30, 0)] = f64::NAN;
     assert_eq!(validate(&good, &[broken], &settings, &Sequential), Err(ValidationError::NotFinite));
-    let short =
-        Segment { inputs: piece.inputs.rows(0, 3).into(), outputs: piece.outputs.rows(0, 3).into(), ..piece.clone() };
+    let short = Segment {
+        inputs: segment.inputs.rows(0, 3).into(),
+        outputs: segment.outputs.rows(0, 3).into(),
+        ..segment.clone()
+    };
     assert!(matches!(validate(&good, &[short], &settings, &Sequential), Err(ValidationError::TooShort { .. })));
-    let empty = Segment { inputs: DMatrix::zeros(0, 2), outputs: DMatrix::zeros(0, 2), ..piece };
+    let empty = Segment { inputs: DMatrix::zeros(0, 2), outputs: DMatrix::zeros(0, 2), ..segment };
     assert!(matches!(validate(&good, &[empty], &settings, &Sequential), Err(ValidationError::TooShort { .. })));
 }
 
@@ -196,18 +202,18 @@ proptest! {
     #[test]
     fn trims_and_units_do_not_change_the_fit(trim in -1e3..1e3, gain in 0.01..100.0, seed in 0_u64..1000) {
         let model = slow_system();
-        let mut piece = record(&model, &[0.3, 0.0, -1.0, 0.0], 700, 0.04);
-        piece.outputs.column_mut(0).iter_mut().zip(noise(seed, 700)).for_each(|(y, v)| *y += 0.2 * v);
+        let mut segment = record(&model, &[0.3, 0.0, -1.0, 0.0], 700, 0.04);
+        segment.outputs.column_mut(0).iter_mut().zip(noise(seed, 700)).for_each(|(y, v)| *y += 0.2 * v);
         let settings = ValidationSettings::unfiltered();
-        let before = validate(&model, std::slice::from_ref(&piece), &settings, &Sequential).unwrap();
+        let before = validate(&model, std::slice::from_ref(&segment), &settings, &Sequential).unwrap();
         let (mut c, mut d) = (model.c().clone(), model.d().clone());
         c.row_mut(0).scale_mut(gain);
         d.row_mut(0).scale_mut(gain);
         let other = StateSpace::new(model.a().clone(), model.b().clone(), c, d).unwrap();
-        piece.outputs.column_mut(0).scale_mut(gain);
-        piece.outputs.add_scalar_mut(trim);
-        piece.inputs.add_scalar_mut(trim);
-        let after = validate(&other, &[piece], &settings, &Sequential).unwrap();
+        segment.outputs.column_mut(0).scale_mut(gain);
+        segment.outputs.add_scalar_mut(trim);
+        segment.inputs.add_scalar_mut(trim);
+        let after = validate(&other, &[segment], &settings, &Sequential).unwrap();
         for (before, after) in before.fit_percent.iter().zip(&after.fit_percent) {
             // Trims of 1e3 beside outputs of 1 cost three digits of the sixteen, the least squares as many.
             prop_assert!((before.unwrap() - after.unwrap()).abs() < 1e-5, "{:?} {:?}", before, after);

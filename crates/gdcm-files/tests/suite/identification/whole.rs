@@ -160,7 +160,7 @@ fn the_order_of_records_and_channels_does_not_matter() {
     }
     let turned = identify(&other, &quick((2, 2)), &Sequential, &Unobserved).unwrap();
     let all = responses(&turned);
-    // The same minimum from another side: the polish stops at a gain of 1e-3 of the cost, so a small part of a standard
+    // The same minimum from another side: the refinement stops at a gain of 1e-3 of the cost, so a small part of a standard
     // deviation is left.
     let sd = |k: usize, o: usize, i: usize| sd_db(&found, k, (o, i)) / 8.686;
     let greatest = difference(&found, |k, o, i| {

@@ -35,14 +35,14 @@ impl Residual {
 
 /// What one form of the schedule makes of one gain. The lists are in the order of the conditions.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FitEvidence {
+pub struct FitResiduals {
     /// Residual of each condition; none where the scheduled gain is not positive.
     pub residuals: Vec<Option<Residual>>,
     /// The same of the schedule that is made without that condition; none of the only one.
     pub left_out: Vec<Option<Residual>>,
 }
 
-impl FitEvidence {
+impl FitResiduals {
     /// Root of the mean squared residual of `ln k`; none where a residual is missing.
     pub fn rms_ln(&self) -> Option<f64> {
         rms(&self.residuals)
@@ -62,20 +62,20 @@ fn rms(residuals: &[Option<Residual>]) -> Option<f64> {
 
 /// What one form of the schedule makes of every channel and every response.
 #[derive(Clone, Debug, PartialEq)]
-pub struct KindEvidence {
+pub struct FormFit {
     /// The form asked for.
     pub kind: ScheduleKind,
     /// Degree of the polynomial, which may be less than was asked for (M11b); none of a table.
     pub degree: Option<usize>,
     /// Gain of each input channel.
-    pub inputs: Vec<FitEvidence>,
+    pub inputs: Vec<FitResiduals>,
     /// Gain of each output channel.
-    pub outputs: Vec<FitEvidence>,
+    pub outputs: Vec<FitResiduals>,
     /// Net gain of each response, `k_o k_i`.
-    pub pairs: PairTable<FitEvidence>,
+    pub pairs: PairTable<FitResiduals>,
 }
 
-impl KindEvidence {
+impl FormFit {
     /// Leave-one-condition-out error of `ln k_o k_i`, root mean square over these responses; none where one is missing.
     pub fn left_out_rms_ln(&self, pairs: impl IntoIterator<Item = Pair>) -> Option<f64> {
         let squares = pairs.into_iter().map(|pair| self.pairs[pair].left_out_rms_ln().map(|rms| rms * rms));
@@ -84,19 +84,19 @@ impl KindEvidence {
     }
 }
 
-/// The evidence for every form of a schedule.
+/// How well every form of a schedule fits.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Evidence {
+pub struct FormComparison {
     /// Airspeed of each condition \[kt\], in the order of the lists of residuals.
     pub airspeeds_kt: Vec<f64>,
     /// Each form of [`SCHEDULE_KINDS`], in that order.
-    pub kinds: Vec<KindEvidence>,
+    pub kinds: Vec<FormFit>,
 }
 
-impl Evidence {
-    /// The evidence for one form.
-    pub fn of(&self, kind: ScheduleKind) -> Option<&KindEvidence> {
-        self.kinds.iter().find(|evidence| evidence.kind == kind)
+impl FormComparison {
+    /// How well one form fits.
+    pub fn of(&self, kind: ScheduleKind) -> Option<&FormFit> {
+        self.kinds.iter().find(|form| form.kind == kind)
     }
 }
 
@@ -108,7 +108,10 @@ impl Evidence {
 ///
 /// # Errors
 /// [`ScheduleError::NoCondition`] where there is no condition.
-pub fn evidence(points: &[ScheduledPoint<'_>], settings: ScheduleSettings) -> Result<Evidence, ScheduleError> {
+pub fn compare_forms(
+    points: &[ScheduledPoint<'_>],
+    settings: ScheduleSettings,
+) -> Result<FormComparison, ScheduleError> {
     let of_kind = |kind| {
         let settings = ScheduleSettings { kind, delays: false, ..settings };
         let schedule = Schedule::fitted(points, settings)?;
@@ -121,10 +124,10 @@ pub fn evidence(points: &[ScheduledPoint<'_>], settings: ScheduleSettings) -> Re
                 .map(|schedule| schedule.evaluate(points[left_out].airspeed_kt, points[left_out].second))
         });
         let degree = schedule.degree();
-        Ok(Predicted { points, scheduled, unseen: unseen.collect() }.evidence(kind, degree))
+        Ok(Predicted { points, scheduled, unseen: unseen.collect() }.residuals(kind, degree))
     };
     let kinds = SCHEDULE_KINDS.into_iter().map(of_kind).collect::<Result<Vec<_>, _>>()?;
-    Ok(Evidence { airspeeds_kt: points.iter().map(|point| point.airspeed_kt).collect(), kinds })
+    Ok(FormComparison { airspeeds_kt: points.iter().map(|point| point.airspeed_kt).collect(), kinds })
 }
 
 /// What the schedule says at each condition, and what it says that has not seen it.
@@ -135,10 +138,10 @@ struct Predicted<'a> {
 }
 
 impl Predicted<'_> {
-    fn evidence(&self, kind: ScheduleKind, degree: Option<usize>) -> KindEvidence {
+    fn residuals(&self, kind: ScheduleKind, degree: Option<usize>) -> FormFit {
         let own = self.points[0].correction;
         let (inputs, outputs) = (own.input_gains.len(), own.output_gains.len());
-        KindEvidence {
+        FormFit {
             kind,
             degree,
             inputs: (0..inputs).map(|input| self.of_gain(|correction| correction.input_gains[input])).collect(),
@@ -149,14 +152,14 @@ impl Predicted<'_> {
         }
     }
 
-    fn of_gain(&self, gain: impl Fn(&ChannelCorrection) -> f64) -> FitEvidence {
+    fn of_gain(&self, gain: impl Fn(&ChannelCorrection) -> f64) -> FitResiduals {
         let against = |predicted: &[Option<ChannelCorrection>]| {
             let residual = |(point, predicted): (&ScheduledPoint<'_>, &Option<ChannelCorrection>)| {
                 Residual::of(gain(point.correction), gain(predicted.as_ref()?))
             };
             self.points.iter().zip(predicted).map(residual).collect()
         };
-        FitEvidence { residuals: against(&self.scheduled), left_out: against(&self.unseen) }
+        FitResiduals { residuals: against(&self.scheduled), left_out: against(&self.unseen) }
     }
 }
 
@@ -171,7 +174,7 @@ pub struct LeadFit {
 
 /// What one degree makes of the signed delays.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LeadEvidence {
+pub struct LeadDegreeFit {
     /// The degree asked for.
     pub degree: usize,
     /// Of each input channel.
@@ -182,8 +185,8 @@ pub struct LeadEvidence {
     pub pairs: PairTable<LeadFit>,
 }
 
-/// The evidence for each degree from 0 to [`HIGHEST_DEGREE`]; none at all where the conditions' corrections have no leads.
-pub fn lead_evidence(points: &[ScheduledPoint<'_>], settings: ScheduleSettings) -> Vec<LeadEvidence> {
+/// How well each degree fits, from 0 to [`HIGHEST_DEGREE`]; none at all where the conditions' corrections have no leads.
+pub fn compare_lead_degrees(points: &[ScheduledPoint<'_>], settings: ScheduleSettings) -> Vec<LeadDegreeFit> {
     let own: Option<Vec<&ChannelLeads>> = points.iter().map(|point| point.correction.leads.as_ref()).collect();
     let Some(own) = own.filter(|own| !own.is_empty()) else { return Vec::new() };
     (0..=HIGHEST_DEGREE).filter_map(|degree| of_degree(points, &own, settings, degree)).collect()
@@ -207,7 +210,7 @@ fn of_degree(
     own: &[&ChannelLeads],
     settings: ScheduleSettings,
     degree: usize,
-) -> Option<LeadEvidence> {
+) -> Option<LeadDegreeFit> {
     let at_kt: Vec<f64> = points.iter().map(|point| point.airspeed_kt).collect();
     let scheduled = predicted(points, &at_kt, settings, degree)?;
     let unseen = (0..points.len()).map(|left_out| {
@@ -228,7 +231,7 @@ fn of_degree(
     let of_pair = |pair: Pair| {
         fit(&move |leads| leads.tau_s(Channel::Output(pair.output)) + leads.tau_s(Channel::Input(pair.input)))
     };
-    Some(LeadEvidence {
+    Some(LeadDegreeFit {
         degree,
         inputs: (0..inputs).map(|input| of_channel(Channel::Input(input))).collect(),
         outputs: (0..outputs).map(|output| of_channel(Channel::Output(output))).collect(),
@@ -272,8 +275,8 @@ mod tests {
             (0.1 * v + 0.05 * v * v).exp()
         });
         let corrections = corrections(&gains);
-        let evidence = evidence(&points(&airspeeds, &corrections), ScheduleSettings::default()).unwrap();
-        let of = |degree| &evidence.of(ScheduleKind::Polynomial { degree }).unwrap().inputs[0];
+        let found = compare_forms(&points(&airspeeds, &corrections), ScheduleSettings::default()).unwrap();
+        let of = |degree| &found.of(ScheduleKind::Polynomial { degree }).unwrap().inputs[0];
         // Least squares of five points, condition number below 5.
         assert!(of(2).rms_ln().unwrap() < 1e-14 && of(3).rms_ln().unwrap() < 1e-14);
         assert!(of(1).rms_ln().unwrap() > 0.01 && of(0).rms_ln().unwrap() > of(1).rms_ln().unwrap());
@@ -282,7 +285,7 @@ mod tests {
         let step = gains[4] / gains[3];
         assert!((of(2).left_out[4].unwrap().ln - step.ln()).abs() < 1e-14);
         assert!((of(2).left_out[4].unwrap().percent - 100.0 * (step - 1.0)).abs() < 1e-11);
-        let table = evidence.of(ScheduleKind::Table).unwrap();
+        let table = found.of(ScheduleKind::Table).unwrap();
         assert_eq!((table.degree, table.inputs[0].rms_ln()), (None, Some(0.0)), "a table goes through its points");
         assert!(table.inputs[0].left_out_rms_ln() > of(2).left_out_rms_ln());
     }
@@ -290,9 +293,9 @@ mod tests {
     #[test]
     fn the_residual_of_a_response_is_that_of_its_two_channels_together() {
         let corrections = corrections(&[1.0, 1.2, 0.9, 1.4]);
-        let evidence =
-            evidence(&points(&[50.0, 80.0, 110.0, 140.0], &corrections), ScheduleSettings::default()).unwrap();
-        for kind in &evidence.kinds {
+        let found =
+            compare_forms(&points(&[50.0, 80.0, 110.0, 140.0], &corrections), ScheduleSettings::default()).unwrap();
+        for kind in &found.kinds {
             for condition in 0..4 {
                 let [input, output, pair] = [&kind.inputs[0], &kind.outputs[1], &kind.pairs[Pair::new(1, 0)]]
                     .map(|fit| fit.residuals[condition].unwrap().ln);
@@ -310,15 +313,15 @@ mod tests {
     #[test]
     fn a_single_condition_cannot_be_left_out() {
         let corrections = corrections(&[1.3]);
-        let found = evidence(&points(&[80.0], &corrections), ScheduleSettings::default()).unwrap();
+        let found = compare_forms(&points(&[80.0], &corrections), ScheduleSettings::default()).unwrap();
         let fit = &found.kinds[0].inputs[0];
         assert_eq!((fit.rms_ln(), fit.left_out_rms_ln(), fit.left_out.as_slice()), (Some(0.0), None, &[None][..]));
-        assert_eq!(evidence(&[], ScheduleSettings::default()), Err(ScheduleError::NoCondition));
+        assert_eq!(compare_forms(&[], ScheduleSettings::default()), Err(ScheduleError::NoCondition));
     }
 }
 
 #[cfg(test)]
-mod lead_evidence_tests {
+mod lead_tests {
     use super::*;
     use crate::correction::{ChannelCorrection, LeadDesign, LeadSettings};
 
@@ -343,7 +346,7 @@ mod lead_evidence_tests {
                 second: None,
             })
             .collect();
-        let found = lead_evidence(&points, ScheduleSettings::default());
+        let found = compare_lead_degrees(&points, ScheduleSettings::default());
         assert_eq!(found.len(), 1 + HIGHEST_DEGREE);
         // The mean of the others misses by 3/2 of what the mean of all misses.
         let [mean, input] = [&found[0].pairs[Pair::new(0, 0)], &found[0].inputs[0]];
@@ -354,6 +357,6 @@ mod lead_evidence_tests {
                 && (mean.rms_s - 0.0042_f64.sqrt() / 3.0 / 3_f64.sqrt()).abs() < 1e-12
         );
         assert!(found[2].inputs[0].rms_s < 1e-15, "a parabola goes through three points");
-        assert!(lead_evidence(&[], ScheduleSettings::default()).is_empty());
+        assert!(compare_lead_degrees(&[], ScheduleSettings::default()).is_empty());
     }
 }

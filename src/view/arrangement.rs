@@ -163,7 +163,7 @@ impl View {
                 figure: Some(FigureKind::Evidence),
                 ..ViewKind::new(
                     "Evidence",
-                    "What the scatter of the net gains is made of, which differences are in earnest, and what the schedule needs",
+                    "What the scatter of the net gains is made of, which differences are significant, and what the schedule needs",
                     views::evidence_view_ui,
                 )
             },

@@ -187,7 +187,7 @@ fn edit_entries(state: &State) -> Vec<Entry> {
     let (undo, redo) = (state.history.undo_label(), state.history.redo_label());
     let condition = state.condition().id();
     let choice = state.study.choice(condition);
-    let models = open_suggestions(state);
+    let models = state.shown().map(|shown| state.open_suggestions(shown)).unwrap_or_default();
     let reject = match models.len() {
         0 => "Reject suggested".to_owned(),
         count => format!("Reject {count} suggested"),
@@ -236,13 +236,6 @@ pub(super) fn hold_entry(state: &State, pair: Pair) -> Entry {
         Edit::Hold(pair, !held).into(),
     )
     .enabled(held || !is_undefined)
-}
-
-/// The models of the condition shown that are suggested as outliers and not rejected.
-pub fn open_suggestions(state: &State) -> Vec<String> {
-    let rejected = &state.study.choice(state.condition().id()).physics.rejected;
-    let suggested = state.shown().map(|shown| shown.suggested()).unwrap_or_default();
-    suggested.into_iter().filter(|model| !rejected.contains(model)).collect()
 }
 
 fn view_entries(state: &State) -> Vec<Entry> {

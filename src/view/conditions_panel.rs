@@ -127,8 +127,7 @@ impl Marks {
             None => {}
             Some(Err(failure)) => marks.failure = Some(failure.to_string()),
             Some(Ok(result)) => {
-                let is_open = |model: &String| !choice.physics.rejected.contains(model);
-                marks.suggested = result.suggested().iter().filter(|model| is_open(model)).count();
+                marks.suggested = state.open_suggestions(result).len();
                 marks.unmatched_gains = result.gains.unmatched.len();
                 let is_open = |missed: &&Unmatched| result.compensated.is_some() || missed.delta >= 0.0;
                 marks.unmatched_delays = result.delays.unmatched.iter().filter(is_open).count();

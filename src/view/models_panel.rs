@@ -7,7 +7,6 @@ use gdcm_core::fidelity::SUGGESTION_RATIO;
 use gdcm_core::study::{Edit, ExplainTarget};
 
 use super::command::Command;
-use super::command_table::open_suggestions;
 use super::controls::{ROW_HEIGHT, elided_among, entries_ui, named, named_switch, row_text, table_heading_ui};
 
 use super::explanation::question_menu_ui;
@@ -29,7 +28,7 @@ fn at_once_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let condition = state.condition().id();
     let choice = state.study.choice(condition);
     let rejected = &choice.physics.rejected;
-    let open = open_suggestions(state);
+    let open = state.shown().map(|shown| state.open_suggestions(shown)).unwrap_or_default();
     ui.horizontal_wrapped(|ui| {
         let label =
             if open.is_empty() { "Reject suggested".to_owned() } else { format!("Reject {} suggested", open.len()) };

@@ -208,6 +208,12 @@ impl State {
         self.outcome()?.as_ref().ok()
     }
 
+    /// The models that a result suggests as outliers and that are not rejected.
+    pub fn open_suggestions(&self, result: &ConditionAnalysis) -> Vec<String> {
+        let rejected = &self.study.choice(result.condition.id()).physics.rejected;
+        result.suggested().into_iter().filter(|model| !rejected.contains(model)).collect()
+    }
+
     /// What came of the condition shown: the newest there is of this dataset.
     pub fn outcome(&self) -> Option<&Result<ConditionAnalysis, ConditionFailure>> {
         let condition = self.condition().id();

@@ -1,7 +1,9 @@
 //! The tables of the window as texts, to be copied and saved.
 
+use std::sync::Arc;
+
 use gdcm_core::correction::Channel as CorrectedChannel;
-use gdcm_core::dataset::{BundleKind, Pair};
+use gdcm_core::dataset::{BundleKind, Channel, Condition, Model, Pair};
 use gdcm_core::fidelity::SUGGESTION_RATIO;
 use gdcm_core::study::{ConditionAnalysis, Table};
 use gdcm_core::uncertainty::Scalar;
@@ -75,108 +77,63 @@ fn title(state: &State, what: &str) -> String {
     format!("{}, condition {} ({}): {what}", state.dataset().name(), condition.id(), condition.flight_state().name)
 }
 
-fn conditions(state: &State) -> Table {
-    let mut table = Table::new(
-        format!("{}: conditions", state.dataset().name()),
-        [
-            "condition",
-            "name",
-            "airspeed [kt]",
-            "altitude",
-            "altitude [ft]",
-            "weight",
-            "mass [kg]",
-            "scheduled",
-            "suggested outliers not rejected",
-            "held gains not matched",
-            "held delays not matched",
-        ],
-    );
-    for condition in state.dataset().conditions() {
-        let (id, flight_state) = (condition.id(), condition.flight_state());
-        let choice = state.study.choice(id);
-        let result = state.analysis().and_then(|analysis| analysis.condition(id));
-        let count = |of: fn(&ConditionAnalysis) -> usize| result.map_or(String::new(), |result| of(result).to_string());
-        let suggested = result.map_or(String::new(), |result| {
-            let open = result.suggested().into_iter().filter(|model| !choice.physics.rejected.contains(model));
-            open.count().to_string()
-        });
-        table.row([
-            id.to_string(),
-            flight_state.name.clone(),
-            digits(Some(flight_state.airspeed_kt)),
-            flight_state.altitude.clone().unwrap_or_default(),
-            digits(flight_state.altitude_ft),
-            flight_state.weight.clone().unwrap_or_default(),
-            digits(flight_state.mass_kg),
-            yes(choice.scheduled),
-            suggested,
-            count(|result| result.gains.unmatched.len()),
-            count(|result| result.delays.unmatched.len()),
-        ]);
+/// A row of a table: each heading with what stands below it.
+type Row = Vec<(&'static str, String)>;
+
+/// A table of rows that have the same headings.
+fn table_of_rows(title: String, rows: Vec<Row>) -> Table {
+    let headings = rows.first().map(|row| row.iter().map(|(heading, _)| *heading).collect::<Vec<_>>());
+    let mut table = Table::new(title, headings.unwrap_or_default());
+    for row in rows {
+        table.row(row.into_iter().map(|(_, cell)| cell));
     }
     table
+}
+
+fn conditions(state: &State) -> Table {
+    let row = |condition: &Arc<Condition>| {
+        let (id, flight) = (condition.id(), condition.flight_state());
+        let result = state.analysis().and_then(|analysis| analysis.condition(id));
+        let count =
+            |of: &dyn Fn(&ConditionAnalysis) -> usize| result.map_or(String::new(), |result| of(result).to_string());
+        vec![
+            ("condition", id.to_string()),
+            ("name", flight.name.clone()),
+            ("airspeed [kt]", digits(Some(flight.airspeed_kt))),
+            ("altitude", flight.altitude.clone().unwrap_or_default()),
+            ("altitude [ft]", digits(flight.altitude_ft)),
+            ("weight", flight.weight.clone().unwrap_or_default()),
+            ("mass [kg]", digits(flight.mass_kg)),
+            ("scheduled", yes(state.study.choice(id).scheduled)),
+            ("suggested outliers not rejected", count(&|result| state.open_suggestions(result).len())),
+            ("held gains not matched", count(&|result| result.gains.unmatched.len())),
+            ("held delays not matched", count(&|result| result.delays.unmatched.len())),
+        ]
+    };
+    let rows = state.dataset().conditions().iter().map(row).collect();
+    table_of_rows(format!("{}: conditions", state.dataset().name()), rows)
 }
 
 fn models(state: &State, bundle: BundleKind) -> Table {
-    let columns =
-        ["model", "kept", "pinned", "represents", "states", "mean distance [√J]", "discontinuity ratio", "suggested"];
-    let mut table = Table::new(title(state, TableKind::of_bundle(bundle).name()), columns);
     let (condition, shown) = (state.condition(), state.shown());
     let choice = state.study.choice(condition.id()).bundle(bundle);
-    for model in condition.bundle(bundle) {
-        let ratio = match bundle {
-            BundleKind::Physics => shown.and_then(|shown| shown.discontinuity_ratio(&model.name)),
-            BundleKind::Identified => None,
-        };
-        table.row([
-            model.name.clone(),
-            yes(!choice.rejected.contains(&model.name)),
-            yes(choice.pinned.as_ref() == Some(&model.name)),
-            yes(shown.is_some_and(|shown| shown.representative_name(bundle) == model.name)),
-            model.order().map_or(String::new(), |order| order.to_string()),
-            digits(shown.and_then(|shown| shown.score(bundle, &model.name))),
-            digits(ratio),
-            ratio.map_or(String::new(), |ratio| yes(ratio > SUGGESTION_RATIO)),
-        ]);
-    }
-    table
-}
-
-fn matrix(state: &State) -> Table {
-    let columns = [
-        "output",
-        "input",
-        "on-axis",
-        "held",
-        "fitted",
-        "G [-]",
-        "G ± [%]",
-        "G ± of identification [%]",
-        "D [ms]",
-        "D ± [ms]",
-        "D ± of identification [ms]",
-        "net gain [-]",
-        "net gain ± [%]",
-        "net gain ± of identification [%]",
-        "net delay [ms]",
-        "J before",
-        "J after",
-        "J_mag before",
-        "J_mag after",
-        "J_phase before",
-        "J_phase after",
-    ];
-    let sure = state.sureness();
-    let mut table = Table::new(title_with_bars(state, TableKind::Matrix), columns);
-    for pair in state.dataset().on_axis().pairs() {
-        let (output, input) = state.dataset().channel_names(pair);
-        let settings = &state.study.settings;
-        let flags = [state.dataset().on_axis()[pair], settings.constrained[pair], !settings.ignored[pair]].map(yes);
-        let values = state.shown().map_or([None; 16], |shown| response_values(shown, sure, pair));
-        table.row([output, input].into_iter().chain(flags).chain(values.map(digits)));
-    }
-    table
+    let row = |model: &Model| {
+        let ratio = shown.filter(|_| bundle == BundleKind::Physics);
+        let ratio = ratio.and_then(|shown| shown.discontinuity_ratio(&model.name));
+        let is_representative = shown.is_some_and(|shown| shown.representative_name(bundle) == model.name);
+        vec![
+            ("model", model.name.clone()),
+            ("kept", yes(!choice.rejected.contains(&model.name))),
+            ("chosen as representative", yes(choice.pinned.as_ref() == Some(&model.name))),
+            ("representative", yes(is_representative)),
+            ("states", model.order().map_or(String::new(), |order| order.to_string())),
+            ("mean distance [√J]", digits(shown.and_then(|shown| shown.score(bundle, &model.name)))),
+            ("discontinuity ratio", digits(ratio)),
+            ("suggested", ratio.map_or(String::new(), |ratio| yes(ratio > SUGGESTION_RATIO))),
+        ]
+    };
+    let rows = condition.bundle(bundle).iter().map(row).collect();
+    table_of_rows(title(state, TableKind::of_bundle(bundle).name()), rows)
 }
 
 /// What a table is of, with the level of its bars.
@@ -193,58 +150,69 @@ fn halves(sure: &Sureness<'_>, scalar: Scalar) -> [Option<f64>; 2] {
 }
 
 /// G, D, net gain, each with its bars, net delay, and J, J_mag and J_phase before and after.
-fn response_values(shown: &ConditionAnalysis, sure: Sureness<'_>, pair: Pair) -> [Option<f64>; 16] {
-    let cost = shown.cost[pair];
-    let (before, after) = (cost.map(|cost| cost.uncorrected), cost.map(|cost| cost.corrected));
-    let [[gain, gain_inner], [delay, delay_inner], [net, net_inner]] =
-        [Scalar::Gain(pair), shown.wanted_delay(pair), Scalar::NetGain(pair)].map(|scalar| halves(&sure, scalar));
-    [
-        shown.wanted_gain(pair),
-        gain,
-        gain_inner,
-        shown.wanted_delay_s(pair).map(s_to_ms),
-        delay,
-        delay_inner,
-        Some(shown.correction.net_gain(pair).value()),
-        net,
-        net_inner,
-        Some(s_to_ms(shown.correction.net_delay(pair).value_s())),
-        before.map(|cost| cost.total()),
-        after.map(|cost| cost.total()),
-        before.map(|cost| cost.magnitude),
-        after.map(|cost| cost.magnitude),
-        before.map(|cost| cost.phase),
-        after.map(|cost| cost.phase),
-    ]
+fn matrix(state: &State) -> Table {
+    let (sure, shown, settings) = (state.sureness(), state.shown(), &state.study.settings);
+    let row = |pair: Pair| {
+        let (output, input) = state.dataset().channel_names(pair);
+        let cost = shown.and_then(|shown| shown.cost[pair]);
+        let (before, after) = (cost.map(|cost| cost.uncorrected), cost.map(|cost| cost.corrected));
+        let [gain, gain_inner] = halves(&sure, Scalar::Gain(pair));
+        let [delay, delay_inner] = shown.map_or([None; 2], |shown| halves(&sure, shown.wanted_delay(pair)));
+        let [net, net_inner] = halves(&sure, Scalar::NetGain(pair));
+        let net_delay = shown.map(|shown| s_to_ms(shown.correction.net_delay(pair).value_s()));
+        let words = [
+            ("output", output.to_owned()),
+            ("input", input.to_owned()),
+            ("on-axis", yes(state.dataset().on_axis()[pair])),
+            ("held", yes(settings.constrained[pair])),
+            ("fitted", yes(!settings.ignored[pair])),
+        ];
+        let values = [
+            ("G [-]", shown.and_then(|shown| shown.wanted_gain(pair))),
+            ("G ± [%]", gain),
+            ("G ± of identification [%]", gain_inner),
+            ("D [ms]", shown.and_then(|shown| shown.wanted_delay_s(pair)).map(s_to_ms)),
+            ("D ± [ms]", delay),
+            ("D ± of identification [ms]", delay_inner),
+            ("net gain [-]", shown.map(|shown| shown.correction.net_gain(pair).value())),
+            ("net gain ± [%]", net),
+            ("net gain ± of identification [%]", net_inner),
+            ("net delay [ms]", net_delay),
+            ("J before", before.map(|cost| cost.total())),
+            ("J after", after.map(|cost| cost.total())),
+            ("J_mag before", before.map(|cost| cost.magnitude)),
+            ("J_mag after", after.map(|cost| cost.magnitude)),
+            ("J_phase before", before.map(|cost| cost.phase)),
+            ("J_phase after", after.map(|cost| cost.phase)),
+        ];
+        words.into_iter().chain(values.map(|(heading, value)| (heading, digits(value)))).collect()
+    };
+    table_of_rows(title_with_bars(state, TableKind::Matrix), state.dataset().on_axis().pairs().map(row).collect())
 }
 
 fn channels(state: &State) -> Table {
-    let columns = [
-        "side",
-        "channel",
-        "k [-]",
-        "k ± [%]",
-        "k ± of identification [%]",
-        "τ [ms]",
-        "τ ± [ms]",
-        "τ ± of identification [ms]",
-    ];
-    let sure = state.sureness();
-    let mut table = Table::new(title_with_bars(state, TableKind::Channels), columns);
-    let correction = state.shown().map(|shown| &shown.correction);
-    let (inputs, outputs) = (state.dataset().inputs(), state.dataset().outputs());
-    let of_inputs = (0..inputs.len()).map(CorrectedChannel::Input);
-    let of_outputs = (0..outputs.len()).map(CorrectedChannel::Output);
-    for (channel, named) in of_inputs.chain(of_outputs).zip(inputs.iter().chain(outputs)) {
+    let (sure, correction) = (state.sureness(), state.shown().map(|shown| &shown.correction));
+    let row = |(channel, named): (CorrectedChannel, &Channel)| {
         let (side, gain) = match channel {
             CorrectedChannel::Input(input) => ("input", correction.map(|of| of.input_gains[input])),
             CorrectedChannel::Output(output) => ("output", correction.map(|of| of.output_gains[output])),
         };
-        let delay_ms = correction.map(|of| s_to_ms(of.delay_s(channel)));
         let [half, inner] = halves(&sure, Scalar::ChannelGain(channel));
         let [delay_half, delay_inner] = halves(&sure, Scalar::ChannelDelay(channel));
-        let values = [gain, half, inner, delay_ms, delay_half, delay_inner].map(digits);
-        table.row([side.to_owned(), named.name.clone()].into_iter().chain(values));
-    }
-    table
+        let values = [
+            ("k [-]", gain),
+            ("k ± [%]", half),
+            ("k ± of identification [%]", inner),
+            ("τ [ms]", correction.map(|of| s_to_ms(of.delay_s(channel)))),
+            ("τ ± [ms]", delay_half),
+            ("τ ± of identification [ms]", delay_inner),
+        ];
+        let words = [("side", side.to_owned()), ("channel", named.name.clone())];
+        words.into_iter().chain(values.map(|(heading, value)| (heading, digits(value)))).collect()
+    };
+    let (inputs, outputs) = (state.dataset().inputs(), state.dataset().outputs());
+    let of_inputs = (0..inputs.len()).map(CorrectedChannel::Input);
+    let channels = of_inputs.chain((0..outputs.len()).map(CorrectedChannel::Output));
+    let rows = channels.zip(inputs.iter().chain(outputs)).map(row).collect();
+    table_of_rows(title_with_bars(state, TableKind::Channels), rows)
 }

@@ -3,90 +3,35 @@
 use super::{Dimension, PhysicalUnit};
 
 /// Each channel with its other names, all folded (see [`folded_name`]); those such as "elevyoke1" are a flight simulator's. A name stands in one row only.
-const ALIASES: &[(&str, &[&str])] = &[
+const ALIASES: [(&str, &str); 16] = [
     (
         "lon",
-        &[
-            "long",
-            "longitudinal",
-            "longcyc",
-            "cyclong",
-            "dlon",
-            "deltalon",
-            "dlong",
-            "deltalong",
-            "db",
-            "deltab",
-            "de",
-            "deltae",
-            "xb",
-            "xlon",
-            "b1s",
-            "theta1s",
-            "pitchstick",
-            "elevator",
-            "loncyc",
-            "longstick",
-            "elevyoke1",
-        ],
+        "long longitudinal longcyc cyclong dlon deltalon dlong deltalong db deltab de deltae xb xlon b1s \
+         theta1s pitchstick elevator loncyc longstick elevyoke1",
     ),
     (
         "lat",
-        &[
-            "lateral",
-            "latcyc",
-            "cyclat",
-            "dlat",
-            "deltalat",
-            "da",
-            "deltaa",
-            "xa",
-            "xlat",
-            "a1s",
-            "theta1c",
-            "rollstick",
-            "aileron",
-            "latstick",
-            "ailrnyoke1",
-        ],
+        "lateral latcyc cyclat dlat deltalat da deltaa xa xlat a1s theta1c rollstick aileron latstick \
+         ailrnyoke1",
     ),
     (
         "ped",
-        &[
-            "pedal",
-            "pedals",
-            "dped",
-            "deltaped",
-            "dp",
-            "deltap",
-            "dr",
-            "deltar",
-            "xp",
-            "xped",
-            "thetatr",
-            "thetat",
-            "rudder",
-            "tailrotor",
-            "yawpedal",
-            "ruddryoke1",
-        ],
+        "pedal pedals dped deltaped dp deltap dr deltar xp xped thetatr thetat rudder tailrotor yawpedal \
+         ruddryoke1",
     ),
-    ("col", &["coll", "collective", "dcol", "deltacol", "dcoll", "dc", "deltac", "xc", "xcol", "theta0", "theta0m"]),
-    ("p", &["rollrate", "pb", "pbody", "omegax"]),
-    ("q", &["pitchrate", "qb", "qbody", "omegay"]),
-    ("r", &["yawrate", "rb", "rbody", "omegaz"]),
-    ("nx", &["ax", "axb", "longitudinalacceleration", "longaccel", "accx", "gloadaxial"]),
-    ("ny", &["ay", "ayb", "lateralacceleration", "lataccel", "accy", "gloadside"]),
-    (
-        "nz",
-        &["az", "azb", "verticalacceleration", "vertaccel", "normalacceleration", "loadfactor", "accz", "gloadnorml"],
-    ),
-    ("u", &["ub", "ubody", "forwardspeed"]),
-    ("v", &["vb", "vbody", "sidewardspeed", "sidespeed"]),
-    ("w", &["wb", "wbody", "heave", "verticalspeed", "heavevelocity"]),
-    ("phi", &["roll", "rollangle", "rollattitude", "bank", "bankangle"]),
-    ("theta", &["pitch", "pitchangle", "pitchattitude"]),
-    ("psi", &["yaw", "heading", "yawangle"]),
+    ("col", "coll collective dcol deltacol dcoll dc deltac xc xcol theta0 theta0m"),
+    ("p", "rollrate pb pbody omegax"),
+    ("q", "pitchrate qb qbody omegay"),
+    ("r", "yawrate rb rbody omegaz"),
+    ("nx", "ax axb longitudinalacceleration longaccel accx gloadaxial"),
+    ("ny", "ay ayb lateralacceleration lataccel accy gloadside"),
+    ("nz", "az azb verticalacceleration vertaccel normalacceleration loadfactor accz gloadnorml"),
+    ("u", "ub ubody forwardspeed"),
+    ("v", "vb vbody sidewardspeed sidespeed"),
+    ("w", "wb wbody heave verticalspeed heavevelocity"),
+    ("phi", "roll rollangle rollattitude bank bankangle"),
+    ("theta", "pitch pitchangle pitchattitude"),
+    ("psi", "yaw heading yawangle"),
 ];
 
 /// A name without case, marks and blanks, Greek letters spelt out: "δ_a" is "deltaa", "Sample_Time" is "sampletime".
@@ -109,7 +54,7 @@ pub fn folded_name(name: &str) -> String {
 /// The name that stands for all that call the same channel.
 fn canonical(name: &str) -> String {
     let name = folded_name(name);
-    let row = ALIASES.iter().find(|(first, others)| *first == name || others.contains(&name.as_str()));
+    let row = ALIASES.iter().find(|(first, others)| *first == name || others.split(' ').any(|other| other == name));
     row.map_or(name, |(first, _)| (*first).to_owned())
 }
 
@@ -170,7 +115,7 @@ mod tests {
     #[test]
     fn no_name_stands_for_two_channels() {
         let names: Vec<&str> =
-            ALIASES.iter().flat_map(|(first, others)| std::iter::once(*first).chain(others.iter().copied())).collect();
+            ALIASES.iter().flat_map(|(first, others)| std::iter::once(*first).chain(others.split(' '))).collect();
         let unique: BTreeSet<&str> = names.iter().copied().collect();
         assert_eq!(unique.len(), names.len());
         assert!(names.iter().all(|name| folded_name(name) == **name), "they are folded");

@@ -248,39 +248,52 @@ pub struct Warning {
     pub words: String,
 }
 
+/// More faults than this are not looked for: a file of another kind has one in every model.
+const MOST_FAULTS: usize = 1000;
+
 impl DatasetDraft {
-    /// The dataset, with what is odd about it: every check there is, in this one place.
+    /// The dataset, with what is odd about it.
+    ///
+    /// # Errors
+    /// The first fault.
     pub fn checked(self) -> Result<(Dataset, Vec<Warning>), DraftError> {
-        check_count("inputs", self.inputs.len(), MOST_CHANNELS)?;
-        check_count("outputs", self.outputs.len(), MOST_CHANNELS)?;
-        check_count("conditions", self.conditions.len(), MOST_CONDITIONS)?;
-        let band = Band::new(self.band.0, self.band.1);
-        // It names itself.
-        let band = band.map_err(|error| DraftError::new(Location::default(), error))?;
-        let on_axis = on_axis_table(&self.outputs, &self.inputs, &self.on_axis)?;
-        let mut checker = Checker::of(&self);
-        let conditions = self.conditions.into_iter().enumerate();
-        let conditions =
-            conditions.map(|(index, draft)| checker.condition(index + 1, draft)).collect::<Result<_, _>>()?;
+        self.checked_whole().map_err(|mut faults| faults.swap_remove(0))
+    }
+
+    /// Every fault with its place, in the order of the draft; none where it is a dataset. What one fault hides, such as names that
+    /// stand twice beside models that are wrong, comes out once that is mended.
+    pub fn faults(self) -> Vec<DraftError> {
+        self.checked_whole().err().unwrap_or_default()
+    }
+
+    /// Every check there is, in this one place; its faults are one at least.
+    fn checked_whole(self) -> Result<(Dataset, Vec<Warning>), Vec<DraftError>> {
+        let whole = |error: DraftFault| DraftError::new(Location::default(), error);
+        let mut checker = Checker::of(self.outputs.len(), self.inputs.len());
+        checker.count(Location::entry("inputs"), self.inputs.len(), MOST_CHANNELS);
+        checker.count(Location::entry("outputs"), self.outputs.len(), MOST_CHANNELS);
+        checker.count(Location::entry("conditions"), self.conditions.len(), MOST_CONDITIONS);
+        let band = checker.keep(Band::new(self.band.0, self.band.1).map_err(|error| whole(error.into())));
+        let on_axis = checker.keep(on_axis_table(&self.outputs, &self.inputs, &self.on_axis));
+        let mut conditions = Vec::with_capacity(self.conditions.len());
+        for (index, draft) in self.conditions.into_iter().enumerate().take(MOST_CONDITIONS) {
+            if checker.faults.len() >= MOST_FAULTS {
+                break;
+            }
+            conditions.extend(checker.condition(index + 1, draft));
+        }
+        let (Some(band), Some(on_axis), true) = (band, on_axis, checker.faults.is_empty()) else {
+            return Err(checker.faults);
+        };
         let Self { name, description, inputs, outputs, .. } = self;
         let header = DatasetHeader { name, description, inputs, outputs, on_axis, band };
         // These errors name the list or the condition themselves.
-        let dataset = Dataset::new(header, conditions).map_err(|error| DraftError::new(Location::default(), error))?;
-        Ok((dataset, checker.oddities))
+        let dataset = Dataset::new(header, conditions).map_err(|error| vec![whole(error.into())])?;
+        Ok((dataset, checker.warnings))
     }
 }
 
-pub(super) fn check_count(list: &str, found: usize, most: usize) -> Result<(), DraftError> {
-    let fault = DraftFault::TooMany { most, found };
-    if found > most { Err(DraftError::new(Location::entry(list), fault)) } else { Ok(()) }
-}
-
-pub(super) fn check_records(condition: &Location, found: usize) -> Result<(), DraftError> {
-    let fault = DraftFault::TooMany { most: MOST_RECORDS, found };
-    if found > MOST_RECORDS { Err(DraftError::new(condition.at("records"), fault)) } else { Ok(()) }
-}
-
-pub(super) fn on_axis_table(
+fn on_axis_table(
     outputs: &[Channel],
     inputs: &[Channel],
     pairs: &[(String, String)],
@@ -307,52 +320,68 @@ impl Dataset {
     /// What keeps the draft from being a model of the dataset, with its place in the model.
     pub fn identified_model(&self, draft: ModelDraft) -> Result<(Model, Vec<Warning>), DraftError> {
         let (outputs, inputs) = (self.outputs().len(), self.inputs().len());
-        let mut checker = Checker { outputs, inputs, oddities: Vec::new() };
+        let mut checker = Checker::of(outputs, inputs);
         let model = checker.model(Location::default(), BundleKind::Identified, draft)?;
-        Ok((model, checker.oddities))
+        Ok((model, checker.warnings))
     }
 }
 
-/// What the checks of models need to know, and note.
-pub(super) struct Checker {
+/// What the checks of models need to know, and what they find.
+struct Checker {
     outputs: usize,
     inputs: usize,
-    oddities: Vec<Warning>,
+    faults: Vec<DraftError>,
+    warnings: Vec<Warning>,
 }
 
 impl Checker {
-    /// For the models of a draft.
-    pub(super) fn of(draft: &DatasetDraft) -> Self {
-        Self { outputs: draft.outputs.len(), inputs: draft.inputs.len(), oddities: Vec::new() }
+    /// For models of so many outputs and inputs.
+    fn of(outputs: usize, inputs: usize) -> Self {
+        Self { outputs, inputs, faults: Vec::new(), warnings: Vec::new() }
     }
 
-    fn condition(&mut self, position: usize, draft: ConditionDraft) -> Result<Condition, DraftError> {
-        let place = Location::condition(position, draft.flight_state.id.0);
-        let physics = self.bundle(&place, BundleKind::Physics, draft.physics)?;
-        let identified = self.bundle(&place, BundleKind::Identified, draft.identified)?;
-        check_records(&place, draft.records.len())?;
-        let condition = Condition::new(draft.flight_state, physics, identified);
-        condition
-            .and_then(|condition| condition.with_records(draft.records))
-            .map_err(|error| DraftError::new(place, error))
+    /// Notes a fault.
+    fn keep<T>(&mut self, checked: Result<T, DraftError>) -> Option<T> {
+        checked.map_err(|fault| self.faults.push(fault)).ok()
     }
 
-    fn bundle(
-        &mut self,
-        condition: &Location,
-        kind: BundleKind,
-        drafts: Vec<ModelDraft>,
-    ) -> Result<Vec<Model>, DraftError> {
-        if drafts.len() > MOST_MODELS {
-            let fault = DraftFault::TooMany { most: MOST_MODELS, found: drafts.len() };
-            return Err(DraftError::new(condition.at(format!("{kind} models")), fault));
+    /// Whether a list is no longer than it may be.
+    fn count(&mut self, place: Location, found: usize, most: usize) -> bool {
+        if found > most {
+            self.faults.push(DraftError::new(place, DraftFault::TooMany { most, found }));
         }
-        let drafts = drafts.into_iter().enumerate();
-        drafts.map(|(index, draft)| self.model(condition.model(kind, index + 1, &draft.name), kind, draft)).collect()
+        found <= most
+    }
+
+    /// The condition of a draft, where nothing is wrong with it.
+    fn condition(&mut self, position: usize, draft: ConditionDraft) -> Option<Condition> {
+        let place = Location::condition(position, draft.flight_state.id.0);
+        let before = self.faults.len();
+        let physics = self.bundle(&place, BundleKind::Physics, draft.physics);
+        let identified = self.bundle(&place, BundleKind::Identified, draft.identified);
+        self.count(place.at("records"), draft.records.len(), MOST_RECORDS);
+        if self.faults.len() > before {
+            return None;
+        }
+        let condition = Condition::new(draft.flight_state, physics, identified);
+        let condition = condition.and_then(|condition| condition.with_records(draft.records));
+        self.keep(condition.map_err(|error| DraftError::new(place, error)))
+    }
+
+    fn bundle(&mut self, condition: &Location, kind: BundleKind, drafts: Vec<ModelDraft>) -> Vec<Model> {
+        if !self.count(condition.at(format!("{kind} models")), drafts.len(), MOST_MODELS) {
+            return Vec::new();
+        }
+        let mut models = Vec::with_capacity(drafts.len());
+        for (index, draft) in drafts.into_iter().enumerate() {
+            let model = self.model(condition.model(kind, index + 1, &draft.name), kind, draft);
+            models.extend(self.keep(model));
+        }
+        models
     }
 
     /// The model of a draft at a place.
-    pub(super) fn model(&mut self, place: Location, kind: BundleKind, draft: ModelDraft) -> Result<Model, DraftError> {
+    fn model(&mut self, place: Location, kind: BundleKind, draft: ModelDraft) -> Result<Model, DraftError> {
         let has_matrices = draft.matrices.iter().any(Option::is_some);
         let dynamics = match (has_matrices, draft.response) {
             (_, Some(_)) if kind == BundleKind::Physics => {
@@ -370,7 +399,7 @@ impl Checker {
             && model.order() != *order
         {
             let words = format!("order says {order}, the matrices have {} states", model.order());
-            self.oddities.push(Warning { place: place.clone(), words });
+            self.warnings.push(Warning { place: place.clone(), words });
         }
         let bands = draft.bands.as_ref().map(|bands| self.bands(&place, bands)).transpose()?.map(Arc::new);
         let states = self.state_names(place, &dynamics, draft.states);
@@ -388,7 +417,7 @@ impl Checker {
         }
         if order > 0 && !names.is_empty() {
             let words = format!("{} names for {order} states: they are left out", names.len());
-            self.oddities.push(Warning { place, words });
+            self.warnings.push(Warning { place, words });
         }
         Arc::default()
     }
@@ -475,62 +504,4 @@ impl Checker {
 
 fn dimensions(shape: [usize; 3]) -> String {
     shape.map(|length| length.to_string()).join(" x ")
-}
-
-/// More faults than this are not looked for: a file of another kind has one in every model.
-const MOST_FAULTS: usize = 1000;
-
-impl DatasetDraft {
-    /// Every fault with its place, in the order of the draft; none where it is a dataset. What one fault hides, such as names that
-    /// stand twice beside models that are wrong, comes out once that is mended.
-    pub fn faults(&self) -> Vec<DraftError> {
-        let mut faults: Vec<DraftError> = Vec::new();
-        let counts = [
-            check_count("inputs", self.inputs.len(), MOST_CHANNELS),
-            check_count("outputs", self.outputs.len(), MOST_CHANNELS),
-            check_count("conditions", self.conditions.len(), MOST_CONDITIONS),
-        ];
-        faults.extend(counts.into_iter().filter_map(Result::err));
-        let band = Band::new(self.band.0, self.band.1);
-        faults.extend(band.err().map(|error| DraftError::new(Location::default(), error)));
-        faults.extend(on_axis_table(&self.outputs, &self.inputs, &self.on_axis).err());
-        for (index, condition) in self.conditions.iter().enumerate() {
-            if faults.len() >= MOST_FAULTS {
-                return faults;
-            }
-            let mut checker = Checker::of(self);
-            faults.extend(faults_of_condition(&mut checker, index + 1, condition));
-        }
-        if faults.is_empty() {
-            faults.extend(self.clone().checked().err());
-        }
-        faults
-    }
-}
-
-fn faults_of_condition(checker: &mut Checker, position: usize, draft: &ConditionDraft) -> Vec<DraftError> {
-    let place = Location::condition(position, draft.flight_state.id.0);
-    let mut faults = Vec::new();
-    let mut bundle = |kind: BundleKind, drafts: &[super::ModelDraft]| -> Vec<Model> {
-        let drafts = drafts.iter().enumerate();
-        let checked =
-            drafts.map(|(index, draft)| checker.model(place.model(kind, index + 1, &draft.name), kind, draft.clone()));
-        let mut models = Vec::new();
-        for model in checked {
-            match model {
-                Ok(model) => models.push(model),
-                Err(fault) => faults.push(fault),
-            }
-        }
-        models
-    };
-    let physics = bundle(BundleKind::Physics, &draft.physics);
-    let identified = bundle(BundleKind::Identified, &draft.identified);
-    faults.extend(check_records(&place, draft.records.len()).err());
-    if faults.is_empty() {
-        let condition = Condition::new(draft.flight_state.clone(), physics, identified)
-            .and_then(|condition| condition.with_records(draft.records.clone()));
-        faults.extend(condition.err().map(|error| DraftError::new(place, error)));
-    }
-    faults
 }

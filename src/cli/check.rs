@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use gdcm_core::dataset::{BundleKind, Channel, Condition, ConditionRecord, Dataset, Dynamics, Model, RecordKind};
-use gdcm_core::study::{Execution, Study, Unobserved, cautions_of_models};
+use gdcm_core::study::{Execution, Study, Table, Unobserved, cautions_of_models};
 use gdcm_core::units::number;
 use gdcm_files::{FileError, LoadedDataset, Opened, OpenedStudy, dataset_faults};
 
@@ -14,7 +14,7 @@ use super::failure::Failure;
 use super::open;
 use super::summary::LABEL;
 use super::terminal::{say, say_error};
-use super::text_table::{Side, TextTable, labelled};
+use super::text_table::{indented, labelled};
 
 /// Says what a dataset or a study holds.
 pub(super) fn check(file: &Path, arguments: &OpeningArguments) -> Result<(), Failure> {
@@ -87,22 +87,12 @@ fn channel_words(channels: &[Channel]) -> String {
 }
 
 fn condition_table(dataset: &Dataset) -> String {
-    use Side::{Left, Right};
-    let mut table = TextTable::new([
-        ("id", Right),
-        ("airspeed", Right),
-        ("altitude", Right),
-        ("mass", Right),
-        ("physics", Right),
-        ("states", Right),
-        ("identified", Right),
-        ("states", Right),
-        ("name", Left),
-    ]);
+    let mut table =
+        Table::new("", ["id", "airspeed", "altitude", "mass", "physics", "states", "identified", "states", "name"]);
     for condition in dataset.conditions() {
         table.row(condition_row(condition));
     }
-    table.lines(2)
+    indented(&table, 2)
 }
 
 /// Sample times and delays, for each bundle the models that share them (M2a).

@@ -17,8 +17,7 @@ use super::analyze::check_result;
 use super::arguments::{StudyArguments, real_number, whole_number};
 use super::failure::Failure;
 use super::study_options::{analysis_of, engine, outputs_of, study_of};
-use super::terminal::TerminalProgress;
-use super::terminal::say;
+use super::terminal::{TerminalProgress, say};
 
 /// What is to be exported, as what, and where it goes.
 #[derive(Debug, Args)]

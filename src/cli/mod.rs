@@ -6,7 +6,6 @@ mod analyze;
 mod arguments;
 mod check;
 mod destination;
-mod evidence_sections;
 mod export;
 mod failure;
 mod figure;
@@ -14,8 +13,6 @@ mod identify;
 mod identify_arguments;
 mod models;
 mod read_record;
-mod report;
-mod sections;
 mod study_options;
 mod summary;
 mod terminal;
@@ -70,7 +67,7 @@ pub fn run(command: &Command) -> ExitCode {
     finish(match command {
         Command::Analyze(arguments) => analyze::analyze(arguments),
         Command::Figure(arguments) => figure::figure(arguments),
-        Command::Report(arguments) => report::report(arguments),
+        Command::Report(arguments) => analyze::report(arguments),
         Command::Export(arguments) => export::export(arguments),
         Command::Assemble(arguments) => models::assemble(arguments),
         Command::Convert(arguments) => models::convert(arguments),

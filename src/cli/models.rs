@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use gdcm_core::assembly::{Assembly, Headings, proposed_rules};
+use gdcm_core::study::Table;
 use gdcm_core::units::number;
 use gdcm_files::{
     FolderProgress, FoundModels, OutputSet, add_dataset, add_models, add_rules, load_rules, read_models,
@@ -17,7 +18,7 @@ use super::arguments::{AssembleArguments, ConvertArguments};
 use super::existing;
 use super::failure::Failure;
 use super::terminal::{say, say_error};
-use super::text_table::{Side, TextTable};
+use super::text_table::indented;
 
 /// Which file is read, on a terminal only.
 pub(super) struct ReadingProgress {
@@ -137,17 +138,7 @@ fn name_of(folders: &[PathBuf]) -> String {
 
 /// A line a model: what it is to be.
 fn table(assembly: &Assembly) -> String {
-    use Side::{Left, Right};
-    let mut table = TextTable::new([
-        ("condition", Right),
-        ("role", Left),
-        ("name", Left),
-        ("airspeed", Right),
-        ("altitude", Left),
-        ("weight", Left),
-        ("trim", Left),
-        ("file", Left),
-    ]);
+    let mut table = Table::new("", ["condition", "role", "name", "airspeed", "altitude", "weight", "trim", "file"]);
     for part in assembly.parts() {
         let row = &part.row;
         let or_dash = |text: Option<String>| text.unwrap_or_else(|| "?".to_owned());
@@ -163,7 +154,7 @@ fn table(assembly: &Assembly) -> String {
             sanitized(&part.found.key()),
         ]);
     }
-    table.lines(0)
+    indented(&table, 0)
 }
 
 pub(super) fn counted(count: usize, what: &str) -> String {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use gdcm_core::dataset::ConditionRecord;
 use gdcm_core::records::{LaidOutRecord, RecordChannels, RecordTable, TimeWish};
+use gdcm_core::study::Table;
 use gdcm_core::units::telling;
 use gdcm_files::{FoundRecords, read_records, relative_folder};
 
@@ -12,7 +13,7 @@ use super::failure::Failure;
 use super::identify_arguments::IdentifyArguments;
 use super::models::ReadingProgress;
 use super::terminal::say_error;
-use super::text_table::{Side, TextTable};
+use super::text_table::indented;
 
 /// Every record with its columns; what was chosen, and what is wrong, is told on standard error.
 pub(super) fn laid_out(
@@ -95,9 +96,7 @@ pub(super) fn relative_entry(mut entry: ConditionRecord, asked: &[PathBuf], data
 
 /// A line a record, each behind `indent` spaces.
 pub(super) fn record_table(records: &[LaidOutRecord], indent: usize) -> String {
-    use Side::{Left, Right};
-    let heads = [("record", Left), ("kind", Left), ("samples", Right), ("step", Right), ("length", Right), ("", Left)];
-    let mut table = TextTable::new(heads);
+    let mut table = Table::new("", ["record", "kind", "samples", "step", "length", ""]);
     for LaidOutRecord { table: record, layout, guess, .. } in records {
         let step_s = layout.time.and_then(|time| time.step_s(record)).unwrap_or(f64::NAN);
         table.row([
@@ -109,5 +108,5 @@ pub(super) fn record_table(records: &[LaidOutRecord], indent: usize) -> String {
             if guess.held_out { "held out".to_owned() } else { String::new() },
         ]);
     }
-    table.lines(indent)
+    indented(&table, indent)
 }

@@ -1,17 +1,20 @@
-//! What `gdcm analyze` prints.
+//! What `gdcm analyze` prints: the results for a person to read.
 
-use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::path::Path;
 
-use gdcm_core::correction::GainSource;
-use gdcm_core::schedule::Schedule;
-use gdcm_core::study::{Analysis, Assessed, PhaseCorrection};
-use gdcm_core::units::number;
-use gdcm_files::{LoadedDataset, RESULT_FILES};
+use gdcm_core::correction::{ChannelCorrection, GainSource, Outcome};
+use gdcm_core::dataset::{BundleKind, Condition, Pair};
+use gdcm_core::message_text::{sanitized, sanitized_path};
+use gdcm_core::schedule::{Schedule, ScheduledQuantity};
+use gdcm_core::study::{
+    Analysis, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, ConditionAnalysis, PhaseCorrection,
+    RemarkKind, Study, Table, held_out_verdict, lead_words, remarks, scatter_table,
+};
+use gdcm_core::uncertainty::Scalar;
+use gdcm_core::units::{number, s_to_ms};
+use gdcm_files::{LoadedDataset, RESULT_FILES, assessment_sentence};
 
-use super::evidence_sections::{evidence_section, held_out_lines};
-use super::sections::{condition_section, schedule_section};
-use super::text_table::labelled;
+use super::text_table::{indented, labelled, listed};
 
 /// Width of the labels at the left of a section.
 pub(super) const LABEL: usize = 14;
@@ -65,40 +68,274 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
 
 /// How far the scheduled correction brings the nominal models, and which conditions it is not judged in.
 fn assessment_lines(analysis: &Analysis) -> String {
-    let (mut better, mut compared) = (0, 0);
-    let mut left_out = Vec::new();
-    let measuring = analysis.study.dataset.measuring_pairs();
-    for condition in analysis.study.dataset.conditions() {
-        match analysis.assessment.get(&condition.id()) {
-            None => {}
-            Some(Assessed::LeftOut { why }) => {
-                left_out.push(format!("condition {}: {}", condition.id(), sanitized(why)))
-            }
-            Some(Assessed::Nominal(changes)) => {
-                let changes = measuring.marked().filter_map(|pair| changes[pair]).map(|change| change.total());
-                for change in changes {
-                    compared += 1;
-                    better += usize::from(change < 0.0);
-                }
-            }
-        }
-    }
-    let conditions = analysis.conditions.len() - left_out.len();
-    let which = if analysis.study.dataset.on_axis().marked().next().is_some() { "on-axis " } else { "" };
-    let words = format!(
-        "under the schedule J of the nominal models falls in {better} of {compared} {which}responses of {conditions} conditions"
-    );
-    let fails = analysis.schedule.as_ref().is_ok_and(Schedule::interpolation_fails);
-    let words = if fails {
-        format!(
-            "at the conditions' own airspeeds, {words}; between them the schedule must not be used (see its caution)"
-        )
-    } else {
-        words
-    };
-    let mut text = labelled(0, "Assessment", LABEL, &words);
-    for words in left_out {
+    let mut text = labelled(0, "Assessment", LABEL, &sanitized(&assessment_sentence(analysis)));
+    for left_out in AssessmentTable::of(analysis, usual(analysis, AssessedCorrection::Scheduled)).left_out {
+        let words = format!("condition {}: {}", left_out.condition, sanitized(&left_out.why));
         text.push_str(&labelled(0, "Left out", LABEL, &words));
     }
     text
+}
+
+/// A line of a section.
+fn detail(label: &str, words: &str) -> String {
+    labelled(2, label, LABEL - 2, words)
+}
+
+/// A list in a section; says so where it is empty.
+fn detail_list(label: &str, entries: Vec<String>) -> String {
+    let entries = if entries.is_empty() { vec!["none".to_owned()] } else { entries };
+    listed(2, label, LABEL - 2, &entries)
+}
+
+/// One condition: representatives, rejections, the on-axis and held responses, and what could not be matched.
+fn condition_section(analysis: &Analysis, condition: &Condition) -> String {
+    let state = condition.flight_state();
+    let title = format!("{} ({} kt)", sanitized(&state.name), number(state.airspeed_kt));
+    let mut text = labelled(0, &format!("Condition {}", state.id), LABEL, &title);
+    match analysis.conditions.get(&condition.id()) {
+        None => {}
+        Some(Ok(result)) => {
+            text.push_str(&model_lines(analysis, result));
+            text.push_str(&indented(&response_table(analysis, result), 2));
+            text.push_str(&channel_lines(analysis, result));
+            text.push_str(&trouble_lines(analysis, result));
+        }
+        Some(Err(failure)) => text.push_str(&detail("no result", &sanitized(&failure.to_string()))),
+    }
+    text
+}
+
+fn model_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
+    let id = result.condition.id();
+    let rejected: Vec<String> = analysis.study.rejected_names(id).into_iter().map(sanitized).collect();
+    let is_rejected = |name: &String| analysis.study.choice(id).physics.rejected.contains(name);
+    let suggested = result.suggested().into_iter().filter(|name| !is_rejected(name));
+    let suggested: Vec<String> = suggested.map(|name| sanitized(&name)).collect();
+    let mut text = detail("physics", &sanitized(result.representative_name(BundleKind::Physics)));
+    text.push_str(&detail("identified", &sanitized(result.representative_name(BundleKind::Identified))));
+    text.push_str(&detail_list("rejected", rejected));
+    if !suggested.is_empty() {
+        text.push_str(&detail_list("outliers?", suggested));
+    }
+    text
+}
+
+/// The responses that tables show: those that measure a model (the on-axis ones), and those to be held.
+fn shown_pairs(study: &Study) -> impl Iterator<Item = Pair> {
+    let measuring = study.dataset.measuring_pairs();
+    let shown = measuring.map(|pair, measures| *measures || study.settings.constrained[pair]);
+    shown.marked().collect::<Vec<_>>().into_iter()
+}
+
+fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
+    let columns =
+        ["response", "held", "G", "± %", "net gain", "± %", "D [ms]", "± ms", "net delay [ms]", "J before", "J after"];
+    let mut table = Table::new("", columns);
+    let dataset = &analysis.study.dataset;
+    let half = |scalar: Scalar, factor: f64| {
+        let uncertainty = analysis.uncertainty.as_ref()?;
+        Some(factor * uncertainty.bar(result.condition.id(), scalar)?.half_width(uncertainty.level)?)
+    };
+    for pair in shown_pairs(&analysis.study) {
+        let cost = result.cost[pair];
+        table.row([
+            sanitized(&dataset.pair_name(pair)),
+            if result.held()[pair] { "yes" } else { "no" }.to_owned(),
+            value(result.wanted_gain(pair), 3),
+            value(half(Scalar::Gain(pair), 100.0), 1),
+            value(Some(result.correction.net_gain(pair).value()), 3),
+            value(half(Scalar::NetGain(pair), 100.0), 1),
+            value(result.wanted_delay_s(pair).map(s_to_ms), 1),
+            value(half(result.wanted_delay(pair), 1e3), 1),
+            value(Some(s_to_ms(result.correction.net_delay(pair).value_s())), 1),
+            value(cost.map(|cost| cost.uncorrected.total()), 1),
+            value(cost.map(|cost| cost.corrected.total()), 1),
+        ]);
+    }
+    table
+}
+
+fn value(value: Option<f64>, digits: usize) -> String {
+    // Adding zero turns a rounded minus zero into zero.
+    let rounded = |value: f64| (value * 10_f64.powi(digits as i32)).round() / 10_f64.powi(digits as i32) + 0.0;
+    value.map_or("-".to_owned(), |value| match value.abs() {
+        ..1e7 => format!("{:.digits$}", rounded(value)),
+        _ => format!("{value:.digits$e}"),
+    })
+}
+
+fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
+    let (dataset, correction) = (&analysis.study.dataset, &result.correction);
+    let channels = || dataset.inputs().iter().chain(dataset.outputs()).map(|channel| sanitized(&channel.name));
+    let gains = correction.input_gains.iter().chain(&correction.output_gains);
+    let gains: Vec<String> =
+        channels().zip(gains).map(|(name, gain)| format!("{name} {}", value(Some(*gain), 3))).collect();
+    let [inputs_s, outputs_s] = correction.signed_delays_s();
+    let delays = inputs_s.iter().chain(outputs_s);
+    let delays = channels().zip(delays).filter_map(|(name, delay)| {
+        let words = value(Some(s_to_ms(*delay)), 1);
+        (words != "0.0").then(|| format!("{name} {words} ms"))
+    });
+
+    let label = if correction.leads.is_some() { "delay/lead" } else { "delays" };
+    let mut text = detail_list("gains", gains) + &detail_list(label, delays.collect());
+    for words in lead_words(&analysis.study, result, analysis.uncertainty.as_deref()) {
+        text.push_str(&detail("lead", &sanitized(&words)));
+    }
+    text
+}
+
+/// What could not be matched and why, entry by entry, what is not proven, and the other cautions.
+fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
+    let line = |label: &str, words: &str| detail(label, &sanitized(words));
+    let said = remarks(&analysis.study, result, None);
+    let (mut text, mut trouble) = (String::new(), "not matched");
+    for remark in &said {
+        match remark.kind {
+            RemarkKind::Good => {}
+            // What is missed comes first, then the reasons and the ways out.
+            RemarkKind::Trouble => text.push_str(&line(std::mem::replace(&mut trouble, "why"), &remark.text)),
+            RemarkKind::Caution => text.push_str(&line("caution", &remark.text)),
+        }
+    }
+    if matches!(result.gains.proof.outcome, Outcome::NotProven { .. }) {
+        text.push_str(&line("not proven", &result.gains.proof.outcome.words()));
+    }
+    text
+}
+
+/// The scheduled net gains of the on-axis and held responses over airspeed.
+fn schedule_section(analysis: &Analysis) -> String {
+    let schedule = match &analysis.schedule {
+        Ok(schedule) => schedule,
+        Err(error) => return labelled(0, "Schedule", LABEL, &error.to_string()),
+    };
+    let of = match schedule.settings.quantity {
+        ScheduledQuantity::LnGain => "ln k",
+        ScheduledQuantity::Gain => "k",
+    };
+    let kind = match schedule.degree() {
+        Some(degree) => format!("polynomial of degree {degree} in airspeed, fitted to {of}"),
+        None => format!("lookup table in airspeed, of {of}"),
+    };
+    let range = format!("{} to {} kt", number(schedule.airspeeds.min_kt), number(schedule.airspeeds.max_kt));
+    let second = schedule.second.as_ref().map_or_else(String::new, |term| {
+        format!(
+            "; with {}, here in the middle of its range, {} {}",
+            term.variable,
+            number(term.middle()),
+            term.variable.unit()
+        )
+    });
+    let mut text = labelled(0, "Schedule", LABEL, &format!("{kind}, {range}{second}; net gains:"));
+    let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+    for caution in &schedule.cautions {
+        text.push_str(&detail("caution", &sanitized(&caution.words(&inputs, &outputs))));
+    }
+    text.push_str(&schedule_table(analysis, schedule, |correction, pair| {
+        value(Some(correction.net_gain(pair).value()), 3)
+    }));
+    if schedule.has_delays() {
+        text.push_str(&labelled(0, "", LABEL, "net delays in ms:"));
+        text.push_str(&schedule_table(analysis, schedule, |correction, pair| {
+            value(Some(s_to_ms(correction.net_delay(pair).value_s())), 1)
+        }));
+    }
+    text
+}
+
+fn schedule_table(
+    analysis: &Analysis,
+    schedule: &Schedule,
+    entry: impl Fn(&ChannelCorrection, Pair) -> String,
+) -> String {
+    /// Airspeeds shown: the ends, the middle, and the quarters.
+    const SHOWN: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+    let dataset = &analysis.study.dataset;
+    let (min, max) = (schedule.airspeeds.min_kt, schedule.airspeeds.max_kt);
+    let at = SHOWN.map(|fraction| min + fraction * (max - min));
+    let heading = at.map(|airspeed| format!("{} kt", value(Some(airspeed), 0)));
+    let mut table = Table::new("", std::iter::once("response".to_owned()).chain(heading));
+    let corrections = at.map(|airspeed| schedule.at(airspeed));
+    for pair in shown_pairs(&analysis.study) {
+        let entries = corrections.iter().map(|correction| entry(correction, pair));
+        table.row(std::iter::once(sanitized(&dataset.pair_name(pair))).chain(entries));
+    }
+    indented(&table, 2)
+}
+
+/// What the scatter is made of, the differences at equal airspeed, and the second variables; nothing where bars were not computed.
+fn evidence_section(analysis: &Analysis) -> String {
+    let Some(uncertainty) = &analysis.uncertainty else { return String::new() };
+    let pair_name = |pair| sanitized(&analysis.study.dataset.pair_name(pair));
+    let level = 100.0 * uncertainty.level;
+    let mut text = labelled(
+        0,
+        "Scatter",
+        LABEL,
+        "of the on-axis net gains, and what trim and identification uncertainty explain of it:",
+    );
+    let table = Table { title: String::new(), ..scatter_table(&analysis.study.dataset, uncertainty) };
+    text.push_str(&indented(&table, 2));
+    let significant = uncertainty.differences.iter().filter(|difference| difference.is_significant(uncertainty.level));
+    let words =
+        format!("{} (error bars of {level:.0} %, Holm)", uncertainty.differences_in_words().trim_end_matches('.'));
+    text.push_str(&labelled(0, "Differences", LABEL, &words));
+    for difference in significant {
+        let words = format!("{}: {}", pair_name(difference.pair), difference.words(uncertainty.level));
+        text.push_str(&labelled(2, "", LABEL - 2, &words));
+    }
+    if let Some(variable) = analysis.study.settings.schedule.second {
+        let tests = uncertainty.second_variables.iter().filter(|test| test.variable == variable);
+        if !tests.clone().any(|test| test.needed) {
+            let words =
+                format!("the schedule is one of airspeed and {variable}, though no response is found to need it");
+            text.push_str(&labelled(0, "Caution", LABEL, &words));
+        }
+    }
+    for test in uncertainty.second_variables.iter().filter(|test| test.needed) {
+        text.push_str(&labelled(0, "Schedule", LABEL, &format!("{}: {}", pair_name(test.pair), test)));
+    }
+    text
+}
+
+/// How the schedule fares on the conditions that are held out.
+fn held_out_lines(analysis: &Analysis) -> String {
+    let verdict = held_out_verdict(analysis, usual(analysis, AssessedCorrection::Scheduled));
+    verdict.map_or_else(String::new, |words| labelled(0, "Held out", LABEL, &words))
+}
+
+/// The change of J of each condition's nominal model under the schedule of the others.
+pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
+    let [seen, unseen] = [AssessedCorrection::Scheduled, AssessedCorrection::ScheduleOfOthers]
+        .map(|correction| AssessmentTable::of(analysis, usual(analysis, correction)));
+    let measuring: Vec<_> = analysis.study.dataset.measuring_pairs().marked().collect();
+    let text =
+        labelled(0, "Left out", LABEL, "change of J of each condition under the schedule of the others, on-axis mean:");
+    let mut table = Table::new("", ["condition", "kt", "schedule of all", "of the others"]);
+    for condition in &unseen.conditions {
+        let id = condition.condition;
+        let mean = |table: &AssessmentTable| {
+            let changes = measuring.iter().filter_map(|&pair| Some(table.change(id, pair)?.total()));
+            let changes: Vec<f64> = changes.collect();
+            (!changes.is_empty()).then(|| changes.iter().sum::<f64>() / changes.len() as f64)
+        };
+        let airspeed = value(Some(condition.airspeed_kt), 0);
+        table.row([id.to_string(), airspeed, value(mean(&seen), 1), value(mean(&unseen), 1)]);
+    }
+    let mut text = text + &indented(&table, 2);
+    for left_out in &unseen.left_out {
+        text.push_str(&labelled(
+            2,
+            "",
+            LABEL - 2,
+            &format!("condition {}: {}", left_out.condition, sanitized(&left_out.why)),
+        ));
+    }
+    text
+}
+
+fn usual(analysis: &Analysis, correction: AssessedCorrection) -> AssessmentChoice {
+    let average = analysis.study.settings.cost_average;
+    AssessmentChoice { model: AssessedModel::Nominal, correction, average }
 }

@@ -1,47 +1,10 @@
-//! Aligned columns of text.
+//! Tables and words behind labels, as a terminal shows them.
 
-/// Which side of its column a cell stands on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
-    /// Words.
-    Left,
-    /// Figures.
-    Right,
-}
+use gdcm_core::study::Table;
 
-/// Rows of cells, printed in columns as wide as their widest cell.
-pub(super) struct TextTable<const COLUMNS: usize> {
-    sides: [Side; COLUMNS],
-    rows: Vec<[String; COLUMNS]>,
-}
-
-impl<const COLUMNS: usize> TextTable<COLUMNS> {
-    /// A table with a heading and no rows.
-    pub(super) fn new(columns: [(&str, Side); COLUMNS]) -> Self {
-        Self { sides: columns.map(|(_, side)| side), rows: vec![columns.map(|(heading, _)| heading.to_owned())] }
-    }
-
-    /// Adds a row.
-    pub(super) fn row(&mut self, cells: [String; COLUMNS]) {
-        self.rows.push(cells);
-    }
-
-    /// The table as lines, each behind `indent` spaces, with no spaces at their ends.
-    pub(super) fn lines(&self, indent: usize) -> String {
-        let width = |column: usize| self.rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-        let widths: [usize; COLUMNS] = std::array::from_fn(width);
-        let mut lines = String::new();
-        for row in &self.rows {
-            let cells = row.iter().zip(widths).zip(self.sides).map(|((cell, width), side)| match side {
-                Side::Left => format!("{cell:<width$}"),
-                Side::Right => format!("{cell:>width$}"),
-            });
-            let line = format!("{:indent$}{}", "", cells.collect::<Vec<_>>().join("  "));
-            lines.push_str(line.trim_end());
-            lines.push('\n');
-        }
-        lines
-    }
+/// A table as lines, each behind so many spaces.
+pub(super) fn indented(table: &Table, indent: usize) -> String {
+    table.text().lines().map(|line| format!("{:indent$}{line}\n", "")).collect()
 }
 
 /// Most columns of a page.
@@ -87,14 +50,6 @@ fn hanging<'w>(indent: usize, label: &str, width: usize, pieces: impl Iterator<I
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn figures_stand_under_one_another() {
-        let mut table = TextTable::new([("response", Side::Left), ("G", Side::Right)]);
-        table.row(["LON → Q".to_owned(), "1.346".to_owned()]);
-        table.row(["COL → NZ".to_owned(), "-".to_owned()]);
-        assert_eq!(table.lines(2), "  response      G\n  LON → Q   1.346\n  COL → NZ      -\n");
-    }
 
     #[test]
     fn long_words_hang_under_their_start() {

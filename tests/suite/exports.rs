@@ -7,23 +7,10 @@ use std::process::Command;
 use gdcm_core::assembly::{FoundModel, Headings};
 use gdcm_core::dataset::{Pair, StateSpace};
 use gdcm_core::response::evaluate;
-use gdcm_files::{FolderProgress, read_corrections, read_models};
+use gdcm_files::{About, EXPORTERS, FolderProgress, read_corrections, read_models};
 use serde_json::json;
 
 use crate::commands::Desk;
-
-/// Every format with a name for its file.
-const FORMATS: [(&str, &str); 9] = [
-    ("mat", "all.mat"),
-    ("m", "correction.m"),
-    ("py", "correction.py"),
-    ("h", "correction.h"),
-    ("table-csv", "table.csv"),
-    ("table-mat", "table.mat"),
-    ("state-space", "models.mat"),
-    ("csv", "corrections.csv"),
-    ("json", "corrections.json"),
-];
 
 struct Silent;
 
@@ -49,7 +36,9 @@ fn state_space(model: &FoundModel) -> StateSpace {
 #[test]
 fn every_format_is_written_once_and_over_nothing_unasked() {
     let desk = Desk::new();
-    for (format, name) in FORMATS {
+    for About { name: format, extension, .. } in EXPORTERS.iter().map(|exporter| exporter.about()) {
+        let name = format!("{}.{extension}", format.replace('-', "_"));
+        let name = name.as_str();
         let arguments = ["export", "small.json", "--as", format, "--out", name];
         let ended = desk.gdcm(&arguments);
         ended.assert_done();
@@ -60,6 +49,14 @@ fn every_format_is_written_once_and_over_nothing_unasked() {
         assert!(fs::read(desk.path(name)).unwrap() == written, "{format}: the same every time");
         desk.gdcm(&["export", "small.json", "--as", format, "--out", "no/such/folder/x.mat"]);
         assert!(!desk.path("no").exists());
+    }
+}
+
+#[test]
+fn every_export_stands_in_the_documentation() {
+    let text = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/formats.md")).unwrap();
+    for About { name, .. } in EXPORTERS.iter().map(|exporter| exporter.about()) {
+        assert!(text.contains(&format!("\n| `{name}` |")), "{name}");
     }
 }
 
@@ -316,7 +313,8 @@ fn octave_reads_the_corrections_as_analyze_writes_them() {
     let program = "load c.mat; for c = corrections.conditions, \
                    printf('%.17g ', c.id, c.G', c.D_s', c.gains.inputs, c.delays_s.outputs, c.J.corrected.mag', c.net_gains'); end; \
                    s = corrections.schedule; printf('%.17g ', s.inputs', s.delays_s.upper_s, s.table.outputs'); \
-                   assert(strcmp(corrections.inputs{2}, 'LAT') && islogical(corrections.settings.constrained));";
+                   assert(strcmp(corrections.inputs{2}, 'LAT') && islogical(corrections.settings.constrained)); \
+                   assert(c.net_gain_table.gain(2, 1) == c.net_gains(2, 1) && rows(c.bars.G.interval) == 6);";
     let Some(found) = octave(&desk, program) else { return };
     let mut expected = Vec::new();
     let table =

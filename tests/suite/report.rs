@@ -22,7 +22,7 @@ const SECTIONS: [&str; 10] = [
     "4 Models left out",
     "5 Conditions",
     "6 Channels and schedule",
-    "7 How sure each number is",
+    "7 Uncertainty",
     "8 Assessment",
     "9 The method",
     "10 Sources of the models",

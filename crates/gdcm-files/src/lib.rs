@@ -60,7 +60,7 @@ pub use record_files::{
     EXAMPLE_RECORD_CONDITIONS, FoundRecords, example_records, load_records, read_records, records_of_bytes,
 };
 pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
-pub use report_file::{ReportSource, report, save_report};
+pub use report_file::{ReportSource, assessment_sentence, report, save_report};
 pub use rules_file::{add_rules, load_rules, rules_path};
 pub use source::{FileStamp, at_home, file_exists, file_sha256};
 pub use study_file::{OpenedStudy, STUDY_EXTENSION, open_study, open_study_of, relative_folder, save_study};

@@ -50,16 +50,18 @@ impl Table {
         text
     }
 
-    /// Whether every cell of a column that is not empty is a figure, and there is one.
+    /// Whether every cell of a column that is not empty is a number, and there is one.
     pub fn has_numbers(&self, column: usize) -> bool {
         let mut cells = self.rows.iter().map(|row| row[column].as_str()).filter(|cell| !cell.is_empty()).peekable();
         cells.peek().is_some() && cells.all(is_number)
     }
 }
 
-/// Whether a text is a number, with whichever minus sign, or the dash that stands for none.
+/// Whether a text is a number, with whichever minus sign and a unit behind it or none, or the dash that stands for none.
 fn is_number(cell: &str) -> bool {
-    cell == "–" || cell == "—" || cell.replacen('\u{2212}', "-", 1).parse::<f64>().is_ok()
+    let mut words = cell.split(' ');
+    let number = words.next().unwrap_or_default().replacen('\u{2212}', "-", 1);
+    matches!(cell, "–" | "—" | "-") || (words.count() < 2 && number.parse::<f64>().is_ok())
 }
 
 /// What stands where there is no figure.
@@ -220,6 +222,12 @@ mod tests {
         table.row(["", "1"]);
         table.row(["", "two"]);
         assert_eq!(table.text(), "a  b\n   1\n   two\n");
+    }
+
+    #[test]
+    fn numbers_with_units_are_numbers_and_counts_of_others_are_words() {
+        assert!(["120 kt", "−1.5", "-", "–"].into_iter().all(is_number));
+        assert!(["3 of 4", "V+5kt", "kt", ""].into_iter().all(|words| !is_number(words)));
     }
 
     #[test]

@@ -36,10 +36,10 @@ pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
     let dataset = &analysis.study.dataset;
     page.section("Uncertainty");
     page.paragraph(
-        "Each figure is computed again with every other kept physics model, then with every other identified model, in place of the \
-         representative. The rms change of the first is its trim part, of the second, averaged with that of the other conditions, its \
-         identification part; the bar is Student's t times the root of the sum of squares (M13). What neither bundle makes is rest: \
-         real, or model form. An error common to all identified models is not seen, and a bar is not a bound.",
+        "Each result is computed again with every other kept physics model, then with every other identified model, in place of the \
+         representative. The rms change of the first is the trim uncertainty, that of the second, averaged with the other conditions, \
+         the identification uncertainty; the bar is Student's t times the root of the sum of squares (M13). What neither explains is \
+         a physical effect, or a model-form error. An error common to all identified models is not seen, and a bar is not a bound.",
     );
     let beyond: Vec<_> = uncertainty.differences.iter().filter(|of| of.is_significant(uncertainty.level)).collect();
     page.paragraph(&uncertainty.differences_in_words());
@@ -47,7 +47,7 @@ pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
     let pairs: Vec<Pair> = dataset.measuring_pairs().marked().take(PAIRS_DRAWN).collect();
     if let Some(figure) = evidence_figure(analysis, &pairs) {
         let caption = "Shares of the variance, and standard deviations of ln k_o k_i, about the mean of each airspeed and about the \
-                       schedule; above the bars, scatter, times what the bundles explain.";
+                       schedule; above the bars, the factor by which scatter exceeds what the bundles explain.";
         page.figure(&figure, &figure.title, caption);
     }
     page.table(&scatter_table(dataset, uncertainty));

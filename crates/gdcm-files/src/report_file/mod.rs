@@ -17,6 +17,8 @@ use gdcm_core::message_text::sanitized;
 
 use page::Page;
 
+pub use study::assessment_sentence;
+
 const PROGRAM: &str = concat!("gdcm ", env!("CARGO_PKG_VERSION"));
 
 /// What a report says of the files that a study is made of.

@@ -34,7 +34,8 @@ pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
     page.table(&condition_table(analysis));
 }
 
-fn assessment_sentence(analysis: &Analysis) -> String {
+/// What the schedule is worth for the nominal models, in a sentence.
+pub fn assessment_sentence(analysis: &Analysis) -> String {
     let dataset = &analysis.study.dataset;
     let measuring = dataset.measuring_pairs();
     let which = if dataset.on_axis().marked().next().is_some() { "on-axis responses" } else { "responses" };

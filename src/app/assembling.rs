@@ -15,8 +15,7 @@ use gdcm_files::{
 };
 
 use super::files::DialogPurpose;
-use super::threads::Fault;
-use super::threads::ReplySender;
+use super::threads::{Fault, ReplySender};
 use super::window::GdcmApp;
 
 /// Bytes of values between two words about how far a file is read.

@@ -164,7 +164,7 @@ impl App for Guarded {
 
     fn ui(&mut self, ui: &mut Ui, frame: &mut Frame) {
         self.app.ui(ui, frame);
-        self.opening.get_or_init(|| self.app.autosave());
+        self.opening.get_or_init(|| self.app.autosave.clone());
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {

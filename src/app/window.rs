@@ -32,8 +32,7 @@ use super::launch::{Setup, holds_models};
 use super::recovery::{Autosave, LAST_WAIT};
 use super::reload::DiskWatch;
 use super::report::ReportJob;
-use super::threads::Fault;
-use super::threads::{Reply, ReplySender};
+use super::threads::{Fault, Reply, ReplySender};
 use super::update::NextFocus;
 
 /// The program's window.
@@ -132,11 +131,6 @@ impl GdcmApp {
         app.offer_tour(setup.offers_tour);
         app.look_for_recent();
         Ok(app)
-    }
-
-    /// What keeps decisions that are not saved, for whoever outlives the window.
-    pub(super) fn autosave(&self) -> Autosave {
-        self.autosave.clone()
     }
 
     /// What the window shows.

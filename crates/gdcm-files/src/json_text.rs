@@ -364,21 +364,27 @@ where
     list_while(deserializer, MOST, |_| Ok(()))
 }
 
-/// Reads a list of at most `MOST` entries, or null.
-pub(super) fn optional_list<'de, const MOST: usize, T, D>(deserializer: D) -> Result<Option<Vec<T>>, D::Error>
-where
-    T: Deserialize<'de>,
-    D: Deserializer<'de>,
-{
-    struct Limited<T, const MOST: usize>(Vec<T>);
+/// A list of at most `MOST` entries.
+#[derive(Clone, Debug, Default, Serialize)]
+#[serde(transparent)]
+pub(super) struct Limited<T, const MOST: usize>(pub(super) Vec<T>);
 
-    impl<'de, T: Deserialize<'de>, const MOST: usize> Deserialize<'de> for Limited<T, MOST> {
-        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            list::<MOST, T, D>(deserializer).map(Self)
-        }
+impl<'de, T: Deserialize<'de>, const MOST: usize> Deserialize<'de> for Limited<T, MOST> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        list::<MOST, T, D>(deserializer).map(Self)
+    }
+}
+
+impl<T, const MOST: usize> Limited<T, MOST> {
+    /// A list, where there is anything in it.
+    pub(super) fn some(list: Vec<T>) -> Option<Self> {
+        (!list.is_empty()).then_some(Self(list))
     }
 
-    Ok(Option::<Limited<T, MOST>>::deserialize(deserializer)?.map(|list| list.0))
+    /// The entries of a list that may be missing.
+    pub(super) fn entries(list: Option<Self>) -> Vec<T> {
+        list.map(|list| list.0).unwrap_or_default()
+    }
 }
 
 /// Reads a list of at most `most` entries, as long as `check` has nothing against the next.

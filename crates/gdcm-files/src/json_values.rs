@@ -41,7 +41,7 @@ impl Importer for Json {
         let source = Source::within(bytes, path, budget)?;
         let text = source.text();
         if bytes.starts_with(&GZIP_MAGIC) && !matches!(text.trim_ascii_start().first(), Some(b'{' | b'[')) {
-            return Ok(Contents::Text(decode(text, budget).map_err(wrong)?.text));
+            return Ok(Contents::Text(decode(text, budget).map_err(wrong)?));
         }
         match Outline::format_of(text).as_deref() {
             Some("\"gdcm-dataset\"") => {

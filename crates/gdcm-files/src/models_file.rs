@@ -4,13 +4,13 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use gdcm_core::assembly::{ChannelLabel, Facts, FoundModel};
-use gdcm_core::dataset::limits::MOST_MODELS_IN_ALL;
+use gdcm_core::dataset::limits::{MOST_CHANNELS, MOST_MODELS_IN_ALL};
 use gdcm_core::dataset::{Origin, Provenance};
 use serde::{Deserialize, Serialize};
 
 use crate::dataset_file::ModelText;
 use crate::file_error::FileError;
-use crate::json_text::{Format, list};
+use crate::json_text::{Format, Limited, list};
 use crate::output_set::OutputSet;
 
 /// What a file of models calls itself.
@@ -42,7 +42,7 @@ pub(super) fn write_models(models: &[FoundModel], file: &mut dyn Write) -> io::R
 /// The text of a model outside a dataset.
 pub(super) fn model_text(model: &FoundModel) -> ModelText {
     let part = |labels: &[ChannelLabel], of: fn(&ChannelLabel) -> &Option<String>| {
-        Some(labels.iter().map(|label| of(label).clone().unwrap_or_default()).collect())
+        Some(Limited(labels.iter().map(|label| of(label).clone().unwrap_or_default()).collect()))
     };
     let text = ModelText::of(model.draft.clone());
     let role = match &model.draft.origin {
@@ -59,7 +59,7 @@ pub(super) fn model_text(model: &FoundModel) -> ModelText {
         input_units: part(&model.inputs, |label| &label.unit),
         output_units: part(&model.outputs, |label| &label.unit),
         source: text.source.or_else(|| Some(Default::default())),
-        notes: Some(model.notes.clone()).filter(|notes| !notes.is_empty()),
+        notes: Limited::some(model.notes.clone()),
         ..text
     }
 }
@@ -75,14 +75,17 @@ pub(super) fn found_models(text: &[u8], path: &Path) -> Option<Vec<FoundModel>> 
     models.into_iter().enumerate().map(|(index, model)| found(model, index)).collect()
 }
 
+/// Names or units of channels.
+type Names = Limited<String, MOST_CHANNELS>;
+
 /// The model of a text, under the name that a list of models has for it; nothing where it has no size.
 fn found(mut text: ModelText, index: usize) -> Option<FoundModel> {
     let origin =
         text.origin().or_else(|| (text.method.is_some() || text.order.is_some()).then(|| text.identified_origin()));
-    let labels = |count: usize, names: Option<Vec<String>>, units: Option<Vec<String>>| -> Vec<ChannelLabel> {
-        let part = |list: &Option<Vec<String>>, at: usize| {
-            let list = list.as_ref().filter(|list| list.len() == count)?;
-            Some(list[at].clone()).filter(|text| !text.is_empty())
+    let labels = |count: usize, names: Option<Names>, units: Option<Names>| -> Vec<ChannelLabel> {
+        let part = |list: &Option<Names>, at: usize| {
+            let list = list.as_ref().filter(|list| list.0.len() == count)?;
+            Some(list.0[at].clone()).filter(|text| !text.is_empty())
         };
         (0..count).map(|at| ChannelLabel { name: part(&names, at), unit: part(&units, at) }).collect()
     };
@@ -93,7 +96,7 @@ fn found(mut text: ModelText, index: usize) -> Option<FoundModel> {
     };
     let inputs = labels(inputs, text.inputs.take(), text.input_units.take());
     let outputs = labels(outputs, text.outputs.take(), text.output_units.take());
-    let notes = text.notes.take().unwrap_or_default();
+    let notes = Limited::entries(text.notes.take());
     let mut draft = text.into_draft(origin.unwrap_or(Origin::Perturbed { perturbation: None }));
     let source = draft.source.get_or_insert_with(Provenance::default);
     source.variable = Some(format!("models{{{}}}", index + 1));

@@ -16,7 +16,7 @@ use serde::de::Deserializer;
 use serde::{Deserialize, Serialize};
 
 use crate::file_error::{ContentError, ContentFault};
-use crate::json_text::{Format, Nested, Numbers, list, list_while, optional_list};
+use crate::json_text::{Format, Limited, Nested, Numbers, list, list_while};
 
 /// What a dataset file calls itself.
 pub(super) const FORMAT: Format = Format { name: "gdcm-dataset", version: 1 };
@@ -32,8 +32,8 @@ pub(super) struct DatasetText {
     pub(super) inputs: Vec<ChannelText>,
     #[serde(deserialize_with = "list::<MOST_CHANNELS, _, _>")]
     pub(super) outputs: Vec<ChannelText>,
-    #[serde(default, deserialize_with = "optional_list::<MOST_PAIRS, _, _>", skip_serializing_if = "Option::is_none")]
-    pub(super) on_axis: Option<Vec<(String, String)>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) on_axis: Option<Limited<(String, String), MOST_PAIRS>>,
     pub(super) frequency_band: BandText,
     #[serde(deserialize_with = "conditions")]
     pub(super) conditions: Vec<ConditionText>,
@@ -86,12 +86,8 @@ pub(super) struct ConditionText {
     pub(super) physics_models: Vec<ModelText>,
     #[serde(deserialize_with = "list::<MOST_MODELS, _, _>")]
     pub(super) identified_models: Vec<ModelText>,
-    #[serde(
-        default,
-        deserialize_with = "optional_list::<MOST_RECORDS, _, _>",
-        skip_serializing_if = "Option::is_none"
-    )]
-    pub(super) records: Option<Vec<RecordText>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) records: Option<Limited<RecordText, MOST_RECORDS>>,
 }
 
 /// A flight record.
@@ -111,8 +107,8 @@ pub(crate) struct RecordText {
     pub(super) used: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) sample_time_s: Option<f64>,
-    #[serde(default, deserialize_with = "optional_list::<MOST_PIECES, _, _>", skip_serializing_if = "Option::is_none")]
-    pub(super) used_s: Option<Vec<[f64; 2]>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) used_s: Option<Limited<[f64; 2], MOST_PIECES>>,
 }
 
 /// A model: of a dataset, of the models of any file (`gdcm-models`) or of identified ones (`gdcm-identified`).
@@ -130,33 +126,17 @@ pub(crate) struct ModelText {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) order: Option<usize>,
     /// Names of the channels of a model outside a dataset, empty where its file has none.
-    #[serde(
-        default,
-        deserialize_with = "optional_list::<MOST_CHANNELS, _, _>",
-        skip_serializing_if = "Option::is_none"
-    )]
-    pub(crate) inputs: Option<Vec<String>>,
-    #[serde(
-        default,
-        deserialize_with = "optional_list::<MOST_CHANNELS, _, _>",
-        skip_serializing_if = "Option::is_none"
-    )]
-    pub(crate) outputs: Option<Vec<String>>,
-    #[serde(
-        default,
-        deserialize_with = "optional_list::<MOST_CHANNELS, _, _>",
-        skip_serializing_if = "Option::is_none"
-    )]
-    pub(crate) input_units: Option<Vec<String>>,
-    #[serde(
-        default,
-        deserialize_with = "optional_list::<MOST_CHANNELS, _, _>",
-        skip_serializing_if = "Option::is_none"
-    )]
-    pub(crate) output_units: Option<Vec<String>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) inputs: Option<Limited<String, MOST_CHANNELS>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) outputs: Option<Limited<String, MOST_CHANNELS>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) input_units: Option<Limited<String, MOST_CHANNELS>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) output_units: Option<Limited<String, MOST_CHANNELS>>,
     /// Names of the states, for people.
-    #[serde(default, deserialize_with = "optional_list::<MOST_STATES, _, _>", skip_serializing_if = "Option::is_none")]
-    pub(crate) states: Option<Vec<String>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) states: Option<Limited<String, MOST_STATES>>,
     #[serde(rename = "A", skip_serializing_if = "Option::is_none")]
     pub(crate) a: Option<Nested<2>>,
     #[serde(rename = "B", skip_serializing_if = "Option::is_none")]
@@ -168,18 +148,10 @@ pub(crate) struct ModelText {
     /// Sample time of a model of discrete time.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) sample_time_s: Option<f64>,
-    #[serde(
-        default,
-        deserialize_with = "optional_list::<MOST_CHANNELS, _, _>",
-        skip_serializing_if = "Option::is_none"
-    )]
-    pub(crate) input_delays_s: Option<Vec<f64>>,
-    #[serde(
-        default,
-        deserialize_with = "optional_list::<MOST_CHANNELS, _, _>",
-        skip_serializing_if = "Option::is_none"
-    )]
-    pub(crate) output_delays_s: Option<Vec<f64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) input_delays_s: Option<Limited<f64, MOST_CHANNELS>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) output_delays_s: Option<Limited<f64, MOST_CHANNELS>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) frequency_response: Option<ResponseText>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -187,8 +159,8 @@ pub(crate) struct ModelText {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) source: Option<SourceText>,
     /// How a model outside a dataset was read.
-    #[serde(default, deserialize_with = "optional_list::<MOST_PIECES, _, _>", skip_serializing_if = "Option::is_none")]
-    pub(crate) notes: Option<Vec<String>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) notes: Option<Limited<String, MOST_PIECES>>,
     /// Whether identification recommends the model, where it made it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) recommended: Option<bool>,
@@ -208,8 +180,8 @@ pub(crate) struct SourceText {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) note: Option<String>,
     /// Flight records of the condition.
-    #[serde(default, deserialize_with = "optional_list::<MOST_PIECES, _, _>", skip_serializing_if = "Option::is_none")]
-    pub(super) records: Option<Vec<String>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) records: Option<Limited<String, MOST_PIECES>>,
 }
 
 /// Standard deviations of a model's response.
@@ -258,7 +230,7 @@ impl DatasetText {
             description: self.description.unwrap_or_default(),
             inputs: self.inputs.into_iter().map(ChannelText::into_channel).collect(),
             outputs: self.outputs.into_iter().map(ChannelText::into_channel).collect(),
-            on_axis: self.on_axis.unwrap_or_default(),
+            on_axis: Limited::entries(self.on_axis),
             band: (band.min, band.max),
             conditions: conditions.collect::<Result<_, _>>()?,
         };
@@ -277,7 +249,7 @@ impl DatasetText {
             description: written(dataset.description()),
             inputs: dataset.inputs().iter().map(ChannelText::of).collect(),
             outputs: dataset.outputs().iter().map(ChannelText::of).collect(),
-            on_axis: Some(dataset.on_axis().marked().map(names).collect()),
+            on_axis: Some(Limited(dataset.on_axis().marked().map(names).collect())),
             frequency_band: BandText { min: dataset.band().min(), max: dataset.band().max(), unit: "rad/s".to_owned() },
             conditions: dataset.conditions().iter().map(|condition| ConditionText::of(condition)).collect(),
         }
@@ -286,11 +258,6 @@ impl DatasetText {
 
 fn written(text: &str) -> Option<String> {
     (!text.is_empty()).then(|| text.to_owned())
-}
-
-/// A list, where there is anything in it.
-fn entries<T>(list: Vec<T>) -> Option<Vec<T>> {
-    (!list.is_empty()).then_some(list)
 }
 
 impl ChannelText {
@@ -333,7 +300,7 @@ impl ConditionText {
         };
         let physics = models(BundleKind::Physics, self.physics_models)?;
         let identified = models(BundleKind::Identified, self.identified_models)?;
-        let records = self.records.unwrap_or_default().into_iter().enumerate();
+        let records = Limited::entries(self.records).into_iter().enumerate();
         let records = records.map(|(index, record)| record.into_record(&place, index + 1));
         Ok(ConditionDraft { flight_state, physics, identified, records: records.collect::<Result<_, _>>()? })
     }
@@ -351,7 +318,7 @@ impl ConditionText {
             mass_kg: state.mass_kg,
             physics_models: models(BundleKind::Physics),
             identified_models: models(BundleKind::Identified),
-            records: entries(condition.records().iter().map(RecordText::of).collect()),
+            records: Limited::some(condition.records().iter().map(RecordText::of).collect()),
         }
     }
 }
@@ -376,7 +343,7 @@ impl RecordText {
             held_out: self.held_out,
             used: self.used.unwrap_or(true),
             sample_time_s: self.sample_time_s,
-            used_s: self.used_s.unwrap_or_default(),
+            used_s: Limited::entries(self.used_s),
         })
     }
 
@@ -384,7 +351,7 @@ impl RecordText {
     pub(crate) fn of(record: &ConditionRecord) -> Self {
         let ConditionRecord { name, file, variable, sha256, kind, held_out, used, sample_time_s, used_s } =
             record.clone();
-        let (kind, used, used_s) = (Some(kind.word().to_owned()), Some(used), entries(used_s));
+        let (kind, used, used_s) = (Some(kind.word().to_owned()), Some(used), Limited::some(used_s));
         Self { name, file, variable, sha256, kind, held_out, used, sample_time_s, used_s }
     }
 }
@@ -447,12 +414,12 @@ impl ModelText {
             origin,
             timing: Timing {
                 sample_time_s: self.sample_time_s,
-                input_delays_s: self.input_delays_s,
-                output_delays_s: self.output_delays_s,
+                input_delays_s: self.input_delays_s.map(|list| list.0),
+                output_delays_s: self.output_delays_s.map(|list| list.0),
             },
             matrices: [self.a, self.b, self.c, self.d].map(|array| array.map(matrix)),
             response: self.frequency_response.map(ResponseText::into_draft),
-            states: self.states.unwrap_or_default(),
+            states: Limited::entries(self.states),
             source: self.source.map(SourceText::into_provenance),
             bands: self.bands.filter(|_| is_identified).map(BandsText::into_draft),
         }
@@ -478,14 +445,14 @@ impl ModelText {
             perturbation,
             method,
             order,
-            states: entries(draft.states),
+            states: Limited::some(draft.states),
             a,
             b,
             c,
             d,
             sample_time_s,
-            input_delays_s,
-            output_delays_s,
+            input_delays_s: input_delays_s.map(Limited),
+            output_delays_s: output_delays_s.map(Limited),
             frequency_response: draft.response.map(ResponseText::of),
             bands: draft.bands.map(BandsText::of),
             source: draft.source.map(SourceText::of),
@@ -545,11 +512,11 @@ impl ResponseText {
 impl SourceText {
     fn into_provenance(self) -> Provenance {
         let Self { file, sha256, variable, made, note, records } = self;
-        Provenance { file, sha256, variable, made, note, records: records.unwrap_or_default() }
+        Provenance { file, sha256, variable, made, note, records: Limited::entries(records) }
     }
 
     fn of(source: Provenance) -> Self {
         let Provenance { file, sha256, variable, made, note, records } = source;
-        Self { file, sha256, variable, made, note, records: entries(records) }
+        Self { file, sha256, variable, made, note, records: Limited::some(records) }
     }
 }

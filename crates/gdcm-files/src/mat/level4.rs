@@ -7,31 +7,19 @@ use std::collections::HashSet;
 use crate::mat::level5::{ByteOrder, Cursor, name_of};
 use crate::mat::matrix::{Entries, rows};
 use crate::mat::{FieldPath, count};
-use crate::variables::{Array, ElementKind, MemoryBudget, Value, Variable, VariableFault};
+use crate::strides::{NumberClass, StoredNumber};
+use crate::variables::{Array, MemoryBudget, Value, Variable, VariableFault};
 
 /// What stands before each matrix.
 struct Header {
     /// Kind of the stored numbers: P of the type MOPT.
-    stored: Stored,
+    stored: StoredNumber,
     /// T of the type MOPT.
     meaning: Meaning,
     rows: usize,
     columns: usize,
     complex: bool,
     name_length: usize,
-    /// The order of bytes of the numbers.
-    order: ByteOrder,
-}
-
-/// What the stored numbers are.
-#[derive(Clone, Copy)]
-enum Stored {
-    F64,
-    F32,
-    I32,
-    I16,
-    U16,
-    U8,
 }
 
 /// What the numbers mean.
@@ -75,7 +63,7 @@ fn header(file: &mut Cursor<'_>) -> Result<Header, VariableFault> {
         *size = i32::try_from(file.u32()?).map_err(|_| damaged("a negative size"))? as usize;
     }
     let [rows, columns, complex, name_length] = sizes;
-    let stored = Stored::of(kind / 10 % 10).ok_or_else(|| damaged("an unknown kind of numbers"))?;
+    let stored = stored_number(kind / 10 % 10, order).ok_or_else(|| damaged("an unknown kind of numbers"))?;
     let meaning = match kind % 10 {
         0 => Meaning::Numbers,
         1 => Meaning::Text,
@@ -85,7 +73,7 @@ fn header(file: &mut Cursor<'_>) -> Result<Header, VariableFault> {
     if complex > 1 || name_length == 0 {
         return Err(damaged("no matrix"));
     }
-    Ok(Header { stored, meaning, rows, columns, complex: complex == 1, name_length, order })
+    Ok(Header { stored, meaning, rows, columns, complex: complex == 1, name_length })
 }
 
 /// The order of bytes: the type is less than 2000 in the right one, its thousands 0 (little) or 1 (big), its hundreds 0.
@@ -98,46 +86,18 @@ fn order(bytes: &[u8]) -> Option<ByteOrder> {
     if fits(ByteOrder::Big, 1) { Some(ByteOrder::Big) } else { None }
 }
 
-impl Stored {
-    fn of(number: u32) -> Option<Self> {
-        Some(match number {
-            0 => Stored::F64,
-            1 => Stored::F32,
-            2 => Stored::I32,
-            3 => Stored::I16,
-            4 => Stored::U16,
-            5 => Stored::U8,
-            _ => return None,
-        })
-    }
-
-    fn width(self) -> usize {
-        match self {
-            Stored::F64 => 8,
-            Stored::F32 | Stored::I32 => 4,
-            Stored::I16 | Stored::U16 => 2,
-            Stored::U8 => 1,
-        }
-    }
-
-    fn converted(self, bytes: &[u8], order: ByteOrder) -> Vec<f64> {
-        let number = |number: &[u8]| match (self, number) {
-            (Stored::F64, &[a, b, c, d, e, f, g, h]) => f64::from_bits(order.u64([a, b, c, d, e, f, g, h])),
-            (Stored::F32, &[a, b, c, d]) => f64::from(f32::from_bits(order.u32([a, b, c, d]))),
-            (Stored::I32, &[a, b, c, d]) => f64::from(order.u32([a, b, c, d]) as i32),
-            (Stored::I16, &[a, b]) => f64::from(order.u16([a, b]) as i16),
-            (Stored::U16, &[a, b]) => f64::from(order.u16([a, b])),
-            (_, bytes) => f64::from(bytes.first().copied().unwrap_or_default()),
-        };
-        bytes.chunks_exact(self.width()).map(number).collect()
-    }
-
-    fn kind(self) -> ElementKind {
-        match self {
-            Stored::F64 | Stored::F32 => ElementKind::Float,
-            _ => ElementKind::Integer,
-        }
-    }
+/// The numbers that P of the type MOPT stands for.
+fn stored_number(kind: u32, order: ByteOrder) -> Option<StoredNumber> {
+    let (class, size) = match kind {
+        0 => (NumberClass::Float, 8),
+        1 => (NumberClass::Float, 4),
+        2 => (NumberClass::Signed, 4),
+        3 => (NumberClass::Signed, 2),
+        4 => (NumberClass::Unsigned, 2),
+        5 => (NumberClass::Unsigned, 1),
+        _ => return None,
+    };
+    StoredNumber::new(class, size, order == ByteOrder::Big)
 }
 
 impl Header {
@@ -159,9 +119,9 @@ impl Header {
 
     fn numbers(&self, file: &mut Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Vec<f64>, VariableFault> {
         let count = count(&[self.rows, self.columns]);
-        let bytes = file.take(count.saturating_mul(self.stored.width()))?;
+        let bytes = file.take(count.saturating_mul(self.stored.size()))?;
         budget.take(count as u64, 8, "")?;
-        Ok(self.stored.converted(bytes.rest(), self.order))
+        Ok(bytes.rest().chunks_exact(self.stored.size()).map(|number| self.stored.decode(number)).collect())
     }
 
     /// Columns of rows, of columns, of numbers and of their imaginary parts; the last row says how large the matrix is.
@@ -194,6 +154,7 @@ impl Header {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::variables::ElementKind;
 
     /// One matrix, written by a machine of either kind.
     fn matrix(kind: u32, sizes: [u32; 4], order: ByteOrder, data: &[u8]) -> Vec<u8> {

@@ -204,7 +204,11 @@ fn matrix(tables: &[TextTable], scale: f64, budget: &MemoryBudget, name: &str) -
     if let Some(other) = tables.iter().find(|table| table.lines.len() != rows) {
         let found = other.lines.len();
         let what = format!("parts of this matrix have {rows} and {found} rows; print it in one part");
-        return Err(VariableFault::Line { variable: name.to_owned(), line: other.first_line, what });
+        return Err(VariableFault::Line {
+            variable: name.to_owned(),
+            line: other.lines.first().copied().unwrap_or(1),
+            what,
+        });
     }
     let columns = tables.iter().map(|table| table.columns.len()).sum();
     budget.take((rows * columns) as u64, 8, name)?;

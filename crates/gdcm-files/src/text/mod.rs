@@ -39,7 +39,7 @@ impl Importer for Literals {
     }
 
     fn read(&self, bytes: &[u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Contents, FileError> {
-        let read = decode(bytes, budget).and_then(|decoded| literals::read_literals(&decoded.text, budget));
+        let read = decode(bytes, budget).and_then(|text| literals::read_literals(&text, budget));
         let literals::Statements { variables, notes } = read.map_err(|fault| FileError::variables(path, fault))?;
         Ok(Contents::Variables { variables, notes })
     }
@@ -62,7 +62,6 @@ impl Importer for Text {
     }
 
     fn read(&self, bytes: &[u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Contents, FileError> {
-        let decoded = decode(bytes, budget).map_err(|fault| FileError::variables(path, fault))?;
-        Ok(Contents::Text(decoded.text))
+        decode(bytes, budget).map(Contents::Text).map_err(|fault| FileError::variables(path, fault))
     }
 }

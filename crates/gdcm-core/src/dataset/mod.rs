@@ -2,6 +2,7 @@
 
 mod channel;
 mod condition;
+#[expect(clippy::module_inception, reason = "the room is named by what it holds")]
 mod dataset;
 pub mod limits;
 mod location;

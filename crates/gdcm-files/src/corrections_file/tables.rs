@@ -32,8 +32,12 @@ struct ResponseRow<'a> {
     pair: Pair,
 }
 
-/// The columns: their names, and their cells in a row.
-const CHANNEL_COLUMNS: [(&str, fn(&ChannelRow<'_>) -> String); 20] = [
+/// A column of the table of channels: its name, and its cell in a row.
+type ChannelColumn = (&'static str, fn(&ChannelRow<'_>) -> String);
+/// A column of the table of responses.
+type ResponseColumn = (&'static str, fn(&ResponseRow<'_>) -> String);
+
+const CHANNEL_COLUMNS: [ChannelColumn; 20] = [
     ("condition", |row| row.found.condition.id().to_string()),
     ("airspeed_kt", |row| row.found.condition.flight_state().airspeed_kt.to_string()),
     ("kind", |row| if matches!(row.channel, Channel::Input(_)) { "input" } else { "output" }.to_owned()),
@@ -56,8 +60,7 @@ const CHANNEL_COLUMNS: [(&str, fn(&ChannelRow<'_>) -> String); 20] = [
     ("u_gain_identification", |row| row.found.deviation(Scalar::ChannelGain(row.channel), |bar| bar.identification)),
 ];
 
-/// The columns: their names, and their cells in a row.
-const RESPONSE_COLUMNS: [(&str, fn(&ResponseRow<'_>) -> String); 34] = [
+const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
     ("condition", |row| row.found.condition.id().to_string()),
     ("airspeed_kt", |row| row.found.condition.flight_state().airspeed_kt.to_string()),
     ("output", |row| row.found.analysis.study.dataset.outputs()[row.pair.output].name.clone()),

@@ -181,9 +181,12 @@ impl Export<'_> {
     }
 }
 
+/// What writes the contents of a file.
+type Writing<'e> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'e>;
+
 /// The contents of a file, with what is to be known of it, line by line.
 pub struct Exported<'e> {
-    write: Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'e>,
+    write: Writing<'e>,
     remarks: Vec<String>,
 }
 

@@ -95,12 +95,12 @@ impl FrequencyPanels<'_> {
         let mut visible: Vec<&BodeCurve> = self.curves.iter().filter(|curve| !curve.hidden).collect();
         visible.sort_by_key(|curve| curve.role.layer(curve.rejected));
         // The curves of a plot mostly share their frequencies: so do those of the figure then.
-        let mut frequencies: Option<(&Arc<[f64]>, Arc<[f64]>)> = None;
-        let mut in_unit = |omega| match &frequencies {
-            Some((of, frequency)) if Arc::ptr_eq(of, omega) => Arc::clone(frequency),
+        let mut last: Option<[Arc<[f64]>; 2]> = None;
+        let mut in_unit = |omega: &Arc<[f64]>| match &last {
+            Some([of, frequency]) if Arc::ptr_eq(of, omega) => Arc::clone(frequency),
             _ => {
                 let frequency: Arc<[f64]> = omega.iter().map(|omega| self.options.unit.of_omega(*omega)).collect();
-                frequencies = Some((omega, Arc::clone(&frequency)));
+                last = Some([Arc::clone(omega), Arc::clone(&frequency)]);
                 frequency
             }
         };

@@ -101,7 +101,7 @@ fn sd_deg(found: &Identification, k: usize, (output, input): (usize, usize)) -> 
 }
 
 fn responses(found: &Identification) -> Vec<DMatrix<Complex<f64>>> {
-    omegas(&found).iter().map(|&omega| response(space(&found.refined), omega)).collect()
+    omegas(found).iter().map(|&omega| response(space(&found.refined), omega)).collect()
 }
 
 /// Greatest relative difference of the responses of two identifications.

@@ -203,7 +203,7 @@ fn what_is_late_in_all_records_and_a_band_that_they_do_not_show_are_mended_by_th
     settle(&mut window);
     for _ in 0..2 {
         // Once more does not take it out twice.
-        window.get_by_label_contains("ms out of Q").click();
+        window.get_by_label_contains("ms from Q").click();
         window.run_steps(2);
         let delay_s = records(&window).unwrap().outputs[1].delay_s;
         assert!((delay_s - 0.12).abs() < 0.01, "{delay_s}");

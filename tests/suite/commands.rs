@@ -331,7 +331,7 @@ fn a_wrong_command_line_is_status_2_with_the_option() {
     analyze(&["--band", "8", "1"]).assert_failed(2, &["--band: ", "0.0001 <= min < max <= 100000", "min 8, max 1"]);
     analyze(&["--band", "8"]).assert_failed(2, &["--band"]);
     analyze(&["--points", "1"]).assert_failed(2, &["--points: ", "from 2 to 5000"]);
-    analyze(&["--degree", "4"]).assert_failed(2, &["--degree: ", "from 0 to 3"]);
+    analyze(&["--degree", "4"]).assert_failed(2, &["--degree: ", "expected 0, 1, 2, 3 or table", "found 4"]);
     analyze(&["--on", "P"]).assert_failed(2, &["OUTPUT/INPUT"]);
     analyze(&["--on", "P/PED"]).assert_failed(2, &["--on: ", "no response P/PED", "inputs are LON, LAT"]);
     analyze(&["--reject", "nominal"]).assert_failed(2, &["ID:NAME"]);

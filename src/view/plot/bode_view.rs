@@ -224,7 +224,7 @@ impl BodeView {
         self.values(pane).choose(values);
     }
 
-    /// PlotStyle `factor` times closer at a pane, with the point under `pointer` staying where it is.
+    /// Looks `factor` times closer at a pane, with the point under `pointer` staying where it is.
     pub(super) fn zoom(&mut self, pane: Pane, pointer: Pos2, frequency_factor: f64, value_factor: f64) {
         let Some(transform) = self.transform(pane) else { return };
         let fixed = transform.value_from_position(pointer);
@@ -268,7 +268,7 @@ impl BodeView {
         self.pan(pane, by);
     }
 
-    /// PlotStyle `factor` times closer at one axis of a pane, with what is beside `pointer` staying where it is.
+    /// Looks `factor` times closer at one axis of a pane, with what is beside `pointer` staying where it is.
     pub(super) fn zoom_axis(&mut self, axis: PlotAxis, pane: Pane, pointer: Pos2, factor: f64) {
         let (frequencies, values) = if axis == PlotAxis::Frequency { (factor, 1.0) } else { (1.0, factor) };
         self.zoom(pane, pointer, frequencies, values);

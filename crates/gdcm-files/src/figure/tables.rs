@@ -9,10 +9,12 @@ use super::figure::{Figure, Panel};
 use super::mark::{Along, Bracket, Envelope, Intervals, Mark, Spans};
 
 impl Figure {
-    /// The numbers of each panel: one column for each curve where all share their x, else one row for each point.
+    /// The numbers of each panel: one column for each curve where all share their x, else one row for each point. Bounds of a
+    /// band that stand at frequencies of their own follow in tables of their own.
     pub fn tables(&self) -> Vec<Table> {
-        let tables = self.panels().map(|(title, panel)| panel.table(title));
-        tables.filter(|table| !table.rows.is_empty()).collect()
+        let (tables, of_bands): (Vec<Table>, Vec<Option<Table>>) =
+            self.panels().map(|(title, panel)| panel.tables(title)).unzip();
+        tables.into_iter().chain(of_bands.into_iter().flatten()).filter(|table| !table.rows.is_empty()).collect()
     }
 }
 
@@ -28,17 +30,27 @@ struct Series {
 type Constant<'m> = (&'m str, f64);
 
 impl Panel {
-    fn table(&self, title: &str) -> Table {
-        let series: Vec<Series> = self.marks.iter().flat_map(series).collect();
-        let constants: Vec<Constant<'_>> = self.marks.iter().filter_map(constant).collect();
+    fn tables(&self, title: &str) -> (Table, Option<Table>) {
+        let (bands, others): (Vec<&Mark>, Vec<&Mark>) =
+            self.marks.iter().partition(|mark| matches!(mark, Mark::Envelope(_)));
+        let mut main: Vec<Series> = others.into_iter().flat_map(series).collect();
+        let bands: Vec<Series> = bands.into_iter().flat_map(series).collect();
         let title = if title.is_empty() { self.y.label.clone() } else { format!("{title}, {}", self.y.label) };
-        match series.split_first() {
-            Some((first, rest))
-                if first.labels.is_none() && rest.iter().all(|next| next.labels.is_none() && next.x == first.x) =>
-            {
-                self.wide(title, &series, &constants)
-            }
-            _ => self.long(title, &series, &constants),
+        let apart = main.first().is_some_and(|first| bands.iter().any(|band| band.x != first.x));
+        let of_bands = apart.then(|| self.table(format!("{title}, bands"), &bands, &[]));
+        if !apart {
+            main.extend(bands);
+        }
+        let constants: Vec<Constant<'_>> = self.marks.iter().filter_map(constant).collect();
+        (self.table(title, &main, &constants), of_bands)
+    }
+
+    fn table(&self, title: String, series: &[Series], constants: &[Constant<'_>]) -> Table {
+        let same_x = |first: &Series| series.iter().all(|next| next.labels.is_none() && next.x == first.x);
+        if series.first().is_some_and(same_x) {
+            self.wide(title, series, constants)
+        } else {
+            self.long(title, series, constants)
         }
     }
 

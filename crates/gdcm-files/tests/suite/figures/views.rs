@@ -26,6 +26,7 @@ fn the_legend_of_a_bode_figure_names_the_roles_that_are_present() {
         "scheduled",
         "rejected",
         "band of comparison",
+        "band of 95 %",
     ];
     assert_eq!(legend(&figure), expected);
     let hidden = BTreeSet::from([Role::Perturbed, Role::Rejected]);

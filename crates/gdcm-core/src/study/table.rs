@@ -141,10 +141,10 @@ pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
         "response",
         "about",
         "scatter [%]",
-        "trim uncertainty [%]",
+        "trim [%]",
         "identification [%]",
         "unexplained [%]",
-        "unexplained, interval [%]",
+        "interval [%]",
         "× expected",
     ];
     let mut table = Table::new("What the scatter of the net gains is made of", columns);

@@ -38,7 +38,7 @@
 //! ```
 //!
 //! and the gains of many conditions become one correction by regressing `ln k` on airspeed (M11). The numbers M1 to M15 are
-//! the sections of the method's description in the README.
+//! the sections of the method in docs/method.md.
 //!
 //! Where a delay cannot help, because the physics model lags, the channels get *signed* delays on wish, `tau >= 0` left out of
 //! eq. (11); a negative one becomes a filter `L(s)` that acts as a faster servo and has that delay over the band, and the gains are

@@ -105,8 +105,8 @@ fn curve_menu_ui(
     wish(ui, "Copy values", "Frequencies and values as text, with their units", CurveWish::CopyValues);
     if let BodeQuantity::Response { phase: PhaseUnit::Unwrapped, .. } = scene.quantity {
         ui.separator();
-        wish(ui, "One turn up", "Draw this curve's phase 360° higher", CurveWish::Turn(1));
-        wish(ui, "One turn down", "Draw this curve's phase 360° lower", CurveWish::Turn(-1));
+        wish(ui, "Phase +360°", "Draw this curve's phase 360° higher", CurveWish::Turn(1));
+        wish(ui, "Phase −360°", "Draw this curve's phase 360° lower", CurveWish::Turn(-1));
     }
 }
 

@@ -310,7 +310,7 @@ pub struct Bracket {
     pub x: f64,
     /// Their figures.
     pub ends: [f64; 2],
-    /// Times what the bundles explain: "5.4×".
+    /// multiple of what is expected: "5.4×".
     pub label: String,
     /// Whether it is more than they explain.
     pub beyond: bool,

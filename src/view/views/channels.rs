@@ -65,7 +65,7 @@ pub(super) fn gain_bands(
     (0..=BAND_STEPS).map(band).collect::<Option<_>>().unwrap_or_default()
 }
 
-/// For each airspeed the difference that is the most times what the bundles explain.
+/// For each airspeed the difference that is the largest multiple of what is expected.
 pub(super) fn brackets(uncertainty: &Uncertainty, scalar: Scalar, dots: &[Dot]) -> Vec<Bracket> {
     let Scalar::NetGain(pair) = scalar else { return Vec::new() };
     let value = |id: ConditionId| dots.iter().find(|dot| dot.condition == id).map(|dot| dot.value);
@@ -111,7 +111,7 @@ pub(super) fn bar_sentences(uncertainty: &Uncertainty, scalar: Scalar, condition
     let mut sentences: Vec<String> = bar.iter().map(|bar| bar_words(bar, scalar, uncertainty.level)).collect();
     if let Scalar::NetGain(pair) = scalar {
         let left = uncertainty.conditions.get(&condition).and_then(|of| of.left_in_band[pair]);
-        sentences.extend(left.map(|left| format!("left over in the band: ± {:.1} %", 100.0 * left)));
+        sentences.extend(left.map(|left| format!("residual in the band: ± {:.1} %", 100.0 * left)));
         let differences =
             uncertainty.differences.iter().filter(|of| of.pair == pair && of.conditions.contains(&condition));
         sentences.extend(differences.map(|of| of.words(uncertainty.level)));

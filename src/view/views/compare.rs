@@ -114,7 +114,7 @@ pub fn figure_table(state: &State) -> Table {
     let condition = state.condition().id();
     let title = format!("What it does: condition {condition}, and the schedule over all conditions");
     let names = state.study.variants.iter().map(|variant| variant.name.clone());
-    let mut table = Table::new(title, ["figure".to_owned(), "now".to_owned()].into_iter().chain(names));
+    let mut table = Table::new(title, ["value".to_owned(), "now".to_owned()].into_iter().chain(names));
     let analyses: Vec<Option<&Analysis>> = std::iter::once(state.analysis())
         .chain(state.study.variants.iter().map(|variant| variant_analysis(state, variant)))
         .collect();

@@ -65,7 +65,7 @@ fn answer_ui(ui: &mut Ui, state: &State, uncertainty: &Uncertainty, palette: &Pa
 fn scatter_ui(ui: &mut Ui, state: &State, uncertainty: &Uncertainty, palette: &Palette) {
     ui.horizontal(|ui| {
         ui.label(RichText::new("What the scatter is made of").size(SMALL_SIZE).strong());
-        for (name, color) in ["trim", "identification", "rest: real, or model form"].into_iter().zip(colors(palette)) {
+        for (name, color) in ["trim", "identification", "unexplained"].into_iter().zip(colors(palette)) {
             let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
             ui.painter().rect_filled(rect, 2.0, color);
             ui.label(RichText::new(name).size(SMALL_SIZE).color(palette.dim_text));

@@ -247,7 +247,7 @@ fn modes_table(state: &State, modes: &ConditionModes, reference: usize) -> (Tabl
     let kind = BundleKind::Physics;
     let models = modes.condition.bundle(kind);
     let title = format!("Modes of condition {}", modes.condition.id());
-    let columns = ["|λ| [rad/s]", "ζ [-]", "T [s]", "Re λ", "Im λ", "spread [rad/s]", "jumps at", "states"];
+    let columns = ["|λ| [rad/s]", "ζ [-]", "T [s]", "Re λ", "Im λ", "spread [rad/s]", "outlying at", "states"];
     let mut table = Table::new(title, columns);
     let mut jumping = Vec::new();
     let own = modes.bundle(kind)[reference].as_deref().unwrap_or_default();

@@ -109,7 +109,7 @@ fn phases_are_wrapped_and_a_curve_is_moved_by_a_turn_on_wish() {
     let mut window = window();
     choose_condition_10(&mut window);
     let before = drawn(&window, CurveRole::Nominal);
-    choose_from_menu_of_nominal(&mut window, "One turn up");
+    choose_from_menu_of_nominal(&mut window, "Phase +360°");
     let moved = drawn(&window, CurveRole::Nominal);
     assert_eq!(moved.phase_deg[200], before.phase_deg[200] + 360.0);
     assert!(moved.detail.contains("moved up by 1 turn"), "{}", moved.detail);

@@ -80,7 +80,7 @@ fn probability(p: Option<f64>) -> String {
     p.map_or_else(|| NONE.to_owned(), |p| if p < 0.001 { "< 0.001".to_owned() } else { format!("{p:.3}") })
 }
 
-/// The differences of net gains at equal airspeed, the most times what the bundles explain first, with the difference of each row.
+/// The differences of net gains at equal airspeed, the largest multiple of what is expected first, with the difference of each row.
 pub fn difference_table(dataset: &Dataset, uncertainty: &Uncertainty) -> (Table, Vec<AirspeedDifference>) {
     let columns = ["response", "conditions", "airspeed [kt]", "difference [%]", "× expected", "Holm p", "verdict"];
     let mut table = Table::new("Differences at equal airspeed", columns);

@@ -160,7 +160,7 @@ impl Uncertainty {
         }
     }
 
-    /// For each airspeed the difference of a net gain that is the most times what the bundles explain; none where they have no spread.
+    /// For each airspeed the difference of a net gain that is the largest multiple of what is expected; none where they have no spread.
     pub fn greatest_differences(&self, pair: Pair) -> Vec<&AirspeedDifference> {
         let mut greatest: Vec<&AirspeedDifference> = Vec::new();
         let compared = |of: &&AirspeedDifference| of.pair == pair && of.difference.ratio().is_some();

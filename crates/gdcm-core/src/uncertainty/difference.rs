@@ -26,7 +26,7 @@ impl Difference {
         }
     }
 
-    /// `|delta| / u_delta`: times what the bundles explain; none where they have no spread.
+    /// `|delta| / u_delta`: multiple of what is expected; none where they have no spread.
     pub fn ratio(&self) -> Option<f64> {
         self.degrees_of_freedom.map(|_| self.delta.abs() / self.deviation)
     }

@@ -59,7 +59,7 @@ impl VarianceDecomposition {
         (whole > 0.0).then(|| [self.trim, self.identification, self.unexplained()].map(|part| part / whole))
     }
 
-    /// `sqrt(F)`, `F = S^2 / B`: times what the bundles explain; none where they have no spread.
+    /// `sqrt(F)`, `F = S^2 / B`: multiple of what is expected; none where they have no spread.
     pub fn ratio(&self) -> Option<f64> {
         self.degrees_of_freedom.map(|_| (self.scatter / self.explained()).sqrt())
     }

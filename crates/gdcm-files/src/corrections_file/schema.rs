@@ -558,7 +558,7 @@ pub struct DifferenceEntry {
     pub u: f64,
     /// Its degrees of freedom.
     pub degrees_of_freedom: Option<f64>,
-    /// Factor by which it exceeds what the bundles explain.
+    /// Factor by which it exceeds what is expected.
     pub ratio: Option<f64>,
     /// How likely that is where there is no difference.
     pub p: Option<f64>,
@@ -598,7 +598,7 @@ pub struct SplitEntry {
     pub rest_interval: Option<[f64; 2]>,
     /// Shares of trim, identification and rest in the variance.
     pub shares: Option<[f64; 3]>,
-    /// Factor by which it exceeds what the bundles explain.
+    /// Factor by which it exceeds what is expected.
     pub ratio: Option<f64>,
     /// How likely that is where they explain all.
     pub p: Option<f64>,

@@ -27,10 +27,10 @@ const ABOVE: f64 = 109.0;
 const ABOUT: [&str; 2] = ["airspeed", "schedule"];
 /// The parts of a scatter, from below; in print they differ by how dark they are.
 const PARTS: [(&str, Hue); 3] =
-    [("trim", Hue::Perturbed), ("identification", Hue::Identified), ("rest: real, or model form", Hue::Nominal)];
+    [("trim", Hue::Perturbed), ("identification", Hue::Identified), ("unexplained", Hue::Nominal)];
 
 /// The split of the scatter of each of `pairs` that has one, at equal airspeed and about the schedule: shares of the variance as stacked
-/// bars, below them the scatter itself, what the bundles explain, and the rest with its interval; none where bars were not computed,
+/// bars, below them the scatter itself, what is expected, and what is unexplained with its interval; none where bars were not computed,
 /// or no pair has a scatter.
 pub fn evidence_figure(analysis: &Analysis, pairs: &[Pair]) -> Option<Figure> {
     let uncertainty = analysis.uncertainty.as_ref()?;
@@ -81,8 +81,8 @@ fn deviations(scatter: &PairScatter, level: f64) -> Panel {
     let scatter_of: fn(&VarianceDecomposition) -> f64 = |split| split.scatter;
     let figures = [
         ("scatter", DotShape::Circle, Color::INK, scatter_of),
-        ("what the bundles explain", DotShape::Diamond, Color::of(Hue::Perturbed), VarianceDecomposition::explained),
-        ("rest", DotShape::Square, Color::of(Hue::Nominal), VarianceDecomposition::unexplained),
+        ("expected", DotShape::Diamond, Color::of(Hue::Perturbed), VarianceDecomposition::explained),
+        ("unexplained", DotShape::Square, Color::of(Hue::Nominal), VarianceDecomposition::unexplained),
     ];
     let dots = figures.into_iter().zip([-APART, 0.0, APART]).map(|((name, shape, color, of), beside)| {
         let dots = Dots::new(name, shape, color).key(name).filled(shape != DotShape::Diamond);
@@ -96,7 +96,7 @@ fn deviations(scatter: &PairScatter, level: f64) -> Panel {
     let y = Axis::linear("Scatter [%]").including(0.0).at_least(1.0);
     let most = splits(scatter).map(|(_, split)| MOST_SEEN * percent(split.scatter)).fold(0.0, f64::max);
     let y = ends.iter().fold(y, |y, [_, _, high]| y.including(high.min(most)));
-    let name = format!("rest, interval of {:.0} %", 100.0 * level);
+    let name = format!("unexplained, interval of {:.0} %", 100.0 * level);
     let intervals = (!ends.is_empty()).then_some(Intervals { name, stroke: INTERVAL, ends });
     Panel::new(axis(), y).with_all(intervals).with_all(dots)
 }
@@ -106,7 +106,7 @@ fn caption(analysis: &Analysis, uncertainty: &Uncertainty) -> String {
     let settings = &analysis.study.settings;
     format!(
         "{} Of ln(k_o k_i), about the mean of each airspeed and about the schedule ({}): shares of the variance, and standard \
-         deviations. Trim, identification: expected from the bundles; rest: what neither makes. Above the bars: scatter, times what the bundles explain. {}",
+         deviations. Trim, identification: expected from the bundles; unexplained: what neither makes. Above the bars: scatter, × expected. {}",
         uncertainty.differences_in_words(),
         schedule_words(&settings.schedule),
         settings_words(&analysis.study.dataset, settings)

@@ -28,8 +28,8 @@ const OF_BARS: f64 = 0.5;
 /// Brackets of differences at one airspeed.
 const BRACKET_BEYOND: Stroke = Stroke::solid(Color::of(Hue::Warning), 0.7);
 const BRACKET_WITHIN: Stroke = Stroke::solid(Color::DIM, 0.4);
-const BEYOND: &str = "difference, times what the bundles explain";
-const WITHIN: &str = "difference within what they can make";
+const BEYOND: &str = "significant difference, × expected";
+const WITHIN: &str = "difference, not significant";
 /// Height of a plot as a part of its width, and where bars and brackets stand in it.
 const ASPECTS: [f64; 2] = [0.95, 1.3];
 /// The ground of the bounds.
@@ -263,7 +263,7 @@ impl Quantity<'_> {
         [outer, inner].into_iter().filter(|bars| !bars.ends.is_empty()).collect()
     }
 
-    /// For each airspeed the difference that is the most times what the bundles explain (M13.4).
+    /// For each airspeed the difference that is the largest multiple of what is expected (M13.4).
     fn brackets(&self, analysis: &Analysis, across: Across) -> Vec<Brackets> {
         let (Some(uncertainty), Scalar::NetGain(pair), Across::Airspeed) = (&analysis.uncertainty, self.scalar, across)
         else {

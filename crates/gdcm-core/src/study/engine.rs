@@ -250,9 +250,8 @@ fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCautio
     });
     let leads: Vec<(ConditionId, &ChannelLeads)> = leads.collect();
     let (inputs, outputs) = (study.dataset.inputs().len(), study.dataset.outputs().len());
-    let channels = (0..inputs).map(Channel::Input).chain((0..outputs).map(Channel::Output));
     let caution = |channel: Channel| {
-        let taus_s: Vec<(ConditionId, f64)> = leads.iter().map(|(id, leads)| (*id, leads.tau_s(channel))).collect();
+        let taus_s: Vec<(ConditionId, f64)> = leads.iter().map(|(id, leads)| (*id, leads.taus_s[channel])).collect();
         let sum_s: f64 = taus_s.iter().map(|(_, tau_s)| tau_s).sum();
         let mean_s = sum_s / taus_s.len() as f64;
         let apart = |tau_s: f64| (tau_s - mean_s).abs();
@@ -262,5 +261,5 @@ fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCautio
         (taus_s.len() > 1 && (apart(tau_s) > APART_S || signs == [true; 2]))
             .then_some(ScheduleCaution::SignedDelayApart { channel, condition, tau_s, elsewhere_s })
     };
-    channels.filter_map(caution).collect()
+    Channel::all(inputs, outputs).filter_map(caution).collect()
 }

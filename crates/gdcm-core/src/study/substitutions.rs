@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::correction::{Channel, ChannelCorrection, GainSource};
+use crate::correction::{ChannelCorrection, GainSource};
 use crate::dataset::{BundleKind, Dynamics, Pair, PairTable};
 use crate::response::{FrequencyGrid, coherence_at, median, quantile};
 use crate::uncertainty::{
@@ -61,14 +61,9 @@ impl SubstitutedOptimum {
                 Scalar::Gain(pair) => gain[pair]?.ln(),
                 Scalar::Delay(pair) => delay_s[pair]?,
                 Scalar::BandDelay(pair) => band_delay_s[pair]?,
-                Scalar::NetGain(pair) => correction.net_gain(pair).value().ln(),
-                Scalar::ChannelGain(Channel::Input(input)) => correction.input_gains[input].ln(),
-                Scalar::ChannelGain(Channel::Output(output)) => correction.output_gains[output].ln(),
-                Scalar::ChannelDelay(channel) => match (&correction.leads, channel) {
-                    (Some(leads), channel) => leads.tau_s(channel),
-                    (None, Channel::Input(input)) => correction.input_delays_s[input],
-                    (None, Channel::Output(output)) => correction.output_delays_s[output],
-                },
+                Scalar::NetGain(pair) => correction.net_gain(pair).ln(),
+                Scalar::ChannelGain(channel) => correction.gain(channel).ln(),
+                Scalar::ChannelDelay(channel) => correction.delay_s(channel),
             };
             figure.is_finite().then_some(figure)
         })

@@ -134,7 +134,7 @@ pub fn net_gain_figure(analysis: &Analysis, pairs: &[Pair]) -> Figure {
     let plots = pairs.iter().map(|&pair| {
         let quantity = Quantity {
             measure: Measure::Gain,
-            of: Box::new(move |correction| correction.net_gain(pair).value()),
+            of: Box::new(move |correction| correction.net_gain(pair)),
             bounds: None,
             scalar: Scalar::NetGain(pair),
         };

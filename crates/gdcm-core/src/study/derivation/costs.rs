@@ -100,9 +100,8 @@ fn steps(symbol: &str, cost: Cost, average: CostAverage) -> Vec<String> {
 }
 
 fn correction_words(context: &Context<'_>, pair: Pair, correction: &ChannelCorrection) -> String {
-    let name = |channel| context.channel(channel);
-    let (output, input) = (name(Channel::Output(pair.output)), name(Channel::Input(pair.input)));
-    let (gain, delay_ms) = (correction.net_gain(pair).value(), s_to_ms(correction.net_delay(pair).value_s()));
+    let [output, input] = Channel::of(pair).map(|channel| context.channel(channel));
+    let (gain, delay_ms) = (correction.net_gain(pair), s_to_ms(correction.net_delay_s(pair)));
     format!("k_{output} k_{input} = {}, τ_{output} + τ_{input} = {} ms", digits(gain), digits(delay_ms))
 }
 

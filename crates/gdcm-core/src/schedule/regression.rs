@@ -110,16 +110,8 @@ impl Regression {
                 coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * v + coefficient)
             }
             Regression::Table { airspeeds_kt, values } => {
-                let after = airspeeds_kt.partition_point(|&at| at < airspeed_kt);
-                if after == 0 {
-                    return values[0];
-                }
-                if after == values.len() {
-                    return values[after - 1];
-                }
-                let fraction =
-                    (airspeed_kt - airspeeds_kt[after - 1]) / (airspeeds_kt[after] - airspeeds_kt[after - 1]);
-                values[after - 1] + fraction * (values[after] - values[after - 1])
+                let (before, after, fraction) = bracket(airspeeds_kt, airspeed_kt);
+                values[before] + fraction * (values[after] - values[before])
             }
         }
     }
@@ -177,19 +169,22 @@ fn indicators(airspeeds: &Airspeeds) -> Vec<Vec<f64>> {
     (0..airspeeds.values_kt.len()).map(row).collect()
 }
 
+/// The rising places on either side of `x` and how far between them it lies; the end place and 0 beyond them.
+fn bracket(places: &[f64], x: f64) -> (usize, usize, f64) {
+    let after = places.partition_point(|&place| place < x);
+    let end = places.len() - 1;
+    if after == 0 || after > end {
+        return (after.min(end), after.min(end), 0.0);
+    }
+    (after - 1, after, (x - places[after - 1]) / (places[after] - places[after - 1]))
+}
+
 /// The share of each of these rising places in the linear interpolation at `x`.
 fn between(places: &[f64], x: f64) -> Vec<f64> {
     let mut row = vec![0.0; places.len()];
-    let after = places.partition_point(|&place| place < x);
-    if after == 0 {
-        row[0] = 1.0;
-    } else if after == places.len() {
-        row[after - 1] = 1.0;
-    } else {
-        let fraction = (x - places[after - 1]) / (places[after] - places[after - 1]);
-        row[after - 1] = 1.0 - fraction;
-        row[after] = fraction;
-    }
+    let (before, after, fraction) = bracket(places, x);
+    row[after] = fraction;
+    row[before] = 1.0 - fraction;
     row
 }
 

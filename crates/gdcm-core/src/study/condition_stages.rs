@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::correction::{
-    Bounds, ChannelCorrection, ChannelLeads, DELAY_AGREEMENT_S, GainSource, LeadDesign, Problem, ProblemError,
+    Bounds, ChannelCorrection, ChannelLeads, DELAY_AGREEMENT_S, Delta, GainSource, LeadDesign, Problem, ProblemError,
     ProofBudget, Quantity, Solution, delay_upper_s, gain_bounds, solve,
 };
 use crate::dataset::{BundleKind, Condition, ConditionId, Pair, PairTable};
@@ -14,7 +14,8 @@ use crate::schedule::{CostChange, assess};
 use super::{
     BundleMetrics, Cancelled, Caution, Comparison, ConditionAnalysis, ConditionChoice, ConditionFailure,
     ConditionModels, ConditionResponses, ConditionSubstitutions, DelayFrom, Execution, GridKey, LeadCompensated,
-    LeadOffer, Memo, PhaseCorrection, Purpose, Settings, Study, SubstitutedOptimum, Substituting, SubstitutionMemo,
+    LeadOffer, Memo, Mismatches, PhaseCorrection, Purpose, Settings, Study, SubstitutedOptimum, Substituting,
+    SubstitutionMemo,
 };
 
 /// What the distances depend on, besides the models: the grid, the responses that measure them, and the coherence that counts.
@@ -110,27 +111,15 @@ impl ConditionStages {
         let responses = self.models.responses(Purpose::Comparison, grid_key, grid, execution)?;
         let substituting = Substituting { study, analysis, grid, responses: &responses };
         let models = &self.models;
-        self.substitutions.complete(&substituting, execution, |comparison, execution| {
-            Self::of(models.clone()).optimum(comparison, &substituting, execution)
+        let (settings, measuring) = (&study.settings, study.dataset.measuring_pairs());
+        self.substitutions.complete(&substituting, execution, |mismatch, delta| {
+            let input = SolveInput::new(settings, &measuring, grid.omega(), (mismatch, &delta));
+            let solved = Self::of(models.clone()).solve(&input, SUBSTITUTION_PROOF, execution)?;
+            Ok(solved.ok().map(|solved| {
+                let gain = solved.gain_problem.delta.clone();
+                SubstitutedOptimum { correction: solved.correction(), delta: Delta { gain, ..delta } }
+            }))
         })
-    }
-
-    /// The correction of a comparison of models that stand in for the representatives; none where there is none.
-    fn optimum(
-        &mut self,
-        comparison: &Comparison,
-        substituting: &Substituting<'_>,
-        execution: &Execution<'_>,
-    ) -> Result<Option<SubstitutedOptimum>, Cancelled> {
-        let (settings, measuring) = (&substituting.study.settings, substituting.study.dataset.measuring_pairs());
-        let input = SolveInput::new(settings, &measuring, substituting.grid.omega(), comparison);
-        let solved = self.solve(&input, SUBSTITUTION_PROOF, execution)?;
-        Ok(solved.ok().map(|solved| SubstitutedOptimum {
-            correction: solved.correction(),
-            gain: solved.gain_problem.delta.clone(),
-            delay_s: comparison.delta.delay_s.clone(),
-            band_delay_s: comparison.delta.band_delay_s.clone(),
-        }))
     }
 
     fn compare_and_solve(
@@ -164,13 +153,13 @@ impl ConditionStages {
             Ok(comparison) => comparison,
             Err(failure) => return Ok(Err(failure)),
         };
-        let input = SolveInput::new(settings, &measuring, grid.omega(), &comparison);
+        let (models, average) = (&comparison.representative, settings.cost_average);
+        let input = SolveInput::new(settings, &measuring, grid.omega(), (&models.mismatch, &comparison.delta));
         let solved = match self.solve(&input, proofs, execution)? {
             Ok(solved) => solved,
             Err(failure) => return Ok(Err(failure)),
         };
         let correction = solved.correction();
-        let (models, average) = (&comparison.representative, settings.cost_average);
         let cost = Arc::new(assess(&models.mismatch, &models.cost, &correction, grid.omega(), average));
         let offer = self.offer(&input, &solved.gain_problem.constrained, &cost, execution)?;
         let cautions = cautions_of(settings, &comparison, &figures);
@@ -199,16 +188,16 @@ impl ConditionStages {
         now: &PairTable<Option<CostChange>>,
         execution: &Execution<'_>,
     ) -> Result<Option<LeadOffer>, Cancelled> {
-        let (settings, comparison) = (input.settings, input.comparison);
+        let settings = input.settings;
         let design = Arc::new(LeadDesign::new(settings.lead, input.omega.into()));
         let bounds = Bounds { lower: design.lower_s(), upper: input.delay_upper_s };
-        let problem = LeadOffer::problem(&comparison.delta.band_delay_s, held, settings.fitted(), bounds);
+        let problem = LeadOffer::problem(&input.delta.band_delay_s, held, settings.fitted(), bounds);
         let Some(problem) = problem.filter(|_| settings.phase != PhaseCorrection::Lead) else { return Ok(None) };
         let solve = |problem: &Arc<Problem>| solved(problem, ProofBudget::default(), execution);
         // An offer that cannot be made is none.
         let Ok(solution) = self.offer.get_or_fail(Arc::new(problem), solve)? else { return Ok(None) };
         let leads = ChannelLeads::new(design, solution.channels());
-        let mismatch = comparison.representative.mismatch.map(|pair, mismatch| mismatch.clone().filter(|_| held[pair]));
+        let mismatch = input.mismatch.map(|pair, mismatch| mismatch.clone().filter(|_| held[pair]));
         Ok(LeadOffer::of(leads, &mismatch, now, (input.omega, settings.cost_average)))
     }
 
@@ -230,8 +219,7 @@ impl ConditionStages {
             (Ok(delays), Some(design)) => Some(ChannelLeads::new(design, delays.channels())),
             (_, None) => None,
         };
-        let mismatch = &input.comparison.representative.mismatch;
-        let compensated = leads.map(|leads| LeadCompensated::of(mismatch, &leads));
+        let compensated = leads.map(|leads| LeadCompensated::of(input.mismatch, &leads));
         let gain_problem = Arc::new(input.gain_problem(compensated.as_deref()));
         let gains = self.gains.get_or_fail(Arc::clone(&gain_problem), solve)?;
         Ok(match (gains, delays) {
@@ -257,7 +245,8 @@ struct SolveInput<'a> {
     settings: &'a Settings,
     measuring: &'a PairTable<bool>,
     omega: &'a [f64],
-    comparison: &'a Comparison,
+    mismatch: &'a Mismatches,
+    delta: &'a Delta,
     delay_upper_s: f64,
 }
 
@@ -266,17 +255,16 @@ impl<'a> SolveInput<'a> {
         settings: &'a Settings,
         measuring: &'a PairTable<bool>,
         omega: &'a [f64],
-        comparison: &'a Comparison,
+        (mismatch, delta): (&'a Mismatches, &'a Delta),
     ) -> Self {
-        let by_quantile = || delay_upper_s(&comparison.representative.mismatch, measuring, omega, settings.quantile);
+        let by_quantile = || delay_upper_s(mismatch, measuring, omega, settings.quantile);
         let delay_upper_s = settings.delay_upper_s.unwrap_or_else(by_quantile);
-        Self { settings, measuring, omega, comparison, delay_upper_s }
+        Self { settings, measuring, omega, mismatch, delta, delay_upper_s }
     }
 
     fn gain_problem(&self, compensated: Option<&LeadCompensated>) -> Problem {
-        let (settings, delta) = (self.settings, &self.comparison.delta);
-        let representative = &self.comparison.representative.mismatch;
-        let mismatch = compensated.map_or(representative, |compensated| &compensated.mismatch);
+        let (settings, delta) = (self.settings, self.delta);
+        let mismatch = compensated.map_or(self.mismatch, |compensated| &compensated.mismatch);
         let by_quantile = || gain_bounds(mismatch, self.measuring, settings.quantile);
         Problem {
             quantity: Quantity::Gain(settings.gain_objective),
@@ -291,7 +279,7 @@ impl<'a> SolveInput<'a> {
 
     /// Delays of the D that is chosen, signed ones of the band delay; none at all where the phase is left as it is.
     fn delay_problem(&self, design: Option<&LeadDesign>) -> Problem {
-        let (settings, delta) = (self.settings, &self.comparison.delta);
+        let (settings, delta) = (self.settings, self.delta);
         let upper_s = if settings.phase == PhaseCorrection::None { 0.0 } else { self.delay_upper_s };
         let held =
             |pair: Pair, held: &bool| *held && delta.gain[pair].is_some() && settings.phase != PhaseCorrection::None;

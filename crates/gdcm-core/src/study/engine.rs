@@ -225,16 +225,22 @@ fn analyze_conditions(
 
 /// The scheduled conditions that have a result, in the dataset's order.
 pub(super) fn scheduled_points<'a>(study: &Study, outcomes: &'a Outcomes) -> Vec<ScheduledPoint<'a>> {
-    let chosen = study.dataset.conditions().iter().filter(|condition| study.choice(condition.id()).is_in_schedule());
-    chosen
-        .filter_map(|condition| {
-            let analysis = outcomes.get(&condition.id())?.as_ref().ok()?;
-            let airspeed_kt = condition.flight_state().airspeed_kt;
-            let delay_upper_s = analysis.delay_upper_s();
-            let second = study.settings.schedule.second.and_then(|variable| variable.value(condition.flight_state()));
-            Some(ScheduledPoint { airspeed_kt, correction: &analysis.correction, delay_upper_s, second })
-        })
-        .collect()
+    let point = |analysis: &'a ConditionAnalysis| {
+        let state = analysis.condition.flight_state();
+        ScheduledPoint {
+            airspeed_kt: state.airspeed_kt,
+            correction: &analysis.correction,
+            delay_upper_s: analysis.delay_upper_s(),
+            second: study.settings.schedule.second.and_then(|variable| variable.value(state)),
+        }
+    };
+    in_schedule(study, outcomes).map(point).collect()
+}
+
+/// The results of the conditions that are in the schedule, in file order.
+fn in_schedule<'a>(study: &Study, outcomes: &'a Outcomes) -> impl Iterator<Item = &'a ConditionAnalysis> {
+    let chosen = study.dataset.conditions().iter().map(|condition| condition.id());
+    chosen.filter(|id| study.choice(*id).is_in_schedule()).filter_map(|id| outcomes.get(&id)?.as_ref().ok())
 }
 
 /// The channels of which no schedule can hold the signed delays of all conditions (M15.6).
@@ -243,11 +249,8 @@ fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCautio
     const APART_S: f64 = 0.02;
     /// Below this \[s\] a sign says nothing.
     const NOTHING_S: f64 = 2e-3;
-    let chosen = study.dataset.conditions().iter().filter(|condition| study.choice(condition.id()).is_in_schedule());
-    let leads = chosen.filter_map(|condition| {
-        let compensated = outcomes.get(&condition.id())?.as_ref().ok()?.compensated.as_ref()?;
-        Some((condition.id(), &compensated.leads))
-    });
+    let leads = in_schedule(study, outcomes)
+        .filter_map(|result| Some((result.condition.id(), &result.compensated.as_ref()?.leads)));
     let leads: Vec<(ConditionId, &ChannelLeads)> = leads.collect();
     let (inputs, outputs) = (study.dataset.inputs().len(), study.dataset.outputs().len());
     let caution = |channel: Channel| {

@@ -12,7 +12,7 @@ use crate::schedule::{CostChange, corrected_cost};
 use crate::uncertainty::Scalar;
 use crate::units::{number, ratio_to_db, s_to_ms, signed, telling};
 
-use super::{ConditionAnalysis, PhaseCorrection, Remark, RemarkKind, Study, Uncertainty};
+use super::{ConditionAnalysis, PhaseCorrection, Remark, RemarkKind, Study, Uncertainty, miss_words};
 
 /// The physics representative with the leads of its channels against the identified one: what the gains are found on.
 #[derive(Clone, Debug, PartialEq)]
@@ -211,8 +211,7 @@ fn common_lead(result: &ConditionAnalysis) -> Option<String> {
 /// Whether every held response gets what it wants; which does not and why.
 fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let (held, delays) = (result.held().marked().count(), &result.delays);
-    let all = delays.inputs.iter().chain(&delays.outputs);
-    if all.clone().all(|tau_s| tau_s.abs() < NOTHING_S) {
+    if delays.inputs.iter().chain(&delays.outputs).all(|tau_s| tau_s.abs() < NOTHING_S) {
         let text = "Nothing to do for the phase: every delay or lead is less than 2 ms.".to_owned();
         return vec![Remark::new(RemarkKind::Good, text)];
     }
@@ -224,12 +223,7 @@ fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         };
         return vec![Remark::new(RemarkKind::Good, text)];
     }
-    let (inputs, outputs) = study.dataset.names_of_channels();
-    let top = study.settings.band.max();
-    let misses: Vec<String> =
-        delays.unmatched.iter().map(|unmatched| unmatched.words(top, &inputs, &outputs)).collect();
-    let conflicts = delays.conflicts.iter().map(|conflict| conflict.words(&inputs, &outputs));
-    std::iter::once(misses.join(" ")).chain(conflicts).map(|text| Remark::new(RemarkKind::Caution, text)).collect()
+    miss_words(study, delays).map(|text| Remark::new(RemarkKind::Caution, text)).collect()
 }
 
 /// What filters of first order add to the gain within the band, which the gains take back.

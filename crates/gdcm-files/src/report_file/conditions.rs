@@ -160,7 +160,7 @@ fn channel_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
     ];
     for (side, channels, gains, delays_s) in sides {
         for ((channel, gain), delay_s) in channels.iter().zip(gains).zip(delays_s) {
-            let (gain, delay) = (decimals(*gain, 4), decimals(s_to_ms(*delay_s), 2));
+            let (gain, delay) = (decimals(*gain, 4), decimals(s_to_ms(delay_s), 2));
             table.row([channel.name.clone(), side.to_owned(), gain, delay]);
         }
     }

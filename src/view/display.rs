@@ -9,15 +9,12 @@ use gdcm_core::study::{AcrossRole, ExplainTarget};
 
 use gdcm_files::figure::{AirspeedCache, ErrorCache, ResponseCache};
 
-use super::arrangement::Arrangement;
-use super::curve_display::CurveDisplay;
 use super::plot::{
     Across, BodeCurve, BodeView, FigureView, FrequencyUnit, MagnitudeUnit, Measure, OverviewView, PhaseErrorUnit,
     PhaseUnit, Role,
 };
-use super::plot_style::PlotStyle;
-use super::table_view::Sorting;
 use super::views::{AssessedFigures, CachedEvidence, CachedModes, ChannelsView, PairSet};
+use super::{Arrangement, CurveDisplay, PlotStyle, Sorting};
 
 /// What is shown, none of which changes a result.
 #[derive(Debug, Default)]

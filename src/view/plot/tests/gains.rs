@@ -1,6 +1,6 @@
 use egui::vec2;
 use gdcm_files::figure::{
-    Across, Axis, Bars, Color, Curve, Dot, DotShape, Dots, Figure, MarkId, Panel, Plot, Range, Role as CurveRole,
+    Axis, Bars, Color, Curve, Dot, DotShape, Dots, Figure, MarkId, Panel, Plot, Range, Role as CurveRole,
 };
 
 use super::*;

@@ -357,8 +357,8 @@ mod tests {
         for pair in [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(output, input)| Pair { output, input }) {
             let (found, plain) = (found.curve(pair), plain.curve(pair));
             for (at, &omega) in grid.omega().iter().enumerate() {
-                let delays = delay(omega, corrected.input_delays_s[pair.input])
-                    * delay(omega, corrected.output_delays_s[pair.output]);
+                let delays = delay(omega, corrected.delays_s.inputs[pair.input])
+                    * delay(omega, corrected.delays_s.outputs[pair.output]);
                 let expected = plain[at] * delays * correction.net_gain(pair);
                 assert!((found[at] - expected).norm() <= 1e-10 * expected.norm(), "{pair:?} at {omega} rad/s");
             }
@@ -389,7 +389,7 @@ mod tests {
         let own = Timing { input_delays_s: Some(vec![0.02, 0.0]), ..Timing::default() };
         let pade = Pade::new(2).unwrap();
         let corrected = CorrectedModel::of(&plant().timed(own).unwrap(), &correction(), pade).unwrap();
-        assert_eq!((corrected.input_delays_s.clone(), corrected.model.order()), (vec![0.05, 0.0], 7));
+        assert_eq!((corrected.delays_s.inputs.clone(), corrected.model.order()), (vec![0.05, 0.0], 7));
         assert!(corrected.model.timing().is_plain());
     }
 

@@ -310,6 +310,6 @@ impl Compared {
 
     /// How many frequencies of a response count, where coherence says which do.
     fn left(&self, pair: Pair) -> Option<usize> {
-        self.coherence_weights.as_ref().map(|coherence_weights| coherence_weights[pair].len())
+        self.coherence_weights.as_ref().map(|coherence_weights| coherence_weights[pair].weights.len())
     }
 }

@@ -11,8 +11,8 @@ use crate::schedule::{Schedule, ScheduleCaution, ScheduledPoint};
 
 use super::{
     Analysis, Assessed, AssessmentChoice, Cancelled, ConditionAnalysis, ConditionCurves, ConditionFailure,
-    ConditionModels, ConditionStages, Execution, KnownModels, Memo, Progress, Purpose, Study, Uncertainty, assessed,
-    model_count,
+    ConditionModels, ConditionResponses, ConditionStages, Execution, KnownModels, Memo, Progress, Purpose, Study,
+    Uncertainty, assessed, model_count,
 };
 
 /// Computes analyses and keeps each stage's last result by what it is computed from, never by where that came from: of a dataset
@@ -157,8 +157,9 @@ impl Engine {
         let curves = self.curves.get_or_fail((band, points), |&key| {
             let grid = FrequencyGrid::logarithmic(band, points);
             let execution = Execution::new(executor, progress, model_count(models.condition()));
-            let responses = models.responses(Purpose::Drawing, key, &grid, &execution)?;
-            Ok(Arc::new(ConditionCurves::new(Arc::clone(models.condition()), grid, responses)))
+            let ConditionResponses { physics, identified } =
+                models.responses(Purpose::Drawing, key, &grid, &execution)?;
+            Ok(Arc::new(ConditionCurves { condition: Arc::clone(models.condition()), grid, physics, identified }))
         })?;
         Ok(Some(curves))
     }

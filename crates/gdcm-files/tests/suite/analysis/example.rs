@@ -143,7 +143,7 @@ fn the_schedule_of_the_example_agrees() {
     let (mean, half_range) = (&expected["airspeed_mean_kt"], &expected["airspeed_half_range_kt"]);
     assert_close("mean", schedule.airspeed_mean_kt, number(mean), scale::AIRSPEED_KT);
     assert_close("half range", schedule.airspeed_half_range_kt, number(half_range), scale::AIRSPEED_KT);
-    for (found, expected) in [(&schedule.gains.inputs, &expected["in"]), (&schedule.gains.outputs, &expected["out"])] {
+    for (found, expected) in [(&schedule.inputs, &expected["in"]), (&schedule.outputs, &expected["out"])] {
         assert_eq!(found.0.len(), list(expected).len());
         for ((name, coefficients), expected) in found.0.iter().zip(list(expected)) {
             assert_all_close(&format!("schedule of {name}"), coefficients, expected, scale::GAIN);

@@ -28,10 +28,6 @@ struct Untold;
 
 impl FolderProgress for Untold {
     fn reading(&self, _: usize, _: usize, _: &str) {}
-
-    fn stopped(&self, _: u64) -> bool {
-        false
-    }
 }
 
 impl GdcmApp {

@@ -349,7 +349,7 @@ mod tests {
 
     use super::*;
     use crate::embedded_example;
-    use crate::variables::MemoryBudget;
+    use crate::variables::ReadingBudget;
     use crate::zip_files::read_npz;
 
     #[test]
@@ -357,7 +357,7 @@ mod tests {
         let study = Study::new(embedded_example().unwrap().dataset);
         let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
         let models = exported_models(&analysis, &ExportRequest::default()).unwrap();
-        let meter = MemoryBudget::new(1 << 28, &|_| false);
+        let meter = ReadingBudget::new(1 << 28);
         let arrays = read_npz(&write_npz(&model_arrays(&models, &study.dataset)).unwrap(), &meter).unwrap();
         let bytes = mat::write_packed(&[models_variable(&models, &study.dataset)]).unwrap();
         let [Variable { value: Value::Struct(records), .. }] = &mat::read(&bytes, &meter).unwrap()[..] else {

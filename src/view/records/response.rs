@@ -141,11 +141,9 @@ fn drawn(found: &Identification, band: [f64; 2], pair: Pair) -> DrawnResponse {
 
 /// The response of a model, the phase on the branch nearest to `reference`.
 fn curve(model: &StateSpace, omegas: &[f64], pair: Pair, reference: Option<[f64; 3]>) -> Curve {
-    let values = evaluate(model, omegas).curve(pair).into_iter();
-    shape(
-        omegas.iter().copied().zip(values).filter(|(_, value)| value.re.is_finite() && value.im.is_finite()),
-        reference,
-    )
+    let response = evaluate(model, omegas);
+    let values = omegas.iter().copied().zip(response.curve(pair).iter().copied());
+    shape(values.filter(|(_, value)| value.is_finite()), reference)
 }
 
 fn model_curve(model: &StateSpace, band: [f64; 2], pair: Pair, reference: Option<[f64; 3]>) -> Curve {

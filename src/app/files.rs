@@ -10,7 +10,7 @@ use crate::view::{Bar, Command, FormKind, Preferences, RecentFile, State};
 use gdcm_core::study::{Difference, Study};
 use gdcm_files::{
     Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, add_recent_file, at_home, embedded_example,
-    file_exists, load_any, open_study_of, recent_files, save_study,
+    file_exists, holds_models, load_any, open_study_of, recent_files, save_study,
 };
 
 use super::{GdcmApp, caught};
@@ -121,6 +121,12 @@ impl GdcmApp {
     /// Opens a dataset or a study; what is open stays until it is read. The dataset of a study may have moved.
     pub(super) fn open(&mut self, path: PathBuf, moved: Option<PathBuf>) {
         let (path, moved) = (self.at_home(path), moved.map(|dataset| self.at_home(dataset)));
+        if path.extension().is_some() && holds_models(&path) {
+            let path = sanitized_path(&path);
+            return self.notify_error(format!(
+                "{path}: this is neither a dataset nor a study; Import models, in the menu File, makes a dataset of model files"
+            ));
+        }
         let lost = self.offers.iter().position(|lost| lost.as_ref().is_some_and(|lost| lost.path() == path));
         let purpose = lost.map_or(ReadFor::Opening, ReadFor::Restoring);
         self.state.forms.shown = None;

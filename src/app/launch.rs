@@ -1,6 +1,7 @@
 //! From the command line to a window on the screen.
 
 use std::error::Error;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
@@ -9,11 +10,12 @@ use std::time::Duration;
 use eframe::{App, NativeOptions};
 use egui::ViewportBuilder;
 
-use crate::executor::Pool;
+use crate::executor::{Pool, start_threads};
 use crate::view::Preferences;
 use crate::view::assembling::AssemblingCommand;
+use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_core::study::{Engine, LIVE_PROOF};
-use gdcm_files::{FileError, Opened, embedded_example, load_any};
+use gdcm_files::{FileError, Opened, embedded_example, holds_models, load_any};
 
 use super::threads::{self, Fault, caught};
 use super::{Autosave, EngineMaker, GdcmApp, LAST_WAIT, PREFERENCES, end_words};
@@ -80,20 +82,26 @@ pub fn open(path: Option<PathBuf>) -> ExitCode {
     let opened = match load(path.filter(|_| models.is_none())) {
         Ok(opened) => opened,
         Err(error) => {
-            eprintln!("gdcm: {error}");
+            eprintln!("error: {error}");
             return ExitCode::from(WRONG_FILE);
         }
     };
     if let Some(reason) = missing_display() {
-        eprintln!("gdcm: {}", no_window(&reason));
+        eprintln!("error: {}", no_window(&reason));
         return ExitCode::from(NO_WINDOW);
     }
+    if let Err(reason) = start_threads() {
+        eprintln!("error: {}", no_window(&format!("no thread is to be had ({reason})")));
+        return ExitCode::from(NO_WINDOW);
+    }
+    let mended = eframe::storage_dir(APP_ID).and_then(|directory| mend_zoom(&directory.join("app.ron")));
+    mended.iter().for_each(|words| eprintln!("caution: {words}"));
     std::panic::set_hook(Box::new(threads::note));
     let opening = Arc::new(OnceLock::new());
     match ending(caught(|| run(opened, models, Setup::of_program(), &opening)), opening.get()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(words) => {
-            eprintln!("gdcm: {words}");
+            eprintln!("error: {words}");
             ExitCode::from(NO_WINDOW)
         }
     }
@@ -109,12 +117,6 @@ fn ending(run: Result<eframe::Result, Fault>, kept: Option<&Autosave>) -> Result
         (Ok(Err(error)), Some(autosave)) => Err(end_words(&error.to_string(), &autosave.flush(LAST_WAIT))),
         (Err(fault), Some(autosave)) => Err(end_words(&fault.words(), &autosave.flush(LAST_WAIT))),
     }
-}
-
-/// Whether a path is a folder, or a file that only models can be taken from.
-pub(super) fn holds_models(path: &Path) -> bool {
-    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default();
-    path.is_dir() || path.is_file() && !matches!(extension.as_str(), "json" | "gz")
 }
 
 fn load(path: Option<PathBuf>) -> Result<Opened, FileError> {
@@ -144,6 +146,28 @@ fn run(opened: Opened, models: Option<PathBuf>, setup: Setup, opening: &Arc<Once
         Ok(Box::new(app))
     };
     eframe::run_native(APP_ID, options, Box::new(build))
+}
+
+/// Zoom factors with which a window can be used.
+const ZOOM: RangeInclusive<f64> = 0.2..=5.0;
+
+/// Puts 1 in the place of a zoom factor among the preferences with which no window opens; says so.
+fn mend_zoom(preferences: &Path) -> Option<String> {
+    const KEY: &str = "zoom_factor:";
+    let text = std::fs::read_to_string(preferences).ok()?;
+    let start = text.find(KEY)? + KEY.len();
+    let end = start + text[start..].find([',', ')'])?;
+    let stored = &text[start..end];
+    if stored.trim().parse().is_ok_and(|zoom| ZOOM.contains(&zoom)) {
+        return None;
+    }
+    let path = sanitized_path(preferences);
+    let (least, most) = (ZOOM.start(), ZOOM.end());
+    let why = format!("{path}: expected a zoom factor from {least} to {most}, found {}", sanitized(stored));
+    Some(match std::fs::write(preferences, format!("{}1.0{}", &text[..start], &text[end..])) {
+        Ok(()) => format!("{why}; it is 1 now"),
+        Err(error) => format!("{why}; it cannot be mended: {error}"),
+    })
 }
 
 /// Why no window can be had, where that can be told beforehand: on Linux, neither Wayland nor X11.
@@ -180,5 +204,20 @@ mod tests {
         let words = ending(fault(), Some(&autosave)).unwrap_err();
         assert!(words.starts_with("stopped by a fault in its window: no libxkbcommon"), "{words}");
         assert!(words.ends_with("every decision was saved"), "{words}");
+    }
+
+    #[test]
+    fn a_zoom_factor_without_a_window_is_ignored_with_a_word_and_what_else_is_kept_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("app.ron");
+        let text = |zoom: &str| format!("{{\"egui\": \"(options:(sync:true,zoom_factor:{zoom},reduce_texture_memory:false))\"}}");
+        for (stored, kept) in [("0.0", "1.0"), ("NaN", "1.0"), ("5.5", "1.0"), ("0.2", "0.2"), ("1.25", "1.25")] {
+            std::fs::write(&path, text(stored)).unwrap();
+            let said = mend_zoom(&path);
+            assert_eq!(said.is_some(), stored != kept, "{stored}: {said:?}");
+            assert!(said.is_none_or(|words| words.contains(stored) && words.contains("from 0.2 to 5")), "{stored}");
+            assert_eq!(std::fs::read_to_string(&path).unwrap(), text(kept));
+        }
+        assert_eq!(mend_zoom(&folder.path().join("none.ron")), None);
     }
 }

@@ -21,7 +21,6 @@ use assembling::ModelReader;
 use background_jobs::BackgroundJobs;
 use files::{DialogPurpose, PendingAction, ReadFor, SavedStudy, study_name};
 use job_queue::JobQueue;
-use launch::holds_models;
 use recovery::Autosave;
 use recovery::{LAST_WAIT, end_words};
 use reload::DiskWatch;

@@ -17,12 +17,12 @@ use crate::view::{
 use gdcm_core::correction::{ProblemError, Solution};
 use gdcm_core::dataset::ConditionId;
 use gdcm_core::study::{Analysis, ConditionCurves, CurvesJob, ProofJob, Study};
-use gdcm_files::{Existing, LoadedDataset, LostStudy, Opened, is_first_start};
+use gdcm_files::{Existing, LoadedDataset, LostStudy, Opened, holds_models, is_first_start};
 
 use super::keyboard::{self, KeyOrder};
 use super::{
     AnalysisJob, Autosave, BackgroundJobs, DiskWatch, Fault, LAST_WAIT, ModelReader, NextFocus, PendingAction, Proof,
-    Reply, ReplySender, ReportJob, SavedStudy, Setup, holds_models,
+    Reply, ReplySender, ReportJob, SavedStudy, Setup,
 };
 
 /// The program's window.

@@ -21,27 +21,41 @@ pub(super) struct Arguments {
     /// Dataset or study to open the window on; without it, the embedded example (synthetic data). A folder, or a file of another
     /// program, is opened to put its models together. A file named like a command: ./analyze
     pub(super) file: Option<PathBuf>,
+    /// Leave out what only informs (lines that begin with "note:").
+    #[arg(long, global = true)]
+    pub(super) quiet: bool,
+    /// Write results, notes, cautions and errors as one JSON object to standard output.
+    #[arg(long, global = true)]
+    pub(super) json: bool,
 }
 
 /// A command that needs no window.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Analyse a dataset or a study, write corrections.json, corrections.csv and assessment.csv, and print a summary.
+    #[command(after_help = "Examples:\n  gdcm analyze example-dataset.json --reject-suggested --out results\n  gdcm analyze flight.gdcm-study.json --band 0.5 12 --second-variable mass --json --out results --force", alias = "analyse")]
     Analyze(Box<AnalyzeArguments>),
     /// Make one of the figures that the window shows, or its numbers, as a file.
+    #[command(after_help = "Examples:\n  gdcm figure example-dataset.json --view net-gain --bars --out net-gain.pdf\n  gdcm figure example-dataset.json --view bode --condition 3 --pair Q/LON --out bode.svg")]
     Figure(Box<FigureArguments>),
     /// Write all that was done and found as one page to read and to print: settings, rejections with their reasons, gains, delays, what
     /// could not be matched and why, the schedule, the assessment, and every plot.
+    #[command(after_help = "Examples:\n  gdcm report flight.gdcm-study.json --out report.html\n  gdcm report example-dataset.json --reject-suggested --out report.html --force")]
     Report(Box<ReportArguments>),
     /// Write corrections for other tools: MATLAB, Python, C, lookup tables, corrected models as state-space.
+    #[command(after_help = "Examples:\n  gdcm export flight.gdcm-study.json --as python --out corrections.py\n  gdcm export example-dataset.json --as state-space --condition 3 --out models.mat")]
     Export(Box<ExportArguments>),
     /// Make a dataset of a folder of model files: MATLAB, NumPy, JSON, text. Without rules, proposes them and says what is missing.
+    #[command(after_help = "Examples:\n  gdcm assemble models --out dataset.json.gz\n  gdcm assemble models --rules dataset.gdcm-rules.json --out dataset.json.gz --force")]
     Assemble(AssembleArguments),
     /// Write every model and response in any file as JSON.
+    #[command(after_help = "Examples:\n  gdcm convert model.mat --out models.json\n  gdcm convert folder other.npz --out models.json --force")]
     Convert(ConvertArguments),
     /// Identify models from flight records of one condition, with their uncertainty, and write identified.json.
+    #[command(after_help = "Examples:\n  gdcm identify sweeps --inputs LON,LAT --outputs P,Q=pitch_rate --band 0.5 12 --out identified\n  gdcm identify records --into dataset.json.gz --every-condition --hold-out validation.csv --out identified")]
     Identify(Box<IdentifyArguments>),
     /// Say what a dataset or a study holds, or what is wrong with it and where.
+    #[command(after_help = "Examples:\n  gdcm check example-dataset.json\n  gdcm check flight.gdcm-study.json --dataset moved/example-dataset.json --strict")]
     Check {
         /// Dataset or study.
         file: PathBuf,
@@ -50,6 +64,7 @@ pub enum Command {
         opening: OpeningArguments,
     },
     /// Write the embedded example (synthetic data) as a file to learn the format from.
+    #[command(after_help = "Examples:\n  gdcm example .\n  gdcm example learn --force")]
     Example {
         /// Directory to write it into; made where there is none.
         #[arg(value_name = "DIR")]
@@ -352,6 +367,23 @@ mod tests {
     fn the_command_line_is_consistent() {
         use clap::CommandFactory;
         Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn every_command_ends_its_help_with_two_examples_that_are_understood() {
+        use clap::CommandFactory;
+        for command in Arguments::command().get_subcommands() {
+            let help = command.get_after_help().unwrap_or_else(|| panic!("{} has no examples", command.get_name()));
+            let help = help.to_string();
+            let examples: Vec<&str> = help.lines().skip(1).map(str::trim).collect();
+            assert_eq!(examples.len(), 2, "{help}");
+            for example in examples {
+                let words: Vec<&str> = example.split(' ').collect();
+                assert_eq!(words[..2], ["gdcm", command.get_name()]);
+                let read = Arguments::try_parse_from(words);
+                assert!(read.is_ok(), "{example}: {}", read.unwrap_err());
+            }
+        }
     }
 
     #[test]

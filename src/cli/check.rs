@@ -4,13 +4,14 @@ use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use gdcm_core::dataset::{BundleKind, Channel, Condition, ConditionRecord, Dataset, Dynamics, Model, RecordKind};
+use gdcm_core::dataset::{BundleKind, Channel, Condition, ConditionId, ConditionRecord, Dataset, Dynamics, Model, RecordKind};
 use gdcm_core::study::{Execution, Study, Table, Unobserved, cautions_of_models};
 use gdcm_core::units::number;
 use gdcm_files::{FileError, LoadedDataset, Opened, OpenedStudy, dataset_faults};
 
-use super::open;
-use super::{Failure, LABEL, OpeningArguments, indented, labelled, say, say_error};
+use super::{
+    Failure, LABEL, OpeningArguments, by_words, error, indented, labelled, listed_conditions, open, say,
+};
 
 /// Says what a dataset or a study holds.
 pub(super) fn check(file: &Path, arguments: &OpeningArguments) -> Result<(), Failure> {
@@ -31,7 +32,7 @@ pub(super) fn check(file: &Path, arguments: &OpeningArguments) -> Result<(), Fai
 fn all_faults(file: &Path, first: FileError) -> Failure {
     match dataset_faults(file) {
         Ok(faults) if faults.len() > 1 => {
-            faults.iter().for_each(|fault| say_error(&fault.to_string()));
+            faults.iter().for_each(|fault| error(&fault.to_string()));
             Failure::Faulty { path: sanitized_path(file), count: faults.len() }
         }
         // One, or a study: what was said first is all there is.
@@ -69,12 +70,13 @@ fn contents(loaded: &LoadedDataset) -> String {
 /// What an analysis would say of the models by themselves.
 fn model_cautions(study: &Study) -> Result<String, Failure> {
     let execution = Execution::new(&crate::executor::Pool, &Unobserved, 0);
-    let mut text = String::new();
-    for (id, caution) in cautions_of_models(study, &execution)? {
-        let words = caution.words(|pair| study.dataset.pair_name(pair));
-        text.push_str(&labelled(0, "Caution", LABEL, &sanitized(&format!("condition {id}: {words}"))));
-    }
-    Ok(text)
+    let pair_name = |pair| study.dataset.pair_name(pair);
+    let cautions = cautions_of_models(study, &execution)?;
+    let cautions = by_words(cautions.into_iter().map(|(id, caution)| (id, caution.words(pair_name))));
+    let line = |(conditions, words): &(Vec<ConditionId>, String)| {
+        labelled(0, "Caution", LABEL, &sanitized(&format!("{}: {words}", listed_conditions(conditions))))
+    };
+    Ok(cautions.iter().map(line).collect())
 }
 
 fn channel_words(channels: &[Channel]) -> String {

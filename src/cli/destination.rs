@@ -1,6 +1,5 @@
 //! Where in a dataset identified models go.
 
-use gdcm_core::message_text::sanitized;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -9,7 +8,7 @@ use gdcm_core::records::LaidOutRecord;
 use gdcm_core::study::AdoptedModels;
 use gdcm_files::{Opened, OutputSet, add_dataset, load_any};
 
-use super::{Failure, IdentifyArguments, condition_of, ids, say_error};
+use super::{Failure, IdentifyArguments, caution, condition_of, ids, listed_conditions, note};
 
 /// Records that models are identified from together, and the condition that they are of; none without a dataset.
 pub(super) type Group = (Option<ConditionId>, Vec<LaidOutRecord>);
@@ -54,14 +53,14 @@ impl Destination {
             let id = record.guess.condition_of(&self.dataset);
             match groups.iter_mut().find(|(condition, _)| Some(*condition) == id) {
                 Some((_, of_condition)) => of_condition.push(record),
-                None => say_error(&format!(
-                    "{}: left out: its name says no condition of the dataset",
-                    sanitized(&record.table.name)
-                )),
+                None => caution(&format!("{}: left out: its name says no condition of the dataset", record.table.name)),
             }
         }
-        for (id, _) in groups.iter().filter(|(_, records)| records.is_empty()) {
-            say_error(&format!("condition {id}: no records; its identified models stay as they are"));
+        let without: Vec<ConditionId> =
+            groups.iter().filter(|(_, records)| records.is_empty()).map(|(id, _)| *id).collect();
+        if !without.is_empty() {
+            let of = listed_conditions(&without);
+            note(&format!("{of}: no records; what was identified before stays as it is"));
         }
         groups.retain(|(_, records)| !records.is_empty());
         if groups.is_empty() {

@@ -1,5 +1,8 @@
 //! Why a command was not carried out, and the exit status that says so.
 
+use std::path::PathBuf;
+
+use gdcm_core::message_text::sanitized_path;
 use gdcm_core::study::{Cancelled, EditRefusal};
 use gdcm_files::FileError;
 
@@ -23,12 +26,30 @@ pub(super) enum Failure {
     /// A dataset has several faults, which were told.
     #[error("{path}: {count} faults; once they are mended, check the file again")]
     Faulty { path: String, count: usize },
+    /// A file of models, where a dataset or a study is asked for.
+    #[error(
+        "{path}: this is neither a dataset nor a study; a dataset is made of model files by gdcm assemble {path} --out \
+         dataset.json.gz, or in the window by Import models"
+    )]
+    Models { path: String },
     /// Something is still to be said before files are a dataset.
     #[error("no dataset was made: {count} {} to complete; do so in {rules} and give it with --rules", if *count == 1 { "item" } else { "items" })]
     Incomplete { count: usize, rules: String },
     /// Records whose columns are not clear, or cannot be what they are taken for; each was told.
     #[error("{wrong} of {of} {} cannot be taken as they are: say which column is which (--inputs P=COLUMN, --time), or leave them out", if *of == 1 { "record" } else { "records" })]
     Records { wrong: usize, of: usize },
+    /// Files of which nothing could be taken.
+    #[error("{paths}: no {what} that could be taken")]
+    Nothing { paths: String, what: &'static str },
+    /// Records that were asked for by name could not be read; the others were.
+    #[error("{paths}: could not be read; what was identified is without it")]
+    Unread { paths: String },
+    /// What was asked for was identified, and nothing of it is of use.
+    #[error("no input is identified in these records: the models say nothing of {inputs}")]
+    NotIdentified { inputs: String },
+    /// No thread is to be had.
+    #[error("no thread is to be had to compute with: {reason}")]
+    NoThreads { reason: String },
     /// No model was identified.
     #[error("no model was identified: {reason}")]
     NoModels { reason: String },
@@ -44,6 +65,11 @@ pub(super) enum Failure {
 }
 
 impl Failure {
+    /// Nothing could be taken of files.
+    pub(super) fn nothing_in(paths: &[PathBuf], what: &'static str) -> Self {
+        Failure::Nothing { paths: listed_paths(paths), what }
+    }
+
     /// A decision that an option asks for was refused.
     pub(super) fn refused(option: &'static str) -> impl Fn(EditRefusal) -> Self {
         move |refusal| Failure::Option { option, reason: refusal.to_string() }
@@ -55,6 +81,9 @@ impl Failure {
             Failure::File(FileError::Unwritable { .. })
             | Failure::NoResult { .. }
             | Failure::NoModels { .. }
+            | Failure::Unread { .. }
+            | Failure::NotIdentified { .. }
+            | Failure::NoThreads { .. }
             | Failure::Cancelled(_)
             | Failure::StandardOutput { .. } => NOT_DONE,
             Failure::File(FileError::Export { fault, .. }) if fault.is_of_analysis() => NOT_DONE,
@@ -63,7 +92,14 @@ impl Failure {
             | Failure::Different { .. }
             | Failure::Incomplete { .. }
             | Failure::Records { .. }
+            | Failure::Nothing { .. }
+            | Failure::Models { .. }
             | Failure::Faulty { .. } => WRONG_INPUT,
         }
     }
+}
+
+/// Paths with commas.
+pub(super) fn listed_paths(paths: &[PathBuf]) -> String {
+    paths.iter().map(|path| sanitized_path(path)).collect::<Vec<_>>().join(", ")
 }

@@ -6,15 +6,14 @@ use crate::executor::Pool;
 use gdcm_core::assembly::ChannelRule;
 use gdcm_core::dataset::{Band, BundleKind, ConditionId, ConditionRecord, Dataset};
 use gdcm_core::identification::{ChannelPreparation, Identification, IdentificationError, Preparation};
-use gdcm_core::message_text::{sanitized, sanitized_path};
+use gdcm_core::message_text::sanitized_path;
 use gdcm_core::records::{LaidOutRecord, RecordChannels};
 use gdcm_core::study::{AdoptedModels, ChannelTimeSkew, IdentificationRequest};
 use gdcm_files::{IdentifiedModels, OutputSet, add_identified, make_directory};
 
-use super::existing;
 use super::{
-    ChannelDelay, ChannelList, Destination, Failure, Group, IdentifyArguments, TerminalProgress, counted, hold_out,
-    laid_out, record_table, relative_entry, say, say_error,
+    ChannelDelay, ChannelList, Destination, Failure, Group, IdentifyArguments, TerminalProgress, by_words, caution, caution_of, counted,
+    existing, hold_out, laid_out, listed_paths, record_table, relative_entry, say,
 };
 
 /// The file of what was found.
@@ -31,23 +30,25 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     let dataset = destination.iter().map(|of| of.path.as_path());
     outputs.check(&files.iter().map(PathBuf::as_path).chain(dataset).collect::<Vec<&Path>>())?;
     say(&tasks.iter().map(IdentificationTask::table).collect::<String>())?;
-    let (mut lines, mut taken) = (String::new(), 0);
+    let (mut lines, mut taken, mut of_use) = (String::new(), 0, false);
+    let mut cautions = Vec::new();
     for (task, file) in tasks.iter().zip(&files) {
         let found = match task.run() {
             Ok(found) => found,
-            Err(error) if tasks.len() == 1 => return Err(Failure::NoModels { reason: error.to_string() }),
-            Err(error) => {
-                say_error(&format!("{}no model was identified: {error}", task.label()));
+            Err(why) if tasks.len() == 1 => return Err(Failure::NoModels { reason: why.to_string() }),
+            Err(why) => {
+                cautions.push((task.condition, format!("no model was identified: {why}")));
                 continue;
             }
         };
         let records: Vec<ConditionRecord> =
             task.records.iter().zip(&found.record_uses).map(|(record, used)| record.entry(used)).collect();
         let late = destination.as_ref().and_then(|of| task.late_channel(&found, &of.dataset));
-        let cautions: Vec<String> = found.cautions.iter().map(ToString::to_string).chain(late).collect();
-        cautions.iter().for_each(|caution| say_error(&format!("{}{}", task.label(), sanitized(caution))));
+        let of_task: Vec<String> = found.cautions.iter().map(ToString::to_string).chain(late).collect();
+        cautions.extend(of_task.iter().map(|words| (task.condition, words.clone())));
+        of_use |= (0..channels.inputs.len()).any(|input| is_identified(&found, input, channels.outputs.len()));
         make_directory(&arguments.out)?;
-        let models = IdentifiedModels { found: &found, channels: &channels, records: &records, cautions: &cautions };
+        let models = IdentifiedModels { found: &found, channels: &channels, records: &records, cautions: &of_task };
         add_identified(&models, file, &mut outputs)?;
         if let (Some(destination), Some(condition)) = (&mut destination, task.condition) {
             let entries = records.into_iter().map(|of| relative_entry(of, &arguments.records, &destination.path));
@@ -56,6 +57,10 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
         lines += &outcome(task, file, &found);
         taken += 1;
     }
+    let (of_conditions, of_all): (Vec<_>, Vec<_>) = cautions.into_iter().partition(|(condition, _)| condition.is_some());
+    of_all.iter().for_each(|(_, words)| caution(words));
+    let of_conditions = of_conditions.into_iter().filter_map(|(condition, words)| Some((condition?, words)));
+    by_words(of_conditions).iter().for_each(|(conditions, words)| caution_of(conditions, words));
     if taken == 0 {
         return Err(Failure::NoModels { reason: format!("in none of {} conditions", tasks.len()) });
     }
@@ -64,7 +69,28 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
         lines += &format!("{path}: identified models of {}\n", counted(taken, "condition"));
     }
     outputs.persist()?;
-    say(&lines)
+    say(&lines)?;
+    let unread = unread(&arguments.records, &tasks);
+    if !of_use {
+        let names: Vec<&str> = channels.inputs.iter().map(|rule| rule.name.as_str()).collect();
+        return Err(Failure::NotIdentified { inputs: names.join(", ") });
+    }
+    if unread.is_empty() { Ok(()) } else { Err(Failure::Unread { paths: listed_paths(&unread) }) }
+}
+
+/// Whether the records say anything of an input: the others do not explain it, and a response to it is known (M14).
+fn is_identified(found: &Identification, input: usize, outputs: usize) -> bool {
+    let is_swept = found.measured.not_identified().all(|of| of != input);
+    is_swept && (0..outputs).any(|output| !found.not_identified.contains(&(output, input)))
+}
+
+/// The files named on the command line of which no record came.
+fn unread(named: &[PathBuf], tasks: &[IdentificationTask]) -> Vec<PathBuf> {
+    let came = |path: &&PathBuf| {
+        let mut records = tasks.iter().flat_map(|task| &task.records);
+        records.any(|record| Path::new(&record.table.source.file).file_name() == path.file_name())
+    };
+    named.iter().filter(|path| !path.is_dir() && !came(path)).cloned().collect()
 }
 
 /// Models are to be identified from the records of a condition.
@@ -204,8 +230,13 @@ fn preparation(channels: &RecordChannels, delays: &[ChannelDelay]) -> Result<Pre
         let reason = format!("{} is none of the channels", unknown.channel);
         return Err(Failure::Option { option: "--delay", reason });
     }
+    let is_again = |at: usize| delays[..at].iter().any(|before| before.channel == delays[at].channel);
+    if let Some(again) = (0..delays.len()).find(|at| is_again(*at)) {
+        let reason = format!("{} stands twice", delays[again].channel);
+        return Err(Failure::Option { option: "--delay", reason });
+    }
     let prepared = |rule: &ChannelRule| {
-        let delay = delays.iter().rfind(|delay| delay.channel == rule.name);
+        let delay = delays.iter().find(|delay| delay.channel == rule.name);
         ChannelPreparation {
             delay_s: delay.map_or(0.0, |delay| delay.delay_s),
             ..ChannelPreparation::named(rule.name.clone())

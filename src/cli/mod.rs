@@ -26,18 +26,20 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::{ContextKind, ContextValue};
 
-use gdcm_core::message_text::{sanitized, sanitized_path};
-use gdcm_files::{Existing, Opened, load_any, open_study_of, write_example};
+use gdcm_core::message_text::sanitized_path;
+use gdcm_core::study::{Kind, SETTINGS, Setting};
+use gdcm_files::{Existing, Opened, holds_models, load_any, open_study_of, write_example};
 
+use crate::executor::start_threads;
 use arguments::{Arguments, real_number, whole_number};
 use destination::{Destination, Group};
-use failure::Failure;
+use failure::{Failure, listed_paths};
 use models::{ReadingProgress, counted};
 use read_record::{hold_out, laid_out, record_table, relative_entry};
 use study_options::{analysis_of, condition_of, ids, names, pairs_of, study_of};
 use summary::{LABEL, leave_one_out_section};
-use terminal::{TerminalProgress, say, say_error};
-use text_table::{indented, labelled, listed};
+use terminal::{Manner, TerminalProgress, caution, caution_of, error, note, progress_target, say};
+use text_table::{by_words, indented, labelled, listed, listed_conditions};
 
 pub use arguments::{
     AnalyzeArguments, AssembleArguments, Command, ConvertArguments, FigureArguments, OpeningArguments, PairChoice,
@@ -57,20 +59,48 @@ pub enum Request {
 
 /// Reads a command line; help, version and errors are printed here, and leave only the exit status.
 pub fn request(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, ExitCode> {
+    let arguments = joined(arguments);
+    // A command line that is not understood is told of in the manner that it asks for.
+    let asks = |option: &str| arguments.iter().any(|argument| argument == option);
+    terminal::speak(Manner { quiet: asks("--quiet"), json: asks("--json") });
     match Arguments::try_parse_from(arguments) {
-        Ok(Arguments { command: Some(command), .. }) => Ok(Request::Command(Box::new(command))),
-        Ok(Arguments { command: None, file }) => Ok(Request::Window(file)),
-        Err(error) if error.use_stderr() => {
-            say_error(&usage_words(&error));
-            Err(ExitCode::from(failure::WRONG_INPUT))
+        Ok(Arguments { command: Some(command), quiet, json, .. }) => {
+            terminal::speak(Manner { quiet, json });
+            Ok(Request::Command(Box::new(command)))
+        }
+        Ok(Arguments { command: None, file, .. }) => Ok(Request::Window(file)),
+        Err(wrong) if wrong.use_stderr() => {
+            error(&usage_words(&wrong));
+            Err(ExitCode::from(terminal::end(failure::WRONG_INPUT)))
         }
         Err(help) => Err(finish(say(&help.to_string()))),
     }
 }
 
+/// The arguments, a word that stands for no range joined to its option: `--gain-bounds auto FILE` does not take the file for its
+/// second number.
+fn joined(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let mut joined: Vec<OsString> = Vec::new();
+    for argument in arguments {
+        let of_last = |setting: &&Setting| joined.last().is_some_and(|last| last == setting.option);
+        let setting = SETTINGS.into_iter().find(|setting| of_last(&setting));
+        let is_word = setting.is_some_and(
+            |setting| matches!(setting.kind, Kind::Range { nothing: Some([word, _]), .. } if argument == word),
+        );
+        match joined.last_mut().filter(|_| is_word) {
+            Some(option) => {
+                option.push("=");
+                option.push(argument);
+            }
+            None => joined.push(argument),
+        }
+    }
+    joined
+}
+
 /// Carries out a command.
 pub fn run(command: &Command) -> ExitCode {
-    finish(match command {
+    let carry_out = || match command {
         Command::Analyze(arguments) => analyze::analyze(arguments),
         Command::Figure(arguments) => figure::figure(arguments),
         Command::Report(arguments) => analyze::report(arguments),
@@ -80,18 +110,22 @@ pub fn run(command: &Command) -> ExitCode {
         Command::Identify(arguments) => identify::identify(arguments),
         Command::Check { file, opening } => check::check(file, opening),
         Command::Example { directory, force } => example(directory, existing(*force)),
-    })
+    };
+    finish(start_threads().map_err(|reason| Failure::NoThreads { reason }).and_then(|()| carry_out()))
 }
 
 /// Opens a dataset or a study; what is different in a study's dataset is told on standard error, a line each.
 fn open(file: &Path, arguments: &OpeningArguments) -> Result<Opened, Failure> {
+    if file.is_file() && file.extension().is_some() && holds_models(file) {
+        return Err(Failure::Models { path: sanitized_path(file) });
+    }
     let opened = match &arguments.dataset {
         Some(dataset) => Opened::Study(open_study_of(file, dataset)?),
         None => load_any(file)?,
     };
     if let Opened::Study(study) = &opened {
         for difference in &study.differences {
-            say_error(&format!("{}: {}", sanitized_path(file), sanitized(&difference.to_string())));
+            caution(&format!("{}: {difference}", file.display()));
         }
         if arguments.strict && !study.differences.is_empty() {
             return Err(Failure::Different { path: sanitized_path(file), count: study.differences.len() });
@@ -115,13 +149,11 @@ fn existing(force: bool) -> Existing {
 }
 
 fn finish(result: Result<(), Failure>) -> ExitCode {
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            say_error(&failure.to_string());
-            ExitCode::from(failure.status())
-        }
-    }
+    let status = result.err().map_or(0, |failure| {
+        error(&failure.to_string());
+        failure.status()
+    });
+    ExitCode::from(terminal::end(status))
 }
 
 /// clap's complaint on one line, without the usage that it repeats below; of a value, the option and what is wrong with it.

@@ -4,7 +4,7 @@ use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressStyle};
 
 use gdcm_core::assembly::{Assembly, Headings, proposed_rules};
 use gdcm_core::study::Table;
@@ -14,8 +14,9 @@ use gdcm_files::{
     relative_folder, rules_path, sources_folder,
 };
 
-use super::existing;
-use super::{AssembleArguments, ConvertArguments, Failure, indented, say, say_error};
+use super::{
+    AssembleArguments, ConvertArguments, Failure, caution, error, existing, indented, note, progress_target, say,
+};
 
 /// Which file is read, on a terminal only.
 pub(super) struct ReadingProgress {
@@ -24,8 +25,7 @@ pub(super) struct ReadingProgress {
 
 impl ReadingProgress {
     pub(super) fn new() -> Self {
-        // Draws nothing where standard error is no terminal.
-        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+        let bar = ProgressBar::with_draw_target(None, progress_target());
         if let Ok(style) = ProgressStyle::with_template("reading {pos} of {len}: {msg}") {
             bar.set_style(style);
         }
@@ -54,7 +54,7 @@ pub(super) fn convert(arguments: &ConvertArguments) -> Result<(), Failure> {
     outputs.check(&[&arguments.out])?;
     let found = found_models(&arguments.files, &Headings::new())?;
     if found.models.is_empty() {
-        return Err(Failure::Option { option: "FILE", reason: "holds no model that could be taken".to_owned() });
+        return Err(Failure::nothing_in(&arguments.files, "model"));
     }
     add_models(&found.models, &arguments.out, &mut outputs)?;
     outputs.persist()?;
@@ -78,7 +78,7 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     let said = match &arguments.rules {
         Some(path) => {
             let (rules, cautions) = load_rules(path)?;
-            cautions.iter().for_each(|caution| say_error(&format!("{}: {}", sanitized_path(path), sanitized(caution))));
+            cautions.iter().for_each(|words| caution(&format!("{}: {words}", path.display())));
             Some(rules)
         }
         None => None,
@@ -110,7 +110,7 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
         }
         None => {
             let problems = assembly.told();
-            problems.iter().for_each(|(_, words)| say_error(&sanitized(words)));
+            problems.iter().for_each(|(_, words)| error(words));
             Err(Failure::Incomplete { count: problems.len(), rules: sanitized_path(&rules_path) })
         }
     }
@@ -119,8 +119,8 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
 /// The models of files and folders; what could not be taken is told on standard error.
 fn found_models(paths: &[PathBuf], headings: &Headings) -> Result<FoundModels, Failure> {
     let found = read_models(paths, headings, &ReadingProgress::new())?;
-    found.faults.iter().for_each(|fault| say_error(&format!("not taken: {}", sanitized(fault))));
-    found.ignored.iter().for_each(|words| say_error(&format!("no model: {}", sanitized(words))));
+    found.faults.iter().for_each(|fault| caution(&format!("not taken: {fault}")));
+    found.ignored.iter().for_each(|words| note(&format!("no model: {words}")));
     Ok(found)
 }
 

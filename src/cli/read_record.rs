@@ -9,7 +9,7 @@ use gdcm_core::study::Table;
 use gdcm_core::units::telling;
 use gdcm_files::{FoundRecords, read_records, relative_folder};
 
-use super::{Failure, IdentifyArguments, ReadingProgress, indented, say_error};
+use super::{Failure, IdentifyArguments, ReadingProgress, caution, error, indented, note};
 
 /// Every record with its columns; what was chosen, and what is wrong, is told on standard error.
 pub(super) fn laid_out(
@@ -20,23 +20,21 @@ pub(super) fn laid_out(
     let (mut records, mut told): (Vec<LaidOutRecord>, Vec<String>) = (Vec::new(), Vec::new());
     for table in tables(arguments)? {
         let (record, notes) = LaidOutRecord::proposed(table, channels, &wish);
-        let name = sanitized(&record.table.name);
-        let say = |words: &str| say_error(&format!("{name}: {}", sanitized(words)));
+        let name = &record.table.name;
         // Records of one flight are alike: what is chosen is said once.
         if notes != told {
-            notes.iter().for_each(|note| say(note));
+            notes.iter().for_each(|words| note(&format!("{name}: {words}")));
             told = notes;
         }
-        record.cautions.iter().for_each(|caution| say(&format!("caution: {caution}")));
-        record.problems.iter().for_each(|problem| say(&problem.to_string()));
+        record.cautions.iter().for_each(|words| caution(&format!("{name}: {words}")));
+        record.problems.iter().for_each(|words| error(&format!("{name}: {words}")));
         channels.take_units(&record.layout, &record.table);
         records.push(record);
     }
     // By the units that the channels have by now.
     for record in records.iter_mut().filter(|record| record.problems.is_empty()) {
         *record = LaidOutRecord::new(record.table.clone(), record.layout.clone(), record.guess.clone(), channels);
-        let name = sanitized(&record.table.name);
-        record.problems.iter().for_each(|of| say_error(&format!("{name}: {}", sanitized(&of.to_string()))));
+        record.problems.iter().for_each(|words| error(&format!("{}: {words}", record.table.name)));
     }
     let wrong = records.iter().filter(|record| !record.problems.is_empty()).count();
     if wrong > 0 { Err(Failure::Records { wrong, of: records.len() }) } else { Ok(records) }
@@ -44,12 +42,9 @@ pub(super) fn laid_out(
 
 fn tables(arguments: &IdentifyArguments) -> Result<Vec<RecordTable>, Failure> {
     let FoundRecords { tables, faults, ignored, .. } = read_records(&arguments.records, &ReadingProgress::new())?;
-    faults.iter().for_each(|fault| say_error(&format!("not taken: {}", sanitized(fault))));
-    ignored.iter().for_each(|words| say_error(&format!("no record: {}", sanitized(words))));
-    if tables.is_empty() {
-        return Err(Failure::Option { option: "RECORD", reason: "holds no record that could be taken".to_owned() });
-    }
-    Ok(tables)
+    faults.iter().for_each(|fault| caution(&format!("not taken: {fault}")));
+    ignored.iter().for_each(|words| note(&format!("no record: {words}")));
+    if tables.is_empty() { Err(Failure::nothing_in(&arguments.records, "record")) } else { Ok(tables) }
 }
 
 /// Holds out the records asked for; without a word those whose names say so stay held out.

@@ -8,9 +8,10 @@ use gdcm_core::message_text::sanitized;
 use gdcm_core::study::{Analysis, ConditionFailure, Edit, Engine, Study};
 use gdcm_files::{LoadedDataset, OutputSet, embedded_example};
 
-use super::existing;
 use super::open as open_file;
-use super::{Failure, PairList, Rejection, StudyArguments, TerminalProgress, say_error};
+use super::{
+    Failure, PairList, Rejection, StudyArguments, TerminalProgress, by_words, caution, caution_of, existing, listed_conditions,
+};
 
 /// The study, the dataset that it is about, and the files that a command about it writes: none of those that it reads is overwritten.
 /// Cautions of the file are told on standard error.
@@ -25,8 +26,8 @@ pub(super) fn study_of(arguments: &StudyArguments, force: bool) -> Result<(Study
             (Study::new(loaded.dataset.clone()), loaded)
         }
     };
-    for caution in &loaded.cautions {
-        say_error(&format!("{}: {caution}", loaded.origin));
+    for words in &loaded.cautions {
+        caution(&format!("{}: {words}", loaded.origin));
     }
     take_options(&mut study, arguments)?;
     let inputs = arguments.file.iter().cloned().chain(loaded.origin.file()).collect();
@@ -54,13 +55,13 @@ pub(super) fn analysis_of(
     }
     drop(progress);
     let failure = |(id, outcome): (&ConditionId, &Result<_, ConditionFailure>)| {
-        outcome.as_ref().err().map(|failure| format!("condition {id}: {failure}"))
+        outcome.as_ref().err().map(|failure| (*id, failure.to_string()))
     };
-    let failures: Vec<String> = analysis.conditions.iter().filter_map(failure).collect();
-    if let Some(first) = failures.first().filter(|_| failures.len() == analysis.conditions.len()) {
-        return Err(Failure::NoResult { reason: first.clone() });
+    let failures: Vec<(ConditionId, String)> = analysis.conditions.iter().filter_map(failure).collect();
+    if let Some((id, first)) = failures.first().filter(|_| failures.len() == analysis.conditions.len()) {
+        return Err(Failure::NoResult { reason: format!("condition {id}: {first}") });
     }
-    failures.iter().for_each(|failure| say_error(failure));
+    by_words(failures).iter().for_each(|(conditions, words)| caution_of(conditions, words));
     Ok((analysis, engine))
 }
 
@@ -86,6 +87,19 @@ fn take_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Fai
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let value = setting.read(&words).map_err(|reason| Failure::Option { option, reason: sanitized(&reason) })?;
         study.apply(&setting.to(value)).map_err(Failure::refused(option))?;
+    }
+    if let Some(variable) = study.settings.schedule.second {
+        let lacking = study.dataset.conditions().iter().filter(|of| variable.value(of.flight_state()).is_none());
+        let lacking: Vec<ConditionId> = lacking.map(|of| of.id()).filter(|id| study.choice(*id).scheduled).collect();
+        if !lacking.is_empty() {
+            let reason = format!(
+                "a schedule of airspeed and {variable} needs the {variable} [{}] of every scheduled condition, which the dataset \
+                 does not say of {}",
+                variable.unit(),
+                listed_conditions(&lacking)
+            );
+            return Err(Failure::Option { option: "--second-variable", reason });
+        }
     }
     for &id in &arguments.hold_out {
         let edit = Edit::SetHeldOut { condition: ConditionId(id), held_out: true };

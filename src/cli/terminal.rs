@@ -1,18 +1,89 @@
-//! Words on standard output and standard error, and progress where that is a terminal.
+//! What a command says: results on standard output, notes, cautions and errors on standard error, or all of it as one JSON object.
 
 use std::io::{ErrorKind, Write};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde::Serialize;
 
-use gdcm_core::message_text::sanitized;
+use gdcm_core::dataset::ConditionId;
+use gdcm_core::message_text::{sanitized, shortened_words};
 use gdcm_core::study::Progress;
 use gdcm_files::system_words;
 
-use super::Failure;
+use super::{Failure, listed_conditions};
+
+/// How a command says what it says.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Manner {
+    /// Without notes.
+    pub(super) quiet: bool,
+    /// As one JSON object, once it has ended.
+    pub(super) json: bool,
+}
+
+/// What a command has said, for its JSON object.
+#[derive(Debug, Serialize)]
+struct Said {
+    #[serde(skip)]
+    manner: Manner,
+    format: &'static str,
+    version: u32,
+    status: u8,
+    /// What stands on standard output otherwise.
+    text: String,
+    notes: Vec<String>,
+    cautions: Vec<SaidCaution>,
+    errors: Vec<String>,
+}
+
+/// A caution, and the conditions that it is of; none where it is of the whole.
+#[derive(Debug, Serialize)]
+struct SaidCaution {
+    text: String,
+    conditions: Vec<i64>,
+}
+
+/// A process carries out one command.
+static SAID: Mutex<Said> = Mutex::new(Said {
+    manner: Manner { quiet: false, json: false },
+    format: "gdcm-messages",
+    version: 1,
+    status: 0,
+    text: String::new(),
+    notes: Vec::new(),
+    cautions: Vec::new(),
+    errors: Vec::new(),
+});
+
+fn said() -> MutexGuard<'static, Said> {
+    SAID.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// From now on the command speaks so.
+pub(super) fn speak(manner: Manner) {
+    said().manner = manner;
+}
 
 /// Prints a text that ends with its own line end. A reader that has seen enough (`gdcm … | head`) is no failure.
 pub(super) fn say(text: &str) -> Result<(), Failure> {
+    // Whatever a file holds, control codes never reach a terminal.
+    let text: String = text.split_inclusive('\n').map(|line| plain(line.trim_end_matches('\n'), line)).collect();
+    let mut said = said();
+    if said.manner.json {
+        said.text += &text;
+        return Ok(());
+    }
+    print(&text)
+}
+
+fn plain(words: &str, line: &str) -> String {
+    let end = if line.ends_with('\n') { "\n" } else { "" };
+    format!("{}{end}", shortened_words(&sanitized(words)))
+}
+
+fn print(text: &str) -> Result<(), Failure> {
     let mut output = std::io::stdout().lock();
     match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
@@ -22,9 +93,64 @@ pub(super) fn say(text: &str) -> Result<(), Failure> {
     }
 }
 
+/// Says what was taken or chosen, and need not be acted upon.
+pub(super) fn note(words: &str) {
+    let mut said = said();
+    if said.manner.json {
+        said.notes.push(plain(words, ""));
+    } else if !said.manner.quiet {
+        complain("note", words);
+    }
+}
+
+/// Says what has to be known, or acted upon, though the command goes on.
+pub(super) fn caution(words: &str) {
+    caution_of(&[], words);
+}
+
+/// The same caution of some conditions, said once with the conditions named.
+pub(super) fn caution_of(conditions: &[ConditionId], words: &str) {
+    let mut said = said();
+    if said.manner.json {
+        let conditions = conditions.iter().map(|id| id.0).collect();
+        return said.cautions.push(SaidCaution { text: plain(words, ""), conditions });
+    }
+    let of = if conditions.is_empty() { String::new() } else { format!("{}: ", listed_conditions(conditions)) };
+    complain("caution", &format!("{of}{words}"));
+}
+
+/// Says what is wrong.
+pub(super) fn error(words: &str) {
+    let mut said = said();
+    if said.manner.json { said.errors.push(plain(words, "")) } else { complain("error", words) }
+}
+
 /// Prints one line on standard error; there is nowhere to complain of a failure to do so.
-pub(super) fn say_error(line: &str) {
-    let _ = writeln!(std::io::stderr(), "gdcm: {}", sanitized(line));
+fn complain(kind: &str, words: &str) {
+    let _ = writeln!(std::io::stderr(), "{kind}: {}", plain(words, ""));
+}
+
+/// Ends the command with this status: the JSON object is printed where one is asked for.
+pub(super) fn end(status: u8) -> u8 {
+    let mut said = said();
+    said.status = status;
+    if !said.manner.json {
+        return status;
+    }
+    // Texts, numbers and lists are JSON whatever they hold.
+    let object = serde_json::to_string_pretty(&*said).unwrap_or_default();
+    match print(&format!("{object}\n")) {
+        Ok(()) => status,
+        Err(failure) => {
+            complain("error", &failure.to_string());
+            failure.status()
+        }
+    }
+}
+
+/// Where progress is drawn: nowhere where standard error is no terminal, or nothing but results is asked for.
+pub(super) fn progress_target() -> ProgressDrawTarget {
+    if said().manner == Manner::default() { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() }
 }
 
 /// An analysis that is done sooner needs no progress.
@@ -61,8 +187,7 @@ impl Progress for TerminalProgress {
 
     fn advanced(&self, done: usize, total: usize) {
         if self.bar.is_hidden() && self.started.elapsed() >= QUICK {
-            // Draws nothing where standard error is no terminal.
-            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+            self.bar.set_draw_target(progress_target());
         }
         self.bar.set_length(total as u64);
         self.bar.set_position(done as u64);

@@ -1,9 +1,13 @@
 //! Tables and words behind labels, as a terminal shows them.
 
+use gdcm_core::dataset::ConditionId;
+use gdcm_core::message_text::shortened;
 use gdcm_core::study::Table;
 
-/// A table as lines, each behind so many spaces.
+/// A table as lines, each behind so many spaces; long names are cut.
 pub(super) fn indented(table: &Table, indent: usize) -> String {
+    let mut table = table.clone();
+    table.rows.iter_mut().flatten().for_each(|cell| *cell = shortened(cell));
     table.text().lines().map(|line| format!("{:indent$}{line}\n", "")).collect()
 }
 
@@ -45,6 +49,25 @@ fn hanging<'w>(indent: usize, label: &str, width: usize, pieces: impl Iterator<I
     text.truncate(text.trim_end().len());
     text.push('\n');
     text
+}
+
+/// "condition 3", "conditions 3, 4, 7".
+pub(super) fn listed_conditions(conditions: &[ConditionId]) -> String {
+    let ids: Vec<String> = conditions.iter().map(ToString::to_string).collect();
+    format!("condition{} {}", if ids.len() == 1 { "" } else { "s" }, ids.join(", "))
+}
+
+/// Words about conditions, each once with all conditions that it is said of, in the order in which they were said first.
+pub(super) fn by_words(said: impl IntoIterator<Item = (ConditionId, String)>) -> Vec<(Vec<ConditionId>, String)> {
+    let mut grouped: Vec<(Vec<ConditionId>, String)> = Vec::new();
+    for (condition, words) in said {
+        match grouped.iter_mut().find(|(_, known)| *known == words) {
+            Some((conditions, _)) if conditions.contains(&condition) => {}
+            Some((conditions, _)) => conditions.push(condition),
+            None => grouped.push((vec![condition], words)),
+        }
+    }
+    grouped
 }
 
 #[cfg(test)]

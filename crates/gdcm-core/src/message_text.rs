@@ -35,6 +35,22 @@ pub fn quoted(text: &str) -> String {
     format!("\"{}\"", shortened(&sanitized(text)))
 }
 
+/// A text in which no word is longer than a message can bear: what is left out of one stands in its middle.
+pub fn shortened_words(text: &str) -> String {
+    /// Longer than the path of most files.
+    const LONGEST: usize = 400;
+    const KEPT: usize = 40;
+    let shortened = |word: &str| {
+        let letters = word.chars().count();
+        if letters <= LONGEST {
+            return word.to_owned();
+        }
+        let (start, end) = (word.chars().take(KEPT), word.chars().skip(letters - KEPT));
+        start.chain(std::iter::once('…')).chain(end).collect()
+    };
+    text.split(' ').map(shortened).collect::<Vec<String>>().join(" ")
+}
+
 /// The start of a text, no longer than a message can bear.
 pub fn shortened(text: &str) -> String {
     const LONGEST: usize = 80;

@@ -55,7 +55,7 @@ pub use mat::write as write_mat;
 pub use model_files::{FoundModels, models_of_bytes, read_models};
 pub use models_file::add_models;
 pub use npy::write_npz;
-pub use opened::{Opened, load_any};
+pub use opened::{Opened, holds_models, load_any};
 pub use output_set::{Existing, OutputSet, make_directory, report_size_limit};
 pub use record_files::{
     EXAMPLE_RECORD_CONDITIONS, FoundRecords, example_records, load_records, read_records, records_of_bytes,

@@ -31,6 +31,12 @@ impl Opened {
     }
 }
 
+/// Whether a path is a folder, or a file that by its name only models can be taken from: neither a dataset nor a study.
+pub fn holds_models(path: &Path) -> bool {
+    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+    path.is_dir() || path.is_file() && !matches!(extension.as_deref(), Some("json" | "gz"))
+}
+
 /// Opens a dataset or a study, whichever the file says it is.
 pub fn load_any(path: &Path) -> Result<Opened, FileError> {
     let source = Source::read(path)?;

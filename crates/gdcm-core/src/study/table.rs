@@ -42,7 +42,9 @@ impl Table {
         let mut text = if self.title.is_empty() { String::new() } else { format!("{}\n", self.title) };
         for record in records() {
             let cells = record.iter().zip(&widths).zip(&figures).map(|((cell, &width), figures)| {
-                if *figures { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
+                // Not by the width of a format, which holds no more than 65535.
+                let room = " ".repeat(width - cell.chars().count());
+                if *figures { format!("{room}{cell}") } else { format!("{cell}{room}") }
             });
             text.push_str(cells.collect::<Vec<_>>().join("  ").trim_end());
             text.push('\n');

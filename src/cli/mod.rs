@@ -23,7 +23,7 @@ use arguments::{real_number, whole_number};
 use destination::{Destination, Group};
 use models::{ReadingProgress, counted};
 use read_record::{hold_out, laid_out, record_table, relative_entry};
-use study_options::{analysis_of, engine, names, outputs_of, pairs_of, study_of};
+use study_options::{analysis_of, engine, names, outputs_of, pairs_of, study_of, turn};
 use summary::{LABEL, leave_one_out_section};
 use terminal::TerminalProgress;
 use text_table::{indented, labelled, listed};
@@ -45,7 +45,7 @@ use terminal::{say, say_error};
 
 pub use arguments::{
     AnalyzeArguments, AssembleArguments, Command, ConvertArguments, FigureArguments, OpeningArguments, PairChoice,
-    PairList, Rejection, ReportArguments, StudyArguments,
+    PairList, Rejection, ReportArguments, SaidSign, StudyArguments,
 };
 pub use export::{Breakpoints, ExportArguments};
 pub use identify_arguments::{ChannelDelay, ChannelList, IdentifyArguments, OfferedChoice};
@@ -82,7 +82,7 @@ pub fn run(command: &Command) -> ExitCode {
         Command::Assemble(arguments) => models::assemble(arguments),
         Command::Convert(arguments) => models::convert(arguments),
         Command::Identify(arguments) => identify::identify(arguments),
-        Command::Check { file, opening } => check::check(file, opening),
+        Command::Check { file, opening, sign } => check::check(file, opening, sign),
         Command::Example { directory, force } => example(directory, existing(*force)),
     })
 }

@@ -1,4 +1,5 @@
-//! JSON, packed or not: datasets and models of this program, and JSON of any shape as variables.
+//! JSON, packed or not: datasets and models of this program, and JSON of any shape as variables. What else gzip packs is given to
+//! its own format.
 
 use std::path::Path;
 
@@ -6,11 +7,10 @@ use serde_json::Value as Tree;
 
 use crate::dataset_file::{DatasetOrigin, load_dataset_bytes};
 use crate::file_error::FileError;
-use crate::importer::{Contents, Importer};
+use crate::importer::{Contents, Importer, importer_of};
 use crate::location::Outline;
 use crate::models_file::found_models;
 use crate::source::{GZIP_MAGIC, Source};
-use crate::text::decode;
 use crate::variables::{
     Array, CellArray, ElementKind, MemoryBudget, StructArray, TextArray, Value, Variable, VariableFault,
 };
@@ -20,7 +20,7 @@ const TREE: u64 = 32;
 /// Memory that a byte of a file of this program takes at most \[bytes\].
 const TYPED: u64 = 8;
 
-/// JSON; packed texts of other kinds are given as texts.
+/// JSON, and whatever is packed by gzip.
 pub(crate) struct Json;
 
 impl Importer for Json {
@@ -41,7 +41,11 @@ impl Importer for Json {
         let source = Source::within(bytes, path, budget)?;
         let text = source.text();
         if bytes.starts_with(&GZIP_MAGIC) && !matches!(text.trim_ascii_start().first(), Some(b'{' | b'[')) {
-            return Ok(Contents::Text(decode(text, budget).map_err(wrong)?));
+            let packed = path.with_extension("");
+            return match importer_of(text, &packed) {
+                importer if importer.name() == Self.name() => Contents::row_major(variables_of(text, budget), path),
+                importer => importer.read(text, path, budget),
+            };
         }
         match Outline::format_of(text).as_deref() {
             Some("\"gdcm-dataset\"") => {
@@ -57,7 +61,7 @@ impl Importer for Json {
             }
             _ => {}
         }
-        Contents::variables(variables_of(text, budget), path)
+        Contents::row_major(variables_of(text, budget), path)
     }
 }
 

@@ -12,15 +12,11 @@ use gdcm_core::study::{ConditionAnalysis, Edit, ExplainTarget, Undefined};
 use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::s_to_ms;
 
-use super::command::Command;
-use super::controls::{check_ui, entries_ui, named_switch, table_heading_ui};
-use super::explanation::question_menu_ui;
-use super::explanation::{gain_conflict_marks, toggle_costs};
-use super::focus::{Region, region_ui};
-use super::palette::{Palette, SMALL_SIZE};
-use super::state::{State, Sureness};
-use super::tables::TableKind;
 use super::views::bar_words;
+use super::{
+    Command, Palette, Region, SMALL_SIZE, State, Sureness, TableKind, check_ui, entries_ui, gain_conflict_marks,
+    named_switch, question_menu_ui, region_ui, table_heading_ui, toggle_costs,
+};
 
 const CELL_HEIGHT: f32 = 50.0;
 const LEAST_CELL_WIDTH: f32 = 58.0;
@@ -286,7 +282,7 @@ impl<'a> Cell<'a> {
             let (median_ms, band_ms) = (s_to_ms(median_s), s_to_ms(band_s));
             ui.label(format!("D of eq. (9): {median_ms:.1} ms; of the line through the phase, M15.2: {band_ms:.1} ms"));
         }
-        ui.label(format!("net gain k_o k_i = {:.4}", shown.correction.net_gain(self.pair).value()));
+        ui.label(format!("net gain k_o k_i = {:.4}", shown.correction.net_gain(self.pair)));
         for (name, scalar) in [
             ("G", Scalar::Gain(self.pair)),
             ("D", shown.wanted_delay(self.pair)),
@@ -296,7 +292,7 @@ impl<'a> Cell<'a> {
                 ui.label(format!("{name} {}", bar_words(bar, scalar, level)));
             }
         }
-        ui.label(format!("net delay τ_o + τ_i = {:.1} ms", s_to_ms(shown.correction.net_delay(self.pair).value_s())));
+        ui.label(format!("net delay τ_o + τ_i = {:.1} ms", s_to_ms(shown.correction.net_delay_s(self.pair))));
         for sentence in &self.toggle_costs {
             ui.label(sentence);
         }

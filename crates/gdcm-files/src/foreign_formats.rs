@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::file_error::FileError;
 use crate::importer::{Contents, Importer};
-use crate::variables::{MemoryBudget, VariableFault};
+use crate::variables::{ReadingBudget, VariableFault};
 
 /// A format that is not read: what its files begin with, its name, and what to do.
 struct Foreign(&'static [u8], &'static str, &'static str);
@@ -59,7 +59,7 @@ impl Importer for ForeignFormat {
         foreign(bytes).is_some()
     }
 
-    fn read(&self, bytes: &[u8], path: &Path, _: &MemoryBudget<'_>) -> Result<Contents, FileError> {
+    fn read(&self, bytes: &[u8], path: &Path, _: &ReadingBudget<'_>) -> Result<Contents, FileError> {
         let (what, remedy) = foreign(bytes).map_or(("a file", AS_TABLE), |Foreign(_, what, remedy)| (*what, *remedy));
         let (what, remedy) = (what.to_owned(), remedy.to_owned());
         Err(FileError::variables(path, VariableFault::Unsupported { variable: String::new(), what, remedy }))
@@ -76,7 +76,7 @@ mod tests {
 
     #[test]
     fn a_file_of_another_format_is_named_with_the_way_to_save_it_otherwise() {
-        let read = ForeignFormat.read(b"PAR1\x15\x04", Path::new("x.parquet"), &MemoryBudget::new(1 << 20, &|_| false));
+        let read = ForeignFormat.read(b"PAR1\x15\x04", Path::new("x.parquet"), &ReadingBudget::new(1 << 20));
         let words = read.err().map(|error| error.to_string()).unwrap_or_default();
         assert!(words.contains("a Parquet file cannot be read; save it as CSV"), "{words}");
         assert!(!ForeignFormat.recognises(b"omega,re,im\n", "csv"));

@@ -23,6 +23,7 @@ mod octave;
 mod opened;
 mod output_set;
 
+mod reading_budget;
 mod recognise;
 mod record_files;
 mod recovery_file;

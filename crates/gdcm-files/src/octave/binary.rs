@@ -6,7 +6,7 @@ use super::{Element, Filled, Form, Parts, Sides, Stored, value};
 use crate::file_error::FileError;
 use crate::importer::{Contents, Importer};
 use crate::strides::{NumberClass, StoredNumber};
-use crate::variables::{MemoryBudget, TextArray, Value, Variable, VariableFault};
+use crate::variables::{ReadingBudget, TextArray, Value, Variable, VariableFault};
 
 /// Files of `save -binary`.
 pub(crate) struct OctaveBinary;
@@ -31,7 +31,7 @@ impl Importer for OctaveBinary {
         bytes.starts_with(MAGIC)
     }
 
-    fn read(&self, bytes: &[u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Contents, FileError> {
+    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
         let big_endian = bytes.get(MAGIC.len()) == Some(&b'B');
         let mut bytes = Bytes { bytes, at: HEADER, big_endian, budget };
         Contents::variables(variables(&mut bytes), path)
@@ -61,7 +61,7 @@ struct Bytes<'b> {
     bytes: &'b [u8],
     at: usize,
     big_endian: bool,
-    budget: &'b MemoryBudget<'b>,
+    budget: &'b ReadingBudget<'b>,
 }
 
 impl<'b> Bytes<'b> {
@@ -116,7 +116,7 @@ impl<'b> Bytes<'b> {
 }
 
 impl Parts for Bytes<'_> {
-    fn budget(&self) -> &MemoryBudget<'_> {
+    fn budget(&self) -> &ReadingBudget<'_> {
         self.budget
     }
 

@@ -6,11 +6,11 @@
 use super::Form;
 use crate::strides::Places;
 use crate::variables::{
-    Array, CellArray, MemoryBudget, Object, StructArray, TextArray, Value, Variable, VariableFault,
+    Array, CellArray, Object, ReadingBudget, StructArray, TextArray, Value, Variable, VariableFault,
 };
 
 /// The values of a file that Octave wrote; those of another as they are.
-pub(crate) fn unwrapped(variables: Vec<Variable>, budget: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+pub(crate) fn unwrapped(variables: Vec<Variable>, budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     if variables.is_empty() || !variables.iter().all(|variable| typed(&variable.value).is_some()) {
         return Ok(variables);
     }
@@ -31,7 +31,7 @@ fn typed(value: &Value) -> Option<(&str, &Value)> {
     }
 }
 
-fn decoded(group: &Value, variable: &str, budget: &MemoryBudget<'_>) -> Result<Value, VariableFault> {
+fn decoded(group: &Value, variable: &str, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
     let Some((kind, value)) = typed(group) else {
         return Err(damaged(variable, "a group has no type and no value"));
     };
@@ -65,7 +65,7 @@ fn damaged(variable: &str, what: &str) -> VariableFault {
 }
 
 /// The array with its sides the other way round.
-fn turned(array: &Array, variable: &str, budget: &MemoryBudget<'_>) -> Result<Array, VariableFault> {
+fn turned(array: &Array, variable: &str, budget: &ReadingBudget<'_>) -> Result<Array, VariableFault> {
     budget.take(array.len() as u64, 16, variable)?;
     let Some(places) = Places::row_major(&array.shape) else {
         return Err(damaged(variable, "there are more elements than can be counted"));
@@ -107,12 +107,12 @@ fn numbers<'p>(parts: &'p StructArray, name: &str) -> &'p [f64] {
     }
 }
 
-fn range(parts: &StructArray, variable: &str, budget: &MemoryBudget<'_>) -> Result<Array, VariableFault> {
+fn range(parts: &StructArray, variable: &str, budget: &ReadingBudget<'_>) -> Result<Array, VariableFault> {
     let part = |name: &str| number(parts, name).ok_or_else(|| damaged(variable, "a range has no base, limit and step"));
     super::steps([part("base")?, part("limit")?, part("increment")?], variable, budget)
 }
 
-fn cell(parts: &StructArray, variable: &str, budget: &MemoryBudget<'_>) -> Result<CellArray, VariableFault> {
+fn cell(parts: &StructArray, variable: &str, budget: &ReadingBudget<'_>) -> Result<CellArray, VariableFault> {
     let shape: Vec<usize> = numbers(parts, "dims").iter().map(|side| *side as usize).collect();
     let members = parts.fields.iter().filter(|(name, _)| name.starts_with('_'));
     let values = members.flat_map(|(_, values)| values).enumerate();
@@ -130,7 +130,7 @@ fn records(
     parts: &StructArray,
     in_cells: bool,
     variable: &str,
-    budget: &MemoryBudget<'_>,
+    budget: &ReadingBudget<'_>,
 ) -> Result<StructArray, VariableFault> {
     let mut records = StructArray { shape: vec![1, 1], fields: Vec::new() };
     for (name, values) in parts.fields.iter().filter(|(name, _)| name != "classname") {
@@ -151,7 +151,7 @@ fn records(
     Ok(records)
 }
 
-fn sparse(parts: &StructArray, variable: &str, budget: &MemoryBudget<'_>) -> Result<Array, VariableFault> {
+fn sparse(parts: &StructArray, variable: &str, budget: &ReadingBudget<'_>) -> Result<Array, VariableFault> {
     let wrong = || damaged(variable, "the sparse matrix contradicts itself");
     let side = |name: &str| number(parts, name).filter(|side| *side >= 0.0).map(|side| side as usize).ok_or_else(wrong);
     let (rows, columns) = (side("nr")?, side("nc")?);

@@ -13,7 +13,7 @@ mod text;
 
 use crate::strides::{Places, count};
 use crate::variables::{
-    Array, CellArray, ElementKind, MemoryBudget, Object, StructArray, TextArray, Value, VariableFault,
+    Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value, VariableFault,
 };
 
 pub(crate) use binary::OctaveBinary;
@@ -135,7 +135,7 @@ struct Filled {
 
 /// The parts of values, one behind the other, in one of the encodings. `variable` is what faults call the value.
 trait Parts {
-    fn budget(&self) -> &MemoryBudget<'_>;
+    fn budget(&self) -> &ReadingBudget<'_>;
     /// Name and type of the next value.
     fn member(&mut self, variable: &str) -> Result<(String, String), VariableFault>;
     fn sides(&mut self, variable: &str) -> Result<Sides, VariableFault>;
@@ -239,7 +239,7 @@ fn range(parts: &mut dyn Parts, variable: &str) -> Result<Array, VariableFault> 
 }
 
 /// The row of numbers from a first one to a limit, by steps.
-fn steps([first, limit, step]: [f64; 3], variable: &str, budget: &MemoryBudget<'_>) -> Result<Array, VariableFault> {
+fn steps([first, limit, step]: [f64; 3], variable: &str, budget: &ReadingBudget<'_>) -> Result<Array, VariableFault> {
     // As Octave counts: a limit that is missed by rounding alone is reached.
     let steps = ((limit - first) / step * (1.0 + f64::EPSILON)).floor();
     let length = if steps >= 0.0 { (steps as usize).saturating_add(1) } else { 0 };

@@ -1,14 +1,14 @@
 use std::path::Path;
 
 use crate::importer::{Contents, import_bytes};
-use crate::variables::{Array, MemoryBudget, Value, Variable};
+use crate::variables::{Array, ReadingBudget, Value, Variable};
 
 fn bytes(name: &str) -> Vec<u8> {
     std::fs::read(format!("{}/../../tests/data/foreign/octave/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap()
 }
 
 fn variables(bytes: &[u8], name: &str) -> Result<Vec<Variable>, String> {
-    let budget = MemoryBudget::new(1 << 24, &|_| false);
+    let budget = ReadingBudget::new(1 << 24);
     match import_bytes(bytes, Path::new(name), name, &budget).map_err(|error| error.to_string())?.contents {
         Contents::Variables { variables, .. } => Ok(variables),
         _ => Err("no variables".to_owned()),

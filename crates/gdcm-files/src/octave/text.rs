@@ -6,7 +6,7 @@ use super::{Element, Filled, Form, Parts, Sides, value};
 use crate::file_error::FileError;
 use crate::importer::{Contents, Importer};
 use crate::text::decode;
-use crate::variables::{MemoryBudget, TextArray, Value, Variable, VariableFault};
+use crate::variables::{ReadingBudget, TextArray, Value, Variable, VariableFault};
 
 /// Files of `save -text`.
 pub(crate) struct OctaveText;
@@ -31,7 +31,7 @@ impl Importer for OctaveText {
             && before.into_iter().all(|line| line.is_empty() || line.starts_with('#'))
     }
 
-    fn read(&self, bytes: &[u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Contents, FileError> {
+    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
         let wrong = |fault| FileError::variables(path, fault);
         let text = decode(bytes, budget).map_err(wrong)?;
         Contents::variables(variables(&text, budget), path)
@@ -39,7 +39,7 @@ impl Importer for OctaveText {
 }
 
 /// The variables of a text.
-fn variables(text: &str, budget: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+fn variables(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     let mut lines = Lines { text, at: 0, budget };
     let mut variables = Vec::new();
     while lines.find_name() {
@@ -59,7 +59,7 @@ fn variables(text: &str, budget: &MemoryBudget<'_>) -> Result<Vec<Variable>, Var
 struct Lines<'t> {
     text: &'t str,
     at: usize,
-    budget: &'t MemoryBudget<'t>,
+    budget: &'t ReadingBudget<'t>,
 }
 
 impl<'t> Lines<'t> {
@@ -144,7 +144,7 @@ impl<'t> Lines<'t> {
 }
 
 impl Parts for Lines<'_> {
-    fn budget(&self) -> &MemoryBudget<'_> {
+    fn budget(&self) -> &ReadingBudget<'_> {
         self.budget
     }
 

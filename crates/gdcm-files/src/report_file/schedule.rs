@@ -58,7 +58,7 @@ fn add_channels(
     title: &str,
 ) {
     for channels in channels.chunks(IN_A_FIGURE) {
-        let figure = channels_figure(analysis, channels, measure, across);
+        let figure = channels_figure(analysis, analysis.uncertainty.as_deref(), channels, (measure, across));
         page.figure(
             &figure,
             title,
@@ -87,7 +87,7 @@ fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
         add_channels(page, analysis, channels, (measure, Across::Airspeed), &title);
     }
     for pairs in shown_pairs(&analysis.study).chunks(PAIRS_IN_A_FIGURE) {
-        let figure = net_gain_figure(analysis, pairs);
+        let figure = net_gain_figure(analysis, analysis.uncertainty.as_deref(), pairs);
         let caption = "Each condition's optimum with its number, and the schedule; dashed: no correction.";
         page.figure(&figure, "Net gains against airspeed", caption);
     }
@@ -141,7 +141,7 @@ fn add_gains(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     });
     add_over_airspeed(page, schedule, &airspeeds_kt, "Scheduled gains of the channels", channels.collect());
     let net = shown_pairs(&analysis.study).into_iter().map(|pair| {
-        let gain = move |correction: &ChannelCorrection| decimals(correction.net_gain(pair).value(), 4);
+        let gain = move |correction: &ChannelCorrection| decimals(correction.net_gain(pair), 4);
         (dataset.pair_name(pair), Box::new(gain) as Cell)
     });
     add_over_airspeed(page, schedule, &airspeeds_kt, "Scheduled net gains", net.collect());

@@ -2,11 +2,11 @@
 
 use super::separator::{Separator, cell_number, lines};
 use crate::text::columns::comment;
-use crate::variables::{MemoryBudget, VariableFault};
+use crate::variables::{ReadingBudget, VariableFault};
 
 /// The text with two columns in place of each that holds complex numbers, their headings with "re" and "im" before them; nothing where
 /// there is none. Lines keep their numbers.
-pub fn split_complex(text: &str, budget: &MemoryBudget) -> Result<Option<String>, VariableFault> {
+pub fn split_complex(text: &str, budget: &ReadingBudget) -> Result<Option<String>, VariableFault> {
     let Some((separator, is_complex)) = complex_columns(text) else { return Ok(None) };
     budget.take(text.len() as u64, 3, "")?;
     let between = match separator {
@@ -18,7 +18,7 @@ pub fn split_complex(text: &str, budget: &MemoryBudget) -> Result<Option<String>
     };
     let mut split = String::with_capacity(2 * text.len());
     for (_, line) in lines(text) {
-        budget.take(0, 1, "")?;
+        budget.work(1, "")?;
         let cells: Vec<String> = separator.cells(comment(line).unwrap_or(line)).map(|cell| cell.into_owned()).collect();
         if cells.len() == is_complex.len() {
             let cells = cells.iter().zip(&is_complex).map(|(cell, is_complex)| match is_complex {
@@ -96,7 +96,7 @@ mod tests {
     use super::*;
 
     fn split(text: &str) -> Option<String> {
-        split_complex(text, &MemoryBudget::new(1 << 20, &|_| false)).unwrap()
+        split_complex(text, &ReadingBudget::new(1 << 20)).unwrap()
     }
 
     #[test]

@@ -210,7 +210,9 @@ mod tests {
     fn a_zoom_factor_without_a_window_is_ignored_with_a_word_and_what_else_is_kept_stays() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("app.ron");
-        let text = |zoom: &str| format!("{{\"egui\": \"(options:(sync:true,zoom_factor:{zoom},reduce_texture_memory:false))\"}}");
+        let text = |zoom: &str| {
+            format!("{{\"egui\": \"(options:(sync:true,zoom_factor:{zoom},reduce_texture_memory:false))\"}}")
+        };
         for (stored, kept) in [("0.0", "1.0"), ("NaN", "1.0"), ("5.5", "1.0"), ("0.2", "0.2"), ("1.25", "1.25")] {
             std::fs::write(&path, text(stored)).unwrap();
             let said = mend_zoom(&path);

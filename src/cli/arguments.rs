@@ -7,7 +7,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, FromArgMatches, Parser, Subcommand};
 
-use gdcm_core::study::{AcrossRole, Kind, SETTINGS, Setting};
+use gdcm_core::study::{AcrossRole, Kind, SETTINGS, Setting, SignRole};
 use gdcm_files::figure::{ColumnWidth, FigureKind, Role};
 
 use super::{ExportArguments, IdentifyArguments};
@@ -33,35 +33,55 @@ pub(super) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Analyse a dataset or a study, write corrections.json, corrections.csv and assessment.csv, and print a summary.
-    #[command(after_help = "Examples:\n  gdcm analyze example-dataset.json --reject-suggested --out results\n  gdcm analyze flight.gdcm-study.json --band 0.5 12 --second-variable mass --json --out results --force", alias = "analyse")]
+    #[command(
+        after_help = "Examples:\n  gdcm analyze example-dataset.json --reject-suggested --out results\n  gdcm analyze flight.gdcm-study.json --band 0.5 12 --second-variable mass --json --out results --force",
+        alias = "analyse"
+    )]
     Analyze(Box<AnalyzeArguments>),
     /// Make one of the figures that the window shows, or its numbers, as a file.
-    #[command(after_help = "Examples:\n  gdcm figure example-dataset.json --view net-gain --bars --out net-gain.pdf\n  gdcm figure example-dataset.json --view bode --condition 3 --pair Q/LON --out bode.svg")]
+    #[command(
+        after_help = "Examples:\n  gdcm figure example-dataset.json --view net-gain --bars --out net-gain.pdf\n  gdcm figure example-dataset.json --view bode --condition 3 --pair Q/LON --out bode.svg"
+    )]
     Figure(Box<FigureArguments>),
     /// Write all that was done and found as one page to read and to print: settings, rejections with their reasons, gains, delays, what
     /// could not be matched and why, the schedule, the assessment, and every plot.
-    #[command(after_help = "Examples:\n  gdcm report flight.gdcm-study.json --out report.html\n  gdcm report example-dataset.json --reject-suggested --out report.html --force")]
+    #[command(
+        after_help = "Examples:\n  gdcm report flight.gdcm-study.json --out report.html\n  gdcm report example-dataset.json --reject-suggested --out report.html --force"
+    )]
     Report(Box<ReportArguments>),
     /// Write corrections for other tools: MATLAB, Python, C, lookup tables, corrected models as state-space.
-    #[command(after_help = "Examples:\n  gdcm export flight.gdcm-study.json --as python --out corrections.py\n  gdcm export example-dataset.json --as state-space --condition 3 --out models.mat")]
+    #[command(
+        after_help = "Examples:\n  gdcm export flight.gdcm-study.json --as python --out corrections.py\n  gdcm export example-dataset.json --as state-space --condition 3 --out models.mat"
+    )]
     Export(Box<ExportArguments>),
     /// Make a dataset of a folder of model files: MATLAB, NumPy, JSON, text. Without rules, proposes them and says what is missing.
-    #[command(after_help = "Examples:\n  gdcm assemble models --out dataset.json.gz\n  gdcm assemble models --rules dataset.gdcm-rules.json --out dataset.json.gz --force")]
+    #[command(
+        after_help = "Examples:\n  gdcm assemble models --out dataset.json.gz\n  gdcm assemble models --rules dataset.gdcm-rules.json --out dataset.json.gz --force"
+    )]
     Assemble(AssembleArguments),
     /// Write every model and response in any file as JSON.
-    #[command(after_help = "Examples:\n  gdcm convert model.mat --out models.json\n  gdcm convert folder other.npz --out models.json --force")]
+    #[command(
+        after_help = "Examples:\n  gdcm convert model.mat --out models.json\n  gdcm convert folder other.npz --out models.json --force"
+    )]
     Convert(ConvertArguments),
     /// Identify models from flight records of one condition, with their uncertainty, and write identified.json.
-    #[command(after_help = "Examples:\n  gdcm identify sweeps --inputs LON,LAT --outputs P,Q=pitch_rate --band 0.5 12 --out identified\n  gdcm identify records --into dataset.json.gz --every-condition --hold-out validation.csv --out identified")]
+    #[command(
+        after_help = "Examples:\n  gdcm identify sweeps --inputs LON,LAT --outputs P,Q=pitch_rate --band 0.5 12 --out identified\n  gdcm identify records --into dataset.json.gz --every-condition --hold-out validation.csv --out identified"
+    )]
     Identify(Box<IdentifyArguments>),
     /// Say what a dataset or a study holds, or what is wrong with it and where.
-    #[command(after_help = "Examples:\n  gdcm check example-dataset.json\n  gdcm check flight.gdcm-study.json --dataset moved/example-dataset.json --strict")]
+    #[command(
+        after_help = "Examples:\n  gdcm check example-dataset.json\n  gdcm check flight.gdcm-study.json --dataset moved/example-dataset.json --strict"
+    )]
     Check {
         /// Dataset or study.
         file: PathBuf,
         /// How a study is opened.
         #[command(flatten)]
         opening: OpeningArguments,
+        /// Turn the models of a channel first, as with `analyze`: CHANNEL=-1. May be repeated.
+        #[arg(long, value_name = "CHANNEL=SIGN", allow_hyphen_values = true)]
+        sign: Vec<SaidSign>,
     },
     /// Write the embedded example (synthetic data) as a file to learn the format from.
     #[command(after_help = "Examples:\n  gdcm example .\n  gdcm example learn --force")]
@@ -178,12 +198,43 @@ pub struct StudyArguments {
     /// Conditions, by their ids, separated by commas, to keep from the schedule and to judge it by.
     #[arg(long, value_name = "IDS", value_delimiter = ',', allow_negative_numbers = true)]
     pub hold_out: Vec<i64>,
+    /// Turn the models of a channel whose sign is the other way round, CHANNEL=-1 (the identified models), CHANNEL=-1:physics or
+    /// CHANNEL=-1:all; CHANNEL=1 puts them back. May be repeated.
+    #[arg(long, value_name = "CHANNEL=SIGN", allow_hyphen_values = true)]
+    pub sign: Vec<SaidSign>,
     /// Reject every physics model that is suggested as an outlier.
     #[arg(long)]
     pub reject_suggested: bool,
     /// Reject a model of a condition; may be repeated.
     #[arg(long, value_name = "ID:NAME", allow_hyphen_values = true)]
     pub reject: Vec<Rejection>,
+}
+
+/// The sign of a channel: "NZ=-1", "NZ=-1:physics", "NZ=1".
+#[derive(Clone, Debug, PartialEq)]
+pub struct SaidSign {
+    /// The channel's name.
+    pub channel: String,
+    /// Whose models are turned; none where they are to be as the file has them.
+    pub of: Option<SignRole>,
+}
+
+impl FromStr for SaidSign {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected =
+            || format!("expected CHANNEL=-1, with :identified, :physics or :all behind it, or CHANNEL=1; found {text}");
+        let (channel, sign) = text.rsplit_once('=').ok_or_else(expected)?;
+        let (sign, of) = sign.split_once(':').unwrap_or((sign, SignRole::Identified.word()));
+        let of = SignRole::EACH.into_iter().find(|role| role.word() == of.trim()).ok_or_else(expected)?;
+        let of = match sign.trim() {
+            "-1" | "-" => Some(of),
+            "1" | "+1" | "+" => None,
+            _ => return Err(expected()),
+        };
+        Ok(Self { channel: channel.trim().to_owned(), of })
+    }
 }
 
 /// What is to be analysed, and where the results go.
@@ -391,6 +442,15 @@ mod tests {
         let rejection: Rejection = "10:V+5kt: again".parse().unwrap();
         assert_eq!((rejection.condition, rejection.model.as_str()), (10, "V+5kt: again"));
         assert!("nominal".parse::<Rejection>().is_err() && "x:nominal".parse::<Rejection>().is_err());
+    }
+
+    #[test]
+    fn a_sign_says_its_channel_and_whose_models_are_turned() {
+        let said = |text: &str| text.parse::<SaidSign>().map(|sign| (sign.channel, sign.of));
+        assert_eq!(said("NZ=-1"), Ok(("NZ".to_owned(), Some(SignRole::Identified))));
+        assert_eq!(said("az (down)=-1:all"), Ok(("az (down)".to_owned(), Some(SignRole::All))));
+        assert_eq!(said("NZ=1"), Ok(("NZ".to_owned(), None)));
+        assert!(said("NZ").is_err() && said("NZ=-2").is_err() && said("NZ=-1:none").is_err());
     }
 
     #[test]

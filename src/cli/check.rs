@@ -4,28 +4,27 @@ use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use gdcm_core::dataset::{BundleKind, Channel, Condition, ConditionId, ConditionRecord, Dataset, Dynamics, Model, RecordKind};
-use gdcm_core::study::{Execution, Study, Table, Unobserved, cautions_of_models};
+use gdcm_core::dataset::{BundleKind, Channel, Condition, ConditionRecord, Dataset, Dynamics, Model, RecordKind};
+use gdcm_core::study::{Execution, Study, Table, Unobserved, cautions_of_models, doubts_of_models};
 use gdcm_core::units::number;
 use gdcm_files::{FileError, LoadedDataset, Opened, OpenedStudy, dataset_faults};
 
 use super::{
-    Failure, LABEL, OpeningArguments, by_words, error, indented, labelled, listed_conditions, open, say,
+    Failure, LABEL, OpeningArguments, SaidSign, by_words, error, indented, labelled, listed_conditions, open, say, turn,
 };
 
 /// Says what a dataset or a study holds.
-pub(super) fn check(file: &Path, arguments: &OpeningArguments) -> Result<(), Failure> {
+pub(super) fn check(file: &Path, arguments: &OpeningArguments, signs: &[SaidSign]) -> Result<(), Failure> {
     let opened = match open(file, arguments) {
         Err(Failure::File(error @ FileError::Content { .. })) => return Err(all_faults(file, error)),
         opened => opened?,
     };
-    let text = match opened {
-        Opened::Dataset(loaded) => contents(&loaded) + &model_cautions(&Study::new(loaded.dataset))?,
-        Opened::Study(OpenedStudy { study, loaded, .. }) => {
-            decisions(file, &study) + &contents(&loaded) + &model_cautions(&study)?
-        }
+    let (decided, mut study, loaded) = match opened {
+        Opened::Dataset(loaded) => (String::new(), Study::new(loaded.dataset.clone()), loaded),
+        Opened::Study(OpenedStudy { study, loaded, .. }) => (decisions(file, &study), study, loaded),
     };
-    say(&text)
+    turn(&mut study, signs)?;
+    say(&(decided + &contents(&loaded) + &model_cautions(&study)?))
 }
 
 /// Tells every fault of a dataset, and gives what the command ends with: the only one itself, else their number.
@@ -62,7 +61,7 @@ fn contents(loaded: &LoadedDataset) -> String {
     text.push_str(&timings(dataset));
     text.push_str(&records(dataset));
     for caution in &loaded.cautions {
-        text.push_str(&labelled(0, "Caution", LABEL, &sanitized(caution)));
+        text.push_str(&caution_line(caution));
     }
     text
 }
@@ -70,13 +69,19 @@ fn contents(loaded: &LoadedDataset) -> String {
 /// What an analysis would say of the models by themselves.
 fn model_cautions(study: &Study) -> Result<String, Failure> {
     let execution = Execution::new(&crate::executor::Pool, &Unobserved, 0);
+    // Signs and units first: what follows may come of them.
+    let doubts = doubts_of_models(study, &execution)?;
+    let mut text: String = doubts.iter().map(|doubt| caution_line(&doubt.words(&study.dataset))).collect();
     let pair_name = |pair| study.dataset.pair_name(pair);
     let cautions = cautions_of_models(study, &execution)?;
-    let cautions = by_words(cautions.into_iter().map(|(id, caution)| (id, caution.words(pair_name))));
-    let line = |(conditions, words): &(Vec<ConditionId>, String)| {
-        labelled(0, "Caution", LABEL, &sanitized(&format!("{}: {words}", listed_conditions(conditions))))
-    };
-    Ok(cautions.iter().map(line).collect())
+    for (conditions, words) in by_words(cautions.into_iter().map(|(id, caution)| (id, caution.words(pair_name)))) {
+        text.push_str(&caution_line(&format!("{}: {words}", listed_conditions(&conditions))));
+    }
+    Ok(text)
+}
+
+fn caution_line(words: &str) -> String {
+    labelled(0, "Caution", LABEL, &sanitized(words))
 }
 
 fn channel_words(channels: &[Channel]) -> String {

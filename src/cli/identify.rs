@@ -12,8 +12,8 @@ use gdcm_core::study::{AdoptedModels, ChannelTimeSkew, IdentificationRequest};
 use gdcm_files::{IdentifiedModels, OutputSet, add_identified, make_directory};
 
 use super::{
-    ChannelDelay, ChannelList, Destination, Failure, Group, IdentifyArguments, TerminalProgress, by_words, caution, caution_of, counted,
-    existing, hold_out, laid_out, listed_paths, record_table, relative_entry, say,
+    ChannelDelay, ChannelList, Destination, Failure, Group, IdentifyArguments, TerminalProgress, by_words, caution,
+    caution_of, counted, existing, hold_out, laid_out, listed_paths, record_table, relative_entry, say,
 };
 
 /// The file of what was found.
@@ -57,7 +57,8 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
         lines += &outcome(task, file, &found);
         taken += 1;
     }
-    let (of_conditions, of_all): (Vec<_>, Vec<_>) = cautions.into_iter().partition(|(condition, _)| condition.is_some());
+    let (of_conditions, of_all): (Vec<_>, Vec<_>) =
+        cautions.into_iter().partition(|(condition, _)| condition.is_some());
     of_all.iter().for_each(|(_, words)| caution(words));
     let of_conditions = of_conditions.into_iter().filter_map(|(condition, words)| Some((condition?, words)));
     by_words(of_conditions).iter().for_each(|(conditions, words)| caution_of(conditions, words));

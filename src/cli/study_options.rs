@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::executor::Pool;
+use gdcm_core::correction;
 use gdcm_core::dataset::{BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
 use gdcm_core::message_text::sanitized;
 use gdcm_core::study::{Analysis, ConditionFailure, Edit, Engine, Study};
@@ -10,7 +11,8 @@ use gdcm_files::{LoadedDataset, OutputSet, embedded_example};
 
 use super::open as open_file;
 use super::{
-    Failure, PairList, Rejection, StudyArguments, TerminalProgress, by_words, caution, caution_of, existing, listed_conditions,
+    Failure, PairList, Rejection, SaidSign, StudyArguments, TerminalProgress, by_words, caution, caution_of, existing,
+    listed_conditions,
 };
 
 /// The study, the dataset that it is about, and the files that a command about it writes: none of those that it reads is overwritten.
@@ -88,27 +90,55 @@ fn take_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Fai
         let value = setting.read(&words).map_err(|reason| Failure::Option { option, reason: sanitized(&reason) })?;
         study.apply(&setting.to(value)).map_err(Failure::refused(option))?;
     }
-    if let Some(variable) = study.settings.schedule.second {
-        let lacking = study.dataset.conditions().iter().filter(|of| variable.value(of.flight_state()).is_none());
-        let lacking: Vec<ConditionId> = lacking.map(|of| of.id()).filter(|id| study.choice(*id).scheduled).collect();
-        if !lacking.is_empty() {
-            let reason = format!(
-                "a schedule of airspeed and {variable} needs the {variable} [{}] of every scheduled condition, which the dataset \
-                 does not say of {}",
-                variable.unit(),
-                listed_conditions(&lacking)
-            );
-            return Err(Failure::Option { option: "--second-variable", reason });
-        }
-    }
+    turn(study, &arguments.sign)?;
     for &id in &arguments.hold_out {
         let edit = Edit::SetHeldOut { condition: ConditionId(id), held_out: true };
         study.apply(&edit).map_err(Failure::refused("--hold-out"))?;
     }
+    check_second_variable(study)?;
     if let Some(list) = &arguments.on {
         hold(study, list)?;
     }
     arguments.reject.iter().try_for_each(|rejection| reject(study, rejection))
+}
+
+/// Refuses a second variable that a scheduled condition does not say: the schedule would be missing after all the work.
+fn check_second_variable(study: &Study) -> Result<(), Failure> {
+    let Some(variable) = study.settings.schedule.second else { return Ok(()) };
+    let is_scheduled = |id| study.choice(id).scheduled && !study.choice(id).held_out;
+    let lacking = study.dataset.conditions().iter().filter(|of| variable.value(of.flight_state()).is_none());
+    let lacking: Vec<ConditionId> = lacking.map(|of| of.id()).filter(|id| is_scheduled(*id)).collect();
+    if lacking.is_empty() {
+        return Ok(());
+    }
+    let (unit, of) = (variable.unit(), listed_conditions(&lacking));
+    let reason = format!(
+        "a schedule of airspeed and {variable} needs the {variable} [{unit}] of every scheduled condition, and the dataset does not \
+         say that of {of}"
+    );
+    Err(Failure::Option { option: "--second-variable", reason })
+}
+
+/// Turns the channels whose signs an option says, or puts them back.
+pub(super) fn turn(study: &mut Study, signs: &[SaidSign]) -> Result<(), Failure> {
+    const OPTION: &str = "--sign";
+    let is_again = |at: &usize| signs[..*at].iter().any(|before| before.channel == signs[*at].channel);
+    if let Some(again) = (0..signs.len()).find(is_again) {
+        let reason = sanitized(&format!("{} stands twice", signs[again].channel));
+        return Err(Failure::Option { option: OPTION, reason });
+    }
+    for SaidSign { channel: name, of } in signs {
+        let (inputs, outputs) = study.dataset.names_of_channels();
+        let all = correction::Channel::all(inputs.len(), outputs.len());
+        let named: Vec<correction::Channel> = all.filter(|channel| channel.name(&inputs, &outputs) == *name).collect();
+        let [channel] = named[..] else {
+            let (found, all) = (named.len(), [inputs, outputs].concat().join(", "));
+            let reason = sanitized(&format!("expected one of {all}; {found} channels are called {name}"));
+            return Err(Failure::Option { option: OPTION, reason });
+        };
+        study.apply(&Edit::SetSign { channel, of: *of }).map_err(Failure::refused(OPTION))?;
+    }
+    Ok(())
 }
 
 /// The responses of a list, which an option gave.

@@ -3,18 +3,18 @@
 use std::path::Path;
 
 use gdcm_core::correction::{ChannelCorrection, GainSource, Outcome};
-use gdcm_core::dataset::{BundleKind, Condition, Pair};
+use gdcm_core::dataset::{BundleKind, Condition, ConditionId, Pair};
 use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_core::schedule::{Schedule, ScheduledQuantity};
 use gdcm_core::study::{
     Analysis, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, ConditionAnalysis, PhaseCorrection,
-    RemarkKind, Study, Table, held_out_verdict, lead_words, remarks, scatter_table,
+    Remark, RemarkKind, Repeated, Study, Table, held_out_verdict, lead_words, remarks, scatter_table,
 };
 use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::{number, s_to_ms};
 use gdcm_files::{LoadedDataset, RESULT_FILES, assessment_sentence};
 
-use super::{indented, labelled, listed};
+use super::{by_words, indented, labelled, listed, listed_conditions};
 
 /// Width of the labels at the left of a section.
 pub(super) const LABEL: usize = 14;
@@ -22,11 +22,15 @@ pub(super) const LABEL: usize = 14;
 /// The results for a person to read: the settings, each condition, the schedule, the assessment, and where the files are.
 pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -> String {
     let mut text = heading(analysis, loaded);
+    for doubt in &analysis.doubts {
+        text.push_str(&labelled(0, "Caution", LABEL, &sanitized(&doubt.words(&analysis.study.dataset))));
+    }
     for condition in analysis.study.dataset.conditions() {
         text.push('\n');
         text.push_str(&condition_section(analysis, condition));
     }
     text.push('\n');
+    text.push_str(&cautions_section(analysis));
     text.push_str(&schedule_section(analysis));
     text.push_str(&assessment_lines(analysis));
     text.push_str(&held_out_lines(analysis));
@@ -62,6 +66,10 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
     let mut text = labelled(0, "Dataset", LABEL, &dataset) + &labelled(0, "Band", LABEL, &band);
     if settings.gain_source != GainSource::default() {
         text.push_str(&labelled(0, "G from", LABEL, &settings.gain_source_words()));
+    }
+    for turned in study.turned_channels() {
+        let words = format!("{} of {} is turned", sanitized(&turned.channel), turned.of.models());
+        text.push_str(&labelled(0, "Sign", LABEL, &words));
     }
     text + &labelled(0, "Phase", LABEL, &phase) + &labelled(0, "Held", LABEL, &held)
 }
@@ -184,17 +192,75 @@ fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     text
 }
 
-/// What could not be matched and why, entry by entry, what is not proven, and the other cautions.
+/// What most conditions have in one table with one sentence, and each other caution once with the conditions that it is of.
+fn cautions_section(analysis: &Analysis) -> String {
+    let (mut rows, mut others) = (Vec::new(), Vec::new());
+    for result in analysis.study.dataset.conditions().iter().filter_map(|of| analysis.condition(of.id())) {
+        let (id, said) = (result.condition.id(), remarks(&analysis.study, result, None));
+        // What is said of signs and units stands above all conditions.
+        let cautions = said.into_iter().skip(result.doubts.len()).filter(|of| of.kind == RemarkKind::Caution);
+        let (repeated, rest): (Vec<Remark>, Vec<Remark>) = cautions.partition(|of| of.repeated.is_some());
+        if !repeated.is_empty() {
+            rows.push((id, repeated.into_iter().filter_map(|of| of.repeated).collect()));
+        }
+        others.extend(rest.into_iter().map(|of| (id, of.text)));
+    }
+    let mut text = if rows.is_empty() { String::new() } else { repeated_table(analysis, &rows) };
+    for (conditions, words) in by_words(others) {
+        let words = format!("{}: {words}", listed_conditions(&conditions));
+        text.push_str(&labelled(0, "Caution", LABEL, &sanitized(&words)));
+    }
+    text
+}
+
+/// A row for each condition and a column for each response with something to say.
+fn repeated_table(analysis: &Analysis, rows: &[(ConditionId, Vec<Repeated>)]) -> String {
+    let dataset = &analysis.study.dataset;
+    let all = || rows.iter().flat_map(|(_, row)| row);
+    let is_farther = |of: &Repeated, pair: Pair| matches!(of, Repeated::Farther(pairs) if pairs.contains(&pair));
+    let lead_ms = |of: &Repeated, pair: Pair| match of {
+        Repeated::NeedsLead(needed) => needed.iter().find(|(at, _)| *at == pair).map(|(_, lead_ms)| lead_ms.clone()),
+        _ => None,
+    };
+    let is_told = |pair: &Pair| all().any(|of| is_farther(of, *pair) || lead_ms(of, *pair).is_some());
+    let pairs: Vec<Pair> = dataset.on_axis().pairs().filter(is_told).collect();
+    let has_offers = all().any(|of| matches!(of, Repeated::LeadsOffered(_)));
+    let mut sentence =
+        "held responses need lead [ms], because the physics model lags, which a delay cannot give".to_owned();
+    if all().any(|of| matches!(of, Repeated::Farther(_))) {
+        sentence += "; * is farther from flight (larger J) than without a correction";
+    }
+    if has_offers {
+        sentence += "; the last column is the mean J of the held responses, and what it would be with a delay or lead in each channel";
+    }
+    let headings = std::iter::once("condition".to_owned()).chain(pairs.iter().map(|pair| dataset.pair_name(*pair)));
+    let mut table = Table::new("", headings.chain(has_offers.then(|| "J with leads".to_owned())));
+    for (id, row) in rows {
+        let cell = |pair: &Pair| {
+            let lead = row.iter().find_map(|of| lead_ms(of, *pair)).unwrap_or_else(|| "-".to_owned());
+            if row.iter().any(|of| is_farther(of, *pair)) { format!("{lead} *") } else { lead }
+        };
+        let offer = row.iter().find_map(|of| match of {
+            Repeated::LeadsOffered([without, with]) => Some(format!("{without} → {with}")),
+            _ => None,
+        });
+        table.row(std::iter::once(id.to_string()).chain(pairs.iter().map(cell)).chain(offer));
+    }
+    labelled(0, "Cautions", LABEL, &format!("{sentence}:")) + &indented(&table, 2)
+}
+
+/// What could not be matched and why, entry by entry, and what is not proven.
 fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let line = |label: &str, words: &str| detail(label, &sanitized(words));
     let said = remarks(&analysis.study, result, None);
     let (mut text, mut trouble) = (String::new(), "not matched");
-    for remark in &said {
+    // What is said of signs and units stands above all conditions.
+    for remark in said.iter().skip(result.doubts.len()) {
         match remark.kind {
-            RemarkKind::Good => {}
+            // Cautions of all conditions stand together.
+            RemarkKind::Good | RemarkKind::Caution => {}
             // What is missed comes first, then the reasons and the ways out.
             RemarkKind::Trouble => text.push_str(&line(std::mem::replace(&mut trouble, "why"), &remark.text)),
-            RemarkKind::Caution => text.push_str(&line("caution", &remark.text)),
         }
     }
     if matches!(result.gains.proof.outcome, Outcome::NotProven { .. }) {

@@ -186,7 +186,8 @@ pub(super) fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Rem
             "All held responses want lead: with a delay or lead in each channel their J would be about {with} in the mean, in place \
              of {without}."
         );
-        Remark { phase: Some(PhaseCorrection::Lead), ..Remark::new(RemarkKind::Caution, text) }
+        let remark = Remark::new(RemarkKind::Caution, text).repeated(Repeated::LeadsOffered([without, with]));
+        Remark { phase: Some(PhaseCorrection::Lead), ..remark }
     }));
     remarks
 }

@@ -1,11 +1,11 @@
 //! What the result of a condition says, in the engineer's words: the same in the window and in a terminal.
 
-use crate::correction::{Sensitivity, Solution, kkt_residual, sensitivities};
+use crate::correction::{Channel, Sensitivity, Solution, kkt_residual, sensitivities};
 use crate::dataset::Pair;
 use crate::schedule::Schedule;
 use crate::units::{number, s_to_ms, telling, told_apart};
 
-use super::{Caution, ConditionAnalysis, PhaseCorrection, Study, lead_remarks};
+use super::{Caution, ConditionAnalysis, PhaseCorrection, SignRole, Study, lead_remarks};
 
 /// How a remark is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,18 +29,40 @@ pub struct Remark {
     pub ignore: Option<Pair>,
     /// The correction of the phase that the engineer may want in place of the present one.
     pub phase: Option<PhaseCorrection>,
+    /// The channel whose models can be turned, or put back (none of their role), at once.
+    pub turn: Option<(Channel, Option<SignRole>)>,
+    /// What of it is told in one table, where many conditions have it.
+    pub repeated: Option<Repeated>,
+}
+
+/// A remark that most conditions of a study have, by its numbers: many of them make one table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Repeated {
+    /// Held responses need lead, by how much \[ms\].
+    NeedsLead(Vec<(Pair, String)>),
+    /// Held responses are farther from flight than without a correction.
+    Farther(Vec<Pair>),
+    /// What the mean J of the held responses is without leads, and would be with them.
+    LeadsOffered([String; 2]),
 }
 
 impl Remark {
     /// A remark that offers nothing.
     pub fn new(kind: RemarkKind, text: String) -> Self {
-        Self { kind, text, ignore: None, phase: None }
+        Self { kind, text, ignore: None, phase: None, turn: None, repeated: None }
+    }
+
+    /// The remark, as one that many conditions have.
+    pub(super) fn repeated(self, repeated: Repeated) -> Self {
+        Self { repeated: Some(repeated), ..self }
+    }
     }
 }
 
 /// Which held gains and delays were matched, which were not and why, and the cautions of the condition and of the schedule.
 pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Schedule>) -> Vec<Remark> {
-    let mut remarks = gain_remarks(study, result);
+    let mut remarks = sign_remarks(study, result);
+    remarks.extend(gain_remarks(study, result));
     if study.settings.phase == PhaseCorrection::Delay {
         remarks.extend(delay_remarks(study, result));
     }
@@ -55,10 +77,8 @@ pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Sche
     }
     let pair_name = |pair| study.dataset.pair_name(pair);
     remarks.extend(result.cautions.iter().map(|caution| Remark {
-        kind: RemarkKind::Caution,
-        text: caution.words(pair_name),
         ignore: caution.offers_to_ignore(),
-        phase: None,
+        ..Remark::new(RemarkKind::Caution, caution.words(pair_name))
     }));
     if let Some(schedule) = schedule {
         let (inputs, outputs) = study.dataset.names_of_channels();
@@ -66,6 +86,21 @@ pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Sche
         remarks.extend(words.map(|text| Remark::new(RemarkKind::Caution, text)));
     }
     remarks
+}
+
+/// Signs and units to be asked after, before anything is blamed for them; then what has been turned.
+fn sign_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
+    let doubts = result.doubts.iter().map(|doubt| Remark {
+        turn: doubt.turns().map(|channel| (channel, Some(SignRole::Identified))),
+        ..Remark::new(RemarkKind::Caution, doubt.words(&study.dataset))
+    });
+    let (inputs, outputs) = study.dataset.names_of_channels();
+    let turned = study.signs.iter().map(|(channel, of)| {
+        let (name, of) = (channel.name(&inputs, &outputs), of.models());
+        let text = format!("{name} of {of} is turned: its sign is not that of the file.");
+        Remark { turn: Some((*channel, None)), ..Remark::new(RemarkKind::Good, text) }
+    });
+    doubts.chain(turned).collect()
 }
 
 fn gain_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
@@ -120,12 +155,13 @@ fn worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     let worse = result.held().marked().filter_map(|pair| {
         let change = result.cost[pair]?;
         let (before, after) = told_apart(change.uncorrected.total(), change.corrected.total(), 0);
-        (change.total() > notable).then(|| format!("{} (J {before} → {after})", study.dataset.pair_name(pair)))
+        let words = format!("{} (J {before} → {after})", study.dataset.pair_name(pair));
+        (change.total() > notable).then_some((pair, words))
     });
-    let worse: Vec<String> = worse.collect();
+    let (pairs, worse): (Vec<Pair>, Vec<String>) = worse.unzip();
     (!worse.is_empty()).then(|| {
         let text = format!("Held, yet farther from flight than without a correction: {}.", worse.join(", "));
-        Remark::new(RemarkKind::Caution, text)
+        Remark::new(RemarkKind::Caution, text).repeated(Repeated::Farther(pairs))
     })
 }
 
@@ -150,13 +186,11 @@ fn delay_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         let text = format!("All {held} held delays are matched {how}.");
         return if held == 0 { Vec::new() } else { vec![Remark::new(RemarkKind::Good, text)] };
     }
-    let lead: Vec<String> = unmatched
-        .iter()
-        .filter(|unmatched| unmatched.delta < 0.0)
-        .map(|unmatched| {
-            format!("{} {} ms", study.dataset.pair_name(unmatched.pair), telling(-s_to_ms(unmatched.delta), 0))
-        })
-        .collect();
+    let needed = unmatched.iter().filter(|unmatched| unmatched.delta < 0.0);
+    let needed: Vec<(Pair, String)> =
+        needed.map(|unmatched| (unmatched.pair, telling(-s_to_ms(unmatched.delta), 0))).collect();
+    let lead: Vec<String> =
+        needed.iter().map(|(pair, lead_ms)| format!("{} {lead_ms} ms", study.dataset.pair_name(*pair))).collect();
     let mut remarks = Vec::new();
     if !lead.is_empty() {
         let who = match (lead.len(), held) {
@@ -166,7 +200,7 @@ fn delay_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
             (count, _) => format!("{count} of {held} held responses need"),
         };
         let text = format!("{who} lead, because the physics model lags: {}. A delay cannot give it.", lead.join(", "));
-        remarks.push(Remark::new(RemarkKind::Caution, text));
+        remarks.push(Remark::new(RemarkKind::Caution, text).repeated(Repeated::NeedsLead(needed)));
     }
     let (inputs, outputs) = study.dataset.names_of_channels();
     let top = study.settings.band.max();

@@ -22,14 +22,14 @@ pub(super) fn analyze(arguments: &AnalyzeArguments) -> Result<(), Failure> {
 
 /// Analyses, and writes all that was found and done as one page.
 pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
+    let (study, loaded, outputs) = study_of(&arguments.study, arguments.force)?;
+    outputs.check(&[&arguments.out])?;
     let ending = arguments.out.extension().map(|ending| ending.to_string_lossy().to_lowercase());
     if !matches!(ending.as_deref(), Some("html" | "htm")) {
         let found = sanitized_path(&arguments.out);
         let reason = format!("expected a name that ends in .html, found {found}; a browser prints the report as PDF");
         return Err(Failure::Option { option: "--out", reason });
     }
-    let (study, loaded, outputs) = study_of(&arguments.study, arguments.force)?;
-    outputs.check(&[&arguments.out])?;
     let (analysis, mut engine) = analysis_of(study, &arguments.study, false)?;
     let study_file = arguments.study.file.as_deref().filter(|file| loaded.path() != Some(file));
     let source = ReportSource::of(&loaded, study_file);

@@ -60,12 +60,12 @@ impl Destination {
             groups.iter().filter(|(_, records)| records.is_empty()).map(|(id, _)| *id).collect();
         if !without.is_empty() {
             let of = listed_conditions(&without);
-            note(&format!("{of}: no records; what was identified before stays as it is"));
+            note(&format!("{of}: no records; the identified models there stay as they are"));
         }
         groups.retain(|(_, records)| !records.is_empty());
         if groups.is_empty() {
             let reason = format!("no name says a condition of the dataset ({}), as cond03 does", ids(&self.dataset));
-            return Err(Failure::Option { option: "RECORD", reason });
+            return Err(Failure::Option { option: "--every-condition", reason });
         }
         Ok(groups.into_iter().map(|(id, records)| (Some(id), records)).collect())
     }

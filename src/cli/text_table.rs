@@ -75,6 +75,14 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_same_words_of_many_conditions_are_said_once_with_the_conditions_named() {
+        let said = [(3, "late"), (4, "noisy"), (7, "late"), (7, "late")];
+        let said = by_words(said.map(|(id, words)| (ConditionId(id), words.to_owned())));
+        let lines: Vec<String> = said.iter().map(|(of, words)| format!("{}: {words}", listed_conditions(of))).collect();
+        assert_eq!(lines, ["conditions 3, 7: late", "condition 4: noisy"]);
+    }
+
+    #[test]
     fn long_words_hang_under_their_start() {
         let text = labelled(2, "rejected", 10, &"model ".repeat(40));
         assert!(text.lines().all(|line| line.chars().count() <= PAGE));

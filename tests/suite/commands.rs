@@ -383,7 +383,7 @@ fn a_condition_without_result_is_told_and_the_others_are_written() {
     });
     let ended = desk.gdcm(&["analyze", "half.json", "--out", "out"]);
     assert_eq!(ended.status, 0);
-    assert!(ended.error.starts_with("gdcm: condition 10: no response of \"nominal\""), "{}", ended.error);
+    assert!(ended.error.starts_with("caution: condition 10: no response of \"nominal\""), "{}", ended.error);
     let written = read_corrections(&desk.path("out/corrections.json")).unwrap();
     assert_eq!((written.conditions.len(), written.failed[0].id), (1, 10));
     let text = fs::read_to_string(desk.path("out/corrections.json")).unwrap();

@@ -103,20 +103,20 @@ fn the_bounds_that_a_message_names_are_those_that_are_refused() {
 fn a_number_on_the_command_line_is_refused_with_its_option_and_its_range() {
     let desk = Desk::new();
     for (options, message) in [
-        (["--degree", "-1"].as_slice(), "gdcm: --degree: expected 0, 1, 2, 3 or table, found -1\n"),
-        (&["--degree", "2.5"], "gdcm: --degree: expected 0, 1, 2, 3 or table, found 2.5\n"),
-        (&["--points", "-5"], "gdcm: --points: expected a whole number from 2 to 5000, found -5\n"),
-        (&["--points", "1e3"], "gdcm: --points: expected a whole number from 2 to 5000, found 1e3\n"),
-        (&["--alpha", "-1"], "gdcm: --alpha: α of the gains: expected a number from 0 to 1000000, found -1\n"),
-        (&["--alpha", "one"], "gdcm: --alpha: expected a number, found one\n"),
-        (&["--alpha-delay", "\u{202e}1"], "gdcm: --alpha-delay: expected a number, found \\u{202e}1\n"),
-        (&["--band", "12", "x"], "gdcm: --band: expected a number, found x\n"),
+        (["--degree", "-1"].as_slice(), "error: --degree: expected 0, 1, 2, 3 or table, found -1\n"),
+        (&["--degree", "2.5"], "error: --degree: expected 0, 1, 2, 3 or table, found 2.5\n"),
+        (&["--points", "-5"], "error: --points: expected a whole number from 2 to 5000, found -5\n"),
+        (&["--points", "1e3"], "error: --points: expected a whole number from 2 to 5000, found 1e3\n"),
+        (&["--alpha", "-1"], "error: --alpha: α of the gains: expected a number from 0 to 1000000, found -1\n"),
+        (&["--alpha", "one"], "error: --alpha: expected a number, found one\n"),
+        (&["--alpha-delay", "\u{202e}1"], "error: --alpha-delay: expected a number, found \\u{202e}1\n"),
+        (&["--band", "12", "x"], "error: --band: expected a number, found x\n"),
         (
             &["--band", "12", "0.5"],
-            "gdcm: --band: the frequency band must be 0.0001 <= min < max <= 100000 (rad/s), found min 12, max 0.5\n",
+            "error: --band: the frequency band must be 0.0001 <= min < max <= 100000 (rad/s), found min 12, max 0.5\n",
         ),
-        (&["--on", "P"], "gdcm: --on: expected OUTPUT/INPUT, as P/LAT, found \"P\"\n"),
-        (&["--reject", "x"], "gdcm: --reject: expected ID:NAME, as 10:nominal, found \"x\"\n"),
+        (&["--on", "P"], "error: --on: expected OUTPUT/INPUT, as P/LAT, found \"P\"\n"),
+        (&["--reject", "x"], "error: --reject: expected ID:NAME, as 10:nominal, found \"x\"\n"),
     ] {
         let ended = desk.gdcm(&[["analyze", "small.json", "--out", "out"].as_slice(), options].concat());
         assert_eq!((ended.status, ended.error.as_str()), (2, message));

@@ -40,7 +40,7 @@ fn results_that_are_there_are_named_and_only_overwritten_by_force() {
     desk.gdcm(&analyze).assert_failed(2, &words);
     fs::remove_file(desk.path("out/corrections.json")).unwrap();
     fs::remove_file(desk.path("out/assessment.csv")).unwrap();
-    desk.gdcm(&analyze).assert_failed(2, &["gdcm: out/corrections.csv exists already; --force overwrites"]);
+    desk.gdcm(&analyze).assert_failed(2, &["error: out/corrections.csv exists already; --force overwrites"]);
     assert_eq!(names(&desk.path("out")), ["corrections.csv"]);
     assert_eq!(fs::read_to_string(desk.path("out/corrections.csv")).unwrap(), "mine");
     desk.gdcm(&[&analyze[..], &["--force"]].concat()).assert_done();
@@ -185,6 +185,6 @@ fn a_directory_that_may_not_be_written_to_is_status_1_without_the_name_of_a_temp
     let desk = Desk::new();
     let ended = Ended::of(&desk.command(&[OsStr::new("example"), OsStr::new("/proc/self")]).output().unwrap());
     assert_eq!(ended.status, 1, "{ended:?}");
-    assert!(ended.error.starts_with("gdcm: /proc/self/example-dataset.json: cannot be written: "), "{}", ended.error);
+    assert!(ended.error.starts_with("error: /proc/self/example-dataset.json: cannot be written: "), "{}", ended.error);
     assert!(!ended.error.contains(".tmp") && !ended.error.contains("os error"), "{}", ended.error);
 }

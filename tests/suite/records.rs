@@ -132,8 +132,8 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
         &["sweep_1.csv", "--into", "small.json", "--every-condition"],
         &[
             "sweep_1: left out: its name says no condition of the dataset",
-            "condition 10: no records; its identified models stay as they are",
-            "RECORD: no name says a condition of the dataset (7, 10), as cond03 does",
+            "conditions 7, 10: no records; the identified models there stay as they are",
+            "--every-condition: no name says a condition of the dataset (7, 10), as cond03 does",
         ],
     );
     fs::rename(desk.path("validation.csv"), desk.path("cond7_validation.csv")).unwrap();
@@ -153,7 +153,7 @@ fn records_of_many_conditions_fill_each_its_own_and_leave_the_others_as_they_are
     let of_every = ["--every-condition", "--take", "with-plain", "--description", "anew", "--out", "out"];
     let ended = desk.gdcm(&[&["identify", records, "--into", into], &of_every[..]].concat());
     assert_eq!(ended.status, 0, "{ended:?}");
-    assert!(ended.error.contains("condition 4: no records; its identified models stay as they are"), "{}", ended.error);
+    assert!(ended.error.contains("note: conditions 1, 2, 4, 5, 6, 7, 8, 9, 11: no records; the identified models there stay"), "{}", ended.error);
     assert!(ended.out.contains("identified models of 2 conditions"), "{}", ended.out);
     let (before, after) =
         (&crate::REFERENCE_DATASET.dataset, load_dataset(&desk.path("out/example-dataset.json.gz")).unwrap());

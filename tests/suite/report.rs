@@ -168,7 +168,7 @@ fn names_that_are_markup_stay_names_and_a_condition_without_result_says_why() {
     write_odd(&desk);
     let ended = desk.gdcm(&["report", "odd.json", "--out", "report.html"]);
     assert_eq!((ended.status, ended.out.as_str()), (0, "report.html: a report on 1 conditions\n"), "{ended:?}");
-    assert!(ended.error.starts_with("gdcm: condition 10: no response of"), "{}", ended.error);
+    assert!(ended.error.starts_with("caution: condition 10: no response of"), "{}", ended.error);
     let text = fs::read_to_string(desk.path("report.html")).unwrap();
     assert!(!text.contains("<script") && !text.contains('\u{1b}') && !text.contains('\u{202e}'));
     let document = parsed(&text);

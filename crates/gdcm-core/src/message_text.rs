@@ -75,6 +75,13 @@ mod tests {
     }
 
     #[test]
+    fn a_word_of_seventy_thousand_letters_is_shortened_and_the_others_stay() {
+        let shown = shortened_words(&format!("condition {} is odd", "x".repeat(70_000)));
+        assert!(shown.starts_with("condition xxx") && shown.ends_with("xxx is odd") && shown.len() < 200, "{shown}");
+        assert_eq!(shortened_words("a  b"), "a  b");
+    }
+
+    #[test]
     fn a_long_text_is_cut_between_characters() {
         assert_eq!(quoted(&"°".repeat(1000)).chars().count(), 83);
     }

@@ -56,7 +56,6 @@ impl Remark {
     pub(super) fn repeated(self, repeated: Repeated) -> Self {
         Self { repeated: Some(repeated), ..self }
     }
-    }
 }
 
 /// Which held gains and delays were matched, which were not and why, and the cautions of the condition and of the schedule.

@@ -1,0 +1,151 @@
+//! What scripts rely on: the manner in which commands speak, and how they end.
+
+use std::fs;
+
+use serde_json::{Value, json};
+
+use crate::commands::Desk;
+use crate::window::records::late_dataset;
+
+/// A desk with a dataset that leaves condition 10 without a result.
+fn desk_with_half() -> Desk {
+    let desk = Desk::new();
+    desk.write("half.json", |file| {
+        let model = &mut file["conditions"][1]["physics_models"][0];
+        model["B"] = json!([[0, 0], [0, 0]]);
+        model["D"] = json!([[0, 0], [0, 0]]);
+    });
+    desk
+}
+
+#[test]
+fn notes_cautions_and_errors_are_told_apart_by_how_their_lines_begin() {
+    let desk = desk_with_half();
+    let ended = desk.gdcm(&["analyze", "half.json", "--out", "out"]);
+    assert!(ended.status == 0 && ended.error.starts_with("caution: condition 10: "), "{ended:?}");
+    let ended = desk.gdcm(&["check", "missing.json"]);
+    assert!(ended.status == 2 && ended.error.starts_with("error: missing.json: "), "{ended:?}");
+    fs::write(desk.path("a.csv"), "t,LON,LAT,P,Q\n0,1,2,3,4\n0.02,2,3,4,5\n").unwrap();
+    let identify = ["identify", "a.csv", "--inputs", "LON,LAT", "--outputs", "P,Q", "--band", "0.5", "12", "--out", "out"];
+    let ended = desk.gdcm(&identify);
+    assert!(ended.error.lines().any(|line| line.starts_with("note: a: time from column")), "{ended:?}");
+    let quiet = desk.gdcm(&[&identify[..], &["--quiet"]].concat());
+    assert!(!quiet.error.contains("note: ") && quiet.error.contains("error: "), "{quiet:?}");
+    assert_eq!(quiet.status, ended.status);
+}
+
+#[test]
+fn everything_is_one_json_object_where_that_is_asked_for() {
+    let desk = desk_with_half();
+    let object = |arguments: &[&str]| {
+        let ended = desk.gdcm(arguments);
+        assert_eq!(ended.error, "", "{ended:?}");
+        let object: Value = serde_json::from_str(&ended.out).unwrap();
+        assert_eq!((&object["format"], &object["status"]), (&json!("gdcm-messages"), &json!(ended.status)));
+        object
+    };
+    let analysed = object(&["analyze", "half.json", "--out", "out", "--json"]);
+    assert_eq!(analysed["cautions"][0]["conditions"], json!([10]));
+    assert!(analysed["text"].as_str().unwrap().contains("Condition 7"), "{analysed}");
+    let missing = object(&["check", "missing.json", "--json"]);
+    assert!(missing["errors"][0].as_str().unwrap().starts_with("missing.json: "), "{missing}");
+    let wrong = object(&["check", "--json", "--colour", "small.json"]);
+    assert!(wrong["errors"][0].as_str().unwrap().contains("--colour") && wrong["status"] == json!(2), "{wrong}");
+}
+
+#[test]
+fn analyse_is_understood() {
+    let desk = Desk::new();
+    desk.gdcm(&["analyse", "small.json", "--out", "out"]).assert_done();
+    assert!(desk.path("out/corrections.json").exists());
+}
+
+#[test]
+fn a_word_in_place_of_a_range_leaves_the_file_behind_it_alone() {
+    let desk = Desk::new();
+    desk.gdcm(&["analyze", "--out", "out", "--gain-bounds", "auto", "small.json"]).assert_done();
+    let corrections: Value =
+        serde_json::from_slice(&fs::read(desk.path("out/corrections.json")).unwrap()).unwrap();
+    assert_eq!(corrections["conditions"].as_array().unwrap().len(), 2, "the small dataset, not the example");
+}
+
+#[test]
+fn a_second_variable_that_the_dataset_does_not_say_is_refused_before_the_work() {
+    let desk = Desk::new();
+    desk.write("bare.json", |file| {
+        file["conditions"][1].as_object_mut().unwrap().remove("mass_kg");
+    });
+    let ended = desk.gdcm(&["analyze", "bare.json", "--out", "out", "--second-variable", "mass"]);
+    ended.assert_failed(2, &["--second-variable: ", "mass [kg]", "condition"]);
+    assert!(!desk.path("out").exists());
+}
+
+#[test]
+fn a_second_delay_of_one_channel_is_refused() {
+    let desk = Desk::new();
+    fs::write(desk.path("a.csv"), "t,LON,LAT,P,Q\n0,1,2,3,4\n0.02,2,3,4,5\n").unwrap();
+    let ended = desk.gdcm(&[
+        "identify", "a.csv", "--inputs", "LON,LAT", "--outputs", "P,Q", "--band", "0.5", "12", "--delay", "P=0.1", "--delay",
+        "P=0.2", "--out", "out", "--quiet",
+    ]);
+    assert!(ended.status == 2 && ended.error.contains("error: --delay: P stands twice"), "{ended:?}");
+}
+
+#[test]
+fn a_report_is_html_and_nothing_else() {
+    let desk = Desk::new();
+    desk.gdcm(&["report", "small.json", "--out", "x.pdf"]).assert_failed(2, &["--out: ", ".html", "x.pdf"]);
+}
+
+#[test]
+fn a_file_of_models_points_to_what_makes_a_dataset_of_it() {
+    let desk = Desk::new();
+    fs::write(desk.path("x.mat"), b"MATLAB 5.0 MAT-file").unwrap();
+    let words = ["x.mat: ", "gdcm assemble x.mat --out", "Import models"];
+    desk.gdcm(&["check", "x.mat"]).assert_failed(2, &words);
+    desk.gdcm(&["analyze", "x.mat", "--out", "out"]).assert_failed(2, &words);
+}
+
+#[test]
+fn names_of_seventy_thousand_letters_are_shortened_and_control_codes_are_spelt_out() {
+    let desk = Desk::new();
+    desk.write("long.json", |file| {
+        file["conditions"][0]["name"] = json!("x".repeat(70_000));
+        file["name"] = json!("\u{1b}]0;title\u{7}");
+    });
+    for arguments in [
+        ["check", "long.json"].as_slice(),
+        &["analyze", "long.json", "--out", "out"],
+        &["figure", "long.json", "--view", "net-gain", "--out", "f.svg"],
+    ] {
+        let ended = desk.gdcm(arguments);
+        assert_eq!(ended.status, 0, "{arguments:?}");
+        assert!(!(ended.out.clone() + &ended.error).contains(['\u{1b}', '\u{7}']), "{arguments:?}");
+        assert!(ended.out.len() < 20_000, "{arguments:?}: {} letters", ended.out.len());
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn no_thread_to_be_had_is_an_error_in_words() {
+    let desk = Desk::new();
+    // More than any machine can map.
+    let mut command = desk.command(&["check", "small.json"]);
+    let ended = crate::commands::Ended::of(&command.env("RUST_MIN_STACK", "70368744177664").output().unwrap());
+    ended.assert_failed(1, &["error: no thread is to be had"]);
+}
+
+#[test]
+fn a_record_named_on_the_command_line_that_cannot_be_read_is_status_1_and_the_others_are_used() {
+    let desk = Desk::new();
+    late_dataset(&desk.path("."));
+    fs::write(desk.path("broken.npz"), b"PK\x03\x04 no archive").unwrap();
+    let files = ["flight_0.csv", "flight_1.csv", "flight_2.csv", "flight_3.csv", "broken.npz"];
+    let into = ["--into", "late.json", "--condition", "7", "--out", "out"];
+    let ended = desk.gdcm(&[&["identify"], &files[..], &into[..]].concat());
+    assert_eq!(ended.status, 1, "{ended:?}");
+    assert!(ended.error.contains("caution: not taken: ") && ended.error.contains("error: broken.npz: "), "{ended:?}");
+    assert!(desk.path("out/identified.json").exists());
+    let nothing = desk.gdcm(&["convert", "broken.npz", "--out", "models.json"]);
+    assert!(nothing.status != 0 && !nothing.error.contains("FILE"), "{nothing:?}");
+}

@@ -6,8 +6,7 @@ use egui::{
 };
 use egui_plot::{Axis, LineStyle, PlotTransform, PlotUi, Span, VLine};
 
-use super::LogAxis;
-use super::axes::{LABELLED_HEIGHT, TICKS_HEIGHT, axis_hints, caption_font, keep_ground, quiet_plot};
+use super::axes::{FrequencyUnit, LABELLED_HEIGHT, TICKS_HEIGHT, Ticks, axis_hints, caption_font, keep_ground, quiet_plot};
 use super::axis_strip::axis_strips_ui;
 use super::bode::BodeScene;
 use super::bode_view::BodeView;
@@ -15,7 +14,6 @@ use super::cached_raster::{CachedRaster, ImageItem, MANY, StillScene};
 use super::curve::{BodeCurve, CurveId, CurveItem, Pane};
 use super::curve_style::Role;
 use super::drawn_curves::{DrawnCurves, Pixel};
-use super::log_axis::FrequencyUnit;
 use super::navigation::{Turn, plot_keys, turned};
 use super::picking::drawn_box_ui;
 use super::rule::{draw_band, rules_ui, strips_ui};
@@ -47,8 +45,8 @@ pub(super) fn pane_ui(
     palette: &Palette,
 ) -> Response {
     let name = scene.quantity.name(pane);
-    let id = ui.make_persistent_id(name);
-    let builder = UiBuilder::new().id_salt(name).max_rect(rect);
+    let id = ui.make_persistent_id(&name);
+    let builder = UiBuilder::new().id_salt(&name).max_rect(rect);
     let (drawn, image) = view.drawn(pane);
     let (mut kept, mut kept_image) = (std::mem::take(drawn), std::mem::take(image));
     let (drawn, image) = (&mut kept, &mut kept_image);
@@ -107,16 +105,15 @@ fn pane_plot<'a>(id: Id, pane: Pane, rect: Rect, scene: &BodeScene<'_>, palette:
         Pane::Magnitude => (String::new(), TICKS_HEIGHT),
         Pane::Phase => (unit.axis_label(), LABELLED_HEIGHT),
     };
-    let frequency_text = move |mark| LogAxis(unit).tick_text(mark);
-    let (values, value_label) = (scene.quantity.unit(pane), scene.quantity.axis_label(pane));
-    let value_text = move |mark| values.tick_text(mark);
+    let frequencies = Ticks::Frequency(unit);
+    let (values, value_label) = (scene.quantity.unit(pane).ticks(), scene.quantity.axis_label(pane));
     quiet_plot(id, palette)
         .width(rect.width())
         .height(rect.height())
-        .x_grid_spacer(LogAxis(unit).spacer())
+        .x_grid_spacer(frequencies.spacer())
         .y_grid_spacer(values.spacer())
-        .custom_x_axes(vec![axis_hints(Axis::X, &frequency_label, frequency_height, palette, frequency_text)])
-        .custom_y_axes(vec![axis_hints(Axis::Y, &value_label, VALUE_AXIS_WIDTH, palette, value_text)])
+        .custom_x_axes(vec![axis_hints(Axis::X, &frequency_label, frequency_height, palette, frequencies)])
+        .custom_y_axes(vec![axis_hints(Axis::Y, &value_label, VALUE_AXIS_WIDTH, palette, values)])
 }
 
 fn band_shade(plot: &mut PlotUi<'_>, (min, max): (f64, f64), palette: &Palette) {

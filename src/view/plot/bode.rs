@@ -11,7 +11,7 @@ use super::bode_view::BodeView;
 use super::curve::{BodeCurve, CurveId, Pane};
 use super::curve_menu::{CurveWish, MenuSubject, menu_ui};
 use super::curve_style::Role;
-use super::legend::{self, Chip, LegendAnswer, chips_ui};
+use super::legend::{self, Chip, chips_ui};
 use super::picking::{Hit, nearest, touched};
 use super::quantity::BodeQuantity;
 use super::readout::{Readout, curve_tooltip_ui, readout_box_ui};
@@ -310,11 +310,8 @@ fn captions_ui(
     let points = || scene.curves.iter().flat_map(|curve| curve.points(Pane::Magnitude));
     let position = |[x, y]: [f64; 2]| transform.position_from_point(&PlotPoint::new(x, y));
     let covered = |place: Rect| points().filter(|point| place.contains(position(*point))).count();
-    if let LegendAnswer::Toggled(role) =
-        legend::legend_ui(ui, (frame, plot), &entries, &mut view.legend, covered, palette)
-    {
-        events.push(BodeEvent::RoleToggled(role));
-    }
+    let toggled = legend::legend_ui(ui, (frame, plot), &entries, &mut view.legend, covered, palette);
+    events.extend(toggled.map(BodeEvent::RoleToggled));
     if let Some(readout) = scene.readout {
         let labelled = !scene.rules.is_empty();
         readout_box_ui(ui, frame, readout, (view.legend.rect, labelled), palette);

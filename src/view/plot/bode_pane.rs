@@ -9,7 +9,7 @@ use egui_plot::{Axis, LineStyle, PlotTransform, PlotUi, Span, VLine};
 use super::axes::{FrequencyUnit, LABELLED_HEIGHT, TICKS_HEIGHT, Ticks, axis_hints, caption_font, keep_ground, quiet_plot};
 use super::axis_strip::axis_strips_ui;
 use super::bode::BodeScene;
-use super::bode_view::BodeView;
+use super::bode_view::{BodeView, DrawnPane};
 use super::cached_raster::{CachedRaster, ImageItem, MANY, StillScene};
 use super::curve::{BodeCurve, CurveId, CurveItem, Pane};
 use super::curve_style::Role;
@@ -47,9 +47,8 @@ pub(super) fn pane_ui(
     let name = scene.quantity.name(pane);
     let id = ui.make_persistent_id(&name);
     let builder = UiBuilder::new().id_salt(&name).max_rect(rect);
-    let (drawn, image) = view.drawn(pane);
-    let (mut kept, mut kept_image) = (std::mem::take(drawn), std::mem::take(image));
-    let (drawn, image) = (&mut kept, &mut kept_image);
+    let mut kept = std::mem::take(&mut view.drawn[pane as usize]);
+    let DrawnPane { curves: drawn, image, .. } = &mut kept;
     let shown = ui.scope_builder(builder, |ui| {
         keep_ground(ui);
         let bounds = view.bounds(pane);
@@ -67,8 +66,7 @@ pub(super) fn pane_ui(
         })
     });
     let shown = shown.inner;
-    (*view.drawn(pane).0, *view.drawn(pane).1) = (kept, kept_image);
-    view.remember(pane, shown.transform);
+    view.drawn[pane as usize] = DrawnPane { transform: Some(shown.transform), ..kept };
     drag(ui, pane, &shown.response, view, palette);
     zoom_by_scrolling(ui, pane, &shown.response, view);
     plot_keys(ui, pane, &shown.response, view);

@@ -177,7 +177,10 @@ mod tests {
 
     #[test]
     fn magnitudes_are_labelled_at_five_ten_or_twenty_decibels() {
-        assert_eq!(values(Ticks::Decimal(28.0), (-26.0, 10.0), 290.0), [-25.0, -20.0, -15.0, -10.0, -5.0, 0.0, 5.0, 10.0]);
+        assert_eq!(
+            values(Ticks::Decimal(28.0), (-26.0, 10.0), 290.0),
+            [-25.0, -20.0, -15.0, -10.0, -5.0, 0.0, 5.0, 10.0]
+        );
         assert_eq!(
             values(Ticks::Decimal(28.0), (-80.0, 20.0), 290.0),
             [-80.0, -70.0, -60.0, -50.0, -40.0, -30.0, -20.0, -10.0, 0.0, 10.0, 20.0]

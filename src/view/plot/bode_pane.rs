@@ -6,12 +6,14 @@ use egui::{
 };
 use egui_plot::{Axis, LineStyle, PlotTransform, PlotUi, Span, VLine};
 
-use super::axes::{FrequencyUnit, LABELLED_HEIGHT, TICKS_HEIGHT, Ticks, axis_hints, caption_font, keep_ground, quiet_plot};
+use super::axes::{
+    FrequencyUnit, LABELLED_HEIGHT, TICKS_HEIGHT, Ticks, axis_hints, caption_font, keep_ground, quiet_plot,
+};
 use super::axis_strip::axis_strips_ui;
 use super::bode::BodeScene;
 use super::bode_view::{BodeView, DrawnPane};
-use super::cached_raster::{CachedRaster, ImageItem, MANY, StillScene};
-use super::curve::{BodeCurve, CurveId, CurveItem, Pane};
+use super::cached_raster::{CachedRaster, MANY, StillImage, StillScene};
+use super::curve::{BodeCurve, CurveId, DrawnItem, Pane, curve_lines};
 use super::curve_style::Role;
 use super::drawn_curves::{DrawnCurves, Pixel};
 use super::navigation::{Turn, plot_keys, turned};
@@ -133,14 +135,15 @@ fn draw_curves<'a>(
     plot: &mut PlotUi<'a>,
     scene: &BodeScene<'_>,
     drawn: &'a DrawnCurves,
-    image: Option<ImageItem>,
+    image: Option<StillImage>,
     emphasis: &Emphasis,
     palette: &Palette,
 ) {
     let is_emphasized = |curve: &BodeCurve| curve.highlighted || emphasis.curve.as_ref() == Some(&curve.id);
     let mut curves: Vec<(usize, &BodeCurve)> = scene.curves.iter().enumerate().collect();
     if let Some(image) = image {
-        plot.add(image);
+        let strength = if scene.stale { STALE } else { 1.0 };
+        plot.add(DrawnItem::new(move |_, shapes| shapes.push(image.shape(strength))));
         curves.retain(|(_, curve)| !lies_at_the_bottom(curve) || is_emphasized(curve));
     }
     curves.sort_by_key(|(_, curve)| (is_emphasized(curve), curve.role.layer(curve.rejected)));
@@ -151,7 +154,7 @@ fn draw_curves<'a>(
         } else if scene.stale {
             look.color = look.color.gamma_multiply(STALE);
         }
-        plot.add(CurveItem::new(drawn.runs(index), look));
+        plot.add(DrawnItem::new(move |transform, shapes| curve_lines(drawn.runs(index), look, transform, shapes)));
     }
 }
 
@@ -163,7 +166,7 @@ fn image_of_many(
     image: &mut CachedRaster,
     transform: &PlotTransform,
     palette: &Palette,
-) -> Option<ImageItem> {
+) -> Option<StillImage> {
     let mut curves: Vec<_> = scene.curves.iter().enumerate().filter(|(_, curve)| lies_at_the_bottom(curve)).collect();
     if curves.len() < MANY {
         return None;
@@ -175,12 +178,11 @@ fn image_of_many(
         pixels_per_point: ctx.pixels_per_point(),
         curves: curves.iter().map(|(index, curve)| (drawn.serial(*index), look(curve))).collect(),
     };
-    let image = image.of(ctx, still, || {
-        let lines =
-            |(index, curve): &(usize, &BodeCurve)| CurveItem::new(drawn.runs(*index), look(curve)).lines(transform);
-        curves.iter().flat_map(lines).collect()
-    });
-    image.map(|image| if scene.stale { image.faded(STALE) } else { image })
+    image.of(ctx, still, || {
+        let mut shapes = Vec::new();
+        curves.iter().for_each(|(index, curve)| curve_lines(drawn.runs(*index), look(curve), transform, &mut shapes));
+        shapes
+    })
 }
 
 /// Whether a curve is one of many that only say how far their bundle reaches.

@@ -204,9 +204,13 @@ fn empty_chart<'a>(id: Id, rect: Rect, chart: &Chart<'_>, palette: &Palette) -> 
         ChartAxis::Linear => Ticks::Decimal(TICK_GAP),
         ChartAxis::Frequency(unit) => Ticks::Frequency(unit),
     };
-    let plot = plot
-        .x_grid_spacer(ticks.spacer())
-        .custom_x_axes(vec![axis_hints(Axis::X, chart.across_label, height, palette, ticks)]);
+    let plot = plot.x_grid_spacer(ticks.spacer()).custom_x_axes(vec![axis_hints(
+        Axis::X,
+        chart.across_label,
+        height,
+        palette,
+        ticks,
+    )]);
     match chart.group {
         Some(group) => plot.link_axis(group, Vec2b::new(true, false)).link_cursor(group, Vec2b::new(true, false)),
         None => plot,

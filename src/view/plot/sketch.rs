@@ -1,10 +1,10 @@
 //! One pane of some curves in a small rectangle.
 
-use egui::{Painter, Pos2, Rect};
+use egui::{Painter, Rect};
 use egui_plot::{PlotBounds, PlotTransform};
 use gdcm_files::figure::{Range, decimals};
 
-use super::curve::{BodeCurve, Pane};
+use super::curve::{BodeCurve, Pane, curve_lines};
 use super::drawn_curves::{DrawnCurves, Pixel};
 use crate::view::palette::Palette;
 
@@ -42,10 +42,7 @@ impl Sketch {
         for (index, curve) in order {
             let look = palette.role_style(curve.role, curve.rejected).in_miniature();
             let look = if curve.highlighted { look.emphasized() } else { look };
-            for run in self.drawn.runs(index) {
-                let path: Vec<Pos2> = run.iter().map(|point| transform.position_from_point(point)).collect();
-                look.add_shapes(path, &mut shapes);
-            }
+            curve_lines(self.drawn.runs(index), look, transform, &mut shapes);
         }
         painter.extend(shapes);
     }

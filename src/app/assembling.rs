@@ -80,12 +80,15 @@ impl FolderProgress for Teller {
         self.tell(|shown| *shown = Some(reading));
     }
 
-    fn stopped(&self, taken: u64) -> bool {
+    fn taken(&self, taken: u64) {
         if taken >= self.told.get() + TOLD_EVERY {
             self.told.set(taken);
             self.tell(move |shown| shown.iter_mut().for_each(|reading| reading.taken = taken));
         }
-        self.stop.load(Ordering::Acquire)
+    }
+
+    fn stop(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.stop)
     }
 }
 

@@ -26,10 +26,6 @@ struct Untold;
 
 impl FolderProgress for Untold {
     fn reading(&self, _: usize, _: usize, _: &str) {}
-
-    fn stopped(&self, _: u64) -> bool {
-        false
-    }
 }
 
 impl GdcmApp {

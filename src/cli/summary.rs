@@ -143,11 +143,11 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
             if result.held()[pair] { "yes" } else { "no" }.to_owned(),
             value(result.wanted_gain(pair), 3),
             value(half(Scalar::Gain(pair), 100.0), 1),
-            value(Some(result.correction.net_gain(pair).value()), 3),
+            value(Some(result.correction.net_gain(pair)), 3),
             value(half(Scalar::NetGain(pair), 100.0), 1),
             value(result.wanted_delay_s(pair).map(s_to_ms), 1),
             value(half(result.wanted_delay(pair), 1e3), 1),
-            value(Some(s_to_ms(result.correction.net_delay(pair).value_s())), 1),
+            value(Some(s_to_ms(result.correction.net_delay_s(pair))), 1),
             value(cost.map(|cost| cost.uncorrected.total()), 1),
             value(cost.map(|cost| cost.corrected.total()), 1),
         ]);
@@ -170,9 +170,8 @@ fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let gains = correction.input_gains.iter().chain(&correction.output_gains);
     let gains: Vec<String> =
         channels().zip(gains).map(|(name, gain)| format!("{name} {}", value(Some(*gain), 3))).collect();
-    let [inputs_s, outputs_s] = correction.signed_delays_s();
-    let delays = inputs_s.iter().chain(outputs_s);
-    let delays = channels().zip(delays).filter_map(|(name, delay)| {
+    let delays_s = correction.signed_delays_s();
+    let delays = channels().zip(delays_s.iter()).filter_map(|(name, (_, delay))| {
         let words = value(Some(s_to_ms(*delay)), 1);
         (words != "0.0").then(|| format!("{name} {words} ms"))
     });
@@ -232,13 +231,11 @@ fn schedule_section(analysis: &Analysis) -> String {
     for caution in &schedule.cautions {
         text.push_str(&detail("caution", &sanitized(&caution.words(&inputs, &outputs))));
     }
-    text.push_str(&schedule_table(analysis, schedule, |correction, pair| {
-        value(Some(correction.net_gain(pair).value()), 3)
-    }));
+    text.push_str(&schedule_table(analysis, schedule, |correction, pair| value(Some(correction.net_gain(pair)), 3)));
     if schedule.has_delays() {
         text.push_str(&labelled(0, "", LABEL, "net delays in ms:"));
         text.push_str(&schedule_table(analysis, schedule, |correction, pair| {
-            value(Some(s_to_ms(correction.net_delay(pair).value_s())), 1)
+            value(Some(s_to_ms(correction.net_delay_s(pair))), 1)
         }));
     }
     text

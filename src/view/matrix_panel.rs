@@ -282,7 +282,7 @@ impl<'a> Cell<'a> {
             let (median_ms, band_ms) = (s_to_ms(median_s), s_to_ms(band_s));
             ui.label(format!("D of eq. (9): {median_ms:.1} ms; of the line through the phase, M15.2: {band_ms:.1} ms"));
         }
-        ui.label(format!("net gain k_o k_i = {:.4}", shown.correction.net_gain(self.pair).value()));
+        ui.label(format!("net gain k_o k_i = {:.4}", shown.correction.net_gain(self.pair)));
         for (name, scalar) in [
             ("G", Scalar::Gain(self.pair)),
             ("D", shown.wanted_delay(self.pair)),
@@ -292,7 +292,7 @@ impl<'a> Cell<'a> {
                 ui.label(format!("{name} {}", bar_words(bar, scalar, level)));
             }
         }
-        ui.label(format!("net delay τ_o + τ_i = {:.1} ms", s_to_ms(shown.correction.net_delay(self.pair).value_s())));
+        ui.label(format!("net delay τ_o + τ_i = {:.1} ms", s_to_ms(shown.correction.net_delay_s(self.pair))));
         for sentence in &self.toggle_costs {
             ui.label(sentence);
         }

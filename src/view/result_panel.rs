@@ -163,7 +163,7 @@ fn side_ui(
             let half = sureness.half(scalar).filter(|_| is_delayed).map(|half| format!("±{:.0}", s_to_ms(half)));
             let text = if is_delayed { format!("{delay_ms:.1}") } else { "0".to_owned() };
             let text = RichText::new(text).color(if is_delayed { palette.text } else { palette.dim_text });
-            let filter = shown.compensated.as_ref().and_then(|led| led.leads.filter(channel));
+            let filter = shown.compensated.as_ref().and_then(|led| led.leads.filters()[channel]);
             let filter = filter.map(|filter| format!("\nlead: {}", servo_words(filter))).unwrap_or_default();
             let label = value_ui(ui, (text, half), ExplainTarget::Delay(id, channel), palette, commands);
             label.on_hover_text(format!("{delay_ms} ms{filter}{}", told(scalar)));

@@ -10,19 +10,21 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use gdcm_core::assembly::FoundModel;
 use gdcm_core::dataset::Dataset;
-use sha2::{Digest, Sha256};
+use gdcm_core::message_text::sanitized;
 
 use crate::file_error::FileError;
 use crate::json_values::Json;
 use crate::mat::Mat;
 use crate::mat73::Hdf5;
 use crate::npy::Npy;
-use crate::source::read_bytes;
+use crate::source::{kind_of, read_bytes, sha256};
 use crate::text::{Literals, Text};
-use crate::variables::{MemoryBudget, Variable, VariableFault};
+use crate::variables::{ReadingBudget, Variable, VariableFault};
 use crate::zip_files::Zip;
 
 /// Memory that what one file holds may take \[bytes\].
@@ -45,7 +47,7 @@ pub(crate) trait Importer: Sync {
     fn recognises(&self, bytes: &[u8], ending: &str) -> bool;
 
     /// What the bytes hold; memory is taken from the budget before it is used. `path` is what errors call the file.
-    fn read(&self, bytes: &[u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Contents, FileError>;
+    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError>;
 }
 
 /// The formats; a file is of the first that recognises it, and the last recognises any.
@@ -95,8 +97,12 @@ pub(crate) fn importer_of(bytes: &[u8], path: &Path) -> &'static dyn Importer {
 pub trait FolderProgress {
     /// A file is about to be read: its number from 1, how many there are, its name.
     fn reading(&self, number: usize, of: usize, name: &str);
-    /// Whether the engineer wants no more, now that this many bytes of the file's values are read.
-    fn stopped(&self, taken: u64) -> bool;
+    /// So many bytes are taken for what the file holds.
+    fn taken(&self, _bytes: u64) {}
+    /// What ends the reading once it is set.
+    fn stop(&self) -> Arc<AtomicBool> {
+        Arc::default()
+    }
 }
 
 /// A file that was read.
@@ -116,20 +122,19 @@ pub(crate) fn import_bytes<'f>(
     bytes: &[u8],
     path: &'f Path,
     name: &'f str,
-    budget: &MemoryBudget<'_>,
+    budget: &ReadingBudget<'_>,
 ) -> Result<ImportedFile<'f>, FileError> {
     let contents = importer_of(bytes, path).read(bytes, path, budget)?;
-    let sha256 = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
-    Ok(ImportedFile { path, name, sha256, contents })
+    Ok(ImportedFile { path, name, sha256: sha256(bytes, path, budget)?, contents })
 }
 
 /// Reads one file.
 pub(crate) fn import_file<'f>(
     path: &'f Path,
     name: &'f str,
-    budget: &MemoryBudget<'_>,
+    budget: &ReadingBudget<'_>,
 ) -> Result<ImportedFile<'f>, FileError> {
-    import_bytes(&read_bytes(path, LARGEST_FILE)?, path, name, budget)
+    import_bytes(&read_bytes(path, LARGEST_FILE, budget)?, path, name, budget)
 }
 
 /// Reads files and folders, folders with all that is in them, and gives each to `take`: how many there are, and why some could not be
@@ -137,17 +142,17 @@ pub(crate) fn import_file<'f>(
 pub(crate) fn import(
     paths: &[PathBuf],
     progress: &dyn FolderProgress,
-    mut take: impl FnMut(ImportedFile<'_>, &MemoryBudget<'_>) -> Result<(), FileError>,
+    mut take: impl FnMut(ImportedFile<'_>, &ReadingBudget<'_>) -> Result<(), FileError>,
 ) -> Result<(usize, Vec<String>), FileError> {
-    let files = files_of(paths)?;
     let mut faults = Vec::new();
+    let files = files_of(paths, &mut faults)?;
+    let (stop, tell) = (progress.stop(), |taken| progress.taken(taken));
     for (index, (path, name)) in files.iter().enumerate() {
-        if progress.stopped(0) {
+        if stop.load(Ordering::Relaxed) {
             break;
         }
         progress.reading(index + 1, files.len(), name);
-        let stop = |taken| progress.stopped(taken);
-        let budget = MemoryBudget::new(MOST_MEMORY, &stop);
+        let budget = ReadingBudget::new(MOST_MEMORY).stopped_by(Arc::clone(&stop)).telling(&tell);
         match import_file(path, name, &budget).and_then(|file| take(file, &budget)) {
             Ok(()) => {}
             Err(error) if paths.len() == 1 && files.len() == 1 => return Err(error),
@@ -172,12 +177,12 @@ pub fn sources_folder(sources: &[PathBuf]) -> &Path {
 }
 
 /// Files, and those of folders whose names end as those of a format, in the order of their names: their paths, and their names relative to what was asked
-/// for.
-fn files_of(paths: &[PathBuf]) -> Result<Vec<(PathBuf, String)>, FileError> {
+/// for. What is no file is skipped with a word.
+fn files_of(paths: &[PathBuf], skipped: &mut Vec<String>) -> Result<Vec<(PathBuf, String)>, FileError> {
     let mut files = Vec::new();
     for path in paths {
         if path.is_dir() {
-            list(path, path, DEEPEST, &mut files)?;
+            list(path, path, DEEPEST, &mut files, skipped)?;
         } else {
             let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
             files.push((path.clone(), name));
@@ -187,7 +192,13 @@ fn files_of(paths: &[PathBuf]) -> Result<Vec<(PathBuf, String)>, FileError> {
 }
 
 /// The files below a folder, in the order of their names, with their paths relative to it.
-fn list(folder: &Path, root: &Path, deeper: usize, files: &mut Vec<(PathBuf, String)>) -> Result<(), FileError> {
+fn list(
+    folder: &Path,
+    root: &Path,
+    deeper: usize,
+    files: &mut Vec<(PathBuf, String)>,
+    skipped: &mut Vec<String>,
+) -> Result<(), FileError> {
     let failed = |error: std::io::Error| FileError::reading(folder, &error);
     let mut entries = fs::read_dir(folder).map_err(failed)?.collect::<Result<Vec<_>, _>>().map_err(failed)?;
     entries.sort_by_key(|entry| natural(&entry.file_name().to_string_lossy()));
@@ -203,10 +214,14 @@ fn list(folder: &Path, root: &Path, deeper: usize, files: &mut Vec<(PathBuf, Str
             if deeper == 0 {
                 return Err(FileError::FolderTooDeep { path });
             }
-            list(&path, root, deeper - 1, files)?;
+            list(&path, root, deeper - 1, files, skipped)?;
         } else if is_known(&path) {
+            let meant = fs::metadata(&path).map_or(kind, |metadata| metadata.file_type());
             let name = path.strip_prefix(root).unwrap_or(&path).to_string_lossy().replace('\\', "/");
-            files.push((path, name));
+            match kind_of(meant) {
+                Some(kind) => skipped.push(format!("{}: skipped, for this is {kind}, not a file", sanitized(&name))),
+                None => files.push((path, name)),
+            }
         }
         if files.len() > MOST_FILES {
             return Err(FileError::TooManyFiles { path: root.to_owned(), most: MOST_FILES });

@@ -21,6 +21,7 @@ mod npy;
 mod opened;
 mod output_set;
 
+mod reading_budget;
 mod recognise;
 mod record_files;
 mod recovery_file;

@@ -16,7 +16,7 @@ use crate::text::{
     FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable, read_matrices, read_matrix, read_table,
     says_quantity,
 };
-use crate::variables::{MemoryBudget, Value, Variable, VariableFault};
+use crate::variables::{ReadingBudget, Value, Variable, VariableFault};
 
 /// What was found in files.
 #[derive(Clone, Debug, Default)]
@@ -49,7 +49,7 @@ pub fn read_models(
 
 /// The models in the bytes of a file of this name, in no more than `most` bytes of memory for what it holds.
 pub fn models_of_bytes(bytes: &[u8], name: &str, most: u64) -> Result<FoundModels, FileError> {
-    let budget = MemoryBudget::new(most, &|_| false);
+    let budget = ReadingBudget::new(most);
     let none = Headings::new();
     let mut reading = ModelReading { headings: &none, found: FoundModels::default(), matrices: Vec::new() };
     reading.take(import_bytes(bytes, Path::new(name), name, &budget)?, &budget)?;
@@ -65,13 +65,17 @@ struct ModelReading<'h> {
 }
 
 impl ModelReading<'_> {
-    fn take(&mut self, file: ImportedFile<'_>, budget: &MemoryBudget<'_>) -> Result<(), FileError> {
+    fn take(&mut self, file: ImportedFile<'_>, budget: &ReadingBudget<'_>) -> Result<(), FileError> {
         let ImportedFile { path, name, sha256, contents } = file;
         let wrong = |fault| FileError::variables(path, fault);
         let recognised = match contents {
-            Contents::Variables { variables, notes } => self.of_variables(variables, notes, (name, &sha256)),
+            Contents::Variables { variables, notes } => {
+                self.of_variables(variables, notes, (name, &sha256), budget).map_err(wrong)?
+            }
             Contents::Text(text) => match models_text(&text, path, budget).map_err(wrong)? {
-                TextContents::Variables { variables, notes } => self.of_variables(variables, notes, (name, &sha256)),
+                TextContents::Variables { variables, notes } => {
+                    self.of_variables(variables, notes, (name, &sha256), budget).map_err(wrong)?
+                }
                 TextContents::Table(mut table) => {
                     if let Some(said) = self.headings.get(name) {
                         table = table.with_headings(said).map_err(wrong)?;
@@ -93,7 +97,7 @@ impl ModelReading<'_> {
                     self.found.faults.extend(taken.err().map(|error| format!("{name}: {error}")));
                 }
                 self.found.ignored.extend(of_file(name, ignored));
-                self.of_variables(variables, Vec::new(), (name, &sha256))
+                self.of_variables(variables, Vec::new(), (name, &sha256), budget).map_err(wrong)?
             }
         };
         let Found { mut items, faults, ignored } = recognised;
@@ -114,16 +118,17 @@ impl ModelReading<'_> {
         variables: Vec<Variable>,
         notes: Vec<String>,
         (name, sha256): (&str, &str),
-    ) -> Found<FoundModel> {
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Found<FoundModel>, VariableFault> {
         if let Some(matrix) = LooseMatrix::of(&variables, name) {
             self.matrices.push(LooseMatrix { sha256: sha256.to_owned(), ..matrix });
-            return Found::default();
+            return Ok(Found::default());
         }
-        let mut found = recognise(&variables);
+        let mut found = recognise(&variables, budget)?;
         for model in &mut found.items {
             model.notes.extend(notes.iter().cloned());
         }
-        found
+        Ok(found)
     }
 
     fn finish(mut self) -> FoundModels {
@@ -141,7 +146,7 @@ enum TextContents {
 }
 
 /// A matrix where the file is named as one, matrices under names where there are some, else a table.
-fn models_text(text: &str, path: &Path, budget: &MemoryBudget<'_>) -> Result<TextContents, VariableFault> {
+fn models_text(text: &str, path: &Path, budget: &ReadingBudget<'_>) -> Result<TextContents, VariableFault> {
     if let Some((letter, _)) = matrix_letter(stem(path)) {
         let variable = read_matrix(text, &letter.to_string(), budget)?;
         return Ok(TextContents::Variables { variables: vec![variable], notes: Vec::new() });
@@ -262,7 +267,9 @@ fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
     let mut found = Found::default();
     for (group, matrices) in groups {
         let variables: Vec<Variable> = matrices.iter().map(|matrix| matrix.variable.clone()).collect();
-        let mut of_group = recognise(&variables);
+        // The files were within their budgets; their matrices are copied once.
+        let mut of_group = recognise(&variables, &ReadingBudget::new(u64::MAX))
+            .unwrap_or_else(|fault| Found { faults: vec![fault.to_string()], ..Found::default() });
         let is_model = !of_group.items.is_empty() || !of_group.faults.is_empty();
         for model in &mut of_group.items {
             let source = model.draft.source.get_or_insert_with(Provenance::default);

@@ -141,7 +141,8 @@ fn drawn(found: &Identification, band: [f64; 2], pair: Pair) -> DrawnResponse {
 
 /// The response of a model, the phase on the branch nearest to `reference`.
 fn curve(model: &StateSpace, omegas: &[f64], pair: Pair, reference: Option<(f64, f64)>) -> Curve {
-    let values = evaluate(model, omegas).curve(pair).into_iter();
+    let response = evaluate(model, omegas);
+    let values = response.curve(pair).iter().copied();
     let finite = omegas.iter().copied().zip(values).filter(|(_, value)| value.re.is_finite() && value.im.is_finite());
     Curve(shape(finite, reference))
 }

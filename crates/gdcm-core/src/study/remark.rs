@@ -1,6 +1,6 @@
 //! What the result of a condition says, in the engineer's words: the same in the window and in a terminal.
 
-use crate::correction::{Sensitivity, kkt_residual, sensitivities};
+use crate::correction::{Sensitivity, Solution, kkt_residual, sensitivities};
 use crate::dataset::Pair;
 use crate::schedule::Schedule;
 use crate::units::{number, s_to_ms, telling, told_apart};
@@ -82,13 +82,18 @@ fn gain_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         return vec![Remark::new(RemarkKind::Good, text)];
     }
     let (inputs, outputs) = study.dataset.names_of_channels();
-    let gains = &result.gains;
-    let top = study.settings.band.max();
-    let misses: Vec<String> = gains.unmatched.iter().map(|unmatched| unmatched.words(top, &inputs, &outputs)).collect();
-    let conflicts = gains.conflicts.iter().map(|conflict| conflict.words(&inputs, &outputs));
-    let remedy = gains.remedy.iter().map(|remedy| remedy.words(&inputs, &outputs)).filter(|words| !words.is_empty());
-    let texts = std::iter::once(misses.join(" ")).chain(conflicts).chain(remedy);
+    let remedy = result.gains.remedy.iter().map(|remedy| remedy.words(&inputs, &outputs));
+    let texts = miss_words(study, &result.gains).chain(remedy.filter(|words| !words.is_empty()));
     texts.map(|text| Remark::new(RemarkKind::Trouble, text)).collect()
+}
+
+/// What held responses get in place of what they want, then each conflict behind that.
+pub(super) fn miss_words(study: &Study, solution: &Solution) -> impl Iterator<Item = String> {
+    let (inputs, outputs) = study.dataset.names_of_channels();
+    let top = study.settings.band.max();
+    let misses: Vec<String> = solution.unmatched.iter().map(|miss| miss.words(top, &inputs, &outputs)).collect();
+    let conflicts = solution.conflicts.iter().map(move |conflict| conflict.words(&inputs, &outputs));
+    std::iter::once(misses.join(" ")).chain(conflicts)
 }
 
 /// The loops of held responses that count as agreeing.

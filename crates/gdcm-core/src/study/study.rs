@@ -1,7 +1,7 @@
 //! What the engineer decided about a dataset.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use serde::{Deserialize, Serialize};
 
@@ -22,10 +22,6 @@ pub struct BundleChoice {
 }
 
 impl BundleChoice {
-    const fn none() -> Self {
-        Self { rejected: BTreeSet::new(), reasons: BTreeMap::new(), pinned: None }
-    }
-
     /// Puts a model back; the reason goes with the rejection.
     pub(super) fn restore(&mut self, name: &str) {
         self.rejected.remove(name);
@@ -53,16 +49,12 @@ pub struct ConditionChoice {
 
 impl Default for ConditionChoice {
     fn default() -> Self {
-        Self::none()
+        Self { physics: BundleChoice::default(), identified: BundleChoice::default(), scheduled: true, held_out: false }
     }
 }
 
 impl ConditionChoice {
     /// Every model kept, none pinned, the condition scheduled.
-    const fn none() -> Self {
-        Self { physics: BundleChoice::none(), identified: BundleChoice::none(), scheduled: true, held_out: false }
-    }
-
     /// Puts every model of both bundles back.
     pub(super) fn restore_all(&mut self) {
         self.physics.restore_all();
@@ -140,7 +132,7 @@ impl Study {
 
     /// The choices in one condition; those of a condition that the dataset does not have are none.
     pub fn choice(&self, condition: ConditionId) -> &ConditionChoice {
-        static NONE: ConditionChoice = ConditionChoice::none();
+        static NONE: LazyLock<ConditionChoice> = LazyLock::new(ConditionChoice::default);
         self.choices.get(&condition).unwrap_or(&NONE)
     }
 

@@ -271,7 +271,7 @@ mod tests {
     use super::super::scheduled_correction::tests::example;
     use super::*;
     use crate::text::read_table;
-    use crate::variables::{MemoryBudget, Value};
+    use crate::variables::{ReadingBudget, Value};
 
     #[test]
     fn the_error_of_a_parabola_is_greatest_in_the_middle() {
@@ -292,7 +292,7 @@ mod tests {
     fn the_table_holds_the_curves_at_its_airspeeds() {
         let correction = example();
         let text = table_csv(&correction, &POINTS).unwrap();
-        let table = read_table(&text, &MemoryBudget::new(1 << 20, &|_| false)).unwrap();
+        let table = read_table(&text, &ReadingBudget::new(1 << 20)).unwrap();
         assert_eq!(table.columns[0], POINTS);
         assert_eq!(table.columns.len(), 7);
         assert_eq!(table.units[2].as_deref(), Some("s"));

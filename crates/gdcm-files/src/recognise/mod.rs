@@ -14,7 +14,7 @@ use gdcm_core::dataset::{Estimate, ModelDraft, Origin, Provenance, ResponseArray
 
 use crate::recognise::record::{Record, array_of, facts_of, inputs_of, list_of, matrix_of, outputs_of, texts_of};
 use crate::recognise::state_space::{is_state_space, is_transfer_function, state_spaces, transfer_function};
-use crate::variables::{Array, StructArray, Value, Variable};
+use crate::variables::{Array, ReadingBudget, StructArray, Value, Variable, VariableFault};
 
 /// Deepest nesting that is searched.
 const DEEPEST: usize = 16;
@@ -22,6 +22,9 @@ const DEEPEST: usize = 16;
 const MOST_FOUND: usize = 10_000;
 /// Most variables that are told where nothing was found.
 const MOST_TOLD: usize = 20;
+
+/// Steps of work that looking at a field takes: it is compared with all names that are known.
+const STEPS: u64 = 64;
 
 /// What was found among variables: models, or records.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,67 +47,93 @@ impl<T> Default for Found<T> {
 type Recognise<'r, T> = &'r dyn Fn(&Record<'_>, &str) -> Option<Vec<Result<T, String>>>;
 
 /// Everything that `recognise` knows among variables: first what they are together, then each by itself, from outside in.
-pub(crate) fn search<T>(variables: &[Variable], recognise: Recognise<'_, T>) -> Found<T> {
-    let mut search = Search { found: Found::default(), recognise };
-    search.take(&Record::of_variables(variables), "");
+pub(crate) fn search<T>(
+    variables: &[Variable],
+    budget: &ReadingBudget<'_>,
+    recognise: Recognise<'_, T>,
+) -> Result<Found<T>, VariableFault> {
+    let mut search = Search { found: Found::default(), recognise, budget };
+    search.take(&Record::of_variables(variables), "")?;
     let is_alone = search.found.items.is_empty() && search.found.faults.is_empty();
     for variable in variables {
-        search.descend(&variable.name, &variable.value, DEEPEST);
+        search.descend(&variable.name, &variable.value, DEEPEST)?;
     }
     let mut found = search.found;
     let nothing = found.items.is_empty() && found.faults.is_empty();
     let told = variables.iter().filter(|of| nothing || is_alone && matches!(of.value, Value::Array(_)));
     found.ignored.extend(told.take(MOST_TOLD).map(|of| format!("{}: {}", of.name, of.value.words())));
-    found
+    Ok(found)
 }
 
 struct Search<'r, T> {
     found: Found<T>,
     recognise: Recognise<'r, T>,
+    budget: &'r ReadingBudget<'r>,
 }
 
 impl<T> Search<'_, T> {
     /// Takes what fields are, if they are known; gives whether they are.
-    fn take(&mut self, record: &Record<'_>, variable: &str) -> bool {
-        let Some(items) = (self.recognise)(record, variable) else { return false };
+    fn take(&mut self, record: &Record<'_>, variable: &str) -> Result<bool, VariableFault> {
+        self.budget.work(STEPS * record.fields().count() as u64, variable)?;
+        let Some(items) = (self.recognise)(record, variable) else { return Ok(false) };
+        // What is found holds a copy of its numbers.
+        for (_, value) in record.fields() {
+            if let Value::Array(array) = value {
+                self.budget.take(array.len() as u64, 16, variable)?;
+            }
+        }
         self.found.add(variable, items);
-        true
+        Ok(true)
     }
 
     /// Looks in a value, and in what it holds.
-    fn descend(&mut self, name: &str, value: &Value, deeper: usize) {
+    fn descend(&mut self, name: &str, value: &Value, deeper: usize) -> Result<(), VariableFault> {
+        self.budget.work(STEPS, name)?;
         if deeper == 0 || self.found.items.len() >= MOST_FOUND {
-            self.found.faults.push(format!("{name}: too many values, or values nested too deeply, to look into"));
-            return;
+            return self.fault(format!("{name}: too many values, or values nested too deeply, to look into"));
         }
         match value {
-            Value::Struct(records) => self.descend_records(name, records, None, deeper),
-            Value::Object(object) => self.descend_records(name, &object.records, Some(&object.class), deeper),
+            Value::Struct(records) => self.descend_records(name, records, None, deeper)?,
+            Value::Object(object) => self.descend_records(name, &object.records, Some(&object.class), deeper)?,
             Value::Cell(cell) => {
                 for (index, value) in cell.values.iter().enumerate() {
-                    self.descend(&format!("{name}{{{}}}", index + 1), value, deeper - 1);
+                    self.descend(&format!("{name}{{{}}}", index + 1), value, deeper - 1)?;
                 }
             }
-            Value::Opaque { class, why } => self.found.faults.push(format!("{name} ({class}): {why}")),
+            Value::Opaque { class, why } => self.fault(format!("{name} ({class}): {why}"))?,
             Value::Array(_) | Value::Text(_) => {}
         }
+        Ok(())
     }
 
-    fn descend_records(&mut self, name: &str, records: &StructArray, class: Option<&str>, deeper: usize) {
-        let count = records.shape.iter().product::<usize>();
+    fn fault(&mut self, words: String) -> Result<(), VariableFault> {
+        self.budget.take(words.len() as u64 + 128, 1, "")?;
+        self.found.faults.push(words);
+        Ok(())
+    }
+
+    fn descend_records(
+        &mut self,
+        name: &str,
+        records: &StructArray,
+        class: Option<&str>,
+        deeper: usize,
+    ) -> Result<(), VariableFault> {
+        let count = if records.fields.is_empty() { 0 } else { records.shape.iter().product::<usize>() };
         for index in 0..count {
             let name = if count == 1 { name.to_owned() } else { format!("{name}({})", index + 1) };
             let pages = Record::pages(records, index);
             let mut is_known = false;
             for page in 0..pages {
                 let name = if pages == 1 { name.clone() } else { format!("{name}(:,:,{})", page + 1) };
-                is_known |= self.take(&Record::of_struct(records, index, class, page), &name);
+                is_known |= self.take(&Record::of_struct(records, index, class, page), &name)?;
             }
             let inner = Record::of_struct(records, index, None, 0);
             for (field, value) in inner.fields().filter(|_| !is_known) {
-                self.descend(&format!("{name}.{field}"), value, deeper - 1);
+                self.descend(&format!("{name}.{field}"), value, deeper - 1)?;
             }
         }
+        Ok(())
     }
 }
 
@@ -121,16 +150,19 @@ impl<T> Found<T> {
 }
 
 /// Every model among the variables of a file.
-pub(crate) fn recognise(variables: &[Variable]) -> Found<FoundModel> {
+pub(crate) fn recognise(
+    variables: &[Variable],
+    budget: &ReadingBudget<'_>,
+) -> Result<Found<FoundModel>, VariableFault> {
     let together = model_of(&Record::of_variables(variables), "").is_some();
-    let mut found = search(variables, &model_of);
-    let suffixed = suffixed(variables);
+    let mut found = search(variables, budget, &model_of)?;
+    let suffixed = suffixed(variables, budget)?;
     if !together && suffixed.items.len() + suffixed.faults.len() > 0 {
         found.ignored.clear();
     }
     found.items.splice(0..0, suffixed.items);
     found.faults.splice(0..0, suffixed.faults);
-    found
+    Ok(found)
 }
 
 /// The models that fields are, if they are some.
@@ -147,11 +179,12 @@ fn model_of(record: &Record<'_>, variable: &str) -> Option<Vec<Result<FoundModel
 }
 
 /// Matrices of several models beside one another: `A_nom, B_nom, ...`, `A1, B1, ...`.
-fn suffixed(variables: &[Variable]) -> Found<FoundModel> {
+fn suffixed(variables: &[Variable], budget: &ReadingBudget<'_>) -> Result<Found<FoundModel>, VariableFault> {
     let mut found = Found::default();
     let letters = ["A", "B", "C", "D", "E"];
     let suffixes = variables.iter().filter_map(|variable| variable.name.strip_prefix('A'));
     for suffix in suffixes.filter(|suffix| !suffix.is_empty()) {
+        budget.work((letters.len() * variables.len()) as u64, "")?;
         let matrix = |letter: &&'static str| {
             let variable = variables.iter().find(|variable| variable.name == format!("{letter}{suffix}"))?;
             matrix_of(letter, &variable.value).is_ok().then_some((*letter, &variable.value))
@@ -166,7 +199,7 @@ fn suffixed(variables: &[Variable]) -> Found<FoundModel> {
             found.add(name, model_of(&record, name).unwrap_or_default());
         }
     }
-    found
+    Ok(found)
 }
 
 // Models by their responses over frequencies.
@@ -306,6 +339,10 @@ mod tests {
     fn model(gain: f64) -> Vec<(&'static str, Value)> {
         let scalar = |value: f64| numbers(1, 1, &[value]);
         vec![("A", scalar(-1.0)), ("B", scalar(gain)), ("C", scalar(1.0)), ("D", scalar(0.0))]
+    }
+
+    fn recognise(variables: &[Variable]) -> Found<FoundModel> {
+        super::recognise(variables, &ReadingBudget::new(1 << 20)).unwrap()
     }
 
     fn gains(found: &Found<FoundModel>) -> Vec<(String, f64)> {

@@ -1,5 +1,8 @@
 //! Fields under names, wherever they stand: in a struct, in an object, in a file.
 
+use std::cell::OnceCell;
+use std::collections::HashMap;
+
 use gdcm_core::assembly::{ChannelLabel, Facts, SAMPLE_TIME_NAMES, folded_name};
 use gdcm_core::dataset::{GREATEST_CHANNEL_DELAY_S, Timing};
 use gdcm_core::units::number;
@@ -14,10 +17,19 @@ const RESPONSE_PART: &str = "frequencyresponse";
 /// Deepest of these parts inside one another.
 const DEEPEST_PART: usize = 3;
 
+/// The first field of each name; made when a record is first asked, for one may have as many fields as a file has bytes.
+#[derive(Clone, Debug, Default)]
+struct Index<'v> {
+    exact: HashMap<&'v str, &'v Value>,
+    /// Without case and underscores.
+    folded: HashMap<String, &'v Value>,
+}
+
 /// Fields that belong together.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Record<'v> {
     fields: Vec<(&'v str, &'v Value)>,
+    index: OnceCell<Index<'v>>,
     /// The class, where it is an object.
     pub(crate) class: Option<&'v str>,
     /// Whether it is a struct or an object, and not the variables of a file.
@@ -32,7 +44,7 @@ impl<'v> Record<'v> {
 
     /// Values under names that stand beside others.
     pub(crate) fn of_fields(fields: impl Iterator<Item = (&'v str, &'v Value)>) -> Self {
-        Self { fields: fields.collect(), class: None, stands_alone: false }
+        Self { fields: fields.collect(), ..Self::default() }
     }
 
     /// One record of a struct array. Of an object also what lies in its inner parts, the `page`-th where they are arrays: objects of
@@ -43,7 +55,7 @@ impl<'v> Record<'v> {
         if class.is_some() || holds_response {
             add_inner(&mut fields, page, DEEPEST_PART);
         }
-        Self { fields, class, stands_alone: true }
+        Self { fields, class, stands_alone: true, ..Self::default() }
     }
 
     /// Number of models that an object is an array of: each has a record of numbers of its own.
@@ -58,15 +70,24 @@ impl<'v> Record<'v> {
     /// The field of the first of these names that there is: as it is written, else without case and underscores.
     pub(crate) fn get(&self, names: &[&str]) -> Option<&'v Value> {
         let exact = names.iter().find_map(|name| self.exact(name));
-        let loose = || {
-            names.iter().find_map(|name| self.fields.iter().find(|(field, _)| folded_name(field) == folded_name(name)))
-        };
-        exact.or_else(|| loose().map(|(_, value)| *value))
+        let loose = |name: &&str| self.index().folded.get(&folded_name(name)).copied();
+        exact.or_else(|| names.iter().find_map(loose))
     }
 
     /// The field of this very name.
     pub(crate) fn exact(&self, name: &str) -> Option<&'v Value> {
-        self.fields.iter().find(|(field, _)| *field == name).map(|(_, value)| *value)
+        self.index().exact.get(name).copied()
+    }
+
+    fn index(&self) -> &Index<'v> {
+        self.index.get_or_init(|| {
+            let mut index = Index::default();
+            for &(name, value) in &self.fields {
+                index.exact.entry(name).or_insert(value);
+                index.folded.entry(folded_name(name)).or_insert(value);
+            }
+            index
+        })
     }
 
     /// Names and values, in order.

@@ -318,17 +318,17 @@ impl ResponseParts {
 #[cfg(test)]
 mod frequency_columns_tests {
     use crate::text::columns::read_table;
-    use crate::variables::MemoryBudget;
+    use crate::variables::ReadingBudget;
 
     use super::*;
 
     fn recognise(text: &str) -> FrequencyColumns {
-        let table = read_table(text, &MemoryBudget::new(1 << 20, &|_| false)).unwrap();
+        let table = read_table(text, &ReadingBudget::new(1 << 20)).unwrap();
         FrequencyColumns::recognise(&table).unwrap()
     }
 
     fn fault(text: &str) -> String {
-        let table = read_table(text, &MemoryBudget::new(1 << 20, &|_| false)).unwrap();
+        let table = read_table(text, &ReadingBudget::new(1 << 20)).unwrap();
         FrequencyColumns::recognise(&table).unwrap_err().to_string()
     }
 
@@ -407,12 +407,12 @@ mod frequency_values_tests {
     use proptest::prelude::*;
 
     use crate::text::columns::read_table;
-    use crate::variables::MemoryBudget;
+    use crate::variables::ReadingBudget;
 
     use super::*;
 
     fn values(text: &str) -> Result<Vec<ResponsePoints>, VariableFault> {
-        let table = read_table(text, &MemoryBudget::new(1 << 20, &|_| false)).unwrap();
+        let table = read_table(text, &ReadingBudget::new(1 << 20)).unwrap();
         FrequencyColumns::recognise(&table).unwrap().values(&table)
     }
 

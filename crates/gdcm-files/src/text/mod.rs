@@ -13,7 +13,7 @@ use std::path::Path;
 
 use crate::file_error::FileError;
 use crate::importer::{Contents, Importer};
-use crate::variables::MemoryBudget;
+use crate::variables::ReadingBudget;
 
 pub(crate) use column_meaning::says_quantity;
 pub(crate) use columns::{TextTable, read_table};
@@ -38,7 +38,7 @@ impl Importer for Literals {
         ending == "m"
     }
 
-    fn read(&self, bytes: &[u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Contents, FileError> {
+    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
         let read = decode(bytes, budget).and_then(|text| literals::read_literals(&text, budget));
         let literals::Statements { variables, notes } = read.map_err(|fault| FileError::variables(path, fault))?;
         Ok(Contents::Variables { variables, notes })
@@ -61,7 +61,7 @@ impl Importer for Text {
         true
     }
 
-    fn read(&self, bytes: &[u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Contents, FileError> {
+    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
         decode(bytes, budget).map(Contents::Text).map_err(|fault| FileError::variables(path, fault))
     }
 }

@@ -212,7 +212,7 @@ mod tests {
 
     #[test]
     fn a_wrapped_phase_stays_within_half_a_turn_and_has_a_gap_where_it_jumps() {
-        let wrapped = Presentation { unit: PhaseUnit::Wrapped, turns: 0 }.of(&[-100.0, -170.0, -190.0, -200.0]);
+        let wrapped = presented(&vec![-100.0, -170.0, -190.0, -200.0].into(), PhaseUnit::Wrapped, 0);
         // Two roundings of angles below 360.
         assert!((wrapped[1] + 170.0).abs() < 1e-12 && (wrapped[3] - 160.0).abs() < 1e-12);
         assert!(wrapped[2].is_nan(), "{wrapped:?}");
@@ -220,7 +220,7 @@ mod tests {
 
     #[test]
     fn a_turn_by_hand_moves_a_phase_by_360_degrees() {
-        let up = Presentation { unit: PhaseUnit::Unwrapped, turns: 1 }.of(&[-100.0, f64::NAN]);
+        let up = presented(&vec![-100.0, f64::NAN].into(), PhaseUnit::Unwrapped, 1);
         assert!(up[0] == 260.0 && up[1].is_nan());
     }
 

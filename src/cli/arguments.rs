@@ -195,7 +195,7 @@ pub struct FigureArguments {
     #[command(flatten)]
     pub study: StudyArguments,
     /// Which figure.
-    #[arg(long, value_name = "VIEW", value_parser = figure_kinds())]
+    #[arg(long, value_name = "VIEW", value_parser = one_of(FigureKind::ALL, FigureKind::name))]
     pub view: FigureKind,
     /// The condition, by its id: of bode, error and overview.
     #[arg(long, value_name = "ID", allow_negative_numbers = true)]
@@ -214,7 +214,7 @@ pub struct FigureArguments {
     #[arg(long)]
     pub over_conditions: bool,
     /// Roles to leave out of bode, error and overview, separated by commas (perturbed,identified,rejected).
-    #[arg(long, value_name = "ROLES", value_delimiter = ',', value_parser = roles())]
+    #[arg(long, value_name = "ROLES", value_delimiter = ',', value_parser = one_of(Role::ALL, Role::word))]
     pub hide: Vec<Role>,
     /// Error bars and the bands of the schedule, in net-gain and channels; evidence is made of them anyway.
     #[arg(long)]
@@ -223,7 +223,7 @@ pub struct FigureArguments {
     #[arg(long)]
     pub hertz: bool,
     /// Which model of each condition airspeeds shows: nominal, representative, corrected or identified.
-    #[arg(long, value_name = "MODEL", default_value = "nominal", value_parser = across_roles())]
+    #[arg(long, value_name = "MODEL", default_value = "nominal", value_parser = one_of(AcrossRole::ALL, AcrossRole::name))]
     pub model: AcrossRole,
     /// Among the poles, the zeros of this response, OUTPUT/INPUT, in the nominal model and in the representatives.
     #[arg(long, value_name = "PAIR")]
@@ -232,7 +232,7 @@ pub struct FigureArguments {
     #[arg(long)]
     pub muad: bool,
     /// Width on paper: one column of a journal (84 mm), or both (174 mm).
-    #[arg(long, value_name = "WIDTH", default_value = "double", value_parser = column_widths())]
+    #[arg(long, value_name = "WIDTH", default_value = "double", value_parser = one_of(ColumnWidth::BOTH, ColumnWidth::name))]
     pub width: ColumnWidth,
     /// The file; the end of its name says what it is: .svg, .png (300 dots to the inch), .pdf, or .csv for the numbers.
     #[arg(long, value_name = "FILE")]
@@ -256,25 +256,13 @@ pub struct ReportArguments {
     pub force: bool,
 }
 
-fn across_roles() -> impl TypedValueParser<Value = AcrossRole> {
-    PossibleValuesParser::new(AcrossRole::ALL.map(AcrossRole::name))
-        .try_map(|name| AcrossRole::ALL.into_iter().find(|role| role.name() == name).ok_or("there is no such model"))
-}
-
-fn figure_kinds() -> impl TypedValueParser<Value = FigureKind> {
-    PossibleValuesParser::new(FigureKind::ALL.map(FigureKind::name))
-        .try_map(|name| FigureKind::ALL.into_iter().find(|kind| kind.name() == name).ok_or("there is no such figure"))
-}
-
-fn roles() -> impl TypedValueParser<Value = Role> {
-    PossibleValuesParser::new(Role::ALL.map(Role::word))
-        .try_map(|name| Role::ALL.into_iter().find(|role| role.word() == name).ok_or("there is no such role"))
-}
-
-fn column_widths() -> impl TypedValueParser<Value = ColumnWidth> {
-    PossibleValuesParser::new(ColumnWidth::BOTH.map(ColumnWidth::name)).try_map(|name| {
-        ColumnWidth::BOTH.into_iter().find(|width| width.name() == name).ok_or("there is no such width")
-    })
+/// One of some values by its name.
+fn one_of<T, const N: usize>(all: [T; N], name: fn(T) -> &'static str) -> impl TypedValueParser<Value = T>
+where
+    T: Copy + Send + Sync + 'static,
+{
+    let find = move |word: String| all.into_iter().find(|of| name(*of) == word).ok_or("there is no such value");
+    PossibleValuesParser::new(all.map(name)).try_map(find)
 }
 
 /// Which responses a figure is of.

@@ -5,15 +5,16 @@ use egui::{Align, Button, CollapsingHeader, Frame, Grid, Layout, Margin, Respons
 use gdcm_core::correction::{self, GainObjective, Outcome, Quantity, kkt_residual};
 use gdcm_core::dataset::Pair;
 use gdcm_core::study::{
-    ConditionAnalysis, Edit, ExplainTarget, PhaseCorrection, Remark, RemarkKind, lead_words, servo_words, setting,
+    ConditionAnalysis, Edit, ExplainTarget, PhaseCorrection, Remark, RemarkKind, details, lead_words, servo_words,
+    setting,
 };
 use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::s_to_ms;
 
 use super::views::bar_words;
 use super::{
-    BODY_SIZE, Command, FormKind, Palette, QUESTION, Region, SMALL_SIZE, State, TableKind, details_shown, heading_ui,
-    named, region_ui, remarks_shown, table_menu_ui, value_label_ui,
+    BODY_SIZE, Command, FormKind, Palette, QUESTION, Region, SMALL_SIZE, State, TableKind, heading_ui, named,
+    region_ui, remarks_shown, table_menu_ui, value_label_ui,
 };
 
 /// Size of the half-widths of bars \[pt\].
@@ -52,7 +53,7 @@ fn outcome_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
             lead_ui(ui, state, shown, palette);
             let header = palette.small("In detail");
             CollapsingHeader::new(header).id_salt("details").show(ui, |ui| {
-                for sentence in details_shown(state, shown) {
+                for sentence in details(&state.study, shown) {
                     ui.label(RichText::new(sentence).size(SMALL_SIZE));
                 }
             });

@@ -221,7 +221,7 @@ impl PlotAxis {
 #[cfg(test)]
 mod tests {
     use super::super::axis_strip::*;
-    use crate::view::plot::log_axis::FrequencyUnit;
+    use gdcm_files::figure::FrequencyUnit;
 
     fn texts(min: &str, max: &str) -> [String; 2] {
         [min.to_owned(), max.to_owned()]

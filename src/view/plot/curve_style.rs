@@ -124,21 +124,21 @@ mod tests {
 
     use super::*;
 
-    fn shapes(pattern: LinePattern) -> usize {
+    fn shapes(dash: Dash, length: f32) -> usize {
         let mut shapes = Vec::new();
-        let look = CurveStyle { color: Color32::WHITE, width: 2.0, pattern };
+        let look = CurveStyle { color: Color32::WHITE, width: 2.0, dash, length, ground: Color32::BLACK };
         look.add_shapes(vec![pos2(0.0, 0.0), pos2(100.0, 0.0)], &mut shapes);
         shapes.len()
     }
 
     #[test]
     fn every_pattern_looks_different_along_a_line() {
-        assert_eq!(shapes(LinePattern::Solid), 1);
-        assert_eq!(shapes(LinePattern::Double { ground: Color32::BLACK }), 2);
+        assert_eq!(shapes(Dash::Solid, 0.0), 1);
+        assert_eq!(shapes(Dash::Double, 0.0), 2);
         // 100 points of dashes of 8 with gaps of 4.9; of 8, 1.8 and two gaps of 3.0; of dots every 5 but at the end.
-        assert_eq!(shapes(LinePattern::Dashed { length: 8.0 }), 8);
-        assert_eq!(shapes(LinePattern::DashDotted { length: 8.0 }), 13);
-        assert_eq!(shapes(LinePattern::Dotted { spacing: 5.0 }), 20);
+        assert_eq!(shapes(Dash::Long, 8.0), 8);
+        assert_eq!(shapes(Dash::DashDot, 8.0), 13);
+        assert_eq!(shapes(Dash::Dotted, 5.0), 20);
     }
 
     #[test]
@@ -166,7 +166,7 @@ mod tests {
         let palette = Palette::dark();
         let look = palette.role_style(Role::Nominal, true);
         assert_eq!(look.color, palette.nominal);
-        assert!(matches!(look.pattern, LinePattern::Dotted { .. }));
+        assert_eq!(look.dash, Dash::Dotted);
     }
 
     #[test]
@@ -174,7 +174,7 @@ mod tests {
         let palette = Palette::light();
         for other in [Role::Nominal, Role::Identified, Role::IdentifiedRepresentative] {
             let (corrected, other) = (palette.role_style(Role::Corrected, false), palette.role_style(other, false));
-            assert!(corrected.pattern != other.pattern && (corrected.width - other.width).abs() > 0.5, "{other:?}");
+            assert!(corrected.dash != other.dash && (corrected.width - other.width).abs() > 0.5, "{other:?}");
         }
     }
 
@@ -193,7 +193,7 @@ mod tests {
             for a in Role::ALL {
                 for b in Role::ALL.into_iter().filter(|b| *b != a) {
                     let (a, b) = (palette.role_style(a, false), palette.role_style(b, false));
-                    assert!(a.pattern != b.pattern || (a.width - b.width).abs() > 0.5, "{a:?} {b:?}");
+                    assert!((a.dash, a.length) != (b.dash, b.length) || (a.width - b.width).abs() > 0.5, "{a:?} {b:?}");
                 }
             }
         }

@@ -34,14 +34,14 @@ use destination::{Destination, Group};
 use failure::Failure;
 use models::{ReadingProgress, counted};
 use read_record::{hold_out, laid_out, record_table, relative_entry};
-use study_options::{analysis_of, condition_of, ids, names, pairs_of, study_of};
+use study_options::{analysis_of, condition_of, ids, names, pairs_of, study_of, turn};
 use summary::{LABEL, leave_one_out_section};
 use terminal::{TerminalProgress, say, say_error};
 use text_table::{indented, labelled, listed};
 
 pub use arguments::{
     AnalyzeArguments, AssembleArguments, Command, ConvertArguments, FigureArguments, OpeningArguments, PairChoice,
-    PairList, Rejection, ReportArguments, StudyArguments,
+    PairList, Rejection, ReportArguments, SaidSign, StudyArguments,
 };
 pub use export::{Breakpoints, ExportArguments};
 pub use identify_arguments::{ChannelDelay, ChannelList, IdentifyArguments, OfferedChoice};
@@ -78,7 +78,7 @@ pub fn run(command: &Command) -> ExitCode {
         Command::Assemble(arguments) => models::assemble(arguments),
         Command::Convert(arguments) => models::convert(arguments),
         Command::Identify(arguments) => identify::identify(arguments),
-        Command::Check { file, opening } => check::check(file, opening),
+        Command::Check { file, opening, sign } => check::check(file, opening, sign),
         Command::Example { directory, force } => example(directory, existing(*force)),
     })
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::executor::Pool;
+use gdcm_core::correction;
 use gdcm_core::dataset::{BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
 use gdcm_core::message_text::sanitized;
 use gdcm_core::study::{Analysis, ConditionFailure, Edit, Engine, Study};
@@ -10,7 +11,7 @@ use gdcm_files::{LoadedDataset, OutputSet, embedded_example};
 
 use super::existing;
 use super::open as open_file;
-use super::{Failure, PairList, Rejection, StudyArguments, TerminalProgress, say_error};
+use super::{Failure, PairList, Rejection, SaidSign, StudyArguments, TerminalProgress, say_error};
 
 /// The study, the dataset that it is about, and the files that a command about it writes: none of those that it reads is overwritten.
 /// Cautions of the file are told on standard error.
@@ -87,6 +88,7 @@ fn take_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Fai
         let value = setting.read(&words).map_err(|reason| Failure::Option { option, reason: sanitized(&reason) })?;
         study.apply(&setting.to(value)).map_err(Failure::refused(option))?;
     }
+    turn(study, &arguments.sign)?;
     for &id in &arguments.hold_out {
         let edit = Edit::SetHeldOut { condition: ConditionId(id), held_out: true };
         study.apply(&edit).map_err(Failure::refused("--hold-out"))?;
@@ -95,6 +97,23 @@ fn take_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Fai
         hold(study, list)?;
     }
     arguments.reject.iter().try_for_each(|rejection| reject(study, rejection))
+}
+
+/// Turns the channels whose signs an option says, or puts them back.
+pub(super) fn turn(study: &mut Study, signs: &[SaidSign]) -> Result<(), Failure> {
+    const OPTION: &str = "--sign";
+    for SaidSign { channel: name, of } in signs {
+        let (inputs, outputs) = study.dataset.names_of_channels();
+        let all = correction::Channel::all(inputs.len(), outputs.len());
+        let named: Vec<correction::Channel> = all.filter(|channel| channel.name(&inputs, &outputs) == *name).collect();
+        let [channel] = named[..] else {
+            let (found, all) = (named.len(), [inputs, outputs].concat().join(", "));
+            let reason = sanitized(&format!("expected one of {all}; {found} channels are called {name}"));
+            return Err(Failure::Option { option: OPTION, reason });
+        };
+        study.apply(&Edit::SetSign { channel, of: *of }).map_err(Failure::refused(OPTION))?;
+    }
+    Ok(())
 }
 
 /// The responses of a list, which an option gave.

@@ -46,6 +46,9 @@ fn outcome_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
                 if let Some(pair) = remark.ignore {
                     ignore_ui(ui, state, pair, commands);
                 }
+                if let Some((channel, of)) = remark.turn {
+                    turn_ui(ui, state, Edit::SetSign { channel, of }, commands);
+                }
                 if let Some(phase) = remark.phase {
                     offer_ui(ui, phase, commands);
                 }
@@ -245,6 +248,17 @@ fn offer_ui(ui: &mut Ui, phase: PhaseCorrection, commands: &mut Vec<Command>) {
 }
 
 /// The click that takes a response out of the objective.
+/// Turns the models of a channel, or puts them back.
+fn turn_ui(ui: &mut Ui, state: &State, edit: Edit, commands: &mut Vec<Command>) {
+    let Edit::SetSign { channel, of } = edit else { return };
+    let (inputs, outputs) = state.dataset().names_of_channels();
+    let label = format!("Turn {}{}", channel.name(&inputs, &outputs), if of.is_some() { "" } else { " back" });
+    let button = named(ui.small_button(&label), Role::Button, label);
+    if button.on_hover_text("In every condition; can be undone").clicked() {
+        commands.push(edit.into());
+    }
+}
+
 fn ignore_ui(ui: &mut Ui, state: &State, pair: Pair, commands: &mut Vec<Command>) {
     let name = state.dataset().pair_name(pair);
     let button = named(ui.small_button("Ignore it"), Role::Button, format!("Ignore {name}"));

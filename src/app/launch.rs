@@ -158,7 +158,7 @@ fn mend_zoom(preferences: &Path) -> Option<String> {
     let start = text.find(KEY)? + KEY.len();
     let end = start + text[start..].find([',', ')'])?;
     let stored = &text[start..end];
-    if stored.trim().parse().is_ok_and(|zoom| ZOOM.contains(&zoom)) {
+    if stored.trim().parse::<f64>().is_ok_and(|zoom| ZOOM.contains(&zoom)) {
         return None;
     }
     let path = sanitized_path(preferences);

@@ -25,7 +25,7 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     let mut outputs = OutputSet::new(existing(arguments.force), inputs);
     let mut destination = Destination::asked(arguments)?;
     let mut channels = channels(arguments, destination.as_ref())?;
-    let tasks = tasks(arguments, destination.as_ref(), &mut channels)?;
+    let (tasks, unread) = tasks(arguments, destination.as_ref(), &mut channels)?;
     let files: Vec<PathBuf> = tasks.iter().map(|task| identified_path(arguments, task)).collect();
     let dataset = destination.iter().map(|of| of.path.as_path());
     outputs.check(&files.iter().map(PathBuf::as_path).chain(dataset).collect::<Vec<&Path>>())?;
@@ -71,7 +71,6 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     }
     outputs.persist()?;
     say(&lines)?;
-    let unread = unread(&arguments.records, &tasks);
     if !of_use {
         let names: Vec<&str> = channels.inputs.iter().map(|rule| rule.name.as_str()).collect();
         return Err(Failure::NotIdentified { inputs: names.join(", ") });
@@ -81,15 +80,14 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
 
 /// Whether the records say anything of an input: the others do not explain it, and a response to it is known (M14).
 fn is_identified(found: &Identification, input: usize, outputs: usize) -> bool {
-    let is_swept = found.measured.not_identified().all(|of| of != input);
+    let is_swept = found.measured.excitation().not_identified().all(|of| of != input);
     is_swept && (0..outputs).any(|output| !found.not_identified.contains(&(output, input)))
 }
 
 /// The files named on the command line of which no record came.
-fn unread(named: &[PathBuf], tasks: &[IdentificationTask]) -> Vec<PathBuf> {
+fn unread(named: &[PathBuf], records: &[LaidOutRecord]) -> Vec<PathBuf> {
     let came = |path: &&PathBuf| {
-        let mut records = tasks.iter().flat_map(|task| &task.records);
-        records.any(|record| Path::new(&record.table.source.file).file_name() == path.file_name())
+        records.iter().any(|record| Path::new(&record.table.source.file).file_name() == path.file_name())
     };
     named.iter().filter(|path| !path.is_dir() && !came(path)).cloned().collect()
 }
@@ -146,21 +144,23 @@ fn label(condition: Option<ConditionId>) -> String {
     condition.map_or_else(String::new, |id| format!("condition {id}: "))
 }
 
-/// What is to be identified: all records together, or those of each condition.
+/// What is to be identified: all records together, or those of each condition; and the files of which no record came.
 fn tasks(
     arguments: &IdentifyArguments,
     destination: Option<&Destination>,
     channels: &mut RecordChannels,
-) -> Result<Vec<IdentificationTask>, Failure> {
+) -> Result<(Vec<IdentificationTask>, Vec<PathBuf>), Failure> {
     let band = band(arguments, destination)?;
     let mut records = laid_out(arguments, channels)?;
+    let unread = unread(&arguments.records, &records);
     hold_out(&arguments.hold_out, &mut records)?;
     let preparation = preparation(channels, &arguments.delay)?;
     let groups = match destination {
         Some(destination) => destination.groups(records)?,
         None => vec![(None, records)],
     };
-    groups.into_iter().map(|group| IdentificationTask::new(group, &preparation, band)).collect()
+    let tasks = groups.into_iter().map(|group| IdentificationTask::new(group, &preparation, band));
+    Ok((tasks.collect::<Result<_, _>>()?, unread))
 }
 
 /// Where what was found is written: a file for each condition where there are many.

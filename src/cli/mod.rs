@@ -27,7 +27,7 @@ use clap::Parser;
 use clap::error::{ContextKind, ContextValue};
 
 use gdcm_core::message_text::sanitized_path;
-use gdcm_core::study::{Kind, SETTINGS, Setting};
+use gdcm_core::study::{Kind, SETTINGS};
 use gdcm_files::{Existing, Opened, holds_models, load_any, open_study_of, write_example};
 
 use crate::executor::start_threads;
@@ -82,12 +82,11 @@ pub fn request(arguments: impl IntoIterator<Item = OsString>) -> Result<Request,
 fn joined(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut joined: Vec<OsString> = Vec::new();
     for argument in arguments {
-        let of_last = |setting: &&Setting| joined.last().is_some_and(|last| last == setting.option);
-        let setting = SETTINGS.into_iter().find(|setting| of_last(&setting));
-        let is_word = setting.is_some_and(
-            |setting| matches!(setting.kind, Kind::Range { nothing: Some([word, _]), .. } if argument == word),
-        );
-        match joined.last_mut().filter(|_| is_word) {
+        let joins = SETTINGS.iter().any(|setting| {
+            let is_word = matches!(setting.kind, Kind::Range { nothing: Some([word, _]), .. } if argument == word);
+            is_word && joined.last().is_some_and(|last| last == setting.option)
+        });
+        match joined.last_mut().filter(|_| joins) {
             Some(option) => {
                 option.push("=");
                 option.push(argument);

@@ -153,7 +153,13 @@ fn records_of_many_conditions_fill_each_its_own_and_leave_the_others_as_they_are
     let of_every = ["--every-condition", "--take", "with-plain", "--description", "anew", "--out", "out"];
     let ended = desk.gdcm(&[&["identify", records, "--into", into], &of_every[..]].concat());
     assert_eq!(ended.status, 0, "{ended:?}");
-    assert!(ended.error.contains("note: conditions 1, 2, 4, 5, 6, 7, 8, 9, 11: no records; the identified models there stay"), "{}", ended.error);
+    assert!(
+        ended
+            .error
+            .contains("note: conditions 1, 2, 4, 5, 6, 7, 8, 9, 11: no records; the identified models there stay"),
+        "{}",
+        ended.error
+    );
     assert!(ended.out.contains("identified models of 2 conditions"), "{}", ended.out);
     let (before, after) =
         (&crate::REFERENCE_DATASET.dataset, load_dataset(&desk.path("out/example-dataset.json.gz")).unwrap());

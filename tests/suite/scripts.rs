@@ -26,7 +26,8 @@ fn notes_cautions_and_errors_are_told_apart_by_how_their_lines_begin() {
     let ended = desk.gdcm(&["check", "missing.json"]);
     assert!(ended.status == 2 && ended.error.starts_with("error: missing.json: "), "{ended:?}");
     fs::write(desk.path("a.csv"), "t,LON,LAT,P,Q\n0,1,2,3,4\n0.02,2,3,4,5\n").unwrap();
-    let identify = ["identify", "a.csv", "--inputs", "LON,LAT", "--outputs", "P,Q", "--band", "0.5", "12", "--out", "out"];
+    let identify =
+        ["identify", "a.csv", "--inputs", "LON,LAT", "--outputs", "P,Q", "--band", "0.5", "12", "--out", "out"];
     let ended = desk.gdcm(&identify);
     assert!(ended.error.lines().any(|line| line.starts_with("note: a: time from column")), "{ended:?}");
     let quiet = desk.gdcm(&[&identify[..], &["--quiet"]].concat());
@@ -64,8 +65,7 @@ fn analyse_is_understood() {
 fn a_word_in_place_of_a_range_leaves_the_file_behind_it_alone() {
     let desk = Desk::new();
     desk.gdcm(&["analyze", "--out", "out", "--gain-bounds", "auto", "small.json"]).assert_done();
-    let corrections: Value =
-        serde_json::from_slice(&fs::read(desk.path("out/corrections.json")).unwrap()).unwrap();
+    let corrections: Value = serde_json::from_slice(&fs::read(desk.path("out/corrections.json")).unwrap()).unwrap();
     assert_eq!(corrections["conditions"].as_array().unwrap().len(), 2, "the small dataset, not the example");
 }
 
@@ -85,8 +85,22 @@ fn a_second_delay_of_one_channel_is_refused() {
     let desk = Desk::new();
     fs::write(desk.path("a.csv"), "t,LON,LAT,P,Q\n0,1,2,3,4\n0.02,2,3,4,5\n").unwrap();
     let ended = desk.gdcm(&[
-        "identify", "a.csv", "--inputs", "LON,LAT", "--outputs", "P,Q", "--band", "0.5", "12", "--delay", "P=0.1", "--delay",
-        "P=0.2", "--out", "out", "--quiet",
+        "identify",
+        "a.csv",
+        "--inputs",
+        "LON,LAT",
+        "--outputs",
+        "P,Q",
+        "--band",
+        "0.5",
+        "12",
+        "--delay",
+        "P=0.1",
+        "--delay",
+        "P=0.2",
+        "--out",
+        "out",
+        "--quiet",
     ]);
     assert!(ended.status == 2 && ended.error.contains("error: --delay: P stands twice"), "{ended:?}");
 }

@@ -12,7 +12,7 @@ use crate::schedule::{CostChange, corrected_cost};
 use crate::uncertainty::Scalar;
 use crate::units::{number, ratio_to_db, s_to_ms, signed, telling};
 
-use super::{ConditionAnalysis, PhaseCorrection, Remark, RemarkKind, Study, Uncertainty, miss_words};
+use super::{ConditionAnalysis, PhaseCorrection, Remark, RemarkKind, Repeated, Study, Uncertainty, miss_words};
 
 /// The physics representative with the leads of its channels against the identified one: what the gains are found on.
 #[derive(Clone, Debug, PartialEq)]

@@ -40,7 +40,7 @@ use gdcm::view::state::{NoticeKind, State};
 use gdcm::view::views::channel_panels;
 use gdcm_core::dataset::{BundleKind, ConditionId, ModelId, Pair};
 use gdcm_core::study::{Engine, LIVE_PROOF, Study, Unobserved};
-use gdcm_files::{Opened, OpenedStudy, load_any, open_study, read_corrections};
+use gdcm_files::{Opened, OpenedStudy, load_any, open_study};
 
 pub(crate) type Window = Harness<'static, GdcmApp>;
 

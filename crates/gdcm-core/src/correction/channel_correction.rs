@@ -62,6 +62,11 @@ impl ChannelCorrection {
         NetGain { output: self.output_gains[pair.output], input: self.input_gains[pair.input] }
     }
 
+    /// Gain of a channel.
+    pub fn gain(&self, channel: Channel) -> f64 {
+        *channel.of(&self.input_gains, &self.output_gains)
+    }
+
     /// Delay of a channel \[s\]; a negative one is a lead (M15).
     pub fn delay_s(&self, channel: Channel) -> f64 {
         match (&self.leads, channel) {
@@ -120,6 +125,14 @@ pub enum Channel {
 }
 
 impl Channel {
+    /// What belongs to the channel, of what is known of every input and of every output.
+    pub fn of<'t, T>(self, inputs: &'t [T], outputs: &'t [T]) -> &'t T {
+        match self {
+            Channel::Input(input) => &inputs[input],
+            Channel::Output(output) => &outputs[output],
+        }
+    }
+
     /// The channel's name, or its number (from 1) where the list of names is too short.
     pub fn name(self, inputs: &[String], outputs: &[String]) -> String {
         let (names, index, kind) = match self {

@@ -9,20 +9,13 @@ use crate::variables::VariableFault;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ExportFault {
     /// A curve cannot be computed.
-    #[error("the {curve} of {channel} has {flaw}; correct it before it is exported")]
+    #[error("the {curve} of {channel} has a number that is not finite; correct it before it is exported")]
     Curve {
         /// The channel.
         channel: String,
         /// "gain" or "delay".
         curve: &'static str,
-        /// What is wrong with it.
-        flaw: &'static str,
     },
-    /// The range of airspeeds is none.
-    #[error(
-        "the correction has no range of airspeeds: its ends, mean and half range must be finite, and the range not negative"
-    )]
-    Range,
     /// The airspeeds asked for make no table.
     #[error("the airspeeds of the table must be finite, increase, and be at least one")]
     Breakpoints,
@@ -89,6 +82,6 @@ pub enum ExportFault {
 impl ExportFault {
     /// Whether it is the analysis that has not what is asked for; otherwise something else would have to be asked.
     pub fn is_of_analysis(&self) -> bool {
-        matches!(self, Self::Schedule(_) | Self::NoResult { .. } | Self::Curve { .. } | Self::Range)
+        matches!(self, Self::Schedule(_) | Self::NoResult { .. } | Self::Curve { .. })
     }
 }

@@ -6,17 +6,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::view::FormKind;
 use crate::view::assembling::{AssemblingCommand, AssemblyState, Reading};
-use crate::view::command::FormKind;
 use gdcm_core::assembly::Rules;
 use gdcm_files::{
     FileError, FolderProgress, FoundModels, add_dataset, add_rules, load_rules, read_models, relative_folder,
     rules_path, sources_folder,
 };
 
-use super::files::DialogPurpose;
-use super::threads::{Fault, ReplySender};
-use super::window::GdcmApp;
+use super::{DialogPurpose, Fault, GdcmApp, ReplySender};
 
 /// Bytes of values between two words about how far a file is read.
 const TOLD_EVERY: u64 = 16 << 20;

@@ -9,13 +9,9 @@ use gdcm_core::correction::Outcome;
 use gdcm_core::executor::Executor;
 use gdcm_core::study::{CURVE_POINTS, CurvesJob, Engine, Job, ProofJob, TogglesJob, UncertaintyJob, display_band};
 
-use super::job_queue::JobQueue;
-use super::threads::{Fault, ReplySender};
-use super::window::GdcmApp;
+use super::{Fault, GdcmApp, JobQueue, ReplySender};
 use crate::executor::Pool;
-use crate::view::arrangement::{Need, View};
-use crate::view::results::Background;
-use crate::view::state::State;
+use crate::view::{Background, Need, State, View};
 
 /// Makes an engine, at the start and anew after a panic, which may leave its caches half made.
 pub type EngineMaker = Arc<dyn Fn() -> Engine + Send + Sync>;
@@ -28,32 +24,17 @@ struct JobKind<J: Job> {
     take: fn(&mut GdcmApp, J, J::Output),
     /// Tells what is under way.
     tell: fn(&JobQueue<J>, &mut Background),
-    /// What a stop or a fault does to what a button of its own asked for: that button, not "Compute", begins it again.
+    /// What a stop or a fault does to what something of its own asked for: that, not "Compute", begins it again.
     withdraw: Option<fn(&mut GdcmApp)>,
 }
 
 impl<J: Job> JobKind<J> {
     /// A kind that "Compute" begins again after a stop, and of which the number of jobs is told, as of all that views wait for.
     fn new(wanted: fn(&mut GdcmApp) -> Vec<J>, take: fn(&mut GdcmApp, J, J::Output)) -> Self {
-        Self { wanted, take, tell: tell_view, withdraw: None }
-    }
-
-    fn told(self, tell: fn(&JobQueue<J>, &mut Background)) -> Self {
-        Self { tell, ..self }
-    }
-
-    fn withdrawn(self, withdraw: fn(&mut GdcmApp)) -> Self {
-        Self { withdraw: Some(withdraw), ..self }
+        let tell = |queue: &JobQueue<J>, background: &mut Background| background.views += queue.unfinished().len();
+        Self { wanted, take, tell, withdraw: None }
     }
 }
-
-impl<J: Job> Clone for JobKind<J> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<J: Job> Copy for JobKind<J> {}
 
 /// A kind with its queue.
 struct Registered<J: Job> {
@@ -97,47 +78,51 @@ pub(super) struct BackgroundJobs {
 impl BackgroundJobs {
     /// Starts the threads.
     pub(super) fn start(make_engine: &EngineMaker, replies: &ReplySender) -> io::Result<Self> {
-        let mut kinds = Registry { kinds: Vec::new(), replies };
         let engine = || {
             let make = Arc::clone(make_engine);
             move || make()
         };
-        let curves = JobKind::new(|app| vec![curves_job(&app.state)], GdcmApp::take_curves);
-        kinds.add("curves", engine(), curves.told(|queue, background| background.curves = queue.progress()))?;
-        let toggles = JobKind::new(
-            |app| toggles_job(&app.state).into_iter().collect(),
-            |app, job, toggles| app.state.results.toggles = toggles.map(|toggles| (job, Arc::new(toggles))),
-        );
-        kinds.add(
-            "toggles",
-            || (),
-            toggles.told(|queue, background| background.toggles = queue.progress().is_some()),
-        )?;
-        kinds.add(
-            "proofs",
-            || (),
-            JobKind::new(|app| proof_jobs(&app.state), GdcmApp::take_proof).told(tell_proofs),
-        )?;
-        let bars = JobKind::new(
-            |app| uncertainty_job(&app.state).into_iter().collect(),
-            |app, job, uncertainty| app.state.results.uncertainty = Some((job, uncertainty)),
-        );
-        kinds.add("error bars", engine(), bars.told(|queue, background| background.bars = queue.progress()))?;
+        let answers = JobKind {
+            tell: |queue, background| background.analysis = queue.progress(),
+            withdraw: Some(GdcmApp::answer_stopped),
+            ..JobKind::new(|app| app.asked.iter().cloned().collect(), GdcmApp::answered)
+        };
+        let curves = JobKind {
+            tell: |queue, background| background.curves = queue.progress(),
+            ..JobKind::new(|app| vec![curves_job(&app.state)], GdcmApp::take_curves)
+        };
+        let toggles = JobKind {
+            tell: |queue, background| background.toggles = queue.progress().is_some(),
+            ..JobKind::new(
+                |app| toggles_job(&app.state).into_iter().collect(),
+                |app, job, toggles| app.state.results.toggles = toggles.map(|toggles| (job, Arc::new(toggles))),
+            )
+        };
+        let proofs = JobKind {
+            tell: |queue: &JobQueue<ProofJob>, background| {
+                background.proofs = queue.unfinished().into_iter().map(|job| job.problem).collect();
+            },
+            ..JobKind::new(|app| proof_jobs(&app.state), GdcmApp::take_proof)
+        };
+        let bars = JobKind {
+            tell: |queue, background| background.bars = queue.progress(),
+            ..JobKind::new(
+                |app| uncertainty_job(&app.state).into_iter().collect(),
+                |app, job, uncertainty| app.state.results.uncertainty = Some((job, uncertainty)),
+            )
+        };
         let modes = JobKind::new(
             |app| needed(app, |need| if let Need::Modes(job) = need { Some(job) } else { None }),
             |app, job, modes| app.state.results.modes = Some((job, modes)),
         );
-        kinds.add("modes", || (), modes)?;
         let assessments = JobKind::new(
             |app| needed(app, |need| if let Need::Assessment(job) = need { Some(job) } else { None }),
             |app, job, table| app.state.results.assessment = Some((job, table)),
         );
-        kinds.add("assessment", || (), assessments)?;
         let across = JobKind::new(
             |app| needed(app, |need| if let Need::Across(job) = need { Some(job) } else { None }),
             |app, job, curves| app.state.results.across = Some((job, curves)),
         );
-        kinds.add("conditions", || (), across)?;
         let variants = JobKind::new(
             |app| {
                 let jobs = needed(app, |need| if let Need::Variant(job) = need { Some(job) } else { None });
@@ -145,7 +130,6 @@ impl BackgroundJobs {
             },
             |app, job, analysis| app.state.results.variants.push((job, analysis)),
         );
-        kinds.add("variants", engine(), variants)?;
         let simulations = JobKind::new(
             |app| {
                 let jobs = needed(app, |need| if let Need::Simulation(job) = need { Some(job) } else { None });
@@ -153,15 +137,31 @@ impl BackgroundJobs {
             },
             |app, job, outcome| app.state.results.simulations.push((job, outcome)),
         );
-        kinds.add("simulation", pool, simulations)?;
-        let reports = JobKind::new(|app| app.reporting.clone().into_iter().collect(), GdcmApp::report_written);
-        let reports = reports.told(|queue, background| background.report = queue.progress());
-        kinds.add("report", engine(), reports.withdrawn(GdcmApp::give_up_report))?;
-        let identifications =
-            JobKind::new(|app| app.state.records.by_urgency(app.state.condition().id()), GdcmApp::identified);
-        let identifications = identifications.told(|queue, background| background.identification = queue.progress());
-        kinds.add("identification", pool, identifications.withdrawn(|app| app.state.records.running.clear()))?;
-        Ok(Self { kinds: Rc::new(kinds.kinds) })
+        let reports = JobKind {
+            tell: |queue, background| background.report = queue.progress(),
+            withdraw: Some(GdcmApp::give_up_report),
+            ..JobKind::new(|app| app.reporting.iter().cloned().collect(), GdcmApp::report_written)
+        };
+        let identifications = JobKind {
+            tell: |queue, background| background.identification = queue.progress(),
+            withdraw: Some(|app| app.state.records.running.clear()),
+            ..JobKind::new(|app| app.state.records.by_urgency(app.state.condition().id()), GdcmApp::identified)
+        };
+        let kinds = vec![
+            started("analysis", engine(), answers, replies)?,
+            started("curves", engine(), curves, replies)?,
+            started("toggles", || (), toggles, replies)?,
+            started("proofs", || (), proofs, replies)?,
+            started("error bars", engine(), bars, replies)?,
+            started("modes", || (), modes, replies)?,
+            started("assessment", || (), assessments, replies)?,
+            started("conditions", || (), across, replies)?,
+            started("variants", engine(), variants, replies)?,
+            started("simulation", pool, simulations, replies)?,
+            started("report", engine(), reports, replies)?,
+            started("identification", pool, identifications, replies)?,
+        ];
+        Ok(Self { kinds: Rc::new(kinds) })
     }
 
     /// Lets the jobs that were stopped be begun again.
@@ -194,44 +194,30 @@ impl GdcmApp {
     }
 }
 
-/// The kinds so far, and where their replies go.
-struct Registry<'a> {
-    kinds: Vec<Box<dyn AnyKind>>,
-    replies: &'a ReplySender,
-}
-
-impl Registry<'_> {
-    /// Starts the queue of a kind. `tools` makes what its jobs work with.
-    fn add<J: Job>(
-        &mut self,
-        name: &str,
-        tools: impl Fn() -> J::Tools + Send + 'static,
-        kind: JobKind<J>,
-    ) -> io::Result<()> {
-        let replies = self.replies.clone();
-        let deliver = move |job: J, ending: Result<J::Output, Fault>| {
-            replies.send(move |app| match ending {
-                Ok(output) => (kind.take)(app, job, output),
-                Err(fault) => {
-                    kind.withdraw.iter().for_each(|withdraw| withdraw(app));
-                    app.tell_fault("the computation", &fault);
-                }
-            });
-        };
-        let queue = JobQueue::start(name, tools, deliver)?;
-        self.kinds.push(Box::new(Registered { kind, queue }));
-        Ok(())
-    }
+/// A kind with its queue, whose thread is started. `tools` makes what its jobs work with.
+fn started<J: Job>(
+    name: &str,
+    tools: impl Fn() -> J::Tools + Send + 'static,
+    kind: JobKind<J>,
+    replies: &ReplySender,
+) -> io::Result<Box<dyn AnyKind>> {
+    let (replies, take, withdraw) = (replies.clone(), kind.take, kind.withdraw);
+    let deliver = move |job: J, ending: Result<J::Output, Fault>| {
+        replies.send(move |app| match ending {
+            Ok(output) => take(app, job, output),
+            Err(fault) => {
+                withdraw.iter().for_each(|withdraw| withdraw(app));
+                app.tell_fault("the computation", &fault);
+            }
+        });
+    };
+    let queue = JobQueue::start(name, tools, deliver)?;
+    Ok(Box::new(Registered { kind, queue }))
 }
 
 /// The processor's cores as the tool of a job.
 fn pool() -> Box<dyn Executor> {
     Box::new(Pool)
-}
-
-/// Of what the views shown wait for, only the number of jobs is told.
-fn tell_view<J: Job>(queue: &JobQueue<J>, background: &mut Background) {
-    background.views += queue.unfinished().len();
 }
 
 /// The jobs of one kind among what the views shown need.
@@ -243,10 +229,6 @@ fn needed<J: Clone>(app: &GdcmApp, of: fn(&Need) -> Option<&J>) -> Vec<J> {
 fn keep<J: Job>(kept: &mut Vec<(J, J::Output)>, jobs: Vec<J>) -> Vec<J> {
     kept.retain(|(known, _)| jobs.contains(known));
     jobs
-}
-
-fn tell_proofs(queue: &JobQueue<ProofJob>, background: &mut Background) {
-    background.proofs = queue.unfinished().into_iter().map(|job| job.problem).collect();
 }
 
 fn curves_job(state: &State) -> CurvesJob {

@@ -5,19 +5,15 @@ use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::path::{Path, PathBuf};
 
 use crate::view::assembling::AssemblingCommand;
-use crate::view::bars::Bar;
-use crate::view::command::{Command, FormKind};
-use crate::view::display::Preferences;
 use crate::view::records::RecordsCommand;
-use crate::view::state::{RecentFile, State};
+use crate::view::{Bar, Command, FormKind, Preferences, RecentFile, State};
 use gdcm_core::study::{Difference, Study};
 use gdcm_files::{
     Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, add_recent_file, at_home, embedded_example,
     file_exists, load_any, open_study_of, recent_files, save_study,
 };
 
-use super::threads::Fault;
-use super::window::GdcmApp;
+use super::{Fault, GdcmApp};
 
 /// The study as it was saved last.
 #[derive(Clone, Debug)]

@@ -5,14 +5,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use super::threads::{Fault, Mailbox, caught};
+use super::{Fault, Mailbox, caught};
 use gdcm_core::study::{Cancelled, Job, Progress};
 
 /// What a job has made, or the fault that ended it; nothing is told of a job that was given up.
 pub(super) type Ending<J> = Result<<J as Job>::Output, Fault>;
 
 /// How long a job that is not asked for any more may go on: while something is dragged, every output is worth having.
-pub(super) const CANCEL_GRACE: Duration = Duration::from_millis(60);
+const CANCEL_GRACE: Duration = Duration::from_millis(60);
 
 /// How far a job is, and whether it is still wanted.
 #[derive(Debug)]
@@ -26,14 +26,13 @@ struct Run {
 
 impl Run {
     fn start() -> Arc<Self> {
-        let (outdated, stopped) = (AtomicBool::new(false), AtomicBool::new(false));
-        Arc::new(Self {
-            started: Instant::now(),
-            outdated,
-            stopped,
-            done: AtomicUsize::new(0),
-            total: AtomicUsize::new(0),
-        })
+        let (outdated, stopped, done, total) = Default::default();
+        Arc::new(Self { started: Instant::now(), outdated, stopped, done, total })
+    }
+
+    /// Steps done, of how many.
+    fn steps(&self) -> (usize, usize) {
+        (self.done.load(Ordering::Relaxed), self.total.load(Ordering::Relaxed))
     }
 }
 
@@ -112,7 +111,9 @@ impl<J: Job> JobQueue<J> {
             orders.done.retain(|job| jobs.contains(job));
             orders.stopped.retain(|job| jobs.contains(job));
             if let Some((job, run)) = &orders.running {
-                run.outdated.store(!jobs.contains(job), Ordering::Release);
+                let (done, total) = run.steps();
+                let is_wanted = jobs.iter().any(|wanted| wanted == job || job.serves(wanted, done, total));
+                run.outdated.store(!is_wanted, Ordering::Release);
             }
             orders.wanted = jobs;
         });
@@ -146,8 +147,7 @@ impl<J: Job> JobQueue<J> {
     pub(super) fn progress(&self) -> Option<(usize, usize)> {
         let orders = self.orders.lock();
         orders.unfinished().next()?;
-        let steps = |run: &Run| (run.done.load(Ordering::Relaxed), run.total.load(Ordering::Relaxed));
-        Some(orders.running.as_ref().map_or((0, 0), |(_, run)| steps(run)))
+        Some(orders.running.as_ref().map_or((0, 0), |(_, run)| run.steps()))
     }
 }
 

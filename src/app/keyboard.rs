@@ -4,9 +4,8 @@ use std::cmp::Reverse;
 
 use egui::{Context, Event, Id, Key, KeyboardShortcut, Plugin, Popup, RawInput};
 
-use crate::view::command::Command;
-use crate::view::command_table::{Entry, Reach, command_table};
-use crate::view::state::State;
+use crate::view::command_table::command_table;
+use crate::view::{Command, Entry, Reach, State};
 
 /// The commands of the keys pressed since the last frame.
 pub fn pressed(ctx: &Context, state: &State) -> Vec<Command> {

@@ -6,19 +6,17 @@ use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-use eframe::{App, Frame, NativeOptions};
-use egui::{Context, Ui, ViewportBuilder, Visuals};
+use eframe::{App, NativeOptions};
+use egui::ViewportBuilder;
 
 use crate::executor::Pool;
+use crate::view::Preferences;
 use crate::view::assembling::AssemblingCommand;
-use crate::view::display::Preferences;
 use gdcm_core::study::{Engine, LIVE_PROOF};
 use gdcm_files::{FileError, Opened, embedded_example, load_any};
 
-use super::background_jobs::EngineMaker;
-use super::recovery::{Autosave, LAST_WAIT, end_words};
 use super::threads::{self, Fault, caught};
-use super::window::{GdcmApp, PREFERENCES};
+use super::{Autosave, EngineMaker, GdcmApp, LAST_WAIT, PREFERENCES, end_words};
 
 /// What the desktop knows the program by; also the name of the directory for its data.
 pub(super) const APP_ID: &str = "gdcm";
@@ -142,34 +140,10 @@ fn run(opened: Opened, models: Option<PathBuf>, setup: Setup, opening: &Arc<Once
         if let Some(models) = models {
             app.dispatch(AssemblingCommand::Add(vec![models]).into());
         }
-        Ok(Box::new(Guarded { app, opening }))
+        app.drawn = opening;
+        Ok(Box::new(app))
     };
     eframe::run_native(APP_ID, options, Box::new(build))
-}
-
-/// The window, with what outlives it once it has drawn a frame.
-struct Guarded {
-    app: GdcmApp,
-    opening: Arc<OnceLock<Autosave>>,
-}
-
-impl App for Guarded {
-    fn clear_color(&self, visuals: &Visuals) -> [f32; 4] {
-        self.app.clear_color(visuals)
-    }
-
-    fn logic(&mut self, ctx: &Context, frame: &mut Frame) {
-        self.app.logic(ctx, frame);
-    }
-
-    fn ui(&mut self, ui: &mut Ui, frame: &mut Frame) {
-        self.app.ui(ui, frame);
-        self.opening.get_or_init(|| self.app.autosave.clone());
-    }
-
-    fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        App::save(&mut self.app, storage);
-    }
 }
 
 /// Why no window can be had, where that can be told beforehand: on Linux, neither Wayland nor X11.
@@ -200,7 +174,7 @@ mod tests {
         let autosave = Autosave::start(
             Some(folder.path()),
             Duration::from_secs(3),
-            super::super::threads::ReplySender::new(&Context::default()).0,
+            super::super::ReplySender::new(&egui::Context::default()).0,
         )
         .unwrap();
         let words = ending(fault(), Some(&autosave)).unwrap_err();

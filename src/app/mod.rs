@@ -1,6 +1,6 @@
 //! The window: the only place that knows eframe, file dialogs and threads.
 
-mod analysis_thread;
+mod analysis_job;
 mod assembling;
 mod background_jobs;
 mod files;
@@ -15,6 +15,21 @@ mod report;
 pub mod threads;
 mod update;
 mod window;
+
+use analysis_job::{AnalysisJob, Proof};
+use assembling::ModelReader;
+use background_jobs::BackgroundJobs;
+use files::{DialogPurpose, PendingAction, ReadFor, SavedStudy, study_name};
+use job_queue::JobQueue;
+use launch::holds_models;
+use recovery::Autosave;
+use recovery::{LAST_WAIT, end_words};
+use reload::DiskWatch;
+use report::ReportJob;
+use threads::Fault;
+use threads::{Mailbox, Reply, ReplySender, caught};
+use update::NextFocus;
+use window::PREFERENCES;
 
 pub use background_jobs::EngineMaker;
 pub use launch::{Setup, open};

@@ -5,9 +5,7 @@ use gdcm_core::message_text::sanitized_path;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::view::arrangement::View;
-use crate::view::command::{Command, FormKind};
-use crate::view::figures::{figure_name, figure_of};
+use crate::view::{Command, FormKind, View, figure_name, figure_of};
 use gdcm_core::study::{Analysis, Table};
 use gdcm_files::figure::{ColumnWidth, Figure, FigureFormat};
 use gdcm_files::{
@@ -15,7 +13,7 @@ use gdcm_files::{
     write_results,
 };
 
-use super::window::GdcmApp;
+use super::GdcmApp;
 
 impl GdcmApp {
     /// Writes the corrections of the conditions chosen in the form.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::view::arrangement::View;
+use crate::view::View;
 use crate::view::records::{ConditionRecords, RecordsCommand, RecordsPage, RecordsReading};
 use gdcm_core::dataset::{ConditionId, ConditionRecord, Dataset};
 use gdcm_core::identification::{Identification, IdentificationError};
@@ -12,9 +12,7 @@ use gdcm_core::records::{LaidOutRecord, RecordChannels, RecordLayout, RecordTabl
 use gdcm_core::study::{AdoptedModels, Edit, IdentifyJob, OfferedModels};
 use gdcm_files::{DatasetOrigin, FileError, FolderProgress, example_records, load_records, read_records};
 
-use super::files::DialogPurpose;
-use super::threads::Fault;
-use super::window::GdcmApp;
+use super::{DialogPurpose, Fault, GdcmApp};
 
 /// Records that were read, by condition, and what could not be.
 #[derive(Default)]

@@ -2,7 +2,7 @@
 //! at the next start.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant, SystemTime};
 
 use gdcm_core::message_text::{sanitized, sanitized_path};
@@ -11,15 +11,15 @@ use gdcm_files::{FileError, LoadedDataset, LostStudy, Opened, RecoveryFile, lost
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
-use super::files::{ReadFor, study_name};
-use super::threads::{Mailbox, ReplySender};
-use super::window::GdcmApp;
-use crate::view::bars::Bar;
+use super::{GdcmApp, ReadFor, ReplySender, study_name};
+use crate::view::Bar;
 
 /// Folder of the recovery files in the program's directory.
 const FOLDER: &str = "recovery";
 /// How long after a failure (a full disk) it is tried again.
 const AGAIN_AFTER: Duration = Duration::from_secs(10);
+/// How long it waits where nothing is due.
+const NEVER: Duration = Duration::from_secs(3600);
 
 /// What is to be kept. All of it is shared, so that it costs next to nothing.
 #[derive(Clone, Debug)]
@@ -39,177 +39,146 @@ pub struct Kept {
     pub at: SystemTime,
 }
 
-/// What waits to be done on the disk.
+/// What the thread is to do.
 enum Task {
-    Keep { unsaved: Box<Unsaved>, decided: SystemTime, due: Instant },
+    /// These decisions, taken then, are to be kept.
+    Keep(Box<Unsaved>, SystemTime),
+    /// Every decision is saved, or not wanted: there is nothing to recover.
     Clear,
-}
-
-impl Task {
-    /// What is to be tried again after a failure. A file that cannot be removed is offered at the next start.
-    fn again(self) -> Option<Task> {
-        match self {
-            Task::Keep { unsaved, decided, .. } => {
-                Some(Task::Keep { unsaved, decided, due: Instant::now() + AGAIN_AFTER })
-            }
-            Task::Clear => None,
-        }
-    }
-}
-
-#[derive(Default)]
-struct Orders {
-    task: Option<Task>,
-    /// To be removed once the decisions restored from them are kept anew, or saved.
-    restored: Vec<LostStudy>,
-    /// To be removed at once.
-    discarded: Vec<LostStudy>,
-    kept: Option<Kept>,
-    failure: Option<FileError>,
-    busy: bool,
-    hurried: bool,
-    closed: bool,
+    /// The lost decisions are open again: their file goes as soon as they are kept anew, or saved.
+    Restored(LostStudy),
+    /// The lost decisions are not wanted.
+    Discard(LostStudy),
+    /// Whatever waits is done now; says what is kept after it, or why it is not.
+    Flush(Sender<Result<Option<Kept>, String>>),
+    /// What is kept now stays for the next start.
+    Close,
 }
 
 /// Keeps decisions that are not saved. Without a directory it has nowhere to.
 #[derive(Clone)]
 pub struct Autosave {
-    orders: Arc<Mailbox<Orders>>,
-    has_thread: bool,
-    keep_after: Duration,
+    tasks: Sender<Task>,
 }
 
 impl Autosave {
     /// Starts the thread, which first offers what was lost.
     pub(super) fn start(directory: Option<&Path>, keep_after: Duration, replies: ReplySender) -> std::io::Result<Self> {
-        let orders = Arc::<Mailbox<Orders>>::default();
-        let Some(directory) = directory else { return Ok(Self { orders, has_thread: false, keep_after }) };
-        let (of_thread, folder) = (Arc::clone(&orders), directory.join(FOLDER));
+        let (tasks, to_do) = channel();
+        let folder = directory.map(|directory| directory.join(FOLDER));
         let work = move || {
-            let lost = lost_studies(&folder);
-            replies.send(move |app| app.offer(lost));
-            work(&of_thread, &folder, &replies);
+            if let Some(lost) = folder.as_deref().map(lost_studies) {
+                replies.send(move |app| app.offer(lost));
+            }
+            Keeper { folder, keep_after, replies, file: None, waits: None, kept: None, restored: Vec::new() }
+                .work(&to_do);
         };
         std::thread::Builder::new().name("autosave".to_owned()).spawn(work)?;
-        Ok(Self { orders, has_thread: true, keep_after })
+        Ok(Self { tasks })
+    }
+
+    fn send(&self, task: Task) {
+        // The thread ends with the window.
+        let _ = self.tasks.send(task);
     }
 
     /// These decisions are not saved: the newest are in the recovery file soon after the first.
     pub(super) fn keep(&self, unsaved: Unsaved) {
-        self.orders.change(|orders| {
-            let due = match &orders.task {
-                Some(Task::Keep { due, .. }) => *due,
-                _ => Instant::now() + self.keep_after,
-            };
-            orders.task = Some(Task::Keep { unsaved: Box::new(unsaved), decided: SystemTime::now(), due });
-        });
+        self.send(Task::Keep(Box::new(unsaved), SystemTime::now()));
     }
 
-    /// Every decision is saved, or not wanted: there is nothing to recover.
+    /// Every decision is saved, or not wanted.
     pub(super) fn clear(&self) {
-        self.orders.change(|orders| orders.task = Some(Task::Clear));
-    }
-
-    /// The lost decisions are open again: their file goes as soon as they are kept anew, or saved.
-    pub(super) fn restored(&self, lost: LostStudy) {
-        self.orders.lock().restored.push(lost);
-    }
-
-    /// The lost decisions are not wanted.
-    pub(super) fn discard(&self, lost: LostStudy) {
-        self.orders.change(|orders| orders.discarded.push(lost));
-    }
-
-    /// Why decisions could not be kept, if that was not taken yet.
-    pub(super) fn failure(&self) -> Option<FileError> {
-        self.orders.lock().failure.take()
+        self.send(Task::Clear);
     }
 
     /// Does what waits now, and says what is kept after it, or why it is not; gives up waiting after `limit`.
     pub(super) fn flush(&self, limit: Duration) -> Result<Option<Kept>, String> {
-        if !self.has_thread {
-            let lost = matches!(self.orders.lock().task, Some(Task::Keep { .. }));
-            return if lost { Err("there is no directory for them".to_owned()) } else { Ok(None) };
-        }
-        self.orders.change(|orders| orders.hurried = true);
-        let (is_done, mut orders) = self.orders.wait_at_most(limit, |orders| orders.task.is_none() && !orders.busy);
-        orders.hurried = false;
-        match orders.failure.take() {
-            Some(error) => Err(error.to_string()),
-            None if !is_done => Err("the disk did not answer".to_owned()),
-            None => Ok(orders.kept.clone()),
-        }
+        let (answer, answered) = channel();
+        self.send(Task::Flush(answer));
+        answered.recv_timeout(limit).unwrap_or_else(|_| Err("the disk did not answer".to_owned()))
     }
 
-    /// Does what waits, then ends the thread: what is kept now stays for the next start.
+    /// Does what waits, then ends the thread.
     pub(super) fn close(&self, limit: Duration) {
         // Nobody is left to be told.
         let _ = self.flush(limit);
-        self.orders.change(|orders| orders.closed = true);
+        self.send(Task::Close);
     }
 }
 
-fn work(all: &Mailbox<Orders>, folder: &Path, replies: &ReplySender) {
-    let mut file = None;
-    loop {
-        let mut orders = all.lock();
-        let discarded = std::mem::take(&mut orders.discarded);
-        let task = due_task(&mut orders);
-        if task.is_none() && discarded.is_empty() {
-            if orders.closed {
-                return;
+/// What the thread works with.
+struct Keeper {
+    folder: Option<PathBuf>,
+    keep_after: Duration,
+    replies: ReplySender,
+    file: Option<RecoveryFile>,
+    /// What is to be kept, when it was decided, and when it is due.
+    waits: Option<(Box<Unsaved>, SystemTime, Instant)>,
+    kept: Option<Kept>,
+    restored: Vec<LostStudy>,
+}
+
+impl Keeper {
+    fn work(mut self, to_do: &Receiver<Task>) {
+        loop {
+            let due = self.waits.as_ref().map_or(NEVER, |(_, _, due)| due.saturating_duration_since(Instant::now()));
+            match to_do.recv_timeout(due) {
+                Ok(Task::Keep(unsaved, decided)) => {
+                    let after = if self.folder.is_some() { self.keep_after } else { NEVER };
+                    let due = self.waits.take().map_or_else(|| Instant::now() + after, |(_, _, due)| due);
+                    self.waits = Some((unsaved, decided, due));
+                }
+                Ok(Task::Clear) => {
+                    self.waits = None;
+                    self.kept = None;
+                    let cleared = self.file.as_mut().map_or(Ok(()), RecoveryFile::clear);
+                    let removed = cleared.and_then(|()| self.remove_restored());
+                    self.tell(removed);
+                }
+                Ok(Task::Restored(lost)) => self.restored.push(lost),
+                Ok(Task::Discard(lost)) => self.tell(lost.remove()),
+                Ok(Task::Flush(answer)) => {
+                    let kept = match (&self.waits, &self.folder) {
+                        (Some(_), None) => Err("there is no directory for them".to_owned()),
+                        _ => self.keep().map_err(|error| error.to_string()),
+                    };
+                    // Who gave up waiting does not listen.
+                    let _ = answer.send(kept.map(|()| self.kept.clone()));
+                }
+                Err(RecvTimeoutError::Timeout) => {
+                    let kept = self.keep();
+                    self.tell(kept);
+                }
+                Ok(Task::Close) | Err(RecvTimeoutError::Disconnected) => return,
             }
-            let due = match &orders.task {
-                Some(Task::Keep { due, .. }) => due.saturating_duration_since(Instant::now()),
-                _ => Duration::from_secs(3600),
-            };
-            all.pause(orders, due);
-            continue;
-        }
-        orders.busy = true;
-        drop(orders);
-        let removed = discarded.into_iter().try_for_each(LostStudy::remove);
-        let outcome = task.as_ref().map(|task| carry_out(task, &mut file, folder));
-        let mut orders = all.lock();
-        orders.busy = false;
-        orders.failure = removed.err().or_else(|| orders.failure.take());
-        match (outcome, task) {
-            (Some(Ok(kept)), _) => {
-                orders.kept = kept;
-                let restored = std::mem::take(&mut orders.restored);
-                orders.discarded.extend(restored);
-            }
-            (Some(Err(error)), task) => {
-                orders.failure = Some(error);
-                let again = task.filter(|_| !orders.hurried && !orders.closed).and_then(Task::again);
-                orders.task = orders.task.take().or(again);
-            }
-            (None, _) => {}
-        }
-        let failed = orders.failure.is_some();
-        drop(orders);
-        all.change(|_| ());
-        if failed {
-            replies.send(|app| app.tell_not_kept());
         }
     }
-}
 
-/// The task that waits, if its time has come.
-fn due_task(orders: &mut Orders) -> Option<Task> {
-    let hurried = orders.hurried || orders.closed;
-    orders.task.take_if(|task| match task {
-        Task::Keep { due, .. } => hurried || Instant::now() >= *due,
-        Task::Clear => true,
-    })
-}
+    /// Keeps what waits; what cannot be kept waits to be tried again.
+    fn keep(&mut self) -> Result<(), FileError> {
+        let Some(folder) = &self.folder else { return Ok(()) };
+        let Some((unsaved, decided, _)) = self.waits.take() else { return Ok(()) };
+        match keep(&unsaved, &mut self.file, folder) {
+            Ok(path) => {
+                self.kept = Some(Kept { path, at: decided });
+                self.remove_restored()
+            }
+            Err(error) => {
+                self.waits = Some((unsaved, decided, Instant::now() + AGAIN_AFTER));
+                Err(error)
+            }
+        }
+    }
 
-/// What is kept after the task.
-fn carry_out(task: &Task, file: &mut Option<RecoveryFile>, folder: &Path) -> Result<Option<Kept>, FileError> {
-    match task {
-        Task::Clear => file.as_mut().map_or(Ok(()), RecoveryFile::clear).map(|()| None),
-        Task::Keep { unsaved, decided, .. } => {
-            keep(unsaved, file, folder).map(|path| Some(Kept { path, at: *decided }))
+    fn remove_restored(&mut self) -> Result<(), FileError> {
+        self.restored.drain(..).try_for_each(LostStudy::remove)
+    }
+
+    fn tell(&self, done: Result<(), FileError>) {
+        if let Err(error) = done {
+            let words = format!("decisions that are not saved cannot be kept safe: {error}");
+            self.replies.send(|app| app.notify_error(words));
         }
     }
 }
@@ -233,13 +202,6 @@ impl GdcmApp {
             let sentence = offer_words(&lost, &TimeZone::system());
             self.state.bars.push(Bar::Recovery { offer: self.offers.len(), sentence });
             self.offers.push(Some(lost));
-        }
-    }
-
-    /// Says why decisions are not kept, unless that was taken already.
-    fn tell_not_kept(&mut self) {
-        if let Some(error) = self.autosave.failure() {
-            self.notify_error(format!("decisions that are not saved cannot be kept safe: {error}"));
         }
     }
 
@@ -271,7 +233,7 @@ impl GdcmApp {
         self.state.study_name = study_name(saved_as.as_deref());
         self.saved.path = saved_as;
         self.saved.study = None;
-        self.autosave.restored(lost);
+        self.autosave.send(Task::Restored(lost));
         self.close_offer(offer);
         self.look_for_recent();
         self.study_changed();
@@ -280,7 +242,7 @@ impl GdcmApp {
 
     pub(super) fn discard(&mut self, offer: usize) {
         if let Some(lost) = self.offers.get_mut(offer).and_then(Option::take) {
-            self.autosave.discard(lost);
+            self.autosave.send(Task::Discard(lost));
         }
         self.close_offer(offer);
     }

@@ -2,14 +2,13 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
 use gdcm_files::{FileStamp, LoadedDataset, Opened, file_sha256, load_dataset};
 
-use super::files::ReadFor;
-use super::threads::{Mailbox, ReplySender};
-use super::window::GdcmApp;
-use crate::view::bars::Bar;
+use super::{GdcmApp, ReadFor, ReplySender};
+use crate::view::Bar;
 
 impl GdcmApp {
     /// Looks at the file of the dataset that is open.
@@ -81,40 +80,29 @@ struct Seen {
     sha256: String,
 }
 
-#[derive(Default)]
-struct Watched {
-    path: Option<PathBuf>,
-    closed: bool,
-}
-
 /// Looks at one file every second or two: its time and its length, and where these are new, its bytes. Polling, because
 /// network drives send no events.
 pub(super) struct DiskWatch {
-    watched: Arc<Mailbox<Watched>>,
+    paths: Sender<Option<PathBuf>>,
+    watched: Option<PathBuf>,
 }
 
 impl DiskWatch {
-    /// Starts the thread.
+    /// Starts the thread, which ends with the window.
     pub(super) fn start(every: Duration, replies: ReplySender) -> std::io::Result<Self> {
-        let watched = Arc::<Mailbox<Watched>>::default();
-        let of_thread = Arc::clone(&watched);
-        let look = move || look(&of_thread, every, &replies);
+        let (paths, to_watch) = channel();
+        let look = move || look(&to_watch, every, &replies);
         std::thread::Builder::new().name("disk".to_owned()).spawn(look)?;
-        Ok(Self { watched })
+        Ok(Self { paths, watched: None })
     }
 
     /// Looks at this file from now on, or at none.
-    pub(super) fn watch(&self, path: Option<&Path>) {
-        let is_new = self.watched.lock().path.as_deref() != path;
-        if is_new {
-            self.watched.change(|watched| watched.path = path.map(Path::to_owned));
+    pub(super) fn watch(&mut self, path: Option<&Path>) {
+        if self.watched.as_deref() != path {
+            self.watched = path.map(Path::to_owned);
+            // Without the thread nothing is watched.
+            let _ = self.paths.send(self.watched.clone());
         }
-    }
-}
-
-impl Drop for DiskWatch {
-    fn drop(&mut self) {
-        self.watched.change(|watched| watched.closed = true);
     }
 }
 
@@ -154,17 +142,17 @@ impl Known {
     }
 }
 
-fn look(watched: &Mailbox<Watched>, every: Duration, replies: &ReplySender) {
-    let mut known = Known::default();
+fn look(to_watch: &Receiver<Option<PathBuf>>, every: Duration, replies: &ReplySender) {
+    let (mut known, mut watched) = (Known::default(), None);
     loop {
-        let (is_closed, watched) = watched.wait_at_most(every, |watched| watched.closed);
-        let path = watched.path.clone();
-        drop(watched);
-        if is_closed {
-            return;
-        }
-        if let Some(seen) = path.and_then(|path| known.look(&path)) {
-            replies.send(move |app| app.file_seen(&seen));
+        match to_watch.recv_timeout(every) {
+            Ok(path) => watched = path,
+            Err(RecvTimeoutError::Disconnected) => return,
+            Err(RecvTimeoutError::Timeout) => {
+                if let Some(seen) = watched.as_deref().and_then(|path| known.look(path)) {
+                    replies.send(move |app| app.file_seen(&seen));
+                }
+            }
         }
     }
 }

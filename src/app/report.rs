@@ -4,12 +4,11 @@ use gdcm_core::message_text::sanitized_path;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::view::command::{Command, FormKind};
+use crate::view::{Command, FormKind};
 use gdcm_core::study::{Analysis, Cancelled, Engine, Job, Progress};
 use gdcm_files::{Existing, FileError, OutputSet, ReportSource, report, save_report};
 
-use super::files::study_name;
-use super::window::GdcmApp;
+use super::{GdcmApp, study_name};
 
 /// Making a report and writing it: seconds, for it has every plot.
 #[derive(Clone, Debug)]

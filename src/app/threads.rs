@@ -5,11 +5,10 @@ use std::io;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
 
 use egui::Context;
 
-use super::window::GdcmApp;
+use super::GdcmApp;
 
 /// What a thread waits for: whoever changes it wakes the thread.
 #[derive(Default)]
@@ -45,18 +44,6 @@ impl<T> Mailbox<T> {
             }
             content = self.changed.wait(content).unwrap_or_else(PoisonError::into_inner);
         }
-    }
-
-    /// Waits for a change, whatever it is, or until the time is over.
-    pub(super) fn pause(&self, content: MutexGuard<'_, T>, limit: Duration) {
-        drop(self.changed.wait_timeout(content, limit));
-    }
-
-    /// Waits until it is so, or the time is over: whether it is so, with the content.
-    pub(super) fn wait_at_most(&self, limit: Duration, is_so: impl Fn(&T) -> bool) -> (bool, MutexGuard<'_, T>) {
-        let waited = self.changed.wait_timeout_while(self.lock(), limit, |content| !is_so(content));
-        let (content, timeout) = waited.unwrap_or_else(PoisonError::into_inner);
-        (!timeout.timed_out(), content)
     }
 }
 

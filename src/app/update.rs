@@ -3,22 +3,16 @@
 use egui::ViewportCommand;
 use gdcm_core::message_text::sanitized;
 
-use crate::view::arrangement::Arrangement;
-use crate::view::command::{Command, FormKind};
-use crate::view::curve_display::CurveCommand;
-use crate::view::display::Display;
-use crate::view::focus::leave_region;
-use crate::view::number_field::focus_field;
 use crate::view::plot::Pane;
-use crate::view::state::{Notice, NoticeKind};
-use crate::view::tables::table_of;
 use crate::view::views::PairSet;
+use crate::view::{
+    Arrangement, Command, CurveCommand, Display, FormKind, Notice, NoticeKind, focus_field, leave_region, table_of,
+};
 use gdcm_core::dataset::ConditionId;
 use gdcm_core::study::Edit;
 use gdcm_files::Existing;
 
-use super::files::{DialogPurpose, PendingAction};
-use super::window::GdcmApp;
+use super::{DialogPurpose, GdcmApp, PendingAction};
 
 /// What the focus is to go to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,7 +98,7 @@ impl GdcmApp {
             }
             Command::SetTheme(theme) => self.ctx.set_theme(theme),
             Command::ShowForm(form) => self.show_form(form),
-            Command::StopComputing => self.stop_computing(),
+            Command::StopComputing => self.stop_jobs(),
             Command::Compute => self.compute_again(),
             Command::CopyTable(kind) => {
                 self.ctx.copy_text(table_of(&self.state, kind).text());

@@ -1,39 +1,29 @@
 //! The window: state, the thread that computes, the dialogs.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::mpsc::Receiver;
+use std::sync::{Arc, OnceLock};
 
 use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, ViewportCommand, Visuals};
 
-use crate::view::arrangement::{Need, View};
 use crate::view::assembling::{AssemblingCommand, assembling_ui};
-use crate::view::bars::Bar;
-use crate::view::command::Command;
-use crate::view::display::Preferences;
 use crate::view::palette::{self, Palette};
 use crate::view::records::RecordsCommand;
-use crate::view::state::State;
+use crate::view::{Bar, Command, Need, Preferences, State, View};
 use crate::view::{
     bars, centre, conditions_panel, explanation, focus, forms, help, matrix_panel, models_panel, result_panel,
     settings_panel,
 };
-use gdcm_core::correction::{Problem, ProblemError, Solution};
+use gdcm_core::correction::{ProblemError, Solution};
 use gdcm_core::dataset::ConditionId;
 use gdcm_core::study::{Analysis, ConditionCurves, CurvesJob, ProofJob, Study};
 use gdcm_files::{Existing, LoadedDataset, LostStudy, Opened, is_first_start};
 
-use super::analysis_thread::{AnalysisThread, Answer, Request};
-use super::assembling::ModelReader;
-use super::background_jobs::BackgroundJobs;
-use super::files::{PendingAction, SavedStudy};
 use super::keyboard::{self, KeyOrder};
-use super::launch::{Setup, holds_models};
-use super::recovery::{Autosave, LAST_WAIT};
-use super::reload::DiskWatch;
-use super::report::ReportJob;
-use super::threads::{Fault, Reply, ReplySender};
-use super::update::NextFocus;
+use super::{
+    AnalysisJob, Autosave, BackgroundJobs, DiskWatch, Fault, LAST_WAIT, ModelReader, NextFocus, PendingAction, Proof,
+    Reply, ReplySender, ReportJob, SavedStudy, Setup, holds_models,
+};
 
 /// The program's window.
 pub struct GdcmApp {
@@ -41,10 +31,11 @@ pub struct GdcmApp {
     pub(super) state: State,
     pub(super) loaded: LoadedDataset,
     pub(super) saved: SavedStudy,
-    pub(super) analysis: AnalysisThread,
+    /// The live answer asked for last.
+    pub(super) asked: Option<AnalysisJob>,
     pub(super) jobs: BackgroundJobs,
-    /// Problems with a proof that the results do not have yet.
-    proven: Vec<Arc<Problem>>,
+    /// Proofs that the results do not have yet.
+    proven: Vec<Proof>,
     /// What the views shown need beside the live answer.
     pub(super) needs: Vec<Need>,
     pub(super) replies: ReplySender,
@@ -67,6 +58,8 @@ pub struct GdcmApp {
     /// Datasets that were open before a reload, or after one that was undone.
     pub(super) earlier: Vec<LoadedDataset>,
     pub(super) autosave: Autosave,
+    /// Where whoever opened the window finds what keeps its decisions, once it has drawn a frame.
+    pub(super) drawn: Arc<OnceLock<Autosave>>,
     /// What was lost, by the number of the offer, until it is restored or discarded.
     pub(super) offers: Vec<Option<LostStudy>>,
     pub(super) disk: DiskWatch,
@@ -94,7 +87,6 @@ impl GdcmApp {
         ctx.add_plugin(KeyOrder::default());
         let (replies, received) = ReplySender::new(ctx);
         let jobs = BackgroundJobs::start(&setup.engine, &replies)?;
-        let analysis = AnalysisThread::start(setup.engine, replies.clone())?;
         let autosave = Autosave::start(setup.directory.as_deref(), setup.keep_after, replies.clone())?;
         let disk = DiskWatch::start(setup.look_every, replies.clone())?;
         let (mut state, loaded, saved) = Self::parts_of(opened);
@@ -104,7 +96,7 @@ impl GdcmApp {
             state,
             loaded,
             saved,
-            analysis,
+            asked: None,
             jobs,
             proven: Vec::new(),
             needs: Vec::new(),
@@ -120,6 +112,7 @@ impl GdcmApp {
             reporting: None,
             earlier: Vec::new(),
             autosave,
+            drawn: Arc::default(),
             offers: Vec::new(),
             disk,
             directory: setup.directory,
@@ -150,24 +143,29 @@ impl GdcmApp {
         if self.requested.as_ref().is_some_and(|(of, at)| *at == condition && asks_the_same(of, study)) {
             return;
         }
-        let study = study.clone();
         self.requested = Some((study.clone(), condition));
         let results = &mut self.state.results;
         results.requested += 1;
         results.stopped = false;
         results.waiting_since.get_or_insert(now);
-        self.analysis.request(Request { generation: results.requested, study, condition });
+        self.ask();
     }
 
-    /// Gives up the computation under way; what is shown stays.
-    pub(super) fn stop_computing(&mut self) {
-        self.analysis.stop();
-        self.stop_jobs();
+    /// Has the newest request answered, with all proofs that there are.
+    fn ask(&mut self) {
+        let Some((study, condition)) = self.requested.clone() else { return };
+        let number = self.asked.as_ref().map_or(0, |job| job.number + 1);
+        let (generation, proofs) = (self.state.results.requested, self.proven.clone());
+        let replies = self.replies.clone();
+        self.asked = Some(AnalysisJob { number, generation, study, condition, proofs, replies });
+    }
+
+    /// Says that the live answer was given up, by hand or by a fault; what is shown stays.
+    pub(super) fn answer_stopped(&mut self) {
         self.proven.clear();
         let results = &mut self.state.results;
         results.stopped = results.is_behind();
         results.waiting_since = None;
-        results.progress = None;
     }
 
     /// Asks again for what was given up.
@@ -185,45 +183,32 @@ impl GdcmApp {
         let now = self.now();
         let results = &mut self.state.results;
         results.background = self.jobs.told();
-        results.background.proofs.extend(self.proven.iter().cloned());
+        results.background.proofs.extend(self.proven.iter().map(|(problem, _)| Arc::clone(problem)));
         results.background_since = results.background.is_busy().then(|| results.background_since.unwrap_or(now));
     }
 
     /// Shows an analysis, and asks for the jobs that it leaves.
-    pub(super) fn answered(&mut self, answer: Answer, analysis: Arc<Analysis>) {
+    pub(super) fn answered(&mut self, job: AnalysisJob, (analysis, elapsed_ms): (Arc<Analysis>, f64)) {
         let now = self.now();
         let results = &mut self.state.results;
         // One with a proof added has the number of the one without it, and took no time.
-        if results.received != answer.generation {
-            results.elapsed_ms = answer.elapsed_ms;
+        if results.received != job.generation {
+            results.elapsed_ms = elapsed_ms;
         }
-        results.received = answer.generation;
+        results.received = job.generation;
         results.analysis = Some(analysis);
         results.first = None;
         results.stopped &= results.is_behind();
         results.waiting_since = results.is_waiting().then_some(now);
-        results.progress = None;
-        self.proven.retain(|problem| !answer.proven.contains(problem));
+        self.proven.retain(|(of, _)| !job.proofs.iter().any(|(proven, _)| Arc::ptr_eq(of, proven)));
         self.want_jobs();
     }
 
-    /// Says that answering a request panicked.
-    pub(super) fn answer_failed(&mut self, generation: u64, fault: &Fault) {
-        let results = &mut self.state.results;
-        if generation == results.requested {
-            results.stopped = true;
-            results.waiting_since = None;
-            results.progress = None;
-        }
-        self.proven.clear();
-        self.tell_fault("the computation", fault);
-    }
-
-    /// Hands a proof to the thread that answers; a problem without an answer has been told by the live answer.
+    /// Has the newest request answered once more, with a proof; a problem without an answer has been told by the live answer.
     pub(super) fn take_proof(&mut self, job: ProofJob, proof: Result<Arc<Solution>, ProblemError>) {
         if let Ok(solution) = proof {
-            self.proven.push(Arc::clone(&job.problem));
-            self.analysis.take_proof(job.problem, solution);
+            self.proven.push((job.problem, solution));
+            self.ask();
         }
     }
 
@@ -387,6 +372,7 @@ impl eframe::App for GdcmApp {
         help::tour_ui(&ctx, &self.state, &palette, &mut commands);
         focus::focus_ring_ui(&ctx, &palette);
         explanation::derivation_window_ui(&ctx, &self.state, &palette, &mut commands);
+        self.drawn.get_or_init(|| self.autosave.clone());
         self.carry_out(commands);
         self.name_window();
         self.request();

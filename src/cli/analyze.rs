@@ -6,11 +6,11 @@ use gdcm_core::message_text::sanitized_path;
 use gdcm_core::study::Analysis;
 use gdcm_files::{ReportSource, make_directory, report as report_of, result_paths, save_report, write_results};
 
-use super::arguments::{AnalyzeArguments, ReportArguments};
-use super::failure::Failure;
-use super::study_options::{analysis_of, engine, outputs_of, study_of};
-use super::summary::{leave_one_out_section, summary};
-use super::terminal::{TerminalProgress, say, say_error};
+use super::summary::summary;
+use super::{
+    AnalyzeArguments, Failure, ReportArguments, TerminalProgress, analysis_of, engine, leave_one_out_section,
+    outputs_of, say, say_error, study_of,
+};
 
 /// Analyses, writes the results, and prints a summary.
 pub(super) fn analyze(arguments: &AnalyzeArguments) -> Result<(), Failure> {

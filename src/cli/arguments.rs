@@ -10,8 +10,7 @@ use clap::{Arg, ArgAction, ArgMatches, Args, FromArgMatches, Parser, Subcommand}
 use gdcm_core::study::{AcrossRole, Kind, SETTINGS, Setting};
 use gdcm_files::figure::{ColumnWidth, FigureKind, Role};
 
-use super::export::ExportArguments;
-use super::identify_arguments::IdentifyArguments;
+use super::{ExportArguments, IdentifyArguments};
 
 /// Gain-Delay Correction Method: matches physics-based helicopter models to flight.
 #[derive(Debug, Parser)]

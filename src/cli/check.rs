@@ -9,12 +9,8 @@ use gdcm_core::study::{Execution, Study, Table, Unobserved, cautions_of_models};
 use gdcm_core::units::number;
 use gdcm_files::{FileError, LoadedDataset, Opened, OpenedStudy, dataset_faults};
 
-use super::arguments::OpeningArguments;
-use super::failure::Failure;
 use super::open;
-use super::summary::LABEL;
-use super::terminal::{say, say_error};
-use super::text_table::{indented, labelled};
+use super::{Failure, LABEL, OpeningArguments, indented, labelled, say, say_error};
 
 /// Says what a dataset or a study holds.
 pub(super) fn check(file: &Path, arguments: &OpeningArguments) -> Result<(), Failure> {

@@ -9,9 +9,7 @@ use gdcm_core::records::LaidOutRecord;
 use gdcm_core::study::AdoptedModels;
 use gdcm_files::{Opened, OutputSet, add_dataset, load_any};
 
-use super::failure::Failure;
-use super::identify_arguments::IdentifyArguments;
-use super::terminal::say_error;
+use super::{Failure, IdentifyArguments, say_error};
 
 /// Records that models are identified from together, and the condition that they are of; none without a dataset.
 pub(super) type Group = (Option<ConditionId>, Vec<LaidOutRecord>);

@@ -13,11 +13,10 @@ use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_core::study::{AssessedCorrection, Study};
 use gdcm_files::{EXPORTERS, ExportFormat, ExportRequest, ExportSource, ExportedRole, check_export, write_export};
 
-use super::analyze::check_result;
-use super::arguments::{StudyArguments, real_number, whole_number};
-use super::failure::Failure;
-use super::study_options::{analysis_of, engine, outputs_of, study_of};
-use super::terminal::{TerminalProgress, say};
+use super::{
+    Failure, StudyArguments, TerminalProgress, analysis_of, check_result, engine, outputs_of, real_number, say,
+    study_of, whole_number,
+};
 
 /// What is to be exported, as what, and where it goes.
 #[derive(Debug, Args)]
@@ -72,7 +71,8 @@ impl FromStr for Breakpoints {
 }
 
 fn formats() -> impl TypedValueParser<Value = ExportFormat> {
-    let values = EXPORTERS.map(|exporter| PossibleValue::new(exporter.about().name).help(exporter.about().words));
+    let values =
+        EXPORTERS.iter().map(|exporter| PossibleValue::new(exporter.about().name).help(exporter.about().words));
     PossibleValuesParser::new(values).try_map(|name| ExportFormat::named(&name).ok_or("there is no such format"))
 }
 

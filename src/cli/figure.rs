@@ -11,11 +11,10 @@ use gdcm_files::figure::{
 };
 use gdcm_files::{figure_format, write_figure};
 
-use super::arguments::{FigureArguments, PairChoice};
-use super::failure::Failure;
-use super::study_options::{analysis_of, engine, names, outputs_of, pairs_of, study_of};
-use super::terminal::TerminalProgress;
-use super::terminal::say;
+use super::{
+    Failure, FigureArguments, PairChoice, TerminalProgress, analysis_of, engine, names, outputs_of, pairs_of, say,
+    study_of,
+};
 
 /// Makes one figure as a file, and says so.
 pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {

@@ -11,13 +11,11 @@ use gdcm_core::records::{LaidOutRecord, RecordChannels};
 use gdcm_core::study::{AdoptedModels, ChannelTimeSkew, IdentificationRequest};
 use gdcm_files::{IdentifiedModels, OutputSet, add_identified, make_directory};
 
-use super::destination::{Destination, Group};
 use super::existing;
-use super::failure::Failure;
-use super::identify_arguments::{ChannelDelay, ChannelList, IdentifyArguments};
-use super::models::counted;
-use super::read_record::{hold_out, laid_out, record_table, relative_entry};
-use super::terminal::{TerminalProgress, say, say_error};
+use super::{
+    ChannelDelay, ChannelList, Destination, Failure, Group, IdentifyArguments, TerminalProgress, counted, hold_out,
+    laid_out, record_table, relative_entry, say, say_error,
+};
 
 /// The file of what was found.
 const IDENTIFIED: &str = "identified.json";

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 
 use gdcm_core::study::OfferedModels;
 
-use super::arguments::real_number;
+use super::real_number;
 
 /// Which flight records models are to be identified from, and how.
 #[derive(Debug, Args)]

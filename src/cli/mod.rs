@@ -18,6 +18,16 @@ mod summary;
 mod terminal;
 mod text_table;
 
+use analyze::check_result;
+use arguments::{real_number, whole_number};
+use destination::{Destination, Group};
+use models::{ReadingProgress, counted};
+use read_record::{hold_out, laid_out, record_table, relative_entry};
+use study_options::{analysis_of, engine, names, outputs_of, pairs_of, study_of};
+use summary::{LABEL, leave_one_out_section};
+use terminal::TerminalProgress;
+use text_table::{indented, labelled, listed};
+
 use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::error::Error;
 use std::ffi::OsString;

@@ -14,11 +14,8 @@ use gdcm_files::{
     relative_folder, rules_path, sources_folder,
 };
 
-use super::arguments::{AssembleArguments, ConvertArguments};
 use super::existing;
-use super::failure::Failure;
-use super::terminal::{say, say_error};
-use super::text_table::indented;
+use super::{AssembleArguments, ConvertArguments, Failure, indented, say, say_error};
 
 /// Which file is read, on a terminal only.
 pub(super) struct ReadingProgress {

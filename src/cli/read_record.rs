@@ -9,11 +9,7 @@ use gdcm_core::study::Table;
 use gdcm_core::units::telling;
 use gdcm_files::{FoundRecords, read_records, relative_folder};
 
-use super::failure::Failure;
-use super::identify_arguments::IdentifyArguments;
-use super::models::ReadingProgress;
-use super::terminal::say_error;
-use super::text_table::indented;
+use super::{Failure, IdentifyArguments, ReadingProgress, indented, say_error};
 
 /// Every record with its columns; what was chosen, and what is wrong, is told on standard error.
 pub(super) fn laid_out(

@@ -6,11 +6,9 @@ use gdcm_core::message_text::sanitized;
 use gdcm_core::study::{Analysis, Edit, Engine, Progress, Study};
 use gdcm_files::{LoadedDataset, OutputSet, embedded_example};
 
-use super::arguments::{PairList, Rejection, StudyArguments};
 use super::existing;
-use super::failure::Failure;
 use super::open as open_file;
-use super::terminal::say_error;
+use super::{Failure, PairList, Rejection, StudyArguments, say_error};
 
 /// The study, and the dataset that it is about; cautions of the file are told on standard error.
 pub(super) fn study_of(arguments: &StudyArguments) -> Result<(Study, LoadedDataset), Failure> {

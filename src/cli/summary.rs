@@ -14,7 +14,7 @@ use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::{number, s_to_ms};
 use gdcm_files::{LoadedDataset, RESULT_FILES, assessment_sentence};
 
-use super::text_table::{indented, labelled, listed};
+use super::{indented, labelled, listed};
 
 /// Width of the labels at the left of a section.
 pub(super) const LABEL: usize = 14;

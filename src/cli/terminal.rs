@@ -9,7 +9,7 @@ use gdcm_core::message_text::sanitized;
 use gdcm_core::study::Progress;
 use gdcm_files::system_words;
 
-use super::failure::Failure;
+use super::Failure;
 
 /// Prints a text that ends with its own line end. A reader that has seen enough (`gdcm … | head`) is no failure.
 pub(super) fn say(text: &str) -> Result<(), Failure> {

@@ -9,12 +9,10 @@ use serde::{Deserialize, Serialize};
 use gdcm_core::study::{AcrossJob, AssessmentJob, ModesJob, SimulationJob, VariantJob};
 use gdcm_files::figure::FigureKind;
 
-use super::command::Command;
-use super::palette::Palette;
-use super::state::State;
 use super::views::across_job;
 use super::views::assessment_choice;
 use super::views::variant_jobs;
+use super::{Command, Palette, State};
 use super::{records, views};
 
 /// One of the plots between the side panels.

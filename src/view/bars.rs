@@ -5,13 +5,9 @@ use egui::{Align, Button, CollapsingHeader, Frame, Label, Layout, Margin, MenuBa
 use gdcm_core::dataset::{BundleKind, Condition};
 use gdcm_core::study::Assessed;
 
-use super::command::Command;
-use super::command_table::{Menu, command_table};
-use super::controls::button_ui;
-use super::palette::{Palette, SMALL_SIZE};
+use super::command_table::command_table;
 use super::records::RecordsState;
-use super::results::{Background, bar_words};
-use super::state::{NoticeKind, RecentFile, State};
+use super::{Background, Command, Menu, NoticeKind, Palette, RecentFile, SMALL_SIZE, State, bar_words, button_ui};
 
 /// Menus and the state of the document.
 pub fn menu_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
@@ -233,13 +229,13 @@ pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
 
 fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let now = ui.input(|input| input.time);
-    let (text, color) = match (&state.opening, state.results.is_stale(now), state.results.progress) {
+    let (text, color) = match (&state.opening, state.results.is_stale(now), state.results.background.analysis) {
         (None, ..) if state.results.stopped => (format!("● stopped: {}", state.after_stop()), palette.warning),
         (Some(name), ..) => (format!("● reading {name} …"), palette.accent),
-        (None, true, Some((done, total))) => {
-            (format!("● computing, {} % …", 100 * done / total.max(1)), palette.warning)
+        (None, true, Some((done, total))) if total > 0 => {
+            (format!("● computing, {} % …", 100 * done / total), palette.warning)
         }
-        (None, true, None) => ("● computing …".to_owned(), palette.warning),
+        (None, true, _) => ("● computing …".to_owned(), palette.warning),
         (None, false, _) => ("● up to date".to_owned(), palette.good),
     };
     ui.label(RichText::new(text).size(SMALL_SIZE).color(color));

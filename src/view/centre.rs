@@ -5,13 +5,7 @@ use egui_tiles::{
     Behavior, Container, LinearDir, SimplificationOptions, TabState, Tabs, Tile, TileId, Tiles, Tree, UiResponse,
 };
 
-use super::arrangement::{View, ViewTitle};
-use super::command::Command;
-use super::controls::entries_ui;
-use super::figures::figure_button_ui;
-use super::focus::{Region, region_ui};
-use super::palette::{BODY_SIZE, Palette};
-use super::state::State;
+use super::{BODY_SIZE, Command, Palette, Region, State, View, ViewTitle, entries_ui, figure_button_ui, region_ui};
 
 /// Height of a row of tabs \[pt\].
 const TAB_HEIGHT: f32 = 26.0;

@@ -10,16 +10,12 @@ use gdcm_core::study::{AcrossRole, Edit, ExplainTarget, Table};
 use gdcm_files::ExportFormat;
 use gdcm_files::figure::{ColumnWidth, FigureFormat};
 
-use super::arrangement::{Preset, View};
 use super::assembling::AssemblingCommand;
-use super::bars::Bar;
-use super::curve_display::CurveCommand;
 use super::plot::{Across, FrequencyUnit, Measure};
-use super::plot_style::PlotStyle;
 use super::records::RecordsCommand;
-use super::tables::TableKind;
 use super::views::AssessedFigures;
 use super::views::PairSet;
+use super::{Bar, CurveCommand, PlotStyle, Preset, TableKind, View};
 
 /// One action of the engineer: what a click, a key or a menu entry stands for. Views push them; the window carries them out.
 #[derive(Clone, Debug, PartialEq)]

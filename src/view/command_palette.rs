@@ -5,12 +5,9 @@ use std::cmp::Reverse;
 use egui::text::{CCursor, CCursorRange};
 use egui::{Key, Modifiers, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
-use super::command::Command;
-use super::command_table::Entry;
-use super::command_table::every_command;
-use super::controls::{Room, row_text, row_text_within, row_ui};
-use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
-use super::state::State;
+use super::{
+    BODY_SIZE, Command, Entry, Palette, Room, SMALL_SIZE, State, every_command, row_text, row_text_within, row_ui,
+};
 
 /// Rows that are drawn: whoever looks for more types another letter.
 const MOST_ROWS: usize = 60;

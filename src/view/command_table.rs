@@ -6,16 +6,11 @@ use gdcm_core::dataset::{BundleKind, ModelId, Pair};
 use gdcm_core::study::{Edit, Kind, OfferedModels, Place, SETTINGS, Value};
 use gdcm_files::figure::FigureFormat;
 
-use super::arrangement::{Preset, View};
 use super::assembling::AssemblingCommand;
-use super::command::{Command, FormKind};
-use super::curve_display::curve_entries;
-use super::figures::views_with_figure;
 use super::plot::FrequencyUnit;
 use super::records::RecordsCommand;
-use super::state::State;
-use super::tables::TableKind;
 use super::views::PairSet;
+use super::{Command, FormKind, Preset, State, TableKind, View, curve_entries, views_with_figure};
 
 /// A menu of the bar on top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

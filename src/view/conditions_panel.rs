@@ -6,12 +6,10 @@ use gdcm_core::correction::Unmatched;
 use gdcm_core::dataset::{Condition, ConditionId, FlightState};
 use gdcm_core::study::Edit;
 
-use super::command::Command;
-use super::controls::{Room, entries_ui, row_text, row_text_within, row_ui, table_heading_ui};
-use super::focus::{Region, region_ui};
-use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
-use super::state::State;
-use super::tables::TableKind;
+use super::{
+    BODY_SIZE, Command, Palette, Region, Room, SMALL_SIZE, State, TableKind, entries_ui, region_ui, row_text,
+    row_text_within, row_ui, table_heading_ui,
+};
 
 /// Every condition with speed, altitude, weight and its marks; a click shows it.
 pub fn conditions_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {

@@ -5,9 +5,7 @@ use egui::{
     WidgetInfo, pos2, vec2,
 };
 
-use super::command::Command;
-use super::palette::{Palette, SMALL_SIZE};
-use super::tables::TableKind;
+use super::{Command, Palette, SMALL_SIZE, TableKind};
 
 impl Palette {
     /// A small dim text: what stands beside a value.

@@ -5,11 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use egui::Key;
 use gdcm_core::dataset::{ConditionId, ModelId, Pair};
 
-use super::command::Command;
-use super::command_table::{Entry, Menu};
 use super::plot::{CurveId, MagnitudeUnit, PhaseErrorUnit, PhaseUnit, Role};
-use super::plot_style::{CurveColors, PlotStyle};
-use super::state::State;
+use super::{Command, CurveColors, Entry, Menu, PlotStyle, State};
 
 /// How the plots over frequency show their curves.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,15 +9,12 @@ use gdcm_core::study::{AcrossRole, ExplainTarget};
 
 use gdcm_files::figure::{AirspeedCache, ErrorCache, ResponseCache};
 
-use super::arrangement::Arrangement;
-use super::curve_display::CurveDisplay;
 use super::plot::{
-    Across, AssessmentView, BodeCurve, BodeView, ChannelsView, FrequencyUnit, GainView, MagnitudeUnit, Measure,
-    OverviewView, PhaseErrorUnit, PhaseUnit, PolesView, Role,
+    Across, BodeCurve, BodeView, FigureView, FrequencyUnit, MagnitudeUnit, Measure, OverviewView, PhaseErrorUnit,
+    PhaseUnit, Role,
 };
-use super::plot_style::PlotStyle;
-use super::table_view::Sorting;
-use super::views::{AssessedFigures, CachedEvidence, CachedModes, PairSet};
+use super::views::{AssessedFigures, CachedEvidence, CachedModes, ChannelsView, PairSet};
+use super::{Arrangement, CurveDisplay, PlotStyle, Sorting};
 
 /// What is shown, none of which changes a result.
 #[derive(Debug, Default)]
@@ -51,13 +48,13 @@ pub struct Display {
     /// Responses that the engineer picked for the net-gain plots.
     pub picked_pairs: BTreeSet<Pair>,
     /// Transforms of the net-gain plots.
-    pub net_gain: GainView,
+    pub net_gain: FigureView,
     /// What the channel plots measure, and over what.
     pub channel_values: (Measure, Across),
     /// Transforms of the channel plots.
     pub channels: ChannelsView,
     /// Ranges and transforms of the plots of poles.
-    pub poles: PolesView,
+    pub poles: FigureView,
     /// Whether zeros of the response in focus are shown among the poles.
     pub show_zeros: bool,
     /// Modes and zeros, kept from frame to frame.
@@ -91,7 +88,7 @@ pub struct Display {
     /// Cells of the overview.
     pub overview: OverviewView,
     /// Transforms of the assessment.
-    pub assessment: AssessmentView,
+    pub assessment: FigureView,
     /// Shapes of the responses drawn, kept from frame to frame.
     pub shapes: BTreeMap<Pair, ResponseCache>,
     /// The curves that the Bode plot shows.

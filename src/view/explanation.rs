@@ -8,10 +8,7 @@ use gdcm_core::correction::Channel;
 use gdcm_core::dataset::Pair;
 use gdcm_core::study::{ConditionAnalysis, Derivation, ExplainTarget, Remark, derivation, details, remarks};
 
-use super::command::Command;
-use super::controls::entries_ui;
-use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
-use super::state::State;
+use super::{BODY_SIZE, Command, Palette, SMALL_SIZE, State, entries_ui};
 
 /// What asks for a derivation, everywhere.
 pub const QUESTION: &str = "How was this computed?";

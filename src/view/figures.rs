@@ -4,14 +4,10 @@ use egui::containers::menu::MenuButton;
 use egui::{RichText, Role, Ui};
 use gdcm_files::figure::{BodeOptions, Figure, FigureFormat, FigureKind, FigureRequest, all_channels};
 
-use super::arrangement::View;
-use super::command::Command;
-use super::controls::named;
-use super::palette::SMALL_SIZE;
 use super::plot::{BodeView, Pane};
-use super::state::State;
 use super::views::{assessed_pairs, assessment_choice};
 use super::views::{bode_options, condition_source, net_gain_pairs};
+use super::{Command, SMALL_SIZE, State, View, named};
 
 /// The figure that a view shows; none until its results are there.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {

@@ -10,12 +10,10 @@ use gdcm_core::study::{Difference, Edit};
 use gdcm_files::ExportFormat;
 use gdcm_files::figure::ColumnWidth;
 
-use super::command::{Command, FormKind};
-use super::command_palette::command_palette_ui;
-use super::controls::{is_entered, name_text_field, named_switch};
-use super::help::keys_page_ui;
-use super::palette::Palette;
-use super::state::{ExportAsForm, ExportForm, FigureForm, State};
+use super::{
+    Command, ExportAsForm, ExportForm, FigureForm, FormKind, Palette, State, command_palette_ui, is_entered,
+    keys_page_ui, name_text_field, named_switch,
+};
 
 /// Shows the form that is asked for, if any. Its field has the focus when it opens; Enter submits it; Escape and a click outside
 /// close it.

@@ -5,11 +5,8 @@ use egui::{
     StrokeKind, Ui, Vec2, vec2,
 };
 
-use super::command::Command;
-use super::command_table::{Reach, command_table};
-use super::focus::{Region, region_place};
-use super::palette::{Palette, SMALL_SIZE};
-use super::state::State;
+use super::command_table::command_table;
+use super::{Command, Palette, Reach, Region, SMALL_SIZE, State, region_place};
 
 /// Width of the note \[pt\].
 const WIDTH: f32 = 300.0;

@@ -12,15 +12,11 @@ use gdcm_core::study::{ConditionAnalysis, Edit, ExplainTarget, Undefined};
 use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::s_to_ms;
 
-use super::command::Command;
-use super::controls::{check_ui, entries_ui, named_switch, table_heading_ui};
-use super::explanation::question_menu_ui;
-use super::explanation::{gain_conflict_marks, toggle_costs};
-use super::focus::{Region, region_ui};
-use super::palette::{Palette, SMALL_SIZE};
-use super::state::{State, Sureness};
-use super::tables::TableKind;
 use super::views::bar_words;
+use super::{
+    Command, Palette, Region, SMALL_SIZE, State, Sureness, TableKind, check_ui, entries_ui, gain_conflict_marks,
+    named_switch, question_menu_ui, region_ui, table_heading_ui, toggle_costs,
+};
 
 const CELL_HEIGHT: f32 = 50.0;
 const LEAST_CELL_WIDTH: f32 = 58.0;

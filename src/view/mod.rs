@@ -30,3 +30,34 @@ pub mod state;
 pub mod table_view;
 pub mod tables;
 pub mod views;
+
+pub use arrangement::{Arrangement, Need, Preset, View, ViewTitle};
+pub use bars::Bar;
+pub use command::{Command, FormKind};
+pub use command_palette::{PaletteForm, command_palette_ui};
+pub use command_table::{Entry, Menu, Reach, every_command};
+pub use controls::{
+    ROW_HEIGHT, Room, button_ui, check_ui, elided_among, entries_ui, entry_ui, heading_ui, is_entered, name_text_field,
+    named, named_switch, number_entry_ui, row_text, row_text_within, row_ui, table_heading_ui, table_menu_ui,
+    text_field_ui, typed_number,
+};
+use curve_display::curve_entries;
+pub use curve_display::{CurveCommand, CurveDisplay};
+pub use display::{Display, Preferences};
+pub use explanation::{
+    QUESTION, details_shown, gain_conflict_marks, question_menu_ui, remarks_shown, toggle_costs, value_label_ui,
+};
+use figures::figure_button_ui;
+pub use figures::{figure_name, figure_of, views_with_figure};
+pub use focus::{Region, leave_region, region_place, region_ui};
+pub use help::keys_page_ui;
+pub use number_field::{Entered, NumberField, focus_field};
+use palette::hex;
+pub use palette::{BODY_SIZE, Palette, SMALL_SIZE};
+pub use plot_style::{CurveColors, PlotStyle};
+use results::bar_words;
+pub use results::{Background, FirstResult, Results};
+use settings_panel::choice_ui;
+pub use state::{ExportAsForm, ExportForm, FigureForm, Notice, NoticeKind, RecentFile, State, Sureness};
+pub use table_view::Sorting;
+pub use tables::{TableKind, table_of};

@@ -6,14 +6,10 @@ use gdcm_core::dataset::{BundleKind, Dynamics, Model, ModelId, Origin};
 use gdcm_core::fidelity::SUGGESTION_RATIO;
 use gdcm_core::study::{Edit, ExplainTarget};
 
-use super::command::Command;
-use super::controls::{ROW_HEIGHT, elided_among, entries_ui, named, named_switch, row_text, table_heading_ui};
-
-use super::explanation::question_menu_ui;
-use super::focus::{Region, region_ui};
-use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
-use super::state::State;
-use super::tables::TableKind;
+use super::{
+    BODY_SIZE, Command, Palette, ROW_HEIGHT, Region, SMALL_SIZE, State, TableKind, elided_among, entries_ui, named,
+    named_switch, question_menu_ui, region_ui, row_text, table_heading_ui,
+};
 
 /// The physics models with discontinuity ratios, and what may be done with all of them at once.
 pub fn physics_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {

@@ -10,16 +10,11 @@ use gdcm_core::study::{
 use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::s_to_ms;
 
-use super::command::{Command, FormKind};
-use super::controls::{heading_ui, named, table_menu_ui};
-use super::explanation::QUESTION;
-use super::explanation::value_label_ui;
-use super::explanation::{details_shown, remarks_shown};
-use super::focus::{Region, region_ui};
-use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
-use super::state::State;
-use super::tables::TableKind;
 use super::views::bar_words;
+use super::{
+    BODY_SIZE, Command, FormKind, Palette, QUESTION, Region, SMALL_SIZE, State, TableKind, details_shown, heading_ui,
+    named, region_ui, remarks_shown, table_menu_ui, value_label_ui,
+};
 
 /// Size of the half-widths of bars \[pt\].
 const HALF_SIZE: f32 = 9.5;

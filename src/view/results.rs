@@ -27,6 +27,8 @@ pub struct FirstResult {
 /// What is under way beside the live answer.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Background {
+    /// Whether the live answer is being computed: steps done, of how many.
+    pub analysis: Option<(usize, usize)>,
     /// The problems whose gains are being proven, or are to be.
     pub proofs: Vec<Arc<Problem>>,
     /// Whether the costs of holding and freeing are being computed.
@@ -96,8 +98,6 @@ pub struct Results {
     pub elapsed_ms: f64,
     /// Whether the newest request was given up, by hand or by a fault: what is shown stays older than the settings.
     pub stopped: bool,
-    /// How far the analysis under way is: steps done, of how many.
-    pub progress: Option<(usize, usize)>,
 }
 
 /// Age \[s\] from which shown results that no longer fit the settings are marked as stale.

@@ -5,12 +5,7 @@ use egui::{ComboBox, Grid, RichText, Role, Slider, Ui, WidgetInfo};
 use gdcm_core::correction::GainSource;
 use gdcm_core::study::{Kind, PhaseCorrection, Place, SETTINGS, Setting, Value, setting};
 
-use super::command::Command;
-use super::controls::heading_ui;
-use super::focus::{Region, region_ui};
-use super::number_field::{Entered, NumberField};
-use super::palette::{Palette, SMALL_SIZE};
-use super::state::State;
+use super::{Command, Entered, NumberField, Palette, Region, SMALL_SIZE, State, heading_ui, region_ui};
 
 /// Largest value on a slider; more can be typed.
 const SLIDER_END: f64 = 1e3;

@@ -13,15 +13,10 @@ use gdcm_core::uncertainty::{Bar as ErrorBar, Scalar};
 use gdcm_files::ExportFormat;
 use gdcm_files::figure::ColumnWidth;
 
-use super::arrangement::View;
 use super::assembling::AssemblyState;
-use super::bars::Bar;
-use super::command::FormKind;
-use super::command_palette::PaletteForm;
-use super::display::Display;
 use super::records::RecordsState;
-use super::results::{FirstResult, Results};
 use super::views::assessment_choice;
+use super::{Bar, Display, FirstResult, FormKind, PaletteForm, Results, View};
 
 /// How a message is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

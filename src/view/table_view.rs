@@ -6,9 +6,7 @@ use egui::{Align, Button, Color32, Grid, Label, Layout, RichText, Role, ScrollAr
 
 use gdcm_core::study::Table;
 
-use super::command::Command;
-use super::controls::{entries_ui, named};
-use super::palette::{Palette, SMALL_SIZE};
+use super::{Command, Palette, SMALL_SIZE, entries_ui, named};
 
 /// By which column a table is sorted, and whether downwards; by none as it was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

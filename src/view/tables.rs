@@ -9,7 +9,7 @@ use gdcm_core::study::{ConditionAnalysis, Table};
 use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::s_to_ms;
 
-use super::state::{State, Sureness};
+use super::{State, Sureness};
 
 /// A table of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -230,7 +230,7 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
         let text = fs::read_to_string(desk.path(name)).unwrap();
         assert!(parts.iter().all(|part| text.contains(part)), "{name}: {text}");
     }
-    let zero_s = 1.0 / leads.inputs.get("LAT").unwrap().zero_rad_s.unwrap();
+    let zero_s: f64 = 1.0 / at["lead"]["inputs"]["LAT"]["zero_rad_s"].as_f64().unwrap();
     let program = "import c\nzi, zo = c.gdcm_leads(120.0)\nA, B, C, D = c.gdcm_lead_state_space(zi[1])\n\
                    print(repr(zi[1]), repr(D[0][0]), len(zo), len(A))";
     if let Ok(output) = Command::new("python3").args(["-c", program]).current_dir(&desk.directory).output() {

@@ -2,16 +2,13 @@
 
 use egui::{Button, CentralPanel, CollapsingHeader, Frame, Grid, Margin, Panel, RichText, Role, ScrollArea, Ui};
 
-use crate::view::command::Command;
-use crate::view::controls::{button_ui, entry_ui, is_entered, named, number_entry_ui, text_field_ui};
-use crate::view::palette::{Palette, SMALL_SIZE};
+use crate::view::{
+    Command, Palette, SMALL_SIZE, button_ui, entry_ui, is_entered, named, number_entry_ui, text_field_ui,
+};
 use gdcm_core::assembly::{ChannelRule, ProblemKind, Rules, UnitRule};
 use gdcm_core::units::number;
 
-use super::assembly_state::{AssemblingCommand, AssemblyState};
-use super::details::details_ui;
-use super::preview::preview_ui;
-use super::table::{problems_ui, table_ui};
+use super::{AssemblingCommand, AssemblyState, details_ui, preview_ui, problems_ui, table_ui};
 
 /// Draws the view in the place of everything below the menu.
 pub fn assembling_ui(ui: &mut Ui, assembly: &mut AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {

@@ -4,11 +4,9 @@ use std::path::PathBuf;
 
 use gdcm_core::assembly::{Assembly, FoundModel, Headings, RowRule, Rules, proposed_rules};
 
-use crate::view::command::Command;
-use crate::view::table_view::Sorting;
+use crate::view::{Command, Sorting};
 
-use super::preview::Preview;
-use super::table::COLUMNS;
+use super::{COLUMNS, Preview};
 
 /// Most steps that can be undone.
 const MOST_STEPS: usize = 200;

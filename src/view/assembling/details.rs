@@ -4,14 +4,11 @@ use std::collections::BTreeMap;
 
 use egui::{Grid, RichText, Role, Ui};
 
-use crate::view::command::Command;
-use crate::view::controls::{check_ui, entry_ui, named, typed_number};
-use crate::view::palette::Palette;
-use crate::view::settings_panel::choice_ui;
+use crate::view::{Command, Palette, check_ui, choice_ui, entry_ui, named, typed_number};
 use gdcm_core::assembly::{ChannelLabel, Part, RowRole, RowRule};
 use gdcm_core::units::number;
 
-use super::assembly_state::AssemblyState;
+use super::AssemblyState;
 
 const FIELD_WIDTH: f32 = 200.0;
 

@@ -9,3 +9,8 @@ mod table;
 pub use assembling_view::assembling_ui;
 pub use assembly_state::{AssemblingCommand, AssemblyState, Reading};
 pub use table::{COLUMNS, Column};
+
+use details::{columns_ui, details_ui};
+use preview::Preview;
+use preview::preview_ui;
+use table::{problems_ui, table_ui};

@@ -5,16 +5,14 @@ use std::sync::Arc;
 use egui::Ui;
 use nalgebra::Complex;
 
-use crate::view::command::Command;
-use crate::view::palette::Palette;
 use crate::view::plot::{BodeCurve, BodeQuantity, BodeScene, BodeView, CurveId, FrequencyUnit, Role, bode_ui};
-use crate::view::settings_panel::choice_ui;
+use crate::view::{Command, Palette, choice_ui};
 use gdcm_core::assembly::{ChannelLabel, FoundModel};
 use gdcm_core::dataset::Band;
 use gdcm_core::dataset::{BundleKind, ConditionId, Dynamics, ModelId, Pair, StateSpace};
 use gdcm_core::response::{FrequencyGrid, PreparedModel, ResponseShape};
 
-use super::assembly_state::{AssemblingCommand, AssemblyState};
+use super::{AssemblingCommand, AssemblyState};
 
 /// Frequencies of the curve.
 const POINTS: usize = 300;

@@ -3,14 +3,11 @@
 use egui::text::{LayoutJob, TextFormat, TextWrapping};
 use egui::{Align, Button, Color32, FontId, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, pos2, vec2};
 
-use crate::view::command::Command;
-use crate::view::controls::{ROW_HEIGHT, named, named_switch};
-use crate::view::palette::{Palette, SMALL_SIZE};
+use crate::view::{Command, Palette, ROW_HEIGHT, SMALL_SIZE, named, named_switch};
 use gdcm_core::assembly::Part;
 use gdcm_core::units::number;
 
-use super::assembly_state::{AssemblingCommand, AssemblyState};
-use super::details::columns_ui;
+use super::{AssemblingCommand, AssemblyState, columns_ui};
 
 /// A column of the table.
 pub struct Column {

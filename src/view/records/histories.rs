@@ -6,15 +6,13 @@ use std::sync::Arc;
 
 use egui::{Id, Rect, RichText, ScrollArea, Sense, Ui, vec2};
 
-use crate::view::command::Command;
-use crate::view::palette::Palette;
 use crate::view::plot::{Chart, ChartAxis, ChartLine, ChartSpan, chart_ui};
+use crate::view::{Command, Palette};
 use gdcm_core::dataset::Band;
 use gdcm_core::executor::Sequential;
 use gdcm_core::identification::{FlightRecord, Segment, Treatment, spectra};
 
-use super::records_state::{ConditionRecords, Page};
-use super::simulation::{simulated, time_models_ui};
+use super::{ConditionRecords, Page, simulated, time_models_ui};
 
 /// Least height of a chart \[pt\]; more of them scroll.
 const LEAST_HEIGHT: f32 = 84.0;

@@ -11,3 +11,10 @@ mod simulation;
 pub use records_state::{ConditionRecords, RecordsCommand, RecordsPage, RecordsReading, RecordsState};
 pub use records_view::{records_header_ui, records_view_ui};
 pub use simulation::{TimeModel, simulation_jobs};
+
+use histories::{Source, histories_ui, inputs_ui, kept};
+use outcome::{offered_menu_ui, outcome_ui};
+use record_list::{BAD, CHI_SQUARED, columns_ui, cost_text, record_list_ui};
+use records_state::Page;
+use response::{identified_poles_ui, response_ui, stabilisation_ui};
+use simulation::{fit_ui, simulated, time_models_ui};

@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use egui::{Label, ProgressBar, RichText, Ui};
 
-use crate::view::command::Command;
-use crate::view::palette::{Palette, SMALL_SIZE};
+use crate::view::{Command, Palette, SMALL_SIZE};
 use gdcm_core::dataset::{BundleKind, ChannelSide};
 use gdcm_core::identification::{
     Hold, Identification, IdentificationCaution, IdentificationError, RecordCaution, Signal,
@@ -13,9 +12,7 @@ use gdcm_core::identification::{
 use gdcm_core::study::{ChannelTimeSkew, OfferedModels};
 use gdcm_core::units::s_to_ms;
 
-use super::histories::{Source, kept};
-use super::record_list::{BAD, CHI_SQUARED};
-use super::records_state::{ConditionRecords, Page, RecordsCommand};
+use super::{BAD, CHI_SQUARED, ConditionRecords, Page, RecordsCommand, Source, kept};
 
 /// Above this the held-out records speak against the model (M14, section 4).
 const HELD_OUT: f64 = 1.15;

@@ -2,15 +2,13 @@
 
 use egui::{Align, Checkbox, ComboBox, Grid, Label, Layout, RichText, Role as AccessRole, ScrollArea, Sense, Ui, vec2};
 
-use crate::view::command::Command;
-use crate::view::controls::{elided_among, named, named_switch, number_entry_ui};
-use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE};
+use crate::view::{BODY_SIZE, Command, Palette, SMALL_SIZE, elided_among, named, named_switch, number_entry_ui};
 use gdcm_core::dataset::{ChannelSide, RecordKind};
 use gdcm_core::identification::Signal;
 use gdcm_core::records::{ColumnUse, LaidOutRecord, RecordLayout, TimeBase};
 use gdcm_core::units::{ms_to_s, number, s_to_ms};
 
-use super::records_state::{ConditionRecords, Page, RecordsCommand};
+use super::{ConditionRecords, Page, RecordsCommand};
 
 /// Width of all columns but the names \[pt\].
 const OTHER_COLUMNS: f32 = 124.0;

@@ -11,10 +11,9 @@ use gdcm_core::identification::{ChannelPreparation, Hold, Identification, Identi
 use gdcm_core::records::{LaidOutRecord, RecordLayout};
 use gdcm_core::study::{AdoptedModels, IdentificationRequest, IdentifyJob, NothingToIdentify, OfferedModels};
 
-use crate::view::palette::Palette;
-use crate::view::state::State;
+use crate::view::{Palette, State};
 
-use super::simulation::TimeModel;
+use super::TimeModel;
 
 /// What a page of the view shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -3,21 +3,12 @@
 use egui::scroll_area::ScrollBarVisibility;
 use egui::{Button, Frame, Label, Margin, Panel, Role, ScrollArea, Ui};
 
-use crate::view::command::Command;
-use crate::view::controls::{button_ui, is_entered, named_switch, text_field_ui};
-use crate::view::palette::Palette;
-use crate::view::state::State;
+use crate::view::{Command, Palette, State, button_ui, is_entered, named_switch, text_field_ui};
 
-use super::histories::histories_ui;
-use super::histories::inputs_ui;
-use super::outcome::{offered_menu_ui, outcome_ui};
-use super::record_list::columns_ui;
-use super::record_list::record_list_ui;
-use super::records_state::{ConditionRecords, Page, RecordsCommand, RecordsPage};
-use super::response::identified_poles_ui;
-use super::response::response_ui;
-use super::response::stabilisation_ui;
-use super::simulation::fit_ui;
+use super::{
+    ConditionRecords, Page, RecordsCommand, RecordsPage, columns_ui, fit_ui, histories_ui, identified_poles_ui,
+    inputs_ui, offered_menu_ui, outcome_ui, record_list_ui, response_ui, stabilisation_ui,
+};
 
 /// Width of the list \[pt\].
 const LIST_WIDTH: f32 = 340.0;

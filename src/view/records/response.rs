@@ -4,9 +4,8 @@ use std::sync::Arc;
 
 use egui::{Color32, Label, Rect, RichText, Ui, vec2};
 
-use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, chart_ui};
-use crate::view::state::State;
+use crate::view::{Palette, SMALL_SIZE, State};
 use gdcm_core::dataset::{Pair, StateSpace};
 use gdcm_core::identification::{
     EstimatePoint, Identification, PoleEstimate, StabilisationPoint, TRUSTED_COHERENCE, TWO_SIDED_95, log_spaced,
@@ -14,8 +13,7 @@ use gdcm_core::identification::{
 use gdcm_core::response::evaluate;
 use gdcm_core::units::neper_to_db;
 
-use super::histories::kept;
-use super::records_state::Page;
+use super::{Page, kept};
 
 /// Frequencies of a model's curve.
 const POINTS: usize = 200;
@@ -143,7 +141,8 @@ fn drawn(found: &Identification, band: [f64; 2], pair: Pair) -> DrawnResponse {
 
 /// The response of a model, the phase on the branch nearest to `reference`.
 fn curve(model: &StateSpace, omegas: &[f64], pair: Pair, reference: Option<(f64, f64)>) -> Curve {
-    let values = evaluate(model, omegas).curve(pair).into_iter();
+    let response = evaluate(model, omegas);
+    let values = response.curve(pair).iter().copied();
     let finite = omegas.iter().copied().zip(values).filter(|(_, value)| value.re.is_finite() && value.im.is_finite());
     Curve(shape(finite, reference))
 }

@@ -4,18 +4,14 @@ use std::sync::Arc;
 
 use egui::{Color32, Grid, Label, RichText, ScrollArea, Ui};
 
-use crate::view::command::Command;
-use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::ChartLine;
-use crate::view::state::State;
+use crate::view::{Command, Palette, SMALL_SIZE, State};
 use gdcm_core::correction::{CorrectedModel, Pade};
 use gdcm_core::dataset::{BundleKind, StateSpace};
 use gdcm_core::identification::Validation;
 use gdcm_core::study::SimulationJob;
 
-use super::histories::kept;
-use super::record_list::cost_text;
-use super::records_state::{ConditionRecords, Page, RecordsCommand};
+use super::{ConditionRecords, Page, RecordsCommand, cost_text, kept};
 
 /// A model that can be compared with a record in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

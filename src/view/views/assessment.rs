@@ -1,6 +1,6 @@
 //! What the correction is worth, condition by condition.
 
-use egui::{RichText, Ui};
+use egui::{Align, Layout, Rect, RichText, Sense, Ui, Vec2, vec2};
 use gdcm_core::dataset::{Condition, ConditionId, Pair};
 use gdcm_core::fidelity::CostAverage;
 use gdcm_core::schedule::CostChange;
@@ -8,10 +8,13 @@ use gdcm_core::study::{
     AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, ExplainTarget, Table, held_out_verdict,
 };
 use gdcm_core::units::signed;
+use gdcm_files::figure::{
+    Axis, Bars, Color, Curve, Figure, Hue, MarkId, Note, Panel, Place, Plot, Range, Rule, Spans, Stroke, decimals,
+};
 
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
-use crate::view::plot::{AssessmentBar, AssessmentEvent, AssessmentPanel, AssessmentScene, BarValue, assessment_ui};
+use crate::view::plot::{FigureEvent, FigureScene, FigureWords, NamedFigure, figure_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 use crate::view::table_view::{TableLook, table_ui};
@@ -80,8 +83,7 @@ fn choices_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
 /// The change of J of the responses chosen in every condition (Figures 8 to 19), summed up in a sentence.
 pub fn assessment_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(table) = state.assessment().cloned() else {
-        let scene = AssessmentScene { panels: &[], message: Some(state.results.absence()) };
-        assessment_ui(ui, &scene, &mut state.display.assessment, palette);
+        ui.label(RichText::new(state.results.absence()).color(palette.dim_text));
         return;
     };
     let sentences = assessment_sentences(state, &table).join(" · ");
@@ -90,17 +92,159 @@ pub fn assessment_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, com
     if state.display.assessed.as_table {
         return text_table_ui(ui, state, &table, palette, commands);
     }
-    let (pairs, panels) = assessment_panels(state, &table);
-    let scene = AssessmentScene { panels: &panels, message: Some("No response of this kind: choose others above") };
-    let events = assessment_ui(ui, &scene, &mut state.display.assessment, palette);
-    for event in events {
+    key_ui(ui, palette);
+    let mut view = std::mem::take(&mut state.display.assessment);
+    let plots = AssessmentPlots { state, table: &table, pairs: assessed_pairs(state) };
+    let ids: Vec<MarkId> = state.dataset().conditions().iter().map(|of| MarkId::Condition(of.id())).collect();
+    let figure = plots.pairs.iter().map(|&pair| Plot::new(state.dataset().pair_name(pair)).panel(plots.panel(pair)));
+    let scene = FigureScene {
+        name: "assessment",
+        figure: &Figure::default().plots(figure),
+        selected: Some(MarkId::Condition(state.condition().id())),
+        highlighted: None,
+        columns: &ids,
+        zooms: false,
+        least: LEAST_PLOT,
+        message: "No response of this kind: choose others above",
+        words: (&plots, 0),
+    };
+    for event in figure_ui(ui, &scene, &mut view, palette) {
         match event {
-            AssessmentEvent::BarClicked { panel, condition } => {
+            FigureEvent::Clicked(plot, MarkId::Condition(condition), _) => {
                 commands.push(Command::SelectCondition(condition));
-                commands.extend(pairs.get(panel).map(|&pair| Command::FocusPair(pair)));
+                commands.extend(plots.pairs.get(plot).map(|&pair| Command::FocusPair(pair)));
             }
-            AssessmentEvent::Asked(figure) => commands.push(Command::Explain(Some(figure))),
+            FigureEvent::Asked(figure) => commands.push(Command::Explain(Some(figure))),
+            FigureEvent::Clicked(..) | FigureEvent::Pointed(_) => {}
         }
+    }
+    state.display.assessment = view;
+}
+
+/// A plot is never smaller \[pt\].
+const LEAST_PLOT: Vec2 = vec2(190.0, 150.0);
+/// Width of a bar, where conditions are 1 apart.
+const BAR: f64 = 0.6;
+/// How much fainter the phase part of a bar is \[%\].
+const PHASE_PERCENT: u8 = 45;
+/// Space above and below the bars, as a part of their height, and that of a number from its bar.
+const MARGINS: [f64; 2] = [0.12, 0.05];
+
+/// What the bars mean, laid out from right to left.
+fn key_ui(ui: &mut Ui, palette: &Palette) {
+    let faint = palette.dim_text.gamma_multiply(0.01 * f32::from(PHASE_PERCENT));
+    let parts = [
+        ("worse", palette.warning, 10.0),
+        ("better", palette.good, 10.0),
+        ("ΔJ", palette.text, 2.0),
+        ("ΔJ phase", faint, 10.0),
+        ("ΔJ magnitude", palette.dim_text, 10.0),
+    ];
+    ui.allocate_ui_with_layout(vec2(ui.available_width(), 16.0), Layout::right_to_left(Align::Center), |ui| {
+        for (name, color, height) in parts {
+            ui.label(RichText::new(name).size(SMALL_SIZE).color(palette.dim_text));
+            let (rect, _) = ui.allocate_exact_size(vec2(12.0, 10.0), Sense::hover());
+            ui.painter().rect_filled(Rect::from_center_size(rect.center(), vec2(12.0, height)), 1.0, color);
+        }
+    });
+}
+
+/// The change of J of each response shown, bar by bar.
+struct AssessmentPlots<'a> {
+    state: &'a State,
+    table: &'a AssessmentTable,
+    pairs: Vec<Pair>,
+}
+
+impl AssessmentPlots<'_> {
+    /// The change in each condition; none where it is left out.
+    fn changes(&self, pair: Pair) -> impl Iterator<Item = (ConditionId, Option<CostChange>)> + '_ {
+        self.state.dataset().conditions().iter().map(move |of| (of.id(), self.table.change(of.id(), pair)))
+    }
+
+    /// Both parts of each change stand on one another where they are of one sign, else on either side of zero; a line across says their
+    /// sum.
+    fn panel(&self, pair: Pair) -> Panel {
+        let found: Vec<(f64, CostChange)> =
+            self.changes(pair).enumerate().filter_map(|(at, (_, change))| Some((at as f64, change?))).collect();
+        let foot = |change: &CostChange, is_phase: bool| {
+            let is_stacked = is_phase && change.magnitude() * change.phase() > 0.0;
+            if is_stacked { change.magnitude() } else { 0.0 }
+        };
+        let ends = |change: &CostChange| [change.magnitude(), foot(change, true) + change.phase(), 0.0];
+        let range = Range::of(found.iter().flat_map(|(_, change)| ends(change)));
+        let range = range.unwrap_or(Range::new(-1.0, 1.0)).with_margin(MARGINS[0], 1.0);
+        let parts = [(false, Hue::Good), (false, Hue::Warning), (true, Hue::Good), (true, Hue::Warning)];
+        let bars = parts.map(|(is_phase, hue)| {
+            let value = |change: &CostChange| if is_phase { change.phase() } else { change.magnitude() };
+            let of_hue = found.iter().filter(|(_, change)| (value(change) > 0.0) == (hue == Hue::Warning));
+            let (bars, feet) = of_hue.map(|(at, change)| ([*at, value(change)], foot(change, is_phase))).unzip();
+            let color = Color::of(hue).tint(if is_phase { PHASE_PERCENT } else { 100 });
+            Bars { name: String::new(), color, width: BAR, bars, feet, beside: 0.0 }
+        });
+        let (x, y): (Vec<f64>, Vec<f64>) = found
+            .iter()
+            .flat_map(|(at, change)| [(at - 0.38, change.total()), (at + 0.38, change.total()), (f64::NAN, f64::NAN)])
+            .unzip();
+        let number = |(at, change): &(f64, CostChange)| {
+            let (total, by) = (change.total(), MARGINS[1] * range.width());
+            let end = ends(change).into_iter().fold(0.0, if total > 0.0 { f64::max } else { f64::min });
+            let at = Place::Value { x: *at, y: end + by.copysign(total), upright: false };
+            Note { at, text: decimals(total, usize::from(total.abs() < 9.95)) }
+        };
+        let left_out: Vec<f64> = self
+            .changes(pair)
+            .enumerate()
+            .filter(|(_, (_, change))| change.is_none())
+            .map(|(at, _)| at as f64)
+            .collect();
+        let ground = Spans {
+            name: String::new(),
+            color: Color::of(Hue::Rejected).tint(13),
+            width: 0.7,
+            spans: left_out.iter().map(|at| [*at, range.min, range.max]).collect(),
+        };
+        let words = |at: f64| Note {
+            at: Place::Value { x: at, y: range.middle(), upright: true },
+            text: "left out".to_owned(),
+        };
+        let names = Axis::named("Condition", self.changes(pair).map(|(id, _)| id.to_string()));
+        let panel = Panel::new(names, Axis::linear("").showing(Some(range))).with(ground).with_all(bars);
+        let panel = panel.with(Rule::horizontal(0.0, Stroke::solid(Color::DIM, 0.6)));
+        let panel = panel.with(Curve::new("ΔJ", Stroke::solid(Color::INK, 1.1), x, y));
+        panel.with_all(found.iter().map(number)).with_all(left_out.into_iter().map(words))
+    }
+}
+
+impl FigureWords for AssessmentPlots<'_> {
+    fn plot(&self, plot: usize) -> String {
+        let pair = self.pairs[plot];
+        let text = |(id, change): (ConditionId, Option<CostChange>)| match change {
+            Some(change) => format!("{id} {}", decimals(change.total(), 1)),
+            None => format!("{id} left out"),
+        };
+        let words: Vec<String> = self.changes(pair).map(text).collect();
+        format!("Change of J, {}: {}", self.state.dataset().pair_name(pair), words.join(", "))
+    }
+
+    fn pointed_ui(&self, ui: &mut Ui, plot: usize, id: &MarkId, _: [f64; 2]) {
+        let (MarkId::Condition(id), pair) = (id, self.pairs[plot]) else { return };
+        let dim = |ui: &mut Ui, text: String| drop(ui.weak(RichText::new(text).size(SMALL_SIZE)));
+        dim(ui, format!("{} · condition {id}", self.state.dataset().pair_name(pair)));
+        let Some(change) = self.table.change(*id, pair) else {
+            ui.label(format!("left out: {}", why_not(self.table, *id, pair)));
+            return;
+        };
+        ui.label(format!("ΔJ {}", decimals(change.total(), 1)));
+        let [magnitude, phase] = [change.magnitude(), change.phase()].map(|part| decimals(part, 1));
+        dim(ui, format!("magnitude {magnitude} · phase {phase}"));
+        dim(ui, format!("J {:.1} → {:.1}", change.uncorrected.total(), change.corrected.total()));
+    }
+
+    fn questions(&self, plot: usize, id: &MarkId) -> Vec<NamedFigure> {
+        let (&MarkId::Condition(id), pair) = (id, self.pairs[plot]) else { return Vec::new() };
+        let asked = ExplainTarget::CostChange(id, pair, self.table.choice);
+        self.table.change(id, pair).map(|_| ("Change of J".to_owned(), asked)).into_iter().collect()
     }
 }
 
@@ -208,42 +352,6 @@ pub fn assessed_pairs(state: &State) -> Vec<Pair> {
         AssessedPairs::All => true,
     };
     measuring.pairs().filter(is_in).collect()
-}
-
-/// One panel for each response shown: the change of J in each condition.
-pub fn assessment_panels(state: &State, table: &AssessmentTable) -> (Vec<Pair>, Vec<AssessmentPanel>) {
-    let pairs = assessed_pairs(state);
-    let panel = |&pair: &Pair| AssessmentPanel {
-        title: state.dataset().pair_name(pair),
-        axis_label: "Condition".to_owned(),
-        bars: state.dataset().conditions().iter().map(|condition| bar(state, table, pair, condition)).collect(),
-    };
-    let panels = pairs.iter().map(panel).collect();
-    (pairs, panels)
-}
-
-fn bar(state: &State, table: &AssessmentTable, pair: Pair, condition: &Condition) -> AssessmentBar {
-    let id = condition.id();
-    let (value, detail) = match (table.change(id, pair), why_not(table, id, pair)) {
-        (Some(change), _) => (
-            BarValue::Change { magnitude: change.magnitude(), phase: change.phase() },
-            format!("J {:.1} → {:.1}", change.uncorrected.total(), change.corrected.total()),
-        ),
-        (None, why) => (BarValue::LeftOut { why }, String::new()),
-    };
-    let asked = ("Change of J".to_owned(), ExplainTarget::CostChange(id, pair, assessment_choice(state)));
-    let figures = match value {
-        BarValue::Change { .. } => vec![asked],
-        BarValue::LeftOut { .. } => Vec::new(),
-    };
-    AssessmentBar {
-        condition: id,
-        label: id.to_string(),
-        value,
-        selected: id == state.condition().id(),
-        detail,
-        figures,
-    }
 }
 
 /// Why a response of a condition has no change of J.

@@ -1,17 +1,16 @@
 //! Channel gains against airspeed.
 
-use egui::Ui;
-use gdcm_core::correction::ChannelCorrection;
+use egui::{Align2, FontId, Rect, RichText, Ui, Vec2, pos2, vec2};
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::schedule::Schedule;
-use gdcm_core::study::{AirspeedDifference, Uncertainty};
+use gdcm_core::study::{Edit, ExplainTarget, Uncertainty};
 use gdcm_core::uncertainty::{Bar, Scalar};
 use gdcm_core::units::s_to_ms;
+use gdcm_files::figure::{Across, Figure, GainQuantity, MarkId, Measure, all_channels, channels_figure};
 
-use super::net_gain::{bars_switch_ui, channel_panels, gain_command};
+use super::net_gain::bars_switch_ui;
 use crate::view::command::Command;
-use crate::view::palette::Palette;
-use crate::view::plot::{Across, Bracket, ChannelsScene, Dot, DotBar, GainBand, Measure, channels_ui};
+use crate::view::palette::{Palette, SMALL_SIZE};
+use crate::view::plot::{FigureEvent, FigureScene, FigureView, FigureWords, NamedFigure, figure_within_ui, rows};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 
@@ -35,53 +34,175 @@ pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command
     }
 }
 
-/// Gain or delay of every channel against airspeed (Figures 3 and 4).
+const HEADING_HEIGHT: f32 = 20.0;
+const GAP: f32 = 8.0;
+/// A plot is never smaller \[pt\].
+const LEAST_PLOT: Vec2 = vec2(122.0, 120.0);
+
+/// What the plots of channels remember between frames.
+#[derive(Clone, Debug, Default)]
+pub struct ChannelsView {
+    /// Of the input channels.
+    pub inputs: FigureView,
+    /// Of the output channels.
+    pub outputs: FigureView,
+}
+
+/// Gain or delay of every channel against airspeed (Figures 3 and 4): inputs above, outputs below, on the same axes.
 pub fn channels_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    let mut view = std::mem::take(&mut state.display.channels);
+    let plots = channel_plots(state);
+    let (mut inputs, mut outputs) = (plots.figure.clone(), plots.figure.clone());
+    inputs.plots.truncate(state.dataset().inputs().len());
+    outputs.plots.drain(..inputs.plots.len());
+    let rect = ui.available_rect_before_wrap();
+    // As much height as their rows need.
+    let half = vec2(rect.width(), 0.5 * rect.height());
+    let [above, below] = [&inputs, &outputs].map(|figure| rows(figure, half, LEAST_PLOT) as f32);
+    let (upper, lower) = rect.split_top_bottom_at_y(rect.top() + rect.height() * above / (above + below).max(1.0));
+    for (name, rect, figure, first, view) in [
+        ("Input channels", upper, &inputs, 0, &mut view.inputs),
+        ("Output channels", lower, &outputs, inputs.plots.len(), &mut view.outputs),
+    ] {
+        let place = pos2(rect.left() + 2.0, rect.top() + 0.5 * HEADING_HEIGHT);
+        if !figure.plots.is_empty() {
+            let font = FontId::proportional(SMALL_SIZE);
+            ui.painter().text(place, Align2::LEFT_CENTER, name, font, palette.dim_text);
+        }
+        let inner = Rect::from_min_max(rect.min + vec2(0.0, HEADING_HEIGHT), rect.max - vec2(0.0, GAP));
+        let scene = FigureScene { words: (&plots, first), ..plots.scene(name, figure, state.results.absence()) };
+        let events = figure_within_ui(ui, inner, &scene, view, palette);
+        commands.extend(events.into_iter().filter_map(|event| gain_command(state, event)));
+    }
+    ui.advance_cursor_after_rect(rect);
+    state.display.channels = view;
+}
+
+/// One plot for each channel, inputs first: its gain or delay in each condition's optimum, and the schedule.
+pub fn channel_plots(state: &State) -> GainPlots<'_> {
     let (measure, across) = state.display.channel_values;
-    let (inputs, outputs) = channel_panels(state, measure, across);
-    let scene = ChannelsScene { inputs: &inputs, outputs: &outputs, message: Some(state.results.absence()) };
-    let events = channels_ui(ui, &scene, &mut state.display.channels, palette);
-    commands.extend(events.into_iter().filter_map(|event| gain_command(state, event)));
+    let channels = if state.analysis().is_some() { all_channels(state.dataset()) } else { Vec::new() };
+    let figure = state
+        .analysis()
+        .map(|analysis| channels_figure(analysis, shown_uncertainty(state), &channels, (measure, across)))
+        .unwrap_or_default();
+    let quantities = channels.into_iter().map(|channel| GainQuantity::of_channel(channel, measure)).collect();
+    GainPlots { state, figure: figure.with_ranges(), quantities, across }
 }
 
-/// Places between the least and the greatest airspeed at which bands are looked at.
-const BAND_STEPS: usize = 48;
-
-/// The bands of a schedule about a figure of it; none where it has none.
-pub(super) fn gain_bands(
-    schedule: &Schedule,
-    uncertainty: &Uncertainty,
-    scalar: Scalar,
-    figure: &dyn Fn(&ChannelCorrection) -> f64,
-) -> Vec<GainBand> {
-    let Some(bands) = &uncertainty.bands else { return Vec::new() };
-    let (min, max) = (schedule.airspeeds.min_kt, schedule.airspeeds.max_kt);
-    let band = |step: usize| {
-        let x = min + (max - min) * step as f64 / BAND_STEPS as f64;
-        let (widths, middle) = (bands.at(schedule, scalar, x)?, figure(&schedule.at(x)));
-        let about = |half: f64| [middle * (-half).exp(), middle * half.exp()];
-        Some(GainBand { x, confidence: about(widths.confidence), scatter: about(widths.scatter) })
-    };
-    (0..=BAND_STEPS).map(band).collect::<Option<_>>().unwrap_or_default()
+/// How sure gains and delays are, where that is shown.
+pub(super) fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
+    state.uncertainty().filter(|_| !state.display.hide_bars).map(AsRef::as_ref)
 }
 
-/// For each airspeed the difference that is the largest multiple of what is expected.
-pub(super) fn brackets(uncertainty: &Uncertainty, scalar: Scalar, dots: &[Dot]) -> Vec<Bracket> {
-    let Scalar::NetGain(pair) = scalar else { return Vec::new() };
-    let value = |id: ConditionId| dots.iter().find(|dot| dot.condition == id).map(|dot| dot.value);
-    let bracket = |of: &AirspeedDifference| {
-        let ([one, other], ratio) = (of.conditions.map(value), of.difference.ratio()?);
-        let (label, beyond) = (format!("{ratio:.1}×"), of.is_significant(uncertainty.level));
-        Some(Bracket { x: of.airspeed_kt, ends: [one?, other?], label, beyond })
-    };
-    uncertainty.greatest_differences(pair).into_iter().filter_map(bracket).collect()
+/// Plots of gains or delays, and what they are of.
+pub struct GainPlots<'a> {
+    pub(super) state: &'a State,
+    /// The plots, with one panel each.
+    pub figure: Figure,
+    pub(super) quantities: Vec<GainQuantity>,
+    pub(super) across: Across,
 }
 
-/// The bar of a figure in the unit of its plot: ratios, or \[ms\].
-pub(super) fn dot_bar(bar: &Bar, scalar: Scalar, level: f64) -> Option<DotBar> {
-    let shown = |ends: [f64; 2]| ends.map(|end| if scalar.is_delay() { s_to_ms(end) } else { end.exp() });
-    let inner = bar.inner_interval(level).map(shown);
-    Some(DotBar { inner, outer: shown(bar.interval(level)?) })
+impl GainPlots<'_> {
+    pub(super) fn scene<'b>(&'b self, name: &'static str, figure: &'b Figure, message: &'b str) -> FigureScene<'b> {
+        FigureScene {
+            name,
+            figure,
+            selected: Some(MarkId::Condition(self.state.condition().id())),
+            highlighted: None,
+            columns: &[],
+            zooms: false,
+            least: LEAST_PLOT,
+            message,
+            words: (self, 0),
+        }
+    }
+}
+
+impl FigureWords for GainPlots<'_> {
+    fn plot(&self, plot: usize) -> String {
+        let of = &self.figure.plots[plot];
+        let dots: usize = of.panels.iter().map(|panel| panel.dots().count()).sum();
+        format!("{}, {dots} conditions", of.title)
+    }
+
+    fn dot(&self, plot: usize, id: &MarkId, [_, value]: [f64; 2]) -> Option<String> {
+        let MarkId::Condition(id) = id else { return None };
+        let airspeed_kt = self.state.dataset().condition(*id)?.flight_state().airspeed_kt;
+        let value = self.quantities[plot].measure.text(value);
+        Some(format!("{}, condition {id}: {value} at {airspeed_kt:.0} kt", self.figure.plots[plot].title))
+    }
+
+    fn pointed_ui(&self, ui: &mut Ui, plot: usize, id: &MarkId, [_, value]: [f64; 2]) {
+        let MarkId::Condition(id) = id else { return };
+        let (Some(condition), Some(analysis)) = (self.state.dataset().condition(*id), self.state.analysis()) else {
+            return;
+        };
+        let (of, flight_state) = (&self.quantities[plot], condition.flight_state());
+        let choice = analysis.study.choice(*id);
+        let small = |ui: &mut Ui, text: String| drop(ui.label(RichText::new(text).size(SMALL_SIZE)));
+        let dim = |ui: &mut Ui, text: String| drop(ui.weak(RichText::new(text).size(SMALL_SIZE)));
+        dim(ui, format!("condition {id} · {:.0} kt", flight_state.airspeed_kt));
+        let schedule = analysis.schedule.as_ref().ok().filter(|schedule| of.is_scheduled(schedule, self.across));
+        let scheduled = schedule.map_or_else(String::new, |schedule| {
+            let scheduled = (of.of)(&schedule.at(flight_state.airspeed_kt));
+            format!(" · scheduled {}", of.measure.text(scheduled))
+        });
+        ui.label(format!("{} {}{scheduled}", self.figure.plots[plot].title, of.measure.text(value)));
+        if let Some([lower, upper]) = analysis.condition(*id).and_then(|result| of.bounds(result)) {
+            dim(ui, format!("bounds {} to {}", of.measure.text(lower), of.measure.text(upper)));
+        }
+        if choice.held_out {
+            dim(ui, "held out of the schedule, to judge it".to_owned());
+        } else if !choice.is_in_schedule() {
+            dim(ui, "not in the schedule".to_owned());
+        }
+        let uncertainty = shown_uncertainty(self.state);
+        let sentences = uncertainty.map(|uncertainty| bar_sentences(uncertainty, of.scalar, *id));
+        sentences.into_iter().flatten().for_each(|sentence| small(ui, sentence));
+        if !flight_state.name.is_empty() {
+            dim(ui, flight_state.name.clone());
+        }
+        let keys = "click: show the condition · Ctrl+click: into the schedule, or out of it · secondary click: ask";
+        dim(ui, keys.to_owned());
+    }
+
+    fn questions(&self, plot: usize, id: &MarkId) -> Vec<NamedFigure> {
+        let MarkId::Condition(id) = *id else { return Vec::new() };
+        let asked = match self.quantities[plot].scalar {
+            Scalar::NetGain(pair) => vec![(format!("Net gain, condition {id}"), ExplainTarget::NetGain(id, pair))],
+            Scalar::ChannelDelay(channel) => vec![
+                ("Delay".to_owned(), ExplainTarget::Delay(id, channel)),
+                ("Bound of the delays".to_owned(), ExplainTarget::DelayBound(id)),
+            ],
+            Scalar::ChannelGain(channel) => {
+                let airspeed_kt = self.state.dataset().condition(id).map(|of| of.flight_state().airspeed_kt);
+                let gain = [
+                    ("Gain".to_owned(), ExplainTarget::Gain(id, channel)),
+                    ("Bounds of the gains".to_owned(), ExplainTarget::GainBounds(id)),
+                ];
+                let scheduled =
+                    airspeed_kt.map(|at| ("Scheduled gain".to_owned(), ExplainTarget::ScheduledGain(channel, at)));
+                gain.into_iter().chain(scheduled).collect()
+            }
+            _ => Vec::new(),
+        };
+        asked
+    }
+}
+
+/// What a click in a plot over airspeed asks for.
+pub(super) fn gain_command(state: &State, event: FigureEvent) -> Option<Command> {
+    match event {
+        FigureEvent::Clicked(_, MarkId::Condition(condition), keys) if keys.command => {
+            let scheduled = !state.study.choice(condition).scheduled;
+            Some(Edit::SetScheduled { condition, scheduled }.into())
+        }
+        FigureEvent::Clicked(_, MarkId::Condition(condition), _) => Some(Command::SelectCondition(condition)),
+        FigureEvent::Asked(figure) => Some(Command::Explain(Some(figure))),
+        FigureEvent::Clicked(..) | FigureEvent::Pointed(_) => None,
+    }
 }
 
 /// How sure a figure is, in words: "± 3.3 % (90 %): trim 78 %, identification 22 % of the variance".

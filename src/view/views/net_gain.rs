@@ -2,19 +2,16 @@
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
-use gdcm_core::correction::{Channel as CorrectedChannel, ChannelCorrection};
-use gdcm_core::dataset::{Channel, ConditionId, FlightState, Pair};
-use gdcm_core::study::{Analysis, ConditionAnalysis, Edit, ExplainTarget, setting};
-use gdcm_core::uncertainty::Scalar;
-use gdcm_core::units::s_to_ms;
-use gdcm_files::figure::{Classes, is_scheduled, scheduled_samples};
+use gdcm_core::dataset::Pair;
+use gdcm_core::study::setting;
+use gdcm_files::figure::{Across, Classes, GainQuantity, net_gain_figure};
 use serde::{Deserialize, Serialize};
 
-use super::channels::{bar_sentences, brackets, dot_bar, gain_bands};
+use super::channels::{GainPlots, gain_command, shown_uncertainty};
 use super::evidence::{coefficient_table, evidence_table, lead_evidence_table, residual_table};
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
-use crate::view::plot::{Across, Dot, DotShape, GainEvent, GainPanel, Measure, NamedFigure, NetGainScene, net_gain_ui};
+use crate::view::plot::figure_ui;
 use crate::view::settings_panel::{choice_ui, setting_ui};
 use crate::view::state::State;
 use crate::view::table_view::{Sorting, TableLook, table_ui};
@@ -90,7 +87,6 @@ fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
 
 /// Net gain of the responses chosen against airspeed.
 pub fn net_gain_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    let panels = net_gain_panels(state);
     let message = if state.analysis().is_none() {
         state.results.absence()
     } else {
@@ -104,9 +100,12 @@ pub fn net_gain_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
         let panel = Panel::right("evidence").resizable(true).default_size(0.36 * width).min_size(120.0);
         panel.show(ui, |ui| evidence_ui(ui, state, palette, commands));
     }
-    let scene = NetGainScene { panels: &panels, message: Some(message) };
-    let events = net_gain_ui(ui, &scene, &mut state.display.net_gain, palette);
+    let mut view = std::mem::take(&mut state.display.net_gain);
+    let plots = net_gain_plots(state);
+    let scene = plots.scene("net gain", &plots.figure, message);
+    let events = figure_ui(ui, &scene, &mut view, palette);
     commands.extend(events.into_iter().filter_map(|event| gain_command(state, event)));
+    state.display.net_gain = view;
 }
 
 /// What speaks for each form of the schedule; a click on a form takes it.
@@ -141,19 +140,6 @@ fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
     });
     state.display.evidence = cached;
     state.display.evidence_sorting = sorting;
-}
-
-/// What a click in a plot over airspeed asks for.
-pub(super) fn gain_command(state: &State, event: GainEvent) -> Option<Command> {
-    match event {
-        GainEvent::ScheduleToggled(condition) => {
-            let scheduled = !state.study.choice(condition).scheduled;
-            Some(Edit::SetScheduled { condition, scheduled }.into())
-        }
-        GainEvent::ConditionClicked(condition) => Some(Command::SelectCondition(condition)),
-        GainEvent::Asked(figure) => Some(Command::Explain(Some(figure))),
-        GainEvent::ConditionHovered(_) => None,
-    }
 }
 
 /// The form of the schedule. Laid out from right to left.
@@ -227,140 +213,18 @@ pub fn net_gain_pairs(state: &State) -> Vec<Pair> {
     constrained.pairs().filter(is_in).collect()
 }
 
-/// One panel for each response of the set shown: the net gain of each condition's optimum, and the schedule.
-pub fn net_gain_panels(state: &State) -> Vec<GainPanel> {
-    let Some(analysis) = state.analysis() else {
-        return Vec::new();
-    };
-    let panel = |pair: Pair| {
-        let free = if state.study.settings.constrained[pair] { "" } else { " (free)" };
-        let figure = Figure {
-            title: format!("{}{free}", state.dataset().pair_name(pair)),
-            measure: Measure::Gain,
-            of: Box::new(move |correction: &ChannelCorrection| correction.net_gain(pair).value()),
-            bounds: None,
-            scalar: Scalar::NetGain(pair),
-            asked: Box::new(move |id, _| vec![(format!("Net gain, condition {id}"), ExplainTarget::NetGain(id, pair))]),
-        };
-        figure.panel(state, analysis, Across::Airspeed)
-    };
-    net_gain_pairs(state).into_iter().map(panel).collect()
-}
-
-/// One panel for each input and one for each output: the channel's gain or delay in each condition's optimum, and the schedule.
-pub fn channel_panels(state: &State, measure: Measure, across: Across) -> (Vec<GainPanel>, Vec<GainPanel>) {
-    let Some(analysis) = state.analysis() else {
-        return (Vec::new(), Vec::new());
-    };
-    let of_input = |index: usize| -> FigureOf {
-        match measure {
-            Measure::Gain => Box::new(move |correction| correction.input_gains[index]),
-            Measure::Delay => Box::new(move |correction| s_to_ms(correction.delay_s(CorrectedChannel::Input(index)))),
-        }
-    };
-    let of_output = |index: usize| -> FigureOf {
-        match measure {
-            Measure::Gain => Box::new(move |correction| correction.output_gains[index]),
-            Measure::Delay => Box::new(move |correction| s_to_ms(correction.delay_s(CorrectedChannel::Output(index)))),
-        }
-    };
-    let panels = |channels: &[Channel], of: &dyn Fn(usize) -> FigureOf, side: fn(usize) -> CorrectedChannel| {
-        let figure = |(index, channel): (usize, &Channel)| {
-            let bounds: Option<BoundsOf> = Some(Box::new(move |result| match measure {
-                Measure::Gain => [result.gain_bounds().lower, result.gain_bounds().upper],
-                Measure::Delay => result.delay_bounds_s().map(s_to_ms),
-            }));
-            let asked = asked_of_channel(measure, side(index));
-            let scalar = match measure {
-                Measure::Gain => Scalar::ChannelGain(side(index)),
-                Measure::Delay => Scalar::ChannelDelay(side(index)),
-            };
-            let figure = Figure { title: channel.name.clone(), measure, of: of(index), bounds, scalar, asked };
-            figure.panel(state, analysis, across)
-        };
-        channels.iter().enumerate().map(figure).collect()
-    };
-    (
-        panels(state.dataset().inputs(), &of_input, CorrectedChannel::Input),
-        panels(state.dataset().outputs(), &of_output, CorrectedChannel::Output),
-    )
-}
-
-/// What can be asked of a channel in a condition at its airspeed.
-fn asked_of_channel(measure: Measure, channel: CorrectedChannel) -> AskedOf {
-    Box::new(move |id, airspeed_kt| match measure {
-        Measure::Gain => vec![
-            ("Gain".to_owned(), ExplainTarget::Gain(id, channel)),
-            ("Bounds of the gains".to_owned(), ExplainTarget::GainBounds(id)),
-            ("Scheduled gain".to_owned(), ExplainTarget::ScheduledGain(channel, airspeed_kt)),
-        ],
-        Measure::Delay => vec![
-            ("Delay".to_owned(), ExplainTarget::Delay(id, channel)),
-            ("Bound of the delays".to_owned(), ExplainTarget::DelayBound(id)),
-        ],
-    })
-}
-
-/// A figure of a correction.
-type FigureOf = Box<dyn Fn(&ChannelCorrection) -> f64>;
-/// Between which values it was looked for.
-type BoundsOf = Box<dyn Fn(&ConditionAnalysis) -> [f64; 2]>;
-
-/// What can be asked about in a condition at an airspeed \[kt\].
-type AskedOf = Box<dyn Fn(ConditionId, f64) -> Vec<NamedFigure>>;
-
-/// A figure of every condition's correction, and of the schedule.
-struct Figure {
-    title: String,
-    measure: Measure,
-    of: FigureOf,
-    bounds: Option<BoundsOf>,
-    /// The same, as bars know it.
-    scalar: Scalar,
-    asked: AskedOf,
-}
-
-impl Figure {
-    fn panel(self, state: &State, analysis: &Analysis, across: Across) -> GainPanel {
-        let classes = Classes::of(state.dataset());
-        let uncertainty = state.uncertainty().filter(|_| !state.display.hide_bars).map(|of| of.as_ref());
-        let place = |index: usize, flight_state: &FlightState| match across {
-            Across::Airspeed => flight_state.airspeed_kt,
-            Across::Conditions => index as f64,
-        };
-        let dots = state.dataset().conditions().iter().enumerate().filter_map(|(index, condition)| {
-            let id = condition.id();
-            let result = analysis.condition(id)?;
-            let flight_state = condition.flight_state();
-            Some(Dot {
-                condition: id,
-                label: id.to_string(),
-                x: place(index, flight_state),
-                airspeed_kt: flight_state.airspeed_kt,
-                value: (self.of)(&result.correction),
-                bounds: self.bounds.as_ref().map(|bounds| bounds(result)),
-                bar: uncertainty.and_then(|of| dot_bar(of.bar(id, self.scalar)?, self.scalar, of.level)),
-                shape: if classes.is_first_altitude(flight_state) { DotShape::Circle } else { DotShape::Diamond },
-                filled: classes.is_first_weight(flight_state),
-                selected: id == state.condition().id(),
-                chosen: analysis.study.choice(id).is_in_schedule(),
-                held_out: analysis.study.choice(id).held_out,
-                detail: flight_state.name.clone(),
-                sentences: uncertainty.map_or_else(Vec::new, |of| bar_sentences(of, self.scalar, id)),
-                figures: (self.asked)(id, flight_state.airspeed_kt),
-            })
-        });
-        let schedule = analysis.schedule.as_ref().ok().filter(|schedule| is_scheduled(schedule, self.measure, across));
-        let bands = schedule.zip(uncertainty).map(|(schedule, of)| gain_bands(schedule, of, self.scalar, &self.of));
-        let schedule = schedule.map(|schedule| scheduled_samples(schedule, &self.of)).unwrap_or_default();
-        let dots: Vec<Dot> = dots.collect();
-        let brackets = match across {
-            Across::Airspeed => uncertainty.map_or_else(Vec::new, |of| brackets(of, self.scalar, &dots)),
-            Across::Conditions => Vec::new(),
-        };
-        let (title, measure, bands) = (self.title, self.measure, bands.unwrap_or_default());
-        GainPanel { title, measure, across, dots, schedule, bands, brackets }
+/// One plot for each response of the set shown: the net gain of each condition's optimum, and the schedule.
+pub fn net_gain_plots(state: &State) -> GainPlots<'_> {
+    let pairs = if state.analysis().is_some() { net_gain_pairs(state) } else { Vec::new() };
+    let figure = state.analysis().map(|analysis| net_gain_figure(analysis, shown_uncertainty(state), &pairs));
+    let mut figure = figure.unwrap_or_default();
+    for (plot, pair) in
+        figure.plots.iter_mut().zip(&pairs).filter(|(_, pair)| !state.study.settings.constrained[**pair])
+    {
+        plot.title = format!("{} (free)", state.dataset().pair_name(*pair));
     }
+    let quantities = pairs.into_iter().map(GainQuantity::net_gain).collect();
+    GainPlots { state, figure: figure.with_ranges(), quantities, across: Across::Airspeed }
 }
 
 /// What shapes and fills of the dots mean: "altitude ● low ◆ high · weight filled low, open high", where the dataset has classes; and
@@ -376,7 +240,7 @@ pub fn dot_key(state: &State) -> String {
         let others = if others.is_empty() { String::new() } else { format!(", open {}", others.join(", ")) };
         words.push(format!("weight filled {first}{others}"));
     }
-    if state.display.net_gain.leaves_numbers_out() {
+    if state.display.net_gain.leaves_labels_out() {
         words.push("number without room: point at the dot".to_owned());
     }
     words.join(" · ")

@@ -2,19 +2,25 @@
 
 use std::sync::Arc;
 
-use egui::{Panel, Ui};
+use egui::{Panel, RichText, Ui, Vec2, vec2};
 use gdcm_core::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
 use gdcm_core::response::{Mode, finite_zeros};
 use gdcm_core::study::{ConditionModes, Edit, Table};
 use gdcm_core::units::number;
+use gdcm_files::figure::{Along, Figure, Mark, MarkId, Range, Role, damping_grid, poles_figure};
 use nalgebra::Complex;
 
+use super::frequency::{bode_options, condition_source};
 use crate::view::command::Command;
-use crate::view::palette::Palette;
-use crate::view::plot::{MarkShape, PoleEvent, PoleMark, PolesScene, Role, poles_ui};
+use crate::view::palette::{Palette, SMALL_SIZE};
+use crate::view::plot::{FigureEvent, FigureScene, FigureView, FigureWords, figure_ui};
 use crate::view::state::State;
 use crate::view::table_view::{TableLook, table_ui};
 
+/// Real and imaginary parts in the window of the slow modes \[rad/s\]: the rigid-body modes of a helicopter lie there.
+const SLOW: [Range; 2] = [Range { min: -2.0, max: 0.6 }, Range { min: -3.2, max: 3.2 }];
+/// A plot is never smaller \[pt\].
+const LEAST_PLOT: Vec2 = vec2(140.0, 130.0);
 /// Part of the height that the table has at first.
 const TABLE_PART: f32 = 0.3;
 
@@ -38,19 +44,99 @@ pub fn poles_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
         let panel = Panel::bottom("modes").resizable(true).default_size(TABLE_PART * height).min_size(60.0);
         panel.show(ui, |ui| modes_ui(ui, state, palette, commands));
     }
-    let marks = pole_marks(state);
     let message = match state.modes() {
         Some(_) => "No model of this condition has poles: they are known by measured responses",
         None => state.results.absence(),
     };
-    let scene = PolesScene { marks: &marks, message: Some(message) };
-    for event in poles_ui(ui, &scene, &mut state.display.poles, palette) {
+    let mut view = std::mem::take(&mut state.display.poles);
+    let figure = poles(state).map(|figure| dressed(figure, &view)).unwrap_or_default();
+    let words = PoleWords { state, dots: figure.plots.first().map_or(0, |plot| plot.panels[0].dots().count()) };
+    let scene = FigureScene {
+        name: "poles",
+        figure: &figure,
+        selected: None,
+        highlighted: state.display.hovered.clone().map(MarkId::Model),
+        columns: &[],
+        zooms: true,
+        least: LEAST_PLOT,
+        message,
+        words: (&words, 0),
+    };
+    for event in figure_ui(ui, &scene, &mut view, palette) {
         commands.push(match event {
-            PoleEvent::Hovered(id) => Command::Hover(id),
-            PoleEvent::Isolated(id) => Command::Isolate(id),
-            PoleEvent::Clicked(id) if state.study.is_rejected(&id) => Edit::Restore(id).into(),
-            PoleEvent::Clicked(id) => Edit::Reject(id).into(),
+            FigureEvent::Pointed(MarkId::Model(id)) => Command::Hover(id),
+            FigureEvent::Clicked(_, MarkId::Model(id), keys) if keys.alt => Command::Isolate(id),
+            FigureEvent::Clicked(_, MarkId::Model(id), _) if state.study.is_rejected(&id) => Edit::Restore(id).into(),
+            FigureEvent::Clicked(_, MarkId::Model(id), _) => Edit::Reject(id).into(),
+            FigureEvent::Clicked(..) | FigureEvent::Pointed(_) | FigureEvent::Asked(_) => continue,
         });
+    }
+    state.display.poles = view;
+}
+
+/// Poles of every model of the condition shown, and zeros of the response in focus where they are wanted; none until they are known.
+pub fn poles(state: &State) -> Option<Figure> {
+    let zeros =
+        |id: &ModelId| state.display.modes.zeros.iter().find(|(of, _)| of == id).map(|(_, zeros)| zeros.clone());
+    let source = condition_source(state)?;
+    let figure = poles_figure(&source, state.modes()?, &bode_options(state), &|id| zeros(id).unwrap_or_default());
+    Some(figure).filter(|figure| figure.plots[0].panels[0].dots().next().is_some())
+}
+
+/// The figure as the window shows it: with arcs of equal frequency in what is in view, and what matters most larger.
+fn dressed(mut figure: Figure, view: &FigureView) -> Figure {
+    if let [_, slow] = &mut figure.plots[..] {
+        slow.title = "s-plane, slow modes".to_owned();
+        (slow.panels[0].x.range, slow.panels[0].y.range) = (Some(SLOW[0]), Some(SLOW[1]));
+    }
+    for (index, plot) in figure.plots.iter_mut().enumerate() {
+        let panel = &mut plot.panels[0];
+        let ranges = view.ranges(index).unwrap_or_else(|| [Along::X, Along::Y].map(|along| panel.shown(along)));
+        panel.marks.retain(|mark| !matches!(mark, Mark::Guide(_)));
+        panel.marks.splice(0..0, damping_grid(ranges).map(Mark::from));
+        for mark in &mut panel.marks {
+            if let Mark::Dots(dots) = mark {
+                let of = [Role::Nominal, Role::Representative, Role::IdentifiedRepresentative];
+                let matters =
+                    of.into_iter().any(|role| dots.key.as_deref().is_some_and(|key| key.ends_with(role.key(false))));
+                dots.size = if matters { 1.0 } else { 0.7 };
+            }
+        }
+    }
+    figure
+}
+
+/// What the plots of poles say.
+struct PoleWords<'a> {
+    state: &'a State,
+    dots: usize,
+}
+
+impl FigureWords for PoleWords<'_> {
+    fn plot(&self, plot: usize) -> String {
+        let name = ["s-plane", "s-plane, slow modes"][plot.min(1)];
+        format!("{name}: {} poles and zeros", self.dots)
+    }
+
+    fn pointed_ui(&self, ui: &mut Ui, _: usize, id: &MarkId, [re, im]: [f64; 2]) {
+        let (MarkId::Model(id), Some(modes)) = (id, self.state.modes()) else { return };
+        let models = modes.condition.bundle(id.bundle);
+        let Some(index) = modes.condition.position(id.bundle, &id.name) else { return };
+        let found = modes.bundle(id.bundle)[index].as_deref().unwrap_or_default();
+        ui.label(&id.name);
+        let lines = match found.iter().find(|mode| [mode.pole.re, mode.pole.im] == [re, im]) {
+            Some(mode) => std::iter::once(mode_words(mode))
+                .chain(participation_words(mode, &models[index]))
+                .chain(sampled_words(&models[index]))
+                .collect(),
+            None => {
+                vec![format!("transmission zero of {}", self.state.dataset().pair_name(self.state.display.pair))]
+            }
+        };
+        let click = if self.state.study.is_rejected(id) { "click to restore" } else { "click to reject" };
+        for line in lines.into_iter().chain([click.to_owned()]) {
+            ui.weak(RichText::new(line).size(SMALL_SIZE));
+        }
     }
 }
 
@@ -133,82 +219,6 @@ fn reference(state: &State, modes: &ConditionModes) -> usize {
     let name = state.shown().map(|shown| shown.representative_name(BundleKind::Physics));
     let found = name.and_then(|name| modes.condition.position(BundleKind::Physics, name));
     found.unwrap_or_else(|| modes.condition.nominal())
-}
-
-/// Poles of every model of the condition shown, and zeros of the response in focus where they are wanted.
-pub fn pole_marks(state: &State) -> Vec<PoleMark> {
-    let Some(modes) = state.modes() else {
-        return Vec::new();
-    };
-    let cached = &state.display.modes;
-    let mut marks = Vec::new();
-    for kind in BundleKind::BOTH {
-        for (model, found) in modes.condition.bundle(kind).iter().zip(modes.bundle(kind)) {
-            let face = Face::of(state, kind, model);
-            if !face.is_visible(state) {
-                continue;
-            }
-            marks.extend(found.as_deref().unwrap_or_default().iter().map(|mode| face.pole(mode, model)));
-            if state.display.show_zeros {
-                let zeros = cached.zeros.iter().filter(|(id, _)| *id == face.id).flat_map(|(_, zeros)| zeros);
-                marks.extend(zeros.map(|zero| face.zero(state, *zero)));
-            }
-        }
-    }
-    marks
-}
-
-/// What the marks of one model have in common.
-struct Face {
-    id: ModelId,
-    role: Role,
-    rejected: bool,
-    highlighted: bool,
-}
-
-impl Face {
-    fn of(state: &State, kind: BundleKind, model: &Model) -> Self {
-        let id = state.model_id(kind, &model.name);
-        let represents = state.shown().is_some_and(|shown| shown.representative_name(kind) == model.name);
-        let role = Role::of_model(kind, model.is_nominal(), represents);
-        let (rejected, highlighted) = (state.study.is_rejected(&id), state.display.hovered.as_ref() == Some(&id));
-        Self { id, role, rejected, highlighted }
-    }
-
-    fn is_visible(&self, state: &State) -> bool {
-        let represents = matches!(self.role, Role::Representative | Role::IdentifiedRepresentative);
-        state.display.isolated.as_ref().is_none_or(|only| *only == self.id || represents)
-    }
-
-    fn pole(&self, mode: &Mode, model: &Model) -> PoleMark {
-        let shape = match self.id.bundle {
-            BundleKind::Physics => MarkShape::Cross,
-            BundleKind::Identified => MarkShape::Plus,
-        };
-        let mut details = vec![mode_words(mode)];
-        details.extend(participation_words(mode, model));
-        details.extend(sampled_words(model));
-        self.mark(shape, [mode.pole.re, mode.pole.im], details)
-    }
-
-    fn zero(&self, state: &State, zero: Complex<f64>) -> PoleMark {
-        let detail = format!("transmission zero of {}", state.dataset().pair_name(state.display.pair));
-        self.mark(MarkShape::Circle, [zero.re, zero.im], vec![detail])
-    }
-
-    fn mark(&self, shape: MarkShape, value: [f64; 2], mut details: Vec<String>) -> PoleMark {
-        details.push(if self.rejected { "click to restore" } else { "click to reject" }.to_owned());
-        PoleMark {
-            label: self.id.name.clone(),
-            id: self.id.clone(),
-            details,
-            shape,
-            role: self.role,
-            rejected: self.rejected,
-            highlighted: self.highlighted,
-            value,
-        }
-    }
 }
 
 /// "1.52 rad/s, ζ 0.31, T 2.1 s".

@@ -1,7 +1,9 @@
 //! Leads by hand: taken, seen, and undone (M15).
 
+use gdcm::view::command::Command as Action;
 use gdcm_core::study::{AssessedCorrection, PhaseCorrection};
 
+use super::views::give;
 use super::*;
 
 fn choose(window: &mut Window, list: &str, choice: &str) {
@@ -74,8 +76,9 @@ fn the_phase_without_leads_lies_beside_the_corrected_one_and_the_result_tells_se
 fn channels_show_signed_delays_within_their_bounds() {
     let mut window = window();
     choose(&mut window, "Phase correction", "delay or lead");
-    let (inputs, outputs) = channel_panels(state(&window), Measure::Delay, Across::Conditions);
-    let taus: Vec<f64> = inputs.iter().chain(&outputs).flat_map(|panel| &panel.dots).map(|dot| dot.value).collect();
+    give(&mut window, Action::ShowChannels(Measure::Delay, Across::Conditions));
+    let figure = channel_plots(state(&window)).figure;
+    let taus: Vec<f64> = figure.panels().flat_map(|(_, panel)| panel.dots()).map(|dot| dot.y).collect();
     assert_eq!(taus.len(), 110);
     assert!(taus.iter().any(|tau| *tau < -20.0), "lead is down");
     assert!(taus.iter().any(|tau| *tau > 20.0), "NX wants delay in condition 4");

@@ -37,9 +37,10 @@ use gdcm::executor::Pool;
 use gdcm::view::explanation::{gain_conflict_marks, remarks_shown, toggle_costs};
 use gdcm::view::plot::{Across, BodeCurve, Measure, Pane, Role as CurveRole};
 use gdcm::view::state::{NoticeKind, State};
-use gdcm::view::views::channel_panels;
+use gdcm::view::views::channel_plots;
 use gdcm_core::dataset::{BundleKind, ConditionId, ModelId, Pair};
 use gdcm_core::study::{Engine, LIVE_PROOF, Study, Unobserved};
+use gdcm_files::figure::MarkId;
 use gdcm_files::{Opened, OpenedStudy, load_any, open_study};
 
 pub(crate) type Window = Harness<'static, GdcmApp>;

@@ -3,12 +3,12 @@
 use gdcm::view::arrangement::{Arrangement, Preset, View};
 use gdcm::view::command::Command as Action;
 use gdcm::view::display::Preferences;
-use gdcm::view::plot::MarkShape;
-use gdcm::view::views::pole_marks;
+use gdcm::view::views::poles;
 use gdcm::view::views::{AssessedPairs, assessment_sentences, assessment_text_table};
 use gdcm::view::views::{PairSet, net_gain_pairs};
 use gdcm_core::correction::Channel;
 use gdcm_core::study::{AcrossRole, AssessedCorrection, AssessedModel, Edit, ExplainTarget, derivation};
+use gdcm_files::figure::{DotShape, Mark, Panel};
 
 use super::*;
 
@@ -63,7 +63,8 @@ fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
     let mut window = window();
     show(&mut window, View::Poles);
     wait_until(&mut window, "the modes", |window| state(window).modes().is_some());
-    let marks = pole_marks(state(&window));
+    let figure = poles(state(&window)).expect("the modes are known");
+    let marks: Vec<[f64; 2]> = figure.plots[0].panels[0].dots().map(|dot| [dot.x, dot.y]).collect();
     let condition = state(&window).condition();
     let order: usize =
         BundleKind::BOTH.into_iter().flat_map(|kind| condition.bundle(kind)).filter_map(|model| model.order()).sum();
@@ -75,8 +76,8 @@ fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
     assert!(!table.rows.is_empty() && table.rows.len() <= reference.unwrap().order().unwrap());
 
     // The fastest pole of some perturbed model stands clear of the crowd.
-    let fastest = marks.iter().min_by(|a, b| a.value[0].total_cmp(&b.value[0])).unwrap();
-    let at = state(&window).display.poles.screen_position(fastest.value).unwrap();
+    let fastest = marks.iter().min_by(|a, b| a[0].total_cmp(&b[0])).unwrap();
+    let at = state(&window).display.poles.position(0, *fastest).unwrap();
     window.hover_at(at);
     window.run_steps(2);
     let meant = state(&window).display.hovered.clone().expect("the pole is pointed at");
@@ -93,8 +94,13 @@ fn zeros_of_the_response_in_focus_are_shown_on_wish() {
     let mut window = window();
     show(&mut window, View::Poles);
     wait_until(&mut window, "the modes", |window| state(window).modes().is_some());
-    let zeros =
-        |window: &Window| pole_marks(state(window)).into_iter().filter(|mark| mark.shape == MarkShape::Circle).count();
+    let zeros = |window: &Window| {
+        let figure = poles(state(window)).expect("the modes are known");
+        let of = |mark: &Mark| {
+            if let Mark::Dots(dots) = mark { usize::from(dots.shape == DotShape::Circle) * dots.dots.len() } else { 0 }
+        };
+        figure.plots[0].panels[0].marks.iter().map(of).sum::<usize>()
+    };
     assert_eq!(zeros(&window), 0);
     let name = format!("zeros of {}", state(&window).dataset().pair_name(state(&window).display.pair));
     click(&mut window, &name);
@@ -133,7 +139,7 @@ fn freeing_a_response_does_not_take_its_net_gains_away() {
 fn a_click_on_a_dot_with_ctrl_takes_its_condition_out_of_the_schedule() {
     let mut window = window();
     let fifth = ConditionId(5);
-    let at = state(&window).display.net_gain.screen_position(0, fifth).unwrap();
+    let at = state(&window).display.net_gain.screen_position(0, &MarkId::Condition(fifth)).unwrap();
     window.hover_at(at);
     window.run_steps(1);
     let press = |pressed| Event::PointerButton {
@@ -187,13 +193,23 @@ fn error_bars_come_beside_the_answer_and_can_be_switched_off() {
     let mut window = window();
     show(&mut window, View::NetGain);
     wait_for_bars(&mut window);
-    let panels = |window: &Window| gdcm::view::views::net_gain_panels(state(window));
+    let panels = |window: &Window| -> Vec<Panel> {
+        let plots = gdcm::view::views::net_gain_plots(state(window)).figure.plots;
+        plots.into_iter().flat_map(|plot| plot.panels).collect()
+    };
+    let has_bars = |panel: &Panel| {
+        let of = |mark: &Mark| matches!(mark, Mark::Intervals(bars) if bars.ends.len() == panel.dots().count());
+        panel.marks.iter().any(of)
+    };
+    let has_bands = |panel: &Panel| panel.marks.iter().any(|mark| matches!(mark, Mark::Envelope(_)));
+    let significant =
+        |mark: &Mark| matches!(mark, Mark::Brackets(of) if of.brackets.iter().any(|bracket| !bracket.label.is_empty()));
     let shown = panels(&window);
-    assert!(shown.iter().all(|panel| panel.dots.iter().all(|dot| dot.bar.is_some()) && !panel.bands.is_empty()));
-    assert!(shown.iter().any(|panel| panel.brackets.iter().any(|bracket| bracket.beyond)));
+    assert!(shown.iter().all(|panel| has_bars(panel) && has_bands(panel)));
+    assert!(shown.iter().any(|panel| panel.marks.iter().any(significant)));
     click(&mut window, "error bars");
     let bare = panels(&window);
-    assert!(bare.iter().all(|panel| panel.dots.iter().all(|dot| dot.bar.is_none()) && panel.bands.is_empty()));
+    assert!(bare.iter().all(|panel| !has_bars(panel) && !has_bands(panel)));
 }
 
 #[test]

@@ -12,12 +12,7 @@ use crate::units::number;
 /// Checked once, here: every model of every condition has `p` outputs and `m` inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dataset {
-    name: String,
-    description: String,
-    inputs: Vec<Channel>,
-    outputs: Vec<Channel>,
-    on_axis: PairTable<bool>,
-    band: Band,
+    header: DatasetHeader,
     conditions: Vec<Arc<Condition>>,
 }
 
@@ -108,51 +103,42 @@ impl Dataset {
             return Err(DatasetError::OnAxisShape { outputs, inputs, rows, columns });
         }
         check_conditions(&conditions, outputs, inputs)?;
-        let DatasetHeader { name, description, inputs, outputs, on_axis, band } = header;
-        let conditions = conditions.into_iter().map(Arc::new).collect();
-        Ok(Self { name, description, inputs, outputs, on_axis, band, conditions })
+        Ok(Self { header, conditions: conditions.into_iter().map(Arc::new).collect() })
     }
 
     /// What describes the dataset, besides its conditions.
     pub fn header(&self) -> DatasetHeader {
-        DatasetHeader {
-            name: self.name.clone(),
-            description: self.description.clone(),
-            inputs: self.inputs.clone(),
-            outputs: self.outputs.clone(),
-            on_axis: self.on_axis.clone(),
-            band: self.band,
-        }
+        self.header.clone()
     }
 
     /// Name for people.
     pub fn name(&self) -> &str {
-        &self.name
+        &self.header.name
     }
 
     /// What the data are and where they come from.
     pub fn description(&self) -> &str {
-        &self.description
+        &self.header.description
     }
 
     /// Input channels, in order.
     pub fn inputs(&self) -> &[Channel] {
-        &self.inputs
+        &self.header.inputs
     }
 
     /// Output channels, in order.
     pub fn outputs(&self) -> &[Channel] {
-        &self.outputs
+        &self.header.outputs
     }
 
     /// Which responses matter (the paper's Table 2).
     pub fn on_axis(&self) -> &PairTable<bool> {
-        &self.on_axis
+        &self.header.on_axis
     }
 
     /// Default band of comparison.
     pub fn band(&self) -> Band {
-        self.band
+        self.header.band
     }
 
     /// Airspeeds of the slowest and of the fastest condition \[kt\].
@@ -176,7 +162,7 @@ impl Dataset {
     /// # Errors
     /// [`DatasetError::ModelShape`].
     pub fn with_condition(&self, condition: Condition) -> Result<Self, DatasetError> {
-        check_conditions(std::slice::from_ref(&condition), self.outputs.len(), self.inputs.len())?;
+        check_conditions(std::slice::from_ref(&condition), self.header.outputs.len(), self.header.inputs.len())?;
         let (id, condition) = (condition.id(), Arc::new(condition));
         let replaced = |other: &Arc<Condition>| if other.id() == id { condition.clone() } else { other.clone() };
         Ok(Self { conditions: self.conditions.iter().map(replaced).collect(), ..self.clone() })
@@ -196,33 +182,33 @@ impl Dataset {
 
     /// A response in words, input first: "LON → Q".
     pub fn pair_name(&self, pair: Pair) -> String {
-        format!("{} → {}", self.inputs[pair.input].name, self.outputs[pair.output].name)
+        format!("{} → {}", self.header.inputs[pair.input].name, self.header.outputs[pair.output].name)
     }
 
     /// Names of the inputs and of the outputs.
     pub fn names_of_channels(&self) -> (Vec<String>, Vec<String>) {
         let names = |channels: &[Channel]| channels.iter().map(|channel| channel.name.clone()).collect();
-        (names(&self.inputs), names(&self.outputs))
+        (names(&self.header.inputs), names(&self.header.outputs))
     }
 
     /// The names of a response's channels, output first.
     pub fn channel_names(&self, pair: Pair) -> (String, String) {
-        (self.outputs[pair.output].name.clone(), self.inputs[pair.input].name.clone())
+        (self.header.outputs[pair.output].name.clone(), self.header.inputs[pair.input].name.clone())
     }
 
     /// The response of the named output to the named input.
     pub fn find_pair(&self, output: &str, input: &str) -> Option<Pair> {
-        let output = self.outputs.iter().position(|channel| channel.name == output)?;
-        let input = self.inputs.iter().position(|channel| channel.name == input)?;
+        let output = self.header.outputs.iter().position(|channel| channel.name == output)?;
+        let input = self.header.inputs.iter().position(|channel| channel.name == input)?;
         Some(Pair { output, input })
     }
 
     /// The pairs that measure a model: the on-axis ones, or all where none is (M5, M7).
     pub fn measuring_pairs(&self) -> PairTable<bool> {
-        if self.on_axis.marked().next().is_some() {
-            self.on_axis.clone()
+        if self.header.on_axis.marked().next().is_some() {
+            self.header.on_axis.clone()
         } else {
-            PairTable::filled(self.outputs.len(), self.inputs.len(), true)
+            PairTable::filled(self.header.outputs.len(), self.header.inputs.len(), true)
         }
     }
 }

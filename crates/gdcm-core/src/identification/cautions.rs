@@ -308,12 +308,8 @@ fn correlated(segments: &[Segment], preparation: &Preparation) -> Vec<RecordCaut
     let signals: Vec<Signal> = preparation.channels().map(|(signal, _)| signal).collect();
     let mut covariance = DMatrix::zeros(signals.len(), signals.len());
     for segment in segments {
-        let mut centred = DMatrix::zeros(segment.inputs.nrows(), signals.len());
-        for (signal, mut centre) in signals.iter().zip(centred.column_iter_mut()) {
-            centre.copy_from(&segment.channel(signal));
-            let mean = centre.mean();
-            centre.add_scalar_mut(-mean);
-        }
+        let samples: Vec<_> = signals.iter().map(|signal| segment.channel(signal)).collect();
+        let centred = centred(DMatrix::from_columns(&samples));
         covariance += centred.tr_mul(&centred);
     }
     let mut cautions = Vec::new();

@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::response::median;
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::Complex;
+use std::ops::Range;
 
 /// Cost per degree of freedom above which a model is not adequate.
 const ADEQUATE: f64 = 1.5;
@@ -143,26 +144,26 @@ pub(super) fn channel_delay(
     let inputs = model.b.ncols();
     let channels = inputs + model.c.nrows();
     let mut shifted: Vec<Spectrum> = spectra.iter().map(|&spectrum| spectrum.clone()).collect();
-    let first = Sums::of(&shifted, noise, model)?;
+    let first = Sums::of(&shifted, noise, model, 0..channels)?;
     let gain = |channel: usize| first.product[channel].powi(2) / first.square[channel];
     let channel =
         (0..channels).filter(|&channel| gain(channel).is_finite()).max_by(|&a, &b| gain(a).total_cmp(&gain(b)))?;
-    let mut delay_s = 0.0;
-    let mut last = first.clone();
+    let (mut delay_s, mut step) = (0.0, first.product[channel] / first.square[channel]);
+    let (mut cost, mut square) = (first.cost, first.square[channel]);
     for _ in 0..STEPS {
-        let step = last.product[channel] / last.square[channel];
         delay_s += step;
         for spectrum in &mut shifted {
             advance(spectrum, channel, step);
         }
-        last = Sums::of(&shifted, noise, model)?;
+        let last = Sums::of(&shifted, noise, model, channel..channel + 1)?;
+        (cost, square, step) = (last.cost, last.square[0], last.product[0] / last.square[0]);
     }
-    let share = 1.0 - last.cost / first.cost;
-    let ratio = delay_s.abs() * last.square[channel].sqrt();
+    let share = 1.0 - cost / first.cost;
+    let ratio = delay_s.abs() * square.sqrt();
     let (role, index) =
         if channel < inputs { (ChannelSide::Input, channel) } else { (ChannelSide::Output, channel - inputs) };
     let told = delay_s.is_finite() && share >= LEAST_SHARE && ratio >= LEAST_RATIO;
-    told.then_some(ChannelDelay { role, index, delay_s, gain: first.cost - last.cost })
+    told.then_some(ChannelDelay { role, index, delay_s, gain: first.cost - cost })
 }
 
 /// Moves a channel `seconds` earlier.
@@ -178,64 +179,33 @@ fn advance(spectrum: &mut Spectrum, channel: usize, seconds: f64) {
     }
 }
 
-/// `a'e` and `a'a` of every channel, and the cost.
-#[derive(Clone)]
+/// `a'e` and `a'a` of some channels, and the cost.
 struct Sums {
-    product: DVector<f64>,
-    square: DVector<f64>,
+    product: Vec<f64>,
+    square: Vec<f64>,
     cost: f64,
 }
 
 impl Sums {
-    fn of(spectra: &[Spectrum], noise: &NoiseCovariance, model: &BlockModel) -> Option<Self> {
-        let channels = model.b.ncols() + model.c.nrows();
-        let mut sums = Self { product: DVector::zeros(channels), square: DVector::zeros(channels), cost: 0.0 };
+    /// By differences of residuals, in which the transient is taken off.
+    fn of(spectra: &[Spectrum], noise: &NoiseCovariance, model: &BlockModel, channels: Range<usize>) -> Option<Self> {
+        /// Of 100 rad/s it turns a line by 1e-5: neither rounding nor curvature count.
+        const SMALL_S: f64 = 1e-7;
+        let cost = |spectrum: &Spectrum| SpectralLines::new(spectrum, noise)?.cost(model);
+        let mut sums = Self { product: vec![0.0; channels.len()], square: vec![0.0; channels.len()], cost: 0.0 };
         for spectrum in spectra {
-            let part = SpectralLines::new(spectrum, noise)?.cost(model)?;
-            let residual =
-                DVector::from_iterator(2 * part.residual.len(), part.residual.iter().flat_map(|e| [e.re, e.im]));
-            let columns = columns(spectrum, noise, model)?;
-            let (delays, transient) = columns.columns_range_pair(0..channels, channels..);
-            let root = pseudo_inverse_root(transient.transpose() * transient, DEPENDENT)?;
-            let basis = transient * root;
-            let free = delays - &basis * (basis.transpose() * delays);
-            sums.product += free.transpose() * residual;
-            sums.square += DVector::from_iterator(channels, free.column_iter().map(|column| column.norm_squared()));
-            sums.cost += part.cost;
+            let here = cost(spectrum)?;
+            for (k, channel) in channels.clone().enumerate() {
+                let mut earlier = spectrum.clone();
+                advance(&mut earlier, channel, SMALL_S);
+                let slope = (&here.residual - cost(&earlier)?.residual) / Complex::from(SMALL_S);
+                sums.product[k] += slope.dotc(&here.residual).re;
+                sums.square[k] += slope.norm_squared();
+            }
+            sums.cost += here.cost;
         }
         Some(sums)
     }
-}
-
-/// `W dE/dd` of every channel, then the transient's columns; two rows, real and imaginary, for each output of each line.
-fn columns(spectrum: &Spectrum, noise: &NoiseCovariance, model: &BlockModel) -> Option<DMatrix<f64>> {
-    let (order, inputs, outputs) = (model.order(), model.b.ncols(), model.c.nrows());
-    let count = inputs + outputs + order + 2 * outputs;
-    let mut columns = DMatrix::zeros(2 * outputs * spectrum.omega.len(), count);
-    for (k, &omega) in spectrum.omega.iter().enumerate() {
-        let weight = noise.weight(omega)?.map(Complex::from);
-        let turn = Complex::new(0.0, omega);
-        let mut vectors = DMatrix::<Complex<f64>>::zeros(outputs, count);
-        let response = model.response(omega);
-        for j in 0..inputs {
-            vectors.set_column(j, &(response.column(j) * (turn * spectrum.inputs[(j, k)])));
-        }
-        for o in 0..outputs {
-            vectors[(o, inputs + o)] = -turn * spectrum.outputs[(o, k)];
-            vectors[(o, inputs + outputs + order + o)] = Complex::from(1.0);
-            vectors[(o, inputs + 2 * outputs + order + o)] = 1.0 / turn;
-        }
-        let states = &mut vectors.as_mut_slice()[(inputs + outputs) * outputs..(inputs + outputs + order) * outputs];
-        model.output_resolvent(omega, states);
-        let white = weight * vectors;
-        for o in 0..outputs {
-            for (column, value) in white.row(o).iter().enumerate() {
-                (columns[(2 * (k * outputs + o), column)], columns[(2 * (k * outputs + o) + 1, column)]) =
-                    (value.re, value.im);
-            }
-        }
-    }
-    Some(columns)
 }
 
 // How well a model fits each record and each output.

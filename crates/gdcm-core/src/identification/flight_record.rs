@@ -52,6 +52,15 @@ impl Segment {
     }
 }
 
+/// Samples less the mean of their channel, one column a channel.
+pub(super) fn centred(mut samples: DMatrix<f64>) -> DMatrix<f64> {
+    for mut column in samples.column_iter_mut() {
+        let mean = column.mean();
+        column.add_scalar_mut(-mean);
+    }
+    samples
+}
+
 // What a column of a flight record is.
 
 /// A channel of the flight records, by place and by name.

@@ -55,24 +55,6 @@ fn shortest_s(omega: f64) -> f64 {
     std::f64::consts::TAU / omega
 }
 
-/// `count` frequencies from `lowest` to `highest` \[rad/s\], evenly spaced in their logarithm; both greater than 0.
-#[must_use]
-pub fn log_spaced(lowest: f64, highest: f64, count: usize) -> Vec<f64> {
-    let (from, to, steps) = (lowest.ln(), highest.ln(), count.saturating_sub(1).max(1) as f64);
-    let inside = |k: usize| (from + (to - from) * k as f64 / steps).exp();
-    (0..count)
-        .map(|k| {
-            if k == 0 {
-                lowest
-            } else if k + 1 == count {
-                highest
-            } else {
-                inside(k)
-            }
-        })
-        .collect()
-}
-
 /// The response at each of `omegas` \[rad/s\] from the lines of all segments together (M14, 2; after Pintelon, Schoukens,
 /// Vandersteen & Barbe, Mech. Syst. Signal Process. 24, 2010, with the records' transients apart).
 ///
@@ -169,8 +151,8 @@ fn estimate(spectra: &[Spectrum], window: &Window) -> EstimatePoint {
     let (inputs, outputs) = (spectra[0].inputs.nrows(), spectra[0].outputs.nrows());
     let unknowns = TERMS * inputs;
     let freedom = window.count - window.transients - unknowns;
-    let (mut r, power) = regression(spectra, window);
-    triangularise(&mut r);
+    let (rows, power) = regression(spectra, window);
+    let r = rows.qr().unpack_r();
 
     let residual = r.view((unknowns, unknowns), (outputs, outputs)).clone_owned();
     let noise = (residual.adjoint() * &residual).map(|c| c.re / freedom as f64);
@@ -233,10 +215,12 @@ fn regression(spectra: &[Spectrum], window: &Window) -> (DMatrix<Complex<f64>>, 
                 power[o] += y.norm_sqr();
             }
         }
-        let transient = Transient::of(&x);
-        for column in 0..unknowns + outputs {
-            transient.project_out(&mut rows.column_mut(column).as_mut_slice()[top..top + x.len()]);
-        }
+        // An orthonormal basis of 1, x, x^2; a record with fewer than three lines has as many vectors as lines.
+        let powers = DMatrix::from_fn(x.len(), TERMS.min(x.len()), |line, power| x[line].powi(power as i32));
+        let transient = powers.qr().q().map(Complex::from);
+        let mut of_record = rows.rows_mut(top, x.len());
+        let explained = &transient * transient.ad_mul(&of_record);
+        of_record -= explained;
         top += x.len();
     }
     for column in 0..unknowns {
@@ -246,84 +230,12 @@ fn regression(spectra: &[Spectrum], window: &Window) -> (DMatrix<Complex<f64>>, 
     (rows, power)
 }
 
-/// An orthonormal basis of `1, x, x^2` over the lines of a record.
-struct Transient(Vec<Vec<f64>>);
-
-impl Transient {
-    /// By Gram and Schmidt, twice over; a record with fewer than three lines has as many vectors as lines.
-    fn of(x: &[f64]) -> Self {
-        let mut basis: Vec<Vec<f64>> = Vec::new();
-        for power in 0..TERMS.min(x.len()) {
-            let mut vector: Vec<f64> = x.iter().map(|x| x.powi(power as i32)).collect();
-            for _ in 0..2 {
-                for other in &basis {
-                    let dot: f64 = vector.iter().zip(other).map(|(a, b)| a * b).sum();
-                    vector.iter_mut().zip(other).for_each(|(a, b)| *a -= dot * b);
-                }
-            }
-            let length = vector.iter().map(|a| a * a).sum::<f64>().sqrt();
-            if length > 0.0 {
-                vector.iter_mut().for_each(|a| *a /= length);
-                basis.push(vector);
-            }
-        }
-        Self(basis)
-    }
-
-    fn project_out(&self, column: &mut [Complex<f64>]) {
-        for vector in &self.0 {
-            let dot: Complex<f64> = column.iter().zip(vector).map(|(a, b)| a * b).sum();
-            column.iter_mut().zip(vector).for_each(|(a, b)| *a -= dot * b);
-        }
-    }
-}
-
 /// `|V|^2` of each output when input `i` is left out: the triangular factor `r` without its three columns, made triangular
 /// again.
 fn left_without(r: &DMatrix<Complex<f64>>, i: usize, inputs: usize, outputs: usize) -> Vec<f64> {
     let unknowns = TERMS * inputs;
     let kept: Vec<usize> = (0..unknowns + outputs).filter(|&c| c >= unknowns || c % inputs != i).collect();
-    let mut smaller = r.rows(0, unknowns + outputs).select_columns(&kept);
-    triangularise(&mut smaller);
+    let smaller = r.select_columns(&kept).qr().unpack_r();
     let from = unknowns - TERMS;
     (0..outputs).map(|o| smaller.column(from + o).rows_range(from..).norm_squared()).collect()
-}
-
-/// Householder's triangular factor in place of `a` (at least as many rows as columns): `a` becomes `Q^H a`, zero below the
-/// diagonal.
-fn triangularise(a: &mut DMatrix<Complex<f64>>) {
-    let (rows, columns) = a.shape();
-    let data = a.as_mut_slice();
-    for j in 0..columns.min(rows) {
-        let (left, right) = data.split_at_mut((j + 1) * rows);
-        let pivot = &mut left[j * rows + j..];
-        let length = pivot.iter().map(|c| c.norm_sqr()).sum::<f64>().sqrt();
-        if length == 0.0 {
-            continue;
-        }
-        let modulus = pivot[0].norm();
-        let direction = if modulus > 0.0 { pivot[0] / modulus } else { Complex::from(1.0) };
-        pivot[0] += direction * length;
-        // |v|^2 / 2 of v = x + e^(j arg x1) |x| e1.
-        let half = length * (length + modulus);
-        for column in right.chunks_exact_mut(rows) {
-            let column = &mut column[j..];
-            let dot = conjugate_dot(pivot, column) / half;
-            column.iter_mut().zip(pivot.iter()).for_each(|(c, v)| *c -= v * dot);
-        }
-        pivot.fill(Complex::from(0.0));
-        pivot[0] = -direction * length;
-    }
-}
-
-/// `a^H b`, by four sums side by side, so that no addition waits for the one before it.
-fn conjugate_dot(a: &[Complex<f64>], b: &[Complex<f64>]) -> Complex<f64> {
-    let mut sums = [0.0; 4];
-    for (a, b) in a.iter().zip(b) {
-        sums[0] += a.re * b.re;
-        sums[1] += a.im * b.im;
-        sums[2] += a.re * b.im;
-        sums[3] += a.im * b.re;
-    }
-    Complex::new(sums[0] + sums[1], sums[2] - sums[3])
 }

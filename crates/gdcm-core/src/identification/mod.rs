@@ -6,7 +6,7 @@ mod diagnostics;
 mod flight_record;
 mod identify;
 #[cfg(test)]
-mod known_answers;
+mod known_answers_tests;
 mod laguerre;
 mod likelihood;
 mod local_polynomial;
@@ -29,10 +29,11 @@ use crate::dataset::{ChannelSide, Pair, StateSpace};
 #[cfg(test)]
 use crate::progress::Unobserved;
 use crate::progress::{Cancelled, Progress, Shares};
+pub use crate::response::log_spaced;
 use crate::response::{median, quantile};
 
 #[cfg(test)]
-use self::known_answers::*;
+use self::known_answers_tests::*;
 use self::{
     blocks::*, laguerre::*, likelihood::*, modal_form::*, normal_system::*, order::*, refinement::*, sampling::*,
     subspace::*, triangular_factor::*,

@@ -111,7 +111,7 @@ pub(super) fn poles(model: &StateSpace) -> Option<Vec<Complex<f64>>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identification::known_answers::*;
+    use crate::identification::known_answers_tests::*;
 
     fn sample(size: usize) -> DMatrix<f64> {
         DMatrix::from_fn(size, size, |row, column| ((1.0 + 7.3 * row as f64) * (1.0 + 2.9 * column as f64)).sin())

@@ -155,12 +155,8 @@ fn check_inputs(segments: &[Segment], options: &Options) -> Result<(), Identific
     let inputs = options.preparation.inputs.len();
     let mut gram = DMatrix::<f64>::zeros(inputs, inputs);
     for segment in segments {
-        let mut centred = segment.inputs.clone();
-        for mut column in centred.column_iter_mut() {
-            let mean = column.mean();
-            column.add_scalar_mut(-mean);
-        }
-        gram += centred.transpose() * centred;
+        let centred = centred(segment.inputs.clone());
+        gram += centred.tr_mul(&centred);
     }
     let scales = gram.diagonal().map(f64::sqrt);
     let correlation = gram.component_div(&(&scales * scales.transpose()));

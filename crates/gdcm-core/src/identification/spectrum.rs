@@ -153,12 +153,13 @@ impl LowPass {
         (0..samples.len()).map(filtered).collect()
     }
 
-    /// `segment`, every channel filtered.
+    /// Every channel of a segment through the filter with cut-off `omega` \[rad/s\]; as it is where there is nothing to take off.
     #[must_use]
-    pub fn segment(&self, segment: &Segment) -> Segment {
+    pub fn applied(omega: f64, segment: &Segment) -> Segment {
+        let Some(low_pass) = Self::new(omega, segment.sample_time_s) else { return segment.clone() };
         let side = |samples: &DMatrix<f64>| {
             let filtered: Vec<f64> =
-                samples.as_slice().chunks(samples.nrows().max(1)).flat_map(|x| self.filter(x)).collect();
+                samples.as_slice().chunks(samples.nrows().max(1)).flat_map(|x| low_pass.filter(x)).collect();
             DMatrix::from_vec(samples.nrows(), samples.ncols(), filtered)
         };
         Segment { inputs: side(&segment.inputs), outputs: side(&segment.outputs), ..segment.clone() }
@@ -216,10 +217,6 @@ impl CutOff {
     /// `segments`, every channel through the low-pass of this cut-off; as they are where there is nothing to take off.
     #[must_use]
     pub fn apply(&self, segments: &[Segment], executor: &dyn Executor) -> Vec<Segment> {
-        let filter = |segment: &Segment| match LowPass::new(self.omega, segment.sample_time_s) {
-            Some(low_pass) => low_pass.segment(segment),
-            None => segment.clone(),
-        };
-        each(executor, segments, filter)
+        each(executor, segments, |segment| LowPass::applied(self.omega, segment))
     }
 }

@@ -121,7 +121,10 @@ pub fn validate(
         return Err(ValidationError::NoWindow);
     }
     let window_s = window_s(model, settings.longest_window_s).ok_or(ValidationError::NotSimulated)?;
-    let filtered = each(executor, segments, |segment| filtered(segment, settings.low_pass));
+    let filtered = each(executor, segments, |segment| match settings.low_pass {
+        Some(omega) => LowPass::applied(omega, segment),
+        None => segment.clone(),
+    });
     let std = deviations(filtered.iter().map(|segment| &segment.outputs));
     let windows = each(executor, &filtered, |segment| windows(model, segment, window_s, &std));
     let windows: Vec<ValidationWindow> =
@@ -137,11 +140,6 @@ pub fn validate(
 fn window_s(model: &StateSpace, longest_s: f64) -> Option<f64> {
     let fastest = poles(model)?.iter().map(|pole| pole.re).fold(0.0, f64::max);
     Some(if fastest > 0.0 { longest_s.min(TIME_CONSTANTS / fastest) } else { longest_s })
-}
-
-fn filtered(segment: &Segment, cut_off: Option<f64>) -> Segment {
-    let low_pass = cut_off.and_then(|omega| LowPass::new(omega, segment.sample_time_s));
-    low_pass.map_or_else(|| segment.clone(), |low_pass| low_pass.segment(segment))
 }
 
 /// The windows of one segment; none where it is too short.
@@ -166,7 +164,7 @@ fn windows(
         let bound = |k: usize| (samples as u128 * k as u128 / count as u128) as usize;
         let (from, length) = (bound(k), bound(k + 1) - bound(k));
         let measured = segment.outputs.rows(from, length).into_owned();
-        let simulated = best_simulation(&held, &free, &segment.inputs.rows(from, length).into_owned(), &measured, std)?;
+        let simulated = best_simulation(&held, &free, segment.inputs.rows(from, length).into_owned(), &measured, std)?;
         Some(ValidationWindow {
             record: segment.record,
             start_s: segment.start_s + segment.sample_time_s * from as f64,
@@ -183,18 +181,13 @@ fn windows(
 fn best_simulation(
     held: &FirstOrderHold,
     free: &DMatrix<f64>,
-    inputs: &DMatrix<f64>,
+    inputs: DMatrix<f64>,
     measured: &DMatrix<f64>,
     std: &[f64],
 ) -> Option<DMatrix<f64>> {
     let (samples, outputs) = measured.shape();
     let states = free.ncols();
-    let mut about_mean = inputs.clone();
-    for mut column in about_mean.column_iter_mut() {
-        let mean = column.mean();
-        column.add_scalar_mut(-mean);
-    }
-    let forced = held.simulate(&DVector::zeros(states), &about_mean);
+    let forced = held.simulate(&DVector::zeros(states), &centred(inputs));
 
     // Rows: sample after sample, each output over its std; columns: initial states, offsets, what is left to explain.
     let mut rows = DMatrix::zeros(samples * outputs, states + outputs + 1);

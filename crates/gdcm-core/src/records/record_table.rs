@@ -189,9 +189,11 @@ impl RecordTable {
 
     fn part(&self, rows: Range<usize>, name: &str, why: &str) -> RecordTable {
         let variable = self.source.variable.iter().map(String::as_str).chain([name]).collect::<Vec<_>>().join(", ");
-        let columns = self.columns.iter().map(|column| {
-            let values = column.values[rows.clone()].to_vec();
-            super::RecordColumn { values, ..column_without_samples(column) }
+        let columns = self.columns.iter().map(|RecordColumn { name, unit, side, values }| RecordColumn {
+            name: name.clone(),
+            unit: unit.clone(),
+            side: *side,
+            values: values[rows.clone()].to_vec(),
         });
         RecordTable {
             name: format!("{}, {name}", self.name),
@@ -202,10 +204,6 @@ impl RecordTable {
             notes: self.notes.iter().cloned().chain([why.to_owned()]).collect(),
         }
     }
-}
-
-fn column_without_samples(column: &super::RecordColumn) -> super::RecordColumn {
-    super::RecordColumn { name: column.name.clone(), unit: column.unit.clone(), side: column.side, values: Vec::new() }
 }
 
 /// Ranges of samples with one number each; none for those without.

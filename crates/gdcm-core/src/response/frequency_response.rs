@@ -12,17 +12,9 @@ use crate::units::ratio_to_db;
 ///
 /// A value is not finite where the response has none: at a pole on the imaginary axis, or outside the frequencies of
 /// measured data.
-///
-/// All values are in one piece of memory, in the order in which they are computed: as many neighbouring frequencies as a
-/// vector of the processor holds, curve by curve, then the next frequencies.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FrequencyResponse {
-    frequencies: usize,
-    /// Frequencies that lie together; the last block has some that are not of the grid.
-    block: usize,
-    /// The place of each curve in a block.
-    places: PairTable<usize>,
-    values: Vec<Complex<f64>>,
+    curves: PairTable<Vec<Complex<f64>>>,
 }
 
 impl FrequencyResponse {
@@ -31,86 +23,45 @@ impl FrequencyResponse {
         PreparedModel::of(dynamics).response(grid)
     }
 
-    /// Blocks of `block` frequencies, in each of which every curve has its place.
-    pub(super) fn from_blocks(
-        frequencies: usize,
-        block: usize,
-        places: PairTable<usize>,
-        values: Vec<Complex<f64>>,
-    ) -> Self {
-        Self { frequencies, block, places, values }
-    }
-
     /// Curves of `N` values each.
-    pub(super) fn from_curves(frequencies: usize, curves: &PairTable<Vec<Complex<f64>>>) -> Self {
-        let inputs = curves.inputs();
-        let places = curves.map(|pair, _| pair.output * inputs + pair.input);
-        let values = curves.iter().flat_map(|(_, curve)| curve.iter().copied()).collect();
-        Self { frequencies, block: frequencies, places, values }
+    pub(super) fn new(curves: PairTable<Vec<Complex<f64>>>) -> Self {
+        Self { curves }
     }
 
     /// Number of output channels, `p`.
     pub fn outputs(&self) -> usize {
-        self.places.outputs()
+        self.curves.outputs()
     }
 
     /// Number of input channels, `m`.
     pub fn inputs(&self) -> usize {
-        self.places.inputs()
+        self.curves.inputs()
     }
 
     /// The `N` values of one response.
-    pub fn curve(&self, pair: Pair) -> Vec<Complex<f64>> {
-        let first = self.places[pair] * self.block;
-        let mut curve = Vec::with_capacity(self.frequencies.next_multiple_of(self.block.max(1)));
-        for values in self.values.chunks_exact(self.stride()) {
-            curve.extend_from_slice(&values[first..first + self.block]);
-        }
-        curve.truncate(self.frequencies);
-        curve
+    pub fn curve(&self, pair: Pair) -> &[Complex<f64>] {
+        &self.curves[pair]
     }
 
     /// The values of every response, `[output, input]`.
-    pub fn curves(&self) -> PairTable<Vec<Complex<f64>>> {
-        self.places.map(|pair, _| self.curve(pair))
+    pub fn curves(&self) -> &PairTable<Vec<Complex<f64>>> {
+        &self.curves
     }
 
     /// The responses that are not finite at some frequency.
     pub fn not_finite(&self) -> Vec<Pair> {
-        // Nearly always: one look at each value.
-        if self.values.iter().all(|value| value.is_finite()) {
-            return Vec::new();
-        }
-        self.places.pairs().filter(|pair| self.curve(*pair).iter().any(|value| !value.is_finite())).collect()
+        let not_finite = |curve: &[Complex<f64>]| curve.iter().any(|value| !value.is_finite());
+        self.curves.iter().filter(|(_, curve)| not_finite(curve)).map(|(pair, _)| pair).collect()
     }
 
     /// Makes a response zero at every frequency.
     pub(super) fn clear(&mut self, pair: Pair) {
-        let (first, block, stride) = (self.places[pair] * self.block, self.block, self.stride());
-        for values in self.values.chunks_exact_mut(stride) {
-            values[first..first + block].fill(Complex::new(0.0, 0.0));
-        }
+        self.curves[pair].fill(Complex::new(0.0, 0.0));
     }
 
     /// Multiplies a response by a factor at each frequency.
     pub(super) fn multiply(&mut self, pair: Pair, factors: &[Complex<f64>]) {
-        let (first, block, stride) = (self.places[pair] * self.block, self.block, self.stride());
-        for (values, factors) in self.values.chunks_exact_mut(stride).zip(factors.chunks(block.max(1))) {
-            values[first..first + block].iter_mut().zip(factors).for_each(|(value, factor)| *value *= factor);
-        }
-    }
-
-    /// Values in a block; at least one, for there are no chunks of none.
-    fn stride(&self) -> usize {
-        (self.outputs() * self.inputs() * self.block).max(1)
-    }
-}
-
-/// The same values at the same places, however they lie in memory.
-impl PartialEq for FrequencyResponse {
-    fn eq(&self, other: &Self) -> bool {
-        (self.outputs(), self.inputs(), self.frequencies) == (other.outputs(), other.inputs(), other.frequencies)
-            && self.places.pairs().all(|pair| self.curve(pair) == other.curve(pair))
+        self.curves[pair].iter_mut().zip(factors).for_each(|(value, factor)| *value *= factor);
     }
 }
 
@@ -121,14 +72,9 @@ pub struct FrequencyGrid {
 }
 
 impl FrequencyGrid {
-    /// `omega_k = exp(ln min + (k / (N - 1)) (ln max - ln min))`, k = 0 ... N - 1, for `N = max(points, 2)`.
+    /// [`log_spaced`] over the band, at `N = max(points, 2)` frequencies.
     pub fn logarithmic(band: Band, points: usize) -> Self {
-        let last = points.max(2) - 1;
-        let (low, high) = (band.min().ln(), band.max().ln());
-        let mut omega: Vec<f64> = (0..=last).map(|k| (low + (high - low) * k as f64 / last as f64).exp()).collect();
-        omega[0] = band.min();
-        omega[last] = band.max();
-        Self { omega }
+        Self { omega: log_spaced(band.min(), band.max(), points) }
     }
 
     /// The frequencies \[rad/s\].
@@ -145,6 +91,15 @@ impl FrequencyGrid {
     pub fn is_empty(&self) -> bool {
         self.omega.is_empty()
     }
+}
+
+/// `omega_k = exp(ln low + (k / (N - 1)) (ln high - ln low))` \[rad/s\], k = 0 ... N - 1, for `N = max(count, 2)`; the ends as given.
+#[must_use]
+pub fn log_spaced(lowest: f64, highest: f64, count: usize) -> Vec<f64> {
+    let (low, high, last) = (lowest.ln(), highest.ln(), count.max(2) - 1);
+    let mut omega: Vec<f64> = (0..=last).map(|k| (low + (high - low) * k as f64 / last as f64).exp()).collect();
+    (omega[0], omega[last]) = (lowest, highest);
+    omega
 }
 
 /// Magnitude \[dB\] and unwrapped phase \[deg\] of one response, as they are drawn (M2).
@@ -240,14 +195,14 @@ pub struct PolarResponse {
 impl PolarResponse {
     /// Magnitude and phase of every response.
     pub fn of(response: &FrequencyResponse) -> Self {
-        let curve = |pair| PolarCurve::of(&response.curve(pair));
+        let curve = |pair| PolarCurve::of(response.curve(pair));
         Self { curves: PairTable::from_fn(response.outputs(), response.inputs(), curve) }
     }
 
     /// Magnitude and phase of the marked responses; the others are left undefined, for a logarithm and an arc tangent cost more
     /// than the response itself.
     pub fn of_marked(response: &FrequencyResponse, marked: &PairTable<bool>) -> Self {
-        let curve = |pair| if marked[pair] { PolarCurve::of(&response.curve(pair)) } else { None };
+        let curve = |pair| if marked[pair] { PolarCurve::of(response.curve(pair)) } else { None };
         Self { curves: PairTable::from_fn(response.outputs(), response.inputs(), curve) }
     }
 
@@ -274,58 +229,6 @@ impl PolarResponse {
     /// The curves, `[output, input]`.
     pub fn curves(&self) -> &PairTable<Option<PolarCurve>> {
         &self.curves
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// 2 x 1 curves of three values: 1, 2, 3 and 10, 20, 30.
-    fn curves() -> PairTable<Vec<Complex<f64>>> {
-        PairTable::from_fn(2, 1, |pair| {
-            let factor = if pair.output == 0 { 1.0 } else { 10.0 };
-            [1.0, 2.0, 3.0].map(|value| Complex::from(value * factor)).to_vec()
-        })
-    }
-
-    /// The same in blocks of two frequencies, the second curve first; 0 is not of the grid.
-    fn blocks() -> FrequencyResponse {
-        let values = [10.0, 20.0, 1.0, 2.0, 30.0, 0.0, 3.0, 0.0].map(Complex::from).to_vec();
-        FrequencyResponse::from_blocks(3, 2, PairTable::from_fn(2, 1, |pair| 1 - pair.output), values)
-    }
-
-    #[test]
-    fn curves_are_the_same_however_they_lie_in_memory() {
-        assert_eq!(blocks().curves(), curves());
-        assert_eq!(blocks(), FrequencyResponse::from_curves(3, &curves()));
-        let mut others = curves();
-        others[Pair::new(1, 0)][2].im = 1e-9;
-        assert_ne!(blocks(), FrequencyResponse::from_curves(3, &others));
-    }
-
-    #[test]
-    fn a_cleared_curve_is_zero_and_the_others_stay() {
-        let mut response = blocks();
-        response.clear(Pair::new(0, 0));
-        let mut expected = curves();
-        expected[Pair::new(0, 0)].fill(Complex::from(0.0));
-        assert_eq!(response.curves(), expected);
-    }
-
-    #[test]
-    fn a_multiplied_curve_has_its_factor_at_each_frequency_and_the_others_stay() {
-        let mut response = blocks();
-        response.multiply(Pair::new(1, 0), &[1.0, 0.5, 2.0].map(Complex::from));
-        let mut expected = curves();
-        expected[Pair::new(1, 0)] = [10.0, 10.0, 60.0].map(Complex::from).to_vec();
-        assert_eq!(response.curves(), expected);
-    }
-
-    #[test]
-    fn no_frequencies_are_no_values() {
-        let none = FrequencyResponse::from_curves(0, &PairTable::filled(2, 2, Vec::new()));
-        assert_eq!(none.curve(Pair::new(1, 1)), []);
     }
 }
 
@@ -375,7 +278,7 @@ mod polar_tests {
         // Of 2 x 2: only the last is small beside both; the third belongs to an output in small units.
         let values = [[1.0, 1.0], [1e-7, 0.99e-13]];
         let curves = PairTable::from_fn(2, 2, |pair| vec![Complex::from(values[pair.output][pair.input]); 3]);
-        let mut polar = PolarResponse::of(&FrequencyResponse::from_curves(3, &curves));
+        let mut polar = PolarResponse::of(&FrequencyResponse::new(curves));
         let nothing = polar.numerically_nothing();
         assert_eq!(nothing.marked().collect::<Vec<_>>(), [Pair::new(1, 1)]);
         polar.clear(&nothing);
@@ -385,7 +288,7 @@ mod polar_tests {
     #[test]
     fn the_only_response_of_an_output_is_never_nothing() {
         let curves = PairTable::from_fn(2, 1, |pair| vec![Complex::from([1.0, 1e-20][pair.output]); 3]);
-        let polar = PolarResponse::of(&FrequencyResponse::from_curves(3, &curves));
+        let polar = PolarResponse::of(&FrequencyResponse::new(curves));
         assert_eq!(polar.numerically_nothing().marked().count(), 0);
     }
 

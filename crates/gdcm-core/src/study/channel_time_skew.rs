@@ -109,7 +109,7 @@ fn lags(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Opti
     let lag = |pair: Pair| {
         let at = (pair.output, pair.input);
         let modelled = physics.curve(pair);
-        let trusted = points.iter().zip(&modelled).filter(|(point, value)| {
+        let trusted = points.iter().zip(modelled).filter(|(point, value)| {
             point.partial_coherence[at] >= TRUSTED_COHERENCE && value.norm() > 0.0 && point.response[at].norm() > 0.0
         });
         let (mut angles, mut others) = (Vec::new(), Vec::new());

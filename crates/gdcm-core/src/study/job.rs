@@ -23,6 +23,11 @@ pub trait Job: Clone + PartialEq + Send + 'static {
     /// # Errors
     /// [`Cancelled`] soon after `progress` says so.
     fn run(&self, tools: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled>;
+
+    /// Whether `newer`, which is asked for in its place, is quicker once it is done; `done` of `total` steps are behind. Then it goes on.
+    fn serves(&self, _newer: &Self, _done: usize, _total: usize) -> bool {
+        false
+    }
 }
 
 /// The whole proof of equation (7) for one condition, where the live answer's budget did not reach.

@@ -148,6 +148,11 @@ impl Range {
         Self { min: self.min.min(value), max: self.max.max(value) }
     }
 
+    /// The least range that holds both.
+    pub fn union(self, other: Self) -> Self {
+        self.including(other.min).including(other.max)
+    }
+
     /// This range with `fraction` of its width added on either side, and at least as wide as `least`.
     pub fn with_margin(self, fraction: f64, least: f64) -> Self {
         let half = (0.5 * self.width() * (1.0 + 2.0 * fraction)).max(0.5 * least);

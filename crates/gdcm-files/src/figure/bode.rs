@@ -140,7 +140,7 @@ impl FrequencyPanels<'_> {
         };
         let frequencies = band.omega.iter().map(|omega| self.options.unit.of_omega(*omega));
         let points = frequencies.zip(values).map(|(x, [low, high])| [x, shown(*low), shown(*high)]);
-        Envelope { name: "band of 95 %".to_owned(), color: UNCERTAIN, points: points.collect() }
+        Envelope { name: "band of 95 %".to_owned(), color: UNCERTAIN, edge: None, points: points.collect() }
     }
 }
 

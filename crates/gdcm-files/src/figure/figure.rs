@@ -1,7 +1,7 @@
 //! A figure: what a plot shows, apart from any screen.
 
 use super::axis::{Axis, Range};
-use super::mark::{Along, Mark};
+use super::mark::{Along, Dot, Mark};
 use super::role::{Entry, entries};
 
 /// What a plot shows, apart from any screen: plots side by side, a title above, a legend and a caption below.
@@ -119,6 +119,19 @@ impl Figure {
         Self { dense: true, ..self }
     }
 
+    /// The same figure where each panel says which part of the axes that all have in common it shows.
+    pub fn with_ranges(mut self) -> Self {
+        let panels = || self.plots.iter().flat_map(|plot| &plot.panels);
+        let common = |along| panels().map(|panel| panel.shown(along)).reduce(Range::union);
+        let x = if self.shared.x { common(Along::X) } else { None };
+        let y = if self.shared.y { common(Along::Y) } else { None };
+        for panel in self.plots.iter_mut().flat_map(|plot| &mut plot.panels) {
+            panel.x.range = x.or(panel.x.range);
+            panel.y.range = y.or(panel.y.range);
+        }
+        self
+    }
+
     /// Every panel, with the title of its plot.
     pub fn panels(&self) -> impl Iterator<Item = (&str, &Panel)> {
         self.plots.iter().flat_map(|plot| plot.panels.iter().map(|panel| (plot.title.as_str(), panel)))
@@ -172,8 +185,13 @@ impl Panel {
         Self { weight, ..self }
     }
 
+    /// Every dot in it.
+    pub fn dots(&self) -> impl Iterator<Item = &Dot> {
+        self.marks.iter().filter_map(|mark| if let Mark::Dots(of) = mark { Some(&of.dots) } else { None }).flatten()
+    }
+
     /// What is shown of an axis where this panel stands alone.
-    pub(super) fn shown(&self, along: Along) -> Range {
+    pub fn shown(&self, along: Along) -> Range {
         let axis = match along {
             Along::X => &self.x,
             Along::Y => &self.y,

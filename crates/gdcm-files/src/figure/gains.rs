@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use gdcm_core::correction::{Channel, ChannelCorrection};
 use gdcm_core::dataset::{Dataset, FlightState, Pair};
 use gdcm_core::schedule::Schedule;
-use gdcm_core::study::{AirspeedDifference, Analysis, ConditionAnalysis, ConditionChoice};
+use gdcm_core::study::{AirspeedDifference, Analysis, ConditionAnalysis, ConditionChoice, Uncertainty};
 use gdcm_core::uncertainty::{BandWidths, Bar, Scalar};
 use gdcm_core::units::s_to_ms;
 
@@ -13,7 +13,7 @@ use super::axis::{Axis, Range};
 use super::condition_source::{schedule_words, settings_words};
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
-use super::mark::{Bracket, Brackets, Curve, Dot, DotShape, Dots, Intervals, Rule, Spans};
+use super::mark::{Bracket, Brackets, Curve, Dot, DotShape, Dots, Envelope, Intervals, MarkId, Rule, Spans};
 use super::role::Role;
 use super::ticks::decimals;
 
@@ -73,7 +73,7 @@ impl Measure {
     }
 
     /// What stands beside an axis of values of a channel.
-    fn axis_label(self) -> &'static str {
+    pub fn axis_label(self) -> &'static str {
         match self {
             Self::Gain => "Gain [-]",
             Self::Delay => "Delay [ms]",
@@ -125,45 +125,30 @@ impl Classes {
 }
 
 /// A figure of a correction.
-type FigureOf<'a> = Box<dyn Fn(&ChannelCorrection) -> f64 + 'a>;
-/// Between which values it was looked for.
-type BoundsOf<'a> = Box<dyn Fn(&ConditionAnalysis) -> [f64; 2] + 'a>;
+type FigureOf = Box<dyn Fn(&ChannelCorrection) -> f64>;
 
-/// The net gain of each of `pairs` in each condition's optimum, and the schedule (Figures 6 and 7).
-pub fn net_gain_figure(analysis: &Analysis, pairs: &[Pair]) -> Figure {
+/// The net gain of each of `pairs` in each condition's optimum, and the schedule (Figures 6 and 7); with bars and bands where
+/// `uncertainty` says how sure they are.
+pub fn net_gain_figure(analysis: &Analysis, uncertainty: Option<&Uncertainty>, pairs: &[Pair]) -> Figure {
     let plots = pairs.iter().map(|&pair| {
-        let quantity = Quantity {
-            measure: Measure::Gain,
-            of: Box::new(move |correction| correction.net_gain(pair).value()),
-            bounds: None,
-            scalar: Scalar::NetGain(pair),
-        };
-        let panel = quantity.panel(analysis, Across::Airspeed, "Net gain [-]");
+        let panel = GainQuantity::net_gain(pair).panel(analysis, uncertainty, Across::Airspeed, "Net gain [-]");
         Plot::new(analysis.study.dataset.pair_name(pair)).panel(panel)
     });
     let figure = Figure::new("Net gains against airspeed").caption(caption(analysis, Across::Airspeed, Measure::Gain));
-    figure.plots(plots).columns(5).shared_x().shared_y().aspect(aspect(analysis))
+    figure.plots(plots).columns(5).shared_x().shared_y().aspect(ASPECTS[usize::from(uncertainty.is_some())])
 }
 
 /// Gain or delay of each of `channels` in each condition's optimum, and the schedule (Figures 3 and 4).
-pub fn channels_figure(analysis: &Analysis, channels: &[Channel], measure: Measure, across: Across) -> Figure {
+pub fn channels_figure(
+    analysis: &Analysis,
+    uncertainty: Option<&Uncertainty>,
+    channels: &[Channel],
+    (measure, across): (Measure, Across),
+) -> Figure {
     let (inputs, outputs) = analysis.study.dataset.names_of_channels();
     let plots = channels.iter().map(|&channel| {
-        let bounds: BoundsOf<'_> = Box::new(move |result| match measure {
-            Measure::Gain => [result.gain_bounds().lower, result.gain_bounds().upper],
-            Measure::Delay => result.delay_bounds_s().map(s_to_ms),
-        });
-        let of: FigureOf<'_> = Box::new(move |correction| match (measure, channel) {
-            (Measure::Gain, Channel::Input(input)) => correction.input_gains[input],
-            (Measure::Gain, Channel::Output(output)) => correction.output_gains[output],
-            (Measure::Delay, channel) => s_to_ms(correction.delay_s(channel)),
-        });
-        let scalar = match measure {
-            Measure::Gain => Scalar::ChannelGain(channel),
-            Measure::Delay => Scalar::ChannelDelay(channel),
-        };
-        let panel =
-            Quantity { measure, of, bounds: Some(bounds), scalar }.panel(analysis, across, measure.axis_label());
+        let quantity = GainQuantity::of_channel(channel, measure);
+        let panel = quantity.panel(analysis, uncertainty, across, measure.axis_label());
         Plot::new(channel.name(&inputs, &outputs)).panel(panel)
     });
     let title = match measure {
@@ -171,7 +156,7 @@ pub fn channels_figure(analysis: &Analysis, channels: &[Channel], measure: Measu
         Measure::Delay => "Channel delays",
     };
     let figure = Figure::new(title).caption(caption(analysis, across, measure)).plots(plots);
-    figure.columns(6).shared_x().shared_y().aspect(aspect(analysis))
+    figure.columns(6).shared_x().shared_y().aspect(ASPECTS[usize::from(uncertainty.is_some())])
 }
 
 /// Every channel, inputs first.
@@ -180,21 +165,9 @@ pub fn all_channels(dataset: &Dataset) -> Vec<Channel> {
     inputs.chain((0..dataset.outputs().len()).map(Channel::Output)).collect()
 }
 
-/// Samples of a scheduled figure from the least to the greatest of the conditions' airspeeds: airspeed \[kt\], and figure.
-pub fn scheduled_samples(schedule: &Schedule, figure: impl Fn(&ChannelCorrection) -> f64) -> Vec<[f64; 2]> {
-    let (from, to) = (schedule.airspeeds.min_kt, schedule.airspeeds.max_kt);
-    let airspeed = |sample: usize| from + (to - from) * sample as f64 / SAMPLES as f64;
-    (0..=SAMPLES).map(|sample| [airspeed(sample), figure(&schedule.at(airspeed(sample)))]).collect()
-}
-
 /// Whether a schedule has values of this measure, over this axis.
-pub fn is_scheduled(schedule: &Schedule, measure: Measure, across: Across) -> bool {
+fn is_scheduled(schedule: &Schedule, measure: Measure, across: Across) -> bool {
     across == Across::Airspeed && (measure == Measure::Gain || schedule.has_delays())
-}
-
-/// Bars and brackets need room.
-fn aspect(analysis: &Analysis) -> f64 {
-    ASPECTS[usize::from(analysis.uncertainty.is_some())]
 }
 
 fn caption(analysis: &Analysis, across: Across, measure: Measure) -> String {
@@ -212,16 +185,51 @@ fn caption(analysis: &Analysis, across: Across, measure: Measure) -> String {
 }
 
 /// A figure of every condition's correction, and of the schedule.
-struct Quantity<'a> {
-    measure: Measure,
-    of: FigureOf<'a>,
-    bounds: Option<BoundsOf<'a>>,
+pub struct GainQuantity {
+    /// What it measures.
+    pub measure: Measure,
+    /// The figure itself, in the unit of the measure.
+    pub of: FigureOf,
     /// The same, as bars know it.
-    scalar: Scalar,
+    pub scalar: Scalar,
 }
 
-impl Quantity<'_> {
-    fn panel(&self, analysis: &Analysis, across: Across, label: &str) -> Panel {
+impl GainQuantity {
+    /// The net gain of a response.
+    pub fn net_gain(pair: Pair) -> Self {
+        let of: FigureOf = Box::new(move |correction| correction.net_gain(pair).value());
+        Self { measure: Measure::Gain, of, scalar: Scalar::NetGain(pair) }
+    }
+
+    /// Gain or delay of a channel.
+    pub fn of_channel(channel: Channel, measure: Measure) -> Self {
+        let of: FigureOf = Box::new(move |correction| match (measure, channel) {
+            (Measure::Gain, Channel::Input(input)) => correction.input_gains[input],
+            (Measure::Gain, Channel::Output(output)) => correction.output_gains[output],
+            (Measure::Delay, channel) => s_to_ms(correction.delay_s(channel)),
+        });
+        let scalar = match measure {
+            Measure::Gain => Scalar::ChannelGain(channel),
+            Measure::Delay => Scalar::ChannelDelay(channel),
+        };
+        Self { measure, of, scalar }
+    }
+
+    /// Between which values the optimum of a condition was looked for; none of a net gain, which has no bounds of its own.
+    pub fn bounds(&self, result: &ConditionAnalysis) -> Option<[f64; 2]> {
+        match self.scalar {
+            Scalar::ChannelGain(_) => Some([result.gain_bounds().lower, result.gain_bounds().upper]),
+            Scalar::ChannelDelay(_) => Some(result.delay_bounds_s().map(s_to_ms)),
+            _ => None,
+        }
+    }
+
+    /// Whether a schedule has it, over this axis.
+    pub fn is_scheduled(&self, schedule: &Schedule, across: Across) -> bool {
+        is_scheduled(schedule, self.measure, across)
+    }
+
+    fn panel(&self, analysis: &Analysis, uncertainty: Option<&Uncertainty>, across: Across, label: &str) -> Panel {
         let conditions = analysis.study.dataset.conditions();
         let x = match across {
             Across::Airspeed => Axis::linear("Airspeed [kt]").at_least(10.0),
@@ -229,24 +237,32 @@ impl Quantity<'_> {
                 Axis::named("Condition", conditions.iter().map(|condition| condition.id().to_string()))
             }
         };
-        let y = self.value_axis(analysis, across, label);
+        let bars = uncertainty.map(|of| self.bars(analysis, of, across)).unwrap_or_default();
+        let brackets = uncertainty.map(|of| self.brackets(analysis, of, across)).unwrap_or_default();
+        let y = self.value_axis(analysis, &bars, label);
         let schedule = analysis.schedule.as_ref().ok().filter(|schedule| is_scheduled(schedule, self.measure, across));
-        let curve = schedule.map(|schedule| {
-            let (x, y): (Vec<f64>, Vec<f64>) =
-                scheduled_samples(schedule, &self.of).into_iter().map(|[x, y]| (x, y)).unzip();
-            let stroke = Role::Scheduled.stroke(false);
-            Curve::new("schedule", stroke, x, y).key("schedule")
+        let samples: Vec<[f64; 2]> = schedule.map(|schedule| self.samples(schedule)).unwrap_or_default();
+        let bands = schedule.zip(uncertainty.and_then(|of| of.bands.as_ref()));
+        let bands = bands.map(|(schedule, bands)| self.bands(&samples, |at| bands.at(schedule, self.scalar, at)));
+        let curve = schedule.map(|_| {
+            let (x, y): (Vec<f64>, Vec<f64>) = samples.iter().map(|[x, y]| (*x, *y)).unzip();
+            Curve::new("schedule", Role::Scheduled.stroke(false), x, y).key("schedule")
         });
         let panel = Panel::new(x, y).with_all(self.spans(analysis, across));
-        let bands = schedule.map(|schedule| self.bands(analysis, schedule)).unwrap_or_default();
-        let panel = panel.with(Rule::horizontal(self.measure.null(), NULL)).with_all(bands).with_all(curve);
-        let panel = panel.with_all(self.bars(analysis, across)).with_all(self.brackets(analysis, across));
+        let panel = panel.with(Rule::horizontal(self.measure.null(), NULL)).with_all(bands.into_iter().flatten());
+        let panel = panel.with_all(curve).with_all(bars).with_all(brackets);
         panel.with_all(self.dots(analysis, across))
     }
 
+    /// Samples of the scheduled figure from the least to the greatest of the conditions' airspeeds: airspeed \[kt\], and figure.
+    fn samples(&self, schedule: &Schedule) -> Vec<[f64; 2]> {
+        let (from, to) = (schedule.airspeeds.min_kt, schedule.airspeeds.max_kt);
+        let airspeed = |sample: usize| from + (to - from) * sample as f64 / SAMPLES as f64;
+        (0..=SAMPLES).map(airspeed).map(|at| [at, (self.of)(&schedule.at(at))]).collect()
+    }
+
     /// The bar of each condition, where that was computed: thin with not knowing the trim flown, thick for the model chosen (M13).
-    fn bars(&self, analysis: &Analysis, across: Across) -> Vec<Intervals> {
-        let Some(uncertainty) = &analysis.uncertainty else { return Vec::new() };
+    fn bars(&self, analysis: &Analysis, uncertainty: &Uncertainty, across: Across) -> Vec<Intervals> {
         let told = |end: f64| if self.scalar.is_delay() { s_to_ms(end) } else { end.exp() };
         let ends = |of: &dyn Fn(&Bar) -> Option<[f64; 2]>| -> Vec<[f64; 3]> {
             let bar = |(x, state, _): (f64, &FlightState, &ConditionAnalysis)| {
@@ -264,11 +280,8 @@ impl Quantity<'_> {
     }
 
     /// For each airspeed the difference that is the largest multiple of what is expected (M13.4).
-    fn brackets(&self, analysis: &Analysis, across: Across) -> Vec<Brackets> {
-        let (Some(uncertainty), Scalar::NetGain(pair), Across::Airspeed) = (&analysis.uncertainty, self.scalar, across)
-        else {
-            return Vec::new();
-        };
+    fn brackets(&self, analysis: &Analysis, uncertainty: &Uncertainty, across: Across) -> Vec<Brackets> {
+        let (Scalar::NetGain(pair), Across::Airspeed) = (self.scalar, across) else { return Vec::new() };
         let level = uncertainty.level;
         let of = |beyond: bool| {
             let found = uncertainty.greatest_differences(pair).into_iter();
@@ -286,48 +299,44 @@ impl Quantity<'_> {
     }
 
     /// The axis of values: bars are seen as far as they leave the dots their room.
-    fn value_axis(&self, analysis: &Analysis, across: Across, label: &str) -> Axis {
+    fn value_axis(&self, analysis: &Analysis, bars: &[Intervals], label: &str) -> Axis {
         let axis = Axis::linear(label).including(self.measure.null()).at_least(self.measure.least_height());
-        let values = places(analysis, across).map(|(.., result)| (self.of)(&result.correction));
-        let Some(range) = Range::of(values.filter(|value| value.is_finite())) else { return axis };
+        let values = places(analysis, Across::Airspeed).map(|(.., result)| (self.of)(&result.correction));
+        let Some(range) = Range::of(values) else { return axis };
         let spare = OF_BARS * range.width();
-        let ends = self.bars(analysis, across).into_iter().flat_map(|bars| bars.ends);
-        ends.flat_map(|[_, low, high]| [low, high])
-            .fold(axis, |axis, end| axis.including(end.clamp(range.min - spare, range.max + spare)))
+        let ends = bars.iter().flat_map(|bars| &bars.ends).flat_map(|[_, low, high]| [low, high]);
+        ends.fold(axis, |axis, end| axis.including(end.clamp(range.min - spare, range.max + spare)))
     }
 
-    /// The ends of both bands of the schedule, where they were computed.
-    fn bands(&self, analysis: &Analysis, schedule: &Schedule) -> Vec<Curve> {
-        let Some(bands) = analysis.uncertainty.as_ref().and_then(|of| of.bands.as_ref()) else { return Vec::new() };
+    /// Both bands about the samples of the schedule, as wide as `widths` says at an airspeed \[kt\].
+    fn bands(&self, samples: &[[f64; 2]], widths: impl Fn(f64) -> Option<BandWidths>) -> Vec<Envelope> {
+        let widths: Vec<_> = samples.iter().filter_map(|[x, value]| Some((*x, *value, widths(*x)?))).collect();
         let color = Role::Scheduled.stroke(false).color;
-        let of = |name: &str, dash: Dash, width: fn(&BandWidths) -> f64| {
-            let ends = [-1.0, 1.0].map(|side| {
-                let samples = scheduled_samples(schedule, &self.of).into_iter();
-                let end = |[airspeed_kt, value]: [f64; 2]| {
-                    let half = bands.at(schedule, self.scalar, airspeed_kt).map(|widths| width(&widths));
-                    Some((airspeed_kt, value * (side * half?).exp()))
-                };
-                let (x, y): (Vec<f64>, Vec<f64>) = samples.filter_map(end).unzip();
-                Curve::new(name, Stroke::dashed(color, 0.6, dash), x, y).key(name)
-            });
-            ends.into_iter().filter(|curve| !curve.x.is_empty()).collect::<Vec<_>>()
+        let of = |name: &str, dash: Dash, percent: u8, half: fn(&BandWidths) -> f64| {
+            let end = |(x, value, widths): &(f64, f64, BandWidths)| {
+                [*x, value * (-half(widths)).exp(), value * half(widths).exp()]
+            };
+            let (name, points) = (name.to_owned(), widths.iter().map(end).collect());
+            let edge = Some(Stroke::dashed(color, 0.6, dash));
+            Envelope { name, color: color.tint(percent), edge, points }
         };
-        let confidence = of("confidence band", Dash::Long, |widths| widths.confidence);
-        confidence.into_iter().chain(of("scatter band", Dash::Dotted, |widths| widths.scatter)).collect()
+        let confidence = of("confidence band", Dash::Long, 22, |widths| widths.confidence);
+        let scatter = of("scatter band", Dash::Dotted, 13, |widths| widths.scatter);
+        if widths.is_empty() { Vec::new() } else { vec![confidence, scatter] }
     }
 
     /// Where each optimum was looked for.
     fn spans(&self, analysis: &Analysis, across: Across) -> Option<Spans> {
-        let bounds = self.bounds.as_ref()?;
         let width = match across {
             Across::Airspeed => BOUNDS_WIDTHS[0],
             Across::Conditions => BOUNDS_WIDTHS[1],
         };
-        let places = places(analysis, across).map(|(x, _, result)| {
-            let [lower, upper] = bounds(result);
-            [x, lower, upper]
-        });
-        Some(Spans { name: "bounds".to_owned(), color: BOUNDS, width, spans: places.collect() })
+        let span = |(x, _, result): (f64, &FlightState, &ConditionAnalysis)| {
+            let [lower, upper] = self.bounds(result)?;
+            Some([x, lower, upper])
+        };
+        let spans: Vec<[f64; 3]> = places(analysis, across).filter_map(span).collect();
+        (!spans.is_empty()).then(|| Spans { name: "bounds".to_owned(), color: BOUNDS, width, spans })
     }
 
     /// One group of dots for each class of conditions, and one of those that are not in the schedule.
@@ -340,7 +349,7 @@ impl Quantity<'_> {
             let name = class_words(state, choice);
             // Over conditions the axis has their numbers.
             let label = if across == Across::Airspeed { state.id.to_string() } else { String::new() };
-            let dot = Dot { x, y: (self.of)(&result.correction), label };
+            let dot = Dot { x, y: (self.of)(&result.correction), label, id: Some(MarkId::Condition(state.id)) };
             match groups.iter_mut().find(|group| group.name == name) {
                 Some(group) => group.dots.push(dot),
                 None => {

@@ -48,6 +48,8 @@ pub(super) struct Placed<'f> {
     pub(super) frame: Area,
     pub(super) x: Side,
     pub(super) y: Side,
+    /// Size of the letters in it \[pt\].
+    pub(super) letters_pt: f64,
 }
 
 /// What is shown along an axis, and what stands beside it.
@@ -150,13 +152,13 @@ impl<'f> Table<'f> {
     fn x_range(&self, index: usize) -> Range {
         let plots = if self.figure.shared.x { &self.figure.plots[..] } else { &self.figure.plots[index..=index] };
         let ranges = plots.iter().flat_map(|plot| &plot.panels).map(|panel| panel.shown(Along::X));
-        ranges.reduce(union).unwrap_or(Range::new(0.0, 1.0))
+        ranges.reduce(Range::union).unwrap_or(Range::new(0.0, 1.0))
     }
 
     fn y_range(&self, index: usize, panel: usize) -> Range {
         let plots = if self.figure.shared.y { &self.figure.plots[..] } else { &self.figure.plots[index..=index] };
         let ranges = plots.iter().filter_map(|plot| plot.panels.get(panel)).map(|panel| panel.shown(Along::Y));
-        ranges.reduce(union).unwrap_or(Range::new(0.0, 1.0))
+        ranges.reduce(Range::union).unwrap_or(Range::new(0.0, 1.0))
     }
 
     /// Heights of the frames of a plot's panels.
@@ -226,14 +228,11 @@ impl<'f> Table<'f> {
                 frame: Area::new(x, top, width, height),
                 x: self.x_side(index, at, width),
                 y: self.y_side(index, at, height),
+                letters_pt: SMALL_PT,
             });
             top += height + PANEL_GAP;
         }
     }
-}
-
-fn union(a: Range, b: Range) -> Range {
-    a.including(b.min).including(b.max)
 }
 
 /// Width of the widest label, as a part of the size of its letters.

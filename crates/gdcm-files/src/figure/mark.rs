@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use gdcm_core::dataset::{ConditionId, ModelId};
+
 use super::axis::Range;
 use super::drawing::{Color, Stroke};
 
@@ -60,8 +62,19 @@ pub struct Dots {
     pub color: Color,
     /// Filled or open.
     pub filled: bool,
+    /// How large they are, as a part of the usual size.
+    pub size: f64,
     /// The dots.
     pub dots: Vec<Dot>,
+}
+
+/// What a mark is of: how a window tells which one is pointed at.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum MarkId {
+    /// A condition.
+    Condition(ConditionId),
+    /// A model.
+    Model(ModelId),
 }
 
 /// One dot.
@@ -73,6 +86,8 @@ pub struct Dot {
     pub y: f64,
     /// The short text beside it. May be empty.
     pub label: String,
+    /// What it is of, where that can be pointed at.
+    pub id: Option<MarkId>,
 }
 
 /// The outline of a dot.
@@ -136,13 +151,15 @@ pub struct Spans {
     pub spans: Vec<[f64; 3]>,
 }
 
-/// The area between two lines over the same places: how far a curve may lie. It widens no range.
+/// The area between two lines over the same places: how far a curve may lie. It widens no range but where it has edges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Envelope {
     /// What it is: heads its numbers and is its entry in the legend.
     pub name: String,
     /// Its colour.
     pub color: Color,
+    /// How its edges are drawn; paper then leaves the area between them white.
+    pub edge: Option<Stroke>,
     /// Where it is along x, ascending, its lower end, its upper end; one that is not finite leaves a gap.
     pub points: Vec<[f64; 3]>,
 }
@@ -270,7 +287,7 @@ impl Curve {
 impl Dots {
     /// No dots yet, drawn like this.
     pub fn new(name: impl Into<String>, shape: DotShape, color: Color) -> Self {
-        Self { name: name.into(), key: None, shape, color, filled: true, dots: Vec::new() }
+        Self { name: name.into(), key: None, shape, color, filled: true, size: 1.0, dots: Vec::new() }
     }
 
     /// The same dots with an entry in the legend.
@@ -285,8 +302,19 @@ impl Dots {
 
     /// The same dots and one more.
     pub fn dot(mut self, x: f64, y: f64, label: impl Into<String>) -> Self {
-        self.dots.push(Dot { x, y, label: label.into() });
+        self.dots.push(Dot { x, y, label: label.into(), id: None });
         self
+    }
+}
+
+impl Envelope {
+    /// Its lower or its upper edge, as a curve, where its edges are drawn.
+    pub(super) fn edges(&self) -> impl Iterator<Item = Curve> + '_ {
+        let edge = |stroke: Stroke, at: usize| {
+            let (x, y): (Vec<f64>, Vec<f64>) = self.points.iter().map(|point| (point[0], point[at])).unzip();
+            Curve::new(&self.name, stroke, x, y)
+        };
+        self.edge.into_iter().flat_map(move |stroke| [edge(stroke, 1), edge(stroke, 2)])
     }
 }
 
@@ -326,6 +354,9 @@ impl Mark {
             Mark::Dots(dots) => dots.dots.iter().map(|dot| pick([dot.x, dot.y])).collect(),
             Mark::Bars(bars) if along == Along::Y => bars.ends().flatten().chain([0.0]).collect(),
             Mark::Bars(bars) => bars.bars.iter().map(|bar| bar[0]).collect(),
+            Mark::Envelope(of) if of.edge.is_some() => {
+                of.points.iter().flat_map(|&[x, low, high]| [pick([x, low]), pick([x, high])]).collect()
+            }
             Mark::Band(_)
             | Mark::Rule(_)
             | Mark::Spans(_)

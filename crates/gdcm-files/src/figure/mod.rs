@@ -53,6 +53,7 @@ pub use gains::*;
 pub use label_places::*;
 pub use layout::*;
 pub use mark::*;
+pub use paint::*;
 pub use poles::*;
 pub use request::*;
 pub use responses::*;

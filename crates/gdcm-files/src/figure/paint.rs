@@ -2,7 +2,7 @@
 
 use super::axis::{Axis, Range};
 use super::drawing::{Anchor, Area, Color, Dash, Drawing, PT_PER_MM, Shape, Stroke, Text, simplified};
-use super::figure::{ColumnWidth, Figure};
+use super::figure::{ColumnWidth, Figure, Panel};
 use super::label_places::{LabelledDot, Surroundings, place_labels};
 use super::layout::{LABEL_LINE, LABEL_PT, Layout, Placed, SMALL_LINE, SMALL_PT, Side, TICK, width, wrapped};
 use super::mark::{
@@ -95,7 +95,7 @@ fn legend(shapes: &mut Vec<Shape>, entries: &[Entry], top: f64, inner: f64) -> f
                 let line = |stroke| Shape::line([[start, y], [start + sample, y]], stroke);
                 stroke.layers().into_iter().map(line).collect()
             }
-            Sample::Dot { shape, color, filled } => dot([start + 0.5 * sample, y], shape, color, filled),
+            Sample::Dot { shape, color, filled } => dot_shapes([start + 0.5 * sample, y], (shape, 1.0), color, filled),
             Sample::Ground(color) => vec![Shape::rectangle(Area::new(start, y - 3.0, sample, 6.0), Some(color), None)],
         });
         let place = [start + sample + 4.0, y + HALF_HEIGHT * SMALL_PT];
@@ -119,11 +119,36 @@ fn panel_shapes(placed: &Placed<'_>) -> (Vec<Shape>, usize) {
         let [x, y] = frame.at(0.5, 1.0);
         shapes.push(text([x, y - 4.0], placed.title, LABEL_PT, Anchor::Middle, Color::INK));
     }
+    let left_out = dots_and_words(placed, &mut shapes);
+    (shapes, left_out)
+}
+
+/// What stands over the lines of a panel, and may reach over its frame; how many labels have no room.
+fn dots_and_words(placed: &Placed<'_>, shapes: &mut Vec<Shape>) -> usize {
     let (dots, left_out) = dots_and_labels(placed);
     shapes.extend(dots);
     shapes.extend(placed.panel.marks.iter().flat_map(|mark| rule_label(placed, mark)));
     shapes.extend(placed.panel.marks.iter().filter_map(|mark| words(placed, mark)));
-    (shapes, left_out)
+    left_out
+}
+
+impl Panel {
+    /// The marks as they are drawn in `frame` where these parts of both axes are shown, with letters of this size \[pt\]; and how many
+    /// labels have no room. For canvases that draw axes of their own: edged areas are filled.
+    pub fn shapes(&self, frame: Area, [x, y]: [Range; 2], letters_pt: f64) -> (Vec<Shape>, usize) {
+        let side = |range| Side { range, ticks: Vec::new(), has_numbers: false, has_label: false, depth: 0.0 };
+        let placed = Placed { panel: self, title: "", frame, x: side(x), y: side(y), letters_pt };
+        let mut within = grounds(&placed);
+        for mark in &self.marks {
+            match mark {
+                Mark::Envelope(of) if of.edge.is_some() => within.extend(envelope(&placed, of)),
+                mark => within.extend(lines_of(&placed, mark)),
+            }
+        }
+        let mut shapes = vec![Shape::Clipped { area: frame, shapes: within }];
+        let left_out = dots_and_words(&placed, &mut shapes);
+        (shapes, left_out)
+    }
 }
 
 impl Placed<'_> {
@@ -176,17 +201,26 @@ fn grounds(placed: &Placed<'_>) -> Vec<Shape> {
             });
             shapes.extend(areas);
         }
-        if let Mark::Envelope(Envelope { color, points, .. }) = mark {
-            let ends = |&[x, low, high]: &[f64; 3]| Some([placed.at([x, low])?, placed.at([x, high])?]);
-            let ends: Vec<Option<[[f64; 2]; 2]>> = points.iter().map(ends).collect();
-            for run in ends.split(Option::is_none).filter(|run| run.len() > 1) {
-                let (lower, upper): (Vec<_>, Vec<_>) = run.iter().flatten().map(|[low, high]| (*low, *high)).unzip();
-                let points = lower.into_iter().chain(upper.into_iter().rev()).collect();
-                shapes.push(Shape::Path { points, closed: true, fill: Some(*color), stroke: None });
-            }
+        if let Mark::Envelope(of) = mark
+            && of.edge.is_none()
+        {
+            shapes.extend(envelope(placed, of));
         }
     }
     shapes
+}
+
+/// The area of an envelope, stretch by stretch: along its lower edge, and back along its upper one.
+fn envelope(placed: &Placed<'_>, Envelope { color, points, .. }: &Envelope) -> Vec<Shape> {
+    let ends = |&[x, low, high]: &[f64; 3]| Some([placed.at([x, low])?, placed.at([x, high])?]);
+    let ends: Vec<Option<[[f64; 2]; 2]>> = points.iter().map(ends).collect();
+    let runs = ends.split(Option::is_none).filter(|run| run.len() > 1);
+    let area = |run: &[Option<[[f64; 2]; 2]>]| {
+        let (lower, upper): (Vec<_>, Vec<_>) = run.iter().flatten().map(|[low, high]| (*low, *high)).unzip();
+        let points = lower.into_iter().chain(upper.into_iter().rev()).collect();
+        Shape::Path { points, closed: true, fill: Some(*color), stroke: None }
+    };
+    runs.map(area).collect()
 }
 
 /// The rectangle between two corners.
@@ -241,7 +275,8 @@ fn lines_of(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
             let places = brackets.iter().filter_map(|bracket| placed.bracket(bracket));
             places.map(|[spine, hooks]| bracket_line(spine, hooks, *stroke)).collect()
         }
-        Mark::Dots(_) | Mark::Band(_) | Mark::Spans(_) | Mark::Envelope(_) | Mark::Note(_) => Vec::new(),
+        Mark::Envelope(of) => of.edges().flat_map(|edge| curve_lines(placed, &edge)).collect(),
+        Mark::Dots(_) | Mark::Band(_) | Mark::Spans(_) | Mark::Note(_) => Vec::new(),
     }
 }
 
@@ -276,20 +311,20 @@ fn dots_and_labels(placed: &Placed<'_>) -> (Vec<Shape>, usize) {
     let (mut shapes, mut labels) = (Vec::new(), Vec::new());
     for mark in &placed.panel.marks {
         match mark {
-            Mark::Dots(Dots { shape, color, filled, dots, .. }) => {
+            Mark::Dots(Dots { shape, color, filled, size, dots, .. }) => {
                 for one in dots {
                     let Some(center) = placed.at([one.x, one.y]).filter(|center| placed.shows(*center)) else {
                         continue;
                     };
-                    shapes.extend(dot(center, *shape, *color, *filled));
-                    labels.push((labelled(center, DOT, &one.label), &one.label, Color::DIM));
+                    shapes.extend(dot_shapes(center, (*shape, *size), *color, *filled));
+                    labels.push((labelled(placed, center, DOT, &one.label), &one.label, Color::DIM));
                 }
             }
             Mark::Brackets(Brackets { stroke, brackets, .. }) => {
                 for bracket in brackets {
                     let Some([[from, to], _]) = placed.bracket(bracket) else { continue };
                     let middle = [from[0], 0.5 * (from[1] + to[1])];
-                    let label = labelled(middle, 0.5 * stroke.width_pt, &bracket.label);
+                    let label = labelled(placed, middle, 0.5 * stroke.width_pt, &bracket.label);
                     labels.push((label, &bracket.label, stroke.color));
                 }
             }
@@ -304,13 +339,13 @@ fn dots_and_labels(placed: &Placed<'_>) -> (Vec<Shape>, usize) {
             continue;
         };
         leaders.extend(place.leader.map(|end| Shape::line([dot.center, end], LEADER)));
-        texts.push(text([place.area.left, place.area.bottom()], label, SMALL_PT, Anchor::Start, color));
+        texts.push(text([place.area.left, place.area.bottom()], label, placed.letters_pt, Anchor::Start, color));
     }
     (leaders.into_iter().chain(shapes).chain(texts).collect(), left_out)
 }
 
-fn labelled(center: [f64; 2], radius: f64, label: &str) -> LabelledDot {
-    LabelledDot { center, radius, size: [SMALL_PT * width(label), SMALL_PT * FIGURE_HEIGHT] }
+fn labelled(placed: &Placed<'_>, center: [f64; 2], radius: f64, label: &str) -> LabelledDot {
+    LabelledDot { center, radius, size: [width(label), FIGURE_HEIGHT].map(|part| placed.letters_pt * part) }
 }
 
 /// What the labels of a panel keep clear of.
@@ -341,18 +376,19 @@ fn surroundings(placed: &Placed<'_>) -> Surroundings {
     Surroundings { bounds: placed.frame, path, bars }
 }
 
-/// A dot of a shape; all shapes cover about the same area.
-fn dot([x, y]: [f64; 2], shape: DotShape, color: Color, filled: bool) -> Vec<Shape> {
-    let line = Stroke::solid(color, DOT_LINE);
+/// A dot of a shape and of a size, as a part of the usual one; all shapes cover about the same area.
+pub fn dot_shapes([x, y]: [f64; 2], (shape, part): (DotShape, f64), color: Color, filled: bool) -> Vec<Shape> {
+    let line = Stroke::solid(color, DOT_LINE * part.sqrt());
+    let radius = DOT * part;
     let (fill, stroke, size) =
-        if filled { (Some(color), None, DOT) } else { (Some(Color::WHITE), Some(line), DOT - 0.5 * DOT_LINE) };
+        if filled { (Some(color), None, radius) } else { (Some(Color::WHITE), Some(line), radius - 0.5 * DOT_LINE) };
     let corners = |corners: &[[f64; 2]]| {
         let points = corners.iter().map(|[dx, dy]| [x + size * dx, y + size * dy]).collect();
         vec![Shape::Path { points, closed: true, fill, stroke }]
     };
     // Both strokes as one line, over the middle.
     let strokes = |[a, b, c, d]: [[f64; 2]; 4]| {
-        let points: Vec<[f64; 2]> = [a, b, [0.0, 0.0], c, d].map(|[dx, dy]| [x + DOT * dx, y + DOT * dy]).into();
+        let points: Vec<[f64; 2]> = [a, b, [0.0, 0.0], c, d].map(|[dx, dy]| [x + radius * dx, y + radius * dy]).into();
         vec![Shape::line(points, line)]
     };
     match shape {
@@ -384,22 +420,28 @@ fn rule_label(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
 
 /// The words that belong to a mark.
 fn words(placed: &Placed<'_>, mark: &Mark) -> Option<Shape> {
-    let small = |at, words: &str, anchor| text(at, words, SMALL_PT, anchor, Color::DIM);
+    let size_pt = placed.letters_pt;
+    let small = |at, words: &str, anchor| text(at, words, size_pt, anchor, Color::DIM);
     match mark {
         Mark::Guide(Guide { points, label }) if !label.is_empty() => {
             let visible = points.iter().rev().filter_map(|point| placed.at(*point)).find(|place| placed.shows(*place));
-            visible.map(|[x, y]| small([x + 1.5, y + SMALL_PT], label, Anchor::Start))
+            visible.map(|[x, y]| small([x + 1.5, y + size_pt], label, Anchor::Start))
         }
         Mark::Note(Note { at, text: words }) => match at {
             Place::Value { x, y, upright } => {
+                // Words about a name of an axis need room beside those of the next.
+                let (slot, is_named) = (placed.frame.width / placed.x.range.width(), placed.panel.x.names.is_some());
+                if is_named && !upright && size_pt * width(words) > slot {
+                    return None;
+                }
                 let [x, y] = placed.at([*x, *y])?;
                 let (at, upright) = if *upright {
-                    ([x + HALF_HEIGHT * SMALL_PT, y], true)
+                    ([x + HALF_HEIGHT * size_pt, y], true)
                 } else {
-                    ([x, y + HALF_HEIGHT * SMALL_PT], false)
+                    ([x, y + HALF_HEIGHT * size_pt], false)
                 };
                 let (words, anchor) = (words.clone(), Anchor::Middle);
-                Some(Shape::Text(Text { at, words, size_pt: SMALL_PT, anchor, upright, color: Color::DIM }))
+                Some(Shape::Text(Text { at, words, size_pt, anchor, upright, color: Color::DIM }))
             }
             Place::UpperRight => {
                 let [x, y] = placed.frame.at(1.0, 1.0);

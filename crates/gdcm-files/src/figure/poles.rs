@@ -1,31 +1,40 @@
 //! Poles of every model of one condition in the s-plane.
 
-use gdcm_core::dataset::{BundleKind, Pair};
+use gdcm_core::dataset::{BundleKind, ModelId, Pair};
 use gdcm_core::response::finite_zeros;
-use gdcm_core::study::{ConditionModes, Unobserved};
+use gdcm_core::study::ConditionModes;
+use nalgebra::Complex;
 
 use super::axis::{Axis, Range};
 use super::bode::BodeOptions;
 use super::condition_source::{ConditionSource, SourceModel};
 use super::drawing::{Color, Stroke};
 use super::figure::{Figure, Panel, Plot};
-use super::mark::{DotShape, Dots, Guide, Mark, Rule};
+use super::mark::{Dot, DotShape, Dots, Guide, Mark, MarkId, Rule};
 use super::role::Role;
+use super::ticks::step_above;
 
 /// Real and imaginary parts in the window of the slow modes \[rad/s\]: the rigid-body modes of a helicopter lie there.
 const SLOW: [Range; 2] = [Range { min: -1.2, max: 0.5 }, Range { min: -2.2, max: 2.2 }];
 const DAMPING_RATIOS: [f64; 6] = [0.1, 0.2, 0.4, 0.6, 0.8, 0.95];
 /// How far the rays of equal damping reach \[rad/s\].
 const FAR: f64 = 1e3;
+/// Points of an arc of equal frequency.
+const ARC_POINTS: usize = 60;
 const ZERO: Stroke = Stroke::solid(Color::DIM, 0.6);
 
 /// Poles of every model of one condition: all of them, and the window of the slow modes; physics models ×, identified ones +.
-pub fn poles_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> Option<Figure> {
-    let modes = ConditionModes::of(&source.curves.condition, &Unobserved).ok()?;
+/// `zeros_of` gives those of a model for the response whose zeros are shown, where one is.
+pub fn poles_figure(
+    source: &ConditionSource<'_>,
+    modes: &ConditionModes,
+    options: &BodeOptions,
+    zeros_of: &dyn Fn(&ModelId) -> Vec<Complex<f64>>,
+) -> Figure {
     let shown = shown_models(source, options);
-    let dots = poles(&shown, &modes);
-    let zeros: Vec<Dots> = options.zeros_of.map(|pair| zeros(source, &shown, pair)).unwrap_or_default();
-    let values = |of: fn(&super::mark::Dot) -> f64| {
+    let dots = poles(&shown, modes);
+    let zeros: Vec<Dots> = options.zeros_of.map(|pair| zeros(source, &shown, (pair, zeros_of))).unwrap_or_default();
+    let values = |of: fn(&Dot) -> f64| {
         Range::of(dots.iter().flat_map(|dots| &dots.dots).map(of)).unwrap_or(Range::new(-1.0, 1.0))
     };
     let (real, imaginary) = (values(|dot| dot.x), values(|dot| dot.y));
@@ -40,7 +49,7 @@ pub fn poles_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> Opti
     };
     let title = format!("Poles · {}", source.condition_words());
     let figure = Figure::new(title).caption(format!("{} Rays: equal damping ratio ζ.", source.caption()));
-    Some(figure.plot(plot("s-plane", whole)).plot(plot("slow modes", SLOW)).columns(2).aspect(0.85))
+    figure.plot(plot("s-plane", whole)).plot(plot("slow modes", SLOW)).columns(2).aspect(0.85)
 }
 
 /// The models that are shown, what matters most last.
@@ -61,22 +70,58 @@ fn poles(shown: &[SourceModel], modes: &ConditionModes) -> Vec<Dots> {
         let color = model.role.stroke(model.rejected).color;
         let found = modes.bundle(model.id.bundle)[model.index].as_deref().unwrap_or_default();
         let dots = Dots::new(&model.id.name, shape, color).key(model.role.key(model.rejected));
-        found.iter().fold(dots, |dots, mode| dots.dot(mode.pole.re, mode.pole.im, ""))
+        Dots { dots: found.iter().map(|mode| dot(model, mode.pole)).collect(), ..dots }
     };
     shown.iter().map(group).collect()
 }
 
+fn dot(model: &SourceModel, value: Complex<f64>) -> Dot {
+    Dot { x: value.re, y: value.im, label: String::new(), id: Some(MarkId::Model(model.id.clone())) }
+}
+
+/// Finite transmission zeros of a response of a model of the condition.
+pub fn zeros_of_model(source: &ConditionSource<'_>, pair: Pair, id: &ModelId) -> Vec<Complex<f64>> {
+    let model = source.curves.condition.model(id.bundle, &id.name);
+    model.map(|model| finite_zeros(&model.dynamics, pair)).unwrap_or_default()
+}
+
 /// Zeros of one response in the nominal model and in both representatives, as circles; they may lie far out, and widen no range.
-fn zeros(source: &ConditionSource<'_>, shown: &[SourceModel], pair: Pair) -> Vec<Dots> {
+fn zeros(
+    source: &ConditionSource<'_>,
+    shown: &[SourceModel],
+    (pair, zeros_of): (Pair, &dyn Fn(&ModelId) -> Vec<Complex<f64>>),
+) -> Vec<Dots> {
     let has_zeros = |role| matches!(role, Role::Nominal | Role::Representative | Role::IdentifiedRepresentative);
     let group = |model: &SourceModel| {
-        let found = source.curves.condition.model(model.id.bundle, &model.id.name)?;
-        let zeros = finite_zeros(&found.dynamics, pair);
         let key = format!("zeros of {}, {}", source.dataset().pair_name(pair), model.role.key(model.rejected));
-        let dots = Dots::new(&model.id.name, DotShape::Circle, model.role.stroke(model.rejected).color).key(key);
-        Some(zeros.iter().fold(dots.filled(false), |dots, zero| dots.dot(zero.re, zero.im, "")))
+        let color = model.role.stroke(model.rejected).color;
+        let dots = Dots::new(&model.id.name, DotShape::Circle, color).key(key).filled(false);
+        Dots { dots: zeros_of(&model.id).into_iter().map(|zero| dot(model, zero)).collect(), ..dots }
     };
-    shown.iter().filter(|model| has_zeros(model.role)).filter_map(group).collect()
+    shown.iter().filter(|model| has_zeros(model.role)).map(group).collect()
+}
+
+/// Lines to read a part of the s-plane by: rays of equal damping ratio, the upper ones with its value where they leave the part, and
+/// arcs of equal frequency.
+pub fn damping_grid([real, imaginary]: [Range; 2]) -> impl Iterator<Item = Guide> {
+    let reach =
+        [real.min, real.max, imaginary.min, imaginary.max].into_iter().fold(0.0f64, |far, end| far.max(end.abs()));
+    let rays = DAMPING_RATIOS.into_iter().flat_map(move |ratio| {
+        let slope = (1.0 - ratio * ratio).sqrt() / ratio;
+        let edge = (-real.min).min(imaginary.max / slope).max(0.0);
+        [1.0, -1.0].map(|side| Guide {
+            points: vec![[0.0, 0.0], [-edge, side * edge * slope], [-2.0 * reach, side * 2.0 * reach * slope]],
+            label: if side > 0.0 && edge > 0.0 { format!("ζ {ratio}") } else { String::new() },
+        })
+    });
+    let step = step_above(reach / 4.0);
+    let radii = (1..=8).map(move |k| step * f64::from(k)).take_while(move |radius| *radius < 2.0 * reach);
+    let angle = |k: usize| std::f64::consts::PI * (0.5 + k as f64 / ARC_POINTS as f64);
+    let arcs = radii.map(move |radius| Guide {
+        points: (0..=ARC_POINTS).map(|k| [radius * angle(k).cos(), radius * angle(k).sin()]).collect(),
+        label: String::new(),
+    });
+    rays.chain(arcs)
 }
 
 /// Rays of equal damping ratio, `Re λ = -ζ |λ|`, above and below the real axis.

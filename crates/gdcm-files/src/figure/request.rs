@@ -2,7 +2,7 @@
 
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::Pair;
-use gdcm_core::study::{AcrossRole, Analysis, AssessmentChoice};
+use gdcm_core::study::{AcrossRole, Analysis, AssessmentChoice, ConditionModes, Unobserved};
 use gdcm_core::units::rad_s_to_hz;
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +13,7 @@ use super::error::error_figure;
 use super::evidence::evidence_figure;
 use super::figure::Figure;
 use super::gains::{Across, Measure, channels_figure, net_gain_figure};
-use super::poles::poles_figure;
+use super::poles::{poles_figure, zeros_of_model};
 
 /// Which of the program's figures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -114,14 +114,24 @@ impl FigureRequest {
             FigureKind::Bode => bode_figure(condition?, &self.pairs, &self.bode),
             FigureKind::Error => error_figure(condition?, &self.pairs, &self.bode),
             FigureKind::Overview => overview_figure(condition?, &self.bode),
-            FigureKind::NetGain => net_gain_figure(analysis?, &self.pairs),
-            FigureKind::Channels => channels_figure(analysis?, &self.channels, self.measure, self.across),
+            FigureKind::NetGain => net_gain_figure(analysis?, analysis?.uncertainty.as_deref(), &self.pairs),
+            FigureKind::Channels => {
+                let shown = (self.measure, self.across);
+                channels_figure(analysis?, analysis?.uncertainty.as_deref(), &self.channels, shown)
+            }
             FigureKind::Evidence => return evidence_figure(analysis?, &self.pairs),
             FigureKind::Assessment => {
                 let analysis = analysis?;
                 assessment_figure(analysis, &self.pairs, self.assessed.unwrap_or_else(|| usual_choice(analysis)))
             }
-            FigureKind::Poles => return poles_figure(condition?, &self.bode),
+            FigureKind::Poles => {
+                let condition = condition?;
+                let modes = ConditionModes::of(&condition.curves.condition, &Unobserved).ok()?;
+                poles_figure(condition, &modes, &self.bode, &|id| match self.bode.zeros_of {
+                    Some(pair) => zeros_of_model(condition, pair, id),
+                    None => Vec::new(),
+                })
+            }
             FigureKind::Airspeeds => return airspeeds_figure(analysis?, &self.pairs, self.across_role, &self.bode),
         })
     }

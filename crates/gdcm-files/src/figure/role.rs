@@ -198,7 +198,7 @@ fn entry(mark: &Mark) -> Option<Entry> {
         }
         Mark::Bars(bars) => (bars.name.clone(), Sample::Ground(bars.color)),
         Mark::Spans(spans) => (spans.name.clone(), Sample::Ground(spans.color)),
-        Mark::Envelope(of) => (of.name.clone(), Sample::Ground(of.color)),
+        Mark::Envelope(of) => (of.name.clone(), of.edge.map_or(Sample::Ground(of.color), Sample::Line)),
         Mark::Intervals(of) => (of.name.clone(), Sample::Line(of.stroke)),
         Mark::Brackets(of) => (of.name.clone(), Sample::Line(of.stroke)),
         Mark::Band(band) => (band.key.clone()?, Sample::Ground(band.color)),

@@ -6,7 +6,7 @@ use gdcm_core::study::Table;
 
 use super::axis::Axis;
 use super::figure::{Figure, Panel};
-use super::mark::{Along, Bracket, Envelope, Intervals, Mark, Spans};
+use super::mark::{Along, Bracket, Curve, Envelope, Intervals, Mark, Spans};
 
 impl Figure {
     /// The numbers of each panel: one column for each curve where all share their x, else one row for each point. Bounds of a
@@ -32,7 +32,7 @@ type Constant<'m> = (&'m str, f64);
 impl Panel {
     fn tables(&self, title: &str) -> (Table, Option<Table>) {
         let (bands, others): (Vec<&Mark>, Vec<&Mark>) =
-            self.marks.iter().partition(|mark| matches!(mark, Mark::Envelope(_)));
+            self.marks.iter().partition(|mark| matches!(mark, Mark::Envelope(of) if of.edge.is_none()));
         let mut main: Vec<Series> = others.into_iter().flat_map(series).collect();
         let bands: Vec<Series> = bands.into_iter().flat_map(series).collect();
         let title = if title.is_empty() { self.y.label.clone() } else { format!("{title}, {}", self.y.label) };
@@ -92,11 +92,15 @@ fn series(mark: &Mark) -> Vec<Series> {
         y: points.iter().map(|point| point[1]).collect(),
         labels,
     };
+    let of_curve = |curve: &Curve| Series {
+        name: curve.name.clone(),
+        x: Arc::clone(&curve.x),
+        y: Arc::clone(&curve.y),
+        labels: None,
+    };
     match mark {
-        Mark::Curve(curve) => {
-            let (x, y) = (Arc::clone(&curve.x), Arc::clone(&curve.y));
-            vec![Series { name: curve.name.clone(), x, y, labels: None }]
-        }
+        Mark::Curve(curve) => vec![of_curve(curve)],
+        Mark::Envelope(of) if of.edge.is_some() => of.edges().map(|curve| of_curve(&curve)).collect(),
         Mark::Dots(dots) => {
             let labels = dots.dots.iter().map(|dot| dot.label.clone()).collect();
             vec![of(&dots.name, dots.dots.iter().map(|dot| [dot.x, dot.y]).collect(), Some(labels))]

@@ -6,8 +6,8 @@ use gdcm_core::correction::Outcome;
 use gdcm_core::dataset::{BundleKind, Condition, ConditionId, FlightState, ModelId, Pair};
 use gdcm_core::fidelity::SUGGESTION_RATIO;
 use gdcm_core::study::{
-    Analysis, CURVE_POINTS, Cancelled, ConditionAnalysis, Engine, Progress, RemarkKind, Study, Table, details,
-    display_band, lead_words, remarks,
+    Analysis, CURVE_POINTS, Cancelled, ConditionAnalysis, ConditionModes, Engine, Progress, RemarkKind, Study, Table,
+    Unobserved, details, display_band, lead_words, remarks,
 };
 use gdcm_core::units::{number, s_to_ms, signed};
 
@@ -309,10 +309,10 @@ fn add_plots(page: &mut Page, result: &ConditionAnalysis, source: &ConditionSour
         let title = format!("Condition {id}, magnitude of every response");
         page.figure(&overview, &title, "With J before and after the correction; * is held exactly.");
     }
-    if let Some(poles) = poles_figure(source, &options) {
+    if let Ok(modes) = ConditionModes::of(&source.curves.condition, &Unobserved) {
         let title = format!("Condition {id}, poles of its models");
         page.figure(
-            &poles,
+            &poles_figure(source, &modes, &options, &|_| Vec::new()),
             &title,
             "Physics models ×, identified ones +; rays of equal damping ratio. A correction moves no pole.",
         );

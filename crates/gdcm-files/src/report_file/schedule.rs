@@ -58,7 +58,7 @@ fn add_channels(
     title: &str,
 ) {
     for channels in channels.chunks(IN_A_FIGURE) {
-        let figure = channels_figure(analysis, channels, measure, across);
+        let figure = channels_figure(analysis, analysis.uncertainty.as_deref(), channels, (measure, across));
         page.figure(
             &figure,
             title,
@@ -87,7 +87,7 @@ fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
         add_channels(page, analysis, channels, (measure, Across::Airspeed), &title);
     }
     for pairs in shown_pairs(&analysis.study).chunks(PAIRS_IN_A_FIGURE) {
-        let figure = net_gain_figure(analysis, pairs);
+        let figure = net_gain_figure(analysis, analysis.uncertainty.as_deref(), pairs);
         let caption = "Each condition's optimum with its number, and the schedule; dashed: no correction.";
         page.figure(&figure, "Net gains against airspeed", caption);
     }

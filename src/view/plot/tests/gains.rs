@@ -1,128 +1,168 @@
 use egui::vec2;
+use gdcm_files::figure::{
+    Axis, Bars, Color, Curve, Dot, DotShape, Dots, Figure, MarkId, Panel, Plot, Range, Role as CurveRole,
+};
 
 use super::*;
 use crate::view::palette::{self, Palette};
 
+/// Plots of gains, or of columns where there are some.
 #[derive(Default)]
 struct Model {
-    panels: Vec<GainPanel>,
-    view: GainView,
-    channels: ChannelsView,
-    events: Vec<GainEvent>,
+    figure: Figure,
+    columns: Vec<MarkId>,
+    zooms: bool,
+    view: FigureView,
+    events: Vec<FigureEvent>,
 }
 
-fn id(number: usize) -> ConditionId {
-    ConditionId(number as i64)
-}
+/// Says what is shown by number.
+struct Numbers;
 
-fn dot(number: usize, airspeed_kt: f64, gain: f64) -> Dot {
-    Dot {
-        condition: id(number),
-        label: (number + 1).to_string(),
-        x: airspeed_kt,
-        airspeed_kt,
-        value: gain,
-        bounds: None,
-        shape: DotShape::of_class(number % 4),
-        filled: number.is_multiple_of(2),
-        selected: number == 2,
-        chosen: true,
-        held_out: false,
-        bar: None,
-        sentences: Vec::new(),
-        detail: String::new(),
-        figures: Vec::new(),
+impl FigureWords for Numbers {
+    fn plot(&self, plot: usize) -> String {
+        format!("plot {plot}")
+    }
+
+    fn pointed_ui(&self, ui: &mut egui::Ui, plot: usize, id: &MarkId, _: [f64; 2]) {
+        ui.label(format!("{id:?} in plot {plot}"));
     }
 }
 
-fn panels(count: usize) -> Vec<GainPanel> {
-    let panel = |k: usize| GainPanel {
-        title: format!("PED → {k}"),
-        dots: vec![dot(0, 45.0, 1.3), dot(1, 60.0, 0.9), dot(2, 120.0, 1.02), dot(3, 120.0, 1.0)],
-        schedule: vec![[45.0, 1.2], [90.0, 1.0], [120.0, 0.95]],
-        ..GainPanel::default()
-    };
-    (0..count).map(panel).collect()
+fn id(number: usize) -> MarkId {
+    MarkId::Condition(ConditionId(number as i64))
 }
 
-fn net_gain_harness(panels: Vec<GainPanel>) -> Harness<'static, Model> {
-    let model = Model { panels, ..Model::default() };
-    let mut harness =
-        Harness::builder().with_size(vec2(900.0, 230.0)).with_context_setup(palette::apply).build_ui_state(
-            |ui, model: &mut Model| {
-                let scene = NetGainScene { panels: &model.panels, message: None };
-                let palette = Palette::of(ui.visuals());
-                model.events.extend(net_gain_ui(ui, &scene, &mut model.view, &palette));
-            },
-            model,
-        );
+fn panel(first_gain: f64) -> Panel {
+    let places = [(45.0, first_gain), (60.0, 0.9), (120.0, 1.02), (120.0, 1.0)];
+    let dot =
+        |(number, (x, y)): (usize, (f64, f64))| Dot { x, y, label: (number + 1).to_string(), id: Some(id(number)) };
+    let dots = Dots::new("optimum", DotShape::Circle, Color::INK);
+    let dots = Dots { dots: places.into_iter().enumerate().map(dot).collect(), ..dots };
+    let schedule =
+        Curve::new("schedule", CurveRole::Scheduled.stroke(false), [45.0, 90.0, 120.0], [1.2, f64::NAN, 0.95]);
+    Panel::new(Axis::linear("Airspeed [kt]"), Axis::linear("Gain [-]").including(1.0)).with(schedule).with(dots)
+}
+
+fn figure(count: usize) -> Figure {
+    let plots = (0..count).map(|k| Plot::new(format!("PED → {k}")).panel(panel(1.3 + 0.2 * k as f64)));
+    Figure::default().plots(plots).shared_x().shared_y().with_ranges()
+}
+
+fn harness(model: Model) -> Harness<'static, Model> {
+    let builder = Harness::builder().with_step_dt(0.02).with_size(vec2(900.0, 230.0));
+    let mut harness = builder.with_context_setup(palette::apply).build_ui_state(
+        |ui, model: &mut Model| {
+            let scene = FigureScene {
+                name: "gains",
+                figure: &model.figure,
+                selected: Some(id(2)),
+                highlighted: None,
+                columns: &model.columns,
+                zooms: model.zooms,
+                least: vec2(122.0, 120.0),
+                message: "Nothing to draw",
+                words: (&Numbers, 0),
+            };
+            let palette = Palette::of(ui.visuals());
+            model.events.extend(figure_ui(ui, &scene, &mut model.view, &palette));
+        },
+        model,
+    );
     harness.run();
     harness
 }
 
+fn gains(count: usize) -> Harness<'static, Model> {
+    harness(Model { figure: figure(count), ..Model::default() })
+}
+
 #[test]
 fn a_click_on_a_dot_names_its_condition() {
-    let mut harness = net_gain_harness(panels(5));
-    let at = harness.state().view.screen_position(4, id(1)).unwrap();
+    let mut harness = gains(5);
+    let at = harness.state().view.screen_position(4, &id(1)).unwrap();
     click(&mut harness, at + vec2(3.0, 2.0));
     let events = &harness.state().events;
-    assert_eq!(events.first(), Some(&GainEvent::ConditionHovered(Some(id(1)))));
-    assert!(events.contains(&GainEvent::ConditionClicked(id(1))));
+    assert_eq!(events.first(), Some(&FigureEvent::Pointed(id(1))));
+    assert!(events.contains(&FigureEvent::Clicked(4, id(1), Modifiers::NONE)));
 }
 
 #[test]
 fn of_two_dots_close_together_the_nearer_one_is_meant() {
-    let mut harness = net_gain_harness(panels(5));
+    let mut harness = gains(5);
     for condition in [2, 3] {
-        let at = harness.state().view.screen_position(0, id(condition)).unwrap();
+        let at = harness.state().view.screen_position(0, &id(condition)).unwrap();
         let outward = if condition == 2 { vec2(0.0, -3.0) } else { vec2(0.0, 3.0) };
         click(&mut harness, at + outward);
-        assert!(harness.state().events.contains(&GainEvent::ConditionClicked(id(condition))));
+        assert!(harness.state().events.contains(&FigureEvent::Clicked(0, id(condition), Modifiers::NONE)));
     }
 }
 
 #[test]
-fn every_panel_has_the_same_gain_axis() {
-    let mut uneven = panels(3);
-    uneven[1].dots[0].value = 2.0;
-    let harness = net_gain_harness(uneven);
-    let bounds = |panel| *harness.state().view.transform(panel).unwrap().bounds();
+fn every_plot_has_the_same_gain_axis() {
+    let harness = gains(3);
+    let bounds = |plot| *harness.state().view.transform(plot).unwrap().bounds();
     assert_eq!(bounds(0), bounds(1));
     assert_eq!(bounds(0), bounds(2));
+    assert!(bounds(0).min()[1] < 0.9 && bounds(0).max()[1] > 1.7, "all gains are in view");
 }
 
 #[test]
-fn dots_without_a_gain_are_left_out() {
-    let mut broken = panels(2);
-    broken[0].dots[1].value = f64::NAN;
-    broken[1].schedule[1][1] = f64::NAN;
-    net_gain_harness(broken);
-    net_gain_harness(vec![GainPanel::default()]);
+fn a_dot_without_a_gain_is_left_out() {
+    let figure = Figure::default().plot(Plot::new("LON").panel(panel(f64::NAN)));
+    let harness = harness(Model { figure, ..Model::default() });
+    assert!(harness.state().view.transform(0).unwrap().bounds().is_valid());
 }
 
 #[test]
-fn more_panels_than_fit_can_be_scrolled_to() {
-    let mut harness = net_gain_harness(panels(12));
+fn more_plots_than_fit_can_be_scrolled_to() {
+    let mut harness = gains(12);
     harness.set_size(vec2(500.0, 160.0));
     harness.run();
     let frame = *harness.state().view.transform(0).unwrap().frame();
-    assert!(frame.width() > 70.0 && frame.height() > 50.0, "{frame:?}");
+    assert!(frame.width() > 60.0 && frame.height() > 50.0, "{frame:?}");
 }
 
 #[test]
-fn a_channel_panel_answers_like_a_net_gain_panel() {
-    let model = Model { panels: panels(4), ..Model::default() };
-    let mut harness =
-        Harness::builder().with_size(vec2(900.0, 600.0)).with_context_setup(palette::apply).build_ui_state(
-            |ui, model: &mut Model| {
-                let scene = ChannelsScene { inputs: &model.panels[..3], outputs: &model.panels, message: None };
-                let palette = Palette::of(ui.visuals());
-                model.events.extend(channels_ui(ui, &scene, &mut model.channels, &palette));
-            },
-            model,
-        );
+fn a_click_on_a_column_names_it_and_its_plot() {
+    let bars = Bars {
+        name: String::new(),
+        color: Color::INK,
+        width: 0.6,
+        bars: vec![[0.0, -20.0], [1.0, 4.0]],
+        feet: Vec::new(),
+        beside: 0.0,
+    };
+    let y = Axis::linear("").showing(Some(Range::new(-22.0, 8.0)));
+    let panel = Panel::new(Axis::named("Condition", ["1", "3", "10"]), y).with(bars);
+    let figure =
+        Figure::default().plot(Plot::new("LAT → P").panel(panel.clone())).plot(Plot::new("LON → Q").panel(panel));
+    let mut harness = harness(Model { figure, columns: vec![id(1), id(3), id(10)], ..Model::default() });
+    for (column, condition) in [(1.0, 3), (2.0, 10)] {
+        let at = harness.state().view.position(1, [column, -5.0]).unwrap();
+        click(&mut harness, at);
+        assert_eq!(harness.state().events.last(), Some(&FigureEvent::Pointed(id(condition))));
+        assert!(harness.state().events.contains(&FigureEvent::Clicked(1, id(condition), Modifiers::NONE)));
+    }
+}
+
+#[test]
+fn the_wheel_zooms_a_plot_and_a_double_click_beside_its_dots_shows_all() {
+    let mut harness = harness(Model { figure: figure(1), zooms: true, ..Model::default() });
+    let ranges = |harness: &Harness<'_, Model>| harness.state().view.ranges(0).unwrap();
+    let whole = ranges(&harness);
+    let at = harness.state().view.position(0, [90.0, 1.15]).unwrap();
+    harness.hover_at(at);
+    harness.step();
+    harness.event(super::bode::wheel(vec2(0.0, 200.0)));
+    harness.run_steps(30);
+    let zoomed = ranges(&harness);
+    assert!(zoomed[0].width() < 0.6 * whole[0].width() && zoomed[1].width() < 0.6 * whole[1].width(), "{zoomed:?}");
+    for pressed in [true, false, true, false] {
+        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+        harness.event(Event::PointerButton { pos: at, button, pressed, modifiers });
+        harness.step();
+    }
     harness.run();
-    let at = harness.state().channels.outputs.screen_position(3, id(0)).unwrap();
-    click(&mut harness, at);
-    assert!(harness.state().events.contains(&GainEvent::ConditionClicked(id(0))));
+    assert_eq!(ranges(&harness), whole);
 }

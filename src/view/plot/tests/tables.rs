@@ -10,9 +10,6 @@ struct Model {
     curves: Vec<BodeCurve>,
     overview: OverviewView,
     pairs: Vec<OverviewEvent>,
-    panels: Vec<AssessmentPanel>,
-    assessment: AssessmentView,
-    bars: Vec<AssessmentEvent>,
 }
 
 fn overview_harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
@@ -74,45 +71,4 @@ fn phases_are_shown_when_asked_for() {
 #[test]
 fn an_overview_without_curves_has_a_message() {
     overview_harness(Vec::new()).get_by_label("Nothing to draw");
-}
-
-fn change(id: i64, magnitude: f64, phase: f64) -> AssessmentBar {
-    AssessmentBar {
-        condition: ConditionId(id),
-        label: id.to_string(),
-        value: BarValue::Change { magnitude, phase },
-        selected: id == 3,
-        detail: String::new(),
-        figures: Vec::new(),
-    }
-}
-
-fn assessment_harness(panels: Vec<AssessmentPanel>) -> Harness<'static, Model> {
-    let model = Model { panels, ..Model::default() };
-    let builder = Harness::builder().with_size(vec2(800.0, 400.0)).with_context_setup(palette::apply);
-    let mut harness = builder.build_ui_state(
-        |ui, model: &mut Model| {
-            let scene = AssessmentScene { panels: &model.panels, message: None };
-            let palette = Palette::of(ui.visuals());
-            model.bars.extend(assessment_ui(ui, &scene, &mut model.assessment, &palette));
-        },
-        model,
-    );
-    harness.run();
-    harness
-}
-
-#[test]
-fn a_click_on_a_bar_names_it_and_its_panel() {
-    let left_out = AssessmentBar { value: BarValue::LeftOut { why: "rejected".to_owned() }, ..change(10, 0.0, 0.0) };
-    let bars = vec![change(1, -20.0, -3.0), change(3, 4.0, -1.0), left_out, change(11, f64::NAN, 0.0)];
-    let panel = AssessmentPanel { title: "LON → Q".to_owned(), axis_label: "Condition".to_owned(), bars };
-    let other = AssessmentPanel { title: "LAT → P".to_owned(), ..panel.clone() };
-    let mut harness = assessment_harness(vec![other, panel]);
-    for condition in [ConditionId(3), ConditionId(10)] {
-        let at = harness.state().assessment.screen_position(1, condition).unwrap();
-        click(&mut harness, at);
-        assert_eq!(harness.state().bars.last(), Some(&AssessmentEvent::BarClicked { panel: 1, condition }));
-    }
-    harness.get_by_label("Change of J, LON → Q: 1 −23.0, 3 3.0, 10 left out, 11 NaN");
 }

@@ -1,326 +1,196 @@
-//! The complex rows of an elimination in one vector of frequencies, with threshold pivoting: which of two rows clears a column.
+//! The complex rows of an elimination, one frequency to a lane of a vector register, with threshold pivoting: which of two
+//! rows clears a column.
 
-use pulp::Simd;
+use nalgebra::Complex;
+use pulp::{Simd, WithSimd};
 
-use super::*;
+use super::{ComplexLanes, HessenbergForm};
+use crate::dataset::PairTable;
+use crate::response::FrequencyResponse;
 
-/// In which columns of a panel rows were interchanged.
-pub type Interchanged = [bool; PANEL];
+/// `H(s)` of a reduced model, to be evaluated with the vectors of an instruction set.
+pub struct Elimination<'a> {
+    /// The model.
+    pub form: &'a HessenbergForm,
+    /// Each `s` \[rad/s\].
+    pub at: &'a [Complex<f64>],
+}
+
+/// Frequencies that choose their pivots together, whatever the length of a vector.
+const GROUP: usize = 8;
+
+/// Largest `|s| / alpha`, of which squares are taken.
+const LARGEST: f64 = 1e150;
+
+impl WithSimd for Elimination<'_> {
+    type Output = FrequencyResponse;
+
+    /// The next row, which is real, takes half the operations of the active one: it clears a column unless in some lane of
+    /// the group the entry of the active row is more than tau times as large. Multipliers within G are then at most tau, and
+    /// since each row of G enters as it is, entries grow at most to `n tau` times the largest.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> FrequencyResponse {
+        let form = self.form;
+        let (outputs, inputs) = if form.dual { (form.inputs, form.outputs) } else { (form.outputs, form.inputs) };
+        let mut curves = PairTable::from_fn(outputs, inputs, |_| Vec::with_capacity(self.at.len()));
+        let mut vectors: Vec<ComplexRows<S>> = Vec::new();
+        for at in self.at.chunks(GROUP) {
+            vectors.clear();
+            let (mut re, mut im) = ([0.0; GROUP], [0.0; GROUP]);
+            for lane in 0..GROUP {
+                // If there are fewer, the last is in the other lanes.
+                let at = at[lane.min(at.len() - 1)] * form.frequency_scale;
+                // What would overflow must not look like a number.
+                (re[lane], im[lane]) = if at.norm() > LARGEST { (f64::NAN, f64::NAN) } else { (at.re, at.im) };
+            }
+            let (re, im) = (S::as_simd_f64s(&re).0, S::as_simd_f64s(&im).0);
+            for (re, im) in re.iter().zip(im).take(at.len().div_ceil(S::F64_LANES)) {
+                vectors.push(ComplexRows::start(simd, form, ComplexLanes { re: *re, im: *im }));
+            }
+            for column in 0..form.order.saturating_sub(1) {
+                let mut interchange = false;
+                for rows in &vectors {
+                    interchange |= rows.asks_for_interchange(simd, form, column);
+                }
+                for rows in &mut vectors {
+                    rows.clear(simd, form, column, interchange);
+                }
+            }
+            for rows in &mut vectors {
+                rows.finish(simd, form);
+            }
+            for output in 0..form.outputs {
+                for input in 0..form.inputs {
+                    let curve = &mut curves[form.pair(input, output)];
+                    let place = input * form.width() + form.order + output;
+                    for (lane, at) in at.iter().enumerate() {
+                        let value = &vectors[lane / S::F64_LANES].entries[place];
+                        // Without states what is not a number would be lost.
+                        curve.push(if at.is_nan() { *at } else { value.lane(lane % S::F64_LANES) });
+                    }
+                }
+            }
+        }
+        FrequencyResponse::new(curves)
+    }
+}
 
 /// What the complex rows of a system matrix become, in one vector of frequencies.
 ///
 /// They are the *active* row, which begins as the first of `[G K]`, and all rows of `[L D']` but the first. That has one
 /// entry in G's columns, the last, and needs nothing before all others are clear: it takes no part, and the active row
 /// has its place, so that rows and responses are counted alike.
-///
-/// Only multipliers are written at every column. Entries are computed where they are needed, a panel of columns of `R`
-/// rows at a time in registers: 2 fused operations on real numbers for each entry and column before it, n (n + 2 p) a row
-/// in all. Rows beyond `R` are other tiles, which follow the first: that one has the active row.
-pub struct EliminatedRows<S: Simd, const R: usize> {
-    omega: S::f64s,
-    tiles: Vec<Tile<S, R>>,
-    interchanges: Vec<Interchange<S>>,
-    /// How many interchanges there are.
-    count: usize,
-    /// The active row at each interchange, in the columns of the panel at hand.
-    pivots: Vec<Pivots<S>>,
-    /// The active row in the columns of outputs at hand, when it alone is left.
-    left: Pivots<S>,
+struct ComplexRows<S: Simd> {
+    /// `s / alpha`.
+    shift: ComplexLanes<S>,
+    /// Row by row.
+    entries: Vec<ComplexLanes<S>>,
 }
 
-/// `R` rows.
-struct Tile<S: Simd, const R: usize> {
-    /// Multiples of the next row in each column; in the last, what is left there.
-    multipliers: Vec<Panel<S, R>>,
-    /// Multiples of the active row at each interchange.
-    quotients: Vec<Rows<S, R>>,
-    /// Multiples of the active row, when it alone is left.
-    last: Rows<S, R>,
-}
-
-impl<S: Simd, const R: usize> EliminatedRows<S, R> {
-    /// Room for a model, and for an interchange in every column of its panels (one that is not a number asks for one even in
-    /// the columns that make the last panel whole): a list that grows would cost the registers their contents.
+impl<S: Simd> ComplexRows<S> {
+    /// The rows before anything is eliminated.
     #[inline(always)]
-    pub fn with_room_for(simd: S, form: &HessenbergForm) -> Self {
-        let zeros = [ComplexLanes::real(simd, 0.0); R];
-        let count = form.inputs().div_ceil(R).max(1);
-        let columns = form.state_panels() * PANEL;
-        let mut tiles = Vec::with_capacity(count);
-        for _ in 0..count {
-            let multipliers = filled([zeros; PANEL], form.state_panels());
-            tiles.push(Tile { multipliers, quotients: filled(zeros, columns), last: zeros });
+    fn start(simd: S, form: &HessenbergForm, shift: ComplexLanes<S>) -> Self {
+        let mut entries = Vec::with_capacity(form.complex_rows.len());
+        for entry in &form.complex_rows {
+            entries.push(ComplexLanes::real(simd, *entry));
         }
-        let left = [zeros[0]; PANEL];
-        let (interchanges, pivots) = (filled(Interchange::none(simd), columns), filled(left, columns));
-        Self { omega: left[0].re, tiles, interchanges, count: 0, pivots, left }
-    }
-
-    /// Starts at the frequencies `omega` \[rad/s / alpha\].
-    #[inline(always)]
-    pub fn start(&mut self, omega: S::f64s) {
-        self.omega = omega;
-        self.count = 0;
-    }
-
-    /// Clears a panel of the first tile without an interchange; whether none is asked for.
-    #[inline(always)]
-    pub fn clear(&mut self, simd: S, form: &HessenbergForm, panel: usize) -> bool {
-        self.forget_from(panel);
-        let mut entries = self.state_panel::<true>(simd, form, 0, panel);
-        self.subtract_next::<0>(simd, form, panel, entries[0], &mut entries);
-        self.subtract_next::<1>(simd, form, panel, entries[1], &mut entries);
-        // Their sum: not a number if one is none.
-        let mut excess = simd.splat_f64s(0.0);
-        for (entries, subdiagonal) in entries.iter().zip(form.subdiagonals(panel)) {
-            let inverse_square_threshold = simd.splat_f64s(subdiagonal.inverse_square_threshold);
-            excess = simd.mul_add_e_f64s(entries[0].square(simd), inverse_square_threshold, excess);
+        if form.order > 0 {
+            entries[0] = entries[0].minus(simd, shift);
         }
-        self.tiles[0].multipliers[panel] = entries;
-        !exceeds(simd, excess)
+        Self { shift, entries }
     }
 
-    /// Clears a panel of the first tile column by column, with an interchange where one is asked for or `required`; returns
-    /// where.
+    /// Whether the entry of the active row is too large for the next row to clear, or not a number, in any lane.
     #[inline(always)]
-    pub fn clear_with_interchanges(
-        &mut self,
-        simd: S,
-        form: &HessenbergForm,
-        panel: usize,
-        required: Interchanged,
-    ) -> Interchanged {
-        self.forget_from(panel);
-        let mut entries = self.state_panel::<true>(simd, form, 0, panel);
-        let mut multipliers = entries;
-        let mut interchanged = required;
-        // Written out: a loop has no constants.
-        (interchanged[0], multipliers[0]) = self.clear_one::<0>(simd, form, panel, required[0], &mut entries);
-        (interchanged[1], multipliers[1]) = self.clear_one::<1>(simd, form, panel, required[1], &mut entries);
-        (interchanged[2], multipliers[2]) = self.clear_one::<2>(simd, form, panel, required[2], &mut entries);
-        self.tiles[0].multipliers[panel] = multipliers;
-        interchanged
+    fn asks_for_interchange(&self, simd: S, form: &HessenbergForm, column: usize) -> bool {
+        let inverse_square_threshold = simd.splat_f64s(form.subdiagonals[column].inverse_square_threshold);
+        let excess = simd.mul_f64s(self.entries[column].square(simd), inverse_square_threshold);
+        let exceeds = simd.not_m64s(simd.less_than_or_equal_f64s(excess, simd.splat_f64s(1.0)));
+        simd.first_true_m64s(exceeds) < S::F64_LANES
     }
 
-    /// Forgets what was done to a panel of the first tile.
+    /// Clears a column, with an interchange of active and next row where the one is larger.
     #[inline(always)]
-    fn forget_from(&mut self, panel: usize) {
-        self.count = self.before(panel);
-    }
-
-    #[inline(always)]
-    fn clear_one<const OFFSET: usize>(
-        &mut self,
-        simd: S,
-        form: &HessenbergForm,
-        panel: usize,
-        required: bool,
-        entries: &mut Panel<S, R>,
-    ) -> (bool, Rows<S, R>) {
-        let inverse_square_threshold = simd.splat_f64s(form.subdiagonals(panel)[OFFSET].inverse_square_threshold);
-        let required_here = exceeds(simd, simd.mul_f64s(entries[OFFSET][0].square(simd), inverse_square_threshold));
-        let mut multipliers = entries[OFFSET];
-        if required_here || required {
-            multipliers = self.interchange::<OFFSET>(simd, form, panel, entries);
-        }
-        self.subtract_next::<OFFSET>(simd, form, panel, multipliers, entries);
-        (required_here || required, multipliers)
-    }
-
-    /// Interchanges the active and the next row in a column; returns the multiples of the next row that are left to
-    /// subtract.
-    #[inline(always)]
-    fn interchange<const OFFSET: usize>(
-        &mut self,
-        simd: S,
-        form: &HessenbergForm,
-        panel: usize,
-        entries: &mut Panel<S, R>,
-    ) -> Rows<S, R> {
-        let (column, subdiagonal) = (panel * PANEL + OFFSET, &form.subdiagonals(panel)[OFFSET]);
-        let interchange = Interchange::new(simd, column, subdiagonal, entries[OFFSET][0]);
-        let mut quotients = interchange.quotients(simd, entries[OFFSET]);
-        let mut multipliers = interchange.multipliers(simd, entries[OFFSET]);
-        quotients[0] = interchange.active_quotient(simd, subdiagonal);
-        multipliers[0] = interchange.active_multiplier(simd, subdiagonal, entries[OFFSET][0]);
-        let index = self.count;
-        *entries = subtract_active(simd, *entries, &quotients, &mut self.pivots[index]);
-        self.interchanges[index] = interchange;
-        self.tiles[0].quotients[index] = quotients;
-        self.count += 1;
-        multipliers
-    }
-
-    /// Interchanges in the first panels.
-    #[inline(always)]
-    fn before(&self, panels: usize) -> usize {
-        let mut count = self.count;
-        while let Some(last) = count.checked_sub(1)
-            && self.interchanges[last].column >= panels * PANEL
-        {
-            count = last;
-        }
-        count
-    }
-
-    /// Clears a panel that is clear in the first tile in the others.
-    #[inline(always)]
-    pub fn follow(&mut self, simd: S, form: &HessenbergForm, panel: usize) {
-        for tile in 1..self.tiles.len() {
-            let mut entries = self.state_panel::<false>(simd, form, tile, panel);
-            let mut multipliers = entries;
-            let mut done = self.before(panel);
-            multipliers[0] = self.follow_one::<0>(simd, form, tile, panel, &mut done, &mut entries);
-            multipliers[1] = self.follow_one::<1>(simd, form, tile, panel, &mut done, &mut entries);
-            multipliers[2] = self.follow_one::<2>(simd, form, tile, panel, &mut done, &mut entries);
-            self.tiles[tile].multipliers[panel] = multipliers;
-        }
-    }
-
-    #[inline(always)]
-    fn follow_one<const OFFSET: usize>(
-        &mut self,
-        simd: S,
-        form: &HessenbergForm,
-        tile: usize,
-        panel: usize,
-        done: &mut usize,
-        entries: &mut Panel<S, R>,
-    ) -> Rows<S, R> {
-        let mut multipliers = entries[OFFSET];
-        let index = *done;
-        if let Some(interchange) = self.interchanges[..self.count].get(index)
-            && interchange.column == panel * PANEL + OFFSET
-        {
-            *done += 1;
-            let quotients = interchange.quotients(simd, entries[OFFSET]);
-            multipliers = interchange.multipliers(simd, entries[OFFSET]);
-            *entries = subtract_pivots(simd, *entries, &quotients, &self.pivots[index]);
-            self.tiles[tile].quotients[index] = quotients;
-        }
-        self.subtract_next::<OFFSET>(simd, form, panel, multipliers, entries);
-        multipliers
-    }
-
-    /// Subtracts multiples of the next row of a column from what is right of it in the panel.
-    #[inline(always)]
-    fn subtract_next<const OFFSET: usize>(
-        &self,
-        simd: S,
-        form: &HessenbergForm,
-        panel: usize,
-        multipliers: Rows<S, R>,
-        entries: &mut Panel<S, R>,
-    ) {
-        let next = &form.next_rows(panel)[panel][OFFSET];
-        for offset in OFFSET + 1..PANEL {
-            let real = simd.splat_f64s(next[offset]);
-            for row in 0..R {
-                entries[offset][row] = entries[offset][row].minus_real_product(simd, multipliers[row], real);
+    fn clear(&mut self, simd: S, form: &HessenbergForm, column: usize, interchange: bool) {
+        let (next, subdiagonal) = (form.next_row(column), &form.subdiagonals[column]);
+        let shift = self.shift.scaled(simd, simd.splat_f64s(subdiagonal.reciprocal));
+        let (active, others) = self.entries.split_at_mut(form.width());
+        let (pivot, active) = (active[column], &mut active[column + 1..]);
+        if !interchange {
+            subtract_next(simd, active, pivot, next, shift);
+            for row in others.chunks_exact_mut(form.width()) {
+                let multiplier = row[column];
+                subtract_next(simd, &mut row[column + 1..], multiplier, next, shift);
             }
+            return;
         }
-        if let Some(diagonal) = entries.get_mut(OFFSET + 1) {
-            let reciprocal = simd.splat_f64s(form.subdiagonals(panel)[OFFSET].reciprocal);
-            subtract_diagonal(simd, diagonal, multipliers, simd.mul_f64s(self.omega, reciprocal));
+        let interchange = Interchange::new(simd, subdiagonal, pivot);
+        for row in others.chunks_exact_mut(form.width()) {
+            let [quotient, multiplier] = interchange.of_row(simd, row[column]);
+            let row = &mut row[column + 1..];
+            subtract_multiple(simd, row, quotient, active);
+            subtract_next(simd, row, multiplier, next, shift);
         }
+        // The active row last: the others need it as it was.
+        let [quotient, multiplier] = interchange.of_active_row(simd, subdiagonal, pivot);
+        let zero = ComplexLanes::real(simd, 0.0);
+        for entry in &mut *active {
+            *entry = zero.minus_product(simd, quotient, *entry);
+        }
+        subtract_next(simd, active, multiplier, next, shift);
     }
 
-    /// A panel of states of a tile, when those before it are clear.
+    /// Clears the last column with the active row, in whose place the first row of `[L D']` has its turn.
     #[inline(always)]
-    fn state_panel<const LEADS: bool>(
-        &mut self,
-        simd: S,
-        form: &HessenbergForm,
-        tile: usize,
-        panel: usize,
-    ) -> Panel<S, R> {
-        let mut entries = self.panel::<LEADS>(simd, form, tile, panel, panel);
-        if let Some(before) = panel.checked_sub(1) {
-            let multipliers = self.tiles[tile].multipliers[before][PANEL - 1];
-            let reciprocal = simd.splat_f64s(form.subdiagonals(before)[PANEL - 1].reciprocal);
-            subtract_diagonal(simd, &mut entries[0], multipliers, simd.mul_f64s(self.omega, reciprocal));
-        } else if LEADS {
-            entries[0][0].im = simd.neg_f64s(self.omega);
-        }
-        entries
-    }
-
-    /// A panel of a tile when the first `clear` panels are, but for the imaginary part of the next row after them.
-    #[inline(always)]
-    fn panel<const LEADS: bool>(
-        &mut self,
-        simd: S,
-        form: &HessenbergForm,
-        tile: usize,
-        panel: usize,
-        clear: usize,
-    ) -> Panel<S, R> {
-        let rows = &self.tiles[tile];
-        let (next, multipliers) =
-            (form.next_rows(panel)[..clear].as_flattened(), rows.multipliers[..clear].as_flattened());
-        let count = self.before(clear);
-        let mut entries = real_panel(simd, form.complex_rows(panel, tile));
-        let mut from = 0;
-        let interchanges = self.interchanges[..count].iter().zip(&rows.quotients).zip(&mut self.pivots);
-        for ((interchange, quotients), pivots) in interchanges {
-            let to = interchange.column;
-            entries = subtract_multiples(simd, entries, &multipliers[from..to], &next[from..to]);
-            entries = if LEADS {
-                subtract_active(simd, entries, quotients, pivots)
-            } else {
-                subtract_pivots(simd, entries, quotients, pivots)
-            };
-            from = to;
-        }
-        subtract_multiples(simd, entries, &multipliers[from..], &next[from..])
-    }
-
-    /// Clears the last column with the active row, of which multiples are then left to subtract.
-    #[inline(always)]
-    pub fn finish(&mut self, simd: S, form: &HessenbergForm) {
-        let Some(last) = form.order().checked_sub(1) else { return };
-        let (panel, offset) = (last / PANEL, last % PANEL);
-        let reciprocal = self.tiles[0].multipliers[panel][offset][0].reciprocal(simd);
-        for tile in &mut self.tiles {
-            tile.last = tile.multipliers[panel][offset];
-            for entry in &mut tile.last {
-                *entry = entry.product(simd, reciprocal);
+    fn finish(&mut self, simd: S, form: &HessenbergForm) {
+        let (active, others) = self.entries.split_at_mut(form.width());
+        let (states, active) = active.split_at_mut(form.order);
+        let Some(pivot) = states.last() else {
+            for (entry, feed_through) in active.iter_mut().zip(&form.feed_through) {
+                *entry = ComplexLanes::real(simd, *feed_through);
             }
+            return;
+        };
+        let reciprocal = pivot.reciprocal(simd);
+        for row in others.chunks_exact_mut(form.width()) {
+            let quotient = row[form.order - 1].product(simd, reciprocal);
+            subtract_multiple(simd, &mut row[form.order..], quotient, active);
         }
-        // The first row of L has its turn.
-        self.tiles[0].last[0] = reciprocal.scaled(simd, simd.splat_f64s(form.gain()));
-    }
-
-    /// Tiles of rows.
-    #[inline(always)]
-    pub fn tiles(&self) -> usize {
-        self.tiles.len()
-    }
-
-    /// The responses of a panel of outputs, when all states are eliminated: of one tile after the other.
-    #[inline(always)]
-    pub fn responses(&mut self, simd: S, form: &HessenbergForm, output_panel: usize, tile: usize) -> Panel<S, R> {
-        let states = form.state_panels();
-        if tile > 0 {
-            let values = self.panel::<false>(simd, form, tile, states + output_panel, states);
-            return subtract_pivots(simd, values, &self.tiles[tile].last, &self.left);
+        let quotient = reciprocal.scaled(simd, simd.splat_f64s(form.gain));
+        for (entry, feed_through) in active.iter_mut().zip(&form.feed_through) {
+            *entry = ComplexLanes::real(simd, *feed_through).minus_product(simd, quotient, *entry);
         }
-        let mut values = self.panel::<true>(simd, form, tile, states + output_panel, states);
-        {
-            let feed_through = form.feed_through(output_panel);
-            for offset in 0..PANEL {
-                self.left[offset] = values[offset][0];
-                values[offset][0] = ComplexLanes::real(simd, feed_through[offset]);
-            }
-        }
-        subtract_pivots(simd, values, &self.tiles[tile].last, &self.left)
     }
 }
 
-/// Whether a sum of `(|u_k| / (tau |h|))^2` is more than 1, or not a number, in any lane.
+/// `row - multiplier (next row)` right of the column that it clears: nearly all the work of an elimination. The first entry
+/// of the next row has `-shift` besides.
 #[inline(always)]
-fn exceeds<S: Simd>(simd: S, excess: S::f64s) -> bool {
-    any(simd, simd.not_m64s(simd.less_than_or_equal_f64s(excess, simd.splat_f64s(1.0))))
+fn subtract_next<S: Simd>(
+    simd: S,
+    row: &mut [ComplexLanes<S>],
+    multiplier: ComplexLanes<S>,
+    next: &[f64],
+    shift: ComplexLanes<S>,
+) {
+    for (entry, next) in row.iter_mut().zip(next) {
+        *entry = entry.minus_real_product(simd, multiplier, simd.splat_f64s(*next));
+    }
+    row[0] = row[0].plus_product(simd, multiplier, shift);
+}
+
+/// `row - quotient (other row)`.
+#[inline(always)]
+fn subtract_multiple<S: Simd>(
+    simd: S,
+    row: &mut [ComplexLanes<S>],
+    quotient: ComplexLanes<S>,
+    other: &[ComplexLanes<S>],
+) {
+    for (entry, other) in row.iter_mut().zip(other) {
+        *entry = entry.minus_product(simd, quotient, *other);
+    }
 }
 
 /// Subdiagonal entries below this part the model in two; the largest entry is of order 1, and a double has 16 digits.
@@ -350,10 +220,6 @@ pub struct Subdiagonal {
 }
 
 impl Subdiagonal {
-    /// That of a column after which no row follows: nothing is subtracted, and no interchange asked for.
-    pub const NONE: Self =
-        Self { entry: 0.0, divisor: 1.0, reciprocal: 0.0, inverse_square_threshold: 0.0, square: f64::INFINITY };
-
     /// Of a model of an order.
     pub fn new(entry: f64, order: usize) -> Self {
         if entry.abs() < NEGLIGIBLE {
@@ -382,73 +248,233 @@ impl Subdiagonal {
 /// ```
 ///
 /// In the other lanes the next row clears the column, and `u` and `w` times (next row / h) are subtracted. Both are done in
-/// two steps: *quotients* times the active row are subtracted (from zero in place of the active row itself), then
-/// *multipliers* times (next row / h).
-#[derive(Clone, Copy)]
-pub struct Interchange<S: Simd> {
-    /// The column.
-    pub column: usize,
+/// two steps: a *quotient* times the active row is subtracted (from zero in place of the active row itself), then a
+/// *multiplier* times (next row / h).
+struct Interchange<S: Simd> {
     lanes: S::m64s,
     /// `1 / u`.
     reciprocal: ComplexLanes<S>,
 }
 
 impl<S: Simd> Interchange<S> {
-    /// None in any lane.
-    #[inline(always)]
-    pub fn none(simd: S) -> Self {
-        let one = ComplexLanes::real(simd, 1.0);
-        Self { column: 0, lanes: simd.less_than_f64s(one.re, one.re), reciprocal: one }
-    }
-
     /// In the lanes where the entry `u` of the active row is larger than that of the next row.
     #[inline(always)]
-    pub fn new(simd: S, column: usize, subdiagonal: &Subdiagonal, pivot: ComplexLanes<S>) -> Self {
+    fn new(simd: S, subdiagonal: &Subdiagonal, pivot: ComplexLanes<S>) -> Self {
         let lanes = simd.greater_than_f64s(pivot.square(simd), simd.splat_f64s(subdiagonal.square));
-        Self { column, lanes, reciprocal: pivot.reciprocal(simd) }
+        Self { lanes, reciprocal: pivot.reciprocal(simd) }
     }
 
-    /// The quotients of rows with these entries: `w / u`, or zero.
+    /// Quotient and multiplier of a row with this entry: `w / u` and zero, or zero and `w`.
     #[inline(always)]
-    pub fn quotients<const R: usize>(&self, simd: S, mut entries: Rows<S, R>) -> Rows<S, R> {
+    fn of_row(&self, simd: S, entry: ComplexLanes<S>) -> [ComplexLanes<S>; 2] {
         let zero = ComplexLanes::real(simd, 0.0);
-        for entry in &mut entries {
-            *entry = zero.replaced_where(simd, self.lanes, entry.product(simd, self.reciprocal));
-        }
-        entries
+        let quotient = zero.replaced_where(simd, self.lanes, entry.product(simd, self.reciprocal));
+        [quotient, entry.replaced_where(simd, self.lanes, zero)]
     }
 
-    /// The quotient of the active row: `h / u`, or -1.
+    /// Quotient and multiplier of the active row: `h / u` and `-h`, or -1 and `u`.
     #[inline(always)]
-    pub fn active_quotient(&self, simd: S, subdiagonal: &Subdiagonal) -> ComplexLanes<S> {
+    fn of_active_row(&self, simd: S, subdiagonal: &Subdiagonal, pivot: ComplexLanes<S>) -> [ComplexLanes<S>; 2] {
         // Zero even where the pivot is zero: nothing of the active row goes on.
         let quotient = if subdiagonal.entry == 0.0 {
             ComplexLanes::real(simd, 0.0)
         } else {
             self.reciprocal.scaled(simd, simd.splat_f64s(subdiagonal.entry))
         };
-        ComplexLanes::real(simd, -1.0).replaced_where(simd, self.lanes, quotient)
-    }
-
-    /// The multipliers of rows with these entries: zero, or `w`.
-    #[inline(always)]
-    pub fn multipliers<const R: usize>(&self, simd: S, mut entries: Rows<S, R>) -> Rows<S, R> {
-        let zero = ComplexLanes::real(simd, 0.0);
-        for entry in &mut entries {
-            *entry = entry.replaced_where(simd, self.lanes, zero);
-        }
-        entries
-    }
-
-    /// The multiplier of the active row: `-h`, or `u`.
-    #[inline(always)]
-    pub fn active_multiplier(&self, simd: S, subdiagonal: &Subdiagonal, pivot: ComplexLanes<S>) -> ComplexLanes<S> {
-        pivot.replaced_where(simd, self.lanes, ComplexLanes::real(simd, -subdiagonal.divisor))
+        let multiplier = ComplexLanes::real(simd, -subdiagonal.divisor);
+        [
+            ComplexLanes::real(simd, -1.0).replaced_where(simd, self.lanes, quotient),
+            pivot.replaced_where(simd, self.lanes, multiplier),
+        ]
     }
 }
 
 #[cfg(test)]
-mod tests {
+mod response_tests {
+    use super::*;
+    use crate::dataset::StateSpace;
+    use nalgebra::{DMatrix, dmatrix};
+    use pulp::{Arch, Scalar};
+
+    type Values = PairTable<Vec<Complex<f64>>>;
+
+    fn on<S: Simd>(simd: S, model: &StateSpace, omega: &[f64]) -> Values {
+        let form = &HessenbergForm::of(Arch::new(), model.a().clone(), model);
+        let at: Vec<_> = omega.iter().map(|omega| Complex::new(0.0, *omega)).collect();
+        simd.vectorize(Elimination { form, at: &at }).curves().clone()
+    }
+
+    /// The values on every instruction set of this machine with fused multiply-adds, which must have the same bits.
+    fn on_vectors(model: &StateSpace, omega: &[f64]) -> Vec<Values> {
+        let mut values = Vec::new();
+        #[cfg(target_arch = "x86_64")]
+        {
+            values.extend(pulp::x86::V3::try_new().map(|simd| on(simd, model, omega)));
+            values.extend(pulp::x86::V4::try_new().map(|simd| on(simd, model, omega)));
+        }
+        #[cfg(target_arch = "aarch64")]
+        values.extend(pulp::aarch64::Neon::try_new().map(|simd| on(simd, model, omega)));
+        values
+    }
+
+    /// Entries from a sine: without pattern, and the same everywhere.
+    fn matrix(rows: usize, columns: usize, seed: f64) -> DMatrix<f64> {
+        DMatrix::from_fn(rows, columns, |row, column| (seed + 7.3 * row as f64 + 2.9 * (column * column) as f64).sin())
+    }
+
+    fn model(order: usize, outputs: usize, inputs: usize) -> StateSpace {
+        let a = matrix(order, order, 0.3) - DMatrix::identity(order, order) * 2.0;
+        let (b, c, d) = (matrix(order, inputs, 1.1), matrix(outputs, order, 2.3), matrix(outputs, inputs, 3.7));
+        StateSpace::new(a, b, c, d).unwrap()
+    }
+
+    /// From far below the poles, where real rows stay, to far above, where active ones do; lanes differ in between.
+    fn wide(count: usize) -> Vec<f64> {
+        (0..count).map(|k| 1e-3 * 1e6_f64.powf(k as f64 / count as f64)).collect()
+    }
+
+    /// By a dense decomposition.
+    fn dense(model: &StateSpace, omega: f64) -> DMatrix<Complex<f64>> {
+        let [a, b, c, d] = [model.a(), model.b(), model.c(), model.d()].map(|matrix| matrix.map(Complex::from));
+        let states = DMatrix::identity(a.nrows(), a.nrows()) * Complex::new(0.0, omega) - a;
+        c * states.lu().solve(&b).unwrap() + d
+    }
+
+    /// The largest difference, relative to the largest value.
+    fn difference(found: &Values, expected: &Values) -> f64 {
+        let all = |values: &Values| values.iter().flat_map(|(_, values)| values.clone()).collect::<Vec<_>>();
+        let (found, expected) = (all(found), all(expected));
+        let largest = expected.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        let differences = found.iter().zip(&expected).map(|(found, expected)| (found - expected).norm());
+        // NaN must not be lost in a maximum.
+        differences.fold(0.0, |worst: f64, next| if next <= worst { worst } else { next }) / largest
+    }
+
+    #[test]
+    fn vectors_of_every_length_agree_with_scalars_at_every_remainder_length() {
+        for count in 0..=17 {
+            let (model, omega) = (model(9, 3, 3), wide(count));
+            let scalar = on(Scalar::new(), &model, &omega);
+            for vectors in on_vectors(&model, &omega) {
+                // Two backward stable solutions of order 9: rounding errors of at most 9 tau times 1e-16 each.
+                assert!(count == 0 || difference(&vectors, &scalar) < 8e-12, "{count} frequencies");
+            }
+        }
+    }
+
+    #[test]
+    fn vectors_of_every_length_give_the_same_bits() {
+        for (order, outputs, inputs) in
+            [(0, 2, 1), (1, 1, 1), (2, 6, 4), (12, 6, 4), (30, 6, 4), (17, 3, 5), (8, 7, 6), (7, 9, 9)]
+        {
+            let (model, omega) = (model(order, outputs, inputs), wide(61));
+            let all = on_vectors(&model, &omega);
+            assert!(all.windows(2).all(|pair| pair[0] == pair[1]), "order {order}");
+        }
+    }
+
+    #[test]
+    fn values_depend_on_the_frequencies_of_their_group_only() {
+        let (model, omega) = (model(14, 6, 4), wide(45));
+        let together = on_vectors(&model, &omega);
+        for (k, omega) in omega.chunks(GROUP).enumerate() {
+            let alone = on_vectors(&model, omega);
+            for (alone, together) in alone.iter().zip(&together) {
+                let same = |(pair, values): (_, &Vec<_>)| together[pair][k * GROUP..].starts_with(values);
+                assert!(alone.iter().all(same), "group {k}");
+            }
+        }
+    }
+
+    #[test]
+    fn frequencies_of_a_group_that_disagree_on_their_pivots_each_have_theirs() {
+        // At 1e-4 the real row must stay, at 1e4 the complex one: neighbours in one group.
+        let model = model(14, 6, 4);
+        let omega: Vec<f64> = (0..29).map(|k| if k % 2 == 0 { 1e-4 } else { 1e4 } * (1.0 + f64::from(k))).collect();
+        let mut all = on_vectors(&model, &omega);
+        all.push(on(Scalar::new(), &model, &omega));
+        for values in all {
+            for (k, omega) in omega.iter().enumerate() {
+                let expected = dense(&model, *omega);
+                let largest = expected.iter().map(|value| value.norm()).fold(0.0, f64::max);
+                for (pair, values) in values.iter() {
+                    let error = (values[k] - expected[(pair.output, pair.input)]).norm();
+                    // The bound of threshold pivoting, 3e-11, times the condition of a random matrix of order 14.
+                    assert!(error < 1e-9 * largest, "{omega}, {pair:?}: {error}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn poles_on_the_grid_are_survived_by_models_of_any_order() {
+        for order in 1..=9 {
+            let (b, c) = (matrix(order, 2, 1.1), matrix(3, order, 2.3));
+            // All poles in zero; then pairs at 2 rad/s, with one in zero left over.
+            let turning = DMatrix::from_fn(order, order, |row, column| match (row % 2, column) {
+                (0, column) if column == row + 1 => 2.0,
+                (1, column) if column + 1 == row => -2.0,
+                _ => 0.0,
+            });
+            for (a, omega) in [(DMatrix::zeros(order, order), 0.0), (turning, 2.0)] {
+                let model = StateSpace::new(a, b.clone(), c.clone(), DMatrix::zeros(3, 2)).unwrap();
+                for frequencies in [vec![omega], vec![1.0, omega, 3.0]] {
+                    let mut all = on_vectors(&model, &frequencies);
+                    all.push(on(Scalar::new(), &model, &frequencies));
+                    let finite =
+                        |k: usize| all.iter().all(|values| values.iter().all(|(_, curve)| curve[k].is_finite()));
+                    assert!(frequencies.len() == 1 || (finite(0) && finite(2)), "{order} states");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_chain_coupled_by_1e_minus_55_neither_overflows_nor_loses_its_coupling() {
+        // One over the coupling is 1e55 a step: without shrinking, the fifth step would overflow the square of a pivot.
+        let weak = 1e-55;
+        let a = DMatrix::from_fn(8, 8, |row, column| match row.abs_diff(column) {
+            0 => -1.0,
+            1 => weak,
+            _ => 0.0,
+        });
+        let model = StateSpace::new(a, DMatrix::identity(8, 8), DMatrix::identity(8, 8), DMatrix::zeros(8, 8)).unwrap();
+        let mut all = on_vectors(&model, &[0.5, 1.0, 2.0]);
+        all.push(on(Scalar::new(), &model, &[0.5, 1.0, 2.0]));
+        for values in all {
+            for (pair, values) in values.iter() {
+                let lag = Complex::new(0.5, -0.5);
+                let expected = match pair.output.abs_diff(pair.input) {
+                    0 => lag,
+                    1 => lag * lag * weak,
+                    _ => continue,
+                };
+                // A dozen operations.
+                assert!((values[1] - expected).norm() < 1e-14 * expected.norm(), "{pair:?}: {}", values[1]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_model_of_two_separate_parts_is_the_sum_of_both() {
+        let a = dmatrix![-1.0, 2.0, 0.0, 0.0; -3.0, -0.5, 0.0, 0.0; 0.0, 0.0, -0.2, 4.0; 0.0, 0.0, -5.0, -0.3];
+        let (b, c) = (dmatrix![1.0; 0.5; -1.0; 2.0], dmatrix![1.0, -2.0, 0.5, 3.0]);
+        let part = |at: usize| {
+            let (a, b, c) = (a.view((at, at), (2, 2)), b.rows(at, 2), c.columns(at, 2));
+            StateSpace::new(a.into_owned(), b.into_owned(), c.into_owned(), dmatrix![0.0]).unwrap()
+        };
+        let whole = StateSpace::new(a.clone(), b.clone(), c.clone(), dmatrix![0.0]).unwrap();
+        let omega = wide(11);
+        let (first, second) = (on(Scalar::new(), &part(0), &omega), on(Scalar::new(), &part(2), &omega));
+        let sum = first.map(|pair, values| values.iter().zip(&second[pair]).map(|(a, b)| a + b).collect());
+        for values in on_vectors(&whole, &omega) {
+            assert!(difference(&values, &sum) < 1e-14);
+        }
+    }
+}
+
+#[cfg(test)]
+mod pivot_tests {
     use super::*;
 
     #[test]

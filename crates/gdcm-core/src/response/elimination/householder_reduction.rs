@@ -1,198 +1,121 @@
 //! Balancing of a model, and its reduction to upper Hessenberg form by Householder reflections.
 
+use std::ops::Range;
+
 use nalgebra::DMatrix;
 use pulp::{Simd, WithSimd};
 
-use super::{AlignedNumbers, BLOCK, Block, SystemTable};
+/// Partial sums of a scalar product.
+const LANES: usize = 8;
 
-/// Blocks of a row that are summed up in registers at once.
-const TOGETHER: usize = 4;
-
-/// Brings a table `[A B; C D]` to `[Q' A Q, Q' B; C Q, D]` with Q orthogonal, `Q' A Q` upper Hessenberg, and the first
-/// column of `Q' B` zero below its first entry.
+/// Brings `[A B; C D]` to `[Q' A Q, Q' B; C Q, D]` with Q orthogonal, `Q' A Q` upper Hessenberg, and the first column of
+/// `Q' B` zero below its first entry.
 ///
 /// One reflection `I - beta v v'` for that column, then one for each column of A (Golub & Van Loan, "Matrix
-/// Computations", 4th ed. 2013, 7.4.2), applied from both inputs in one pass over the table T, as `T - y v' - v w'` with
+/// Computations", 4th ed. 2013, 7.4.2), applied from both inputs in one pass over the matrix T, as `T - y v' - v w'` with
 ///
 /// ```text
 /// y = beta T v,   w = beta T' v - gamma v,   gamma = beta v' y
 /// ```
 ///
-/// 10/3 n^3 + 4 n^2 (m + p) operations. Sums run over eight partial sums whatever the length of a vector, and every
-/// multiply-add is fused, without one in hardware too: the result has the same bits on every instruction set.
-pub struct HouseholderReduction<'a>(pub &'a mut SystemTable);
+/// 10/3 n^3 + 4 n^2 (m + p) operations. A scalar product runs over eight partial sums, and every multiply-add is fused,
+/// without one in hardware too: the result has the same bits on every instruction set.
+pub struct HouseholderReduction<'a> {
+    /// The rows of `[A B; C D]`, each of which lies in one column.
+    pub rows: &'a mut DMatrix<f64>,
+    /// Rows of A.
+    pub states: usize,
+}
 
 impl WithSimd for HouseholderReduction<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let table = self.0;
-        let (states, first_input) = (table.states(), table.states());
-        let mut reflector = Reflector::with_room_for(table);
-        reflector.clear(simd, table, first_input, 0);
-        for column in 0..states.saturating_sub(2) {
-            reflector.clear(simd, table, column, column + 1);
+    fn with_simd<S: Simd>(self, _: S) {
+        clear(self.rows, self.states, self.states, 0);
+        for column in 0..self.states.saturating_sub(2) {
+            clear(self.rows, self.states, column, column + 1);
         }
     }
 }
 
-/// A reflection and what it needs of the table.
-struct Reflector {
-    beta: f64,
-    /// One entry for each state; zeros up to the column that is cleared.
-    v: AlignedNumbers,
-    w: AlignedNumbers,
-    /// One entry for each row of the table.
-    y: AlignedNumbers,
-}
-
-impl Reflector {
-    fn with_room_for(table: &SystemTable) -> Self {
-        let zeros = |count: usize| AlignedNumbers::zeros(count.next_multiple_of(BLOCK));
-        Self { beta: 0.0, v: zeros(table.width()), w: zeros(table.width()), y: zeros(table.rows().len()) }
-    }
-
-    /// Clears a column below row `first` by a reflection of the states from `first` on, applied from both inputs; the column
-    /// itself is not among those of these states.
-    #[inline(always)]
-    fn clear<S: Simd>(&mut self, simd: S, table: &mut SystemTable, column: usize, first: usize) {
-        let (states, width) = (table.states(), table.width());
-        let v = &mut *self.v;
-        v[..first].fill(0.0);
-        for (entry, row) in v.iter_mut().zip(table.numbers().chunks_exact(width)).take(states).skip(first) {
-            *entry = row[column];
-        }
-        let Some((head, tail)) = v[first..states].split_first_mut() else { return };
-        let tail: f64 = tail.iter().map(|entry| entry * entry).sum();
-        if tail == 0.0 {
-            return;
-        }
-        // The largest entries of A and B are of order 1: squares that underflow are negligible.
-        let norm = (*head * *head + tail).sqrt();
-        let left = -norm.copysign(*head);
-        self.beta = 1.0 / (norm * (norm + head.abs()));
-        *head -= left;
-        self.apply(simd, table, first);
-        let numbers = table.numbers_mut();
-        for row in first..states {
-            numbers[row * width + column] = if row == first { left } else { 0.0 };
-        }
-    }
-
-    /// Applies the reflection to the columns from `first` on, from both inputs.
-    #[inline(always)]
-    fn apply<S: Simd>(&mut self, simd: S, table: &mut SystemTable, first: usize) {
-        let (states, blocks) = (table.states(), first / BLOCK..table.blocks());
-        let (all, _) = self.v.as_chunks();
-        let v = &all[blocks.clone()];
-        for (y, row) in self.y.iter_mut().zip(table.rows()) {
-            *y = self.beta * dot(simd, &row[blocks.clone()], v);
-        }
-        let gamma = self.beta * dot(simd, all, self.y.as_chunks().0);
-        let w = &mut self.w.as_chunks_mut().0[blocks.clone()];
-        sum_rows(simd, w, table, blocks.start, first, &self.v[..states], self.beta);
-        subtract_multiple(simd, w, gamma, v);
-        // The first block may begin with columns that are done; v is zero there.
-        w.as_flattened_mut()[..first % BLOCK].fill(0.0);
-        for (row, (y, entries)) in self.y.iter().zip(table.rows_mut()).enumerate() {
-            let entries = &mut entries[blocks.clone()];
-            if (first..states).contains(&row) {
-                subtract_multiples(simd, entries, [*y, self.v[row]], [v, w]);
-            } else {
-                subtract_multiple(simd, entries, *y, v);
-            }
-        }
-    }
-}
-
-/// `sums = beta T' v` of the blocks from `block` on; v is zero before row `first`.
+/// Clears a column below row `first` by a reflection of the states from `first` on, applied from both inputs; the column
+/// itself is not among those of these states.
 #[inline(always)]
-fn sum_rows<S: Simd>(
-    simd: S,
-    sums: &mut [Block],
-    table: &SystemTable,
-    block: usize,
-    first: usize,
-    v: &[f64],
-    beta: f64,
-) {
-    let (whole, rest) = sums.as_chunks_mut::<TOGETHER>();
-    let start_of_rest = block + whole.len() * TOGETHER;
-    for (sums, block) in whole.iter_mut().zip((block..).step_by(TOGETHER)) {
-        sum_blocks(simd, sums, table, block, first, v, beta);
+fn clear(rows: &mut DMatrix<f64>, states: usize, column: usize, first: usize) {
+    let mut v = vec![0.0; rows.nrows()];
+    for state in first..states {
+        v[state] = rows[(column, state)];
     }
-    for (sum, block) in rest.iter_mut().zip(start_of_rest..) {
-        sum_blocks(simd, std::array::from_mut(sum), table, block, first, v, beta);
+    let Some((head, tail)) = v[first..states].split_first_mut() else { return };
+    let tail: f64 = tail.iter().map(|entry| entry * entry).sum();
+    if tail == 0.0 {
+        return;
+    }
+    // The largest entries of A and B are of order 1: squares that underflow are negligible.
+    let norm = (*head * *head + tail).sqrt();
+    let left = -norm.copysign(*head);
+    let beta = 1.0 / (norm * (norm + head.abs()));
+    *head -= left;
+    reflect(rows, first..states, &v, beta);
+    for state in first..states {
+        rows[(column, state)] = if state == first { left } else { 0.0 };
     }
 }
 
-/// [`sum_rows`] of `N` blocks, in registers.
+/// Applies the reflection `I - beta v v'` of these states from both inputs.
 #[inline(always)]
-fn sum_blocks<S: Simd, const N: usize>(
-    simd: S,
-    sums: &mut [Block; N],
-    table: &SystemTable,
-    block: usize,
-    first: usize,
-    v: &[f64],
-    beta: f64,
-) {
-    let vectors = BLOCK / S::F64_LANES;
-    let mut parts = [[simd.splat_f64s(0.0); BLOCK]; N];
-    for (factor, row) in v.iter().zip(table.rows()).skip(first) {
-        let factor = simd.splat_f64s(-factor * beta);
-        for (parts, row) in parts.iter_mut().zip(&row[block..block + N]) {
-            for (part, row) in parts[..vectors].iter_mut().zip(S::as_simd_f64s(row).0) {
-                *part = simd.negate_mul_add_f64s(factor, *row, *part);
-            }
+fn reflect(rows: &mut DMatrix<f64>, states: Range<usize>, v: &[f64], beta: f64) {
+    let width = rows.nrows();
+    // What stands before is done; v is zero there. Partial sums begin at whole blocks.
+    let from = states.start / LANES * LANES;
+    let (mut y, mut w) = (vec![0.0; rows.ncols()], vec![0.0; width]);
+    for (y, row) in y.iter_mut().zip(rows.as_slice().chunks_exact(width)) {
+        *y = beta * dot(&row[from..], &v[from..]);
+    }
+    let gamma = beta * dot(v, &y);
+    for state in states.clone() {
+        subtract_multiple(&mut w[from..], -v[state] * beta, &rows.as_slice()[state * width..][from..width]);
+    }
+    subtract_multiple(&mut w[from..], gamma, &v[from..]);
+    w[..states.start].fill(0.0);
+    for (index, row) in rows.as_mut_slice().chunks_exact_mut(width).enumerate() {
+        subtract_multiple(&mut row[from..], y[index], &v[from..]);
+        if states.contains(&index) {
+            subtract_multiple(&mut row[from..], v[index], &w[from..]);
         }
     }
-    for (sum, parts) in sums.iter_mut().zip(&parts) {
-        S::as_mut_simd_f64s(sum).0.copy_from_slice(&parts[..vectors]);
-    }
 }
 
-/// `left' right`, in [`BLOCK`] partial sums and a fixed order whatever the length of a vector.
+/// `left' right`.
 #[inline(always)]
-fn dot<S: Simd>(simd: S, left: &[Block], right: &[Block]) -> f64 {
-    let mut sums = [simd.splat_f64s(0.0); BLOCK];
+fn dot(left: &[f64], right: &[f64]) -> f64 {
+    let mut sums = [0.0_f64; LANES];
+    let count = left.len().min(right.len());
+    let ((left, left_rest), (right, right_rest)) = (left[..count].as_chunks(), right[..count].as_chunks());
     for (left, right) in left.iter().zip(right) {
-        let vectors = S::as_simd_f64s(left).0.iter().zip(S::as_simd_f64s(right).0);
-        for (sum, (left, right)) in sums.iter_mut().zip(vectors) {
-            *sum = simd.mul_add_f64s(*left, *right, *sum);
-        }
+        add_products::<LANES>(&mut sums, left, right);
     }
-    let mut count = BLOCK / S::F64_LANES;
-    while count > 1 {
-        count /= 2;
-        for part in 0..count {
-            sums[part] = simd.add_f64s(sums[part], sums[part + count]);
-        }
+    for (sum, (left, right)) in sums.iter_mut().zip(left_rest.iter().zip(right_rest)) {
+        *sum = left.mul_add(*right, *sum);
     }
-    simd.reduce_sum_f64s(sums[0])
+    let [a, b, c, d, e, f, g, h] = sums;
+    ((a + e) + (c + g)) + ((b + f) + (d + h))
+}
+
+/// `sums + left right`, entry by entry.
+#[inline(always)]
+fn add_products<const N: usize>(sums: &mut [f64; N], left: &[f64; N], right: &[f64; N]) {
+    for lane in 0..N {
+        sums[lane] = left[lane].mul_add(right[lane], sums[lane]);
+    }
 }
 
 /// `from -= factor row`.
 #[inline(always)]
-fn subtract_multiple<S: Simd>(simd: S, from: &mut [Block], factor: f64, row: &[Block]) {
-    let factor = simd.splat_f64s(factor);
-    let (from, _) = S::as_mut_simd_f64s(from.as_flattened_mut());
-    let (row, _) = S::as_simd_f64s(row.as_flattened());
+fn subtract_multiple(from: &mut [f64], factor: f64, row: &[f64]) {
     for (from, row) in from.iter_mut().zip(row) {
-        *from = simd.negate_mul_add_f64s(factor, *row, *from);
-    }
-}
-
-/// [`subtract_multiple`] of two rows, one after the other.
-#[inline(always)]
-fn subtract_multiples<S: Simd>(simd: S, from: &mut [Block], factors: [f64; 2], rows: [&[Block]; 2]) {
-    let factors = [simd.splat_f64s(factors[0]), simd.splat_f64s(factors[1])];
-    let (from, _) = S::as_mut_simd_f64s(from.as_flattened_mut());
-    let rows = [S::as_simd_f64s(rows[0].as_flattened()).0, S::as_simd_f64s(rows[1].as_flattened()).0];
-    for ((from, first), second) in from.iter_mut().zip(rows[0]).zip(rows[1]) {
-        let part = simd.negate_mul_add_f64s(factors[0], *first, *from);
-        *from = simd.negate_mul_add_f64s(factors[1], *second, part);
+        *from = (-factor).mul_add(*row, *from);
     }
 }
 
@@ -253,29 +176,27 @@ mod tests {
 
     const STATES: usize = 11;
 
-    /// Entries from a sine: without pattern, and the same everywhere.
-    fn table() -> SystemTable {
-        let mut table = SystemTable::zeros(STATES, 2, 3);
-        let width = table.width();
-        for (row, numbers) in table.numbers_mut().chunks_exact_mut(width).enumerate() {
-            let columns = if row < STATES { STATES + 2 } else { STATES };
-            for (column, number) in numbers[..columns].iter_mut().enumerate() {
-                *number = (7.3 * row as f64 + 2.9 * (column * column) as f64).sin();
+    /// The rows of two inputs and three outputs; entries from a sine: without pattern, and the same everywhere.
+    fn rows() -> DMatrix<f64> {
+        DMatrix::from_fn(STATES + 2, STATES + 3, |column, row| {
+            if row < STATES || column < STATES {
+                (7.3 * row as f64 + 2.9 * (column * column) as f64).sin()
+            } else {
+                0.0
             }
-        }
-        table
+        })
     }
 
-    fn reduced(arch: Arch) -> SystemTable {
-        let mut table = table();
-        arch.dispatch(HouseholderReduction(&mut table));
-        table
+    fn reduced(arch: Arch) -> DMatrix<f64> {
+        let mut rows = rows();
+        arch.dispatch(HouseholderReduction { rows: &mut rows, states: STATES });
+        rows
     }
 
     /// `C A^k B`, which a change of coordinates leaves alone.
-    fn markov_parameter(table: &SystemTable, power: usize, output: usize, input: usize) -> f64 {
-        let mut states: Vec<f64> = (0..STATES).map(|row| table.row(row)[STATES + input]).collect();
-        let product = |row: usize, states: &[f64]| table.row(row).iter().zip(states).map(|(a, x)| a * x).sum::<f64>();
+    fn markov_parameter(rows: &DMatrix<f64>, power: usize, output: usize, input: usize) -> f64 {
+        let mut states: Vec<f64> = (0..STATES).map(|row| rows[(STATES + input, row)]).collect();
+        let product = |row: usize, states: &[f64]| rows.column(row).iter().zip(states).map(|(a, x)| a * x).sum::<f64>();
         for _ in 0..power {
             states = (0..STATES).map(|row| product(row, &states)).collect();
         }
@@ -284,15 +205,15 @@ mod tests {
 
     #[test]
     fn what_stands_below_the_subdiagonal_is_zero() {
-        let table = reduced(Arch::new());
-        assert!((2..STATES).all(|row| table.row(row)[..row - 1].iter().all(|entry| *entry == 0.0)));
+        let rows = reduced(Arch::new());
+        assert!((2..STATES).all(|row| rows.column(row).iter().take(row - 1).all(|entry| *entry == 0.0)));
     }
 
     #[test]
     fn from_inputs_to_outputs_nothing_changes() {
-        let (before, after) = (table(), reduced(Arch::new()));
+        let (before, after) = (rows(), reduced(Arch::new()));
         for (power, output, input) in [(0, 0, 0), (1, 2, 1), (5, 1, 0)] {
-            let [before, after] = [&before, &after].map(|table| markov_parameter(table, power, output, input));
+            let [before, after] = [&before, &after].map(|rows| markov_parameter(rows, power, output, input));
             // Entries of A^5 grow to some thousand; eleven reflections with rounding errors of 1e-16 each.
             assert!((before - after).abs() < 1e-11, "C A^{power} B: {before} and {after}");
         }
@@ -301,10 +222,10 @@ mod tests {
     #[test]
     fn every_instruction_set_gives_the_same_bits() {
         let scalar = reduced(Arch::Scalar);
-        assert_eq!(reduced(Arch::new()).numbers(), scalar.numbers());
+        assert_eq!(reduced(Arch::new()), scalar);
         #[cfg(target_arch = "x86_64")]
         if let Some(simd) = pulp::x86::V3::try_new() {
-            assert_eq!(reduced(Arch::V3(simd)).numbers(), scalar.numbers());
+            assert_eq!(reduced(Arch::V3(simd)), scalar);
         }
     }
 }

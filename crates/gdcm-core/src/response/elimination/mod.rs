@@ -14,25 +14,25 @@
 //! ```
 //!
 //! A frequency is a lane of a vector register. Hessenberg form: Laub, IEEE Trans. Automatic Control 26(2), 1981; tau is the
-//! pivot threshold of Duff, Erisman & Reid, "Direct Methods for Sparse Matrices", 2nd ed. 2017, 5.2. Steps 3 to 5 run over
-//! panels of three columns, so that only the multiples of the next rows are written to memory (`eliminated_rows`).
+//! pivot threshold of Duff, Erisman & Reid, "Direct Methods for Sparse Matrices", 2nd ed. 2017, 5.2.
 
 mod eliminated_rows;
 mod hessenberg_form;
 mod householder_reduction;
-mod lane_response;
 mod lanes;
 
+use nalgebra::Complex;
 use pulp::Arch;
 
 use crate::dataset::StateSpace;
 
 use super::frequency_response::FrequencyResponse;
 
-use eliminated_rows::*;
-pub(super) use hessenberg_form::*;
-pub(super) use householder_reduction::*;
-use lane_response::*;
+pub(super) use eliminated_rows::Elimination;
+use eliminated_rows::Subdiagonal;
+pub(super) use hessenberg_form::HessenbergForm;
+use householder_reduction::HouseholderReduction;
+pub(super) use householder_reduction::balance;
 use lanes::*;
 
 /// `H(j omega) = C (j omega I - A)^-1 B + D` at each `omega` \[rad/s\]: a p x m table of `N` values.
@@ -55,19 +55,15 @@ pub fn evaluate(model: &StateSpace, omega: &[f64]) -> FrequencyResponse {
 
 /// [`evaluate`] on a given instruction set: for tests and benchmarks.
 pub fn evaluate_on(arch: Arch, model: &StateSpace, omega: &[f64]) -> FrequencyResponse {
-    evaluate_reduced(arch, &HessenbergForm::of(arch, model), omega)
-}
-
-/// [`evaluate_on`] of a model that is reduced already.
-pub(super) fn evaluate_reduced(arch: Arch, form: &HessenbergForm, omega: &[f64]) -> FrequencyResponse {
-    arch.dispatch(LaneResponse { form, omega })
+    let at: Vec<_> = omega.iter().map(|omega| Complex::new(0.0, *omega)).collect();
+    arch.dispatch(Elimination { form: &HessenbergForm::of(arch, model.a().clone(), model), at: &at })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::dataset::Pair;
-    use nalgebra::{Complex, DMatrix, dmatrix};
+    use nalgebra::{DMatrix, dmatrix};
 
     fn siso(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>, d: f64) -> StateSpace {
         StateSpace::new(a, b, c, dmatrix![d]).unwrap()

@@ -16,7 +16,7 @@ fn grid(low: f64, high: f64, points: usize) -> FrequencyGrid {
 
 fn response(model: &StateSpace, grid: &FrequencyGrid) -> Values {
     let response = FrequencyResponse::of(&Dynamics::StateSpace(model.clone()), grid);
-    response.curves()
+    response.curves().clone()
 }
 
 /// Entries from a sine: without pattern, and the same everywhere.

@@ -61,7 +61,7 @@ fn responses_are_those_of_the_models() {
         let heading = format!("{} [dB]", model.name);
         let column = tables[0].columns.iter().position(|column| *column == heading).unwrap();
         let response = example.curves.physics[index].curve(pair);
-        for (row, value) in tables[0].rows.iter().zip(&response) {
+        for (row, value) in tables[0].rows.iter().zip(response) {
             assert_eq!(row[column].parse::<f64>().unwrap(), 20.0 * value.norm().log10());
         }
     }

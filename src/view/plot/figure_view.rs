@@ -1,0 +1,391 @@
+//! A figure on the screen: its plots beside one another, what the pointer means in them, and what a click does.
+
+use egui::{
+    Align2, CursorIcon, FontId, Id, Modifiers, Pos2, Rect, Response, Sense, Stroke, Ui, UiBuilder, Vec2, WidgetInfo,
+    pos2, vec2,
+};
+use egui_plot::{Axis as Side, GridInput, GridMark, Plot as Frame, PlotBounds, PlotPoint, PlotTransform};
+use gdcm_core::study::ExplainTarget;
+use gdcm_files::figure::{Along, Area, Dots, Figure, Mark, MarkId, Panel, Plot, Range, Shape, dot_shapes};
+
+use super::axes::{
+    LABELLED_HEIGHT, Ladder, axis_hints, caption_font, labelled_mark, message_ui, quiet_plot, tick_font, tick_text,
+    use_frame_colors,
+};
+use super::canvas::{Canvas, LETTERS_PT, area};
+use super::curve_menu::{NamedFigure, Questions};
+use super::navigation::turned;
+use super::readout::tooltip_ui;
+use super::tiles::{Tiles, tiles_ui};
+use crate::view::palette::{Palette, SMALL_SIZE};
+
+const TITLE_HEIGHT: f32 = 18.0;
+const RIGHT_MARGIN: f32 = 8.0;
+/// Width of the strip at the left with the label of the vertical axes, where it is one for all \[pt\].
+const LABEL_STRIP: f32 = 16.0;
+/// Width of a vertical axis \[pt\].
+const VALUE_AXIS_WIDTH: f32 = 38.0;
+/// Least distance between the ticks of an axis \[pt\].
+const TICK_GAP: f64 = 26.0;
+/// How far from a dot the pointer may be to mean it \[pt\].
+const PICK_RADIUS: f32 = 10.0;
+/// Radius of the ring around what is in focus, or pointed at \[pt\].
+const RING: f32 = 8.0;
+/// How much larger a dot is while something points at what it is of.
+const EMPHASIZED: f64 = 1.3;
+/// Widths of an axis that can be in view.
+const WIDTHS: Range = Range { min: 1e-4, max: 1e5 };
+
+/// What the plots of a figure say about what they show.
+pub trait FigureWords {
+    /// What a plot shows, for who does not see it.
+    fn plot(&self, plot: usize) -> String;
+
+    /// The same of a dot at a place of the axes; none where it is not told one by one.
+    fn dot(&self, _plot: usize, _id: &MarkId, _at: [f64; 2]) -> Option<String> {
+        None
+    }
+
+    /// What pointing at a mark says.
+    fn pointed_ui(&self, ui: &mut Ui, plot: usize, id: &MarkId, at: [f64; 2]);
+
+    /// The figures that can be asked about at a mark.
+    fn questions(&self, _plot: usize, _id: &MarkId) -> Vec<NamedFigure> {
+        Vec::new()
+    }
+}
+
+/// A figure, and what is needed to work with it on the screen. Each of its plots has one panel.
+pub struct FigureScene<'a> {
+    /// Tells its widgets from those of other figures.
+    pub name: &'static str,
+    /// What is shown.
+    pub figure: &'a Figure,
+    /// What is in focus.
+    pub selected: Option<MarkId>,
+    /// What another view points at.
+    pub highlighted: Option<MarkId>,
+    /// What stands at each name of the horizontal axes, where that is pointed at and not dots.
+    pub columns: &'a [MarkId],
+    /// Whether the plots are zoomed and dragged.
+    pub zooms: bool,
+    /// A plot is never smaller \[pt\].
+    pub least: Vec2,
+    /// What to say where there is nothing to draw.
+    pub message: &'a str,
+    /// What the plots say, and the number by which they know the first one here.
+    pub words: (&'a dyn FigureWords, usize),
+}
+
+/// What the engineer did in a figure.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FigureEvent {
+    /// The pointer means this.
+    Pointed(MarkId),
+    /// It was clicked in this plot, with these keys held.
+    Clicked(usize, MarkId, Modifiers),
+    /// How a figure was computed is asked.
+    Asked(ExplainTarget),
+}
+
+/// What a figure remembers between frames.
+#[derive(Clone, Debug, Default)]
+pub struct FigureView {
+    hovered: Option<MarkId>,
+    plots: Vec<PlotView>,
+    questions: Questions,
+}
+
+/// What one of its plots remembers.
+#[derive(Clone, Debug, Default)]
+struct PlotView {
+    /// What is in view where that was zoomed or dragged.
+    ranges: Option<[Range; 2]>,
+    transform: Option<PlotTransform>,
+    /// The panel, the part of the screen and the ranges that the shapes are for: placing labels costs more than drawing them.
+    drawn_for: Option<(Panel, Area, [Range; 2])>,
+    shapes: Vec<Shape>,
+    /// How many labels have no room.
+    left_out: usize,
+}
+
+impl FigureView {
+    /// Shows all of the plots at the next frame.
+    pub fn request_fit(&mut self) {
+        self.plots.iter_mut().for_each(|plot| plot.ranges = None);
+    }
+
+    /// Whether a label has no room and is only told where its dot is pointed at.
+    pub fn leaves_labels_out(&self) -> bool {
+        self.plots.iter().any(|plot| plot.left_out > 0)
+    }
+
+    /// What was in view of a plot when it was drawn last.
+    pub fn ranges(&self, plot: usize) -> Option<[Range; 2]> {
+        self.plots.get(plot)?.ranges
+    }
+
+    /// Where a plot was drawn last.
+    pub fn transform(&self, plot: usize) -> Option<&PlotTransform> {
+        self.plots.get(plot)?.transform.as_ref()
+    }
+
+    /// Where a place of the axes of a plot is on the screen.
+    pub fn position(&self, plot: usize, [x, y]: [f64; 2]) -> Option<Pos2> {
+        Some(self.transform(plot)?.position_from_point(&PlotPoint::new(x, y)))
+    }
+
+    /// Where the dot of a mark was drawn last in a plot.
+    pub fn screen_position(&self, plot: usize, id: &MarkId) -> Option<Pos2> {
+        let (panel, ..) = self.plots.get(plot)?.drawn_for.as_ref()?;
+        let dot = panel.dots().find(|dot| dot.id.as_ref() == Some(id))?;
+        self.position(plot, [dot.x, dot.y])
+    }
+}
+
+/// Draws a figure into the space that is left in `ui`.
+pub fn figure_ui(ui: &mut Ui, scene: &FigureScene<'_>, view: &mut FigureView, palette: &Palette) -> Vec<FigureEvent> {
+    let rect = ui.available_rect_before_wrap();
+    let events = figure_within_ui(ui, rect, scene, view, palette);
+    ui.advance_cursor_after_rect(rect);
+    events
+}
+
+/// In how many rows the plots of a figure stand in an area of `size`, none smaller than `least`.
+pub fn rows(figure: &Figure, size: Vec2, least: Vec2) -> usize {
+    match figure.plots.len() {
+        0 => 0,
+        count => Tiles::arrange(count, size - vec2(LABEL_STRIP, 0.0), least).rows,
+    }
+}
+
+/// Draws a figure into `rect`.
+pub fn figure_within_ui(
+    ui: &mut Ui,
+    rect: Rect,
+    scene: &FigureScene<'_>,
+    view: &mut FigureView,
+    palette: &Palette,
+) -> Vec<FigureEvent> {
+    let plots = &scene.figure.plots;
+    let mut events = Vec::new();
+    if plots.is_empty() {
+        message_ui(ui, rect, scene.message, palette);
+        return events;
+    }
+    view.plots.resize_with(plots.len(), PlotView::default);
+    ui.scope_builder(UiBuilder::new().id_salt(scene.name).max_rect(rect), |ui| {
+        use_frame_colors(ui, palette);
+        let mut inner = rect;
+        if let Some(label) = common_label(scene.figure) {
+            inner.min.x += LABEL_STRIP;
+            upright_label_ui(ui, rect, label, palette);
+        }
+        let hovered = view.hovered.take();
+        let emphasized = hovered.as_ref().or(scene.highlighted.as_ref());
+        tiles_ui(ui, "panels", inner, plots.len(), scene.least, |ui, index, rect| {
+            let id = ui.make_persistent_id((scene.name, index));
+            let kept = (&mut view.plots[index], emphasized);
+            let (response, pointed) = plot_ui(ui, (id, rect), scene, index, kept, palette);
+            let (words, index) = (scene.words.0, scene.words.1 + index);
+            let questions = pointed.as_ref().map(|(id, _)| words.questions(index, id)).unwrap_or_default();
+            events.extend(view.questions.ui(&response, &questions).map(FigureEvent::Asked));
+            let Some((id, at)) = pointed else { return };
+            tooltip_ui(&response, |ui| words.pointed_ui(ui, index, &id, at));
+            view.hovered = Some(id.clone());
+            events.push(FigureEvent::Pointed(id.clone()));
+            if response.clicked() {
+                events.push(FigureEvent::Clicked(index, id, ui.input(|input| input.modifiers)));
+            }
+            response.on_hover_cursor(CursorIcon::PointingHand);
+        });
+        if view.hovered != hovered {
+            ui.ctx().request_repaint();
+        }
+    });
+    events
+}
+
+/// The label of the vertical axes, where they are one.
+fn common_label(figure: &Figure) -> Option<&str> {
+    let panel = figure.plots.first()?.panels.first()?;
+    Some(panel.y.label.as_str()).filter(|_| figure.shared.y)
+}
+
+/// The label of all the vertical axes, upright at the left edge.
+fn upright_label_ui(ui: &Ui, rect: Rect, label: &str, palette: &Palette) {
+    let galley = ui.painter().layout_no_wrap(label.to_owned(), FontId::proportional(SMALL_SIZE), palette.dim_text);
+    let place = pos2(rect.left() + 1.0, rect.center().y + 0.5 * galley.size().x);
+    let text = egui::epaint::TextShape::new(place, galley, palette.dim_text);
+    ui.painter().add(text.with_angle(-std::f32::consts::FRAC_PI_2));
+}
+
+/// Draws a plot into `rect`; what the pointer means in it, and where that is on its axes.
+fn plot_ui(
+    ui: &mut Ui,
+    (id, rect): (Id, Rect),
+    scene: &FigureScene<'_>,
+    index: usize,
+    (kept, emphasized): (&mut PlotView, Option<&MarkId>),
+    palette: &Palette,
+) -> (Response, Option<(MarkId, [f64; 2])>) {
+    let Plot { title, panels } = &scene.figure.plots[index];
+    let (panel, words, number) = (&panels[0], scene.words.0, scene.words.1 + index);
+    let plot_rect = Rect::from_min_max(rect.min + vec2(0.0, TITLE_HEIGHT), rect.max - vec2(RIGHT_MARGIN, 0.0));
+    let [x, y] = kept.ranges.unwrap_or_else(|| [Along::X, Along::Y].map(|along| panel.shown(along)));
+    let shown = ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(plot_rect), |ui| {
+        frame(ui, (id, plot_rect.size()), panel, scene, palette).show(ui, |plot| {
+            plot.set_plot_bounds(PlotBounds::from_min_max([x.min, y.min], [x.max, y.max]));
+        })
+    });
+    let (response, transform) = (shown.inner.response, shown.inner.transform);
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, words.plot(number)));
+    let place = pos2(transform.frame().center().x, rect.top() + 0.5 * TITLE_HEIGHT);
+    ui.painter().text(place, Align2::CENTER_CENTER, title, caption_font(), palette.text);
+    kept.transform = Some(transform);
+    let pointer = response.hover_pos().or(response.interact_pointer_pos().filter(|_| response.clicked()));
+    let pointed = pointer.and_then(|pointer| match scene.columns {
+        [] => nearest_dot(panel, &transform, pointer),
+        columns => {
+            let x = transform.value_from_position(pointer).x.round();
+            Some((columns.get(x as usize).filter(|_| x >= 0.0)?.clone(), [x, 0.0]))
+        }
+    });
+    kept.paint(ui, scene, panel, (emphasized, pointed.as_ref().map(|(_, at)| *at)), palette);
+    for dot in panel.dots() {
+        let told = dot.id.as_ref().and_then(|id| words.dot(number, id, [dot.x, dot.y]));
+        if let Some(told) = told {
+            // For screen readers; pointing and clicking are the plot's, which takes the nearest dot.
+            let at = transform.position_from_point(&PlotPoint::new(dot.x, dot.y));
+            let place = Rect::from_center_size(at, Vec2::splat(RING));
+            let response = ui.interact(place, id.with(("dot", &dot.id)), Sense::hover());
+            response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &told));
+        }
+    }
+    if scene.zooms {
+        kept.navigate(&response, pointed.is_some());
+    }
+    (response, pointed)
+}
+
+/// The nearest dot that is one of something; of equally near ones the one on top, which is drawn last.
+fn nearest_dot(panel: &Panel, transform: &PlotTransform, pointer: Pos2) -> Option<(MarkId, [f64; 2])> {
+    let mut near: Option<(f32, (&MarkId, [f64; 2]))> = None;
+    for (dot, id) in panel.dots().filter_map(|dot| Some((dot, dot.id.as_ref()?))) {
+        let distance = transform.position_from_point(&PlotPoint::new(dot.x, dot.y)).distance(pointer);
+        if distance <= PICK_RADIUS && near.is_none_or(|(least, _)| distance <= least) {
+            near = Some((distance, (id, [dot.x, dot.y])));
+        }
+    }
+    near.map(|(_, (id, at))| (id.clone(), at))
+}
+
+impl PlotView {
+    /// Draws what stands in the frame, anew only where it changed; what is meant by the pointer stands out.
+    fn paint(
+        &mut self,
+        ui: &Ui,
+        scene: &FigureScene<'_>,
+        panel: &Panel,
+        (emphasized, pointed): (Option<&MarkId>, Option<[f64; 2]>),
+        palette: &Palette,
+    ) {
+        let Some(transform) = self.transform else { return };
+        let frame = *transform.frame();
+        let (min, max) = (transform.bounds().min(), transform.bounds().max());
+        let (area, ranges) = (area(frame), [0, 1].map(|axis| Range::new(min[axis], max[axis])));
+        let is_same = |(of, at, shown): &(Panel, Area, [Range; 2])| (of, at, shown) == (panel, &area, &ranges);
+        if !self.drawn_for.as_ref().is_some_and(is_same) {
+            (self.shapes, self.left_out) = panel.shapes(area, ranges, LETTERS_PT);
+            self.drawn_for = Some((panel.clone(), area, ranges));
+        }
+        let painter = ui.painter().with_clip_rect(frame.expand(RING).intersect(ui.clip_rect()));
+        for (column, id) in scene.columns.iter().enumerate() {
+            let strength = match (scene.selected.as_ref() == Some(id), pointed.is_some_and(|at| at[0] == column as f64))
+            {
+                (true, _) => 0.6,
+                (false, true) => 0.35,
+                (false, false) => continue,
+            };
+            let ends = [-0.5, 0.5].map(|beside| transform.position_from_point_x(column as f64 + beside));
+            let ground = Rect::from_x_y_ranges(ends[0]..=ends[1], frame.y_range());
+            painter.rect_filled(ground, 0.0, palette.selected.gamma_multiply(strength));
+        }
+        let canvas = Canvas { painter: &painter, origin: frame.min, palette };
+        canvas.paint(&self.shapes);
+        let ring = |at: [f64; 2], color| {
+            let at = transform.position_from_point(&PlotPoint::new(at[0], at[1]));
+            painter.circle_stroke(at, RING, Stroke::new(1.4, color));
+        };
+        for mark in &panel.marks {
+            let Mark::Dots(Dots { shape, color, filled, size, dots, .. }) = mark else { continue };
+            for dot in dots.iter().filter(|dot| dot.id.is_some()) {
+                let at = transform.position_from_point(&PlotPoint::new(dot.x, dot.y));
+                if dot.id.as_ref() == emphasized {
+                    canvas.paint(&dot_shapes(canvas.from(at), (*shape, EMPHASIZED * size.max(0.8)), *color, *filled));
+                }
+                if dot.id == scene.selected {
+                    ring([dot.x, dot.y], palette.text);
+                }
+            }
+        }
+        if let Some(at) = pointed.filter(|_| scene.columns.is_empty()) {
+            ring(at, palette.dim_text);
+        }
+    }
+
+    /// The wheel zooms about the pointer, dragging pans, a double click beside the dots shows all.
+    fn navigate(&mut self, response: &Response, is_pointed: bool) {
+        let Some(transform) = self.transform else { return };
+        let (min, max) = (transform.bounds().min(), transform.bounds().max());
+        let mut shown = [0, 1].map(|axis| Range::new(min[axis], max[axis]));
+        if let Some((turn, pointer)) = turned(&response.ctx, response) {
+            let (factor, fixed) = (f64::from(turn.along_one_axis()), transform.value_from_position(pointer));
+            shown = [shown[0].zoomed(factor, fixed.x), shown[1].zoomed(factor, fixed.y)];
+            response.ctx.request_repaint();
+        }
+        if let [Some(x), Some(y)] = shown.map(|range| range.limited(WIDTHS)) {
+            self.ranges = Some([x, y]);
+        }
+        if response.double_clicked() && !is_pointed {
+            self.ranges = None;
+            response.ctx.request_repaint();
+        }
+    }
+}
+
+/// The frame with its axes.
+fn frame<'a>(ui: &Ui, (id, size): (Id, Vec2), panel: &Panel, scene: &FigureScene<'_>, palette: &Palette) -> Frame<'a> {
+    let names: Vec<(f64, String)> = panel.x.names.clone().unwrap_or_default();
+    let is_named = !names.is_empty();
+    let width = |text: &str| ui.painter().layout_no_wrap(text.to_owned(), tick_font(), palette.text).size().x;
+    let widest = names.iter().map(|(_, name)| width(name)).fold(0.0, f32::max);
+    let count = names.len();
+    let spacer = move |input: GridInput| match is_named {
+        true => named_marks(&input, count, widest),
+        false => Ladder::Decimal.marks(input.bounds, input.base_step_size, TICK_GAP),
+    };
+    let text = move |mark: GridMark| match is_named {
+        true => names.get(mark.value.round() as usize).map(|(_, name)| name.clone()).unwrap_or_default(),
+        false => tick_text(mark),
+    };
+    let label = if scene.figure.shared.y { "" } else { panel.y.label.as_str() };
+    let plot = quiet_plot(id, palette)
+        .sense(if scene.zooms { Sense::click_and_drag() } else { Sense::click() })
+        .width(size.x)
+        .height(size.y)
+        .show_grid([!is_named, true])
+        .x_grid_spacer(spacer)
+        .y_grid_spacer(Ladder::Decimal.spacer(TICK_GAP))
+        .custom_x_axes(vec![axis_hints(Side::X, &panel.x.label, LABELLED_HEIGHT, palette, text)])
+        .custom_y_axes(vec![axis_hints(Side::Y, label, VALUE_AXIS_WIDTH, palette, tick_text)]);
+    if scene.zooms { plot.allow_drag(true).allow_zoom(true).allow_axis_zoom_drag(true) } else { plot }
+}
+
+/// One mark for each name; where they are too wide, for every second, third … one.
+fn named_marks(input: &GridInput, count: usize, widest: f32) -> Vec<GridMark> {
+    /// Least space between two names \[pt\].
+    const SPACE: f64 = 6.0;
+    let every = ((f64::from(widest) + SPACE) * input.base_step_size).ceil().max(1.0);
+    (0..count).step_by(every as usize).map(|index| labelled_mark(index as f64, input.base_step_size)).collect()
+}

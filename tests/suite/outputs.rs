@@ -12,7 +12,7 @@ use gdcm_files::{load_dataset, save_study};
 use crate::commands::{Desk, Ended, SMALL};
 use crate::window::{Window, click, export_to, save_as, settle, state, window};
 
-const RESULTS: [&str; 3] = ["assessment.csv", "corrections.csv", "corrections.json"];
+const RESULTS: [&str; 4] = ["assessment.csv", "corrections.csv", "corrections.json", "corrections.sha256"];
 
 fn names(directory: &Path) -> Vec<String> {
     let names = fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -36,10 +36,12 @@ fn results_that_are_there_are_named_and_only_overwritten_by_force() {
     let analyze = ["analyze", "small.json", "--out", "out"];
     desk.gdcm(&analyze).assert_done();
     fs::write(desk.path("out/corrections.csv"), "mine").unwrap();
-    let words = ["out/corrections.json, out/corrections.csv, out/assessment.csv exist already; --force overwrites"];
+    let all = "out/corrections.json, out/corrections.csv, out/assessment.csv, out/corrections.sha256";
+    let words = [&*format!("{all} exist already; --force overwrites")];
     desk.gdcm(&analyze).assert_failed(2, &words);
     fs::remove_file(desk.path("out/corrections.json")).unwrap();
     fs::remove_file(desk.path("out/assessment.csv")).unwrap();
+    fs::remove_file(desk.path("out/corrections.sha256")).unwrap();
     desk.gdcm(&analyze).assert_failed(2, &["gdcm: out/corrections.csv exists already; --force overwrites"]);
     assert_eq!(names(&desk.path("out")), ["corrections.csv"]);
     assert_eq!(fs::read_to_string(desk.path("out/corrections.csv")).unwrap(), "mine");
@@ -141,7 +143,7 @@ fn an_export_over_existing_files_asks_first() {
     click(&mut window, "Export corrections…");
     click(&mut window, "Export");
     let existing = state(&window).forms.existing.clone();
-    assert!(existing.len() == 3 && existing[1].ends_with("corrections.csv"), "{existing:?}");
+    assert!(existing.len() == 4 && existing[1].ends_with("corrections.csv"), "{existing:?}");
     let shown = |window: &Window, label: &str| window.query_by_label(label).is_some();
     assert!(shown(&window, "These files exist already") && shown(&window, &existing[1]));
     assert_eq!(fs::read_to_string(&csv).unwrap(), "mine");

@@ -116,7 +116,7 @@ fn check_length(length: u64, most: u64, path: &Path) -> Result<(), FileError> {
     Ok(())
 }
 
-fn sha256_hex(bytes: &[u8]) -> String {
+pub(super) fn sha256_hex(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 

@@ -8,7 +8,7 @@ use gdcm_core::correction::{
     ActiveConstraint, Channel, ChannelCorrection, Conflict, ConflictKind, Outcome, Problem, Quantity, Sensitivity,
     Solution, kkt_residual, sensitivities,
 };
-use gdcm_core::dataset::{BundleKind, Condition, ConditionId, Model, Pair, PairTable, Provenance};
+use gdcm_core::dataset::{self, BundleKind, Condition, ConditionId, Model, Pair, PairTable, Provenance};
 use gdcm_core::fidelity::Cost;
 use gdcm_core::schedule::{Regression, Schedule, ScheduleKind, ScheduledQuantity};
 use gdcm_core::study::{Analysis, Assessed, Caution, ConditionAnalysis, lead_cautions};
@@ -50,6 +50,8 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
         "version": VERSION,
         "software": concat!("gdcm ", env!("CARGO_PKG_VERSION")),
         "dataset": {"name": dataset.name(), "sha256": sha256},
+        "inputs": channels(dataset.inputs()),
+        "outputs": channels(dataset.outputs()),
         "settings": analysis.study.settings.named(dataset),
         "conditions": conditions,
         "failed": failed,
@@ -58,6 +60,11 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
         "uncertainty": uncertainty(&names),
     });
     without_empty(corrections, &["uncertainty"])
+}
+
+/// Names and units of channels, in the order of every list and table.
+fn channels(channels: &[dataset::Channel]) -> Value {
+    channels.iter().map(|channel| json!({"name": channel.name, "unit": channel.unit})).collect()
 }
 
 /// An object without those of its members that say nothing: null, false, and empty lists.

@@ -1,4 +1,4 @@
-//! Result files: `corrections.json`, `corrections.csv`, `assessment.csv`.
+//! Result files: `corrections.json`, `corrections.csv`, `assessment.csv`, and their checksums.
 
 mod corrections;
 mod tables;
@@ -22,15 +22,16 @@ pub use corrections::corrections;
 const NAME: &str = "gdcm-corrections";
 const VERSION: u64 = 1;
 
-/// The names of the files of results.
-pub const RESULT_FILES: [&str; 3] = ["corrections.json", "corrections.csv", "assessment.csv"];
+/// The names of the files of results; the last holds the checksums of the others.
+pub const RESULT_FILES: [&str; 4] = ["corrections.json", "corrections.csv", "assessment.csv", "corrections.sha256"];
 
 /// Where the files of results stand in a directory.
-pub fn result_paths(directory: &Path) -> [PathBuf; 3] {
+pub fn result_paths(directory: &Path) -> [PathBuf; 4] {
     RESULT_FILES.map(|name| directory.join(name))
 }
 
-/// Writes the results of the chosen conditions into a directory, made where there is none: all three files, or none.
+/// Writes the results of the chosen conditions into a directory, made where there is none: all files, or none; last their checksums, which
+/// tell whether they belong together.
 ///
 /// `sha256` is that of the dataset's file.
 pub fn write_results(
@@ -40,12 +41,13 @@ pub fn write_results(
     directory: &Path,
     mut outputs: OutputSet,
 ) -> Result<(), FileError> {
-    let [json, channels, responses] = result_paths(directory);
-    outputs.check(&[&json, &channels, &responses])?;
+    let [json, channels, responses, checksums] = result_paths(directory);
+    outputs.check(&[&json, &channels, &responses, &checksums])?;
     make_directory(directory)?;
     outputs.add(&json, |file| write_corrections(analysis, sha256, chosen, file))?;
     outputs.add(&channels, |file| channel_table(analysis, chosen, file))?;
     outputs.add(&responses, |file| response_table(analysis, chosen, file))?;
+    outputs.add_checksums(&checksums)?;
     outputs.persist()
 }
 

@@ -158,8 +158,8 @@ impl Found<'_> {
 
     /// The lower (0) or upper (1) end of the whole bar, of a gain as a ratio.
     fn end(&self, scalar: Scalar, end: usize) -> String {
-        let level = self.analysis.study.settings.uncertainty.level;
-        let ends = self.bar(scalar).and_then(|bar| bar.interval(level));
+        let level = self.analysis.uncertainty.as_ref().map(|uncertainty| uncertainty.level);
+        let ends = self.bar(scalar).zip(level).and_then(|(bar, level)| bar.interval(level));
         cell(ends.map(|ends| if scalar.is_delay() { ends[end] } else { ends[end].exp() }))
     }
 

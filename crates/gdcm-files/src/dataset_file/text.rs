@@ -6,6 +6,7 @@ use gdcm_core::dataset::limits::{
     MOST_CHANNELS, MOST_CONDITIONS, MOST_COORDINATES, MOST_FREQUENCIES, MOST_MODELS, MOST_MODELS_IN_ALL, MOST_PAIRS,
     MOST_PIECES, MOST_RECORDS, MOST_STATES,
 };
+use gdcm_core::whole_number::{whole, whole_or_none};
 use gdcm_core::dataset::{
     BandsDraft, BundleKind, Channel, Condition, ConditionDraft, ConditionId, ConditionRecord, Dataset, DatasetDraft,
     Estimate, FlightState, Location, Model, ModelDraft, Origin, Provenance, RecordKind, ResponseArray, ResponseDraft,
@@ -24,6 +25,7 @@ pub(super) const FORMAT: Format = Format { name: "gdcm-dataset", version: 1 };
 #[derive(Deserialize, Serialize)]
 pub(super) struct DatasetText {
     pub(super) format: String,
+    #[serde(deserialize_with = "whole")]
     pub(super) version: u64,
     pub(super) name: String,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -71,6 +73,7 @@ pub(super) struct BandText {
 
 #[derive(Deserialize, Serialize)]
 pub(super) struct ConditionText {
+    #[serde(deserialize_with = "whole")]
     pub(super) id: i64,
     pub(super) name: String,
     pub(super) airspeed_kt: f64,
@@ -123,7 +126,7 @@ pub(crate) struct ModelText {
     /// Of an identified model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) method: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "whole_or_none", skip_serializing_if = "Option::is_none")]
     pub(crate) order: Option<usize>,
     /// Names of the channels of a model outside a dataset, empty where its file has none.
     #[serde(skip_serializing_if = "Option::is_none")]

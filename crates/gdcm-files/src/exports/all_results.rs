@@ -109,6 +109,10 @@ fn corrections_struct(mut corrections: Tree, dataset: &Dataset) -> Value {
             condition[name] = condition[solution][field].clone();
         }
     }
+    // Names and units stand in columns of their own.
+    for side in ["inputs", "outputs"] {
+        corrections.as_object_mut().and_then(|members| members.shift_remove(side));
+    }
     if corrections["schedule"].is_null() {
         corrections["schedule"] = json!([]);
     }

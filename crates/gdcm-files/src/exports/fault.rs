@@ -1,6 +1,7 @@
 //! Why something cannot be exported.
 
 use gdcm_core::dataset::ConditionId;
+use gdcm_core::message_text::quoted;
 use gdcm_core::schedule::ScheduleError;
 
 use crate::variables::VariableFault;
@@ -21,8 +22,9 @@ pub enum ExportFault {
     Breakpoints,
     /// A file of MATLAB has a name that no function can have.
     #[error(
-        "MATLAB calls a function by the name of its file: a letter, then letters, digits and _, 63 at most, and not a name \
-         that the file uses itself; found \"{found}\""
+        "MATLAB calls a function by the name of its file: a letter, then letters, digits and _, 63 at most, and neither a \
+         keyword nor a name that the file uses itself; found {}",
+        quoted(found)
     )]
     FunctionName {
         /// The name of the file without its ending.

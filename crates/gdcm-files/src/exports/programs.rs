@@ -206,12 +206,20 @@ fn stem(path: &Path) -> String {
     path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
+/// What MATLAB (`iskeyword`) and GNU Octave keep for themselves, and the functions in the file.
+const KEYWORDS: [&str; 34] = [
+    "break", "case", "catch", "classdef", "continue", "do", "else", "elseif", "end", "end_try_catch",
+    "end_unwind_protect", "endfor", "endfunction", "endif", "endparfor", "endswitch", "endwhile", "for", "function",
+    "global", "if", "otherwise", "parfor", "persistent", "return", "spmd", "switch", "try", "until", "unwind_protect",
+    "unwind_protect_cleanup", "while", "gdcm_polynomial", "gdcm_table",
+];
+
 /// Refuses a name that no function of a file of MATLAB can have.
 fn check_function_name(name: &str) -> Result<(), ExportFault> {
     let is_name = name.starts_with(|first: char| first.is_ascii_alphabetic())
         && name.len() <= LONGEST_NAME
         && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
-    if is_name && !["gdcm_polynomial", "gdcm_table"].contains(&name) {
+    if is_name && !KEYWORDS.contains(&name) {
         return Ok(());
     }
     Err(ExportFault::FunctionName { found: name.to_owned() })

@@ -3,6 +3,7 @@
 
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::Dataset;
+use gdcm_core::message_text::shortened;
 use gdcm_core::response::LeadFilter;
 use gdcm_core::schedule::{Regression, Schedule, ScheduledQuantity};
 
@@ -123,8 +124,8 @@ impl Scheduled<'_> {
                 "Airspeeds outside {} to {} kt are clamped to the ends of this range.",
                 airspeeds.min_kt, airspeeds.max_kt
             ),
-            format!("Correction: {}", comment(&self.source.name)),
-            format!("Dataset: {}", comment(self.dataset.name())),
+            format!("Correction: {}", comment(&shortened(&self.source.name))),
+            format!("Dataset: {}", comment(&shortened(self.dataset.name()))),
             format!("SHA-256 of the dataset: {}", comment(&self.source.sha256)),
             concat!("Written by: gdcm ", env!("CARGO_PKG_VERSION")).to_owned(),
         ];

@@ -290,7 +290,7 @@ fn every_line_of_a_function_of_matlab_that_is_no_code_is_a_comment() {
 #[test]
 fn a_name_that_matlab_cannot_call_is_refused() {
     let matlab = PROGRAMS.iter().find(|program| program.about().name == "m").unwrap();
-    for name in ["2nd", "my-study", "gdcm_table", "\u{e9}t\u{e9}", &"x".repeat(64)] {
+    for name in ["2nd", "my-study", "gdcm_table", "end", "parfor", "endfunction", "\u{e9}t\u{e9}", &"x".repeat(64)] {
         let refused = matlab.check_path(Path::new(&format!("folder/{name}.m")));
         assert_eq!(refused, Err(ExportFault::FunctionName { found: name.to_owned() }));
     }

@@ -613,3 +613,9 @@ fn a_model_that_cannot_be_computed_is_named_with_its_place_by_check_and_by_analy
         assert!(status == 1 && text.contains(entry) && text.contains("condition"), "{text}");
     }
 }
+
+#[test]
+fn seven_point_zero_is_a_whole_number() {
+    let (status, text) = said_of_edge("float-id.json", "check");
+    assert!(status == 0 && !text.contains("whole number"), "{text}");
+}

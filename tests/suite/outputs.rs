@@ -190,3 +190,34 @@ fn a_directory_that_may_not_be_written_to_is_status_1_without_the_name_of_a_temp
     assert!(ended.error.starts_with("gdcm: /proc/self/example-dataset.json: cannot be written: "), "{}", ended.error);
     assert!(!ended.error.contains(".tmp") && !ended.error.contains("os error"), "{}", ended.error);
 }
+
+#[test]
+fn names_that_are_formulas_or_commands_of_a_terminal_do_no_harm_in_what_is_written() {
+    for file in ["injected-names.json", "escape-in-title.json"] {
+        let desk = Desk::new();
+        let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/edges").join(file);
+        let data = data.to_str().unwrap();
+        desk.gdcm(&["analyze", data, "--out", "."]).assert_done();
+        for (view, name) in [("poles", "poles.csv"), ("poles", "poles.svg"), ("overview", "overview.csv")] {
+            desk.gdcm(&["figure", data, "--view", view, "--condition", "1", "--out", name]).assert_done();
+        }
+        for format in ["m", "py", "h", "table-csv"] {
+            desk.gdcm(&["export", data, "--as", format, "--out", &format!("export.{}", format.replace("table-", ""))]);
+        }
+        desk.gdcm(&["report", data, "--out", "report.html"]).assert_done();
+        let written = names(desk.directory.path());
+        assert!(written.len() >= 10, "{written:?}");
+        for name in written.iter().filter(|name| !name.contains("small")) {
+            let text = fs::read_to_string(desk.path(name)).unwrap();
+            let control = text.chars().find(|letter| letter.is_control() && *letter != '\n');
+            assert_eq!(control, None, "{file}: {name}");
+            for line in text.lines().filter(|_| name.ends_with(".csv")) {
+                let is_formula = |cell: &str| {
+                    cell.trim_start_matches('"').starts_with(['=', '@'])
+                        || (cell.starts_with(['+', '-']) && cell.parse::<f64>().is_err())
+                };
+                assert!(!line.split(',').any(is_formula), "{file}: {name}: {line}");
+            }
+        }
+    }
+}

@@ -335,7 +335,9 @@ mod tests {
             write_set(Path::new(&directory), "after").unwrap();
         }
         let module = module_path!().split_once("::").unwrap().1;
-        let name = format!("{module}::a_set_whose_process_is_killed_on_the_way_is_not_whole_by_its_checksums_and_the_next_one_is");
+        let name = format!(
+            "{module}::a_set_whose_process_is_killed_on_the_way_is_not_whole_by_its_checksums_and_the_next_one_is"
+        );
         for (end, whole) in [(SET[0], Some("before")), (SET[1], None), (SET[2], None), (CHECKSUMS, None)] {
             let directory = tempfile::tempdir().unwrap();
             write_set(directory.path(), "before").unwrap();

@@ -10,8 +10,8 @@ use crate::dataset::limits::MOST_PAIRS;
 use crate::dataset::{Band, Dataset, PairTable};
 use crate::fidelity::CostAverage;
 use crate::schedule::ScheduleSettings;
-use crate::whole_number::whole;
 use crate::uncertainty::UncertaintySettings;
+use crate::whole_number::whole;
 
 /// Mismatch of a loop of held gains that counts as agreement \[dB\] before any decision.
 const DEFAULT_AGREEMENT_DB: f64 = 0.05;

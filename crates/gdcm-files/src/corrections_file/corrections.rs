@@ -131,15 +131,15 @@ impl<'a> ChannelNames<'a> {
 
     /// The figures of the regression of each channel.
     fn figures(&self, inputs: &[Regression], outputs: &[Regression]) -> Value {
-        self.by_channel(|channel| of_channel(channel, inputs, outputs).figures().to_vec())
+        self.by_channel(|channel| channel.of(inputs, outputs).figures().to_vec())
     }
 
     fn gains(&self, correction: &ChannelCorrection) -> Value {
-        self.by_channel(|channel| *of_channel(channel, &correction.input_gains, &correction.output_gains))
+        self.by_channel(|channel| correction.gain(channel))
     }
 
     fn delays_s(&self, correction: &ChannelCorrection) -> Value {
-        self.by_channel(|channel| *of_channel(channel, &correction.input_delays_s, &correction.output_delays_s))
+        self.by_channel(|channel| *channel.of(&correction.input_delays_s, &correction.output_delays_s))
     }
 
     /// The signed delay and the lead filter of each channel (M15), where there are any.
@@ -345,7 +345,7 @@ impl<'a> ChannelNames<'a> {
             "inputs": figures["inputs"],
             "outputs": figures["outputs"],
             "second_variable": schedule.second.as_ref().map(|term| {
-                let slopes = self.by_channel(|channel| *of_channel(channel, &term.inputs, &term.outputs));
+                let slopes = self.by_channel(|channel| *channel.of(&term.inputs, &term.outputs));
                 json!({
                     "variable": term.variable.name(),
                     "unit": term.variable.unit(),
@@ -369,14 +369,6 @@ impl<'a> ChannelNames<'a> {
             "cautions": schedule.cautions.iter().map(|of| of.words(&self.inputs, &self.outputs)).collect::<Value>(),
         });
         without_empty(used, &["second_variable", "tau_s"])
-    }
-}
-
-/// What belongs to a channel, of what is known of the inputs and of the outputs.
-fn of_channel<'t, T>(channel: Channel, inputs: &'t [T], outputs: &'t [T]) -> &'t T {
-    match channel {
-        Channel::Input(input) => &inputs[input],
-        Channel::Output(output) => &outputs[output],
     }
 }
 

@@ -11,6 +11,7 @@ use gdcm_core::study::{Analysis, Assessed, ConditionAnalysis};
 use gdcm_core::uncertainty::{Bar, Scalar, VarianceComponent};
 
 use crate::csv_table::write_records;
+use crate::figure::all_channels;
 
 /// What is known of a condition.
 #[derive(Clone)]
@@ -42,9 +43,9 @@ const CHANNEL_COLUMNS: [ChannelColumn; 20] = [
     ("airspeed_kt", |row| row.found.condition.flight_state().airspeed_kt.to_string()),
     ("kind", |row| if matches!(row.channel, Channel::Input(_)) { "input" } else { "output" }.to_owned()),
     ("channel", |row| row.name()),
-    ("gain", |row| cell(row.found.own().map(|own| row.gain(own)))),
+    ("gain", |row| cell(row.found.own().map(|own| own.gain(row.channel)))),
     ("delay_s", |row| cell(row.found.own().map(|own| row.delay_s(own)))),
-    ("scheduled_gain", |row| cell(row.found.scheduled.as_ref().map(|of| row.gain(of)))),
+    ("scheduled_gain", |row| cell(row.found.scheduled.as_ref().map(|of| of.gain(row.channel)))),
     ("scheduled_delay_s", |row| cell(row.found.scheduled.as_ref().map(|of| row.delay_s(of)))),
     ("tau_s", |row| cell(row.tau_s(row.found.own()))),
     ("lead_s", |row| cell(row.filter().map(LeadFilter::lead_s))),
@@ -105,9 +106,7 @@ pub(crate) fn channel_table(
     chosen: &BTreeSet<ConditionId>,
     file: &mut dyn Write,
 ) -> io::Result<()> {
-    let dataset = &analysis.study.dataset;
-    let inputs = (0..dataset.inputs().len()).map(Channel::Input);
-    let channels: Vec<Channel> = inputs.chain((0..dataset.outputs().len()).map(Channel::Output)).collect();
+    let channels = all_channels(&analysis.study.dataset);
     let rows = conditions(analysis, chosen).flat_map(|found| {
         let row = move |&channel: &Channel| ChannelRow { found: found.clone(), channel };
         channels.iter().map(row)
@@ -175,19 +174,9 @@ impl ChannelRow<'_> {
         self.channel.name(&inputs, &outputs)
     }
 
-    fn gain(&self, of: &ChannelCorrection) -> f64 {
-        match self.channel {
-            Channel::Input(at) => of.input_gains[at],
-            Channel::Output(at) => of.output_gains[at],
-        }
-    }
-
     /// Of a correction with leads, what is positive of the signed delay.
     fn delay_s(&self, of: &ChannelCorrection) -> f64 {
-        match self.channel {
-            Channel::Input(at) => of.input_delays_s[at],
-            Channel::Output(at) => of.output_delays_s[at],
-        }
+        *self.channel.of(&of.input_delays_s, &of.output_delays_s)
     }
 
     fn tau_s(&self, of: Option<&ChannelCorrection>) -> Option<f64> {

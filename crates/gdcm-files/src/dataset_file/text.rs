@@ -6,12 +6,12 @@ use gdcm_core::dataset::limits::{
     MOST_CHANNELS, MOST_CONDITIONS, MOST_COORDINATES, MOST_FREQUENCIES, MOST_MODELS, MOST_MODELS_IN_ALL, MOST_PAIRS,
     MOST_PIECES, MOST_RECORDS, MOST_STATES,
 };
-use gdcm_core::whole_number::{whole, whole_or_none};
 use gdcm_core::dataset::{
     BandsDraft, BundleKind, Channel, Condition, ConditionDraft, ConditionId, ConditionRecord, Dataset, DatasetDraft,
     Estimate, FlightState, Location, Model, ModelDraft, Origin, Provenance, RecordKind, ResponseArray, ResponseDraft,
     Timing,
 };
+use gdcm_core::whole_number::{whole, whole_or_none};
 use nalgebra::DMatrix;
 use serde::de::Deserializer;
 use serde::{Deserialize, Serialize};

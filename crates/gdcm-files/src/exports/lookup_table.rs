@@ -9,6 +9,7 @@ use super::matlab_struct::{Fields, cell_of_texts, column, matrix, row, scalar, t
 use super::programs::comment;
 use super::scheduled::{Scheduled, number};
 use super::{About, Export, ExportFault, Exported, Exporter};
+use crate::figure::all_channels;
 use crate::mat;
 use crate::variables::Variable;
 
@@ -119,7 +120,7 @@ impl<'e> BreakpointTable<'e> {
         let at = |second: Option<f64>| airspeeds_kt.iter().map(move |&airspeed_kt| (airspeed_kt, second));
         let rows = second.iter().flat_map(|&second| at(second)).collect();
         let mut table = Self { of, airspeeds_kt, rows, columns: Vec::new() };
-        for channel in of.channels() {
+        for channel in all_channels(of.dataset) {
             let evaluate = |kt, second| of.schedule.evaluate(kt, second);
             let gain = |kt, second| evaluate(kt, second).gain(channel);
             let delay_s = |kt, second| {

@@ -11,6 +11,7 @@ use minijinja::{Environment, Value, context};
 use super::matlab_struct::LONGEST_NAME;
 use super::scheduled::{Curve, Scheduled, number};
 use super::{About, Export, ExportFault, Exported, Exporter};
+use crate::figure::all_channels;
 
 /// A file in a programming language.
 pub(super) struct Program {
@@ -119,7 +120,7 @@ impl Program {
             context! { order => leads.design.settings().order.number(), lag_s => number(leads.design.lag_s()) }
         });
         let is_input = |channel: &Channel| matches!(channel, Channel::Input(_));
-        let (inputs, outputs) = of.channels().partition::<Vec<_>, _>(is_input);
+        let (inputs, outputs) = all_channels(of.dataset).into_iter().partition::<Vec<_>, _>(is_input);
         let values = context! {
             name,
             capitals => name.to_ascii_uppercase(),
@@ -208,10 +209,40 @@ fn stem(path: &Path) -> String {
 
 /// What MATLAB (`iskeyword`) and GNU Octave keep for themselves, and the functions in the file.
 const KEYWORDS: [&str; 34] = [
-    "break", "case", "catch", "classdef", "continue", "do", "else", "elseif", "end", "end_try_catch",
-    "end_unwind_protect", "endfor", "endfunction", "endif", "endparfor", "endswitch", "endwhile", "for", "function",
-    "global", "if", "otherwise", "parfor", "persistent", "return", "spmd", "switch", "try", "until", "unwind_protect",
-    "unwind_protect_cleanup", "while", "gdcm_polynomial", "gdcm_table",
+    "break",
+    "case",
+    "catch",
+    "classdef",
+    "continue",
+    "do",
+    "else",
+    "elseif",
+    "end",
+    "end_try_catch",
+    "end_unwind_protect",
+    "endfor",
+    "endfunction",
+    "endif",
+    "endparfor",
+    "endswitch",
+    "endwhile",
+    "for",
+    "function",
+    "global",
+    "if",
+    "otherwise",
+    "parfor",
+    "persistent",
+    "return",
+    "spmd",
+    "switch",
+    "try",
+    "until",
+    "unwind_protect",
+    "unwind_protect_cleanup",
+    "while",
+    "gdcm_polynomial",
+    "gdcm_table",
 ];
 
 /// Refuses a name that no function of a file of MATLAB can have.

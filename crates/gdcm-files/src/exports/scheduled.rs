@@ -9,6 +9,7 @@ use gdcm_core::schedule::{Regression, Schedule, ScheduledQuantity};
 
 use super::programs::comment;
 use super::{ExportFault, ExportSource};
+use crate::figure::all_channels;
 
 /// A schedule, with the dataset and the study that it is of.
 #[derive(Clone, Copy)]
@@ -49,12 +50,6 @@ impl Curve {
 const LEAD_POINTS: u32 = 100;
 
 impl Scheduled<'_> {
-    /// Every input, then every output.
-    pub(super) fn channels(&self) -> impl Iterator<Item = Channel> + use<> {
-        let inputs = (0..self.dataset.inputs().len()).map(Channel::Input);
-        inputs.chain((0..self.dataset.outputs().len()).map(Channel::Output))
-    }
-
     /// The gain of a channel \[-\].
     pub(super) fn gain(&self, channel: Channel) -> Curve {
         Curve {
@@ -110,7 +105,7 @@ impl Scheduled<'_> {
         let is_table = |channel| self.zero_s(channel).is_some_and(|zero_s| zero_s.figures.figures().len() > 1);
         let points = LEAD_POINTS + 1;
         let tables = format!("the lead filters are tables over airspeed, linear between {points} points");
-        self.notes().into_iter().chain(self.channels().any(is_table).then_some(tables)).collect()
+        self.notes().into_iter().chain(all_channels(self.dataset).into_iter().any(is_table).then_some(tables)).collect()
     }
 
     /// What a file of it is, line by line, with these notes.
@@ -151,7 +146,7 @@ impl Scheduled<'_> {
     /// Refuses numbers that no program can compute with.
     pub(super) fn check(&self) -> Result<(), ExportFault> {
         let (inputs, outputs) = self.dataset.names_of_channels();
-        for channel in self.channels() {
+        for channel in all_channels(self.dataset) {
             let curves = [("gain", Some(self.gain(channel))), ("delay", Some(self.delay_s(channel)))];
             for (curve, of) in curves.into_iter().chain([("lead numerator", self.zero_s(channel))]) {
                 if of.is_some_and(|of| !of.is_finite()) {

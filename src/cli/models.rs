@@ -40,10 +40,6 @@ impl FolderProgress for ReadingProgress {
         bar.set_position(number as u64);
         bar.set_message(sanitized(name));
     }
-
-    fn stopped(&self, _: u64) -> bool {
-        false
-    }
 }
 
 impl Drop for ReadingProgress {

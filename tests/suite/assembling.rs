@@ -18,10 +18,6 @@ struct Silent;
 
 impl FolderProgress for Silent {
     fn reading(&self, _: usize, _: usize, _: &str) {}
-
-    fn stopped(&self, _: u64) -> bool {
-        false
-    }
 }
 
 fn run(arguments: &[&str]) -> Ended {

@@ -22,10 +22,6 @@ struct Silent;
 
 impl FolderProgress for Silent {
     fn reading(&self, _: usize, _: usize, _: &str) {}
-
-    fn stopped(&self, _: u64) -> bool {
-        false
-    }
 }
 
 fn models(path: &Path) -> Vec<FoundModel> {

@@ -26,6 +26,14 @@ pub enum FileError {
         /// The directory.
         path: PathBuf,
     },
+    /// The path is neither a file nor a directory: reading it might never end.
+    #[error("{}: this is {kind}, not a file; save what it gives as a file, and give its name", sanitized_path(path))]
+    NotAFile {
+        /// The path.
+        path: PathBuf,
+        /// What it is, in words.
+        kind: &'static str,
+    },
     /// The system does not let the file be read.
     #[error("{}: cannot be read: {reason}", sanitized_path(path))]
     Unreadable {
@@ -35,10 +43,7 @@ pub enum FileError {
         reason: String,
     },
     /// The file, or what it unpacks to, is larger than the program takes.
-    #[error(
-        "{}: holds more than {most_mib} MiB of text, which is the most that is read; split the file",
-        sanitized_path(path)
-    )]
+    #[error("{}: holds more than {most_mib} MiB, which is the most that is read; split the file", sanitized_path(path))]
     TooLarge {
         /// The file.
         path: PathBuf,

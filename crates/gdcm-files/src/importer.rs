@@ -10,19 +10,23 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use gdcm_core::assembly::FoundModel;
 use gdcm_core::dataset::Dataset;
-use sha2::{Digest, Sha256};
+use gdcm_core::message_text::sanitized;
 
 use crate::file_error::FileError;
+use crate::foreign_formats::ForeignFormat;
 use crate::json_values::Json;
 use crate::mat::Mat;
 use crate::mat73::Hdf5;
 use crate::npy::Npy;
-use crate::source::read_bytes;
+use crate::octave::{OctaveBinary, OctaveText};
+use crate::source::{kind_of, read_bytes, sha256};
 use crate::text::{Literals, Text};
-use crate::variables::{MemoryBudget, Variable, VariableFault};
+use crate::variables::{ReadingBudget, Variable, VariableFault};
 use crate::zip_files::Zip;
 
 /// Memory that what one file holds may take \[bytes\].
@@ -45,11 +49,12 @@ pub(crate) trait Importer: Sync {
     fn recognises(&self, bytes: &[u8], ending: &str) -> bool;
 
     /// What the bytes hold; memory is taken from the budget before it is used. `path` is what errors call the file.
-    fn read(&self, bytes: &[u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Contents, FileError>;
+    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError>;
 }
 
 /// The formats; a file is of the first that recognises it, and the last recognises any.
-const FORMATS: [&dyn Importer; 7] = [&Npy, &Zip, &Hdf5, &Mat, &Json, &Literals, &Text];
+const FORMATS: [&dyn Importer; 10] =
+    [&Npy, &Zip, &Hdf5, &OctaveBinary, &ForeignFormat, &Mat, &OctaveText, &Json, &Literals, &Text];
 
 /// What a file holds.
 pub(crate) enum Contents {
@@ -59,6 +64,8 @@ pub(crate) enum Contents {
         variables: Vec<Variable>,
         /// How they were read, where that is not plain.
         notes: Vec<String>,
+        /// Whether the first index of an array of more than two dimensions counts the matrices in it, as NumPy has it.
+        pages_first: bool,
     },
     /// Numbers in lines: what they are depends on what is looked for.
     Text(String),
@@ -78,10 +85,16 @@ pub(crate) enum Contents {
 }
 
 impl Contents {
+    /// Arrays as NumPy and JSON have them, or why not.
+    pub(crate) fn row_major(read: Result<Vec<Variable>, VariableFault>, path: &Path) -> Result<Self, FileError> {
+        let variables = read.map_err(|fault| FileError::variables(path, fault))?;
+        Ok(Self::Variables { variables, notes: Vec::new(), pages_first: true })
+    }
+
     /// Variables that were read, or why not.
     pub(crate) fn variables(read: Result<Vec<Variable>, VariableFault>, path: &Path) -> Result<Self, FileError> {
         let variables = read.map_err(|fault| FileError::variables(path, fault))?;
-        Ok(Self::Variables { variables, notes: Vec::new() })
+        Ok(Self::Variables { variables, notes: Vec::new(), pages_first: false })
     }
 }
 
@@ -95,8 +108,12 @@ pub(crate) fn importer_of(bytes: &[u8], path: &Path) -> &'static dyn Importer {
 pub trait FolderProgress {
     /// A file is about to be read: its number from 1, how many there are, its name.
     fn reading(&self, number: usize, of: usize, name: &str);
-    /// Whether the engineer wants no more, now that this many bytes of the file's values are read.
-    fn stopped(&self, taken: u64) -> bool;
+    /// So many bytes are taken for what the file holds.
+    fn taken(&self, _bytes: u64) {}
+    /// What ends the reading once it is set.
+    fn stop(&self) -> Arc<AtomicBool> {
+        Arc::default()
+    }
 }
 
 /// A file that was read.
@@ -116,20 +133,19 @@ pub(crate) fn import_bytes<'f>(
     bytes: &[u8],
     path: &'f Path,
     name: &'f str,
-    budget: &MemoryBudget<'_>,
+    budget: &ReadingBudget<'_>,
 ) -> Result<ImportedFile<'f>, FileError> {
     let contents = importer_of(bytes, path).read(bytes, path, budget)?;
-    let sha256 = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
-    Ok(ImportedFile { path, name, sha256, contents })
+    Ok(ImportedFile { path, name, sha256: sha256(bytes, path, budget)?, contents })
 }
 
 /// Reads one file.
 pub(crate) fn import_file<'f>(
     path: &'f Path,
     name: &'f str,
-    budget: &MemoryBudget<'_>,
+    budget: &ReadingBudget<'_>,
 ) -> Result<ImportedFile<'f>, FileError> {
-    import_bytes(&read_bytes(path, LARGEST_FILE)?, path, name, budget)
+    import_bytes(&read_bytes(path, LARGEST_FILE, budget)?, path, name, budget)
 }
 
 /// Reads files and folders, folders with all that is in them, and gives each to `take`: how many there are, and why some could not be
@@ -137,17 +153,17 @@ pub(crate) fn import_file<'f>(
 pub(crate) fn import(
     paths: &[PathBuf],
     progress: &dyn FolderProgress,
-    mut take: impl FnMut(ImportedFile<'_>, &MemoryBudget<'_>) -> Result<(), FileError>,
+    mut take: impl FnMut(ImportedFile<'_>, &ReadingBudget<'_>) -> Result<(), FileError>,
 ) -> Result<(usize, Vec<String>), FileError> {
-    let files = files_of(paths)?;
     let mut faults = Vec::new();
+    let files = files_of(paths, &mut faults)?;
+    let (stop, tell) = (progress.stop(), |taken| progress.taken(taken));
     for (index, (path, name)) in files.iter().enumerate() {
-        if progress.stopped(0) {
+        if stop.load(Ordering::Relaxed) {
             break;
         }
         progress.reading(index + 1, files.len(), name);
-        let stop = |taken| progress.stopped(taken);
-        let budget = MemoryBudget::new(MOST_MEMORY, &stop);
+        let budget = ReadingBudget::new(MOST_MEMORY).stopped_by(Arc::clone(&stop)).telling(&tell);
         match import_file(path, name, &budget).and_then(|file| take(file, &budget)) {
             Ok(()) => {}
             Err(error) if paths.len() == 1 && files.len() == 1 => return Err(error),
@@ -172,12 +188,12 @@ pub fn sources_folder(sources: &[PathBuf]) -> &Path {
 }
 
 /// Files, and those of folders whose names end as those of a format, in the order of their names: their paths, and their names relative to what was asked
-/// for.
-fn files_of(paths: &[PathBuf]) -> Result<Vec<(PathBuf, String)>, FileError> {
+/// for. What is no file is skipped with a word.
+fn files_of(paths: &[PathBuf], skipped: &mut Vec<String>) -> Result<Vec<(PathBuf, String)>, FileError> {
     let mut files = Vec::new();
     for path in paths {
         if path.is_dir() {
-            list(path, path, DEEPEST, &mut files)?;
+            list(path, path, DEEPEST, &mut files, skipped)?;
         } else {
             let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
             files.push((path.clone(), name));
@@ -187,7 +203,13 @@ fn files_of(paths: &[PathBuf]) -> Result<Vec<(PathBuf, String)>, FileError> {
 }
 
 /// The files below a folder, in the order of their names, with their paths relative to it.
-fn list(folder: &Path, root: &Path, deeper: usize, files: &mut Vec<(PathBuf, String)>) -> Result<(), FileError> {
+fn list(
+    folder: &Path,
+    root: &Path,
+    deeper: usize,
+    files: &mut Vec<(PathBuf, String)>,
+    skipped: &mut Vec<String>,
+) -> Result<(), FileError> {
     let failed = |error: std::io::Error| FileError::reading(folder, &error);
     let mut entries = fs::read_dir(folder).map_err(failed)?.collect::<Result<Vec<_>, _>>().map_err(failed)?;
     entries.sort_by_key(|entry| natural(&entry.file_name().to_string_lossy()));
@@ -203,10 +225,14 @@ fn list(folder: &Path, root: &Path, deeper: usize, files: &mut Vec<(PathBuf, Str
             if deeper == 0 {
                 return Err(FileError::FolderTooDeep { path });
             }
-            list(&path, root, deeper - 1, files)?;
+            list(&path, root, deeper - 1, files, skipped)?;
         } else if is_known(&path) {
+            let meant = fs::metadata(&path).map_or(kind, |metadata| metadata.file_type());
             let name = path.strip_prefix(root).unwrap_or(&path).to_string_lossy().replace('\\', "/");
-            files.push((path, name));
+            match kind_of(meant) {
+                Some(kind) => skipped.push(format!("{}: skipped, for this is {kind}, not a file", sanitized(&name))),
+                None => files.push((path, name)),
+            }
         }
         if files.len() > MOST_FILES {
             return Err(FileError::TooManyFiles { path: root.to_owned(), most: MOST_FILES });
@@ -259,6 +285,12 @@ mod tests {
         assert_eq!(of(b" {\"A\": 1}", "a.txt"), Json.name());
         assert_eq!(of(b"A = [1 2];", "a.m"), Literals.name());
         assert_eq!(of(b"1,2\n3,4\n", "a.csv"), Text.name());
+        // The same text is read alike, whatever it is called.
+        assert_eq!(of(b"% a model\nA = [1 2\n 3 4];", "a.txt"), Literals.name());
+        assert_eq!(of(b"% omega, re, im\n1,2,3\n4,5,6\n", "a.m"), Text.name());
+        assert_eq!(of(b"Fs = 50\nt,P\n0,1\n1,2\n", "a.txt"), Text.name());
+        assert_eq!(of(b"A = [\n1 2\n3 4\n];", "a.m"), Literals.name());
+        assert_eq!(of(b"# Created by Octave 7.3.0\n# name: A\n# type: matrix\n", "a.txt"), OctaveText.name());
         let header = [&[b'M'; 124][..], &[0, 1, b'I', b'M']].concat();
         assert_eq!(of(&header, "no extension"), Mat.name());
     }

@@ -6,6 +6,8 @@ use gdcm_core::dataset::{BundleKind, ConditionPlace, Location, ModelPlace};
 use gdcm_core::message_text::{quoted, sanitized, shortened};
 use json_event_parser::{JsonEvent, SliceJsonParser};
 
+use crate::variables::ReadingBudget;
+
 /// One step on the way from the top of a JSON text to a value in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Step {
@@ -100,9 +102,9 @@ impl Outline {
         Self { format: Some(quoted(format)), version: Some(version.to_string()), ..Self::default() }
     }
 
-    /// What the file calls its format; reads no further than that.
-    pub(super) fn format_of(text: &[u8]) -> Option<String> {
-        Self::read(text, |outline| outline.format.is_some()).format
+    /// What the file calls its format; reads no further than that, nor on where the reader shall stop.
+    pub(super) fn format_of(text: &[u8], budget: &ReadingBudget<'_>) -> Option<String> {
+        Self::read(text, |outline| outline.format.is_some() || budget.work(0, "").is_err()).format
     }
 
     /// The id of a condition, by index.
@@ -290,8 +292,9 @@ mod outline_tests {
 
     #[test]
     fn the_format_is_read_without_reading_on() {
-        assert_eq!(Outline::format_of(br#"{"name": [1], "format": "x", broken"#).as_deref(), Some("\"x\""));
-        assert_eq!(Outline::format_of(br#"{"format": [1, 2], broken"#).as_deref(), Some("a list"));
-        assert_eq!(Outline::format_of(b"[1, 2]"), None);
+        let format_of = |text: &[u8]| Outline::format_of(text, &ReadingBudget::new(0));
+        assert_eq!(format_of(br#"{"name": [1], "format": "x", broken"#).as_deref(), Some("\"x\""));
+        assert_eq!(format_of(br#"{"format": [1, 2], broken"#).as_deref(), Some("a list"));
+        assert_eq!(format_of(b"[1, 2]"), None);
     }
 }

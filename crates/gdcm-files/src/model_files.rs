@@ -14,9 +14,12 @@ use crate::importer::{Contents, FolderProgress, ImportedFile, import, import_byt
 use crate::recognise::{Found, recognise};
 use crate::text::{
     FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable, read_matrices, read_matrix, read_table,
-    says_quantity,
+    says_quantity, split_complex,
 };
-use crate::variables::{MemoryBudget, Value, Variable, VariableFault};
+use crate::variables::{ReadingBudget, Value, Variable, VariableFault};
+
+/// The headings of every table of as many columns, among those of single files.
+pub const EVERY_TABLE: &str = "*";
 
 /// What was found in files.
 #[derive(Clone, Debug, Default)]
@@ -49,7 +52,7 @@ pub fn read_models(
 
 /// The models in the bytes of a file of this name, in no more than `most` bytes of memory for what it holds.
 pub fn models_of_bytes(bytes: &[u8], name: &str, most: u64) -> Result<FoundModels, FileError> {
-    let budget = MemoryBudget::new(most, &|_| false);
+    let budget = ReadingBudget::new(most);
     let none = Headings::new();
     let mut reading = ModelReading { headings: &none, found: FoundModels::default(), matrices: Vec::new() };
     reading.take(import_bytes(bytes, Path::new(name), name, &budget)?, &budget)?;
@@ -65,15 +68,20 @@ struct ModelReading<'h> {
 }
 
 impl ModelReading<'_> {
-    fn take(&mut self, file: ImportedFile<'_>, budget: &MemoryBudget<'_>) -> Result<(), FileError> {
+    fn take(&mut self, file: ImportedFile<'_>, budget: &ReadingBudget<'_>) -> Result<(), FileError> {
         let ImportedFile { path, name, sha256, contents } = file;
         let wrong = |fault| FileError::variables(path, fault);
         let recognised = match contents {
-            Contents::Variables { variables, notes } => self.of_variables(variables, notes, (name, &sha256)),
+            Contents::Variables { variables, notes, pages_first } => {
+                self.of_variables(variables, notes, ((name, &sha256), pages_first), budget).map_err(wrong)?
+            }
             Contents::Text(text) => match models_text(&text, path, budget).map_err(wrong)? {
-                TextContents::Variables { variables, notes } => self.of_variables(variables, notes, (name, &sha256)),
+                TextContents::Variables { variables, notes } => {
+                    self.of_variables(variables, notes, ((name, &sha256), false), budget).map_err(wrong)?
+                }
                 TextContents::Table(mut table) => {
-                    if let Some(said) = self.headings.get(name) {
+                    let of_all = self.headings.get(EVERY_TABLE).filter(|said| said.len() == table.columns.len());
+                    if let Some(said) = self.headings.get(name).or(of_all) {
                         table = table.with_headings(said).map_err(wrong)?;
                     }
                     let found = models_of_table(&table, name).map_err(wrong)?;
@@ -93,7 +101,8 @@ impl ModelReading<'_> {
                     self.found.faults.extend(taken.err().map(|error| format!("{name}: {error}")));
                 }
                 self.found.ignored.extend(of_file(name, ignored));
-                self.of_variables(variables, Vec::new(), (name, &sha256))
+                // Its arrays are those of NumPy.
+                self.of_variables(variables, Vec::new(), ((name, &sha256), true), budget).map_err(wrong)?
             }
         };
         let Found { mut items, faults, ignored } = recognised;
@@ -113,17 +122,18 @@ impl ModelReading<'_> {
         &mut self,
         variables: Vec<Variable>,
         notes: Vec<String>,
-        (name, sha256): (&str, &str),
-    ) -> Found<FoundModel> {
+        ((name, sha256), pages_first): ((&str, &str), bool),
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Found<FoundModel>, VariableFault> {
         if let Some(matrix) = LooseMatrix::of(&variables, name) {
             self.matrices.push(LooseMatrix { sha256: sha256.to_owned(), ..matrix });
-            return Found::default();
+            return Ok(Found::default());
         }
-        let mut found = recognise(&variables);
+        let mut found = recognise(&variables, pages_first, budget)?;
         for model in &mut found.items {
             model.notes.extend(notes.iter().cloned());
         }
-        found
+        Ok(found)
     }
 
     fn finish(mut self) -> FoundModels {
@@ -141,7 +151,7 @@ enum TextContents {
 }
 
 /// A matrix where the file is named as one, matrices under names where there are some, else a table.
-fn models_text(text: &str, path: &Path, budget: &MemoryBudget<'_>) -> Result<TextContents, VariableFault> {
+fn models_text(text: &str, path: &Path, budget: &ReadingBudget<'_>) -> Result<TextContents, VariableFault> {
     if let Some((letter, _)) = matrix_letter(stem(path)) {
         let variable = read_matrix(text, &letter.to_string(), budget)?;
         return Ok(TextContents::Variables { variables: vec![variable], notes: Vec::new() });
@@ -153,7 +163,8 @@ fn models_text(text: &str, path: &Path, budget: &MemoryBudget<'_>) -> Result<Tex
     if looks_named && let Ok(matrices) = read_matrices(text, budget) {
         return Ok(TextContents::Variables { variables: matrices.variables, notes: matrices.notes });
     }
-    read_table(text, budget).map(TextContents::Table)
+    let split = split_complex(text, budget)?;
+    read_table(split.as_deref().unwrap_or(text), budget).map(TextContents::Table)
 }
 
 fn stem(path: &Path) -> &str {
@@ -262,7 +273,9 @@ fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
     let mut found = Found::default();
     for (group, matrices) in groups {
         let variables: Vec<Variable> = matrices.iter().map(|matrix| matrix.variable.clone()).collect();
-        let mut of_group = recognise(&variables);
+        // The files were within their budgets; their matrices are copied once.
+        let mut of_group = recognise(&variables, true, &ReadingBudget::new(u64::MAX))
+            .unwrap_or_else(|fault| Found { faults: vec![fault.to_string()], ..Found::default() });
         let is_model = !of_group.items.is_empty() || !of_group.faults.is_empty();
         for model in &mut of_group.items {
             let source = model.draft.source.get_or_insert_with(Provenance::default);

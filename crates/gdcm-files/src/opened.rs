@@ -9,6 +9,7 @@ use super::file_error::FileError;
 use super::source::Source;
 use super::study_file::{OpenedStudy, study_from};
 use crate::location::Outline;
+use crate::variables::ReadingBudget;
 
 /// What a file turned out to be.
 #[derive(Clone, Debug)]
@@ -33,7 +34,7 @@ impl Opened {
 /// Opens a dataset or a study, whichever the file says it is.
 pub fn load_any(path: &Path) -> Result<Opened, FileError> {
     let source = Source::read(path)?;
-    match Outline::format_of(source.text()).as_deref() {
+    match Outline::format_of(source.text(), &ReadingBudget::new(u64::MAX)).as_deref() {
         Some("\"gdcm-study\"") => Ok(Opened::Study(study_from(&source, path, None)?)),
         Some("\"gdcm-dataset\"") | None => {
             Ok(Opened::Dataset(dataset_from(&source, DatasetOrigin::File(path.to_owned()))?))

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 #[cfg(unix)]
 use std::sync::{Arc, atomic::AtomicBool};
 
+use sha2::{Digest, Sha256};
 use tempfile::NamedTempFile;
 
 use super::file_error::FileError;
-use super::source::sha256_hex;
 
 /// What becomes of a file that stands where another is to be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,8 +109,8 @@ impl OutputSet {
     /// belong together.
     pub fn add_checksums(&mut self, path: &Path) -> Result<(), FileError> {
         let line = |staged: &Staged| {
-            let name = staged.path.file_name().unwrap_or_default().to_string_lossy();
-            Ok(format!("{}  {name}\n", sha256_hex(&fs::read(staged.temporary.path())?)))
+            let name = &staged.path.file_name().unwrap_or_default().to_string_lossy();
+            Ok(checksum(name, &fs::read(staged.temporary.path())?))
         };
         let lines: io::Result<String> = self.staged.iter().map(line).collect();
         let lines = lines.map_err(|error| FileError::writing(path, &error))?;
@@ -140,6 +140,11 @@ impl OutputSet {
         }
         Ok(())
     }
+}
+
+/// A file's line among checksums.
+fn checksum(name: &str, bytes: &[u8]) -> String {
+    format!("{:x}  {name}\n", Sha256::digest(bytes))
 }
 
 /// The right to put a set of files into a directory: a locked file there, which the next set waits for. It ends with its process,
@@ -324,7 +329,7 @@ mod tests {
     /// The text of a set that is whole by its checksums.
     fn whole_set(directory: &Path) -> Option<String> {
         let read = |name: &str| fs::read_to_string(directory.join(name)).unwrap();
-        let lines = SET.map(|name| format!("{}  {name}\n", sha256_hex(read(name).as_bytes())));
+        let lines = SET.map(|name| checksum(name, read(name).as_bytes()));
         (read(CHECKSUMS) == lines.concat()).then(|| read(SET[0]))
     }
 

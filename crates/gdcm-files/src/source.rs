@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 use std::fs;
-use std::fs::File;
+use std::fs::{File, FileType};
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -12,18 +12,15 @@ use gdcm_core::dataset::limits::LARGEST_TEXT;
 use sha2::{Digest, Sha256};
 
 use crate::file_error::FileError;
-use crate::variables::MemoryBudget;
+use crate::variables::ReadingBudget;
 
 /// The two bytes that every gzip file starts with (RFC 1952).
 pub(super) const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
 /// What some editors put in front of UTF-8.
 const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
 
-/// How many bytes are unpacked before memory for more is asked for.
-const CHUNK: u64 = 1 << 16;
-
-/// Asks for the memory of so many bytes.
-type TakeMemory<'t> = &'t dyn Fn(u64) -> Result<(), FileError>;
+/// How many bytes are read, unpacked or summed up before the budget is asked again.
+const CHUNK: usize = 1 << 16;
 
 /// What a file holds: the hash of its bytes, and its text.
 #[derive(Debug)]
@@ -36,65 +33,96 @@ pub(super) struct Source<'b> {
 impl Source<'static> {
     /// Reads a file, unpacking it where it is packed.
     pub(super) fn read(path: &Path) -> Result<Self, FileError> {
-        let bytes = read_bytes(path, LARGEST_TEXT)?;
-        let sha256 = sha256_hex(&bytes);
-        let text = if bytes.starts_with(&GZIP_MAGIC) { unpack(&bytes, path, &|_| Ok(()))? } else { bytes };
-        Ok(Source { sha256, text: Cow::Owned(text) })
+        let bytes = read_bytes(path, LARGEST_TEXT, &ReadingBudget::new(u64::MAX))?;
+        let Source { sha256, text } = Source::of(&bytes, path)?;
+        let unpacked = if let Cow::Owned(unpacked) = text { Some(unpacked) } else { None };
+        Ok(Source { sha256, text: Cow::Owned(unpacked.unwrap_or(bytes)) })
     }
 }
 
 impl<'b> Source<'b> {
     /// Takes bytes that are already at hand; `path` is what an error calls them.
     pub(super) fn of(bytes: &'b [u8], path: &Path) -> Result<Self, FileError> {
-        Self::taking(bytes, path, &|_| Ok(()))
-    }
-
-    /// As [`Source::of`], with the memory for what is unpacked taken from a budget.
-    pub(super) fn within(bytes: &'b [u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Self, FileError> {
-        // A text that grows is copied into twice its memory.
-        Self::taking(bytes, path, &|count| budget.take(count, 2, "").map_err(|fault| FileError::variables(path, fault)))
-    }
-
-    fn taking(bytes: &'b [u8], path: &Path, take: TakeMemory<'_>) -> Result<Self, FileError> {
-        let text = if bytes.starts_with(&GZIP_MAGIC) {
-            Cow::Owned(unpack(bytes, path, take)?)
-        } else {
-            check_length(bytes.len() as u64, LARGEST_TEXT, path)?;
-            Cow::Borrowed(bytes)
-        };
-        Ok(Source { sha256: sha256_hex(bytes), text })
+        let budget = ReadingBudget::new(u64::MAX);
+        Ok(Source { sha256: sha256(bytes, path, &budget)?, text: text_of(bytes, path, &budget)? })
     }
 
     /// The text, without a byte order mark.
     pub(super) fn text(&self) -> &[u8] {
-        self.text.strip_prefix(&BYTE_ORDER_MARK).unwrap_or(&self.text)
+        without_mark(&self.text)
     }
 }
 
+/// A text without what some editors put in front of it.
+pub(super) fn without_mark(text: &[u8]) -> &[u8] {
+    text.strip_prefix(&BYTE_ORDER_MARK).unwrap_or(text)
+}
+
 /// The bytes of a file of at most `most`.
-pub(super) fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, FileError> {
+pub(super) fn read_bytes(path: &Path, most: u64, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, FileError> {
     let failed = |error: std::io::Error| FileError::reading(path, &error);
-    let file = File::open(path).map_err(failed)?;
-    // Opening a directory succeeds on some systems; reading it gives an error that says less.
-    if file.metadata().map_err(failed)?.is_dir() {
+    // Opening a pipe waits for somebody who writes into it, and a directory can be opened on some systems.
+    let metadata = fs::metadata(path).map_err(failed)?;
+    if metadata.is_dir() {
         return Err(FileError::Directory { path: path.to_owned() });
     }
-    let mut bytes = Vec::new();
-    file.take(most + 1).read_to_end(&mut bytes).map_err(failed)?;
+    if let Some(kind) = kind_of(metadata.file_type()) {
+        return Err(FileError::NotAFile { path: path.to_owned(), kind });
+    }
+    let mut file = File::open(path).map_err(failed)?.take(most + 1);
+    let mut bytes = Vec::with_capacity(usize::try_from(metadata.len().min(most)).unwrap_or(0));
+    while file.by_ref().take(CHUNK as u64).read_to_end(&mut bytes).map_err(failed)? > 0 {
+        budget.work(CHUNK as u64, "").map_err(|fault| FileError::variables(path, fault))?;
+    }
     check_length(bytes.len() as u64, most, path)?;
     Ok(bytes)
+}
+
+/// What stands under a path that is neither a file nor a directory, in words.
+pub(super) fn kind_of(kind: FileType) -> Option<&'static str> {
+    if kind.is_file() || kind.is_dir() || kind.is_symlink() {
+        return None;
+    }
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        for (is, words) in [
+            (kind.is_fifo(), "a named pipe"),
+            (kind.is_socket(), "a socket"),
+            (kind.is_char_device() || kind.is_block_device(), "a device"),
+        ] {
+            if is {
+                return Some(words);
+            }
+        }
+    }
+    Some("something of the system")
+}
+
+/// The text that bytes are, or that is packed in them, with the memory for what is unpacked taken from a budget.
+pub(super) fn text_of<'b>(
+    bytes: &'b [u8],
+    path: &Path,
+    budget: &ReadingBudget<'_>,
+) -> Result<Cow<'b, [u8]>, FileError> {
+    if bytes.starts_with(&GZIP_MAGIC) {
+        return unpack(bytes, path, budget).map(Cow::Owned);
+    }
+    check_length(bytes.len() as u64, LARGEST_TEXT, path)?;
+    Ok(Cow::Borrowed(bytes))
 }
 
 /// Unpacks as it goes, and no further than the limit: a few kilobytes can unpack to gigabytes.
 ///
 /// A file may have several members (RFC 1952), and zeros behind the last, with which tapes and copying programs fill their blocks.
-fn unpack(bytes: &[u8], path: &Path, take: TakeMemory<'_>) -> Result<Vec<u8>, FileError> {
+fn unpack(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, FileError> {
     let (mut text, mut rest) = (Vec::new(), bytes);
     while rest.iter().any(|&byte| byte != 0) {
         let mut member = GzDecoder::new(rest);
         loop {
-            take(CHUNK)?;
-            let unpacked = member.by_ref().take(CHUNK).read_to_end(&mut text);
+            // A text that grows is copied into twice its memory.
+            budget.take(CHUNK as u64, 2, "").map_err(|fault| FileError::variables(path, fault))?;
+            let unpacked = member.by_ref().take(CHUNK as u64).read_to_end(&mut text);
             check_length(text.len() as u64, LARGEST_TEXT, path)?;
             let count = unpacked.map_err(|error| match error.kind() {
                 ErrorKind::UnexpectedEof => FileError::GzipCutOff { path: path.to_owned() },
@@ -116,8 +144,14 @@ fn check_length(length: u64, most: u64, path: &Path) -> Result<(), FileError> {
     Ok(())
 }
 
-pub(super) fn sha256_hex(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+/// SHA-256 of bytes, in lower-case hexadecimal.
+pub(super) fn sha256(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<String, FileError> {
+    let mut hash = Sha256::new();
+    for chunk in bytes.chunks(CHUNK) {
+        budget.work(0, "").map_err(|fault| FileError::variables(path, fault))?;
+        hash.update(chunk);
+    }
+    Ok(hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
 // Whether a file is still what it was.
@@ -169,7 +203,8 @@ mod source_tests {
     #[test]
     fn the_hash_is_that_of_the_published_example() {
         // FIPS 180-2, appendix B.1.
-        assert_eq!(sha256_hex(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+        let hash = sha256(b"abc", Path::new("x"), &ReadingBudget::new(0)).unwrap();
+        assert_eq!(hash, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     }
 
     #[test]

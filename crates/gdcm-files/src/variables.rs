@@ -2,7 +2,7 @@
 //!
 //! Every reader of such files (MATLAB's, NumPy's, text) gives these values and knows nothing of models.
 
-use std::cell::Cell;
+pub use crate::reading_budget::ReadingBudget;
 
 // Numbers in an array of any number of dimensions.
 
@@ -108,6 +108,9 @@ pub struct StructArray {
     pub fields: Vec<(String, Vec<Value>)>,
 }
 
+/// What a record counts for beside its fields while files are read, also where it has none \[bytes\].
+pub(crate) const RECORD: u64 = 64;
+
 /// An object of a class, or several of the same class in an array.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
@@ -203,6 +206,17 @@ pub enum VariableFault {
         /// The limit \[MiB\].
         most_mib: u64,
     },
+    /// Reading the file would take longer than any file of data does.
+    #[error(
+        "{}this would take more than {most_millions} million steps of work, which is the most that is read; split the file",
+        at(variable)
+    )]
+    TooMuchWork {
+        /// The variable.
+        variable: String,
+        /// The limit \[million steps\].
+        most_millions: u64,
+    },
     /// Values lie in values, deeper than anything that is read, or in a circle.
     #[error("{}values are nested too deeply, or contain themselves", at(variable))]
     TooDeep {
@@ -220,36 +234,13 @@ pub enum VariableFault {
     Stopped,
 }
 
+impl VariableFault {
+    /// Whether the budget ends the reading: nothing else of the file is to be tried.
+    pub fn is_of_the_budget(&self) -> bool {
+        matches!(self, Self::TooLarge { .. } | Self::TooMuchWork { .. } | Self::Stopped)
+    }
+}
+
 fn at(variable: &str) -> String {
     if variable.is_empty() { String::new() } else { format!("variable {variable}: ") }
-}
-
-// How much a reader may take, and whether it shall go on.
-
-/// Counts the memory that a reader is about to take, refuses what goes beyond the limit before it is taken, and asks now and then
-/// whether the reader shall go on.
-pub struct MemoryBudget<'s> {
-    most: u64,
-    taken: Cell<u64>,
-    stop: &'s dyn Fn(u64) -> bool,
-}
-
-impl<'s> MemoryBudget<'s> {
-    /// A budget for at most `most` bytes; `stop` is told at every [`MemoryBudget::take`] how many are taken, and answers whether to stop.
-    pub fn new(most: u64, stop: &'s dyn Fn(u64) -> bool) -> Self {
-        Self { most, taken: Cell::new(0), stop }
-    }
-
-    /// Counts `count` elements of `size` bytes that `variable` is about to take.
-    pub fn take(&self, count: u64, size: u64, variable: &str) -> Result<(), VariableFault> {
-        if (self.stop)(self.taken.get()) {
-            return Err(VariableFault::Stopped);
-        }
-        let taken = self.taken.get().saturating_add(count.saturating_mul(size));
-        if taken > self.most {
-            return Err(VariableFault::TooLarge { variable: variable.to_owned(), most_mib: self.most >> 20 });
-        }
-        self.taken.set(taken);
-        Ok(())
-    }
 }

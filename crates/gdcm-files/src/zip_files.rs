@@ -10,10 +10,13 @@ use rawzip::{CompressionMethod, ZipArchive, ZipFileHeaderRecord, ZipSliceArchive
 use crate::file_error::FileError;
 use crate::importer::{Contents, Importer, importer_of, is_known};
 use crate::npy::read_npy;
-use crate::variables::{MemoryBudget, Variable, VariableFault};
+use crate::variables::{ReadingBudget, Variable, VariableFault};
 
 /// The most bytes that one byte of deflate (RFC 1951) can become.
 const LARGEST_RATIO: u64 = 1032;
+
+/// How many bytes are unpacked before the budget is asked again.
+const CHUNK: u64 = 1 << 20;
 
 /// What the name of every array of NumPy ends with.
 const ARRAY: &str = ".npy";
@@ -34,13 +37,13 @@ impl Importer for Zip {
         matches!(bytes, [b'P', b'K', 3 | 5, ..])
     }
 
-    fn read(&self, bytes: &[u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Contents, FileError> {
+    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
         read_archive(bytes, budget).map_err(|fault| FileError::variables(path, fault))
     }
 }
 
 /// The arrays and the other files of an archive; archives in archives are not read.
-pub(crate) fn read_archive(bytes: &[u8], budget: &MemoryBudget<'_>) -> Result<Contents, VariableFault> {
+pub(crate) fn read_archive(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Contents, VariableFault> {
     let (mut names, mut variables) = (HashSet::new(), Vec::new());
     let (mut files, mut ignored) = (Vec::new(), Vec::new());
     visit_files(bytes, |file| {
@@ -59,10 +62,7 @@ pub(crate) fn read_archive(bytes: &[u8], budget: &MemoryBudget<'_>) -> Result<Co
         match importer.filter(|(importer, _)| importer.name() != Zip.name()) {
             None => ignored.push(format!("{}: no file of a known kind", file.path)),
             Some((importer, bytes)) => match importer.read(bytes, path, budget) {
-                Err(FileError::Variables {
-                    fault: fault @ (VariableFault::Stopped | VariableFault::TooLarge { .. }),
-                    ..
-                }) => return Err(fault),
+                Err(FileError::Variables { fault, .. }) if fault.is_of_the_budget() => return Err(fault),
                 contents => files.push((file.path.to_owned(), contents)),
             },
         }
@@ -104,7 +104,7 @@ pub(super) fn visit_files(
 
 impl ZipFile<'_, '_> {
     /// Unpacks the file, and no further than the archive says: a few kilobytes can unpack to gigabytes. `name` is what faults call it.
-    pub(super) fn unpack(&self, name: &str, budget: &MemoryBudget<'_>) -> Result<Vec<u8>, VariableFault> {
+    pub(super) fn unpack(&self, name: &str, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, VariableFault> {
         let unsupported = |what: String| {
             let remedy = "pack it again by deflate, without a password".to_owned();
             VariableFault::Unsupported { variable: name.to_owned(), what, remedy }
@@ -120,22 +120,32 @@ impl ZipFile<'_, '_> {
         }
         budget.take(length, 1, name)?;
         let unpacked = match self.entry.compression_method() {
-            CompressionMethod::STORE => read_whole(found.verifying_reader(packed), length),
-            CompressionMethod::DEFLATE => read_whole(found.verifying_reader(DeflateDecoder::new(packed)), length),
+            CompressionMethod::STORE => read_whole(found.verifying_reader(packed), length, budget)?,
+            CompressionMethod::DEFLATE => {
+                read_whole(found.verifying_reader(DeflateDecoder::new(packed)), length, budget)?
+            }
             method => return Err(unsupported(format!("an entry packed by method {}", method.as_u16()))),
         };
         unpacked.map_err(|error| damaged(name, &error.to_string(), self.offset))
     }
 }
 
-/// Reads up to the end, where the length and the check sum are compared, or one byte beyond `length`.
-fn read_whole(reader: impl Read, length: u64) -> std::io::Result<Vec<u8>> {
-    let mut unpacked = Vec::new();
-    reader.take(length.saturating_add(1)).read_to_end(&mut unpacked)?;
-    if unpacked.len() as u64 == length {
-        Ok(unpacked)
-    } else {
-        Err(std::io::Error::other("it is not as long as it claims"))
+/// Reads up to the end, where the length and the check sum are compared, or one byte beyond `length`, unless the reader shall stop.
+fn read_whole(
+    reader: impl Read,
+    length: u64,
+    budget: &ReadingBudget<'_>,
+) -> Result<std::io::Result<Vec<u8>>, VariableFault> {
+    let mut reader = reader.take(length.saturating_add(1));
+    let mut unpacked = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
+    loop {
+        budget.work(0, "")?;
+        match reader.by_ref().take(CHUNK).read_to_end(&mut unpacked) {
+            Ok(0) if unpacked.len() as u64 == length => return Ok(Ok(unpacked)),
+            Ok(0) => return Ok(Err(std::io::Error::other("it is not as long as it claims"))),
+            Ok(_) => {}
+            Err(error) => return Ok(Err(error)),
+        }
     }
 }
 
@@ -154,7 +164,7 @@ pub(super) fn damaged(name: &str, what: &str, offset: u64) -> VariableFault {
 }
 
 #[cfg(test)]
-pub(crate) fn read_npz(bytes: &[u8], budget: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+pub(crate) fn read_npz(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     match read_archive(bytes, budget)? {
         Contents::Archive { variables, .. } => Ok(variables),
         _ => Ok(Vec::new()),

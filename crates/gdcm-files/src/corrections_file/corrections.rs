@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use serde_json::{Map, Value, json};
 
 use gdcm_core::correction::{
-    ActiveConstraint, Channel, ChannelCorrection, Conflict, ConflictKind, Outcome, Problem, Quantity, Sensitivity,
-    Solution, kkt_residual, sensitivities,
+    ActiveConstraint, Channel, ChannelCorrection, Channels, Conflict, ConflictKind, Outcome, Problem, Quantity,
+    Sensitivity, Solution, kkt_residual, sensitivities,
 };
 use gdcm_core::dataset::{self, BundleKind, Condition, ConditionId, Model, Pair, PairTable, Provenance};
 use gdcm_core::fidelity::Cost;
@@ -53,13 +53,14 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
         "inputs": channels(dataset.inputs()),
         "outputs": channels(dataset.outputs()),
         "settings": analysis.study.settings.named(dataset),
+        "signs": analysis.study.turned_channels(),
         "conditions": conditions,
         "failed": failed,
         "schedule": analysis.schedule.as_ref().ok().map(|schedule| names.schedule(schedule)),
         "assessment": {"conditions": assessed, "left_out": left_out},
         "uncertainty": uncertainty(&names),
     });
-    without_empty(corrections, &["uncertainty"])
+    without_empty(corrections, &["signs", "uncertainty"])
 }
 
 /// Names and units of channels, in the order of every list and table.
@@ -130,8 +131,8 @@ impl<'a> ChannelNames<'a> {
     }
 
     /// The figures of the regression of each channel.
-    fn figures(&self, inputs: &[Regression], outputs: &[Regression]) -> Value {
-        self.by_channel(|channel| channel.of(inputs, outputs).figures().to_vec())
+    fn figures(&self, of: &Channels<Regression>) -> Value {
+        self.by_channel(|channel| of[channel].figures().to_vec())
     }
 
     fn gains(&self, correction: &ChannelCorrection) -> Value {
@@ -139,16 +140,16 @@ impl<'a> ChannelNames<'a> {
     }
 
     fn delays_s(&self, correction: &ChannelCorrection) -> Value {
-        self.by_channel(|channel| *channel.of(&correction.input_delays_s, &correction.output_delays_s))
+        self.by_channel(|channel| correction.pure_delay_s(channel))
     }
 
     /// The signed delay and the lead filter of each channel (M15), where there are any.
     fn leads(&self, correction: &ChannelCorrection) -> Option<Value> {
         let leads = correction.leads.as_ref()?;
         Some(self.by_channel(|channel| {
-            let filter = leads.filter(channel);
+            let filter = leads.filters()[channel];
             json!({
-                "tau_s": leads.tau_s(channel),
+                "tau_s": leads.taus_s[channel],
                 "lead_s": filter.map(|filter| filter.lead_s()),
                 "zero_rad_s": filter.map(|filter| filter.zero_rad_s()),
                 "lag_rad_s": filter.map(|filter| filter.lag_rad_s()),
@@ -169,7 +170,8 @@ impl<'a> ChannelNames<'a> {
             let reasons = choice.bundle(kind).reasons.iter();
             reasons.map(move |(model, why)| json!({"bundle": kind.to_string(), "model": model, "why": why}))
         });
-        let cautions: Vec<String> = result.cautions.iter().map(words).chain(lead_cautions(study, result)).collect();
+        let doubts = result.doubts.iter().map(|doubt| doubt.words(&study.dataset));
+        let cautions = doubts.chain(result.cautions.iter().map(words)).chain(lead_cautions(study, result));
         let corrected = result.cost.map(|_, change| change.map(|change| change.corrected));
         let costs = |table: &PairTable<Option<Cost>>| json!({"mag": rows(table, |cost| cost.magnitude), "phase": rows(table, |cost| cost.phase)});
         let found = json!({
@@ -198,7 +200,7 @@ impl<'a> ChannelNames<'a> {
             "gain_solution": self.gain_solution(result),
             "delay_solution": self.delay_solution(result),
             "net_gains": result.held().pairs().map(|pair| {
-                let mut entries = json!({"gain": correction.net_gain(pair).value()});
+                let mut entries = json!({"gain": correction.net_gain(pair)});
                 let bar = net_gain_bar(self.analysis, condition.id(), pair);
                 if let (Value::Object(entries), Some(Value::Object(bar))) = (&mut entries, bar) {
                     entries.extend(bar);
@@ -207,7 +209,7 @@ impl<'a> ChannelNames<'a> {
             }).collect::<Value>(),
             "bars": bars(self, condition.id()),
             "J": {"uncorrected": costs(&result.comparison.representative.cost), "corrected": costs(&corrected)},
-            "cautions": cautions,
+            "cautions": cautions.collect::<Value>(),
         });
         without_empty(found, &["reasons", "sources", "held_out", "lead", "bars"])
     }
@@ -315,7 +317,7 @@ impl<'a> ChannelNames<'a> {
     /// The gains as functions of airspeed.
     fn schedule(&self, schedule: &Schedule) -> Value {
         let airspeeds = &schedule.airspeeds;
-        let figures = self.figures(&schedule.inputs, &schedule.outputs);
+        let figures = self.figures(&schedule.gains);
         let table = airspeeds.clusters_kt().into_iter().map(|airspeed_kt| {
             let correction = schedule.at(airspeed_kt);
             let gains = self.gains(&correction);
@@ -345,7 +347,7 @@ impl<'a> ChannelNames<'a> {
             "inputs": figures["inputs"],
             "outputs": figures["outputs"],
             "second_variable": schedule.second.as_ref().map(|term| {
-                let slopes = self.by_channel(|channel| *channel.of(&term.inputs, &term.outputs));
+                let slopes = self.by_channel(|channel| term.slopes[channel]);
                 json!({
                     "variable": term.variable.name(),
                     "unit": term.variable.unit(),
@@ -356,12 +358,12 @@ impl<'a> ChannelNames<'a> {
                 })
             }),
             "delays_s": schedule.delays.as_ref().map(|delays| {
-                let mut figures = self.figures(&delays.inputs, &delays.outputs);
+                let mut figures = self.figures(&delays.taus_s);
                 figures["upper_s"] = delays.upper_s.figures().into();
                 figures
             }),
             "tau_s": schedule.leads.as_ref().map(|leads| {
-                let mut figures = self.figures(&leads.inputs, &leads.outputs);
+                let mut figures = self.figures(&leads.taus_s);
                 figures["bounds_s"] = json!(leads.bounds_s);
                 figures
             }),

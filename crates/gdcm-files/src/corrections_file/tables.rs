@@ -44,9 +44,9 @@ const CHANNEL_COLUMNS: [ChannelColumn; 20] = [
     ("kind", |row| if matches!(row.channel, Channel::Input(_)) { "input" } else { "output" }.to_owned()),
     ("channel", |row| row.name()),
     ("gain", |row| cell(row.found.own().map(|own| own.gain(row.channel)))),
-    ("delay_s", |row| cell(row.found.own().map(|own| row.delay_s(own)))),
+    ("delay_s", |row| cell(row.found.own().map(|own| own.pure_delay_s(row.channel)))),
     ("scheduled_gain", |row| cell(row.found.scheduled.as_ref().map(|of| of.gain(row.channel)))),
-    ("scheduled_delay_s", |row| cell(row.found.scheduled.as_ref().map(|of| row.delay_s(of)))),
+    ("scheduled_delay_s", |row| cell(row.found.scheduled.as_ref().map(|of| of.pure_delay_s(row.channel)))),
     ("tau_s", |row| cell(row.tau_s(row.found.own()))),
     ("lead_s", |row| cell(row.filter().map(LeadFilter::lead_s))),
     ("zero_rad_s", |row| cell(row.filter().map(LeadFilter::zero_rad_s))),
@@ -70,10 +70,10 @@ const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
     ("held", |row| row.found.result().is_some_and(|result| result.held()[row.pair]).to_string()),
     ("G", |row| cell(row.found.result().and_then(|result| result.wanted_gain(row.pair)))),
     ("D_s", |row| cell(row.found.result().and_then(|result| result.comparison.delta.delay_s[row.pair]))),
-    ("net_gain", |row| cell(row.found.own().map(|own| own.net_gain(row.pair).value()))),
-    ("net_delay_s", |row| cell(row.found.own().map(|own| own.net_delay(row.pair).value_s()))),
-    ("scheduled_net_gain", |row| cell(row.found.scheduled.as_ref().map(|of| of.net_gain(row.pair).value()))),
-    ("scheduled_net_delay_s", |row| cell(row.found.scheduled.as_ref().map(|of| of.net_delay(row.pair).value_s()))),
+    ("net_gain", |row| cell(row.found.own().map(|own| own.net_gain(row.pair)))),
+    ("net_delay_s", |row| cell(row.found.own().map(|own| own.net_delay_s(row.pair)))),
+    ("scheduled_net_gain", |row| cell(row.found.scheduled.as_ref().map(|of| of.net_gain(row.pair)))),
+    ("scheduled_net_delay_s", |row| cell(row.found.scheduled.as_ref().map(|of| of.net_delay_s(row.pair)))),
     ("J_mag_uncorrected", |row| cell(row.change().map(|change| change.uncorrected.magnitude))),
     ("J_phase_uncorrected", |row| cell(row.change().map(|change| change.uncorrected.phase))),
     ("J_mag_scheduled", |row| cell(row.change().map(|change| change.corrected.magnitude))),
@@ -174,13 +174,8 @@ impl ChannelRow<'_> {
         self.channel.name(&inputs, &outputs)
     }
 
-    /// Of a correction with leads, what is positive of the signed delay.
-    fn delay_s(&self, of: &ChannelCorrection) -> f64 {
-        *self.channel.of(&of.input_delays_s, &of.output_delays_s)
-    }
-
     fn tau_s(&self, of: Option<&ChannelCorrection>) -> Option<f64> {
-        of?.leads.as_ref().map(|leads| leads.tau_s(self.channel))
+        of?.leads.as_ref().map(|leads| leads.taus_s[self.channel])
     }
 
     fn filter(&self) -> Option<LeadFilter> {

@@ -122,7 +122,7 @@ fn bands(names: &ChannelNames, uncertainty: &Uncertainty) -> Value {
     let entry = |pair: Pair| {
         let widths = airspeed_kt.iter().map(|&airspeed| bands.at(schedule, Scalar::NetGain(pair), airspeed));
         let widths: Vec<_> = widths.collect::<Option<_>>()?;
-        let fit = airspeed_kt.iter().map(|&airspeed| schedule.at(airspeed).net_gain(pair).value().ln());
+        let fit = airspeed_kt.iter().map(|&airspeed| schedule.at(airspeed).net_gain(pair).ln());
         let band = json!({
             "airspeed_kt": airspeed_kt,
             "fit": fit.collect::<Value>(),

@@ -123,10 +123,7 @@ impl<'e> BreakpointTable<'e> {
         for channel in all_channels(of.dataset) {
             let evaluate = |kt, second| of.schedule.evaluate(kt, second);
             let gain = |kt, second| evaluate(kt, second).gain(channel);
-            let delay_s = |kt, second| {
-                let correction = evaluate(kt, second);
-                *channel.of(&correction.input_delays_s, &correction.output_delays_s)
-            };
+            let delay_s = |kt, second| evaluate(kt, second).pure_delay_s(channel);
             table.columns.push(table.column(channel, &GAIN, &second, gain));
             table.columns.push(table.column(channel, &DELAY, &second, delay_s));
             if let Some(zero_s) = of.zero_s(channel) {
@@ -322,7 +319,7 @@ mod tests {
     use super::*;
     use crate::embedded_example;
     use crate::text::read_table;
-    use crate::variables::{MemoryBudget, Value};
+    use crate::variables::{ReadingBudget, Value};
 
     #[test]
     fn the_error_of_a_parabola_is_greatest_in_the_middle() {
@@ -359,7 +356,7 @@ mod tests {
     fn the_table_holds_the_schedule_at_its_airspeeds() {
         let (analysis, source) = (analysis(None), source());
         let (table, schedule) = (table(&analysis, &source), analysis.schedule.as_ref().unwrap());
-        let read = read_table(&table.csv(), &MemoryBudget::new(1 << 20, &|_| false)).unwrap();
+        let read = read_table(&table.csv(), &ReadingBudget::new(1 << 20)).unwrap();
         assert_eq!((&read.columns[0][..], read.columns.len()), (&POINTS[..], 21));
         assert_eq!(read.units[2].as_deref(), Some("s"));
         let of = |value: &dyn Fn(&ChannelCorrection) -> f64| POINTS.map(|kt| value(&schedule.at(kt))).to_vec();

@@ -53,9 +53,9 @@ impl Scheduled<'_> {
     /// The gain of a channel \[-\].
     pub(super) fn gain(&self, channel: Channel) -> Curve {
         Curve {
-            slope: self.schedule.second.as_ref().map(|term| *channel.of(&term.inputs, &term.outputs)),
+            slope: self.schedule.second.as_ref().map(|term| term.slopes[channel]),
             of_logarithm: self.schedule.settings.quantity == ScheduledQuantity::LnGain,
-            ..Curve::plain(channel.of(&self.schedule.inputs, &self.schedule.outputs).clone())
+            ..Curve::plain(self.schedule.gains[channel].clone())
         }
     }
 
@@ -64,9 +64,9 @@ impl Scheduled<'_> {
         let (figures, upper) = match (&self.schedule.leads, &self.schedule.delays) {
             (Some(leads), _) => {
                 let (airspeeds_kt, values) = (vec![self.schedule.airspeeds.min_kt], vec![leads.bounds_s[1]]);
-                (channel.of(&leads.inputs, &leads.outputs), Regression::Table { airspeeds_kt, values })
+                (&leads.taus_s[channel], Regression::Table { airspeeds_kt, values })
             }
-            (None, Some(delays)) => (channel.of(&delays.inputs, &delays.outputs), delays.upper_s.clone()),
+            (None, Some(delays)) => (&delays.taus_s[channel], delays.upper_s.clone()),
             (None, None) => return Curve::constant(0.0),
         };
         Curve { upper: Some(upper), ..Curve::plain(figures.clone()) }
@@ -77,7 +77,7 @@ impl Scheduled<'_> {
     pub(super) fn zero_s(&self, channel: Channel) -> Option<Curve> {
         let leads = self.schedule.leads.as_ref()?;
         let (least, most) = (self.schedule.airspeeds.min_kt, self.schedule.airspeeds.max_kt);
-        let figures = channel.of(&leads.inputs, &leads.outputs);
+        let figures = &leads.taus_s[channel];
         let at = |kt: f64| {
             let tau_s = figures.at(&self.schedule.airspeeds, kt).clamp(leads.bounds_s[0], leads.bounds_s[1]);
             leads.design.filter(tau_s).map_or(leads.design.lag_s(), LeadFilter::zero_s)

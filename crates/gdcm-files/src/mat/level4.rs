@@ -8,7 +8,7 @@ use crate::mat::level5::{ByteOrder, Cursor, name_of};
 use crate::mat::matrix::{Entries, rows};
 use crate::mat::{FieldPath, count};
 use crate::strides::{NumberClass, StoredNumber};
-use crate::variables::{Array, MemoryBudget, Value, Variable, VariableFault};
+use crate::variables::{Array, ReadingBudget, Value, Variable, VariableFault};
 
 /// What stands before each matrix.
 struct Header {
@@ -36,7 +36,7 @@ pub(super) fn begins(bytes: &[u8]) -> bool {
 }
 
 /// All variables of a file.
-pub(super) fn read(bytes: &[u8], budget: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+pub(super) fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     let mut file = Cursor::file(bytes, ByteOrder::Little);
     let (mut variables, mut names) = (Vec::new(), HashSet::new());
     while !file.is_empty() {
@@ -101,7 +101,7 @@ fn stored_number(kind: u32, order: ByteOrder) -> Option<StoredNumber> {
 }
 
 impl Header {
-    fn value(&self, file: &mut Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Value, VariableFault> {
+    fn value(&self, file: &mut Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
         let start = *file;
         let re = self.numbers(file, budget)?;
         let im = if self.complex { Some(self.numbers(file, budget)?) } else { None };
@@ -117,7 +117,7 @@ impl Header {
         }
     }
 
-    fn numbers(&self, file: &mut Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Vec<f64>, VariableFault> {
+    fn numbers(&self, file: &mut Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Vec<f64>, VariableFault> {
         let count = count(&[self.rows, self.columns]);
         let bytes = file.take(count.saturating_mul(self.stored.size()))?;
         budget.take(count as u64, 8, "")?;
@@ -125,7 +125,7 @@ impl Header {
     }
 
     /// Columns of rows, of columns, of numbers and of their imaginary parts; the last row says how large the matrix is.
-    fn sparse(&self, columns: &[f64], start: Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Array, VariableFault> {
+    fn sparse(&self, columns: &[f64], start: Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Array, VariableFault> {
         let damaged = || start.damaged("a sparse matrix whose numbers do not fit it");
         budget.take(columns.len() as u64, 8, "")?;
         let parts: Vec<&[f64]> = columns.chunks_exact(self.rows.max(1)).collect();
@@ -165,7 +165,7 @@ mod tests {
 
     fn first(bytes: &[u8]) -> Result<Value, VariableFault> {
         assert!(begins(bytes));
-        let mut variables = read(bytes, &MemoryBudget::new(1 << 16, &|_| false))?;
+        let mut variables = read(bytes, &ReadingBudget::new(1 << 16))?;
         assert_eq!(variables[0].name, "x");
         Ok(variables.remove(0).value)
     }

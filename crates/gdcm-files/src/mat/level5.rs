@@ -9,7 +9,7 @@ use flate2::read::ZlibDecoder;
 
 use crate::mat::matrix::Arrays;
 use crate::mat::{self, FieldPath, Header};
-use crate::variables::{MemoryBudget, Variable, VariableFault};
+use crate::variables::{ReadingBudget, Variable, VariableFault};
 
 /// Length of the text and the numbers that a file begins with.
 pub(super) const HEADER_BYTES: usize = 128;
@@ -28,10 +28,10 @@ pub(super) fn version(bytes: &[u8]) -> Option<(ByteOrder, u8)> {
 }
 
 /// All variables of a file.
-pub(super) fn read(bytes: &[u8], order: ByteOrder, budget: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+pub(super) fn read(bytes: &[u8], order: ByteOrder, budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     let objects = match mat::objects(bytes, objects_at(bytes, order), order, budget) {
         Ok(objects) => Ok(objects),
-        Err(fault @ (VariableFault::TooLarge { .. } | VariableFault::Stopped)) => return Err(fault),
+        Err(fault) if fault.is_of_the_budget() => return Err(fault),
         Err(VariableFault::Damaged { what, .. }) => Err(format!("the objects of this file cannot be read: {what}")),
         Err(fault) => Err(format!("the objects of this file cannot be read: {fault}")),
     };
@@ -389,7 +389,7 @@ const MOST_EXPANSION: u64 = 1040;
 const CHUNK: u64 = 1 << 20;
 
 /// The bytes of a packed element: its tag, which says how many follow, and those.
-pub(super) fn unpacked(packed: Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Vec<u8>, VariableFault> {
+pub(super) fn unpacked(packed: Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, VariableFault> {
     let mut decoder = ZlibDecoder::new(packed.rest());
     let mut bytes = Vec::new();
     unpack_more(&mut decoder, 8, &mut bytes, packed, budget)?;
@@ -413,7 +413,7 @@ fn unpack_more(
     length: u64,
     bytes: &mut Vec<u8>,
     packed: Cursor<'_>,
-    budget: &MemoryBudget<'_>,
+    budget: &ReadingBudget<'_>,
 ) -> Result<(), VariableFault> {
     let mut left = length;
     while left > 0 {
@@ -447,7 +447,7 @@ mod level5_tests {
     }
 
     fn variables(bytes: &[u8]) -> Result<Vec<Variable>, VariableFault> {
-        read(bytes, ByteOrder::Little, &MemoryBudget::new(1 << 16, &|_| false))
+        read(bytes, ByteOrder::Little, &ReadingBudget::new(1 << 16))
     }
 
     #[test]
@@ -567,7 +567,7 @@ mod inflate_tests {
     }
 
     fn read(bytes: &[u8], most: u64) -> Result<Vec<u8>, VariableFault> {
-        unpacked(Cursor::file(bytes, ByteOrder::Little), &MemoryBudget::new(most, &|_| false))
+        unpacked(Cursor::file(bytes, ByteOrder::Little), &ReadingBudget::new(most))
     }
 
     #[test]

@@ -6,14 +6,14 @@ use crate::mat::level5::{ByteOrder, Cursor, DataKind, Element, behind, matrix};
 use crate::mat::subsystem::{Reference, Subsystem};
 use crate::mat::{ArrayClass, FieldPath, Header, Step, count, export_line};
 use crate::variables::{
-    Array, CellArray, ElementKind, MemoryBudget, Object, StructArray, TextArray, Value, VariableFault,
+    Array, CellArray, ElementKind, Object, RECORD, ReadingBudget, StructArray, TextArray, Value, VariableFault,
 };
 
 /// What reading an array takes besides its bytes.
 #[derive(Clone, Copy)]
 pub(super) struct Arrays<'a> {
     /// Counts the memory.
-    pub(super) budget: &'a MemoryBudget<'a>,
+    pub(super) budget: &'a ReadingBudget<'a>,
     /// The objects of the file, or why they cannot be read.
     pub(super) objects: Result<&'a Subsystem, &'a str>,
 }
@@ -129,6 +129,8 @@ impl Arrays<'_> {
         let names = field_names(contents, self.budget)?;
         let count = header.count;
         self.room(count.saturating_mul(names.len()), contents)?;
+        // Of records without fields there may be any number in a few bytes.
+        self.budget.take(count as u64, RECORD, "")?;
         let mut fields: Vec<(String, Vec<Value>)> = Vec::with_capacity(names.len());
         for name in names {
             fields.push((name, Vec::new()));
@@ -157,7 +159,7 @@ impl Arrays<'_> {
 }
 
 /// The names of the fields of records, which stand before them.
-pub(super) fn field_names(contents: &mut Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Vec<String>, VariableFault> {
+pub(super) fn field_names(contents: &mut Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Vec<String>, VariableFault> {
     let lengths = Element::read(contents)?;
     let &[length] = places(&lengths, budget)?.as_slice() else {
         return Err(lengths.data.damaged("records without a length of their names"));
@@ -187,7 +189,7 @@ pub(super) fn field_names(contents: &mut Cursor<'_>, budget: &MemoryBudget<'_>) 
 pub(super) fn numbers(
     element: &Element<'_>,
     count: usize,
-    budget: &MemoryBudget<'_>,
+    budget: &ReadingBudget<'_>,
 ) -> Result<Vec<f64>, VariableFault> {
     let found = element.count()?;
     if found != count {
@@ -198,7 +200,7 @@ pub(super) fn numbers(
 }
 
 /// All whole numbers of an element: sizes and places.
-pub(super) fn places(element: &Element<'_>, budget: &MemoryBudget<'_>) -> Result<Vec<usize>, VariableFault> {
+pub(super) fn places(element: &Element<'_>, budget: &ReadingBudget<'_>) -> Result<Vec<usize>, VariableFault> {
     match element.kind {
         DataKind::I32 | DataKind::U32 => {}
         _ => return Err(element.data.damaged("numbers of another kind where sizes should stand")),
@@ -212,7 +214,7 @@ pub(super) fn places(element: &Element<'_>, budget: &MemoryBudget<'_>) -> Result
 }
 
 /// All whole numbers of 64 bits of an element, if it holds such.
-pub(super) fn long_words(element: &Element<'_>, budget: &MemoryBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
+pub(super) fn long_words(element: &Element<'_>, budget: &ReadingBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
     if element.kind != DataKind::U64 {
         return Ok(None);
     }
@@ -248,7 +250,7 @@ fn each<const N: usize>(bytes: &[u8], number: impl Fn([u8; N]) -> f64) -> Vec<f6
 pub(super) fn text(
     element: &Element<'_>,
     shape: &[usize],
-    budget: &MemoryBudget<'_>,
+    budget: &ReadingBudget<'_>,
 ) -> Result<TextArray, VariableFault> {
     let wanted = count(shape);
     budget.take(wanted as u64, 16, "")?;
@@ -267,7 +269,11 @@ pub(super) fn text(
 /// The texts in the rows of an array of characters, of which there are as many as the shape says.
 ///
 /// An array without characters is one empty text, as MATLAB's `''` is, unless it has several rows.
-pub(super) fn rows(characters: &[u32], shape: &[usize], budget: &MemoryBudget<'_>) -> Result<TextArray, VariableFault> {
+pub(super) fn rows(
+    characters: &[u32],
+    shape: &[usize],
+    budget: &ReadingBudget<'_>,
+) -> Result<TextArray, VariableFault> {
     let (height, length) = (shape.first().copied().unwrap_or(1), shape.get(1).copied().unwrap_or(1));
     let pages = shape.get(2..).unwrap_or_default();
     if characters.is_empty() && height <= 1 {
@@ -297,7 +303,7 @@ fn written(numbers: impl Iterator<Item = u32>) -> String {
     String::from_utf16_lossy(&units)
 }
 
-fn characters(element: &Element<'_>, wanted: usize, budget: &MemoryBudget<'_>) -> Result<Vec<u32>, VariableFault> {
+fn characters(element: &Element<'_>, wanted: usize, budget: &ReadingBudget<'_>) -> Result<Vec<u32>, VariableFault> {
     if element.kind == DataKind::Utf8 {
         return Ok(of_utf8(element.data.rest(), wanted));
     }
@@ -343,7 +349,7 @@ impl Entries {
     /// `outside` is the fault that a number lies outside the matrix.
     pub(super) fn filled(
         &self,
-        budget: &MemoryBudget<'_>,
+        budget: &ReadingBudget<'_>,
         outside: impl Fn() -> VariableFault,
     ) -> Result<Array, VariableFault> {
         let [height, width] = self.shape;
@@ -413,7 +419,7 @@ mod matrix_tests {
     use crate::mat::sample_tests::{big_file, doubles, element, file, matrix};
 
     fn first(bytes: &[u8]) -> Result<Value, VariableFault> {
-        let mut variables = read(bytes, &MemoryBudget::new(1 << 16, &|_| false))?;
+        let mut variables = read(bytes, &ReadingBudget::new(1 << 16))?;
         Ok(variables.remove(0).value)
     }
 
@@ -508,7 +514,7 @@ mod numbers_tests {
     fn read(kind: u8, data: &[u8], count: usize) -> Result<Vec<f64>, VariableFault> {
         let bytes = [&[kind, 0, 0, 0, data.len() as u8, 0, 0, 0], data].concat();
         let element = Element::read(&mut Cursor::file(&bytes, ByteOrder::Little)).unwrap();
-        numbers(&element, count, &MemoryBudget::new(1 << 10, &|_| false))
+        numbers(&element, count, &ReadingBudget::new(1 << 10))
     }
 
     #[test]
@@ -537,7 +543,7 @@ mod text_tests {
     fn read(kind: u8, data: &[u8], shape: &[usize]) -> Result<TextArray, VariableFault> {
         let bytes = [&[kind, 0, 0, 0, data.len() as u8, 0, 0, 0], data].concat();
         let element = Element::read(&mut Cursor::file(&bytes, ByteOrder::Little)).unwrap();
-        text(&element, shape, &MemoryBudget::new(1 << 16, &|_| false))
+        text(&element, shape, &ReadingBudget::new(1 << 16))
     }
 
     #[test]
@@ -579,14 +585,14 @@ mod sparse_tests {
 
     #[test]
     fn what_is_not_stored_is_zero() {
-        let budget = MemoryBudget::new(1000, &|_| false);
+        let budget = ReadingBudget::new(1000);
         let array = entries([2, 2]).filled(&budget, || VariableFault::Stopped).unwrap();
         assert_eq!((array.re, array.im), (vec![0.0, 3.0, 2.0, 0.0], Some(vec![0.0, 1.0, 0.0, 0.0])));
     }
 
     #[test]
     fn places_outside_and_sizes_beyond_the_limit_are_refused() {
-        let budget = MemoryBudget::new(1000, &|_| false);
+        let budget = ReadingBudget::new(1000);
         assert_eq!(entries([1, 2]).filled(&budget, || VariableFault::Stopped), Err(VariableFault::Stopped));
         let large = entries([usize::MAX, 1]).filled(&budget, || VariableFault::Stopped);
         assert!(matches!(large, Err(VariableFault::TooLarge { .. })));
@@ -597,10 +603,10 @@ mod sparse_tests {
 mod opaque_tests {
     use crate::mat::read;
     use crate::mat::sample_tests::{element, file, opaque, reference};
-    use crate::variables::{MemoryBudget, Value};
+    use crate::variables::{ReadingBudget, Value};
 
     fn first(bytes: &[u8]) -> (String, String) {
-        match read(bytes, &MemoryBudget::new(1 << 16, &|_| false)).unwrap().remove(0).value {
+        match read(bytes, &ReadingBudget::new(1 << 16)).unwrap().remove(0).value {
             Value::Opaque { class, why } => (class, why),
             other => panic!("{other:?}"),
         }

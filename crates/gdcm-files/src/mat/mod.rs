@@ -15,7 +15,7 @@ use crate::file_error::FileError;
 use crate::importer::{Contents, Importer};
 use crate::mat::level5::{ByteOrder, Cursor, DataKind, Element, matrix, unpacked};
 use crate::mat::matrix::{Arrays, field_names, long_words, places};
-use crate::variables::{ElementKind, MemoryBudget, Value, Variable, VariableFault};
+use crate::variables::{ElementKind, ReadingBudget, Value, Variable, VariableFault};
 
 pub use crate::mat::subsystem::Subsystem;
 pub use crate::mat::writer::{write, write_packed};
@@ -43,7 +43,7 @@ impl Importer for Mat {
         ending == "mat" || matches!(level5::version(bytes), Some((_, LEVEL_5)))
     }
 
-    fn read(&self, bytes: &[u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Contents, FileError> {
+    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
         Contents::variables(read(bytes, budget), path)
     }
 }
@@ -52,7 +52,7 @@ impl Importer for Mat {
 ///
 /// What lies in a variable and cannot be decoded is [`crate::variables::Value::Opaque`]; bytes that contradict the format are a
 /// fault of the whole file.
-pub fn read(bytes: &[u8], budget: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+pub fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     if is_hdf5(bytes) {
         return Err(format("an HDF5 file, as MATLAB writes with -v7.3"));
     }
@@ -105,7 +105,7 @@ fn objects(
     bytes: &[u8],
     at: Option<usize>,
     order: ByteOrder,
-    budget: &MemoryBudget<'_>,
+    budget: &ReadingBudget<'_>,
 ) -> Result<Subsystem, VariableFault> {
     let mut file = Cursor::file(bytes, order);
     let none = || file.damaged("they lie nowhere in it");
@@ -121,7 +121,7 @@ fn objects(
 }
 
 /// The objects within an array of bytes.
-fn within(array: Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Subsystem, VariableFault> {
+fn within(array: Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Subsystem, VariableFault> {
     let mut array = array;
     Header::read(&mut array, budget)?;
     let data = Element::read(&mut array)?.data;
@@ -146,7 +146,7 @@ fn within(array: Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Subsystem, Var
 }
 
 /// The objects within a `FileWrapper__`.
-fn wrapped(wrapper: Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Subsystem, VariableFault> {
+fn wrapped(wrapper: Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Subsystem, VariableFault> {
     let mut wrapper = wrapper;
     let opaque = Header::read(&mut wrapper, budget)?.class == ArrayClass::Opaque;
     let (system, class) = (Element::read(&mut wrapper)?.name()?, Element::read(&mut wrapper)?.name()?);
@@ -172,7 +172,7 @@ fn wrapped(wrapper: Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Subsystem, 
 }
 
 /// The numbers of a cell to the last digit, if they are whole numbers of 64 bits.
-fn exact(cell: Cursor<'_>, value: &Value, budget: &MemoryBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
+fn exact(cell: Cursor<'_>, value: &Value, budget: &ReadingBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
     if !matches!(value, Value::Array(array) if !array.is_empty()) {
         return Ok(None);
     }
@@ -240,6 +240,7 @@ impl<'t> FieldPath<'t> {
             | VariableFault::Damaged { variable, .. }
             | VariableFault::Unsupported { variable, .. }
             | VariableFault::TooLarge { variable, .. }
+            | VariableFault::TooMuchWork { variable, .. }
             | VariableFault::Line { variable, .. }
             | VariableFault::TooDeep { variable } => {
                 if variable.is_empty() {
@@ -291,7 +292,7 @@ struct Header {
 
 impl Header {
     /// Reads what stands before the contents.
-    fn read(contents: &mut Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Self, VariableFault> {
+    fn read(contents: &mut Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Self, VariableFault> {
         let flags = Element::read(contents)?;
         if flags.kind != DataKind::U32 {
             return Err(flags.data.damaged("an array without flags"));
@@ -350,7 +351,7 @@ fn count(shape: &[usize]) -> usize {
     if shape.contains(&0) { 0 } else { product }
 }
 
-fn shape(contents: &mut Cursor<'_>, budget: &MemoryBudget<'_>) -> Result<Vec<usize>, VariableFault> {
+fn shape(contents: &mut Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Vec<usize>, VariableFault> {
     let mut shape = places(&Element::read(contents)?, budget)?;
     while shape.len() < 2 {
         shape.push(1);
@@ -407,7 +408,7 @@ mod mat_tests {
     const MOST: u64 = 1 << 20;
 
     fn read(bytes: &[u8]) -> Result<Vec<Variable>, VariableFault> {
-        super::read(bytes, &MemoryBudget::new(MOST, &|_| false))
+        super::read(bytes, &ReadingBudget::new(MOST))
     }
 
     fn value(bytes: &[u8], name: &str) -> Value {
@@ -518,7 +519,10 @@ mod mat_tests {
 
     #[test]
     fn a_reader_that_shall_stop_stops() {
-        assert_eq!(super::read(PLAIN, &MemoryBudget::new(MOST, &|_| true)), Err(VariableFault::Stopped));
+        assert_eq!(
+            super::read(PLAIN, &ReadingBudget::new(MOST).stopped_by(std::sync::Arc::new(true.into()))),
+            Err(VariableFault::Stopped)
+        );
     }
 
     proptest! {
@@ -569,7 +573,7 @@ mod workspace_tests {
     }
 
     fn read(bytes: &[u8], at: usize) -> Result<Subsystem, VariableFault> {
-        objects(bytes, Some(at), ByteOrder::Little, &MemoryBudget::new(1 << 16, &|_| false))
+        objects(bytes, Some(at), ByteOrder::Little, &ReadingBudget::new(1 << 16))
     }
 
     #[test]

@@ -233,12 +233,12 @@ mod writer_tests {
     use proptest::prelude::*;
 
     use crate::mat::read;
-    use crate::variables::{Array, CellArray, ElementKind, MemoryBudget, Object, StructArray, TextArray, Value};
+    use crate::variables::{Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value};
 
     use super::*;
 
     fn back(bytes: &[u8]) -> Vec<Variable> {
-        read(bytes, &MemoryBudget::new(1 << 24, &|_| false)).unwrap()
+        read(bytes, &ReadingBudget::new(1 << 24)).unwrap()
     }
 
     fn named(name: &str, value: Value) -> Variable {

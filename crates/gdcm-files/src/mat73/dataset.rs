@@ -4,7 +4,7 @@ use hdf5_pure::{Chunk, ChunkIndex, Dataset, Datatype, DatatypeByteOrder, EnumMem
 
 use crate::mat73::{damaged, fault};
 use crate::strides::{NumberClass, Places, StoredNumber, count};
-use crate::variables::{Array, ElementKind, MemoryBudget, VariableFault};
+use crate::variables::{Array, ElementKind, ReadingBudget, VariableFault};
 
 /// Whether the elements run as MATLAB or as C keeps them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +32,7 @@ impl Elements {
         dataset: &Dataset,
         order: Order,
         path: &str,
-        budget: &MemoryBudget<'_>,
+        budget: &ReadingBudget<'_>,
     ) -> Result<Self, VariableFault> {
         let failed = |error| fault(&error, path);
         let too_many = || damaged(path, "there are more elements than can be counted");
@@ -74,7 +74,7 @@ impl Elements {
     }
 
     /// The numbers, if they are numbers.
-    pub(super) fn numbers(&self, path: &str, budget: &MemoryBudget<'_>) -> Result<Option<Array>, VariableFault> {
+    pub(super) fn numbers(&self, path: &str, budget: &ReadingBudget<'_>) -> Result<Option<Array>, VariableFault> {
         let Some(numbers) = NumberType::of(&self.datatype) else { return Ok(None) };
         budget.take(self.count() as u64, if numbers.im.is_some() { 16 } else { 8 }, path)?;
         let part = |offset: usize| {
@@ -86,7 +86,7 @@ impl Elements {
     }
 
     /// Whole numbers of 64 bits without a sign, to the last digit, if that is what they are.
-    pub(super) fn words(&self, path: &str, budget: &MemoryBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
+    pub(super) fn words(&self, path: &str, budget: &ReadingBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
         let numbers = NumberType::of(&self.datatype);
         let kind = numbers.filter(|numbers| numbers.im.is_none()).map(|numbers| numbers.number.kind());
         if self.size != 8 || kind != Some(ElementKind::Integer) {
@@ -124,7 +124,7 @@ pub(super) fn check(
     sides: &[usize],
     size: u64,
     path: &str,
-    budget: &MemoryBudget<'_>,
+    budget: &ReadingBudget<'_>,
 ) -> Result<(), VariableFault> {
     let failed = |error| fault(&error, path);
     let Some(shape) = dataset.chunk_shape().map_err(failed)? else { return Ok(()) };

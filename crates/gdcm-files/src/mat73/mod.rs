@@ -15,7 +15,8 @@ mod values;
 
 use std::collections::HashMap;
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use hdf5_pure::{
     AttrValue, Dataset, Datatype, Error, File, FileAccessProperties, FormatError, Group, MetadataCacheConfig, Object,
@@ -27,7 +28,8 @@ use crate::importer::{Contents, Importer};
 use crate::mat::{Subsystem, is_hdf5};
 use crate::mat73::dataset::{Elements, Order};
 use crate::mat73::values::{Objects, Sparse, empty, records, rows, strings};
-use crate::variables::{self, CellArray, ElementKind, MemoryBudget, StructArray, Value, Variable, VariableFault};
+use crate::octave;
+use crate::variables::{self, CellArray, ElementKind, ReadingBudget, StructArray, Value, Variable, VariableFault};
 
 pub use crate::mat73::values::{FileWrapper, ObjectDecoder};
 
@@ -47,22 +49,27 @@ impl Importer for Hdf5 {
         is_hdf5(bytes)
     }
 
-    fn read(&self, bytes: &[u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Contents, FileError> {
+    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
         // The objects lie in it as in the files of the versions before.
         let decoder = |wrapper: FileWrapper| -> Result<Box<ObjectDecoder<'static>>, VariableFault> {
             let subsystem = Subsystem::new(wrapper.cells, budget)?.with_long_words(wrapper.long_words);
-            Ok(Box::new(move |reference: &[u32], variable: &str, budget: &MemoryBudget<'_>| {
+            Ok(Box::new(move |reference: &[u32], variable: &str, budget: &ReadingBudget<'_>| {
                 subsystem.object(reference, variable, budget)
             }))
         };
-        Contents::variables(read_with_objects(bytes, budget, decoder), path)
+        let read = read_with_objects(bytes, budget, decoder);
+        // Where the library was stopped it says that the file cannot be read.
+        Contents::variables(
+            budget.work(0, "").and(read).and_then(|variables| octave::unwrapped(variables, budget)),
+            path,
+        )
     }
 }
 
 /// Reads all variables, and objects of MATLAB's classes by `decoder`, which is made of the part of the file in which they lie.
 pub fn read_with_objects<'d>(
     bytes: &[u8],
-    budget: &MemoryBudget<'_>,
+    budget: &ReadingBudget<'_>,
     decoder: impl FnOnce(FileWrapper) -> Result<Box<ObjectDecoder<'d>>, VariableFault>,
 ) -> Result<Vec<Variable>, VariableFault> {
     let opened = Opened::new(bytes, budget)?;
@@ -79,7 +86,7 @@ const HEADER: u64 = 1024;
 
 /// Reads values within the limits of a budget.
 struct Reader<'r> {
-    budget: &'r MemoryBudget<'r>,
+    budget: &'r ReadingBudget<'r>,
     objects: &'r Objects<'r>,
 }
 
@@ -185,7 +192,7 @@ struct Opened {
 
 impl Opened {
     /// Opens a file, which is copied; a user block such as MATLAB's may stand before it.
-    fn new(bytes: &[u8], budget: &MemoryBudget<'_>) -> Result<Self, VariableFault> {
+    fn new(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Self, VariableFault> {
         if !is_hdf5_bytes(bytes) {
             let found = if bytes.is_empty() { "nothing" } else { "other bytes" };
             return Err(VariableFault::Format { expected: "a file of MATLAB 7.3 or HDF5", found: found.to_owned() });
@@ -193,7 +200,7 @@ impl Opened {
         budget.take(bytes.len() as u64, 1, "")?;
         // What a cache gave out would not count.
         let properties = FileAccessProperties::new().with_metadata_cache(MetadataCacheConfig::disabled());
-        let source = Rationed::new(bytes.to_vec());
+        let source = Rationed::new(bytes.to_vec(), Arc::clone(budget.stop()));
         let file = File::from_source_with_options(source, properties).map_err(|error| fault(&error, ""))?;
         // Chunks at the end may be missing without any structure reaching beyond it.
         if file.superblock().eof_address > bytes.len() as u64 {
@@ -258,12 +265,13 @@ const LEAST: u64 = 16;
 struct Rationed {
     bytes: Vec<u8>,
     left: AtomicU64,
+    stop: Arc<AtomicBool>,
 }
 
 impl Rationed {
-    fn new(bytes: Vec<u8>) -> Self {
+    fn new(bytes: Vec<u8>, stop: Arc<AtomicBool>) -> Self {
         let left = AtomicU64::new((bytes.len() as u64).saturating_mul(TIMES).saturating_add(BESIDES));
-        Self { bytes, left }
+        Self { bytes, left, stop }
     }
 }
 
@@ -275,6 +283,9 @@ impl Source for Rationed {
     fn read_at(&self, offset: u64, buffer: &mut [u8]) -> Result<(), FormatError> {
         let cost = (buffer.len() as u64).max(LEAST);
         let paid = self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(cost));
+        if self.stop.load(Ordering::Relaxed) {
+            return Err(FormatError::Source("stopped".to_owned()));
+        }
         if paid.is_err() {
             return Err(FormatError::Source("its parts lead to one another too often".to_owned()));
         }
@@ -310,7 +321,7 @@ enum Decode {
 struct MatlabAttributes {
     /// Name of the class (`MATLAB_class`); none for what MATLAB did not write.
     class: Option<String>,
-    /// The dataset holds the shape of an array without elements (`MATLAB_empty`).
+    /// The dataset holds the shape of an array without elements (`MATLAB_empty`, `OCTAVE_EMPTY_MATRIX`).
     empty: bool,
     /// Number of rows of a sparse matrix (`MATLAB_sparse`).
     sparse: Option<u64>,
@@ -326,7 +337,8 @@ impl MatlabAttributes {
         let fields = attributes.get("MATLAB_fields").and_then(AttrValue::as_strings);
         Self {
             class: class.map(str::to_owned),
-            empty: number("MATLAB_empty").is_some_and(|empty| empty != 0),
+            empty: number("MATLAB_empty").is_some_and(|empty| empty != 0)
+                || attributes.contains_key("OCTAVE_EMPTY_MATRIX"),
             sparse: number("MATLAB_sparse"),
             fields: fields.unwrap_or_default().to_vec(),
             decode: match number("MATLAB_object_decode") {
@@ -350,7 +362,7 @@ impl MatlabAttributes {
 const MEMBER: u64 = 256;
 
 /// The datasets and groups in a group, in the order of their names.
-fn members(group: &Group, path: &str, budget: &MemoryBudget<'_>) -> Result<Vec<(String, Object)>, VariableFault> {
+fn members(group: &Group, path: &str, budget: &ReadingBudget<'_>) -> Result<Vec<(String, Object)>, VariableFault> {
     let failed = |error| fault(&error, path);
     let datasets = group.iter_datasets().map_err(failed)?;
     let groups = group.iter_groups().map_err(failed)?;
@@ -457,7 +469,7 @@ mod mat73_tests {
 
     /// Reads all variables of a MATLAB 7.3 file or a plain HDF5 file; objects of MATLAB's classes stay
     /// [`Value::Opaque`](crate::variables::Value::Opaque).
-    fn read(bytes: &[u8], budget: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+    fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
         let opened = Opened::new(bytes, budget)?;
         Reader { budget, objects: &Objects::Opaque("objects of classes are not read") }.variables(&opened.root())
     }
@@ -467,7 +479,7 @@ mod mat73_tests {
     }
 
     fn read_file(name: &str) -> Result<Vec<Variable>, VariableFault> {
-        read(&file(name), &MemoryBudget::new(1 << 24, &|_| false))
+        read(&file(name), &ReadingBudget::new(1 << 24))
     }
 
     fn value(variables: &[Variable], name: &str) -> Value {
@@ -568,12 +580,12 @@ mod mat73_tests {
 
     #[test]
     fn objects_are_given_to_their_decoder_with_the_part_in_which_they_lie() {
-        let (budget, bytes) = (MemoryBudget::new(1 << 24, &|_| false), file("objects.mat"));
+        let (budget, bytes) = (ReadingBudget::new(1 << 24), file("objects.mat"));
         let variables = read_with_objects(&bytes, &budget, |wrapper| {
             assert_eq!(wrapper.cells.len(), 3);
             assert!(matches!(&wrapper.cells[0], Value::Array(bytes) if bytes.re == [4.0, 0.0, 0.0, 0.0]));
             assert_eq!(wrapper.long_words, [(2, vec![u64::MAX])]);
-            Ok(Box::new(|words: &[u32], name: &str, _: &MemoryBudget<'_>| {
+            Ok(Box::new(|words: &[u32], name: &str, _: &ReadingBudget<'_>| {
                 assert_eq!((words, name), ([0xdd00_0000, 2, 1, 1, 1, 1].as_slice(), "sys"));
                 Ok(number(42.0))
             }))
@@ -586,7 +598,7 @@ mod mat73_tests {
 
     #[test]
     fn other_variables_are_read_where_the_objects_are_damaged() {
-        let (budget, bytes) = (MemoryBudget::new(1 << 24, &|_| false), file("objects.mat"));
+        let (budget, bytes) = (ReadingBudget::new(1 << 24), file("objects.mat"));
         let fault = || VariableFault::TooDeep { variable: String::new() };
         let variables = read_with_objects(&bytes, &budget, |_| Err(fault())).unwrap();
         assert_eq!(value(&variables, "before"), number(1.0));
@@ -662,7 +674,7 @@ mod mat73_tests {
 
     #[test]
     fn what_is_no_hdf5_is_named_and_what_is_cut_off_is_said_to_be() {
-        let read = |bytes: &[u8]| read(bytes, &MemoryBudget::new(1 << 24, &|_| false));
+        let read = |bytes: &[u8]| read(bytes, &ReadingBudget::new(1 << 24));
         assert!(matches!(read(b""), Err(VariableFault::Format { .. })));
         assert!(matches!(read(b"MATLAB 5.0 MAT-file"), Err(VariableFault::Format { .. })));
         for name in ["numbers.mat", "plain_latest.h5"] {
@@ -673,7 +685,7 @@ mod mat73_tests {
 
     #[test]
     fn damage_anywhere_is_a_fault_and_never_a_panic() {
-        let read = |bytes: &[u8]| read(bytes, &MemoryBudget::new(1 << 24, &|_| false));
+        let read = |bytes: &[u8]| read(bytes, &ReadingBudget::new(1 << 24));
         for name in ["objects.mat", "plain_latest.h5"] {
             let whole = file(name);
             for length in (0..whole.len()).step_by(97) {
@@ -694,7 +706,7 @@ mod rationed_tests {
 
     #[test]
     fn a_file_can_be_read_only_so_often() {
-        let source = Rationed::new(vec![7; 1 << 20]);
+        let source = Rationed::new(vec![7; 1 << 20], Arc::default());
         let mut buffer = vec![0; 1 << 20];
         for _ in 0..32 {
             source.read_at(0, &mut buffer).unwrap();
@@ -704,7 +716,7 @@ mod rationed_tests {
 
     #[test]
     fn nothing_is_read_beyond_the_end() {
-        let source = Rationed::new(vec![1, 2, 3]);
+        let source = Rationed::new(vec![1, 2, 3], Arc::default());
         assert!(source.read_at(2, &mut [0; 2]).is_err());
         assert!(source.read_at(u64::MAX, &mut [0; 2]).is_err());
     }

@@ -5,12 +5,12 @@ use hdf5_pure::{CompoundMember, Dataset, Datatype, Object, StringPadding, VlenSt
 use crate::mat73::dataset::{Elements, NumberType, Order};
 use crate::mat73::{MatlabAttributes, Opened, Reader, damaged, fault};
 use crate::strides::count;
-use crate::variables::{Array, CellArray, ElementKind, MemoryBudget, StructArray, TextArray, Value, VariableFault};
+use crate::variables::{Array, CellArray, ElementKind, ReadingBudget, StructArray, TextArray, Value, VariableFault};
 
 /// The texts in the rows of an array of characters' numbers (UTF-16), as many as the shape says.
 ///
 /// An array without characters is one empty text, as MATLAB's `''` is, unless it has several rows.
-pub(super) fn rows(codes: &Array, path: &str, budget: &MemoryBudget<'_>) -> Result<TextArray, VariableFault> {
+pub(super) fn rows(codes: &Array, path: &str, budget: &ReadingBudget<'_>) -> Result<TextArray, VariableFault> {
     let (height, length) = (codes.shape.first().copied().unwrap_or(1), codes.shape.get(1).copied().unwrap_or(1));
     if codes.is_empty() && height <= 1 {
         return Ok(TextArray { shape: vec![1, 1], texts: vec![String::new()] });
@@ -45,7 +45,7 @@ pub(super) fn strings(
     dataset: &Dataset,
     elements: &Elements,
     path: &str,
-    budget: &MemoryBudget<'_>,
+    budget: &ReadingBudget<'_>,
 ) -> Result<Option<TextArray>, VariableFault> {
     budget.take(elements.count() as u64, (size_of::<String>()) as u64, path)?;
     let texts = match &elements.datatype {
@@ -66,7 +66,7 @@ fn variable(
     dataset: &Dataset,
     count: usize,
     path: &str,
-    budget: &MemoryBudget<'_>,
+    budget: &ReadingBudget<'_>,
 ) -> Result<Vec<String>, VariableFault> {
     if count == 0 {
         return Ok(Vec::new());
@@ -88,7 +88,7 @@ pub(super) fn empty(
     marks: &MatlabAttributes,
     elements: &Elements,
     path: &str,
-    budget: &MemoryBudget<'_>,
+    budget: &ReadingBudget<'_>,
 ) -> Result<Value, VariableFault> {
     let wrong = || damaged(path, "the shape of an array without elements is wrong");
     let sides = elements.words(path, budget)?.ok_or_else(wrong)?;
@@ -105,7 +105,8 @@ pub(super) fn empty(
             Value::Struct(StructArray { shape, fields })
         }
         "char" => Value::Text(rows(&numbers(ElementKind::Integer), path, budget)?),
-        "double" | "single" => Value::Array(numbers(ElementKind::Float)),
+        // GNU Octave names no class here.
+        "double" | "single" | "" => Value::Array(numbers(ElementKind::Float)),
         "logical" => Value::Array(numbers(ElementKind::Logical)),
         "int8" | "int16" | "int32" | "int64" | "uint8" | "uint16" | "uint32" | "uint64" => {
             Value::Array(numbers(ElementKind::Integer))
@@ -120,7 +121,7 @@ pub(super) fn empty(
 pub(super) fn records(
     elements: &Elements,
     path: &str,
-    budget: &MemoryBudget<'_>,
+    budget: &ReadingBudget<'_>,
 ) -> Result<Option<StructArray>, VariableFault> {
     let Datatype::Compound { members, .. } = &elements.datatype else { return Ok(None) };
     let mut fields = Vec::with_capacity(members.len());
@@ -137,7 +138,7 @@ fn value(
     member: &CompoundMember,
     record: &[u8],
     path: &str,
-    budget: &MemoryBudget<'_>,
+    budget: &ReadingBudget<'_>,
 ) -> Result<Value, VariableFault> {
     let offset = usize::try_from(member.byte_offset).unwrap_or(usize::MAX);
     let bytes = record.get(offset..).unwrap_or_default();
@@ -165,7 +166,7 @@ pub(super) struct Sparse<'s> {
     pub(super) marks: &'s MatlabAttributes,
     pub(super) members: &'s [(String, Object)],
     pub(super) path: &'s str,
-    pub(super) budget: &'s MemoryBudget<'s>,
+    pub(super) budget: &'s ReadingBudget<'s>,
 }
 
 impl Sparse<'_> {
@@ -232,7 +233,7 @@ pub struct FileWrapper {
 }
 
 /// Gives the value of a reference such as `[0xDD000000, dimensions, …, class]`, for a variable of this name.
-pub type ObjectDecoder<'d> = dyn Fn(&[u32], &str, &MemoryBudget<'_>) -> Result<Value, VariableFault> + 'd;
+pub type ObjectDecoder<'d> = dyn Fn(&[u32], &str, &ReadingBudget<'_>) -> Result<Value, VariableFault> + 'd;
 
 /// What becomes of references to objects.
 pub(super) enum Objects<'d> {
@@ -249,7 +250,7 @@ impl<'d> Objects<'d> {
     /// Reads the part of the objects, where there is one, and makes the decoder of it.
     pub(super) fn read(
         opened: &Opened,
-        budget: &MemoryBudget<'_>,
+        budget: &ReadingBudget<'_>,
         decoder: impl FnOnce(FileWrapper) -> Result<Box<ObjectDecoder<'d>>, VariableFault>,
     ) -> Result<Self, VariableFault> {
         let Ok(dataset) = opened.root().group("#subsystem#").and_then(|group| group.dataset("MCOS")) else {
@@ -257,7 +258,7 @@ impl<'d> Objects<'d> {
         };
         match wrapper(&dataset, budget).and_then(decoder) {
             Ok(decoder) => Ok(Self::Decoded(decoder)),
-            Err(fault @ (VariableFault::Stopped | VariableFault::TooLarge { .. })) => Err(fault),
+            Err(fault) if fault.is_of_the_budget() => Err(fault),
             // The other variables can be read all the same.
             Err(fault) => Ok(Self::Faulty(fault.to_string())),
         }
@@ -269,7 +270,7 @@ impl<'d> Objects<'d> {
         class: &str,
         reference: Array,
         path: &str,
-        budget: &MemoryBudget<'_>,
+        budget: &ReadingBudget<'_>,
     ) -> Result<Value, VariableFault> {
         let opaque = |why: &str| Ok(Value::Opaque { class: class.to_owned(), why: why.to_owned() });
         match self {
@@ -287,7 +288,7 @@ impl<'d> Objects<'d> {
     }
 }
 
-fn wrapper(dataset: &Dataset, budget: &MemoryBudget<'_>) -> Result<FileWrapper, VariableFault> {
+fn wrapper(dataset: &Dataset, budget: &ReadingBudget<'_>) -> Result<FileWrapper, VariableFault> {
     let reader = Reader { budget, objects: &Objects::References };
     let (mut cells, mut long_words) = (Vec::new(), Vec::new());
     for (index, object) in reader.referred(dataset, "")?.iter().enumerate() {
@@ -300,7 +301,7 @@ fn wrapper(dataset: &Dataset, budget: &MemoryBudget<'_>) -> Result<FileWrapper, 
 }
 
 /// What a dataset of whole numbers of 64 bits holds.
-fn words(dataset: &Dataset, budget: &MemoryBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
+fn words(dataset: &Dataset, budget: &ReadingBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
     if dataset.element_size().map_err(|error| fault(&error, ""))? != 8 {
         return Ok(None);
     }

@@ -3,7 +3,7 @@
 use serde_json::Value as Json;
 
 use crate::strides::{NumberClass, StoredNumber};
-use crate::variables::{MemoryBudget, VariableFault};
+use crate::variables::{ReadingBudget, VariableFault};
 
 /// Why elements cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -176,7 +176,7 @@ pub(super) struct Header {
 
 impl Header {
     /// Reads the header; `name` is what errors call the array.
-    pub(super) fn parse(bytes: &[u8], name: &str, budget: &MemoryBudget<'_>) -> Result<Self, VariableFault> {
+    pub(super) fn parse(bytes: &[u8], name: &str, budget: &ReadingBudget<'_>) -> Result<Self, VariableFault> {
         let (text, length) = text(bytes, name)?;
         let damaged =
             |what: &str| VariableFault::Damaged { variable: name.to_owned(), what: what.to_owned(), offset: 8 };
@@ -325,7 +325,7 @@ mod header_tests {
     use super::*;
 
     fn header_of(bytes: &[u8]) -> Result<Header, VariableFault> {
-        Header::parse(bytes, "x", &MemoryBudget::new(1 << 20, &|_| false))
+        Header::parse(bytes, "x", &ReadingBudget::new(1 << 20))
     }
 
     fn file(version: u8, text: &[u8]) -> Vec<u8> {

@@ -18,7 +18,9 @@ use crate::file_error::FileError;
 use crate::importer::{Contents, Importer};
 use crate::npy::element::{Element, Field, Header, MAGIC};
 use crate::strides::{Places, StoredNumber, count};
-use crate::variables::{Array, ElementKind, MemoryBudget, StructArray, TextArray, Value, Variable, VariableFault};
+use crate::variables::{
+    Array, ElementKind, RECORD, ReadingBudget, StructArray, TextArray, Value, Variable, VariableFault,
+};
 
 /// One array of NumPy.
 pub(crate) struct Npy;
@@ -36,9 +38,9 @@ impl Importer for Npy {
         bytes.starts_with(MAGIC)
     }
 
-    fn read(&self, bytes: &[u8], path: &Path, budget: &MemoryBudget<'_>) -> Result<Contents, FileError> {
+    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
         let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
-        Contents::variables(read_npy(bytes, name, budget), path)
+        Contents::row_major(read_npy(bytes, name, budget), path)
     }
 }
 
@@ -48,7 +50,7 @@ impl Importer for Npy {
 ///
 /// A number alone becomes 1 x 1, an array of n elements the row 1 x n. Booleans, whole numbers, floats and complex numbers become an
 /// [`Array`], texts a [`TextArray`], records a [`StructArray`].
-pub fn read_npy(bytes: &[u8], name: &str, budget: &MemoryBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+pub fn read_npy(bytes: &[u8], name: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     let header = Header::parse(bytes, name, budget)?;
     let damaged = |what: &str| VariableFault::Damaged { variable: name.to_owned(), what: what.to_owned(), offset: 8 };
     let too_many = || damaged("the shape has more elements than can be counted");
@@ -77,7 +79,7 @@ struct StoredArray<'a> {
 }
 
 impl StoredArray<'_> {
-    fn value(&self, name: &str, budget: &MemoryBudget<'_>) -> Result<Value, VariableFault> {
+    fn value(&self, name: &str, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
         let elements = self.places(name)?.len() as u64;
         match self.element {
             Element::Number(number) => {
@@ -96,6 +98,8 @@ impl StoredArray<'_> {
                 Ok(Value::Text(TextArray { shape: matrix_shape(self.shape), texts }))
             }
             Element::Record { fields, .. } => {
+                // Of records without fields, or of fields without elements, there may be any number in no bytes.
+                budget.take(elements, RECORD, name)?;
                 let fields = fields.iter().map(|field| self.field(field, name, budget)).collect::<Result<_, _>>()?;
                 Ok(Value::Struct(StructArray { shape: matrix_shape(self.shape), fields }))
             }
@@ -139,10 +143,10 @@ impl StoredArray<'_> {
         &self,
         field: &Field,
         name: &str,
-        budget: &MemoryBudget<'_>,
+        budget: &ReadingBudget<'_>,
     ) -> Result<(String, Vec<Value>), VariableFault> {
         let places = self.places(name)?;
-        budget.take(places.len() as u64, size_of::<Value>() as u64, name)?;
+        budget.take(places.len() as u64, size_of::<Value>() as u64 + RECORD, name)?;
         let values = places.map(|place| {
             let record = self.at(place).get(field.offset..).unwrap_or_default();
             StoredArray { element: &field.element, shape: &field.shape, column_major: false, data: record }
@@ -255,7 +259,7 @@ mod archive_tests {
     }
 
     fn read(bytes: &[u8]) -> Result<Vec<Variable>, VariableFault> {
-        read_npz(bytes, &MemoryBudget::new(1 << 20, &|_| false))
+        read_npz(bytes, &ReadingBudget::new(1 << 20))
     }
 
     #[test]
@@ -270,7 +274,7 @@ mod archive_tests {
 
     #[test]
     fn other_files_in_the_archive_are_named() {
-        let budget = MemoryBudget::new(1 << 20, &|_| false);
+        let budget = ReadingBudget::new(1 << 20);
         let Contents::Archive { variables, files, .. } = read_archive(&file("with_text"), &budget).unwrap() else {
             panic!("an archive")
         };
@@ -342,7 +346,7 @@ mod array_file_tests {
 
     fn read(file: &str) -> Result<Value, VariableFault> {
         let bytes = std::fs::read(format!("{}/../../tests/data/npy/{file}.npy", env!("CARGO_MANIFEST_DIR"))).unwrap();
-        read_npy(&bytes, "x", &MemoryBudget::new(1 << 20, &|_| false)).map(|mut variables| variables.remove(0).value)
+        read_npy(&bytes, "x", &ReadingBudget::new(1 << 20)).map(|mut variables| variables.remove(0).value)
     }
 
     fn array(file: &str) -> Array {
@@ -429,7 +433,7 @@ mod array_file_tests {
             let text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}}}");
             let bytes =
                 [b"\x93NUMPY\x01\x00".as_slice(), &(text.len() as u16).to_le_bytes(), text.as_bytes(), data].concat();
-            read_npy(&bytes, "x", &MemoryBudget::new(1 << 20, &|_| false)).unwrap_err()
+            read_npy(&bytes, "x", &ReadingBudget::new(1 << 20)).unwrap_err()
         };
         assert!(matches!(file("(2,)", &[0; 15]), VariableFault::CutOff { .. }));
         assert!(matches!(file("(2,)", &[0; 17]), VariableFault::Unsupported { .. }));
@@ -441,7 +445,7 @@ mod array_file_tests {
     fn elements_of_no_bytes_do_not_take_more_memory_than_is_allowed() {
         let text = "{'descr': '<U0', 'fortran_order': False, 'shape': (1000000000000,)}";
         let bytes = [b"\x93NUMPY\x01\x00".as_slice(), &(text.len() as u16).to_le_bytes(), text.as_bytes()].concat();
-        let fault = read_npy(&bytes, "x", &MemoryBudget::new(1 << 20, &|_| false)).unwrap_err();
+        let fault = read_npy(&bytes, "x", &ReadingBudget::new(1 << 20)).unwrap_err();
         assert!(matches!(fault, VariableFault::TooLarge { .. }));
     }
 }
@@ -451,12 +455,12 @@ mod archive_writer_tests {
     use crate::zip_files::read_npz;
     use proptest::prelude::*;
 
-    use crate::variables::{CellArray, MemoryBudget};
+    use crate::variables::{CellArray, ReadingBudget};
 
     use super::*;
 
     fn read(bytes: &[u8]) -> Vec<Variable> {
-        read_npz(bytes, &MemoryBudget::new(1 << 24, &|_| false)).unwrap()
+        read_npz(bytes, &ReadingBudget::new(1 << 24)).unwrap()
     }
 
     #[test]

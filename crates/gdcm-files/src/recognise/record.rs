@@ -1,5 +1,8 @@
 //! Fields under names, wherever they stand: in a struct, in an object, in a file.
 
+use std::cell::OnceCell;
+use std::collections::HashMap;
+
 use gdcm_core::assembly::{ChannelLabel, Facts, SAMPLE_TIME_NAMES, folded_name};
 use gdcm_core::dataset::{GREATEST_CHANNEL_DELAY_S, Timing};
 use gdcm_core::units::number;
@@ -14,10 +17,19 @@ const RESPONSE_PART: &str = "frequencyresponse";
 /// Deepest of these parts inside one another.
 const DEEPEST_PART: usize = 3;
 
+/// The first field of each name; made when a record is first asked, for one may have as many fields as a file has bytes.
+#[derive(Clone, Debug, Default)]
+struct Index<'v> {
+    exact: HashMap<&'v str, &'v Value>,
+    /// Without case and underscores.
+    folded: HashMap<String, &'v Value>,
+}
+
 /// Fields that belong together.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Record<'v> {
     fields: Vec<(&'v str, &'v Value)>,
+    index: OnceCell<Index<'v>>,
     /// The class, where it is an object.
     pub(crate) class: Option<&'v str>,
     /// Whether it is a struct or an object, and not the variables of a file.
@@ -32,7 +44,7 @@ impl<'v> Record<'v> {
 
     /// Values under names that stand beside others.
     pub(crate) fn of_fields(fields: impl Iterator<Item = (&'v str, &'v Value)>) -> Self {
-        Self { fields: fields.collect(), class: None, stands_alone: false }
+        Self { fields: fields.collect(), ..Self::default() }
     }
 
     /// One record of a struct array. Of an object also what lies in its inner parts, the `page`-th where they are arrays: objects of
@@ -43,7 +55,7 @@ impl<'v> Record<'v> {
         if class.is_some() || holds_response {
             add_inner(&mut fields, page, DEEPEST_PART);
         }
-        Self { fields, class, stands_alone: true }
+        Self { fields, class, stands_alone: true, ..Self::default() }
     }
 
     /// Number of models that an object is an array of: each has a record of numbers of its own.
@@ -58,15 +70,24 @@ impl<'v> Record<'v> {
     /// The field of the first of these names that there is: as it is written, else without case and underscores.
     pub(crate) fn get(&self, names: &[&str]) -> Option<&'v Value> {
         let exact = names.iter().find_map(|name| self.exact(name));
-        let loose = || {
-            names.iter().find_map(|name| self.fields.iter().find(|(field, _)| folded_name(field) == folded_name(name)))
-        };
-        exact.or_else(|| loose().map(|(_, value)| *value))
+        let loose = |name: &&str| self.index().folded.get(&folded_name(name)).copied();
+        exact.or_else(|| names.iter().find_map(loose))
     }
 
     /// The field of this very name.
     pub(crate) fn exact(&self, name: &str) -> Option<&'v Value> {
-        self.fields.iter().find(|(field, _)| *field == name).map(|(_, value)| *value)
+        self.index().exact.get(name).copied()
+    }
+
+    fn index(&self) -> &Index<'v> {
+        self.index.get_or_init(|| {
+            let mut index = Index::default();
+            for &(name, value) in &self.fields {
+                index.exact.entry(name).or_insert(value);
+                index.folded.entry(folded_name(name)).or_insert(value);
+            }
+            index
+        })
     }
 
     /// Names and values, in order.
@@ -264,7 +285,8 @@ pub(super) fn array_of(value: &Value) -> Option<&Array> {
     match value {
         Value::Array(array) => Some(array),
         Value::Object(object) => {
-            let values = object.records.field("Value").or_else(|| object.records.field("Value_"))?;
+            // The polynomials of GNU Octave's transfer functions are objects too.
+            let values = ["Value", "Value_", "poly"].iter().find_map(|name| object.records.field(name))?;
             array_of(values.first()?)
         }
         Value::Struct(records) if records.shape.iter().product::<usize>() == 1 => {
@@ -278,26 +300,29 @@ pub(super) fn array_of(value: &Value) -> Option<&Array> {
 pub(super) fn matrix_of(name: &str, value: &Value) -> Result<DMatrix<f64>, String> {
     let array =
         array_of(value).ok_or_else(|| format!("{name}: expected a matrix of numbers, found {}", value.words()))?;
-    let pages = slices(array);
-    if pages > 1 {
+    if array.shape.iter().skip(2).product::<usize>() > 1 {
         return Err(format!("{name}: expected a matrix, found {}", value.words()));
     }
-    page_of(name, array, 0)
+    page_of(name, array, 0, false)
 }
 
-/// Number of matrices in an array: the product of what stands behind its rows and columns.
-pub(super) fn slices(array: &Array) -> usize {
-    array.shape.iter().skip(2).product()
+/// Number of matrices in an array, and the rows and columns of each; which index counts them, `pages_first` says.
+pub(super) fn pages_of(array: &Array, pages_first: bool) -> (usize, [usize; 2]) {
+    let side = |axis: usize| array.shape.get(axis).copied().unwrap_or(0);
+    match array.shape.len() {
+        3 if pages_first => (side(0), [side(1), side(2)]),
+        _ => (array.shape.iter().skip(2).product(), [side(0), side(1)]),
+    }
 }
 
 /// One matrix of an array of matrices.
-pub(super) fn page_of(name: &str, array: &Array, page: usize) -> Result<DMatrix<f64>, String> {
-    let (rows, columns) = (array.shape.first().copied().unwrap_or(0), array.shape.get(1).copied().unwrap_or(0));
+pub(super) fn page_of(name: &str, array: &Array, page: usize, pages_first: bool) -> Result<DMatrix<f64>, String> {
+    let (pages, [rows, columns]) = pages_of(array, pages_first);
     if array.im.as_ref().is_some_and(|im| im.iter().any(|part| *part != 0.0)) {
         return Err(format!("{name}: expected real numbers, found complex ones"));
     }
-    let start = page * rows * columns;
-    let values = array.re.get(start..start + rows * columns).unwrap_or_default();
+    let (start, step) = if array.shape.len() == 3 && pages_first { (page, pages) } else { (page * rows * columns, 1) };
+    let values: Vec<f64> = array.re.iter().skip(start).step_by(step.max(1)).take(rows * columns).copied().collect();
     if let Some(at) = values.iter().position(|value| !value.is_finite()) {
         let place = if rows == 0 { (0, 0) } else { (at % rows + 1, at / rows + 1) };
         return Err(format!(
@@ -305,7 +330,7 @@ pub(super) fn page_of(name: &str, array: &Array, page: usize) -> Result<DMatrix<
             place.0, place.1, values[at]
         ));
     }
-    Ok(DMatrix::from_column_slice(rows, columns, values))
+    Ok(DMatrix::from_column_slice(rows, columns, &values))
 }
 
 /// One real finite number.

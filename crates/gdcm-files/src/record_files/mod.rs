@@ -21,7 +21,7 @@ use crate::importer::{
 use crate::recognise::{Found, search};
 use crate::record_files::record_columns::{columns_of, experiments, is_iddata, simulink_columns, timetable_columns};
 use crate::text::{NumberedText, TextTable, numbered_words, read_table, sections};
-use crate::variables::{MemoryBudget, Variable, VariableFault};
+use crate::variables::{ReadingBudget, Variable, VariableFault};
 
 /// Most records of one file.
 const MOST_RECORDS: usize = 1000;
@@ -49,7 +49,7 @@ pub fn read_records(paths: &[PathBuf], progress: &dyn FolderProgress) -> Result<
 
 /// The records in the bytes of a file of this name, in no more than `most` bytes of memory for its columns.
 pub fn records_of_bytes(bytes: &[u8], name: &str, most: u64) -> Result<FoundRecords, FileError> {
-    let budget = MemoryBudget::new(most, &|_| false);
+    let budget = ReadingBudget::new(most);
     let mut found = FoundRecords { files: 1, ..FoundRecords::default() };
     found.take(import_bytes(bytes, Path::new(name), name, &budget)?, &budget)?;
     Ok(found)
@@ -61,7 +61,7 @@ pub fn records_of_bytes(bytes: &[u8], name: &str, most: u64) -> Result<FoundReco
 /// Those of reading; of a record that the file does not hold [`FileError::NoRecord`].
 pub fn load_records(path: &Path, variables: &[Option<&str>]) -> Result<Vec<Result<RecordTable, FileError>>, FileError> {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let budget = MemoryBudget::new(MOST_MEMORY, &|_| false);
+    let budget = ReadingBudget::new(MOST_MEMORY);
     let mut found = FoundRecords::default();
     found.take(import_file(path, &name, &budget)?, &budget)?;
     let held = found.tables.len();
@@ -73,12 +73,12 @@ pub fn load_records(path: &Path, variables: &[Option<&str>]) -> Result<Vec<Resul
 }
 
 impl FoundRecords {
-    fn take(&mut self, file: ImportedFile<'_>, budget: &MemoryBudget<'_>) -> Result<(), FileError> {
+    fn take(&mut self, file: ImportedFile<'_>, budget: &ReadingBudget<'_>) -> Result<(), FileError> {
         let ImportedFile { path, name, sha256, contents } = file;
         let wrong = |fault| FileError::variables(path, fault);
         match contents {
-            Contents::Variables { variables, notes } => {
-                self.add_found(search_records(&variables), &notes, (name, &sha256))
+            Contents::Variables { variables, notes, .. } => {
+                self.add_found(search_records(&variables, budget).map_err(wrong)?, &notes, (name, &sha256));
             }
             Contents::Text(text) => {
                 for columns in of_text(&text, budget).map_err(wrong)? {
@@ -111,7 +111,7 @@ impl FoundRecords {
                     }
                 }
                 if !variables.is_empty() {
-                    self.add_found(search_records(&variables), &[], (name, &sha256));
+                    self.add_found(search_records(&variables, budget).map_err(wrong)?, &[], (name, &sha256));
                 }
             }
         }
@@ -168,7 +168,7 @@ impl Columns {
 }
 
 /// The columns of a text; where these change on the way, of every part that is long enough to be a record.
-fn of_text(text: &str, budget: &MemoryBudget<'_>) -> Result<Vec<Columns>, VariableFault> {
+fn of_text(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Columns>, VariableFault> {
     let first = match of_whole_text(text, budget) {
         Err(fault @ (VariableFault::Line { .. } | VariableFault::Format { .. })) => fault,
         whole => return whole.map(|columns| vec![columns]),
@@ -183,7 +183,7 @@ fn of_text(text: &str, budget: &MemoryBudget<'_>) -> Result<Vec<Columns>, Variab
                 let notes = [vec![note], columns.notes].concat();
                 found.push(Columns { variable: format!("table {}", index + 1), notes, ..columns });
             }
-            Err(fault @ (VariableFault::Stopped | VariableFault::TooLarge { .. })) => return Err(fault),
+            Err(fault) if fault.is_of_the_budget() => return Err(fault),
             _ => {}
         }
     }
@@ -191,7 +191,7 @@ fn of_text(text: &str, budget: &MemoryBudget<'_>) -> Result<Vec<Columns>, Variab
 }
 
 /// The columns of one table: of one with words or times of the clock among its numbers, with numbers in their place.
-fn of_whole_text(text: &str, budget: &MemoryBudget<'_>) -> Result<Columns, VariableFault> {
+fn of_whole_text(text: &str, budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
     let first = match read_table(text, budget) {
         Err(fault @ (VariableFault::Line { .. } | VariableFault::Format { .. })) => fault,
         table => return table.map(of_table),
@@ -238,8 +238,11 @@ pub fn example_records(condition: i64) -> Result<Vec<RecordTable>, FileError> {
 }
 
 /// Every record among the variables of a file.
-pub(super) fn search_records(variables: &[Variable]) -> Found<Columns> {
-    search(variables, &|record, variable| {
+pub(super) fn search_records(
+    variables: &[Variable],
+    budget: &ReadingBudget<'_>,
+) -> Result<Found<Columns>, VariableFault> {
+    search(variables, budget, &|record, variable| {
         if is_iddata(record) {
             return Some(match experiments(record, variable) {
                 Ok(found) => found.into_iter().map(Ok).collect(),

@@ -190,7 +190,7 @@ fn object(class: &str, fields: Vec<(&str, Value)>) -> Value {
 }
 
 fn searched(name: &str, value: Value) -> Found<Columns> {
-    search_records(&[Variable { name: name.to_owned(), value }])
+    search_records(&[Variable { name: name.to_owned(), value }], &ReadingBudget::new(1 << 20)).unwrap()
 }
 
 /// A timetable of two variables over these row times, as MATLAB saves it.

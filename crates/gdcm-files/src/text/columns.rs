@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::text::heading::{Heading, name_and_unit, names_one_more, numbers_mostly};
 use crate::text::separator::{Separator, cell_number, excerpt, lines, refuse_binary};
-use crate::variables::{MemoryBudget, VariableFault};
+use crate::variables::{ReadingBudget, VariableFault};
 
 const EXPECTED: &str = "a table of numbers in columns";
 
@@ -57,7 +57,7 @@ impl TextTable {
 }
 
 /// Reads a table of numbers in columns: its separator, decimal mark, names and units are recognised.
-pub fn read_table(text: &str, budget: &MemoryBudget) -> Result<TextTable, VariableFault> {
+pub fn read_table(text: &str, budget: &ReadingBudget) -> Result<TextTable, VariableFault> {
     refuse_binary(text, EXPECTED)?;
     let Some(layout) = Layout::recognise(text, budget)? else {
         return Err(no_numbers(text));
@@ -84,7 +84,7 @@ pub(super) fn line_fault(line: usize, what: String) -> VariableFault {
 /// A table as far as it is read.
 struct Reading<'m> {
     layout: Layout,
-    budget: &'m MemoryBudget<'m>,
+    budget: &'m ReadingBudget<'m>,
     columns: Vec<Vec<f64>>,
     lines: Vec<usize>,
     skipped: Vec<(usize, String)>,
@@ -92,7 +92,7 @@ struct Reading<'m> {
 }
 
 impl<'m> Reading<'m> {
-    fn new(layout: Layout, budget: &'m MemoryBudget<'m>) -> Result<Self, VariableFault> {
+    fn new(layout: Layout, budget: &'m ReadingBudget<'m>) -> Result<Self, VariableFault> {
         // A column takes its header here, and its unit and name later.
         budget.take(layout.columns as u64, 128, "")?;
         let (columns, lines) = (vec![Vec::new(); layout.columns], Vec::new());
@@ -269,14 +269,14 @@ struct Tally {
 impl Layout {
     /// Finds the separator and the decimal mark with which most lines are lines of numbers of one width; the wider table where
     /// several do; nothing where no line is a line of numbers.
-    pub(super) fn recognise(text: &str, budget: &MemoryBudget) -> Result<Option<Self>, VariableFault> {
+    pub(super) fn recognise(text: &str, budget: &ReadingBudget) -> Result<Option<Self>, VariableFault> {
         let mut tallies: Vec<Tally> = Vec::with_capacity(2 * Separator::ALL.len());
         for decimal_comma in [false, true] {
             let tally = |&separator| Tally { separator, decimal_comma, widths: BTreeMap::new(), lines: 0 };
             tallies.extend(Separator::ALL.iter().map(tally));
         }
         for (_, line) in lines(text) {
-            budget.take(0, 1, "")?;
+            budget.work(1, "")?;
             if line.trim().is_empty() || comment(line).is_some() {
                 continue;
             }
@@ -372,7 +372,7 @@ mod columns_tests {
     use super::*;
 
     fn read(text: &str) -> Result<TextTable, VariableFault> {
-        read_table(text, &MemoryBudget::new(1 << 24, &|_| false))
+        read_table(text, &ReadingBudget::new(1 << 24))
     }
 
     fn missing(table: &TextTable) -> usize {
@@ -487,7 +487,7 @@ mod columns_tests {
     fn what_claims_too_much_is_refused_before_it_is_taken() {
         let wide = "1,".repeat(1_000_000);
         assert!(matches!(read(&wide), Err(VariableFault::TooLarge { .. })));
-        let stopped = read_table("1,2", &MemoryBudget::new(1 << 20, &|_| true));
+        let stopped = read_table("1,2", &ReadingBudget::new(1 << 20).stopped_by(std::sync::Arc::new(true.into())));
         assert_eq!(stopped, Err(VariableFault::Stopped));
         assert!(matches!(read("1,2\0"), Err(VariableFault::Format { .. })));
     }
@@ -519,7 +519,7 @@ mod layout_tests {
     use super::*;
 
     fn of(text: &str) -> Option<(Separator, bool, usize)> {
-        let layout = Layout::recognise(text, &MemoryBudget::new(1 << 20, &|_| false)).unwrap()?;
+        let layout = Layout::recognise(text, &ReadingBudget::new(1 << 20)).unwrap()?;
         Some((layout.separator, layout.decimal_comma, layout.columns))
     }
 

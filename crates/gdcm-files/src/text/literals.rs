@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 use crate::text::separator::{excerpt, refuse_binary};
 use crate::variables::{
-    Array, CellArray, ElementKind, MemoryBudget, StructArray, TextArray, Value, Variable, VariableFault,
+    Array, CellArray, ElementKind, ReadingBudget, StructArray, TextArray, Value, Variable, VariableFault,
 };
 
 /// Values within values that are followed; nobody writes more, and each takes room on the stack of the program.
@@ -35,7 +35,7 @@ pub struct Statements {
 }
 
 /// Reads variables from MATLAB or Octave statements.
-pub fn read_literals(text: &str, budget: &MemoryBudget) -> Result<Statements, VariableFault> {
+pub fn read_literals(text: &str, budget: &ReadingBudget) -> Result<Statements, VariableFault> {
     refuse_binary(text, "MATLAB statements")?;
     let scanner = Scanner { text, at: 0, line: 1, line_start: 0 };
     let mut reading = Reading {
@@ -46,7 +46,7 @@ pub fn read_literals(text: &str, budget: &MemoryBudget) -> Result<Statements, Va
         blocks: 0,
     };
     while !reading.scanner.rest().is_empty() {
-        budget.take(0, 1, "")?;
+        budget.work(1, "")?;
         reading.statement()?;
     }
     Ok(reading.read)
@@ -181,7 +181,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// Names with points between them, where they stand here: "sys.A".
-    fn path(&mut self, budget: &MemoryBudget) -> Result<Vec<&'t str>, VariableFault> {
+    fn path(&mut self, budget: &ReadingBudget) -> Result<Vec<&'t str>, VariableFault> {
         let mut path: Vec<&'t str> = self.name().into_iter().collect();
         while let Some(first) = path.first() {
             if path.len() > MOST_NESTED {
@@ -200,7 +200,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// A text up to its closing quote on the same line; a doubled quote is a character.
-    fn quoted(&mut self, budget: &MemoryBudget) -> Result<String, ValueError> {
+    fn quoted(&mut self, budget: &ReadingBudget) -> Result<String, ValueError> {
         let opening = self.position();
         let quote = self.peek().unwrap_or('\'');
         self.at += 1;
@@ -252,10 +252,10 @@ impl<'t> Scanner<'t> {
     }
 
     /// Goes on to the end of the statement; a bracket that is never closed is a fault, as it takes all that follows with it.
-    fn pass_statement(&mut self, budget: &MemoryBudget) -> Result<(), VariableFault> {
+    fn pass_statement(&mut self, budget: &ReadingBudget) -> Result<(), VariableFault> {
         let mut open: Vec<(char, Position)> = Vec::new();
         loop {
-            budget.take(0, 1, "")?;
+            budget.work(1, "")?;
             let spaced = self.pass_blanks()?;
             let Some(character) = self.peek() else { break };
             let before = self.text[..self.at].chars().next_back();
@@ -304,7 +304,7 @@ impl<'t> Scanner<'t> {
 
 struct Reading<'t, 'm> {
     scanner: Scanner<'t>,
-    budget: &'m MemoryBudget<'m>,
+    budget: &'m ReadingBudget<'m>,
     read: Statements,
     /// Where the variables stand among those read.
     places: HashMap<&'t str, usize>,
@@ -500,7 +500,7 @@ impl<'t> Reading<'t, '_> {
             }
             self.scanner.at += 1;
             self.scanner.pass_blanks()?;
-            self.budget.take(0, 1, "")?;
+            self.budget.work(1, "")?;
         }
         if let Some((value, imaginary)) = self.scanner.number()? {
             return Ok(Some((sign * value, imaginary)));
@@ -734,7 +734,7 @@ fn record_of(function: &str, names: &[&str], arguments: Vec<Value>) -> Result<Va
 }
 
 /// `zeros`, `ones` or `eye` of a number of rows and columns.
-fn filled(function: &str, sides: &[Value], budget: &MemoryBudget) -> Result<Result<Value, String>, VariableFault> {
+fn filled(function: &str, sides: &[Value], budget: &ReadingBudget) -> Result<Result<Value, String>, VariableFault> {
     let side = |value: &Value| match value {
         Value::Array(array) if array.len() == 1 && array.re[0].fract() == 0.0 && array.re[0] < 1e15 => {
             Some(array.re[0].max(0.0) as usize)
@@ -809,7 +809,7 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<Statements, VariableFault> {
-        read_literals(text, &MemoryBudget::new(1 << 22, &|_| false))
+        read_literals(text, &ReadingBudget::new(1 << 22))
     }
 
     fn value(text: &str) -> Value {

@@ -2,7 +2,7 @@
 
 use crate::text::columns::{TextTable, comment, is_rule, line_fault, read_table};
 use crate::text::separator::{cell_number, excerpt, lines, refuse_binary};
-use crate::variables::{Array, MemoryBudget, Value, Variable, VariableFault};
+use crate::variables::{Array, ReadingBudget, Value, Variable, VariableFault};
 
 /// Matrices read from a text.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,7 +14,7 @@ pub struct NamedMatrices {
 }
 
 /// Reads one matrix, a row on each line; a line of names above it is passed over.
-pub fn read_matrix(text: &str, name: &str, budget: &MemoryBudget) -> Result<Variable, VariableFault> {
+pub fn read_matrix(text: &str, name: &str, budget: &ReadingBudget) -> Result<Variable, VariableFault> {
     let table = read_table(text, budget)?;
     if let Some((line, _)) = table.skipped.iter().find(|(_, line)| cell_number(line, table.decimal_comma).is_some()) {
         let what = format!("one number, where other rows have {}; complete the row", table.columns.len());
@@ -28,11 +28,11 @@ pub fn read_matrix(text: &str, name: &str, budget: &MemoryBudget) -> Result<Vari
 ///
 /// A common factor ("1.0e+03 *") is applied, columns that are printed in several parts ("Columns 1 through 6") are put together,
 /// and names of rows and columns are passed over.
-pub fn read_matrices(text: &str, budget: &MemoryBudget) -> Result<NamedMatrices, VariableFault> {
+pub fn read_matrices(text: &str, budget: &ReadingBudget) -> Result<NamedMatrices, VariableFault> {
     refuse_binary(text, "matrices under their names")?;
     let mut reading = Reading { found: Vec::new(), notes: Vec::new(), budget };
     for (number, line) in lines(text) {
-        budget.take(0, 1, "")?;
+        budget.work(1, "")?;
         if !line.trim().is_empty() && comment(line).is_none() && !is_rule(line) {
             reading.line(number, line)?;
         }
@@ -61,7 +61,7 @@ struct Begun {
 struct Reading<'m> {
     found: Vec<Begun>,
     notes: Vec<String>,
-    budget: &'m MemoryBudget<'m>,
+    budget: &'m ReadingBudget<'m>,
 }
 
 impl Reading<'_> {
@@ -181,7 +181,7 @@ fn row_of_numbers(line: &str) -> bool {
 }
 
 /// The rows of a part; faults name the line of the whole text.
-fn table(part: &Part, name: &str, budget: &MemoryBudget) -> Result<TextTable, VariableFault> {
+fn table(part: &Part, name: &str, budget: &ReadingBudget) -> Result<TextTable, VariableFault> {
     let place = |line: usize| part.numbers.get(line.saturating_sub(1)).copied().unwrap_or(line);
     let table = read_table(&part.text, budget).map_err(|fault| match fault {
         VariableFault::Line { line, what, .. } => {
@@ -199,7 +199,7 @@ fn table(part: &Part, name: &str, budget: &MemoryBudget) -> Result<TextTable, Va
 }
 
 /// Tables side by side as one matrix.
-fn matrix(tables: &[TextTable], scale: f64, budget: &MemoryBudget, name: &str) -> Result<Value, VariableFault> {
+fn matrix(tables: &[TextTable], scale: f64, budget: &ReadingBudget, name: &str) -> Result<Value, VariableFault> {
     let rows = tables.first().map_or(0, |table| table.lines.len());
     if let Some(other) = tables.iter().find(|table| table.lines.len() != rows) {
         let found = other.lines.len();
@@ -275,7 +275,7 @@ mod matrix_text_tests {
     use super::*;
 
     fn read(text: &str) -> Result<NamedMatrices, VariableFault> {
-        read_matrices(text, &MemoryBudget::new(1 << 22, &|_| false))
+        read_matrices(text, &ReadingBudget::new(1 << 22))
     }
 
     fn arrays(text: &str) -> Vec<(String, Array)> {
@@ -288,7 +288,7 @@ mod matrix_text_tests {
 
     #[test]
     fn one_matrix_fills_a_file() {
-        let budget = MemoryBudget::new(1 << 20, &|_| false);
+        let budget = ReadingBudget::new(1 << 20);
         let variable = read_matrix("x1,x2\n1,2\n3,4\n5,6", "A", &budget).unwrap();
         let expected = Array::matrix(3, 2, vec![1.0, 3.0, 5.0, 2.0, 4.0, 6.0]);
         assert_eq!(variable, Variable { name: "A".to_owned(), value: Value::Array(expected) });
@@ -346,7 +346,7 @@ mod matrix_text_tests {
         #[test]
         fn any_text_is_read_or_refused(text in "[A-Cx0-9=:;,. \\n\\-e*+]{0,120}") {
             let _ = read(&text);
-            let _ = read_matrix(&text, "A", &MemoryBudget::new(1 << 20, &|_| false));
+            let _ = read_matrix(&text, "A", &ReadingBudget::new(1 << 20));
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::text::columns::{comment, is_rule};
-use crate::variables::{MemoryBudget, VariableFault};
+use crate::variables::{ReadingBudget, VariableFault};
 
 /// What stands between the cells of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -223,7 +223,7 @@ const WINDOWS_1252: [char; 32] = [
 
 /// The characters of a text: UTF-8 with a byte order mark or without, UTF-16 with one, or Latin-1 as Windows has it where the bytes are
 /// no UTF-8.
-pub fn decode(bytes: &[u8], budget: &MemoryBudget) -> Result<String, VariableFault> {
+pub fn decode(bytes: &[u8], budget: &ReadingBudget) -> Result<String, VariableFault> {
     if let Some(body) = bytes.strip_prefix(&[0xff, 0xfe]) {
         return utf16(body, u16::from_le_bytes, budget);
     }
@@ -250,7 +250,7 @@ fn latin1(byte: u8) -> char {
     }
 }
 
-fn utf16(body: &[u8], word: fn([u8; 2]) -> u16, budget: &MemoryBudget) -> Result<String, VariableFault> {
+fn utf16(body: &[u8], word: fn([u8; 2]) -> u16, budget: &ReadingBudget) -> Result<String, VariableFault> {
     let (pairs, rest) = body.as_chunks::<2>();
     if !rest.is_empty() {
         return Err(VariableFault::CutOff { variable: String::new(), offset: body.len() as u64 + 2 });
@@ -449,7 +449,7 @@ mod encoding_tests {
     use super::*;
 
     fn read(bytes: &[u8]) -> Result<String, VariableFault> {
-        decode(bytes, &MemoryBudget::new(1 << 20, &|_| false))
+        decode(bytes, &ReadingBudget::new(1 << 20))
     }
 
     #[test]
@@ -468,7 +468,7 @@ mod encoding_tests {
     fn what_is_no_text_is_refused() {
         assert!(matches!(read(b"a\0b"), Err(VariableFault::Format { .. })));
         assert!(matches!(read(b"\xff\xfea"), Err(VariableFault::CutOff { .. })));
-        let small = decode(b"abc", &MemoryBudget::new(8, &|_| false));
+        let small = decode(b"abc", &ReadingBudget::new(8));
         assert!(matches!(small, Err(VariableFault::TooLarge { .. })));
     }
 }

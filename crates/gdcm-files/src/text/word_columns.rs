@@ -7,7 +7,7 @@ use crate::text::columns::comment;
 use crate::text::separator::cell_number;
 use crate::text::separator::clock_s;
 use crate::text::separator::lines;
-use crate::variables::{MemoryBudget, VariableFault};
+use crate::variables::{ReadingBudget, VariableFault};
 
 /// Lines that are looked at before the columns are taken as known.
 const SAMPLE: usize = 200;
@@ -35,13 +35,13 @@ enum Kind {
 
 /// Numbers the words of a text in columns, each as it first comes, and turns times of the clock into seconds; nothing where the text
 /// has no columns of words beside columns of numbers. Columns have to be told apart by more than blanks.
-pub fn numbered_words(text: &str, budget: &MemoryBudget) -> Result<Option<NumberedText>, VariableFault> {
+pub fn numbered_words(text: &str, budget: &ReadingBudget) -> Result<Option<NumberedText>, VariableFault> {
     let Some((separator, columns)) = columns(text) else { return Ok(None) };
     let mut numbering = Numbering { columns, heading: None };
     budget.take(text.len() as u64, 2, "")?;
     let mut numbered = String::with_capacity(text.len());
     for (_, line) in lines(text) {
-        budget.take(0, 1, "")?;
+        budget.work(1, "")?;
         let cells: Vec<String> = separator.cells(line).map(|cell| cell.trim().to_owned()).collect();
         if cells.len() == numbering.columns.len() && comment(line).is_none() {
             numbered.push_str(&numbering.line(cells, separator));
@@ -194,7 +194,7 @@ mod tests {
     use crate::text::read_table;
 
     fn numbered(text: &str) -> Option<NumberedText> {
-        numbered_words(text, &MemoryBudget::new(1 << 20, &|_| false)).unwrap()
+        numbered_words(text, &ReadingBudget::new(1 << 20)).unwrap()
     }
 
     #[test]
@@ -203,7 +203,7 @@ mod tests {
         let found = numbered(text).unwrap();
         assert_eq!(found.text, "t,mode,P,Q\n0,1,1,2\n0.1,1,3,4\n0.2,2,5,6\n0.3,1,7,8\n\n");
         assert_eq!(found.notes, ["column \"mode\" has words, which are numbered: 1 is SAS, 2 is ATT, on"]);
-        let table = read_table(&found.text, &MemoryBudget::new(1 << 20, &|_| false)).unwrap();
+        let table = read_table(&found.text, &ReadingBudget::new(1 << 20)).unwrap();
         assert_eq!(table.columns[1], [1.0, 1.0, 2.0, 1.0]);
     }
 
@@ -211,7 +211,7 @@ mod tests {
     fn times_of_the_clock_become_seconds_over_midnight_too() {
         let text = "time;P;Q\n23:59:59,90;1,5;2\n23:59:59,95;1,5;2\n00:00:00,00;1,5;2\n00:00:00,05;1,5;2\n";
         let found = numbered(text).unwrap();
-        let table = read_table(&found.text, &MemoryBudget::new(1 << 20, &|_| false)).unwrap();
+        let table = read_table(&found.text, &ReadingBudget::new(1 << 20)).unwrap();
         // Nanoseconds were written.
         assert!(table.columns[0].iter().zip([0.0, 0.05, 0.1, 0.15]).all(|(a, b)| (a - b).abs() < 1e-9), "{table:?}");
         assert_eq!(table.columns[1], [1.5; 4]);

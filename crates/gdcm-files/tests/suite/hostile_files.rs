@@ -4,10 +4,11 @@
 //! format for so long and says how many files were tried.
 
 use crate::made_up::tries;
+use std::io::Write;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use gdcm_files::models_of_bytes;
+use gdcm_files::{models_of_bytes, records_of_bytes};
 
 /// Memory that the variables of a file may take here.
 const MOST: u64 = 64 << 20;
@@ -117,4 +118,61 @@ fn damaged_numpy_files_end_with_an_answer() {
 #[test]
 fn damaged_texts_end_with_an_answer() {
     try_all("text", &TEXTS.map(|(name, text)| (name.to_owned(), text.as_bytes().to_vec())));
+}
+
+/// What is said of a file beyond the budget, whether models or records are looked for in it.
+fn refusals(name: &str, bytes: &[u8]) -> [String; 2] {
+    let begun = Instant::now();
+    let refusals = [models_of_bytes(bytes, name, MOST).map(drop), records_of_bytes(bytes, name, MOST).map(drop)];
+    assert!(begun.elapsed() < Duration::from_secs(20), "{name}");
+    refusals.map(|refusal| refusal.map_or_else(|error| error.to_string(), |()| "read".to_owned()))
+}
+
+#[test]
+fn things_without_content_count_and_are_refused_in_one_sentence_with_the_limit() {
+    let files = seeds("hostile");
+    assert!(files.len() >= 3);
+    for (name, bytes) in files {
+        for words in refusals(&name, &bytes) {
+            assert!(words.starts_with(&name) && words.contains("would take more than 64 MiB of memory"), "{words}");
+        }
+    }
+}
+
+#[test]
+fn json_of_any_shape_takes_no_more_memory_than_it_may() {
+    let chain = format!("{}0{}", "{\"\":".repeat(100), "}".repeat(100));
+    for item in [chain.as_str(), "{\"\":0}", "[]", "\"\"", "[0]", "0"] {
+        let text = format!("[{}]", vec![item; (12 << 20) / (item.len() + 1)].join(","));
+        for words in refusals("x.json", text.as_bytes()) {
+            assert!(words.contains("would take more than 64 MiB of memory"), "{item}: {words}");
+        }
+    }
+}
+
+#[test]
+fn an_archive_of_many_entries_to_the_same_bytes_is_refused_as_one_that_holds_them_all() {
+    // One file of 4 MiB of blanks, and a directory in which it stands a hundred times.
+    let (mut bytes, mut archive) = (Vec::new(), Vec::new());
+    let mut writer = flate2::write::DeflateEncoder::new(&mut bytes, flate2::Compression::best());
+    writer.write_all(&vec![b' '; 4 << 20]).unwrap();
+    writer.finish().unwrap();
+    let mut sum = flate2::Crc::new();
+    sum.update(&vec![b' '; 4 << 20]);
+    let sizes = [sum.sum(), bytes.len() as u32, 4 << 20].map(u32::to_le_bytes).concat();
+    let fields = |name: &str| [&[20, 0, 0, 0, 8, 0, 0, 0, 0, 0][..], &sizes, &[name.len() as u8, 0, 0, 0]].concat();
+    archive.extend([b"PK\x03\x04", fields("000.csv").as_slice(), b"000.csv", &bytes].concat());
+    let directory = archive.len() as u32;
+    for entry in 0..100 {
+        let name = format!("{entry:03}.csv");
+        archive.extend([b"PK\x01\x02\x14\x00", fields(&name).as_slice(), &[0; 14], name.as_bytes()].concat());
+    }
+    let length = archive.len() as u32 - directory;
+    archive.extend(
+        [b"PK\x05\x06", &[0; 4][..], &[100, 0, 100, 0], &length.to_le_bytes(), &directory.to_le_bytes()].concat(),
+    );
+    archive.extend([0, 0]);
+    for words in refusals("same.zip", &archive) {
+        assert!(words.starts_with("same.zip") && words.contains("would take more than 64 MiB of memory"), "{words}");
+    }
 }

@@ -6,7 +6,7 @@ use super::{Content, Property, Reference, Subsystem, is_enumeration, own_weight,
 use crate::mat::matrix::unread_because;
 use crate::mat::{FieldPath, Step};
 use crate::variables::{
-    Array, CellArray, ElementKind, MemoryBudget, Object, StructArray, TextArray, Value, VariableFault,
+    Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value, VariableFault,
 };
 
 /// The property that holds what a class makes of its objects to be saved.
@@ -15,7 +15,7 @@ const MADE: &str = "any";
 /// Puts objects together, one in another.
 pub(super) struct Assembly<'s> {
     pub(super) subsystem: &'s Subsystem,
-    pub(super) budget: &'s MemoryBudget<'s>,
+    pub(super) budget: &'s ReadingBudget<'s>,
     /// The objects that are being put together: one that lies in itself would have no end.
     open: Vec<u32>,
 }
@@ -26,14 +26,14 @@ impl Subsystem {
         &self,
         reference: &Reference,
         trail: &FieldPath<'_>,
-        budget: &MemoryBudget<'_>,
+        budget: &ReadingBudget<'_>,
     ) -> Result<Value, VariableFault> {
         Assembly::new(self, budget).referred(reference, trail)
     }
 }
 
 impl<'s> Assembly<'s> {
-    pub(super) fn new(subsystem: &'s Subsystem, budget: &'s MemoryBudget<'s>) -> Self {
+    pub(super) fn new(subsystem: &'s Subsystem, budget: &'s ReadingBudget<'s>) -> Self {
         Self { subsystem, budget, open: Vec::new() }
     }
 

@@ -11,7 +11,7 @@ use std::collections::HashMap;
 use crate::mat::FieldPath;
 use crate::mat::level5::{ByteOrder, name_of};
 use crate::mat::matrix::unread_because;
-use crate::variables::{ElementKind, MemoryBudget, Object, StructArray, TextArray, Value, VariableFault};
+use crate::variables::{ElementKind, Object, ReadingBudget, StructArray, TextArray, Value, VariableFault};
 
 /// The objects of a file.
 #[derive(Clone, Debug)]
@@ -30,7 +30,7 @@ const BEFORE_VALUES: usize = 2;
 
 impl Subsystem {
     /// Takes the cells of a `FileWrapper__`, the first of which are the bytes of its directory.
-    pub fn new(cells: Vec<Value>, budget: &MemoryBudget<'_>) -> Result<Self, VariableFault> {
+    pub fn new(cells: Vec<Value>, budget: &ReadingBudget<'_>) -> Result<Self, VariableFault> {
         let bytes = directory_bytes(cells.first())?;
         // A name without letters takes one byte of the file, and a text of ours.
         budget.take(bytes.len() as u64, 2 * size_of::<String>() as u64, "")?;
@@ -62,7 +62,12 @@ impl Subsystem {
     /// the objects, number of the class]`.
     ///
     /// What cannot be decoded is [`Value::Opaque`]; only the budget makes a fault.
-    pub fn object(&self, reference: &[u32], variable: &str, budget: &MemoryBudget<'_>) -> Result<Value, VariableFault> {
+    pub fn object(
+        &self,
+        reference: &[u32],
+        variable: &str,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Value, VariableFault> {
         match Reference::parse(reference) {
             Some(reference) => self.referred(&reference, &FieldPath::start(variable), budget),
             None => Ok(unread_because("object", "what refers to it is damaged", variable)),
@@ -251,7 +256,7 @@ const MISSING: u64 = u64::MAX;
 
 /// The texts packed as version, number of dimensions, dimensions, lengths and units of UTF-16, four to a number; `None` if the
 /// numbers are something else. A missing text is an empty one.
-pub(super) fn packed_text(words: &[u64], budget: &MemoryBudget<'_>) -> Result<Option<TextArray>, VariableFault> {
+pub(super) fn packed_text(words: &[u64], budget: &ReadingBudget<'_>) -> Result<Option<TextArray>, VariableFault> {
     budget.take(words.len() as u64, 64, "")?;
     Ok(unpacked(words))
 }
@@ -357,7 +362,7 @@ impl Subsystem {
         records: &StructArray,
         class: &str,
         trail: &FieldPath<'_>,
-        budget: &MemoryBudget<'_>,
+        budget: &ReadingBudget<'_>,
     ) -> Result<Value, VariableFault> {
         let number = numbers(records, "ClassName").and_then(|numbers| numbers.first().copied());
         let class = number.and_then(|number| self.directory.class(number)).unwrap_or(class);
@@ -438,7 +443,7 @@ mod subsystem_tests {
     }
 
     fn values(bytes: &[u8]) -> HashMap<String, Value> {
-        let variables = read(bytes, &MemoryBudget::new(1 << 20, &|_| false)).unwrap();
+        let variables = read(bytes, &ReadingBudget::new(1 << 20)).unwrap();
         variables.into_iter().map(|variable| (variable.name, variable.value)).collect()
     }
 
@@ -529,8 +534,8 @@ mod subsystem_tests {
         let empty = || Value::Array(Array::matrix(0, 0, Vec::new()));
         let text = Value::Array(Array::matrix(1, 6, words.to_vec()));
         let cells = vec![directory, empty(), empty(), text, empty()];
-        let subsystem = Subsystem::new(cells, &MemoryBudget::new(1 << 20, &|_| false)).unwrap();
-        let budget = MemoryBudget::new(1 << 16, &|_| false);
+        let subsystem = Subsystem::new(cells, &ReadingBudget::new(1 << 20)).unwrap();
+        let budget = ReadingBudget::new(1 << 16);
         let found = subsystem.object(&[0xdd00_0000, 2, 1, 1, 3, 3], "t", &budget);
         assert_eq!(found, Ok(Value::Text(TextArray { shape: vec![1, 1], texts: vec!["ab".to_owned()] })));
         assert!(matches!(subsystem.object(&[1, 2, 3], "t", &budget), Ok(Value::Opaque { .. })));
@@ -547,7 +552,7 @@ mod subsystem_tests {
                 let at = at.index(bytes.len());
                 bytes[at] ^= byte;
             }
-            let _ = read(&bytes, &MemoryBudget::new(1 << 20, &|_| false));
+            let _ = read(&bytes, &ReadingBudget::new(1 << 20));
         }
     }
 
@@ -555,7 +560,7 @@ mod subsystem_tests {
     fn a_file_cut_off_anywhere_never_panics() {
         let bytes = file(4);
         for length in 0..bytes.len() {
-            let _ = read(&bytes[..length], &MemoryBudget::new(1 << 20, &|_| false));
+            let _ = read(&bytes[..length], &ReadingBudget::new(1 << 20));
         }
     }
 }

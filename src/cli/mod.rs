@@ -20,7 +20,7 @@ mod text_table;
 
 use analyze::check_result;
 use arguments::{real_number, whole_number};
-use destination::{Destination, Group};
+use destination::{Destination, Group, said_conditions};
 use models::{ReadingProgress, counted};
 use read_record::{hold_out, laid_out, record_table, relative_entry};
 use study_options::{analysis_of, engine, names, outputs_of, pairs_of, study_of};
@@ -48,7 +48,7 @@ pub use arguments::{
     PairList, Rejection, ReportArguments, StudyArguments,
 };
 pub use export::{Breakpoints, ExportArguments};
-pub use identify_arguments::{ChannelDelay, ChannelList, IdentifyArguments, OfferedChoice};
+pub use identify_arguments::{ChannelConversion, ChannelDelay, ChannelList, IdentifyArguments, OfferedChoice};
 
 /// What the command line asks for.
 #[derive(Debug)]

@@ -10,7 +10,7 @@ use gdcm_core::records::LaidOutRecord;
 use gdcm_core::study::AdoptedModels;
 use gdcm_files::{Opened, OutputSet, add_dataset, load_any};
 
-use super::{Failure, IdentifyArguments, say_error};
+use super::{Failure, IdentifyArguments, condition_of, ids, say_error};
 
 /// Records that models are identified from together, and the condition that they are of; none without a dataset.
 pub(super) type Group = (Option<ConditionId>, Vec<LaidOutRecord>);
@@ -35,11 +35,7 @@ impl Destination {
                 return Err(Failure::Option { option: "--into", reason });
             }
         };
-        let condition = arguments.condition.map(ConditionId);
-        if let Some(condition) = condition.filter(|id| dataset.condition(*id).is_none()) {
-            let reason = format!("the dataset has no condition {condition}; it has {}", ids(&dataset));
-            return Err(Failure::Option { option: "--condition", reason });
-        }
+        let condition = arguments.condition.map(|id| condition_of(&dataset, id)).transpose()?;
         let dataset = match &arguments.description {
             Some(description) => Arc::new(described(&dataset, description)?),
             None => dataset,
@@ -110,11 +106,6 @@ impl Destination {
 pub(super) fn said_conditions(records: &[LaidOutRecord]) -> String {
     let said: BTreeSet<i64> = records.iter().filter_map(|record| record.guess.condition).collect();
     said.iter().map(i64::to_string).collect::<Vec<_>>().join(", ")
-}
-
-fn ids(dataset: &Dataset) -> String {
-    let ids: Vec<String> = dataset.conditions().iter().map(|condition| condition.id().to_string()).collect();
-    ids.join(", ")
 }
 
 fn described(dataset: &Dataset, description: &str) -> Result<Dataset, Failure> {

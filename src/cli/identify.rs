@@ -13,8 +13,8 @@ use gdcm_files::{IdentifiedModels, OutputSet, add_identified, make_directory};
 
 use super::existing;
 use super::{
-    ChannelConversion, ChannelDelay, ChannelList, Destination, Failure, Group, IdentifyArguments, TerminalProgress, counted, hold_out,
-    laid_out, record_table, relative_entry, said_conditions, say, say_error,
+    ChannelConversion, ChannelDelay, ChannelList, Destination, Failure, Group, IdentifyArguments, TerminalProgress,
+    counted, hold_out, laid_out, record_table, relative_entry, said_conditions, say, say_error,
 };
 
 /// The file of what was found.
@@ -134,7 +134,9 @@ fn tasks(
         None => {
             let conditions = said_conditions(&records);
             if conditions.contains(',') {
-                say_error(&format!("caution: the names of the records say conditions {conditions}: all are fitted together"));
+                say_error(&format!(
+                    "caution: the names of the records say conditions {conditions}: all are fitted together"
+                ));
             }
             vec![(None, records)]
         }
@@ -165,7 +167,9 @@ fn outcome(task: &IdentificationTask, file: &Path, found: &Identification) -> St
 fn channels(arguments: &IdentifyArguments, destination: Option<&Destination>) -> Result<RecordChannels, Failure> {
     let mut channels = named_channels(arguments, destination)?;
     let units = arguments.unit.iter().map(|said| ("--unit", said.clone()));
-    for (option, ChannelConversion { channel, said }) in units.chain(arguments.factor.iter().map(|of| ("--factor", of.clone()))) {
+    for (option, ChannelConversion { channel, said }) in
+        units.chain(arguments.factor.iter().map(|of| ("--factor", of.clone())))
+    {
         let refused = |reason: String| Err(Failure::Option { option, reason });
         if !channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == channel) {
             return refused(format!("{channel} is none of the channels"));

@@ -22,6 +22,9 @@ pub(super) const LABEL: usize = 14;
 /// The results for a person to read: the settings, each condition, the schedule, the assessment, and where the files are.
 pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -> String {
     let mut text = heading(analysis, loaded);
+    for doubt in &analysis.doubts {
+        text.push_str(&labelled(0, "Caution", LABEL, &sanitized(&doubt.words(&analysis.study.dataset))));
+    }
     for condition in analysis.study.dataset.conditions() {
         text.push('\n');
         text.push_str(&condition_section(analysis, condition));
@@ -62,6 +65,10 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
     let mut text = labelled(0, "Dataset", LABEL, &dataset) + &labelled(0, "Band", LABEL, &band);
     if settings.gain_source != GainSource::default() {
         text.push_str(&labelled(0, "G from", LABEL, &settings.gain_source_words()));
+    }
+    for turned in study.turned_channels() {
+        let words = format!("{} of {} is turned", sanitized(&turned.channel), turned.of.models());
+        text.push_str(&labelled(0, "Sign", LABEL, &words));
     }
     text + &labelled(0, "Phase", LABEL, &phase) + &labelled(0, "Held", LABEL, &held)
 }
@@ -143,11 +150,11 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
             if result.held()[pair] { "yes" } else { "no" }.to_owned(),
             value(result.wanted_gain(pair), 3),
             value(half(Scalar::Gain(pair), 100.0), 1),
-            value(Some(result.correction.net_gain(pair).value()), 3),
+            value(Some(result.correction.net_gain(pair)), 3),
             value(half(Scalar::NetGain(pair), 100.0), 1),
             value(result.wanted_delay_s(pair).map(s_to_ms), 1),
             value(half(result.wanted_delay(pair), 1e3), 1),
-            value(Some(s_to_ms(result.correction.net_delay(pair).value_s())), 1),
+            value(Some(s_to_ms(result.correction.net_delay_s(pair))), 1),
             value(cost.map(|cost| cost.uncorrected.total()), 1),
             value(cost.map(|cost| cost.corrected.total()), 1),
         ]);
@@ -170,9 +177,8 @@ fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let gains = correction.input_gains.iter().chain(&correction.output_gains);
     let gains: Vec<String> =
         channels().zip(gains).map(|(name, gain)| format!("{name} {}", value(Some(*gain), 3))).collect();
-    let [inputs_s, outputs_s] = correction.signed_delays_s();
-    let delays = inputs_s.iter().chain(outputs_s);
-    let delays = channels().zip(delays).filter_map(|(name, delay)| {
+    let delays_s = correction.signed_delays_s();
+    let delays = channels().zip(delays_s.iter()).filter_map(|(name, (_, delay))| {
         let words = value(Some(s_to_ms(*delay)), 1);
         (words != "0.0").then(|| format!("{name} {words} ms"))
     });
@@ -190,7 +196,8 @@ fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let line = |label: &str, words: &str| detail(label, &sanitized(words));
     let said = remarks(&analysis.study, result, None);
     let (mut text, mut trouble) = (String::new(), "not matched");
-    for remark in &said {
+    // What is said of signs and units stands above all conditions.
+    for remark in said.iter().skip(result.doubts.len()) {
         match remark.kind {
             RemarkKind::Good => {}
             // What is missed comes first, then the reasons and the ways out.
@@ -232,13 +239,11 @@ fn schedule_section(analysis: &Analysis) -> String {
     for caution in &schedule.cautions {
         text.push_str(&detail("caution", &sanitized(&caution.words(&inputs, &outputs))));
     }
-    text.push_str(&schedule_table(analysis, schedule, |correction, pair| {
-        value(Some(correction.net_gain(pair).value()), 3)
-    }));
+    text.push_str(&schedule_table(analysis, schedule, |correction, pair| value(Some(correction.net_gain(pair)), 3)));
     if schedule.has_delays() {
         text.push_str(&labelled(0, "", LABEL, "net delays in ms:"));
         text.push_str(&schedule_table(analysis, schedule, |correction, pair| {
-            value(Some(s_to_ms(correction.net_delay(pair).value_s())), 1)
+            value(Some(s_to_ms(correction.net_delay_s(pair))), 1)
         }));
     }
     text

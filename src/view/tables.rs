@@ -159,7 +159,7 @@ fn matrix(state: &State) -> Table {
         let [gain, gain_inner] = halves(&sure, Scalar::Gain(pair));
         let [delay, delay_inner] = shown.map_or([None; 2], |shown| halves(&sure, shown.wanted_delay(pair)));
         let [net, net_inner] = halves(&sure, Scalar::NetGain(pair));
-        let net_delay = shown.map(|shown| s_to_ms(shown.correction.net_delay(pair).value_s()));
+        let net_delay = shown.map(|shown| s_to_ms(shown.correction.net_delay_s(pair)));
         let words = [
             ("output", output.to_owned()),
             ("input", input.to_owned()),
@@ -174,7 +174,7 @@ fn matrix(state: &State) -> Table {
             ("D [ms]", shown.and_then(|shown| shown.wanted_delay_s(pair)).map(s_to_ms)),
             ("D ± [ms]", delay),
             ("D ± of identification [ms]", delay_inner),
-            ("net gain [-]", shown.map(|shown| shown.correction.net_gain(pair).value())),
+            ("net gain [-]", shown.map(|shown| shown.correction.net_gain(pair))),
             ("net gain ± [%]", net),
             ("net gain ± of identification [%]", net_inner),
             ("net delay [ms]", net_delay),

@@ -117,7 +117,10 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
     );
     refused(&all("sweep_1.csv", &["--delay", "P"]), &["--delay", "expected CHANNEL=SECONDS"]);
     refused(&all("sweep_1.csv", &["--factor", "X=2"]), &["--factor: X is none of the channels"]);
-    refused(&all("sweep_1.csv", &["--unit", "P=deg/s", "--factor", "P=2"]), &["--factor: P has a unit or a factor already"]);
+    refused(
+        &all("sweep_1.csv", &["--unit", "P=deg/s", "--factor", "P=2"]),
+        &["--factor: P has a unit or a factor already"],
+    );
     refused(&all("missing.csv", &[]), &["missing.csv: there is no such file"]);
     refused(
         &["sweep_1.csv", "--into", "small.json", "--condition", "5"],

@@ -67,7 +67,7 @@
 //! let study = Study::new(Dataset::new(header, vec![hover])?.into());
 //! let analysis = Engine::default().analyze(&study, &Unobserved)?;
 //! let correction = &analysis.condition(ConditionId(1)).ok_or("no result")?.correction;
-//! assert!((correction.net_gain(Pair::new(0, 0)).value() - 1.2).abs() < 1e-9);
+//! assert!((correction.net_gain(Pair::new(0, 0)) - 1.2).abs() < 1e-9);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

@@ -47,8 +47,8 @@ pub fn convex_program(
     b: &[f64],
     settings: DefaultSettings<f64>,
 ) -> Result<Vec<f64>, String> {
-    let mut solver = DefaultSolver::new(p, q, a, b, &[NonnegativeConeT(b.len())], settings)
-        .map_err(|error| error.to_string())?;
+    let mut solver =
+        DefaultSolver::new(p, q, a, b, &[NonnegativeConeT(b.len())], settings).map_err(|error| error.to_string())?;
     solver.solve();
     match solver.solution.status {
         SolverStatus::Solved => Ok(solver.solution.x),

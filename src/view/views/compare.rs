@@ -138,7 +138,7 @@ pub fn figure_table(state: &State) -> Table {
 }
 
 fn net_gain(analysis: &Analysis, condition: ConditionId, pair: Pair) -> Option<String> {
-    Some(format!("{:.4}", analysis.condition(condition)?.correction.net_gain(pair).value()))
+    Some(format!("{:.4}", analysis.condition(condition)?.correction.net_gain(pair)))
 }
 
 fn cost(analysis: &Analysis, condition: ConditionId, pair: Pair) -> Option<String> {

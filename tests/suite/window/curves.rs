@@ -32,8 +32,7 @@ fn the_plot_of_errors_shows_what_the_fit_sees() {
     let delay = middle(phase.map(|(omega, phase)| phase.to_radians() / omega));
     assert!((delay - delay_s).abs() < 5e-4, "{delay} {delay_s}");
     let after = error(&window, CurveRole::Corrected);
-    let (net_db, net_delay_s) =
-        (20.0 * shown.correction.net_gain(pair).value().log10(), shown.correction.net_delay(pair).value_s());
+    let (net_db, net_delay_s) = (20.0 * shown.correction.net_gain(pair).log10(), shown.correction.net_delay_s(pair));
     for k in [0, before.omega.len() / 2, before.omega.len() - 1] {
         // A handful of roundings of numbers up to 360.
         assert!((before.magnitude_db[k] - net_db - after.magnitude_db[k]).abs() < 1e-10);

@@ -118,7 +118,7 @@ fn pair(window: &Window, output: &str, input: &str) -> Pair {
 
 fn net_gain(window: &Window, output: &str, input: &str) -> f64 {
     let pair = pair(window, output, input);
-    state(window).shown().expect("the condition has a result").correction.net_gain(pair).value()
+    state(window).shown().expect("the condition has a result").correction.net_gain(pair)
 }
 
 fn drawn(window: &Window, role: CurveRole) -> BodeCurve {

@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
-use super::LeadDesign;
+use super::{Channel, Channels, LeadDesign};
 use crate::dataset::Pair;
 use crate::response::{GainDelay, LeadFilter, LeadOrder};
 
@@ -24,64 +24,52 @@ pub struct ChannelCorrection {
     pub leads: Option<ChannelLeads>,
 }
 
-/// The gain of a response with its parts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NetGain {
-    /// Gain of the output channel, `k_o`.
-    pub output: f64,
-    /// Gain of the input channel, `k_i`.
-    pub input: f64,
-}
-
-impl NetGain {
-    /// `k_o k_i` (M11).
-    pub fn value(self) -> f64 {
-        self.output * self.input
-    }
-}
-
-/// The delay of a response with its parts; a negative one is a lead (M15).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NetDelay {
-    /// Delay of the output channel, `tau_o` \[s\].
-    pub output_s: f64,
-    /// Delay of the input channel, `tau_i` \[s\].
-    pub input_s: f64,
-}
-
-impl NetDelay {
-    /// `tau_o + tau_i` \[s\].
-    pub fn value_s(self) -> f64 {
-        self.output_s + self.input_s
-    }
-}
-
 impl ChannelCorrection {
-    /// Net gain of a response.
-    pub fn net_gain(&self, pair: Pair) -> NetGain {
-        NetGain { output: self.output_gains[pair.output], input: self.input_gains[pair.input] }
+    /// Net gain of a response, `k_o k_i` (M11).
+    pub fn net_gain(&self, pair: Pair) -> f64 {
+        self.output_gains[pair.output] * self.input_gains[pair.input]
+    }
+
+    /// Net delay of a response, `tau_o + tau_i` \[s\]; a negative one is a lead (M15).
+    pub fn net_delay_s(&self, pair: Pair) -> f64 {
+        let [output_s, input_s] = Channel::of(pair).map(|channel| self.delay_s(channel));
+        output_s + input_s
+    }
+
+    /// Gain of a channel.
+    pub fn gain(&self, channel: Channel) -> f64 {
+        match channel {
+            Channel::Input(input) => self.input_gains[input],
+            Channel::Output(output) => self.output_gains[output],
+        }
     }
 
     /// Delay of a channel \[s\]; a negative one is a lead (M15).
     pub fn delay_s(&self, channel: Channel) -> f64 {
-        match (&self.leads, channel) {
-            (Some(leads), _) => leads.tau_s(channel),
-            (None, Channel::Input(input)) => self.input_delays_s[input],
-            (None, Channel::Output(output)) => self.output_delays_s[output],
+        self.leads.as_ref().map_or_else(|| self.pure_delay_s(channel), |leads| leads.taus_s[channel])
+    }
+
+    /// Delay of a channel without its lead \[s\].
+    pub(crate) fn pure_delay_s(&self, channel: Channel) -> f64 {
+        match channel {
+            Channel::Input(input) => self.input_delays_s[input],
+            Channel::Output(output) => self.output_delays_s[output],
         }
     }
 
-    /// Delay of each input and of each output \[s\]; a negative one is a lead (M15).
-    pub fn signed_delays_s(&self) -> [&[f64]; 2] {
-        match &self.leads {
-            Some(leads) => [leads.inputs_s(), leads.outputs_s()],
-            None => [&self.input_delays_s, &self.output_delays_s],
-        }
+    /// Delay of each channel \[s\]; a negative one is a lead (M15).
+    pub fn signed_delays_s(&self) -> Channels<f64> {
+        self.channels(|channel| self.delay_s(channel))
+    }
+
+    /// What `of` says of each channel.
+    pub fn channels<T>(&self, of: impl FnMut(Channel) -> T) -> Channels<T> {
+        Channels::from_fn(self.input_gains.len(), self.output_gains.len(), of)
     }
 
     /// The lead filter of a channel, where it has one (M15).
     pub fn lead(&self, channel: Channel) -> Option<LeadFilter> {
-        self.leads.as_ref()?.filter(channel)
+        self.leads.as_ref()?.filters()[channel]
     }
 
     /// The same without its lead filters: its gains and what is positive of its delays.
@@ -89,60 +77,18 @@ impl ChannelCorrection {
         Self { leads: None, ..self }
     }
 
-    /// Net delay of a response.
-    pub fn net_delay(&self, pair: Pair) -> NetDelay {
-        let (output, input) = (Channel::Output(pair.output), Channel::Input(pair.input));
-        NetDelay { output_s: self.delay_s(output), input_s: self.delay_s(input) }
-    }
-
     /// What the correction multiplies a response by; `None` where its net gain is not positive (a schedule of `k` itself can give
     /// that).
     pub fn on(&self, pair: Pair) -> Option<GainDelay> {
-        let leads = [Channel::Output(pair.output), Channel::Input(pair.input)].map(|channel| self.lead(channel));
+        let leads = Channel::of(pair).map(|channel| self.lead(channel));
         Some(self.without_leads_on(pair)?.led(leads))
     }
 
     /// As [`ChannelCorrection::on`], without the lead filters: what is left to do where those have done their part.
     pub fn without_leads_on(&self, pair: Pair) -> Option<GainDelay> {
-        let gain = self.net_gain(pair).value();
+        let gain = self.net_gain(pair);
         let delay_s = self.output_delays_s[pair.output] + self.input_delays_s[pair.input];
         (gain > 0.0).then(|| GainDelay::new(gain, delay_s))
-    }
-}
-
-/// One channel: an input or an output, each with a gain and a delay of its own.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Channel {
-    /// The input of this index.
-    Input(usize),
-    /// The output of this index.
-    Output(usize),
-}
-
-impl Channel {
-    /// The channel's name, or its number (from 1) where the list of names is too short.
-    pub fn name(self, inputs: &[String], outputs: &[String]) -> String {
-        let (names, index, kind) = match self {
-            Channel::Input(index) => (inputs, index, "input"),
-            Channel::Output(index) => (outputs, index, "output"),
-        };
-        names.get(index).cloned().unwrap_or_else(|| format!("{kind} {}", index + 1))
-    }
-}
-
-/// The response in words: "PED → NY".
-pub(crate) fn pair_name(pair: Pair, inputs: &[String], outputs: &[String]) -> String {
-    let input = Channel::Input(pair.input).name(inputs, outputs);
-    format!("{input} → {}", Channel::Output(pair.output).name(inputs, outputs))
-}
-
-/// Several responses in words: "A, B and C".
-pub(crate) fn pair_names(pairs: &[Pair], inputs: &[String], outputs: &[String]) -> String {
-    let names: Vec<String> = pairs.iter().map(|&pair| pair_name(pair, inputs, outputs)).collect();
-    match names.split_last() {
-        Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
-        Some((last, _)) => last.clone(),
-        None => String::new(),
     }
 }
 
@@ -151,86 +97,46 @@ pub(crate) fn pair_names(pairs: &[Pair], inputs: &[String], outputs: &[String]) 
 /// Filters, and their curves over the band, are computed when they are first asked for, once for all clones.
 #[derive(Clone, Debug)]
 pub struct ChannelLeads {
-    design: Arc<LeadDesign>,
-    inputs_s: Vec<f64>,
-    outputs_s: Vec<f64>,
-    filters: Arc<OnceLock<[Vec<Option<LeadFilter>>; 2]>>,
-    curves: Arc<OnceLock<LeadCurves>>,
+    /// Which filter a signed delay has.
+    pub design: Arc<LeadDesign>,
+    /// Signed delay of each channel \[s\].
+    pub taus_s: Channels<f64>,
+    filters: Arc<OnceLock<Channels<Option<LeadFilter>>>>,
+    curves: Arc<OnceLock<Channels<Option<LeadCurve>>>>,
 }
 
 impl PartialEq for ChannelLeads {
     /// What is computed of them follows.
     fn eq(&self, other: &Self) -> bool {
-        (&self.inputs_s, &self.outputs_s, &self.design) == (&other.inputs_s, &other.outputs_s, &other.design)
+        (&self.taus_s, &self.design) == (&other.taus_s, &other.design)
     }
 }
 
 impl ChannelLeads {
-    /// Signed delays \[s\] of m inputs and p outputs, with the filters of `design`.
-    pub fn new(design: Arc<LeadDesign>, inputs_s: Vec<f64>, outputs_s: Vec<f64>) -> Self {
-        Self { design, inputs_s, outputs_s, filters: Arc::default(), curves: Arc::default() }
+    /// Signed delays \[s\] with the filters of `design`.
+    pub fn new(design: Arc<LeadDesign>, taus_s: Channels<f64>) -> Self {
+        Self { design, taus_s, filters: Arc::default(), curves: Arc::default() }
     }
 
-    /// Which filter a signed delay has.
-    pub fn design(&self) -> &Arc<LeadDesign> {
-        &self.design
+    /// The lead filter of each channel; none where its signed delay is not negative.
+    pub fn filters(&self) -> &Channels<Option<LeadFilter>> {
+        self.filters.get_or_init(|| self.taus_s.map(|_, &tau_s| self.design.filter(tau_s)))
     }
 
-    /// Signed delay of each input \[s\], m values.
-    pub fn inputs_s(&self) -> &[f64] {
-        &self.inputs_s
+    /// The part of each signed delay that is a pure delay \[s\].
+    pub fn delays_s(&self) -> Channels<f64> {
+        self.taus_s.map(|_, tau_s| tau_s.max(0.0))
     }
 
-    /// Signed delay of each output \[s\], p values.
-    pub fn outputs_s(&self) -> &[f64] {
-        &self.outputs_s
-    }
-
-    /// Signed delay of a channel \[s\].
-    pub fn tau_s(&self, channel: Channel) -> f64 {
-        match channel {
-            Channel::Input(input) => self.inputs_s[input],
-            Channel::Output(output) => self.outputs_s[output],
+    /// What the filters of a response's two channels do to it at each frequency of the design's band; nothing where neither has one.
+    pub fn curve(&self, pair: Pair) -> Option<LeadCurve> {
+        let of_filter = |filter: LeadFilter| LeadCurve::of(filter, self.design.omega());
+        let curves = self.curves.get_or_init(|| self.filters().map(|_, filter| filter.map(of_filter)));
+        match (&curves.inputs[pair.input], &curves.outputs[pair.output]) {
+            (Some(input), Some(output)) => Some(input.in_series(output)),
+            (one, other) => one.as_ref().or(other.as_ref()).cloned(),
         }
     }
-
-    /// The lead filters of every input and of every output; none where the signed delay is not negative.
-    pub fn filters(&self) -> &[Vec<Option<LeadFilter>>; 2] {
-        self.filters.get_or_init(|| {
-            let of = |taus_s: &Vec<f64>| taus_s.iter().map(|&tau_s| self.design.filter(tau_s)).collect();
-            [&self.inputs_s, &self.outputs_s].map(of)
-        })
-    }
-
-    /// The lead filter of a channel; none where its signed delay is not negative.
-    pub fn filter(&self, channel: Channel) -> Option<LeadFilter> {
-        match (channel, self.filters()) {
-            (Channel::Input(input), [inputs, _]) => inputs[input],
-            (Channel::Output(output), [_, outputs]) => outputs[output],
-        }
-    }
-
-    /// The part of each signed delay that is a pure delay \[s\]: of the inputs, of the outputs.
-    pub fn delays_s(&self) -> [Vec<f64>; 2] {
-        [&self.inputs_s, &self.outputs_s].map(|taus_s| taus_s.iter().map(|tau_s| tau_s.max(0.0)).collect())
-    }
-
-    /// What the filters are at each frequency of the design's band.
-    pub fn curves(&self) -> &LeadCurves {
-        self.curves.get_or_init(|| {
-            let curve = |filter: &Option<LeadFilter>| filter.map(|filter| LeadCurve::of(filter, self.design.omega()));
-            let [inputs, outputs] =
-                self.filters().each_ref().map(|filters| filters.iter().map(curve).collect::<Vec<_>>());
-            LeadCurves { inputs, outputs }
-        })
-    }
-}
-
-/// Magnitude and phase of every channel's lead filter at the frequencies of a band.
-#[derive(Clone, Debug)]
-pub struct LeadCurves {
-    inputs: Vec<Option<LeadCurve>>,
-    outputs: Vec<Option<LeadCurve>>,
 }
 
 /// Magnitude \[dB\] and phase \[rad\] of a filter or of two in series.
@@ -253,16 +159,6 @@ impl LeadCurve {
     fn in_series(&self, other: &Self) -> Self {
         let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + b).collect();
         Self { magnitude_db: sum(&self.magnitude_db, &other.magnitude_db), phase: sum(&self.phase, &other.phase) }
-    }
-}
-
-impl LeadCurves {
-    /// What the filters of a response's two channels do to it; nothing where neither has one.
-    pub fn on(&self, pair: Pair) -> Option<LeadCurve> {
-        match (&self.inputs[pair.input], &self.outputs[pair.output]) {
-            (Some(input), Some(output)) => Some(input.in_series(output)),
-            (one, other) => one.as_ref().or(other.as_ref()).cloned(),
-        }
     }
 }
 

@@ -63,33 +63,6 @@ pub enum ConflictKind {
 }
 
 impl Conflict {
-    /// The conflict of `problem` behind a clash of its held entries in its coordinate.
-    pub(crate) fn new(clash: Inconsistency, problem: &Problem) -> Self {
-        let (quantity, bounds, coordinate) = (problem.quantity, problem.bounds, problem.coordinate());
-        let movable = |lower: f64| quantity.has_lower_bound().then(|| three_digits_down(lower));
-        let kind = match clash.kind {
-            ClashKind::SumAbove { channels, sum } => {
-                let upper = three_digits_up(coordinate.value(0.5 * sum));
-                ConflictKind::AboveUpper { channels, asked: coordinate.value(sum), upper }
-            }
-            ClashKind::SumBelow { channels, sum } => {
-                let lower = movable(coordinate.value(0.5 * sum));
-                ConflictKind::BelowLower { channels, asked: coordinate.value(sum), lower }
-            }
-            ClashKind::Apart { greater, lesser, difference } => {
-                let asked = coordinate.value(difference);
-                let upper = three_digits_up(quantity.net(bounds.lower, asked));
-                let lower = match quantity {
-                    Quantity::Gain(_) => bounds.upper / asked,
-                    Quantity::Delay | Quantity::SignedDelay => bounds.upper - asked,
-                };
-                ConflictKind::TooFarApart { greater, lesser, asked, upper, lower: movable(lower) }
-            }
-            ClashKind::Loop { mismatch } => ConflictKind::Loop { mismatch: quantity.difference(mismatch, coordinate) },
-        };
-        Self { quantity, entries: clash.entries, bounds, kind }
-    }
-
     /// The channels whose bounds are in the way; none of a loop.
     pub fn channels(&self) -> Vec<Channel> {
         match self.kind {
@@ -113,18 +86,20 @@ impl Conflict {
         matches!(self.kind, ConflictKind::Loop { mismatch } if mismatch.abs() <= tolerance)
     }
 
+    /// By how much a loop of these entries disagrees, in words.
+    fn mismatch_words(&self, mismatch: f64) -> String {
+        if self.quantity.is_gain() {
+            format!("{} dB", telling(mismatch.abs(), 1))
+        } else {
+            format!("{} ms", telling(s_to_ms(mismatch.abs()), 1))
+        }
+    }
+
     /// A loop that agrees within the tolerance, in words.
     pub fn agreement_words(&self, inputs: &[String], outputs: &[String]) -> String {
+        let ConflictKind::Loop { mismatch } = self.kind else { return String::new() };
         let entries = pair_names(&self.entries, inputs, outputs);
-        let (what, mismatch) = match (self.quantity, self.kind) {
-            (Quantity::Gain(_), ConflictKind::Loop { mismatch }) => {
-                ("ratios", format!("{} dB", telling(mismatch.abs(), 1)))
-            }
-            (Quantity::Delay | Quantity::SignedDelay, ConflictKind::Loop { mismatch }) => {
-                ("delays", format!("{} ms", telling(s_to_ms(mismatch.abs()), 1)))
-            }
-            _ => return String::new(),
-        };
+        let (what, mismatch) = (self.quantity.looped(), self.mismatch_words(mismatch));
         format!(
             "{entries} form a loop: their {what} agree to {mismatch}, and count as agreeing; each is held at the nearest that does."
         )
@@ -132,150 +107,90 @@ impl Conflict {
 
     /// The conflict and what would resolve it, in words.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
-        let names = |channels: (Channel, Channel)| {
-            let name = |channel: Channel| format!("{}_{}", self.quantity.symbol(), channel.name(inputs, outputs));
-            (name(channels.0), name(channels.1))
-        };
         let entries = pair_names(&self.entries, inputs, outputs);
         let (cannot, release) = match self.entries.len() {
-            1 => (format!("{entries} cannot be held"), "release it"),
-            2 => (format!("{entries} cannot both be held"), "release one of them"),
-            _ => (format!("{entries} cannot all be held"), "release one of them"),
-        };
-        let sentence = match self.quantity {
-            Quantity::Gain(_) => self.gain_sentence(&entries, names),
-            Quantity::Delay => self.delay_sentence(&entries, names),
-            Quantity::SignedDelay => self.signed_delay_sentence(&entries, names),
+            1 => ("cannot be held", "release it"),
+            2 => ("cannot both be held", "release one of them"),
+            _ => ("cannot all be held", "release one of them"),
         };
         match self.kind {
-            ConflictKind::Loop { .. } => format!("{sentence}; release one of them."),
-            ConflictKind::Unclear => format!("{cannot}; release one of them."),
-            ConflictKind::BelowLower { .. } if self.quantity == Quantity::SignedDelay => {
-                format!("{cannot}: {sentence} or {release}.")
+            ConflictKind::Loop { mismatch } => {
+                let (what, mismatch) = (self.quantity.looped(), self.mismatch_words(mismatch));
+                format!("{entries} form a loop: their {what} disagree by {mismatch}; {release}.")
             }
-            _ if self.is_lone_lead() => format!("{sentence}; {release}."),
-            ConflictKind::BelowLower { lower: None, .. } => format!("{cannot}: {sentence}; {release}."),
-            ConflictKind::TooFarApart { lower: Some(_), .. } => format!("{cannot}: {sentence}, or {release}."),
-            _ => format!("{cannot}: {sentence} or {release}."),
+            ConflictKind::Unclear => format!("{entries} {cannot}; {release}."),
+            ConflictKind::BelowLower { asked, .. } if self.is_lone_lead() => {
+                let lead_ms = telling(s_to_ms(-asked), 1);
+                format!("{entries} needs {lead_ms} ms of lead: a delay cannot give it; {release}.")
+            }
+            _ => format!("{entries} {cannot}: {} {release}.", self.bounds_words(inputs, outputs)),
         }
     }
 
-    fn gain_sentence(&self, entries: &str, names: impl Fn((Channel, Channel)) -> (String, String)) -> String {
+    /// Which bounds are in the way and what they would have to be, up to the word before what else would do.
+    fn bounds_words(&self, inputs: &[String], outputs: &[String]) -> String {
+        const HELP: &str = "a larger R_max or a smaller n gives more";
+        let name = |channel: Channel| format!("{}_{}", self.quantity.symbol(), channel.name(inputs, outputs));
+        let names = |(first, second): (Channel, Channel)| (name(first), name(second));
+        let apart_ms = |limit_s: f64, asked_s: f64| told_apart(s_to_ms(limit_s), s_to_ms(asked_s), 1);
         let Bounds { lower: low, upper: high } = self.bounds;
-        match self.kind {
-            ConflictKind::AboveUpper { channels, asked, upper } => {
-                let (first, second) = names(channels);
-                let (most, asked) = told_apart(high.powi(2), asked, 3);
+        match (self.kind, self.quantity) {
+            (ConflictKind::AboveUpper { channels, asked, upper }, Quantity::Gain(_)) => {
+                let ((first, second), (most, asked)) = (names(channels), told_apart(high.powi(2), asked, 3));
                 format!(
                     "with gains <= {high:.3} the product {first} {second} is at most {most}, not {asked}; set the upper \
-                     bound to {upper}"
+                     bound to {upper} or"
                 )
             }
-            ConflictKind::BelowLower { channels, asked, lower } => {
-                let (first, second) = names(channels);
-                let ((least, asked), lower) = (told_apart(low.powi(2), asked, 3), lower.unwrap_or(low));
+            (ConflictKind::AboveUpper { channels, asked, upper }, delay) => {
+                let ((first, second), (most, asked)) = (names(channels), apart_ms(2.0 * high, asked));
+                let of_delay = if delay == Quantity::SignedDelay { " of delay" } else { "" };
+                format!(
+                    "{first} and {second} give at most {most} ms{of_delay} together, not {asked}; set the upper bound to \
+                     {upper} s or"
+                )
+            }
+            (ConflictKind::BelowLower { channels, asked, lower }, Quantity::Gain(_)) => {
+                let ((first, second), (least, asked)) = (names(channels), told_apart(low.powi(2), asked, 3));
+                let lower = lower.unwrap_or(low);
                 format!(
                     "with gains >= {low:.3} the product {first} {second} is at least {least}, not {asked}; set the lower \
-                     bound to {lower}"
+                     bound to {lower} or"
                 )
             }
-            ConflictKind::TooFarApart { greater, lesser, asked, upper, lower } => {
-                let (greater, lesser) = names((greater, lesser));
-                let ((most, asked), lower) = (told_apart(high / low, asked, 3), lower.unwrap_or(low));
+            (ConflictKind::BelowLower { channels, asked, .. }, Quantity::Delay) => {
+                let ((first, second), lead_ms) = (names(channels), telling(s_to_ms(-asked), 1));
+                format!("{first} and {second} would have to give {lead_ms} ms of lead together, and a delay cannot;")
+            }
+            (ConflictKind::BelowLower { channels, asked, .. }, Quantity::SignedDelay) => {
+                let ((first, second), (most, asked)) = (names(channels), apart_ms(-2.0 * low, -asked));
+                format!("R_max lets {first} and {second} give {most} ms of lead together, not {asked}: {HELP}, or")
+            }
+            (ConflictKind::TooFarApart { greater, lesser, asked, upper, lower }, Quantity::Gain(_)) => {
+                let ((greater, lesser), (most, asked)) = (names((greater, lesser)), told_apart(high / low, asked, 3));
+                let lower = lower.unwrap_or(low);
                 format!(
                     "with {greater} <= {high:.3} and {lesser} >= {low:.3} their ratio is at most {most}, not {asked}; set \
-                     the upper bound to {upper}, or the lower bound to {lower}"
+                     the upper bound to {upper}, or the lower bound to {lower}, or"
                 )
             }
-            ConflictKind::Loop { mismatch } => {
-                format!("{entries} form a loop: their ratios disagree by {} dB", telling(mismatch.abs(), 1))
+            (ConflictKind::TooFarApart { greater, lesser, asked, upper, .. }, Quantity::Delay) => {
+                let ((greater, lesser), (most, asked)) = (names((greater, lesser)), apart_ms(high, asked));
+                format!(
+                    "{greater} cannot be {asked} ms above {lesser} with delays <= {most} ms; set the upper bound to {upper} s or"
+                )
             }
-            ConflictKind::Unclear => String::new(),
+            (ConflictKind::TooFarApart { greater, lesser, asked, upper, .. }, Quantity::SignedDelay) => {
+                let ((greater, lesser), (most, asked)) = (names((greater, lesser)), apart_ms(high - low, asked));
+                let (lead_ms, delay_ms) = (telling(s_to_ms(-low), 1), telling(s_to_ms(high), 1));
+                format!(
+                    "{greater} cannot be {asked} ms above {lesser}: with at most {lead_ms} ms of lead and {delay_ms} ms of delay a \
+                     channel it is {most} ms; set the upper bound to {upper} s; {HELP}, or"
+                )
+            }
+            (ConflictKind::Loop { .. } | ConflictKind::Unclear, _) => String::new(),
         }
     }
-
-    fn delay_sentence(&self, entries: &str, names: impl Fn((Channel, Channel)) -> (String, String)) -> String {
-        let ms = |seconds: f64| telling(s_to_ms(seconds), 1);
-        let ms_apart = |a: f64, b: f64| told_apart(s_to_ms(a), s_to_ms(b), 1);
-        match self.kind {
-            ConflictKind::BelowLower { asked, .. } if self.entries.len() == 1 => {
-                format!("{entries} needs {} ms of lead: a delay cannot give it", ms(-asked))
-            }
-            ConflictKind::BelowLower { channels, asked, .. } => {
-                let ((first, second), lead) = (names(channels), ms(-asked));
-                format!("{first} and {second} would have to give {lead} ms of lead together, and a delay cannot")
-            }
-            ConflictKind::AboveUpper { channels, asked, upper } => {
-                let ((first, second), (most, asked)) = (names(channels), ms_apart(2.0 * self.bounds.upper, asked));
-                format!(
-                    "{first} and {second} give at most {most} ms together, not {asked}; set the upper bound to {upper} s"
-                )
-            }
-            ConflictKind::TooFarApart { greater, lesser, asked, upper, .. } => {
-                let ((greater, lesser), (most, asked)) = (names((greater, lesser)), ms_apart(self.bounds.upper, asked));
-                format!(
-                    "{greater} cannot be {asked} ms above {lesser} with delays <= {most} ms; set the upper bound to {upper} s"
-                )
-            }
-            ConflictKind::Loop { mismatch } => {
-                format!("{entries} form a loop: their delays disagree by {} ms", ms(mismatch.abs()))
-            }
-            ConflictKind::Unclear => String::new(),
-        }
-    }
-
-    fn signed_delay_sentence(&self, entries: &str, names: impl Fn((Channel, Channel)) -> (String, String)) -> String {
-        const HELP: &str = "a larger R_max or a smaller n gives more";
-        let ms = |seconds: f64| telling(s_to_ms(seconds), 1);
-        let Bounds { lower: low, upper: high } = self.bounds;
-        match self.kind {
-            ConflictKind::BelowLower { channels, asked, .. } => {
-                let (first, second) = names(channels);
-                let (most, asked) = told_apart(s_to_ms(-2.0 * low), s_to_ms(-asked), 1);
-                format!("R_max lets {first} and {second} give {most} ms of lead together, not {asked}: {HELP},")
-            }
-            ConflictKind::AboveUpper { channels, asked, upper } => {
-                let (first, second) = names(channels);
-                let (most, asked) = told_apart(s_to_ms(2.0 * high), s_to_ms(asked), 1);
-                format!(
-                    "{first} and {second} give at most {most} ms of delay together, not {asked}; set the upper bound to {upper} s"
-                )
-            }
-            ConflictKind::TooFarApart { greater, lesser, asked, upper, .. } => {
-                let (greater, lesser) = names((greater, lesser));
-                let (most, asked) = told_apart(s_to_ms(high - low), s_to_ms(asked), 1);
-                format!(
-                    "{greater} cannot be {asked} ms above {lesser}: with at most {} ms of lead and {} ms of delay a channel it is \
-                     {most} ms; set the upper bound to {upper} s; {HELP}",
-                    ms(-low),
-                    ms(high)
-                )
-            }
-            ConflictKind::Loop { .. } | ConflictKind::Unclear => self.delay_sentence(entries, names),
-        }
-    }
-}
-
-/// An irreducible set of held entries, with at most two bounds, that cannot hold together, in sums of coordinates.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Inconsistency {
-    /// The entries of the set, along the path or round the loop.
-    pub(crate) entries: Vec<Pair>,
-    /// What makes them impossible.
-    pub(crate) kind: ClashKind,
-}
-
-/// How the entries of a [`Inconsistency`] exclude one another.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum ClashKind {
-    /// The entries fix the sum of two channels, and it is above what the upper bound allows.
-    SumAbove { channels: (Channel, Channel), sum: f64 },
-    /// The entries fix the sum of two channels, and it is below what the lower bound allows.
-    SumBelow { channels: (Channel, Channel), sum: f64 },
-    /// The entries fix how far `greater` is above `lesser`, and the box is narrower.
-    Apart { greater: Channel, lesser: Channel, difference: f64 },
-    /// The entries form a loop, and going round it does not lead back.
-    Loop { mismatch: f64 },
 }
 
 /// One held entry that stage 1 had to pull: it asks that `s_to - s_from` be at least `weight`, and gets less.
@@ -301,17 +216,15 @@ impl Pull {
 /// cannot hold, and every missed entry is on one (Farkas). Where a part of that set cannot hold by itself, that part is the
 /// clash, and the entry's own miss is the compromise with it.
 pub(crate) fn clashes(
+    problem: &Problem,
     held: &Held,
     reached: &Reached,
     tolerance: f64,
     effort: &Effort<'_>,
-) -> Result<Vec<(Pair, Inconsistency)>, SearchStopped> {
+) -> Result<Vec<(Pair, Conflict)>, SearchStopped> {
     let Some(point) = &reached.point else { return Ok(Vec::new()) };
-    let flow = Flow::new(held, reached, point);
-    let missed = |pull: &&Pull| {
-        let lacking = pull.weight - (point[pull.to] - point[pull.from]);
-        lacking > tolerance
-    };
+    let flow = Flow::new(problem, held, reached, point);
+    let missed = |pull: &&Pull| pull.weight - (point[pull.to] - point[pull.from]) > tolerance;
     let mut clashes = Vec::new();
     for pull in flow.pulls.iter().filter(missed) {
         // Three searches over every pull of every channel.
@@ -322,7 +235,8 @@ pub(crate) fn clashes(
     Ok(clashes)
 }
 
-struct Flow {
+struct Flow<'a> {
+    problem: &'a Problem,
     inputs: usize,
     range: (f64, f64),
     pulls: Vec<Pull>,
@@ -330,11 +244,11 @@ struct Flow {
     at_upper: Vec<bool>,
 }
 
-impl Flow {
-    fn new(held: &Held, reached: &Reached, point: &[f64]) -> Self {
+impl<'a> Flow<'a> {
+    fn new(problem: &'a Problem, held: &Held, reached: &Reached, point: &[f64]) -> Self {
         let nodes = held.inputs + held.outputs;
-        let mut flow =
-            Self { inputs: held.inputs, range: held.range, pulls: Vec::new(), at_lower: vec![], at_upper: vec![] };
+        let (inputs, range) = (held.inputs, held.range);
+        let mut flow = Self { problem, inputs, range, pulls: Vec::new(), at_lower: vec![], at_upper: vec![] };
         let mut net = vec![0.0; nodes];
         for ((pair, delta), (_, target)) in held.entries.iter().zip(&reached.targets) {
             let (input, output) = (pair.input, held.inputs + pair.output);
@@ -354,7 +268,7 @@ impl Flow {
     }
 
     /// The shorter of the shortest loop and the shortest path from bound to bound through `pull`; a bound counts like an entry.
-    fn smallest_through(&self, pull: &Pull) -> Option<Inconsistency> {
+    fn smallest_through(&self, pull: &Pull) -> Option<Conflict> {
         let around = self.shortest(pull.to, |node| node == pull.from, false);
         let onward = self.shortest(pull.to, |node| self.at_upper[node], false);
         let back = self.shortest(pull.from, |node| self.at_lower[node], true);
@@ -364,30 +278,25 @@ impl Flow {
         });
         match (around, path) {
             (Some(around), Some(path)) if around.len() < path.len() + 2 => Some(self.round(pull, around)),
-            (_, Some(path)) => Some(self.stretched(&path)),
-            (Some(around), None) => Some(self.round(pull, around)),
-            (None, None) => None,
+            (_, Some(path)) => Some(self.smallest_part(&path, 0).unwrap_or_else(|| self.clash(&path))),
+            (around, None) => Some(self.round(pull, around?)),
         }
     }
 
-    fn round(&self, pull: &Pull, around: Vec<Pull>) -> Inconsistency {
+    fn round(&self, pull: &Pull, around: Vec<Pull>) -> Conflict {
         let pulls: Vec<Pull> = std::iter::once(*pull).chain(around).collect();
         if let Some(clash) = self.smallest_part(&pulls, pulls.len()) {
             return clash;
         }
-        let mismatch = pulls.iter().map(|pull| pull.weight).sum();
-        Inconsistency { entries: pulls.iter().map(|pull| pull.pair).collect(), kind: ClashKind::Loop { mismatch } }
-    }
-
-    /// The clash of a path from a node at its least value to one at its greatest, or of the shortest part of it that the bounds
-    /// do not allow either.
-    fn stretched(&self, path: &[Pull]) -> Inconsistency {
-        self.smallest_part(path, 0).unwrap_or_else(|| self.clash(path))
+        let Problem { quantity, bounds, .. } = *self.problem;
+        let mismatch = quantity.difference(pulls.iter().map(|pull| pull.weight).sum(), self.problem.coordinate());
+        let entries = pulls.iter().map(|pull| pull.pair).collect();
+        Conflict { quantity, entries, bounds, kind: ConflictKind::Loop { mismatch } }
     }
 
     /// The shortest run of the pulls, less than all of them, that the bounds of its two ends do not allow. Runs may begin at the
     /// first `round` pulls and go on past the last into the first ones again.
-    fn smallest_part(&self, pulls: &[Pull], round: usize) -> Option<Inconsistency> {
+    fn smallest_part(&self, pulls: &[Pull], round: usize) -> Option<Conflict> {
         let count = pulls.len();
         (1..count).find_map(|length| {
             let begins = if round > 0 { round } else { count - length + 1 };
@@ -415,23 +324,32 @@ impl Flow {
     }
 
     /// The clash of a path from a node at its least value to one at its greatest.
-    fn clash(&self, path: &[Pull]) -> Inconsistency {
+    fn clash(&self, path: &[Pull]) -> Conflict {
         let needed: f64 = path.iter().map(|pull| pull.weight).sum();
-        let mut entries: Vec<Pair> = path.iter().map(|pull| pull.pair).collect();
         let (start, end) = (path.first().map_or(0, |pull| pull.from), path.last().map_or(0, |pull| pull.to));
+        let (quantity, bounds, coordinate) = (self.problem.quantity, self.problem.bounds, self.problem.coordinate());
+        let movable = |lower: f64| quantity.has_lower_bound().then(|| three_digits_down(lower));
         let kind = match (self.channel(start), self.channel(end)) {
-            (first @ Channel::Output(_), last @ Channel::Input(_)) => {
-                ClashKind::SumAbove { channels: (last, first), sum: needed }
-            }
-            (first @ Channel::Input(_), last @ Channel::Output(_)) => {
-                ClashKind::SumBelow { channels: (first, last), sum: -needed }
-            }
+            (first @ Channel::Output(_), last @ Channel::Input(_)) => ConflictKind::AboveUpper {
+                channels: (last, first),
+                asked: coordinate.value(needed),
+                upper: three_digits_up(coordinate.value(0.5 * needed)),
+            },
+            (first @ Channel::Input(_), last @ Channel::Output(_)) => ConflictKind::BelowLower {
+                channels: (first, last),
+                asked: coordinate.value(-needed),
+                lower: movable(coordinate.value(-0.5 * needed)),
+            },
             (lesser @ Channel::Input(_), greater @ Channel::Input(_)) | (greater, lesser) => {
-                ClashKind::Apart { greater, lesser, difference: needed }
+                let asked = coordinate.value(needed);
+                let upper = three_digits_up(quantity.net(bounds.lower, asked));
+                let lower = if quantity.is_gain() { bounds.upper / asked } else { bounds.upper - asked };
+                ConflictKind::TooFarApart { greater, lesser, asked, upper, lower: movable(lower) }
             }
         };
+        let mut entries: Vec<Pair> = path.iter().map(|pull| pull.pair).collect();
         entries.sort();
-        Inconsistency { entries, kind }
+        Conflict { quantity, entries, bounds, kind }
     }
 
     fn channel(&self, node: usize) -> Channel {

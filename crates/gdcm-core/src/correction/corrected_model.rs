@@ -2,7 +2,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector, RowDVector};
 
-use super::{Channel, ChannelCorrection, ChannelModel};
+use super::{Channel, ChannelCorrection, ChannelModel, Channels};
 use crate::dataset::limits::MOST_STATES;
 use crate::dataset::{StateSpace, StateSpaceError, Timing};
 use crate::response::LeadFilter;
@@ -22,26 +22,16 @@ const LEAST_DELAY_S: f64 = 1e-9;
 /// either adds no state. States of the inputs come first, then the model's, then the outputs'.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CorrectedModel {
-    /// The matrices, with the model's sample time.
+    /// Four matrices; no delays.
     pub model: StateSpace,
-    /// Number of states that each input's delay has become.
-    pub input_states: Vec<usize>,
-    /// Number of states that each output's delay has become.
-    pub output_states: Vec<usize>,
-    /// Number of states of each input's lead filter, before those of its delay.
-    pub input_lead_states: Vec<usize>,
-    /// Number of states of each output's lead filter, after those of its delay.
-    pub output_lead_states: Vec<usize>,
-    /// The lead filters of the inputs, of the outputs.
-    leads: [Vec<Option<LeadFilter>>; 2],
-    /// Sample time of the model \[s\].
+    /// How many states hold the delay of each channel: those of the inputs are before the model's own, of the outputs after them.
+    pub delay_states: Channels<usize>,
+    /// How many states the lead filter of each channel has: of the inputs before all others, of the outputs after all others.
+    pub lead_states: Channels<usize>,
+    leads: Channels<Option<LeadFilter>>,
     sample_time_s: Option<f64>,
-    /// Delay of each input \[s\], the model's own and the correction's.
-    input_delays_s: Vec<f64>,
-    /// Delay of each output \[s\], likewise.
-    output_delays_s: Vec<f64>,
-    /// What the delays are approximated by; nothing in discrete time.
-    pade: Option<Pade>,
+    delays_s: Channels<f64>,
+    pade: Pade,
 }
 
 /// Why a corrected model cannot be written as matrices.
@@ -106,45 +96,27 @@ impl CorrectedModel {
     /// too large.
     pub fn of(model: &StateSpace, correction: &ChannelCorrection, pade: Pade) -> Result<Self, CorrectedModelError> {
         let timing = model.timing();
-        let input_delays_s = added(&correction.input_delays_s, timing.input_delays_s.as_deref());
-        let output_delays_s = added(&correction.output_delays_s, timing.output_delays_s.as_deref());
         let sampling = timing.sample_time_s;
-        let delayed = |delays_s: &[f64], channel: fn(usize) -> Channel| -> Result<Vec<ChannelModel>, _> {
-            let states = |(at, &delay_s): (usize, &f64)| delay_model(channel(at), delay_s, sampling, pade);
-            delays_s.iter().enumerate().map(states).collect()
-        };
-        let inputs = delayed(&input_delays_s, Channel::Input)?;
-        let outputs = delayed(&output_delays_s, Channel::Output)?;
+        let delays_s = correction.channels(|channel| delay_s(channel, correction, timing));
+        let delays = delays_s.try_map(|channel, &delay_s| delay_model(channel, delay_s, sampling, pade))?;
         let leads = correction.leads.as_ref().map(|leads| leads.filters().clone()).unwrap_or_default();
-        let [input_leads, output_leads] = [lead_models(&leads[0], sampling)?, lead_models(&leads[1], sampling)?];
-        let states_of = |models: &[ChannelModel]| models.iter().map(ChannelModel::order).collect::<Vec<_>>();
-        let (input_lead_states, output_lead_states) = (states_of(&input_leads), states_of(&output_leads));
-        let (input_states, output_states) = (states_of(&inputs), states_of(&outputs));
-        let added = [&input_states, &output_states, &input_lead_states, &output_lead_states];
-        let states = added.into_iter().flatten().sum::<usize>() + model.order();
+        let lead_models = leads.try_map(|_, filter| lead_model(*filter, sampling))?;
+        let [delay_states, lead_states] = [&delays, &lead_models].map(|models| models.map(|_, model| model.order()));
+        let added = delay_states.iter().chain(lead_states.iter()).map(|(_, states)| states);
+        let states = added.sum::<usize>() + model.order();
         if states > MOST_STATES {
             return Err(CorrectedModelError::TooManyStates { states });
         }
-        let plant = Blocks::of_gained(model, correction);
-        let mut whole = Blocks::block_diagonal(&inputs).then(&plant).then(&Blocks::block_diagonal(&outputs));
+        let between = |models: &Channels<ChannelModel>, inner: &Blocks| {
+            Blocks::block_diagonal(&models.inputs).then(inner).then(&Blocks::block_diagonal(&models.outputs))
+        };
+        let mut whole = between(&delays, &Blocks::of_gained(model, correction));
         if correction.leads.is_some() {
-            whole = Blocks::block_diagonal(&input_leads).then(&whole).then(&Blocks::block_diagonal(&output_leads));
+            whole = between(&lead_models, &whole);
         }
         let timing = Timing { sample_time_s: sampling, ..Timing::default() };
         let model = StateSpace::new(whole.a, whole.b, whole.c, whole.d)?.timed(timing)?;
-        let pade = sampling.is_none().then_some(pade);
-        Ok(Self {
-            model,
-            input_states,
-            output_states,
-            input_lead_states,
-            output_lead_states,
-            leads,
-            sample_time_s: sampling,
-            input_delays_s,
-            output_delays_s,
-            pade,
-        })
+        Ok(Self { model, delay_states, lead_states, leads, sample_time_s: sampling, delays_s, pade })
     }
 
     /// The greatest phase error \[rad\] of its responses at `omega` \[rad/s\]: what the approximated delays lag too little, or what
@@ -154,23 +126,25 @@ impl CorrectedModel {
             // What the rule makes of omega.
             let warped = (0.5 * omega * sample_time_s).tan() * 2.0 / sample_time_s;
             let error = |filter: &LeadFilter| (filter.phase(warped) - filter.phase(omega)).abs();
-            let greatest = |filters: &Vec<Option<LeadFilter>>| filters.iter().flatten().map(error).fold(0.0, f64::max);
-            return self.leads.iter().map(greatest).sum();
+            let greatest = |filters: &[Option<LeadFilter>]| filters.iter().flatten().map(error).fold(0.0, f64::max);
+            return greatest(&self.leads.inputs) + greatest(&self.leads.outputs);
         }
-        let Some(pade) = self.pade else { return 0.0 };
         // The error grows with the delay, and that of a response is the sum of its two channels'.
         let longest = |delays_s: &[f64]| delays_s.iter().copied().fold(0.0, f64::max);
-        [&self.input_delays_s, &self.output_delays_s]
-            .map(|delays_s| pade.phase_error(omega * longest(delays_s)))
-            .iter()
-            .sum()
+        let error = |delays_s: &[f64]| self.pade.phase_error(omega * longest(delays_s));
+        error(&self.delays_s.inputs) + error(&self.delays_s.outputs)
     }
 }
 
-fn added(correction_s: &[f64], own_s: Option<&[f64]>) -> Vec<f64> {
-    let own_s = own_s.unwrap_or_default().iter().copied().chain(std::iter::repeat(0.0));
-    let sums = correction_s.iter().zip(own_s).map(|(correction_s, own_s)| correction_s + own_s);
-    sums.map(|delay_s| if delay_s < LEAST_DELAY_S { 0.0 } else { delay_s }).collect()
+/// The delay of a channel \[s\]: the correction's and the model's own.
+fn delay_s(channel: Channel, correction: &ChannelCorrection, timing: &Timing) -> f64 {
+    let (own_s, at) = match channel {
+        Channel::Input(at) => (&timing.input_delays_s, at),
+        Channel::Output(at) => (&timing.output_delays_s, at),
+    };
+    let own_s = own_s.as_ref().and_then(|own_s| own_s.get(at)).copied().unwrap_or(0.0);
+    let delay_s = correction.pure_delay_s(channel) + own_s;
+    if delay_s < LEAST_DELAY_S { 0.0 } else { delay_s }
 }
 
 /// The delay of a channel as states.
@@ -194,20 +168,14 @@ fn delay_model(
     Ok(ChannelModel::samples(samples as usize))
 }
 
-/// The lead filters of channels as states.
-fn lead_models(
-    filters: &[Option<LeadFilter>],
-    sample_time_s: Option<f64>,
-) -> Result<Vec<ChannelModel>, CorrectedModelError> {
-    let model = |filter: &Option<LeadFilter>| {
-        let (Some(filter), Some(sample_time_s)) = (*filter, sample_time_s) else {
-            return Ok(filter.map_or_else(ChannelModel::none, ChannelModel::lead));
-        };
-        let longest_s = 0.5 * filter.lag_s();
-        let sampled = ChannelModel::sampled_lead(filter, sample_time_s).filter(|_| sample_time_s <= longest_s);
-        sampled.ok_or(CorrectedModelError::SlowSamples { sample_time_s, longest_s })
+/// The lead filter of a channel as states.
+fn lead_model(filter: Option<LeadFilter>, sample_time_s: Option<f64>) -> Result<ChannelModel, CorrectedModelError> {
+    let (Some(filter), Some(sample_time_s)) = (filter, sample_time_s) else {
+        return Ok(filter.map_or_else(ChannelModel::none, ChannelModel::lead));
     };
-    filters.iter().map(model).collect()
+    let longest_s = 0.5 * filter.lag_s();
+    let sampled = ChannelModel::sampled_lead(filter, sample_time_s).filter(|_| sample_time_s <= longest_s);
+    sampled.ok_or(CorrectedModelError::SlowSamples { sample_time_s, longest_s })
 }
 
 /// Four matrices, in continuous or discrete time.
@@ -389,9 +357,9 @@ mod tests {
         for pair in [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(output, input)| Pair { output, input }) {
             let (found, plain) = (found.curve(pair), plain.curve(pair));
             for (at, &omega) in grid.omega().iter().enumerate() {
-                let delays = delay(omega, corrected.input_delays_s[pair.input])
-                    * delay(omega, corrected.output_delays_s[pair.output]);
-                let expected = plain[at] * delays * correction.net_gain(pair).value();
+                let delays = delay(omega, corrected.delays_s.inputs[pair.input])
+                    * delay(omega, corrected.delays_s.outputs[pair.output]);
+                let expected = plain[at] * delays * correction.net_gain(pair);
                 assert!((found[at] - expected).norm() <= 1e-10 * expected.norm(), "{pair:?} at {omega} rad/s");
             }
         }
@@ -402,7 +370,7 @@ mod tests {
         for order in [1, 2, 3, 8] {
             let pade = Pade::new(order).unwrap();
             let corrected = CorrectedModel::of(&plant(), &correction(), pade).unwrap();
-            let states = (corrected.input_states.as_slice(), corrected.output_states.as_slice());
+            let states = (corrected.delay_states.inputs.as_slice(), corrected.delay_states.outputs.as_slice());
             assert_eq!(states, ([order, 0].as_slice(), [0, order].as_slice()));
             assert_eq!(corrected.model.order(), 3 + 2 * order);
             // Of magnitude 1; its lag is that of the delay less the error.
@@ -421,7 +389,7 @@ mod tests {
         let own = Timing { input_delays_s: Some(vec![0.02, 0.0]), ..Timing::default() };
         let pade = Pade::new(2).unwrap();
         let corrected = CorrectedModel::of(&plant().timed(own).unwrap(), &correction(), pade).unwrap();
-        assert_eq!((corrected.input_delays_s.clone(), corrected.model.order()), (vec![0.05, 0.0], 7));
+        assert_eq!((corrected.delays_s.inputs.clone(), corrected.model.order()), (vec![0.05, 0.0], 7));
         assert!(corrected.model.timing().is_plain());
     }
 
@@ -458,7 +426,7 @@ mod tests {
     fn led(order: LeadOrder) -> ChannelCorrection {
         let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 50);
         let design = LeadDesign::new(LeadSettings { order, ..LeadSettings::default() }, grid.omega().into());
-        let leads = ChannelLeads::new(design.into(), vec![-0.03, 0.0], vec![0.0, -0.05]);
+        let leads = ChannelLeads::new(design.into(), Channels { inputs: vec![-0.03, 0.0], outputs: vec![0.0, -0.05] });
         let none = || vec![0.0; 2];
         ChannelCorrection { input_delays_s: none(), output_delays_s: none(), leads: Some(leads), ..correction() }
     }
@@ -469,7 +437,7 @@ mod tests {
             let correction = led(order);
             let corrected = CorrectedModel::of(&plant(), &correction, Pade::default()).unwrap();
             assert_eq!(
-                (corrected.input_lead_states.as_slice(), corrected.output_lead_states.as_slice()),
+                (corrected.lead_states.inputs.as_slice(), corrected.lead_states.outputs.as_slice()),
                 (&[states, 0][..], &[0, states][..])
             );
             let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 12);
@@ -480,7 +448,7 @@ mod tests {
                 for (at, &omega) in grid.omega().iter().enumerate() {
                     let filters = filters.iter().filter_map(|channel| correction.lead(*channel));
                     let lead: Complex<f64> = filters.map(|filter| filter.at(omega)).product();
-                    let expected = plain.curve(pair)[at] * lead * correction.net_gain(pair).value();
+                    let expected = plain.curve(pair)[at] * lead * correction.net_gain(pair);
                     assert!((found.curve(pair)[at] - expected).norm() <= 1e-12 * expected.norm(), "{pair:?}");
                 }
             }

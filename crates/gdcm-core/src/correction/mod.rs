@@ -7,6 +7,7 @@
 
 mod branch_and_bound;
 mod channel_correction;
+mod channels;
 mod components;
 mod conflict;
 mod corrected_model;
@@ -21,6 +22,7 @@ mod solve;
 
 pub use branch_and_bound::*;
 pub use channel_correction::*;
+pub use channels::*;
 use components::*;
 pub use conflict::*;
 pub use corrected_model::*;

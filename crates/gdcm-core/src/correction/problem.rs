@@ -97,33 +97,13 @@ pub enum ProblemError {
         /// Its delta delay.
         delay_s: f64,
     },
-    /// The bounds of the gains are not `0 < lower <= upper`.
-    #[error(
-        "the gain bounds {lower} and {upper} must be positive (1e-9 to 1e9), the lower one not above the upper one"
-    )]
-    GainBounds {
-        /// Lower bound.
-        lower: f64,
-        /// Upper bound.
-        upper: f64,
-    },
-    /// The bounds of the delays are not `0 = lower <= upper`.
-    #[error("the delays are bounded by {lower_s} s and {upper_s} s; it must be 0 and a number from 0 to 1e50 s")]
-    DelayBounds {
-        /// Lower bound.
-        lower_s: f64,
-        /// Upper bound.
-        upper_s: f64,
-    },
-    /// The bounds of the signed delays are not `lower <= 0 <= upper`.
-    #[error(
-        "the signed delays are bounded by {lower_s} s and {upper_s} s; it must be a number from -1e50 to 0 and one from 0 to 1e50 s"
-    )]
-    SignedDelayBounds {
-        /// Lower bound.
-        lower_s: f64,
-        /// Upper bound.
-        upper_s: f64,
+    /// The bounds are not those of the quantity ([`Bounds`]).
+    #[error("{}", bounds_words(*quantity, bounds.lower, bounds.upper))]
+    Bounds {
+        /// What is asked for.
+        quantity: Quantity,
+        /// The bounds.
+        bounds: Bounds,
     },
     /// `alpha` is negative or not a number.
     #[error("alpha is {alpha}; it must be a number from 0 to 1e12")]
@@ -140,6 +120,21 @@ pub enum ProblemError {
     /// The search was told to stop.
     #[error("the search for the best answer was stopped")]
     Stopped,
+}
+
+fn bounds_words(quantity: Quantity, lower: f64, upper: f64) -> String {
+    match quantity {
+        Quantity::Gain(_) => format!(
+            "the gain bounds {lower} and {upper} must be positive (1e-9 to 1e9), the lower one not above the upper one"
+        ),
+        Quantity::Delay => {
+            format!("the delays are bounded by {lower} s and {upper} s; it must be 0 and a number from 0 to 1e50 s")
+        }
+        Quantity::SignedDelay => format!(
+            "the signed delays are bounded by {lower} s and {upper} s; it must be a number from -1e50 to 0 and one from 0 to \
+             1e50 s"
+        ),
+    }
 }
 
 impl From<SearchStopped> for ProblemError {
@@ -200,24 +195,16 @@ impl Problem {
                 _ => {}
             }
         }
-        self.check_bounds()?;
-        if (0.0..=1e12).contains(&self.alpha) { Ok(()) } else { Err(ProblemError::Alpha { alpha: self.alpha }) }
-    }
-
-    fn check_bounds(&self) -> Result<(), ProblemError> {
-        let Bounds { lower, upper } = self.bounds;
-        match self.quantity {
-            Quantity::Gain(_) if !(GAIN_BOUNDS.contains(&lower) && GAIN_BOUNDS.contains(&upper) && lower <= upper) => {
-                Err(ProblemError::GainBounds { lower, upper })
-            }
-            Quantity::Delay if !(lower == 0.0 && (0.0..=1e50).contains(&upper)) => {
-                Err(ProblemError::DelayBounds { lower_s: lower, upper_s: upper })
-            }
-            Quantity::SignedDelay if !((-1e50..=0.0).contains(&lower) && (0.0..=1e50).contains(&upper)) => {
-                Err(ProblemError::SignedDelayBounds { lower_s: lower, upper_s: upper })
-            }
-            _ => Ok(()),
+        let (Bounds { lower, upper }, times) = (self.bounds, 0.0..=1e50);
+        let are_bounds = match quantity {
+            Quantity::Gain(_) => GAIN_BOUNDS.contains(&lower) && GAIN_BOUNDS.contains(&upper) && lower <= upper,
+            Quantity::Delay => lower == 0.0 && times.contains(&upper),
+            Quantity::SignedDelay => times.contains(&-lower) && times.contains(&upper),
+        };
+        if !are_bounds {
+            return Err(ProblemError::Bounds { quantity, bounds: self.bounds });
         }
+        if (0.0..=1e12).contains(&self.alpha) { Ok(()) } else { Err(ProblemError::Alpha { alpha: self.alpha }) }
     }
 
     /// The objective at these channels (inputs m, outputs p): of squared ratios, of squared dB, or in s².

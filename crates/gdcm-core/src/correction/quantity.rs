@@ -37,12 +37,14 @@ const DECIBEL: f64 = 20.0 / std::f64::consts::LN_10;
 pub(crate) const SQUARED_DECIBEL: f64 = DECIBEL * DECIBEL;
 
 impl Quantity {
+    /// Whether it is gains, and not delays of either kind.
+    pub fn is_gain(self) -> bool {
+        matches!(self, Self::Gain(_))
+    }
+
     /// The value of a channel that changes nothing: a gain of 1, a delay of 0.
     pub(crate) fn neutral(self) -> f64 {
-        match self {
-            Quantity::Gain(_) => 1.0,
-            Quantity::Delay | Quantity::SignedDelay => 0.0,
-        }
+        if self.is_gain() { 1.0 } else { 0.0 }
     }
 
     /// Whether departures of the inputs are regularised besides those of the outputs.
@@ -57,10 +59,7 @@ impl Quantity {
 
     /// `k_o k_i` or `tau_o + tau_i`.
     pub(crate) fn net(self, output: f64, input: f64) -> f64 {
-        match self {
-            Quantity::Gain(_) => output * input,
-            Quantity::Delay | Quantity::SignedDelay => output + input,
-        }
+        if self.is_gain() { output * input } else { output + input }
     }
 
     /// What an entry misses, whose square the objective sums: a ratio, dB or seconds.
@@ -84,34 +83,27 @@ impl Quantity {
 
     /// A difference of logarithms in dB, of delays in seconds.
     pub(crate) fn difference(self, difference: f64, coordinate: Coordinate) -> f64 {
-        match self {
-            Quantity::Gain(_) => difference * DECIBEL,
-            Quantity::Delay | Quantity::SignedDelay => coordinate.value(difference),
-        }
+        if self.is_gain() { difference * DECIBEL } else { coordinate.value(difference) }
     }
 
     /// A slope for each dB or for each millisecond, from one for each unit of the logarithm or each second.
     pub(crate) fn per_unit(self, slope: f64) -> f64 {
-        match self {
-            Quantity::Gain(_) => slope / DECIBEL,
-            Quantity::Delay | Quantity::SignedDelay => 1e-3 * slope,
-        }
+        if self.is_gain() { slope / DECIBEL } else { 1e-3 * slope }
     }
 
     /// The symbol of a channel's value.
     pub(crate) fn symbol(self) -> &'static str {
-        match self {
-            Quantity::Gain(_) => "k",
-            Quantity::Delay | Quantity::SignedDelay => "tau",
-        }
+        if self.is_gain() { "k" } else { "tau" }
+    }
+
+    /// What of the entries of a loop agrees or disagrees.
+    pub(crate) fn looped(self) -> &'static str {
+        if self.is_gain() { "ratios" } else { "delays" }
     }
 
     /// What follows a bound in words.
     pub(crate) fn unit(self) -> &'static str {
-        match self {
-            Quantity::Gain(_) => "",
-            Quantity::Delay | Quantity::SignedDelay => " s",
-        }
+        if self.is_gain() { "" } else { " s" }
     }
 }
 

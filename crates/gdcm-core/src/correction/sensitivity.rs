@@ -33,42 +33,29 @@ impl Sensitivity {
     /// The sensitivity in words.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let percent = 100.0 * self.share_per_unit.abs();
-        let effect = format!("would lower the objective by about {percent:.2} %");
-        let is_dear = self.per_unit > 0.0;
-        match (self.quantity, self.restraint) {
-            (Quantity::Gain(_), restraint) => {
-                let what = match restraint {
-                    ActiveConstraint::Held(pair) => (pair_name(pair, inputs, outputs), "held", "its gain"),
-                    ActiveConstraint::LowerBound(channel) => {
-                        (gain_name(channel, inputs, outputs), "on its lower bound", "the bound")
-                    }
-                    ActiveConstraint::UpperBound(channel) => {
-                        (gain_name(channel, inputs, outputs), "on its upper bound", "the bound")
-                    }
-                };
-                let change = if is_dear { "lowering" } else { "raising" };
-                format!("{} is {}: {change} {} by 1 dB {effect}.", what.0, what.1, what.2)
+        let (gain, is_dear) = (self.quantity.is_gain(), self.per_unit > 0.0);
+        let name = match self.restraint {
+            ActiveConstraint::Held(pair) => pair_name(pair, inputs, outputs),
+            ActiveConstraint::LowerBound(channel) | ActiveConstraint::UpperBound(channel) => {
+                format!("{}_{}", if gain { "k" } else { "τ" }, channel.name(inputs, outputs))
             }
-            (Quantity::Delay | Quantity::SignedDelay, ActiveConstraint::Held(pair)) => {
-                let change = if is_dear { "less" } else { "more" };
-                format!("{} is held: 1 ms {change} delay {effect}.", pair_name(pair, inputs, outputs))
+        };
+        let change = if is_dear { "lowering" } else { "raising" };
+        let way = match (self.quantity, self.restraint) {
+            (Quantity::Gain(_), ActiveConstraint::Held(_)) => format!("held: {change} its gain by 1 dB"),
+            (Quantity::Gain(_), ActiveConstraint::LowerBound(_)) => {
+                format!("on its lower bound: {change} the bound by 1 dB")
             }
-            (Quantity::Delay, ActiveConstraint::LowerBound(channel)) => {
-                format!("τ_{} is 0: 1 ms of lead {effect}.", channel.name(inputs, outputs))
+            (Quantity::Gain(_), ActiveConstraint::UpperBound(_)) => {
+                format!("on its upper bound: {change} the bound by 1 dB")
             }
-            (Quantity::SignedDelay, ActiveConstraint::LowerBound(channel)) => {
-                format!("τ_{} is at its most lead: 1 ms more of it {effect}.", channel.name(inputs, outputs))
-            }
-            (Quantity::Delay | Quantity::SignedDelay, ActiveConstraint::UpperBound(channel)) => {
-                let channel = channel.name(inputs, outputs);
-                format!("τ_{channel} is on its upper bound: raising the bound by 1 ms {effect}.")
-            }
-        }
+            (_, ActiveConstraint::Held(_)) => format!("held: 1 ms {} delay", if is_dear { "less" } else { "more" }),
+            (Quantity::Delay, ActiveConstraint::LowerBound(_)) => "0: 1 ms of lead".to_owned(),
+            (_, ActiveConstraint::LowerBound(_)) => "at its most lead: 1 ms more of it".to_owned(),
+            (_, ActiveConstraint::UpperBound(_)) => "on its upper bound: raising the bound by 1 ms".to_owned(),
+        };
+        format!("{name} is {way} would lower the objective by about {percent:.2} %.")
     }
-}
-
-fn gain_name(channel: Channel, inputs: &[String], outputs: &[String]) -> String {
-    format!("k_{}", channel.name(inputs, outputs))
 }
 
 /// The sensitivity of every held entry and of every bound that acts, the most expensive first.
@@ -77,21 +64,18 @@ fn gain_name(channel: Channel, inputs: &[String], outputs: &[String]) -> String 
 pub fn sensitivities(problem: &Problem, solution: &Solution) -> Vec<Sensitivity> {
     let held: Vec<Pair> = problem.held_entries().map(|(pair, _)| pair).collect();
     let inputs = solution.inputs.len();
-    let found = multipliers(&Restrained::of(problem, solution, &held));
+    let (of_entries, of_channels) = multipliers(&Restrained::of(problem, solution, &held));
     let sensitivity = |restraint: ActiveConstraint, slope: f64| {
         let per_unit = problem.quantity.per_unit(slope);
         let share_per_unit = if solution.objective > 0.0 { per_unit / solution.objective } else { 0.0 };
         Sensitivity { quantity: problem.quantity, restraint, per_unit, share_per_unit }
     };
-    let of_held = held.iter().zip(&found.held).map(|(pair, slope)| sensitivity(ActiveConstraint::Held(*pair), *slope));
-    let of_bounds = found.bounds.iter().enumerate().filter(|(_, slope)| **slope != 0.0).map(|(index, slope)| {
-        let channel = if index < inputs { Channel::Input(index) } else { Channel::Output(index - inputs) };
+    let of_held = held.iter().zip(&of_entries).map(|(pair, slope)| sensitivity(ActiveConstraint::Held(*pair), *slope));
+    let channels = Channel::all(inputs, solution.outputs.len()).zip(of_channels);
+    let of_bounds = channels.filter(|(_, slope)| *slope != 0.0).map(|(channel, slope)| {
         // The objective falls as the upper bound is raised, or the lower one lowered.
-        let upper = *slope < 0.0;
-        sensitivity(
-            if upper { ActiveConstraint::UpperBound(channel) } else { ActiveConstraint::LowerBound(channel) },
-            *slope,
-        )
+        let bound = if slope < 0.0 { ActiveConstraint::UpperBound } else { ActiveConstraint::LowerBound };
+        sensitivity(bound(channel), slope)
     });
     let mut all: Vec<Sensitivity> = of_held.chain(of_bounds).collect();
     all.sort_by(|a, b| b.per_unit.abs().total_cmp(&a.per_unit.abs()));
@@ -125,7 +109,7 @@ fn slopes(problem: &Problem, solution: &Solution) -> Vec<f64> {
 pub fn kkt_residual(problem: &Problem, solution: &Solution) -> f64 {
     let held: Vec<Pair> = problem.held_entries().map(|(pair, _)| pair).collect();
     let minimum = Restrained::of(problem, solution, &held);
-    let pushes = pieces(&minimum).into_iter().map(|piece| minimum.push(&piece));
+    let pushes = minimum.pieces().into_iter().map(|piece| minimum.push(&piece));
     pushes.filter(|(_, stopping)| stopping.is_empty()).fold(0.0, |most, (push, _)| most.max(push.abs()))
 }
 
@@ -148,6 +132,11 @@ impl<'a> Restrained<'a> {
         Self { inputs: solution.inputs.len(), slopes: slopes(problem, solution), at_bounds, held }
     }
 
+    /// The channels that held entries tie together.
+    fn pieces(&self) -> Vec<Vec<usize>> {
+        pieces(self.slopes.len(), self.held.iter().map(|pair| (pair.input, self.inputs + pair.output)))
+    }
+
     /// 1 of an input, -1 of an output: an output falls where the inputs tied to it rise.
     fn sign(&self, channel: usize) -> f64 {
         if channel < self.inputs { 1.0 } else { -1.0 }
@@ -165,20 +154,15 @@ impl<'a> Restrained<'a> {
     }
 }
 
-/// Change of the least objective with each restraint's value.
-struct Multipliers {
-    /// By the sum at which each held entry is held.
-    held: Vec<f64>,
-    /// By the bound that each channel is on; 0 where none acts.
-    bounds: Vec<f64>,
-}
-
 /// Solves `slopes + sum of multipliers = 0`: what pushes a piece of tied channels against a bound is borne by the channels that
 /// are on that bound, in equal parts; the held entries carry the rest, in a loop with the least squares.
-fn multipliers(minimum: &Restrained<'_>) -> Multipliers {
+///
+/// That is the change of the least objective with the sum at which each held entry is held, and with the bound that each channel is
+/// on (0 where none acts).
+fn multipliers(minimum: &Restrained<'_>) -> (Vec<f64>, Vec<f64>) {
     let channels = minimum.slopes.len();
     let mut bounds = vec![0.0; channels];
-    for piece in pieces(minimum) {
+    for piece in minimum.pieces() {
         let (push, stopping) = minimum.push(&piece);
         for &channel in &stopping {
             bounds[channel] = minimum.sign(channel) * push / stopping.len() as f64;
@@ -197,23 +181,7 @@ fn multipliers(minimum: &Restrained<'_>) -> Multipliers {
         let solved = ties.svd(true, true).solve(&left, 1.0 / channels as f64);
         solved.map(|held| held.iter().copied().collect()).unwrap_or_default()
     };
-    Multipliers { held, bounds }
-}
-
-/// The channels that held entries tie together.
-fn pieces(minimum: &Restrained<'_>) -> Vec<Vec<usize>> {
-    let channels = minimum.slopes.len();
-    let mut piece: Vec<usize> = (0..channels).collect();
-    for pair in minimum.held {
-        let (kept, merged) = (piece[pair.input], piece[minimum.inputs + pair.output]);
-        for piece in &mut piece {
-            if *piece == merged {
-                *piece = kept;
-            }
-        }
-    }
-    let members = |name: usize| (0..channels).filter(|&channel| piece[channel] == name).collect::<Vec<_>>();
-    (0..channels).map(members).filter(|piece| !piece.is_empty()).collect()
+    (held, bounds)
 }
 
 /// The answer with one entry held that is free now, or freed that is held now.

@@ -1,6 +1,6 @@
 //! The gains or delays found, and how sure they are.
 
-use super::{Conflict, Limit, Quantity, Remedy, pair_name};
+use super::{Channels, Conflict, Limit, Quantity, Remedy, pair_name};
 use crate::dataset::{Pair, PairTable};
 use crate::units::{s_to_ms, telling, told_apart};
 
@@ -153,4 +153,11 @@ pub struct Solution {
     pub conflicts: Vec<Conflict>,
     /// The single changes that would let every held entry be held, where some cannot.
     pub remedy: Option<Remedy>,
+}
+
+impl Solution {
+    /// Gain, delay or signed delay of each channel.
+    pub fn channels(&self) -> Channels<f64> {
+        Channels { inputs: self.inputs.clone(), outputs: self.outputs.clone() }
+    }
 }

@@ -55,10 +55,7 @@ pub fn solve(problem: &Problem, budget: ProofBudget, stop: &dyn Fn() -> bool) ->
 
 /// Where Newton's method begins: of delays next to the minimum, which it then reaches exactly, bounds and all.
 fn start(objective: &Objective, quantity: Quantity) -> Result<Vec<f64>, ProblemError> {
-    match quantity {
-        Quantity::Gain(_) => Ok(objective.nearest_to_zero()),
-        Quantity::Delay | Quantity::SignedDelay => interior_point(objective),
-    }
+    if quantity.is_gain() { Ok(objective.nearest_to_zero()) } else { interior_point(objective) }
 }
 
 /// The minimum of a sum of squares.
@@ -176,9 +173,9 @@ fn misses(
     effort: &Effort<'_>,
 ) -> Result<Vec<Unmatched>, SearchStopped> {
     let (quantity, coordinate) = (problem.quantity, problem.coordinate());
-    let clashes = clashes(held, reached, MATCHED, effort)?;
+    let clashes = clashes(problem, held, reached, MATCHED, effort)?;
     let why = |pair: Pair| match clashes.iter().find(|(missed, _)| *missed == pair) {
-        Some((_, clash)) => Conflict::new(clash.clone(), problem),
+        Some((_, clash)) => clash.clone(),
         None => Conflict {
             quantity,
             entries: held.entries.iter().map(|(pair, _)| *pair).collect(),
@@ -190,10 +187,8 @@ fn misses(
     let missed = entries.filter(|((_, delta), (_, target))| (target - delta).abs() > MATCHED);
     let missed = missed.map(|((pair, delta_at), (_, target_at))| {
         let (delta, target) = (coordinate.value(*delta_at), coordinate.value(*target_at));
-        let excess = match quantity {
-            Quantity::Gain(_) => quantity.difference(target_at - delta_at, coordinate),
-            Quantity::Delay | Quantity::SignedDelay => target - delta,
-        };
+        let in_coordinate = || quantity.difference(target_at - delta_at, coordinate);
+        let excess = if quantity.is_gain() { in_coordinate() } else { target - delta };
         Unmatched { quantity, pair: *pair, delta, target, excess, why: why(*pair) }
     });
     Ok(missed.collect())
@@ -259,7 +254,8 @@ pub(crate) fn interior_point(objective: &Objective) -> Result<Vec<f64>, ProblemE
 fn solve_program(objective: &Objective, free: &[usize]) -> Result<Vec<f64>, ProblemError> {
     let size = free.len();
     let (curvature, slope) = quadratic(objective, free);
-    let quadratic = upper_triangle(&curvature);
+    let row = |row: usize| (0..size).map(move |column| (row, column));
+    let quadratic = CscMatrix::from((0..size).map(|at| row(at).map(|at| &curvature[at]))).to_triu();
     let columns = (0..=size).map(|column| 2 * column).collect();
     let rows = (0..size).flat_map(|column| [column, size + column]).collect();
     let signs = (0..size).flat_map(|_| [1.0, -1.0]).collect();
@@ -299,21 +295,4 @@ fn quadratic(objective: &Objective, free: &[usize]) -> (DMatrix<f64>, DVector<f6
         }
     }
     (curvature, slope)
-}
-
-/// The upper triangle in compressed columns, as clarabel takes it.
-fn upper_triangle(matrix: &DMatrix<f64>) -> CscMatrix<f64> {
-    let size = matrix.ncols();
-    let mut columns = vec![0];
-    let (mut rows, mut values) = (Vec::new(), Vec::new());
-    for column in 0..size {
-        for row in 0..=column {
-            if matrix[(row, column)] != 0.0 {
-                rows.push(row);
-                values.push(matrix[(row, column)]);
-            }
-        }
-        columns.push(rows.len());
-    }
-    CscMatrix::new(size, size, columns, rows, values)
 }

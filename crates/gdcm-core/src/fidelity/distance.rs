@@ -91,9 +91,8 @@ impl ComparedModel<'_> {
     /// J with this model as the reference, by its coherence; none where it says nothing.
     fn cost_as_reference(&self, a: &PolarCurve, b: &PolarCurve, pair: Pair) -> Option<f64> {
         let mismatch = Mismatch::new(a, b).coherence_weighted(Some(&self.coherence_weights?[pair]))?;
-        let weights = mismatch.coherence_weights.as_ref().map(CoherenceWeights::weights);
         let (magnitude_db, phase) = (mismatch.magnitude_db.iter().copied(), mismatch.phase.iter().copied());
-        Some(Cost::of(magnitude_db, phase, weights, CostAverage::Mean, &mut Vec::new()).total())
+        Some(Cost::of(magnitude_db, phase, mismatch.weights(), CostAverage::Mean, &mut Vec::new()).total())
     }
 }
 

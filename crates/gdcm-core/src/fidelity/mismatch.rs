@@ -42,7 +42,7 @@ impl Mismatch {
     pub fn coherence_weighted(self, coherence_weights: Option<&CoherenceWeights>) -> Option<Self> {
         let Some(coherence_weights) = coherence_weights else { return Some(self) };
         let (magnitude_db, phase) = (coherence_weights.pick(&self.magnitude_db), coherence_weights.pick(&self.phase));
-        (!coherence_weights.is_empty()).then(|| Self {
+        (!coherence_weights.omega.is_empty()).then(|| Self {
             magnitude_db,
             phase,
             coherence_weights: Some(coherence_weights.clone()),
@@ -52,7 +52,7 @@ impl Mismatch {
 
     /// The frequencies \[rad/s\] at which it stands: all of the grid, or those that count.
     pub fn omega<'a>(&'a self, grid: &'a [f64]) -> &'a [f64] {
-        self.coherence_weights.as_ref().map_or(grid, CoherenceWeights::omega)
+        self.coherence_weights.as_ref().map_or(grid, |weights| &weights.omega)
     }
 
     /// The median of a figure of each frequency, weighted where not all count alike (M6, M4a).
@@ -73,7 +73,7 @@ impl Mismatch {
 
     /// What each frequency at which it stands counts, where not all count alike (M4a).
     pub fn weights(&self) -> Option<&[f64]> {
-        self.coherence_weights.as_ref().map(CoherenceWeights::weights)
+        self.coherence_weights.as_ref().map(|weights| weights.weights.as_slice())
     }
 
     /// J after a correction of the simulated response (M4, M10). The correction takes `omega tau` from the phase, of which the
@@ -170,8 +170,10 @@ fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
 pub struct CoherenceWeights {
     /// Places on the grid, rising.
     places: Vec<usize>,
-    omega: Vec<f64>,
-    weights: Vec<f64>,
+    /// The frequencies that count \[rad/s\].
+    pub omega: Vec<f64>,
+    /// `W` at each of them.
+    pub weights: Vec<f64>,
 }
 
 /// `W = [1.58 (1 - e^(-gamma^2))]^2` of a coherence `gamma^2` from 0 to 1 (Tischler & Remple, "Aircraft and Rotorcraft System
@@ -203,26 +205,6 @@ impl CoherenceWeights {
         let valid_band = |pair: Pair| response.valid_bands().map(|bands| bands[pair]);
         let coherence = coherence_at(response, omega)?;
         Some(coherence.map(|pair, coherence| Self::of(omega, coherence, threshold, valid_band(pair))))
-    }
-
-    /// The frequencies \[rad/s\].
-    pub fn omega(&self) -> &[f64] {
-        &self.omega
-    }
-
-    /// Weight of each.
-    pub fn weights(&self) -> &[f64] {
-        &self.weights
-    }
-
-    /// How many count, `N'`.
-    pub fn len(&self) -> usize {
-        self.places.len()
-    }
-
-    /// Whether none counts.
-    pub fn is_empty(&self) -> bool {
-        self.places.is_empty()
     }
 
     /// What stands at these frequencies in their places among `points` of the grid, not a number elsewhere.
@@ -328,11 +310,11 @@ mod counted_tests {
         let omega = [1.0, 2.0, 3.0, 4.0, 5.0];
         let coherence = [1.0, 0.59, 0.6, 0.9, f64::NAN];
         let coherence_weights = CoherenceWeights::of(&omega, &coherence, 0.6, Some([1.5, 4.0]));
-        assert_eq!((coherence_weights.omega(), coherence_weights.len()), ([3.0, 4.0].as_slice(), 2));
-        assert_eq!(coherence_weights.weights(), [coherence_weight(0.6), coherence_weight(0.9)]);
+        assert_eq!(coherence_weights.omega, [3.0, 4.0]);
+        assert_eq!(coherence_weights.weights, [coherence_weight(0.6), coherence_weight(0.9)]);
         assert_eq!(coherence_weights.pick(&[10.0, 20.0, 30.0, 40.0, 50.0]), [30.0, 40.0]);
         let spread = coherence_weights.spread(&[30.0, 40.0], 5);
         assert!(spread[2..4] == [30.0, 40.0] && [0, 1, 4].iter().all(|place: &usize| spread[*place].is_nan()));
-        assert!(CoherenceWeights::of(&omega, &[0.0; 5], 0.0, None).is_empty(), "nothing was measured");
+        assert!(CoherenceWeights::of(&omega, &[0.0; 5], 0.0, None).omega.is_empty(), "nothing was measured");
     }
 }

@@ -156,8 +156,24 @@ impl LayoutProposal {
         (of(&channels.inputs, inputs), of(&channels.outputs, outputs))
     }
 
-    /// The column with the factor from the file's unit to the channel's, and in words.
+    /// The column with its factor, turned where a mark before its name says so, and in words.
     fn used(
+        &mut self,
+        table: &RecordTable,
+        channels: &RecordChannels,
+        rule: &ChannelRule,
+        column: usize,
+    ) -> Option<ColumnUse> {
+        let used = self.converted(table, channels, rule, column)?;
+        if !rule.aliases.iter().any(|alias| unmarked(table, alias) != alias) {
+            return Some(used);
+        }
+        self.notes.push(format!("{}: the sign of column {} is turned, as asked", rule.name, table.quoted(column)));
+        Some(ColumnUse { factor: -used.factor, ..used })
+    }
+
+    /// The column with the factor from the file's unit to the channel's, and in words.
+    fn converted(
         &mut self,
         table: &RecordTable,
         channels: &RecordChannels,
@@ -193,6 +209,11 @@ impl LayoutProposal {
     }
 }
 
+/// The name of a column that the engineer says without the mark that turns its sign: "-az" is "az", unless a column is called that.
+fn unmarked<'a>(table: &RecordTable, alias: &'a str) -> &'a str {
+    alias.strip_prefix('-').filter(|_| table.find(alias).is_none()).unwrap_or(alias)
+}
+
 /// The columns that can be a channel.
 fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec<usize> {
     let named = |is_it: &dyn Fn(&str) -> bool| -> Vec<usize> {
@@ -200,8 +221,8 @@ fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec
         (0..table.columns.len()).filter(|&column| !other_side(column) && is_it(&table.columns[column].name)).collect()
     };
     // What the engineer says, however it is typed: "elev_yoke1" is "elev,yoke1", and no other name of the stick.
-    let aliases = &rule.aliases;
-    let mut found = named(&|name| aliases.iter().any(|wanted| wanted == name));
+    let aliases: Vec<&str> = rule.aliases.iter().map(|alias| unmarked(table, alias)).collect();
+    let mut found = named(&|name| aliases.contains(&name));
     if found.is_empty() {
         found = aliases.iter().filter_map(|alias| table.find(alias)).collect();
     }
@@ -211,8 +232,7 @@ fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec
     if found.is_empty() && aliases.iter().any(|alias| alias.starts_with('#')) {
         return found;
     }
-    let own = std::slice::from_ref(&rule.name);
-    let names = if aliases.is_empty() { own } else { aliases };
+    let names = if aliases.is_empty() { vec![rule.name.as_str()] } else { aliases.clone() };
     if aliases.is_empty() {
         found = named(&|name| name == rule.name);
     }
@@ -244,7 +264,9 @@ fn is_position(table: &RecordTable, column: usize, rule: &ChannelRule) -> bool {
     const MOST_CHANGE: f64 = 0.02;
     let is_called = |column: &RecordColumn, names: &[&str]| names.contains(&folded_name(&column.name).as_str());
     let stands = |column: &RecordColumn, factor: f64| {
-        column.range().is_some_and(|(least, most)| (most - least) * factor < MOST_DEG && least.abs().max(most.abs()) * factor <= 180.0)
+        column.range().is_some_and(|(least, most)| {
+            (most - least) * factor < MOST_DEG && least.abs().max(most.abs()) * factor <= 180.0
+        })
     };
     let own = &table.columns[column];
     let (latitude, longitude) = (["lat"], ["lon", "long", "lng"]);

@@ -216,8 +216,10 @@ fn a_column_that_the_engineer_names_is_taken_however_its_marks_are_typed() {
     ]);
     let with = |aliases: &[&str]| {
         let aliases = aliases.iter().map(|alias| (*alias).to_owned()).collect();
-        let channels =
-            RecordChannels { inputs: vec![ChannelRule { aliases, ..ChannelRule::named("LON") }], ..RecordChannels::default() };
+        let channels = RecordChannels {
+            inputs: vec![ChannelRule { aliases, ..ChannelRule::named("LON") }],
+            ..RecordChannels::default()
+        };
         RecordLayout::proposed(&table, &channels, &TimeWish::default())
     };
     assert_eq!(with(&[]).layout.inputs, [Some(ColumnUse::as_it_is(1))], "the longitude is no stick");
@@ -311,4 +313,13 @@ fn the_same_record_under_two_names_counts_once() {
     assert_eq!(records.each_ref().map(|record| record.used), [true, false, true]);
     let words: Vec<String> = records[1].cautions.iter().map(ToString::to_string).collect();
     assert_eq!(words, ["its samples are those of a: left out, for evidence counts once"]);
+}
+
+#[test]
+fn a_mark_before_the_name_of_a_column_turns_its_sign() {
+    let mut channels = channels();
+    channels.outputs[1].aliases = vec!["-az".to_owned()];
+    let found = RecordLayout::proposed(&record(), &channels, &TimeWish::default());
+    assert_eq!(found.layout.outputs[1], Some(ColumnUse { column: 0, factor: -9.806_65 }), "{found:?}");
+    assert!(found.notes.contains(&"NZ: the sign of column \"az\" is turned, as asked".to_owned()), "{:?}", found.notes);
 }

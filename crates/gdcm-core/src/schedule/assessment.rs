@@ -1,6 +1,6 @@
 //! What a correction is worth: J before and after (M12).
 
-use crate::correction::{ChannelCorrection, ChannelLeads};
+use crate::correction::ChannelCorrection;
 use crate::dataset::PairTable;
 use crate::fidelity::{Cost, CostAverage, Mismatch};
 
@@ -52,12 +52,10 @@ pub fn corrected_cost(
     omega: &[f64],
     average: CostAverage,
 ) -> PairTable<Option<Cost>> {
-    // A filter is computed once for its channel, not for each of its responses.
-    let leads = correction.leads.as_ref().map(ChannelLeads::curves);
     mismatch.map(|pair, mismatch| {
-        let (mismatch, correction) = (mismatch.as_ref()?, correction.without_leads_on(pair)?);
-        let led = leads.as_ref().and_then(|leads| leads.on(pair));
+        let (mismatch, leads) = (mismatch.as_ref()?, correction.leads.as_ref());
+        let led = leads.and_then(|leads| leads.curve(pair));
         let led = led.map(|lead| mismatch.multiplied(&lead.magnitude_db, &lead.phase));
-        Some(led.as_ref().unwrap_or(mismatch).cost(omega, correction, average))
+        Some(led.as_ref().unwrap_or(mismatch).cost(omega, correction.without_leads_on(pair)?, average))
     })
 }

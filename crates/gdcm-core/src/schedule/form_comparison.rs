@@ -2,7 +2,7 @@
 //! that it has not seen (M11, M15.5).
 
 use super::*;
-use crate::correction::{Channel, ChannelCorrection, ChannelLeads};
+use crate::correction::ChannelCorrection;
 use crate::dataset::{Pair, PairTable};
 
 /// Every form that a schedule can have: polynomials from the mean to the cubic, and the table.
@@ -67,10 +67,6 @@ pub struct FormFit {
     pub kind: ScheduleKind,
     /// Degree of the polynomial, which may be less than was asked for (M11b); none of a table.
     pub degree: Option<usize>,
-    /// Gain of each input channel.
-    pub inputs: Vec<FitResiduals>,
-    /// Gain of each output channel.
-    pub outputs: Vec<FitResiduals>,
     /// Net gain of each response, `k_o k_i`.
     pub pairs: PairTable<FitResiduals>,
 }
@@ -113,130 +109,87 @@ pub fn compare_forms(
     settings: ScheduleSettings,
 ) -> Result<FormComparison, ScheduleError> {
     let of_kind = |kind| {
-        let settings = ScheduleSettings { kind, delays: false, ..settings };
-        let schedule = Schedule::fitted(points, settings)?;
-        let scheduled = points.iter().map(|point| Some(schedule.evaluate(point.airspeed_kt, point.second))).collect();
-        let unseen = (0..points.len()).map(|left_out| {
-            let others: Vec<ScheduledPoint<'_>> =
-                points[..left_out].iter().chain(&points[left_out + 1..]).copied().collect();
-            Schedule::fitted(&others, settings)
-                .ok()
-                .map(|schedule| schedule.evaluate(points[left_out].airspeed_kt, points[left_out].second))
+        let Predicted { degree, scheduled, unseen } =
+            Predicted::of(points, ScheduleSettings { kind, delays: false, ..settings })?;
+        let residual = |pair: Pair, point: &ScheduledPoint<'_>, predicted: &ChannelCorrection| {
+            Residual::of(point.correction.net_gain(pair), predicted.net_gain(pair))
+        };
+        let first = points[0].correction;
+        let pairs = PairTable::from_fn(first.output_gains.len(), first.input_gains.len(), |pair| FitResiduals {
+            residuals: points.iter().zip(&scheduled).map(|(point, said)| residual(pair, point, said)).collect(),
+            left_out: points.iter().zip(&unseen).map(|(point, said)| residual(pair, point, said.as_ref()?)).collect(),
         });
-        let degree = schedule.degree();
-        Ok(Predicted { points, scheduled, unseen: unseen.collect() }.residuals(kind, degree))
+        Ok(FormFit { kind, degree, pairs })
     };
     let kinds = SCHEDULE_KINDS.into_iter().map(of_kind).collect::<Result<Vec<_>, _>>()?;
     Ok(FormComparison { airspeeds_kt: points.iter().map(|point| point.airspeed_kt).collect(), kinds })
 }
 
-/// What the schedule says at each condition, and what it says that has not seen it.
-struct Predicted<'a> {
-    points: &'a [ScheduledPoint<'a>],
-    scheduled: Vec<Option<ChannelCorrection>>,
+/// What the schedule says at each condition, and what that of the others says there.
+struct Predicted {
+    degree: Option<usize>,
+    scheduled: Vec<ChannelCorrection>,
     unseen: Vec<Option<ChannelCorrection>>,
 }
 
-impl Predicted<'_> {
-    fn residuals(&self, kind: ScheduleKind, degree: Option<usize>) -> FormFit {
-        let own = self.points[0].correction;
-        let (inputs, outputs) = (own.input_gains.len(), own.output_gains.len());
-        FormFit {
-            kind,
-            degree,
-            inputs: (0..inputs).map(|input| self.of_gain(|correction| correction.input_gains[input])).collect(),
-            outputs: (0..outputs).map(|output| self.of_gain(|correction| correction.output_gains[output])).collect(),
-            pairs: PairTable::from_fn(outputs, inputs, |pair| {
-                self.of_gain(|correction| correction.net_gain(pair).value())
-            }),
-        }
-    }
-
-    fn of_gain(&self, gain: impl Fn(&ChannelCorrection) -> f64) -> FitResiduals {
-        let against = |predicted: &[Option<ChannelCorrection>]| {
-            let residual = |(point, predicted): (&ScheduledPoint<'_>, &Option<ChannelCorrection>)| {
-                Residual::of(gain(point.correction), gain(predicted.as_ref()?))
-            };
-            self.points.iter().zip(predicted).map(residual).collect()
-        };
-        FitResiduals { residuals: against(&self.scheduled), left_out: against(&self.unseen) }
+impl Predicted {
+    fn of(points: &[ScheduledPoint<'_>], settings: ScheduleSettings) -> Result<Self, ScheduleError> {
+        let schedule = Schedule::fitted(points, settings)?;
+        let at = |schedule: &Schedule, point: &ScheduledPoint<'_>| schedule.evaluate(point.airspeed_kt, point.second);
+        let unseen = (0..points.len()).map(|left_out| {
+            let others = [&points[..left_out], &points[left_out + 1..]].concat();
+            Schedule::fitted(&others, settings).ok().map(|schedule| at(&schedule, &points[left_out]))
+        });
+        Ok(Self {
+            degree: schedule.degree(),
+            scheduled: points.iter().map(|point| at(&schedule, point)).collect(),
+            unseen: unseen.collect(),
+        })
     }
 }
 
 /// How far a schedule of signed delays is from those of the conditions: roots of mean squares \[s\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeadFit {
-    /// Of the conditions that it is made of.
+    /// Over all conditions.
     pub rms_s: f64,
-    /// Leave-one-condition-out: of each condition, by the schedule of the others; none of a single condition.
+    /// Over what the schedule of the others says of each condition; none where those are none.
     pub left_out_rms_s: Option<f64>,
 }
 
 /// What one degree makes of the signed delays.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadDegreeFit {
-    /// The degree asked for.
+    /// Degree of the polynomial in airspeed.
     pub degree: usize,
-    /// Of each input channel.
-    pub inputs: Vec<LeadFit>,
-    /// Of each output channel.
-    pub outputs: Vec<LeadFit>,
-    /// Of the net signed delay of each response, `tau_o + tau_i`.
+    /// Fit of the net signed delay of each response.
     pub pairs: PairTable<LeadFit>,
 }
 
 /// How well each degree fits, from 0 to [`HIGHEST_DEGREE`]; none at all where the conditions' corrections have no leads.
 pub fn compare_lead_degrees(points: &[ScheduledPoint<'_>], settings: ScheduleSettings) -> Vec<LeadDegreeFit> {
-    let own: Option<Vec<&ChannelLeads>> = points.iter().map(|point| point.correction.leads.as_ref()).collect();
-    let Some(own) = own.filter(|own| !own.is_empty()) else { return Vec::new() };
-    (0..=HIGHEST_DEGREE).filter_map(|degree| of_degree(points, &own, settings, degree)).collect()
-}
-
-/// The signed delays that the schedule of some conditions says at each airspeed \[kt\].
-fn predicted(
-    points: &[ScheduledPoint<'_>],
-    at_kt: &[f64],
-    settings: ScheduleSettings,
-    degree: usize,
-) -> Option<Vec<ChannelLeads>> {
-    let airspeeds_kt = points.iter().map(|point| point.airspeed_kt).collect();
-    let airspeeds = Airspeeds::new(airspeeds_kt, settings.airspeed_tolerance_kt)?;
-    let schedule = LeadSchedule::of(points, &airspeeds, degree)?;
-    Some(at_kt.iter().map(|&kt| schedule.at(&airspeeds, kt)).collect())
-}
-
-fn of_degree(
-    points: &[ScheduledPoint<'_>],
-    own: &[&ChannelLeads],
-    settings: ScheduleSettings,
-    degree: usize,
-) -> Option<LeadDegreeFit> {
-    let at_kt: Vec<f64> = points.iter().map(|point| point.airspeed_kt).collect();
-    let scheduled = predicted(points, &at_kt, settings, degree)?;
-    let unseen = (0..points.len()).map(|left_out| {
-        let others: Vec<ScheduledPoint<'_>> =
-            points[..left_out].iter().chain(&points[left_out + 1..]).copied().collect();
-        predicted(&others, &at_kt[left_out..=left_out], settings, degree)?.pop()
-    });
-    let unseen: Option<Vec<ChannelLeads>> = unseen.collect();
-    let fit = |tau_s: &dyn Fn(&ChannelLeads) -> f64| {
-        let rms_s = |found: &[ChannelLeads]| {
-            let squares = own.iter().zip(found).map(|(own, found)| (tau_s(own) - tau_s(found)).powi(2));
-            (squares.sum::<f64>() / own.len() as f64).sqrt()
+    if points.iter().any(|point| point.correction.leads.is_none()) {
+        return Vec::new();
+    }
+    let of_degree = |tau_degree| {
+        // The signed delays go by airspeed alone, whatever is made of the gains.
+        let kind = ScheduleKind::Polynomial { degree: 0 };
+        let settings = ScheduleSettings { kind, tau_degree, second: None, ..settings };
+        let Predicted { scheduled, unseen, .. } = Predicted::of(points, settings).ok()?;
+        let unseen: Option<Vec<ChannelCorrection>> = unseen.into_iter().collect();
+        let fit = |pair: Pair| {
+            let rms_s = |said: &[ChannelCorrection]| {
+                let both = points.iter().zip(said);
+                let misses_s = both.map(|(own, said)| own.correction.net_delay_s(pair) - said.net_delay_s(pair));
+                (misses_s.map(|miss_s| miss_s.powi(2)).sum::<f64>() / points.len() as f64).sqrt()
+            };
+            LeadFit { rms_s: rms_s(&scheduled), left_out_rms_s: unseen.as_deref().map(rms_s) }
         };
-        LeadFit { rms_s: rms_s(&scheduled), left_out_rms_s: unseen.as_deref().map(rms_s) }
+        let first = points[0].correction;
+        let pairs = PairTable::from_fn(first.output_gains.len(), first.input_gains.len(), fit);
+        Some(LeadDegreeFit { degree: tau_degree, pairs })
     };
-    let (inputs, outputs) = (own[0].inputs_s().len(), own[0].outputs_s().len());
-    let of_channel = |channel: Channel| fit(&move |leads| leads.tau_s(channel));
-    let of_pair = |pair: Pair| {
-        fit(&move |leads| leads.tau_s(Channel::Output(pair.output)) + leads.tau_s(Channel::Input(pair.input)))
-    };
-    Some(LeadDegreeFit {
-        degree,
-        inputs: (0..inputs).map(|input| of_channel(Channel::Input(input))).collect(),
-        outputs: (0..outputs).map(|output| of_channel(Channel::Output(output))).collect(),
-        pairs: PairTable::from_fn(outputs, inputs, of_pair),
-    })
+    (0..=HIGHEST_DEGREE).filter_map(of_degree).collect()
 }
 
 #[cfg(test)]
@@ -276,7 +229,7 @@ mod tests {
         });
         let corrections = corrections(&gains);
         let found = compare_forms(&points(&airspeeds, &corrections), ScheduleSettings::default()).unwrap();
-        let of = |degree| &found.of(ScheduleKind::Polynomial { degree }).unwrap().inputs[0];
+        let of = |degree| &found.of(ScheduleKind::Polynomial { degree }).unwrap().pairs[Pair::new(1, 0)];
         // Least squares of five points, condition number below 5.
         assert!(of(2).rms_ln().unwrap() < 1e-14 && of(3).rms_ln().unwrap() < 1e-14);
         assert!(of(1).rms_ln().unwrap() > 0.01 && of(0).rms_ln().unwrap() > of(1).rms_ln().unwrap());
@@ -286,21 +239,21 @@ mod tests {
         assert!((of(2).left_out[4].unwrap().ln - step.ln()).abs() < 1e-14);
         assert!((of(2).left_out[4].unwrap().percent - 100.0 * (step - 1.0)).abs() < 1e-11);
         let table = found.of(ScheduleKind::Table).unwrap();
-        assert_eq!((table.degree, table.inputs[0].rms_ln()), (None, Some(0.0)), "a table goes through its points");
-        assert!(table.inputs[0].left_out_rms_ln() > of(2).left_out_rms_ln());
+        assert_eq!(
+            (table.degree, table.pairs[Pair::new(1, 0)].rms_ln()),
+            (None, Some(0.0)),
+            "a table goes through its points"
+        );
+        assert!(table.pairs[Pair::new(1, 0)].left_out_rms_ln() > of(2).left_out_rms_ln());
     }
 
     #[test]
-    fn the_residual_of_a_response_is_that_of_its_two_channels_together() {
+    fn a_response_whose_net_gain_never_changes_is_left_no_residual() {
         let corrections = corrections(&[1.0, 1.2, 0.9, 1.4]);
         let found =
             compare_forms(&points(&[50.0, 80.0, 110.0, 140.0], &corrections), ScheduleSettings::default()).unwrap();
         for kind in &found.kinds {
             for condition in 0..4 {
-                let [input, output, pair] = [&kind.inputs[0], &kind.outputs[1], &kind.pairs[Pair::new(1, 0)]]
-                    .map(|fit| fit.residuals[condition].unwrap().ln);
-                // A regression of logarithms: products of regressions are regressions of products.
-                assert!((input + output - pair).abs() < 1e-14);
                 // k_0 k_i = 2 in every condition.
                 assert!(kind.pairs[Pair::new(0, 0)].residuals[condition].unwrap().ln.abs() < 1e-14);
             }
@@ -314,7 +267,7 @@ mod tests {
     fn a_single_condition_cannot_be_left_out() {
         let corrections = corrections(&[1.3]);
         let found = compare_forms(&points(&[80.0], &corrections), ScheduleSettings::default()).unwrap();
-        let fit = &found.kinds[0].inputs[0];
+        let fit = &found.kinds[0].pairs[Pair::new(1, 0)];
         assert_eq!((fit.rms_ln(), fit.left_out_rms_ln(), fit.left_out.as_slice()), (Some(0.0), None, &[None][..]));
         assert_eq!(compare_forms(&[], ScheduleSettings::default()), Err(ScheduleError::NoCondition));
     }
@@ -323,7 +276,7 @@ mod tests {
 #[cfg(test)]
 mod lead_tests {
     use super::*;
-    use crate::correction::{ChannelCorrection, LeadDesign, LeadSettings};
+    use crate::correction::{ChannelCorrection, ChannelLeads, Channels, LeadDesign, LeadSettings};
 
     #[test]
     fn a_mean_leaves_out_worse_than_it_fits_by_the_number_of_conditions() {
@@ -334,7 +287,10 @@ mod lead_tests {
             output_gains: vec![1.0],
             input_delays_s: vec![0.0],
             output_delays_s: vec![0.0],
-            leads: Some(ChannelLeads::new(std::sync::Arc::clone(&design), vec![tau_s], vec![0.01])),
+            leads: Some(ChannelLeads::new(
+                std::sync::Arc::clone(&design),
+                Channels { inputs: vec![tau_s], outputs: vec![0.01] },
+            )),
         });
         let points: Vec<ScheduledPoint<'_>> = [60.0, 90.0, 120.0]
             .into_iter()
@@ -349,14 +305,11 @@ mod lead_tests {
         let found = compare_lead_degrees(&points, ScheduleSettings::default());
         assert_eq!(found.len(), 1 + HIGHEST_DEGREE);
         // The mean of the others misses by 3/2 of what the mean of all misses.
-        let [mean, input] = [&found[0].pairs[Pair::new(0, 0)], &found[0].inputs[0]];
+        let mean = &found[0].pairs[Pair::new(0, 0)];
         assert!((mean.left_out_rms_s.unwrap() / mean.rms_s - 1.5).abs() < 1e-12);
         // The output's is the same everywhere, so that the sum is missed like the input's: sqrt((40^2 + 10^2 + 50^2) / 3) / 3 ms.
-        assert!(
-            (mean.rms_s - input.rms_s).abs() < 1e-15
-                && (mean.rms_s - 0.0042_f64.sqrt() / 3.0 / 3_f64.sqrt()).abs() < 1e-12
-        );
-        assert!(found[2].inputs[0].rms_s < 1e-15, "a parabola goes through three points");
+        assert!((mean.rms_s - 0.0042_f64.sqrt() / 3.0 / 3_f64.sqrt()).abs() < 1e-12);
+        assert!(found[2].pairs[Pair::new(0, 0)].rms_s < 1e-15, "a parabola goes through three points");
         assert!(compare_lead_degrees(&[], ScheduleSettings::default()).is_empty());
     }
 }

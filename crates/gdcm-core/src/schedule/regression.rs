@@ -81,9 +81,8 @@ impl Regression {
     /// The polynomial of least squares; its degree is at most the number of clusters less one.
     pub fn polynomial(airspeeds: &Airspeeds, figures: &[f64], degree: usize) -> Self {
         let degree = degree.min(airspeeds.clusters.len().saturating_sub(1));
-        let v: Vec<f64> = airspeeds.values_kt.iter().map(|&airspeed| airspeeds.scaled(airspeed)).collect();
-        let design = DMatrix::from_fn(v.len(), degree + 1, |row, power| v[row].powi(power as i32));
-        let qr = design.qr();
+        let rows = design(airspeeds, ScheduleKind::Polynomial { degree });
+        let qr = DMatrix::from_fn(rows.len(), degree + 1, |row, power| rows[row][power]).qr();
         // Full column rank: at least as many distinct v in [-1, 1] as there are columns, so R has no zero on its diagonal.
         let projected = qr.q().transpose() * DVector::from_column_slice(figures);
         let coefficients = qr.r().solve_upper_triangular(&projected).unwrap_or(projected);
@@ -111,16 +110,8 @@ impl Regression {
                 coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * v + coefficient)
             }
             Regression::Table { airspeeds_kt, values } => {
-                let after = airspeeds_kt.partition_point(|&at| at < airspeed_kt);
-                if after == 0 {
-                    return values[0];
-                }
-                if after == values.len() {
-                    return values[after - 1];
-                }
-                let fraction =
-                    (airspeed_kt - airspeeds_kt[after - 1]) / (airspeeds_kt[after] - airspeeds_kt[after - 1]);
-                values[after - 1] + fraction * (values[after] - values[after - 1])
+                let (before, after, fraction) = bracket(airspeeds_kt, airspeed_kt);
+                values[before] + fraction * (values[after] - values[before])
             }
         }
     }
@@ -178,19 +169,22 @@ fn indicators(airspeeds: &Airspeeds) -> Vec<Vec<f64>> {
     (0..airspeeds.values_kt.len()).map(row).collect()
 }
 
+/// The rising places on either side of `x` and how far between them it lies; the end place and 0 beyond them.
+fn bracket(places: &[f64], x: f64) -> (usize, usize, f64) {
+    let after = places.partition_point(|&place| place < x);
+    let end = places.len() - 1;
+    if after == 0 || after > end {
+        return (after.min(end), after.min(end), 0.0);
+    }
+    (after - 1, after, (x - places[after - 1]) / (places[after] - places[after - 1]))
+}
+
 /// The share of each of these rising places in the linear interpolation at `x`.
 fn between(places: &[f64], x: f64) -> Vec<f64> {
     let mut row = vec![0.0; places.len()];
-    let after = places.partition_point(|&place| place < x);
-    if after == 0 {
-        row[0] = 1.0;
-    } else if after == places.len() {
-        row[after - 1] = 1.0;
-    } else {
-        let fraction = (x - places[after - 1]) / (places[after] - places[after - 1]);
-        row[after - 1] = 1.0 - fraction;
-        row[after] = fraction;
-    }
+    let (before, after, fraction) = bracket(places, x);
+    row[after] = fraction;
+    row[before] = 1.0 - fraction;
     row
 }
 
@@ -258,21 +252,13 @@ impl Schedule {
                 }
             },
         };
-        let gains = with_channels(&self.inputs, &self.outputs).map(|of| row(of, symbol, ""));
-        let delays = self.delays.iter().flat_map(|delays| with_channels(&delays.inputs, &delays.outputs));
-        let leads = self.leads.iter().flat_map(|leads| with_channels(&leads.inputs, &leads.outputs));
+        let gains = self.gains.iter().map(|of| row(of, symbol, ""));
+        let delays = self.delays.iter().flat_map(|delays| delays.taus_s.iter());
+        let leads = self.leads.iter().flat_map(|leads| leads.taus_s.iter());
         let delays = delays.chain(leads).map(|of| row(of, "τ", " [s]"));
         let rows = gains.chain(delays).collect();
         CoefficientTable { columns, rows, scale }
     }
-}
-
-fn with_channels<'a>(
-    inputs: &'a [Regression],
-    outputs: &'a [Regression],
-) -> impl Iterator<Item = (Channel, &'a Regression)> {
-    let inputs = inputs.iter().enumerate().map(|(index, regression)| (Channel::Input(index), regression));
-    inputs.chain(outputs.iter().enumerate().map(|(index, regression)| (Channel::Output(index), regression)))
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::{Airspeeds, Regression, SecondTerm, SecondVariable, design};
-use crate::correction::{Channel, ChannelCorrection, ChannelLeads, LeadDesign};
+use crate::correction::{Channel, ChannelCorrection, ChannelLeads, Channels, LeadDesign};
 use crate::dataset::{ConditionId, FlightState};
 use crate::units::{s_to_ms, signed};
 
@@ -153,10 +153,8 @@ pub struct Schedule {
     pub settings: ScheduleSettings,
     /// The airspeeds it was made from.
     pub airspeeds: Airspeeds,
-    /// Regression of each input's gain, or of its logarithm.
-    pub inputs: Vec<Regression>,
-    /// Regression of each output's gain, or of its logarithm.
-    pub outputs: Vec<Regression>,
+    /// Regression of each channel's gain, or of its logarithm.
+    pub gains: Channels<Regression>,
     /// What the second variable adds to each of them, where there is one.
     pub second: Option<SecondTerm>,
     /// Delays as functions of airspeed, where delays are scheduled.
@@ -170,10 +168,8 @@ pub struct Schedule {
 /// Every channel's delay as a function of airspeed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DelaySchedule {
-    /// Regression of each input's delay \[s\].
-    pub inputs: Vec<Regression>,
-    /// Regression of each output's delay \[s\].
-    pub outputs: Vec<Regression>,
+    /// Regression of each channel's delay \[s\].
+    pub taus_s: Channels<Regression>,
     /// The conditions' upper bounds \[s\], linear between them: no scheduled delay is above.
     pub upper_s: Regression,
 }
@@ -284,45 +280,28 @@ impl Schedule {
             ScheduledQuantity::LnGain => gain.ln(),
             ScheduledQuantity::Gain => gain,
         };
+        let first = points[0].correction;
+        let figures = |of: &dyn Fn(&ChannelCorrection) -> f64| -> Vec<f64> {
+            points.iter().map(|point| of(point.correction)).collect()
+        };
+        let gains = first.channels(|channel| figures(&|correction| quantity(correction.gain(channel))));
         let second = settings.second.map(|variable| {
             let values: Option<Vec<f64>> = points.iter().map(|point| point.second).collect();
             let values = values.ok_or(ScheduleError::NoSecondValue(variable))?;
-            let figures = |of: fn(&ChannelCorrection) -> &[f64]| -> Vec<Vec<f64>> {
-                let of_channel = |channel| points.iter().map(|point| quantity(of(point.correction)[channel])).collect();
-                (0..of(points[0].correction).len()).map(of_channel).collect()
-            };
-            let columns = design(&airspeeds, settings.kind);
-            let term = SecondTerm::of(variable, values, &columns)?;
-            Ok(term.fitted(&figures(|of| &of.input_gains), &figures(|of| &of.output_gains)))
+            SecondTerm::of(variable, values, &design(&airspeeds, settings.kind), &gains)
         });
         let second = second.transpose()?;
-        let fit_gains = |of: fn(&ChannelCorrection) -> &[f64], slope: fn(&SecondTerm) -> &[f64]| -> Vec<Regression> {
-            let of_channel = |channel: usize| {
-                let beside = |place| second.as_ref().map_or(0.0, |term| slope(term)[channel] * term.scaled[place]);
-                let points = points.iter().enumerate();
-                fit(&points
-                    .map(|(place, point)| quantity(of(point.correction)[channel]) - beside(place))
-                    .collect::<Vec<_>>())
-            };
-            (0..of(points[0].correction).len()).map(of_channel).collect()
-        };
-        let inputs = fit_gains(|correction| &correction.input_gains, |term| &term.inputs);
-        let outputs = fit_gains(|correction| &correction.output_gains, |term| &term.outputs);
-        let leads = LeadSchedule::of(points, &airspeeds, settings.tau_degree);
-        let delays = (settings.delays && leads.is_none()).then(|| {
-            let fit_channels = |of: fn(&ChannelCorrection) -> &[f64]| -> Vec<Regression> {
-                let of_channel =
-                    |channel| points.iter().map(|point| of(point.correction)[channel]).collect::<Vec<f64>>();
-                (0..of(points[0].correction).len()).map(|channel| fit(&of_channel(channel))).collect()
-            };
-            let uppers: Vec<f64> = points.iter().map(|point| point.delay_upper_s).collect();
-            DelaySchedule {
-                inputs: fit_channels(|correction| &correction.input_delays_s),
-                outputs: fit_channels(|correction| &correction.output_delays_s),
-                upper_s: Regression::table(&airspeeds, &uppers),
-            }
+        let gains = gains.map(|channel, figures| {
+            let Some(SecondTerm { scaled, slopes, .. }) = &second else { return fit(figures) };
+            let left = figures.iter().zip(scaled).map(|(figure, scaled)| figure - slopes[channel] * scaled);
+            fit(&left.collect::<Vec<f64>>())
         });
-        Ok(Self { settings, airspeeds, inputs, outputs, second, delays, leads, cautions: Vec::new() })
+        let leads = LeadSchedule::of(points, &airspeeds, settings.tau_degree);
+        let delays = (settings.delays && leads.is_none()).then(|| DelaySchedule {
+            taus_s: first.channels(|channel| fit(&figures(&|correction| correction.pure_delay_s(channel)))),
+            upper_s: Regression::table(&airspeeds, &points.iter().map(|point| point.delay_upper_s).collect::<Vec<_>>()),
+        });
+        Ok(Self { settings, airspeeds, gains, second, delays, leads, cautions: Vec::new() })
     }
 
     /// Whether delays, or delays and leads, are scheduled.
@@ -354,7 +333,7 @@ impl Schedule {
         {
             cautions.push(ScheduleCaution::DegreeLowered { asked, clusters });
         }
-        let channels = (0..self.inputs.len()).map(Channel::Input).chain((0..self.outputs.len()).map(Channel::Output));
+        let channels = self.gains.iter().map(|(channel, _)| channel);
         cautions.extend(channels.filter_map(|channel| self.overshoot(points, channel)));
         let span = self.airspeeds.max_kt - self.airspeeds.min_kt;
         let is_positive = |step: u32| {
@@ -369,11 +348,7 @@ impl Schedule {
 
     /// Where a channel's gain is farthest outside the range of the conditions' gains, between two clusters.
     fn overshoot(&self, points: &[ScheduledPoint<'_>], channel: Channel) -> Option<ScheduleCaution> {
-        let gain_of = |correction: &ChannelCorrection| match channel {
-            Channel::Input(input) => correction.input_gains[input],
-            Channel::Output(output) => correction.output_gains[output],
-        };
-        let gains = points.iter().map(|point| gain_of(point.correction));
+        let gains = points.iter().map(|point| point.correction.gain(channel));
         let range =
             gains.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], gain| [least.min(gain), most.max(gain)]);
         // Where all gains are one, rounding is no overshoot.
@@ -382,7 +357,7 @@ impl Schedule {
         for between in clusters.windows(2) {
             for step in 1..STEPS {
                 let airspeed_kt = between[0] + (between[1] - between[0]) * f64::from(step) / f64::from(STEPS);
-                let gain = gain_of(&self.at(airspeed_kt));
+                let gain = self.at(airspeed_kt).gain(channel);
                 let outside = (range[0] - gain).max(gain - range[1]);
                 if outside > farthest {
                     let between_kt = [between[0], between[1]];
@@ -409,33 +384,29 @@ impl Schedule {
 
     /// As [`Schedule::at`], at a value of the second variable; beyond the range of the conditions' the end value holds.
     pub fn evaluate(&self, airspeed_kt: f64, second: Option<f64>) -> ChannelCorrection {
-        let gain = |regression: &Regression, beside: f64| {
+        let scaled = self.second.as_ref().zip(second).map(|(term, value)| (term, term.scale(value)));
+        let gains = self.gains.map(|channel, regression| {
+            let beside = scaled.map_or(0.0, |(term, scaled)| term.slopes[channel] * scaled);
             let value = regression.at(&self.airspeeds, airspeed_kt) + beside;
             match self.settings.quantity {
                 ScheduledQuantity::LnGain => value.exp(),
                 ScheduledQuantity::Gain => value,
             }
-        };
-        let scaled = self.second.as_ref().zip(second).map_or(0.0, |(term, value)| term.scale(value));
-        let gains = |regressions: &[Regression], slopes: fn(&SecondTerm) -> &[f64]| -> Vec<f64> {
-            let slope = |channel: usize| self.second.as_ref().map_or(0.0, |term| slopes(term)[channel]);
-            regressions.iter().enumerate().map(|(channel, of)| gain(of, slope(channel) * scaled)).collect()
-        };
+        });
         let leads = self.leads.as_ref().map(|leads| leads.at(&self.airspeeds, airspeed_kt));
-        let [input_delays_s, output_delays_s] = match (&self.delays, &leads) {
+        let delays_s = match (&self.delays, &leads) {
             (_, Some(leads)) => leads.delays_s(),
-            (Some(DelaySchedule { inputs, outputs, upper_s }), None) => {
+            (Some(DelaySchedule { taus_s, upper_s }), None) => {
                 let upper_s = upper_s.at(&self.airspeeds, airspeed_kt);
-                let cut = |regression: &Regression| regression.at(&self.airspeeds, airspeed_kt).min(upper_s).max(0.0);
-                [inputs, outputs].map(|channels| channels.iter().map(cut).collect())
+                taus_s.map(|_, tau_s| tau_s.at(&self.airspeeds, airspeed_kt).min(upper_s).max(0.0))
             }
-            (None, None) => [vec![0.0; self.inputs.len()], vec![0.0; self.outputs.len()]],
+            (None, None) => gains.map(|_, _| 0.0),
         };
         ChannelCorrection {
-            input_gains: gains(&self.inputs, |term| &term.inputs),
-            output_gains: gains(&self.outputs, |term| &term.outputs),
-            input_delays_s,
-            output_delays_s,
+            input_gains: gains.inputs,
+            output_gains: gains.outputs,
+            input_delays_s: delays_s.inputs,
+            output_delays_s: delays_s.outputs,
             leads,
         }
     }
@@ -447,10 +418,8 @@ impl Schedule {
 pub struct LeadSchedule {
     /// Which filter a signed delay has.
     pub design: Arc<LeadDesign>,
-    /// Regression of each input's signed delay \[s\].
-    pub inputs: Vec<Regression>,
-    /// Regression of each output's signed delay \[s\].
-    pub outputs: Vec<Regression>,
+    /// Regression of each channel's signed delay \[s\].
+    pub taus_s: Channels<Regression>,
     /// The widest of the conditions' bounds \[s\]: no scheduled signed delay is outside.
     pub bounds_s: [f64; 2],
     /// The same for all airspeeds, where it is: its filters are computed once.
@@ -460,26 +429,23 @@ pub struct LeadSchedule {
 impl LeadSchedule {
     /// The schedule of these conditions' signed delays; none where one of them has none.
     pub(super) fn of(points: &[ScheduledPoint<'_>], airspeeds: &Airspeeds, degree: usize) -> Option<Self> {
-        let leads =
-            points.iter().map(|point| point.correction.leads.as_ref()).collect::<Option<Vec<&ChannelLeads>>>()?;
-        let fit = |of: fn(&ChannelLeads) -> &[f64]| -> Vec<Regression> {
-            let channels = leads.first().map_or(0, |leads| of(leads).len());
-            let figures = |channel: usize| leads.iter().map(|leads| of(leads)[channel]).collect::<Vec<f64>>();
-            (0..channels).map(|channel| Regression::polynomial(airspeeds, &figures(channel), degree)).collect()
-        };
-        let design = Arc::clone(leads.first()?.design());
+        let leads = points.iter().map(|point| point.correction.leads.as_ref());
+        let leads = leads.collect::<Option<Vec<&ChannelLeads>>>()?;
+        let figures = |channel| leads.iter().map(|leads| leads.taus_s[channel]).collect::<Vec<f64>>();
+        let taus_s =
+            leads.first()?.taus_s.map(|channel, _| Regression::polynomial(airspeeds, &figures(channel), degree));
+        let design = Arc::clone(&leads.first()?.design);
         let upper_s = points.iter().map(|point| point.delay_upper_s).fold(0.0, f64::max);
-        let lower_s = leads.iter().map(|leads| leads.design().lower_s()).fold(0.0, f64::min);
-        let (inputs, outputs) = (fit(ChannelLeads::inputs_s), fit(ChannelLeads::outputs_s));
-        let mut schedule = Self { design, inputs, outputs, bounds_s: [lower_s, upper_s], constant: None };
+        let lower_s = leads.iter().map(|leads| leads.design.lower_s()).fold(0.0, f64::min);
+        let mut schedule = Self { design, taus_s, bounds_s: [lower_s, upper_s], constant: None };
         schedule.constant = (schedule.degree() == 0).then(|| schedule.made_at(airspeeds, airspeeds.mean_kt));
         Some(schedule)
     }
 
     /// Degree of its polynomials.
     pub fn degree(&self) -> usize {
-        let channels = self.inputs.iter().chain(&self.outputs);
-        channels.map(|regression| regression.figures().len().saturating_sub(1)).max().unwrap_or(0)
+        let degrees = self.taus_s.iter().map(|(_, regression)| regression.figures().len().saturating_sub(1));
+        degrees.max().unwrap_or(0)
     }
 
     /// The signed delays at an airspeed \[kt\], cut to the bounds.
@@ -489,9 +455,8 @@ impl LeadSchedule {
 
     fn made_at(&self, airspeeds: &Airspeeds, airspeed_kt: f64) -> ChannelLeads {
         let [lower_s, upper_s] = self.bounds_s;
-        let cut = |regression: &Regression| regression.at(airspeeds, airspeed_kt).clamp(lower_s, upper_s);
-        let of = |channels: &[Regression]| channels.iter().map(cut).collect();
-        ChannelLeads::new(Arc::clone(&self.design), of(&self.inputs), of(&self.outputs))
+        let cut = |_, regression: &Regression| regression.at(airspeeds, airspeed_kt).clamp(lower_s, upper_s);
+        ChannelLeads::new(Arc::clone(&self.design), self.taus_s.map(cut))
     }
 }
 
@@ -525,10 +490,10 @@ mod tests {
             })
             .collect();
         let schedule = Schedule::of(&points, ScheduleSettings::default()).unwrap();
-        let products: Vec<f64> = corrections.iter().map(|c| c.net_gain(Pair::new(0, 0)).value().ln()).collect();
+        let products: Vec<f64> = corrections.iter().map(|c| c.net_gain(Pair::new(0, 0)).ln()).collect();
         let direct = Regression::polynomial(&schedule.airspeeds, &products, 2);
         for airspeed in [40.0, 88.0, 140.0] {
-            let product = schedule.at(airspeed).net_gain(Pair::new(0, 0)).value();
+            let product = schedule.at(airspeed).net_gain(Pair::new(0, 0));
             // Linear least squares in different order of rounding.
             assert!((product / direct.at(&schedule.airspeeds, airspeed).exp() - 1.0).abs() < 1e-13);
         }
@@ -599,7 +564,7 @@ mod tests {
         let delay_at = |airspeed_kt: f64| schedule.at(airspeed_kt).input_delays_s[0];
         assert_eq!((delay_at(70.0), delay_at(110.0)), (0.0, 0.03), "cut to 0 and to the bound");
         assert!((delay_at(90.0) - 0.015).abs() < 1e-15, "half way, by symmetry");
-        let uncut = schedule.delays.as_ref().unwrap().inputs[0].at(&schedule.airspeeds, 70.0);
+        let uncut = schedule.delays.as_ref().unwrap().taus_s.inputs[0].at(&schedule.airspeeds, 70.0);
         assert!(uncut < -0.001, "{uncut}");
     }
 }
@@ -616,7 +581,10 @@ mod lead_schedule_tests {
             output_gains: vec![1.0],
             input_delays_s: vec![0.0],
             output_delays_s: vec![0.0],
-            leads: Some(ChannelLeads::new(Arc::clone(&design), vec![input_s], vec![output_s])),
+            leads: Some(ChannelLeads::new(
+                Arc::clone(&design),
+                Channels { inputs: vec![input_s], outputs: vec![output_s] },
+            )),
         };
         taus_s.iter().map(of).collect()
     }
@@ -645,7 +613,7 @@ mod lead_schedule_tests {
             let direct = Regression::polynomial(&airspeeds, &sums, degree);
             let at = schedule.at(&airspeeds, 93.0);
             // Least squares in another order of rounding.
-            assert!((at.inputs_s()[0] + at.outputs_s()[0] - direct.at(&airspeeds, 93.0)).abs() < 1e-15);
+            assert!((at.taus_s.inputs[0] + at.taus_s.outputs[0] - direct.at(&airspeeds, 93.0)).abs() < 1e-15);
             assert_eq!(schedule.degree(), degree);
         }
     }
@@ -656,8 +624,8 @@ mod lead_schedule_tests {
         let airspeeds_kt = [60.0, 80.0, 100.0, 120.0];
         let airspeeds = Airspeeds::new(airspeeds_kt.to_vec(), 2.0).unwrap();
         let schedule = LeadSchedule::of(&points(&airspeeds_kt, &corrections), &airspeeds, 3).unwrap();
-        let uncut_s = schedule.inputs[0].at(&airspeeds, 110.0);
+        let uncut_s = schedule.taus_s.inputs[0].at(&airspeeds, 110.0);
         assert!(uncut_s > 0.011, "the cubic swings over: {uncut_s}");
-        assert_eq!(schedule.at(&airspeeds, 110.0).inputs_s(), [0.01]);
+        assert_eq!(schedule.at(&airspeeds, 110.0).taus_s.inputs, [0.01]);
     }
 }

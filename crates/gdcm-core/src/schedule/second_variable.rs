@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use nalgebra::{DMatrix, DVector};
 
 use super::ScheduleError;
+use crate::correction::Channels;
 use crate::dataset::FlightState;
 
 /// A column of which less than this is left beside the others is a combination of them.
@@ -86,40 +87,36 @@ pub struct SecondTerm {
     pub range: [f64; 2],
     /// Scaled value of each condition.
     pub scaled: Vec<f64>,
-    /// `gamma` of each input's gain, or of its logarithm.
-    pub inputs: Vec<f64>,
-    /// `gamma` of each output's gain, or of its logarithm.
-    pub outputs: Vec<f64>,
-    /// The scaled values less what the columns of airspeed make of them.
-    beside: DVector<f64>,
+    /// `gamma` of each channel's gain, or of its logarithm.
+    pub slopes: Channels<f64>,
 }
 
 impl SecondTerm {
-    /// The term of these values, one for each condition, beside the columns of airspeed; the gains are still to be fitted.
+    /// The term of these values, one for each condition, beside the columns of airspeed: coefficients of least squares of the
+    /// figures of each channel.
     ///
     /// # Errors
     /// [`ScheduleError::NotToldApart`] where the values are a combination of those columns.
-    pub(super) fn of(variable: SecondVariable, values: Vec<f64>, rows: &[Vec<f64>]) -> Result<Self, ScheduleError> {
+    pub(super) fn of(
+        variable: SecondVariable,
+        values: Vec<f64>,
+        rows: &[Vec<f64>],
+        figures: &Channels<Vec<f64>>,
+    ) -> Result<Self, ScheduleError> {
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);
         let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let scaled: Vec<f64> = values.iter().map(|value| scaled(*value, [least, greatest])).collect();
         let columns = rows.first().map_or(0, Vec::len);
         let q = DMatrix::from_fn(rows.len(), columns, |row, column| rows[row][column]).qr().q();
         let whole = DVector::from_column_slice(&scaled);
+        // The scaled values less what the columns of airspeed make of them.
         let beside = &whole - &q * (q.transpose() * &whole);
         if greatest <= least || beside.norm() <= DEPENDENT * whole.norm() {
             return Err(ScheduleError::NotToldApart(variable));
         }
-        Ok(Self { variable, range: [least, greatest], scaled, inputs: Vec::new(), outputs: Vec::new(), beside })
-    }
-
-    /// The term with the coefficients of least squares beside the columns of airspeed, of figures channel by channel.
-    pub(super) fn fitted(mut self, inputs: &[Vec<f64>], outputs: &[Vec<f64>]) -> Self {
-        let square = self.beside.norm_squared();
-        let slope = |figures: &Vec<f64>| self.beside.dot(&DVector::from_column_slice(figures)) / square;
-        let (inputs, outputs) = (inputs.iter().map(slope).collect(), outputs.iter().map(slope).collect());
-        (self.inputs, self.outputs) = (inputs, outputs);
-        self
+        let square = beside.norm_squared();
+        let slopes = figures.map(|_, figures| beside.dot(&DVector::from_column_slice(figures)) / square);
+        Ok(Self { variable, range: [least, greatest], scaled, slopes })
     }
 
     /// A value of the variable on the scale from -1 to 1; beyond the range of the conditions' the end holds.

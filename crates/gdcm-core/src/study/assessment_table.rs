@@ -7,10 +7,10 @@ use crate::correction::ChannelCorrection;
 use crate::dataset::{BundleKind, ConditionId, Dataset, Pair, PairTable};
 use crate::fidelity::CostAverage;
 use crate::response::GainDelay;
-use crate::schedule::{CostChange, corrected_cost};
-use crate::units::signed;
+use crate::schedule::{CostChange, ScheduleError, corrected_cost};
+use crate::units::{number, signed};
 
-use super::{Analysis, Cancelled, ConditionAnalysis, Job, ModelMismatch, Progress, Settings};
+use super::{Analysis, Cancelled, ConditionAnalysis, Job, ModelMismatch, Progress, Settings, in_turn};
 
 /// Which physics model is assessed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -34,6 +34,34 @@ pub enum AssessedCorrection {
     ScheduleOfOthers,
     /// The condition's own optimum.
     Own,
+}
+
+impl AssessedCorrection {
+    /// The correction of a condition.
+    ///
+    /// # Errors
+    /// [`ScheduleError`] where a schedule is asked for and there is none.
+    pub fn of(self, analysis: &Analysis, result: &ConditionAnalysis) -> Result<ChannelCorrection, ScheduleError> {
+        let (id, state) = (result.condition.id(), result.condition.flight_state());
+        let scheduled = || analysis.schedule.as_ref().map(|schedule| schedule.at_state(state)).map_err(|error| *error);
+        match self {
+            Self::Own => Ok(result.correction.clone()),
+            Self::Scheduled => scheduled(),
+            Self::ScheduledWithoutLeads => Ok(scheduled()?.without_leads()),
+            Self::ScheduleOfOthers => Ok(analysis.schedule_without(id)?.at_state(state)),
+        }
+    }
+
+    /// Where it comes from, in words.
+    pub(super) fn source(self, airspeed_kt: f64) -> String {
+        let at = format!("at {} kt", number(airspeed_kt));
+        match self {
+            Self::Own => "the condition's own optimum".to_owned(),
+            Self::Scheduled => format!("the schedule {at}"),
+            Self::ScheduledWithoutLeads => format!("the schedule {at}, its leads left out"),
+            Self::ScheduleOfOthers => format!("the schedule of the other conditions {at}"),
+        }
+    }
 }
 
 /// What is assessed, and how.
@@ -188,18 +216,7 @@ pub(super) fn assessed(
     }
     let result = outcome.as_ref().map_err(ToString::to_string)?;
     let airspeed_kt = condition.flight_state().airspeed_kt;
-    let correction = match choice.correction {
-        AssessedCorrection::Own => result.correction.clone(),
-        AssessedCorrection::Scheduled => {
-            analysis.schedule.as_ref().map_err(ToString::to_string)?.at_state(condition.flight_state())
-        }
-        AssessedCorrection::ScheduledWithoutLeads => {
-            analysis.schedule.as_ref().map_err(ToString::to_string)?.at_state(condition.flight_state()).without_leads()
-        }
-        AssessedCorrection::ScheduleOfOthers => {
-            analysis.schedule_without(id).map_err(|error| error.to_string())?.at_state(condition.flight_state())
-        }
-    };
+    let correction = choice.correction.of(analysis, result).map_err(|error| error.to_string())?;
     let models = if by_nominal { &result.comparison.nominal } else { &result.comparison.representative };
     let changes = changes(analysis, models, &correction, choice.average);
     let model = if by_nominal { nominal.as_str() } else { result.representative_name(BundleKind::Physics) };
@@ -261,13 +278,7 @@ impl Job for AssessmentJob {
     fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
         let mut table = AssessmentTable { choice: self.choice, conditions: Vec::new(), left_out: Vec::new() };
         let conditions = self.analysis.study.dataset.conditions();
-        for (done, condition) in conditions.iter().enumerate() {
-            if progress.cancelled() {
-                return Err(Cancelled);
-            }
-            table.add(&self.analysis, condition.id());
-            progress.advanced(done + 1, conditions.len());
-        }
+        in_turn(conditions, progress, |condition| table.add(&self.analysis, condition.id()))?;
         Ok(Arc::new(table))
     }
 }

@@ -128,7 +128,7 @@ pub struct ModelMismatch {
 
 impl ModelMismatch {
     fn of(simulated: &Compared, reference: &Compared, omega: &[f64], average: CostAverage) -> Self {
-        let mismatch = mismatch_table(&simulated.polar, &reference.polar, reference.coherence_weights.as_ref());
+        let mismatch = simulated.against(reference);
         let cost = mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.cost(omega, GainDelay::NONE, average)));
         Self { mismatch, cost }
     }
@@ -180,15 +180,16 @@ impl Comparison {
         };
         let (physics, identified) = (representative(BundleKind::Physics)?, representative(BundleKind::Identified)?);
         let flight = &condition.bundle(BundleKind::Identified)[identified.model].dynamics;
-        let reference = Compared::of_identified(&responses.identified[identified.model], flight, grid, coherence);
-        let simulated = Compared::of(&responses.physics[physics.model]);
+        let compared = |kind, model| Compared::of(condition, responses, (kind, model), (grid, coherence));
+        let reference = compared(BundleKind::Identified, identified.model);
+        let simulated = compared(BundleKind::Physics, physics.model);
         let against = |simulated: &Compared| ModelMismatch::of(simulated, &reference, grid.omega(), average);
         let representative = against(&simulated);
         let nominal = condition.nominal();
         let nominal = if physics.model == nominal {
             representative.clone()
         } else {
-            against(&Compared::of(&responses.physics[nominal]))
+            against(&compared(BundleKind::Physics, nominal))
         };
         let delta = Delta::of(&representative.mismatch, grid.omega());
         let undefined =
@@ -217,19 +218,15 @@ impl Comparison {
         grid: &FrequencyGrid,
         coherence: Option<f64>,
     ) -> Self {
-        let kept = |scores: &[Option<f64>]| -> Vec<usize> {
-            (0..scores.len()).filter(|&model| scores[model].is_some()).collect()
+        let kept = |kind, of: &Representative| -> Vec<Compared> {
+            let kept = (0..of.scores.len()).filter(|&model| of.scores[model].is_some());
+            kept.map(|model| Compared::of(condition, responses, (kind, model), (grid, coherence))).collect()
         };
-        let flight = condition.bundle(BundleKind::Identified);
-        let physics = kept(&self.physics.scores).into_iter().map(|model| Compared::of(&responses.physics[model]));
-        let identified = kept(&self.identified.scores).into_iter().map(|model| {
-            Compared::of_identified(&responses.identified[model], &flight[model].dynamics, grid, coherence)
-        });
-        let (physics, identified): (Vec<Compared>, Vec<Compared>) = (physics.collect(), identified.collect());
+        let physics = kept(BundleKind::Physics, &self.physics);
+        let identified = kept(BundleKind::Identified, &self.identified);
         let mut sums = self.delta.gain.map(|_, _| (0.0, 0_usize));
         for (simulated, reference) in physics.iter().flat_map(|a| identified.iter().map(move |b| (a, b))) {
-            let mismatch = mismatch_table(&simulated.polar, &reference.polar, reference.coherence_weights.as_ref());
-            for (pair, gain) in delta_gains(&mismatch).iter() {
+            for (pair, gain) in delta_gains(&simulated.against(reference)).iter() {
                 let Some(gain) = gain else { continue };
                 let (sum, count) = &mut sums[pair];
                 *sum += gain.ln();
@@ -239,36 +236,6 @@ impl Comparison {
         let mean = |(sum, count): (f64, usize)| (sum / count as f64).exp();
         self.delta.gain = self.delta.gain.map(|pair, gain| gain.and(Some(mean(sums[pair]))));
         self
-    }
-
-    /// The comparison of another pair of models in place of the representatives, as if it were pinned: each phase difference is
-    /// laid beside that of the representatives (M13.1). Costs, the nominal model and cautions are left out.
-    pub(super) fn substituted(
-        &self,
-        [physics, identified]: [usize; 2],
-        simulated: &Compared,
-        reference: &Compared,
-        omega: &[f64],
-        median_phases: &PairTable<Option<f64>>,
-    ) -> Self {
-        let mut mismatch = mismatch_table(&simulated.polar, &reference.polar, reference.coherence_weights.as_ref());
-        for (pair, entry) in mismatch.iter_mut() {
-            *entry = entry.take().map(|entry| match median_phases[pair] {
-                Some(median_phase) => entry.align_branch(omega, median_phase),
-                None => entry,
-            });
-        }
-        let delta = Delta::of(&mismatch, omega);
-        let none = ModelMismatch { mismatch: mismatch.map(|_, _| None), cost: mismatch.map(|_, _| None) };
-        Self {
-            physics: Representative { model: physics, ..self.physics.clone() },
-            identified: Representative { model: identified, ..self.identified.clone() },
-            representative: ModelMismatch { mismatch, cost: none.cost.clone() },
-            nominal: none,
-            undefined: delta.gain.map(|_, _| None),
-            delta,
-            cautions: Vec::new(),
-        }
     }
 }
 
@@ -305,6 +272,9 @@ fn coherence_caution(
     (!left_out.is_empty()).then_some(Caution::NotCoherent { threshold, weighed, left_out, points })
 }
 
+/// Difference of every response that two models have.
+pub(super) type Mismatches = PairTable<Option<Mismatch>>;
+
 /// A model as it is compared: without the responses that are numerically nothing.
 pub(super) struct Compared {
     polar: PolarResponse,
@@ -314,21 +284,24 @@ pub(super) struct Compared {
 }
 
 impl Compared {
-    pub(super) fn of(response: &FrequencyResponse) -> Self {
-        let mut polar = PolarResponse::of(response);
+    /// A model of a bundle; an identified one by its coherence where there is a threshold for it (M4a).
+    pub(super) fn of(
+        condition: &Condition,
+        responses: &ConditionResponses,
+        (kind, model): (BundleKind, usize),
+        (grid, coherence): (&FrequencyGrid, Option<f64>),
+    ) -> Self {
+        let mut polar = PolarResponse::of(&responses.bundle(kind)[model]);
         let nothing = polar.numerically_nothing();
         polar.clear(&nothing);
-        Self { polar, nothing, coherence_weights: None }
+        let coherence = coherence.filter(|_| kind == BundleKind::Identified);
+        let dynamics = &condition.bundle(kind)[model].dynamics;
+        Self { polar, nothing, coherence_weights: CoherenceWeights::of_model(dynamics, grid.omega(), coherence) }
     }
 
-    /// An identified model, by its coherence where there is a threshold for it (M4a).
-    pub(super) fn of_identified(
-        response: &FrequencyResponse,
-        flight: &Dynamics,
-        grid: &FrequencyGrid,
-        coherence: Option<f64>,
-    ) -> Self {
-        Self { coherence_weights: CoherenceWeights::of_model(flight, grid.omega(), coherence), ..Self::of(response) }
+    /// What it differs from a reference in, response by response.
+    pub(super) fn against(&self, reference: &Self) -> Mismatches {
+        mismatch_table(&self.polar, &reference.polar, reference.coherence_weights.as_ref())
     }
 
     fn has(&self, pair: Pair) -> bool {
@@ -337,6 +310,6 @@ impl Compared {
 
     /// How many frequencies of a response count, where coherence says which do.
     fn left(&self, pair: Pair) -> Option<usize> {
-        self.coherence_weights.as_ref().map(|coherence_weights| coherence_weights[pair].len())
+        self.coherence_weights.as_ref().map(|coherence_weights| coherence_weights[pair].weights.len())
     }
 }

@@ -1,7 +1,7 @@
 //! Responses of every model of a condition, each kept by what it is computed from.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 
 use crate::dataset::{Band, BundleKind, Condition, ContentHash, Model};
 use crate::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
@@ -54,27 +54,19 @@ impl ConditionResponses {
 #[derive(Debug, Default)]
 struct ModelResponses {
     prepared: OnceLock<PreparedModel>,
-    compared: Mutex<Memo<GridKey, Arc<FrequencyResponse>>>,
-    drawn: Mutex<Memo<GridKey, Arc<FrequencyResponse>>>,
+    /// The last one for each [`Purpose`].
+    last: [Mutex<Memo<GridKey, Arc<FrequencyResponse>>>; 2],
 }
 
 impl ModelResponses {
-    fn slot(&self, purpose: Purpose) -> &Mutex<Memo<GridKey, Arc<FrequencyResponse>>> {
-        match purpose {
-            Purpose::Comparison => &self.compared,
-            Purpose::Drawing => &self.drawn,
-        }
-    }
-
-    fn kept(&self, purpose: Purpose, key: GridKey) -> Option<Arc<FrequencyResponse>> {
-        // A value is kept whole or not at all, whoever panicked.
-        self.slot(purpose).lock().unwrap_or_else(PoisonError::into_inner).kept(&key).cloned()
+    /// A value is kept whole or not at all, whoever panicked.
+    fn last(&self, purpose: Purpose) -> MutexGuard<'_, Memo<GridKey, Arc<FrequencyResponse>>> {
+        self.last[purpose as usize].lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn response(&self, model: &Model, purpose: Purpose, key: GridKey, grid: &FrequencyGrid) -> Arc<FrequencyResponse> {
         let prepared = self.prepared.get_or_init(|| PreparedModel::of(&model.dynamics));
-        let mut memo = self.slot(purpose).lock().unwrap_or_else(PoisonError::into_inner);
-        memo.get(key, |_| Arc::new(prepared.response(grid)))
+        self.last(purpose).get(key, |_| Arc::new(prepared.response(grid)))
     }
 }
 
@@ -142,7 +134,8 @@ impl ConditionModels {
     ) -> Result<ConditionResponses, Cancelled> {
         let physics = self.condition.bundle(BundleKind::Physics);
         let bundle = |models: &[Model], responses: &[(ContentHash, Arc<ModelResponses>)]| {
-            let kept: Option<Vec<_>> = responses.iter().map(|(_, responses)| responses.kept(purpose, key)).collect();
+            let kept: Option<Vec<_>> =
+                responses.iter().map(|(_, responses)| responses.last(purpose).kept(&key).cloned()).collect();
             match kept {
                 Some(kept) => {
                     execution.step(kept.len());
@@ -160,7 +153,7 @@ impl ConditionModels {
     /// Lets go of what was computed for drawing.
     pub(super) fn forget_drawn(&self) {
         for (_, responses) in &self.models {
-            *responses.drawn.lock().unwrap_or_else(PoisonError::into_inner) = Memo::default();
+            *responses.last(Purpose::Drawing) = Memo::default();
         }
     }
 }
@@ -183,10 +176,6 @@ pub struct ConditionCurves {
 }
 
 impl ConditionCurves {
-    pub(super) fn new(condition: Arc<Condition>, grid: FrequencyGrid, responses: ConditionResponses) -> Self {
-        Self { condition, grid, physics: responses.physics, identified: responses.identified }
-    }
-
     /// The responses of one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
         match kind {

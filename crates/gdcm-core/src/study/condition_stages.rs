@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::correction::{
-    Bounds, ChannelCorrection, ChannelLeads, DELAY_AGREEMENT_S, GainBounds, GainSource, LeadDesign, Problem,
-    ProblemError, ProofBudget, Quantity, Solution, delay_upper_s, gain_bounds, solve,
+    Bounds, ChannelCorrection, ChannelLeads, DELAY_AGREEMENT_S, Delta, GainSource, LeadDesign, Problem, ProblemError,
+    ProofBudget, Quantity, Solution, delay_upper_s, gain_bounds, solve,
 };
 use crate::dataset::{BundleKind, Condition, ConditionId, Pair, PairTable};
 use crate::fidelity::CostAverage;
@@ -14,7 +14,7 @@ use crate::schedule::{CostChange, assess};
 use super::{
     BundleMetrics, Cancelled, Caution, Comparison, ConditionAnalysis, ConditionChoice, ConditionFailure,
     ConditionModels, ConditionResponses, ConditionSubstitutions, DelayFrom, Execution, GridKey, LeadCompensated,
-    LeadOffer, Memo, OfferKey, PhaseCorrection, Purpose, Settings, Study, SubstitutedOptimum, Substituting,
+    LeadOffer, Memo, Mismatches, PhaseCorrection, Purpose, Settings, Study, SubstitutedOptimum, Substituting,
     SubstitutionMemo,
 };
 
@@ -22,24 +22,15 @@ use super::{
 type FiguresKey = (GridKey, PairTable<bool>, Option<f64>);
 /// What the comparison of the representatives depends on, besides the models.
 type ComparisonKey = (FiguresKey, ConditionChoice, CostAverage, GainSource);
-/// What the upper bound of the delays depends on: the comparison, the quantile, and the bound set by hand.
-type DelayBoundKey = (ComparisonKey, f64, Option<f64>);
-/// What the bounds of the gains depend on: the comparison, the leads, the quantile, and the bounds set by hand.
-type GainBoundsKey = (ComparisonKey, Option<ChannelLeads>, f64, Option<GainBounds>);
-
 /// The last result of each stage of a condition.
 #[derive(Clone, Debug)]
 pub(super) struct ConditionStages {
     models: ConditionModels,
     figures: Memo<FiguresKey, Arc<BundleMetrics>>,
     comparison: Memo<ComparisonKey, Result<Arc<Comparison>, ConditionFailure>>,
-    delay_upper_s: Memo<DelayBoundKey, f64>,
-    compensated: Memo<(ComparisonKey, ChannelLeads), Arc<LeadCompensated>>,
-    gain_bounds: Memo<GainBoundsKey, GainBounds>,
-    offer: Memo<(ComparisonKey, OfferKey), PhaseLeft>,
+    offer: Memo<Arc<Problem>, Solved>,
     gains: Memo<Arc<Problem>, Solved>,
     delays: Memo<Arc<Problem>, Solved>,
-    cost: Memo<(ComparisonKey, ChannelCorrection), Arc<PairTable<Option<CostChange>>>>,
     substitutions: SubstitutionMemo,
 }
 
@@ -50,13 +41,9 @@ impl ConditionStages {
             models,
             figures: Memo::default(),
             comparison: Memo::default(),
-            delay_upper_s: Memo::default(),
-            compensated: Memo::default(),
-            gain_bounds: Memo::default(),
             offer: Memo::default(),
             gains: Memo::default(),
             delays: Memo::default(),
-            cost: Memo::default(),
             substitutions: SubstitutionMemo::default(),
         }
     }
@@ -124,29 +111,15 @@ impl ConditionStages {
         let responses = self.models.responses(Purpose::Comparison, grid_key, grid, execution)?;
         let substituting = Substituting { study, analysis, grid, responses: &responses };
         let models = &self.models;
-        self.substitutions.complete(&substituting, execution, |comparison, execution| {
-            Self::of(models.clone()).optimum(comparison, &substituting, execution)
+        let (settings, measuring) = (&study.settings, study.dataset.measuring_pairs());
+        self.substitutions.complete(&substituting, execution, |mismatch, delta| {
+            let input = SolveInput::new(settings, &measuring, grid.omega(), (mismatch, &delta));
+            let solved = Self::of(models.clone()).solve(&input, SUBSTITUTION_PROOF, execution)?;
+            Ok(solved.ok().map(|solved| {
+                let gain = solved.gain_problem.delta.clone();
+                SubstitutedOptimum { correction: solved.correction(), delta: Delta { gain, ..delta } }
+            }))
         })
-    }
-
-    /// The correction of a comparison of models that stand in for the representatives; none where there is none.
-    fn optimum(
-        &mut self,
-        comparison: &Comparison,
-        substituting: &Substituting<'_>,
-        execution: &Execution<'_>,
-    ) -> Result<Option<SubstitutedOptimum>, Cancelled> {
-        let (settings, measuring) = (&substituting.study.settings, substituting.study.dataset.measuring_pairs());
-        let key = comparison_key(substituting.study, substituting.analysis.condition.id());
-        let omega = substituting.grid.omega();
-        let input = SolveInput { settings, measuring: &measuring, omega, comparison, key: &key };
-        let solved = self.solve(&input, SUBSTITUTION_PROOF, execution)?;
-        Ok(solved.ok().map(|solved| SubstitutedOptimum {
-            correction: solved.correction(),
-            gain: solved.gain_problem.delta.clone(),
-            delay_s: comparison.delta.delay_s.clone(),
-            band_delay_s: comparison.delta.band_delay_s.clone(),
-        }))
     }
 
     fn compare_and_solve(
@@ -162,7 +135,7 @@ impl ConditionStages {
         let measuring = study.dataset.measuring_pairs();
         let choice = study.choice(condition.id());
         let key = comparison_key(study, condition.id());
-        let comparison = self.comparison.get(key.clone(), |_| {
+        let comparison = self.comparison.get(key, |_| {
             let averaging = (settings.cost_average, settings.coherence_threshold);
             let comparison = Comparison::of(condition, responses, &figures, grid, choice, averaging);
             let comparison = comparison.map(|comparison| match settings.gain_source {
@@ -171,38 +144,24 @@ impl ConditionStages {
             });
             comparison.map(Arc::new)
         });
-        let compared = comparison.and_then(|comparison| {
-            check_comparable(condition, &comparison, |pair| study.dataset.pair_name(pair))?;
+        let pair_name = |pair| study.dataset.pair_name(pair);
+        let comparison = comparison.and_then(|comparison| {
+            check_comparable(condition, &comparison, pair_name)?;
             Ok(comparison)
         });
-        let comparison = match compared {
+        let comparison = match comparison {
             Ok(comparison) => comparison,
             Err(failure) => return Ok(Err(failure)),
         };
-        let cost_key = key.clone();
-        let input =
-            SolveInput { settings, measuring: &measuring, omega: grid.omega(), comparison: &comparison, key: &key };
+        let (models, average) = (&comparison.representative, settings.cost_average);
+        let input = SolveInput::new(settings, &measuring, grid.omega(), (&models.mismatch, &comparison.delta));
         let solved = match self.solve(&input, proofs, execution)? {
             Ok(solved) => solved,
             Err(failure) => return Ok(Err(failure)),
         };
         let correction = solved.correction();
-        let cost = self.cost.get((cost_key, correction.clone()), |(_, correction)| {
-            let (models, omega, average) = (&comparison.representative, grid.omega(), settings.cost_average);
-            Arc::new(match &solved.compensated {
-                None => assess(&models.mismatch, &models.cost, correction, omega, average),
-                Some(compensated) => {
-                    let corrected = compensated.cost(|pair| correction.without_leads_on(pair), omega, average);
-                    corrected
-                        .map(|pair, cost| Some(CostChange { uncorrected: models.cost[pair]?, corrected: (*cost)? }))
-                }
-            })
-        });
-        let offer = match self.phase_left(&input, &solved, execution)? {
-            Ok(Some(left)) => LeadOffer::of(&left, &cost),
-            // An offer that cannot be made is none.
-            Ok(None) | Err(_) => None,
-        };
+        let cost = Arc::new(assess(&models.mismatch, &models.cost, &correction, grid.omega(), average));
+        let offer = self.offer(&input, &solved.gain_problem.constrained, &cost, execution)?;
         let cautions = cautions_of(settings, &comparison, &figures);
         let Optima { gain_problem, delay_problem, gains, delays, compensated } = solved;
         Ok(Ok(ConditionAnalysis {
@@ -217,31 +176,30 @@ impl ConditionStages {
             offer,
             correction,
             cost,
+            doubts: Vec::new(),
             cautions,
         }))
     }
 
-    /// The phase that leads would leave, where they are not asked for.
-    fn phase_left(
+    /// What leads would be worth, where they are not asked for and all held responses want them.
+    fn offer(
         &mut self,
         input: &SolveInput<'_>,
-        solved: &Optima,
+        held: &PairTable<bool>,
+        now: &PairTable<Option<CostChange>>,
         execution: &Execution<'_>,
-    ) -> Result<PhaseLeft, Cancelled> {
+    ) -> Result<Option<LeadOffer>, Cancelled> {
         let settings = input.settings;
-        if settings.phase == PhaseCorrection::Lead {
-            return Ok(Ok(None));
-        }
-        let bound_key = (input.key.clone(), settings.quantile, settings.delay_upper_s);
-        let upper_s = self.delay_upper_s.get(bound_key, |_| input.delay_upper_s());
-        let key = (input.key.clone(), OfferKey::of(settings, &solved.gain_problem.constrained, upper_s));
-        let stop = || execution.progress().cancelled();
-        self.offer.get_or_fail(key, |(_, key)| {
-            match key.phase_left(input.comparison, (input.omega, settings.cost_average), &stop) {
-                Err(ProblemError::Stopped) => Err(Cancelled),
-                left => Ok(left),
-            }
-        })
+        let design = Arc::new(LeadDesign::new(settings.lead, input.omega.into()));
+        let bounds = Bounds { lower: design.lower_s(), upper: input.delay_upper_s };
+        let problem = LeadOffer::problem(&input.delta.band_delay_s, held, settings.fitted(), bounds);
+        let Some(problem) = problem.filter(|_| settings.phase != PhaseCorrection::Lead) else { return Ok(None) };
+        let solve = |problem: &Arc<Problem>| solved(problem, ProofBudget::default(), execution);
+        // An offer that cannot be made is none.
+        let Ok(solution) = self.offer.get_or_fail(Arc::new(problem), solve)? else { return Ok(None) };
+        let leads = ChannelLeads::new(design, solution.channels());
+        let mismatch = input.mismatch.map(|pair, mismatch| mismatch.clone().filter(|_| held[pair]));
+        Ok(LeadOffer::of(leads, &mismatch, now, (input.omega, settings.cost_average)))
     }
 
     /// The delays, then the gains on what leads leave (M15.5).
@@ -252,31 +210,18 @@ impl ConditionStages {
         execution: &Execution<'_>,
     ) -> Result<Result<Optima, ConditionFailure>, Cancelled> {
         let settings = input.settings;
-        let stop = || execution.progress().cancelled();
-        let solve = |problem: &Arc<Problem>| match solve(problem, proofs, &stop) {
-            Err(ProblemError::Stopped) => Err(Cancelled),
-            solved => Ok(solved.map(Arc::new)),
-        };
-        let bound_key = (input.key.clone(), settings.quantile, settings.delay_upper_s);
-        let upper_s = self.delay_upper_s.get(bound_key, |_| input.delay_upper_s());
+        let solve = |problem: &Arc<Problem>| solved(problem, proofs, execution);
         let design = (settings.phase == PhaseCorrection::Lead)
             .then(|| Arc::new(LeadDesign::new(settings.lead, input.omega.into())));
-        let delay_problem = Arc::new(input.delay_problem(upper_s, design.as_deref()));
+        let delay_problem = Arc::new(input.delay_problem(design.as_deref()));
         let delays = self.delays.get_or_fail(Arc::clone(&delay_problem), solve)?;
         let leads = match (&delays, design) {
             (Err(error), Some(_)) => return Ok(Err(ConditionFailure::Delays(error.clone()))),
-            (Ok(delays), Some(design)) => {
-                Some(ChannelLeads::new(design, delays.inputs.clone(), delays.outputs.clone()))
-            }
+            (Ok(delays), Some(design)) => Some(ChannelLeads::new(design, delays.channels())),
             (_, None) => None,
         };
-        let compensated = leads.clone().map(|leads| {
-            let mismatch = &input.comparison.representative.mismatch;
-            self.compensated.get((input.key.clone(), leads), |(_, leads)| LeadCompensated::of(mismatch, leads))
-        });
-        let bounds_key = (input.key.clone(), leads, settings.quantile, settings.gain_bounds);
-        let bounds = self.gain_bounds.get(bounds_key, |_| input.gain_bounds(compensated.as_deref()));
-        let gain_problem = Arc::new(input.gain_problem(bounds, compensated.as_deref()));
+        let compensated = leads.map(|leads| LeadCompensated::of(input.mismatch, &leads));
+        let gain_problem = Arc::new(input.gain_problem(compensated.as_deref()));
         let gains = self.gains.get_or_fail(Arc::clone(&gain_problem), solve)?;
         Ok(match (gains, delays) {
             (Ok(gains), Ok(delays)) => Ok(Optima { gain_problem, delay_problem, gains, delays, compensated }),
@@ -301,40 +246,42 @@ struct SolveInput<'a> {
     settings: &'a Settings,
     measuring: &'a PairTable<bool>,
     omega: &'a [f64],
-    comparison: &'a Comparison,
-    key: &'a ComparisonKey,
+    mismatch: &'a Mismatches,
+    delta: &'a Delta,
+    delay_upper_s: f64,
 }
 
-impl SolveInput<'_> {
-    fn delay_upper_s(&self) -> f64 {
-        let (settings, mismatch) = (self.settings, &self.comparison.representative.mismatch);
-        let by_quantile = || delay_upper_s(mismatch, self.measuring, self.omega, settings.quantile);
-        settings.delay_upper_s.unwrap_or_else(by_quantile)
+impl<'a> SolveInput<'a> {
+    fn new(
+        settings: &'a Settings,
+        measuring: &'a PairTable<bool>,
+        omega: &'a [f64],
+        (mismatch, delta): (&'a Mismatches, &'a Delta),
+    ) -> Self {
+        let by_quantile = || delay_upper_s(mismatch, measuring, omega, settings.quantile);
+        let delay_upper_s = settings.delay_upper_s.unwrap_or_else(by_quantile);
+        Self { settings, measuring, omega, mismatch, delta, delay_upper_s }
     }
 
-    fn gain_bounds(&self, compensated: Option<&LeadCompensated>) -> GainBounds {
-        let mismatch =
-            compensated.map_or(&self.comparison.representative.mismatch, |compensated| &compensated.mismatch);
-        self.settings.gain_bounds.unwrap_or_else(|| gain_bounds(mismatch, self.measuring, self.settings.quantile))
-    }
-
-    fn gain_problem(&self, bounds: GainBounds, compensated: Option<&LeadCompensated>) -> Problem {
-        let (settings, delta) = (self.settings, &self.comparison.delta);
+    fn gain_problem(&self, compensated: Option<&LeadCompensated>) -> Problem {
+        let (settings, delta) = (self.settings, self.delta);
+        let mismatch = compensated.map_or(self.mismatch, |compensated| &compensated.mismatch);
+        let by_quantile = || gain_bounds(mismatch, self.measuring, settings.quantile);
         Problem {
             quantity: Quantity::Gain(settings.gain_objective),
             delta: compensated.map_or(&delta.gain, |compensated| &compensated.gain).clone(),
             constrained: settings.constrained.map(|pair, held| *held && delta.gain[pair].is_some()),
             fitted: settings.fitted(),
-            bounds,
+            bounds: settings.gain_bounds.unwrap_or_else(by_quantile),
             alpha: settings.alpha_gain,
             agreement: settings.agreement_db,
         }
     }
 
     /// Delays of the D that is chosen, signed ones of the band delay; none at all where the phase is left as it is.
-    fn delay_problem(&self, upper_s: f64, design: Option<&LeadDesign>) -> Problem {
-        let (settings, delta) = (self.settings, &self.comparison.delta);
-        let upper_s = if settings.phase == PhaseCorrection::None { 0.0 } else { upper_s };
+    fn delay_problem(&self, design: Option<&LeadDesign>) -> Problem {
+        let (settings, delta) = (self.settings, self.delta);
+        let upper_s = if settings.phase == PhaseCorrection::None { 0.0 } else { self.delay_upper_s };
         let held =
             |pair: Pair, held: &bool| *held && delta.gain[pair].is_some() && settings.phase != PhaseCorrection::None;
         let from_band = design.is_some() || settings.delay_from == DelayFrom::Band;
@@ -350,11 +297,15 @@ impl SolveInput<'_> {
     }
 }
 
-/// J_phase of each response that leads would leave, where all held responses want lead.
-type PhaseLeft = Result<Option<Arc<PairTable<Option<f64>>>>, ProblemError>;
-
 /// What came of one problem.
 type Solved = Result<Arc<Solution>, ProblemError>;
+
+fn solved(problem: &Problem, proofs: ProofBudget, execution: &Execution<'_>) -> Result<Solved, Cancelled> {
+    match solve(problem, proofs, &|| execution.progress().cancelled()) {
+        Err(ProblemError::Stopped) => Err(Cancelled),
+        solved => Ok(solved.map(Arc::new)),
+    }
+}
 
 /// The two optima of a condition with what they are the optima of.
 struct Optima {
@@ -368,13 +319,12 @@ struct Optima {
 impl Optima {
     fn correction(&self) -> ChannelCorrection {
         let leads = self.compensated.as_ref().map(|compensated| compensated.leads.clone());
-        let of_delays = || [self.delays.inputs.clone(), self.delays.outputs.clone()];
-        let [input_delays_s, output_delays_s] = leads.as_ref().map_or_else(of_delays, ChannelLeads::delays_s);
+        let delays_s = leads.as_ref().map_or_else(|| self.delays.channels(), ChannelLeads::delays_s);
         ChannelCorrection {
             input_gains: self.gains.inputs.clone(),
             output_gains: self.gains.outputs.clone(),
-            input_delays_s,
-            output_delays_s,
+            input_delays_s: delays_s.inputs,
+            output_delays_s: delays_s.outputs,
             leads,
         }
     }

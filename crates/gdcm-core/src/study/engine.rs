@@ -11,8 +11,8 @@ use crate::schedule::{Schedule, ScheduleCaution, ScheduledPoint};
 
 use super::{
     Analysis, Assessed, AssessmentChoice, Cancelled, ConditionAnalysis, ConditionCurves, ConditionFailure,
-    ConditionModels, ConditionStages, Execution, KnownModels, Memo, Progress, Purpose, Study, Uncertainty, assessed,
-    model_count,
+    ConditionModels, ConditionResponses, ConditionStages, ConventionDoubt, Execution, KnownModels, Memo, Progress,
+    Purpose, Study, Uncertainty, assessed, convention_doubts, model_count,
 };
 
 /// Computes analyses and keeps each stage's last result by what it is computed from, never by where that came from: of a dataset
@@ -99,14 +99,15 @@ impl Engine {
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
         let total = study.dataset.conditions().iter().map(|of| ConditionStages::steps(of)).sum();
         let execution = Execution::new(self.executor.as_ref(), progress, total);
-        let conditions = analyze_conditions(&mut self.conditions, study, &grid, (self.proofs, first), &execution)?;
+        let mut conditions = analyze_conditions(&mut self.conditions, study, &grid, (self.proofs, first), &execution)?;
+        let doubts = doubts_of(study, &mut conditions);
         let mut schedule = Schedule::of(&scheduled_points(study, &conditions), study.settings.schedule);
         if let Ok(schedule) = &mut schedule {
             schedule.cautions.extend(signed_delays_apart(study, &conditions));
         }
         let (study, omega) = (study.clone(), grid.omega().into());
         let mut analysis =
-            Analysis { study, omega, conditions, schedule, assessment: BTreeMap::new(), uncertainty: None };
+            Analysis { study, omega, conditions, doubts, schedule, assessment: BTreeMap::new(), uncertainty: None };
         let choice = AssessmentChoice::of_paper(&analysis.study.settings);
         let ids: Vec<ConditionId> =
             analysis.study.dataset.conditions().iter().map(|condition| condition.id()).collect();
@@ -157,8 +158,9 @@ impl Engine {
         let curves = self.curves.get_or_fail((band, points), |&key| {
             let grid = FrequencyGrid::logarithmic(band, points);
             let execution = Execution::new(executor, progress, model_count(models.condition()));
-            let responses = models.responses(Purpose::Drawing, key, &grid, &execution)?;
-            Ok(Arc::new(ConditionCurves::new(Arc::clone(models.condition()), grid, responses)))
+            let ConditionResponses { physics, identified } =
+                models.responses(Purpose::Drawing, key, &grid, &execution)?;
+            Ok(Arc::new(ConditionCurves { condition: Arc::clone(models.condition()), grid, physics, identified }))
         })?;
         Ok(Some(curves))
     }
@@ -223,18 +225,35 @@ fn analyze_conditions(
     Ok(outcomes)
 }
 
+/// Signs and units that are to be asked after, told to each condition that shows them too.
+fn doubts_of(study: &Study, outcomes: &mut Outcomes) -> Vec<ConventionDoubt> {
+    let solved = outcomes.iter().filter_map(|(id, outcome)| Some((*id, outcome.as_ref().ok()?)));
+    let mismatches = solved.map(|(id, result)| (id, &result.comparison.representative.mismatch));
+    let doubts = convention_doubts(&mismatches.collect::<Vec<_>>(), &study.dataset.measuring_pairs());
+    for (id, result) in outcomes.iter_mut().filter_map(|(id, outcome)| Some((id, outcome.as_mut().ok()?))) {
+        result.doubts = doubts.iter().filter(|doubt| doubt.conditions.contains(id)).cloned().collect();
+    }
+    doubts
+}
+
 /// The scheduled conditions that have a result, in the dataset's order.
 pub(super) fn scheduled_points<'a>(study: &Study, outcomes: &'a Outcomes) -> Vec<ScheduledPoint<'a>> {
-    let chosen = study.dataset.conditions().iter().filter(|condition| study.choice(condition.id()).is_in_schedule());
-    chosen
-        .filter_map(|condition| {
-            let analysis = outcomes.get(&condition.id())?.as_ref().ok()?;
-            let airspeed_kt = condition.flight_state().airspeed_kt;
-            let delay_upper_s = analysis.delay_upper_s();
-            let second = study.settings.schedule.second.and_then(|variable| variable.value(condition.flight_state()));
-            Some(ScheduledPoint { airspeed_kt, correction: &analysis.correction, delay_upper_s, second })
-        })
-        .collect()
+    let point = |analysis: &'a ConditionAnalysis| {
+        let state = analysis.condition.flight_state();
+        ScheduledPoint {
+            airspeed_kt: state.airspeed_kt,
+            correction: &analysis.correction,
+            delay_upper_s: analysis.delay_upper_s(),
+            second: study.settings.schedule.second.and_then(|variable| variable.value(state)),
+        }
+    };
+    in_schedule(study, outcomes).map(point).collect()
+}
+
+/// The results of the conditions that are in the schedule, in file order.
+fn in_schedule<'a>(study: &Study, outcomes: &'a Outcomes) -> impl Iterator<Item = &'a ConditionAnalysis> {
+    let chosen = study.dataset.conditions().iter().map(|condition| condition.id());
+    chosen.filter(|id| study.choice(*id).is_in_schedule()).filter_map(|id| outcomes.get(&id)?.as_ref().ok())
 }
 
 /// The channels of which no schedule can hold the signed delays of all conditions (M15.6).
@@ -243,16 +262,12 @@ fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCautio
     const APART_S: f64 = 0.02;
     /// Below this \[s\] a sign says nothing.
     const NOTHING_S: f64 = 2e-3;
-    let chosen = study.dataset.conditions().iter().filter(|condition| study.choice(condition.id()).is_in_schedule());
-    let leads = chosen.filter_map(|condition| {
-        let compensated = outcomes.get(&condition.id())?.as_ref().ok()?.compensated.as_ref()?;
-        Some((condition.id(), &compensated.leads))
-    });
+    let leads = in_schedule(study, outcomes)
+        .filter_map(|result| Some((result.condition.id(), &result.compensated.as_ref()?.leads)));
     let leads: Vec<(ConditionId, &ChannelLeads)> = leads.collect();
     let (inputs, outputs) = (study.dataset.inputs().len(), study.dataset.outputs().len());
-    let channels = (0..inputs).map(Channel::Input).chain((0..outputs).map(Channel::Output));
     let caution = |channel: Channel| {
-        let taus_s: Vec<(ConditionId, f64)> = leads.iter().map(|(id, leads)| (*id, leads.tau_s(channel))).collect();
+        let taus_s: Vec<(ConditionId, f64)> = leads.iter().map(|(id, leads)| (*id, leads.taus_s[channel])).collect();
         let sum_s: f64 = taus_s.iter().map(|(_, tau_s)| tau_s).sum();
         let mean_s = sum_s / taus_s.len() as f64;
         let apart = |tau_s: f64| (tau_s - mean_s).abs();
@@ -262,5 +277,5 @@ fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCautio
         (taus_s.len() > 1 && (apart(tau_s) > APART_S || signs == [true; 2]))
             .then_some(ScheduleCaution::SignedDelayApart { channel, condition, tau_s, elsewhere_s })
     };
-    channels.filter_map(caution).collect()
+    Channel::all(inputs, outputs).filter_map(caution).collect()
 }

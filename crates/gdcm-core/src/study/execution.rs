@@ -73,6 +73,26 @@ impl<'a> Execution<'a> {
     }
 }
 
+/// What `of` makes of each thing, one after the other.
+///
+/// # Errors
+/// [`Cancelled`] between two things, where `progress` says so.
+pub(super) fn in_turn<T, U>(
+    things: &[T],
+    progress: &dyn Progress,
+    mut of: impl FnMut(&T) -> U,
+) -> Result<Vec<U>, Cancelled> {
+    let each = things.iter().enumerate().map(|(done, thing)| {
+        if progress.cancelled() {
+            return Err(Cancelled);
+        }
+        let made = of(thing);
+        progress.advanced(done + 1, things.len());
+        Ok(made)
+    });
+    each.collect()
+}
+
 /// One value, kept as long as what it depends on stays the same.
 #[derive(Clone, Debug)]
 pub(super) struct Memo<K, V> {

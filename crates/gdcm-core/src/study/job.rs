@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use crate::correction::{Problem, ProblemError, ProofBudget, Solution, Toggle, solve, toggles};
-use crate::dataset::{Band, BundleKind, Condition, ConditionId, Dataset, ModelId, Pair};
+use crate::dataset::{Band, BundleKind, Condition, ConditionId, Dataset, Model, ModelId, Pair};
 use crate::fidelity::{ModeTrack, mode_tracks};
 use crate::response::{FrequencyGrid, FrequencyResponse, GainDelay, Mode, ModesError, PreparedModel, modes_of};
 
-use super::{Analysis, Cancelled, ConditionAnalysis, ConditionCurves, Engine, Progress, Study, Uncertainty};
+use super::{Analysis, Cancelled, ConditionAnalysis, ConditionCurves, Engine, Progress, Study, Uncertainty, in_turn};
 
 /// One piece of long work with progress and cancellation, done beside the live answer.
 ///
@@ -175,18 +175,11 @@ impl Job for AcrossJob {
     fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
         let (band, points) = self.grid;
         let grid = FrequencyGrid::logarithmic(band, points);
-        let mut responses = Vec::with_capacity(self.models.len());
-        for (done, id) in self.models.iter().enumerate() {
-            if progress.cancelled() {
-                return Err(Cancelled);
-            }
-            let condition = self.dataset.condition(id.condition);
-            if let Some(model) = condition.and_then(|condition| condition.model(id.bundle, &id.name)) {
-                let response = PreparedModel::of(&model.dynamics).response(&grid);
-                responses.push((id.clone(), Arc::new(response)));
-            }
-            progress.advanced(done + 1, self.models.len());
-        }
+        let responses = in_turn(&self.models, progress, |id| {
+            let model = self.dataset.condition(id.condition)?.model(id.bundle, &id.name)?;
+            Some((id.clone(), Arc::new(PreparedModel::of(&model.dynamics).response(&grid))))
+        })?;
+        let responses = responses.into_iter().flatten().collect();
         Ok(Arc::new(AcrossCurves { grid, responses }))
     }
 }
@@ -239,11 +232,6 @@ impl AcrossRole {
     }
 }
 
-/// How far the proof of one toggle may go: the table is a hint, not a result.
-fn budget() -> ProofBudget {
-    ProofBudget { work: 4_000_000, ..ProofBudget::default() }
-}
-
 /// The cost of every single toggle of a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Toggles {
@@ -256,8 +244,10 @@ pub struct Toggles {
 impl Toggles {
     /// Solves a condition with every response toggled in turn; `None` where `stop` said so first, or a problem has no answer.
     pub fn of(condition: &ConditionAnalysis, stop: &dyn Fn() -> bool) -> Option<Self> {
-        let gains = toggles(&condition.gain_problem, &condition.gains, budget(), stop).ok()?;
-        let delays = toggles(&condition.delay_problem, &condition.delays, budget(), stop).ok()?;
+        // The table is a hint, not a result.
+        let budget = ProofBudget { work: 4_000_000, ..ProofBudget::default() };
+        let gains = toggles(&condition.gain_problem, &condition.gains, budget, stop).ok()?;
+        let delays = toggles(&condition.delay_problem, &condition.delays, budget, stop).ok()?;
         (!stop()).then_some(Self { gains, delays })
     }
 
@@ -339,21 +329,9 @@ impl ConditionModes {
     /// # Errors
     /// [`Cancelled`] between two models, where `progress` says so.
     pub fn of(condition: &Arc<Condition>, progress: &dyn Progress) -> Result<Self, Cancelled> {
-        let total = BundleKind::BOTH.into_iter().map(|kind| condition.bundle(kind).len()).sum();
-        let mut done = 0;
-        let mut of_bundle = |kind| {
-            let mut found = Vec::with_capacity(condition.bundle(kind).len());
-            for model in condition.bundle(kind) {
-                if progress.cancelled() {
-                    return Err(Cancelled);
-                }
-                found.push(modes_of(&model.dynamics));
-                done += 1;
-                progress.advanced(done, total);
-            }
-            Ok(found)
-        };
-        let (physics, identified) = (of_bundle(BundleKind::Physics)?, of_bundle(BundleKind::Identified)?);
+        let models: Vec<&Model> = BundleKind::BOTH.into_iter().flat_map(|kind| condition.bundle(kind)).collect();
+        let mut physics = in_turn(&models, progress, |model| modes_of(&model.dynamics))?;
+        let identified = physics.split_off(condition.bundle(BundleKind::Physics).len());
         Ok(Self { condition: Arc::clone(condition), physics, identified })
     }
 

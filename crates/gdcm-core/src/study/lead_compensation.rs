@@ -3,17 +3,16 @@
 use std::sync::Arc;
 
 use crate::correction::{
-    Bounds, Channel, ChannelLeads, DELAY_AGREEMENT_S, LeadDesign, LeadSettings, Problem, ProblemError, ProofBudget,
-    Quantity, delta_gains, solve,
+    Bounds, Channel, ChannelCorrection, ChannelLeads, DELAY_AGREEMENT_S, Problem, Quantity, delta_gains,
 };
 use crate::dataset::{Pair, PairTable};
 use crate::fidelity::{Cost, CostAverage, Mismatch};
-use crate::response::{GainDelay, LeadFilter};
-use crate::schedule::CostChange;
+use crate::response::LeadFilter;
+use crate::schedule::{CostChange, corrected_cost};
 use crate::uncertainty::Scalar;
 use crate::units::{number, ratio_to_db, s_to_ms, signed, telling};
 
-use super::{Comparison, ConditionAnalysis, PhaseCorrection, Remark, RemarkKind, Settings, Study, Uncertainty};
+use super::{ConditionAnalysis, PhaseCorrection, Remark, RemarkKind, Study, Uncertainty, miss_words};
 
 /// The physics representative with the leads of its channels against the identified one: what the gains are found on.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,27 +27,13 @@ pub struct LeadCompensated {
 
 impl LeadCompensated {
     pub(super) fn of(mismatch: &PairTable<Option<Mismatch>>, leads: &ChannelLeads) -> Arc<Self> {
-        let curves = leads.curves();
-        let mismatch = mismatch.map(|pair, mismatch| {
-            let lead = curves.on(pair);
-            lead.map_or_else(
-                || mismatch.clone(),
-                |lead| mismatch.as_ref().map(|mismatch| mismatch.multiplied(&lead.magnitude_db, &lead.phase)),
-            )
+        let mismatch = mismatch.map(|pair, mismatch| match leads.curve(pair) {
+            None => mismatch.clone(),
+            Some(lead) => mismatch.as_ref().map(|mismatch| mismatch.multiplied(&lead.magnitude_db, &lead.phase)),
         });
         // A pure delay leaves every magnitude.
         let gain = delta_gains(&mismatch);
         Arc::new(Self { leads: leads.clone(), mismatch, gain })
-    }
-
-    /// J of every response under what the gains and the pure delays, `correction`, add to the leads.
-    pub(super) fn cost(
-        &self,
-        correction: impl Fn(Pair) -> Option<GainDelay>,
-        omega: &[f64],
-        average: CostAverage,
-    ) -> PairTable<Option<Cost>> {
-        self.mismatch.map(|pair, mismatch| Some(mismatch.as_ref()?.cost(omega, correction(pair)?, average)))
     }
 }
 
@@ -61,64 +46,51 @@ pub struct LeadOffer {
     pub with: f64,
 }
 
-/// What an offer depends on, besides the comparison of the representatives.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct OfferKey {
-    held: PairTable<bool>,
-    fitted: PairTable<bool>,
-    upper_s: f64,
-    lead: LeadSettings,
-}
-
-impl OfferKey {
-    pub(super) fn of(settings: &Settings, held: &PairTable<bool>, upper_s: f64) -> Self {
-        Self { held: held.clone(), fitted: settings.fitted(), upper_s, lead: settings.lead }
-    }
-
-    /// J_phase of each response that leads would leave; none where not all held responses want lead.
+impl LeadOffer {
+    /// Signed delays in place of what the held responses get, where all of those want lead.
     ///
     /// The weight of the regularisation is 1 whatever delays are asked with: it decides on shares, not on what is held.
-    pub(super) fn phase_left(
-        &self,
-        comparison: &Comparison,
-        (omega, average): (&[f64], CostAverage),
-        stop: &dyn Fn() -> bool,
-    ) -> Result<Option<Arc<PairTable<Option<f64>>>>, ProblemError> {
-        let delta_s = &comparison.delta.band_delay_s;
-        let mut held_s = self.held.marked().map(|pair| delta_s[pair].unwrap_or_default()).peekable();
-        if held_s.peek().is_none() || !held_s.all(|delay_s| delay_s < 0.0) {
-            return Ok(None);
-        }
-        let design = Arc::new(LeadDesign::new(self.lead, omega.into()));
-        let problem = Problem {
+    pub(super) fn problem(
+        delays_s: &PairTable<Option<f64>>,
+        held: &PairTable<bool>,
+        fitted: PairTable<bool>,
+        bounds: Bounds,
+    ) -> Option<Problem> {
+        let mut held_s = held.marked().map(|pair| delays_s[pair].unwrap_or_default()).peekable();
+        held_s.peek()?;
+        held_s.all(|delay_s| delay_s < 0.0).then(|| Problem {
             quantity: Quantity::SignedDelay,
-            delta: delta_s.clone(),
-            constrained: self.held.clone(),
-            fitted: self.fitted.clone(),
-            bounds: Bounds { lower: design.lower_s(), upper: self.upper_s },
+            delta: delays_s.clone(),
+            constrained: held.clone(),
+            fitted,
+            bounds,
             alpha: 1.0,
             agreement: DELAY_AGREEMENT_S,
-        };
-        let solution = solve(&problem, ProofBudget::default(), stop)?;
-        let leads = ChannelLeads::new(design, solution.inputs, solution.outputs);
-        let [inputs_s, outputs_s] = leads.delays_s();
-        let held =
-            comparison.representative.mismatch.map(|pair, mismatch| mismatch.clone().filter(|_| self.held[pair]));
-        let delay = |pair: Pair| GainDelay::new(1.0, inputs_s[pair.input] + outputs_s[pair.output]);
-        let left = LeadCompensated::of(&held, &leads).cost(|pair| Some(delay(pair)), omega, average);
-        Ok(Some(Arc::new(left.map(|_, cost| cost.map(|cost| cost.phase)))))
+        })
     }
-}
 
-impl LeadOffer {
-    /// The offer, where leads would leave J at least a tenth less.
-    pub(super) fn of(phase_left: &PairTable<Option<f64>>, cost: &PairTable<Option<CostChange>>) -> Option<Self> {
+    /// The offer of these leads, where they would leave J of the held responses at least a tenth less than it is now.
+    pub(super) fn of(
+        leads: ChannelLeads,
+        mismatch: &PairTable<Option<Mismatch>>,
+        now: &PairTable<Option<CostChange>>,
+        (omega, average): (&[f64], CostAverage),
+    ) -> Option<Self> {
         const WORTH: f64 = 0.9;
-        let of_both = |(pair, left): (Pair, &Option<f64>)| {
-            let (left, now) = ((*left)?, cost[pair]?.corrected);
+        let (delays_s, ones) = (leads.delays_s(), leads.taus_s.map(|_, _| 1.0));
+        let phase_alone = ChannelCorrection {
+            input_gains: ones.inputs,
+            output_gains: ones.outputs,
+            input_delays_s: delays_s.inputs,
+            output_delays_s: delays_s.outputs,
+            leads: Some(leads),
+        };
+        let left = corrected_cost(mismatch, &phase_alone, omega, average);
+        let of_both = |(pair, left): (Pair, &Option<Cost>)| {
+            let (left, now) = ((*left)?.phase, now[pair]?.corrected);
             Some([now.total(), now.magnitude + left])
         };
-        let both: Vec<[f64; 2]> = phase_left.iter().filter_map(of_both).collect();
+        let both: Vec<[f64; 2]> = left.iter().filter_map(of_both).collect();
         let mean = |at: usize| both.iter().map(|of| of[at]).sum::<f64>() / both.len() as f64;
         let offer = Self { without: mean(0), with: mean(1) };
         (!both.is_empty() && offer.with < WORTH * offer.without).then_some(offer)
@@ -144,19 +116,16 @@ pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncer
         Some(format!(" ± {}", telling(s_to_ms(bar.half_width(sure?.level)?), 0)))
     };
     let wants = |pair: Pair| {
-        let (output, input) = (Channel::Output(pair.output), Channel::Input(pair.input));
+        let [output, input] = Channel::of(pair);
         let wanted_s = result.wanted_delay_s(pair)?;
         let ms = |tau_s: f64| telling(s_to_ms(tau_s.abs()), 0);
         let part = |channel: Channel| {
-            let tau_s = compensated.leads.tau_s(channel);
+            let tau_s = compensated.leads.taus_s[channel];
             let sign = if (tau_s > 0.0) == (wanted_s > 0.0) || tau_s == 0.0 { "" } else { "−" };
             format!("{sign}{} on {}", ms(tau_s), channel.name(&inputs, &outputs))
         };
-        let gain_db: f64 = [output, input]
-            .iter()
-            .filter_map(|channel| compensated.leads.filter(*channel))
-            .map(LeadFilter::gain_at_infinity_db)
-            .sum();
+        let filters = [output, input].into_iter().filter_map(|channel| compensated.leads.filters()[channel]);
+        let gain_db: f64 = filters.map(LeadFilter::gain_at_infinity_db).sum();
         let price = if gain_db > 0.05 { format!("; {} dB above the band", signed(gain_db, 1)) } else { String::new() };
         Some(format!(
             "{} from {} wants {}{} ms of {} over the band: {}, {}{price}",
@@ -169,20 +138,18 @@ pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncer
             part(input)
         ))
     };
-    let channels = (0..inputs.len()).map(Channel::Input).chain((0..outputs.len()).map(Channel::Output));
-    let filters: Vec<(Channel, LeadFilter)> =
-        channels.filter_map(|channel| Some((channel, compensated.leads.filter(channel)?))).collect();
-    let replaced = filters.iter().map(|(channel, filter)| {
+    let filters = || compensated.leads.filters().iter().filter_map(|(channel, filter)| Some((channel, (*filter)?)));
+    let replaced = filters().map(|(channel, filter)| {
         let at_above = filter.magnitude_db(ABOVE * top);
         format!(
             "{}: {}; {} dB at {} rad/s",
             channel.name(&inputs, &outputs),
-            servo_words(*filter),
+            servo_words(filter),
             signed(at_above, 1),
             number(ABOVE * top)
         )
     });
-    let states: usize = filters.iter().map(|(_, filter)| filter.order().number()).sum();
+    let states: usize = filters().map(|(_, filter)| filter.order().number()).sum();
     let price = (states > 0)
         .then(|| format!("The leads add {states} states. Do not use the corrected model above {} rad/s.", number(top)));
     result.held().marked().filter_map(wants).chain(replaced).chain(price).collect()
@@ -244,8 +211,7 @@ fn common_lead(result: &ConditionAnalysis) -> Option<String> {
 /// Whether every held response gets what it wants; which does not and why.
 fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let (held, delays) = (result.held().marked().count(), &result.delays);
-    let all = delays.inputs.iter().chain(&delays.outputs);
-    if all.clone().all(|tau_s| tau_s.abs() < NOTHING_S) {
+    if delays.inputs.iter().chain(&delays.outputs).all(|tau_s| tau_s.abs() < NOTHING_S) {
         let text = "Nothing to do for the phase: every delay or lead is less than 2 ms.".to_owned();
         return vec![Remark::new(RemarkKind::Good, text)];
     }
@@ -257,12 +223,7 @@ fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         };
         return vec![Remark::new(RemarkKind::Good, text)];
     }
-    let (inputs, outputs) = study.dataset.names_of_channels();
-    let top = study.settings.band.max();
-    let misses: Vec<String> =
-        delays.unmatched.iter().map(|unmatched| unmatched.words(top, &inputs, &outputs)).collect();
-    let conflicts = delays.conflicts.iter().map(|conflict| conflict.words(&inputs, &outputs));
-    std::iter::once(misses.join(" ")).chain(conflicts).map(|text| Remark::new(RemarkKind::Caution, text)).collect()
+    miss_words(study, delays).map(|text| Remark::new(RemarkKind::Caution, text)).collect()
 }
 
 /// What filters of first order add to the gain within the band, which the gains take back.

@@ -1,11 +1,11 @@
 //! What the result of a condition says, in the engineer's words: the same in the window and in a terminal.
 
-use crate::correction::{Sensitivity, kkt_residual, sensitivities};
+use crate::correction::{Channel, Sensitivity, Solution, kkt_residual, sensitivities};
 use crate::dataset::Pair;
 use crate::schedule::Schedule;
 use crate::units::{number, s_to_ms, telling, told_apart};
 
-use super::{Caution, ConditionAnalysis, PhaseCorrection, Study, lead_remarks};
+use super::{Caution, ConditionAnalysis, PhaseCorrection, SignRole, Study, lead_remarks};
 
 /// How a remark is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,18 +29,21 @@ pub struct Remark {
     pub ignore: Option<Pair>,
     /// The correction of the phase that the engineer may want in place of the present one.
     pub phase: Option<PhaseCorrection>,
+    /// The channel whose models can be turned, or put back (none of their role), at once.
+    pub turn: Option<(Channel, Option<SignRole>)>,
 }
 
 impl Remark {
     /// A remark that offers nothing.
     pub fn new(kind: RemarkKind, text: String) -> Self {
-        Self { kind, text, ignore: None, phase: None }
+        Self { kind, text, ignore: None, phase: None, turn: None }
     }
 }
 
 /// Which held gains and delays were matched, which were not and why, and the cautions of the condition and of the schedule.
 pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Schedule>) -> Vec<Remark> {
-    let mut remarks = gain_remarks(study, result);
+    let mut remarks = sign_remarks(study, result);
+    remarks.extend(gain_remarks(study, result));
     if study.settings.phase == PhaseCorrection::Delay {
         remarks.extend(delay_remarks(study, result));
     }
@@ -59,6 +62,7 @@ pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Sche
         text: caution.words(pair_name),
         ignore: caution.offers_to_ignore(),
         phase: None,
+        turn: None,
     }));
     if let Some(schedule) = schedule {
         let (inputs, outputs) = study.dataset.names_of_channels();
@@ -66,6 +70,21 @@ pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Sche
         remarks.extend(words.map(|text| Remark::new(RemarkKind::Caution, text)));
     }
     remarks
+}
+
+/// Signs and units to be asked after, before anything is blamed for them; then what has been turned.
+fn sign_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
+    let doubts = result.doubts.iter().map(|doubt| Remark {
+        turn: doubt.turns().map(|channel| (channel, Some(SignRole::Identified))),
+        ..Remark::new(RemarkKind::Caution, doubt.words(&study.dataset))
+    });
+    let (inputs, outputs) = study.dataset.names_of_channels();
+    let turned = study.signs.iter().map(|(channel, of)| {
+        let (name, of) = (channel.name(&inputs, &outputs), of.models());
+        let text = format!("{name} of {of} is turned: its sign is not that of the file.");
+        Remark { turn: Some((*channel, None)), ..Remark::new(RemarkKind::Good, text) }
+    });
+    doubts.chain(turned).collect()
 }
 
 fn gain_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
@@ -82,13 +101,18 @@ fn gain_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         return vec![Remark::new(RemarkKind::Good, text)];
     }
     let (inputs, outputs) = study.dataset.names_of_channels();
-    let gains = &result.gains;
-    let top = study.settings.band.max();
-    let misses: Vec<String> = gains.unmatched.iter().map(|unmatched| unmatched.words(top, &inputs, &outputs)).collect();
-    let conflicts = gains.conflicts.iter().map(|conflict| conflict.words(&inputs, &outputs));
-    let remedy = gains.remedy.iter().map(|remedy| remedy.words(&inputs, &outputs)).filter(|words| !words.is_empty());
-    let texts = std::iter::once(misses.join(" ")).chain(conflicts).chain(remedy);
+    let remedy = result.gains.remedy.iter().map(|remedy| remedy.words(&inputs, &outputs));
+    let texts = miss_words(study, &result.gains).chain(remedy.filter(|words| !words.is_empty()));
     texts.map(|text| Remark::new(RemarkKind::Trouble, text)).collect()
+}
+
+/// What held responses get in place of what they want, then each conflict behind that.
+pub(super) fn miss_words(study: &Study, solution: &Solution) -> impl Iterator<Item = String> {
+    let (inputs, outputs) = study.dataset.names_of_channels();
+    let top = study.settings.band.max();
+    let misses: Vec<String> = solution.unmatched.iter().map(|miss| miss.words(top, &inputs, &outputs)).collect();
+    let conflicts = solution.conflicts.iter().map(move |conflict| conflict.words(&inputs, &outputs));
+    std::iter::once(misses.join(" ")).chain(conflicts)
 }
 
 /// The loops of held responses that count as agreeing.

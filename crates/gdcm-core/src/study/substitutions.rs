@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::correction::{Channel, ChannelCorrection, GainSource};
+use crate::correction::{ChannelCorrection, Delta, GainSource};
 use crate::dataset::{BundleKind, Dynamics, Pair, PairTable};
 use crate::response::{FrequencyGrid, coherence_at, median, quantile};
 use crate::uncertainty::{
@@ -12,7 +12,7 @@ use crate::uncertainty::{
 };
 
 use super::{
-    Analysis, Cancelled, Compared, Comparison, ConditionAnalysis, ConditionResponses, Execution, Settings, Study,
+    Analysis, Cancelled, Compared, ConditionAnalysis, ConditionResponses, Execution, Mismatches, Settings, Study,
 };
 
 /// What came of the substitutions of one condition.
@@ -37,38 +37,28 @@ pub(super) struct Substituting<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct SubstitutedOptimum {
     pub(super) correction: ChannelCorrection,
-    pub(super) gain: PairTable<Option<f64>>,
-    pub(super) delay_s: PairTable<Option<f64>>,
-    pub(super) band_delay_s: PairTable<Option<f64>>,
+    /// The deltas, G that of what leads leave.
+    pub(super) delta: Delta,
 }
 
 impl SubstitutedOptimum {
-    /// That of an analysis with its representatives.
+    /// Of the representatives themselves.
     pub(super) fn of(analysis: &ConditionAnalysis) -> Self {
-        Self {
-            correction: analysis.correction.clone(),
-            gain: analysis.gain_problem.delta.clone(),
-            delay_s: analysis.comparison.delta.delay_s.clone(),
-            band_delay_s: analysis.comparison.delta.band_delay_s.clone(),
-        }
+        let delta = Delta { gain: analysis.gain_problem.delta.clone(), ..analysis.comparison.delta.clone() };
+        Self { correction: analysis.correction.clone(), delta }
     }
 
-    /// The figures that have bars; signed delays where there are leads.
+    /// Logarithms of gains and delays \[s\]; none where a figure is not defined.
     pub(super) fn figures(&self) -> Figures {
-        let Self { correction, gain, delay_s, band_delay_s } = self;
+        let Self { correction, delta: Delta { gain, delay_s, band_delay_s } } = self;
         ScalarTable::from_fn(gain.outputs(), gain.inputs(), |scalar| {
             let figure = match scalar {
                 Scalar::Gain(pair) => gain[pair]?.ln(),
                 Scalar::Delay(pair) => delay_s[pair]?,
                 Scalar::BandDelay(pair) => band_delay_s[pair]?,
-                Scalar::NetGain(pair) => correction.net_gain(pair).value().ln(),
-                Scalar::ChannelGain(Channel::Input(input)) => correction.input_gains[input].ln(),
-                Scalar::ChannelGain(Channel::Output(output)) => correction.output_gains[output].ln(),
-                Scalar::ChannelDelay(channel) => match (&correction.leads, channel) {
-                    (Some(leads), channel) => leads.tau_s(channel),
-                    (None, Channel::Input(input)) => correction.input_delays_s[input],
-                    (None, Channel::Output(output)) => correction.output_delays_s[output],
-                },
+                Scalar::NetGain(pair) => correction.net_gain(pair).ln(),
+                Scalar::ChannelGain(channel) => correction.gain(channel).ln(),
+                Scalar::ChannelDelay(channel) => correction.delay_s(channel),
             };
             figure.is_finite().then_some(figure)
         })
@@ -121,14 +111,8 @@ impl Substituting<'_> {
     }
 
     fn compared(&self, kind: BundleKind, model: usize) -> Compared {
-        let response = &self.responses.bundle(kind)[model];
-        match kind {
-            BundleKind::Physics => Compared::of(response),
-            BundleKind::Identified => {
-                let flight = &self.analysis.condition.bundle(kind)[model].dynamics;
-                Compared::of_identified(response, flight, self.grid, self.study.settings.coherence_threshold)
-            }
-        }
+        let coherence = self.study.settings.coherence_threshold;
+        Compared::of(&self.analysis.condition, self.responses, (kind, model), (self.grid, coherence))
     }
 }
 
@@ -138,7 +122,7 @@ impl SubstitutionMemo {
         &mut self,
         substituting: &Substituting<'_>,
         execution: &Execution<'_>,
-        optimum: impl Fn(&Comparison, &Execution<'_>) -> Result<Option<SubstitutedOptimum>, Cancelled> + Sync,
+        optimum: impl Fn(&Mismatches, Delta) -> Result<Option<SubstitutedOptimum>, Cancelled> + Sync,
     ) -> Result<ConditionSubstitutions, Cancelled> {
         let key = substituting.key();
         if self.key.as_ref() != Some(&key) {
@@ -182,7 +166,7 @@ fn make(
     substituting: &Substituting<'_>,
     pairs: &[[usize; 2]],
     execution: &Execution<'_>,
-    optimum: impl Fn(&Comparison, &Execution<'_>) -> Result<Option<SubstitutedOptimum>, Cancelled> + Sync,
+    optimum: impl Fn(&Mismatches, Delta) -> Result<Option<SubstitutedOptimum>, Cancelled> + Sync,
 ) -> Result<Vec<Option<Arc<Figures>>>, Cancelled> {
     if pairs.is_empty() {
         return Ok(Vec::new());
@@ -195,7 +179,7 @@ fn make(
     let median_phases =
         base.representative.mismatch.map(|_, mismatch| mismatch.as_ref().map(|mismatch| mismatch.median_phase(omega)));
     let substitution = |place: usize| {
-        let pair @ [a, b] = pairs[place];
+        let [a, b] = pairs[place];
         let other;
         let (simulated, reference) = if b == identified {
             other = substituting.compared(BundleKind::Physics, a);
@@ -204,12 +188,20 @@ fn make(
             other = substituting.compared(BundleKind::Identified, b);
             (&simulated, &other)
         };
-        let comparison = base.substituted(pair, simulated, reference, omega, &median_phases);
+        let mut mismatch = simulated.against(reference);
+        // As if the pair were pinned: each phase difference is laid beside that of the representatives (M13.1).
+        for (pair, entry) in mismatch.iter_mut() {
+            *entry = entry.take().map(|entry| match median_phases[pair] {
+                Some(median_phase) => entry.align_branch(omega, median_phase),
+                None => entry,
+            });
+        }
+        let delta = Delta::of(&mismatch, omega);
         // As of a pinned pair that has nothing to compare.
-        if comparison.delta.gain.iter().all(|(_, gain)| gain.is_none()) {
+        if delta.gain.iter().all(|(_, gain)| gain.is_none()) {
             return Ok(None);
         }
-        Ok(optimum(&comparison, execution)?.map(|optimum| Arc::new(optimum.figures())))
+        Ok(optimum(&mismatch, delta)?.map(|optimum| Arc::new(optimum.figures())))
     };
     execution.each(pairs.len(), 1, substitution)?.into_iter().collect()
 }

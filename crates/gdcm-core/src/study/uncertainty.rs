@@ -143,13 +143,20 @@ impl Uncertainty {
         let of_schedule: Vec<&ConditionUncertainty> = scheduled.iter().filter_map(|id| conditions.get(id)).collect();
         let schedule = analysis.schedule.as_ref().ok().filter(|_| of_schedule.len() == scheduled.len());
         let pairs: Vec<Pair> = study.dataset.measuring_pairs().marked().collect();
-        let designs = Designs::of(schedule);
+        let airspeeds = schedule.map(|schedule| schedule.airspeeds.values_kt.clone());
+        let same_airspeed = airspeeds.and_then(|of| Design::new(&airspeed_indicators(of, EQUAL_AIRSPEED_KT)));
+        let about_schedule = schedule.and_then(|schedule| Design::new(&schedule.design()));
+        let scatter = |&pair: &Pair| {
+            let bars = bars_of(&of_schedule, Scalar::NetGain(pair));
+            let split = |design: &Option<Design>| VarianceDecomposition::of(design.as_ref()?, bars.as_ref()?);
+            PairScatter { pair, same_airspeed: split(&same_airspeed), about_schedule: split(&about_schedule) }
+        };
         let compared = differences(&study.dataset, &conditions, &pairs);
         Self {
             level,
             too_many_differences: compared.as_ref().err().copied(),
             differences: compared.unwrap_or_default(),
-            scatter: pairs.iter().map(|&pair| designs.scatter(&of_schedule, pair)).collect(),
+            scatter: pairs.iter().map(scatter).collect(),
             bands: schedule.and_then(|schedule| ScheduleBands::of(schedule, &of_schedule, level)),
             second_variables: schedule.map_or_else(Vec::new, |schedule| {
                 let states: Vec<&FlightState> =
@@ -204,28 +211,6 @@ impl Uncertainty {
 /// The bars of one figure in several conditions; none where one has none.
 fn bars_of(conditions: &[&ConditionUncertainty], scalar: Scalar) -> Option<Vec<Bar>> {
     conditions.iter().map(|condition| condition.bars[scalar]).collect()
-}
-
-/// What the figures of the schedule's conditions are fitted with.
-struct Designs {
-    same_airspeed: Option<Design>,
-    schedule: Option<Design>,
-}
-
-impl Designs {
-    fn of(schedule: Option<&Schedule>) -> Self {
-        let airspeeds = schedule.map(|schedule| schedule.airspeeds.values_kt.clone());
-        Self {
-            same_airspeed: airspeeds.and_then(|of| Design::new(&airspeed_indicators(of, EQUAL_AIRSPEED_KT))),
-            schedule: schedule.and_then(|schedule| Design::new(&schedule.design())),
-        }
-    }
-
-    fn scatter(&self, conditions: &[&ConditionUncertainty], pair: Pair) -> PairScatter {
-        let bars = bars_of(conditions, Scalar::NetGain(pair));
-        let split = |design: &Option<Design>| VarianceDecomposition::of(design.as_ref()?, bars.as_ref()?);
-        PairScatter { pair, same_airspeed: split(&self.same_airspeed), about_schedule: split(&self.schedule) }
-    }
 }
 
 fn second_variables(

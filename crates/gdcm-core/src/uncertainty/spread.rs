@@ -1,8 +1,9 @@
 //! What substituting the models of a condition does to its values, the bars that all conditions give, and the error that the
 //! coherence of a measurement tells (M13.2).
 
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
-use std::ops::{Index, IndexMut};
+use std::ops::Index;
 
 use super::{Bar, IdentificationSource, VarianceComponent, pooled};
 use crate::correction::Channel;
@@ -88,7 +89,10 @@ pub fn bars(conditions: &[BarSource<'_>], prior_degrees: f64) -> Vec<ScalarTable
                 identification: told.map_or(spread, |told| Some(told.part)),
                 source: told.map_or(IdentificationSource::Spread, |told| told.source),
                 left_out: changes.left_out,
-                range: range(scalar, of.delay_bounds_s),
+                range: match scalar {
+                    Scalar::ChannelDelay(_) => of.delay_bounds_s,
+                    _ => [f64::NEG_INFINITY, f64::INFINITY],
+                },
             })
         })
     };
@@ -103,15 +107,8 @@ impl ReportedUncertainty {
     }
 }
 
-fn range(scalar: Scalar, delay_bounds_s: [f64; 2]) -> [f64; 2] {
-    match scalar {
-        Scalar::ChannelDelay(_) => delay_bounds_s,
-        _ => [f64::NEG_INFINITY, f64::INFINITY],
-    }
-}
-
 /// One figure of a condition's analysis, `q` of M13.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Scalar {
     /// `ln G` of a response.
     Gain(Pair),
@@ -136,47 +133,22 @@ impl Scalar {
 
 /// A table with one entry for each figure of a condition with `p` outputs and `m` inputs.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ScalarTable<T> {
-    outputs: usize,
-    inputs: usize,
-    entries: Vec<T>,
-}
+pub struct ScalarTable<T>(BTreeMap<Scalar, T>);
 
 impl<T> ScalarTable<T> {
-    /// The table whose entry of each figure is `entry(figure)`.
-    pub fn from_fn(outputs: usize, inputs: usize, entry: impl FnMut(Scalar) -> T) -> Self {
-        Self { outputs, inputs, entries: scalars(outputs, inputs).map(entry).collect() }
+    /// A table of what `entry` says of each scalar of p outputs and m inputs.
+    pub fn from_fn(outputs: usize, inputs: usize, mut entry: impl FnMut(Scalar) -> T) -> Self {
+        Self(scalars(outputs, inputs).map(|scalar| (scalar, entry(scalar))).collect())
     }
 
-    /// Every figure with its entry.
+    /// Every scalar with its entry.
     pub fn iter(&self) -> impl Iterator<Item = (Scalar, &T)> {
-        scalars(self.outputs, self.inputs).zip(&self.entries)
+        self.0.iter().map(|(scalar, entry)| (*scalar, entry))
     }
 
-    /// The table of `f(figure, entry)`.
+    /// The table of what `f` makes of each entry.
     pub fn map<U>(&self, mut f: impl FnMut(Scalar, &T) -> U) -> ScalarTable<U> {
-        let entries = self.iter().map(|(scalar, entry)| f(scalar, entry)).collect();
-        ScalarTable { outputs: self.outputs, inputs: self.inputs, entries }
-    }
-
-    fn place(&self, scalar: Scalar) -> usize {
-        let (p, m) = (self.outputs, self.inputs);
-        let of_pair = |pair: Pair| {
-            assert!(pair.output < p && pair.input < m, "{pair:?} is outside a {p} x {m} table");
-            pair.output * m + pair.input
-        };
-        let of_channel = |channel| match channel {
-            Channel::Input(input) => input,
-            Channel::Output(output) => m + output,
-        };
-        match scalar {
-            Scalar::Gain(pair) => of_pair(pair),
-            Scalar::Delay(pair) => p * m + of_pair(pair),
-            Scalar::BandDelay(pair) => 2 * p * m + of_pair(pair),
-            Scalar::NetGain(pair) => 3 * p * m + of_pair(pair),
-            Scalar::ChannelGain(channel) => 4 * p * m + of_channel(channel),
-            Scalar::ChannelDelay(channel) => 4 * p * m + p + m + of_channel(channel),
-        }
+        ScalarTable(self.iter().map(|(scalar, entry)| (scalar, f(scalar, entry))).collect())
     }
 }
 
@@ -184,14 +156,7 @@ impl<T> Index<Scalar> for ScalarTable<T> {
     type Output = T;
 
     fn index(&self, scalar: Scalar) -> &T {
-        &self.entries[self.place(scalar)]
-    }
-}
-
-impl<T> IndexMut<Scalar> for ScalarTable<T> {
-    fn index_mut(&mut self, scalar: Scalar) -> &mut T {
-        let place = self.place(scalar);
-        &mut self.entries[place]
+        &self.0[&scalar]
     }
 }
 
@@ -200,11 +165,7 @@ fn scalars(outputs: usize, inputs: usize) -> impl Iterator<Item = Scalar> {
     let pairs = move |of: fn(Pair) -> Scalar| {
         (0..outputs).flat_map(move |output| (0..inputs).map(move |input| of(Pair::new(output, input))))
     };
-    let channels = move |of: fn(Channel) -> Scalar| {
-        (0..inputs)
-            .map(move |input| of(Channel::Input(input)))
-            .chain((0..outputs).map(move |output| of(Channel::Output(output))))
-    };
+    let channels = move |of: fn(Channel) -> Scalar| Channel::all(inputs, outputs).map(of);
     pairs(Scalar::Gain)
         .chain(pairs(Scalar::Delay))
         .chain(pairs(Scalar::BandDelay))
@@ -291,10 +252,8 @@ mod scalar_tests {
 
     #[test]
     fn every_figure_has_a_place_of_its_own() {
-        let mut table = ScalarTable::from_fn(3, 2, |scalar| scalar);
+        let table = ScalarTable::from_fn(3, 2, |scalar| scalar);
         assert!(table.iter().all(|(scalar, entry)| scalar == *entry && table[scalar] == scalar));
         assert_eq!(table.iter().count(), 4 * 6 + 2 * 5);
-        table[Scalar::ChannelDelay(Channel::Output(2))] = Scalar::Gain(Pair::new(0, 0));
-        assert_eq!(table.iter().last().map(|(_, entry)| *entry), Some(Scalar::Gain(Pair::new(0, 0))));
     }
 }

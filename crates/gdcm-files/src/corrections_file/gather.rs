@@ -32,6 +32,7 @@ impl Corrections {
             software: concat!("gdcm ", env!("CARGO_PKG_VERSION")).to_owned(),
             dataset: DatasetLabel { name: dataset.name().to_owned(), sha256: sha256.to_owned() },
             settings: analysis.study.settings.named(dataset),
+            signs: analysis.study.turned_channels(),
             conditions: Vec::new(),
             failed: Vec::new(),
             schedule: analysis.schedule.as_ref().ok().map(|schedule| gather.schedule(schedule)),
@@ -77,6 +78,8 @@ impl Gather<'_> {
         let (study, names) = (&self.analysis.study, &self.names);
         let representative = |kind| result.representative_name(kind).to_owned();
         let correction = &result.correction;
+        let doubts = result.doubts.iter().map(|doubt| doubt.words(&study.dataset));
+        let cautions = result.cautions.iter().map(|caution| caution.words(|pair| study.dataset.pair_name(pair)));
         ConditionCorrections {
             id: condition.id().0,
             name: condition.flight_state().name.clone(),
@@ -105,12 +108,7 @@ impl Gather<'_> {
             net_gains: self.net_gains(result),
             bars: BarsEntry::of(self.analysis, condition.id(), names),
             cost: cost_tables(result),
-            cautions: result
-                .cautions
-                .iter()
-                .map(|caution| caution.words(|pair| study.dataset.pair_name(pair)))
-                .chain(lead_cautions(study, result))
-                .collect(),
+            cautions: doubts.chain(cautions).chain(lead_cautions(study, result)).collect(),
         }
     }
 
@@ -131,7 +129,7 @@ impl Gather<'_> {
             .map(|pair| {
                 let (output, input) = self.names.pair(pair);
                 let bar = BarEntry::of_net_gain(self.analysis, result.condition.id(), pair).unwrap_or_default();
-                NetGain { output, input, gain: result.correction.net_gain(pair).value(), bar }
+                NetGain { output, input, gain: result.correction.net_gain(pair), bar }
             })
             .collect()
     }
@@ -217,24 +215,24 @@ impl Gather<'_> {
             airspeed_mean_kt: airspeeds.mean_kt,
             airspeed_half_range_kt: airspeeds.half_range_kt,
             airspeed_range_kt: [airspeeds.min_kt, airspeeds.max_kt],
-            inputs: by_name(&names.inputs, figures(&schedule.inputs)),
-            outputs: by_name(&names.outputs, figures(&schedule.outputs)),
+            inputs: by_name(&names.inputs, figures(&schedule.gains.inputs)),
+            outputs: by_name(&names.outputs, figures(&schedule.gains.outputs)),
             second_variable: schedule.second.as_ref().map(|term| ScheduledSecond {
                 variable: term.variable.name().to_owned(),
                 unit: term.variable.unit().to_owned(),
                 middle: term.middle(),
                 half_range: term.half_range(),
-                inputs: by_name(&names.inputs, term.inputs.clone()),
-                outputs: by_name(&names.outputs, term.outputs.clone()),
+                inputs: by_name(&names.inputs, term.slopes.inputs.clone()),
+                outputs: by_name(&names.outputs, term.slopes.outputs.clone()),
             }),
             delays_s: schedule.delays.as_ref().map(|delays| ScheduledDelays {
-                inputs: by_name(&names.inputs, figures(&delays.inputs)),
-                outputs: by_name(&names.outputs, figures(&delays.outputs)),
+                inputs: by_name(&names.inputs, figures(&delays.taus_s.inputs)),
+                outputs: by_name(&names.outputs, figures(&delays.taus_s.outputs)),
                 upper_s: Some(delays.upper_s.figures().to_vec()),
             }),
             tau_s: schedule.leads.as_ref().map(|leads| ScheduledTaus {
-                inputs: by_name(&names.inputs, figures(&leads.inputs)),
-                outputs: by_name(&names.outputs, figures(&leads.outputs)),
+                inputs: by_name(&names.inputs, figures(&leads.taus_s.inputs)),
+                outputs: by_name(&names.outputs, figures(&leads.taus_s.outputs)),
                 bounds_s: leads.bounds_s,
             }),
             table: table.collect(),
@@ -329,10 +327,10 @@ impl ChannelNames {
             lag_rad_s: filter.map(LeadFilter::lag_rad_s),
             gain_at_infinity_db: filter.map(LeadFilter::gain_at_infinity_db),
         };
-        let [inputs, outputs] = leads.filters();
+        let filters = leads.filters();
         self.by_channel(
-            leads.inputs_s().iter().zip(inputs).map(entry),
-            leads.outputs_s().iter().zip(outputs).map(entry),
+            leads.taus_s.inputs.iter().zip(&filters.inputs).map(entry),
+            leads.taus_s.outputs.iter().zip(&filters.outputs).map(entry),
         )
     }
 }
@@ -539,7 +537,7 @@ fn bands(analysis: &Analysis, uncertainty: &Uncertainty, names: &ChannelNames) -
         Some(ScheduleBandEntry {
             output,
             input,
-            fit: airspeed_kt.iter().map(|&airspeed| schedule.at(airspeed).net_gain(pair).value().ln()).collect(),
+            fit: airspeed_kt.iter().map(|&airspeed| schedule.at(airspeed).net_gain(pair).ln()).collect(),
             confidence: widths.iter().map(|widths| widths.confidence).collect(),
             scatter: widths.iter().map(|widths| widths.scatter).collect(),
             airspeed_kt: airspeed_kt.clone(),

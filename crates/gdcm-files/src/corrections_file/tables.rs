@@ -69,10 +69,10 @@ const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
     ("held", |row| row.found.result().is_some_and(|result| result.held()[row.pair]).to_string()),
     ("G", |row| cell(row.found.result().and_then(|result| result.wanted_gain(row.pair)))),
     ("D_s", |row| cell(row.found.result().and_then(|result| result.comparison.delta.delay_s[row.pair]))),
-    ("net_gain", |row| cell(row.found.own().map(|own| own.net_gain(row.pair).value()))),
-    ("net_delay_s", |row| cell(row.found.own().map(|own| own.net_delay(row.pair).value_s()))),
-    ("scheduled_net_gain", |row| cell(row.found.scheduled.as_ref().map(|of| of.net_gain(row.pair).value()))),
-    ("scheduled_net_delay_s", |row| cell(row.found.scheduled.as_ref().map(|of| of.net_delay(row.pair).value_s()))),
+    ("net_gain", |row| cell(row.found.own().map(|own| own.net_gain(row.pair)))),
+    ("net_delay_s", |row| cell(row.found.own().map(|own| own.net_delay_s(row.pair)))),
+    ("scheduled_net_gain", |row| cell(row.found.scheduled.as_ref().map(|of| of.net_gain(row.pair)))),
+    ("scheduled_net_delay_s", |row| cell(row.found.scheduled.as_ref().map(|of| of.net_delay_s(row.pair)))),
     ("J_mag_uncorrected", |row| cell(row.change().map(|change| change.uncorrected.magnitude))),
     ("J_phase_uncorrected", |row| cell(row.change().map(|change| change.uncorrected.phase))),
     ("J_mag_scheduled", |row| cell(row.change().map(|change| change.corrected.magnitude))),
@@ -191,7 +191,7 @@ impl ChannelRow<'_> {
     }
 
     fn tau_s(&self, of: Option<&ChannelCorrection>) -> Option<f64> {
-        of?.leads.as_ref().map(|leads| leads.tau_s(self.channel))
+        of?.leads.as_ref().map(|leads| leads.taus_s[self.channel])
     }
 
     fn filter(&self) -> Option<LeadFilter> {

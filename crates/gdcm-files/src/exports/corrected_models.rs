@@ -136,8 +136,8 @@ fn exported_model(
             AssessedCorrection::Own => "own",
         },
         states: state_names(analysis, model, &corrected),
-        delay_states: corrected.input_states.iter().chain(&corrected.output_states).sum(),
-        lead_states: corrected.input_lead_states.iter().chain(&corrected.output_lead_states).sum(),
+        delay_states: corrected.delay_states.iter().map(|(_, states)| states).sum(),
+        lead_states: corrected.lead_states.iter().map(|(_, states)| states).sum(),
         pade_order: if is_sampled { 0 } else { request.pade.order() },
         phase_error_deg: corrected.phase_error(band_top_rad_s).to_degrees(),
         band_top_rad_s,
@@ -194,10 +194,10 @@ fn state_names(analysis: &Analysis, model: &Model, corrected: &CorrectedModel) -
         };
         channels.iter().zip(counts).flat_map(of).collect()
     };
-    let mut names = of_channels(dataset.inputs(), "lead", &corrected.input_lead_states);
-    names.extend(of_channels(dataset.inputs(), "delay", &corrected.input_states));
-    let mut last = of_channels(dataset.outputs(), "delay", &corrected.output_states);
-    last.extend(of_channels(dataset.outputs(), "lead", &corrected.output_lead_states));
+    let mut names = of_channels(dataset.inputs(), "lead", &corrected.lead_states.inputs);
+    names.extend(of_channels(dataset.inputs(), "delay", &corrected.delay_states.inputs));
+    let mut last = of_channels(dataset.outputs(), "delay", &corrected.delay_states.outputs);
+    last.extend(of_channels(dataset.outputs(), "lead", &corrected.lead_states.outputs));
     let own = corrected.model.order() - names.len() - last.len();
     names.extend((0..own).map(|state| model.state_name(state)));
     names.extend(last);

@@ -254,14 +254,16 @@ impl ScheduledCorrection {
             least: 0.0,
             most: LookupTable { airspeed_kt: vec![least], values: vec![leads.bounds_s[1]] },
         };
-        for (channels, regressions) in [(&mut self.inputs, &leads.inputs), (&mut self.outputs, &leads.outputs)] {
+        for (channels, regressions) in
+            [(&mut self.inputs, &leads.taus_s.inputs), (&mut self.outputs, &leads.taus_s.outputs)]
+        {
             for (channel, regression) in channels.iter_mut().zip(regressions) {
                 channel.delay_s = delay_curve(regression);
                 channel.zero_s = Some(zero_curve(regression));
             }
         }
         self.lead = Some(ExportedLead { order: design.settings().order.number(), lag_s: design.lag_s() });
-        if !leads.inputs.iter().chain(&leads.outputs).all(is_constant) {
+        if !leads.taus_s.iter().all(|(_, regression)| is_constant(regression)) {
             let points = LEAD_POINTS + 1;
             self.notes.push(format!("the lead filters are tables over airspeed, linear between {points} points"));
         }
@@ -304,15 +306,15 @@ impl ScheduledCorrection {
             sha256: source.sha256.clone(),
             inputs: channels(
                 dataset.inputs(),
-                &schedule.inputs,
-                second.map(|term| term.inputs.as_slice()),
-                delays.map(|delays| delays.inputs.as_slice()),
+                &schedule.gains.inputs,
+                second.map(|term| term.slopes.inputs.as_slice()),
+                delays.map(|delays| delays.taus_s.inputs.as_slice()),
             ),
             outputs: channels(
                 dataset.outputs(),
-                &schedule.outputs,
-                second.map(|term| term.outputs.as_slice()),
-                delays.map(|delays| delays.outputs.as_slice()),
+                &schedule.gains.outputs,
+                second.map(|term| term.slopes.outputs.as_slice()),
+                delays.map(|delays| delays.taus_s.outputs.as_slice()),
             ),
             lead: None,
             airspeed_range_kt: (airspeeds.min_kt, airspeeds.max_kt),

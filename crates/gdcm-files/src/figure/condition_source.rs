@@ -153,7 +153,7 @@ impl<'a> ConditionSource<'a> {
             return Vec::new();
         };
         let corrected = |id: CurveId, role: Role, words: &str, correction: &ChannelCorrection| {
-            let (gain, delay_ms) = (correction.net_gain(pair).value(), s_to_ms(correction.net_delay(pair).value_s()));
+            let (gain, delay_ms) = (correction.net_gain(pair), s_to_ms(correction.net_delay_s(pair)));
             let detail = format!("net gain {gain:.3}, net delay {delay_ms:.1} ms");
             let (label, hidden) = (format!("{name}, {words}"), options.hidden.contains(&role));
             let curve = BodeCurve { label, detail, hidden, ..BodeCurve::new(id, role) };

@@ -197,7 +197,7 @@ pub struct GainQuantity {
 impl GainQuantity {
     /// The net gain of a response.
     pub fn net_gain(pair: Pair) -> Self {
-        let of: FigureOf = Box::new(move |correction| correction.net_gain(pair).value());
+        let of: FigureOf = Box::new(move |correction| correction.net_gain(pair));
         Self { measure: Measure::Gain, of, scalar: Scalar::NetGain(pair) }
     }
 

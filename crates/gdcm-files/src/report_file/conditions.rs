@@ -153,14 +153,14 @@ fn channel_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
     let (dataset, correction) = (&analysis.study.dataset, &result.correction);
     let title = format!("Condition {}: gain and delay of each channel", result.condition.id());
     let mut table = Table::new(title, ["channel", "side", "gain k", "delay τ [ms]"]);
-    let [inputs_s, outputs_s] = correction.signed_delays_s();
+    let delays_s = correction.signed_delays_s();
     let sides = [
-        ("input", dataset.inputs(), &correction.input_gains, inputs_s),
-        ("output", dataset.outputs(), &correction.output_gains, outputs_s),
+        ("input", dataset.inputs(), &correction.input_gains, delays_s.inputs),
+        ("output", dataset.outputs(), &correction.output_gains, delays_s.outputs),
     ];
     for (side, channels, gains, delays_s) in sides {
         for ((channel, gain), delay_s) in channels.iter().zip(gains).zip(delays_s) {
-            let (gain, delay) = (decimals(*gain, 4), decimals(s_to_ms(*delay_s), 2));
+            let (gain, delay) = (decimals(*gain, 4), decimals(s_to_ms(delay_s), 2));
             table.row([channel.name.clone(), side.to_owned(), gain, delay]);
         }
     }
@@ -217,9 +217,9 @@ fn response_cells(study: &Study, result: &ConditionAnalysis, pair: Pair) -> [Str
         if study.dataset.on_axis()[pair] { "yes" } else { "no" }.to_owned(),
         treated.to_owned(),
         of(result.wanted_gain(pair), 3),
-        of(Some(result.correction.net_gain(pair).value()), 3),
+        of(Some(result.correction.net_gain(pair)), 3),
         of(result.wanted_delay_s(pair).map(s_to_ms), 1),
-        of(Some(s_to_ms(result.correction.net_delay(pair).value_s())), 1),
+        of(Some(s_to_ms(result.correction.net_delay_s(pair))), 1),
         of(cost.map(|cost| cost.uncorrected.total()), 1),
         of(cost.map(|cost| cost.corrected.total()), 1),
         change(cost.map(|cost| cost.magnitude())),

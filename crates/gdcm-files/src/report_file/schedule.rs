@@ -141,7 +141,7 @@ fn add_gains(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     });
     add_over_airspeed(page, schedule, &airspeeds_kt, "Scheduled gains of the channels", channels.collect());
     let net = shown_pairs(&analysis.study).into_iter().map(|pair| {
-        let gain = move |correction: &ChannelCorrection| decimals(correction.net_gain(pair).value(), 4);
+        let gain = move |correction: &ChannelCorrection| decimals(correction.net_gain(pair), 4);
         (dataset.pair_name(pair), Box::new(gain) as Cell)
     });
     add_over_airspeed(page, schedule, &airspeeds_kt, "Scheduled net gains", net.collect());

@@ -102,19 +102,9 @@ impl Objective {
 
     /// The pieces that terms tie together but not to the ground: their scales are determined up to a common shift.
     pub(crate) fn floating_pieces(&self) -> Vec<Vec<usize>> {
-        let mut piece_of: Vec<usize> = (0..self.scales()).collect();
-        for term in &self.terms {
-            let (kept, merged) = (piece_of[term.from], piece_of[term.to]);
-            for piece in &mut piece_of {
-                if *piece == merged {
-                    *piece = kept;
-                }
-            }
-        }
-        (0..self.scales())
-            .map(|piece| (0..self.scales()).filter(|&scale| piece_of[scale] == piece).collect::<Vec<_>>())
-            .filter(|piece| !piece.is_empty() && !piece.contains(&self.ground()))
-            .collect()
+        let ties = self.terms.iter().map(|term| (term.from, term.to));
+        let pieces = pieces(self.scales(), ties).into_iter();
+        pieces.filter(|piece| !piece.contains(&self.ground())).collect()
     }
 
     /// The limit `alpha -> 0+`: moves each floating piece of `scales` by one common amount, as far as the box allows.
@@ -131,6 +121,17 @@ impl Objective {
             }
         }
     }
+}
+
+/// What `ties` connect of `count` nodes: the members of each connected piece, in rising order.
+pub(crate) fn pieces(count: usize, ties: impl Iterator<Item = (usize, usize)>) -> Vec<Vec<usize>> {
+    let mut piece_of: Vec<usize> = (0..count).collect();
+    for (one, other) in ties {
+        let (kept, merged) = (piece_of[one], piece_of[other]);
+        piece_of.iter_mut().filter(|piece| **piece == merged).for_each(|piece| *piece = kept);
+    }
+    let members = |piece: usize| (0..count).filter(|&node| piece_of[node] == piece).collect::<Vec<_>>();
+    (0..count).map(members).filter(|piece| !piece.is_empty()).collect()
 }
 
 impl Differentiable for Objective {

@@ -8,18 +8,15 @@ use crate::units::{number, s_to_ms};
 use super::{Context, Derivation, digits, gain_objective_equation};
 
 pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
-    let net = context.result.correction.net_gain(pair);
-    let (input, output) = (context.channel(Channel::Input(pair.input)), context.channel(Channel::Output(pair.output)));
-    let value = net.value();
+    let correction = &context.result.correction;
+    let [output, input] = Channel::of(pair);
+    let [name_o, name_i] = [output, input].map(|channel| context.channel(channel));
+    let (gain_o, gain_i) = (digits(correction.gain(output)), digits(correction.gain(input)));
+    let value = correction.net_gain(pair);
     Derivation {
         title: context.title(&format!("net gain of {}", context.pair(pair))),
         equation: "k_o k_i".to_owned(),
-        with_numbers: vec![format!(
-            "k_{output} k_{input} = {} · {} = {}",
-            digits(net.output),
-            digits(net.input),
-            digits(value)
-        )],
+        with_numbers: vec![format!("k_{name_o} k_{name_i} = {gain_o} · {gain_i} = {}", digits(value))],
         rests_on: vec![held_at(context, pair, &context.result.gains, context.result.wanted_gain(pair))],
         section: "M11, eq. (12)",
         value,
@@ -27,10 +24,10 @@ pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
 }
 
 pub(super) fn net_delay(context: &Context<'_>, pair: Pair) -> Derivation {
-    let net = context.result.correction.net_delay(pair);
-    let (input, output) = (context.channel(Channel::Input(pair.input)), context.channel(Channel::Output(pair.output)));
-    let value = s_to_ms(net.value_s());
-    let parts = format!("{} + {}", digits(s_to_ms(net.output_s)), digits(s_to_ms(net.input_s)));
+    let correction = &context.result.correction;
+    let [output, input] = Channel::of(pair).map(|channel| context.channel(channel));
+    let value = s_to_ms(correction.net_delay_s(pair));
+    let parts = Channel::of(pair).map(|channel| digits(s_to_ms(correction.delay_s(channel)))).join(" + ");
     let delta_ms = context.result.wanted_delay_s(pair).map(s_to_ms);
     Derivation {
         title: context.title(&format!("net delay of {}", context.pair(pair))),
@@ -56,7 +53,7 @@ fn held_at(context: &Context<'_>, pair: Pair, solution: &Solution, delta: Option
 }
 
 pub(super) fn gain(context: &Context<'_>, channel: Channel) -> Option<Derivation> {
-    let value = of_channel(&context.result.gains, channel)?;
+    let value = *context.result.gains.channels().get(channel)?;
     let (equation, _) = gain_objective_equation(context.settings().gain_objective);
     let problem = &context.result.gain_problem;
     let name = format!("k_{}", context.channel(channel));
@@ -71,7 +68,7 @@ pub(super) fn gain(context: &Context<'_>, channel: Channel) -> Option<Derivation
 }
 
 pub(super) fn delay(context: &Context<'_>, channel: Channel) -> Option<Derivation> {
-    let value = s_to_ms(of_channel(&context.result.delays, channel)?);
+    let value = s_to_ms(*context.result.delays.channels().get(channel)?);
     let (problem, solution) = (&context.result.delay_problem, &context.result.delays);
     let name = format!("τ_{}", context.channel(channel));
     let (objective, section) = delay_equation(problem.quantity);
@@ -99,31 +96,20 @@ fn delay_equation(quantity: Quantity) -> (&'static str, &'static str) {
     }
 }
 
-fn of_channel(solution: &Solution, channel: Channel) -> Option<f64> {
-    match channel {
-        Channel::Input(input) => solution.inputs.get(input).copied(),
-        Channel::Output(output) => solution.outputs.get(output).copied(),
-    }
-}
-
 /// The held responses that tie the channel to others, the bounds, and the value.
 fn steps(context: &Context<'_>, channel: Channel, problem: &Problem, solution: &Solution, last: &str) -> Vec<String> {
-    let is_gain = matches!(problem.quantity, Quantity::Gain(_));
+    let is_gain = problem.quantity.is_gain();
     let (unit, scale) = if is_gain { ("", 1.0) } else { (" ms", 1e3) };
-    let ties = solution.targets.iter().filter(|(pair, _)| match channel {
-        Channel::Input(input) => pair.input == input,
-        Channel::Output(output) => pair.output == output,
-    });
+    let ties = solution.targets.iter().filter(|(pair, _)| channel.is_of(*pair));
     let tie = |(pair, target): (Pair, &Option<f64>)| {
         let target = (*target)?;
-        let output = context.channel(Channel::Output(pair.output));
-        let input = context.channel(Channel::Input(pair.input));
+        let [output, input] = Channel::of(pair).map(|channel| context.channel(channel));
         let sum = if is_gain { format!("k_{output} k_{input}") } else { format!("τ_{output} + τ_{input}") };
         Some(format!("{sum} = {}{unit} (held)", digits(scale * target)))
     };
     let mut steps: Vec<String> = ties.filter_map(tie).collect();
     let (lower, upper) = (problem.bounds.lower, problem.bounds.upper);
-    let value = of_channel(solution, channel).unwrap_or_default();
+    let value = solution.channels()[channel];
     let place = match (value == lower, value == upper) {
         (true, _) => ", on the lower bound",
         (_, true) => ", on the upper bound",

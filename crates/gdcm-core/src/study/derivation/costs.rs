@@ -3,8 +3,8 @@
 use crate::correction::{Channel, ChannelCorrection};
 use crate::dataset::{BundleKind, ModelId, Pair};
 use crate::fidelity::{Cost, CostAverage, PHASE_WEIGHT, SUGGESTION_RATIO};
-use crate::study::{AssessedCorrection, AssessedModel, AssessmentChoice, assessed};
-use crate::units::{number, s_to_ms, signed};
+use crate::study::{AssessedModel, AssessmentChoice, assessed};
+use crate::units::{s_to_ms, signed};
 
 use super::{Context, Derivation, average_word, counted_words, digits, median_words};
 
@@ -100,9 +100,8 @@ fn steps(symbol: &str, cost: Cost, average: CostAverage) -> Vec<String> {
 }
 
 fn correction_words(context: &Context<'_>, pair: Pair, correction: &ChannelCorrection) -> String {
-    let name = |channel| context.channel(channel);
-    let (output, input) = (name(Channel::Output(pair.output)), name(Channel::Input(pair.input)));
-    let (gain, delay_ms) = (correction.net_gain(pair).value(), s_to_ms(correction.net_delay(pair).value_s()));
+    let [output, input] = Channel::of(pair).map(|channel| context.channel(channel));
+    let (gain, delay_ms) = (correction.net_gain(pair), s_to_ms(correction.net_delay_s(pair)));
     format!("k_{output} k_{input} = {}, τ_{output} + τ_{input} = {} ms", digits(gain), digits(delay_ms))
 }
 
@@ -138,31 +137,8 @@ pub(super) fn change(context: &Context<'_>, pair: Pair, choice: AssessmentChoice
     let found = assessed(context.analysis, id, choice).ok()?;
     let change = found.changes.get(pair)?.as_ref()?;
     let (average, which) = (choice.average, context.pair(pair));
-    let (correction, from) = match choice.correction {
-        AssessedCorrection::Own => (context.result.correction.clone(), "the condition's own optimum".to_owned()),
-        AssessedCorrection::Scheduled => {
-            let from = format!("the schedule at {} kt", number(found.airspeed_kt));
-            (context.analysis.schedule.as_ref().ok()?.at_state(context.result.condition.flight_state()), from)
-        }
-        AssessedCorrection::ScheduleOfOthers => {
-            let from = format!("the schedule of the other conditions at {} kt", number(found.airspeed_kt));
-            let schedule = context.analysis.schedule_without(id).ok()?;
-            (schedule.at_state(context.result.condition.flight_state()), from)
-        }
-        AssessedCorrection::ScheduledWithoutLeads => {
-            let from = format!("the schedule at {} kt, its leads left out", number(found.airspeed_kt));
-            (
-                context
-                    .analysis
-                    .schedule
-                    .as_ref()
-                    .ok()?
-                    .at_state(context.result.condition.flight_state())
-                    .without_leads(),
-                from,
-            )
-        }
-    };
+    let correction = choice.correction.of(context.analysis, context.result).ok()?;
+    let from = choice.correction.source(found.airspeed_kt);
     let role = match choice.model {
         AssessedModel::Nominal => "nominal model",
         AssessedModel::Representative => "physics representative",

@@ -256,11 +256,8 @@ fn substitution_lines(
 
 pub(super) fn scheduled_gain(analysis: &Analysis, channel: Channel, airspeed_kt: f64) -> Option<Derivation> {
     let schedule = analysis.schedule.as_ref().ok()?;
-    let at = schedule.at(airspeed_kt);
-    let (regression, value) = match channel {
-        Channel::Input(input) => (schedule.inputs.get(input)?, at.input_gains[input]),
-        Channel::Output(output) => (schedule.outputs.get(output)?, at.output_gains[output]),
-    };
+    let regression = schedule.gains.get(channel)?;
+    let value = schedule.at(airspeed_kt).gain(channel);
     let (inputs, outputs) = analysis.study.dataset.names_of_channels();
     let name = format!("k_{}", channel.name(&inputs, &outputs));
     let symbol = match schedule.settings.quantity {

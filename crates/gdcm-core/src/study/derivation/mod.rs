@@ -203,7 +203,7 @@ impl<'a> Context<'a> {
 
 /// How many frequencies count and how much, where coherence says that.
 fn counted_words(mismatch: &Mismatch) -> Option<String> {
-    let count = mismatch.coherence_weights.as_ref()?.len();
+    let count = mismatch.weights()?.len();
     Some(format!("{count} of the frequencies, each by its coherence: W = [1.58 (1 − e^(−γ²))]² (M4a)"))
 }
 

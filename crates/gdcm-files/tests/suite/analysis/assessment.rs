@@ -92,7 +92,7 @@ fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
         let (own, at) = (&analysis.condition(*id).unwrap().correction, schedule.at(evidence.airspeeds_kt[place]));
         for pair in analysis.study.dataset.on_axis().marked() {
             let residual = of_kind.pairs[pair].residuals[place].unwrap();
-            let (own, scheduled) = (own.net_gain(pair).value(), at.net_gain(pair).value());
+            let (own, scheduled) = (own.net_gain(pair), at.net_gain(pair));
             assert!((residual.ln - (own / scheduled).ln()).abs() < 1e-14);
             assert!((residual.percent - 100.0 * (own / scheduled - 1.0)).abs() < 1e-11);
         }

@@ -155,7 +155,7 @@ fn what_is_outside_the_valid_band_counts_for_nothing() {
     let banded = dataset(Some(&good), Some([8.0, 11.0]));
     let result = with(&banded, &[]);
     for (_, mismatch) in only(&result).comparison.representative.mismatch.iter() {
-        let omega = mismatch.as_ref().unwrap().coherence_weights.as_ref().unwrap().omega();
+        let omega = mismatch.as_ref().unwrap().coherence_weights.as_ref().unwrap().omega.as_slice();
         assert!(omega.iter().all(|omega| (8.0..=11.0).contains(omega)) && omega.len() > 10);
     }
     let gain = only(&result).comparison.delta.gain[Pair::new(0, 0)].unwrap();

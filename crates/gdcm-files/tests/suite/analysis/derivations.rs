@@ -59,12 +59,9 @@ fn g_and_d_are_told_with_their_models_and_medians() {
 fn gains_delays_and_their_bounds_are_told() {
     let result = analysis().condition(CONDITION).unwrap();
     let net = result.correction.net_gain(pair());
-    let found = assert_told(ExplainTarget::NetGain(CONDITION, pair()), net.value());
+    let found = assert_told(ExplainTarget::NetGain(CONDITION, pair()), net);
     assert!(found.with_numbers[0].starts_with("k_Q k_LON = "), "{found:?}");
-    assert_eq!(
-        told(ExplainTarget::NetDelay(CONDITION, pair())).value,
-        1e3 * result.correction.net_delay(pair()).value_s()
-    );
+    assert_eq!(told(ExplainTarget::NetDelay(CONDITION, pair())).value, 1e3 * result.correction.net_delay_s(pair()));
     let channels = (0..4).map(Channel::Input).chain((0..6).map(Channel::Output));
     let own = |inputs: &[f64], outputs: &[f64]| inputs.iter().chain(outputs).copied().collect::<Vec<f64>>();
     let gains = own(&result.gains.inputs, &result.gains.outputs);

@@ -56,26 +56,15 @@ fn signed_delays_filters_and_gains_of_the_example_agree() {
         assert_close(&at, found.delays.objective, number(&expected["objective"]), 1e-4);
         assert_eq!(found.delays.matched, expected["matched"].as_bool().unwrap(), "{at}");
         let leads = found.correction.leads.as_ref().unwrap();
-        assert_all_close(&at, leads.outputs_s(), &expected["tau_out_s"], 1e-3);
-        assert_all_close(&at, leads.inputs_s(), &expected["tau_in_s"], 1e-3);
-        let lead_s = leads.filters().clone().map(|filters| filters.map_lead());
-        assert_all_close(&at, &lead_s[0], &expected["lead_in_s"], 1e-3);
-        assert_all_close(&at, &lead_s[1], &expected["lead_out_s"], 1e-3);
+        assert_all_close(&at, &leads.taus_s.outputs, &expected["tau_out_s"], 1e-3);
+        assert_all_close(&at, &leads.taus_s.inputs, &expected["tau_in_s"], 1e-3);
+        let lead_s = leads.filters().map(|_, filter| filter.map_or(0.0, |filter| filter.lead_s()));
+        assert_all_close(&at, &lead_s.inputs, &expected["lead_in_s"], 1e-3);
+        assert_all_close(&at, &lead_s.outputs, &expected["lead_out_s"], 1e-3);
         assert_all_close(&at, &[found.gain_bounds().lower, found.gain_bounds().upper], &expected["gain_bounds"], 1.0);
         assert_all_close(&at, &found.correction.output_gains, &expected["k_out"], 1.0);
         assert_all_close(&at, &found.correction.input_gains, &expected["k_in"], 1.0);
         assert_close(&at, found.gains.objective, number(&expected["gain_objective"]), 1.0);
-    }
-}
-
-/// Lead time of each filter, 0 where there is none.
-trait LeadTimes {
-    fn map_lead(self) -> Vec<f64>;
-}
-
-impl LeadTimes for Vec<Option<gdcm_core::response::LeadFilter>> {
-    fn map_lead(self) -> Vec<f64> {
-        self.into_iter().map(|filter| filter.map_or(0.0, |filter| filter.lead_s())).collect()
     }
 }
 
@@ -112,8 +101,8 @@ fn the_schedule_of_the_example_holds_the_mean_signed_delay_of_each_channel() {
     let (reference, schedule) = (json(REFERENCE), EXAMPLE_WITH_LEADS.schedule.as_ref().unwrap());
     let at = schedule.at(77.0);
     let leads = at.leads.as_ref().unwrap();
-    assert_all_close("inputs", leads.inputs_s(), &reference["example"]["schedule"]["tau_in_s"], 1e-3);
-    assert_all_close("outputs", leads.outputs_s(), &reference["example"]["schedule"]["tau_out_s"], 1e-3);
+    assert_all_close("inputs", &leads.taus_s.inputs, &reference["example"]["schedule"]["tau_in_s"], 1e-3);
+    assert_all_close("outputs", &leads.taus_s.outputs, &reference["example"]["schedule"]["tau_out_s"], 1e-3);
     assert!(at.input_delays_s.iter().all(|delay_s| *delay_s == 0.0), "all inputs want lead");
     // M15.6: NX wants 69 ms of delay in condition 4.
     let hidden = |caution: &&ScheduleCaution| matches!(caution, ScheduleCaution::SignedDelayApart { .. });
@@ -285,19 +274,19 @@ fn known_signed_delays_and_gains_are_found_again() {
         for (pair, wanted_s) in result.comparison.delta.band_delay_s.iter() {
             let sum_s = taus("out")[pair.output] + taus("in")[pair.input];
             assert!((wanted_s.unwrap() - sum_s).abs() < 1e-6, "{name}: D of {pair:?}");
-            let found_s = result.correction.net_delay(pair).value_s();
+            let found_s = result.correction.net_delay_s(pair);
             assert!((found_s - sum_s).abs() < 1e-6, "{name}: {pair:?} {found_s} {sum_s}");
         }
         // One constant may move from all outputs to all inputs: the sum of squares decides.
-        let constant_s = leads.inputs_s()[0] - taus("in")[0];
+        let constant_s = leads.taus_s.inputs[0] - taus("in")[0];
         for (at, tau_s) in taus("out").iter().enumerate() {
-            assert!((leads.outputs_s()[at] + constant_s - tau_s).abs() < 1e-6, "{name}");
+            assert!((leads.taus_s.outputs[at] + constant_s - tau_s).abs() < 1e-6, "{name}");
         }
         for (at, gain) in list(&entry["on"]).iter().map(numbers).zip(numbers(&entry["net_gain_on"])) {
             let pair = Pair::new(at[0] as usize, at[1] as usize);
-            assert!((result.correction.net_gain(pair).value() / gain - 1.0).abs() < 1e-3, "{name}: {pair:?}");
+            assert!((result.correction.net_gain(pair) / gain - 1.0).abs() < 1e-3, "{name}: {pair:?}");
         }
-        assert_eq!(leads.filter(CorrectedChannel::Input(0)).is_some(), leads.inputs_s()[0] < 0.0);
+        assert_eq!(leads.filters()[CorrectedChannel::Input(0)].is_some(), leads.taus_s.inputs[0] < 0.0);
     }
 }
 
@@ -330,7 +319,7 @@ fn what_a_response_wants_has_the_bar_of_whole_analyses_with_each_model_pinned() 
     let mut engine = Engine::default();
     let mut tau_s = |study: &Study| {
         let analysis = analyze(&mut engine, study);
-        analysis.condition(id).unwrap().correction.leads.as_ref().unwrap().tau_s(channel)
+        analysis.condition(id).unwrap().correction.leads.as_ref().unwrap().taus_s[channel]
     };
     let own_s = tau_s(&alone);
     let squares = others.iter().map(|name| {

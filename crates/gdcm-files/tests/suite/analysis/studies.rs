@@ -23,7 +23,7 @@ fn held_responses_have_their_delta_gain_as_net_gain_in_every_condition() {
     for result in analysis.conditions.values().map(|result| result.as_ref().unwrap()) {
         assert!(result.gains.matched);
         for pair in result.held().marked() {
-            let (net, wanted) = (result.correction.net_gain(pair).value(), result.comparison.delta.gain[pair].unwrap());
+            let (net, wanted) = (result.correction.net_gain(pair), result.comparison.delta.gain[pair].unwrap());
             // Matched means within 1e-8 of the logarithm.
             assert!((net / wanted - 1.0).abs() < 1e-8, "{pair:?}: {net} for {wanted}");
             held += 1;

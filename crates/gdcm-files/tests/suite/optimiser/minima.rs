@@ -193,9 +193,15 @@ fn problems_that_are_not_well_posed_are_refused_with_the_reason() {
     bad.delta[pair] = Some(-1.0);
     assert_eq!(refused(&bad), ProblemError::Gain { pair, gain: -1.0 });
     let bad = Problem { bounds: Bounds { lower: 2.0, upper: 1.0 }, ..good.clone() };
-    assert_eq!(refused(&bad), ProblemError::GainBounds { lower: 2.0, upper: 1.0 });
+    assert_eq!(
+        refused(&bad),
+        ProblemError::Bounds { quantity: good.quantity, bounds: Bounds { lower: 2.0, upper: 1.0 } }
+    );
     let bad = Problem { bounds: Bounds { lower: 0.0, upper: 1.0 }, ..good.clone() };
-    assert_eq!(refused(&bad), ProblemError::GainBounds { lower: 0.0, upper: 1.0 });
+    assert_eq!(
+        refused(&bad),
+        ProblemError::Bounds { quantity: good.quantity, bounds: Bounds { lower: 0.0, upper: 1.0 } }
+    );
     let bad = Problem { alpha: -1.0, ..good.clone() };
     assert_eq!(refused(&bad), ProblemError::Alpha { alpha: -1.0 });
     let bad = Problem { alpha: f64::NAN, ..good.clone() };
@@ -216,7 +222,7 @@ fn delay_problems_that_are_not_well_posed_are_refused_with_the_reason() {
     assert_eq!(refused(&bad), ProblemError::Delay { pair, delay_s: f64::INFINITY });
     let bounds = Bounds { lower: 0.0, upper: -0.1 };
     let error = refused(&Problem { bounds, ..good.clone() });
-    assert_eq!(error, ProblemError::DelayBounds { lower_s: 0.0, upper_s: -0.1 });
+    assert_eq!(error, ProblemError::Bounds { quantity: Quantity::Delay, bounds: Bounds { lower: 0.0, upper: -0.1 } });
     assert_eq!(refused(&Problem { alpha: -1.0, ..good.clone() }), ProblemError::Alpha { alpha: -1.0 });
     let bad = Problem { constrained: PairTable::filled(1, 1, false), ..good };
     assert!(matches!(refused(&bad), ProblemError::Shape { table: "constrained", .. }));

@@ -12,8 +12,9 @@ use gdcm_core::study::{AdoptedModels, ChannelTimeSkew, IdentificationRequest};
 use gdcm_files::{IdentifiedModels, OutputSet, add_identified, make_directory};
 
 use super::{
-    ChannelDelay, ChannelList, Destination, Failure, Group, IdentifyArguments, TerminalProgress, by_words, caution,
-    caution_of, counted, existing, hold_out, laid_out, listed_paths, record_table, relative_entry, say,
+    ChannelConversion, ChannelDelay, ChannelList, Destination, Failure, Group, IdentifyArguments, TerminalProgress,
+    by_words, caution, caution_of, counted, existing, hold_out, laid_out, listed_paths, record_table, relative_entry,
+    said_conditions, say,
 };
 
 /// The file of what was found.
@@ -84,14 +85,6 @@ fn is_identified(found: &Identification, input: usize, outputs: usize) -> bool {
     is_swept && (0..outputs).any(|output| !found.not_identified.contains(&(output, input)))
 }
 
-/// The files named on the command line of which no record came.
-fn unread(named: &[PathBuf], records: &[LaidOutRecord]) -> Vec<PathBuf> {
-    let came = |path: &&PathBuf| {
-        records.iter().any(|record| Path::new(&record.table.source.file).file_name() == path.file_name())
-    };
-    named.iter().filter(|path| !path.is_dir() && !came(path)).cloned().collect()
-}
-
 /// Models are to be identified from the records of a condition.
 struct IdentificationTask {
     /// The condition of the dataset; none without one.
@@ -151,13 +144,18 @@ fn tasks(
     channels: &mut RecordChannels,
 ) -> Result<(Vec<IdentificationTask>, Vec<PathBuf>), Failure> {
     let band = band(arguments, destination)?;
-    let mut records = laid_out(arguments, channels)?;
-    let unread = unread(&arguments.records, &records);
+    let (mut records, unread) = laid_out(arguments, channels)?;
     hold_out(&arguments.hold_out, &mut records)?;
     let preparation = preparation(channels, &arguments.delay)?;
     let groups = match destination {
         Some(destination) => destination.groups(records)?,
-        None => vec![(None, records)],
+        None => {
+            let conditions = said_conditions(&records);
+            if conditions.contains(',') {
+                caution(&format!("the names of the records say conditions {conditions}: all are fitted together"));
+            }
+            vec![(None, records)]
+        }
     };
     let tasks = groups.into_iter().map(|group| IdentificationTask::new(group, &preparation, band));
     Ok((tasks.collect::<Result<_, _>>()?, unread))
@@ -182,14 +180,36 @@ fn outcome(task: &IdentificationTask, file: &Path, found: &Identification) -> St
     )
 }
 
-/// The channels asked for: the dataset's, in its units, or those of the command line, in the units of the first record.
+/// The channels asked for, with what is said of their samples.
 fn channels(arguments: &IdentifyArguments, destination: Option<&Destination>) -> Result<RecordChannels, Failure> {
+    let mut channels = named_channels(arguments, destination)?;
+    let units = arguments.unit.iter().map(|said| ("--unit", said.clone()));
+    for (option, ChannelConversion { channel, said }) in
+        units.chain(arguments.factor.iter().map(|of| ("--factor", of.clone())))
+    {
+        let refused = |reason: String| Err(Failure::Option { option, reason });
+        if !channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == channel) {
+            return refused(format!("{channel} is none of the channels"));
+        }
+        if channels.said.insert(channel.clone(), said).is_some() {
+            return refused(format!("{channel} has a unit or a factor already"));
+        }
+    }
+    Ok(channels)
+}
+
+/// The channels asked for: the dataset's, in its units, or those of the command line, in the units of the first record.
+fn named_channels(arguments: &IdentifyArguments, destination: Option<&Destination>) -> Result<RecordChannels, Failure> {
     let Some(destination) = destination else {
         let rules = |list: &Option<ChannelList>| {
             let channels = list.iter().flat_map(|list| &list.channels);
             channels.map(|(name, column)| with_column(ChannelRule::named(name.clone()), column.as_ref())).collect()
         };
-        return Ok(RecordChannels { inputs: rules(&arguments.inputs), outputs: rules(&arguments.outputs) });
+        return Ok(RecordChannels {
+            inputs: rules(&arguments.inputs),
+            outputs: rules(&arguments.outputs),
+            ..RecordChannels::default()
+        });
     };
     let mut channels = RecordChannels::of_dataset(&destination.dataset);
     for (option, list, rules) in [

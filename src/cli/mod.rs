@@ -32,7 +32,7 @@ use gdcm_files::{Existing, Opened, holds_models, load_any, open_study_of, write_
 
 use crate::executor::start_threads;
 use arguments::{Arguments, real_number, whole_number};
-use destination::{Destination, Group};
+use destination::{Destination, Group, said_conditions};
 use failure::{Failure, listed_paths};
 use models::{ReadingProgress, counted};
 use read_record::{hold_out, laid_out, record_table, relative_entry};
@@ -46,7 +46,7 @@ pub use arguments::{
     PairList, Rejection, ReportArguments, SaidSign, StudyArguments,
 };
 pub use export::{Breakpoints, ExportArguments};
-pub use identify_arguments::{ChannelDelay, ChannelList, IdentifyArguments, OfferedChoice};
+pub use identify_arguments::{ChannelConversion, ChannelDelay, ChannelList, IdentifyArguments, OfferedChoice};
 
 /// What the command line asks for.
 #[derive(Debug)]

@@ -4,18 +4,18 @@ use gdcm_core::message_text::sanitized;
 use std::path::{Path, PathBuf};
 
 use gdcm_core::dataset::ConditionRecord;
-use gdcm_core::records::{LaidOutRecord, RecordChannels, RecordTable, TimeWish};
+use gdcm_core::records::{LaidOutRecord, RecordChannels, RecordTable, TimeWish, leave_out_copies};
 use gdcm_core::study::Table;
 use gdcm_core::units::telling;
 use gdcm_files::{FoundRecords, read_records, relative_folder};
 
 use super::{Failure, IdentifyArguments, ReadingProgress, caution, error, indented, note};
 
-/// Every record with its columns; what was chosen, and what is wrong, is told on standard error.
+/// Every record with its columns, and the files named of which none came; what was chosen, and what is wrong, is told on standard error.
 pub(super) fn laid_out(
     arguments: &IdentifyArguments,
     channels: &mut RecordChannels,
-) -> Result<Vec<LaidOutRecord>, Failure> {
+) -> Result<(Vec<LaidOutRecord>, Vec<PathBuf>), Failure> {
     let wish = TimeWish { column: arguments.time.clone(), sample_time_s: arguments.sample_rate.map(|rate| 1.0 / rate) };
     let (mut records, mut told): (Vec<LaidOutRecord>, Vec<String>) = (Vec::new(), Vec::new());
     for table in tables(arguments)? {
@@ -36,8 +36,23 @@ pub(super) fn laid_out(
         *record = LaidOutRecord::new(record.table.clone(), record.layout.clone(), record.guess.clone(), channels);
         record.problems.iter().for_each(|words| error(&format!("{}: {words}", record.table.name)));
     }
+    let unread = unread(&arguments.records, &records);
+    leave_out_copies(&mut records);
+    for copy in records.iter().filter(|record| !record.used) {
+        let why = copy.cautions.last().map(ToString::to_string).unwrap_or_default();
+        caution(&format!("{}: {why}", copy.table.name));
+    }
+    records.retain(|record| record.used);
     let wrong = records.iter().filter(|record| !record.problems.is_empty()).count();
-    if wrong > 0 { Err(Failure::Records { wrong, of: records.len() }) } else { Ok(records) }
+    if wrong > 0 { Err(Failure::Records { wrong, of: records.len() }) } else { Ok((records, unread)) }
+}
+
+/// The files named on the command line of which no record came.
+fn unread(named: &[PathBuf], records: &[LaidOutRecord]) -> Vec<PathBuf> {
+    let came = |path: &&PathBuf| {
+        records.iter().any(|record| Path::new(&record.table.source.file).file_name() == path.file_name())
+    };
+    named.iter().filter(|path| !path.is_dir() && !came(path)).cloned().collect()
 }
 
 fn tables(arguments: &IdentifyArguments) -> Result<Vec<RecordTable>, Failure> {

@@ -120,8 +120,8 @@ mod tests {
 #[cfg(test)]
 mod limits_tests {
     use gdcm_core::dataset::limits::{
-        LARGEST_TEXT, MOST_CHANNELS, MOST_CONDITIONS, MOST_COORDINATES, MOST_FREQUENCIES, MOST_MODELS, MOST_MODELS_IN_ALL,
-        MOST_STATES,
+        LARGEST_TEXT, MOST_CHANNELS, MOST_CONDITIONS, MOST_COORDINATES, MOST_FREQUENCIES, MOST_MODELS,
+        MOST_MODELS_IN_ALL, MOST_STATES,
     };
     use gdcm_core::dataset::{GREATEST_CHANNEL_DELAY_S, limits};
     use gdcm_core::study::{Kind, SETTINGS};
@@ -145,7 +145,10 @@ mod limits_tests {
             ),
             ("files of the folders that are given", MOST_FILES.to_string()),
             ("folders inside one another", DEEPEST.to_string()),
-            ("models among the variables of a file; values inside one another", format!("{MOST_FOUND}; {DEEPEST_VALUE}")),
+            (
+                "models among the variables of a file; values inside one another",
+                format!("{MOST_FOUND}; {DEEPEST_VALUE}"),
+            ),
             ("records of an archive", MOST_RECORDS.to_string()),
             ("inputs, outputs", format!("{MOST_CHANNELS} each")),
             ("conditions", MOST_CONDITIONS.to_string()),
@@ -181,7 +184,9 @@ mod limits_tests {
         let text = std::fs::read_to_string(path).unwrap();
         let mut parts: Vec<&str> = text.split_inclusive("|---|\n").collect();
         let [_, files, settings] = parts.as_mut_slice() else { panic!("two tables") };
-        let end = |part: &str| part.lines().take_while(|line| line.starts_with('|')).map(|line| line.len() + 1).sum::<usize>();
+        let end = |part: &str| {
+            part.lines().take_while(|line| line.starts_with('|')).map(|line| line.len() + 1).sum::<usize>()
+        };
         let (files, settings) = (&files[..end(files)], &settings[..end(settings)]);
         if std::env::var_os("GDCM_WRITE_FILES").is_some() {
             std::fs::write(path, text.replace(files, &of_files()).replace(settings, &of_settings())).unwrap();

@@ -318,7 +318,9 @@ pub(super) fn page_of(name: &str, array: &Array, page: usize) -> Result<DMatrix<
         return Err(format!("{name}: expected real numbers, found complex ones"));
     }
     let start = page * rows * columns;
-    let values = array.re.get(start..start + rows * columns).unwrap_or_default();
+    // There are sides enough and no numbers where one behind them is 0.
+    let values = array.re.get(start..start + rows * columns);
+    let values = values.ok_or_else(|| format!("{name}: expected a matrix, found an array without numbers"))?;
     if let Some(at) = values.iter().position(|value| !value.is_finite()) {
         let place = if rows == 0 { (0, 0) } else { (at % rows + 1, at / rows + 1) };
         return Err(format!(

@@ -10,11 +10,11 @@ use crate::view::FormKind;
 use crate::view::assembling::{AssemblingCommand, AssemblyState, Reading};
 use gdcm_core::assembly::Rules;
 use gdcm_files::{
-    FileError, FolderProgress, FoundModels, add_dataset, add_rules, load_rules, read_models, relative_folder,
-    rules_path, sources_folder,
+    FolderProgress, FoundModels, add_dataset, add_rules, load_rules, read_models, relative_folder, rules_path,
+    sources_folder,
 };
 
-use super::{DialogPurpose, Fault, GdcmApp, ReplySender};
+use super::{DialogPurpose, GdcmApp, ReplySender};
 
 /// Bytes of values between two words about how far a file is read.
 const TOLD_EVERY: u64 = 16 << 20;
@@ -141,21 +141,15 @@ impl GdcmApp {
         if let Some(bench) = &mut self.state.assembling {
             bench.reading = Some(Reading::default());
         }
-        let take = move |app: &mut Self, read: Result<_, Fault>| app.models_read(number, read);
-        if let Err(error) = self.replies.in_thread("models", read, take) {
-            self.notify_error(format!("the files cannot be read: {error}"));
-        }
-    }
-
-    /// Takes what a thread has read.
-    fn models_read(&mut self, number: u64, read: Result<(Sources, Result<FoundModels, FileError>), Fault>) {
-        let Some(bench) = self.state.assembling.as_mut().filter(|_| number == self.models.newest) else { return };
-        bench.reading = None;
-        match read {
-            Ok((sources, Ok(found))) => self.take_models(sources, found),
-            Ok((_, Err(error))) => self.notify_error(error.to_string()),
-            Err(fault) => self.tell_fault("the reading of models", &fault),
-        }
+        self.in_thread("the reading of models", read, move |app, read| {
+            let Some(bench) = app.state.assembling.as_mut().filter(|_| number == app.models.newest) else { return };
+            bench.reading = None;
+            match read {
+                Some((sources, Ok(found))) => app.take_models(sources, found),
+                Some((_, Err(error))) => app.notify_error(error.to_string()),
+                None => {}
+            }
+        });
     }
 
     fn take_models(&mut self, sources: Sources, found: FoundModels) {

@@ -13,7 +13,7 @@ use gdcm_files::{
     file_exists, load_any, open_study_of, recent_files, save_study,
 };
 
-use super::{Fault, GdcmApp};
+use super::{GdcmApp, caught};
 
 /// The study as it was saved last.
 #[derive(Clone, Debug)]
@@ -111,13 +111,11 @@ impl GdcmApp {
             newest.map_or(Ok(()), |newest| add_recent_file(&directory, &newest))?;
             Ok(recent_files(&directory).into_iter().map(recent_file).collect())
         };
-        let take = |app: &mut Self, read: Result<Result<_, FileError>, Fault>| match read {
-            Ok(Ok(files)) => app.state.recent = files,
-            Ok(Err(error)) => app.notify_error(error.to_string()),
-            Err(fault) => app.tell_fault("the reading of a file", &fault),
-        };
-        // Without a thread the list stays as it was.
-        let _ = self.replies.in_thread("recent files", read, take);
+        self.in_thread("the reading of recent files", read, |app, read| match read {
+            Some(Ok(files)) => app.state.recent = files,
+            Some(Err(error)) => app.notify_error(error.to_string()),
+            None => {}
+        });
     }
 
     /// Opens a dataset or a study; what is open stays until it is read. The dataset of a study may have moved.
@@ -142,17 +140,10 @@ impl GdcmApp {
         read: impl FnOnce() -> Result<Opened, FileError> + Send + 'static,
     ) {
         self.state.opening = Some(name);
-        let take = move |app: &mut Self, read: Result<_, Fault>| match read {
-            Ok(opened) => app.answer_opened(purpose, opened),
-            Err(fault) => {
-                app.state.opening = None;
-                app.tell_fault("the reading of a file", &fault);
-            }
-        };
-        if let Err(error) = self.replies.in_thread("reading", read, take) {
-            self.state.opening = None;
-            self.notify_error(format!("the file cannot be read: {error}"));
-        }
+        self.in_thread("the reading of a file", read, move |app, opened| {
+            app.state.opening = None;
+            opened.into_iter().for_each(|opened| app.answer_opened(purpose, opened));
+        });
     }
 
     pub(super) fn open_example(&mut self) {
@@ -160,7 +151,6 @@ impl GdcmApp {
     }
 
     fn answer_opened(&mut self, purpose: ReadFor, opened: Result<Opened, FileError>) {
-        self.state.opening = None;
         match opened {
             Ok(opened) if purpose != ReadFor::Reloading && self.state.unsaved => {
                 self.ask_to_lose(PendingAction::Show(purpose, Box::new(opened)));
@@ -222,14 +212,16 @@ impl GdcmApp {
         if self.dialog_open {
             return;
         }
-        let take = move |app: &mut Self, chosen: Result<Option<PathBuf>, Fault>| {
+        self.dialog_open = true;
+        // A desktop without dialogs is none that was left without a choice.
+        let ask = move || caught(|| dialog(purpose, &file_name)).ok().flatten();
+        self.in_thread("the dialog", ask, move |app, chosen| {
             app.dialog_open = false;
-            match chosen.ok().flatten() {
+            match chosen.flatten() {
                 Some(path) => app.path_chosen(purpose, path),
                 None => app.nothing_chosen(purpose),
             }
-        };
-        self.dialog_open = self.replies.in_thread("dialog", move || dialog(purpose, &file_name), take).is_ok();
+        });
     }
 
     fn path_chosen(&mut self, purpose: DialogPurpose, path: PathBuf) {
@@ -240,7 +232,7 @@ impl GdcmApp {
                 let is_asked = with_study_extension(path.clone()) == path;
                 self.save_as(path, if is_asked { Existing::Replace } else { Existing::Keep });
             }
-            DialogPurpose::ExportFolder => self.state.forms.export.folder = path.display().to_string(),
+            DialogPurpose::ExportFolder => *self.state.forms.typed_in(FormKind::Export) = path.display().to_string(),
             DialogPurpose::ModelFolder => self.assemble(AssemblingCommand::Add(vec![path])),
             DialogPurpose::RecordFolder => self.records(RecordsCommand::Add(vec![path])),
         }
@@ -251,7 +243,7 @@ impl GdcmApp {
         match purpose {
             DialogPurpose::Open => self.state.forms.shown = Some(FormKind::Open),
             DialogPurpose::SaveStudy => {
-                self.state.forms.save_path = self.proposed_name();
+                *self.state.forms.typed_in(FormKind::Save) = self.proposed_name();
                 self.state.forms.shown = Some(FormKind::Save);
             }
             DialogPurpose::ExportFolder | DialogPurpose::ModelFolder | DialogPurpose::RecordFolder => {}
@@ -285,7 +277,7 @@ impl GdcmApp {
                 }
             }
             Err(FileError::Exists { paths }) => {
-                self.state.forms.save_path = path.display().to_string();
+                *self.state.forms.typed_in(FormKind::Save) = path.display().to_string();
                 self.ask_to_overwrite(&paths, FormKind::Save, Command::SaveStudyAs(path));
             }
             Err(error) => {

@@ -19,9 +19,9 @@ impl GdcmApp {
     /// Writes the corrections of the conditions chosen in the form.
     pub(super) fn export(&mut self) {
         let Some(analysis) = self.complete_results() else { return };
-        let form = &self.state.forms.export;
-        let chosen = form.chosen.clone();
-        let folder = self.at_home(PathBuf::from(form.folder.trim()));
+        let chosen = self.state.forms.exported.clone();
+        let folder = PathBuf::from(self.state.forms.typed_in(FormKind::Export).trim());
+        let folder = self.at_home(folder);
         let written = write_results(&analysis, &self.loaded.sha256, &chosen, &folder, self.outputs());
         let words = |()| format!("exported {} conditions to {}", chosen.len(), sanitized_path(&folder));
         self.written(written.map(words), FormKind::Export, Command::Export);
@@ -30,10 +30,11 @@ impl GdcmApp {
     /// Shows the form that exports for other tools; a name is proposed where none was typed.
     pub(super) fn ask_export_as(&mut self) {
         let stem = self.loaded.path().and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
-        let form = &mut self.state.forms.export_as;
-        if form.path.is_empty() {
+        let extension = self.state.forms.export_format.about().extension;
+        let path = self.state.forms.typed_in(FormKind::ExportAs);
+        if path.is_empty() {
             let stem = stem.unwrap_or_else(|| "example".to_owned());
-            form.path = format!("{}.{}", stem.trim_end_matches(".json"), form.format.about().extension);
+            *path = format!("{}.{extension}", stem.trim_end_matches(".json"));
         }
     }
 
@@ -88,9 +89,9 @@ impl GdcmApp {
     /// Asks where to save a view; the folder of the last figure is proposed.
     pub(super) fn ask_save_figure(&mut self, view: View, format: FigureFormat) {
         let name = format!("{}.{}", figure_name(&self.state, view), format.extension());
-        let form = &mut self.state.forms.figure;
-        form.view = Some(view);
-        form.path = Path::new(form.path.trim()).with_file_name(name).display().to_string();
+        self.state.forms.figure = Some(view);
+        let path = self.state.forms.typed_in(FormKind::SaveFigure);
+        *path = Path::new(path.trim()).with_file_name(name).display().to_string();
         self.state.forms.shown = Some(FormKind::SaveFigure);
     }
 
@@ -119,7 +120,7 @@ impl GdcmApp {
     pub(super) fn ask_save_table(&mut self, name: &str, table: Arc<Table>) {
         let name: String = name.chars().filter(|letter| letter.is_alphanumeric() || *letter == ' ').collect();
         self.state.forms.table = Some(table);
-        self.state.forms.table_path = format!("{}.csv", name.replace(' ', "-"));
+        *self.state.forms.typed_in(FormKind::SaveTable) = format!("{}.csv", name.replace(' ', "-"));
         self.state.forms.shown = Some(FormKind::SaveTable);
     }
 

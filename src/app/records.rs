@@ -12,7 +12,7 @@ use gdcm_core::records::{LaidOutRecord, RecordChannels, RecordLayout, RecordTabl
 use gdcm_core::study::{AdoptedModels, Edit, IdentifyJob, OfferedModels};
 use gdcm_files::{DatasetOrigin, FileError, FolderProgress, example_records, load_records, read_records};
 
-use super::{DialogPurpose, Fault, GdcmApp};
+use super::{DialogPurpose, GdcmApp};
 
 /// Records that were read, by condition, and what could not be.
 #[derive(Default)]
@@ -77,10 +77,7 @@ impl GdcmApp {
                 let folder = path.parent().unwrap_or(Path::new("")).to_owned();
                 self.read_in_thread(name, move |dataset| Ok(of_entries(dataset, id, &entries, &folder)));
             }
-            DatasetOrigin::File(_) => {
-                let nothing = ConditionRecords::new(Vec::new(), &self.state.study.dataset);
-                self.state.records.conditions.insert(id, nothing);
-            }
+            DatasetOrigin::File(_) => drop(self.records_of(id)),
         }
     }
 
@@ -99,37 +96,33 @@ impl GdcmApp {
         let dataset = Arc::clone(self.state.study.file_dataset());
         let of = Arc::clone(&dataset);
         self.state.records.reading = Some(RecordsReading { name });
-        let take = move |app: &mut Self, found: Result<_, Fault>| app.records_read(&of, found);
-        if let Err(error) = self.replies.in_thread("records", move || read(&dataset), take) {
-            self.state.records.reading = None;
-            self.notify_error(format!("the records cannot be read: {error}"));
-        }
+        let read = move || read(&dataset);
+        self.in_thread("the reading of records", read, move |app, found| {
+            if !Arc::ptr_eq(&of, app.state.study.file_dataset()) {
+                return;
+            }
+            app.state.records.reading = None;
+            match found {
+                Some(Ok(found)) => app.take_records(found),
+                Some(Err(error)) => app.notify_error(error.to_string()),
+                None => {}
+            }
+            // What was looked for is not looked for again, found or not.
+            app.records_of(app.state.condition().id());
+        });
     }
 
-    /// Takes the records that were read for a dataset.
-    fn records_read(&mut self, dataset: &Arc<Dataset>, found: Result<Result<ReadRecords, FileError>, Fault>) {
-        if !Arc::ptr_eq(dataset, self.state.study.file_dataset()) {
-            return;
-        }
-        self.state.records.reading = None;
-        match found {
-            Ok(Ok(found)) => self.take_records(found),
-            Ok(Err(error)) => self.notify_error(error.to_string()),
-            Err(fault) => self.tell_fault("the reading of records", &fault),
-        }
-        // What was looked for is not looked for again, found or not.
-        let (id, dataset) = (self.state.condition().id(), Arc::clone(&self.state.study.dataset));
-        let nothing = || ConditionRecords::new(Vec::new(), &dataset);
-        self.state.records.conditions.entry(id).or_insert_with(nothing);
+    /// The records of a condition, none at first.
+    fn records_of(&mut self, id: ConditionId) -> &mut ConditionRecords {
+        let nothing = || ConditionRecords::new(Vec::new(), &self.state.study.dataset);
+        self.state.records.conditions.entry(id).or_insert_with(nothing)
     }
 
     fn take_records(&mut self, found: ReadRecords) {
-        let dataset = Arc::clone(&self.state.study.dataset);
         let count: usize = found.rows.values().map(Vec::len).sum();
         let conditions = found.rows.len();
         for (id, rows) in found.rows {
-            let nothing = || ConditionRecords::new(Vec::new(), &dataset);
-            let records = self.state.records.conditions.entry(id).or_insert_with(nothing);
+            let records = self.records_of(id);
             // A record that is read again takes its place.
             records.rows.retain(|old| rows.iter().all(|new| new.table.name != old.table.name));
             records.rows.extend(rows);

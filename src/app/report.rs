@@ -52,7 +52,7 @@ impl GdcmApp {
     pub(super) fn ask_report(&mut self) {
         match self.analysis_to_write("write the report") {
             Ok(_) => {
-                let form = &mut self.state.forms.report_path;
+                let form = self.state.forms.typed_in(FormKind::Report);
                 let name = report_name(self.saved.path.as_deref().or(self.loaded.path()));
                 *form = Path::new(form.trim()).with_file_name(name).display().to_string();
                 self.state.forms.shown = Some(FormKind::Report);

@@ -1,7 +1,6 @@
 //! What the window and its threads share: mailboxes, replies, and panics, kept and put into words in place of a raw trace.
 
 use std::any::Any;
-use std::io;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -68,20 +67,34 @@ impl ReplySender {
         let _ = self.sender.send(Box::new(reply));
         self.ctx.request_repaint();
     }
+}
 
-    /// Does a single piece of work in a thread of its own, and has the window take what comes of it.
-    pub(super) fn in_thread<T: Send + 'static>(
-        &self,
-        name: &str,
-        work: impl FnOnce() -> T + Send + 'static,
-        take: impl FnOnce(&mut GdcmApp, Result<T, Fault>) + Send + 'static,
-    ) -> io::Result<()> {
-        let replies = self.clone();
-        let work = move || {
+impl GdcmApp {
+    /// Does `work`, called `what`, in a thread of its own, and has the window take what comes of it: nothing where that was a fault, or
+    /// no thread was to be had, which is told before.
+    pub(super) fn in_thread<T: Send + 'static, Work, Take>(&self, what: &'static str, work: Work, take: Take)
+    where
+        Work: FnOnce() -> T + Send + 'static,
+        Take: FnOnce(&mut Self, Option<T>) + Send + 'static,
+    {
+        // What the thread is to do follows once there is one.
+        let (order, ordered) = channel::<(Work, Take)>();
+        let replies = self.replies.clone();
+        let thread = move || {
+            let Ok((work, take)) = ordered.recv() else { return };
             let made = caught(work);
-            replies.send(move |app| take(app, made));
+            replies.send(move |app| {
+                made.as_ref().err().iter().for_each(|fault| app.tell_fault(what, fault));
+                take(app, made.ok());
+            });
         };
-        std::thread::Builder::new().name(name.to_owned()).spawn(work).map(drop)
+        match std::thread::Builder::new().name(what.to_owned()).spawn(thread) {
+            Ok(_) => drop(order.send((work, take))),
+            Err(error) => self.replies.send(move |app| {
+                app.notify_error(format!("{what} cannot begin: {error}"));
+                take(app, None);
+            }),
+        }
     }
 }
 

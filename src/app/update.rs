@@ -9,7 +9,7 @@ use crate::view::{
     Arrangement, Command, CurveCommand, Display, FormKind, Notice, NoticeKind, focus_field, leave_region, table_of,
 };
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::study::Edit;
+use gdcm_core::study::{Edit, Study};
 use gdcm_files::Existing;
 
 use super::{DialogPurpose, GdcmApp, PendingAction};
@@ -52,9 +52,18 @@ impl GdcmApp {
         match command {
             Command::Edit(edit) => self.decide(&edit),
             Command::EndEdit => self.state.history.seal(),
-            Command::Undo => self.go_back(),
-            Command::Forget(edit) => self.forget(&edit),
-            Command::Redo => self.go_forward(),
+            Command::Undo => {
+                let study = self.state.history.undo(&self.state.study);
+                self.take_study(study);
+            }
+            Command::Forget(edit) => {
+                let study = self.state.history.forget(&edit);
+                self.take_study(study);
+            }
+            Command::Redo => {
+                let study = self.state.history.redo(&self.state.study);
+                self.take_study(study);
+            }
             Command::SelectCondition(condition) => select_condition(display, condition),
             Command::FocusPair(pair) if display.pair != pair => {
                 display.pair = pair;
@@ -122,7 +131,8 @@ impl GdcmApp {
             Command::StartTour => self.state.tour = Some(0),
             Command::ShowTourStep(step) => self.state.tour = step,
             Command::AskReason(model) => {
-                self.state.forms.reason = self.state.study.reason(&model).unwrap_or_default().to_owned();
+                let reason = self.state.study.reason(&model).unwrap_or_default().to_owned();
+                self.state.forms.typed.insert(FormKind::Reason, reason);
                 self.state.forms.rejected_model = Some(model);
                 self.state.forms.shown = Some(FormKind::Reason);
             }
@@ -172,22 +182,9 @@ impl GdcmApp {
         }
     }
 
-    fn go_back(&mut self) {
-        if let Some(study) = self.state.history.undo(&self.state.study) {
-            self.state.study = study;
-            self.study_changed();
-        }
-    }
-
-    fn forget(&mut self, edit: &Edit) {
-        if let Some(study) = self.state.history.forget(edit) {
-            self.state.study = study;
-            self.study_changed();
-        }
-    }
-
-    fn go_forward(&mut self) {
-        if let Some(study) = self.state.history.redo(&self.state.study) {
+    /// Takes up another state of the study, where there is one.
+    fn take_study(&mut self, study: Option<Study>) {
+        if let Some(study) = study {
             self.state.study = study;
             self.study_changed();
         }
@@ -223,7 +220,7 @@ impl GdcmApp {
     fn show_form(&mut self, form: Option<FormKind>) {
         if form == Some(FormKind::Export) {
             let all = self.state.study.dataset.conditions().iter().map(|condition| condition.id());
-            self.state.forms.export.chosen = all.collect();
+            self.state.forms.exported = all.collect();
         }
         if form == Some(FormKind::ExportAs) {
             self.ask_export_as();

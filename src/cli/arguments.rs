@@ -7,7 +7,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, FromArgMatches, Parser, Subcommand};
 
-use gdcm_core::study::{AcrossRole, Kind, SETTINGS, Setting};
+use gdcm_core::study::{AcrossRole, Kind, SETTINGS, Setting, SignRole};
 use gdcm_files::figure::{ColumnWidth, FigureKind, Role};
 
 use super::{ExportArguments, IdentifyArguments};
@@ -48,6 +48,9 @@ pub enum Command {
         /// How a study is opened.
         #[command(flatten)]
         opening: OpeningArguments,
+        /// Turn the models of a channel first, as with `analyze`: CHANNEL=-1. May be repeated.
+        #[arg(long, value_name = "CHANNEL=SIGN", allow_hyphen_values = true)]
+        sign: Vec<SaidSign>,
     },
     /// Write the embedded example (synthetic data) as a file to learn the format from.
     Example {
@@ -163,12 +166,43 @@ pub struct StudyArguments {
     /// Conditions, by their ids, separated by commas, to keep from the schedule and to judge it by.
     #[arg(long, value_name = "IDS", value_delimiter = ',', allow_negative_numbers = true)]
     pub hold_out: Vec<i64>,
+    /// Turn the models of a channel whose sign is the other way round, CHANNEL=-1 (the identified models), CHANNEL=-1:physics or
+    /// CHANNEL=-1:all; CHANNEL=1 puts them back. May be repeated.
+    #[arg(long, value_name = "CHANNEL=SIGN", allow_hyphen_values = true)]
+    pub sign: Vec<SaidSign>,
     /// Reject every physics model that is suggested as an outlier.
     #[arg(long)]
     pub reject_suggested: bool,
     /// Reject a model of a condition; may be repeated.
     #[arg(long, value_name = "ID:NAME", allow_hyphen_values = true)]
     pub reject: Vec<Rejection>,
+}
+
+/// The sign of a channel: "NZ=-1", "NZ=-1:physics", "NZ=1".
+#[derive(Clone, Debug, PartialEq)]
+pub struct SaidSign {
+    /// The channel's name.
+    pub channel: String,
+    /// Whose models are turned; none where they are to be as the file has them.
+    pub of: Option<SignRole>,
+}
+
+impl FromStr for SaidSign {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected =
+            || format!("expected CHANNEL=-1, with :identified, :physics or :all behind it, or CHANNEL=1; found {text}");
+        let (channel, sign) = text.rsplit_once('=').ok_or_else(expected)?;
+        let (sign, of) = sign.split_once(':').unwrap_or((sign, SignRole::Identified.word()));
+        let of = SignRole::EACH.into_iter().find(|role| role.word() == of.trim()).ok_or_else(expected)?;
+        let of = match sign.trim() {
+            "-1" | "-" => Some(of),
+            "1" | "+1" | "+" => None,
+            _ => return Err(expected()),
+        };
+        Ok(Self { channel: channel.trim().to_owned(), of })
+    }
 }
 
 /// What is to be analysed, and where the results go.
@@ -195,7 +229,7 @@ pub struct FigureArguments {
     #[command(flatten)]
     pub study: StudyArguments,
     /// Which figure.
-    #[arg(long, value_name = "VIEW", value_parser = figure_kinds())]
+    #[arg(long, value_name = "VIEW", value_parser = one_of(FigureKind::ALL, FigureKind::name))]
     pub view: FigureKind,
     /// The condition, by its id: of bode, error and overview.
     #[arg(long, value_name = "ID", allow_negative_numbers = true)]
@@ -214,7 +248,7 @@ pub struct FigureArguments {
     #[arg(long)]
     pub over_conditions: bool,
     /// Roles to leave out of bode, error and overview, separated by commas (perturbed,identified,rejected).
-    #[arg(long, value_name = "ROLES", value_delimiter = ',', value_parser = roles())]
+    #[arg(long, value_name = "ROLES", value_delimiter = ',', value_parser = one_of(Role::ALL, Role::word))]
     pub hide: Vec<Role>,
     /// Error bars and the bands of the schedule, in net-gain and channels; evidence is made of them anyway.
     #[arg(long)]
@@ -223,7 +257,7 @@ pub struct FigureArguments {
     #[arg(long)]
     pub hertz: bool,
     /// Which model of each condition airspeeds shows: nominal, representative, corrected or identified.
-    #[arg(long, value_name = "MODEL", default_value = "nominal", value_parser = across_roles())]
+    #[arg(long, value_name = "MODEL", default_value = "nominal", value_parser = one_of(AcrossRole::ALL, AcrossRole::name))]
     pub model: AcrossRole,
     /// Among the poles, the zeros of this response, OUTPUT/INPUT, in the nominal model and in the representatives.
     #[arg(long, value_name = "PAIR")]
@@ -232,7 +266,7 @@ pub struct FigureArguments {
     #[arg(long)]
     pub muad: bool,
     /// Width on paper: one column of a journal (84 mm), or both (174 mm).
-    #[arg(long, value_name = "WIDTH", default_value = "double", value_parser = column_widths())]
+    #[arg(long, value_name = "WIDTH", default_value = "double", value_parser = one_of(ColumnWidth::BOTH, ColumnWidth::name))]
     pub width: ColumnWidth,
     /// The file; the end of its name says what it is: .svg, .png (300 dots to the inch), .pdf, or .csv for the numbers.
     #[arg(long, value_name = "FILE")]
@@ -256,25 +290,13 @@ pub struct ReportArguments {
     pub force: bool,
 }
 
-fn across_roles() -> impl TypedValueParser<Value = AcrossRole> {
-    PossibleValuesParser::new(AcrossRole::ALL.map(AcrossRole::name))
-        .try_map(|name| AcrossRole::ALL.into_iter().find(|role| role.name() == name).ok_or("there is no such model"))
-}
-
-fn figure_kinds() -> impl TypedValueParser<Value = FigureKind> {
-    PossibleValuesParser::new(FigureKind::ALL.map(FigureKind::name))
-        .try_map(|name| FigureKind::ALL.into_iter().find(|kind| kind.name() == name).ok_or("there is no such figure"))
-}
-
-fn roles() -> impl TypedValueParser<Value = Role> {
-    PossibleValuesParser::new(Role::ALL.map(Role::word))
-        .try_map(|name| Role::ALL.into_iter().find(|role| role.word() == name).ok_or("there is no such role"))
-}
-
-fn column_widths() -> impl TypedValueParser<Value = ColumnWidth> {
-    PossibleValuesParser::new(ColumnWidth::BOTH.map(ColumnWidth::name)).try_map(|name| {
-        ColumnWidth::BOTH.into_iter().find(|width| width.name() == name).ok_or("there is no such width")
-    })
+/// One of some values by its name.
+fn one_of<T, const N: usize>(all: [T; N], name: fn(T) -> &'static str) -> impl TypedValueParser<Value = T>
+where
+    T: Copy + Send + Sync + 'static,
+{
+    let find = move |word: String| all.into_iter().find(|of| name(*of) == word).ok_or("there is no such value");
+    PossibleValuesParser::new(all.map(name)).try_map(find)
 }
 
 /// Which responses a figure is of.
@@ -371,6 +393,15 @@ mod tests {
         let rejection: Rejection = "10:V+5kt: again".parse().unwrap();
         assert_eq!((rejection.condition, rejection.model.as_str()), (10, "V+5kt: again"));
         assert!("nominal".parse::<Rejection>().is_err() && "x:nominal".parse::<Rejection>().is_err());
+    }
+
+    #[test]
+    fn a_sign_says_its_channel_and_whose_models_are_turned() {
+        let said = |text: &str| text.parse::<SaidSign>().map(|sign| (sign.channel, sign.of));
+        assert_eq!(said("NZ=-1"), Ok(("NZ".to_owned(), Some(SignRole::Identified))));
+        assert_eq!(said("az (down)=-1:all"), Ok(("az (down)".to_owned(), Some(SignRole::All))));
+        assert_eq!(said("NZ=1"), Ok(("NZ".to_owned(), None)));
+        assert!(said("NZ").is_err() && said("NZ=-2").is_err() && said("NZ=-1:none").is_err());
     }
 
     #[test]

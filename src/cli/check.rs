@@ -5,26 +5,25 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use gdcm_core::dataset::{BundleKind, Channel, Condition, ConditionRecord, Dataset, Dynamics, Model, RecordKind};
-use gdcm_core::study::{Execution, Study, Table, Unobserved, cautions_of_models};
+use gdcm_core::study::{Execution, Study, Table, Unobserved, cautions_of_models, doubts_of_models};
 use gdcm_core::units::number;
 use gdcm_files::{FileError, LoadedDataset, Opened, OpenedStudy, dataset_faults};
 
 use super::open;
-use super::{Failure, LABEL, OpeningArguments, indented, labelled, say, say_error};
+use super::{Failure, LABEL, OpeningArguments, SaidSign, indented, labelled, say, say_error, turn};
 
 /// Says what a dataset or a study holds.
-pub(super) fn check(file: &Path, arguments: &OpeningArguments) -> Result<(), Failure> {
+pub(super) fn check(file: &Path, arguments: &OpeningArguments, signs: &[SaidSign]) -> Result<(), Failure> {
     let opened = match open(file, arguments) {
         Err(Failure::File(error @ FileError::Content { .. })) => return Err(all_faults(file, error)),
         opened => opened?,
     };
-    let text = match opened {
-        Opened::Dataset(loaded) => contents(&loaded) + &model_cautions(&Study::new(loaded.dataset))?,
-        Opened::Study(OpenedStudy { study, loaded, .. }) => {
-            decisions(file, &study) + &contents(&loaded) + &model_cautions(&study)?
-        }
+    let (decided, mut study, loaded) = match opened {
+        Opened::Dataset(loaded) => (String::new(), Study::new(loaded.dataset.clone()), loaded),
+        Opened::Study(OpenedStudy { study, loaded, .. }) => (decisions(file, &study), study, loaded),
     };
-    say(&text)
+    turn(&mut study, signs)?;
+    say(&(decided + &contents(&loaded) + &model_cautions(&study)?))
 }
 
 /// Tells every fault of a dataset, and gives what the command ends with: the only one itself, else their number.
@@ -61,7 +60,7 @@ fn contents(loaded: &LoadedDataset) -> String {
     text.push_str(&timings(dataset));
     text.push_str(&records(dataset));
     for caution in &loaded.cautions {
-        text.push_str(&labelled(0, "Caution", LABEL, &sanitized(caution)));
+        text.push_str(&caution_line(caution));
     }
     text
 }
@@ -69,12 +68,18 @@ fn contents(loaded: &LoadedDataset) -> String {
 /// What an analysis would say of the models by themselves.
 fn model_cautions(study: &Study) -> Result<String, Failure> {
     let execution = Execution::new(&crate::executor::Pool, &Unobserved, 0);
-    let mut text = String::new();
+    // Signs and units first: what follows may come of them.
+    let doubts = doubts_of_models(study, &execution)?;
+    let mut text: String = doubts.iter().map(|doubt| caution_line(&doubt.words(&study.dataset))).collect();
     for (id, caution) in cautions_of_models(study, &execution)? {
         let words = caution.words(|pair| study.dataset.pair_name(pair));
-        text.push_str(&labelled(0, "Caution", LABEL, &sanitized(&format!("condition {id}: {words}"))));
+        text.push_str(&caution_line(&format!("condition {id}: {words}")));
     }
     Ok(text)
+}
+
+fn caution_line(words: &str) -> String {
+    labelled(0, "Caution", LABEL, &sanitized(words))
 }
 
 fn channel_words(channels: &[Channel]) -> String {

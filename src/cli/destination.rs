@@ -9,7 +9,7 @@ use gdcm_core::records::LaidOutRecord;
 use gdcm_core::study::AdoptedModels;
 use gdcm_files::{Opened, OutputSet, add_dataset, load_any};
 
-use super::{Failure, IdentifyArguments, say_error};
+use super::{Failure, IdentifyArguments, condition_of, ids, say_error};
 
 /// Records that models are identified from together, and the condition that they are of; none without a dataset.
 pub(super) type Group = (Option<ConditionId>, Vec<LaidOutRecord>);
@@ -34,11 +34,7 @@ impl Destination {
                 return Err(Failure::Option { option: "--into", reason });
             }
         };
-        let condition = arguments.condition.map(ConditionId);
-        if let Some(condition) = condition.filter(|id| dataset.condition(*id).is_none()) {
-            let reason = format!("the dataset has no condition {condition}; it has {}", ids(&dataset));
-            return Err(Failure::Option { option: "--condition", reason });
-        }
+        let condition = arguments.condition.map(|id| condition_of(&dataset, id)).transpose()?;
         let dataset = match &arguments.description {
             Some(description) => Arc::new(described(&dataset, description)?),
             None => dataset,
@@ -89,11 +85,6 @@ impl Destination {
         add_dataset(&self.dataset, &self.path, outputs)?;
         Ok(&self.path)
     }
-}
-
-fn ids(dataset: &Dataset) -> String {
-    let ids: Vec<String> = dataset.conditions().iter().map(|condition| condition.id().to_string()).collect();
-    ids.join(", ")
 }
 
 fn described(dataset: &Dataset, description: &str) -> Result<Dataset, Failure> {

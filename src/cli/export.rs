@@ -2,21 +2,16 @@
 
 use std::path::PathBuf;
 use std::str::FromStr;
-use std::sync::Arc;
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use gdcm_core::correction::{HIGHEST_PADE_ORDER, Pade};
-use gdcm_core::dataset::ConditionId;
 use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_core::study::{AssessedCorrection, Study};
 use gdcm_files::{EXPORTERS, ExportFormat, ExportRequest, ExportSource, ExportedRole, check_export, write_export};
 
-use super::{
-    Failure, StudyArguments, TerminalProgress, analysis_of, check_result, engine, outputs_of, real_number, say,
-    study_of, whole_number,
-};
+use super::{Failure, StudyArguments, analysis_of, condition_of, real_number, say, study_of, whole_number};
 
 /// What is to be exported, as what, and where it goes.
 #[derive(Debug, Args)]
@@ -84,17 +79,11 @@ fn corrections() -> impl TypedValueParser<Value = AssessedCorrection> {
 
 /// Analyses, writes what is asked for, and says what is to be known of it.
 pub(super) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
-    let (mut study, loaded) = study_of(&arguments.study)?;
-    let outputs = outputs_of(&arguments.study, &loaded, arguments.force);
+    let (study, loaded, outputs) = study_of(&arguments.study, arguments.force)?;
     let request = request(&study, arguments)?;
     check_export(request.format, &arguments.out)?;
     outputs.check(&[&arguments.out])?;
-    let mut engine = engine();
-    let progress = TerminalProgress::new("analysing");
-    let mut analysis = analysis_of(&mut study, &arguments.study, &mut engine, &progress)?;
-    analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &progress)?));
-    drop(progress);
-    check_result(&analysis)?;
+    let (analysis, _) = analysis_of(study, &arguments.study, true)?;
     let source = ExportSource { name: name(&arguments.study), sha256: loaded.sha256.clone() };
     let remarks = write_export(&analysis, &source, &request, &arguments.out, outputs)?;
     let remarks: String = remarks.iter().map(|remark| format!("{}\n", sanitized(remark))).collect();
@@ -123,12 +112,7 @@ fn request(study: &Study, arguments: &ExportArguments) -> Result<ExportRequest, 
         let names: Vec<&str> = takes.map(|about| about.name).collect();
         return Err(Failure::Option { option, reason: format!("is an option of --as {}", names.join(" and ")) });
     }
-    let condition = arguments.condition.map(ConditionId);
-    if let Some(id) = condition.filter(|id| study.dataset.condition(*id).is_none()) {
-        let ids: Vec<String> = study.dataset.conditions().iter().map(|condition| condition.id().to_string()).collect();
-        let reason = format!("the dataset has no condition {id}; it has {}", ids.join(", "));
-        return Err(Failure::Option { option: "--condition", reason });
-    }
+    let condition = arguments.condition.map(|id| condition_of(&study.dataset, id)).transpose()?;
     let role = match arguments.model.as_deref() {
         None | Some("nominal") => ExportedRole::Nominal,
         Some("representative") => ExportedRole::Representative,

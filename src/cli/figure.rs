@@ -1,7 +1,6 @@
 //! `gdcm figure`.
 
 use gdcm_core::message_text::sanitized_path;
-use std::sync::Arc;
 
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::{ConditionId, Dataset, Pair};
@@ -12,29 +11,23 @@ use gdcm_files::figure::{
 use gdcm_files::{figure_format, write_figure};
 
 use super::{
-    Failure, FigureArguments, PairChoice, TerminalProgress, analysis_of, engine, names, outputs_of, pairs_of, say,
+    Failure, FigureArguments, PairChoice, TerminalProgress, analysis_of, condition_of, ids, names, pairs_of, say,
     study_of,
 };
 
 /// Makes one figure as a file, and says so.
 pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
-    let (mut study, loaded) = study_of(&arguments.study)?;
-    let outputs = outputs_of(&arguments.study, &loaded, arguments.force);
+    let (study, _, outputs) = study_of(&arguments.study, arguments.force)?;
     figure_format(&arguments.out)?;
     outputs.check(&[&arguments.out])?;
     let request = request(&study, arguments)?;
     let condition = condition(&study, arguments)?;
-    let mut engine = engine();
-    let progress = TerminalProgress::new("analysing");
-    let mut analysis = analysis_of(&mut study, &arguments.study, &mut engine, &progress)?;
-    if arguments.bars || arguments.view.needs_bars() {
-        analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &progress)?));
-    }
+    let with_bars = arguments.bars || arguments.view.needs_bars();
+    let (analysis, mut engine) = analysis_of(study, &arguments.study, with_bars)?;
     let figure = match condition {
         None => request.figure(Some(&analysis), None),
-        Some(condition) => figure_of_condition(&request, &analysis, condition, (&mut engine, &progress))?,
+        Some(condition) => figure_of_condition(&request, &analysis, condition, &mut engine)?,
     };
-    drop(progress);
     let figure = figure.ok_or_else(|| Failure::NoResult { reason: "there is nothing to draw".to_owned() })?;
     write_figure(&figure, arguments.width, &arguments.out, outputs)?;
     say(&format!("{}: {}\n", sanitized_path(&arguments.out), figure.title))
@@ -45,7 +38,7 @@ fn figure_of_condition(
     request: &FigureRequest,
     analysis: &Analysis,
     condition: ConditionId,
-    (engine, progress): (&mut Engine, &TerminalProgress),
+    engine: &mut Engine,
 ) -> Result<Option<Figure>, Failure> {
     let study = &analysis.study;
     let result = match analysis.conditions.get(&condition) {
@@ -54,7 +47,7 @@ fn figure_of_condition(
         None => return Ok(None),
     };
     let grid = (display_band(study.settings.band), CURVE_POINTS);
-    let Some(curves) = engine.curves(&study.dataset, condition, grid, progress)? else {
+    let Some(curves) = engine.curves(&study.dataset, condition, grid, &TerminalProgress::new("drawing"))? else {
         return Ok(None);
     };
     let schedule = analysis.schedule.as_ref().ok();
@@ -117,16 +110,10 @@ fn condition(study: &Study, arguments: &FigureArguments) -> Result<Option<Condit
     if !arguments.view.is_of_condition() {
         return Ok(None);
     }
-    let ids = || {
-        let ids = study.dataset.conditions().iter().map(|condition| condition.id().to_string());
-        ids.collect::<Vec<_>>().join(", ")
+    let Some(id) = arguments.condition else {
+        let reason =
+            format!("{} is a figure of one condition; the dataset has {}", arguments.view.name(), ids(&study.dataset));
+        return Err(Failure::Option { option: "--condition", reason });
     };
-    let wrong = |reason: String| Failure::Option { option: "--condition", reason };
-    let id = arguments.condition.map(ConditionId).ok_or_else(|| {
-        wrong(format!("{} is a figure of one condition; the dataset has {}", arguments.view.name(), ids()))
-    })?;
-    match study.dataset.condition(id) {
-        Some(_) => Ok(Some(id)),
-        None => Err(wrong(format!("the dataset has no condition {id}; it has {}", ids()))),
-    }
+    condition_of(&study.dataset, id).map(Some)
 }

@@ -18,17 +18,6 @@ mod summary;
 mod terminal;
 mod text_table;
 
-use analyze::check_result;
-use arguments::{real_number, whole_number};
-use destination::{Destination, Group};
-use models::{ReadingProgress, counted};
-use read_record::{hold_out, laid_out, record_table, relative_entry};
-use study_options::{analysis_of, engine, names, outputs_of, pairs_of, study_of};
-use summary::{LABEL, leave_one_out_section};
-use terminal::TerminalProgress;
-use text_table::{indented, labelled, listed};
-
-use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::error::Error;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -37,15 +26,22 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::{ContextKind, ContextValue};
 
+use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_files::{Existing, Opened, load_any, open_study_of, write_example};
 
-use arguments::Arguments;
+use arguments::{Arguments, real_number, whole_number};
+use destination::{Destination, Group};
 use failure::Failure;
-use terminal::{say, say_error};
+use models::{ReadingProgress, counted};
+use read_record::{hold_out, laid_out, record_table, relative_entry};
+use study_options::{analysis_of, condition_of, ids, names, pairs_of, study_of, turn};
+use summary::{LABEL, leave_one_out_section};
+use terminal::{TerminalProgress, say, say_error};
+use text_table::{indented, labelled, listed};
 
 pub use arguments::{
     AnalyzeArguments, AssembleArguments, Command, ConvertArguments, FigureArguments, OpeningArguments, PairChoice,
-    PairList, Rejection, ReportArguments, StudyArguments,
+    PairList, Rejection, ReportArguments, SaidSign, StudyArguments,
 };
 pub use export::{Breakpoints, ExportArguments};
 pub use identify_arguments::{ChannelDelay, ChannelList, IdentifyArguments, OfferedChoice};
@@ -82,7 +78,7 @@ pub fn run(command: &Command) -> ExitCode {
         Command::Assemble(arguments) => models::assemble(arguments),
         Command::Convert(arguments) => models::convert(arguments),
         Command::Identify(arguments) => identify::identify(arguments),
-        Command::Check { file, opening } => check::check(file, opening),
+        Command::Check { file, opening, sign } => check::check(file, opening, sign),
         Command::Example { directory, force } => example(directory, existing(*force)),
     })
 }

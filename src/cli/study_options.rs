@@ -1,17 +1,21 @@
 //! The study that a command is about, with what the command line says on top of it.
 
+use std::sync::Arc;
+
 use crate::executor::Pool;
+use gdcm_core::correction;
 use gdcm_core::dataset::{BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
 use gdcm_core::message_text::sanitized;
-use gdcm_core::study::{Analysis, Edit, Engine, Progress, Study};
+use gdcm_core::study::{Analysis, ConditionFailure, Edit, Engine, Study};
 use gdcm_files::{LoadedDataset, OutputSet, embedded_example};
 
 use super::existing;
 use super::open as open_file;
-use super::{Failure, PairList, Rejection, StudyArguments, say_error};
+use super::{Failure, PairList, Rejection, SaidSign, StudyArguments, TerminalProgress, say_error};
 
-/// The study, and the dataset that it is about; cautions of the file are told on standard error.
-pub(super) fn study_of(arguments: &StudyArguments) -> Result<(Study, LoadedDataset), Failure> {
+/// The study, the dataset that it is about, and the files that a command about it writes: none of those that it reads is overwritten.
+/// Cautions of the file are told on standard error.
+pub(super) fn study_of(arguments: &StudyArguments, force: bool) -> Result<(Study, LoadedDataset, OutputSet), Failure> {
     let (mut study, loaded) = match &arguments.file {
         Some(file) => {
             let (study, loaded, _) = open_file(file, &arguments.opening)?.into_study();
@@ -26,32 +30,54 @@ pub(super) fn study_of(arguments: &StudyArguments) -> Result<(Study, LoadedDatas
         say_error(&format!("{}: {caution}", loaded.origin));
     }
     take_options(&mut study, arguments)?;
-    Ok((study, loaded))
+    let inputs = arguments.file.iter().cloned().chain(loaded.origin.file()).collect();
+    Ok((study, loaded, OutputSet::new(existing(force), inputs)))
 }
 
-/// The files that a command about a study writes: none of those that it reads is overwritten.
-pub(super) fn outputs_of(arguments: &StudyArguments, loaded: &LoadedDataset, force: bool) -> OutputSet {
-    let inputs = arguments.file.iter().cloned().chain(loaded.origin.file());
-    OutputSet::new(existing(force), inputs.collect())
-}
-
-/// An engine on all cores.
-pub(super) fn engine() -> Engine {
-    Engine::with_executor(Box::new(Pool))
-}
-
-/// The analysis of a study, after what it suggests has been rejected where that is asked for.
+/// The analysis of a study, after what it suggests has been rejected where that is asked for, and the engine that made it; `with_bars`
+/// says whether it has error bars. Which conditions have no result is told on standard error.
+///
+/// # Errors
+/// No condition has a result.
 pub(super) fn analysis_of(
-    study: &mut Study,
+    mut study: Study,
     arguments: &StudyArguments,
-    engine: &mut Engine,
-    progress: &dyn Progress,
-) -> Result<Analysis, Failure> {
-    let mut analysis = engine.analyze(study, progress)?;
-    if arguments.reject_suggested && reject_suggested(study, &analysis)? {
-        analysis = engine.analyze(study, progress)?;
+    with_bars: bool,
+) -> Result<(Analysis, Engine), Failure> {
+    let mut engine = Engine::with_executor(Box::new(Pool));
+    let progress = TerminalProgress::new("analysing");
+    let mut analysis = engine.analyze(&study, &progress)?;
+    if arguments.reject_suggested && reject_suggested(&mut study, &analysis)? {
+        analysis = engine.analyze(&study, &progress)?;
     }
-    Ok(analysis)
+    if with_bars {
+        analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &progress)?));
+    }
+    drop(progress);
+    let failure = |(id, outcome): (&ConditionId, &Result<_, ConditionFailure>)| {
+        outcome.as_ref().err().map(|failure| format!("condition {id}: {failure}"))
+    };
+    let failures: Vec<String> = analysis.conditions.iter().filter_map(failure).collect();
+    if let Some(first) = failures.first().filter(|_| failures.len() == analysis.conditions.len()) {
+        return Err(Failure::NoResult { reason: first.clone() });
+    }
+    failures.iter().for_each(|failure| say_error(failure));
+    Ok((analysis, engine))
+}
+
+/// The condition that an option gave by its id.
+pub(super) fn condition_of(dataset: &Dataset, id: i64) -> Result<ConditionId, Failure> {
+    let found = dataset.condition(ConditionId(id)).map(|condition| condition.id());
+    found.ok_or_else(|| {
+        let reason = format!("the dataset has no condition {id}; it has {}", ids(dataset));
+        Failure::Option { option: "--condition", reason }
+    })
+}
+
+/// The ids of the conditions, with commas.
+pub(super) fn ids(dataset: &Dataset) -> String {
+    let ids: Vec<String> = dataset.conditions().iter().map(|condition| condition.id().to_string()).collect();
+    ids.join(", ")
 }
 
 /// Puts the options into the study, over what it says itself.
@@ -62,6 +88,7 @@ fn take_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Fai
         let value = setting.read(&words).map_err(|reason| Failure::Option { option, reason: sanitized(&reason) })?;
         study.apply(&setting.to(value)).map_err(Failure::refused(option))?;
     }
+    turn(study, &arguments.sign)?;
     for &id in &arguments.hold_out {
         let edit = Edit::SetHeldOut { condition: ConditionId(id), held_out: true };
         study.apply(&edit).map_err(Failure::refused("--hold-out"))?;
@@ -70,6 +97,23 @@ fn take_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Fai
         hold(study, list)?;
     }
     arguments.reject.iter().try_for_each(|rejection| reject(study, rejection))
+}
+
+/// Turns the channels whose signs an option says, or puts them back.
+pub(super) fn turn(study: &mut Study, signs: &[SaidSign]) -> Result<(), Failure> {
+    const OPTION: &str = "--sign";
+    for SaidSign { channel: name, of } in signs {
+        let (inputs, outputs) = study.dataset.names_of_channels();
+        let all = correction::Channel::all(inputs.len(), outputs.len());
+        let named: Vec<correction::Channel> = all.filter(|channel| channel.name(&inputs, &outputs) == *name).collect();
+        let [channel] = named[..] else {
+            let (found, all) = (named.len(), [inputs, outputs].concat().join(", "));
+            let reason = sanitized(&format!("expected one of {all}; {found} channels are called {name}"));
+            return Err(Failure::Option { option: OPTION, reason });
+        };
+        study.apply(&Edit::SetSign { channel, of: *of }).map_err(Failure::refused(OPTION))?;
+    }
+    Ok(())
 }
 
 /// The responses of a list, which an option gave.

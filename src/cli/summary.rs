@@ -22,6 +22,9 @@ pub(super) const LABEL: usize = 14;
 /// The results for a person to read: the settings, each condition, the schedule, the assessment, and where the files are.
 pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -> String {
     let mut text = heading(analysis, loaded);
+    for doubt in &analysis.doubts {
+        text.push_str(&labelled(0, "Caution", LABEL, &sanitized(&doubt.words(&analysis.study.dataset))));
+    }
     for condition in analysis.study.dataset.conditions() {
         text.push('\n');
         text.push_str(&condition_section(analysis, condition));
@@ -62,6 +65,10 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
     let mut text = labelled(0, "Dataset", LABEL, &dataset) + &labelled(0, "Band", LABEL, &band);
     if settings.gain_source != GainSource::default() {
         text.push_str(&labelled(0, "G from", LABEL, &settings.gain_source_words()));
+    }
+    for turned in study.turned_channels() {
+        let words = format!("{} of {} is turned", sanitized(&turned.channel), turned.of.models());
+        text.push_str(&labelled(0, "Sign", LABEL, &words));
     }
     text + &labelled(0, "Phase", LABEL, &phase) + &labelled(0, "Held", LABEL, &held)
 }
@@ -189,7 +196,8 @@ fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let line = |label: &str, words: &str| detail(label, &sanitized(words));
     let said = remarks(&analysis.study, result, None);
     let (mut text, mut trouble) = (String::new(), "not matched");
-    for remark in &said {
+    // What is said of signs and units stands above all conditions.
+    for remark in said.iter().skip(result.doubts.len()) {
         match remark.kind {
             RemarkKind::Good => {}
             // What is missed comes first, then the reasons and the ways out.

@@ -6,7 +6,7 @@ use egui::{Context, CursorIcon, Id, Label, Response, RichText, Sense, Ui, Widget
 
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::Pair;
-use gdcm_core::study::{ConditionAnalysis, Derivation, ExplainTarget, Remark, derivation, details, remarks};
+use gdcm_core::study::{ConditionAnalysis, Derivation, ExplainTarget, Remark, derivation, remarks};
 
 use super::{BODY_SIZE, Command, Palette, SMALL_SIZE, State, entries_ui};
 
@@ -86,11 +86,6 @@ pub fn remarks_shown(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
     remarks(&state.study, shown, schedule)
 }
 
-/// What the remarks leave to say of the result shown.
-pub fn details_shown(state: &State, shown: &ConditionAnalysis) -> Vec<String> {
-    details(&state.study, shown)
-}
-
 /// The responses and the channels that are in each other's way, of the gains.
 pub fn gain_conflict_marks(shown: &ConditionAnalysis) -> (BTreeSet<Pair>, BTreeSet<Channel>) {
     let conflicts = &shown.gains.conflicts;
@@ -103,14 +98,9 @@ pub fn toggle_costs(state: &State, pair: Pair) -> Vec<String> {
     let Some(toggles) = state.toggles() else {
         return Vec::new();
     };
-    let (inputs, outputs) = channel_names(state);
+    let (inputs, outputs) = state.dataset().names_of_channels();
     let (gain, delay) = toggles.of_pair(pair);
     let gain = gain.map(|toggle| format!("Gains: {}", toggle.words(&inputs, &outputs)));
     let delay = delay.map(|toggle| format!("Delays: {}", toggle.words(&inputs, &outputs)));
     gain.into_iter().chain(delay).collect()
-}
-
-/// Names of the inputs and of the outputs.
-pub fn channel_names(state: &State) -> (Vec<String>, Vec<String>) {
-    state.dataset().names_of_channels()
 }

@@ -1,8 +1,9 @@
 //! The forms in front of the window: paths to open and to save, what to export, questions, help.
 
-use egui::text::{CCursor, CCursorRange};
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
+use egui::text::{CCursor, CCursorRange};
 use egui::{Button, Context, Id, Modal, RichText, Role, ScrollArea, TextEdit, Ui};
 
 use gdcm_core::dataset::ConditionId;
@@ -11,8 +12,8 @@ use gdcm_files::ExportFormat;
 use gdcm_files::figure::ColumnWidth;
 
 use super::{
-    Command, ExportAsForm, ExportForm, FigureForm, FormKind, Palette, State, command_palette_ui, is_entered,
-    keys_page_ui, name_text_field, named_switch,
+    Command, FormKind, Forms, Palette, State, command_palette_ui, is_entered, keys_page_ui, name_text_field,
+    named_switch,
 };
 
 /// Shows the form that is asked for, if any. Its field has the focus when it opens; Enter submits it; Escape and a click outside
@@ -29,22 +30,14 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
         let form = &mut Form { ui, opens, palette, commands };
         match kind {
             _ if asks_to_overwrite => overwrite_ui(form, kind, &state.forms.existing),
-            FormKind::Open => form.path_ui(&OPEN, &mut state.forms.open_path, Command::Open),
-            FormKind::FindDataset => find_dataset_ui(form, state),
-            FormKind::Save => form.path_ui(&SAVE, &mut state.forms.save_path, Command::SaveStudyAs),
             FormKind::Export => export_ui(form, state),
-            FormKind::ExportAs => export_as_ui(form, state),
             FormKind::Unsaved => unsaved_ui(form),
             FormKind::Differences => differences_ui(form, state),
             FormKind::Shortcuts => shortcuts_ui(form, state),
             FormKind::Palette => command_palette_ui(form.ui, state, opens, palette, form.commands),
-            FormKind::SaveTable => save_table_ui(form, state),
-            // It only asks whether to overwrite.
-            FormKind::Models => {}
-            FormKind::SaveFigure => save_figure_ui(form, state),
-            FormKind::Report => form.path_ui(&REPORT, &mut state.forms.report_path, Command::WriteReport),
             FormKind::Reason => reason_ui(form, state),
             FormKind::About => about_ui(form),
+            _ => path_ui(form, kind, state),
         }
     });
     if modal.should_close() {
@@ -53,98 +46,134 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
 }
 
 /// The words of a form that asks for a path.
-struct PathWords<'a> {
-    title: &'a str,
+struct PathWords {
+    kind: FormKind,
+    title: &'static str,
     /// Accessible name of the field.
-    field: &'a str,
+    field: &'static str,
     /// What stands in the field while it is empty.
-    hint: &'a str,
+    hint: &'static str,
     /// What is said below the field; nothing where it is empty.
-    explanation: &'a str,
+    explanation: &'static str,
     /// What the button says.
-    submit: &'a str,
-    /// Whether what is written waits for the newest results.
-    waits: bool,
+    submit: &'static str,
 }
 
-impl<'a> PathWords<'a> {
-    const fn new(title: &'a str, field: &'a str, hint: &'a str, explanation: &'a str, submit: &'a str) -> Self {
-        Self { title, field, hint, explanation, submit, waits: false }
+/// Every form that asks for a path and for nothing else but one choice.
+const PATHS: [PathWords; 7] = [
+    PathWords {
+        kind: FormKind::Open,
+        title: "Open a dataset or a study",
+        field: "Path to open",
+        hint: "path of a .json, .json.gz or .gdcm-study.json file",
+        explanation: "",
+        submit: "Open file",
+    },
+    PathWords {
+        kind: FormKind::FindDataset,
+        title: "Where is the dataset of this study?",
+        field: "Path of the dataset",
+        hint: "path of a .json or .json.gz file",
+        explanation: "",
+        submit: "Open with this dataset",
+    },
+    PathWords {
+        kind: FormKind::Save,
+        title: "Save the study",
+        field: "Path to save",
+        hint: "path of a .gdcm-study.json file",
+        explanation: "",
+        submit: "Save file",
+    },
+    PathWords {
+        kind: FormKind::SaveTable,
+        title: "Save the table",
+        field: "Path of the table",
+        hint: "path of a .csv file",
+        explanation: "",
+        submit: "Save table",
+    },
+    PathWords {
+        kind: FormKind::SaveFigure,
+        title: "Save the figure",
+        field: "Path of the figure",
+        hint: "path of a .svg, .png, .pdf or .csv file",
+        explanation: "On white paper, whatever the theme. The end of the name says the format; CSV holds the numbers.",
+        submit: "Save figure",
+    },
+    PathWords {
+        kind: FormKind::Report,
+        title: "Write the report",
+        field: "Path of the report",
+        hint: "path of a .html file",
+        explanation: "All that was done and found as one page with every plot, to read in a browser and to print.",
+        submit: "Write report",
+    },
+    PathWords {
+        kind: FormKind::ExportAs,
+        title: "Export as…",
+        field: "Path of the export",
+        hint: "path of the file",
+        explanation: "State-space may be .mat, .json or .npz. gdcm export has more choices.",
+        submit: "Export file",
+    },
+];
+
+/// A form that asks for a path, and some for one of a few choices; none where it only asks whether to overwrite.
+fn path_ui(form: &mut Form<'_, '_>, kind: FormKind, state: &mut State) {
+    let Some(words) = PATHS.iter().find(|words| words.kind == kind) else { return };
+    let waits = kind == FormKind::ExportAs && state.results.is_behind();
+    let forms = &mut state.forms;
+    let title = match (kind, &forms.table, forms.figure) {
+        (FormKind::SaveTable, Some(table), _) => format!("{} \u{201c}{}\u{201d}", words.title, table.title),
+        (FormKind::SaveFigure, _, Some(view)) => format!("{} of {}", words.title, view.name()),
+        _ => words.title.to_owned(),
+    };
+    form.title(&title);
+    let mut path = std::mem::take(forms.typed_in(kind));
+    let entered = form.text_ui(words.field, &mut path, words.hint);
+    let before = forms.export_format;
+    match kind {
+        FormKind::SaveFigure => {
+            form.choices_ui(&mut forms.figure_width, ColumnWidth::BOTH.map(|width| (width, width.words())));
+        }
+        FormKind::ExportAs => {
+            form.choices_ui(&mut forms.export_format, ExportFormat::all().map(|of| (of, of.about().words)));
+        }
+        _ => {}
     }
-}
-
-const OPEN: PathWords<'_> = PathWords::new(
-    "Open a dataset or a study",
-    "Path to open",
-    "path of a .json, .json.gz or .gdcm-study.json file",
-    "",
-    "Open file",
-);
-const FIND_DATASET: PathWords<'_> = PathWords::new(
-    "Where is the dataset of this study?",
-    "Path of the dataset",
-    "path of a .json or .json.gz file",
-    "",
-    "Open with this dataset",
-);
-const SAVE: PathWords<'_> =
-    PathWords::new("Save the study", "Path to save", "path of a .gdcm-study.json file", "", "Save file");
-const SAVE_TABLE: PathWords<'_> =
-    PathWords::new("Save the table", "Path of the table", "path of a .csv file", "", "Save table");
-const SAVE_FIGURE: PathWords<'_> = PathWords::new(
-    "Save the figure",
-    "Path of the figure",
-    "path of a .svg, .png, .pdf or .csv file",
-    "On white paper, whatever the theme. The end of the name says the format; CSV holds the numbers.",
-    "Save figure",
-);
-const REPORT: PathWords<'_> = PathWords::new(
-    "Write the report",
-    "Path of the report",
-    "path of a .html file",
-    "All that was done and found as one page with every plot, to read in a browser and to print.",
-    "Write report",
-);
-const EXPORT_AS: PathWords<'_> = PathWords::new(
-    "Export as…",
-    "Path of the export",
-    "path of the file",
-    "State-space may be .mat, .json or .npz. gdcm export has more choices.",
-    "Export file",
-);
-
-fn find_dataset_ui(form: &mut Form<'_, '_>, state: &mut State) {
-    let Some((study, reason)) = &state.forms.lost_dataset else { return };
-    let words = PathWords { explanation: reason, ..FIND_DATASET };
-    form.path_ui(&words, &mut state.forms.dataset_path, |dataset| Command::OpenStudyOf(study.clone(), dataset));
-}
-
-fn save_table_ui(form: &mut Form<'_, '_>, state: &mut State) {
-    let Some(table) = state.forms.table.clone() else { return };
-    let title = format!("Save the table \u{201c}{}\u{201d}", table.title);
-    let words = PathWords { title: &title, ..SAVE_TABLE };
-    form.path_ui(&words, &mut state.forms.table_path, |path| Command::SaveTable(table, path));
-}
-
-fn save_figure_ui(form: &mut Form<'_, '_>, state: &mut State) {
-    let FigureForm { view: Some(view), path, width } = &mut state.forms.figure else { return };
-    let view = *view;
-    let title = format!("Save the figure of {}", view.name());
-    let widths = ColumnWidth::BOTH.map(|width| (width, width.words()));
-    let words = PathWords { title: &title, ..SAVE_FIGURE };
-    form.path_and_choice_ui(&words, path, (width, &widths), |path, width| Command::SaveFigure(view, width, path));
-}
-
-fn export_as_ui(form: &mut Form<'_, '_>, state: &mut State) {
-    let words = PathWords { waits: state.results.is_behind(), ..EXPORT_AS };
-    let ExportAsForm { format, path } = &mut state.forms.export_as;
-    let before = *format;
-    let formats: Vec<_> = ExportFormat::all().map(|format| (format, format.about().words)).collect();
-    form.path_and_choice_ui(&words, path, (format, &formats), |path, format| Command::ExportAs(format, path));
     // The end of the name goes with the format, as long as nobody has typed another.
-    if let Some(stem) = path.strip_suffix(&format!(".{}", before.about().extension)) {
-        *path = format!("{stem}.{}", format.about().extension);
+    if let Some(stem) =
+        path.strip_suffix(&format!(".{}", before.about().extension)).filter(|_| kind == FormKind::ExportAs)
+    {
+        path = format!("{stem}.{}", forms.export_format.about().extension);
     }
+    let lost = forms.lost_dataset.as_ref().filter(|_| kind == FormKind::FindDataset);
+    let explanation = lost.map_or(words.explanation, |(_, reason)| reason);
+    if !explanation.is_empty() {
+        form.explain(explanation);
+        form.ui.add_space(4.0);
+    }
+    form.line(|form| {
+        let command = path_command(kind, forms, path.trim().into());
+        form.submit_ui(words.submit, !path.trim().is_empty(), entered, command);
+        form.cancel_ui(waits);
+    });
+    *forms.typed_in(kind) = path;
+}
+
+/// What a form asks for with its path.
+fn path_command(kind: FormKind, forms: &Forms, path: PathBuf) -> Option<Command> {
+    Some(match kind {
+        FormKind::Open => Command::Open(path),
+        FormKind::FindDataset => Command::OpenStudyOf(forms.lost_dataset.as_ref()?.0.clone(), path),
+        FormKind::Save => Command::SaveStudyAs(path),
+        FormKind::SaveTable => Command::SaveTable(forms.table.clone()?, path),
+        FormKind::SaveFigure => Command::SaveFigure(forms.figure?, forms.figure_width, path),
+        FormKind::Report => Command::WriteReport(path),
+        FormKind::ExportAs => Command::ExportAs(forms.export_format, path),
+        _ => return None,
+    })
 }
 
 fn export_ui(form: &mut Form<'_, '_>, state: &mut State) {
@@ -154,36 +183,36 @@ fn export_ui(form: &mut Form<'_, '_>, state: &mut State) {
     let names: Vec<(ConditionId, String)> =
         conditions.map(|condition| (condition.id(), condition.flight_state().name.clone())).collect();
     let waits = state.results.is_behind();
-    let export = &mut state.forms.export;
-    conditions_ui(form.ui, export, &names);
+    let exported = &mut state.forms.exported;
+    conditions_ui(form.ui, exported, &names);
     form.ui.add_space(4.0);
-    let entered = form.text_ui("Export folder", &mut export.folder, "folder; it is made where it does not exist");
-    let ready = !export.chosen.is_empty() && !export.folder.trim().is_empty();
+    let is_any = !exported.is_empty();
+    let folder = state.forms.typed_in(FormKind::Export);
+    let entered = form.text_ui("Export folder", folder, "folder; it is made where it does not exist");
+    let ready = is_any && !folder.trim().is_empty();
     form.line(|form| {
-        form.submit_ui("Export", ready, entered, || Command::Export);
+        form.submit_ui("Export", ready, entered, Some(Command::Export));
         form.button_ui("Choose folder…", false, Command::AskExportFolder);
         form.cancel_ui(waits);
     });
 }
 
-fn conditions_ui(ui: &mut Ui, form: &mut ExportForm, names: &[(ConditionId, String)]) {
+fn conditions_ui(ui: &mut Ui, exported: &mut BTreeSet<ConditionId>, names: &[(ConditionId, String)]) {
     ui.horizontal(|ui| {
         if ui.small_button("All conditions").clicked() {
-            form.chosen.extend(names.iter().map(|(id, _)| *id));
+            exported.extend(names.iter().map(|(id, _)| *id));
         }
         if ui.small_button("No conditions").clicked() {
-            form.chosen.clear();
+            exported.clear();
         }
     });
     ScrollArea::vertical().max_height(260.0).show(ui, |ui| {
         for (id, name) in names {
-            let mut chosen = form.chosen.contains(id);
+            let mut chosen = exported.contains(id);
             let response = ui.checkbox(&mut chosen, format!("{id}   {name}"));
             let response = named_switch(response, Role::CheckBox, chosen, format!("Export condition {id}"));
-            if response.changed() && chosen {
-                form.chosen.insert(*id);
-            } else if response.changed() {
-                form.chosen.remove(id);
+            if response.changed() && !exported.remove(id) {
+                exported.insert(*id);
             }
         }
     });
@@ -259,17 +288,17 @@ fn reason_ui(form: &mut Form<'_, '_>, state: &mut State) {
     form.title(title);
     let words = format!("{} model {} of condition {}", model.bundle, model.name, model.condition);
     form.explain(&words);
-    let reason = &mut state.forms.reason;
+    let reason = state.forms.typed_in(FormKind::Reason);
     let entered =
         form.text_ui("Reason of the rejection", reason, "in words; it is kept in the study and in the results");
     let reason = reason.trim().to_owned();
     form.line(|form| {
-        let edit = || match is_rejected {
+        let edit = match is_rejected {
             true => Edit::SetReason(model, reason),
             false if reason.is_empty() => Edit::Reject(model),
             false => Edit::RejectBecause { model, reason },
         };
-        form.submit_ui(button, true, entered, || Command::DecideInForm(edit()));
+        form.submit_ui(button, true, entered, Some(Command::DecideInForm(edit)));
         form.cancel_ui(false);
     });
 }
@@ -294,33 +323,10 @@ impl Form<'_, '_> {
         self.ui.label(self.palette.dim(text));
     }
 
-    /// A form that asks for a path, and gives a command with it.
-    fn path_ui(&mut self, words: &PathWords<'_>, path: &mut String, command: impl FnOnce(PathBuf) -> Command) {
-        self.path_and_choice_ui(words, path, (&mut (), &[]), |path, ()| command(path));
-    }
-
-    /// A form that asks for a path and for one of some choices.
-    fn path_and_choice_ui<T: Copy + PartialEq>(
-        &mut self,
-        words: &PathWords<'_>,
-        path: &mut String,
-        (choice, choices): (&mut T, &[(T, &str)]),
-        command: impl FnOnce(PathBuf, T) -> Command,
-    ) {
-        self.title(words.title);
-        let entered = self.text_ui(words.field, path, words.hint);
+    fn choices_ui<T: PartialEq>(&mut self, chosen: &mut T, choices: impl IntoIterator<Item = (T, &'static str)>) {
         for (value, text) in choices {
-            self.ui.radio_value(choice, *value, *text);
+            self.ui.radio_value(chosen, value, text);
         }
-        if !words.explanation.is_empty() {
-            self.explain(words.explanation);
-            self.ui.add_space(4.0);
-        }
-        let (path, choice) = (path.trim(), *choice);
-        self.line(|form| {
-            form.submit_ui(words.submit, !path.is_empty(), entered, || command(path.into(), choice));
-            form.cancel_ui(words.waits);
-        });
     }
 
     /// The button that closes the form; what it asks for may wait for the newest results.
@@ -348,11 +354,9 @@ impl Form<'_, '_> {
     }
 
     /// The button that submits the form, which Enter does too; others follow on the same line.
-    fn submit_ui(&mut self, text: &str, is_ready: bool, entered: bool, command: impl FnOnce() -> Command) {
+    fn submit_ui(&mut self, text: &str, is_ready: bool, entered: bool, command: Option<Command>) {
         let clicked = self.ui.add_enabled(is_ready, Button::new(text)).clicked();
-        if clicked || (entered && is_ready) {
-            self.commands.push(command());
-        }
+        self.commands.extend(command.filter(|_| clicked || (entered && is_ready)));
     }
 
     /// A button; the first of a form without a text field has the focus when it opens.

@@ -6,7 +6,7 @@ use egui::{
 };
 
 use gdcm_core::correction::Channel;
-use gdcm_core::dataset::Pair;
+use gdcm_core::dataset::{Dataset, Pair};
 use gdcm_core::fidelity::{ACCEPTABLE, INDISTINGUISHABLE};
 use gdcm_core::study::{ConditionAnalysis, Edit, ExplainTarget, Undefined};
 use gdcm_core::uncertainty::Scalar;
@@ -45,7 +45,8 @@ fn cells_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Co
     let size = vec2(ROW_LABEL_WIDTH + width * inputs.len() as f32, HEADER_HEIGHT + CELL_HEIGHT * outputs.len() as f32);
     let (in_conflict, blamed) = state.shown().map(gain_conflict_marks).unwrap_or_default();
     let name_color = |channel| {
-        if blamed.contains(&channel) { palette.warning } else { palette.dim_text }
+        let is_doubted = state.shown().is_some_and(|shown| shown.doubts.iter().any(|doubt| doubt.channel == channel));
+        if is_doubted || blamed.contains(&channel) { palette.warning } else { palette.dim_text }
     };
     ScrollArea::horizontal().id_salt("constraint matrix").show(ui, |ui| {
         let (area, _) = ui.allocate_exact_size(size, Sense::hover());
@@ -87,6 +88,7 @@ struct Cell<'a> {
     /// Whether it is not matched, or keeps others from being matched.
     in_conflict: bool,
     shown: Option<&'a ConditionAnalysis>,
+    dataset: &'a Dataset,
     sureness: Sureness<'a>,
     /// What holding or freeing it would cost, in words; empty until that is known.
     toggle_costs: Vec<String>,
@@ -103,6 +105,7 @@ impl<'a> Cell<'a> {
             fitted: !state.study.settings.ignored[pair],
             in_conflict,
             shown: state.shown(),
+            dataset: state.dataset(),
             sureness: state.sureness(),
             toggle_costs: toggle_costs(state, pair),
         }
@@ -270,6 +273,9 @@ impl<'a> Cell<'a> {
         }
         ui.label(words.join(" · "));
         let Some(shown) = self.shown else { return };
+        for doubt in shown.doubts.iter().filter(|doubt| doubt.channel.is_of(self.pair)) {
+            ui.label(doubt.words(self.dataset));
+        }
         let (Some(gain), Some(delay)) = (self.gain(), shown.wanted_delay_s(self.pair)) else {
             let why = self.undefined().map(|why| format!("No G, no D and no J: {}", why));
             ui.label(why.unwrap_or_default());

@@ -44,9 +44,7 @@ pub use controls::{
 use curve_display::curve_entries;
 pub use curve_display::{CurveCommand, CurveDisplay};
 pub use display::{Display, Preferences};
-pub use explanation::{
-    QUESTION, details_shown, gain_conflict_marks, question_menu_ui, remarks_shown, toggle_costs, value_label_ui,
-};
+pub use explanation::{QUESTION, gain_conflict_marks, question_menu_ui, remarks_shown, toggle_costs, value_label_ui};
 use figures::figure_button_ui;
 pub use figures::{figure_name, figure_of, views_with_figure};
 pub use focus::{Region, leave_region, region_place, region_ui};
@@ -58,6 +56,6 @@ pub use plot_style::{CurveColors, PlotStyle};
 use results::bar_words;
 pub use results::{Background, FirstResult, Results};
 use settings_panel::choice_ui;
-pub use state::{ExportAsForm, ExportForm, FigureForm, Notice, NoticeKind, RecentFile, State, Sureness};
+pub use state::{Forms, Notice, NoticeKind, RecentFile, State, Sureness};
 pub use table_view::Sorting;
 pub use tables::{TableKind, table_of};

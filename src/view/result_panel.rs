@@ -5,15 +5,16 @@ use egui::{Align, Button, CollapsingHeader, Frame, Grid, Layout, Margin, Respons
 use gdcm_core::correction::{self, GainObjective, Outcome, Quantity, kkt_residual};
 use gdcm_core::dataset::Pair;
 use gdcm_core::study::{
-    ConditionAnalysis, Edit, ExplainTarget, PhaseCorrection, Remark, RemarkKind, lead_words, servo_words, setting,
+    ConditionAnalysis, Edit, ExplainTarget, PhaseCorrection, Remark, RemarkKind, details, lead_words, servo_words,
+    setting,
 };
 use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::s_to_ms;
 
 use super::views::bar_words;
 use super::{
-    BODY_SIZE, Command, FormKind, Palette, QUESTION, Region, SMALL_SIZE, State, TableKind, details_shown, heading_ui,
-    named, region_ui, remarks_shown, table_menu_ui, value_label_ui,
+    BODY_SIZE, Command, FormKind, Palette, QUESTION, Region, SMALL_SIZE, State, TableKind, heading_ui, named,
+    region_ui, remarks_shown, table_menu_ui, value_label_ui,
 };
 
 /// Size of the half-widths of bars \[pt\].
@@ -45,6 +46,9 @@ fn outcome_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
                 if let Some(pair) = remark.ignore {
                     ignore_ui(ui, state, pair, commands);
                 }
+                if let Some((channel, of)) = remark.turn {
+                    turn_ui(ui, state, Edit::SetSign { channel, of }, commands);
+                }
                 if let Some(phase) = remark.phase {
                     offer_ui(ui, phase, commands);
                 }
@@ -52,7 +56,7 @@ fn outcome_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
             lead_ui(ui, state, shown, palette);
             let header = palette.small("In detail");
             CollapsingHeader::new(header).id_salt("details").show(ui, |ui| {
-                for sentence in details_shown(state, shown) {
+                for sentence in details(&state.study, shown) {
                     ui.label(RichText::new(sentence).size(SMALL_SIZE));
                 }
             });
@@ -244,6 +248,17 @@ fn offer_ui(ui: &mut Ui, phase: PhaseCorrection, commands: &mut Vec<Command>) {
 }
 
 /// The click that takes a response out of the objective.
+/// Turns the models of a channel, or puts them back.
+fn turn_ui(ui: &mut Ui, state: &State, edit: Edit, commands: &mut Vec<Command>) {
+    let Edit::SetSign { channel, of } = edit else { return };
+    let (inputs, outputs) = state.dataset().names_of_channels();
+    let label = format!("Turn {}{}", channel.name(&inputs, &outputs), if of.is_some() { "" } else { " back" });
+    let button = named(ui.small_button(&label), Role::Button, label);
+    if button.on_hover_text("In every condition; can be undone").clicked() {
+        commands.push(edit.into());
+    }
+}
+
 fn ignore_ui(ui: &mut Ui, state: &State, pair: Pair, commands: &mut Vec<Command>) {
     let name = state.dataset().pair_name(pair);
     let button = named(ui.small_button("Ignore it"), Role::Button, format!("Ignore {name}"));

@@ -1,6 +1,6 @@
 //! Everything the window shows.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -49,35 +49,6 @@ pub struct RecentFile {
     pub missing: bool,
 }
 
-/// What the export form holds.
-#[derive(Clone, Debug, Default)]
-pub struct ExportForm {
-    /// The folder, as typed.
-    pub folder: String,
-    /// The conditions that are exported.
-    pub chosen: BTreeSet<ConditionId>,
-}
-
-/// What the form that exports for other tools holds.
-#[derive(Clone, Debug, Default)]
-pub struct ExportAsForm {
-    /// As what.
-    pub format: ExportFormat,
-    /// Where, as typed.
-    pub path: String,
-}
-
-/// What the form that saves a figure holds.
-#[derive(Clone, Debug, Default)]
-pub struct FigureForm {
-    /// The view whose figure is saved.
-    pub view: Option<View>,
-    /// Where, as typed.
-    pub path: String,
-    /// How wide it is printed.
-    pub width: ColumnWidth,
-}
-
 /// What the forms hold while they are shown.
 #[derive(Debug, Default)]
 pub struct Forms {
@@ -85,34 +56,33 @@ pub struct Forms {
     pub shown: Option<FormKind>,
     /// The form drawn last, and whether it asked to overwrite files: another one opens.
     pub drawn: Option<(FormKind, bool)>,
-    /// The path in the open form, as typed.
-    pub open_path: String,
+    /// The path, or the text, in the field of each form, as typed.
+    pub typed: BTreeMap<FormKind, String>,
     /// The study whose dataset is not where it says, and what opening it said.
     pub lost_dataset: Option<(PathBuf, String)>,
-    /// The path of that dataset, as typed.
-    pub dataset_path: String,
     /// The model whose rejection is given a reason.
     pub rejected_model: Option<ModelId>,
-    /// The reason, as typed.
-    pub reason: String,
     /// The table that is to be saved.
     pub table: Option<Arc<Table>>,
-    /// Where, as typed.
-    pub table_path: String,
-    /// The figure that is to be saved.
-    pub figure: FigureForm,
-    /// Where the report goes, as typed.
-    pub report_path: String,
+    /// The view whose figure is to be saved.
+    pub figure: Option<View>,
+    /// How wide the figure is printed.
+    pub figure_width: ColumnWidth,
+    /// The conditions whose corrections are exported.
+    pub exported: BTreeSet<ConditionId>,
+    /// As what corrections are exported for other tools.
+    pub export_format: ExportFormat,
     /// The palette of commands.
     pub palette: PaletteForm,
-    /// The path in the save form, as typed.
-    pub save_path: String,
-    /// The export form.
-    pub export: ExportForm,
-    /// The form that exports for other tools.
-    pub export_as: ExportAsForm,
     /// Files that what the form asks for would overwrite: where there are any, it asks whether to.
     pub existing: Vec<String>,
+}
+
+impl Forms {
+    /// What stands in the field of a form, to be typed into.
+    pub fn typed_in(&mut self, form: FormKind) -> &mut String {
+        self.typed.entry(form).or_default()
+    }
 }
 
 /// Everything the window shows.

@@ -18,10 +18,12 @@ use gdcm_core::dataset::Dataset;
 use gdcm_core::message_text::sanitized;
 
 use crate::file_error::FileError;
+use crate::foreign_formats::ForeignFormat;
 use crate::json_values::Json;
 use crate::mat::Mat;
 use crate::mat73::Hdf5;
 use crate::npy::Npy;
+use crate::octave::{OctaveBinary, OctaveText};
 use crate::source::{kind_of, read_bytes, sha256};
 use crate::text::{Literals, Text};
 use crate::variables::{ReadingBudget, Variable, VariableFault};
@@ -51,7 +53,8 @@ pub(crate) trait Importer: Sync {
 }
 
 /// The formats; a file is of the first that recognises it, and the last recognises any.
-const FORMATS: [&dyn Importer; 7] = [&Npy, &Zip, &Hdf5, &Mat, &Json, &Literals, &Text];
+const FORMATS: [&dyn Importer; 10] =
+    [&Npy, &Zip, &Hdf5, &OctaveBinary, &ForeignFormat, &Mat, &OctaveText, &Json, &Literals, &Text];
 
 /// What a file holds.
 pub(crate) enum Contents {
@@ -61,6 +64,8 @@ pub(crate) enum Contents {
         variables: Vec<Variable>,
         /// How they were read, where that is not plain.
         notes: Vec<String>,
+        /// Whether the first index of an array of more than two dimensions counts the matrices in it, as NumPy has it.
+        pages_first: bool,
     },
     /// Numbers in lines: what they are depends on what is looked for.
     Text(String),
@@ -80,10 +85,16 @@ pub(crate) enum Contents {
 }
 
 impl Contents {
+    /// Arrays as NumPy and JSON have them, or why not.
+    pub(crate) fn row_major(read: Result<Vec<Variable>, VariableFault>, path: &Path) -> Result<Self, FileError> {
+        let variables = read.map_err(|fault| FileError::variables(path, fault))?;
+        Ok(Self::Variables { variables, notes: Vec::new(), pages_first: true })
+    }
+
     /// Variables that were read, or why not.
     pub(crate) fn variables(read: Result<Vec<Variable>, VariableFault>, path: &Path) -> Result<Self, FileError> {
         let variables = read.map_err(|fault| FileError::variables(path, fault))?;
-        Ok(Self::Variables { variables, notes: Vec::new() })
+        Ok(Self::Variables { variables, notes: Vec::new(), pages_first: false })
     }
 }
 
@@ -274,6 +285,12 @@ mod tests {
         assert_eq!(of(b" {\"A\": 1}", "a.txt"), Json.name());
         assert_eq!(of(b"A = [1 2];", "a.m"), Literals.name());
         assert_eq!(of(b"1,2\n3,4\n", "a.csv"), Text.name());
+        // The same text is read alike, whatever it is called.
+        assert_eq!(of(b"% a model\nA = [1 2\n 3 4];", "a.txt"), Literals.name());
+        assert_eq!(of(b"% omega, re, im\n1,2,3\n4,5,6\n", "a.m"), Text.name());
+        assert_eq!(of(b"Fs = 50\nt,P\n0,1\n1,2\n", "a.txt"), Text.name());
+        assert_eq!(of(b"A = [\n1 2\n3 4\n];", "a.m"), Literals.name());
+        assert_eq!(of(b"# Created by Octave 7.3.0\n# name: A\n# type: matrix\n", "a.txt"), OctaveText.name());
         let header = [&[b'M'; 124][..], &[0, 1, b'I', b'M']].concat();
         assert_eq!(of(&header, "no extension"), Mat.name());
     }

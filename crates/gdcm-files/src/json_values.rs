@@ -1,4 +1,5 @@
-//! JSON, packed or not: datasets and models of this program, and JSON of any shape as variables.
+//! JSON, packed or not: datasets and models of this program, and JSON of any shape as variables. What else gzip packs is given to
+//! its own format.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -8,11 +9,10 @@ use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visi
 
 use crate::dataset_file::{DatasetOrigin, load_dataset_bytes};
 use crate::file_error::FileError;
-use crate::importer::{Contents, Importer};
+use crate::importer::{Contents, Importer, importer_of};
 use crate::location::Outline;
 use crate::models_file::found_models;
 use crate::source::{GZIP_MAGIC, text_of, without_mark};
-use crate::text::decode;
 use crate::variables::{
     Array, CellArray, ElementKind, ReadingBudget, StructArray, TextArray, Value, Variable, VariableFault,
 };
@@ -20,7 +20,7 @@ use crate::variables::{
 /// Memory that a byte of a file of this program takes at most \[bytes\].
 const TYPED: u64 = 8;
 
-/// JSON; packed texts of other kinds are given as texts.
+/// JSON, and whatever is packed by gzip.
 pub(crate) struct Json;
 
 impl Importer for Json {
@@ -41,7 +41,11 @@ impl Importer for Json {
         let text = text_of(bytes, path, budget)?;
         let text = without_mark(&text);
         if bytes.starts_with(&GZIP_MAGIC) && !matches!(text.trim_ascii_start().first(), Some(b'{' | b'[')) {
-            return Ok(Contents::Text(decode(text, budget).map_err(wrong)?));
+            let packed = path.with_extension("");
+            return match importer_of(text, &packed) {
+                importer if importer.name() == Self.name() => Contents::row_major(variables_of(text, budget), path),
+                importer => importer.read(text, path, budget),
+            };
         }
         let format = Outline::format_of(text, budget);
         budget.work(text.len() as u64, "").map_err(wrong)?;
@@ -60,7 +64,7 @@ impl Importer for Json {
             }
             _ => {}
         }
-        Contents::variables(variables_of(text, budget), path)
+        Contents::row_major(variables_of(text, budget), path)
     }
 }
 

@@ -7,6 +7,7 @@ mod exports;
 pub mod figure;
 mod figure_file;
 mod file_error;
+mod foreign_formats;
 
 mod identified_file;
 mod importer;
@@ -18,6 +19,7 @@ mod mat73;
 mod model_files;
 mod models_file;
 mod npy;
+mod octave;
 mod opened;
 mod output_set;
 

@@ -14,9 +14,12 @@ use crate::importer::{Contents, FolderProgress, ImportedFile, import, import_byt
 use crate::recognise::{Found, recognise};
 use crate::text::{
     FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable, read_matrices, read_matrix, read_table,
-    says_quantity,
+    says_quantity, split_complex,
 };
 use crate::variables::{ReadingBudget, Value, Variable, VariableFault};
+
+/// The headings of every table of as many columns, among those of single files.
+pub const EVERY_TABLE: &str = "*";
 
 /// What was found in files.
 #[derive(Clone, Debug, Default)]
@@ -68,15 +71,16 @@ impl ModelReading<'_> {
         let ImportedFile { path, name, sha256, contents } = file;
         let wrong = |fault| FileError::variables(path, fault);
         let recognised = match contents {
-            Contents::Variables { variables, notes } => {
-                self.of_variables(variables, notes, (name, &sha256), budget).map_err(wrong)?
+            Contents::Variables { variables, notes, pages_first } => {
+                self.of_variables(variables, notes, ((name, &sha256), pages_first), budget).map_err(wrong)?
             }
             Contents::Text(text) => match models_text(&text, path, budget).map_err(wrong)? {
                 TextContents::Variables { variables, notes } => {
-                    self.of_variables(variables, notes, (name, &sha256), budget).map_err(wrong)?
+                    self.of_variables(variables, notes, ((name, &sha256), false), budget).map_err(wrong)?
                 }
                 TextContents::Table(mut table) => {
-                    if let Some(said) = self.headings.get(name) {
+                    let of_all = self.headings.get(EVERY_TABLE).filter(|said| said.len() == table.columns.len());
+                    if let Some(said) = self.headings.get(name).or(of_all) {
                         table = table.with_headings(said).map_err(wrong)?;
                     }
                     let found = models_of_table(&table, name).map_err(wrong)?;
@@ -96,7 +100,8 @@ impl ModelReading<'_> {
                     self.found.faults.extend(taken.err().map(|error| format!("{name}: {error}")));
                 }
                 self.found.ignored.extend(of_file(name, ignored));
-                self.of_variables(variables, Vec::new(), (name, &sha256), budget).map_err(wrong)?
+                // Its arrays are those of NumPy.
+                self.of_variables(variables, Vec::new(), ((name, &sha256), true), budget).map_err(wrong)?
             }
         };
         let Found { mut items, faults, ignored } = recognised;
@@ -116,14 +121,14 @@ impl ModelReading<'_> {
         &mut self,
         variables: Vec<Variable>,
         notes: Vec<String>,
-        (name, sha256): (&str, &str),
+        ((name, sha256), pages_first): ((&str, &str), bool),
         budget: &ReadingBudget<'_>,
     ) -> Result<Found<FoundModel>, VariableFault> {
         if let Some(matrix) = LooseMatrix::of(&variables, name) {
             self.matrices.push(LooseMatrix { sha256: sha256.to_owned(), ..matrix });
             return Ok(Found::default());
         }
-        let mut found = recognise(&variables, budget)?;
+        let mut found = recognise(&variables, pages_first, budget)?;
         for model in &mut found.items {
             model.notes.extend(notes.iter().cloned());
         }
@@ -157,7 +162,8 @@ fn models_text(text: &str, path: &Path, budget: &ReadingBudget<'_>) -> Result<Te
     if looks_named && let Ok(matrices) = read_matrices(text, budget) {
         return Ok(TextContents::Variables { variables: matrices.variables, notes: matrices.notes });
     }
-    read_table(text, budget).map(TextContents::Table)
+    let split = split_complex(text, budget)?;
+    read_table(split.as_deref().unwrap_or(text), budget).map(TextContents::Table)
 }
 
 fn stem(path: &Path) -> &str {
@@ -267,7 +273,7 @@ fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
     for (group, matrices) in groups {
         let variables: Vec<Variable> = matrices.iter().map(|matrix| matrix.variable.clone()).collect();
         // The files were within their budgets; their matrices are copied once.
-        let mut of_group = recognise(&variables, &ReadingBudget::new(u64::MAX))
+        let mut of_group = recognise(&variables, true, &ReadingBudget::new(u64::MAX))
             .unwrap_or_else(|fault| Found { faults: vec![fault.to_string()], ..Found::default() });
         let is_model = !of_group.items.is_empty() || !of_group.faults.is_empty();
         for model in &mut of_group.items {

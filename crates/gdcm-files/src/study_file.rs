@@ -7,10 +7,11 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use gdcm_core::dataset::limits::{MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
+use gdcm_core::dataset::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
 use gdcm_core::dataset::{Condition, ConditionId, Dataset, Location};
 use gdcm_core::study::{
     AdoptedModels, BundleChoice, ConditionChoice, Decisions, Difference, Inventory, ResponseNames, Settings, Study,
+    TurnedChannel,
 };
 
 use crate::dataset_file::{DatasetOrigin, LoadedDataset, ModelText, RecordText, dataset_from, embedded_example};
@@ -57,6 +58,9 @@ struct StudyText {
     /// Identified models taken in place of the dataset's own; absent where there are none.
     #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "list::<MOST_CONDITIONS, _, _>")]
     taken: Vec<TakenText>,
+    /// Channels whose models are turned; absent where there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "list::<MOST_CHANNELS, _, _>")]
+    signs: Vec<TurnedChannel>,
     /// Decisions kept under names; absent in studies of older programs.
     #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "list::<MOST_VARIANTS, _, _>")]
     variants: Vec<VariantText>,
@@ -137,6 +141,7 @@ impl StudyText {
             settings: study.settings.named(&study.dataset),
             conditions: ConditionText::all(study),
             taken: taken.collect(),
+            signs: study.turned_channels(),
             variants: variants.collect(),
         }
     }
@@ -180,7 +185,7 @@ fn present_decisions(
             return Err(ContentError::new(Location::condition(index + 1, id), ContentFault::DuplicateCondition { id }));
         }
     }
-    Ok(Decisions { settings, choices, taken: Vec::new(), variants: Vec::new() })
+    Ok(Decisions { settings, choices, taken: Vec::new(), signs: Vec::new(), variants: Vec::new() })
 }
 
 /// The models that a study has taken, for its dataset.
@@ -257,8 +262,9 @@ pub(super) fn study_from(source: &Source<'_>, path: &Path, moved: Option<&Path>)
     let (text, unknown) = FORMAT.decode::<StudyText>(source.text(), path)?;
     FORMAT.check_read(&text.format, text.version, path)?;
     let mut loaded = load_referenced(&text.dataset, path, moved)?;
-    let decisions = decisions_of(text.settings, text.conditions, text.taken, text.variants, &loaded.dataset)
+    let mut decisions = decisions_of(text.settings, text.conditions, text.taken, text.variants, &loaded.dataset)
         .map_err(|error| FileError::content(path, error))?;
+    decisions.signs = text.signs;
     let (study, not_applied) = decisions.applied_to(loaded.dataset.clone());
     let mut differences = match text.dataset.holds {
         _ if text.dataset.sha256 == loaded.sha256 => Vec::new(),

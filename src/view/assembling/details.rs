@@ -12,12 +12,32 @@ use super::AssemblyState;
 
 const FIELD_WIDTH: f32 = 200.0;
 
+/// What a text in a field says of a model.
+enum Says {
+    Text(fn(&mut RowRule) -> &mut Option<String>),
+    Number(fn(&mut RowRule) -> &mut Option<f64>),
+    Names(fn(&mut RowRule) -> &mut Option<Vec<String>>),
+    Other(fn(&str, &mut RowRule) -> Result<(), String>),
+}
+
 /// A field: its name, what stands in it, and what a text in it says.
 struct Field {
     name: &'static str,
     value: String,
     hint: &'static str,
-    say: fn(&str, &mut RowRule) -> Result<(), String>,
+    says: Says,
+}
+
+impl Field {
+    fn say(&self, text: &str, row: &mut RowRule) -> Result<(), String> {
+        match self.says {
+            Says::Text(place) => *place(row) = said(text),
+            Says::Number(place) => *place(row) = typed_number(text)?,
+            Says::Names(place) => *place(row) = said_names(text),
+            Says::Other(say) => say(text, row)?,
+        }
+        Ok(())
+    }
 }
 
 /// The fields of the model shown.
@@ -75,76 +95,46 @@ fn field_ui(ui: &mut Ui, assembly: &AssemblyState, field: &Field, commands: &mut
     let name = format!("Model {}", field.name);
     if let Some(text) = entry_ui(ui, &name, &field.value, field.hint, FIELD_WIDTH) {
         let mut refusal = None;
-        let command = assembly.said_of(assembly.selected, |row| refusal = (field.say)(&text, row).err());
+        let command = assembly.said_of(assembly.selected, |row| refusal = field.say(&text, row).err());
         commands.push(refusal.map_or(command, |why| Command::Refuse(format!("{}: {why}", field.name))));
     }
     if fill_ui(ui, field.name) {
         // What stands in a field was accepted before.
-        commands.push(assembly.filled_down(assembly.selected, |row| drop((field.say)(&field.value, row))));
+        commands.push(assembly.filled_down(assembly.selected, |row| drop(field.say(&field.value, row))));
     }
     ui.end_row();
 }
 
 fn fields(part: &Part, rule: Option<&RowRule>) -> Vec<Field> {
-    let row = &part.row;
-    let field = |name, value: Option<String>, hint, say| Field { name, value: value.unwrap_or_default(), hint, say };
-    let names = |labels, said: Option<&Vec<String>>| Some(channel_names(labels, said.map(Vec::as_slice)));
-    let mut fields = vec![
-        field("condition", row.condition.map(|of| of.to_string()), "a number", say_condition),
-        field("name", Some(row.name.clone()), "in its bundle", |text, row| {
-            row.name = Some(text.trim().to_owned());
-            Ok(())
-        }),
-        field("airspeed", row.airspeed_kt.map(number), "kt", |text, row| {
-            typed_number(text).map(|value| row.airspeed_kt = value)
-        }),
-        field("altitude", row.altitude.clone(), "low, high", |text, row| {
-            row.altitude = said(text);
-            Ok(())
-        }),
-        field("altitude [ft]", row.altitude_ft.map(number), "ft", |text, row| {
-            typed_number(text).map(|value| row.altitude_ft = value)
-        }),
-        field("weight", row.weight.clone(), "low, high", |text, row| {
-            row.weight = said(text);
-            Ok(())
-        }),
-        field("mass [kg]", row.mass_kg.map(number), "kg", |text, row| {
-            typed_number(text).map(|value| row.mass_kg = value)
-        }),
-        field(
-            "inputs",
-            names(&part.found.inputs, rule.and_then(|rule| rule.inputs.as_ref())),
-            "in the file's order: LON, LAT",
-            |text, row| {
-                row.inputs = said_names(text);
-                Ok(())
-            },
-        ),
-        field(
-            "outputs",
-            names(&part.found.outputs, rule.and_then(|rule| rule.outputs.as_ref())),
-            "in the file's order: P, Q",
-            |text, row| {
-                row.outputs = said_names(text);
-                Ok(())
-            },
-        ),
-    ];
-    fields.push(match row.role {
-        Some(RowRole::Identified) => field("method", row.method.clone(), "CT-PBSID", |text, row| {
-            row.method = said(text);
-            Ok(())
-        }),
-        _ => field("trim", Some(trim_words(&row.perturbation)), "roll_deg 5, airspeed_kt -10", say_trim),
-    });
-    fields
+    let (row, found) = (&part.row, &part.found);
+    let field = |name, value: Option<String>, hint, says| Field { name, value: value.unwrap_or_default(), hint, says };
+    let inputs = channel_names(&found.inputs, rule.and_then(|rule| rule.inputs.as_ref()));
+    let outputs = channel_names(&found.outputs, rule.and_then(|rule| rule.outputs.as_ref()));
+    let condition = row.condition.map(|of| of.to_string());
+    let trim = Some(trim_words(&row.perturbation));
+    vec![
+        field("condition", condition, "a number", Says::Other(say_condition)),
+        field("name", Some(row.name.clone()), "in its bundle", Says::Text(|row| &mut row.name)),
+        field("airspeed", row.airspeed_kt.map(number), "kt", Says::Number(|row| &mut row.airspeed_kt)),
+        field("altitude", row.altitude.clone(), "low, high", Says::Text(|row| &mut row.altitude)),
+        field("altitude [ft]", row.altitude_ft.map(number), "ft", Says::Number(|row| &mut row.altitude_ft)),
+        field("weight", row.weight.clone(), "low, high", Says::Text(|row| &mut row.weight)),
+        field("mass [kg]", row.mass_kg.map(number), "kg", Says::Number(|row| &mut row.mass_kg)),
+        field("inputs", Some(inputs), "in the file's order: LON, LAT", Says::Names(|row| &mut row.inputs)),
+        field("outputs", Some(outputs), "in the file's order: P, Q", Says::Names(|row| &mut row.outputs)),
+        match row.role {
+            Some(RowRole::Identified) => {
+                field("method", row.method.clone(), "CT-PBSID", Says::Text(|row| &mut row.method))
+            }
+            _ => field("trim", trim, "roll_deg 5, airspeed_kt -10", Says::Other(say_trim)),
+        },
+    ]
 }
 
 /// The channels of a file in its own order, as they are said to be or as the file calls them; "?" where it does not.
-fn channel_names(labels: &[ChannelLabel], said: Option<&[String]>) -> String {
+fn channel_names(labels: &[ChannelLabel], said: Option<&Vec<String>>) -> String {
     let of_file = || labels.iter().map(|label| label.name.clone().unwrap_or_else(|| "?".to_owned())).collect();
-    said.map_or_else(of_file, <[String]>::to_vec).join(", ")
+    said.cloned().unwrap_or_else(of_file).join(", ")
 }
 
 /// "LON, LAT, PED, COL"; an empty text says nothing.

@@ -8,10 +8,11 @@ use crate::view::plot::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, char
 use crate::view::{Palette, SMALL_SIZE, State};
 use gdcm_core::dataset::{Pair, StateSpace};
 use gdcm_core::identification::{
-    EstimatePoint, Identification, PoleEstimate, StabilisationPoint, TRUSTED_COHERENCE, TWO_SIDED_95, log_spaced,
+    Identification, PoleEstimate, StabilisationPoint, TRUSTED_COHERENCE, TWO_SIDED_95, log_spaced,
 };
-use gdcm_core::response::evaluate;
+use gdcm_core::response::{ResponseShape, evaluate};
 use gdcm_core::units::neper_to_db;
+use nalgebra::Complex;
 
 use super::{Page, kept};
 
@@ -21,17 +22,16 @@ const POINTS: usize = 200;
 const BEYOND: f64 = 1.5;
 
 /// A response by its frequencies \[rad/s\], magnitudes \[dB\] and unwrapped phases \[deg\].
-#[derive(Clone, Debug, Default)]
-struct Curve(Vec<[f64; 3]>);
+type Curve = Vec<[f64; 3]>;
 
 /// What is drawn of one pair.
 #[derive(Clone, Debug, Default)]
 struct DrawnResponse {
-    /// Frequency, dB, deg, standard deviation of each, and whether it is trusted.
-    measured: Vec<([f64; 5], bool)>,
+    /// The measured points, standard deviations \[dB, deg\] of each, and whether it is trusted.
+    measured: Vec<([f64; 3], [f64; 2], bool)>,
     recommended: Curve,
-    /// Frequency, standard deviations \[dB, deg\].
-    bands: Vec<[f64; 3]>,
+    /// Standard deviations \[dB, deg\] of the same.
+    bands: Vec<[f64; 2]>,
     unrefined: Curve,
 }
 
@@ -95,13 +95,13 @@ fn chart_of<'a>(
 ) -> Chart<'a> {
     let mut chart = Chart::new(title, ChartAxis::Frequency(state.display.unit), across, label);
     chart.group = Some(egui::Id::unique("identified response"));
-    let band = drawn.recommended.0.iter().zip(&drawn.bands).map(|(at, sd)| {
-        let half = TWO_SIDED_95 * sd[part];
+    let band = drawn.recommended.iter().zip(&drawn.bands).map(|(at, sd)| {
+        let half = TWO_SIDED_95 * sd[part - 1];
         [at[0], at[part] - half, at[part] + half]
     });
     chart.bands.push(ChartBand { points: band.collect(), color: palette.identified.gamma_multiply(0.28) });
     let line = |curve: &Curve, color: Color32, dashed: bool| ChartLine {
-        points: curve.0.iter().map(|at| [at[0], at[part]]).collect::<Vec<_>>().into(),
+        points: curve.iter().map(|at| [at[0], at[part]]).collect::<Vec<_>>().into(),
         color,
         width: if dashed { 1.2 } else { 2.0 },
         dashed,
@@ -109,8 +109,8 @@ fn chart_of<'a>(
     chart.lines =
         vec![line(&drawn.unrefined, palette.accent, true), line(&drawn.recommended, palette.identified, false)];
     for trusted in [false, true] {
-        let points = drawn.measured.iter().filter(|(_, of)| *of == trusted);
-        let points = points.map(|(at, _)| [at[0], at[part], TWO_SIDED_95 * at[part + 2]]).collect();
+        let points = drawn.measured.iter().filter(|(.., of)| *of == trusted);
+        let points = points.map(|(at, sd, _)| [at[0], at[part], TWO_SIDED_95 * sd[part - 1]]).collect();
         let color = if trusted { palette.text } else { palette.dim_text };
         chart.marks.push(ChartMarks { points, sideways: Vec::new(), color, filled: trusted, crosses: false });
     }
@@ -118,64 +118,48 @@ fn chart_of<'a>(
 }
 
 fn drawn(found: &Identification, band: [f64; 2], pair: Pair) -> DrawnResponse {
-    let measured = measured_points(&found.measured.points, pair);
-    let reference = measured.iter().find(|(_, trusted)| *trusted).map(|(at, _)| (at[0], at[2]));
+    let (points, at) = (&found.measured.points, (pair.output, pair.input));
+    let sds = points.iter().map(|point| Some(point.sd(at)).filter(|sd| sd.is_finite()).unwrap_or(0.0));
+    let trusted = points.iter().map(|point| point.partial_coherence[at] >= TRUSTED_COHERENCE);
+    let measured = shape(points.iter().map(|point| (point.omega, point.response[at])), None);
+    let measured: Vec<_> = measured
+        .into_iter()
+        .zip(sds.zip(trusted))
+        .map(|(at, (sd, trusted))| (at, [neper_to_db(sd), sd.to_degrees()], trusted))
+        .collect();
+    let reference = measured.iter().find(|(.., trusted)| *trusted).map(|(at, ..)| *at);
     let bands = found.refined.bands.as_ref();
-    let sd = bands.into_iter().flat_map(|bands| {
-        let (db, deg) = (&bands.sd_db()[pair], &bands.sd_deg()[pair]);
-        bands.omega().iter().zip(db.iter().zip(deg)).map(|(omega, (db, deg))| [*omega, *db, *deg])
-    });
+    let sd = bands.into_iter().flat_map(|bands| bands.sd_db()[pair].iter().zip(&bands.sd_deg()[pair]));
+    let omega = bands.map_or(&[][..], |bands| bands.omega());
     DrawnResponse {
-        recommended: found
-            .refined
-            .state_space()
-            .map_or_else(Curve::default, |of| curve(of, bands.map_or(&[], |bands| bands.omega()), pair, reference)),
-        bands: sd.collect(),
-        unrefined: found
-            .unrefined
-            .state_space()
-            .map_or_else(Curve::default, |of| model_curve(of, band, pair, reference)),
+        recommended: found.refined.state_space().map_or_else(Curve::new, |of| curve(of, omega, pair, reference)),
+        bands: sd.map(|(db, deg)| [*db, *deg]).collect(),
+        unrefined: found.unrefined.state_space().map_or_else(Curve::new, |of| model_curve(of, band, pair, reference)),
         measured,
     }
 }
 
 /// The response of a model, the phase on the branch nearest to `reference`.
-fn curve(model: &StateSpace, omegas: &[f64], pair: Pair, reference: Option<(f64, f64)>) -> Curve {
+fn curve(model: &StateSpace, omegas: &[f64], pair: Pair, reference: Option<[f64; 3]>) -> Curve {
     let response = evaluate(model, omegas);
-    let values = response.curve(pair).iter().copied();
-    let finite = omegas.iter().copied().zip(values).filter(|(_, value)| value.re.is_finite() && value.im.is_finite());
-    Curve(shape(finite, reference))
+    let values = omegas.iter().copied().zip(response.curve(pair).iter().copied());
+    shape(values.filter(|(_, value)| value.is_finite()), reference)
 }
 
-fn model_curve(model: &StateSpace, band: [f64; 2], pair: Pair, reference: Option<(f64, f64)>) -> Curve {
+fn model_curve(model: &StateSpace, band: [f64; 2], pair: Pair, reference: Option<[f64; 3]>) -> Curve {
     curve(model, &log_spaced(band[0] / BEYOND, band[1] * BEYOND, POINTS), pair, reference)
 }
 
-/// Magnitude and phase, the phase unwrapped and on the branch nearest to `reference`, a frequency and its phase \[deg\].
-fn shape(values: impl Iterator<Item = (f64, nalgebra::Complex<f64>)>, reference: Option<(f64, f64)>) -> Vec<[f64; 3]> {
-    let mut points: Vec<[f64; 3]> = Vec::new();
-    for (omega, value) in values {
-        let (db, wrapped) = (20.0 * value.norm().max(f64::MIN_POSITIVE).log10(), value.arg().to_degrees());
-        let phase = points.last().map_or(wrapped, |last| wrapped + 360.0 * ((last[2] - wrapped) / 360.0).round());
-        points.push([omega, db, phase]);
-    }
-    let Some((omega, phase)) = reference else { return points };
-    let distance = |point: &&[f64; 3]| (point[0] / omega).ln().abs();
-    let nearest = points.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-    let shift = nearest.map_or(0.0, |nearest| 360.0 * ((phase - nearest[2]) / 360.0).round());
-    points.iter_mut().for_each(|point| point[2] += shift);
-    points
-}
-
-fn measured_points(points: &[EstimatePoint], pair: Pair) -> Vec<([f64; 5], bool)> {
-    let at = (pair.output, pair.input);
-    let shapes = shape(points.iter().map(|point| (point.omega, point.response[at])), None);
-    let with = |(shape, point): ([f64; 3], &EstimatePoint)| {
-        let sd = Some(point.sd(at)).filter(|sd| sd.is_finite()).unwrap_or(0.0);
-        let [omega, db, phase] = shape;
-        ([omega, db, phase, neper_to_db(sd), sd.to_degrees()], point.partial_coherence[at] >= TRUSTED_COHERENCE)
-    };
-    shapes.into_iter().zip(points).map(with).collect()
+/// Magnitude and phase, the phase unwrapped and on the branch nearest to `reference`, a point of another curve.
+fn shape(values: impl Iterator<Item = (f64, Complex<f64>)>, reference: Option<[f64; 3]>) -> Curve {
+    let (omega, values): (Vec<f64>, Vec<Complex<f64>>) = values.unzip();
+    let ResponseShape { magnitude_db, phase_deg } = ResponseShape::of(&values);
+    let distance = |at: &usize, to: f64| (omega[*at] / to).ln().abs();
+    let shift = reference.map_or(0.0, |[to, _, phase]| {
+        let nearest = (0..omega.len()).min_by(|a, b| distance(a, to).total_cmp(&distance(b, to)));
+        nearest.map_or(0.0, |nearest| 360.0 * ((phase - phase_deg[nearest]) / 360.0).round())
+    });
+    (0..omega.len()).map(|at| [omega[at], magnitude_db[at], phase_deg[at] + shift]).collect()
 }
 
 /// Moduli of the poles over frequency, one row an order; crosses stay where the order before has them.

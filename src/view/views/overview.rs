@@ -6,7 +6,6 @@ use gdcm_core::dataset::Pair;
 use super::frequency::{bode_curves, wished};
 use crate::view::arrangement::View;
 use crate::view::command::Command;
-use crate::view::explanation::channel_names;
 use crate::view::palette::Palette;
 use crate::view::plot::{BodeCurve, CurveId, OverviewCell, OverviewEvent, OverviewScene, overview_ui};
 use crate::view::state::State;
@@ -26,7 +25,7 @@ pub fn overview_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
             note: cost_note(state, pair),
         })
         .collect();
-    let (inputs, outputs) = channel_names(state);
+    let (inputs, outputs) = state.dataset().names_of_channels();
     let band = state.study.settings.band;
     let scene = OverviewScene {
         inputs: &inputs,

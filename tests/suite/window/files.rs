@@ -184,9 +184,13 @@ fn corrections_are_exported_for_other_tools_and_an_existing_file_is_asked_about(
     let mut window = window();
     window.state_mut().dispatch(Command::ShowForm(Some(FormKind::ExportAs)));
     window.run_steps(2);
-    assert_eq!(state(&window).forms.export_as.path, "example.mat");
+    assert_eq!(state(&window).forms.typed[&FormKind::ExportAs], "example.mat");
     click(&mut window, "Python module, a function of airspeed");
-    assert_eq!(state(&window).forms.export_as.path, "example.py", "the end of the name goes with the format");
+    assert_eq!(
+        state(&window).forms.typed[&FormKind::ExportAs],
+        "example.py",
+        "the end of the name goes with the format"
+    );
     window.get_by_label("Path of the export").focus();
     window.key_press_modifiers(Modifiers::COMMAND, Key::A);
     window.run_steps(2);

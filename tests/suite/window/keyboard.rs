@@ -1,6 +1,7 @@
 //! Worked without the pointer.
 
 use egui::{Color32, Shape};
+use gdcm::view::command::FormKind;
 use gdcm::view::palette::Palette;
 use gdcm_core::correction::GainBounds;
 
@@ -46,7 +47,7 @@ fn a_space_in_a_text_decides_nothing() {
     press(&mut window, Modifiers::COMMAND | Modifiers::SHIFT, Key::O);
     window.event(Event::Text(" ".to_owned()));
     press(&mut window, Modifiers::NONE, Key::Space);
-    assert_eq!(state(&window).forms.open_path, " ", "it goes to the field");
+    assert_eq!(state(&window).forms.typed[&FormKind::Open], " ", "it goes to the field");
     press(&mut window, Modifiers::NONE, Key::Escape);
     // A list row that has the focus is what the space bar presses.
     window.get_by_label_contains("Condition 3: ").focus();

@@ -2,6 +2,8 @@
 
 use std::ops::{Index, IndexMut};
 
+use serde::{Deserialize, Serialize};
+
 /// An input (a control position) or an output (a measured motion), as the dataset names it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Channel {
@@ -134,7 +136,8 @@ impl<T> IndexMut<Pair> for PairTable<T> {
 }
 
 /// Whether a channel goes into the aircraft or comes out of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum ChannelSide {
     /// A stick, a pedal.
     Input,

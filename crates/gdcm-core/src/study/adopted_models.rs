@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use crate::correction::Channel;
 use crate::dataset::{BundleKind, ConditionId, ConditionRecord, Dataset, Dynamics, Model, Origin};
 use crate::identification::Identification;
 
-use super::{BundleChoice, EditRefusal, Study};
+use super::{BundleChoice, EditRefusal, SignRole, Signs, Study, turned};
 
 /// Which models of an identification are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,23 +92,38 @@ impl Study {
     pub(super) fn take_models(&mut self, taken: &[(ConditionId, Arc<AdoptedModels>)]) -> Result<(), EditRefusal> {
         let mut models: BTreeMap<_, _> = self.taken_models().map(|(id, models)| (id, Arc::clone(models))).collect();
         models.extend(taken.iter().cloned());
-        self.put_taken(models)
+        self.rebuild(models, self.signs.clone())
     }
 
     /// Puts the models of the file back into a condition.
     pub(super) fn return_models(&mut self, condition: ConditionId) -> Result<(), EditRefusal> {
         let models = self.taken_models().filter(|(id, _)| *id != condition);
-        self.put_taken(models.map(|(id, models)| (id, Arc::clone(models))).collect())
+        self.rebuild(models.map(|(id, models)| (id, Arc::clone(models))).collect(), self.signs.clone())
     }
 
-    fn put_taken(&mut self, models: BTreeMap<ConditionId, Arc<AdoptedModels>>) -> Result<(), EditRefusal> {
+    /// Turns the models of a channel, or puts them back as they were.
+    pub(super) fn set_sign(&mut self, channel: Channel, of: Option<SignRole>) -> Result<(), EditRefusal> {
+        let (inputs, outputs) = (self.dataset.inputs().len(), self.dataset.outputs().len());
+        if !Channel::all(inputs, outputs).any(|known| known == channel) {
+            return Err(EditRefusal::NoChannel { channel });
+        }
+        let mut signs = self.signs.clone();
+        signs.remove(&channel);
+        signs.extend(of.map(|of| (channel, of)));
+        let models = self.taken_models().map(|(id, models)| (id, Arc::clone(models))).collect();
+        self.rebuild(models, signs)
+    }
+
+    /// The dataset of the file with these models in its conditions, then turned.
+    fn rebuild(&mut self, models: BTreeMap<ConditionId, Arc<AdoptedModels>>, signs: Signs) -> Result<(), EditRefusal> {
         let file = Arc::clone(self.file_dataset());
         let mut dataset = Arc::clone(&file);
         for (id, taken) in &models {
             dataset = Arc::new(taken.put_into(&dataset, *id)?);
         }
-        self.dataset = dataset;
-        self.taken = (!models.is_empty()).then_some(Taken { file, models });
+        self.dataset = turned(&dataset, &signs)?;
+        self.taken = (!models.is_empty() || !signs.is_empty()).then_some(Taken { file, models });
+        self.signs = signs;
         self.forget_absent_models();
         Ok(())
     }

@@ -11,7 +11,10 @@ use crate::schedule::{
 };
 use crate::uncertainty::Scalar;
 
-use super::{BundleMetrics, Caution, Comparison, LeadCompensated, LeadOffer, Study, Uncertainty, scheduled_points};
+use super::{
+    BundleMetrics, Caution, Comparison, ConventionDoubt, LeadCompensated, LeadOffer, Study, Uncertainty,
+    scheduled_points,
+};
 
 /// The nominal model of a condition under the scheduled correction (M12).
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +37,8 @@ pub struct Analysis {
     pub omega: Arc<[f64]>,
     /// Result of each condition.
     pub conditions: BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>,
+    /// Channels that one side seems to have in another sign or unit: what is said first.
+    pub doubts: Vec<ConventionDoubt>,
     /// The schedule of the chosen conditions.
     pub schedule: Result<Schedule, ScheduleError>,
     /// Assessment of each condition.
@@ -106,6 +111,8 @@ pub struct ConditionAnalysis {
     pub correction: ChannelCorrection,
     /// J of the physics representative before and after this correction.
     pub cost: Arc<PairTable<Option<CostChange>>>,
+    /// Channels that seem to have another sign or unit here.
+    pub doubts: Vec<ConventionDoubt>,
     /// What the engineer has to know about the result.
     pub cautions: Vec<Caution>,
 }

@@ -176,6 +176,7 @@ impl ConditionStages {
             offer,
             correction,
             cost,
+            doubts: Vec::new(),
             cautions,
         }))
     }

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use crate::correction::Channel;
 use crate::dataset::{BandError, BundleKind, Condition, ConditionId, ModelId, Pair, PairTable};
 use crate::units::number;
 
-use super::{AdoptedModels, ConditionChoice, Setting, Study, Value};
+use super::{AdoptedModels, ConditionChoice, Setting, SignRole, Study, Value};
 
 /// One decision about a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,6 +64,13 @@ pub enum Edit {
     Fit(Pair, bool),
     /// Give a setting of the whole study a value ([`Setting::to`]).
     Set(&'static Setting, Value),
+    /// Turns the models of a channel, or puts them back as the file has them: a decision about the data, of all variants.
+    SetSign {
+        /// The channel.
+        channel: Channel,
+        /// Whose models; none puts all back.
+        of: Option<SignRole>,
+    },
     /// Put models identified from flight records into conditions, in place of the identified models there.
     TakeModels(Vec<(ConditionId, Arc<AdoptedModels>)>),
     /// Put the identified models of the dataset's file back into a condition.
@@ -188,6 +196,12 @@ pub enum EditRefusal {
         /// The model.
         model: ModelId,
     },
+    /// The channel does not exist.
+    #[error("the dataset has no {}", channel.name(&[], &[]))]
+    NoChannel {
+        /// The channel.
+        channel: Channel,
+    },
     /// The dataset has no such response.
     #[error("the dataset has no response of output number {} to input number {}", pair.output + 1, pair.input + 1)]
     NoResponse {
@@ -227,6 +241,11 @@ impl Edit {
                 format!("{} {}", if *fitted { "fit" } else { "ignore" }, study.dataset.pair_name(*pair))
             }
             Edit::Set(setting, _) => setting.name.to_owned(),
+            Edit::SetSign { channel, of } => {
+                let (inputs, outputs) = study.dataset.names_of_channels();
+                let name = channel.name(&inputs, &outputs);
+                of.map_or_else(|| format!("turn {name} back"), |of| format!("turn {name} ({})", of.word()))
+            }
             Edit::TakeModels(taken) => match taken.as_slice() {
                 [(condition, _)] => format!("use identified models (condition {condition})"),
                 _ => format!("use identified models ({} conditions)", taken.len()),
@@ -277,6 +296,7 @@ impl Study {
             Edit::Hold(pair, held) => mark(&mut self.settings.constrained, *pair, *held)?,
             Edit::Fit(pair, fitted) => mark(&mut self.settings.ignored, *pair, !*fitted)?,
             Edit::Set(setting, value) => return setting.set(&mut self.settings, *value),
+            Edit::SetSign { channel, of } => return self.set_sign(*channel, *of),
             Edit::TakeModels(taken) => return self.take_models(taken),
             Edit::ReturnModels { condition } => return self.return_models(*condition),
             Edit::KeepVariant { name } => return self.keep_variant(name),

@@ -11,8 +11,8 @@ use crate::schedule::{Schedule, ScheduleCaution, ScheduledPoint};
 
 use super::{
     Analysis, Assessed, AssessmentChoice, Cancelled, ConditionAnalysis, ConditionCurves, ConditionFailure,
-    ConditionModels, ConditionResponses, ConditionStages, Execution, KnownModels, Memo, Progress, Purpose, Study,
-    Uncertainty, assessed, model_count,
+    ConditionModels, ConditionResponses, ConditionStages, ConventionDoubt, Execution, KnownModels, Memo, Progress,
+    Purpose, Study, Uncertainty, assessed, convention_doubts, model_count,
 };
 
 /// Computes analyses and keeps each stage's last result by what it is computed from, never by where that came from: of a dataset
@@ -99,14 +99,15 @@ impl Engine {
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
         let total = study.dataset.conditions().iter().map(|of| ConditionStages::steps(of)).sum();
         let execution = Execution::new(self.executor.as_ref(), progress, total);
-        let conditions = analyze_conditions(&mut self.conditions, study, &grid, (self.proofs, first), &execution)?;
+        let mut conditions = analyze_conditions(&mut self.conditions, study, &grid, (self.proofs, first), &execution)?;
+        let doubts = doubts_of(study, &mut conditions);
         let mut schedule = Schedule::of(&scheduled_points(study, &conditions), study.settings.schedule);
         if let Ok(schedule) = &mut schedule {
             schedule.cautions.extend(signed_delays_apart(study, &conditions));
         }
         let (study, omega) = (study.clone(), grid.omega().into());
         let mut analysis =
-            Analysis { study, omega, conditions, schedule, assessment: BTreeMap::new(), uncertainty: None };
+            Analysis { study, omega, conditions, doubts, schedule, assessment: BTreeMap::new(), uncertainty: None };
         let choice = AssessmentChoice::of_paper(&analysis.study.settings);
         let ids: Vec<ConditionId> =
             analysis.study.dataset.conditions().iter().map(|condition| condition.id()).collect();
@@ -222,6 +223,17 @@ fn analyze_conditions(
     })?;
     outcomes.extend(others);
     Ok(outcomes)
+}
+
+/// Signs and units that are to be asked after, told to each condition that shows them too.
+fn doubts_of(study: &Study, outcomes: &mut Outcomes) -> Vec<ConventionDoubt> {
+    let solved = outcomes.iter().filter_map(|(id, outcome)| Some((*id, outcome.as_ref().ok()?)));
+    let mismatches = solved.map(|(id, result)| (id, &result.comparison.representative.mismatch));
+    let doubts = convention_doubts(&mismatches.collect::<Vec<_>>(), &study.dataset.measuring_pairs());
+    for (id, result) in outcomes.iter_mut().filter_map(|(id, outcome)| Some((id, outcome.as_mut().ok()?))) {
+        result.doubts = doubts.iter().filter(|doubt| doubt.conditions.contains(id)).cloned().collect();
+    }
+    doubts
 }
 
 /// The scheduled conditions that have a result, in the dataset's order.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId, PairTable};
 
-use super::{AdoptedModels, ConditionChoice, Edit, ResponseNames, Settings, Study, Variant};
+use super::{AdoptedModels, ConditionChoice, Edit, ResponseNames, Settings, Study, TurnedChannel, Variant};
 
 /// One thing in which a dataset differs from the one that a study was made with, or a decision that has no place in it.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,6 +92,8 @@ pub struct Decisions {
     pub choices: BTreeMap<ConditionId, ConditionChoice>,
     /// Models taken in place of those of the file.
     pub taken: Vec<(ConditionId, Arc<AdoptedModels>)>,
+    /// The channels whose models are turned.
+    pub signs: Vec<TurnedChannel>,
     /// The decisions kept under names; these have none of their own.
     pub variants: Vec<(String, Decisions)>,
 }
@@ -103,6 +105,7 @@ impl Decisions {
             settings: study.settings.named(&study.dataset),
             choices: study.choices.clone(),
             taken: study.taken_models().map(|(id, taken)| (id, Arc::clone(taken))).collect(),
+            signs: study.turned_channels(),
             variants: study
                 .variants
                 .iter()
@@ -119,6 +122,17 @@ impl Decisions {
         for taken in &self.taken {
             let edit = Edit::TakeModels(vec![taken.clone()]);
             carry_out(&edit, &mut study, &mut differences);
+        }
+        for turned in &self.signs {
+            match turned.find(&study.dataset) {
+                Some(channel) => {
+                    carry_out(&Edit::SetSign { channel, of: Some(turned.of) }, &mut study, &mut differences);
+                }
+                None => differences.push(Difference::NotApplied {
+                    decision: format!("turn {}", turned.channel),
+                    why: "the dataset has no such channel".to_owned(),
+                }),
+            }
         }
         for (&condition, choice) in &self.choices {
             take_choice(&mut study, condition, choice, &mut differences);

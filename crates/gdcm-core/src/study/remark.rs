@@ -1,11 +1,11 @@
 //! What the result of a condition says, in the engineer's words: the same in the window and in a terminal.
 
-use crate::correction::{Sensitivity, Solution, kkt_residual, sensitivities};
+use crate::correction::{Channel, Sensitivity, Solution, kkt_residual, sensitivities};
 use crate::dataset::Pair;
 use crate::schedule::Schedule;
 use crate::units::{number, s_to_ms, telling, told_apart};
 
-use super::{Caution, ConditionAnalysis, PhaseCorrection, Study, lead_remarks};
+use super::{Caution, ConditionAnalysis, PhaseCorrection, SignRole, Study, lead_remarks};
 
 /// How a remark is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,18 +29,21 @@ pub struct Remark {
     pub ignore: Option<Pair>,
     /// The correction of the phase that the engineer may want in place of the present one.
     pub phase: Option<PhaseCorrection>,
+    /// The channel whose models can be turned, or put back (none of their role), at once.
+    pub turn: Option<(Channel, Option<SignRole>)>,
 }
 
 impl Remark {
     /// A remark that offers nothing.
     pub fn new(kind: RemarkKind, text: String) -> Self {
-        Self { kind, text, ignore: None, phase: None }
+        Self { kind, text, ignore: None, phase: None, turn: None }
     }
 }
 
 /// Which held gains and delays were matched, which were not and why, and the cautions of the condition and of the schedule.
 pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Schedule>) -> Vec<Remark> {
-    let mut remarks = gain_remarks(study, result);
+    let mut remarks = sign_remarks(study, result);
+    remarks.extend(gain_remarks(study, result));
     if study.settings.phase == PhaseCorrection::Delay {
         remarks.extend(delay_remarks(study, result));
     }
@@ -59,6 +62,7 @@ pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Sche
         text: caution.words(pair_name),
         ignore: caution.offers_to_ignore(),
         phase: None,
+        turn: None,
     }));
     if let Some(schedule) = schedule {
         let (inputs, outputs) = study.dataset.names_of_channels();
@@ -66,6 +70,21 @@ pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Sche
         remarks.extend(words.map(|text| Remark::new(RemarkKind::Caution, text)));
     }
     remarks
+}
+
+/// Signs and units to be asked after, before anything is blamed for them; then what has been turned.
+fn sign_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
+    let doubts = result.doubts.iter().map(|doubt| Remark {
+        turn: doubt.turns().map(|channel| (channel, Some(SignRole::Identified))),
+        ..Remark::new(RemarkKind::Caution, doubt.words(&study.dataset))
+    });
+    let (inputs, outputs) = study.dataset.names_of_channels();
+    let turned = study.signs.iter().map(|(channel, of)| {
+        let (name, of) = (channel.name(&inputs, &outputs), of.models());
+        let text = format!("{name} of {of} is turned: its sign is not that of the file.");
+        Remark { turn: Some((*channel, None)), ..Remark::new(RemarkKind::Good, text) }
+    });
+    doubts.chain(turned).collect()
 }
 
 fn gain_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {

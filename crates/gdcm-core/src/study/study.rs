@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::dataset::{BundleKind, ConditionId, Dataset, ModelId};
 
-use super::{Edit, EditRefusal, Settings, Taken, check_length};
+use super::{Edit, EditRefusal, Settings, Signs, Taken, check_length};
 
 /// The engineer's choices in one bundle.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -109,14 +109,17 @@ pub struct Study {
     /// them.
     pub variants: Vec<Arc<Variant>>,
     /// Models taken in place of those of the dataset's file; `dataset` has them.
+    /// The channels whose models are turned.
+    pub signs: Signs,
+    /// The dataset of the file, where models are taken or turned.
     pub(super) taken: Option<Taken>,
 }
 
 impl PartialEq for Study {
     /// Decisions first: the numbers of two datasets are compared only where these are not one and the same.
     fn eq(&self, other: &Self) -> bool {
-        let decisions =
-            (&self.settings, &self.choices, &self.variants) == (&other.settings, &other.choices, &other.variants);
+        let decisions = (&self.settings, &self.choices, &self.variants, &self.signs)
+            == (&other.settings, &other.choices, &other.variants, &other.signs);
         decisions && (Arc::ptr_eq(&self.dataset, &other.dataset) || self.dataset == other.dataset)
     }
 }
@@ -127,7 +130,7 @@ impl Study {
         let settings = Settings::of(&dataset);
         let ids = dataset.conditions().iter().map(|condition| condition.id());
         let choices = ids.map(|id| (id, ConditionChoice::default())).collect();
-        Self { dataset, settings, choices, variants: Vec::new(), taken: None }
+        Self { dataset, settings, choices, variants: Vec::new(), signs: Signs::new(), taken: None }
     }
 
     /// The choices in one condition; those of a condition that the dataset does not have are none.
@@ -187,6 +190,7 @@ impl Study {
             settings: settings.clone(),
             choices: choices.clone(),
             variants: Vec::new(),
+            signs: self.signs.clone(),
             taken: self.taken.clone(),
         })
     }

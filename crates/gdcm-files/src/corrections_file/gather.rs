@@ -32,6 +32,7 @@ impl Corrections {
             software: concat!("gdcm ", env!("CARGO_PKG_VERSION")).to_owned(),
             dataset: DatasetLabel { name: dataset.name().to_owned(), sha256: sha256.to_owned() },
             settings: analysis.study.settings.named(dataset),
+            signs: analysis.study.turned_channels(),
             conditions: Vec::new(),
             failed: Vec::new(),
             schedule: analysis.schedule.as_ref().ok().map(|schedule| gather.schedule(schedule)),
@@ -77,6 +78,8 @@ impl Gather<'_> {
         let (study, names) = (&self.analysis.study, &self.names);
         let representative = |kind| result.representative_name(kind).to_owned();
         let correction = &result.correction;
+        let doubts = result.doubts.iter().map(|doubt| doubt.words(&study.dataset));
+        let cautions = result.cautions.iter().map(|caution| caution.words(|pair| study.dataset.pair_name(pair)));
         ConditionCorrections {
             id: condition.id().0,
             name: condition.flight_state().name.clone(),
@@ -105,12 +108,7 @@ impl Gather<'_> {
             net_gains: self.net_gains(result),
             bars: BarsEntry::of(self.analysis, condition.id(), names),
             cost: cost_tables(result),
-            cautions: result
-                .cautions
-                .iter()
-                .map(|caution| caution.words(|pair| study.dataset.pair_name(pair)))
-                .chain(lead_cautions(study, result))
-                .collect(),
+            cautions: doubts.chain(cautions).chain(lead_cautions(study, result)).collect(),
         }
     }
 

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use gdcm_core::schedule::DEFAULT_TOLERANCE_KT;
-use gdcm_core::study::{ResponseNames, Settings};
+use gdcm_core::study::{ResponseNames, Settings, TurnedChannel};
 
 use super::ByName;
 
@@ -23,6 +23,9 @@ pub struct Corrections {
     pub dataset: DatasetLabel,
     /// Every setting that changes a result.
     pub settings: Settings<ResponseNames>,
+    /// Channels whose models were turned; absent where there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub signs: Vec<TurnedChannel>,
     /// Result of each condition that has one.
     pub conditions: Vec<ConditionCorrections>,
     /// Conditions without a result.

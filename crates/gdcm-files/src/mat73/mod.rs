@@ -28,6 +28,7 @@ use crate::importer::{Contents, Importer};
 use crate::mat::is_hdf5;
 use crate::mat73::dataset::{Elements, Order};
 use crate::mat73::values::{Objects, empty, records, rows, sparse, strings};
+use crate::octave;
 use crate::variables::{self, CellArray, ElementKind, ReadingBudget, StructArray, Value, Variable, VariableFault};
 
 /// MATLAB 7.3 and HDF5.
@@ -52,7 +53,10 @@ impl Importer for Hdf5 {
             Reader { budget, objects: &objects }.variables(&file.root())
         });
         // Where the library was stopped it says that the file cannot be read.
-        Contents::variables(budget.work(0, "").and(read), path)
+        Contents::variables(
+            budget.work(0, "").and(read).and_then(|variables| octave::unwrapped(variables, budget)),
+            path,
+        )
     }
 }
 
@@ -277,7 +281,7 @@ const OBJECT: u64 = 3;
 struct MatlabAttributes {
     /// Name of the class (`MATLAB_class`); none for what MATLAB did not write.
     class: Option<String>,
-    /// The dataset holds the shape of an array without elements (`MATLAB_empty`).
+    /// The dataset holds the shape of an array without elements (`MATLAB_empty`, `OCTAVE_EMPTY_MATRIX`).
     empty: bool,
     /// Number of rows of a sparse matrix (`MATLAB_sparse`).
     sparse: Option<u64>,
@@ -294,7 +298,8 @@ impl MatlabAttributes {
         let fields = attributes.get("MATLAB_fields").and_then(AttrValue::as_strings);
         Self {
             class: class.map(str::to_owned),
-            empty: number("MATLAB_empty").is_some_and(|empty| empty != 0),
+            empty: number("MATLAB_empty").is_some_and(|empty| empty != 0)
+                || attributes.contains_key("OCTAVE_EMPTY_MATRIX"),
             sparse: number("MATLAB_sparse"),
             fields: fields.unwrap_or_default().to_vec(),
             decode: number("MATLAB_object_decode").unwrap_or(0),

@@ -88,7 +88,8 @@ pub(super) fn empty(
             Value::Struct(StructArray { shape, fields })
         }
         "char" => Value::Text(rows(&numbers(ElementKind::Integer), path, budget)?),
-        "double" | "single" => Value::Array(numbers(ElementKind::Float)),
+        // GNU Octave names no class here.
+        "double" | "single" | "" => Value::Array(numbers(ElementKind::Float)),
         "logical" => Value::Array(numbers(ElementKind::Logical)),
         "int8" | "int16" | "int32" | "int64" | "uint8" | "uint16" | "uint32" | "uint64" => {
             Value::Array(numbers(ElementKind::Integer))

@@ -40,7 +40,7 @@ impl Importer for Npy {
 
     fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
         let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
-        Contents::variables(read_npy(bytes, name, budget), path)
+        Contents::row_major(read_npy(bytes, name, budget), path)
     }
 }
 

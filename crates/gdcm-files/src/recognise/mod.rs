@@ -149,14 +149,17 @@ impl<T> Found<T> {
     }
 }
 
-/// Every model among the variables of a file.
+/// Every model among the variables of a file. Where the shapes do not tell which index of an array counts its matrices,
+/// `pages_first` does.
 pub(crate) fn recognise(
     variables: &[Variable],
+    pages_first: bool,
     budget: &ReadingBudget<'_>,
 ) -> Result<Found<FoundModel>, VariableFault> {
+    let model_of = |record: &Record<'_>, variable: &str| model_of(record, variable, pages_first);
     let together = model_of(&Record::of_variables(variables), "").is_some();
     let mut found = search(variables, budget, &model_of)?;
-    let suffixed = suffixed(variables, budget)?;
+    let suffixed = suffixed(variables, &model_of, budget)?;
     if !together && suffixed.items.len() + suffixed.faults.len() > 0 {
         found.ignored.clear();
     }
@@ -166,9 +169,9 @@ pub(crate) fn recognise(
 }
 
 /// The models that fields are, if they are some.
-fn model_of(record: &Record<'_>, variable: &str) -> Option<Vec<Result<FoundModel, String>>> {
+fn model_of(record: &Record<'_>, variable: &str, pages_first: bool) -> Option<Vec<Result<FoundModel, String>>> {
     if is_state_space(record) {
-        Some(state_spaces(record, variable))
+        Some(state_spaces(record, variable, pages_first))
     } else if is_response(record) {
         Some(vec![response(record, variable)])
     } else if is_transfer_function(record) {
@@ -179,7 +182,11 @@ fn model_of(record: &Record<'_>, variable: &str) -> Option<Vec<Result<FoundModel
 }
 
 /// Matrices of several models beside one another: `A_nom, B_nom, ...`, `A1, B1, ...`.
-fn suffixed(variables: &[Variable], budget: &ReadingBudget<'_>) -> Result<Found<FoundModel>, VariableFault> {
+fn suffixed(
+    variables: &[Variable],
+    model_of: Recognise<'_, FoundModel>,
+    budget: &ReadingBudget<'_>,
+) -> Result<Found<FoundModel>, VariableFault> {
     let mut found = Found::default();
     let letters = ["A", "B", "C", "D", "E"];
     let suffixes = variables.iter().filter_map(|variable| variable.name.strip_prefix('A'));
@@ -204,16 +211,20 @@ fn suffixed(variables: &[Variable], budget: &ReadingBudget<'_>) -> Result<Found<
 
 // Models by their responses over frequencies.
 
-const RESPONSES: &[&str] = &["ResponseData", "Response", "H", "G", "resp", "frf"];
-const FREQUENCIES: &[&str] = &["Frequency", "omega", "omega_rad_s", "w", "freq", "frequencies"];
+/// Those of python-control are `frdata` and, before, `fresp`.
+const RESPONSES: &[&str] = &["ResponseData", "Response", "frdata", "fresp", "H", "G", "resp", "frf"];
+/// Names of frequencies in rad/s.
+const RADIANS: &[&str] = &["omega", "omega_rad_s", "w", "freq_rad_s", "frequency_rad_s"];
+/// Names that leave open what the unit is.
+const FREQUENCIES: &[&str] = &["Frequency", "freq", "frequencies"];
 const HERTZ: &[&str] = &["f_hz", "freq_hz", "frequency_hz", "f"];
 const UNITS: &[&str] = &["FrequencyUnit", "FreqUnits", "Units", "frequency_unit"];
 const COHERENCES: &[&str] = &["coherence", "coh", "gamma2", "gamma_squared", "Cxy"];
 
 /// Whether fields are those of a frequency response: complex numbers, or real and imaginary parts, beside frequencies.
 pub(super) fn is_response(record: &Record<'_>) -> bool {
-    let has_frequencies =
-        record.get(FREQUENCIES).or_else(|| record.get(HERTZ)).and_then(array_of).is_some_and(|array| array.len() > 1);
+    let frequencies = record.get(RADIANS).or_else(|| record.get(FREQUENCIES)).or_else(|| record.get(HERTZ));
+    let has_frequencies = frequencies.and_then(array_of).is_some_and(|array| array.len() > 1);
     has_frequencies && (complex(record).is_some() || parts(record).is_some())
 }
 
@@ -235,9 +246,9 @@ pub(super) fn response(record: &Record<'_>, variable: &str) -> Result<FoundModel
         (None, Some((re, im))) if re.shape == im.shape => (re.re.clone(), im.re.clone(), &re.shape),
         _ => return Err("real and imaginary parts are of different sizes".to_owned()),
     };
-    let (outputs, inputs) = channels(shape, count)?;
+    let (outputs, inputs, steps) = channels(shape, count)?;
     let table = |name: &str, values: &[f64]| -> Result<ResponseArray, String> {
-        let values = in_order(values, (outputs, inputs, count));
+        let values = in_order(values, (outputs, inputs, count), steps);
         match values.iter().position(|value| !value.is_finite()) {
             Some(at) => Err(format!("{name}, frequency {}: expected a finite number", at % count + 1)),
             None => Ok(ResponseArray { shape: [outputs, inputs, count], values }),
@@ -277,15 +288,25 @@ fn omega_of(record: &Record<'_>) -> Result<(Vec<f64>, bool), String> {
     let unit = record.get(UNITS).and_then(texts_of).and_then(|texts| texts.into_iter().next()).unwrap_or_default();
     let of_frequency = PhysicalUnit::of(&unit).filter(|unit| unit.dimension == Dimension::Frequency);
     let of_rate = PhysicalUnit::of(&unit).filter(|unit| unit.name.starts_with("rad/"));
-    let (values, is_hertz) = match (record.get(FREQUENCIES), record.get(HERTZ)) {
-        (Some(value), _) => (list_of("frequencies", value)?, of_frequency.is_some()),
-        (None, Some(value)) => (list_of("frequencies", value)?, true),
-        (None, None) => return Err("frequencies are missing".to_owned()),
+    // MATLAB's objects and python-control's are in rad/s where they do not say.
+    let is_known = record.class.is_some() || record.get(&["frdata", "fresp"]).is_some();
+    let (value, is_hertz) = match (record.get(RADIANS), record.get(FREQUENCIES), record.get(HERTZ)) {
+        (Some(value), ..) => (value, of_frequency.is_some()),
+        (None, Some(_), _) if unit.is_empty() && !is_known => {
+            return Err(
+                "frequencies: rad/s or Hz is not said; call them omega_rad_s or f_hz, or give \"rad/s\" or \"Hz\" \
+                        beside them as frequency_unit"
+                    .to_owned(),
+            );
+        }
+        (None, Some(value), _) => (value, of_frequency.is_some()),
+        (None, None, Some(value)) => (value, true),
+        (None, None, None) => return Err("frequencies are missing".to_owned()),
     };
+    let values = list_of("frequencies", value)?;
     let factor = match (is_hertz, of_rate) {
         (true, _) => TAU * of_frequency.map_or(1.0, |unit| unit.size),
         (false, Some(unit)) => unit.size,
-        // As MATLAB writes it where it says nothing.
         (false, None) if matches!(unit.to_lowercase().as_str(), "" | "rad" | "rads" | "rad/timeunit") => 1.0,
         (false, None) => {
             return Err(format!("frequencies are in \"{}\"; expected rad/s or Hz", unit.to_lowercase()));
@@ -294,11 +315,13 @@ fn omega_of(record: &Record<'_>) -> Result<(Vec<f64>, bool), String> {
     Ok((values.into_iter().map(|value| value * factor).collect(), is_hertz))
 }
 
-/// Outputs and inputs of an array whose last dimension runs over `count` frequencies; a single response may lie in a row or a column.
-fn channels(shape: &[usize], count: usize) -> Result<(usize, usize), String> {
-    match shape {
-        [outputs, inputs, frequencies] if *frequencies == count => Ok((*outputs, *inputs)),
-        [rows, columns] if rows * columns == count => Ok((1, 1)),
+/// Outputs and inputs of an array that runs over `count` frequencies with its last index, or as some of NumPy with its first; and how
+/// far apart the elements of the next output, input and frequency are. A single response may lie in a row or a column.
+fn channels(shape: &[usize], count: usize) -> Result<(usize, usize, [usize; 3]), String> {
+    match *shape {
+        [outputs, inputs, last] if last == count => Ok((outputs, inputs, [1, outputs, outputs * inputs])),
+        [first, outputs, inputs] if first == count => Ok((outputs, inputs, [count, count * outputs, 1])),
+        [rows, columns] if rows * columns == count => Ok((1, 1, [0, 0, 1])),
         _ => {
             let found = shape.iter().map(usize::to_string).collect::<Vec<_>>().join(" x ");
             Err(format!("the response: expected outputs x inputs x {count} frequencies, found {found}"))
@@ -306,12 +329,12 @@ fn channels(shape: &[usize], count: usize) -> Result<(usize, usize), String> {
     }
 }
 
-/// From the first index running fastest to the last one running fastest.
-fn in_order(values: &[f64], (outputs, inputs, count): (usize, usize, usize)) -> Vec<f64> {
+/// From elements so far apart to the last index running fastest.
+fn in_order(values: &[f64], (outputs, inputs, count): (usize, usize, usize), steps: [usize; 3]) -> Vec<f64> {
     let mut ordered = Vec::with_capacity(values.len());
     for output in 0..outputs {
         for input in 0..inputs {
-            ordered.extend((0..count).map(|k| values[output + outputs * (input + inputs * k)]));
+            ordered.extend((0..count).map(|k| values[output * steps[0] + input * steps[1] + k * steps[2]]));
         }
     }
     ordered
@@ -342,7 +365,7 @@ mod tests {
     }
 
     fn recognise(variables: &[Variable]) -> Found<FoundModel> {
-        super::recognise(variables, &ReadingBudget::new(1 << 20)).unwrap()
+        super::recognise(variables, false, &ReadingBudget::new(1 << 20)).unwrap()
     }
 
     fn gains(found: &Found<FoundModel>) -> Vec<(String, f64)> {

@@ -285,7 +285,8 @@ pub(super) fn array_of(value: &Value) -> Option<&Array> {
     match value {
         Value::Array(array) => Some(array),
         Value::Object(object) => {
-            let values = object.records.field("Value").or_else(|| object.records.field("Value_"))?;
+            // The polynomials of GNU Octave's transfer functions are objects too.
+            let values = ["Value", "Value_", "poly"].iter().find_map(|name| object.records.field(name))?;
             array_of(values.first()?)
         }
         Value::Struct(records) if records.shape.iter().product::<usize>() == 1 => {
@@ -299,28 +300,33 @@ pub(super) fn array_of(value: &Value) -> Option<&Array> {
 pub(super) fn matrix_of(name: &str, value: &Value) -> Result<DMatrix<f64>, String> {
     let array =
         array_of(value).ok_or_else(|| format!("{name}: expected a matrix of numbers, found {}", value.words()))?;
-    let pages = slices(array);
-    if pages > 1 {
+    if array.shape.iter().skip(2).product::<usize>() > 1 {
         return Err(format!("{name}: expected a matrix, found {}", value.words()));
     }
-    page_of(name, array, 0)
+    page_of(name, array, 0, false)
 }
 
-/// Number of matrices in an array: the product of what stands behind its rows and columns.
-pub(super) fn slices(array: &Array) -> usize {
-    array.shape.iter().skip(2).product()
+/// Number of matrices in an array, and the rows and columns of each; which index counts them, `pages_first` says.
+pub(super) fn pages_of(array: &Array, pages_first: bool) -> (usize, [usize; 2]) {
+    let side = |axis: usize| array.shape.get(axis).copied().unwrap_or(0);
+    match array.shape.len() {
+        3 if pages_first => (side(0), [side(1), side(2)]),
+        _ => (array.shape.iter().skip(2).product(), [side(0), side(1)]),
+    }
 }
 
 /// One matrix of an array of matrices.
-pub(super) fn page_of(name: &str, array: &Array, page: usize) -> Result<DMatrix<f64>, String> {
-    let (rows, columns) = (array.shape.first().copied().unwrap_or(0), array.shape.get(1).copied().unwrap_or(0));
+pub(super) fn page_of(name: &str, array: &Array, page: usize, pages_first: bool) -> Result<DMatrix<f64>, String> {
+    let (pages, [rows, columns]) = pages_of(array, pages_first);
     if array.im.as_ref().is_some_and(|im| im.iter().any(|part| *part != 0.0)) {
         return Err(format!("{name}: expected real numbers, found complex ones"));
     }
-    let start = page * rows * columns;
+    let (start, step) = if array.shape.len() == 3 && pages_first { (page, pages) } else { (page * rows * columns, 1) };
+    let values: Vec<f64> = array.re.iter().skip(start).step_by(step.max(1)).take(rows * columns).copied().collect();
     // There are sides enough and no numbers where one behind them is 0.
-    let values = array.re.get(start..start + rows * columns);
-    let values = values.ok_or_else(|| format!("{name}: expected a matrix, found an array without numbers"))?;
+    if values.len() != rows * columns {
+        return Err(format!("{name}: expected a matrix, found an array without numbers"));
+    }
     if let Some(at) = values.iter().position(|value| !value.is_finite()) {
         let place = if rows == 0 { (0, 0) } else { (at % rows + 1, at / rows + 1) };
         return Err(format!(
@@ -328,7 +334,7 @@ pub(super) fn page_of(name: &str, array: &Array, page: usize) -> Result<DMatrix<
             place.0, place.1, values[at]
         ));
     }
-    Ok(DMatrix::from_column_slice(rows, columns, values))
+    Ok(DMatrix::from_column_slice(rows, columns, &values))
 }
 
 /// One real finite number.

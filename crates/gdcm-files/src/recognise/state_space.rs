@@ -6,8 +6,8 @@ use gdcm_core::units::number;
 use nalgebra::{Complex, DMatrix};
 
 use crate::recognise::record::{
-    Record, array_of, complex_list_of, facts_of, inputs_of, list_of, matrix_of, outputs_of, page_of, slices, states_of,
-    timing_of,
+    Record, array_of, complex_list_of, facts_of, inputs_of, list_of, matrix_of, outputs_of, page_of, pages_of,
+    states_of, timing_of,
 };
 use crate::variables::{CellArray, Value};
 
@@ -20,24 +20,35 @@ pub(super) fn is_state_space(record: &Record<'_>) -> bool {
     has("A", "a") && has("B", "b") && has("C", "c")
 }
 
-/// The model of the matrices in `record`, or each of an array of them (`A(:,:,k)`).
-pub(super) fn state_spaces(record: &Record<'_>, variable: &str) -> Vec<Result<FoundModel, String>> {
-    let get = |large: &str, small: &str| record.exact(large).or_else(|| record.exact(small));
-    let pages = get("A", "a").and_then(array_of).map_or(1, slices);
-    if pages <= 1 {
+/// The model of the matrices in `record`, or each of an array of them: `A(:,:,k)` of MATLAB, `A[k,:,:]` of NumPy.
+pub(super) fn state_spaces(record: &Record<'_>, variable: &str, pages_first: bool) -> Vec<Result<FoundModel, String>> {
+    let get = |large: &str, small: &str| record.exact(large).or_else(|| record.exact(small)).and_then(array_of);
+    let (Some(a), Some(b), Some(c)) = (get("A", "a"), get("B", "b"), get("C", "c")) else { return Vec::new() };
+    if [a, b, c].iter().all(|array| array.shape.len() < 3) {
         return vec![one(record, variable, &|name, value| matrix_of(name, value))];
     }
+    // Which index counts the models shows where the others fit one another.
+    let fits = |first: bool| {
+        let ((pages, of_a), (of_pages, of_b), (pages_of_c, of_c)) =
+            (pages_of(a, first), pages_of(b, first), pages_of(c, first));
+        let is_as_many = |count: usize| count == pages || count == 1;
+        of_a[0] == of_a[1] && of_b[0] == of_a[0] && of_c[1] == of_a[0] && is_as_many(of_pages) && is_as_many(pages_of_c)
+    };
+    let first = match (fits(false), fits(true)) {
+        (true, true) => pages_first,
+        (_, first) => first,
+    };
+    let count = pages_of(a, first).0;
     let page = |page: usize| {
-        let variable =
-            if variable.is_empty() { format!("(:,:,{})", page + 1) } else { format!("{variable}(:,:,{})", page + 1) };
-        one(record, &variable, &|name, value| match array_of(value) {
+        let place = if first { format!("[{page},:,:]") } else { format!("(:,:,{})", page + 1) };
+        one(record, &format!("{variable}{place}"), &|name, value| match array_of(value) {
             // A matrix that all of them share.
-            Some(array) if slices(array) == 1 => page_of(name, array, 0),
-            Some(array) if page < slices(array) => page_of(name, array, page),
-            _ => Err(format!("{name}: expected {pages} matrices as in A, found {}", value.words())),
+            Some(array) if array.shape.len() < 3 => page_of(name, array, 0, false),
+            Some(array) if page < pages_of(array, first).0 => page_of(name, array, page, first),
+            _ => Err(format!("{name}: expected {count} matrices as in A, found {}", value.words())),
         })
     };
-    (0..pages).map(page).collect()
+    (0..count).map(page).collect()
 }
 
 type MatrixOf<'f> = &'f dyn Fn(&str, &Value) -> Result<DMatrix<f64>, String>;

@@ -76,7 +76,7 @@ impl FoundRecords {
         let ImportedFile { path, name, sha256, contents } = file;
         let wrong = |fault| FileError::variables(path, fault);
         match contents {
-            Contents::Variables { variables, notes } => {
+            Contents::Variables { variables, notes, .. } => {
                 self.add_found(search_records(&variables, budget).map_err(wrong)?, &notes, (name, &sha256));
             }
             Contents::Text(text) => {

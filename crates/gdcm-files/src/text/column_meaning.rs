@@ -22,6 +22,7 @@ pub(super) enum KnownUnit {
     Decibel,
     Degree,
     Radian,
+    Percent,
     /// Another one: of a magnitude, a real or an imaginary part.
     Other,
 }
@@ -44,14 +45,14 @@ const WORDS: [(Quantity, &[&str]); 7] = [
         &["coherence", "coh", "gamma", "gamma2", "gam", "gam2", "gammasq", "γ", "γ²", "γ2", "cxy", "gxy"],
     ),
     (Quantity::Magnitude, &["magnitude", "mag", "amplitude", "ampl", "amp", "gain", "abs", "modulus"]),
-    (Quantity::Phase, &["phase", "phas", "phs", "pha", "angle", "arg"]),
+    (Quantity::Phase, &["phase", "phas", "phs", "pha", "ph", "angle", "arg"]),
     (Quantity::Real, &["real", "re"]),
     (Quantity::Imaginary, &["imaginary", "imag", "img", "im"]),
     (Quantity::Frequency, &["frequency", "frequencies", "freq", "frq", "omega", "om", "ω"]),
 ];
 
 /// Units at the end of a name that has none in brackets.
-const UNIT_ENDINGS: [(&str, KnownUnit); 10] = [
+const UNIT_ENDINGS: [(&str, KnownUnit); 13] = [
     ("rad/s", KnownUnit::RadianPerSecond),
     ("rad/sec", KnownUnit::RadianPerSecond),
     ("rad_s", KnownUnit::RadianPerSecond),
@@ -62,6 +63,9 @@ const UNIT_ENDINGS: [(&str, KnownUnit); 10] = [
     ("db", KnownUnit::Decibel),
     ("deg", KnownUnit::Degree),
     ("rad", KnownUnit::Radian),
+    ("percent", KnownUnit::Percent),
+    ("pct", KnownUnit::Percent),
+    ("%", KnownUnit::Percent),
 ];
 
 /// Whether a word names what a column of a frequency response holds ("re", "phase") or its unit, and so no channel.
@@ -139,6 +143,7 @@ fn known_unit(unit: &str) -> KnownUnit {
         Some("dB") => KnownUnit::Decibel,
         Some("deg") => KnownUnit::Degree,
         Some("rad") => KnownUnit::Radian,
+        Some("%") => KnownUnit::Percent,
         _ => KnownUnit::Other,
     }
 }
@@ -208,6 +213,8 @@ pub(super) struct ResponseLabel {
     pub(super) input: Option<String>,
 }
 
+/// Names of a response that say nothing of whose it is.
+const ANY_RESPONSE: [&str; 9] = ["h", "g", "frf", "tf", "fr", "resp", "response", "h(jw)", "g(jw)"];
 /// What stands between an input and the output that follows it.
 const FORWARD: [&str; 5] = ["->", "→", "=>", ">", " to "];
 /// What stands between an output and its input.
@@ -217,6 +224,9 @@ impl ResponseLabel {
     /// Reads "P/LAT", "LAT->P", "LAT to P", "P_LAT"; anything else names the output.
     pub(super) fn of(text: &str) -> Self {
         let text = clean(text);
+        if ANY_RESPONSE.contains(&text.to_lowercase().as_str()) {
+            return Self::default();
+        }
         let part = |part: &str| Some(clean(part).to_owned()).filter(|part| !part.is_empty());
         for sign in BACKWARD {
             if let Some((output, input)) = text.split_once(sign) {
@@ -286,6 +296,8 @@ mod column_meaning_tests {
         assert_eq!(of("phasedeg", ""), is(Quantity::Phase, Some(KnownUnit::Degree), "", ""));
         assert_eq!(of("Im1", ""), is(Quantity::Imaginary, None, "1", ""));
         assert_eq!(of("|P/LAT|", ""), is(Quantity::Magnitude, None, "P", "LAT"));
+        assert_eq!(of("|H|", "dB"), is(Quantity::Magnitude, decibel, "", ""), "the file says whose it is");
+        assert_eq!(of("ph", "deg"), is(Quantity::Phase, Some(KnownUnit::Degree), "", ""));
         assert_eq!(of("Gamma2", ""), is(Quantity::Coherence, None, "", ""));
         assert_eq!(of("phase error", "deg"), is(Quantity::Error, Some(KnownUnit::Degree), "phase", ""));
     }

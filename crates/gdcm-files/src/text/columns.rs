@@ -276,7 +276,7 @@ impl Layout {
             tallies.extend(Separator::ALL.iter().map(tally));
         }
         for (_, line) in lines(text) {
-            budget.take(0, 1, "")?;
+            budget.work(1, "")?;
             if line.trim().is_empty() || comment(line).is_some() {
                 continue;
             }

@@ -25,8 +25,8 @@ pub(crate) struct RecognisedResponse {
     /// The input, where the names say it.
     pub(crate) input: Option<String>,
     parts: ResponseParts,
-    /// The column, from 0, of its coherence, as it stands there.
-    pub(crate) coherence: Option<usize>,
+    /// The column, from 0, of its coherence, and what makes it a part of 1.
+    pub(crate) coherence: Option<(usize, f64)>,
 }
 
 /// The two columns, from 0, that are a complex number.
@@ -45,7 +45,7 @@ pub(crate) struct ResponsePoints {
     pub(crate) re: Vec<f64>,
     /// Imaginary parts.
     pub(crate) im: Vec<f64>,
-    /// Coherence as it stands in the table, NaN where it is missing.
+    /// Coherence as a part of 1, NaN where it is missing.
     pub(crate) coherence: Option<Vec<f64>>,
 }
 
@@ -56,21 +56,43 @@ impl FrequencyColumns {
         let unit = |index: usize| table.units.get(index).and_then(|unit| unit.as_deref());
         let meaning = |index: usize| ColumnMeaning::of(name(index), unit(index));
         let meanings: Vec<ColumnMeaning> = (0..table.columns.len()).map(meaning).collect();
-        let mut reading = Recognition { table, meanings: &meanings, notes: Vec::new() };
+        let mut reading = Recognition { table, meanings: &meanings, notes: Vec::new(), unsaid: Vec::new() };
         let frequency = reading.frequency()?;
-        let responses = reading.responses()?;
+        let responses = reading.responses();
+        if !reading.unsaid.is_empty() {
+            return Err(unrecognised(&format!("no unit of {}", reading.unsaid.join(", of "))));
+        }
         if responses.is_empty() {
             return Err(unrecognised("no magnitude with a phase and no real part with an imaginary part"));
         }
-        Ok(Self { frequency, responses, notes: reading.notes })
+        let notes = reading.notes;
+        let mut found = Self { frequency, responses, notes };
+        if found.falls(table) {
+            found.notes.push("the frequencies fall: taken from the last line to the first".to_owned());
+        }
+        Ok(found)
     }
 
     /// The points of every response, in rad/s and as complex numbers.
     ///
-    /// A frequency that is missing, negative, or not above the one before is refused with its line, and so is half a number.
+    /// Frequencies that fall are taken from the last line to the first. One that is missing, negative, or not above the one before is
+    /// refused with its line, and so is half a number.
     pub(crate) fn values(&self, table: &TextTable) -> Result<Vec<ResponsePoints>, VariableFault> {
+        let falls = self.falls(table).then(|| {
+            let mut table = table.clone();
+            table.columns.iter_mut().for_each(|column| column.reverse());
+            table.lines.reverse();
+            table
+        });
+        let table = falls.as_ref().unwrap_or(table);
         let omega = self.omega(table)?;
         self.responses.iter().map(|response| points(table, response, &omega)).collect()
+    }
+
+    /// Whether each frequency is below the one before.
+    fn falls(&self, table: &TextTable) -> bool {
+        let column = &table.columns[self.frequency.0];
+        column.len() > 1 && column.is_sorted_by(|one, next| one > next)
     }
 
     fn omega(&self, table: &TextTable) -> Result<Vec<f64>, VariableFault> {
@@ -100,8 +122,8 @@ impl FrequencyColumns {
 /// No frequency response: what is missing, in words, and how to say it.
 fn unrecognised(found: &str) -> VariableFault {
     let found = format!(
-        "a table with {found} among its columns; say what each column holds in its first line, or under \"headings\" in the \
-         rules: \"omega [rad/s]\", \"mag Q/LON [dB]\", \"phase Q/LON [deg]\""
+        "a table with {found} among its columns; say what each column holds in its first line, by --headings, or under \
+         \"headings\" in the rules: \"omega [rad/s]\", \"mag Q/LON [dB]\", \"phase Q/LON [deg]\""
     );
     VariableFault::Format { expected: "a frequency response in columns", found }
 }
@@ -111,6 +133,8 @@ struct Recognition<'t> {
     table: &'t TextTable,
     meanings: &'t [ColumnMeaning],
     notes: Vec<String>,
+    /// Columns whose unit is not said, where their numbers allow several.
+    unsaid: Vec<String>,
 }
 
 /// Columns that belong to one response, by quantity.
@@ -131,12 +155,17 @@ impl Recognition<'_> {
         let named = self.meanings.iter().position(|meaning| meaning.quantity == Some(Quantity::Frequency));
         let column = named.ok_or_else(|| unrecognised("no frequency"))?;
         let meaning = &self.meanings[column];
-        let (factor, words) = if meaning.unit == Some(KnownUnit::Hertz) { (TAU, "Hz") } else { (1.0, "rad/s") };
-        let known = match (meaning.unit, self.table.units.get(column).and_then(Option::as_ref)) {
-            (Some(KnownUnit::Other), Some(unit)) => format!("its unit \"{unit}\" is not known: rad/s is taken"),
-            (_, Some(unit)) => format!("its unit says {unit}"),
-            (Some(_), None) => "and with it the unit".to_owned(),
-            (None, None) => "its unit is not said: rad/s is taken".to_owned(),
+        let (factor, words) = match meaning.unit {
+            Some(KnownUnit::Hertz) => (TAU, "Hz"),
+            Some(KnownUnit::RadianPerSecond) => (1.0, "rad/s"),
+            _ => {
+                self.unsaid.push(format!("{} (write [rad/s] or [Hz])", place(self.table, column)));
+                return Ok((column, 1.0));
+            }
+        };
+        let known = match self.table.units.get(column).and_then(Option::as_ref) {
+            Some(unit) => format!("its unit says {unit}"),
+            None => "and with it the unit".to_owned(),
         };
         self.note(column, &format!("the frequency in {words}"), &format!(", {known}"));
         Ok((column, factor))
@@ -149,7 +178,7 @@ impl Recognition<'_> {
     }
 
     /// The responses, in the order of their first columns.
-    fn responses(&mut self) -> Result<Vec<RecognisedResponse>, VariableFault> {
+    fn responses(&mut self) -> Vec<RecognisedResponse> {
         let mut responses = Vec::new();
         for group in self.groups() {
             let rectangular = group.column(Quantity::Real).zip(group.column(Quantity::Imaginary));
@@ -160,12 +189,17 @@ impl Recognition<'_> {
                     self.note(re, "real part", "");
                     self.note(im, "imaginary part", "");
                     // Units that are not said are needed for nothing here.
-                    if let Some(Ok(polar)) = polar.map(|columns| self.polar(columns)) {
-                        self.compare(parts, polar);
+                    match polar.map(|columns| self.polar(columns)) {
+                        Some((polar, unsaid)) if unsaid.is_empty() => self.compare(parts, polar),
+                        _ => {}
                     }
                     parts
                 }
-                (None, Some(columns)) => self.polar(columns)?,
+                (None, Some(columns)) => {
+                    let (parts, unsaid) = self.polar(columns);
+                    self.unsaid.extend(unsaid);
+                    parts
+                }
                 (None, None) => {
                     let halves = group.columns.iter().filter(|(quantity, _)| *quantity != Quantity::Error);
                     let left_out = halves.map(|(_, column)| place(self.table, *column));
@@ -173,12 +207,26 @@ impl Recognition<'_> {
                     continue;
                 }
             };
-            let coherence = group.column(Quantity::Coherence);
-            coherence.into_iter().for_each(|column| self.note(column, "coherence", ""));
+            let coherence = group.column(Quantity::Coherence).map(|column| self.coherence(column));
             let ResponseLabel { output, input } = group.label;
             responses.push(RecognisedResponse { output, input, parts, coherence });
         }
-        Ok(responses)
+        responses
+    }
+
+    /// A column of coherence, and what makes it a part of 1: percent where its unit says so, or where no number of it can be a part.
+    fn coherence(&mut self, column: usize) -> (usize, f64) {
+        /// Rounding and noise leave coherence not much above 1.
+        const MOST: f64 = 1.5;
+        let said = self.meanings[column].unit == Some(KnownUnit::Percent);
+        let above = self.table.columns[column].iter().any(|value| *value > MOST);
+        let (what, why, factor) = match (said, above) {
+            (true, _) => ("coherence in percent", ", its unit says %", 0.01),
+            (false, true) => ("coherence in percent", ", some of its numbers are above 1", 0.01),
+            (false, false) => ("coherence", "", 1.0),
+        };
+        self.note(column, what, why);
+        (column, factor)
     }
 
     fn groups(&mut self) -> Vec<Group> {
@@ -209,28 +257,32 @@ impl Recognition<'_> {
         groups
     }
 
-    /// A magnitude and a phase; units that are neither said nor plain are asked for.
-    fn polar(&mut self, (magnitude, phase): (usize, usize)) -> Result<ResponseParts, VariableFault> {
-        let unsaid = |column: usize, example: &str| {
-            unrecognised(&format!("no unit of {} (write {example})", place(self.table, column)))
+    /// A magnitude and a phase, and the columns whose units are neither said nor plain.
+    fn polar(&mut self, (magnitude, phase): (usize, usize)) -> (ResponseParts, Vec<String>) {
+        let mut unsaid = Vec::new();
+        let mut ask = |column: usize, example: &str| {
+            unsaid.push(format!("{} (write {example})", place(self.table, column)));
+            false
         };
         let is_negative = self.table.columns[magnitude].iter().any(|value| *value < 0.0);
         let (in_db, said) = match self.meanings[magnitude].unit {
             Some(KnownUnit::Decibel) => (true, "its unit says dB"),
             Some(_) => (false, "its unit is not dB"),
             None if is_negative => (true, "some of its numbers are negative"),
-            None => return Err(unsaid(magnitude, "[dB] or [abs]")),
+            None => (ask(magnitude, "[dB] or [abs]"), ""),
         };
         let in_degrees = match self.meanings[phase].unit {
             Some(KnownUnit::Degree) => true,
             Some(KnownUnit::Radian) => false,
-            _ => return Err(unsaid(phase, "[deg] or [rad]")),
+            _ => ask(phase, "[deg] or [rad]"),
         };
-        let size = if in_db { "magnitude in dB" } else { "absolute magnitude" };
-        self.note(magnitude, size, &format!(", {said}"));
-        let angle = if in_degrees { "deg" } else { "rad" };
-        self.note(phase, &format!("phase in {angle}"), &format!(", its unit says {angle}"));
-        Ok(ResponseParts::Polar { magnitude, in_db, phase, in_degrees })
+        if unsaid.is_empty() {
+            let size = if in_db { "magnitude in dB" } else { "absolute magnitude" };
+            self.note(magnitude, size, &format!(", {said}"));
+            let angle = if in_degrees { "deg" } else { "rad" };
+            self.note(phase, &format!("phase in {angle}"), &format!(", its unit says {angle}"));
+        }
+        (ResponseParts::Polar { magnitude, in_db, phase, in_degrees }, unsaid)
     }
 
     /// Compares a response that is given twice, to a hundredth of its magnitude: tables are printed with few digits.
@@ -261,7 +313,7 @@ fn place(table: &TextTable, column: usize) -> String {
 /// The points of a response; rows in which it has no numbers at all, as others in the table do, are left out.
 fn points(table: &TextTable, response: &RecognisedResponse, omega: &[f64]) -> Result<ResponsePoints, VariableFault> {
     let (first, second) = response.parts.columns();
-    let coherence = response.coherence.map(|index| &table.columns[index]);
+    let coherence = response.coherence.map(|(index, factor)| (&table.columns[index], factor));
     let mut points = ResponsePoints {
         omega: Vec::with_capacity(omega.len()),
         re: Vec::with_capacity(omega.len()),
@@ -286,8 +338,8 @@ fn points(table: &TextTable, response: &RecognisedResponse, omega: &[f64]) -> Re
         points.omega.push(omega);
         points.re.push(re);
         points.im.push(im);
-        if let (Some(all), Some(values)) = (&mut points.coherence, coherence) {
-            all.push(values[row]);
+        if let (Some(all), Some((values, factor))) = (&mut points.coherence, coherence) {
+            all.push(factor * values[row]);
         }
     }
     Ok(points)
@@ -340,7 +392,7 @@ mod frequency_columns_tests {
         assert_eq!(found.frequency, (0, 1.0));
         let [response] = found.responses.as_slice() else { panic!("one response") };
         assert_eq!((response.output.as_deref(), response.input.as_deref()), (Some("P"), Some("LAT")));
-        assert_eq!((response.parts, response.coherence), (POLAR, Some(3)));
+        assert_eq!((response.parts, response.coherence), (POLAR, Some((3, 1.0))));
         assert_eq!(
             found.notes[0],
             "column 1 (\"omega\") is read as the frequency in rad/s: its name says omega, its unit says rad/s"
@@ -362,12 +414,10 @@ mod frequency_columns_tests {
 
     #[test]
     fn columns_of_cifer_are_read() {
-        let text =
-            "FREQUENCY MAGNITUDE(DB) PHASE(DEG) COHERENCE ERROR REAL IMAG\n 1 0 -90 .9 .1 0 -1\n 2 0 180 .9 .1 -1 0\n";
+        let text = "FREQUENCY(RAD/S) MAGNITUDE(DB) PHASE(DEG) COHERENCE ERROR REAL IMAG\n 1 0 -90 .9 .1 0 -1\n 2 0 180 .9 .1 -1 0\n";
         let found = recognise(text);
         assert_eq!(found.responses[0].parts, ResponseParts::Rectangular { re: 5, im: 6 });
-        assert_eq!(found.responses[0].coherence, Some(3));
-        assert!(found.notes[0].contains("its unit is not said: rad/s is taken"), "{}", found.notes[0]);
+        assert_eq!(found.responses[0].coherence, Some((3, 1.0)));
         assert!(found.notes.iter().any(|note| note.contains("magnitude and phase in columns 2 and 3 agree")));
     }
 
@@ -388,6 +438,10 @@ mod frequency_columns_tests {
         let absolute = recognise("omega,mag [abs],phase [rad]\n1,3,-1\n2,0.5,-2\n");
         let expected = ResponseParts::Polar { magnitude: 1, in_db: false, phase: 2, in_degrees: false };
         assert_eq!(absolute.responses[0].parts, expected);
+        let all = fault("Frequency,Gain,Phase\n0.5,5.8,-42.7\n0.6,9.8,-24.8\n");
+        for unit in ["[rad/s] or [Hz]", "[dB] or [abs]", "[deg] or [rad]", "--headings"] {
+            assert!(all.contains(unit), "{all}");
+        }
         let nothing = fault("0.3,10,-90\n1,5,-100\n2,1,-120\n");
         assert!(nothing.contains("no frequency") && nothing.contains("headings"), "{nothing}");
     }
@@ -436,6 +490,23 @@ mod frequency_values_tests {
         assert!(message(["1", "3", "2"]).starts_with(&format!("line 4: {start} is below the one before (2 after 3)")));
         assert!(message(["1", "", "2"]).starts_with(&format!("line 3: {start} is missing")));
         assert!(message(["-1", "1", "2"]).starts_with(&format!("line 2: {start} is negative")));
+    }
+
+    #[test]
+    fn frequencies_that_fall_are_turned_round() {
+        let points = values("omega [rad/s],re,im\n3,1,2\n2,3,4\n1,5,6\n").unwrap().remove(0);
+        assert_eq!(
+            (points.omega, points.re, points.im),
+            (vec![1.0, 2.0, 3.0], vec![5.0, 3.0, 1.0], vec![6.0, 4.0, 2.0])
+        );
+    }
+
+    #[test]
+    fn coherence_in_percent_becomes_a_part_of_one() {
+        for text in ["w,re,im,coh [%]\n1,1,2,97\n2,3,4,1\n", "w,re,im,coh\n1,1,2,97\n2,3,4,1\n"] {
+            let coherence = values(text).unwrap().remove(0).coherence.unwrap();
+            assert!(coherence.iter().zip([0.97, 0.01]).all(|(a, b)| (a - b).abs() < 1e-12), "{coherence:?}");
+        }
     }
 
     #[test]

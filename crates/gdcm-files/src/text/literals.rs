@@ -46,7 +46,7 @@ pub fn read_literals(text: &str, budget: &ReadingBudget) -> Result<Statements, V
         blocks: 0,
     };
     while !reading.scanner.rest().is_empty() {
-        budget.take(0, 1, "")?;
+        budget.work(1, "")?;
         reading.statement()?;
     }
     Ok(reading.read)
@@ -255,7 +255,7 @@ impl<'t> Scanner<'t> {
     fn pass_statement(&mut self, budget: &ReadingBudget) -> Result<(), VariableFault> {
         let mut open: Vec<(char, Position)> = Vec::new();
         loop {
-            budget.take(0, 1, "")?;
+            budget.work(1, "")?;
             let spaced = self.pass_blanks()?;
             let Some(character) = self.peek() else { break };
             let before = self.text[..self.at].chars().next_back();
@@ -500,7 +500,7 @@ impl<'t> Reading<'t, '_> {
             }
             self.scanner.at += 1;
             self.scanner.pass_blanks()?;
-            self.budget.take(0, 1, "")?;
+            self.budget.work(1, "")?;
         }
         if let Some((value, imaginary)) = self.scanner.number()? {
             return Ok(Some((sign * value, imaginary)));

@@ -32,7 +32,7 @@ pub fn read_matrices(text: &str, budget: &ReadingBudget) -> Result<NamedMatrices
     refuse_binary(text, "matrices under their names")?;
     let mut reading = Reading { found: Vec::new(), notes: Vec::new(), budget };
     for (number, line) in lines(text) {
-        budget.take(0, 1, "")?;
+        budget.work(1, "")?;
         if !line.trim().is_empty() && comment(line).is_none() && !is_rule(line) {
             reading.line(number, line)?;
         }

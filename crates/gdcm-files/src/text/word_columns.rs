@@ -41,7 +41,7 @@ pub fn numbered_words(text: &str, budget: &ReadingBudget) -> Result<Option<Numbe
     budget.take(text.len() as u64, 2, "")?;
     let mut numbered = String::with_capacity(text.len());
     for (_, line) in lines(text) {
-        budget.take(0, 1, "")?;
+        budget.work(1, "")?;
         let cells: Vec<String> = separator.cells(line).map(|cell| cell.trim().to_owned()).collect();
         if cells.len() == numbering.columns.len() && comment(line).is_none() {
             numbered.push_str(&numbering.line(cells, separator));

@@ -23,6 +23,7 @@ mod modes;
 mod remarks;
 mod response_paths;
 mod responses;
+mod signs;
 mod studies;
 mod timing;
 mod uncertainty;

@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use gdcm_core::correction::Channel;
 use gdcm_core::dataset::{BundleKind, ConditionId, ModelId, Pair};
-use gdcm_core::study::{Edit, Kind, SETTINGS, Setting, Study, Value, setting};
+use gdcm_core::study::{Edit, Kind, SETTINGS, Setting, SignRole, Study, Value, setting};
 use gdcm_files::{
     FileError, LoadedDataset, Opened, embedded_example, load_any, load_dataset, open_study, open_study_of, save_study,
 };
@@ -118,6 +119,7 @@ proptest! {
             Edit::RejectBecause { model: id(BundleKind::Physics, rejected), reason },
             Edit::Pin(id(BundleKind::Identified, rejected)),
             Edit::SetScheduled { condition: loaded.dataset.conditions()[1].id(), scheduled },
+            Edit::SetSign { channel: Channel::Output(1), of: Some(SignRole::Identified) },
             Edit::KeepVariant { name: "first → α".to_owned() },
         ]);
         decided(&mut study, &others);

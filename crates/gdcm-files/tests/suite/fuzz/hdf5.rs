@@ -68,24 +68,22 @@ fn dataset(dice: &mut Dice, dataset: &mut DatasetBuilder) {
     let sides: Vec<u64> = (0..dice.below(4)).map(|_| dice.below(5) as u64).collect();
     let count = sides.iter().product::<u64>() as usize;
     let numbers: Vec<f64> = (0..count).map(|_| dice.number()).collect();
-    match dice.below(8) {
-        0 => drop(dataset.with_u8_data(&numbers.iter().map(|&number| number as u8).collect::<Vec<_>>())),
-        1 => drop(dataset.with_u16_data(&numbers.iter().map(|&number| number as u16).collect::<Vec<_>>())),
-        2 => {
-            let words = [0xdd00_0000, 2, 1, 1, 1, 1];
-            drop(dataset.with_u32_data(&words));
-        }
-        3 => drop(dataset.with_u64_data(&numbers.iter().map(|&number| number as u64).collect::<Vec<_>>())),
+    let numbers_of = |bound: f64| numbers.iter().map(move |number| number.rem_euclid(bound));
+    let _ = match dice.below(8) {
+        0 => dataset.with_u8_data(&numbers_of(256.0).map(|number| number as u8).collect::<Vec<_>>()),
+        1 => dataset.with_u16_data(&numbers_of(65_536.0).map(|number| number as u16).collect::<Vec<_>>()),
+        2 => dataset.with_u32_data(&[0xdd00_0000, 2, 1, 1, 1, 1]),
+        3 => dataset.with_u64_data(&numbers.iter().map(|&number| number as u64).collect::<Vec<_>>()),
         4 => {
             let texts: Vec<&str> = (0..count).map(|_| *dice.of_list(&NAMES)).collect();
-            drop(dataset.with_vlen_strings(&texts));
+            dataset.with_vlen_strings(&texts)
         }
         5 => {
             let paths: Vec<&str> = (0..count).map(|_| *dice.of_list(&["x", "A", "v0", "#refs#", "Data_/A"])).collect();
-            drop(dataset.with_path_references(&paths));
+            dataset.with_path_references(&paths)
         }
-        _ => drop(dataset.with_f64_data(&numbers)),
-    }
+        _ => dataset.with_f64_data(&numbers),
+    };
     if !dice.once_in(4) {
         dataset.with_shape(&sides);
         if dice.once_in(4) && !sides.is_empty() {

@@ -1,0 +1,254 @@
+//! Signs and units that one side seems to have otherwise: said before any delay, zero or mode is blamed for what they do.
+
+use std::f64::consts::PI;
+
+use crate::correction::{Channel, delta_gains};
+use crate::dataset::{BundleKind, ConditionId, Dataset, Pair, PairTable};
+use crate::fidelity::Mismatch;
+use crate::response::{FrequencyGrid, median};
+use crate::units::number;
+
+use super::{Cancelled, Compared, ConditionResponses, Execution, Mismatches, Study};
+
+/// Within this \[rad\] of half a turn a phase difference speaks for another sign.
+const NEAR_HALF_A_TURN: f64 = 20.0 / 180.0 * PI;
+/// What scale factors of channels usually are, up or down: beyond, a unit is asked after.
+const USUAL_FACTOR: f64 = 5.0;
+/// How near a factor has to be to a known one, as a ratio.
+const NEAR_FACTOR: f64 = 1.08;
+/// What takes one unit to another, and which.
+const KNOWN_FACTORS: [(f64, &str); 6] = [
+    (9.806_65, "g and m/s²"),
+    (32.174, "g and ft/s²"),
+    (180.0 / PI, "radians and degrees"),
+    (100.0, "a fraction and percent"),
+    (12.0, "feet and inches"),
+    (1000.0, "a unit and its thousandth"),
+];
+
+/// What one side seems to have otherwise than the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Convention {
+    /// The sign.
+    Sign,
+    /// The unit: what the identified models give is this factor times what the physics models give.
+    Factor(f64),
+}
+
+/// A channel that the identified models seem to have in another convention than the physics models.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConventionDoubt {
+    /// What is otherwise.
+    pub convention: Convention,
+    /// The channel that is to blame.
+    pub channel: Channel,
+    /// The measuring responses that show it.
+    pub pairs: Vec<Pair>,
+    /// Whether all responses of the channel show it.
+    pub all_responses: bool,
+    /// The conditions where it shows, in file order.
+    pub conditions: Vec<ConditionId>,
+}
+
+impl ConventionDoubt {
+    /// The doubt in words, with what would settle it.
+    pub fn words(&self, dataset: &Dataset) -> String {
+        let (inputs, outputs) = dataset.names_of_channels();
+        let channel = self.channel.name(&inputs, &outputs);
+        let pairs: Vec<String> = self.pairs.iter().map(|&pair| dataset.pair_name(pair)).collect();
+        let ids: Vec<String> = self.conditions.iter().map(ToString::to_string).collect();
+        let place = match self.conditions.len() {
+            count if count == dataset.conditions().len() => "in every condition".to_owned(),
+            1 => format!("in condition {}", ids[0]),
+            _ => format!("in conditions {}", ids.join(", ")),
+        };
+        let alike = if self.all_responses { format!(", like all responses of {channel},") } else { String::new() };
+        match self.convention {
+            Convention::Sign => format!(
+                "{} {} by half a turn at all frequencies{alike} {place}: {channel} of the identified models has the other sign. \
+                 Turn it?",
+                pairs.join(", "),
+                if pairs.len() == 1 { "differs" } else { "differ" }
+            ),
+            Convention::Factor(factor) => {
+                let near = KNOWN_FACTORS.iter().find(|(known, _)| is_near(factor, *known));
+                let units = near.map_or_else(String::new, |(known, units)| {
+                    format!(
+                        ", near {}: {units}",
+                        if factor < 1.0 { format!("1/{}", short(*known)) } else { short(*known) }
+                    )
+                });
+                format!(
+                    "{} of the identified models {} {} times that of the physics model{alike} {place}{units}. Check the unit of \
+                     {channel}",
+                    pairs.join(", "),
+                    if pairs.len() == 1 { "is" } else { "are" },
+                    short(factor)
+                )
+            }
+        }
+    }
+
+    /// The channel that is to be turned, where it is the sign.
+    pub fn turns(&self) -> Option<Channel> {
+        (self.convention == Convention::Sign).then_some(self.channel)
+    }
+}
+
+fn short(factor: f64) -> String {
+    let digits = 10_f64.powf(2.0 - factor.log10().floor());
+    number((factor * digits).round() / digits)
+}
+
+fn is_near(factor: f64, known: f64) -> bool {
+    let ratio = if factor < 1.0 { factor * known } else { factor / known };
+    (1.0 / NEAR_FACTOR..=NEAR_FACTOR).contains(&ratio)
+}
+
+/// What the models of one condition differ in: what is asked, G among it, is asked of few responses.
+struct Sample<'a> {
+    condition: ConditionId,
+    mismatch: &'a Mismatches,
+    gains: PairTable<Option<f64>>,
+}
+
+impl Sample<'_> {
+    /// The responses of a channel that have a mismatch.
+    fn of_channel(&self, channel: Channel) -> impl Iterator<Item = (Pair, &Mismatch)> {
+        let own = self.mismatch.iter().filter(move |(pair, _)| channel.is_of(*pair));
+        own.filter_map(|(pair, mismatch)| Some((pair, mismatch.as_ref()?)))
+    }
+
+    /// Share of the responses of a channel that the other sign would bring nearer.
+    fn opposed(&self, channel: Channel) -> f64 {
+        let opposed: Vec<f64> = self
+            .of_channel(channel)
+            .map(|(_, mismatch)| if weighted_sum(mismatch, f64::cos) < 0.0 { 1.0 } else { 0.0 })
+            .collect();
+        opposed.iter().sum::<f64>() / opposed.len().max(1) as f64
+    }
+
+    /// Natural logarithms of G of the responses of a channel.
+    fn ln_gains(&self, channel: Channel) -> Vec<f64> {
+        self.of_channel(channel).filter_map(|(pair, _)| Some(self.gains[pair]?.ln())).collect()
+    }
+}
+
+/// A sum over frequency by the weights of J (M4a).
+fn weighted_sum(mismatch: &Mismatch, of: impl Fn(f64) -> f64) -> f64 {
+    let weight = |place: usize| mismatch.weights().map_or(1.0, |weights| weights[place]);
+    mismatch.phase.iter().enumerate().map(|(place, phase)| weight(place) * of(*phase)).sum()
+}
+
+/// Whether the phase difference lies near half a turn over most of the band.
+fn is_turned(mismatch: &Mismatch) -> bool {
+    let near = |phase: f64| if PI - phase.abs() <= NEAR_HALF_A_TURN { 1.0 } else { 0.0 };
+    weighted_sum(mismatch, near) > 0.5 * weighted_sum(mismatch, |_| 1.0)
+}
+
+/// What the representatives of each condition say of signs and units; signs first.
+pub(super) fn convention_doubts(
+    conditions: &[(ConditionId, &Mismatches)],
+    measuring: &PairTable<bool>,
+) -> Vec<ConventionDoubt> {
+    let samples = conditions.iter().map(|(condition, mismatch)| Sample {
+        condition: *condition,
+        mismatch,
+        gains: delta_gains(mismatch),
+    });
+    let samples: Vec<Sample<'_>> = samples.collect();
+    let channels = || Channel::all(measuring.inputs(), measuring.outputs());
+    let signs = channels().filter_map(|channel| sign_doubt(&samples, measuring, channel));
+    signs.chain(channels().filter_map(|channel| factor_doubt(&samples, measuring, channel))).collect()
+}
+
+/// The other channel of a response.
+fn other(channel: Channel, pair: Pair) -> Channel {
+    let [output, input] = Channel::of(pair);
+    if channel == output { input } else { output }
+}
+
+fn sign_doubt(samples: &[Sample<'_>], measuring: &PairTable<bool>, channel: Channel) -> Option<ConventionDoubt> {
+    let mut doubt = ConventionDoubt::of(Convention::Sign, channel);
+    for sample in samples {
+        // Of the two channels of a response that one is to blame whose other responses are opposed too; the output where both are.
+        let is_to_blame = |pair: Pair| {
+            let (own, of_other) = (sample.opposed(channel), sample.opposed(other(channel, pair)));
+            own > of_other || (own == of_other && matches!(channel, Channel::Output(_)))
+        };
+        let turned = sample.of_channel(channel).filter(|(pair, mismatch)| measuring[*pair] && is_turned(mismatch));
+        let turned: Vec<Pair> = turned.map(|(pair, _)| pair).filter(|pair| is_to_blame(*pair)).collect();
+        let all = !turned.is_empty() && sample.opposed(channel) == 1.0;
+        doubt.take(sample.condition, turned, all);
+    }
+    doubt.found()
+}
+
+fn factor_doubt(samples: &[Sample<'_>], measuring: &PairTable<bool>, channel: Channel) -> Option<ConventionDoubt> {
+    let is_far = |ln_gain: f64| ln_gain.abs() > USUAL_FACTOR.ln();
+    let mut doubt = ConventionDoubt::of(Convention::Factor(1.0), channel);
+    let mut ln_gains = Vec::new();
+    for sample in samples {
+        // Of the two channels of a response that one is to blame whose other responses have about the same factor.
+        let is_to_blame = |pair: Pair, ln_gain: f64| {
+            let apart = |channel| (median(&mut sample.ln_gains(channel)) - ln_gain).abs();
+            let (here, there) = (apart(channel), apart(other(channel, pair)));
+            here < there || (here == there && matches!(channel, Channel::Output(_)))
+        };
+        let measured = sample.of_channel(channel).filter(|(pair, _)| measuring[*pair]);
+        let far = measured.filter_map(|(pair, _)| Some((pair, sample.gains[pair]?.ln()))).filter(|of| is_far(of.1));
+        let far: Vec<(Pair, f64)> = far.filter(|(pair, ln_gain)| is_to_blame(*pair, *ln_gain)).collect();
+        ln_gains.extend(far.iter().map(|(_, ln_gain)| ln_gain));
+        let all = sample.ln_gains(channel).into_iter().all(is_far);
+        doubt.take(sample.condition, far.into_iter().map(|(pair, _)| pair).collect(), all);
+    }
+    if !ln_gains.is_empty() {
+        doubt.convention = Convention::Factor(median(&mut ln_gains).exp());
+    }
+    doubt.found()
+}
+
+impl ConventionDoubt {
+    fn of(convention: Convention, channel: Channel) -> Self {
+        Self { convention, channel, pairs: Vec::new(), all_responses: true, conditions: Vec::new() }
+    }
+
+    /// Takes what one condition shows.
+    fn take(&mut self, condition: ConditionId, pairs: Vec<Pair>, all: bool) {
+        if !pairs.is_empty() {
+            self.conditions.push(condition);
+            self.all_responses &= all;
+            self.pairs.extend(pairs);
+            self.pairs.sort();
+            self.pairs.dedup();
+        }
+    }
+
+    fn found(self) -> Option<Self> {
+        (!self.conditions.is_empty()).then_some(self)
+    }
+}
+
+/// What the nominal physics model and the first identified model that is kept say in each condition, before anything is analysed.
+///
+/// # Errors
+/// [`Cancelled`] where `execution` is.
+pub fn doubts_of_models(study: &Study, execution: &Execution<'_>) -> Result<Vec<ConventionDoubt>, Cancelled> {
+    let (band, points) = (study.settings.band, study.settings.points);
+    let grid = FrequencyGrid::logarithmic(band, points);
+    let mut tables = Vec::new();
+    for condition in study.dataset.conditions() {
+        let responses = ConditionResponses::of(condition, (band, points), execution)?;
+        let rejected = &study.choice(condition.id()).identified.rejected;
+        let models = condition.bundle(BundleKind::Identified).iter();
+        let kept = models.enumerate().find(|(_, model)| !rejected.contains(&model.name));
+        let compared = |kind, model| {
+            Compared::of(condition, &responses, (kind, model), (&grid, study.settings.coherence_threshold))
+        };
+        let physics = compared(BundleKind::Physics, condition.nominal());
+        let mismatch = kept.map(|(model, _)| physics.against(&compared(BundleKind::Identified, model)));
+        tables.extend(mismatch.map(|mismatch| (condition.id(), mismatch)));
+    }
+    let tables: Vec<(ConditionId, &Mismatches)> = tables.iter().map(|(id, mismatch)| (*id, mismatch)).collect();
+    Ok(convention_doubts(&tables, &study.dataset.measuring_pairs()))
+}

@@ -1,0 +1,170 @@
+//! GNU Octave's `save -hdf5`: each value is a group of its type and of what belongs to it.
+//!
+//! The container is read as any HDF5 file, which makes structs of groups; here they become the values that they stand for. Arrays lie
+//! column by column, so that their sides stand the other way round.
+
+use super::Form;
+use crate::strides::Places;
+use crate::variables::{
+    Array, CellArray, Object, ReadingBudget, StructArray, TextArray, Value, Variable, VariableFault,
+};
+
+/// The values of a file that Octave wrote; those of another as they are.
+pub(crate) fn unwrapped(variables: Vec<Variable>, budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+    if variables.is_empty() || !variables.iter().all(|variable| typed(&variable.value).is_some()) {
+        return Ok(variables);
+    }
+    let value = |variable: Variable| {
+        let value = decoded(&variable.value, &variable.name, budget)?;
+        Ok(Variable { name: variable.name, value })
+    };
+    variables.into_iter().map(value).collect()
+}
+
+/// The type of a group, and what belongs to it.
+fn typed(value: &Value) -> Option<(&str, &Value)> {
+    let Value::Struct(records) = value else { return None };
+    let [(first, kind), (second, value)] = records.fields.as_slice() else { return None };
+    match (kind.as_slice(), value.as_slice()) {
+        ([Value::Text(kind)], [value]) if first == "type" && second == "value" => Some((kind.texts.first()?, value)),
+        _ => None,
+    }
+}
+
+fn decoded(group: &Value, variable: &str, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
+    let Some((kind, value)) = typed(group) else {
+        return Err(damaged(variable, "a group has no type and no value"));
+    };
+    budget.take(1, size_of::<Value>() as u64, variable)?;
+    Ok(match (Form::of(kind), value) {
+        (Some(Form::Text), Value::Array(codes)) => Value::Text(rows(&turned(codes, variable, budget)?)),
+        (Some(Form::Range), Value::Struct(parts)) => Value::Array(range(parts, variable, budget)?),
+        (Some(Form::Cell), Value::Struct(parts)) => Value::Cell(cell(parts, variable, budget)?),
+        (Some(Form::Cell), Value::Array(empty)) => {
+            Value::Cell(CellArray { shape: empty.shape.clone(), values: Vec::new() })
+        }
+        (Some(Form::Sparse(_)), Value::Struct(parts)) => Value::Array(sparse(parts, variable, budget)?),
+        (Some(Form::Struct | Form::Structs), Value::Struct(parts)) => {
+            Value::Struct(records(parts, Form::of(kind) == Some(Form::Structs), variable, budget)?)
+        }
+        (Some(Form::Class), Value::Struct(parts)) => {
+            let class = parts.field("classname").and_then(<[Value]>::first);
+            let Some(Value::Text(class)) = class else { return Err(damaged(variable, "an object has no class")) };
+            let class = class.texts.first().cloned().unwrap_or_default();
+            Value::Object(Object { class, records: records(parts, true, variable, budget)? })
+        }
+        (Some(Form::Scalar(_) | Form::Matrix(_) | Form::Diagonal(_)), Value::Array(array)) => {
+            Value::Array(turned(array, variable, budget)?)
+        }
+        _ => Value::Opaque { class: format!("a {kind} of GNU Octave"), why: "save it with -v7".to_owned() },
+    })
+}
+
+fn damaged(variable: &str, what: &str) -> VariableFault {
+    VariableFault::Damaged { variable: variable.to_owned(), what: what.to_owned(), offset: 0 }
+}
+
+/// The array with its sides the other way round.
+fn turned(array: &Array, variable: &str, budget: &ReadingBudget<'_>) -> Result<Array, VariableFault> {
+    budget.take(array.len() as u64, 16, variable)?;
+    let Some(places) = Places::row_major(&array.shape) else {
+        return Err(damaged(variable, "there are more elements than can be counted"));
+    };
+    // Each element goes to where it stands in the file.
+    let places: Vec<usize> = places.collect();
+    let part = |values: &Vec<f64>| {
+        let mut part = vec![0.0; values.len()];
+        places.iter().zip(values).for_each(|(place, value)| part[*place] = *value);
+        part
+    };
+    let shape = array.shape.iter().rev().copied().collect();
+    Ok(Array { shape, kind: array.kind, re: part(&array.re), im: array.im.as_ref().map(part) })
+}
+
+/// Texts in the rows of an array of bytes.
+fn rows(codes: &Array) -> TextArray {
+    let height = codes.shape.first().copied().unwrap_or(0);
+    if codes.is_empty() {
+        return TextArray { shape: vec![1, 1], texts: vec![String::new()] };
+    }
+    let row =
+        |row: usize| codes.re.iter().skip(row).step_by(height).map(|code| *code as i64 as u8).collect::<Vec<u8>>();
+    let texts = (0..height).map(|of| String::from_utf8_lossy(&row(of)).into_owned()).collect();
+    TextArray { shape: vec![height, 1], texts }
+}
+
+fn number(parts: &StructArray, name: &str) -> Option<f64> {
+    match parts.field(name)?.first()? {
+        Value::Array(array) => array.re.first().copied(),
+        _ => None,
+    }
+}
+
+fn numbers<'p>(parts: &'p StructArray, name: &str) -> &'p [f64] {
+    match parts.field(name).and_then(<[Value]>::first) {
+        Some(Value::Array(array)) => &array.re,
+        _ => &[],
+    }
+}
+
+fn range(parts: &StructArray, variable: &str, budget: &ReadingBudget<'_>) -> Result<Array, VariableFault> {
+    let part = |name: &str| number(parts, name).ok_or_else(|| damaged(variable, "a range has no base, limit and step"));
+    super::steps([part("base")?, part("limit")?, part("increment")?], variable, budget)
+}
+
+fn cell(parts: &StructArray, variable: &str, budget: &ReadingBudget<'_>) -> Result<CellArray, VariableFault> {
+    let shape: Vec<usize> = numbers(parts, "dims").iter().map(|side| *side as usize).collect();
+    let members = parts.fields.iter().filter(|(name, _)| name.starts_with('_'));
+    let values = members.flat_map(|(_, values)| values).enumerate();
+    let values: Vec<Value> = values
+        .map(|(index, value)| decoded(value, &format!("{variable}{{{}}}", index + 1), budget))
+        .collect::<Result<_, _>>()?;
+    if crate::strides::count(&shape) != Some(values.len()) {
+        return Err(damaged(variable, "a cell array has not as many values as its sides say"));
+    }
+    Ok(CellArray { shape, values })
+}
+
+/// Records, whose fields are cells of one value for each where there are or can be several.
+fn records(
+    parts: &StructArray,
+    in_cells: bool,
+    variable: &str,
+    budget: &ReadingBudget<'_>,
+) -> Result<StructArray, VariableFault> {
+    let mut records = StructArray { shape: vec![1, 1], fields: Vec::new() };
+    for (name, values) in parts.fields.iter().filter(|(name, _)| name != "classname") {
+        let inner = format!("{variable}.{name}");
+        let value = values.first().map(|value| decoded(value, &inner, budget)).transpose()?;
+        let values = match value {
+            Some(Value::Cell(cell)) if in_cells => {
+                if !records.fields.is_empty() && records.shape != cell.shape {
+                    return Err(damaged(&inner, "a field has not as many values as there are records"));
+                }
+                records.shape = cell.shape;
+                cell.values
+            }
+            value => value.into_iter().collect(),
+        };
+        records.fields.push((name.clone(), values));
+    }
+    Ok(records)
+}
+
+fn sparse(parts: &StructArray, variable: &str, budget: &ReadingBudget<'_>) -> Result<Array, VariableFault> {
+    let wrong = || damaged(variable, "the sparse matrix contradicts itself");
+    let side = |name: &str| number(parts, name).filter(|side| *side >= 0.0).map(|side| side as usize).ok_or_else(wrong);
+    let (rows, columns) = (side("nr")?, side("nc")?);
+    let count = crate::strides::count(&[rows, columns]).ok_or_else(wrong)?;
+    budget.take(count as u64, 8, variable)?;
+    let (starts, indices, data) = (numbers(parts, "cidx"), numbers(parts, "ridx"), numbers(parts, "data"));
+    let mut values = vec![0.0; count];
+    for (column, bounds) in starts.windows(2).enumerate() {
+        for place in bounds[0] as usize..bounds[1] as usize {
+            let row = *indices.get(place).ok_or_else(wrong)? as usize;
+            let into = values.get_mut(column * rows + row).filter(|_| row < rows).ok_or_else(wrong)?;
+            *into = *data.get(place).ok_or_else(wrong)?;
+        }
+    }
+    Ok(Array::matrix(rows, columns, values))
+}

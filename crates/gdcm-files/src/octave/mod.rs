@@ -1,0 +1,272 @@
+//! What GNU Octave's `save` writes: `-text` (which it writes where nothing else is asked for), `-binary` and `-hdf5`, packed by `-zip`
+//! or not.
+//!
+//! None of them is described by its authors but in the source of Octave 7 (`ls-oct-text.cc`, `ls-oct-binary.cc`, `ls-hdf5.cc` and the
+//! `ov-*.cc` beside them). Each value stands behind a name and the name of its type; what follows is of the type's own form. The two
+//! encodings give the parts of a value in the same order, so that a value is put together here for both.
+
+mod binary;
+mod hdf5;
+#[cfg(test)]
+mod tests;
+mod text;
+
+use crate::strides::{Places, count};
+use crate::variables::{
+    Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value, VariableFault,
+};
+
+pub(crate) use binary::OctaveBinary;
+pub(crate) use hdf5::unwrapped;
+pub(crate) use text::OctaveText;
+
+/// How many values may lie in one another.
+const DEEPEST: usize = 64;
+
+/// Numbers of a value: of what kind they are, and whether each has an imaginary part behind it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Element {
+    stored: Stored,
+    complex: bool,
+}
+
+/// How a number is stored in the binary form.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stored {
+    /// As a byte before the numbers says.
+    Float,
+    /// A whole number of so many bytes, with a sign or without.
+    Integer { signed: bool, size: usize },
+    /// True or false.
+    Logical,
+}
+
+impl Element {
+    fn kind(self) -> ElementKind {
+        match self.stored {
+            Stored::Float => ElementKind::Float,
+            Stored::Integer { .. } => ElementKind::Integer,
+            Stored::Logical => ElementKind::Logical,
+        }
+    }
+
+    /// An array of numbers in the order of this program; those of complex numbers stand in pairs.
+    fn array(self, shape: Vec<usize>, numbers: Vec<f64>) -> Array {
+        let kind = self.kind();
+        if !self.complex {
+            return Array { shape, kind, re: numbers, im: None };
+        }
+        let part = |part: usize| numbers.iter().skip(part).step_by(2).copied().collect();
+        Array { shape, kind, re: part(0), im: Some(part(1)) }
+    }
+}
+
+/// What the type of a value says about its form.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Form {
+    Scalar(Element),
+    Matrix(Element),
+    /// Only the numbers on the diagonal are stored.
+    Diagonal(Element),
+    /// Only the numbers other than zero are stored.
+    Sparse(Element),
+    /// First number, limit and step.
+    Range,
+    Text,
+    Cell,
+    /// One record, or several.
+    Struct,
+    Structs,
+    /// An object of a class made with `@` folders.
+    Class,
+}
+
+impl Form {
+    /// The form of a type by its name: "matrix", "float complex scalar", "uint8 matrix", "sparse bool matrix".
+    fn of(name: &str) -> Option<Self> {
+        match name {
+            "string" | "sq_string" | "null_string" | "null_sq_string" => return Some(Self::Text),
+            "cell" => return Some(Self::Cell),
+            "scalar struct" => return Some(Self::Struct),
+            "struct" => return Some(Self::Structs),
+            "class" | "object" => return Some(Self::Class),
+            "range" | "double_range" => return Some(Self::Range),
+            _ => {}
+        }
+        let mut element = Element { stored: Stored::Float, complex: false };
+        let mut form: Option<fn(Element) -> Self> = None;
+        for word in name.split(' ') {
+            match word {
+                "float" | "null" | "null_matrix" => {}
+                "complex" => element.complex = true,
+                "bool" => element.stored = Stored::Logical,
+                "diagonal" => form = Some(Self::Diagonal),
+                "sparse" => form = Some(Self::Sparse),
+                "scalar" => form = Some(Self::Scalar),
+                "matrix" => form = form.or(Some(Self::Matrix)),
+                _ => {
+                    let bits = word.trim_start_matches('u').strip_prefix("int")?;
+                    let size = ["8", "16", "32", "64"].iter().position(|known| *known == bits)?;
+                    element.stored = Stored::Integer { signed: !word.starts_with('u'), size: 1 << size };
+                }
+            }
+        }
+        match (form, name) {
+            (Some(form), _) => Some(form(element)),
+            (None, "bool") => Some(Self::Scalar(element)),
+            (None, "null_matrix") => Some(Self::Matrix(element)),
+            _ => None,
+        }
+    }
+}
+
+/// The sides of an array, and whether its numbers follow one another row by row.
+struct Sides {
+    shape: Vec<usize>,
+    by_rows: bool,
+}
+
+/// What is stored of a sparse matrix: the place of each number in an array that is filled up, and the numbers.
+struct Filled {
+    shape: Vec<usize>,
+    places: Vec<usize>,
+    numbers: Vec<f64>,
+}
+
+/// The parts of values, one behind the other, in one of the encodings. `variable` is what faults call the value.
+trait Parts {
+    fn budget(&self) -> &ReadingBudget<'_>;
+    /// Name and type of the next value.
+    fn member(&mut self, variable: &str) -> Result<(String, String), VariableFault>;
+    fn sides(&mut self, variable: &str) -> Result<Sides, VariableFault>;
+    /// So many numbers, or pairs of numbers of complex ones.
+    fn numbers(&mut self, element: Element, count: usize, variable: &str) -> Result<Vec<f64>, VariableFault>;
+    fn sparse(&mut self, element: Element, variable: &str) -> Result<Filled, VariableFault>;
+    fn text(&mut self, variable: &str) -> Result<TextArray, VariableFault>;
+    /// Number of members of a record.
+    fn members(&mut self, form: Form, variable: &str) -> Result<usize, VariableFault>;
+    fn class(&mut self, variable: &str) -> Result<String, VariableFault>;
+    /// What is wrong here.
+    fn wrong(&self, variable: &str, what: &str) -> VariableFault;
+}
+
+/// The value of a type.
+fn value(parts: &mut dyn Parts, kind: &str, variable: &str, depth: usize) -> Result<Value, VariableFault> {
+    if depth >= DEEPEST {
+        return Err(VariableFault::TooDeep { variable: variable.to_owned() });
+    }
+    parts.budget().take(1, size_of::<Value>() as u64, variable)?;
+    let Some(form) = Form::of(kind.strip_prefix("global ").unwrap_or(kind)) else {
+        return Err(VariableFault::Unsupported {
+            variable: variable.to_owned(),
+            what: format!("a {kind} of GNU Octave"),
+            remedy: "save it without this variable, or with -v7".to_owned(),
+        });
+    };
+    Ok(match form {
+        Form::Scalar(element) => Value::Array(element.array(vec![1, 1], parts.numbers(element, 1, variable)?)),
+        Form::Matrix(element) => Value::Array(matrix(parts, element, variable)?),
+        Form::Diagonal(element) => {
+            let shape = parts.sides(variable)?.shape;
+            let (rows, columns) = (shape[0], shape[1]);
+            let numbers = parts.numbers(element, rows.min(columns), variable)?;
+            let places = (0..rows.min(columns)).map(|at| at * rows + at).collect();
+            Value::Array(filled(parts, element, Filled { shape, places, numbers }, variable)?)
+        }
+        Form::Sparse(element) => {
+            let stored = parts.sparse(element, variable)?;
+            Value::Array(filled(parts, element, stored, variable)?)
+        }
+        Form::Range => Value::Array(range(parts, variable)?),
+        Form::Text => Value::Text(parts.text(variable)?),
+        Form::Cell => {
+            let shape = parts.sides(variable)?.shape;
+            let length = counted(parts, &shape, size_of::<Value>() as u64, variable)?;
+            let mut values = Vec::new();
+            for index in 1..=length {
+                let inner = format!("{variable}{{{index}}}");
+                let (_, kind) = parts.member(&inner)?;
+                values.push(value(parts, &kind, &inner, depth + 1)?);
+            }
+            Value::Cell(CellArray { shape, values })
+        }
+        Form::Struct => Value::Struct(records(parts, form, vec![1, 1], (variable, depth))?),
+        Form::Structs => {
+            let shape = parts.sides(variable)?.shape;
+            Value::Struct(records(parts, form, shape, (variable, depth))?)
+        }
+        Form::Class => {
+            let class = parts.class(variable)?;
+            Value::Object(Object { class, records: records(parts, form, vec![1, 1], (variable, depth))? })
+        }
+    })
+}
+
+/// Number of elements, their memory taken.
+fn counted(parts: &dyn Parts, shape: &[usize], size: u64, variable: &str) -> Result<usize, VariableFault> {
+    let length = count(shape).ok_or_else(|| parts.wrong(variable, "there are more elements than can be counted"))?;
+    parts.budget().take(length as u64, size, variable)?;
+    Ok(length)
+}
+
+fn matrix(parts: &mut dyn Parts, element: Element, variable: &str) -> Result<Array, VariableFault> {
+    let Sides { shape, by_rows } = parts.sides(variable)?;
+    let width = if element.complex { 2 } else { 1 };
+    let length = counted(parts, &shape, 16 * width as u64, variable)?;
+    let mut numbers = parts.numbers(element, length, variable)?;
+    if by_rows && let Some(places) = Places::row_major(&shape) {
+        numbers = places.flat_map(|place| &numbers[place * width..(place + 1) * width]).copied().collect();
+    }
+    Ok(element.array(shape, numbers))
+}
+
+fn filled(parts: &dyn Parts, element: Element, stored: Filled, variable: &str) -> Result<Array, VariableFault> {
+    let width = if element.complex { 2 } else { 1 };
+    let mut numbers = vec![0.0; width * counted(parts, &stored.shape, 16 * width as u64, variable)?];
+    for (place, number) in stored.places.iter().zip(stored.numbers.chunks(width)) {
+        let into = numbers.get_mut(place * width..(place + 1) * width);
+        into.ok_or_else(|| parts.wrong(variable, "a number lies outside the matrix"))?.copy_from_slice(number);
+    }
+    Ok(element.array(stored.shape, numbers))
+}
+
+fn range(parts: &mut dyn Parts, variable: &str) -> Result<Array, VariableFault> {
+    let numbers = parts.numbers(Element { stored: Stored::Float, complex: false }, 3, variable)?;
+    match *numbers.as_slice() {
+        [first, limit, step] => steps([first, limit, step], variable, parts.budget()),
+        _ => Err(parts.wrong(variable, "a range has three numbers")),
+    }
+}
+
+/// The row of numbers from a first one to a limit, by steps.
+fn steps([first, limit, step]: [f64; 3], variable: &str, budget: &ReadingBudget<'_>) -> Result<Array, VariableFault> {
+    // As Octave counts: a limit that is missed by rounding alone is reached.
+    let steps = ((limit - first) / step * (1.0 + f64::EPSILON)).floor();
+    let length = if steps >= 0.0 { (steps as usize).saturating_add(1) } else { 0 };
+    budget.take(length as u64, 8, variable)?;
+    Ok(Array::matrix(1, length, (0..length).map(|index| first + index as f64 * step).collect()))
+}
+
+/// Records of a struct or of an object, whose members are cells of one value for each.
+fn records(
+    parts: &mut dyn Parts,
+    form: Form,
+    shape: Vec<usize>,
+    (variable, depth): (&str, usize),
+) -> Result<StructArray, VariableFault> {
+    let count = counted(parts, &shape, size_of::<Value>() as u64, variable)?;
+    let mut fields = Vec::new();
+    for _ in 0..parts.members(form, variable)? {
+        let (name, kind) = parts.member(variable)?;
+        let inner = format!("{variable}.{name}");
+        let values = match (form, value(parts, &kind, &inner, depth + 1)?) {
+            (Form::Structs | Form::Class, Value::Cell(cell)) => cell.values,
+            (_, value) => vec![value],
+        };
+        if values.len() != count {
+            return Err(parts.wrong(&inner, "a field has not as many values as there are records"));
+        }
+        fields.push((name, values));
+    }
+    Ok(StructArray { shape, fields })
+}

@@ -1,5 +1,7 @@
 //! The plots, worked with the pointer.
 
+use gdcm::view::arrangement::View;
+
 use super::*;
 
 /// A point of the nominal model's curve.

@@ -72,6 +72,15 @@ pub struct AssembleArguments {
     /// What is said about the files; without it, it is proposed and written beside the dataset.
     #[arg(long, value_name = "RULES.json")]
     pub rules: Option<PathBuf>,
+    /// Headings of the columns of tables that do not say them, separated by commas: "omega [rad/s],mag [dB],phase [deg]".
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub headings: Vec<String>,
+    /// The sign of a channel, where names do not say it: CHANNEL=-1 of all files, identified:CHANNEL=-1 or physics:CHANNEL=-1 of a role, FILE:CHANNEL=-1 of a model; may be repeated.
+    #[arg(long, value_name = "CHANNEL=SIGN", allow_hyphen_values = true)]
+    pub sign: Vec<SaidSign>,
+    /// Sample time of models that do not say it, in seconds; 0 where they are of continuous time.
+    #[arg(long, value_name = "SECONDS", value_parser = real_number)]
+    pub sample_time: Option<f64>,
     /// The dataset, packed where the name ends in .gz.
     #[arg(long, value_name = "DATASET.json.gz")]
     pub out: PathBuf,
@@ -86,6 +95,9 @@ pub struct ConvertArguments {
     /// Files, or folders with all that is in them.
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
+    /// Headings of the columns of tables that do not say them, separated by commas: "omega [rad/s],mag [dB],phase [deg]".
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub headings: Vec<String>,
     /// The file of models.
     #[arg(long, value_name = "MODELS.json")]
     pub out: PathBuf,
@@ -375,6 +387,39 @@ impl FromStr for Rejection {
         let (id, model) = text.split_once(':').ok_or_else(expected)?;
         let condition = id.trim().parse().map_err(|_| expected())?;
         Ok(Self { condition, model: model.to_owned() })
+    }
+}
+
+/// The sign of a channel, of all files, of a role or of one model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SaidSign {
+    /// "identified", "physics", or the file of a model; none of all.
+    pub of: Option<String>,
+    /// The channel.
+    pub channel: String,
+    /// 1 or -1.
+    pub sign: f64,
+}
+
+impl FromStr for SaidSign {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = || format!("expected CHANNEL=-1 or CHANNEL=1, as NZ=-1 or identified:NZ=-1, found \"{text}\"");
+        let (channel, sign) = text.rsplit_once('=').ok_or_else(expected)?;
+        let sign = match sign.trim() {
+            "-1" | "-" => -1.0,
+            "1" | "+1" | "+" => 1.0,
+            _ => return Err(expected()),
+        };
+        let (of, channel) = match channel.rsplit_once(':') {
+            Some((of, channel)) => (Some(of.trim().to_owned()), channel),
+            None => (None, channel),
+        };
+        if channel.trim().is_empty() || of.as_deref().is_some_and(str::is_empty) {
+            return Err(expected());
+        }
+        Ok(Self { of, channel: channel.trim().to_owned(), sign })
     }
 }
 

@@ -15,7 +15,7 @@ pub struct IdentifyArguments {
     /// Flight records of one condition, or with --every-condition of many: files, or folders with all that is in them (text, MATLAB, NumPy, JSON, zip).
     #[arg(value_name = "RECORD", required = true)]
     pub records: Vec<PathBuf>,
-    /// Inputs, separated by commas (LON,LAT), each as CHANNEL or CHANNEL=COLUMN; without it, those of the dataset.
+    /// Inputs, separated by commas (LON,LAT), each as CHANNEL or CHANNEL=COLUMN (a name, #3 for the third column, xyz[0] of a matrix, -COLUMN for the other sign); without it, those of the dataset.
     #[arg(long, value_name = "NAMES", required_unless_present = "into")]
     pub inputs: Option<ChannelList>,
     /// Outputs, in the same way.
@@ -101,17 +101,24 @@ impl FromStr for ChannelList {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
+        let bare = |text: &str| text.replace('"', "").trim().to_owned();
         let channel = |words: &str| {
             let (name, column) = match words.split_once('=') {
-                Some((name, column)) => (name.trim(), Some(column.trim())),
-                None => (words.trim(), None),
+                Some((name, column)) => (bare(name), Some(bare(column))),
+                None => (bare(words), None),
             };
-            if name.is_empty() || column.is_some_and(str::is_empty) {
+            if name.is_empty() || column.as_deref().is_some_and(str::is_empty) {
                 return Err(format!("expected CHANNEL or CHANNEL=COLUMN, as P or P=roll_rate, found \"{words}\""));
             }
-            Ok((name.to_owned(), column.map(str::to_owned)))
+            Ok((name, column))
         };
-        let channels: Vec<_> = text.split(',').map(channel).collect::<Result<_, _>>()?;
+        // A comma between quotes is part of a name.
+        let mut is_quoted = false;
+        let parts = text.split(|letter: char| {
+            is_quoted ^= letter == '"';
+            letter == ',' && !is_quoted
+        });
+        let channels: Vec<_> = parts.map(channel).collect::<Result<_, _>>()?;
         match channels.iter().enumerate().find(|(at, (name, _))| channels[..*at].iter().any(|(other, _)| other == name))
         {
             Some((_, (name, _))) => Err(format!("{name} stands twice")),
@@ -153,6 +160,9 @@ mod tests {
     fn channels_may_say_their_columns() {
         let list: ChannelList = "LON, P=roll rate".parse().unwrap();
         assert_eq!(list.channels, [("LON".to_owned(), None), ("P".to_owned(), Some("roll rate".to_owned()))]);
+        let list: ChannelList = "NZ=-az, LON=#30, P=\"roll rate, deg/s\"".parse().unwrap();
+        let columns: Vec<&str> = list.channels.iter().flat_map(|(_, column)| column.as_deref()).collect();
+        assert_eq!(columns, ["-az", "#30", "roll rate, deg/s"]);
         assert!("".parse::<ChannelList>().is_err() && "P=".parse::<ChannelList>().is_err());
         assert_eq!("P,Q,P".parse::<ChannelList>().unwrap_err(), "P stands twice");
     }

@@ -66,6 +66,16 @@ pub enum LayoutProblem {
         /// The columns there are.
         found: String,
     },
+    /// A column whose name leaves open which sign it has.
+    #[error(
+        "column {column} can be {channel} with either sign; say which: {channel}=COLUMN, or {channel}=-COLUMN for the other"
+    )]
+    Sign {
+        /// The channel.
+        channel: String,
+        /// The column, in quotation marks.
+        column: String,
+    },
     /// Several columns can be this channel.
     #[error("several columns can be the {side} {channel}: {found}; say which is")]
     SeveralColumns {

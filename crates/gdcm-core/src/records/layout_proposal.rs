@@ -1,7 +1,7 @@
 //! Columns proposed for the time and the channels of a record.
 
 use super::*;
-use crate::assembly::{ChannelRule, conversion_factor, folded_name, same_channel};
+use crate::assembly::{ChannelRule, SignedName, conversion_factor, folded_name, same_channel, sign_between};
 use crate::units::number;
 
 /// What the engineer says about the time of records.
@@ -43,7 +43,8 @@ impl RecordLayout {
             Some(TimeBase::Column { column, .. }) => Some(column),
             _ => None,
         };
-        let (inputs, outputs) = if table.named {
+        let is_said = channels.inputs.iter().chain(&channels.outputs).any(|rule| !rule.aliases.is_empty());
+        let (inputs, outputs) = if table.named || is_said {
             (
                 proposal.named(table, ("input", ChannelSide::Input), &channels.inputs, time_column),
                 proposal.named(table, ("output", ChannelSide::Output), &channels.outputs, time_column),
@@ -156,11 +157,18 @@ impl LayoutProposal {
     /// The column with the factor from the file's unit to the channel's, and in words.
     fn used(&mut self, table: &RecordTable, rule: &ChannelRule, column: usize) -> Option<ColumnUse> {
         let quoted = table.quoted(column);
+        let Some(sign) = sign_of(table, rule, column) else {
+            self.problems.push(LayoutProblem::Sign { channel: rule.name.clone(), column: quoted });
+            return None;
+        };
+        if sign < 0.0 {
+            self.notes.push(format!("{}: column {quoted} turned (× -1)", rule.name));
+        }
         let said = table.columns[column].unit.as_deref().filter(|unit| !unit.trim().is_empty());
         let Some(from) = said.or(rule.unit_in_files.as_deref()).filter(|_| !rule.unit.is_empty()) else {
             let unit = said.map(|unit| format!(", in {unit}")).unwrap_or_default();
             self.notes.push(format!("{}: column {quoted} as it is{unit}", rule.name));
-            return Some(ColumnUse::as_it_is(column));
+            return Some(ColumnUse { column, factor: sign });
         };
         let Some(factor) = conversion_factor(from, &rule.unit) else {
             let (channel, from, to) = (rule.name.clone(), from.to_owned(), rule.unit.clone());
@@ -172,7 +180,33 @@ impl LayoutProposal {
             (true, None) => format!("{}: column {quoted}, taken to be in {from} as the file does not say", rule.name),
             (false, _) => format!("{}: column {quoted}, {from} → {} (× {})", rule.name, rule.unit, number(factor)),
         });
-        Some(ColumnUse { column, factor })
+        Some(ColumnUse { column, factor: sign * factor })
+    }
+}
+
+/// The column that an address says where none has it as its name: `#30` is the thirtieth, `xyz[0]` the first of the matrix `xyz`; a
+/// minus before it turns the sign.
+fn addressed(table: &RecordTable, address: &str) -> Option<usize> {
+    let address = address.trim_start_matches('-').trim();
+    if let Some(number) = address.strip_prefix('#') {
+        return number.parse::<usize>().ok()?.checked_sub(1).filter(|&column| column < table.columns.len());
+    }
+    let (name, index) = address.strip_suffix(']')?.rsplit_once('[')?;
+    let number = index.parse::<usize>().ok()?.checked_add(1)?;
+    let wanted = folded_name(&format!("{name}_{number}"));
+    table.columns.iter().position(|column| folded_name(&column.name) == wanted)
+}
+
+/// What a column is multiplied by to have the sign of the channel, as the marks in what is said, or in the names, have it; none where
+/// they leave it open.
+fn sign_of(table: &RecordTable, rule: &ChannelRule, column: usize) -> Option<f64> {
+    let name = &table.columns[column].name;
+    match rule.aliases.first() {
+        Some(said) if said != name && addressed(table, said) == Some(column) => {
+            Some(if said.starts_with('-') { -1.0 } else { 1.0 })
+        }
+        Some(said) => sign_between(name, said).or_else(|| sign_between(name, &rule.name)),
+        None => sign_between(name, &rule.name),
     }
 }
 
@@ -186,11 +220,17 @@ fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec
     let names = if rule.aliases.is_empty() { own } else { &rule.aliases };
     let mut found = named(&|name| names.iter().any(|wanted| wanted == name));
     if found.is_empty() {
+        found = rule.aliases.iter().filter_map(|address| addressed(table, address)).collect();
+    }
+    // The marks of a sign are no part of a name.
+    let plain = |name: &str| SignedName::of(name).name;
+    if found.is_empty() {
         // What the engineer says, however it is typed: "elev_yoke1" is "elev,yoke1", and no other name of the stick.
-        found = named(&|name| rule.aliases.iter().any(|wanted| folded_name(name) == folded_name(wanted)));
+        let is_it = |name: &str, wanted: &str| folded_name(&plain(name)) == folded_name(&plain(wanted));
+        found = named(&|name| rule.aliases.iter().any(|wanted| is_it(name, wanted)));
     }
     if found.is_empty() {
-        found = named(&|name| names.iter().any(|wanted| same_channel(name, wanted)));
+        found = named(&|name| names.iter().any(|wanted| same_channel(&plain(name), &plain(wanted))));
     }
     if found.len() > 1 {
         let fits = |column: &usize| {

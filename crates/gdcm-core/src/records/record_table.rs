@@ -69,7 +69,13 @@ impl RecordTable {
     /// The column of this name, as it is written, else without case.
     pub fn find(&self, name: &str) -> Option<usize> {
         let position = |is_it: &dyn Fn(&str) -> bool| self.columns.iter().position(|column| is_it(&column.name));
-        position(&|column| column == name).or_else(|| position(&|column| column.eq_ignore_ascii_case(name.trim())))
+        let numbered = || {
+            let column = name.trim().strip_prefix('#')?.parse::<usize>().ok()?.checked_sub(1)?;
+            (column < self.columns.len()).then_some(column)
+        };
+        position(&|column| column == name)
+            .or_else(|| position(&|column| column.eq_ignore_ascii_case(name.trim())))
+            .or_else(numbered)
     }
 
     /// The name of a column in quotation marks.

@@ -75,9 +75,9 @@ pub struct AssembleArguments {
     /// Headings of the columns of tables that do not say them, separated by commas: "omega [rad/s],mag [dB],phase [deg]".
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub headings: Vec<String>,
-    /// The sign of a channel, where names do not say it: CHANNEL=-1 of all files, identified:CHANNEL=-1 or physics:CHANNEL=-1 of a role, FILE:CHANNEL=-1 of a model; may be repeated.
-    #[arg(long, value_name = "CHANNEL=SIGN", allow_hyphen_values = true)]
-    pub sign: Vec<SaidSign>,
+    /// The sign of a channel, where names do not say it: CHANNEL=-1 of the identified models, CHANNEL=-1:physics, CHANNEL=-1:all, CHANNEL=-1:FILE of one model; may be repeated.
+    #[arg(long, value_name = "CHANNEL=SIGN[:OF]", allow_hyphen_values = true)]
+    pub sign: Vec<FileSign>,
     /// Sample time of models that do not say it, in seconds; 0 where they are of continuous time.
     #[arg(long, value_name = "SECONDS", value_parser = real_number)]
     pub sample_time: Option<f64>,
@@ -390,36 +390,32 @@ impl FromStr for Rejection {
     }
 }
 
-/// The sign of a channel, of all files, of a role or of one model.
+/// The sign of a channel in files that are assembled: of a role, of all, or of one model.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SaidSign {
-    /// "identified", "physics", or the file of a model; none of all.
-    pub of: Option<String>,
+pub struct FileSign {
     /// The channel.
     pub channel: String,
     /// 1 or -1.
     pub sign: f64,
+    /// "identified", "physics", "all", or the file of a model.
+    pub of: String,
 }
 
-impl FromStr for SaidSign {
+impl FromStr for FileSign {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let expected = || format!("expected CHANNEL=-1 or CHANNEL=1, as NZ=-1 or identified:NZ=-1, found \"{text}\"");
-        let (channel, sign) = text.rsplit_once('=').ok_or_else(expected)?;
+        let expected =
+            || format!("expected CHANNEL=-1 or CHANNEL=1, then :identified, :physics, :all or :FILE, found \"{text}\"");
+        let (channel, rest) = text.rsplit_once('=').ok_or_else(expected)?;
+        let (sign, of) = rest.split_once(':').unwrap_or((rest, SignRole::Identified.word()));
         let sign = match sign.trim() {
-            "-1" | "-" => -1.0,
-            "1" | "+1" | "+" => 1.0,
+            "-1" => -1.0,
+            "1" | "+1" => 1.0,
             _ => return Err(expected()),
         };
-        let (of, channel) = match channel.rsplit_once(':') {
-            Some((of, channel)) => (Some(of.trim().to_owned()), channel),
-            None => (None, channel),
-        };
-        if channel.trim().is_empty() || of.as_deref().is_some_and(str::is_empty) {
-            return Err(expected());
-        }
-        Ok(Self { of, channel: channel.trim().to_owned(), sign })
+        let (channel, of) = (channel.trim().to_owned(), of.trim().to_owned());
+        if channel.is_empty() || of.is_empty() { Err(expected()) } else { Ok(Self { channel, sign, of }) }
     }
 }
 

@@ -89,13 +89,11 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     let mut rules = said.unwrap_or_else(|| proposed_rules(&name_of(&arguments.folders), &found.models));
     rules.headings = headings;
     rules.sample_time_s = arguments.sample_time.or(rules.sample_time_s);
-    for SaidSign { of, channel, sign } in arguments.sign.iter().cloned() {
-        let signs = match of {
-            None => &mut rules.signs,
-            Some(role) if matches!(role.as_str(), "identified" | "physics") => {
-                rules.role_signs.entry(role).or_default()
-            }
-            Some(model) => rules.rows.entry(model).or_default().signs.get_or_insert_default(),
+    for FileSign { channel, sign, of } in arguments.sign.iter().cloned() {
+        let signs = match of.as_str() {
+            "all" => &mut rules.signs,
+            "identified" | "physics" => rules.role_signs.entry(of).or_default(),
+            _ => rules.rows.entry(of).or_default().signs.get_or_insert_default(),
         };
         signs.insert(channel, sign);
     }

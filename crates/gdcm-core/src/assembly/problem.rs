@@ -45,7 +45,7 @@ pub enum ProblemKind {
     /// A channel that the file calls by a name which leaves the sign open.
     #[error(
         "{channel} is called {found} in the file, which can be positive the other way: say its sign, 1 or -1 (\"signs\" in the rules, \
-         --sign {channel}=-1)"
+         --sign {channel}=-1:all)"
     )]
     Sign {
         /// The channel of the dataset.

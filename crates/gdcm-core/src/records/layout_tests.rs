@@ -34,7 +34,7 @@ fn table(columns: Vec<RecordColumn>) -> RecordTable {
 /// A record as another tool names and orders its columns.
 fn record() -> RecordTable {
     table(vec![
-        column("az", "g", |k| 0.1 * (0.3 * k).sin()),
+        column("nz", "g", |k| 0.1 * (0.3 * k).sin()),
         column("Time (s)", "s", |k| 0.02 * k),
         column("lateral", "%", |k| 50.0 + 5.0 * (0.2 * k).cos()),
         column("roll rate", "rad/s", |k| 0.2 * (0.2 * k).sin()),
@@ -63,7 +63,7 @@ fn channels_are_found_by_the_names_of_the_field_and_converted_in_words() {
             "LON: column \"delta_b\", taken to be in % as the file does not say",
             "LAT: column \"lateral\", in %",
             "P: column \"roll rate\", rad/s → deg/s (× 57.29577951308232)",
-            "NZ: column \"az\", g → m/s² (× 9.80665)",
+            "NZ: column \"nz\", g → m/s² (× 9.80665)",
         ]
     );
     let flight = proposal.layout.flight_record(&table, &channels).unwrap();
@@ -124,7 +124,7 @@ fn a_time_that_falls_stands_still_or_goes_in_minutes_is_refused() {
     assert_eq!(with(column("t", "", |k| 20.0 * k)), "", "thousandths of a second, by their steps");
     let none = with(column("count", "", |k| k));
     assert!(
-        none.starts_with("no column gives the time; say which does, or the sample rate (columns: az, count"),
+        none.starts_with("no column gives the time; say which does, or the sample rate (columns: nz, count"),
         "{none}"
     );
     let rate = TimeWish { sample_time_s: Some(0.02), column: None };
@@ -133,7 +133,7 @@ fn a_time_that_falls_stands_still_or_goes_in_minutes_is_refused() {
     assert_eq!(RecordLayout::proposed(&table, &channels(), &rate).problems, []);
     let wrong = TimeWish { sample_time_s: None, column: Some("clock".into()) };
     let words = told(&RecordLayout::proposed(&table, &channels(), &wrong).problems);
-    assert!(words.starts_with("there is no column \"clock\"; there are az"), "{words}");
+    assert!(words.starts_with("there is no column \"clock\"; there are nz"), "{words}");
 }
 
 #[test]
@@ -231,7 +231,7 @@ fn a_layout_goes_over_to_a_record_with_the_same_columns_in_another_order() {
     let carried = layout.carried_to(&second, &first).unwrap();
     let flight = carried.flight_record(&second, &channels()).unwrap();
     assert_eq!(flight, layout.flight_record(&first, &channels()).unwrap());
-    second.columns.retain(|column| column.name != "az");
+    second.columns.retain(|column| column.name != "nz");
     assert_eq!(layout.carried_to(&second, &first), None);
 }
 
@@ -244,4 +244,33 @@ fn a_channel_that_stands_still_and_two_that_are_one_are_told() {
     table.columns[4] = RecordColumn { name: "LON".into(), ..table.columns[2].clone() };
     let words: Vec<String> = proposed(&table).cautions.iter().map(ToString::to_string).collect();
     assert_eq!(words, ["LON and LAT have the same samples"]);
+}
+
+#[test]
+fn a_column_is_said_by_name_by_number_by_index_and_with_its_sign() {
+    let mut table = record();
+    table.columns[5].name = "xyz_1".into();
+    let used = |address: &str| {
+        let wanted = ChannelRule { aliases: vec![address.to_owned()], ..ChannelRule::named("NZ") };
+        let channels = RecordChannels { inputs: Vec::new(), outputs: vec![wanted] };
+        let proposal = RecordLayout::proposed(&table, &channels, &TimeWish::default());
+        proposal.layout.outputs[0].map(|used| (used.column, used.factor))
+    };
+    assert_eq!(used("nz"), Some((0, 1.0)));
+    assert_eq!(used("-nz"), Some((0, -1.0)));
+    assert_eq!((used("#1"), used("-#4")), (Some((0, 1.0)), Some((3, -1.0))));
+    assert_eq!((used("xyz[0]"), used("#7"), used("xyz[1]")), (Some((5, 1.0)), None, None));
+}
+
+#[test]
+fn the_sign_of_a_column_is_never_guessed() {
+    let mut table = record();
+    for (name, factor) in
+        [("NZ (down)", Some(-9.806_65)), ("-NZ", Some(-9.806_65)), ("az", None), ("nz", Some(9.806_65))]
+    {
+        table.columns[0].name = name.into();
+        let proposal = proposed(&table);
+        assert_eq!(proposal.layout.outputs[1].map(|used| used.factor), factor, "{name}");
+        assert_eq!(told(&proposal.problems).contains("either sign"), factor.is_none(), "{name}");
+    }
 }

@@ -314,19 +314,22 @@ fn row_problems(part: &Part) -> Vec<ProblemKind> {
     problems
 }
 
-/// Asks for the sample time of a model without one whose poles lie as those of discrete time do: all inside the unit circle, half of
-/// them or more (and at least two) near 1. In continuous time the latter grow within a second.
+/// Asks for the sample time of a model without one whose poles lie as those of discrete time do: all inside the unit circle, or as
+/// little outside as an unstable mode of a helicopter is, and half of them or more (and at least two) near 1. In continuous time the
+/// latter grow within a second.
 fn missing_sample_time(part: &Part) -> Option<ProblemKind> {
-    /// Real part of a pole near 1.
+    /// Real part of a pole near 1, and the magnitude of one that is outside by little.
     const NEAR: f64 = 0.5;
+    const OUTSIDE: f64 = 1.05;
     let a =
         part.found.draft.matrices[0].as_ref().filter(|a| a.is_square() && a.iter().all(|entry| entry.is_finite()))?;
-    if part.found.draft.timing.sample_time_s.is_some() || a.nrows() < 2 {
+    // The sum of such poles is positive, that of a damped model in continuous time is not: it costs nothing to know.
+    if part.found.draft.timing.sample_time_s.is_some() || a.nrows() < 2 || a.trace() <= 0.0 {
         return None;
     }
     let poles = a.complex_eigenvalues();
     let near = poles.iter().filter(|pole| pole.re > NEAR).count();
-    let is_discrete = poles.iter().all(|pole| pole.norm() <= 1.0 + 1e-6) && near >= 2 && 2 * near >= poles.len();
+    let is_discrete = poles.iter().all(|pole| pole.norm() <= OUTSIDE) && near >= 2 && 2 * near >= poles.len();
     is_discrete.then_some(ProblemKind::NoSampleTime { near, poles: poles.len() })
 }
 

@@ -14,6 +14,7 @@ use gdcm_files::{
     relative_folder, rules_path, sources_folder,
 };
 
+use super::arguments::FileSign;
 use super::existing;
 use super::{AssembleArguments, ConvertArguments, Failure, indented, say, say_error};
 

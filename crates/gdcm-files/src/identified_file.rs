@@ -75,7 +75,7 @@ struct ValidationText<'m> {
 struct RecordText<'m> {
     name: &'m str,
     file: &'m str,
-    sha256: &'m str,
+    sha256: Option<&'m str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     variable: Option<&'m str>,
     held_out: bool,
@@ -157,7 +157,7 @@ fn record_text<'m>(found: &Identification, index: usize, record: &'m ConditionRe
     RecordText {
         name: &record.name,
         file: &record.file,
-        sha256: record.sha256.as_deref().unwrap_or_default(),
+        sha256: record.sha256.as_deref(),
         variable: record.variable.as_deref(),
         held_out: record.held_out,
         used_s: &record.used_s,
@@ -228,7 +228,8 @@ mod tests {
 
     fn written(cautions: &[String]) -> Vec<u8> {
         let rule = |name: &str, unit: &str| ChannelRule { unit: unit.into(), ..ChannelRule::named(name) };
-        let channels = RecordChannels { inputs: vec![rule("LON", "%")], outputs: vec![rule("Q", "deg/s")] };
+        let (inputs, outputs) = (vec![rule("LON", "%")], vec![rule("Q", "deg/s")]);
+        let channels = RecordChannels { inputs, outputs, ..RecordChannels::default() };
         let record = ConditionRecord { used_s: vec![[0.0, 60.0]], ..ConditionRecord::new("LON 1", "lon_1.csv") };
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("identified.json");

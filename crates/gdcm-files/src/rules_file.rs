@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use gdcm_core::assembly::{ChannelRule, NamePattern, RowRule, Rules, Signs, UnitRule, standard_patterns};
 use gdcm_core::dataset::Location;
 use gdcm_core::dataset::limits::{MOST_CHANNELS, MOST_PAIRS};
+use gdcm_core::whole_number::whole;
 use serde::{Deserialize, Serialize};
 
 use crate::file_error::{ContentError, ContentFault, FileError};
@@ -110,6 +111,7 @@ const MOST_PATTERNS: usize = 200;
 #[derive(Deserialize, Serialize)]
 pub(super) struct RulesText {
     pub(super) format: String,
+    #[serde(deserialize_with = "whole")]
     pub(super) version: u64,
     pub(super) name: String,
     #[serde(default)]

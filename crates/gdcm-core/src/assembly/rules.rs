@@ -8,6 +8,7 @@ use regex::{Regex, RegexBuilder};
 use serde::{Deserialize, Serialize};
 
 use super::{Row, RowRole};
+use crate::whole_number::whole_or_none;
 
 /// A channel of the dataset, and what files that do not say call its unit.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
@@ -54,7 +55,7 @@ pub struct RowRule {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub left_out: Option<bool>,
     /// Number of its condition.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "whole_or_none")]
     pub condition: Option<i64>,
     /// Its role.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -386,6 +387,8 @@ mod tests {
         let row = read("c03_045kt_high/roll+5");
         assert_eq!((row.condition, row.airspeed_kt, row.altitude.as_deref()), (Some(3), Some(45.0), Some("high")));
         assert_eq!(row.perturbation.into_iter().collect::<Vec<_>>(), [("roll_deg".to_owned(), 5.0)]);
+        let offsets: Vec<f64> = read("dV+5_dROC+150_dPHI-5").perturbation.into_values().collect();
+        assert_eq!(offsets, [5.0, 150.0, -5.0], "airspeed_kt, rate_of_climb_fpm, roll_deg");
         let row = read("fc-12/120kt_low_heavy/V-10kt roc+150fpm");
         assert_eq!((row.condition, row.airspeed_kt, row.weight.as_deref()), (Some(12), Some(120.0), Some("heavy")));
         let offsets: Vec<f64> = row.perturbation.values().copied().collect();

@@ -66,16 +66,6 @@ pub enum LayoutProblem {
         /// The columns there are.
         found: String,
     },
-    /// A column whose name leaves open which sign it has.
-    #[error(
-        "column {column} can be {channel} with either sign; say which: {channel}=COLUMN, or {channel}=-COLUMN for the other"
-    )]
-    Sign {
-        /// The channel.
-        channel: String,
-        /// The column, in quotation marks.
-        column: String,
-    },
     /// Several columns can be this channel.
     #[error("several columns can be the {side} {channel}: {found}; say which is")]
     SeveralColumns {
@@ -176,6 +166,12 @@ pub enum LayoutCaution {
         first: String,
         /// The other.
         second: String,
+    },
+    /// A record is another under a second name.
+    #[error("its samples are those of {first}: left out, for evidence counts once")]
+    Copy {
+        /// The name of the other.
+        first: String,
     },
     /// Samples are missing.
     #[error("{channel} (column {column}): {count} of {samples} samples are missing")]

@@ -66,12 +66,12 @@ impl RecordTable {
         self.columns.first().map_or(0, |column| column.values.len())
     }
 
-    /// The column of this name, as it is written, else without case.
+    /// The column of this name, as it is written, else without case; `#30` is the thirtieth.
     pub fn find(&self, name: &str) -> Option<usize> {
         let position = |is_it: &dyn Fn(&str) -> bool| self.columns.iter().position(|column| is_it(&column.name));
         let numbered = || {
-            let column = name.trim().strip_prefix('#')?.parse::<usize>().ok()?.checked_sub(1)?;
-            (column < self.columns.len()).then_some(column)
+            let number: usize = name.trim().strip_prefix('#')?.parse().ok()?;
+            number.checked_sub(1).filter(|column| *column < self.columns.len())
         };
         position(&|column| column == name)
             .or_else(|| position(&|column| column.eq_ignore_ascii_case(name.trim())))
